@@ -1,0 +1,8 @@
+/* gpgp: the whole C API. Include one service's header instead where that is all you use. */
+#ifndef GPGP_H
+#define GPGP_H
+#include <gpgp/core.h>
+#include <gpgp/spawn.h>
+#include <gpgp/vector.h>
+#include <gpgp/visibility.h>
+#endif

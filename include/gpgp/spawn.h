@@ -1,0 +1,169 @@
+/* gpgp spawn: grammars derived on the GPU, straight into the engine's buffers.
+ *
+ *   grammar (asset)   an operator graph with its parameter table; from a baked blob or compiled from text
+ *   spawner (worker)  derives axioms with any grammar; sized by budgets
+ *
+ *   gpgpCompileGrammar (libgpgp_compiler) -> blob -> gpgpCreateGrammar -> gpgpRecordUpload -> gpgpRecordPrepareSpawn
+ */
+#ifndef GPGP_SPAWN_H
+#define GPGP_SPAWN_H
+#include <gpgp/core.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Where a derivation starts. 96 bytes, the same in C and in GPU buffers (std430). */
+typedef struct GpgpAxiom {
+  float transform[12];  /**< rows of a 3x4 matrix, object to world */
+  float size[3];        /**< extents of the start shape, metres */
+  uint32_t seed;        /**< of all random values below this axiom */
+  uint32_t id;          /**< the engine's own number, found again in each instance */
+  uint32_t rule;        /**< start rule, GPGP_AXIOM_DEFAULT_RULE: the grammar's axiom */
+  float attribute;      /**< custom attribute, inherited; NaN: taken from the seed as in [0, 1) */
+  uint32_t reserved[5]; /**< 0 */
+} GpgpAxiom;
+#define GPGP_AXIOM_DEFAULT_RULE 0xffffffffu
+
+/** What a terminal becomes. 96 bytes, std430. The mesh's unit shape spans [-0.5, 0.5] on each axis; the transform
+ *  includes the shape's size. */
+typedef struct GpgpInstance {
+  float transform[12];   /**< rows of a 3x4 matrix, unit shape to world */
+  uint32_t bucket;       /**< terminal index as in gpgpGetGrammarTerminal */
+  uint32_t shape;        /**< GpgpShape */
+  uint32_t axiomId;      /**< GpgpAxiom::id */
+  uint32_t rule;         /**< terminal's line: several names may share a bucket */
+  uint32_t seed;         /**< of the shape */
+  float attribute;       /**< custom attribute of the shape */
+  uint32_t key[2];       /**< path key: the same on every device and schedule */
+  float size[3];         /**< of the shape, metres */
+  uint32_t reserved;
+} GpgpInstance;
+
+typedef uint32_t GpgpShape;
+enum {
+  GPGP_SHAPE_TRIANGLE = 0, GPGP_SHAPE_QUAD = 1, GPGP_SHAPE_PENTAGON = 2, GPGP_SHAPE_HEXAGON = 3,
+  GPGP_SHAPE_HEPTAGON = 4, GPGP_SHAPE_OCTAGON = 5, GPGP_SHAPE_PRISM3 = 6, GPGP_SHAPE_BOX = 7,
+  GPGP_SHAPE_PRISM5 = 8, GPGP_SHAPE_PRISM6 = 9, GPGP_SHAPE_PRISM7 = 10, GPGP_SHAPE_PRISM8 = 11,
+  GPGP_SHAPE_DYNAMIC_CONVEX_POLYGON = 12, GPGP_SHAPE_DYNAMIC_POLYGON = 13,
+  GPGP_SHAPE_DYNAMIC_CONVEX_RIGHT_PRISM = 14, GPGP_SHAPE_DYNAMIC_RIGHT_PRISM = 15, GPGP_SHAPE_SPHERE = 16
+};
+
+/* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
+
+typedef struct GpgpCompileMessage {
+  const char* file;
+  uint32_t line, column; /**< from 1 */
+  GpgpSeverity severity;
+  const char* text;
+} GpgpCompileMessage;
+typedef void(GPGP_CALL* GpgpCompileMessageFn)(void* userData, const GpgpCompileMessage* message);
+
+/** Overrides one `var` of a grammar. */
+typedef struct GpgpVariable {
+  const char* name;
+  float value;
+} GpgpVariable;
+
+typedef struct GpgpGrammarSource {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* name; /**< file name for messages */
+  const char* text; /**< UTF-8, need not end in 0 */
+  size_t size;
+  const GpgpVariable* variables;
+  uint32_t variableCount;
+  GpgpCompileMessageFn messageFn; /**< every error of the file, in order */
+  void* messageUserData;
+} GpgpGrammarSource;
+#define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
+
+/** Compiles PGA-shape text (.pga) to a baked grammar. In libgpgp_compiler. A pure function of its input.
+ *  Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
+
+/* ---------------------------------------------------------------- grammar */
+
+typedef struct GpgpGrammarCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* label;
+  const void* data; /**< a baked grammar; or NULL: read from path through the file callbacks */
+  size_t size;
+  const char* path;
+} GpgpGrammarCreateInfo;
+#define GPGP_GRAMMAR_CREATE_INFO_INIT GPGP_INIT(GpgpGrammarCreateInfo, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO)
+
+/** Checks a baked grammar (magic, version, checksum, every index) and queues it for upload.
+ *  Errors: INVALID_DATA, IO, OUT_OF_..._MEMORY. @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext context, const GpgpGrammarCreateInfo* info,
+                                                GpgpAsset* grammar);
+
+typedef struct GpgpGrammarTerminal {
+  const char* name;   /**< @lifetime handle */
+  uint32_t kind;      /**< 0: triangles are generated, 1: an instanced mesh of the engine's */
+  uint32_t index;     /**< mesh or material, as the grammar says */
+  uint32_t bucket;    /**< GpgpInstance::bucket of its instances */
+} GpgpGrammarTerminal;
+
+/** The grammar's terminals. count in: capacity, out: all. terminals NULL asks for the count. @threads any */
+GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset grammar, uint32_t* count,
+                                                      GpgpGrammarTerminal* terminals);
+
+/* ---------------------------------------------------------------- spawner */
+
+typedef struct GpgpSpawnerCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpWorkerCreateInfo base;
+  uint32_t maxShapes; /**< shapes alive in one round of derivation; 0: 262144. What does not fit is counted */
+  uint32_t maxDepth;  /**< rounds, the longest path of dynamic edges; 0: 64. Shapes left over are counted */
+} GpgpSpawnerCreateInfo;
+#define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
+
+/** @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpSpawnerCreateInfo* info,
+                                                GpgpWorker* spawner);
+
+typedef struct GpgpSpawnInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpRecordInfo base;
+  GpgpAsset grammar;
+  GpgpBuffer axioms;     /**< GpgpAxiom[axiomCount]; STORAGE usage */
+  uint32_t axiomCount;
+  GpgpBuffer instances;  /**< out: GpgpInstance[]; its size is the budget; STORAGE usage */
+  GpgpBuffer draws;      /**< out, optional: VkDrawIndexedIndirectCommand[terminals], one per bucket: instanceCount and
+                              firstInstance are written, the other fields are left as the engine set them. With it,
+                              instances are sorted by bucket; without it they lie in no stated order */
+  GpgpBuffer count;      /**< out, optional: uint32_t, instances written (4 bytes); STORAGE usage */
+} GpgpSpawnInfo;
+#define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
+
+/** Derives the axioms and writes one instance for each terminal shape.
+ *  NOT_READY: grammar not resident or spawner not prewarmed.
+ *  @threads handle @lifetime call; buffers: frame @pass outside
+ *  @state compute pipeline, compute descriptor set 0, push constants */
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker spawner, VkCommandBuffer commandBuffer,
+                                                     const GpgpFrame* frame, const GpgpSpawnInfo* info);
+
+typedef struct GpgpSpawnReport {
+  GpgpStructureType sType;
+  void* pNext;
+  GpgpReportHeader base;
+  uint32_t terminals;        /**< terminal shapes derived */
+  uint32_t instancesWritten; /**< <= terminals; less only with BUDGET_EXCEEDED */
+  uint32_t peakShapes;       /**< the most shapes alive in a round, those that did not fit included */
+  uint32_t droppedShapes;    /**< shapes that did not fit maxShapes; what lay below them is not known */
+  uint32_t unfinishedShapes; /**< shapes left when maxDepth rounds were over */
+  uint32_t rounds;           /**< rounds that had work */
+  uint32_t keyHash[2];       /**< order-free hash of (path key, bucket, shape) over all terminals */
+} GpgpSpawnReport;
+#define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
+
+/** The oldest report not yet taken. NOT_READY: none. @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetSpawnReport(GpgpWorker spawner, GpgpSpawnReport* report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,185 @@
+/* gpgp vector: paths, SVG and fonts, rasterised on the GPU from curved patches.
+ *
+ *   drawing (asset)  paths converted to CPatches: regions bounded by implicit curves, resolution-independent
+ *   canvas (worker)  rasterises drawings; sized by budgets
+ *   canvas view      keeps one rasterised canvas, to be drawn inside the engine's render pass
+ *
+ *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
+ *   GpgpPath[] -> gpgpCreateDrawingFromPaths                                made live
+ *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
+ */
+#ifndef GPGP_VECTOR_H
+#define GPGP_VECTOR_H
+#include <gpgp/core.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---------------------------------------------------------------- paths */
+
+typedef uint8_t GpgpPathVerb;
+enum {
+  GPGP_PATH_MOVE = 0,  /**< 1 point; starts a contour, an open one is closed by a line */
+  GPGP_PATH_LINE = 1,  /**< 1 point */
+  GPGP_PATH_QUAD = 2,  /**< 2 points: control, end */
+  GPGP_PATH_CUBIC = 3, /**< 3 points: control, control, end */
+  GPGP_PATH_CLOSE = 4  /**< 0 points */
+};
+
+typedef int32_t GpgpFillRule;
+enum { GPGP_FILL_NON_ZERO = 0, GPGP_FILL_EVEN_ODD = 1 };
+
+/** A filled path in drawing space. */
+typedef struct GpgpPath {
+  const GpgpPathVerb* verbs;
+  uint32_t verbCount;
+  const float* points; /**< x, y pairs, as many as the verbs need; finite, within +-1e7 */
+  uint32_t pointCount;
+  GpgpFillRule fillRule;
+  float color[4]; /**< linear RGB, straight alpha, 0 to 1 */
+} GpgpPath;
+
+/* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
+
+typedef struct GpgpSvgSource {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* name; /**< file name for messages */
+  const void* data; /**< SVG or gzip-compressed SVG (.svgz) */
+  size_t size;
+  GpgpMessageFn messageFn; /**< errors, and each unsupported element with its line (severity WARNING) */
+  void* messageUserData;
+} GpgpSvgSource;
+#define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
+
+/** Converts an SVG to a baked drawing (.gpgpv). In libgpgp_compiler; free the blob with gpgpFreeBlob.
+ *  Errors: INVALID_DATA (not SVG), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBlob* blob);
+
+/* ---------------------------------------------------------------- drawing */
+
+typedef struct GpgpDrawingCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* label;
+  /* exactly one of the three: */
+  const void* data; /**< a baked drawing */
+  size_t size;
+  const char* filePath; /**< of a baked drawing, read through the file callbacks */
+  const GpgpPath* paths; /**< painted in order, the first at the bottom */
+  uint32_t pathCount;
+} GpgpDrawingCreateInfo;
+#define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
+
+/** Checks a baked drawing, or converts paths to CPatches, and queues the result for upload.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT (path index in the message), IO, OUT_OF_..._MEMORY.
+ *  @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
+                                                GpgpAsset* drawing);
+
+typedef struct GpgpDrawingInfo {
+  GpgpStructureType sType;
+  void* pNext;
+  float bounds[4];   /**< of the ink: left, top, right, bottom, drawing space */
+  float viewport[4]; /**< of the page: x, y, width, height; equals the bounds where the source has none */
+  uint32_t paths, curves, patches;
+} GpgpDrawingInfo;
+#define GPGP_DRAWING_INFO_INIT GPGP_INIT(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO)
+
+/** @threads any */
+GPGP_API GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset drawing, GpgpDrawingInfo* info);
+
+/* ---------------------------------------------------------------- canvas */
+
+typedef struct GpgpCanvasCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpWorkerCreateInfo base;
+  uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
+  uint32_t maxPatches;          /**< CPatches in one record, all drawings and their instances; 0: 262144 */
+  uint32_t maxTileEntries;      /**< patch references over all tiles; 0: 1048576 */
+  uint32_t maxDrawings;         /**< drawings (with a transform each) in one record; 0: 64 */
+} GpgpCanvasCreateInfo;
+#define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
+
+/** @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext context, const GpgpCanvasCreateInfo* info,
+                                               GpgpWorker* canvas);
+
+typedef struct GpgpCanvasViewCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* label;
+  uint32_t width, height; /**< pixels; 8 bytes each are allocated */
+} GpgpCanvasViewCreateInfo;
+#define GPGP_CANVAS_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasViewCreateInfo, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO)
+
+/** @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext context, const GpgpCanvasViewCreateInfo* info,
+                                                   GpgpView* view);
+
+typedef struct GpgpCanvasItem {
+  GpgpAsset drawing;
+  float transform[6]; /**< drawing to pixel: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
+  float opacity;      /**< 0 to 1, multiplies each path's alpha */
+} GpgpCanvasItem;
+
+typedef struct GpgpCanvasInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpRecordInfo base;
+  uint32_t width, height; /**< pixels */
+  const GpgpCanvasItem* items; /**< in painting order, the first at the bottom */
+  uint32_t itemCount;
+  uint32_t samples;       /**< 1, 4, 8 or 16 per pixel; 0: 16 */
+  float background[4];    /**< linear, premultiplied */
+  GpgpView view;          /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
+  GpgpImage target;       /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
+                               Receives premultiplied linear colour; sRGB-encoded where encodeSrgb is set */
+  VkBool32 encodeSrgb;
+} GpgpCanvasInfo;
+#define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
+
+/** Rasterises the items into the view, the target, or both with the same pixels.
+ *  NOT_READY: a drawing is not resident or the canvas not prewarmed.
+ *  @threads handle @lifetime call; image: frame @pass outside
+ *  @state compute pipeline, compute descriptor set 0, push constants */
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
+                                                      const GpgpFrame* frame, const GpgpCanvasInfo* info);
+
+typedef struct GpgpCanvasDrawInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpView view;
+  const GpgpTargetInfo* target; /**< equal to one of those given to gpgpPrewarm */
+  float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
+  uint32_t width, height;       /**< of the part of the canvas that is drawn, pixels */
+} GpgpCanvasDrawInfo;
+#define GPGP_CANVAS_DRAW_INFO_INIT GPGP_INIT(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO)
+
+/** Draws what the last gpgpRecordPrepareCanvas into this view left, as a rectangle blended premultiplied
+ *  (ONE, ONE_MINUS_SRC_ALPHA), without filtering at one canvas pixel per pixel. The engine has set viewport and
+ *  scissor. Any number of times per prepare. NOT_READY: nothing was prepared, or the target was not prewarmed.
+ *  @threads handle @lifetime call @pass inside
+ *  @state graphics pipeline, graphics descriptor set 0, push constants */
+GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
+                                                   const GpgpFrame* frame, const GpgpCanvasDrawInfo* info);
+
+typedef struct GpgpCanvasReport {
+  GpgpStructureType sType;
+  void* pNext;
+  GpgpReportHeader base;
+  uint32_t patches;           /**< transformed and binned */
+  uint32_t tileEntries;       /**< needed */
+  uint32_t tileEntriesGiven;  /**< maxTileEntries */
+  uint32_t pathsDropped;      /**< whole paths left out where the budget did not suffice */
+} GpgpCanvasReport;
+#define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
+
+/** The oldest report not yet taken. NOT_READY: none. @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpWorker canvas, GpgpCanvasReport* report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,131 @@
+/* gpgp visibility: which triangles can be seen, for object-space shading.
+ *
+ *   geometry set (asset)  meshes as the engine's own buffers describe them: no vertex data is copied
+ *   sampler (worker)      samples triangle ids and gathers the visible set; sized by budgets
+ *   camera view           remembers what one camera saw, to tell what has changed
+ */
+#ifndef GPGP_VISIBILITY_H
+#define GPGP_VISIBILITY_H
+#include <gpgp/core.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** One indexed triangle mesh in the engine's vertex and index buffers. */
+typedef struct GpgpMesh {
+  uint32_t firstIndex;   /**< in indices, from the start of the index buffer range */
+  uint32_t indexCount;   /**< a multiple of 3 */
+  uint32_t vertexOffset; /**< added to each index */
+} GpgpMesh;
+
+typedef struct GpgpGeometrySetCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* label;
+  const GpgpMesh* meshes;
+  uint32_t meshCount;
+} GpgpGeometrySetCreateInfo;
+#define GPGP_GEOMETRY_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGeometrySetCreateInfo, GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO)
+
+/** Queues the mesh table for upload. @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext context, const GpgpGeometrySetCreateInfo* info,
+                                                    GpgpAsset* geometrySet);
+
+typedef struct GpgpSamplerCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpWorkerCreateInfo base;
+  uint32_t maxWidth, maxHeight; /**< viewport; 0: 2048 x 2048 */
+  uint32_t maxDraws;            /**< 0: 65536 */
+  uint32_t maxTriangles;        /**< of one record, all draws together; 0: 4194304 */
+} GpgpSamplerCreateInfo;
+#define GPGP_SAMPLER_CREATE_INFO_INIT GPGP_INIT(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO)
+
+/** @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext context, const GpgpSamplerCreateInfo* info,
+                                                GpgpWorker* sampler);
+
+typedef struct GpgpCameraViewCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* label;
+  uint32_t maxTriangles; /**< one bit each is allocated; 0: 4194304 */
+} GpgpCameraViewCreateInfo;
+#define GPGP_CAMERA_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO)
+
+/** @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const GpgpCameraViewCreateInfo* info,
+                                                   GpgpView* view);
+
+/** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. */
+typedef struct GpgpVisibilityDraw {
+  float transform[12]; /**< rows of a 3x4 matrix, object to world */
+  uint32_t mesh;       /**< index in the geometry set */
+  uint32_t firstTriangle; /**< where this draw's triangles start in the visible bits and lists; a multiple of 32 lets
+                               draws be cleared apart */
+  uint32_t flags;      /**< GPGP_DRAW_... */
+  uint32_t reserved;
+} GpgpVisibilityDraw;
+#define GPGP_DRAW_TWO_SIDED 1u /**< back faces count as visible */
+
+typedef int32_t GpgpSamplingMethod;
+enum {
+  GPGP_SAMPLING_STANDARD = 0 /**< one sample a pixel, at its centre */
+};
+
+typedef struct GpgpCamera {
+  float viewProjection[16]; /**< world to clip, column-major */
+  VkBool32 reversedDepth;   /**< near is 1 */
+} GpgpCamera;
+
+typedef struct GpgpSampleInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpRecordInfo base;
+  GpgpAsset geometrySet;
+  GpgpView view; /**< optional: history of this camera; its previous record is what `appeared` compares with */
+  GpgpSamplingMethod method;
+  GpgpCamera camera;
+  uint32_t width, height; /**< viewport, pixels */
+  GpgpBuffer positions;   /**< vertex positions, 3 floats each at positionStride; STORAGE usage */
+  uint32_t positionStride;/**< bytes, a multiple of 4 */
+  GpgpBuffer indices;     /**< STORAGE usage */
+  VkIndexType indexType;  /**< UINT16 or UINT32 */
+  GpgpBuffer draws;       /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
+  uint32_t drawCount;
+  uint32_t triangleCount; /**< of all draws: one past the last triangle number */
+  GpgpBuffer visibleBits; /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
+  GpgpBuffer visibleList; /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
+                               budget */
+  GpgpBuffer visibleCount;/**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
+                               of 64 per 64 listed triangles; STORAGE usage */
+} GpgpSampleInfo;
+#define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
+
+/** Samples triangle ids and gathers the visible set.
+ *  NOT_READY: geometry set not resident or sampler not prewarmed.
+ *  @threads handle @lifetime call; buffers: frame @pass outside
+ *  @state compute pipeline, compute descriptor set 0, push constants */
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker sampler, VkCommandBuffer commandBuffer,
+                                                          const GpgpFrame* frame, const GpgpSampleInfo* info);
+
+typedef struct GpgpSampleReport {
+  GpgpStructureType sType;
+  void* pNext;
+  GpgpReportHeader base;
+  uint32_t triangles;      /**< in front of the near plane, in the viewport, facing the camera */
+  uint32_t visible;        /**< in the bits */
+  uint32_t listed;         /**< written to the list */
+  uint32_t coveredPixels;
+  uint32_t appeared;       /**< with a view: visible now, not in its previous record */
+  uint32_t disappeared;    /**< with a view: the reverse */
+} GpgpSampleReport;
+#define GPGP_SAMPLE_REPORT_INIT GPGP_INIT(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT)
+
+/** The oldest report not yet taken. NOT_READY: none. @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetSampleReport(GpgpWorker sampler, GpgpSampleReport* report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
