@@ -346,8 +346,8 @@ typedef struct GpgpAccess {
 } GpgpAccess;
 
 typedef uint64_t GpgpAccessMode;
-/** The engine's render graph places the barriers at the edges itself; before and after must then be the state that
- *  gpgpGet...Access reports. gpgp still places those between its own passes. */
+/** The engine's render graph places the barriers at the edges itself; before and after are ignored, the resources are in
+ *  the state that gpgpGetRecordAccess tells, and stay in it. gpgp still places those between its own passes. */
 #define GPGP_ACCESS_SYNCHRONISED ((GpgpAccessMode)1 << 0)
 
 typedef struct GpgpBuffer {
@@ -420,6 +420,10 @@ typedef struct GpgpTimestamps {
   uint32_t firstQuery;
   uint32_t queryCount; /**< at least passes + 1 */
 } GpgpTimestamps;
+
+/** What gpgp does with buffers and images in a record: the state that GPGP_ACCESS_SYNCHRONISED expects of the engine's
+ *  render graph before a record, and leaves behind. Either pointer may be NULL. @threads any */
+GPGP_API void GPGP_CALL gpgpGetRecordAccess(GpgpAccess* buffer, GpgpAccess* image);
 
 /** Common part of every record info; each service's struct embeds it as `base`. */
 typedef struct GpgpRecordInfo {

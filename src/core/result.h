@@ -46,7 +46,7 @@ template <> class [[nodiscard]] Result<void> {
 public:
   Result() = default;
   Result(Error error) : error_(error) {}
-  explicit operator bool() const { return error_.code >= 0; }
+  explicit operator bool() const { return error_.code == GPGP_SUCCESS; }
   const Error& error() const { return error_; }
 
 private:

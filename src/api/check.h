@@ -1,0 +1,119 @@
+// What every C function does around its call into a service: resolve handles, check struct types, translate errors
+// and exceptions into a result and one message.
+#pragma once
+#include "core/context.h"
+#include "core/resident.h"
+#include "core/worker.h"
+
+#include <cmath>
+
+namespace gpgp::api {
+
+using core::Context;
+using core::Error;
+using core::Kind;
+using core::makeError;
+using core::Result;
+
+/// What a call is about, for its message. Context and label are filled in as they become known.
+struct Call {
+  const char* function;
+  const Context* context = nullptr;
+  const char* label = "";
+};
+
+inline GpgpResult finish(const Call& call, const Error& error) {
+  // A negative code is an error; a positive one (NOT_READY, INCOMPLETE) is a status that engines poll: no message.
+  if (error.code < 0 && call.context)
+    call.context->message(GPGP_SEVERITY_ERROR, error.code, call.function, call.label, error.text);
+  return error.code;
+}
+
+/// Runs body(call) -> Result<void>, at the edge of the C ABI: nothing is thrown past it.
+template <class Body> GpgpResult guarded(const char* function, Body&& body) noexcept {
+  Call call{function};
+  try {
+    const Result<void> result = body(call);
+    return result ? GPGP_SUCCESS : finish(call, result.error());
+  } catch (const std::bad_alloc&) {
+    return finish(call, makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "the host allocator returned NULL"));
+  } catch (...) {
+    return finish(call, makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of host memory"));
+  }
+}
+
+/// A context handle, checked as far as that is possible.
+inline Result<Context*> resolve(Call& call, GpgpContext handle) {
+  Context* context = reinterpret_cast<Context*>(handle);
+  if (!context || context->magic != Context::kMagic)
+    return makeError(GPGP_ERROR_INVALID_HANDLE, "context is not a GpgpContext");
+  call.context = context;
+  call.label = context->label.text;
+  return context;
+}
+
+/// The object behind an asset, worker or view handle; null and destroyed handles are INVALID_HANDLE.
+template <class Handle> core::Object* objectOf(Handle handle) {
+  const uintptr_t bits = reinterpret_cast<uintptr_t>(handle);
+  core::Slot* slot = reinterpret_cast<core::Slot*>(bits & ~uintptr_t(alignof(core::Slot) - 1));
+  if (!slot || slot->magic != core::Slot::kMagic || !slot->object) return nullptr;
+  return slot->generation == (bits & (alignof(core::Slot) - 1)) ? slot->object : nullptr;
+}
+template <class Handle> Handle handleOf(const core::Slot* slot) {
+  return reinterpret_cast<Handle>(reinterpret_cast<uintptr_t>(slot) | slot->generation);
+}
+
+/// A handle that must be of a kind (and, where given, of a context). `name` is the argument's name for the message.
+template <class T, class Handle>
+Result<T*> resolve(Call& call, Handle handle, Kind kind, const char* name, const Context* context = nullptr) {
+  core::Object* object = objectOf(handle);
+  if (!object)
+    return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is %s; expected a %s", name, handle ? "destroyed" : "NULL",
+                     core::kindName(kind));
+  if (!call.context) {
+    call.context = &object->context;
+    call.label = object->label.text;
+  }
+  if (object->kind != kind)
+    return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is a %s; expected a %s", name, core::kindName(object->kind),
+                     core::kindName(kind));
+  if (context && &object->context != context)
+    return makeError(GPGP_ERROR_INVALID_HANDLE, "%s belongs to another context", name);
+  return static_cast<T*>(object);
+}
+
+/// A descriptor struct: not NULL, the right sType, an empty pNext chain.
+template <class T> Result<void> checkStruct(const T* info, GpgpStructureType type, const char* name) {
+  if (!info) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s is NULL", name);
+  if (info->sType != type)
+    return makeError(GPGP_ERROR_INVALID_STRUCT, "%s->sType is %d; expected %d", name, info->sType, type);
+  if (info->pNext)
+    return makeError(GPGP_ERROR_INVALID_STRUCT, "%s->pNext must be NULL: no extension struct is known here", name);
+  return {};
+}
+
+inline Result<void> checkWorkerInfo(const Context& context, const GpgpWorkerCreateInfo&) {
+  if (context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+  return {};
+}
+
+/// The common beginning of every record function, after the worker was resolved.
+inline Result<void> checkRecord(const core::Worker& worker, const GpgpFrame* frame) {
+  if (worker.context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+  if (auto ok = worker.context.checkFrame(frame); !ok) return ok;
+  if (!worker.ready()) return makeError(GPGP_NOT_READY, "call gpgpPrewarm first");
+  return {};
+}
+
+template <class T> bool allFinite(const T& values) {
+  for (const float value : values)
+    if (!std::isfinite(value)) return false;
+  return true;
+}
+
+/// Gives a created object its handle.
+template <class Handle, class T> Handle adopt(Context& context, core::Unique<T> object) {
+  return handleOf<Handle>(context.adopt(core::upcast<core::Object>(std::move(object))));
+}
+
+} // namespace gpgp::api

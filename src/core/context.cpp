@@ -1,0 +1,224 @@
+#include "core/context.h"
+
+#include "core/resident.h"
+#include "core/worker.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace gpgp::core {
+
+const char* kindName(Kind kind) {
+  switch (kind) {
+  case Kind::none: return "destroyed object";
+  case Kind::grammar: return "grammar";
+  case Kind::drawing: return "drawing";
+  case Kind::geometrySet: return "geometry set";
+  case Kind::spawner: return "spawner";
+  case Kind::canvas: return "canvas";
+  case Kind::sampler: return "sampler";
+  case Kind::canvasView: return "canvas view";
+  case Kind::cameraView: return "camera view";
+  }
+  return "unknown object";
+}
+
+Context::Context(const GpgpContextCreateInfo& info)
+    : label(info.label), messageFn(info.messageFn), messageUserData(info.messageUserData),
+      maxFramesInFlight(info.maxFramesInFlight ? info.maxFramesInFlight : 3),
+      maxRecordsPerFrame(info.maxRecordsPerFrame ? info.maxRecordsPerFrame : 16),
+      jobSystem(info.jobSystem ? *info.jobSystem : GpgpJobSystem{}),
+      fileSystem(info.fileSystem ? *info.fileSystem : GpgpFileSystem{}), host_(info.hostAllocator),
+      slotBlocks_(&host_), living_(&host_) {}
+
+Result<Context*> Context::create(const GpgpContextCreateInfo& info) {
+  // The context owns its HostMemory, so its own storage comes from the callbacks directly.
+  HostMemory bootstrap(info.hostAllocator);
+  void* storage = bootstrap.allocate(sizeof(Context), alignof(Context));
+  Context* context = nullptr;
+  try {
+    context = new (storage) Context(info);
+    const auto made = context->initialise(info);
+    if (made) return context;
+    context->~Context();
+    bootstrap.deallocate(storage, sizeof(Context), alignof(Context));
+    return made.error();
+  } catch (...) {
+    if (context) context->~Context();
+    bootstrap.deallocate(storage, sizeof(Context), alignof(Context));
+    throw;
+  }
+}
+
+void Context::destroy(Context* context) {
+  const GpgpHostAllocator callbacks = context->host_.callbacks();
+  HostMemory bootstrap(callbacks.allocate ? &callbacks : nullptr);
+  context->~Context();
+  context->magic = 0;
+  bootstrap.deallocate(context, sizeof(Context), alignof(Context));
+}
+
+Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
+  device.instance = info.instance;
+  device.physicalDevice = info.physicalDevice;
+  device.device = info.device;
+  device.features = info.features;
+  const auto vki = loadInstanceTable(info.instance, info.getInstanceProcAddr);
+  if (!vki) return vki.error();
+  device.vki = *vki;
+  const auto vk = loadDeviceTable(device.vki, info.device, device.has(GPGP_FEATURE_DEBUG_UTILS));
+  if (!vk) return vk.error();
+  device.vk = *vk;
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  device.vki.GetPhysicalDeviceProperties2(device.physicalDevice, &properties);
+  device.limits = properties.properties.limits;
+
+  gpu_ = makeUnique<GpuMemory>(host_, device, host_, info.gpuAllocator);
+  if (info.pipelineCache) {
+    pipelineCache = info.pipelineCache;
+  } else {
+    VkPipelineCacheCreateInfo cacheInfo{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+    cacheInfo.initialDataSize = info.pipelineCacheSize;
+    cacheInfo.pInitialData = info.pipelineCacheData;
+    const VkResult result = device.vk.CreatePipelineCache(device.device, &cacheInfo, nullptr, &pipelineCache);
+    if (result != VK_SUCCESS) return vulkanError(result, "vkCreatePipelineCache");
+    ownsPipelineCache_ = true;
+  }
+  auto uploads = UploadRing::create(*this, info.uploadRingBytes ? info.uploadRingBytes : VkDeviceSize(8) << 20);
+  if (!uploads) return uploads.error();
+  uploads_ = std::move(*uploads);
+  return {};
+}
+
+Context::~Context() {
+  for (Object* object : living_) object->deleter(object);
+  freeRetired(UINT64_MAX);
+  uploads_.reset();
+  if (ownsPipelineCache_) device.vk.DestroyPipelineCache(device.device, pipelineCache, nullptr);
+  gpu_.reset();
+  for (void* block : slotBlocks_) host_.deallocate(block, sizeof(Slot) * 64, alignof(Slot));
+}
+
+void Context::message(GpgpSeverity severity, GpgpResult code, const char* function, const char* objectLabel,
+                      const char* text) const {
+  if (!messageFn) return;
+  const GpgpMessage message{severity, code, function, objectLabel ? objectLabel : "", text};
+  messageFn(messageUserData, &message);
+}
+
+Slot* Context::adopt(Unique<Object> object) {
+  living_.reserve(living_.size() + 1);
+  if (!freeSlots_) {
+    slotBlocks_.reserve(slotBlocks_.size() + 1);
+    Slot* block = static_cast<Slot*>(host_.allocate(sizeof(Slot) * 64, alignof(Slot)));
+    slotBlocks_.push_back(block);
+    for (uint32_t i = 0; i < 64; ++i) {
+      new (&block[i]) Slot();
+      block[i].nextFree = freeSlots_;
+      freeSlots_ = &block[i];
+    }
+  }
+  Slot* slot = freeSlots_;
+  freeSlots_ = slot->nextFree;
+  object->deleter = object.get_deleter();
+  object->handle = slot;
+  slot->object = object.release();
+  living_.push_back(slot->object);
+  return slot;
+}
+
+void Context::retire(Object& object) {
+  Slot& slot = *object.handle;
+  slot.object = nullptr;
+  slot.generation = (slot.generation + 1) % alignof(Slot);
+  slot.nextFree = freeSlots_;
+  freeSlots_ = &slot;
+  const auto at = std::find(living_.begin(), living_.end(), &object);
+  *at = living_.back();
+  living_.pop_back();
+  object.markPending();
+  object.destroyedInFrame = frame_.current;
+  object.next = retired_;
+  retired_ = &object;
+  if (lost_) freeRetired(UINT64_MAX);
+}
+
+void Context::freeRetired(uint64_t safeFrame) {
+  Object** link = &retired_;
+  while (Object* object = *link) {
+    if (object->destroyedInFrame > safeFrame) {
+      link = &object->next;
+      continue;
+    }
+    *link = object->next;
+    object->deleter(object);
+  }
+}
+
+void Context::setLost() {
+  lost_ = true;
+  freeRetired(UINT64_MAX);
+}
+
+Result<void> Context::advance(const GpgpFrame& frame) {
+  if (frame.safe >= frame.current)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame.safe (%llu) must be below frame.current (%llu)",
+                     static_cast<unsigned long long>(frame.safe), static_cast<unsigned long long>(frame.current));
+  if (frame.current < frame_.current || frame.safe < frame_.safe)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame numbers only grow: the last was {%llu, %llu}",
+                     static_cast<unsigned long long>(frame_.current), static_cast<unsigned long long>(frame_.safe));
+  if (frame.current - frame.safe > maxFramesInFlight)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "frame.current - frame.safe is %llu, but the context was made for %u frames in flight",
+                     static_cast<unsigned long long>(frame.current - frame.safe), maxFramesInFlight);
+  frame_ = frame;
+  uploads_->advance();
+  for (Worker* worker = workers; worker; worker = worker->nextWorker()) worker->advance();
+  freeRetired(frame.safe);
+  return {};
+}
+
+Result<void> Context::checkFrame(const GpgpFrame* frame) const {
+  if (!frame) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame is NULL");
+  if (frame->current != frame_.current || frame->safe != frame_.safe)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "frame {%llu, %llu} is not the one of the last gpgpAdvance, {%llu, %llu}",
+                     static_cast<unsigned long long>(frame->current), static_cast<unsigned long long>(frame->safe),
+                     static_cast<unsigned long long>(frame_.current), static_cast<unsigned long long>(frame_.safe));
+  return {};
+}
+
+Result<std::pmr::vector<std::byte>> Context::readFile(const char* path) {
+  std::pmr::vector<std::byte> bytes(&host_);
+  if (fileSystem.read) {
+    size_t size = 0;
+    GpgpResult result = fileSystem.read(fileSystem.userData, path, nullptr, 0, &size);
+    if (result == GPGP_SUCCESS) {
+      bytes.resize(size);
+      size_t again = size;
+      result = fileSystem.read(fileSystem.userData, path, bytes.data(), size, &again);
+      if (result == GPGP_SUCCESS && again != size)
+        return makeError(GPGP_ERROR_IO, "%s: changed while it was read", path);
+    }
+    if (result != GPGP_SUCCESS)
+      return makeError(GPGP_ERROR_IO, "%s: the engine's file callback returned %s", path, gpgpResultString(result));
+    return bytes;
+  }
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  const std::unique_ptr<std::FILE, Closer> file(std::fopen(path, "rb"));
+  if (!file) return makeError(GPGP_ERROR_IO, "%s: cannot be opened", path);
+  for (;;) {
+    constexpr size_t kPiece = 1 << 16;
+    const size_t old = bytes.size();
+    bytes.resize(old + kPiece);
+    const size_t got = std::fread(bytes.data() + old, 1, kPiece, file.get());
+    bytes.resize(old + got);
+    if (got < kPiece) break;
+  }
+  if (std::ferror(file.get())) return makeError(GPGP_ERROR_IO, "%s: cannot be read", path);
+  return bytes;
+}
+
+} // namespace gpgp::core

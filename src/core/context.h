@@ -1,0 +1,84 @@
+// A context: the engine's device, memory, frames, and everything made from it.
+//
+// Threads: members marked "context" are used by one thread at a time (the API's @threads context); the rest is
+// immutable after creation.
+#pragma once
+#include "core/device.h"
+#include "core/gpu_memory.h"
+#include "core/object.h"
+
+#include <vector>
+
+namespace gpgp::core {
+
+class Resident;
+class Worker;
+class UploadRing;
+
+class Context {
+public:
+  static constexpr uint64_t kMagic = 0x67706770'63747874; // "gpgpctxt"
+
+  /// Makes a context with the engine's allocator; the context itself lives in memory from it.
+  static Result<Context*> create(const GpgpContextCreateInfo& info);
+  static void destroy(Context* context);
+
+  // ---- immutable
+  uint64_t magic = kMagic;
+  const Label label;
+  const GpgpMessageFn messageFn;
+  void* const messageUserData;
+  const uint32_t maxFramesInFlight, maxRecordsPerFrame;
+  const GpgpJobSystem jobSystem;   // parallelFor may be null
+  const GpgpFileSystem fileSystem; // read may be null
+  Device device;
+  VkPipelineCache pipelineCache = VK_NULL_HANDLE;
+
+  HostMemory& host() { return host_; }
+  GpuMemory& gpu() { return *gpu_; } // context
+  void message(GpgpSeverity severity, GpgpResult code, const char* function, const char* objectLabel,
+               const char* text) const;
+
+  // ---- objects (context)
+  /// Gives an object a handle. On failure the object is destroyed and bad_alloc thrown.
+  Slot* adopt(Unique<Object> object);
+  /// Invalidates the handle at once and frees the object when the frames that may use it are safe.
+  void retire(Object& object);
+
+  // ---- frames (context; current and safe are read by recording threads)
+  uint64_t current() const { return frame_.current; }
+  uint64_t safe() const { return frame_.safe; }
+  bool lost() const { return lost_; }
+  void setLost();
+  Result<void> advance(const GpgpFrame& frame);
+  /// Checks a frame that a record names: same as the last advance's.
+  Result<void> checkFrame(const GpgpFrame* frame) const;
+
+  // ---- lists of living objects that advance visits (context); intrusive, see Resident and Worker
+  Resident* residents = nullptr;
+  Worker* workers = nullptr;
+  UploadRing& uploads() { return *uploads_; }
+
+  /// Reads a file through the engine's callbacks or the C library.
+  Result<std::pmr::vector<std::byte>> readFile(const char* path);
+
+  ~Context();
+
+private:
+  friend Unique<Context> makeUnique<Context>(std::pmr::memory_resource&, const GpgpContextCreateInfo&);
+  Context(const GpgpContextCreateInfo& info);
+  Result<void> initialise(const GpgpContextCreateInfo& info);
+  void freeRetired(uint64_t safeFrame);
+
+  HostMemory host_;
+  Unique<GpuMemory> gpu_;
+  Unique<UploadRing> uploads_;
+  std::pmr::vector<void*> slotBlocks_;
+  Slot* freeSlots_ = nullptr;
+  Object* retired_ = nullptr;
+  std::pmr::vector<Object*> living_;
+  GpgpFrame frame_{1, 0};
+  bool lost_ = false, ownsPipelineCache_ = false;
+};
+
+} // namespace gpgp::core

@@ -1,0 +1,49 @@
+// Objects behind handles. A handle is the address of a slot with a generation in its low bits; slots are never given
+// back while the context lives, so a destroyed handle is recognised instead of followed.
+#pragma once
+#include "core/host_memory.h"
+#include "core/result.h"
+
+namespace gpgp::core {
+
+class Context;
+
+enum class Kind : uint32_t { none, grammar, drawing, geometrySet, spawner, canvas, sampler, canvasView, cameraView };
+const char* kindName(Kind kind);
+
+class Object;
+struct alignas(64) Slot {
+  static constexpr uint64_t kMagic = 0x67706770'736c6f74; // "gpgpslot"
+  uint64_t magic = kMagic;
+  Object* object = nullptr; // null: free
+  uint32_t generation = 0;
+  Slot* nextFree = nullptr;
+};
+
+/// A label of at most 63 bytes, copied, so that recording never allocates for it.
+struct Label {
+  char text[64] = {};
+  explicit Label(const char* source) { std::snprintf(text, sizeof text, "%s", source ? source : ""); }
+};
+
+class Object {
+public:
+  Object(Context& owner, Kind objectKind, const char* name) : context(owner), kind(objectKind), label(name) {}
+  virtual ~Object() = default;
+  Object(const Object&) = delete;
+  Object& operator=(const Object&) = delete;
+  /// Called when the handle is destroyed and frames may still use the object.
+  virtual void markPending() {}
+
+  Context& context;
+  const Kind kind;
+  const Label label;
+  Slot* handle = nullptr;
+
+  // owned by Context
+  PmrDelete deleter;
+  Object* next = nullptr; // graveyard list
+  uint64_t destroyedInFrame = 0;
+};
+
+} // namespace gpgp::core

@@ -1,0 +1,104 @@
+// Passes are data: a service describes its work as a list of resources and passes, once, when a worker is created.
+//
+// From the list come the scratch layout, the barriers, the descriptor set layout (binding number = resource number),
+// the recorded commands, debug labels, timestamps, and the pass tables of the documentation. Nothing about a record
+// is decided again while recording.
+#pragma once
+#include "core/result.h"
+
+#include <array>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace gpgp::core {
+
+using ResourceIndex = uint32_t; // its place in PassList::resources, and its binding in descriptor set 0
+
+enum class ResourceKind : uint8_t {
+  buffer,    ///< given with each record: the engine's, an asset's or a view's
+  image,     ///< given with each record: a storage image of the engine's
+  scratch,   ///< part of the scratch buffer, contents undefined between records
+  constants, ///< written by the CPU with each record, read by shaders
+};
+
+struct Resource {
+  const char* name;
+  ResourceKind kind;
+  VkDeviceSize bytes = 0;  ///< scratch and constants
+  bool optional = false;   ///< buffer, image: a record may leave it out; an unused range is bound instead
+};
+
+enum class UseKind : uint8_t { read, write, readWrite, indirect };
+struct Use {
+  ResourceIndex resource;
+  UseKind kind;
+};
+
+struct ShaderDesc {
+  const char* name;
+  std::span<const uint32_t> spirv;
+  std::array<uint32_t, 4> specialization = {}; ///< constant_id 0 to 3
+  uint32_t specializationCount = 0;
+};
+
+enum class PassKind : uint8_t { dispatch, dispatchIndirect, fill, copy };
+constexpr uint32_t kMaxUses = 16;
+constexpr uint32_t kMaxPassConstants = 8;
+
+struct Pass {
+  const char* name;
+  PassKind kind;
+  uint32_t shader = 0;                     ///< index in PassList::shaders
+  std::array<Use, kMaxUses> uses = {};     ///< what it touches, for barriers
+  uint32_t useCount = 0;
+  uint32_t groups = 0;                     ///< dispatch: index in a record's list of workgroup counts
+  ResourceIndex target = 0;                ///< indirect: arguments; fill and copy: destination
+  ResourceIndex source = 0;                ///< copy
+  VkDeviceSize offset = 0, sourceOffset = 0, size = VK_WHOLE_SIZE; ///< indirect, fill, copy: bytes in the resource
+  uint32_t value = 0;                      ///< fill
+  std::array<uint32_t, kMaxPassConstants> constants = {}; ///< push constants, the same in every record
+  uint32_t constantCount = 0;
+  uint32_t condition = UINT32_MAX;         ///< index in a record's list of flags: skipped (barrier kept) when 0
+  bool barrierBefore = false;              ///< worked out by finish()
+};
+
+struct PassList {
+  explicit PassList(std::pmr::memory_resource* memory) : resources(memory), shaders(memory), passes(memory),
+                                                         scratchOffsets(memory) {}
+  std::pmr::vector<Resource> resources;
+  std::pmr::vector<ShaderDesc> shaders;
+  std::pmr::vector<Pass> passes;
+  ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end
+  uint32_t reportBytes = 0;
+  uint32_t groupCounts = 0;          ///< how many workgroup counts a record gives
+  uint32_t conditions = 0;           ///< how many flags a record gives
+
+  // worked out by finish()
+  std::pmr::vector<VkDeviceSize> scratchOffsets; ///< by resource
+  VkDeviceSize scratchBytes = 0;
+  VkDeviceSize constantsBytes = 0;
+
+  ResourceIndex add(Resource resource) {
+    resources.push_back(resource);
+    return static_cast<ResourceIndex>(resources.size() - 1);
+  }
+  uint32_t add(ShaderDesc shader) {
+    shaders.push_back(shader);
+    return static_cast<uint32_t>(shaders.size() - 1);
+  }
+  Pass& dispatch(const char* name, uint32_t shader, std::initializer_list<Use> uses, uint32_t groups,
+                 std::initializer_list<uint32_t> constants = {});
+  Pass& dispatchIndirect(const char* name, uint32_t shader, std::initializer_list<Use> uses, ResourceIndex arguments,
+                         VkDeviceSize offset, std::initializer_list<uint32_t> constants = {});
+  Pass& fill(const char* name, ResourceIndex target, uint32_t value, VkDeviceSize offset = 0,
+             VkDeviceSize size = VK_WHOLE_SIZE);
+  Pass& copy(const char* name, ResourceIndex source, VkDeviceSize sourceOffset, ResourceIndex target,
+             VkDeviceSize offset, VkDeviceSize size);
+
+  /// Lays out scratch (alignment: minStorageBufferOffsetAlignment) and decides barriers: a pass gets one before it
+  /// when it uses what a pass since the last barrier wrote, or writes what one used.
+  void finish(VkDeviceSize alignment);
+};
+
+} // namespace gpgp::core

@@ -1,0 +1,329 @@
+// Recording: a pass list into the engine's command buffer. Allocates nothing, locks nothing, makes no pipeline.
+#include "core/worker.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gpgp::core {
+namespace {
+constexpr VkPipelineStageFlags kWorkStages =
+    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
+constexpr VkAccessFlags kWorkWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+constexpr VkAccessFlags kWorkReads =
+    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
+constexpr VkPipelineStageFlags kGraphicsStages =
+    VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
+    VK_PIPELINE_STAGE_TESSELLATION_CONTROL_SHADER_BIT | VK_PIPELINE_STAGE_TESSELLATION_EVALUATION_SHADER_BIT |
+    VK_PIPELINE_STAGE_GEOMETRY_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
+    VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT |
+    VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+
+/// 64-bit stages as 32-bit ones: the low words agree, each new stage becomes the older one that contains it.
+VkPipelineStageFlags stages32(VkPipelineStageFlags2 stages) {
+  VkPipelineStageFlags mapped = static_cast<VkPipelineStageFlags>(stages & 0xffffffffu);
+  if (stages & (VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_RESOLVE_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT |
+                VK_PIPELINE_STAGE_2_CLEAR_BIT))
+    mapped |= VK_PIPELINE_STAGE_TRANSFER_BIT;
+  if (stages & (VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT))
+    mapped |= VK_PIPELINE_STAGE_VERTEX_INPUT_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_PRE_RASTERIZATION_SHADERS_BIT) mapped |= VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+  return mapped;
+}
+
+VkAccessFlags access32(VkAccessFlags2 access) {
+  VkAccessFlags mapped = static_cast<VkAccessFlags>(access & 0xffffffffu);
+  if (access & (VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT))
+    mapped |= VK_ACCESS_SHADER_READ_BIT;
+  if (access & VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT) mapped |= VK_ACCESS_SHADER_WRITE_BIT;
+  return mapped;
+}
+
+Result<void> checkStages(const char* resource, const char* edge, const GpgpAccess& access, VkQueueFlags queue) {
+  if (!(queue & VK_QUEUE_GRAPHICS_BIT) && (stages32(access.stages) & kGraphicsStages))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "%s.%s.stages names graphics stages, but the worker's queue family has no graphics", resource, edge);
+  return {};
+}
+} // namespace
+
+Result<void> Worker::check(const Record& record) const {
+  if (context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+  if (!record.commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
+  const VkPhysicalDeviceLimits& limits = context.device.limits;
+  const GpgpTimestamps& timestamps = record.info->timestamps;
+  if (timestamps.queryPool && timestamps.queryCount < passes_.passes.size() + 1)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.timestamps.queryCount is %u, but %zu passes need %zu",
+                     timestamps.queryCount, passes_.passes.size(), passes_.passes.size() + 1);
+  if (record.info->accessMode & ~GPGP_ACCESS_SYNCHRONISED)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.accessMode has unknown bits");
+  if (engineScratch_) {
+    const GpgpBuffer& scratch = record.info->scratch;
+    if (!scratch.buffer)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.buffer is NULL; the worker was made with engineScratch");
+    if (scratch.offset % scratchAlignment())
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.offset must be a multiple of %llu",
+                       static_cast<unsigned long long>(scratchAlignment()));
+    if (scratch.size < passes_.scratchBytes)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.size is %llu, gpgpGetScratchSize says %llu",
+                       static_cast<unsigned long long>(scratch.size),
+                       static_cast<unsigned long long>(passes_.scratchBytes));
+  }
+  for (size_t i = 0; i < passes_.resources.size(); ++i) {
+    const Resource& resource = passes_.resources[i];
+    const Binding& binding = record.bindings[i];
+    if (resource.kind == ResourceKind::buffer) {
+      if (binding.ownBuffer) continue;
+      if (!binding.engineBuffer || !binding.engineBuffer->buffer) {
+        if (resource.optional) continue;
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL", resource.name);
+      }
+      const GpgpBuffer& buffer = *binding.engineBuffer;
+      if (buffer.size == 0 || buffer.size > limits.maxStorageBufferRange)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.size is %llu; it must be 1 to %u (maxStorageBufferRange)",
+                         resource.name, static_cast<unsigned long long>(buffer.size), limits.maxStorageBufferRange);
+      if (buffer.offset % limits.minStorageBufferOffsetAlignment)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                         "%s.offset must be a multiple of %llu (minStorageBufferOffsetAlignment)", resource.name,
+                         static_cast<unsigned long long>(limits.minStorageBufferOffsetAlignment));
+      for (const auto& [edge, access] : {std::pair{"before", buffer.before}, {"after", buffer.after}})
+        if (auto ok = checkStages(resource.name, edge, access, queueFlags_); !ok) return ok;
+    } else if (resource.kind == ResourceKind::image) {
+      if (!binding.image || !binding.image->view) {
+        if (resource.optional) continue;
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.view is NULL", resource.name);
+      }
+      if (!binding.image->image) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.image is NULL", resource.name);
+      for (const auto& [edge, access] : {std::pair{"before", binding.image->before}, {"after", binding.image->after}})
+        if (auto ok = checkStages(resource.name, edge, access, queueFlags_); !ok) return ok;
+    }
+  }
+  return {};
+}
+
+Result<uint32_t> Worker::acquire() const {
+  uint32_t inFrame = 0, free = UINT32_MAX;
+  for (uint32_t i = 0; i < slots_.size(); ++i) {
+    if (!slots_[i].stamp) free = i;
+    else inFrame += slots_[i].frame == context.current();
+  }
+  if (inFrame >= context.maxRecordsPerFrame || free == UINT32_MAX)
+    return makeError(GPGP_ERROR_TOO_MANY_RECORDS, "the context was made for %u records per frame and worker, and %u "
+                                                  "frames in flight", context.maxRecordsPerFrame,
+                     context.maxFramesInFlight);
+  return free;
+}
+
+void Worker::take(uint32_t slot, uint64_t tag, bool report) {
+  slots_[slot] = {context.current(), tag, nextStamp_, report};
+  if (++nextStamp_ == 0) nextStamp_ = 1;
+}
+
+void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
+                              VkDeviceSize scratchOffset) const {
+  std::array<VkWriteDescriptorSet, kMaxResources> writes;
+  std::array<VkDescriptorBufferInfo, kMaxResources> buffers;
+  std::array<VkDescriptorImageInfo, kMaxResources> images;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < passes_.resources.size(); ++i) {
+    const Resource& resource = passes_.resources[i];
+    const Binding& binding = bindings[i];
+    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i, 0, 1,
+                               VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, nullptr, &buffers[i], nullptr};
+    // What a record leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
+    buffers[i] = {constants_.handle(), 0, VK_WHOLE_SIZE};
+    if (resource.kind == ResourceKind::image) {
+      if (!binding.image || !binding.image->view) continue; // passes that use it are skipped
+      images[i] = {VK_NULL_HANDLE, binding.image->view, VK_IMAGE_LAYOUT_GENERAL};
+      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+      write.pImageInfo = &images[i];
+      write.pBufferInfo = nullptr;
+    } else if (resource.kind == ResourceKind::scratch) {
+      if (scratch)
+        buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[i], std::max<VkDeviceSize>(resource.bytes, 4)};
+    } else if (resource.kind == ResourceKind::constants) {
+      buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i], resource.bytes};
+    } else if (binding.ownBuffer) {
+      buffers[i] = {binding.ownBuffer, binding.ownOffset, binding.ownSize};
+    } else if (binding.engineBuffer && binding.engineBuffer->buffer) {
+      buffers[i] = {binding.engineBuffer->buffer, binding.engineBuffer->offset, binding.engineBuffer->size};
+    }
+    writes[count++] = write;
+  }
+  context.device.vk.UpdateDescriptorSets(context.device.device, count, writes.data(), 0, nullptr);
+}
+
+void Worker::beginLabel(VkCommandBuffer commandBuffer, const char* pass) const {
+  const DeviceTable& vk = context.device.vk;
+  if (!vk.CmdBeginDebugUtilsLabelEXT) return;
+  static constexpr const char* kServices[GPGP_SERVICE_COUNT] = {"core", "spawn", "vector", "visibility"};
+  char name[160];
+  if (pass) std::snprintf(name, sizeof name, "gpgp/%s/%s", kServices[service_], pass);
+  else std::snprintf(name, sizeof name, "gpgp/%s %s", kServices[service_], label.text);
+  const VkDebugUtilsLabelEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name, {}};
+  vk.CmdBeginDebugUtilsLabelEXT(commandBuffer, &info);
+}
+
+void Worker::endLabel(VkCommandBuffer commandBuffer) const {
+  if (context.device.vk.CmdEndDebugUtilsLabelEXT) context.device.vk.CmdEndDebugUtilsLabelEXT(commandBuffer);
+}
+
+/// One barrier at each end of a record. Entry: the engine's last uses, and this worker's previous record (scratch,
+/// views). Exit: the engine's next uses, the draw path, and the host that reads the report.
+void Worker::edgeBarrier(const Record& record, bool entry) const {
+  const bool engine = !(record.info->accessMode & GPGP_ACCESS_SYNCHRONISED);
+  const VkPipelineStageFlags drawStage = draws_ ? VkPipelineStageFlags(VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT) : 0;
+  VkPipelineStageFlags outside = entry ? kWorkStages | drawStage : VK_PIPELINE_STAGE_HOST_BIT | drawStage;
+  const VkAccessFlags drawAccess = draws_ ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT) : 0;
+  VkAccessFlags outsideAccess = entry ? kWorkWrites : VK_ACCESS_HOST_READ_BIT | drawAccess;
+  std::array<VkImageMemoryBarrier, 4> images;
+  uint32_t imageCount = 0;
+  for (size_t i = 0; engine && i < passes_.resources.size(); ++i) {
+    const Binding& binding = record.bindings[i];
+    if (binding.engineBuffer && binding.engineBuffer->buffer) {
+      const GpgpAccess& access = entry ? binding.engineBuffer->before : binding.engineBuffer->after;
+      outside |= stages32(access.stages);
+      outsideAccess |= access32(access.access);
+    }
+    if (binding.image && binding.image->view && imageCount < images.size()) {
+      const GpgpAccess& access = entry ? binding.image->before : binding.image->after;
+      if (!entry && !access.stages) continue; // the engine places it
+      outside |= stages32(access.stages);
+      VkImageMemoryBarrier& barrier = images[imageCount++];
+      barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+      barrier.srcAccessMask = entry ? access32(access.access) : VkAccessFlags(VK_ACCESS_SHADER_WRITE_BIT);
+      barrier.dstAccessMask = entry ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT)
+                                    : access32(access.access);
+      barrier.oldLayout = entry ? access.layout : VK_IMAGE_LAYOUT_GENERAL;
+      barrier.newLayout = entry ? VK_IMAGE_LAYOUT_GENERAL : access.layout;
+      barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+      barrier.image = binding.image->image;
+      barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    }
+  }
+  VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+  memory.srcAccessMask = entry ? outsideAccess : kWorkWrites;
+  memory.dstAccessMask = entry ? kWorkReads | kWorkWrites : outsideAccess;
+  context.device.vk.CmdPipelineBarrier(record.commandBuffer, entry ? outside : kWorkStages,
+                                       entry ? kWorkStages : outside, 0, 1, &memory, 0, nullptr, imageCount,
+                                       images.data());
+}
+
+Result<void> Worker::record(const Record& record) {
+  const auto acquired = acquire();
+  if (!acquired) return acquired.error();
+  const uint32_t slot = *acquired;
+  take(slot, record.info->tag, true);
+
+  const DeviceTable& vk = context.device.vk;
+  const VkCommandBuffer cmd = record.commandBuffer;
+  const VkBuffer scratch = engineScratch_ ? record.info->scratch.buffer : scratch_.handle();
+  const VkDeviceSize scratchOffset = engineScratch_ ? record.info->scratch.offset : 0;
+  char* report = reports_.mapped() + slot * reportStride_;
+  std::memset(report + passes_.reportBytes, 0, 4);
+  if (!record.constants.empty())
+    std::memcpy(constants_.mapped() + slot * passes_.constantsBytes, record.constants.data(), record.constants.size());
+  writeDescriptors(slot, record.bindings, scratch, scratchOffset);
+
+  // Where a buffer resource lies, for transfers and indirect arguments.
+  const auto place = [&](ResourceIndex i) -> std::pair<VkBuffer, VkDeviceSize> {
+    const Binding& binding = record.bindings[i];
+    if (passes_.resources[i].kind == ResourceKind::scratch)
+      return {scratch, scratchOffset + passes_.scratchOffsets[i]};
+    if (binding.ownBuffer) return {binding.ownBuffer, binding.ownOffset};
+    return {binding.engineBuffer->buffer, binding.engineBuffer->offset};
+  };
+  const auto placeSize = [&](ResourceIndex i) -> VkDeviceSize {
+    const Binding& binding = record.bindings[i];
+    if (passes_.resources[i].kind == ResourceKind::scratch) return passes_.resources[i].bytes;
+    return binding.engineBuffer ? binding.engineBuffer->size : binding.ownSize;
+  };
+
+  beginLabel(cmd, nullptr);
+  edgeBarrier(record, true);
+  const GpgpTimestamps& timestamps = record.info->timestamps;
+  uint32_t query = timestamps.firstQuery;
+  if (timestamps.queryPool)
+    vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
+  vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &sets_[slot], 0, nullptr);
+  VkPipeline bound = VK_NULL_HANDLE;
+  for (const Pass& pass : passes_.passes) {
+    if (pass.barrierBefore) {
+      const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, kWorkReads | kWorkWrites};
+      vk.CmdPipelineBarrier(cmd, kWorkStages, kWorkStages, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+    }
+    if (pass.condition == UINT32_MAX || record.conditions[pass.condition]) {
+      beginLabel(cmd, pass.name);
+      if (pass.kind == PassKind::fill) {
+        const auto [buffer, offset] = place(pass.target);
+        const VkDeviceSize size = pass.size == VK_WHOLE_SIZE ? placeSize(pass.target) - pass.offset : pass.size;
+        vk.CmdFillBuffer(cmd, buffer, offset + pass.offset, size / 4 * 4, pass.value);
+      } else if (pass.kind == PassKind::copy) {
+        const auto [source, sourceOffset] = place(pass.source);
+        const auto [target, offset] = place(pass.target);
+        const VkBufferCopy region{sourceOffset + pass.sourceOffset, offset + pass.offset, pass.size};
+        vk.CmdCopyBuffer(cmd, source, target, 1, &region);
+      } else {
+        if (bound != pipelines_[pass.shader]) {
+          bound = pipelines_[pass.shader];
+          vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, bound);
+        }
+        if (pass.constantCount)
+          vk.CmdPushConstants(cmd, layout_, draws_ ? VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT |
+                                                         VK_SHADER_STAGE_FRAGMENT_BIT
+                                                   : VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT),
+                              0, pass.constantCount * 4, pass.constants.data());
+        if (pass.kind == PassKind::dispatchIndirect) {
+          const auto [buffer, offset] = place(pass.target);
+          vk.CmdDispatchIndirect(cmd, buffer, offset + pass.offset);
+        } else {
+          const auto& groups = record.groups[pass.groups];
+          if (groups[0] && groups[1] && groups[2]) vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);
+        }
+      }
+      endLabel(cmd);
+    }
+    if (timestamps.queryPool)
+      vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
+  }
+
+  if (passes_.reportBytes) {
+    const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, VK_ACCESS_TRANSFER_READ_BIT};
+    vk.CmdPipelineBarrier(cmd, kWorkStages, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+    const auto [source, sourceOffset] = place(passes_.report);
+    const VkBufferCopy region{sourceOffset, slot * reportStride_, passes_.reportBytes};
+    vk.CmdCopyBuffer(cmd, source, reports_.handle(), 1, &region);
+  }
+  vk.CmdFillBuffer(cmd, reports_.handle(), slot * reportStride_ + passes_.reportBytes, 4, slots_[slot].stamp);
+  edgeBarrier(record, false);
+  endLabel(cmd);
+  return {};
+}
+
+Result<void> Worker::recordDraw(const DrawRecord& record) {
+  if (context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+  if (!record.commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  for (uint32_t i = 0; i < targetCount_.load(std::memory_order_acquire); ++i)
+    if (sameTarget(targets_[i].info, *record.target)) pipeline = targets_[i].pipeline;
+  if (!pipeline) return makeError(GPGP_NOT_READY, "the target was not given to gpgpPrewarm");
+  const auto acquired = acquire();
+  if (!acquired) return acquired.error();
+  const uint32_t slot = *acquired;
+  take(slot, 0, false);
+
+  const DeviceTable& vk = context.device.vk;
+  writeDescriptors(slot, record.bindings, scratch_.handle(), 0);
+  beginLabel(record.commandBuffer, "draw");
+  vk.CmdBindPipeline(record.commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+  vk.CmdBindDescriptorSets(record.commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &sets_[slot], 0,
+                           nullptr);
+  if (!record.pushConstants.empty())
+    vk.CmdPushConstants(record.commandBuffer, layout_,
+                        VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                        static_cast<uint32_t>(record.pushConstants.size()), record.pushConstants.data());
+  vk.CmdDraw(record.commandBuffer, record.vertexCount, 1, 0, 0);
+  endLabel(record.commandBuffer);
+  return {};
+}
+
+} // namespace gpgp::core

@@ -1,0 +1,138 @@
+#include "core/resident.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gpgp::core {
+namespace {
+constexpr VkDeviceSize kAlignment = 16; // of pieces and sizes: covers every copy and fill rule
+} // namespace
+
+Resident::~Resident() {
+  if (!linked_) return;
+  (previous_ ? previous_->next_ : context.residents) = next_;
+  if (next_) next_->previous_ = previous_;
+}
+
+Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize) {
+  const VkDeviceSize wanted = std::max<VkDeviceSize>(bytes.empty() ? clearSize : bytes.size(), 1);
+  size_ = (wanted + kAlignment - 1) / kAlignment * kAlignment;
+  if (!bytes.empty()) bytes.resize(size_);
+  auto buffer = Buffer::create(context.device, context.gpu(), service, label.text, size_,
+                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                               MemoryPlace::device);
+  if (!buffer) return buffer.error();
+  buffer_ = std::move(*buffer);
+  bytes_ = std::move(bytes);
+  // oldest first: append
+  Resident* last = context.residents;
+  while (last && last->next_) last = last->next_;
+  previous_ = last;
+  (last ? last->next_ : context.residents) = this;
+  linked_ = true;
+  return {};
+}
+
+Result<Unique<UploadRing>> UploadRing::create(Context& context, VkDeviceSize bytes) {
+  auto made = makeUnique<UploadRing>(context.host(), context);
+  made->records_.resize(size_t(context.maxFramesInFlight) * context.maxRecordsPerFrame);
+  bytes = std::max<VkDeviceSize>((bytes + kAlignment - 1) / kAlignment * kAlignment, 4096);
+  auto ring = Buffer::create(context.device, context.gpu(), GPGP_SERVICE_CORE, "upload ring", bytes,
+                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryPlace::upload);
+  if (!ring) return ring.error();
+  made->ring_ = std::move(*ring);
+  auto stamps = Buffer::create(context.device, context.gpu(), GPGP_SERVICE_CORE, "upload stamps",
+                               made->records_.size() * kAlignment, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                               MemoryPlace::readBack);
+  if (!stamps) return stamps.error();
+  made->stamps_ = std::move(*stamps);
+  return made;
+}
+
+uint32_t* UploadRing::stamp(size_t record) const {
+  return reinterpret_cast<uint32_t*>(stamps_.mapped() + record * kAlignment);
+}
+
+Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceSize byteBudget) {
+  VkDeviceSize pending = 0;
+  for (const Resident* r = context_.residents; r; r = r->next_) pending += r->size_ - r->uploaded_.load();
+  if (pending == 0) return VkDeviceSize(0);
+  const auto free = std::find_if(records_.begin(), records_.end(), [](const Record& r) { return r.number == 0; });
+  if (free == records_.end())
+    return makeError(GPGP_ERROR_TOO_MANY_RECORDS, "more than %zu uploads in flight (maxFramesInFlight x "
+                                                  "maxRecordsPerFrame)", records_.size());
+  const DeviceTable& vk = context_.device.vk;
+  const uint64_t number = nextNumber_;
+  VkDeviceSize budget = byteBudget ? byteBudget : VK_WHOLE_SIZE;
+  const VkDeviceSize ringSize = ring_.size();
+  bool any = false;
+  for (Resident* r = context_.residents; r && budget >= kAlignment; r = r->next_) {
+    VkDeviceSize done = r->uploaded_.load();
+    if (done == r->size_) continue;
+    if (r->bytes_.empty()) { // a clear costs no ring
+      vk.CmdFillBuffer(commandBuffer, r->buffer_.handle(), 0, r->size_, 0);
+      done = r->size_;
+      any = true;
+    }
+    while (done < r->size_ && budget >= kAlignment) {
+      const VkDeviceSize at = head_ % ringSize;
+      VkDeviceSize piece = std::min({r->size_ - done, ringSize - at, ringSize - (head_ - tail_), budget});
+      piece = piece / kAlignment * kAlignment;
+      if (piece == 0) break;
+      std::memcpy(ring_.mapped() + at, r->bytes_.data() + done, piece);
+      const VkBufferCopy region{at, done, piece};
+      vk.CmdCopyBuffer(commandBuffer, ring_.handle(), r->buffer_.handle(), 1, &region);
+      head_ += piece, done += piece, budget -= piece;
+      any = true;
+    }
+    if (done == r->uploaded_.load()) break; // the ring is full: keep the order
+    if (r->firstUpload_ == 0) r->firstUpload_ = number;
+    r->lastUpload_ = number;
+    r->uploaded_.store(done, std::memory_order_release);
+  }
+  pending = 0;
+  for (const Resident* r = context_.residents; r; r = r->next_) pending += r->size_ - r->uploaded_.load();
+  if (!any) return pending;
+
+  const size_t index = static_cast<size_t>(free - records_.begin());
+  *stamp(index) = 0;
+  vk.CmdFillBuffer(commandBuffer, stamps_.handle(), index * kAlignment, 4, static_cast<uint32_t>(number));
+  // The queue family is the engine's choice, so the stages are the ones that every family has.
+  const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
+                                VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT | VK_ACCESS_HOST_READ_BIT};
+  vk.CmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0, nullptr, 0,
+                        nullptr);
+  *free = {number, context_.current(), head_};
+  ++nextNumber_;
+  return pending;
+}
+
+void UploadRing::advance() {
+  // In order of recording: the ring's tail may pass a record only after all before it.
+  for (;;) {
+    Record* oldest = nullptr;
+    for (Record& record : records_)
+      if (record.number && (!oldest || record.number < oldest->number)) oldest = &record;
+    if (!oldest || oldest->frame > context_.safe()) return;
+    const size_t index = static_cast<size_t>(oldest - records_.data());
+    const bool ran = *static_cast<volatile uint32_t*>(stamp(index)) == static_cast<uint32_t>(oldest->number);
+    for (Resident* r = context_.residents; r; r = r->next_) {
+      if (r->firstUpload_ == 0 || oldest->number < r->firstUpload_ || oldest->number > r->lastUpload_) continue;
+      if (!ran) {
+        r->uploaded_.store(0, std::memory_order_release);
+        r->firstUpload_ = r->lastUpload_ = 0;
+        context_.message(GPGP_SEVERITY_WARNING, GPGP_NOT_EXECUTED, "gpgpAdvance", r->label.text,
+                         "a recorded upload was never executed; it is pending again");
+      } else if (r->lastUpload_ == oldest->number && r->resident()) {
+        r->firstUpload_ = r->lastUpload_ = 0;
+        r->bytes_ = std::pmr::vector<std::byte>(&context_.host());
+        r->bytes_.shrink_to_fit();
+      }
+    }
+    tail_ = oldest->ringEnd;
+    *oldest = {};
+  }
+}
+
+} // namespace gpgp::core
