@@ -1,0 +1,97 @@
+// PNG in and out, the sRGB transfer function, and a plain comparison.
+#include "host/picture.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace gpgp::host {
+
+void writePng(const std::filesystem::path& file, const Picture& picture) {
+  if (picture.rgba.size() != size_t{picture.width} * picture.height * 4 || picture.rgba.empty())
+    throw std::runtime_error(file.string() + ": a picture's size and its pixels do not agree");
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = picture.width;
+  image.height = picture.height;
+  image.format = PNG_FORMAT_RGBA;
+  if (!png_image_write_to_file(&image, file.c_str(), 0, picture.rgba.data(), 0, nullptr))
+    throw std::runtime_error(file.string() + ": " + image.message);
+}
+
+Picture readPng(const std::filesystem::path& file) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&image, file.c_str()))
+    throw std::runtime_error(file.string() + ": " + image.message);
+  image.format = PNG_FORMAT_RGBA;
+  Picture picture;
+  picture.width = image.width;
+  picture.height = image.height;
+  picture.rgba.resize(PNG_IMAGE_SIZE(image));
+  if (!png_image_finish_read(&image, nullptr, picture.rgba.data(), 0, nullptr)) {
+    png_image_free(&image);
+    throw std::runtime_error(file.string() + ": " + image.message);
+  }
+  return picture;
+}
+
+float linearFromSrgb(float value) {
+  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
+float srgbFromLinear(float value) {
+  return value <= 0.0031308f ? value * 12.92f : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+}
+
+namespace {
+uint8_t toByte(float value) { return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)); }
+} // namespace
+
+Picture fromLinearPremultiplied(uint32_t width, uint32_t height, std::span<const float> pixels) {
+  Picture picture{width, height, std::vector<uint8_t>(size_t{width} * height * 4)};
+  if (pixels.size() != picture.rgba.size()) throw std::runtime_error("wrong number of pixel values");
+  for (size_t i = 0; i < pixels.size(); i += 4) {
+    const float alpha = pixels[i + 3];
+    for (size_t c = 0; c < 3; ++c)
+      picture.rgba[i + c] =
+          alpha > 0 ? toByte(srgbFromLinear(std::clamp(pixels[i + c] / alpha, 0.0f, 1.0f))) : uint8_t{0};
+    picture.rgba[i + 3] = toByte(alpha);
+  }
+  return picture;
+}
+
+Picture fromPremultiplied(uint32_t width, uint32_t height, std::span<const uint8_t> pixels) {
+  Picture picture{width, height, std::vector<uint8_t>(pixels.begin(), pixels.end())};
+  if (pixels.size() != size_t{width} * height * 4) throw std::runtime_error("wrong number of pixel values");
+  for (size_t i = 0; i < pixels.size(); i += 4) {
+    const uint32_t alpha = pixels[i + 3];
+    if (alpha == 0 || alpha == 255) continue;
+    for (size_t c = 0; c < 3; ++c)
+      picture.rgba[i + c] = static_cast<uint8_t>(std::min(255u, (pixels[i + c] * 255u + alpha / 2) / alpha));
+  }
+  return picture;
+}
+
+PictureDifference compare(const Picture& a, const Picture& b) {
+  if (a.width != b.width || a.height != b.height) throw std::runtime_error("pictures of different sizes");
+  PictureDifference difference;
+  uint64_t sum = 0;
+  for (size_t i = 0; i < a.rgba.size(); i += 4) {
+    bool differs = false;
+    for (size_t c = 0; c < 4; ++c) {
+      const uint32_t d = static_cast<uint32_t>(std::abs(a.rgba[i + c] - b.rgba[i + c]));
+      difference.largest = std::max(difference.largest, d);
+      sum += d;
+      differs |= d != 0;
+    }
+    difference.pixelsDifferent += differs ? 1 : 0;
+  }
+  difference.mean = a.rgba.empty() ? 0.0 : static_cast<double>(sum) / static_cast<double>(a.rgba.size());
+  return difference;
+}
+
+} // namespace gpgp::host
