@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Builds the mini-engine and runs it: pictures always, a window too when there is a display.
+#
+# Installs what is missing (Debian 12, as root or through sudo), asks nothing, can be run again. Options are handed to
+# the mini-engine: samples/run.sh --help shows them.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=samples/setup.sh
+source samples/setup.sh
+
+say "1/4 Debian packages (samples/packages.txt)"
+installMissing samples/packages.txt
+
+say "2/4 a glTF model and a drawing (tests/data/fetch.sh)"
+if ! tests/data/fetch.sh --only models svg; then
+  note "could not be fetched; the mini-engine uses its own small model and drawing instead"
+fi
+
+say "3/4 build (build/release)"
+configure release -DGPGP_BUILD_TESTS=$(isInstalled libgtest-dev && echo ON || echo OFF)
+cmake --build --preset demo --parallel "$(jobCount)"
+
+say "4/4 run"
+pictures=build/release/pictures
+build/release/mini_engine --out "$pictures" "$@"
+if [[ -n ${DISPLAY:-}${WAYLAND_DISPLAY:-} && $# -eq 0 ]]; then
+  note "opening a window; close it or press Escape to end"
+  build/release/mini_engine --window || note "no window could be opened; the pictures are there all the same"
+fi
+for picture in "$pictures"/*.png; do
+  if [[ -f $picture ]]; then note "picture: $PWD/$picture"; fi
+done

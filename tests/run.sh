@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and runs all tests: release, then again under AddressSanitizer and
+# UndefinedBehaviorSanitizer, then a build with the second compiler. Works as root or through sudo, asks nothing, can be
+# run again. Ends with a summary; exits 1 where anything failed.
+#
+#   tests/run.sh            everything
+#   tests/run.sh --quick    release only
+#   GPGP_DEVICE=name        runs the tests on another device than lavapipe
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=samples/setup.sh
+source samples/setup.sh
+
+quick=no
+for argument in "$@"; do
+  case $argument in
+  --quick) quick=yes ;;
+  -h | --help)
+    sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+    exit 0
+    ;;
+  *)
+    echo "tests/run.sh: unknown option '$argument' (see --help)" >&2
+    exit 2
+    ;;
+  esac
+done
+
+started=$SECONDS
+summary=()
+failed=no
+# step NAME COMMAND...: runs it, notes how it went and goes on.
+step() {
+  local name=$1 begin=$SECONDS
+  shift
+  say "$name"
+  if ("$@"); then # a shell of its own: what gives up in there ends the step, not the run
+    summary+=("passed  $name ($((SECONDS - begin)) s)")
+  else
+    summary+=("FAILED  $name ($((SECONDS - begin)) s)")
+    failed=yes
+    return 1
+  fi
+}
+
+buildPreset() {
+  configure "$1" -DGPGP_BUILD_TESTS=ON && cmake --build --preset "$1" --parallel "$(jobCount)"
+}
+# GPU tests share one software device, so one test at a time per two processors is the fastest.
+testPreset() { ctest --preset "$1" --parallel "$((($(jobCount) + 1) / 2))"; }
+buildAndTest() {
+  step "build $1 (build/$1)" buildPreset "$1" && step "tests, $1" testPreset "$1" || true
+}
+
+step "Debian packages (samples/packages.txt, tests/packages.txt)" installMissing samples/packages.txt tests/packages.txt
+step "real test data (tests/data/fetch.sh)" tests/data/fetch.sh || true
+buildAndTest release
+if [[ $quick == no ]]; then
+  buildAndTest asan-ubsan
+  step "build with clang (build/clang)" buildPreset clang || true
+fi
+
+say "summary, after $(((SECONDS - started) / 60)) min $(((SECONDS - started) % 60)) s"
+printf '   %s\n' "${summary[@]}"
+[[ $failed == no ]] || exit 1
