@@ -435,7 +435,8 @@ typedef struct GpgpRecordInfo {
 
 /* ---------------------------------------------------------------- reports */
 
-/** Common part of every report; each service's report struct embeds it as `base`. */
+/** Common part of every report; each service's report struct embeds it as `base`. A worker keeps the last
+ *  maxFramesInFlight x maxRecordsPerFrame reports; older ones that nobody took are dropped with a warning. */
 typedef struct GpgpReportHeader {
   GpgpResult status; /**< SUCCESS, BUDGET_EXCEEDED or NOT_EXECUTED */
   uint64_t tag;

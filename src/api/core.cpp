@@ -29,8 +29,7 @@ GpgpResult GPGP_CALL gpgpCreateContext(const GpgpContextCreateInfo* info, GpgpCo
                        "instance, physicalDevice, device and getInstanceProcAddr must be set");
     if (info->apiVersion && info->apiVersion < VK_API_VERSION_1_2)
       return makeError(GPGP_ERROR_MISSING_FEATURE, "apiVersion is below Vulkan 1.2");
-    if (info->features & ~GPGP_FEATURE_ALL)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "features has unknown bits");
+    if (info->features & ~GPGP_FEATURE_ALL) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "features has unknown bits");
     if (info->maxFramesInFlight > 8)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxFramesInFlight is %u; at most 8", info->maxFramesInFlight);
     if (info->maxRecordsPerFrame > 4096)
@@ -151,8 +150,7 @@ Result<T*> resolveAny(Call& call, Handle handle, Kind first, Kind last, const ch
   return static_cast<T*>(object);
 }
 
-template <class Handle>
-void destroy(const char* function, Handle handle, Kind first, Kind last, const char* name) {
+template <class Handle> void destroy(const char* function, Handle handle, Kind first, Kind last, const char* name) {
   if (!handle) return;
   guarded(function, [&](Call& call) -> Result<void> {
     const auto object = resolveAny<core::Object>(call, handle, first, last, name);

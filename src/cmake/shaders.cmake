@@ -2,22 +2,23 @@
 #
 #   gpgp_add_shader(TARGET NAME SOURCE [DEFINES A=1 B ...])
 #
-# SOURCE is a path below shaders/. The header is included as "shaders/NAME.spv.h" and defines
+# SOURCE is a path below shaders/, or an absolute one. The header is included as "shaders/NAME.spv.h" and defines
 # `static const uint32_t NAME[]`. A shader that does not validate fails the build.
 find_program(GPGP_GLSLANG glslangValidator REQUIRED)
 find_program(GPGP_SPIRV_VAL spirv-val REQUIRED)
 
 function(gpgp_add_shader target name source)
   cmake_parse_arguments(arg "" "" "DEFINES" ${ARGN})
+  cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/shaders)
   set(dir ${PROJECT_BINARY_DIR}/generated/shaders)
   file(MAKE_DIRECTORY ${dir})
   list(TRANSFORM arg_DEFINES PREPEND "-D" OUTPUT_VARIABLE defines)
   set(glslang ${GPGP_GLSLANG} -V --target-env vulkan1.2 --quiet -I${PROJECT_SOURCE_DIR}/shaders ${defines})
   add_custom_command(OUTPUT ${dir}/${name}.spv.h ${dir}/${name}.spv
-    COMMAND ${glslang} --depfile ${dir}/${name}.d -o ${dir}/${name}.spv ${PROJECT_SOURCE_DIR}/shaders/${source}
+    COMMAND ${glslang} --depfile ${dir}/${name}.d -o ${dir}/${name}.spv ${source}
     COMMAND ${GPGP_SPIRV_VAL} --target-env vulkan1.2 ${dir}/${name}.spv
-    COMMAND ${glslang} --vn ${name} -o ${dir}/${name}.spv.h ${PROJECT_SOURCE_DIR}/shaders/${source}
-    DEPENDS ${PROJECT_SOURCE_DIR}/shaders/${source}
+    COMMAND ${glslang} --vn ${name} -o ${dir}/${name}.spv.h ${source}
+    DEPENDS ${source}
     DEPFILE ${dir}/${name}.d
     COMMENT "Shader ${name}" VERBATIM)
   target_sources(${target} PRIVATE ${dir}/${name}.spv.h)

@@ -28,8 +28,8 @@ Context::Context(const GpgpContextCreateInfo& info)
       maxFramesInFlight(info.maxFramesInFlight ? info.maxFramesInFlight : 3),
       maxRecordsPerFrame(info.maxRecordsPerFrame ? info.maxRecordsPerFrame : 16),
       jobSystem(info.jobSystem ? *info.jobSystem : GpgpJobSystem{}),
-      fileSystem(info.fileSystem ? *info.fileSystem : GpgpFileSystem{}), host_(info.hostAllocator),
-      slotBlocks_(&host_), living_(&host_) {}
+      fileSystem(info.fileSystem ? *info.fileSystem : GpgpFileSystem{}), host_(info.hostAllocator), slotBlocks_(&host_),
+      living_(&host_) {}
 
 Result<Context*> Context::create(const GpgpContextCreateInfo& info) {
   // The context owns its HostMemory, so its own storage comes from the callbacks directly.

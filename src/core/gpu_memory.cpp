@@ -47,8 +47,10 @@ Result<GpgpGpuAllocation> GpuMemory::allocate(const GpgpGpuAllocationRequest& re
     if (result != VK_SUCCESS) return vulkanError(result, "the engine's GPU allocator");
     if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) && !allocation.mapped) {
       callbacks_.free(callbacks_.userData, &allocation);
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the engine's GPU allocator returned host-visible memory that is "
-                                                    "not mapped, for %s", request.label);
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "the engine's GPU allocator returned host-visible memory that is "
+                       "not mapped, for %s",
+                       request.label);
     }
     return allocation;
   }

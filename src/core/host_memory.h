@@ -31,8 +31,10 @@ private:
   }
   void do_deallocate(void* memory, size_t size, size_t alignment) override {
     bytes_.fetch_sub(size, std::memory_order_relaxed);
-    if (callbacks_.allocate) callbacks_.free(callbacks_.userData, memory, size, alignment);
-    else ::operator delete(memory, std::align_val_t(alignment));
+    if (callbacks_.allocate)
+      callbacks_.free(callbacks_.userData, memory, size, alignment);
+    else
+      ::operator delete(memory, std::align_val_t(alignment));
   }
   bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
 

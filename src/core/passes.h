@@ -25,8 +25,8 @@ enum class ResourceKind : uint8_t {
 struct Resource {
   const char* name;
   ResourceKind kind;
-  VkDeviceSize bytes = 0;  ///< scratch and constants
-  bool optional = false;   ///< buffer, image: a record may leave it out; an unused range is bound instead
+  VkDeviceSize bytes = 0; ///< scratch and constants
+  bool optional = false;  ///< buffer, image: a record may leave it out; an unused range is bound instead
 };
 
 enum class UseKind : uint8_t { read, write, readWrite, indirect };
@@ -49,30 +49,30 @@ constexpr uint32_t kMaxPassConstants = 8;
 struct Pass {
   const char* name;
   PassKind kind;
-  uint32_t shader = 0;                     ///< index in PassList::shaders
-  std::array<Use, kMaxUses> uses = {};     ///< what it touches, for barriers
+  uint32_t shader = 0;                 ///< index in PassList::shaders
+  std::array<Use, kMaxUses> uses = {}; ///< all that its shader could touch, for barriers
   uint32_t useCount = 0;
-  uint32_t groups = 0;                     ///< dispatch: index in a record's list of workgroup counts
-  ResourceIndex target = 0;                ///< indirect: arguments; fill and copy: destination
-  ResourceIndex source = 0;                ///< copy
+  uint32_t groups = 0;      ///< dispatch: index in a record's list of workgroup counts
+  ResourceIndex target = 0; ///< indirect: arguments; fill and copy: destination
+  ResourceIndex source = 0; ///< copy
   VkDeviceSize offset = 0, sourceOffset = 0, size = VK_WHOLE_SIZE; ///< indirect, fill, copy: bytes in the resource
-  uint32_t value = 0;                      ///< fill
-  std::array<uint32_t, kMaxPassConstants> constants = {}; ///< push constants, the same in every record
+  uint32_t value = 0;                                              ///< fill
+  std::array<uint32_t, kMaxPassConstants> constants = {};          ///< push constants, the same in every record
   uint32_t constantCount = 0;
-  uint32_t condition = UINT32_MAX;         ///< index in a record's list of flags: skipped (barrier kept) when 0
-  bool barrierBefore = false;              ///< worked out by finish()
+  uint32_t condition = UINT32_MAX; ///< index in a record's list of flags: skipped (barrier kept) when 0
+  bool barrierBefore = false;      ///< worked out by finish()
 };
 
 struct PassList {
-  explicit PassList(std::pmr::memory_resource* memory) : resources(memory), shaders(memory), passes(memory),
-                                                         scratchOffsets(memory) {}
+  explicit PassList(std::pmr::memory_resource* memory)
+      : resources(memory), shaders(memory), passes(memory), scratchOffsets(memory) {}
   std::pmr::vector<Resource> resources;
   std::pmr::vector<ShaderDesc> shaders;
   std::pmr::vector<Pass> passes;
   ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end
   uint32_t reportBytes = 0;
-  uint32_t groupCounts = 0;          ///< how many workgroup counts a record gives
-  uint32_t conditions = 0;           ///< how many flags a record gives
+  uint32_t groupCounts = 0; ///< how many workgroup counts a record gives
+  uint32_t conditions = 0;  ///< how many flags a record gives
 
   // worked out by finish()
   std::pmr::vector<VkDeviceSize> scratchOffsets; ///< by resource

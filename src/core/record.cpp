@@ -41,7 +41,8 @@ VkAccessFlags access32(VkAccessFlags2 access) {
 Result<void> checkStages(const char* resource, const char* edge, const GpgpAccess& access, VkQueueFlags queue) {
   if (!(queue & VK_QUEUE_GRAPHICS_BIT) && (stages32(access.stages) & kGraphicsStages))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "%s.%s.stages names graphics stages, but the worker's queue family has no graphics", resource, edge);
+                     "%s.%s.stages names graphics stages, but the worker's queue family has no graphics", resource,
+                     edge);
   return {};
 }
 } // namespace
@@ -59,7 +60,8 @@ Result<void> Worker::check(const Record& record) const {
   if (engineScratch_) {
     const GpgpBuffer& scratch = record.info->scratch;
     if (!scratch.buffer)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.buffer is NULL; the worker was made with engineScratch");
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "base.scratch.buffer is NULL; the worker was made with engineScratch");
     if (scratch.offset % scratchAlignment())
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.offset must be a multiple of %llu",
                        static_cast<unsigned long long>(scratchAlignment()));
@@ -103,13 +105,16 @@ Result<void> Worker::check(const Record& record) const {
 Result<uint32_t> Worker::acquire() const {
   uint32_t inFrame = 0, free = UINT32_MAX;
   for (uint32_t i = 0; i < slots_.size(); ++i) {
-    if (!slots_[i].stamp) free = i;
-    else inFrame += slots_[i].frame == context.current();
+    if (!slots_[i].stamp)
+      free = i;
+    else
+      inFrame += slots_[i].frame == context.current();
   }
   if (inFrame >= context.maxRecordsPerFrame || free == UINT32_MAX)
-    return makeError(GPGP_ERROR_TOO_MANY_RECORDS, "the context was made for %u records per frame and worker, and %u "
-                                                  "frames in flight", context.maxRecordsPerFrame,
-                     context.maxFramesInFlight);
+    return makeError(GPGP_ERROR_TOO_MANY_RECORDS,
+                     "the context was made for %u records per frame and worker, and %u "
+                     "frames in flight",
+                     context.maxRecordsPerFrame, context.maxFramesInFlight);
   return free;
 }
 
@@ -127,8 +132,8 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
   for (uint32_t i = 0; i < passes_.resources.size(); ++i) {
     const Resource& resource = passes_.resources[i];
     const Binding& binding = bindings[i];
-    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i, 0, 1,
-                               VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, nullptr, &buffers[i], nullptr};
+    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i,      0, 1,
+                               VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,      nullptr, &buffers[i], nullptr};
     // What a record leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
     buffers[i] = {constants_.handle(), 0, VK_WHOLE_SIZE};
     if (resource.kind == ResourceKind::image) {
@@ -157,8 +162,10 @@ void Worker::beginLabel(VkCommandBuffer commandBuffer, const char* pass) const {
   if (!vk.CmdBeginDebugUtilsLabelEXT) return;
   static constexpr const char* kServices[GPGP_SERVICE_COUNT] = {"core", "spawn", "vector", "visibility"};
   char name[160];
-  if (pass) std::snprintf(name, sizeof name, "gpgp/%s/%s", kServices[service_], pass);
-  else std::snprintf(name, sizeof name, "gpgp/%s %s", kServices[service_], label.text);
+  if (pass)
+    std::snprintf(name, sizeof name, "gpgp/%s/%s", kServices[service_], pass);
+  else
+    std::snprintf(name, sizeof name, "gpgp/%s %s", kServices[service_], label.text);
   const VkDebugUtilsLabelEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name, {}};
   vk.CmdBeginDebugUtilsLabelEXT(commandBuffer, &info);
 }
@@ -191,8 +198,8 @@ void Worker::edgeBarrier(const Record& record, bool entry) const {
       VkImageMemoryBarrier& barrier = images[imageCount++];
       barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
       barrier.srcAccessMask = entry ? access32(access.access) : VkAccessFlags(VK_ACCESS_SHADER_WRITE_BIT);
-      barrier.dstAccessMask = entry ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT)
-                                    : access32(access.access);
+      barrier.dstAccessMask =
+          entry ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT) : access32(access.access);
       barrier.oldLayout = entry ? access.layout : VK_IMAGE_LAYOUT_GENERAL;
       barrier.newLayout = entry ? VK_IMAGE_LAYOUT_GENERAL : access.layout;
       barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
@@ -227,8 +234,7 @@ Result<void> Worker::record(const Record& record) {
   // Where a buffer resource lies, for transfers and indirect arguments.
   const auto place = [&](ResourceIndex i) -> std::pair<VkBuffer, VkDeviceSize> {
     const Binding& binding = record.bindings[i];
-    if (passes_.resources[i].kind == ResourceKind::scratch)
-      return {scratch, scratchOffset + passes_.scratchOffsets[i]};
+    if (passes_.resources[i].kind == ResourceKind::scratch) return {scratch, scratchOffset + passes_.scratchOffsets[i]};
     if (binding.ownBuffer) return {binding.ownBuffer, binding.ownOffset};
     return {binding.engineBuffer->buffer, binding.engineBuffer->offset};
   };
@@ -268,9 +274,10 @@ Result<void> Worker::record(const Record& record) {
           vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, bound);
         }
         if (pass.constantCount)
-          vk.CmdPushConstants(cmd, layout_, draws_ ? VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT |
-                                                         VK_SHADER_STAGE_FRAGMENT_BIT
-                                                   : VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT),
+          vk.CmdPushConstants(cmd, layout_,
+                              draws_ ? VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT |
+                                           VK_SHADER_STAGE_FRAGMENT_BIT
+                                     : VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT),
                               0, pass.constantCount * 4, pass.constants.data());
         if (pass.kind == PassKind::dispatchIndirect) {
           const auto [buffer, offset] = place(pass.target);

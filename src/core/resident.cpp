@@ -18,9 +18,9 @@ Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::b
   const VkDeviceSize wanted = std::max<VkDeviceSize>(bytes.empty() ? clearSize : bytes.size(), 1);
   size_ = (wanted + kAlignment - 1) / kAlignment * kAlignment;
   if (!bytes.empty()) bytes.resize(size_);
-  auto buffer = Buffer::create(context.device, context.gpu(), service, label.text, size_,
-                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                               MemoryPlace::device);
+  auto buffer =
+      Buffer::create(context.device, context.gpu(), service, label.text, size_,
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::device);
   if (!buffer) return buffer.error();
   buffer_ = std::move(*buffer);
   bytes_ = std::move(bytes);
@@ -41,9 +41,9 @@ Result<Unique<UploadRing>> UploadRing::create(Context& context, VkDeviceSize byt
                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryPlace::upload);
   if (!ring) return ring.error();
   made->ring_ = std::move(*ring);
-  auto stamps = Buffer::create(context.device, context.gpu(), GPGP_SERVICE_CORE, "upload stamps",
-                               made->records_.size() * kAlignment, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                               MemoryPlace::readBack);
+  auto stamps =
+      Buffer::create(context.device, context.gpu(), GPGP_SERVICE_CORE, "upload stamps",
+                     made->records_.size() * kAlignment, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::readBack);
   if (!stamps) return stamps.error();
   made->stamps_ = std::move(*stamps);
   return made;
@@ -59,8 +59,10 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
   if (pending == 0) return VkDeviceSize(0);
   const auto free = std::find_if(records_.begin(), records_.end(), [](const Record& r) { return r.number == 0; });
   if (free == records_.end())
-    return makeError(GPGP_ERROR_TOO_MANY_RECORDS, "more than %zu uploads in flight (maxFramesInFlight x "
-                                                  "maxRecordsPerFrame)", records_.size());
+    return makeError(GPGP_ERROR_TOO_MANY_RECORDS,
+                     "more than %zu uploads in flight (maxFramesInFlight x "
+                     "maxRecordsPerFrame)",
+                     records_.size());
   const DeviceTable& vk = context_.device.vk;
   const uint64_t number = nextNumber_;
   VkDeviceSize budget = byteBudget ? byteBudget : VK_WHOLE_SIZE;

@@ -7,8 +7,8 @@ Result<InstanceTable> loadInstanceTable(VkInstance instance, PFN_vkGetInstancePr
 #define X(name)                                                                                                        \
   table.name = reinterpret_cast<PFN_vk##name>(getInstanceProcAddr(instance, "vk" #name));                              \
   if (!table.name)                                                                                                     \
-    return makeError(GPGP_ERROR_MISSING_FEATURE, "getInstanceProcAddr does not know vk" #name                          \
-                                                 "; the instance must be of Vulkan 1.2 or later");
+    return makeError(GPGP_ERROR_MISSING_FEATURE,                                                                       \
+                     "getInstanceProcAddr does not know vk" #name "; the instance must be of Vulkan 1.2 or later");
   GPGP_INSTANCE_FUNCTIONS(X)
 #undef X
   return table;

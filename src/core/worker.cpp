@@ -27,8 +27,7 @@ Worker::~Worker() {
   }
   const Device& device = context.device;
   for (VkPipeline pipeline : pipelines_) device.vk.DestroyPipeline(device.device, pipeline, nullptr);
-  for (uint32_t i = 0; i < targetCount_; ++i)
-    device.vk.DestroyPipeline(device.device, targets_[i].pipeline, nullptr);
+  for (uint32_t i = 0; i < targetCount_; ++i) device.vk.DestroyPipeline(device.device, targets_[i].pipeline, nullptr);
   device.vk.DestroyDescriptorPool(device.device, pool_, nullptr);
   device.vk.DestroyPipelineLayout(device.device, layout_, nullptr);
   device.vk.DestroyDescriptorSetLayout(device.device, setLayout_, nullptr);
@@ -61,10 +60,9 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
   if (vertex && fragment) vertex_ = *vertex, fragment_ = *fragment;
   for (const Resource& resource : passes_.resources)
     if (resource.kind == ResourceKind::scratch && resource.bytes > device.limits.maxStorageBufferRange)
-      return makeError(GPGP_ERROR_UNSUPPORTED,
-                       "the budgets need %llu bytes for \"%s\", but this device binds at most %u",
-                       static_cast<unsigned long long>(resource.bytes), resource.name,
-                       device.limits.maxStorageBufferRange);
+      return makeError(
+          GPGP_ERROR_UNSUPPORTED, "the budgets need %llu bytes for \"%s\", but this device binds at most %u",
+          static_cast<unsigned long long>(resource.bytes), resource.name, device.limits.maxStorageBufferRange);
 
   const uint32_t resourceCount = static_cast<uint32_t>(passes_.resources.size());
   std::array<VkDescriptorSetLayoutBinding, kMaxResources> bindings{};
@@ -156,11 +154,12 @@ Result<VkPipeline> Worker::createComputePipeline(const ShaderDesc& shader) const
   if (!module) return module.error();
   std::array<VkSpecializationMapEntry, 4> entries{};
   for (uint32_t i = 0; i < 4; ++i) entries[i] = {i, i * 4, 4};
-  const VkSpecializationInfo specialization{shader.specializationCount, entries.data(),
-                                            shader.specializationCount * 4, shader.specialization.data()};
+  const VkSpecializationInfo specialization{shader.specializationCount, entries.data(), shader.specializationCount * 4,
+                                            shader.specialization.data()};
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-  info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT, *module,
-                "main", shader.specializationCount ? &specialization : nullptr};
+  info.stage = {
+      VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,   nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT, *module, "main",
+      shader.specializationCount ? &specialization : nullptr};
   info.layout = layout_;
   VkPipeline pipeline = VK_NULL_HANDLE;
   const VkResult result =
@@ -183,8 +182,8 @@ Result<VkPipeline> Worker::createDrawPipeline(const GpgpTargetInfo& target) cons
   const std::array<VkPipelineShaderStageCreateInfo, 2> stages{{
       {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_VERTEX_BIT, *vertex, "main",
        nullptr},
-      {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_FRAGMENT_BIT, *fragment,
-       "main", nullptr},
+      {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_FRAGMENT_BIT, *fragment, "main",
+       nullptr},
   }};
   VkPipelineVertexInputStateCreateInfo vertexInput{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
@@ -242,20 +241,26 @@ Result<VkPipeline> Worker::createDrawPipeline(const GpgpTargetInfo& target) cons
 
 Result<void> Worker::prewarm(const GpgpPrewarmInfo* info) {
   const uint32_t wanted = info ? info->targetCount : 0;
-  if (wanted && !info->targets) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets is NULL, targetCount is %u", wanted);
+  if (wanted && !info->targets)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets is NULL, targetCount is %u", wanted);
   if (wanted && !draws_)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, vertex_.spirv.empty() ? "a %s does not draw: targetCount must be 0"
-                                                                        : "this %s is on a queue family without "
-                                                                          "graphics: targetCount must be 0",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     vertex_.spirv.empty() ? "a %s does not draw: targetCount must be 0"
+                                           : "this %s is on a queue family without "
+                                             "graphics: targetCount must be 0",
                      kindName(kind));
   for (uint32_t i = 0; i < wanted; ++i) {
     const GpgpTargetInfo& target = info->targets[i];
     if (target.sType != GPGP_STRUCTURE_TARGET_INFO || target.pNext)
-      return makeError(GPGP_ERROR_INVALID_STRUCT, "targets[%u] must have sType GPGP_STRUCTURE_TARGET_INFO and pNext "
-                                                  "NULL", i);
+      return makeError(GPGP_ERROR_INVALID_STRUCT,
+                       "targets[%u] must have sType GPGP_STRUCTURE_TARGET_INFO and pNext "
+                       "NULL",
+                       i);
     if (!target.renderPass && !context.device.has(GPGP_FEATURE_DYNAMIC_RENDERING))
-      return makeError(GPGP_ERROR_MISSING_FEATURE, "targets[%u] has no renderPass and GPGP_FEATURE_DYNAMIC_RENDERING "
-                                                   "is not declared", i);
+      return makeError(GPGP_ERROR_MISSING_FEATURE,
+                       "targets[%u] has no renderPass and GPGP_FEATURE_DYNAMIC_RENDERING "
+                       "is not declared",
+                       i);
     if (!target.renderPass && target.colorFormat == VK_FORMAT_UNDEFINED)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets[%u] has neither renderPass nor colorFormat", i);
   }
@@ -270,14 +275,17 @@ Result<void> Worker::prewarm(const GpgpPrewarmInfo* info) {
     if (j.pipelines[index]) return;
     try {
       const auto pipeline = j.worker->createComputePipeline(j.worker->passes_.shaders[index]);
-      if (pipeline) j.pipelines[index] = *pipeline;
-      else j.errors[index] = pipeline.error();
+      if (pipeline)
+        j.pipelines[index] = *pipeline;
+      else
+        j.errors[index] = pipeline.error();
     } catch (...) {
       j.errors[index] = makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "a pipeline could not be made");
     }
   };
   const uint32_t count = static_cast<uint32_t>(pipelines_.size());
-  if (context.jobSystem.parallelFor) context.jobSystem.parallelFor(context.jobSystem.userData, count, compile, &job);
+  if (context.jobSystem.parallelFor)
+    context.jobSystem.parallelFor(context.jobSystem.userData, count, compile, &job);
   else
     for (uint32_t i = 0; i < count; ++i) compile(&job, i);
   for (const Error& error : job.errors)
@@ -330,8 +338,10 @@ void Worker::advance() {
       }
       const size_t place = (queueHead_ + queueCount_++) % queue_.size();
       uint32_t* copy = harvested_.data() + place * words;
-      if (ran) std::memcpy(copy, data, passes_.reportBytes);
-      else std::fill_n(copy, words, 0u);
+      if (ran)
+        std::memcpy(copy, data, passes_.reportBytes);
+      else
+        std::fill_n(copy, words, 0u);
       queue_[place] = {{ran ? GPGP_SUCCESS : GPGP_NOT_EXECUTED, oldest->tag, oldest->frame}, {copy, words}};
     }
     *oldest = {};

@@ -62,9 +62,9 @@ public:
   const PassList& passes() const { return passes_; }
   VkDeviceSize scratchBytes() const { return passes_.scratchBytes; }
   VkDeviceSize scratchAlignment() const;
-  static constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                                      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                                                      VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  static constexpr VkBufferUsageFlags kScratchUsage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+      VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
   bool engineScratch() const { return engineScratch_; }
 
   /// Checks what all services check (frame, scratch, timestamps, sizes, states); changes nothing. Call before record.
