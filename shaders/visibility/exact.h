@@ -1,0 +1,94 @@
+// Exact integers and repeatable division for the rasteriser.
+//
+// Guarantees: every function gives the same bits on every device and in the CPU twin. 64-bit integers are two 32-bit
+// words, because shaderInt64 is not part of the baseline; division is Newton's iteration in + - * only.
+#ifndef GPGP_SHADERS_VISIBILITY_EXACT_H
+#define GPGP_SHADERS_VISIBILITY_EXACT_H
+#include "core/shared.h"
+
+GPGP_SHADER_BEGIN
+
+#ifdef __cplusplus // GLSL's built-in functions
+inline void imulExtended(int a, int b, int& high, int& low) {
+  const std::int64_t product = std::int64_t(a) * b;
+  high = static_cast<int>(product >> 32);
+  low = static_cast<int>(product);
+}
+inline uint uaddCarry(uint a, uint b, uint& carry) {
+  carry = a + b < a ? 1u : 0u;
+  return a + b;
+}
+#endif
+
+/// A signed 64-bit integer: high * 2^32 + low.
+struct Wide {
+  int high;
+  uint low;
+};
+
+GPGP_FN Wide wideProduct(int a, int b) {
+  int high = 0;
+  int low = 0;
+  imulExtended(a, b, high, low);
+  Wide r;
+  r.high = high;
+  r.low = uint(low);
+  return r;
+}
+
+GPGP_FN Wide wideSum(Wide a, Wide b) {
+  uint carry = 0u;
+  Wide r;
+  r.low = uaddCarry(a.low, b.low, carry);
+  r.high = a.high + b.high + int(carry);
+  return r;
+}
+
+/// -1, 0 or 1
+GPGP_FN int wideSign(Wide a) {
+  if (a.high < 0) return -1;
+  return a.high == 0 && a.low == 0u ? 0 : 1;
+}
+
+/// The nearest float of a number below 2^48 in magnitude; one rounding.
+GPGP_FN float wideToFloat(Wide a) {
+  GPGP_PRECISE float top = float(a.high * 256 + int(a.low >> 24u));
+  GPGP_PRECISE float bottom = float(a.low & 0xffffffu);
+  GPGP_PRECISE float sum = top * 16777216.0f + bottom;
+  return sum;
+}
+
+GPGP_CONST int kSaturated = 1 << 30;
+
+/// floor(a / 256), held within +-2^30.
+GPGP_FN int widePixels(Wide a) {
+  int low = int((a.low >> 8u) | (uint(a.high) << 24u));
+  bool fits = (a.high >> 8) == (low >> 31);
+  if (!fits) return a.high < 0 ? -kSaturated : kSaturated;
+  return clamp(low, -kSaturated, kSaturated);
+}
+
+/// Whether a float is a number below 2^100 in magnitude. Looks at bits: compilers may assume that NaN does not occur.
+GPGP_FN bool isModerate(float v) { return (floatBitsToUint(v) & 0x7f800000u) < (227u << 23u); }
+
+/// Whether divisionReciprocal may be used: 2^-100 <= v < 2^100.
+GPGP_FN bool isDivisor(float v) {
+  uint bits = floatBitsToUint(v);
+  return bits >= (27u << 23u) && bits < (227u << 23u);
+}
+
+/// 1 / v within 2 ulp, for isDivisor(v). Newton's iteration on the mantissa, then the exponent.
+GPGP_FN float divisionReciprocal(float v) {
+  uint bits = floatBitsToUint(v);
+  GPGP_PRECISE float m = uintBitsToFloat((bits & 0x7fffffu) | 0x3f000000u); // 0.5 <= m < 1
+  GPGP_PRECISE float r = 2.8235294f - 1.8823529f * m;                       // within 1/17
+  r = r + r * (1.0f - m * r);
+  r = r + r * (1.0f - m * r);
+  r = r + r * (1.0f - m * r);
+  r = r + r * (1.0f - m * r);
+  GPGP_PRECISE float scaled = r * uintBitsToFloat((253u - (bits >> 23u)) << 23u);
+  return scaled;
+}
+
+GPGP_SHADER_END
+#endif

@@ -1,0 +1,165 @@
+// One triangle on the pixel grid: snapping, fill rule, coverage, depth. Chapter 6's "standard" sampling, as rasterising
+// hardware does it: one sample a pixel, at its centre.
+//
+// Guarantees: vertices are snapped to 1/256 pixel and all decisions are exact integers, so two triangles that share an
+// edge never both cover, nor both miss, a pixel centre on it (top-left rule). Depth is a function of the triangle and
+// the pixel alone: whichever pass or thread asks, the bits are the same.
+#ifndef GPGP_SHADERS_VISIBILITY_RASTER_H
+#define GPGP_SHADERS_VISIBILITY_RASTER_H
+#include "visibility/exact.h"
+
+GPGP_SHADER_BEGIN
+
+/// Snapped coordinates stay within three viewports to each side: differences below 2^24, areas below 2^48.
+GPGP_CONST int kGuard = 7;
+/// A triangle of at most this extent in sub-pixels has edge functions below 2^31 wherever it covers pixels.
+GPGP_CONST int kCompactExtent = 16384;
+/// A compact triangle whose pixel bounds hold at most this many pixels is drawn by one invocation.
+GPGP_CONST int kSmallPixels = 64;
+
+/// A triangle on the grid: x right, y down, 256 units a pixel, area positive (so clockwise as seen).
+struct ScreenTriangle {
+  ivec2 p0;
+  ivec2 p1;
+  ivec2 p2;
+  ivec4 bounds; ///< pixels that may be covered: x, y (first), z, w (one past the last), inside the viewport
+  float z0;     ///< depth of p0
+  float dz1;    ///< of p1, less z0
+  float dz2;
+  float zMin;
+  float zMax;
+  float inverseArea; ///< of twice the area
+};
+
+/// Twice the signed area; positive: clockwise as seen, y down.
+GPGP_FN Wide twiceArea(ivec2 a, ivec2 b, ivec2 c) {
+  return wideSum(wideProduct(b.x - a.x, c.y - a.y), wideProduct(a.y - b.y, c.x - a.x));
+}
+
+/// Where a clip coordinate (after division: -1 to 1) lies on the grid of an axis with `pixels` pixels.
+GPGP_FN int snap(float normalised, int pixels) {
+  GPGP_PRECISE float half_ = float(pixels) * 128.0f;
+  GPGP_PRECISE float position = floor(normalised * half_ + (half_ + 0.5f));
+  // The guard clips at kGuard times the axis; division may round past it.
+  int limit = pixels * 128;
+  return clamp(int(position), limit - kGuard * limit, limit + kGuard * limit);
+}
+
+/// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1].
+GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float zb, float zc, ivec2 viewport) {
+  ScreenTriangle t;
+  t.p0 = a;
+  t.p1 = b;
+  t.p2 = c;
+  int left = min(a.x, min(b.x, c.x));
+  int top = min(a.y, min(b.y, c.y));
+  int right = max(a.x, max(b.x, c.x));
+  int bottom = max(a.y, max(b.y, c.y));
+  // Pixel i's centre is at 256 i + 128.
+  t.bounds.x = max((left + 127) >> 8, 0);
+  t.bounds.y = max((top + 127) >> 8, 0);
+  t.bounds.z = min(((right - 128) >> 8) + 1, viewport.x);
+  t.bounds.w = min(((bottom - 128) >> 8) + 1, viewport.y);
+  t.zMin = min(za, min(zb, zc));
+  t.zMax = max(za, max(zb, zc));
+  GPGP_PRECISE float dz1 = zb - za;
+  GPGP_PRECISE float dz2 = zc - za;
+  t.z0 = za;
+  t.dz1 = dz1;
+  t.dz2 = dz2;
+  t.inverseArea = divisionReciprocal(wideToFloat(twiceArea(a, b, c)));
+  return t;
+}
+
+GPGP_FN bool isEmpty(ScreenTriangle t) { return t.bounds.x >= t.bounds.z || t.bounds.y >= t.bounds.w; }
+
+GPGP_FN bool isCompact(ScreenTriangle t) {
+  int width = max(t.p0.x, max(t.p1.x, t.p2.x)) - min(t.p0.x, min(t.p1.x, t.p2.x));
+  int height = max(t.p0.y, max(t.p1.y, t.p2.y)) - min(t.p0.y, min(t.p1.y, t.p2.y));
+  return max(width, height) <= kCompactExtent;
+}
+
+GPGP_FN bool isSmall(ScreenTriangle t) {
+  return isCompact(t) && (t.bounds.z - t.bounds.x) * (t.bounds.w - t.bounds.y) <= kSmallPixels;
+}
+
+/// The edge from u to v as slopes per sub-pixel: x: along x, y: along y. Its function is positive inside.
+GPGP_FN ivec2 edgeSlope(ivec2 u, ivec2 v) { return ivec2(u.y - v.y, v.x - u.x); }
+
+/// 0 where an edge owns the points on it (top or left edge), 1 where it does not.
+GPGP_FN int edgeBias(ivec2 slope) { return slope.x > 0 || (slope.x == 0 && slope.y > 0) ? 0 : 1; }
+
+/// The edge function at a pixel's centre, exact.
+GPGP_FN Wide edgeWide(ivec2 u, ivec2 slope, ivec2 pixel) {
+  return wideSum(wideProduct(slope.x, pixel.x * 256 + 128 - u.x), wideProduct(slope.y, pixel.y * 256 + 128 - u.y));
+}
+
+/// The same in 32 bits, for compact triangles and pixels within their bounds.
+GPGP_FN int edgeCompact(ivec2 u, ivec2 slope, ivec2 pixel) {
+  return slope.x * (pixel.x * 256 + 128 - u.x) + slope.y * (pixel.y * 256 + 128 - u.y);
+}
+
+/// What tells inside from outside in a block of up to 16 x 16 pixels that starts at `pixel`: the pixel at (i, j) of the
+/// block is inside the edge exactly if edgeBlock + slope.x * i + slope.y * j >= 0, which cannot overflow.
+GPGP_FN int edgeBlock(ivec2 u, ivec2 slope, ivec2 pixel) {
+  Wide bias;
+  bias.high = edgeBias(slope) == 0 ? 0 : -1;
+  bias.low = bias.high == 0 ? 0u : 0xffffffffu;
+  return widePixels(wideSum(edgeWide(u, slope, pixel), bias));
+}
+
+/// Whether no pixel of a block of size x size pixels is inside the edge.
+GPGP_FN bool blockOutside(int block, ivec2 slope, int size) {
+  return block + max(slope.x, 0) * (size - 1) + max(slope.y, 0) * (size - 1) < 0;
+}
+
+/// Depth from the edge functions of p1 and p2 as floats.
+GPGP_FN float depthOf(ScreenTriangle t, float weight1, float weight2) {
+  GPGP_PRECISE float z = t.z0 + (weight1 * t.dz1 + weight2 * t.dz2) * t.inverseArea;
+  z = clamp(z, t.zMin, t.zMax);
+  // Devices may flush subnormal numbers and differ in the sign of zero.
+  return z < 1.17549435e-38f ? 0.0f : z;
+}
+
+/// Depth at a covered pixel's centre, any triangle.
+GPGP_FN float depthWide(ScreenTriangle t, ivec2 pixel) {
+  float weight1 = wideToFloat(edgeWide(t.p2, edgeSlope(t.p2, t.p0), pixel));
+  float weight2 = wideToFloat(edgeWide(t.p0, edgeSlope(t.p0, t.p1), pixel));
+  return depthOf(t, weight1, weight2);
+}
+
+GPGP_FN float compactToFloat(int v) {
+  Wide w;
+  w.high = v < 0 ? -1 : 0;
+  w.low = uint(v);
+  return wideToFloat(w);
+}
+
+/// Whether the triangle owns a pixel's centre, any triangle.
+GPGP_FN bool coversWide(ScreenTriangle t, ivec2 pixel) {
+  return edgeBlock(t.p1, edgeSlope(t.p1, t.p2), pixel) >= 0 && edgeBlock(t.p2, edgeSlope(t.p2, t.p0), pixel) >= 0 &&
+         edgeBlock(t.p0, edgeSlope(t.p0, t.p1), pixel) >= 0;
+}
+
+/// The same for compact triangles, with the depth where it is covered.
+GPGP_FN bool coversCompact(ScreenTriangle t, ivec2 pixel, GPGP_OUT(float) z) {
+  ivec2 s0 = edgeSlope(t.p1, t.p2);
+  ivec2 s1 = edgeSlope(t.p2, t.p0);
+  ivec2 s2 = edgeSlope(t.p0, t.p1);
+  int e0 = edgeCompact(t.p1, s0, pixel);
+  int e1 = edgeCompact(t.p2, s1, pixel);
+  int e2 = edgeCompact(t.p0, s2, pixel);
+  z = 0.0f;
+  if (e0 < edgeBias(s0) || e1 < edgeBias(s1) || e2 < edgeBias(s2)) return false;
+  z = depthOf(t, compactToFloat(e1), compactToFloat(e2));
+  return true;
+}
+
+/// Depth as a number whose order is "nearer first".
+GPGP_FN uint depthKey(float z, bool reversed) {
+  uint bits = floatBitsToUint(z);
+  return reversed ? ~bits : bits;
+}
+
+GPGP_SHADER_END
+#endif

@@ -1,0 +1,39 @@
+// The CPU twin of the sampler: the same functions as the shaders (shaders/visibility/*.h), run in plain loops.
+//
+// Guarantees: ids, depth, bits and counts equal the GPU's bit for bit. For tests and tools; never part of the library.
+#pragma once
+#include "visibility/layout.h"
+#include "visibility/triangle.h"
+
+#include <span>
+#include <vector>
+
+namespace gpgp::visibility {
+
+/// What the GPU finds in its buffers, word for word.
+struct TwinInput {
+  shader::Params params{};
+  std::span<const uint32_t> positions; ///< floats as bits
+  std::span<const uint32_t> indices;   ///< 16-bit indices: two a word
+  std::span<const shader::Draw> draws;
+  std::span<const shader::Mesh> meshes;
+  std::span<const uint32_t> previousBits; ///< the view's, empty at its first record
+};
+
+struct TwinResult {
+  std::vector<uint32_t> depth, ids; ///< a word a pixel, rows from the top
+  std::vector<uint32_t> bits;
+  std::vector<uint32_t> list; ///< every visible triangle, ascending; no budget
+  shader::Counters counters{};
+};
+
+/// What became of one triangle, and what it is on the grid.
+struct TwinTriangle {
+  uint32_t fate = shader::kOutside;
+  std::vector<shader::ScreenTriangle> pieces;
+};
+TwinTriangle placeTriangle(const TwinInput& input, const shader::Draw& draw, uint32_t localTriangle);
+
+TwinResult sampleOnCpu(const TwinInput& input);
+
+} // namespace gpgp::visibility

@@ -1,0 +1,65 @@
+// 64-bit integers in two words, saturation, and repeatable division, against the processor's own.
+#include "visibility/exact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace gpgp::shader {
+namespace {
+
+std::int64_t value(Wide w) { return (std::int64_t(w.high) << 32) | w.low; }
+Wide wide(std::int64_t v) { return {static_cast<int>(v >> 32), static_cast<uint>(v)}; }
+
+TEST(Exact, ProductsSumsAndSignsMatch64BitIntegers) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 100000; ++i) {
+    const int a = static_cast<int>(random()) >> (random() % 31), b = static_cast<int>(random()) >> (random() % 31);
+    ASSERT_EQ(value(wideProduct(a, b)), std::int64_t(a) * b);
+    const std::int64_t x = static_cast<std::int64_t>(random()) >> (2 + random() % 60);
+    const std::int64_t y = static_cast<std::int64_t>(random()) >> (2 + random() % 60);
+    ASSERT_EQ(value(wideSum(wide(x), wide(y))), x + y);
+    ASSERT_EQ(wideSign(wide(x)), x < 0 ? -1 : x > 0);
+    ASSERT_EQ(widePixels(wide(x)), std::clamp<std::int64_t>(x >> 8, -kSaturated, kSaturated)) << x;
+  }
+  EXPECT_EQ(wideSign(wide(0)), 0);
+  EXPECT_EQ(widePixels(wide(-1)), -1);
+  EXPECT_EQ(widePixels(wide(255)), 0);
+}
+
+TEST(Exact, FloatsOfWideNumbersAreTheNearest) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 100000; ++i) {
+    const std::int64_t x = static_cast<std::int64_t>(random() << 15) >> (16 + random() % 47);
+    ASSERT_EQ(wideToFloat(wide(x)), static_cast<float>(x)) << x;
+  }
+}
+
+TEST(Exact, ReciprocalIsWithinTwoUlp) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 1000000; ++i) {
+    const uint bits = (27u << 23) + static_cast<uint>(random() % (200u << 23));
+    const float v = uintBitsToFloat(bits);
+    ASSERT_TRUE(isDivisor(v));
+    const double exact = 1.0 / double(v), got = divisionReciprocal(v);
+    ASSERT_LE(std::abs(got - exact), exact * 0x1p-22) << v;
+  }
+  EXPECT_EQ(divisionReciprocal(1.0f), 1.0f);
+  EXPECT_EQ(divisionReciprocal(0.25f), 4.0f);
+}
+
+TEST(Exact, ToldApartByBits) {
+  EXPECT_TRUE(isModerate(0.0f));
+  EXPECT_TRUE(isModerate(-1e30f));
+  EXPECT_FALSE(isModerate(1.3e30f));
+  EXPECT_FALSE(isModerate(uintBitsToFloat(0x7f800000u)));
+  EXPECT_FALSE(isModerate(uintBitsToFloat(0xff800000u)));
+  EXPECT_FALSE(isModerate(uintBitsToFloat(0x7fc00000u)));
+  EXPECT_FALSE(isDivisor(0.0f));
+  EXPECT_FALSE(isDivisor(-1.0f));
+  EXPECT_FALSE(isDivisor(uintBitsToFloat(0x7fc00000u)));
+}
+
+} // namespace
+} // namespace gpgp::shader

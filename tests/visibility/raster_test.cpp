@@ -1,0 +1,188 @@
+// The rasteriser on one triangle: coverage against a direct evaluation, the fast forms against the exact one, and edges
+// shared by triangles.
+#include "visibility/raster.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+namespace gpgp::shader {
+namespace {
+
+struct Random {
+  std::mt19937 engine;
+  explicit Random(uint32_t seed) : engine(seed) {}
+  int operator()(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine); }
+};
+
+std::int64_t area(ivec2 a, ivec2 b, ivec2 c) {
+  return std::int64_t(b.x - a.x) * (c.y - a.y) - std::int64_t(b.y - a.y) * (c.x - a.x);
+}
+
+/// The rule as the specification words it, with plain 64-bit integers.
+bool ownsPoint(ivec2 a, ivec2 b, ivec2 c, ivec2 p) {
+  const ivec2 v[3] = {a, b, c};
+  for (int i = 0; i < 3; ++i) {
+    const ivec2 from = v[i], to = v[(i + 1) % 3];
+    const std::int64_t side = area(from, to, p);
+    const bool top = from.y == to.y && to.x > from.x, left = to.y < from.y;
+    if (side < 0 || (side == 0 && !top && !left)) return false;
+  }
+  return true;
+}
+
+bool orient(ivec2& a, ivec2& b, ivec2& c) {
+  if (area(a, b, c) < 0) std::swap(b, c);
+  return area(a, b, c) > 0;
+}
+
+TEST(Raster, CoverageIsTheFillRuleExactly) {
+  Random random(1);
+  const ivec2 viewport(64, 48);
+  int covered = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const int reach = n % 3 == 0 ? 256 : n % 3 == 1 ? 16384 : 64 * 128 * 6;
+    const int grid = n % 2 ? 1 : 128; // on half pixels many centres lie on edges
+    ivec2 a(random(-reach, reach) / grid * grid, random(-reach, reach) / grid * grid);
+    ivec2 b(random(-reach, reach) / grid * grid, random(-reach, reach) / grid * grid);
+    ivec2 c(random(-reach, reach) / grid * grid, random(-reach, reach) / grid * grid);
+    a += ivec2(4096, 4096), b += ivec2(4096, 4096), c += ivec2(4096, 4096);
+    if (!orient(a, b, c)) continue;
+    const ScreenTriangle t = makeTriangle(a, b, c, 0.25f, 0.5f, 0.75f, viewport);
+    for (int y = 0; y < viewport.y; ++y)
+      for (int x = 0; x < viewport.x; ++x) {
+        const bool inBounds = x >= t.bounds.x && y >= t.bounds.y && x < t.bounds.z && y < t.bounds.w;
+        const bool expected = ownsPoint(a, b, c, ivec2(x * 256 + 128, y * 256 + 128));
+        ASSERT_EQ(coversWide(t, ivec2(x, y)), expected) << n << ": " << x << ", " << y;
+        ASSERT_TRUE(inBounds || !expected) << n;
+        covered += expected;
+      }
+  }
+  EXPECT_GT(covered, 100000);
+}
+
+TEST(Raster, CompactAndBlockFormsEqualTheExactOne) {
+  Random random(2);
+  const ivec2 viewport(8192, 8192);
+  for (int n = 0; n < 20000; ++n) {
+    const bool compact = n % 2 == 0;
+    const int reach = compact ? 8192 : 3 * 8192 * 256;
+    const ivec2 centre(random(0, 8192 * 256), random(0, 8192 * 256));
+    ivec2 a = centre + ivec2(random(-reach, reach), random(-reach, reach));
+    ivec2 b = centre + ivec2(random(-reach, reach), random(-reach, reach));
+    ivec2 c = centre + ivec2(random(-reach, reach), random(-reach, reach));
+    if (!orient(a, b, c)) continue;
+    const ScreenTriangle t = makeTriangle(a, b, c, 0.1f, 0.9f, 0.3f, viewport);
+    if (isEmpty(t)) continue;
+    const ivec2 corner(random(t.bounds.x, t.bounds.z - 1), random(t.bounds.y, t.bounds.w - 1));
+    const ivec2 s0 = edgeSlope(b, c), s1 = edgeSlope(c, a), s2 = edgeSlope(a, b);
+    const int e0 = edgeBlock(b, s0, corner), e1 = edgeBlock(c, s1, corner), e2 = edgeBlock(a, s2, corner);
+    bool any = false;
+    for (int j = 0; j < 8; ++j)
+      for (int i = 0; i < 8; ++i) {
+        const ivec2 pixel = corner + ivec2(i, j);
+        const bool expected = coversWide(t, pixel);
+        const bool block =
+            e0 + s0.x * i + s0.y * j >= 0 && e1 + s1.x * i + s1.y * j >= 0 && e2 + s2.x * i + s2.y * j >= 0;
+        ASSERT_EQ(block, expected);
+        any |= expected;
+        if (!isCompact(t) || pixel.x >= t.bounds.z || pixel.y >= t.bounds.w) continue;
+        float z = -1;
+        ASSERT_EQ(coversCompact(t, pixel, z), expected);
+        if (expected) {
+          ASSERT_EQ(floatBitsToUint(z), floatBitsToUint(depthWide(t, pixel)));
+        }
+      }
+    if (blockOutside(e0, s0, 8) || blockOutside(e1, s1, 8) || blockOutside(e2, s2, 8)) {
+      ASSERT_FALSE(any);
+    }
+  }
+}
+
+TEST(Raster, DepthIsTheMixOfTheCornersDepths) {
+  Random random(3);
+  const ivec2 viewport(2048, 2048);
+  double worst = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const int reach = n % 4 == 0 ? 300000 : 3000;
+    const ivec2 centre(random(0, 2048 * 256), random(0, 2048 * 256));
+    ivec2 a = centre + ivec2(random(-reach, reach), random(-reach, reach));
+    ivec2 b = centre + ivec2(random(-reach, reach), random(-reach, reach));
+    ivec2 c = centre + ivec2(random(-reach, reach), random(-reach, reach));
+    if (!orient(a, b, c)) continue;
+    const float z[3] = {float(random(0, 1000)) / 1000, float(random(0, 1000)) / 1000, float(random(0, 1000)) / 1000};
+    const ScreenTriangle t = makeTriangle(a, b, c, z[0], z[1], z[2], viewport);
+    for (int k = 0; k < 50 && !isEmpty(t); ++k) {
+      const ivec2 pixel(random(t.bounds.x, t.bounds.z - 1), random(t.bounds.y, t.bounds.w - 1));
+      if (!coversWide(t, pixel)) continue;
+      const ivec2 p(pixel.x * 256 + 128, pixel.y * 256 + 128);
+      const double total = double(area(a, b, c));
+      const double exact =
+          (double(area(b, c, p)) * z[0] + double(area(c, a, p)) * z[1] + double(area(a, b, p)) * z[2]) / total;
+      worst = std::max(worst, std::abs(exact - double(depthWide(t, pixel))));
+    }
+  }
+  EXPECT_LT(worst, 4e-7);
+}
+
+TEST(Raster, DepthKeysAreOrderedNearestFirst) {
+  const float depths[] = {0.0f, 1e-30f, 0.25f, 0.5f, 0.999999f, 1.0f};
+  for (size_t i = 1; i < std::size(depths); ++i) {
+    EXPECT_LT(depthKey(depths[i - 1], false), depthKey(depths[i], false));
+    EXPECT_GT(depthKey(depths[i - 1], true), depthKey(depths[i], true));
+  }
+}
+
+// A star of triangles round a point on the grid covers each pixel centre of its polygon exactly once, wherever the
+// spokes run; half the cases have spokes that go exactly through centres.
+TEST(Raster, SharedEdgesAreHitExactlyOnce) {
+  Random random(4);
+  const ivec2 viewport(48, 48);
+  for (int n = 0; n < 400; ++n) {
+    const int grid = n % 2 ? 1 : 128;
+    const ivec2 hub(random(5000, 7000) / grid * grid, random(5000, 7000) / grid * grid);
+    std::vector<ivec2> rim;
+    const int spokes = random(3, 12);
+    for (int i = 0; i < spokes; ++i) { // clockwise with y down
+      const double angle = 2 * 3.14159265 * i / spokes + 0.01 * n;
+      const double radius = random(1000, 5000);
+      rim.push_back(hub +
+                    ivec2(int(radius * std::cos(angle)) / grid * grid, int(radius * std::sin(angle)) / grid * grid));
+    }
+    std::vector<int> hits(48 * 48, 0);
+    bool proper = true;
+    for (int i = 0; i < spokes; ++i) {
+      const ivec2 a = rim[static_cast<size_t>(i)], b = rim[static_cast<size_t>((i + 1) % spokes)];
+      if (area(hub, a, b) <= 0) proper = false;
+      if (!proper) break;
+      const ScreenTriangle t = makeTriangle(hub, a, b, 0.5f, 0.5f, 0.5f, viewport);
+      for (int y = t.bounds.y; y < t.bounds.w; ++y)
+        for (int x = t.bounds.x; x < t.bounds.z; ++x)
+          hits[static_cast<size_t>(y * 48 + x)] += coversWide(t, ivec2(x, y));
+    }
+    if (!proper) continue;
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 48; ++x) {
+        // Winding number of the rim with half-open crossings, which is what the top-left rule amounts to.
+        const ivec2 p(x * 256 + 128, y * 256 + 128);
+        int winding = 0;
+        bool onRim = false;
+        for (int i = 0; i < spokes; ++i) {
+          const ivec2 a = rim[static_cast<size_t>(i)], b = rim[static_cast<size_t>((i + 1) % spokes)];
+          const std::int64_t side = area(a, b, p);
+          onRim |= side == 0;
+          if (a.y <= p.y && b.y > p.y && side > 0) ++winding;
+          if (a.y > p.y && b.y <= p.y && side < 0) --winding;
+        }
+        if (!onRim) {
+          ASSERT_EQ(hits[static_cast<size_t>(y * 48 + x)], winding) << n << ": " << x << ", " << y;
+        } else {
+          ASSERT_LE(hits[static_cast<size_t>(y * 48 + x)], 1);
+        }
+      }
+  }
+}
+
+} // namespace
+} // namespace gpgp::shader

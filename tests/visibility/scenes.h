@@ -1,0 +1,44 @@
+// Scenes for the visibility tests: meshes, draws and a camera, as an engine's buffers would hold them.
+#pragma once
+#include "visibility/twin/twin.h"
+
+#include <string>
+#include <vector>
+
+namespace gpgp::test {
+
+struct Scene {
+  std::vector<float> positions; ///< strideWords each, 3 used
+  std::vector<uint32_t> indices;
+  std::vector<uint32_t> shortIndices; ///< the same in 16 bits, two a word, where useShort is set
+  bool useShort = false;
+  std::vector<shader::Mesh> meshes;
+  std::vector<shader::Draw> draws;
+  std::vector<uint32_t> positionWords; ///< made by input()
+  shader::Params params{};
+
+  uint32_t addVertex(float x, float y, float z);
+  /// A mesh of all indices from firstIndex on.
+  uint32_t addMesh(uint32_t firstIndex, uint32_t vertexOffset = 0);
+  /// A draw with the next free triangle numbers, or the ones given.
+  shader::Draw& addDraw(uint32_t mesh, const glm::mat4& transform = glm::mat4(1.0f), uint32_t flags = 0,
+                        uint32_t firstTriangle = UINT32_MAX);
+  void setCamera(const glm::mat4& viewProjection, uint32_t width, uint32_t height, bool reversed = false);
+  /// The scene as the twin reads it; valid until the scene changes.
+  visibility::TwinInput input();
+};
+
+/// Right-handed, +Y up to Vulkan's clip space; field of view in radians.
+glm::mat4 perspective(float fieldOfView, float aspect, float nearPlane, float farPlane, bool reversed = false);
+glm::mat4 lookAt(glm::vec3 eye, glm::vec3 target);
+
+/// Triangles anywhere, of all sizes, some behind the camera; one draw, two-sided or not.
+Scene randomSoup(uint32_t seed, uint32_t triangles, uint32_t width, uint32_t height, bool twoSided, bool reversed);
+/// A bumpy sheet of n x n cells in the z = 0 plane, -1 to 1, with vertices moved at random inside the sheet's plane.
+Scene sheet(uint32_t seed, uint32_t n, float jitter);
+/// Columns of boxes and thin wires on a ground that goes through the near plane.
+Scene colonnade(uint32_t width, uint32_t height);
+/// bunny.obj of the fetched set `models`, on the screen as a whole; throws std::runtime_error naming the set.
+Scene bunny(uint32_t width, uint32_t height);
+
+} // namespace gpgp::test
