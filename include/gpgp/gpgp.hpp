@@ -1,0 +1,347 @@
+/* gpgp.hpp: the C API as C++17 types. Header-only, thin, no power beyond the C API.
+ *
+ * Handles are move-only and destroy what they hold; nothing throws; what can fail returns a GpgpResult or a Result<T>.
+ * Each member calls the C function that its comment or name says: threading, lifetimes, render-pass rules and
+ * command-buffer state are those of the C headers. Nothing is allocated here.
+ *
+ *   auto info = gpgp::init<GpgpSpawnerCreateInfo>();      // sType set, all else zero
+ *   auto spawner = gpgp::Spawner::create(context, info);  // Result<Spawner>
+ *   if (!spawner) return spawner.code();
+ *   spawner->prewarm();
+ *
+ * Destroy order: a Context destroys all that was made from it, so let it outlive the other handles: declare it first.
+ */
+#ifndef GPGP_HPP
+#define GPGP_HPP
+
+#include <gpgp/gpgp.h>
+
+#include <utility>
+
+namespace gpgp {
+
+/// A value, or the result code that says why there is none: an error, or a status such as GPGP_NOT_READY.
+template <class T> class [[nodiscard]] Result {
+public:
+  explicit Result(GpgpResult code, T value = T()) noexcept : code_(code), value_(std::move(value)) {}
+  /// Whether there is a value.
+  explicit operator bool() const noexcept { return code_ == GPGP_SUCCESS; }
+  GpgpResult code() const noexcept { return code_; }
+  /// The code's name, static.
+  const char* name() const noexcept { return gpgpResultString(code_); }
+  /// Empty (a null handle, a zeroed struct) where there is no value.
+  T& operator*() & noexcept { return value_; }
+  const T& operator*() const& noexcept { return value_; }
+  T&& operator*() && noexcept { return std::move(value_); }
+  T* operator->() noexcept { return &value_; }
+  const T* operator->() const noexcept { return &value_; }
+
+private:
+  GpgpResult code_;
+  T value_;
+};
+
+// ---------------------------------------------------------------- structs
+
+/// The sType of a descriptor struct. Not defined for types that have none.
+template <class T> struct StructureType;
+#define GPGP_STRUCTURE_OF(Type, enumerator)                                                                            \
+  template <> struct StructureType<Type> { static constexpr GpgpStructureType value = enumerator; }
+GPGP_STRUCTURE_OF(GpgpContextCreateInfo, GPGP_STRUCTURE_CONTEXT_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpRequirementsInfo, GPGP_STRUCTURE_REQUIREMENTS_INFO);
+GPGP_STRUCTURE_OF(GpgpRequirements, GPGP_STRUCTURE_REQUIREMENTS);
+GPGP_STRUCTURE_OF(GpgpPrewarmInfo, GPGP_STRUCTURE_PREWARM_INFO);
+GPGP_STRUCTURE_OF(GpgpTargetInfo, GPGP_STRUCTURE_TARGET_INFO);
+GPGP_STRUCTURE_OF(GpgpMemoryReport, GPGP_STRUCTURE_MEMORY_REPORT);
+GPGP_STRUCTURE_OF(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE);
+GPGP_STRUCTURE_OF(GpgpGrammarCreateInfo, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO);
+GPGP_STRUCTURE_OF(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT);
+GPGP_STRUCTURE_OF(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE);
+GPGP_STRUCTURE_OF(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO);
+GPGP_STRUCTURE_OF(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO);
+GPGP_STRUCTURE_OF(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO);
+GPGP_STRUCTURE_OF(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT);
+GPGP_STRUCTURE_OF(GpgpCanvasViewCreateInfo, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpGeometrySetCreateInfo, GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO);
+GPGP_STRUCTURE_OF(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT);
+GPGP_STRUCTURE_OF(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO);
+#undef GPGP_STRUCTURE_OF
+
+/// A descriptor struct as its _INIT macro makes it.
+template <class T> T init() noexcept {
+  T value = T();
+  value.sType = StructureType<T>::value;
+  return value;
+}
+
+// ---------------------------------------------------------------- handles
+
+namespace detail {
+inline void destroy(GpgpContext handle) noexcept { gpgpDestroyContext(handle); }
+inline void destroy(GpgpAsset handle) noexcept { gpgpDestroyAsset(handle); }
+inline void destroy(GpgpWorker handle) noexcept { gpgpDestroyWorker(handle); }
+inline void destroy(GpgpView handle) noexcept { gpgpDestroyView(handle); }
+} // namespace detail
+
+/// Owns one C handle. Converts to it, so that it can be put in the C structs.
+template <class Raw> class Handle {
+public:
+  Handle() noexcept = default;
+  explicit Handle(Raw raw) noexcept : raw_(raw) {}
+  Handle(Handle&& other) noexcept : raw_(other.release()) {}
+  Handle& operator=(Handle&& other) noexcept {
+    if (this != &other) reset(other.release());
+    return *this;
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { reset(); }
+
+  Raw get() const noexcept { return raw_; }
+  operator Raw() const noexcept { return raw_; }
+  /// Gives the C handle away; the caller destroys it.
+  [[nodiscard]] Raw release() noexcept { return std::exchange(raw_, Raw()); }
+  /// Destroys what is held and takes another.
+  void reset(Raw raw = Raw()) noexcept {
+    if (raw_) detail::destroy(raw_);
+    raw_ = raw;
+  }
+
+private:
+  Raw raw_ = Raw();
+};
+
+namespace detail {
+template <class T, class Raw, class Info>
+Result<T> create(GpgpResult(GPGP_CALL* function)(GpgpContext, const Info*, Raw*), GpgpContext context,
+                 const Info& info) noexcept {
+  Raw raw = Raw();
+  const GpgpResult code = function(context, &info, &raw);
+  return Result<T>(code, T(raw));
+}
+template <class Report>
+Result<Report> report(GpgpResult(GPGP_CALL* function)(GpgpWorker, Report*), GpgpWorker worker) noexcept {
+  Report value = init<Report>();
+  const GpgpResult code = function(worker, &value);
+  return Result<Report>(code, value);
+}
+} // namespace detail
+
+/// gpgpCreateContext and what takes a context.
+class Context : public Handle<GpgpContext> {
+public:
+  using Handle::Handle;
+  static Result<Context> create(const GpgpContextCreateInfo& info) noexcept {
+    GpgpContext raw = nullptr;
+    const GpgpResult code = gpgpCreateContext(&info, &raw);
+    return Result<Context>(code, Context(raw));
+  }
+  [[nodiscard]] GpgpResult advance(const GpgpFrame& frame) noexcept { return gpgpAdvance(get(), &frame); }
+  void notifyDeviceLost() noexcept { gpgpNotifyDeviceLost(get()); }
+  /// gpgpRecordUpload; the value is the bytes still pending.
+  Result<VkDeviceSize> recordUpload(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
+                                    VkDeviceSize byteBudget = 0) noexcept {
+    VkDeviceSize pending = 0;
+    const GpgpResult code = gpgpRecordUpload(get(), commandBuffer, &frame, byteBudget, &pending);
+    return Result<VkDeviceSize>(code, pending);
+  }
+  [[nodiscard]] GpgpResult pipelineCacheData(size_t& size, void* data) const noexcept {
+    return gpgpGetPipelineCacheData(get(), &size, data);
+  }
+  Result<GpgpMemoryReport> memoryReport() const noexcept {
+    GpgpMemoryReport value = init<GpgpMemoryReport>();
+    const GpgpResult code = gpgpGetMemoryReport(get(), &value);
+    return Result<GpgpMemoryReport>(code, value);
+  }
+};
+
+/// What all assets have in common.
+class Asset : public Handle<GpgpAsset> {
+public:
+  using Handle::Handle;
+  Result<bool> resident() const noexcept {
+    VkBool32 value = VK_FALSE;
+    const GpgpResult code = gpgpGetResidency(get(), &value);
+    return Result<bool>(code, value != VK_FALSE);
+  }
+};
+
+/// Scratch that one record of a worker needs.
+struct ScratchSize {
+  VkDeviceSize size = 0, alignment = 0;
+  VkBufferUsageFlags usage = 0;
+};
+
+/// What all workers have in common.
+class Worker : public Handle<GpgpWorker> {
+public:
+  using Handle::Handle;
+  /// For workers that do not draw.
+  [[nodiscard]] GpgpResult prewarm() noexcept { return gpgpPrewarm(get(), nullptr); }
+  [[nodiscard]] GpgpResult prewarm(const GpgpPrewarmInfo& info) noexcept { return gpgpPrewarm(get(), &info); }
+  Result<ScratchSize> scratchSize() const noexcept {
+    ScratchSize value;
+    const GpgpResult code = gpgpGetScratchSize(get(), &value.size, &value.alignment, &value.usage);
+    return Result<ScratchSize>(code, value);
+  }
+  /// count in: capacity of names, out: passes. names nullptr asks for the count.
+  [[nodiscard]] GpgpResult passes(uint32_t& count, const char** names) const noexcept {
+    return gpgpGetPasses(get(), &count, names);
+  }
+};
+
+class View : public Handle<GpgpView> {
+public:
+  using Handle::Handle;
+};
+
+// ---------------------------------------------------------------- spawn
+
+class Grammar : public Asset {
+public:
+  using Asset::Asset;
+  static Result<Grammar> create(GpgpContext context, const GpgpGrammarCreateInfo& info) noexcept {
+    return detail::create<Grammar>(gpgpCreateGrammar, context, info);
+  }
+  /// count in: capacity, out: all. terminals nullptr asks for the count.
+  [[nodiscard]] GpgpResult terminals(uint32_t& count, GpgpGrammarTerminal* terminals) const noexcept {
+    return gpgpGetGrammarTerminals(get(), &count, terminals);
+  }
+};
+
+class Spawner : public Worker {
+public:
+  using Worker::Worker;
+  static Result<Spawner> create(GpgpContext context, const GpgpSpawnerCreateInfo& info) noexcept {
+    return detail::create<Spawner>(gpgpCreateSpawner, context, info);
+  }
+  [[nodiscard]] GpgpResult recordPrepare(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
+                                         const GpgpSpawnInfo& info) noexcept {
+    return gpgpRecordPrepareSpawn(get(), commandBuffer, &frame, &info);
+  }
+  /// The oldest report not yet taken; GPGP_NOT_READY: none.
+  Result<GpgpSpawnReport> report() noexcept { return detail::report(gpgpGetSpawnReport, get()); }
+};
+
+// ---------------------------------------------------------------- vector
+
+class Drawing : public Asset {
+public:
+  using Asset::Asset;
+  static Result<Drawing> create(GpgpContext context, const GpgpDrawingCreateInfo& info) noexcept {
+    return detail::create<Drawing>(gpgpCreateDrawing, context, info);
+  }
+  Result<GpgpDrawingInfo> info() const noexcept {
+    GpgpDrawingInfo value = init<GpgpDrawingInfo>();
+    const GpgpResult code = gpgpGetDrawingInfo(get(), &value);
+    return Result<GpgpDrawingInfo>(code, value);
+  }
+};
+
+class CanvasView : public View {
+public:
+  using View::View;
+  static Result<CanvasView> create(GpgpContext context, const GpgpCanvasViewCreateInfo& info) noexcept {
+    return detail::create<CanvasView>(gpgpCreateCanvasView, context, info);
+  }
+};
+
+class Canvas : public Worker {
+public:
+  using Worker::Worker;
+  static Result<Canvas> create(GpgpContext context, const GpgpCanvasCreateInfo& info) noexcept {
+    return detail::create<Canvas>(gpgpCreateCanvas, context, info);
+  }
+  [[nodiscard]] GpgpResult recordPrepare(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
+                                         const GpgpCanvasInfo& info) noexcept {
+    return gpgpRecordPrepareCanvas(get(), commandBuffer, &frame, &info);
+  }
+  [[nodiscard]] GpgpResult recordDraw(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
+                                      const GpgpCanvasDrawInfo& info) noexcept {
+    return gpgpRecordDrawCanvas(get(), commandBuffer, &frame, &info);
+  }
+  /// The oldest report not yet taken; GPGP_NOT_READY: none.
+  Result<GpgpCanvasReport> report() noexcept { return detail::report(gpgpGetCanvasReport, get()); }
+};
+
+// ---------------------------------------------------------------- visibility
+
+class GeometrySet : public Asset {
+public:
+  using Asset::Asset;
+  static Result<GeometrySet> create(GpgpContext context, const GpgpGeometrySetCreateInfo& info) noexcept {
+    return detail::create<GeometrySet>(gpgpCreateGeometrySet, context, info);
+  }
+};
+
+class CameraView : public View {
+public:
+  using View::View;
+  static Result<CameraView> create(GpgpContext context, const GpgpCameraViewCreateInfo& info) noexcept {
+    return detail::create<CameraView>(gpgpCreateCameraView, context, info);
+  }
+};
+
+class Sampler : public Worker {
+public:
+  using Worker::Worker;
+  static Result<Sampler> create(GpgpContext context, const GpgpSamplerCreateInfo& info) noexcept {
+    return detail::create<Sampler>(gpgpCreateSampler, context, info);
+  }
+  [[nodiscard]] GpgpResult recordPrepare(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
+                                         const GpgpSampleInfo& info) noexcept {
+    return gpgpRecordPrepareVisibility(get(), commandBuffer, &frame, &info);
+  }
+  /// The oldest report not yet taken; GPGP_NOT_READY: none.
+  Result<GpgpSampleReport> report() noexcept { return detail::report(gpgpGetSampleReport, get()); }
+};
+
+// ---------------------------------------------------------------- libgpgp_compiler
+
+/// Bytes from a compiler.
+class Blob {
+public:
+  Blob() noexcept = default;
+  explicit Blob(GpgpBlob blob) noexcept : blob_(blob) {}
+  Blob(Blob&& other) noexcept : blob_(std::exchange(other.blob_, GpgpBlob())) {}
+  Blob& operator=(Blob&& other) noexcept {
+    if (this != &other) {
+      reset();
+      blob_ = std::exchange(other.blob_, GpgpBlob());
+    }
+    return *this;
+  }
+  Blob(const Blob&) = delete;
+  Blob& operator=(const Blob&) = delete;
+  ~Blob() { reset(); }
+  const void* data() const noexcept { return blob_.data; }
+  size_t size() const noexcept { return blob_.size; }
+  void reset() noexcept {
+    if (blob_.data) gpgpFreeBlob(&blob_);
+  }
+
+private:
+  GpgpBlob blob_ = GpgpBlob();
+};
+
+inline Result<Blob> compileGrammar(const GpgpGrammarSource& source) noexcept {
+  GpgpBlob blob = GpgpBlob();
+  const GpgpResult code = gpgpCompileGrammar(&source, &blob);
+  return Result<Blob>(code, Blob(blob));
+}
+
+inline Result<Blob> compileSvg(const GpgpSvgSource& source) noexcept {
+  GpgpBlob blob = GpgpBlob();
+  const GpgpResult code = gpgpCompileSvg(&source, &blob);
+  return Result<Blob>(code, Blob(blob));
+}
+
+} // namespace gpgp
+
+#endif
