@@ -17,7 +17,9 @@ if ! tests/data/fetch.sh --only models svg; then
 fi
 
 say "3/4 build (build/release)"
-configure release -DGPGP_BUILD_TESTS=$(isInstalled libgtest-dev && echo ON || echo OFF)
+tests=OFF
+if isInstalled libgtest-dev; then tests=ON; fi
+configure release -DGPGP_BUILD_TESTS=$tests
 cmake --build --preset demo --parallel "$(jobCount)"
 
 say "4/4 run"

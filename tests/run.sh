@@ -49,7 +49,7 @@ buildPreset() {
 # GPU tests share one software device, so one test at a time per two processors is the fastest.
 testPreset() { ctest --preset "$1" --parallel "$((($(jobCount) + 1) / 2))"; }
 buildAndTest() {
-  step "build $1 (build/$1)" buildPreset "$1" && step "tests, $1" testPreset "$1" || true
+  if step "build $1 (build/$1)" buildPreset "$1"; then step "tests, $1" testPreset "$1" || true; fi
 }
 
 step "Debian packages (samples/packages.txt, tests/packages.txt)" installMissing samples/packages.txt tests/packages.txt

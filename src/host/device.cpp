@@ -150,9 +150,9 @@ void HeadlessDevice::createDevice(const DeviceOptions& options) {
   const std::vector<DeviceSummary> summaries = summarise(vki_, handles);
   const char* fromEnvironment = std::getenv("GPGP_DEVICE");
   const std::string wanted = !options.device.empty() ? options.device : fromEnvironment ? fromEnvironment : "";
-  const uint32_t index = selectDevice(summaries, wanted);
-  physicalDevice_ = handles[index];
-  name_ = summaries[index].name;
+  index_ = selectDevice(summaries, wanted);
+  physicalDevice_ = handles[index_];
+  name_ = summaries[index_].name;
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
   vki_.getPhysicalDeviceProperties2(physicalDevice_, &properties);
   properties_ = properties.properties;

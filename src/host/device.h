@@ -80,6 +80,8 @@ public:
 
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const std::string& name() const { return name_; }
+  /// In the order of listDevices.
+  uint32_t index() const { return index_; }
   bool isSoftware() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// What was enabled, as gpgpCreateContext wants to be told.
   GpgpFeatures features() const { return features_; }
@@ -130,6 +132,7 @@ private:
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memoryProperties_{};
   std::string name_;
+  uint32_t index_ = 0;
   GpgpFeatures features_ = 0;
   bool debugUtils_ = false;
   uint32_t apiVersion_ = VK_API_VERSION_1_2;

@@ -18,7 +18,7 @@ Picture readPng(const std::filesystem::path& file);
 
 /// From premultiplied linear floats (4 a pixel), as a canvas gives them, to straight sRGB bytes.
 Picture fromLinearPremultiplied(uint32_t width, uint32_t height, std::span<const float> pixels);
-/// The same from 8-bit premultiplied values that are already sRGB-encoded.
+/// The same from bytes that hold sRGB-encoded premultiplied colour, as a canvas writes with encodeSrgb.
 Picture fromPremultiplied(uint32_t width, uint32_t height, std::span<const uint8_t> pixels);
 
 float linearFromSrgb(float value); ///< 0 to 1, IEC 61966-2-1

@@ -1,0 +1,59 @@
+// What every subcommand of `gpgp` shares: options, the exit code, and the one JSON object.
+//
+// Standard output carries results only: text for people, or with --json exactly one object. Everything else (progress,
+// warnings, errors) goes to standard error. Exit codes: 0 success, 1 the work failed, 2 the command was used wrongly.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace gpgp::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// The work failed: exit code 1, and the text for the person.
+struct Failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// The command was used wrongly: exit code 2. For what CLI11's own checks cannot know.
+struct Usage : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct CommonOptions {
+  std::string device;
+  bool json = false;
+  bool validate = false;
+};
+
+/// A finished piece of work: the object for --json, and the same for people.
+struct Outcome {
+  Json json;
+  std::string text;
+};
+using Work = std::function<Outcome(const CommonOptions&)>;
+
+/// Adds --device, --json and --validate, and remembers what to do when this subcommand was chosen.
+void addCommonOptions(CLI::App& command, CommonOptions& options);
+
+struct Size {
+  uint32_t width = 0, height = 0;
+};
+/// "1280x720"; throws CLI::ValidationError otherwise. At most 16384 a side.
+Size parseSize(const std::string& text);
+/// "X,Y,Z" of positive numbers.
+std::array<float, 3> parseTriple(const std::string& text);
+/// A callback option that holds a size.
+CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, const std::string& help);
+
+// One file per subcommand. Each adds itself to the app and returns what it does when chosen.
+Work addInfo(CLI::App& app);
+Work addSpawn(CLI::App& app);
+Work addVector(CLI::App& app);
+Work addVisibility(CLI::App& app);
+
+} // namespace gpgp::cli

@@ -1,0 +1,98 @@
+// The `gpgp` command: what the library does, from the command line. One file per subcommand.
+#include "cli/command.h"
+
+#include <gpgp/core.h>
+
+#include <cstdio>
+#include <iostream>
+#include <vector>
+
+namespace {
+
+using namespace gpgp::cli;
+
+constexpr const char* kExamples = R"(
+Examples:
+  gpgp info                                   what this machine offers and gpgp would use
+  gpgp spawn city.pga --axioms 64 --spacing 40 --image city.png
+  gpgp vector tiger.svg --size 800x800 --out tiger.png
+  gpgp visibility engine.glb --size 1280x720 --image seen.png
+  gpgp spawn city.pga --json | jq .terminals  one object on standard output, nothing else there
+
+`gpgp SUBCOMMAND --help` explains each one. Exit codes: 0 success, 1 the work failed, 2 wrong usage.)";
+
+struct Subcommand {
+  CLI::App* app = nullptr;
+  CommonOptions options;
+  Work work;
+};
+
+int run(int argc, char** argv) {
+  CLI::App app("gpgp: grammars, vector graphics and triangle visibility on the GPU", "gpgp");
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "gpgp " + std::to_string(GPGP_VERSION_MAJOR) + "." +
+                                        std::to_string(GPGP_VERSION_MINOR) + "." + std::to_string(GPGP_VERSION_PATCH));
+  std::vector<Subcommand> subcommands;
+  subcommands.reserve(4); // options are bound by address
+  const auto add = [&](Work (*adder)(CLI::App&)) {
+    Subcommand& subcommand = subcommands.emplace_back();
+    subcommand.work = adder(app);
+    subcommand.app = app.get_subcommands([](CLI::App*) { return true; }).back();
+    addCommonOptions(*subcommand.app, subcommand.options);
+  };
+  add(addInfo);
+#ifdef GPGP_CLI_SPAWN
+  add(addSpawn);
+#endif
+#ifdef GPGP_CLI_VECTOR
+  add(addVector);
+#endif
+#ifdef GPGP_CLI_VISIBILITY
+  add(addVisibility);
+#endif
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) { // --help, --version
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error, std::cerr, std::cerr);
+    return 2;
+  }
+  for (const Subcommand& subcommand : subcommands) {
+    if (!subcommand.app->parsed()) continue;
+    const std::string name = subcommand.app->get_name();
+    try {
+      const Outcome outcome = subcommand.work(subcommand.options);
+      Json object = {{"command", name}, {"ok", true}};
+      object.update(outcome.json);
+      const std::string text = subcommand.options.json ? object.dump(2) + "\n" : outcome.text;
+      if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        throw Failure("cannot write to standard output");
+      return 0;
+    } catch (const Usage& error) {
+      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), error.what());
+      return 2;
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), error.what());
+      if (subcommand.options.json) {
+        const Json object = {{"command", name}, {"ok", false}, {"error", error.what()}};
+        std::printf("%s\n", object.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+      }
+      return 1;
+    }
+  }
+  return 2;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "gpgp: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,22 @@
+// Meshes from .glb, .gltf and .obj files: positions and triangles, one draw per use of a mesh.
+#pragma once
+#include <gpgp/visibility.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace gpgp::cli {
+
+struct Model {
+  std::vector<float> positions; ///< x, y, z
+  std::vector<uint32_t> indices;
+  std::vector<GpgpMesh> meshes;
+  std::vector<GpgpVisibilityDraw> draws; ///< triangles numbered one draw after the other
+  uint32_t triangleCount = 0;
+  uint32_t leftOut = 0; ///< glTF primitives that are no triangles
+};
+
+/// Throws std::runtime_error with the file's name, and the line for .obj.
+Model loadModel(const std::filesystem::path& file);
+
+} // namespace gpgp::cli

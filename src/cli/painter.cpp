@@ -1,0 +1,102 @@
+// A small software rasteriser: edge functions over each triangle's box, a depth buffer at twice the resolution.
+#include "cli/painter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace gpgp::cli {
+
+glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, uint32_t height) {
+  const float yawRadians = glm::radians(yaw), pitchRadians = glm::radians(pitch);
+  const glm::vec3 back(std::sin(yawRadians) * std::cos(pitchRadians), std::sin(pitchRadians),
+                       std::cos(yawRadians) * std::cos(pitchRadians)); // from the middle to the eye
+  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
+  const glm::vec3 up = glm::cross(back, right);
+  constexpr float kHalfFieldOfView = 0.35f; // radians, of the smaller side
+  const float radius = std::max(bounds.radius(), 1e-6f);
+  const float distance = radius / std::sin(kHalfFieldOfView);
+  const glm::vec3 eye = bounds.centre() + back * distance;
+  const float near = distance - radius * 1.01f, far = distance + radius * 1.01f;
+  const float aspect = static_cast<float>(width) / static_cast<float>(height);
+  const float scale = 1.0f / std::tan(kHalfFieldOfView);
+  const glm::mat4 view(glm::vec4(right.x, up.x, back.x, 0), glm::vec4(right.y, up.y, back.y, 0),
+                       glm::vec4(right.z, up.z, back.z, 0),
+                       glm::vec4(-glm::dot(right, eye), -glm::dot(up, eye), -glm::dot(back, eye), 1));
+  glm::mat4 projection(0.0f);
+  projection[0][0] = aspect >= 1.0f ? scale / aspect : scale;
+  projection[1][1] = aspect >= 1.0f ? -scale : -scale * aspect;
+  projection[2][2] = far / (near - far);
+  projection[2][3] = -1.0f;
+  projection[3][2] = near * far / (near - far);
+  return projection * view;
+}
+
+Painter::Painter(uint32_t width, uint32_t height)
+    : width_(width), height_(height), depth_(size_t{width} * height * 4, 1.0f),
+      colour_(size_t{width} * height * 4, glm::vec3(0.97f)) {}
+
+void Painter::triangle(const glm::mat4& viewProjection, std::span<const glm::vec3, 3> corners,
+                       const glm::vec3& colour) {
+  const float width = static_cast<float>(width_ * 2), height = static_cast<float>(height_ * 2);
+  std::array<glm::vec3, 3> p;
+  for (size_t i = 0; i < 3; ++i) {
+    const glm::vec4 clip = viewProjection * glm::vec4(corners[i], 1.0f);
+    if (!(clip.w > 1e-6f)) return;
+    p[i] =
+        glm::vec3((clip.x / clip.w * 0.5f + 0.5f) * width, (clip.y / clip.w * 0.5f + 0.5f) * height, clip.z / clip.w);
+  }
+  const auto edge = [](const glm::vec3& a, const glm::vec3& b, float x, float y) {
+    return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+  };
+  const float area = edge(p[0], p[1], p[2].x, p[2].y);
+  if (!(std::abs(area) > 1e-9f)) return;
+  const glm::vec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const float length = glm::length(cross);
+  const glm::vec3 sun(0.45f, 0.8f, 0.4f);
+  const float light = length > 0 ? 0.45f + 0.55f * std::abs(glm::dot(cross / length, glm::normalize(sun))) : 1.0f;
+  const auto range = [](float a, float b, float c, float limit) {
+    const float low = std::clamp(std::floor(std::min({a, b, c})), 0.0f, limit);
+    const float high = std::clamp(std::ceil(std::max({a, b, c})), 0.0f, limit);
+    return std::pair(static_cast<uint32_t>(low), static_cast<uint32_t>(high));
+  };
+  const auto [left, right] = range(p[0].x, p[1].x, p[2].x, width);
+  const auto [top, bottom] = range(p[0].y, p[1].y, p[2].y, height);
+  for (uint32_t y = top; y < bottom; ++y)
+    for (uint32_t x = left; x < right; ++x) {
+      const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
+      const float a = edge(p[1], p[2], px, py) / area, b = edge(p[2], p[0], px, py) / area, c = 1.0f - a - b;
+      if (a < 0 || b < 0 || c < 0) continue;
+      const float z = a * p[0].z + b * p[1].z + c * p[2].z;
+      const size_t index = size_t{y} * width_ * 2 + x;
+      if (z < 0 || z >= depth_[index]) continue;
+      depth_[index] = z;
+      colour_[index] = colour * light;
+    }
+}
+
+host::Picture Painter::picture() const {
+  host::Picture picture{width_, height_, std::vector<uint8_t>(size_t{width_} * height_ * 4)};
+  for (uint32_t y = 0; y < height_; ++y)
+    for (uint32_t x = 0; x < width_; ++x) {
+      const size_t first = size_t{y} * 2 * width_ * 2 + size_t{x} * 2;
+      const glm::vec3 sum =
+          colour_[first] + colour_[first + 1] + colour_[first + width_ * 2] + colour_[first + width_ * 2 + 1];
+      uint8_t* pixel = &picture.rgba[(size_t{y} * width_ + x) * 4];
+      for (int c = 0; c < 3; ++c)
+        pixel[c] = static_cast<uint8_t>(std::lround(std::clamp(sum[c] * 0.25f, 0.0f, 1.0f) * 255.0f));
+      pixel[3] = 255;
+    }
+  return picture;
+}
+
+glm::vec3 paletteColour(uint32_t n) {
+  constexpr std::array<uint32_t, 10> kColours = {0xb9c4cc, 0x6c9bd2, 0xe0a458, 0x7fb069, 0xd36c6c,
+                                                 0x9b86c2, 0xa98467, 0xe3a3c6, 0x8f8f8f, 0x58a4a4};
+  const uint32_t rgb = kColours[n % kColours.size()];
+  return glm::vec3(static_cast<float>(rgb >> 16 & 255u), static_cast<float>(rgb >> 8 & 255u),
+                   static_cast<float>(rgb & 255u)) /
+         255.0f;
+}
+
+} // namespace gpgp::cli

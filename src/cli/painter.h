@@ -1,0 +1,42 @@
+// Triangles to a picture on the CPU, for --image: depth-buffered, flat-lit, four samples a pixel. It shows results; it
+// is no part of how they are computed.
+#pragma once
+#include "host/picture.h"
+
+#include <glm/glm.hpp>
+
+#include <span>
+
+namespace gpgp::cli {
+
+struct Bounds {
+  glm::vec3 low{1e30f}, high{-1e30f};
+  void add(const glm::vec3& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  glm::vec3 centre() const { return (low + high) * 0.5f; }
+  float radius() const { return glm::length(high - low) * 0.5f; }
+};
+
+/// World to clip (Vulkan's: +Y down, depth 0 to 1), looking at the middle of the bounds from a direction so that all of
+/// it is seen. yaw and pitch in degrees: 0, 0 looks along -Z.
+glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, uint32_t height);
+
+class Painter {
+public:
+  Painter(uint32_t width, uint32_t height);
+  /// Corners in world space, colour as sRGB 0 to 1. Triangles that reach behind the eye are left out.
+  void triangle(const glm::mat4& viewProjection, std::span<const glm::vec3, 3> corners, const glm::vec3& colour);
+  host::Picture picture() const;
+
+private:
+  uint32_t width_, height_; // of the picture; the buffers have twice as many pixels each way
+  std::vector<float> depth_;
+  std::vector<glm::vec3> colour_;
+};
+
+/// A pleasant colour for the n-th of something.
+glm::vec3 paletteColour(uint32_t n);
+
+} // namespace gpgp::cli

@@ -1,0 +1,160 @@
+// A context on a headless device; every subcommand's work is one record, repeated and measured.
+#include "cli/session.h"
+
+#include "cli/progress.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace gpgp::cli {
+namespace {
+
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Destroys the query pool on every way out.
+struct QueryPool {
+  host::HeadlessDevice& device;
+  VkQueryPool pool = VK_NULL_HANDLE;
+  QueryPool(host::HeadlessDevice& d, uint32_t count) : device(d) {
+    VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = count;
+    host::check(d.vk().vkCreateQueryPool(d.device(), &info, nullptr, &pool), "vkCreateQueryPool");
+  }
+  QueryPool(const QueryPool&) = delete;
+  QueryPool& operator=(const QueryPool&) = delete;
+  ~QueryPool() { device.vk().vkDestroyQueryPool(device.device(), pool, nullptr); }
+};
+
+} // namespace
+
+double GpuTimes::median() const { return medianOf(totals); }
+double GpuTimes::least() const { return totals.empty() ? 0.0 : *std::min_element(totals.begin(), totals.end()); }
+
+Json GpuTimes::json() const {
+  Json list = Json::array();
+  for (const auto& [name, time] : passes) list.push_back({{"name", name}, {"milliseconds", time}});
+  return {{"repeats", totals.size()}, {"median", median()}, {"least", least()}, {"passes", list}};
+}
+
+std::string milliseconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f ms", value);
+  return text;
+}
+
+std::string statusName(GpgpResult status) { return gpgpResultString(status); }
+
+void Session::onMessage(void* userData, const GpgpMessage* message) {
+  auto* session = static_cast<Session*>(userData);
+  if (message->severity == GPGP_SEVERITY_ERROR) {
+    session->lastError_ = message->text; // thrown, and so printed, by check
+    return;
+  }
+  std::fprintf(stderr, "gpgp: %s: %s%s%s\n", message->severity == GPGP_SEVERITY_WARNING ? "warning" : "note",
+               message->label, message->label[0] ? ": " : "", message->text);
+}
+
+Session::Session(const CommonOptions& options)
+    : device_(host::DeviceOptions{.device = options.device, .validation = options.validate}), frames_(device_, 2),
+      validate_(options.validate) {
+  GpgpContextCreateInfo info = device_.contextCreateInfo();
+  info.label = "gpgp command";
+  info.messageFn = onMessage;
+  info.messageUserData = this;
+  check(gpgpCreateContext(&info, context_.out()), "gpgpCreateContext");
+}
+
+Session::~Session() { device_.vk().vkDeviceWaitIdle(device_.device()); }
+
+GpgpResult Session::check(GpgpResult result, const char* what) {
+  if (result >= 0) return result;
+  const std::string text = lastError_.empty() ? std::string(what) + ": " + gpgpResultString(result) : lastError_;
+  lastError_.clear();
+  throw Failure(text);
+}
+
+GpgpWorkerCreateInfo Session::workerInfo(const char* label) const {
+  GpgpWorkerCreateInfo info{};
+  info.label = label;
+  info.queueFamily = device_.graphics().family;
+  info.queueFlags = device_.graphics().flags;
+  return info;
+}
+
+void Session::upload() {
+  for (VkDeviceSize pending = 1; pending > 0;) {
+    VkCommandBuffer commands = frames_.begin();
+    check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
+    const VkDeviceSize before = pending;
+    check(gpgpRecordUpload(context_, commands, &frames_.frame(), 0, &pending), "gpgpRecordUpload");
+    frames_.submit();
+    frames_.waitAll();
+    if (pending > 0 && pending == before) throw Failure("the upload makes no progress");
+  }
+}
+
+GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, const Record& record) {
+  uint32_t passCount = 0;
+  check(gpgpGetPasses(worker, &passCount, nullptr), "gpgpGetPasses");
+  std::vector<const char*> names(passCount);
+  check(gpgpGetPasses(worker, &passCount, names.data()), "gpgpGetPasses");
+  const uint32_t queryCount = passCount + 1;
+  const bool timed = device_.properties().limits.timestampComputeAndGraphics == VK_TRUE;
+  const QueryPool queries(device_, queryCount);
+  const double period = static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-6;
+
+  GpuTimes times;
+  std::vector<std::vector<double>> perPass(passCount);
+  Progress progress(label, repeat);
+  for (uint32_t i = 0; i < repeat; ++i) {
+    VkCommandBuffer commands = frames_.begin();
+    check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
+    GpgpRecordInfo base{};
+    base.tag = i;
+    if (timed) {
+      device_.vk().vkCmdResetQueryPool(commands, queries.pool, 0, queryCount);
+      base.timestamps = {queries.pool, 0, queryCount};
+    }
+    host::fullBarrier(device_, commands); // repeats write the same buffers
+    const GpgpResult result = check(record(commands, frames_.frame(), base), label);
+    if (result != GPGP_SUCCESS) throw Failure(std::string(label) + ": " + gpgpResultString(result));
+    frames_.submit();
+    frames_.waitAll();
+    if (timed) {
+      std::vector<uint64_t> stamps(queryCount);
+      host::check(device_.vk().vkGetQueryPoolResults(device_.device(), queries.pool, 0, queryCount,
+                                                     stamps.size() * sizeof(uint64_t), stamps.data(), sizeof(uint64_t),
+                                                     VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+                  "vkGetQueryPoolResults");
+      times.totals.push_back(static_cast<double>(stamps.back() - stamps.front()) * period);
+      for (uint32_t p = 0; p < passCount; ++p)
+        perPass[p].push_back(static_cast<double>(stamps[p + 1] - stamps[p]) * period);
+    }
+    progress.advance();
+  }
+  for (uint32_t p = 0; p < passCount; ++p) times.passes.emplace_back(names[p], medianOf(perPass[p]));
+  return times;
+}
+
+void Session::harvest() {
+  frames_.begin();
+  check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
+  frames_.submit();
+  frames_.waitAll();
+}
+
+void Session::checkValidation() {
+  if (!validate_) return;
+  const std::vector<std::string> messages = device_.takeValidationMessages();
+  for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
+  if (!messages.empty())
+    throw Failure("the validation layer had " + std::to_string(messages.size()) + " messages (above)");
+}
+
+} // namespace gpgp::cli

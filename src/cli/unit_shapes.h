@@ -1,0 +1,15 @@
+// Triangles of the unit shapes that spawn's terminals are: each spans [-0.5, 0.5], planar ones lie in z = 0.
+#pragma once
+#include <gpgp/spawn.h>
+
+#include <glm/glm.hpp>
+
+#include <vector>
+
+namespace gpgp::cli {
+
+/// Three corners per triangle, counter-clockwise from outside. Shapes with corners of their own (the dynamic ones) come
+/// as their box.
+std::vector<glm::vec3> unitShape(GpgpShape shape);
+
+} // namespace gpgp::cli

@@ -1,0 +1,201 @@
+// `gpgp vector`: converts an SVG to a drawing, rasterises it on the GPU and writes a picture.
+#include "cli/session.h"
+#include "host/files.h"
+#include "host/picture.h"
+
+#include <gpgp/vector.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace gpgp::cli {
+namespace {
+
+struct VectorOptions {
+  std::string file, out, background;
+  Size size;
+  uint32_t samples = 16, repeat = 1, maxTileEntries = 0;
+};
+
+struct Messages {
+  std::string error;
+  uint32_t warnings = 0;
+};
+
+void GPGP_CALL onSvgMessage(void* userData, const GpgpMessage* message) {
+  auto* messages = static_cast<Messages*>(userData);
+  if (message->severity == GPGP_SEVERITY_ERROR) {
+    if (messages->error.empty()) messages->error = message->text;
+    return;
+  }
+  if (message->severity == GPGP_SEVERITY_WARNING) ++messages->warnings;
+  std::fprintf(stderr, "%s: %s\n", message->label, message->text);
+}
+
+/// "rrggbb" as linear premultiplied colour; empty: nothing behind the drawing.
+void parseBackground(const std::string& text, float (&colour)[4]) {
+  if (text.empty()) return;
+  const std::string digits = text[0] == '#' ? text.substr(1) : text;
+  char* end = nullptr;
+  const unsigned long rgb = std::strtoul(digits.c_str(), &end, 16);
+  if (digits.size() != 6 || *end != 0) throw Usage("--background takes six hexadecimal digits, for example ffffff");
+  for (unsigned i = 0; i < 3; ++i)
+    colour[i] = host::linearFromSrgb(static_cast<float>(rgb >> (16 - 8 * i) & 255ul) / 255.0f);
+  colour[3] = 1.0f;
+}
+
+/// Fits the drawing's page into the picture, in the middle, undistorted.
+void fit(const GpgpDrawingInfo& drawing, const Size& size, float (&transform)[6]) {
+  const float width = drawing.viewport[2], height = drawing.viewport[3];
+  const float scale = std::min(static_cast<float>(size.width) / width, static_cast<float>(size.height) / height);
+  transform[0] = transform[3] = scale;
+  transform[1] = transform[2] = 0.0f;
+  transform[4] = (static_cast<float>(size.width) - width * scale) * 0.5f - drawing.viewport[0] * scale;
+  transform[5] = (static_cast<float>(size.height) - height * scale) * 0.5f - drawing.viewport[1] * scale;
+}
+
+Outcome vector(const VectorOptions& options, const CommonOptions& common) {
+  float background[4] = {};
+  parseBackground(options.background, background);
+  const std::vector<uint8_t> bytes = host::readFile(options.file);
+  Messages messages;
+  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+  source.name = options.file.c_str();
+  source.data = bytes.data();
+  source.size = bytes.size();
+  source.messageFn = onSvgMessage;
+  source.messageUserData = &messages;
+  const auto begin = std::chrono::steady_clock::now();
+  GpgpBlob blob{};
+  const GpgpResult result = gpgpCompileSvg(&source, &blob);
+  const std::unique_ptr<GpgpBlob, void (*)(GpgpBlob*)> freeBlob(&blob, gpgpFreeBlob);
+  if (result < 0)
+    throw Failure(options.file + ": " + (messages.error.empty() ? gpgpResultString(result) : messages.error));
+  const double compileMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+
+  Session session(common);
+  host::HeadlessDevice& device = session.device();
+  Asset drawing;
+  GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
+  drawingInfo.label = options.file.c_str();
+  drawingInfo.data = blob.data;
+  drawingInfo.size = blob.size;
+  session.check(gpgpCreateDrawing(session.context(), &drawingInfo, drawing.out()), "gpgpCreateDrawing");
+  GpgpDrawingInfo facts = GPGP_DRAWING_INFO_INIT;
+  session.check(gpgpGetDrawingInfo(drawing, &facts), "gpgpGetDrawingInfo");
+  if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(options.file + ": the drawing has no extent");
+  Size size = options.size;
+  if (size.width == 0) {
+    size.width = static_cast<uint32_t>(std::clamp(std::ceil(facts.viewport[2]), 1.0f, 4096.0f));
+    size.height = static_cast<uint32_t>(std::clamp(std::ceil(facts.viewport[3]), 1.0f, 4096.0f));
+  }
+
+  Worker canvas;
+  GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
+  canvasInfo.base = session.workerInfo("canvas");
+  canvasInfo.maxWidth = size.width;
+  canvasInfo.maxHeight = size.height;
+  canvasInfo.maxPatches = std::max(facts.patches, 1024u);
+  canvasInfo.maxTileEntries = options.maxTileEntries;
+  session.check(gpgpCreateCanvas(session.context(), &canvasInfo, canvas.out()), "gpgpCreateCanvas");
+  session.check(gpgpPrewarm(canvas, nullptr), "gpgpPrewarm");
+  session.upload();
+
+  const host::Image target(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = size.width, .height = size.height},
+                           "picture");
+  GpgpCanvasItem item{};
+  item.drawing = drawing;
+  item.opacity = 1.0f;
+  fit(facts, size, item.transform);
+  const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+  const GpuTimes times = session.run(canvas, "rasterising", options.repeat,
+                                     [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                                       GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+                                       info.base = base;
+                                       info.width = size.width;
+                                       info.height = size.height;
+                                       info.items = &item;
+                                       info.itemCount = 1;
+                                       info.samples = options.samples;
+                                       std::copy(std::begin(background), std::end(background), info.background);
+                                       info.target = target.target({}, after);
+                                       info.encodeSrgb = VK_TRUE;
+                                       return gpgpRecordPrepareCanvas(canvas, commands, &frame, &info);
+                                     });
+  session.harvest();
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  for (uint32_t i = 0; i < options.repeat; ++i)
+    if (session.check(gpgpGetCanvasReport(canvas, &report), "gpgpGetCanvasReport") != GPGP_SUCCESS)
+      throw Failure("a record gave no report");
+  if (!options.out.empty()) {
+    const std::vector<uint8_t> pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
+    host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
+  }
+  session.checkValidation();
+
+  Outcome outcome;
+  std::ostringstream text;
+  text << options.file << ": " << facts.paths << " paths, " << facts.curves << " curves, " << facts.patches
+       << " patches; converted in " << milliseconds(compileMs) << '\n'
+       << size.width << " x " << size.height << " pixels, " << options.samples << " samples each, "
+       << report.tileEntries << " tile entries; GPU " << milliseconds(times.median()) << " (median of "
+       << times.totals.size() << ") on " << device.name() << '\n';
+  if (report.pathsDropped)
+    text << "budget exceeded: " << report.pathsDropped << " paths were left out; --max-tile-entries "
+         << report.tileEntries << " would have held them\n";
+  if (messages.warnings) text << messages.warnings << " elements are not supported (listed on standard error)\n";
+  if (!options.out.empty()) text << "picture: " << options.out << '\n';
+  outcome.text = text.str();
+  outcome.json = {{"file", options.file},
+                  {"device", device.name()},
+                  {"status", statusName(report.base.status)},
+                  {"width", size.width},
+                  {"height", size.height},
+                  {"samples", options.samples},
+                  {"paths", facts.paths},
+                  {"curves", facts.curves},
+                  {"patches", facts.patches},
+                  {"tileEntries", report.tileEntries},
+                  {"tileEntriesGiven", report.tileEntriesGiven},
+                  {"pathsDropped", report.pathsDropped},
+                  {"warnings", messages.warnings},
+                  {"compileMilliseconds", compileMs},
+                  {"gpuMilliseconds", times.json()},
+                  {"image", options.out.empty() ? Json() : Json(options.out)}};
+  return outcome;
+}
+
+} // namespace
+
+Work addVector(CLI::App& app) {
+  auto options = std::make_shared<VectorOptions>();
+  CLI::App* command = app.add_subcommand("vector", "Rasterise an SVG on the GPU");
+  command->add_option("FILE", options->file, "SVG or gzip-compressed SVG (.svgz)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own)");
+  command->add_option("--samples", options->samples, "Samples per pixel")
+      ->check(CLI::IsMember({1u, 4u, 8u, 16u}))
+      ->capture_default_str();
+  command->add_option("--background", options->background, "Colour behind the drawing (default: transparent)")
+      ->type_name("RRGGBB");
+  command->add_option("-o,--out", options->out, "Write the picture")->type_name("FILE.png");
+  command->add_option("--repeat", options->repeat, "Rasterise N times and report the median time")
+      ->check(CLI::Range(1u, 100000u))
+      ->capture_default_str();
+  command->add_option("--max-tile-entries", options->maxTileEntries,
+                      "Budget: patch references over all tiles (0: the library's default)");
+  command->footer(R"(
+Examples:
+  gpgp vector tiger.svg --out tiger.png
+  gpgp vector tiger.svgz --size 2048x2048 --background ffffff --out tiger.png
+  gpgp vector map.svg --samples 4 --repeat 100 --json | jq .gpuMilliseconds.median
+
+Elements that are not supported are named on standard error with their line, and counted.)");
+  return [options](const CommonOptions& common) { return vector(*options, common); };
+}
+
+} // namespace gpgp::cli

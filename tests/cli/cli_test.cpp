@@ -1,0 +1,103 @@
+// The `gpgp` command as a person or a script meets it: exit codes, one JSON object, nothing else on standard output.
+#include "process.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <set>
+
+namespace gpgp::test {
+namespace {
+
+using nlohmann::json;
+
+ProcessResult gpgp(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), GPGP_CLI);
+  return runProcess(arguments);
+}
+
+/// Runs with --json and expects success, one object, and nothing on standard error.
+json gpgpJson(std::vector<std::string> arguments) {
+  arguments.push_back("--json");
+  const ProcessResult result = gpgp(arguments);
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  json object = json::parse(result.out, nullptr, false); // fails where anything stands beside the object
+  EXPECT_TRUE(object.is_object()) << result.out;
+  EXPECT_EQ(object.value("ok", false), true);
+  return object;
+}
+
+std::set<std::string> keys(const json& object) {
+  std::set<std::string> result;
+  for (const auto& [key, value] : object.items()) result.insert(key);
+  return result;
+}
+
+TEST(Cli, InfoSaysWhatThereIs) {
+  const json info = gpgpJson({"info", "--validate"});
+  EXPECT_EQ(keys(info), (std::set<std::string>{"command", "ok", "version", "services", "device", "devices", "usable",
+                                               "missing", "features", "paths", "computeOnlyQueue", "limits"}));
+  EXPECT_EQ(info["command"], "info");
+  EXPECT_TRUE(info["usable"].get<bool>());
+  EXPECT_FALSE(info["devices"].empty());
+  EXPECT_EQ(info["devices"][info["device"]["index"].get<size_t>()], info["device"]);
+  EXPECT_EQ(keys(info["features"]), keys(info["paths"]));
+}
+
+TEST(Cli, InfoForPeople) {
+  const ProcessResult result = gpgp({"info"});
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(result.out.find("This device can run gpgp."), std::string::npos) << result.out;
+}
+
+TEST(Cli, ADeviceCanBeNamed) {
+  const std::string name = gpgpJson({"info"})["device"]["name"];
+  EXPECT_EQ(gpgpJson({"info", "--device", "0"})["device"]["index"], 0);
+  EXPECT_EQ(gpgpJson({"info", "--device", name})["device"]["name"], name);
+}
+
+TEST(Cli, FailedWorkIsOneAndStillOneObject) {
+  const ProcessResult result = gpgp({"info", "--device", "no such device", "--json"});
+  EXPECT_EQ(result.exitCode, 1);
+  const json object = json::parse(result.out, nullptr, false);
+  ASSERT_TRUE(object.is_object()) << result.out;
+  EXPECT_EQ(object["ok"], false);
+  EXPECT_NE(object["error"].get<std::string>().find("no such device"), std::string::npos);
+  EXPECT_NE(result.err.find("no such device"), std::string::npos);
+  const ProcessResult text = gpgp({"info", "--device", "no such device"});
+  EXPECT_EQ(text.exitCode, 1);
+  EXPECT_EQ(text.out, "");
+}
+
+TEST(Cli, WrongUsageIsTwoAndSilentOnStandardOutput) {
+  const std::vector<std::vector<std::string>> wrong = {
+      {}, {"nonsense"}, {"info", "--nonsense"}, {"info", "too", "many"}, {"info", "--device"}};
+  for (const auto& arguments : wrong) {
+    const ProcessResult result = gpgp(arguments);
+    EXPECT_EQ(result.exitCode, 2) << testing::PrintToString(arguments);
+    EXPECT_EQ(result.out, "") << testing::PrintToString(arguments);
+    EXPECT_NE(result.err, "") << testing::PrintToString(arguments);
+  }
+}
+
+TEST(Cli, HelpTeaches) {
+  const ProcessResult all = gpgp({"--help"});
+  EXPECT_EQ(all.exitCode, 0);
+  EXPECT_EQ(all.err, "");
+  EXPECT_NE(all.out.find("Examples:"), std::string::npos);
+  const json info = gpgpJson({"info"});
+  std::vector<std::string> commands = {"info"};
+  for (const json& service : info["services"]) commands.push_back(service.get<std::string>());
+  for (const std::string& command : commands) {
+    const ProcessResult help = gpgp({command, "--help"});
+    EXPECT_EQ(help.exitCode, 0) << command;
+    EXPECT_NE(help.out.find("Examples:"), std::string::npos) << command;
+    EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
+  }
+  EXPECT_EQ(gpgp({"--version"}).exitCode, 0);
+}
+
+} // namespace
+} // namespace gpgp::test
