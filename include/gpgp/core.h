@@ -316,7 +316,7 @@ typedef struct GpgpFrame {
 } GpgpFrame;
 
 /** Once a frame, before the frame's records: frees what was destroyed, harvests reports, recycles rings. The only
- *  function that does. @threads context */
+ *  function that does. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAdvance(GpgpContext context, const GpgpFrame* frame);
 
 /** Tells gpgp that the device is lost: later calls return GPGP_ERROR_DEVICE_LOST, destroying stays legal and frees at
@@ -326,7 +326,7 @@ GPGP_API void GPGP_CALL gpgpNotifyDeviceLost(GpgpContext context);
 /** Copies up to byteBudget bytes of pending asset data into device memory, oldest asset first (0: all that the ring
  *  holds). pendingBytes, if not NULL, receives what is left. Records transfer commands and one barrier that makes the
  *  data visible to all later gpgp records on the same queue; between queues the engine synchronises.
- *  @threads context @pass outside @state none */
+ *  @threads context @lifetime call @pass outside @state none */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordUpload(GpgpContext context, VkCommandBuffer commandBuffer,
                                                const GpgpFrame* frame, VkDeviceSize byteBudget,
                                                VkDeviceSize* pendingBytes);
@@ -401,7 +401,7 @@ typedef struct GpgpPrewarmInfo {
 
 /** Compiles the worker's pipelines on the calling thread (through the job system where one was given). Until it has
  *  returned, records return GPGP_NOT_READY and record nothing. info may be NULL for workers that do not draw.
- *  May run beside records of other workers. @threads handle */
+ *  May run beside records of other workers. @threads handle @lifetime call; render passes: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPrewarm(GpgpWorker worker, const GpgpPrewarmInfo* info);
 
 /** Bytes of scratch that one record of this worker needs, and the usage flags an engine's buffer for it must have.
@@ -410,7 +410,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpWorker worker, VkDeviceSize
                                                  VkBufferUsageFlags* usage);
 
 /** The passes that one record of this worker runs, in order. count in: capacity of names, out: passes. names NULL
- *  asks for the count. Names live as long as the worker. @threads any */
+ *  asks for the count. @threads any @lifetime call; names: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetPasses(GpgpWorker worker, uint32_t* count, const char** names);
 
 /** GPU timestamps of a record: query firstQuery at its start and one more after each pass, passes + 1 in all. The

@@ -120,7 +120,9 @@ typedef struct GpgpSpawnerCreateInfo {
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
-/** @threads context @lifetime call */
+/** Makes a worker that derives any grammar, with scratch for the budgets. Prewarm it before the first record.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpSpawnerCreateInfo* info,
                                                 GpgpWorker* spawner);
 

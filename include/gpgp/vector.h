@@ -86,7 +86,7 @@ typedef struct GpgpDrawingInfo {
 } GpgpDrawingInfo;
 #define GPGP_DRAWING_INFO_INIT GPGP_INIT(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO)
 
-/** @threads any */
+/** Sizes and counts of a drawing, before and after it is resident. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset drawing, GpgpDrawingInfo* info);
 
 /* ---------------------------------------------------------------- canvas */
@@ -102,7 +102,9 @@ typedef struct GpgpCanvasCreateInfo {
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
-/** @threads context @lifetime call */
+/** Makes a worker that rasterises drawings, with scratch for the budgets. Prewarm it before the first record.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext context, const GpgpCanvasCreateInfo* info,
                                                GpgpWorker* canvas);
 
@@ -114,7 +116,8 @@ typedef struct GpgpCanvasViewCreateInfo {
 } GpgpCanvasViewCreateInfo;
 #define GPGP_CANVAS_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasViewCreateInfo, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO)
 
-/** @threads context @lifetime call */
+/** Makes a place where a canvas keeps its result between gpgpRecordPrepareCanvas and gpgpRecordDrawCanvas.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext context, const GpgpCanvasViewCreateInfo* info,
                                                    GpgpView* view);
 

@@ -27,7 +27,9 @@ typedef struct GpgpGeometrySetCreateInfo {
 } GpgpGeometrySetCreateInfo;
 #define GPGP_GEOMETRY_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGeometrySetCreateInfo, GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO)
 
-/** Queues the mesh table for upload. @threads context @lifetime call */
+/** Checks the mesh table and queues it for upload.
+ *  Errors: INVALID_ARGUMENT (mesh index in the message), INVALID_STRUCT, OUT_OF_..._MEMORY.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext context, const GpgpGeometrySetCreateInfo* info,
                                                     GpgpAsset* geometrySet);
 
@@ -35,13 +37,16 @@ typedef struct GpgpSamplerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpWorkerCreateInfo base;
-  uint32_t maxWidth, maxHeight; /**< viewport; 0: 2048 x 2048 */
+  uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel */
   uint32_t maxDraws;            /**< 0: 65536 */
-  uint32_t maxTriangles;        /**< of one record, all draws together; 0: 4194304 */
+  uint32_t maxTriangles;        /**< of one record, all draws together; 0: 4194304. What is beyond is not sampled and
+                                     the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle */
 } GpgpSamplerCreateInfo;
 #define GPGP_SAMPLER_CREATE_INFO_INIT GPGP_INIT(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO)
 
-/** @threads context @lifetime call */
+/** Makes a worker that samples any geometry set, with scratch for the budgets. Prewarm it before the first record.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext context, const GpgpSamplerCreateInfo* info,
                                                 GpgpWorker* sampler);
 
@@ -53,11 +58,13 @@ typedef struct GpgpCameraViewCreateInfo {
 } GpgpCameraViewCreateInfo;
 #define GPGP_CAMERA_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO)
 
-/** @threads context @lifetime call */
+/** Makes the history of one camera: all triangles unseen until its first record.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const GpgpCameraViewCreateInfo* info,
                                                    GpgpView* view);
 
-/** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. */
+/** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. Draws may share triangle numbers: the bit is
+ *  then set if any of them is visible. A transform that mirrors does not turn front faces into back faces. */
 typedef struct GpgpVisibilityDraw {
   float transform[12]; /**< rows of a 3x4 matrix, object to world */
   uint32_t mesh;       /**< index in the geometry set */
@@ -88,22 +95,25 @@ typedef struct GpgpSampleInfo {
   GpgpCamera camera;
   uint32_t width, height; /**< viewport, pixels */
   GpgpBuffer positions;   /**< vertex positions, 3 floats each at positionStride; STORAGE usage */
-  uint32_t positionStride;/**< bytes, a multiple of 4 */
-  GpgpBuffer indices;     /**< STORAGE usage */
+  uint32_t positionStride;/**< bytes, a multiple of 4; 0: 12 */
+  GpgpBuffer indices;     /**< STORAGE usage; size a multiple of 4 for UINT16 too */
   VkIndexType indexType;  /**< UINT16 or UINT32 */
   GpgpBuffer draws;       /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
   uint32_t drawCount;
-  uint32_t triangleCount; /**< of all draws: one past the last triangle number */
+  uint32_t triangleCount; /**< of all draws: one past the last triangle number; at most 2^31 */
   GpgpBuffer visibleBits; /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
   GpgpBuffer visibleList; /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
                                budget */
   GpgpBuffer visibleCount;/**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
-                               of 64 per 64 listed triangles; STORAGE usage */
+                               of 64 per 64 listed triangles, in rows of 65535 (workgroup y * 65535 + x; the last row
+                               may run past the list); STORAGE usage */
 } GpgpSampleInfo;
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
-/** Samples triangle ids and gathers the visible set.
- *  NOT_READY: geometry set not resident or sampler not prewarmed.
+/** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins.
+ *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
+ *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
+ *  NOT_READY: geometry set or view not resident, or sampler not prewarmed.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker sampler, VkCommandBuffer commandBuffer,
@@ -119,10 +129,14 @@ typedef struct GpgpSampleReport {
   uint32_t coveredPixels;
   uint32_t appeared;       /**< with a view: visible now, not in its previous record */
   uint32_t disappeared;    /**< with a view: the reverse */
+  uint32_t neededTriangles;  /**< of all draws, whatever the budget */
+  uint32_t skippedTriangles; /**< index or triangle number out of range, coordinate not finite or too large */
+  uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set */
 } GpgpSampleReport;
 #define GPGP_SAMPLE_REPORT_INIT GPGP_INIT(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT)
 
-/** The oldest report not yet taken. NOT_READY: none. @threads handle */
+/** The oldest report not yet taken. NOT_READY: none. BUDGET_EXCEEDED in base.status: maxTriangles (neededTriangles says
+ *  how many there are) or the list (visible says how many). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetSampleReport(GpgpWorker sampler, GpgpSampleReport* report);
 
 #ifdef __cplusplus
