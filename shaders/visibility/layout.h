@@ -61,12 +61,13 @@ struct Params {
   uint shortIndices; // 1: 16 bits each
   uint vertexCount;  // that the position range holds
   uint strideWords;
-  uint listCapacity; // 0: no list
+  uint listCapacity; // in triangles
+  uint hasList;      // 1: visibleList is there
   uint writeCount;   // 1: visibleCount is there
   uint viewWords;    // 0: no view
 };
 
-/// GPU counters; the words up to `listed` inclusive are the report.
+/// GPU counters; the words up to `hasList` inclusive are the report.
 struct Counters {
   uint triangles;
   uint visible;
@@ -77,12 +78,20 @@ struct Counters {
   uint skippedTriangles; // index out of range, coordinate not finite or too large, number not below triangleCount
   uint skippedDraws;     // mesh out of range
   uint listed;
+  uint hasList;     // 1: the record has a list
   uint mediumCount; // queued from the front of the queue
   uint largeCount;  // queued from its back
   uint smallArgs[3];
   uint mediumArgs[3];
   uint largeArgs[3];
 };
+GPGP_CONST uint kCounterWords = 21u;
+GPGP_CONST uint kReportWords = 10u;
+
+#ifdef __cplusplus
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 124 &&
+              sizeof(Counters) == 4 * kCounterWords);
+#endif
 
 GPGP_SHADER_END
 #endif

@@ -104,6 +104,7 @@ TwinResult sampleOnCpu(const TwinInput& in) {
     for (uint32_t rest = out.bits[word]; rest; rest &= rest - 1)
       out.list.push_back(static_cast<uint32_t>(word * 32) + static_cast<uint32_t>(std::countr_zero(rest)));
   counters.visible = static_cast<uint32_t>(out.list.size());
+  counters.hasList = params.hasList;
   counters.listed = std::min(counters.visible, params.listCapacity);
   for (size_t word = 0; params.viewWords && word < std::max(out.bits.size(), in.previousBits.size()); ++word) {
     const uint32_t now = word < out.bits.size() ? out.bits[word] : 0;

@@ -1,0 +1,20 @@
+// The numbers that are known last: how many were listed, and the engine's indirect dispatch over the list.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/layout.h"
+layout(local_size_x = 1) in;
+
+layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+layout(std430, set = 0, binding = kBindCount) writeonly buffer CountBuffer { uint countAndArgs[]; };
+
+void main() {
+  uint listed = min(counters.visible, params.listCapacity);
+  counters.listed = listed;
+  if (params.writeCount == 0u) return;
+  uint groups = (listed + kListGroup - 1u) / kListGroup;
+  countAndArgs[0] = counters.visible;
+  countAndArgs[1] = min(groups, kMaxGroups);
+  countAndArgs[2] = max((groups + kMaxGroups - 1u) / kMaxGroups, 1u);
+  countAndArgs[3] = 1u;
+}

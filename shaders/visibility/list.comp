@@ -1,0 +1,61 @@
+// From bits to a compact list, and the change since the view's previous record. One invocation a word of 32 triangles; a
+// workgroup takes its places in the list with one atomic.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/layout.h"
+layout(local_size_x = 256) in;
+
+layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+layout(std430, set = 0, binding = kBindBits) readonly buffer BitBuffer { uint bits[]; };
+layout(std430, set = 0, binding = kBindList) writeonly buffer ListBuffer { uint list[]; };
+layout(std430, set = 0, binding = kBindView) buffer ViewBuffer { uint viewBits[]; };
+
+shared uint sums[256];
+shared uint groupFirst;
+shared uint groupAppeared;
+shared uint groupDisappeared;
+
+void main() {
+  uint lane = gl_LocalInvocationIndex;
+  uint words = (params.triangleCount + 31u) / 32u;
+  uint all_ = max(words, params.viewWords);
+  uint stride = gl_NumWorkGroups.x * 256u;
+  for (uint base = gl_WorkGroupID.x * 256u; base < all_; base += stride) {
+    if (lane == 0u) {
+      groupAppeared = 0u;
+      groupDisappeared = 0u;
+    }
+    uint word = base + lane;
+    uint now = word < words ? bits[word] : 0u;
+    uint own = uint(bitCount(now));
+    sums[lane] = own;
+    barrier();
+    if (word < params.viewWords) {
+      uint before = viewBits[word];
+      if (before != now) viewBits[word] = now;
+      uint appeared = now & ~before;
+      uint disappeared = before & ~now;
+      if (appeared != 0u) atomicAdd(groupAppeared, uint(bitCount(appeared)));
+      if (disappeared != 0u) atomicAdd(groupDisappeared, uint(bitCount(disappeared)));
+    }
+    for (uint step = 1u; step < 256u; step *= 2u) {
+      uint before = lane >= step ? sums[lane - step] : 0u;
+      barrier();
+      sums[lane] += before;
+      barrier();
+    }
+    if (lane == 0u) {
+      groupFirst = sums[255] != 0u ? atomicAdd(counters.visible, sums[255]) : 0u;
+      if (groupAppeared != 0u) atomicAdd(counters.appeared, groupAppeared);
+      if (groupDisappeared != 0u) atomicAdd(counters.disappeared, groupDisappeared);
+    }
+    barrier();
+    uint place = groupFirst + sums[lane] - own;
+    while (now != 0u && place < params.listCapacity) {
+      list[place++] = word * 32u + uint(findLSB(now));
+      now &= now - 1u;
+    }
+    barrier();
+  }
+}

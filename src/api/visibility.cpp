@@ -1,0 +1,112 @@
+// The C functions of visibility.h.
+#include "api/check.h"
+#include "visibility/sampling/sampler.h"
+
+#include <iterator>
+
+using namespace gpgp;
+using namespace gpgp::api;
+using namespace gpgp::visibility;
+
+GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext handle, const GpgpGeometrySetCreateInfo* info,
+                                           GpgpAsset* geometrySet) {
+  return guarded("gpgpCreateGeometrySet", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO, "info"); !ok) return ok;
+    if (!geometrySet) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "geometrySet is NULL");
+    if (info->meshCount && !info->meshes)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes is NULL, but meshCount is %u", info->meshCount);
+    for (uint32_t i = 0; i < info->meshCount; ++i) {
+      const GpgpMesh& mesh = info->meshes[i];
+      if (mesh.indexCount % 3)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u].indexCount is %u; expected a multiple of 3", i,
+                         mesh.indexCount);
+      if (mesh.firstIndex > UINT32_MAX - mesh.indexCount)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u]: firstIndex + indexCount exceeds 32 bits", i);
+    }
+    if (uint64_t(info->meshCount) * sizeof(GpgpMesh) > (*context)->device.limits.maxStorageBufferRange)
+      return makeError(GPGP_ERROR_UNSUPPORTED, "meshCount is %u, but this device binds at most %u bytes",
+                       info->meshCount, (*context)->device.limits.maxStorageBufferRange);
+    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    auto made = GeometrySet::create(**context, *info);
+    if (!made) return made.error();
+    *geometrySet = adopt<GpgpAsset>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext handle, const GpgpSamplerCreateInfo* info, GpgpWorker* sampler) {
+  return guarded("gpgpCreateSampler", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_SAMPLER_CREATE_INFO, "info"); !ok) return ok;
+    if (!sampler) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "sampler is NULL");
+    if (auto ok = checkWorkerInfo(**context, info->base); !ok) return ok;
+    if (info->maxWidth > 8192 || info->maxHeight > 8192)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192",
+                       info->maxWidth, info->maxHeight);
+    if (info->maxTriangles > 1u << 30)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 1073741824", info->maxTriangles);
+    auto made = Sampler::create(**context, *info);
+    if (!made) return made.error();
+    *sampler = adopt<GpgpWorker>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext handle, const GpgpCameraViewCreateInfo* info, GpgpView* view) {
+  return guarded("gpgpCreateCameraView", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO, "info"); !ok) return ok;
+    if (!view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "view is NULL");
+    if (info->maxTriangles > 1u << 31)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 2147483648", info->maxTriangles);
+    const uint64_t bytes = (uint64_t(info->maxTriangles) + 31) / 32 * 4;
+    if (bytes > (*context)->device.limits.maxStorageBufferRange)
+      return makeError(GPGP_ERROR_UNSUPPORTED, "maxTriangles is %u, but this device binds at most %u bytes",
+                       info->maxTriangles, (*context)->device.limits.maxStorageBufferRange);
+    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    auto made = CameraView::create(**context, *info);
+    if (!made) return made.error();
+    *view = adopt<GpgpView>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker handle, VkCommandBuffer commandBuffer,
+                                                 const GpgpFrame* frame, const GpgpSampleInfo* info) {
+  return guarded("gpgpRecordPrepareVisibility", [&](Call& call) -> Result<void> {
+    const auto sampler = resolve<Sampler>(call, handle, Kind::sampler, "sampler");
+    if (!sampler) return sampler.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_SAMPLE_INFO, "info"); !ok) return ok;
+    const core::Context& context = (*sampler)->context;
+    const auto geometry = resolve<GeometrySet>(call, info->geometrySet, Kind::geometrySet, "geometrySet", &context);
+    if (!geometry) return geometry.error();
+    CameraView* view = nullptr;
+    if (info->view) {
+      const auto resolved = resolve<CameraView>(call, info->view, Kind::cameraView, "view", &context);
+      if (!resolved) return resolved.error();
+      view = *resolved;
+    }
+    if (info->method != GPGP_SAMPLING_STANDARD)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d; there is GPGP_SAMPLING_STANDARD", info->method);
+    if (!allFinite(info->camera.viewProjection))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
+    if (auto ok = checkRecord(**sampler, frame); !ok) return ok;
+    if (!(*geometry)->resident()) return makeError(GPGP_NOT_READY, "geometrySet is not resident");
+    if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
+    return (*sampler)->prepare(commandBuffer, *info, **geometry, view);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetSampleReport(GpgpWorker handle, GpgpSampleReport* report) {
+  return guarded("gpgpGetSampleReport", [&](Call& call) -> Result<void> {
+    const auto sampler = resolve<Sampler>(call, handle, Kind::sampler, "sampler");
+    if (!sampler) return sampler.error();
+    if (auto ok = checkStruct(report, GPGP_STRUCTURE_SAMPLE_REPORT, "report"); !ok) return ok;
+    if (!(*sampler)->takeSampleReport(*report)) return makeError(GPGP_NOT_READY, "no report is there");
+    return {};
+  });
+}

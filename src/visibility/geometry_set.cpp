@@ -1,0 +1,28 @@
+#include "visibility/geometry_set.h"
+
+#include <cstring>
+
+namespace gpgp::visibility {
+
+core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& context,
+                                                            const GpgpGeometrySetCreateInfo& info) {
+  auto set = core::makeUnique<GeometrySet>(context.host(), context, info.label);
+  set->meshCount_ = info.meshCount;
+  // The table as the engine wrote it: GpgpMesh is what the shaders read. An empty one still needs a buffer to bind.
+  std::pmr::vector<std::byte> bytes(size_t(info.meshCount) * sizeof(GpgpMesh), &context.host());
+  if (info.meshCount) std::memcpy(bytes.data(), info.meshes, bytes.size());
+  if (auto ok = set->makeResident(GPGP_SERVICE_VISIBILITY, std::move(bytes), sizeof(GpgpMesh)); !ok) return ok.error();
+  return set;
+}
+
+core::Result<core::Unique<CameraView>> CameraView::create(core::Context& context,
+                                                          const GpgpCameraViewCreateInfo& info) {
+  auto view = core::makeUnique<CameraView>(context.host(), context, info.label);
+  view->maxTriangles_ = info.maxTriangles ? info.maxTriangles : 1u << 22;
+  const std::pmr::vector<std::byte> none(&context.host());
+  if (auto ok = view->makeResident(GPGP_SERVICE_VISIBILITY, none, VkDeviceSize(view->words()) * 4); !ok)
+    return ok.error();
+  return view;
+}
+
+} // namespace gpgp::visibility

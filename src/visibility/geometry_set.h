@@ -1,0 +1,31 @@
+// Geometry sets and camera views: the mesh table of an engine's buffers, and the bits that a camera's last record saw.
+#pragma once
+#include "core/resident.h"
+
+#include <gpgp/visibility.h>
+
+namespace gpgp::visibility {
+
+class GeometrySet final : public core::Resident {
+public:
+  static core::Result<core::Unique<GeometrySet>> create(core::Context& context, const GpgpGeometrySetCreateInfo& info);
+  GeometrySet(core::Context& owner, const char* name) : Resident(owner, core::Kind::geometrySet, name) {}
+  uint32_t meshCount() const { return meshCount_; }
+
+private:
+  uint32_t meshCount_ = 0;
+};
+
+/// One bit per triangle, zero until the camera's first record.
+class CameraView final : public core::Resident {
+public:
+  static core::Result<core::Unique<CameraView>> create(core::Context& context, const GpgpCameraViewCreateInfo& info);
+  CameraView(core::Context& owner, const char* name) : Resident(owner, core::Kind::cameraView, name) {}
+  uint32_t maxTriangles() const { return maxTriangles_; }
+  uint32_t words() const { return (maxTriangles_ + 31) / 32; }
+
+private:
+  uint32_t maxTriangles_ = 0;
+};
+
+} // namespace gpgp::visibility

@@ -1,0 +1,244 @@
+#include "visibility/sampling/sampler.h"
+
+#include "shaders/visibility_clear.spv.h"
+#include "shaders/visibility_finish.spv.h"
+#include "shaders/visibility_gather.spv.h"
+#include "shaders/visibility_large.spv.h"
+#include "shaders/visibility_list.spv.h"
+#include "shaders/visibility_medium.spv.h"
+#include "shaders/visibility_plan.spv.h"
+#include "shaders/visibility_small.spv.h"
+#include "shaders/visibility_split.spv.h"
+#include "visibility/layout.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+namespace gpgp::visibility {
+namespace {
+using core::makeError;
+using core::Result;
+using shader::Counters;
+using shader::Params;
+
+static_assert(sizeof(GpgpMesh) == sizeof(shader::Mesh) && sizeof(GpgpVisibilityDraw) == sizeof(shader::Draw));
+static_assert(offsetof(GpgpVisibilityDraw, flags) == offsetof(shader::Draw, flags));
+static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided);
+
+// Workgroup counts of a record.
+constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3;
+
+/// Workgroups of 256 for a number of items; shaders stride beyond the limit.
+uint32_t groupsOf256(uint64_t items) {
+  return static_cast<uint32_t>(std::min<uint64_t>((items + 255) / 256, shader::kMaxGroups));
+}
+
+Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t needed, const char* why) {
+  if (!buffer.buffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL", name);
+  if (buffer.size < needed)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.size is %llu; %s needs %llu", name,
+                     static_cast<unsigned long long>(buffer.size), why, static_cast<unsigned long long>(needed));
+  return {};
+}
+
+/// Vertices that a range holds, the last one without its padding.
+uint32_t verticesIn(VkDeviceSize bytes, uint32_t stride) {
+  return bytes < 12 ? 0 : static_cast<uint32_t>(std::min<VkDeviceSize>((bytes - 12) / stride + 1, UINT32_MAX));
+}
+} // namespace
+
+Sampler::Sampler(core::Context& owner, const GpgpSamplerCreateInfo& info)
+    : Worker(owner, core::Kind::sampler, info.base, GPGP_SERVICE_VISIBILITY),
+      maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
+      maxDraws_(info.maxDraws ? info.maxDraws : 65536),
+      maxTriangles_(info.maxTriangles ? info.maxTriangles : 1u << 22) {}
+
+Result<core::Unique<Sampler>> Sampler::create(core::Context& context, const GpgpSamplerCreateInfo& info) {
+  auto sampler = core::makeUnique<Sampler>(context.host(), context, info);
+  if (auto ok = sampler->init(sampler->describe()); !ok) return ok.error();
+  return sampler;
+}
+
+core::PassList Sampler::describe() const {
+  using enum core::ResourceKind;
+  using enum core::UseKind;
+  core::PassList list(&context.host());
+  const VkDeviceSize pixelBytes = VkDeviceSize(maxWidth_) * maxHeight_ * 4;
+  // In the order of shader::kBind...
+  const auto params = list.add({"camera", constants, sizeof(Params)});
+  const auto positions = list.add({"positions", buffer, 0, true});
+  const auto indices = list.add({"indices", buffer, 0, true});
+  const auto draws = list.add({"draws", buffer, 0, true});
+  const auto meshes = list.add({"geometrySet", buffer});
+  const auto starts = list.add({"draw starts", scratch, VkDeviceSize(maxDraws_) * 4});
+  const auto queue = list.add({"queue", scratch, VkDeviceSize(maxTriangles_) * 4});
+  const auto depth = list.add({"depth", scratch, pixelBytes});
+  const auto ids = list.add({"ids", scratch, pixelBytes});
+  const auto counters = list.add({"counters", scratch, sizeof(Counters)});
+  const auto bits = list.add({"visibleBits", buffer, 0, true});
+  const auto visible = list.add({"visibleList", buffer, 0, true});
+  const auto count = list.add({"visibleCount", buffer, 0, true});
+  const auto view = list.add({"view", buffer, 0, true});
+
+  const auto shader = [&](const char* name, std::span<const uint32_t> spirv, uint32_t phase = 0) {
+    core::ShaderDesc desc{name, spirv};
+    desc.specialization[0] = phase;
+    desc.specializationCount = 1;
+    return list.add(desc);
+  };
+
+  list.dispatch("clear", shader("clear", visibility_clear),
+                {{params, read}, {depth, write}, {ids, write}, {counters, write}, {bits, write}}, kClearGroups);
+  list.dispatch("plan", shader("plan", visibility_plan),
+                {{params, read}, {draws, read}, {meshes, read}, {starts, write}, {counters, readWrite}}, kOneGroup);
+  const char* const names[2][3] = {{"depth small", "depth medium", "depth large"},
+                                   {"ids small", "ids medium", "ids large"}};
+  for (uint32_t phase = 0; phase < 2; ++phase) {
+    const auto raster = [&](uint32_t size, uint32_t program, VkDeviceSize arguments) {
+      list.dispatchIndirect(names[phase][size], program,
+                            {{params, read},
+                             {positions, read},
+                             {indices, read},
+                             {draws, read},
+                             {meshes, read},
+                             {starts, read},
+                             {queue, size == 0 ? write : read},
+                             {depth, readWrite},
+                             {ids, readWrite},
+                             {counters, readWrite}},
+                            counters, arguments);
+    };
+    raster(0, shader("small", visibility_small, phase), offsetof(Counters, smallArgs));
+    if (phase == 0) list.dispatch("split", shader("split", visibility_split), {{counters, readWrite}}, kOneGroup);
+    raster(1, shader("medium", visibility_medium, phase), offsetof(Counters, mediumArgs));
+    raster(2, shader("large", visibility_large, phase), offsetof(Counters, largeArgs));
+  }
+  list.dispatch("gather", shader("gather", visibility_gather),
+                {{params, read}, {ids, read}, {counters, readWrite}, {bits, readWrite}}, kPixelGroups);
+  list.dispatch("list", shader("list", visibility_list),
+                {{params, read}, {counters, readWrite}, {bits, read}, {visible, write}, {view, readWrite}},
+                kWordGroups);
+  list.dispatch("finish", shader("finish", visibility_finish), {{params, read}, {counters, readWrite}, {count, write}},
+                kOneGroup);
+  list.report = counters;
+  list.reportBytes = shader::kReportWords * 4;
+  return list;
+}
+
+Result<void> Sampler::checkInfo(const GpgpSampleInfo& info, const CameraView* view) const {
+  if (info.width == 0 || info.height == 0 || info.width > maxWidth_ || info.height > maxHeight_)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the viewport is %u x %u; the sampler was made for 1 x 1 to %u x %u",
+                     info.width, info.height, maxWidth_, maxHeight_);
+  if (info.drawCount > maxDraws_)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawCount is %u; the sampler was made for %u", info.drawCount,
+                     maxDraws_);
+  if (info.triangleCount > 1u << 31)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; at most 2147483648", info.triangleCount);
+  if (view && info.triangleCount > view->maxTriangles())
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; the view was made for %u", info.triangleCount,
+                     view->maxTriangles());
+  if (info.indexType != VK_INDEX_TYPE_UINT16 && info.indexType != VK_INDEX_TYPE_UINT32)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indexType is %d; expected UINT16 or UINT32", info.indexType);
+  if (info.positionStride % 4 || (info.positionStride && info.positionStride < 12))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positionStride is %u; expected a multiple of 4 from 12 on",
+                     info.positionStride);
+  if (info.drawCount) {
+    if (auto ok = checkSize("draws", info.draws, uint64_t(info.drawCount) * sizeof(GpgpVisibilityDraw), "drawCount");
+        !ok)
+      return ok;
+    if (auto ok = checkSize("positions", info.positions, 4, "a vertex"); !ok) return ok;
+    if (auto ok = checkSize("indices", info.indices, 4, "an index"); !ok) return ok;
+    if (info.indices.size % 4)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indices.size is %llu; expected a multiple of 4",
+                       static_cast<unsigned long long>(info.indices.size));
+  }
+  if (info.triangleCount)
+    if (auto ok =
+            checkSize("visibleBits", info.visibleBits, (uint64_t(info.triangleCount) + 31) / 32 * 4, "triangleCount");
+        !ok)
+      return ok;
+  if (info.visibleList.buffer)
+    if (auto ok = checkSize("visibleList", info.visibleList, 4, "one triangle"); !ok) return ok;
+  if (info.visibleCount.buffer)
+    if (auto ok = checkSize("visibleCount", info.visibleCount, 16, "the count and the arguments"); !ok) return ok;
+  return {};
+}
+
+Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInfo& info, const GeometrySet& geometry,
+                              const CameraView* view) {
+  if (auto ok = checkInfo(info, view); !ok) return ok;
+  Params params{};
+  std::memcpy(params.viewProjection, info.camera.viewProjection, sizeof params.viewProjection);
+  params.width = info.width;
+  params.height = info.height;
+  params.reversedDepth = info.camera.reversedDepth ? 1 : 0;
+  params.drawCount = info.drawCount;
+  params.meshCount = geometry.meshCount();
+  params.triangleCount = info.triangleCount;
+  params.maxItems = maxTriangles_;
+  if (info.drawCount) {
+    const uint32_t stride = info.positionStride ? info.positionStride : 12;
+    params.shortIndices = info.indexType == VK_INDEX_TYPE_UINT16 ? 1 : 0;
+    params.indexCount = static_cast<uint32_t>(info.indices.size / (params.shortIndices ? 2 : 4));
+    params.vertexCount = verticesIn(info.positions.size, stride);
+    params.strideWords = stride / 4;
+  }
+  params.hasList = info.visibleList.buffer ? 1 : 0;
+  params.listCapacity =
+      params.hasList ? static_cast<uint32_t>(std::min<VkDeviceSize>(info.visibleList.size / 4, UINT32_MAX)) : 0;
+  params.writeCount = info.visibleCount.buffer ? 1 : 0;
+  params.viewWords = view ? view->words() : 0;
+
+  core::Record record;
+  record.commandBuffer = commandBuffer;
+  record.info = &info.base;
+  const auto bind = [&](int binding, const GpgpBuffer& buffer) {
+    record.bindings[static_cast<size_t>(binding)].engineBuffer = &buffer;
+  };
+  const auto bindOwn = [&](int binding, const core::Resident& resident) {
+    record.bindings[static_cast<size_t>(binding)].ownBuffer = resident.buffer();
+    record.bindings[static_cast<size_t>(binding)].ownSize = resident.size();
+  };
+  if (info.drawCount) {
+    bind(shader::kBindPositions, info.positions);
+    bind(shader::kBindIndices, info.indices);
+    bind(shader::kBindDraws, info.draws);
+  }
+  bindOwn(shader::kBindMeshes, geometry);
+  if (info.triangleCount) bind(shader::kBindBits, info.visibleBits);
+  if (params.hasList) bind(shader::kBindList, info.visibleList);
+  if (params.writeCount) bind(shader::kBindCount, info.visibleCount);
+  if (view) bindOwn(shader::kBindView, *view);
+
+  const uint64_t pixels = uint64_t(info.width) * info.height, words = (uint64_t(info.triangleCount) + 31) / 32;
+  record.groups[kOneGroup] = {1, 1, 1};
+  record.groups[kClearGroups] = {groupsOf256(std::max(pixels, words)), 1, 1};
+  record.groups[kPixelGroups] = {groupsOf256(pixels), 1, 1};
+  record.groups[kWordGroups] = {groupsOf256(std::max<uint64_t>(words, params.viewWords)), 1, 1};
+  record.constants = std::as_bytes(std::span(&params, 1));
+  if (auto ok = check(record); !ok) return ok;
+  return Worker::record(record);
+}
+
+bool Sampler::takeSampleReport(GpgpSampleReport& report) {
+  core::RawReport raw;
+  if (!takeReport(raw)) return false;
+  Counters counters{};
+  std::memcpy(&counters, raw.words.data(), std::min(raw.words.size_bytes(), sizeof counters));
+  report.base = raw.header;
+  report.triangles = counters.triangles;
+  report.visible = counters.visible;
+  report.listed = counters.listed;
+  report.coveredPixels = counters.coveredPixels;
+  report.appeared = counters.appeared;
+  report.disappeared = counters.disappeared;
+  report.neededTriangles = counters.items;
+  report.skippedTriangles = counters.skippedTriangles;
+  report.skippedDraws = counters.skippedDraws;
+  const bool tooMany = counters.items > maxTriangles_ || (counters.hasList && counters.listed < counters.visible);
+  if (report.base.status == GPGP_SUCCESS && tooMany) report.base.status = GPGP_BUDGET_EXCEEDED;
+  return true;
+}
+
+} // namespace gpgp::visibility

@@ -1,0 +1,191 @@
+// Bad arguments of the C functions: the documented code, one message that names the argument, nothing changed.
+#include "gpu.h"
+
+namespace gpgp::test {
+namespace {
+
+struct ArgumentsTest : VisibilityGpuTest {
+  Scene scene = randomSoup(1, 10, 16, 16, true, false);
+  std::unique_ptr<SceneBuffers> buffers;
+  host::Buffer bits, list, count;
+  GpgpWorker sampler = nullptr;
+  GpgpAsset set = nullptr;
+  GpgpFrame f{};
+
+  void SetUp() override {
+    VisibilityGpuTest::SetUp();
+    scene.input();
+    sampler = createSampler(64, 64);
+    set = createGeometrySet(scene);
+    buffers = std::make_unique<SceneBuffers>(device, scene);
+    for (host::Buffer* buffer : {&bits, &list, &count})
+      *buffer = host::Buffer(device, 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    upload();
+    f = advance();
+  }
+  void TearDown() override {
+    buffers.reset();
+    for (host::Buffer* buffer : {&bits, &list, &count}) *buffer = host::Buffer();
+    VisibilityGpuTest::TearDown();
+  }
+  GpgpSampleInfo good() {
+    GpgpSampleInfo info = sampleInfo(scene, *buffers, set);
+    info.visibleBits = bits.range();
+    info.visibleList = list.range();
+    info.visibleCount = count.range();
+    return info;
+  }
+  /// One failing call: its code, and a message that holds `text` (empty: no message).
+  void expect(GpgpResult expected, GpgpResult got, const std::string& text) {
+    EXPECT_EQ(got, expected) << text;
+    if (text.empty()) {
+      EXPECT_TRUE(messages.empty());
+    } else {
+      ASSERT_EQ(messages.size(), 1u) << text;
+      EXPECT_NE(messages[0].find(text), std::string::npos) << messages[0];
+    }
+    messages.clear();
+  }
+  void expectRecord(GpgpResult expected, const GpgpSampleInfo& info, const std::string& text) {
+    device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
+      expect(expected, gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), text);
+    });
+  }
+};
+
+TEST_F(ArgumentsTest, RecordsAreChecked) {
+  expectRecord(GPGP_SUCCESS, good(), "");
+  const auto bad = [&](GpgpResult code, const char* text, auto change) {
+    GpgpSampleInfo info = good();
+    change(info);
+    expectRecord(code, info, text);
+  };
+  const GpgpResult argument = GPGP_ERROR_INVALID_ARGUMENT;
+  bad(GPGP_ERROR_INVALID_STRUCT, "sType", [](auto& i) { i.sType = 7; });
+  bad(GPGP_ERROR_INVALID_STRUCT, "pNext", [](auto& i) { i.pNext = &i; });
+  bad(GPGP_ERROR_INVALID_HANDLE, "geometrySet", [](auto& i) { i.geometrySet = nullptr; });
+  bad(argument, "method", [](auto& i) { i.method = 3; });
+  bad(argument, "viewProjection", [](auto& i) { i.camera.viewProjection[3] = NAN; });
+  bad(argument, "viewport", [](auto& i) { i.width = 0; });
+  bad(argument, "viewport", [](auto& i) { i.height = 65; });
+  bad(argument, "drawCount", [](auto& i) { i.drawCount = 65537; });
+  bad(argument, "draws.size", [](auto& i) { i.drawCount = 2; });
+  bad(argument, "draws", [](auto& i) { i.draws.buffer = VK_NULL_HANDLE; });
+  bad(argument, "positions", [](auto& i) { i.positions.buffer = VK_NULL_HANDLE; });
+  bad(argument, "indices", [](auto& i) { i.indices.buffer = VK_NULL_HANDLE; });
+  bad(argument, "indices.size", [](auto& i) { i.indices.size = 118; });
+  bad(argument, "indexType", [](auto& i) { i.indexType = VK_INDEX_TYPE_UINT8_EXT; });
+  bad(argument, "positionStride", [](auto& i) { i.positionStride = 8; });
+  bad(argument, "positionStride", [](auto& i) { i.positionStride = 14; });
+  bad(argument, "triangleCount", [](auto& i) { i.triangleCount = 0x80000001u; });
+  bad(argument, "visibleBits.size", [](auto& i) { i.triangleCount = 16 * 32 + 1; });
+  bad(argument, "visibleBits", [](auto& i) { i.visibleBits.buffer = VK_NULL_HANDLE; });
+  bad(argument, "visibleList", [](auto& i) { i.visibleList.size = 0; });
+  bad(argument, "visibleCount.size", [](auto& i) { i.visibleCount.size = 12; });
+  bad(argument, "visibleBits.offset", [](auto& i) { i.visibleBits.offset = 4; });
+  const GpgpFrame unknown{f.current + 5, f.safe};
+  device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
+    const GpgpSampleInfo info = good();
+    EXPECT_LT(gpgpRecordPrepareVisibility(sampler, cmd, &unknown, &info), 0);
+    EXPECT_LT(gpgpRecordPrepareVisibility(sampler, cmd, nullptr, &info), 0);
+    EXPECT_EQ(gpgpRecordPrepareVisibility(nullptr, cmd, &f, &info), GPGP_ERROR_INVALID_HANDLE);
+    EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, nullptr, &f, &info), GPGP_ERROR_INVALID_ARGUMENT);
+  });
+  // Only the good record left a report.
+  advance();
+  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+  EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+  EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_NOT_READY);
+  report.sType = 0;
+  EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_ERROR_INVALID_STRUCT);
+  EXPECT_EQ(gpgpGetSampleReport(sampler, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_F(ArgumentsTest, HandlesOfOtherKindsAndDestroyedOnesAreRefused) {
+  GpgpSampleInfo info = good();
+  info.geometrySet = reinterpret_cast<GpgpAsset>(sampler);
+  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "geometrySet is a sampler");
+  info = good();
+  info.view = reinterpret_cast<GpgpView>(set);
+  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "view");
+  gpgpDestroyAsset(set);
+  expectRecord(GPGP_ERROR_INVALID_HANDLE, good(), "geometrySet is destroyed");
+}
+
+TEST_F(ArgumentsTest, NotReadyUntilResidentAndPrewarmed) {
+  GpgpSampleInfo info = good();
+  info.view = createView(0);
+  expectRecord(GPGP_NOT_READY, info, "");
+  info = good();
+  info.geometrySet = createGeometrySet(scene);
+  expectRecord(GPGP_NOT_READY, info, "");
+  GpgpSamplerCreateInfo create = GPGP_SAMPLER_CREATE_INFO_INIT;
+  create.base.queueFamily = queue().family;
+  create.maxWidth = create.maxHeight = 64;
+  ASSERT_EQ(gpgpCreateSampler(context, &create, &sampler), GPGP_SUCCESS);
+  expectRecord(GPGP_NOT_READY, good(), "");
+  ASSERT_EQ(gpgpPrewarm(sampler, nullptr), GPGP_SUCCESS);
+  expectRecord(GPGP_SUCCESS, good(), "");
+}
+
+TEST_F(ArgumentsTest, AViewTooSmallIsRefused) {
+  GpgpSampleInfo info = good();
+  info.view = createView(9);
+  upload();
+  f = advance();
+  expectRecord(GPGP_ERROR_INVALID_ARGUMENT, info, "the view was made for 9");
+}
+
+TEST_F(ArgumentsTest, CreationIsChecked) {
+  GpgpGeometrySetCreateInfo setInfo = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
+  GpgpMesh mesh{0, 4, 0};
+  setInfo.meshCount = 1;
+  GpgpAsset asset = nullptr;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateGeometrySet(context, &setInfo, &asset), "meshes is NULL");
+  setInfo.meshes = &mesh;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateGeometrySet(context, &setInfo, &asset), "multiple of 3");
+  mesh = {0xfffffff0u, 30, 0};
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateGeometrySet(context, &setInfo, &asset), "32 bits");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateGeometrySet(context, &setInfo, nullptr), "geometrySet is NULL");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateGeometrySet(context, nullptr, &asset), "info is NULL");
+  setInfo.sType = 0;
+  expect(GPGP_ERROR_INVALID_STRUCT, gpgpCreateGeometrySet(context, &setInfo, &asset), "sType");
+  EXPECT_EQ(asset, nullptr);
+
+  GpgpSamplerCreateInfo samplerInfo = GPGP_SAMPLER_CREATE_INFO_INIT;
+  samplerInfo.base.queueFamily = queue().family;
+  GpgpWorker worker = nullptr;
+  samplerInfo.maxWidth = 8193;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, &worker), "maxWidth");
+  samplerInfo.maxWidth = 64;
+  samplerInfo.maxTriangles = (1u << 30) + 1;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, &worker), "maxTriangles");
+  samplerInfo.maxTriangles = 64;
+  samplerInfo.base.queueFamily = 99;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, &worker), "queueFamily");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, nullptr), "sampler is NULL");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, nullptr, &worker), "info is NULL");
+  EXPECT_EQ(worker, nullptr);
+
+  GpgpCameraViewCreateInfo viewInfo = GPGP_CAMERA_VIEW_CREATE_INFO_INIT;
+  GpgpView view = nullptr;
+  viewInfo.maxTriangles = 0x80000001u;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraView(context, &viewInfo, &view), "maxTriangles");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraView(context, &viewInfo, nullptr), "view is NULL");
+  viewInfo.sType = 1;
+  expect(GPGP_ERROR_INVALID_STRUCT, gpgpCreateCameraView(context, &viewInfo, &view), "sType");
+  EXPECT_EQ(view, nullptr);
+}
+
+TEST_F(ArgumentsTest, PassesHaveNames) {
+  uint32_t passes = 0;
+  ASSERT_EQ(gpgpGetPasses(sampler, &passes, nullptr), GPGP_SUCCESS);
+  std::vector<const char*> names(passes);
+  ASSERT_EQ(gpgpGetPasses(sampler, &passes, names.data()), GPGP_SUCCESS);
+  EXPECT_STREQ(names.front(), "clear");
+  EXPECT_STREQ(names.back(), "finish");
+}
+
+} // namespace
+} // namespace gpgp::test

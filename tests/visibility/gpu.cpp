@@ -1,0 +1,191 @@
+#include "gpu.h"
+
+#include "api/check.h"
+
+#include <algorithm>
+
+namespace gpgp::test {
+namespace {
+constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr uint32_t kPoison = 0xdeadbeef;
+
+GpgpBuffer toHost(const host::Buffer& buffer) {
+  return buffer.range({}, {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, {}});
+}
+} // namespace
+
+SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
+  const visibility::TwinInput input = scene.input();
+  const auto copy = [&](const auto& span, const char* name) {
+    return host::makeBuffer(device, std::vector(span.begin(), span.end()), kStorage, name);
+  };
+  positions = copy(input.positions, "positions");
+  indices = copy(input.indices, "indices");
+  draws = copy(input.draws, "draws");
+}
+
+void VisibilityGpuTest::SetUp() {
+  GpgpContextCreateInfo info = device.contextCreateInfo();
+  info.label = "visibility test";
+  info.messageUserData = &messages;
+  info.messageFn = [](void* user, const GpgpMessage* m) {
+    static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
+  };
+  ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+}
+
+void VisibilityGpuTest::TearDown() {
+  device.waitIdle();
+  gpgpDestroyContext(context);
+  for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+}
+
+GpgpFrame VisibilityGpuTest::advance(uint64_t inFlight) {
+  ++frame;
+  const GpgpFrame f{frame, frame > inFlight ? frame - inFlight : 0};
+  EXPECT_EQ(gpgpAdvance(context, &f), GPGP_SUCCESS);
+  return f;
+}
+
+GpgpWorker VisibilityGpuTest::createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles,
+                                            bool engineScratch) {
+  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+  info.base.label = "sampler";
+  info.base.queueFamily = queue().family;
+  info.base.engineScratch = engineScratch;
+  info.maxWidth = width;
+  info.maxHeight = height;
+  info.maxTriangles = maxTriangles;
+  GpgpWorker sampler = nullptr;
+  EXPECT_EQ(gpgpCreateSampler(context, &info, &sampler), GPGP_SUCCESS);
+  EXPECT_EQ(gpgpPrewarm(sampler, nullptr), GPGP_SUCCESS);
+  return sampler;
+}
+
+GpgpAsset VisibilityGpuTest::createGeometrySet(const Scene& scene) {
+  static_assert(sizeof(GpgpMesh) == sizeof(shader::Mesh));
+  GpgpGeometrySetCreateInfo info = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
+  info.label = "geometry";
+  info.meshes = reinterpret_cast<const GpgpMesh*>(scene.meshes.data());
+  info.meshCount = static_cast<uint32_t>(scene.meshes.size());
+  GpgpAsset set = nullptr;
+  EXPECT_EQ(gpgpCreateGeometrySet(context, &info, &set), GPGP_SUCCESS);
+  return set;
+}
+
+GpgpView VisibilityGpuTest::createView(uint32_t maxTriangles) {
+  GpgpCameraViewCreateInfo info = GPGP_CAMERA_VIEW_CREATE_INFO_INIT;
+  info.label = "camera";
+  info.maxTriangles = maxTriangles;
+  GpgpView view = nullptr;
+  EXPECT_EQ(gpgpCreateCameraView(context, &info, &view), GPGP_SUCCESS);
+  return view;
+}
+
+void VisibilityGpuTest::upload() {
+  VkDeviceSize pending = 1;
+  while (pending) {
+    const GpgpFrame f = advance();
+    device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
+      ASSERT_EQ(gpgpRecordUpload(context, cmd, &f, 0, &pending), GPGP_SUCCESS);
+    });
+  }
+}
+
+GpgpSampleInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuffers& buffers, GpgpAsset geometrySet) {
+  GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+  info.geometrySet = geometrySet;
+  std::copy_n(scene.params.viewProjection, 16, info.camera.viewProjection);
+  info.camera.reversedDepth = scene.params.reversedDepth;
+  info.width = scene.params.width;
+  info.height = scene.params.height;
+  info.positions = buffers.positions.range();
+  info.positionStride = scene.params.strideWords * 4;
+  info.indices = buffers.indices.range();
+  info.indexType = scene.useShort ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32;
+  info.draws = buffers.draws.range();
+  info.drawCount = static_cast<uint32_t>(scene.draws.size());
+  info.triangleCount = scene.params.triangleCount;
+  return info;
+}
+
+GpuResult VisibilityGpuTest::sample(Scene& scene, const GpuOptions& options, uint32_t maxTriangles) {
+  scene.input(); // fills in what depends on the scene
+  const GpgpWorker sampler = createSampler(scene.params.width, scene.params.height, maxTriangles, true);
+  const GpgpAsset set = createGeometrySet(scene);
+  const GpuResult result = sample(scene, sampler, set, options);
+  gpgpDestroyWorker(sampler);
+  gpgpDestroyAsset(set);
+  return result;
+}
+
+GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset set, const GpuOptions& options) {
+  const SceneBuffers buffers(device, scene);
+  upload();
+  GpgpSampleInfo info = sampleInfo(scene, buffers, set);
+  info.view = options.view;
+  info.base.tag = options.tag;
+  const uint32_t words = (info.triangleCount + 31) / 32;
+  const uint32_t capacity = std::min(options.listTriangles, std::max(info.triangleCount, 1u));
+  host::Buffer bits(device, std::max(words, 1u) * 4, kStorage), list(device, std::max(capacity, 1u) * 4, kStorage);
+  host::Buffer count(device, 16, kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  for (const host::Buffer* buffer : {&bits, &list, &count}) host::fill(device, *buffer, kPoison);
+  info.visibleBits = toHost(bits);
+  if (capacity) info.visibleList = toHost(list);
+  if (options.count) info.visibleCount = toHost(count);
+
+  VkDeviceSize scratchBytes = 0;
+  EXPECT_EQ(gpgpGetScratchSize(handle, &scratchBytes, nullptr, nullptr), GPGP_SUCCESS);
+  const auto* worker = static_cast<const core::Worker*>(api::objectOf(handle));
+  host::Buffer scratch;
+  if (worker->engineScratch()) {
+    scratch = host::Buffer(device, scratchBytes, core::Worker::kScratchUsage);
+    host::fill(device, scratch, kPoison);
+    info.base.scratch = toHost(scratch);
+  }
+  const GpgpFrame f = advance();
+  device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
+    EXPECT_EQ(gpgpRecordPrepareVisibility(handle, cmd, &f, &info), GPGP_SUCCESS)
+        << (messages.empty() ? "" : messages.back());
+  });
+  advance();
+
+  GpuResult result;
+  EXPECT_EQ(gpgpGetSampleReport(handle, &result.report), GPGP_SUCCESS);
+  EXPECT_EQ(result.report.base.tag, options.tag);
+  result.bits = host::download<uint32_t>(device, bits, words);
+  result.list = host::download<uint32_t>(device, list, capacity);
+  if (capacity) {
+    result.list.resize(std::min<size_t>(result.list.size(), result.report.listed));
+    std::sort(result.list.begin(), result.list.end());
+  } else {
+    EXPECT_EQ(host::download<uint32_t>(device, list, 1)[0], kPoison);
+  }
+  result.count = host::download<uint32_t>(device, count, 4);
+  if (scratch.handle()) {
+    const size_t pixels = size_t(info.width) * info.height;
+    const auto& offsets = worker->passes().scratchOffsets;
+    result.depth = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindDepth]);
+    result.ids = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindIds]);
+  }
+  return result;
+}
+
+void expectEqual(const GpuResult& gpu, const visibility::TwinResult& twin, const std::string& what) {
+  size_t differentIds = 0, differentDepths = 0;
+  for (size_t i = 0; i < gpu.ids.size(); ++i) {
+    differentIds += gpu.ids[i] != twin.ids[i];
+    differentDepths += gpu.depth[i] != twin.depth[i];
+  }
+  EXPECT_EQ(differentIds, 0u) << what;
+  EXPECT_EQ(differentDepths, 0u) << what;
+  EXPECT_EQ(gpu.bits, twin.bits) << what;
+  EXPECT_EQ(gpu.report.triangles, twin.counters.triangles) << what;
+  EXPECT_EQ(gpu.report.visible, twin.counters.visible) << what;
+  EXPECT_EQ(gpu.report.coveredPixels, twin.counters.coveredPixels) << what;
+  EXPECT_EQ(gpu.report.neededTriangles, twin.counters.items) << what;
+  EXPECT_EQ(gpu.report.skippedTriangles, twin.counters.skippedTriangles) << what;
+  EXPECT_EQ(gpu.report.skippedDraws, twin.counters.skippedDraws) << what;
+}
+
+} // namespace gpgp::test

@@ -1,0 +1,60 @@
+// Runs a scene through the C API as an engine would, and brings back everything that can be compared with the twin.
+#pragma once
+#include "host/frames.h"
+#include "host/memory.h"
+#include "scenes.h"
+
+#include <gpgp/visibility.h>
+#include <gtest/gtest.h>
+#include <optional>
+
+namespace gpgp::test {
+
+struct GpuOptions {
+  uint32_t listTriangles = UINT32_MAX; ///< the list's budget; UINT32_MAX: all; 0: no list
+  bool count = true;
+  GpgpView view = nullptr;
+  uint64_t tag = 0;
+};
+
+struct GpuResult {
+  std::vector<uint32_t> bits, list, count; ///< list: as much as was written, sorted
+  std::vector<uint32_t> depth, ids;        ///< from the scratch buffer
+  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+};
+
+/// The engine's side of one scene: its buffers on the device.
+struct SceneBuffers {
+  SceneBuffers(host::HeadlessDevice& device, Scene& scene);
+  host::Buffer positions, indices, draws;
+};
+
+struct VisibilityGpuTest : testing::Test {
+  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  GpgpContext context = nullptr;
+  std::vector<std::string> messages;
+  uint64_t frame = 0;
+
+  void SetUp() override;
+  void TearDown() override;
+  GpgpFrame advance(uint64_t inFlight = 1);
+  const host::Queue& queue() const { return device.computeOnly() ? *device.computeOnly() : device.graphics(); }
+
+  GpgpWorker createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false);
+  GpgpAsset createGeometrySet(const Scene& scene);
+  GpgpView createView(uint32_t maxTriangles);
+  /// Copies all that is pending.
+  void upload();
+  /// An info with everything but outputs and view.
+  static GpgpSampleInfo sampleInfo(const Scene& scene, const SceneBuffers& buffers, GpgpAsset geometrySet);
+
+  /// Samples once, with scratch that was poisoned before, and waits. maxTriangles: of the sampler; 0: the default.
+  GpuResult sample(Scene& scene, const GpuOptions& options = {}, uint32_t maxTriangles = 0);
+  /// The same with the sampler and the geometry set given.
+  GpuResult sample(Scene& scene, GpgpWorker sampler, GpgpAsset geometrySet, const GpuOptions& options);
+};
+
+/// Everything equal, bit for bit.
+void expectEqual(const GpuResult& gpu, const visibility::TwinResult& twin, const std::string& what);
+
+} // namespace gpgp::test

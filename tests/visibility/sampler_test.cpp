@@ -1,0 +1,260 @@
+// The sampler on the GPU against its CPU twin: ids, depth, bits, lists, counts and arguments, bit for bit.
+#include "gpu.h"
+
+#include <algorithm>
+#include <glm/ext/matrix_transform.hpp>
+#include <limits>
+#include <random>
+
+namespace gpgp::test {
+namespace {
+using namespace visibility;
+
+TEST_F(VisibilityGpuTest, RandomTrianglesEqualTheTwin) {
+  const GpgpWorker sampler = createSampler(256, 90, 0, true); // also: one worker for viewports of several sizes
+  for (uint32_t seed = 0; seed < 12; ++seed) {
+    Scene scene = randomSoup(seed, 20 + 60 * seed, 150 + 7 * seed, 90, seed % 2, seed % 3 == 0);
+    const TwinResult twin = sampleOnCpu(scene.input());
+    const GpuResult gpu = sample(scene, sampler, createGeometrySet(scene), {});
+    expectEqual(gpu, twin, "seed " + std::to_string(seed));
+    EXPECT_EQ(gpu.list, twin.list);
+    EXPECT_GT(twin.counters.visible, 0u);
+  }
+}
+
+TEST_F(VisibilityGpuTest, ColonnadeWithSharedMeshesEqualsTheTwin) {
+  for (const bool useShort : {false, true}) {
+    Scene scene = colonnade(320, 180);
+    scene.useShort = useShort;
+    const TwinResult twin = sampleOnCpu(scene.input());
+    expectEqual(sample(scene), twin, "colonnade");
+    EXPECT_GT(twin.counters.coveredPixels, 320u * 90u);
+  }
+}
+
+TEST_F(VisibilityGpuTest, BunnyEqualsTheTwin) {
+  Scene scene = bunny(480, 270);
+  const TwinResult twin = sampleOnCpu(scene.input());
+  const GpuResult gpu = sample(scene);
+  expectEqual(gpu, twin, "bunny");
+  EXPECT_EQ(gpu.list, twin.list);
+  EXPECT_GT(twin.counters.visible, 5000u);
+  EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
+}
+
+TEST_F(VisibilityGpuTest, ManyBunniesFarAwayInThousandsOfDrawsEqualTheTwin) {
+  Scene scene = bunny(256, 256);
+  scene.meshes = {{0, 3000, 0}, {3000, 6000, 0}, {9000, 0, 0}};
+  scene.draws.clear();
+  scene.params.triangleCount = 0;
+  for (int i = 0; i < 900; ++i) {
+    const glm::vec3 at(float(i % 30 - 15) * 0.8f, float(i / 30 - 15) * 0.8f, -20);
+    scene.addDraw(static_cast<uint32_t>(i % 3), glm::translate(glm::mat4(1.0f), at));
+  }
+  const TwinResult twin = sampleOnCpu(scene.input());
+  expectEqual(sample(scene), twin, "bunnies");
+  EXPECT_GT(twin.counters.visible, 1000u);
+}
+
+TEST_F(VisibilityGpuTest, BadInputIsSkippedAndCountedAsByTheTwin) {
+  Scene scene = randomSoup(7, 300, 128, 128, true, false);
+  std::mt19937 random(1);
+  const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 2e36f, -3e38f,
+                       1e-42f};
+  for (int i = 0; i < 60; ++i) scene.positions[random() % scene.positions.size()] = bad[i % 5];
+  for (int i = 0; i < 30; ++i) scene.indices[random() % scene.indices.size()] = i % 2 ? 900 + i : 0xfffffff0u + i % 16;
+  scene.addDraw(0).mesh = 77;
+  scene.meshes.push_back({890, 30, 0});         // past the end of the indices
+  scene.meshes.push_back({0, 30, 0xffffff00u}); // vertex offset beyond 32 bits
+  scene.addDraw(1);
+  scene.addDraw(2);
+  auto& nan = scene.addDraw(0);
+  nan.transform[5] = std::numeric_limits<float>::quiet_NaN();
+  scene.params.triangleCount -= 10; // the last draw's last triangles have no bit
+  const TwinResult twin = sampleOnCpu(scene.input());
+  const GpuResult gpu = sample(scene);
+  expectEqual(gpu, twin, "bad input");
+  EXPECT_EQ(twin.counters.skippedDraws, 1u);
+  EXPECT_GT(twin.counters.skippedTriangles, 300u);
+  EXPECT_GT(twin.counters.visible, 15u);
+}
+
+TEST_F(VisibilityGpuTest, AListTooSmallIsFilledAndReported) {
+  Scene scene = bunny(200, 200);
+  const TwinResult twin = sampleOnCpu(scene.input());
+  ASSERT_GT(twin.list.size(), 1000u);
+  const GpuResult gpu = sample(scene, {.listTriangles = 777, .tag = 42});
+  EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(gpu.report.visible, twin.list.size());
+  EXPECT_EQ(gpu.report.listed, 777u);
+  ASSERT_EQ(gpu.list.size(), 777u);
+  EXPECT_TRUE(std::includes(twin.list.begin(), twin.list.end(), gpu.list.begin(), gpu.list.end()));
+  EXPECT_EQ(std::adjacent_find(gpu.list.begin(), gpu.list.end()), gpu.list.end());
+  EXPECT_EQ(gpu.count, (std::vector<uint32_t>{uint32_t(twin.list.size()), 13, 1, 1}));
+  EXPECT_EQ(gpu.bits, twin.bits);
+}
+
+TEST_F(VisibilityGpuTest, OutputsThatAreLeftOutAreNotNeeded) {
+  Scene scene = randomSoup(3, 100, 64, 64, true, false);
+  const TwinResult twin = sampleOnCpu(scene.input());
+  const GpuResult gpu = sample(scene, {.listTriangles = 0, .count = false});
+  expectEqual(gpu, twin, "bits only");
+  EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(gpu.report.listed, 0u);
+  EXPECT_EQ(gpu.count, std::vector<uint32_t>(4, 0xdeadbeef));
+}
+
+TEST_F(VisibilityGpuTest, TooManyTrianglesAreCutAndReported) {
+  Scene scene = colonnade(160, 90);
+  scene.params.maxItems = 100;
+  const TwinResult twin = sampleOnCpu(scene.input());
+  const GpuResult gpu = sample(scene, {}, 100);
+  expectEqual(gpu, twin, "cut");
+  EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(gpu.report.neededTriangles, scene.params.triangleCount);
+}
+
+TEST_F(VisibilityGpuTest, CountAndArgumentsMatchTheList) {
+  Scene scene = bunny(300, 300);
+  const TwinResult twin = sampleOnCpu(scene.input());
+  const GpuResult gpu = sample(scene);
+  const auto visible = static_cast<uint32_t>(twin.list.size());
+  EXPECT_EQ(gpu.count, (std::vector<uint32_t>{visible, (visible + 63) / 64, 1, 1}));
+  Scene nothing = bunny(64, 64);
+  nothing.setCamera(perspective(1.0f, 1.0f, 0.1f, 10.0f) * lookAt({0, 0, 50}, {0, 0, 60}), 64, 64);
+  EXPECT_EQ(sample(nothing).count, (std::vector<uint32_t>{0, 0, 1, 1}));
+}
+
+TEST_F(VisibilityGpuTest, NoDrawsNoBuffersNothingVisible) {
+  Scene scene;
+  scene.setCamera(glm::mat4(1.0f), 33, 17);
+  scene.input();
+  const GpgpWorker sampler = createSampler(64, 64);
+  const GpgpAsset set = createGeometrySet(scene);
+  upload();
+  GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+  info.geometrySet = set;
+  info.width = info.height = 40;
+  host::Buffer count(device, 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  info.visibleCount = count.range();
+  info.indexType = VK_INDEX_TYPE_UINT32;
+  const GpgpFrame f = advance();
+  device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
+    ASSERT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), GPGP_SUCCESS) << messages.back();
+  });
+  advance();
+  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+  ASSERT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(report.coveredPixels, 0u);
+  EXPECT_EQ(host::download<uint32_t>(device, count, 4), (std::vector<uint32_t>{0, 0, 1, 1}));
+}
+
+TEST_F(VisibilityGpuTest, AViewTellsWhatAppearedAndDisappeared) {
+  Scene scene = bunny(160, 160);
+  scene.input();
+  const GpgpWorker sampler = createSampler(160, 160, 0, true);
+  const GpgpAsset set = createGeometrySet(scene);
+  const GpgpView view = createView(80000);
+  std::vector<uint32_t> before;
+  const uint32_t all = scene.params.triangleCount;
+  for (int i = 0; i < 6; ++i) {
+    const float angle = 0.4f * float(i == 3 ? 2 : i); // frame 3 repeats frame 2
+    scene.setCamera(perspective(1.0f, 1.0f, 0.1f, 100.0f) *
+                        lookAt({3 * std::sin(angle), 1, 3 * std::cos(angle)}, {0, 0, 0}),
+                    160, 160);
+    scene.params.triangleCount = i == 4 ? 20000 : all; // fewer triangle numbers: the others disappear
+    scene.params.viewWords = 2500;
+    TwinInput input = scene.input();
+    input.previousBits = before;
+    const TwinResult twin = sampleOnCpu(input);
+    const GpuResult gpu = sample(scene, sampler, set, {.view = view, .tag = uint64_t(i)});
+    expectEqual(gpu, twin, "frame " + std::to_string(i));
+    EXPECT_EQ(gpu.report.appeared, twin.counters.appeared) << i;
+    EXPECT_EQ(gpu.report.disappeared, twin.counters.disappeared) << i;
+    if (i == 0) {
+      EXPECT_EQ(gpu.report.appeared, gpu.report.visible);
+    }
+    if (i == 3) {
+      EXPECT_EQ(gpu.report.appeared + gpu.report.disappeared, 0u);
+    }
+    if (i == 4) {
+      EXPECT_GT(gpu.report.disappeared, 1000u);
+    }
+    before = twin.bits;
+  }
+}
+
+TEST_F(VisibilityGpuTest, ADroppedRecordLeavesTheHistoryAlone) {
+  Scene scene = randomSoup(5, 200, 64, 64, true, false);
+  scene.input();
+  const GpgpWorker sampler = createSampler(64, 64);
+  const GpgpAsset set = createGeometrySet(scene);
+  const GpgpView view = createView(0);
+  const GpuResult first = sample(scene, sampler, set, {.view = view});
+  EXPECT_GT(first.report.appeared, 0u);
+  {
+    Scene other = randomSoup(6, 200, 64, 64, true, false);
+    const SceneBuffers buffers(device, other);
+    GpgpSampleInfo info = sampleInfo(other, buffers, set);
+    info.view = view;
+    host::Buffer bits(device, 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    info.visibleBits = bits.range();
+    const GpgpFrame f = advance();
+    host::FrameRing ring(device, queue(), 1);
+    ASSERT_EQ(gpgpRecordPrepareVisibility(sampler, ring.begin(), &f, &info), GPGP_SUCCESS);
+    ring.drop();
+    advance();
+    GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+    ASSERT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+    EXPECT_EQ(report.base.status, GPGP_NOT_EXECUTED);
+  }
+  const GpuResult again = sample(scene, sampler, set, {.view = view});
+  EXPECT_EQ(again.report.appeared + again.report.disappeared, 0u);
+}
+
+// Three frames in flight with two samplers' worth of records each, no waiting in between: results of each frame are as
+// if it had run alone.
+TEST_F(VisibilityGpuTest, FramesInFlightDoNotDisturbEachOther) {
+  Scene scene = colonnade(200, 120);
+  scene.input();
+  const GpgpWorker sampler = createSampler(200, 120);
+  const GpgpAsset set = createGeometrySet(scene);
+  const SceneBuffers buffers(device, scene);
+  const uint32_t words = (scene.params.triangleCount + 31) / 32;
+  constexpr int kFrames = 9;
+  std::vector<host::Buffer> bits;
+  std::vector<TwinResult> twins;
+  {
+    host::FrameRing ring(device, queue(), 3);
+    for (int i = 0; i < kFrames; ++i) {
+      scene.setCamera(perspective(1.0f, 1.5f, 0.1f, 100.0f) * lookAt({0.4f, 0.3f, 4.0f - float(i)}, {0, 0.3f, -40}),
+                      200, 120);
+      twins.push_back(sampleOnCpu(scene.input()));
+      bits.emplace_back(device, words * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+      VkCommandBuffer cmd = ring.begin();
+      const GpgpFrame f = ring.frame();
+      ASSERT_EQ(gpgpAdvance(context, &f), GPGP_SUCCESS);
+      ASSERT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS);
+      GpgpSampleInfo info = sampleInfo(scene, buffers, set);
+      info.visibleBits = bits.back().range();
+      info.base.tag = static_cast<uint64_t>(i);
+      ASSERT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), GPGP_SUCCESS) << messages.back();
+      ring.submit();
+    }
+    ring.waitAll();
+    const GpgpFrame last{ring.frame().current + 1, ring.frame().current};
+    ASSERT_EQ(gpgpAdvance(context, &last), GPGP_SUCCESS);
+  }
+  for (size_t i = 0; i < kFrames; ++i) {
+    GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+    ASSERT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+    EXPECT_EQ(report.base.tag, i);
+    EXPECT_EQ(report.visible, twins[i].counters.visible) << i;
+    EXPECT_EQ(report.coveredPixels, twins[i].counters.coveredPixels) << i;
+    EXPECT_EQ(host::download<uint32_t>(device, bits[i], words), twins[i].bits) << i;
+  }
+}
+
+} // namespace
+} // namespace gpgp::test
