@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Every GPGP_API function says what it does and:
+#   @threads any|context|handle
+#   @lifetime call|frame|handle   where it takes a pointer to read
+#   Errors:                       where it creates an asset, worker, view or context
+#   @pass outside|inside|any and @state, and a place in docs/integration_contract.md, where it records commands
+#
+#   docs_test.sh INCLUDE_DIR TEST_DIR DOCS_DIR
+set -euo pipefail
+include=$1 tests=$2 docs=$3
+awk -f "$tests/declarations.awk" "$include"/gpgp/*.h | awk -F'\t' -v contract="$docs/integration_contract.md" '
+  function complain(what) { print "FAILED: " $1 ": " what; failed = 1 }
+  BEGIN { while ((getline line < contract) > 0) text = text line "\n" }
+  {
+    ++functions
+    words = $3
+    gsub(/@[a-z]+ [^@]*/, "", words)
+    if (split(words, unused, " ") < 3) complain("says nothing of what it does before its tags")
+    if ($3 !~ /@threads (any|context|handle)/) complain("no @threads any|context|handle")
+    if ($2 ~ /const [A-Za-z]+\*/ && $3 !~ /@lifetime (call|frame|handle)/) complain("no @lifetime call|frame|handle")
+    if ($1 ~ /^gpgpCreate/ && $3 !~ /Errors: /) complain("no list of errors")
+    if ($2 ~ /VkCommandBuffer/) {
+      ++records
+      if ($1 !~ /^gpgpRecord/) complain("takes a command buffer but is not named gpgpRecord...")
+      if ($3 !~ /@pass (outside|inside|any)/) complain("no @pass outside|inside|any")
+      if ($3 !~ /@state [a-z]/) complain("no @state")
+      if (index(text, "`" $1 "`") == 0) complain("not in " contract)
+    }
+  }
+  END {
+    print functions " functions, " records " of them record"
+    exit failed || functions == 0 || records == 0
+  }'

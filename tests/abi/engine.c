@@ -1,0 +1,265 @@
+/* A small engine, in C, that hosts gpgp: own instance, device and queue, three frames, one context, one object of each
+ * service that is built. It is linked four times: beside libvulkan or with its own volk and glslang, with the shared or
+ * the static gpgp. Exits 0 when every call succeeded and gpgp sent no message.
+ *
+ *   ENGINE_VOLK        Vulkan through volk's global function pointers, and a glslang of its own
+ *   ENGINE_SPAWN ...   the service is in the library; ENGINE_COMPILE_...: so is its compiler */
+#ifdef ENGINE_VOLK
+#include <volk.h>
+#else
+#include <vulkan/vulkan.h>
+#endif
+
+#include <gpgp/gpgp.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int engineCompilesItsShaders(void); /* engine_glslang.c */
+
+static int failures = 0;
+
+static void check(int ok, const char* what) {
+  if (ok) return;
+  fprintf(stderr, "failed: %s\n", what);
+  ++failures;
+}
+#define VK_CHECK(call) check((call) == VK_SUCCESS, #call)
+#define GPGP_CHECK(call) check((call) == GPGP_SUCCESS, #call)
+
+static void GPGP_CALL onMessage(void* userData, const GpgpMessage* message) {
+  (void)userData;
+  fprintf(stderr, "%s (%s): %s\n", message->function, gpgpResultString(message->code), message->text);
+  ++failures;
+}
+
+/* The device that GPGP_DEVICE names by a part of its name; without it the software device that is on every machine. */
+static VkPhysicalDevice chooseDevice(VkInstance instance) {
+  const char* wanted = getenv("GPGP_DEVICE");
+  VkPhysicalDevice devices[16], chosen = VK_NULL_HANDLE;
+  uint32_t count = 16, i;
+  const VkResult listed = vkEnumeratePhysicalDevices(instance, &count, devices);
+  if (listed != VK_SUCCESS && listed != VK_INCOMPLETE) return VK_NULL_HANDLE;
+  for (i = 0; i < count && !chosen; ++i) {
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(devices[i], &properties);
+    if (strstr(properties.deviceName, wanted && *wanted ? wanted : "llvmpipe")) chosen = devices[i];
+  }
+  return chosen || count == 0 ? chosen : devices[0];
+}
+
+static uint32_t chooseFamily(VkPhysicalDevice device) {
+  VkQueueFamilyProperties families[16];
+  uint32_t count = 16, i;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families);
+  for (i = 0; i < count; ++i)
+    if ((families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) && (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) return i;
+  check(0, "a queue family with graphics and compute");
+  return 0;
+}
+
+#ifdef ENGINE_SPAWN
+static void useSpawn(GpgpContext context, uint32_t family) {
+  GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
+  GpgpWorker spawner = NULL;
+  info.base.label = "spawner";
+  info.base.queueFamily = family;
+  info.maxShapes = 1024;
+  GPGP_CHECK(gpgpCreateSpawner(context, &info, &spawner));
+  GPGP_CHECK(gpgpPrewarm(spawner, NULL));
+#ifdef ENGINE_COMPILE_GRAMMAR
+  {
+    static const char text[] = "axiom Box A;\nterminal T (1,0);\nA = SubDiv(X) { -1: T | -1: T };\n";
+    GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+    GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
+    GpgpBlob blob = {NULL, 0};
+    GpgpAsset grammar = NULL;
+    source.name = "engine.pga";
+    source.text = text;
+    source.size = sizeof text - 1;
+    GPGP_CHECK(gpgpCompileGrammar(&source, &blob));
+    grammarInfo.label = "grammar";
+    grammarInfo.data = blob.data;
+    grammarInfo.size = blob.size;
+    GPGP_CHECK(gpgpCreateGrammar(context, &grammarInfo, &grammar));
+    gpgpFreeBlob(&blob);
+    check(blob.data == NULL, "gpgpFreeBlob zeroes the blob");
+    gpgpDestroyAsset(grammar);
+  }
+#endif
+  gpgpDestroyWorker(spawner);
+}
+#endif
+
+#ifdef ENGINE_VECTOR
+static void useVector(GpgpContext context, uint32_t family) {
+  static const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
+  static const float points[] = {0, 0, 10, 0, 0, 10};
+  GpgpPath path;
+  GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  GpgpAsset drawing = NULL;
+  GpgpWorker canvas = NULL;
+  memset(&path, 0, sizeof path);
+  path.verbs = verbs;
+  path.verbCount = 4;
+  path.points = points;
+  path.pointCount = 3;
+  path.color[3] = 1;
+  drawingInfo.label = "triangle";
+  drawingInfo.paths = &path;
+  drawingInfo.pathCount = 1;
+  GPGP_CHECK(gpgpCreateDrawing(context, &drawingInfo, &drawing));
+  info.base.label = "canvas";
+  info.base.queueFamily = family;
+  info.maxWidth = info.maxHeight = 64;
+  info.maxPatches = info.maxTileEntries = 1024;
+  GPGP_CHECK(gpgpCreateCanvas(context, &info, &canvas));
+  GPGP_CHECK(gpgpPrewarm(canvas, NULL));
+#ifdef ENGINE_COMPILE_SVG
+  {
+    static const char text[] = "<svg xmlns='http://www.w3.org/2000/svg' width='8' height='8'>"
+                               "<path d='M0 0h8v8z'/></svg>";
+    GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+    GpgpBlob blob = {NULL, 0};
+    source.name = "engine.svg";
+    source.data = text;
+    source.size = sizeof text - 1;
+    GPGP_CHECK(gpgpCompileSvg(&source, &blob));
+    gpgpFreeBlob(&blob);
+  }
+#endif
+  gpgpDestroyWorker(canvas);
+  gpgpDestroyAsset(drawing);
+}
+#endif
+
+#ifdef ENGINE_VISIBILITY
+static void useVisibility(GpgpContext context, uint32_t family) {
+  const GpgpMesh mesh = {0, 3, 0};
+  GpgpGeometrySetCreateInfo setInfo = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
+  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+  GpgpAsset set = NULL;
+  GpgpWorker sampler = NULL;
+  setInfo.label = "geometry";
+  setInfo.meshes = &mesh;
+  setInfo.meshCount = 1;
+  GPGP_CHECK(gpgpCreateGeometrySet(context, &setInfo, &set));
+  info.base.label = "sampler";
+  info.base.queueFamily = family;
+  info.maxWidth = info.maxHeight = 64;
+  info.maxDraws = 16;
+  info.maxTriangles = 1024;
+  GPGP_CHECK(gpgpCreateSampler(context, &info, &sampler));
+  GPGP_CHECK(gpgpPrewarm(sampler, NULL));
+  gpgpDestroyWorker(sampler);
+  gpgpDestroyAsset(set);
+}
+#endif
+
+static void renderFrames(VkDevice device, uint32_t family, GpgpContext context) {
+  VkCommandPoolCreateInfo poolInfo = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, NULL, 0, 0};
+  VkCommandBufferAllocateInfo bufferInfo = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, NULL, VK_NULL_HANDLE,
+                                            VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+  const VkCommandBufferBeginInfo beginInfo = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, NULL,
+                                              VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, NULL};
+  VkCommandPool pool = VK_NULL_HANDLE;
+  VkCommandBuffer commandBuffer = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  GpgpFrame frame = {1, 0};
+  vkGetDeviceQueue(device, family, 0, &queue);
+  poolInfo.queueFamilyIndex = family;
+  VK_CHECK(vkCreateCommandPool(device, &poolInfo, NULL, &pool));
+  bufferInfo.commandPool = pool;
+  VK_CHECK(vkAllocateCommandBuffers(device, &bufferInfo, &commandBuffer));
+  for (; frame.current <= 3; ++frame.current, ++frame.safe) {
+    VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO, NULL, 0, NULL, NULL, 0, NULL, 0, NULL};
+    VkDeviceSize pending = 1;
+    GPGP_CHECK(gpgpAdvance(context, &frame));
+    VK_CHECK(vkResetCommandPool(device, pool, 0));
+    VK_CHECK(vkBeginCommandBuffer(commandBuffer, &beginInfo));
+    GPGP_CHECK(gpgpRecordUpload(context, commandBuffer, &frame, 0, &pending));
+    check(pending == 0, "everything is uploaded");
+    VK_CHECK(vkEndCommandBuffer(commandBuffer));
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commandBuffer;
+    VK_CHECK(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE));
+    VK_CHECK(vkQueueWaitIdle(queue));
+  }
+  vkDestroyCommandPool(device, pool, NULL);
+}
+
+int main(void) {
+  VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO, NULL, "engine", 1, NULL, 0, VK_API_VERSION_1_2};
+  VkInstanceCreateInfo instanceInfo = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, NULL, 0, NULL, 0, NULL, 0, NULL};
+  VkDeviceQueueCreateInfo queueInfo = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, NULL, 0, 0, 1, NULL};
+  VkDeviceCreateInfo deviceInfo = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, NULL, 0, 0, NULL, 0, NULL, 0, NULL, NULL};
+  GpgpRequirementsInfo requirementsInfo = GPGP_REQUIREMENTS_INFO_INIT;
+  GpgpRequirements requirements = GPGP_REQUIREMENTS_INIT;
+  GpgpContextCreateInfo contextInfo = GPGP_CONTEXT_CREATE_INFO_INIT;
+  GpgpContext context = NULL;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  const float priority = 1;
+
+#ifdef ENGINE_VOLK
+  VK_CHECK(volkInitialize());
+  check(engineCompilesItsShaders(), "the engine's glslang, before gpgp");
+#endif
+  check(gpgpGetVersion() == GPGP_VERSION, "header and library have the same version");
+  instanceInfo.pApplicationInfo = &application;
+  VK_CHECK(vkCreateInstance(&instanceInfo, NULL, &instance));
+  if (!instance) return 1;
+#ifdef ENGINE_VOLK
+  volkLoadInstance(instance);
+#endif
+  requirementsInfo.instance = instance;
+  requirementsInfo.physicalDevice = chooseDevice(instance);
+  requirementsInfo.getInstanceProcAddr = vkGetInstanceProcAddr;
+  check(requirementsInfo.physicalDevice != VK_NULL_HANDLE, "a physical device");
+  if (!requirementsInfo.physicalDevice) return 1;
+  GPGP_CHECK(gpgpGetRequirements(&requirementsInfo, &requirements));
+
+  queueInfo.queueFamilyIndex = chooseFamily(requirementsInfo.physicalDevice);
+  queueInfo.pQueuePriorities = &priority;
+  deviceInfo.pNext = &requirements.features;
+  deviceInfo.queueCreateInfoCount = 1;
+  deviceInfo.pQueueCreateInfos = &queueInfo;
+  deviceInfo.enabledExtensionCount = requirements.extensionCount;
+  deviceInfo.ppEnabledExtensionNames = requirements.extensions;
+  VK_CHECK(vkCreateDevice(requirementsInfo.physicalDevice, &deviceInfo, NULL, &device));
+  if (!device) return 1;
+#ifdef ENGINE_VOLK
+  volkLoadDevice(device);
+#endif
+
+  contextInfo.label = "engine";
+  contextInfo.instance = instance;
+  contextInfo.physicalDevice = requirementsInfo.physicalDevice;
+  contextInfo.device = device;
+  contextInfo.getInstanceProcAddr = vkGetInstanceProcAddr;
+  contextInfo.features = requirements.optionalFeatures & ~GPGP_FEATURE_DEBUG_UTILS; /* not enabled on the instance */
+  contextInfo.messageFn = onMessage;
+  GPGP_CHECK(gpgpCreateContext(&contextInfo, &context));
+  if (context) {
+#ifdef ENGINE_SPAWN
+    useSpawn(context, queueInfo.queueFamilyIndex);
+#endif
+#ifdef ENGINE_VECTOR
+    useVector(context, queueInfo.queueFamilyIndex);
+#endif
+#ifdef ENGINE_VISIBILITY
+    useVisibility(context, queueInfo.queueFamilyIndex);
+#endif
+    renderFrames(device, queueInfo.queueFamilyIndex, context);
+    gpgpDestroyContext(context);
+  }
+#ifdef ENGINE_VOLK
+  check(engineCompilesItsShaders(), "the engine's glslang, after gpgp");
+#endif
+  vkDestroyDevice(device, NULL);
+  vkDestroyInstance(instance, NULL);
+  printf("%s\n", failures ? "failed" : "ok");
+  return failures != 0;
+}

@@ -1,0 +1,47 @@
+/* Compiled, never run, as C99, C11, C++11 and C++20: every _INIT macro makes its struct, and structs that also lie in GPU
+ * buffers have the size that their comments state. */
+#include <gpgp/gpgp.h>
+
+#define GPGP_SIZE_IS(Type, bytes) typedef char sizeOf##Type[sizeof(Type) == (bytes) ? 1 : -1]
+GPGP_SIZE_IS(GpgpAxiom, 96);
+GPGP_SIZE_IS(GpgpInstance, 96);
+GPGP_SIZE_IS(GpgpVisibilityDraw, 64);
+GPGP_SIZE_IS(GpgpResult, 4);
+GPGP_SIZE_IS(GpgpFeatures, 8);
+GPGP_SIZE_IS(GpgpAccessMode, 8);
+
+GpgpStructureType useEveryStruct(void);
+
+GpgpStructureType useEveryStruct(void) {
+  GpgpStructureType sum = 0;
+#define GPGP_USE(Type, init)                                                                                           \
+  do {                                                                                                                 \
+    Type value = init;                                                                                                 \
+    sum += value.sType + (value.pNext != 0);                                                                           \
+  } while (0)
+  GPGP_USE(GpgpRequirementsInfo, GPGP_REQUIREMENTS_INFO_INIT);
+  GPGP_USE(GpgpRequirements, GPGP_REQUIREMENTS_INIT);
+  GPGP_USE(GpgpContextCreateInfo, GPGP_CONTEXT_CREATE_INFO_INIT);
+  GPGP_USE(GpgpTargetInfo, GPGP_TARGET_INFO_INIT);
+  GPGP_USE(GpgpPrewarmInfo, GPGP_PREWARM_INFO_INIT);
+  GPGP_USE(GpgpMemoryReport, GPGP_MEMORY_REPORT_INIT);
+  GPGP_USE(GpgpGrammarSource, GPGP_GRAMMAR_SOURCE_INIT);
+  GPGP_USE(GpgpGrammarCreateInfo, GPGP_GRAMMAR_CREATE_INFO_INIT);
+  GPGP_USE(GpgpSpawnerCreateInfo, GPGP_SPAWNER_CREATE_INFO_INIT);
+  GPGP_USE(GpgpSpawnInfo, GPGP_SPAWN_INFO_INIT);
+  GPGP_USE(GpgpSpawnReport, GPGP_SPAWN_REPORT_INIT);
+  GPGP_USE(GpgpSvgSource, GPGP_SVG_SOURCE_INIT);
+  GPGP_USE(GpgpDrawingCreateInfo, GPGP_DRAWING_CREATE_INFO_INIT);
+  GPGP_USE(GpgpDrawingInfo, GPGP_DRAWING_INFO_INIT);
+  GPGP_USE(GpgpCanvasCreateInfo, GPGP_CANVAS_CREATE_INFO_INIT);
+  GPGP_USE(GpgpCanvasViewCreateInfo, GPGP_CANVAS_VIEW_CREATE_INFO_INIT);
+  GPGP_USE(GpgpCanvasInfo, GPGP_CANVAS_INFO_INIT);
+  GPGP_USE(GpgpCanvasDrawInfo, GPGP_CANVAS_DRAW_INFO_INIT);
+  GPGP_USE(GpgpCanvasReport, GPGP_CANVAS_REPORT_INIT);
+  GPGP_USE(GpgpGeometrySetCreateInfo, GPGP_GEOMETRY_SET_CREATE_INFO_INIT);
+  GPGP_USE(GpgpSamplerCreateInfo, GPGP_SAMPLER_CREATE_INFO_INIT);
+  GPGP_USE(GpgpCameraViewCreateInfo, GPGP_CAMERA_VIEW_CREATE_INFO_INIT);
+  GPGP_USE(GpgpSampleInfo, GPGP_SAMPLE_INFO_INIT);
+  GPGP_USE(GpgpSampleReport, GPGP_SAMPLE_REPORT_INIT);
+  return sum;
+}

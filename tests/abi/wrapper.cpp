@@ -1,0 +1,104 @@
+// Compiled, never run, as C++17 and C++20: every member of gpgp.hpp, and that its handles are move-only and no larger than
+// the C handles.
+#include <gpgp/gpgp.hpp>
+
+#include <type_traits>
+
+namespace {
+template <class T> constexpr bool isHandle() {
+  return !std::is_copy_constructible_v<T> && !std::is_copy_assignable_v<T> && std::is_nothrow_move_constructible_v<T> &&
+         std::is_nothrow_move_assignable_v<T> && std::is_nothrow_default_constructible_v<T> &&
+         sizeof(T) == sizeof(void*);
+}
+static_assert(isHandle<gpgp::Context>() && isHandle<gpgp::Grammar>() && isHandle<gpgp::Spawner>());
+static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::Canvas>() && isHandle<gpgp::CanvasView>());
+static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::Sampler>() && isHandle<gpgp::CameraView>());
+static_assert(!std::is_copy_constructible_v<gpgp::Blob> && std::is_nothrow_move_constructible_v<gpgp::Blob>);
+static_assert(!std::is_convertible_v<gpgp::Grammar, gpgp::Drawing>);
+
+GpgpResult useCore(gpgp::Context& context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  if (const GpgpResult code = context.advance(frame)) return code;
+  const auto pending = context.recordUpload(cmd, frame, 1 << 20);
+  if (!pending) return pending.code();
+  const auto memory = context.memoryReport();
+  size_t size = static_cast<size_t>(memory->blockBytes + *pending);
+  if (const GpgpResult code = context.pipelineCacheData(size, nullptr)) return code;
+  context.notifyDeviceLost();
+  gpgp::Context other = std::move(context);
+  context = std::move(other);
+  return GPGP_SUCCESS;
+}
+
+GpgpResult useWorker(gpgp::Worker& worker, const gpgp::Asset& asset) {
+  if (const GpgpResult code = worker.prewarm()) return code;
+  if (const GpgpResult code = worker.prewarm(gpgp::init<GpgpPrewarmInfo>())) return code;
+  uint32_t count = 0;
+  if (const GpgpResult code = worker.passes(count, nullptr)) return code;
+  const auto scratch = worker.scratchSize();
+  const auto resident = asset.resident();
+  return scratch && scratch->size && resident && *resident ? GPGP_SUCCESS : GPGP_NOT_READY;
+}
+
+GpgpResult useSpawn(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  auto blob = gpgp::compileGrammar(gpgp::init<GpgpGrammarSource>());
+  if (!blob) return blob.code();
+  auto info = gpgp::init<GpgpGrammarCreateInfo>();
+  info.data = blob->data();
+  info.size = blob->size();
+  auto grammar = gpgp::Grammar::create(context, info);
+  auto spawner = gpgp::Spawner::create(context, gpgp::init<GpgpSpawnerCreateInfo>());
+  if (!grammar || !spawner) return grammar.code();
+  uint32_t count = 0;
+  if (const GpgpResult code = grammar->terminals(count, nullptr)) return code;
+  if (const GpgpResult code = useWorker(*spawner, *grammar)) return code;
+  auto spawn = gpgp::init<GpgpSpawnInfo>();
+  spawn.grammar = *grammar;
+  if (const GpgpResult code = spawner->recordPrepare(cmd, frame, spawn)) return code;
+  while (const auto report = spawner->report())
+    if (report->base.status) return report->base.status;
+  gpgp::Spawner taken = *std::move(spawner);
+  return taken ? GPGP_SUCCESS : GPGP_NOT_READY;
+}
+
+GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  auto blob = gpgp::compileSvg(gpgp::init<GpgpSvgSource>());
+  if (!blob) return blob.code();
+  auto drawing = gpgp::Drawing::create(context, gpgp::init<GpgpDrawingCreateInfo>());
+  auto canvas = gpgp::Canvas::create(context, gpgp::init<GpgpCanvasCreateInfo>());
+  auto view = gpgp::CanvasView::create(context, gpgp::init<GpgpCanvasViewCreateInfo>());
+  if (!drawing || !canvas || !view || !drawing->info()) return drawing.code();
+  auto prepare = gpgp::init<GpgpCanvasInfo>();
+  prepare.view = *view;
+  if (const GpgpResult code = canvas->recordPrepare(cmd, frame, prepare)) return code;
+  auto draw = gpgp::init<GpgpCanvasDrawInfo>();
+  draw.view = *view;
+  if (const GpgpResult code = canvas->recordDraw(cmd, frame, draw)) return code;
+  return canvas->report().code();
+}
+
+GpgpResult useVisibility(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  auto set = gpgp::GeometrySet::create(context, gpgp::init<GpgpGeometrySetCreateInfo>());
+  auto sampler = gpgp::Sampler::create(context, gpgp::init<GpgpSamplerCreateInfo>());
+  auto view = gpgp::CameraView::create(context, gpgp::init<GpgpCameraViewCreateInfo>());
+  if (!set || !sampler || !view) return set.code();
+  auto info = gpgp::init<GpgpSampleInfo>();
+  info.geometrySet = *set;
+  info.view = *view;
+  if (const GpgpResult code = sampler->recordPrepare(cmd, frame, info)) return code;
+  const auto report = sampler->report();
+  gpgpDestroyView(view->release());
+  return report.name() ? report.code() : GPGP_SUCCESS;
+}
+} // namespace
+
+GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd);
+
+GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd) {
+  auto context = gpgp::Context::create(info);
+  if (!context) return context.code();
+  const GpgpFrame frame = {1, 0};
+  if (const GpgpResult code = useCore(*context, frame, cmd)) return code;
+  if (const GpgpResult code = useSpawn(*context, frame, cmd)) return code;
+  if (const GpgpResult code = useVector(*context, frame, cmd)) return code;
+  return useVisibility(*context, frame, cmd);
+}
