@@ -14,24 +14,24 @@ extern "C" {
 
 /** Where a derivation starts. 96 bytes, the same in C and in GPU buffers (std430). */
 typedef struct GpgpAxiom {
-  float transform[12];  /**< rows of a 3x4 matrix, object to world */
-  float size[3];        /**< extents of the start shape, metres */
+  float transform[12];  /**< rows of a 3x4 matrix, object to world. The derivation itself runs in object space */
+  float size[3];        /**< extents of the start shape, metres, its centre at the object's origin */
   uint32_t seed;        /**< of all random values below this axiom */
   uint32_t id;          /**< the engine's own number, found again in each instance */
-  uint32_t rule;        /**< start rule, GPGP_AXIOM_DEFAULT_RULE: the grammar's axiom */
+  uint32_t rule;        /**< start rule, by its place in the grammar; GPGP_AXIOM_DEFAULT_RULE: the axiom's */
   float attribute;      /**< custom attribute, inherited; NaN: taken from the seed as in [0, 1) */
   uint32_t reserved[5]; /**< 0 */
 } GpgpAxiom;
 #define GPGP_AXIOM_DEFAULT_RULE 0xffffffffu
 
 /** What a terminal becomes. 96 bytes, std430. The mesh's unit shape spans [-0.5, 0.5] on each axis; the transform
- *  includes the shape's size. */
+ *  includes the shape's size. Polygons face +Z and have size[2] 0; their transform keeps 1 metre for that axis. */
 typedef struct GpgpInstance {
   float transform[12];   /**< rows of a 3x4 matrix, unit shape to world */
-  uint32_t bucket;       /**< terminal index as in gpgpGetGrammarTerminal */
+  uint32_t bucket;       /**< GpgpGrammarTerminal::bucket of its terminal: which draw */
   uint32_t shape;        /**< GpgpShape */
   uint32_t axiomId;      /**< GpgpAxiom::id */
-  uint32_t rule;         /**< terminal's line: several names may share a bucket */
+  uint32_t terminal;     /**< index as in gpgpGetGrammarTerminals; several terminals may share a bucket */
   uint32_t seed;         /**< of the shape */
   float attribute;       /**< custom attribute of the shape */
   uint32_t key[2];       /**< path key: the same on every device and schedule */
@@ -102,7 +102,7 @@ typedef struct GpgpGrammarTerminal {
   const char* name;   /**< @lifetime handle */
   uint32_t kind;      /**< 0: triangles are generated, 1: an instanced mesh of the engine's */
   uint32_t index;     /**< mesh or material, as the grammar says */
-  uint32_t bucket;    /**< GpgpInstance::bucket of its instances */
+  uint32_t bucket;    /**< GpgpInstance::bucket of its instances: the number of its line among terminal lines */
 } GpgpGrammarTerminal;
 
 /** The grammar's terminals. count in: capacity, out: all. terminals NULL asks for the count. @threads any */
@@ -116,6 +116,7 @@ typedef struct GpgpSpawnerCreateInfo {
   const void* pNext;
   GpgpWorkerCreateInfo base;
   uint32_t maxShapes; /**< shapes alive in one round of derivation; 0: 262144. What does not fit is counted */
+  uint32_t maxTerminals; /**< terminal shapes of one record; 0: 524288. What does not fit is counted */
   uint32_t maxDepth;  /**< rounds, the longest path of dynamic edges; 0: 64. Shapes left over are counted */
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
@@ -134,9 +135,10 @@ typedef struct GpgpSpawnInfo {
   GpgpBuffer axioms;     /**< GpgpAxiom[axiomCount]; STORAGE usage */
   uint32_t axiomCount;
   GpgpBuffer instances;  /**< out: GpgpInstance[]; its size is the budget; STORAGE usage */
-  GpgpBuffer draws;      /**< out, optional: VkDrawIndexedIndirectCommand[terminals], one per bucket: instanceCount and
+  GpgpBuffer draws;      /**< out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket: instanceCount and
                               firstInstance are written, the other fields are left as the engine set them. With it,
-                              instances are sorted by bucket; without it they lie in no stated order */
+                              instances are sorted by bucket, at the price of a second derivation; without it they lie
+                              in no stated order */
   GpgpBuffer count;      /**< out, optional: uint32_t, instances written (4 bytes); STORAGE usage */
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)

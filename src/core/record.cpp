@@ -252,12 +252,17 @@ Result<void> Worker::record(const Record& record) {
     vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
   vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &sets_[slot], 0, nullptr);
   VkPipeline bound = VK_NULL_HANDLE;
+  bool barrier = false; // owed by a pass that was left out, or needed by this one
   for (const Pass& pass : passes_.passes) {
-    if (pass.barrierBefore) {
-      const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, kWorkReads | kWorkWrites};
-      vk.CmdPipelineBarrier(cmd, kWorkStages, kWorkStages, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+    barrier = barrier || pass.barrierBefore;
+    const bool wanted =
+        pass.level < record.levels && (pass.condition == UINT32_MAX || record.conditions[pass.condition]);
+    if (wanted && barrier) {
+      barrier = false;
+      const VkMemoryBarrier work{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, kWorkReads | kWorkWrites};
+      vk.CmdPipelineBarrier(cmd, kWorkStages, kWorkStages, 0, 1, &work, 0, nullptr, 0, nullptr);
     }
-    if (pass.condition == UINT32_MAX || record.conditions[pass.condition]) {
+    if (wanted) {
       beginLabel(cmd, pass.name);
       if (pass.kind == PassKind::fill) {
         const auto [buffer, offset] = place(pass.target);
@@ -294,8 +299,8 @@ Result<void> Worker::record(const Record& record) {
   }
 
   if (passes_.reportBytes) {
-    const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, VK_ACCESS_TRANSFER_READ_BIT};
-    vk.CmdPipelineBarrier(cmd, kWorkStages, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+    const VkMemoryBarrier counted{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, VK_ACCESS_TRANSFER_READ_BIT};
+    vk.CmdPipelineBarrier(cmd, kWorkStages, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &counted, 0, nullptr, 0, nullptr);
     const auto [source, sourceOffset] = place(passes_.report);
     const VkBufferCopy region{sourceOffset, slot * reportStride_, passes_.reportBytes};
     vk.CmdCopyBuffer(cmd, source, reports_.handle(), 1, &region);

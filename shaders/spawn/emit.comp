@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Terminal records to the engine's instances, in bucket order where draws are asked for.
+#include "spawn/bindings.glsl"
+#include "spawn/operators.h"
+
+void main() {
+  const uint kept = min(state.terminals, maxTerminals);
+  for (uint i = gl_GlobalInvocationID.x; i < kept; i += gl_NumWorkGroups.x * kSpawnGroupSize) {
+    const Shape s = unpackShape(records[i], records[i + maxTerminals], records[i + 2 * maxTerminals],
+                                records[i + 3 * maxTerminals], records[i + 4 * maxTerminals],
+                                records[i + 5 * maxTerminals]);
+    const uint terminal = graphWords[s.node + kNodeArgument];
+    const uint bucket = graphWords[s.node + kNodeArgument2];
+    const uint place = record.drawCapacity > 0 ? atomicAdd(bucketCounts[kMaxBuckets + bucket], 1) : i;
+    if (place >= record.instanceCapacity) continue;
+    const uint axiom = s.axiom * 6;
+    for (uint row = 0; row < 3; ++row)
+      instances[place * 6 + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
+    instances[place * 6 + 3] = uvec4(bucket, shapeType(s), axioms[axiom + 4].x, terminal);
+    instances[place * 6 + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
+    instances[place * 6 + 5] = packPlane(s.size, 0);
+  }
+}

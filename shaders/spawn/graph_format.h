@@ -1,0 +1,167 @@
+// The baked operator graph as words, the same in the file, in device memory and for the CPU evaluator.
+//
+// A baked grammar is an array of 32-bit words, little-endian: a header, then sections back to back in the header's
+// order. References between sections are word offsets from the start, so that the interpreter follows them without
+// looking anything up; 0 as an edge's target means that the shape is discarded. src/spawn/graph/blob.cpp writes and
+// checks all of it; nothing here is checked again.
+#ifndef GPGP_SHADERS_SPAWN_GRAPH_FORMAT_H
+#define GPGP_SHADERS_SPAWN_GRAPH_FORMAT_H
+#include "core/shared.h"
+
+// How shared functions read the graph: a pointer in C++, the bound buffer graphWords[] in GLSL.
+#ifdef __cplusplus
+#define GPGP_GRAPH const ::gpgp::shader::uint *graphWords,
+#define GPGP_G graphWords,
+#else
+#define GPGP_GRAPH
+#define GPGP_G
+#endif
+
+GPGP_SHADER_BEGIN
+
+GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
+GPGP_CONST uint kGraphVersion = 1u;
+
+// header words
+GPGP_CONST uint kHeaderMagic = 0u;
+GPGP_CONST uint kHeaderVersion = 1u;
+GPGP_CONST uint kHeaderWords = 2u;    // of everything
+GPGP_CONST uint kHeaderChecksum = 3u; // of all words from kHeaderChecked on
+GPGP_CONST uint kHeaderChecked = 4u;
+GPGP_CONST uint kHeaderSections = 4u; // count and offset of each section
+GPGP_CONST uint kHeaderAxiomShape = 24u;   // GpgpShape
+GPGP_CONST uint kHeaderAxiomPolygon = 25u; // its polygon, by number
+GPGP_CONST uint kHeaderAxiomNode = 26u;    // where a derivation starts by default
+GPGP_CONST uint kHeaderBuckets = 27u;      // terminal lines
+GPGP_CONST uint kHeaderRounds = 28u;       // the most rounds any derivation can need; 0: not bounded
+GPGP_CONST uint kHeaderSize = 32u;
+
+// sections, in order
+GPGP_CONST uint kSectionNodes = 0u;
+GPGP_CONST uint kSectionEdges = 1u;
+GPGP_CONST uint kSectionParameters = 2u;
+GPGP_CONST uint kSectionCode = 3u;
+GPGP_CONST uint kSectionPolygons = 4u;
+GPGP_CONST uint kSectionVertices = 5u;
+GPGP_CONST uint kSectionTerminals = 6u;
+GPGP_CONST uint kSectionRules = 7u;
+GPGP_CONST uint kSectionNames = 8u; // bytes in words, each name ends in 0
+GPGP_CONST uint kSectionCount = 9u;
+
+// node: eight words
+GPGP_CONST uint kNodeOperator = 0u;
+GPGP_CONST uint kNodeArgument = 1u;
+GPGP_CONST uint kNodeArgument2 = 2u;
+GPGP_CONST uint kNodeParameters = 3u; // offset of the first
+GPGP_CONST uint kNodeParameterCount = 4u;
+GPGP_CONST uint kNodeEdges = 5u; // offset of the first
+GPGP_CONST uint kNodeEdgeCount = 6u;
+GPGP_CONST uint kNodeShapes = 7u; // bit set of the GpgpShape values that can arrive
+GPGP_CONST uint kNodeSize = 8u;
+
+// edge: target, multiplicity, count
+GPGP_CONST uint kEdgeTarget = 0u; // offset of a node, 0: discard
+GPGP_CONST uint kEdgeMultiplicity = 1u;
+GPGP_CONST uint kEdgeShapes = 2u;
+GPGP_CONST uint kEdgeSize = 3u;
+
+GPGP_CONST uint kMultiplicityOne = 0u;      // always one shape
+GPGP_CONST uint kMultiplicityFixed = 1u;    // a number known from the shape's type
+GPGP_CONST uint kMultiplicityOptional = 2u; // none or one
+GPGP_CONST uint kMultiplicityAny = 3u;      // any number
+
+// parameter: kind, value
+GPGP_CONST uint kParameterConstant = 0u;  // value: float bits
+GPGP_CONST uint kParameterAttribute = 1u; // value: an attribute's code
+GPGP_CONST uint kParameterProgram = 2u;   // value: offset of its first code word
+GPGP_CONST uint kParameterSize = 2u;
+
+// polygon: first vertex (offset), vertex count. Polygons come in pairs, 2 k + 1 is 2 k seen from behind: (x, -y) in
+// reverse order. The first six pairs are the regular ones with 3 to 8 corners.
+GPGP_CONST uint kPolygonSize = 2u;
+GPGP_CONST uint kRegularPolygons = 12u;
+GPGP_CONST uint kQuadPolygon = 2u;
+
+// terminal: name (byte offset in names), kind, index, bucket
+GPGP_CONST uint kTerminalSize = 4u;
+// rule: name (byte offset in names), node offset or 0
+GPGP_CONST uint kRuleSize = 2u;
+
+// operators
+GPGP_CONST uint kOpTerminal = 0u; // argument: terminal, argument2: bucket
+GPGP_CONST uint kOpTranslate = 1u;
+GPGP_CONST uint kOpRotate = 2u;
+GPGP_CONST uint kOpScale = 3u;
+GPGP_CONST uint kOpExtrude = 4u;
+GPGP_CONST uint kOpSwapSize = 5u;    // argument: the three axes, two bits each
+GPGP_CONST uint kOpSetGeometry = 6u; // argument: GpgpShape, argument2: polygon
+GPGP_CONST uint kOpIf = 7u;
+GPGP_CONST uint kOpIfSizeLess = 8u; // argument: axis
+GPGP_CONST uint kOpRandomRule = 9u; // parameters: chance, then one probability an edge
+GPGP_CONST uint kOpCompSplit = 10u; // edges: top, bottom, sides
+GPGP_CONST uint kOpSubDiv = 11u;    // argument: axis; one parameter an edge
+GPGP_CONST uint kOpRepeat = 12u;    // argument: axis, argument2: mode
+GPGP_CONST uint kOpReplicate = 13u;
+GPGP_CONST uint kOpCount = 14u;
+
+GPGP_CONST uint kRepeatAdjustToFill = 0u;
+GPGP_CONST uint kRepeatAnchorToStart = 1u;
+GPGP_CONST uint kRepeatAnchorToEnd = 2u;
+
+// expression code: a stack machine without jumps
+GPGP_CONST uint kCodeEnd = 0u;
+GPGP_CONST uint kCodeNumber = 1u; // float bits follow
+GPGP_CONST uint kCodeAdd = 2u;
+GPGP_CONST uint kCodeSubtract = 3u;
+GPGP_CONST uint kCodeMultiply = 4u;
+GPGP_CONST uint kCodeDivide = 5u;
+GPGP_CONST uint kCodeEqual = 6u;
+GPGP_CONST uint kCodeNotEqual = 7u;
+GPGP_CONST uint kCodeLess = 8u;
+GPGP_CONST uint kCodeGreater = 9u;
+GPGP_CONST uint kCodeLessEqual = 10u;
+GPGP_CONST uint kCodeGreaterEqual = 11u;
+GPGP_CONST uint kCodeAnd = 12u;
+GPGP_CONST uint kCodeOr = 13u;
+GPGP_CONST uint kCodeRandom = 14u;     // minimum, maximum
+GPGP_CONST uint kCodePosition = 32u;   // + axis
+GPGP_CONST uint kCodeShapeSize = 35u;  // + axis
+GPGP_CONST uint kCodeNormal = 38u;     // + axis
+GPGP_CONST uint kCodeRotation = 41u;   // + 3 * axis + component
+GPGP_CONST uint kCodeSeed = 50u;
+GPGP_CONST uint kCodeCustom = 51u;
+GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
+GPGP_CONST uint kCodeCount = 52u;
+
+// limits that the interpreter relies on
+GPGP_CONST uint kMaxStack = 8u;         // of expressions
+GPGP_CONST uint kMaxSuccessors = 32u;   // of one operator
+GPGP_CONST uint kMaxBuckets = 1024u;
+GPGP_CONST uint kMaxChain = 64u;        // operators that one shape passes in one round
+GPGP_CONST uint kMaxRepeat = 1048576u;  // copies that one Repeat makes
+
+// shape types, as GpgpShape
+GPGP_CONST uint kShapeTriangle = 0u;
+GPGP_CONST uint kShapeQuad = 1u;
+GPGP_CONST uint kShapeOctagon = 5u;
+GPGP_CONST uint kShapePrism3 = 6u;
+GPGP_CONST uint kShapeBox = 7u;
+GPGP_CONST uint kShapePrism8 = 11u;
+GPGP_CONST uint kShapeDynamicConvexPolygon = 12u;
+GPGP_CONST uint kShapeDynamicPolygon = 13u;
+GPGP_CONST uint kShapeDynamicConvexRightPrism = 14u;
+GPGP_CONST uint kShapeDynamicRightPrism = 15u;
+GPGP_CONST uint kShapeSphere = 16u;
+GPGP_CONST uint kShapeCount = 17u;
+
+GPGP_FN bool isPolygon(uint shape) {
+  return shape <= kShapeOctagon || shape == kShapeDynamicConvexPolygon || shape == kShapeDynamicPolygon;
+}
+GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape != kShapeSphere; }
+/// What a polygon becomes when it is extruded.
+GPGP_FN uint prismOf(uint polygon) { return polygon <= kShapeOctagon ? polygon + 6u : polygon + 2u; }
+/// What the ends of a prism are.
+GPGP_FN uint polygonOf(uint prism) { return prism <= kShapePrism8 ? prism - 6u : prism - 2u; }
+
+GPGP_SHADER_END
+#endif

@@ -1,0 +1,106 @@
+// A shape on its way through the operator graph, and how it lies in a queue.
+//
+// Frames are relative to the axiom: a derivation does not depend on where in the world it happens, and keeps its
+// precision far from the origin. The axiom's transform is applied when an instance is written.
+#ifndef GPGP_SHADERS_SPAWN_SHAPE_H
+#define GPGP_SHADERS_SPAWN_SHAPE_H
+#include "core/math.h"
+#include "core/random.h"
+#include "spawn/graph_format.h"
+
+GPGP_SHADER_BEGIN
+
+struct Shape {
+  vec3 axisX; // of the local frame, unit length
+  vec3 axisY;
+  vec3 axisZ;
+  vec3 position; // of the centre
+  vec3 size;     // extents; 0 where a polygon has none
+  float custom; // attribute; GLSL reserves that word
+  uint geometry; // GpgpShape, and its polygon << 8
+  uint seed;
+  uvec2 key;
+  uint axiom; // index
+  uint node;  // the operator it waits for, a word offset; 0: discarded
+};
+
+GPGP_CONST uint kShapePlanes = 6u; // uvec4 each
+
+GPGP_FN uvec4 packPlane(vec3 v, uint last) {
+  return uvec4(floatBitsToUint(v.x), floatBitsToUint(v.y), floatBitsToUint(v.z), last);
+}
+GPGP_FN vec3 unpackVector(uvec4 p) {
+  return vec3(uintBitsToFloat(p.x), uintBitsToFloat(p.y), uintBitsToFloat(p.z));
+}
+/// One sixth of a shape.
+GPGP_FN uvec4 packShape(Shape s, uint plane) {
+  if (plane == 0u) return packPlane(s.axisX, s.geometry);
+  if (plane == 1u) return packPlane(s.axisY, s.seed);
+  if (plane == 2u) return packPlane(s.axisZ, floatBitsToUint(s.custom));
+  if (plane == 3u) return packPlane(s.position, s.axiom);
+  if (plane == 4u) return packPlane(s.size, s.node);
+  return uvec4(s.key.x, s.key.y, 0u, 0u);
+}
+GPGP_FN Shape unpackShape(uvec4 p0, uvec4 p1, uvec4 p2, uvec4 p3, uvec4 p4, uvec4 p5) {
+  Shape s;
+  s.axisX = unpackVector(p0);
+  s.axisY = unpackVector(p1);
+  s.axisZ = unpackVector(p2);
+  s.position = unpackVector(p3);
+  s.size = unpackVector(p4);
+  s.custom = uintBitsToFloat(p2.w);
+  s.geometry = p0.w;
+  s.seed = p1.w;
+  s.key = uvec2(p5.x, p5.y);
+  s.axiom = p3.w;
+  s.node = p4.w;
+  return s;
+}
+
+GPGP_FN uint shapeType(Shape s) { return s.geometry & 0xffu; }
+GPGP_FN uint shapePolygon(Shape s) { return s.geometry >> 8; }
+
+/// The start of a derivation, from a GpgpAxiom's fields. node 0 where its rule does not exist.
+GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, float custom, uint index) {
+  Shape s;
+  s.axisX = vec3(1.0f, 0.0f, 0.0f);
+  s.axisY = vec3(0.0f, 1.0f, 0.0f);
+  s.axisZ = vec3(0.0f, 0.0f, 1.0f);
+  s.position = vec3(0.0f);
+  s.size = settle3(size);
+  s.custom = isNan(custom) ? unitFloat(seed) : settle(custom);
+  s.geometry = graphWords[kHeaderAxiomShape] | (graphWords[kHeaderAxiomPolygon] << 8);
+  s.seed = seed;
+  s.key = childKey(uvec2(seed, id), 0u);
+  s.axiom = index;
+  const uint section = kHeaderSections + 2u * kSectionRules;
+  s.node = graphWords[kHeaderAxiomNode];
+  if (rule != 0xffffffffu) s.node = rule < graphWords[section] ? graphWords[graphWords[section + 1u] + rule * kRuleSize + 1u] : 0u;
+  return s;
+}
+
+/// A point of the local frame.
+GPGP_FN vec3 framePoint(Shape s, vec3 local) {
+  GPGP_PRECISE vec3 p = s.position + s.axisX * local.x + s.axisY * local.y + s.axisZ * local.z;
+  return settle3(p);
+}
+/// A direction of the local frame.
+GPGP_FN vec3 frameDirection(Shape s, vec3 local) {
+  GPGP_PRECISE vec3 d = s.axisX * local.x + s.axisY * local.y + s.axisZ * local.z;
+  return settle3(d);
+}
+
+/// One of the three rows of unit shape to world, for row vectors of the axiom's transform.
+GPGP_FN vec4 instanceRow(Shape s, vec4 axiomRow) {
+  const vec3 row = vec3(axiomRow.x, axiomRow.y, axiomRow.z);
+  // A polygon without thickness keeps a unit normal, so that the matrix stays invertible.
+  const float thickness = isPolygon(shapeType(s)) && s.size.z == 0.0f ? 1.0f : s.size.z;
+  return vec4(dot(row, s.axisX) * s.size.x, dot(row, s.axisY) * s.size.y, dot(row, s.axisZ) * thickness,
+              dot(row, s.position) + axiomRow.w);
+}
+
+/// A terminal's contribution to the order-free hash of a derivation.
+GPGP_FN uvec2 terminalHash(uvec2 key, uint bucket, uint shape) { return childKey(key, bucket * 32u + shape); }
+
+GPGP_SHADER_END
+#endif

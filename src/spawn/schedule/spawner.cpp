@@ -1,0 +1,143 @@
+#include "spawn/schedule/spawner.h"
+
+#include "shaders/spawn_derive.spv.h"
+#include "shaders/spawn_emit.spv.h"
+#include "shaders/spawn_place.spv.h"
+#include "spawn/layout.h"
+#include "spawn/shape.h"
+
+#include <algorithm>
+
+namespace gpgp::spawn {
+namespace {
+
+// Resource numbers are the bindings of shaders/spawn/bindings.glsl.
+enum : core::ResourceIndex {
+  kGraph,
+  kAxioms,
+  kInstances,
+  kDraws,
+  kCount,
+  kQueues,
+  kRecords,
+  kState,
+  kBuckets,
+  kConstants
+};
+
+constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
+constexpr uint32_t kDefaultShapes = 262144, kDefaultTerminals = 524288, kDefaultDepth = 64;
+
+/// Workgroups that fill the device. A CPU pays for each workgroup, a GPU for each that is missing.
+uint32_t fillingGroups(const core::Device& device) {
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  device.vki.GetPhysicalDeviceProperties2(device.physicalDevice, &properties);
+  return properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 16 : 2048;
+}
+
+} // namespace
+
+core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, const GpgpSpawnerCreateInfo& info) {
+  auto spawner = core::makeUnique<Spawner>(context.host(), context, info.base);
+  const uint32_t maxShapes = info.maxShapes ? info.maxShapes : kDefaultShapes;
+  const uint32_t maxTerminals = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
+  spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
+  spawner->groups_ = fillingGroups(context.device);
+
+  core::PassList list(&context.host());
+  using enum core::ResourceKind;
+  list.add({"grammar", buffer});
+  list.add({"axioms", buffer});
+  list.add({"instances", buffer});
+  list.add({"draws", buffer, 0, true});
+  list.add({"count", buffer, 0, true});
+  list.add({"queues", scratch, 2 * kShapeBytes * maxShapes});
+  list.add({"records", scratch, kShapeBytes * maxTerminals});
+  list.add({"state", scratch, sizeof(shader::SpawnState)});
+  list.add({"buckets", scratch, 2 * sizeof(uint32_t) * shader::kMaxBuckets});
+  list.add({"constants", constants, sizeof(shader::SpawnConstants)});
+
+  const std::array<uint32_t, 4> budgets{maxShapes, maxTerminals};
+  const uint32_t derive = list.add(core::ShaderDesc{"derive", spawn_derive, budgets, 2});
+  const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, budgets, 2});
+  const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, budgets, 2});
+
+  using enum core::UseKind;
+  list.fill("clear counters", kState, 0);
+  list.fill("clear buckets", kBuckets, 0);
+  for (uint32_t round = 0; round < spawner->maxDepth_; ++round)
+    list.dispatch("derive", derive,
+                  {{kGraph, read},
+                   {kAxioms, read},
+                   {kQueues, readWrite},
+                   {kRecords, write},
+                   {kState, readWrite},
+                   {kBuckets, readWrite},
+                   {kConstants, read}},
+                  0, {round})
+        .level = round;
+  list.dispatch("place", place,
+                {{kGraph, read},
+                 {kDraws, readWrite},
+                 {kCount, write},
+                 {kState, readWrite},
+                 {kBuckets, readWrite},
+                 {kConstants, read}},
+                1);
+  list.dispatch("emit", emit,
+                {{kGraph, read},
+                 {kAxioms, read},
+                 {kRecords, read},
+                 {kInstances, write},
+                 {kState, read},
+                 {kBuckets, readWrite},
+                 {kConstants, read}},
+                0);
+  list.report = kState;
+  list.reportBytes = 4 * shader::kSpawnReportWords;
+  if (auto ok = spawner->init(std::move(list)); !ok) return ok.error();
+  return spawner;
+}
+
+core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
+  const uint32_t rounds = grammar.graph.rounds ? std::min(grammar.graph.rounds, maxDepth_) : maxDepth_;
+  const shader::SpawnConstants constants{
+      info.axiomCount, static_cast<uint32_t>(info.instances.size / sizeof(GpgpInstance)),
+      static_cast<uint32_t>(info.draws.buffer ? info.draws.size / sizeof(VkDrawIndexedIndirectCommand) : 0),
+      info.count.buffer ? 1u : 0u, rounds};
+  core::Record record;
+  record.commandBuffer = commandBuffer;
+  record.info = &info.base;
+  record.bindings[kGraph].ownBuffer = grammar.buffer();
+  record.bindings[kGraph].ownSize = grammar.size();
+  record.bindings[kAxioms].engineBuffer = &info.axioms;
+  record.bindings[kInstances].engineBuffer = &info.instances;
+  record.bindings[kDraws].engineBuffer = &info.draws;
+  record.bindings[kCount].engineBuffer = &info.count;
+  record.groups[0] = {groups_, 1, 1};
+  record.groups[1] = {1, 1, 1};
+  record.levels = rounds;
+  record.constants = std::as_bytes(std::span(&constants, 1));
+  if (auto ok = check(record); !ok) return ok;
+  return Worker::record(record);
+}
+
+bool Spawner::takeReport(GpgpSpawnReport& report) {
+  core::RawReport raw;
+  if (!Worker::takeReport(raw)) return false;
+  report.base = raw.header;
+  report.terminals = raw.words[0];
+  report.instancesWritten = raw.words[1];
+  report.peakShapes = raw.words[2];
+  report.droppedShapes = raw.words[3];
+  report.unfinishedShapes = raw.words[4];
+  report.rounds = raw.words[5];
+  report.keyHash[0] = raw.words[6];
+  report.keyHash[1] = raw.words[7];
+  if (report.base.status == GPGP_SUCCESS &&
+      (report.instancesWritten < report.terminals || report.droppedShapes || report.unfinishedShapes))
+    report.base.status = GPGP_BUDGET_EXCEEDED;
+  return true;
+}
+
+} // namespace gpgp::spawn
