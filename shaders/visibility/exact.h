@@ -71,6 +71,9 @@ GPGP_FN int widePixels(Wide a) {
 /// Whether a float is a number below 2^100 in magnitude. Looks at bits: compilers may assume that NaN does not occur.
 GPGP_FN bool isModerate(float v) { return (floatBitsToUint(v) & 0x7f800000u) < (227u << 23u); }
 
+/// Zero instead of numbers below 2^-100 in magnitude: some devices flush subnormal numbers, so none may arise.
+GPGP_FN float withoutTiny(float v) { return (floatBitsToUint(v) & 0x7f800000u) < (27u << 23u) ? 0.0f : v; }
+
 /// Whether divisionReciprocal may be used: 2^-100 <= v < 2^100.
 GPGP_FN bool isDivisor(float v) {
   uint bits = floatBitsToUint(v);

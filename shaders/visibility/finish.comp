@@ -12,9 +12,9 @@ void main() {
   uint listed = min(counters.visible, params.listCapacity);
   counters.listed = listed;
   if (params.writeCount == 0u) return;
-  uint groups = (listed + kListGroup - 1u) / kListGroup;
   countAndArgs[0] = counters.visible;
-  countAndArgs[1] = min(groups, kMaxGroups);
-  countAndArgs[2] = max((groups + kMaxGroups - 1u) / kMaxGroups, 1u);
-  countAndArgs[3] = 1u;
+  uvec3 groups = listGroups(listed);
+  countAndArgs[1] = groups.x;
+  countAndArgs[2] = groups.y;
+  countAndArgs[3] = groups.z;
 }

@@ -88,7 +88,14 @@ struct Counters {
 GPGP_CONST uint kCounterWords = 21u;
 GPGP_CONST uint kReportWords = 10u;
 
+/// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
+GPGP_FN uvec3 listGroups(uint listed) {
+  uint groups = (listed >> 6u) + ((listed & 63u) != 0u ? 1u : 0u);
+  return uvec3(min(groups, kMaxGroups), max(groups / kMaxGroups + (groups % kMaxGroups != 0u ? 1u : 0u), 1u), 1u);
+}
+
 #ifdef __cplusplus
+static_assert(kListGroup == 64);
 static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 124 &&
               sizeof(Counters) == 4 * kCounterWords);
 #endif

@@ -24,7 +24,7 @@ GPGP_FN vec4 transformToClip(Draw draw, Params params, vec3 p) {
     GPGP_PRECISE float sum = ((params.viewProjection[r] * w[0] + params.viewProjection[4 + r] * w[1]) +
                               params.viewProjection[8 + r] * w[2]) +
                              params.viewProjection[12 + r];
-    c[r] = sum;
+    c[r] = withoutTiny(sum);
   }
   return vec4(c[0], c[1], c[2], c[3]);
 }
@@ -138,7 +138,7 @@ GPGP_FN bool project(vec4 c, ivec2 viewport, GPGP_OUT(ivec2) p, GPGP_OUT(float) 
   GPGP_PRECISE float y = c.y * inverse;
   GPGP_PRECISE float depth = c.z * inverse;
   p = ivec2(snap(x, viewport.x), snap(y, viewport.y));
-  z = clamp(depth, 0.0f, 1.0f);
+  z = clamp(withoutTiny(depth), 0.0f, 1.0f);
   return true;
 }
 

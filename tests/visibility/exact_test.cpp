@@ -61,5 +61,12 @@ TEST(Exact, ToldApartByBits) {
   EXPECT_FALSE(isDivisor(uintBitsToFloat(0x7fc00000u)));
 }
 
+TEST(Exact, TinyNumbersBecomeZero) {
+  EXPECT_EQ(floatBitsToUint(withoutTiny(1e-40f)), 0u);
+  EXPECT_EQ(floatBitsToUint(withoutTiny(-1e-31f)), 0u);
+  EXPECT_EQ(withoutTiny(1e-30f), 1e-30f);
+  EXPECT_EQ(withoutTiny(-1e-30f), -1e-30f);
+}
+
 } // namespace
 } // namespace gpgp::shader

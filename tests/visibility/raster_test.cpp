@@ -126,6 +126,21 @@ TEST(Raster, DepthIsTheMixOfTheCornersDepths) {
   EXPECT_LT(worst, 4e-7);
 }
 
+TEST(Raster, SnappingRoundsToTheNearestAndStaysInTheGuard) {
+  for (const int pixels : {1, 17, 1080, 8192}) {
+    EXPECT_EQ(snap(-1.0f, pixels), 0);
+    EXPECT_EQ(snap(0.0f, pixels), pixels * 128);
+    EXPECT_EQ(snap(1.0f, pixels), pixels * 256);
+    EXPECT_EQ(snap(7.5f, pixels), pixels * 128 * 8);
+    EXPECT_EQ(snap(-7.5f, pixels), -pixels * 128 * 6);
+    const float unit = 1.0f / float(pixels * 128); // of the grid
+    EXPECT_EQ(snap(-1.0f + 1.4f * unit, pixels), 1);
+    EXPECT_EQ(snap(-1.0f + 1.6f * unit, pixels), 2);
+    EXPECT_EQ(snap(-1.0f - 1.4f * unit, pixels), -1);
+    EXPECT_EQ(snap(-1.0f - 1.6f * unit, pixels), -2);
+  }
+}
+
 TEST(Raster, DepthKeysAreOrderedNearestFirst) {
   const float depths[] = {0.0f, 1e-30f, 0.25f, 0.5f, 0.999999f, 1.0f};
   for (size_t i = 1; i < std::size(depths); ++i) {

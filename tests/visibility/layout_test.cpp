@@ -1,0 +1,101 @@
+// One layout in C++ and GLSL: offsets and sizes of shared structs as the compiled shaders have them, and as C++ has
+// them.
+#include "visibility/layout.h"
+
+#include "shaders/visibility_finish.spv.h"
+#include "shaders/visibility_large.spv.h"
+#include "shaders/visibility_small.spv.h"
+
+#include <cstddef>
+#include <cstring>
+#include <gpgp/visibility.h>
+#include <gtest/gtest.h>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpgp::test {
+namespace {
+
+/// Offsets of a struct's members by name, from a module's debug names and decorations.
+std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const std::string& name) {
+  constexpr uint32_t kName = 5, kMemberName = 6, kMemberDecorate = 72, kOffset = 35;
+  std::map<uint32_t, std::string> structs;
+  std::map<std::pair<uint32_t, uint32_t>, std::string> members;
+  std::map<std::string, size_t> offsets;
+  for (size_t i = 5; i < module.size(); i += module[i] >> 16) {
+    const uint32_t code = module[i] & 0xffffu;
+    if (code == kName) structs[module[i + 1]] = reinterpret_cast<const char*>(&module[i + 2]);
+    if (code == kMemberName) members[{module[i + 1], module[i + 2]}] = reinterpret_cast<const char*>(&module[i + 3]);
+    if (code == kMemberDecorate && module[i + 3] == kOffset && structs[module[i + 1]] == name)
+      offsets[members[{module[i + 1], module[i + 2]}]] = module[i + 4];
+  }
+  return offsets;
+}
+
+#define EXPECT_OFFSET(offsets, Struct, member)                                                                         \
+  ASSERT_TRUE(offsets.count(#member));                                                                                 \
+  EXPECT_EQ(offsets.at(#member), offsetof(shader::Struct, member)) << #member
+
+TEST(Layout, ParamsAgree) {
+  for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
+    EXPECT_EQ(offsets.size(), 16u);
+    EXPECT_OFFSET(offsets, Params, viewProjection);
+    EXPECT_OFFSET(offsets, Params, width);
+    EXPECT_OFFSET(offsets, Params, reversedDepth);
+    EXPECT_OFFSET(offsets, Params, drawCount);
+    EXPECT_OFFSET(offsets, Params, triangleCount);
+    EXPECT_OFFSET(offsets, Params, maxItems);
+    EXPECT_OFFSET(offsets, Params, vertexCount);
+    EXPECT_OFFSET(offsets, Params, listCapacity);
+    EXPECT_OFFSET(offsets, Params, hasList);
+    EXPECT_OFFSET(offsets, Params, writeCount);
+    EXPECT_OFFSET(offsets, Params, viewWords);
+  }
+}
+
+TEST(Layout, CountersAgree) {
+  for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
+    EXPECT_EQ(offsets.size(), 15u);
+    EXPECT_OFFSET(offsets, Counters, triangles);
+    EXPECT_OFFSET(offsets, Counters, skippedDraws);
+    EXPECT_OFFSET(offsets, Counters, listed);
+    EXPECT_OFFSET(offsets, Counters, hasList);
+    EXPECT_OFFSET(offsets, Counters, mediumCount);
+    EXPECT_OFFSET(offsets, Counters, smallArgs);
+    EXPECT_OFFSET(offsets, Counters, mediumArgs);
+    EXPECT_OFFSET(offsets, Counters, largeArgs);
+  }
+  EXPECT_EQ(offsetof(shader::Counters, hasList) + 4, shader::kReportWords * 4);
+}
+
+TEST(Layout, TheEnginesStructsAreTheShaders) {
+  const auto draw = offsetsOf(visibility_small, "Draw");
+  EXPECT_EQ(draw.at("transform"), offsetof(GpgpVisibilityDraw, transform));
+  EXPECT_EQ(draw.at("mesh"), offsetof(GpgpVisibilityDraw, mesh));
+  EXPECT_EQ(draw.at("firstTriangle"), offsetof(GpgpVisibilityDraw, firstTriangle));
+  EXPECT_EQ(draw.at("flags"), offsetof(GpgpVisibilityDraw, flags));
+  const auto mesh = offsetsOf(visibility_small, "Mesh");
+  EXPECT_EQ(mesh.at("firstIndex"), offsetof(GpgpMesh, firstIndex));
+  EXPECT_EQ(mesh.at("indexCount"), offsetof(GpgpMesh, indexCount));
+  EXPECT_EQ(mesh.at("vertexOffset"), offsetof(GpgpMesh, vertexOffset));
+}
+
+TEST(Layout, ListDispatchesCoverTheListInRows) {
+  for (const uint32_t listed : {0u, 1u, 64u, 65u, 4194240u, 4194241u, 100000000u, 0xffffffffu}) {
+    const glm::uvec3 groups = shader::listGroups(listed);
+    EXPECT_LE(groups.x, 65535u);
+    EXPECT_LE(groups.y, 65535u);
+    EXPECT_EQ(groups.z, 1u);
+    const uint64_t covered = uint64_t(groups.x) * groups.y * 64;
+    EXPECT_GE(covered, listed);
+    EXPECT_LT(covered, uint64_t(listed) + 64 * 65536);
+  }
+  EXPECT_EQ(shader::listGroups(0), glm::uvec3(0, 1, 1));
+  EXPECT_EQ(shader::listGroups(4194240), glm::uvec3(65535, 1, 1));
+  EXPECT_EQ(shader::listGroups(4194241), glm::uvec3(65535, 2, 1));
+}
+
+} // namespace
+} // namespace gpgp::test
