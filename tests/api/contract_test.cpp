@@ -1,0 +1,347 @@
+// What every record function promises the engine, on every service: what it calls, what state it leaves, which
+// barriers it places, and that scratch, drops, frames in flight and kinds of command buffers do not matter.
+#include "counting_new.h"
+#include "host/frames.h"
+#include "scenarios.h"
+#include "vulkan_proxy.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+
+struct ContractTest : testing::TestWithParam<std::string> {
+  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  VulkanProxy proxy{device};
+  std::vector<std::string> messages;
+  GpgpContext context = nullptr;
+  std::unique_ptr<Scenario> scenario;
+  uint64_t hostAllocations = 0;
+  GpgpHostAllocator allocator{&hostAllocations,
+                              [](void* user, size_t size, size_t alignment) {
+                                ++*static_cast<uint64_t*>(user);
+                                return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+                              },
+                              [](void* user, void* memory, size_t, size_t) {
+                                ++*static_cast<uint64_t*>(user);
+                                std::free(memory);
+                              }};
+
+  void SetUp() override {
+    GpgpContextCreateInfo info = scenarioContextInfo(device, &messages);
+    info.getInstanceProcAddr = VulkanProxy::getInstanceProcAddr();
+    info.hostAllocator = &allocator;
+    ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+    scenario = makeScenario(GetParam(), device);
+  }
+  void TearDown() override {
+    device.waitIdle();
+    gpgpDestroyContext(context);
+    scenario.reset();
+    for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+  }
+
+  /// Asset, worker and view made, prewarmed and uploaded, in frame 1.
+  void prepare(const host::Queue& queue, bool engineScratch = false) {
+    ASSERT_EQ(scenario->createAsset(context), GPGP_SUCCESS) << lastMessage();
+    ASSERT_EQ(scenario->createWorker(context, {"worker", queue.family, 0, engineScratch}), GPGP_SUCCESS)
+        << lastMessage();
+    ASSERT_EQ(scenario->createView(context), GPGP_SUCCESS) << lastMessage();
+    ASSERT_EQ(scenario->prewarm(), GPGP_SUCCESS) << lastMessage();
+    const GpgpFrame frame = advance();
+    device.submitAndWait(queue, [&](VkCommandBuffer cmd) {
+      ASSERT_EQ(gpgpRecordUpload(context, cmd, &frame, 0, nullptr), GPGP_SUCCESS);
+    });
+  }
+  void prepare(bool engineScratch = false) { prepare(device.graphics(), engineScratch); }
+  GpgpFrame advance() {
+    ++number;
+    const GpgpFrame frame{number, number - 1};
+    EXPECT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS) << lastMessage();
+    return frame;
+  }
+  std::string lastMessage() const { return messages.empty() ? "no message" : messages.back(); }
+  /// Runs one record on a queue, and returns its results.
+  std::vector<uint32_t> run(const host::Queue& queue, const GpgpRecordInfo& base = {}) {
+    scenario->clearOutputs();
+    const GpgpFrame frame = advance();
+    device.submitAndWait(queue, [&](VkCommandBuffer cmd) {
+      ASSERT_EQ(scenario->record(cmd, frame, base), GPGP_SUCCESS) << lastMessage();
+    });
+    return scenario->results();
+  }
+  void expectReport(GpgpResult status) {
+    GpgpReportHeader header{};
+    bool meaningful = false;
+    ASSERT_EQ(scenario->takeReport(header, meaningful), GPGP_SUCCESS) << lastMessage();
+    EXPECT_EQ(header.status, status);
+    EXPECT_EQ(meaningful, status == GPGP_SUCCESS);
+  }
+  uint64_t number = 0;
+};
+
+TEST_P(ContractTest, RecordingOnlyRecords) {
+  prepare();
+  const GpgpFrame frame = advance();
+  host::FrameRing ring(device, 1);
+  const VkCommandBuffer cmd = ring.begin();
+  proxy.clear();
+  const uint64_t allocationsBefore = hostAllocations, newBefore = countingNewCalls();
+  const GpgpResult result = scenario->record(cmd, frame, {});
+  const uint64_t newCalls = countingNewCalls() - newBefore;
+  ASSERT_EQ(result, GPGP_SUCCESS) << lastMessage();
+  EXPECT_EQ(hostAllocations, allocationsBefore) << "recording allocated from the engine's callbacks";
+  EXPECT_EQ(newCalls, 0u) << "recording allocated behind the callbacks";
+  ASSERT_FALSE(proxy.calls.empty());
+  std::set<std::string_view> strange;
+  for (const LoggedCall& call : proxy.calls)
+    if (call.name.rfind("vkCmd", 0) != 0 && call.name != "vkUpdateDescriptorSets") strange.insert(call.name);
+  EXPECT_TRUE(strange.empty()) << "recording called " << *strange.begin();
+  ring.drop();
+}
+
+TEST_P(ContractTest, LeavesExactlyTheDocumentedState) {
+  prepare();
+  const GpgpFrame frame = advance();
+  host::FrameRing ring(device, 1);
+  const VkCommandBuffer cmd = ring.begin();
+  proxy.clear();
+  ASSERT_EQ(scenario->record(cmd, frame, {}), GPGP_SUCCESS);
+  static const std::set<std::string_view> kStateless = {"vkCmdDispatch",
+                                                        "vkCmdDispatchIndirect",
+                                                        "vkCmdFillBuffer",
+                                                        "vkCmdCopyBuffer",
+                                                        "vkCmdPipelineBarrier",
+                                                        "vkUpdateDescriptorSets",
+                                                        "vkCmdBeginDebugUtilsLabelEXT",
+                                                        "vkCmdEndDebugUtilsLabelEXT"};
+  bool pipeline = false, set = false;
+  int labels = 0;
+  for (const LoggedCall& call : proxy.calls) {
+    if (call.name == "vkCmdBeginDebugUtilsLabelEXT") ++labels;
+    if (call.name == "vkCmdEndDebugUtilsLabelEXT") --labels;
+    if (call.name == "vkCmdBindPipeline") {
+      EXPECT_EQ(call.bindPoint, VK_PIPELINE_BIND_POINT_COMPUTE);
+      pipeline = true;
+    } else if (call.name == "vkCmdBindDescriptorSets") {
+      EXPECT_EQ(call.bindPoint, VK_PIPELINE_BIND_POINT_COMPUTE);
+      EXPECT_EQ(call.firstSet, 0u);
+      EXPECT_EQ(call.setCount, 1u);
+      set = true;
+    } else if (call.name != "vkCmdPushConstants") {
+      EXPECT_TRUE(kStateless.count(call.name)) << call.name << " changes state that the header does not name";
+    }
+  }
+  EXPECT_TRUE(pipeline && set);
+  EXPECT_EQ(labels, 0) << "debug labels are not balanced";
+  ring.drop();
+}
+
+TEST_P(ContractTest, PlacesTheDocumentedBarriersAtTheEdges) {
+  prepare();
+  for (const bool synchronised : {false, true}) {
+    const GpgpFrame frame = advance();
+    host::FrameRing ring(device, 1);
+    const VkCommandBuffer cmd = ring.begin();
+    GpgpRecordInfo base{};
+    base.accessMode = synchronised ? GPGP_ACCESS_SYNCHRONISED : 0;
+    proxy.clear();
+    ASSERT_EQ(scenario->record(cmd, frame, base), GPGP_SUCCESS) << lastMessage();
+    std::vector<const LoggedCall*> work;
+    for (const LoggedCall& call : proxy.calls)
+      if (call.name != "vkUpdateDescriptorSets" && call.name.find("Label") == std::string_view::npos)
+        work.push_back(&call);
+    ASSERT_GE(work.size(), 3u);
+    EXPECT_EQ(work.front()->name, "vkCmdPipelineBarrier");
+    EXPECT_EQ(work.back()->name, "vkCmdPipelineBarrier");
+    const bool images = GetParam() == "vector";
+    const VkPipelineStageFlags before = images ? VK_PIPELINE_STAGE_TRANSFER_BIT : VK_PIPELINE_STAGE_HOST_BIT;
+    const VkPipelineStageFlags after = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    if (synchronised) {
+      EXPECT_TRUE(work.front()->imageCount == 0);
+      EXPECT_TRUE(work.back()->imageCount == 0);
+      EXPECT_FALSE(work.front()->sourceStages & VK_PIPELINE_STAGE_HOST_BIT);
+      EXPECT_FALSE(work.back()->targetStages & VK_PIPELINE_STAGE_TRANSFER_BIT);
+    } else {
+      EXPECT_EQ(work.front()->sourceStages & before, before);
+      EXPECT_EQ(work.back()->targetStages & after, after);
+      EXPECT_EQ(work.front()->imageCount, images ? 1u : 0u);
+      EXPECT_EQ(work.back()->imageCount, images ? 1u : 0u);
+    }
+    EXPECT_TRUE(work.back()->targetStages & VK_PIPELINE_STAGE_HOST_BIT) << "reports are read by the host";
+    ring.drop();
+  }
+}
+
+TEST_P(ContractTest, ScratchContentsDoNotMatter) {
+  prepare(true);
+  VkDeviceSize size = 0, alignment = 0;
+  VkBufferUsageFlags usage = 0;
+  ASSERT_EQ(gpgpGetScratchSize(scenario->worker, &size, &alignment, &usage), GPGP_SUCCESS);
+  ASSERT_GT(size, 0u);
+  host::Buffer scratch(device, size + alignment, usage);
+  GpgpRecordInfo base{};
+  base.scratch = scratch.range({}, {}, alignment, size);
+  std::vector<std::vector<uint32_t>> results;
+  for (const uint32_t poison : {0u, 0xffffffffu, 0x7fc00000u, 0xdeadbeefu}) {
+    host::fill(device, scratch, poison);
+    results.push_back(run(device.graphics(), base));
+    EXPECT_EQ(results.back(), results.front()) << "with scratch poisoned by " << std::hex << poison;
+  }
+  advance();
+  for (int i = 0; i < 4; ++i) expectReport(GPGP_SUCCESS);
+}
+
+TEST_P(ContractTest, ADroppedCommandBufferIsReportedAndForgotten) {
+  prepare();
+  const auto expected = run(device.graphics());
+  const GpgpFrame frame = advance();
+  expectReport(GPGP_SUCCESS);
+  host::FrameRing ring(device, 1);
+  ASSERT_EQ(scenario->record(ring.begin(), frame, {}), GPGP_SUCCESS);
+  ring.drop();
+  EXPECT_EQ(run(device.graphics()), expected);
+  advance();
+  expectReport(GPGP_NOT_EXECUTED);
+  expectReport(GPGP_SUCCESS);
+}
+
+TEST_P(ContractTest, ThreeFramesInFlight) {
+  prepare();
+  const auto expected = run(device.graphics());
+  advance();
+  expectReport(GPGP_SUCCESS);
+  scenario->clearOutputs();
+  host::FrameRing ring(device, 3);
+  const uint64_t offset = number;
+  int reports = 0;
+  const auto take = [&] {
+    GpgpReportHeader header{};
+    bool meaningful = false;
+    while (scenario->takeReport(header, meaningful) == GPGP_SUCCESS) {
+      EXPECT_EQ(header.status, GPGP_SUCCESS);
+      EXPECT_TRUE(meaningful);
+      EXPECT_EQ(header.tag, static_cast<uint64_t>(reports++));
+    }
+  };
+  for (uint64_t i = 0; i < 9; ++i) {
+    const VkCommandBuffer cmd = ring.begin();
+    const GpgpFrame frame{ring.frame().current + offset, ring.frame().safe + offset};
+    ASSERT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS) << lastMessage();
+    take();
+    GpgpRecordInfo base{};
+    base.tag = i;
+    ASSERT_EQ(scenario->record(cmd, frame, base), GPGP_SUCCESS) << lastMessage();
+    ring.submit();
+    number = frame.current;
+  }
+  ring.waitAll();
+  EXPECT_EQ(scenario->results(), expected);
+  advance();
+  take();
+  EXPECT_EQ(reports, 9);
+}
+
+TEST_P(ContractTest, SecondaryCommandBuffersAndTimestamps) {
+  prepare();
+  const auto expected = run(device.graphics());
+  scenario->clearOutputs();
+  uint32_t passes = 0;
+  ASSERT_EQ(gpgpGetPasses(scenario->worker, &passes, nullptr), GPGP_SUCCESS);
+  ASSERT_GT(passes, 0u);
+  std::vector<const char*> names(passes);
+  ASSERT_EQ(gpgpGetPasses(scenario->worker, &passes, names.data()), GPGP_SUCCESS);
+  for (const char* name : names) EXPECT_STRNE(name, "");
+
+  const VolkDeviceTable& vk = device.vk();
+  const VkQueryPoolCreateInfo queryInfo{
+      VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, nullptr, 0, VK_QUERY_TYPE_TIMESTAMP, passes + 1, 0};
+  VkQueryPool queries = VK_NULL_HANDLE;
+  ASSERT_EQ(vk.vkCreateQueryPool(device.device(), &queryInfo, nullptr, &queries), VK_SUCCESS);
+  const VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0,
+                                         device.graphics().family};
+  VkCommandPool pool = VK_NULL_HANDLE;
+  ASSERT_EQ(vk.vkCreateCommandPool(device.device(), &poolInfo, nullptr, &pool), VK_SUCCESS);
+  const VkCommandBufferAllocateInfo allocateInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
+                                                 VK_COMMAND_BUFFER_LEVEL_SECONDARY, 1};
+  VkCommandBuffer secondary = VK_NULL_HANDLE;
+  ASSERT_EQ(vk.vkAllocateCommandBuffers(device.device(), &allocateInfo, &secondary), VK_SUCCESS);
+  const VkCommandBufferInheritanceInfo inheritance{VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO};
+  const VkCommandBufferBeginInfo beginInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, 0, &inheritance};
+  ASSERT_EQ(vk.vkBeginCommandBuffer(secondary, &beginInfo), VK_SUCCESS);
+  GpgpRecordInfo base{};
+  base.timestamps = {queries, 0, passes + 1};
+  const GpgpFrame frame = advance();
+  ASSERT_EQ(scenario->record(secondary, frame, base), GPGP_SUCCESS) << lastMessage();
+  ASSERT_EQ(vk.vkEndCommandBuffer(secondary), VK_SUCCESS);
+  device.submitAndWait([&](VkCommandBuffer cmd) {
+    vk.vkCmdResetQueryPool(cmd, queries, 0, passes + 1);
+    vk.vkCmdExecuteCommands(cmd, 1, &secondary);
+  });
+  EXPECT_EQ(scenario->results(), expected);
+  std::vector<uint64_t> times(passes + 1);
+  ASSERT_EQ(vk.vkGetQueryPoolResults(device.device(), queries, 0, passes + 1, times.size() * 8, times.data(), 8,
+                                     VK_QUERY_RESULT_64_BIT),
+            VK_SUCCESS);
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+  EXPECT_GT(times.back(), times.front());
+  vk.vkDestroyCommandPool(device.device(), pool, nullptr);
+  vk.vkDestroyQueryPool(device.device(), queries, nullptr);
+}
+
+TEST_P(ContractTest, ComputeOnlyQueueFamily) {
+  if (!device.computeOnly()) GTEST_SKIP() << device.name() << " has no queue family with compute and without graphics";
+  prepare(*device.computeOnly());
+  const auto compute = run(*device.computeOnly());
+  scenario->destroy();
+  scenario = makeScenario(GetParam(), device);
+  prepare();
+  EXPECT_EQ(run(device.graphics()), compute);
+}
+
+TEST_P(ContractTest, NotReadyRecordsNothing) {
+  ASSERT_EQ(scenario->createAsset(context), GPGP_SUCCESS);
+  ASSERT_EQ(scenario->createWorker(context, {"worker", device.graphics().family, 0, VK_FALSE}), GPGP_SUCCESS);
+  ASSERT_EQ(scenario->createView(context), GPGP_SUCCESS);
+  GpgpFrame frame = advance();
+  host::FrameRing ring(device, 1);
+  const VkCommandBuffer cmd = ring.begin();
+  proxy.clear();
+  EXPECT_EQ(scenario->record(cmd, frame, {}), GPGP_NOT_READY) << "not prewarmed";
+  ASSERT_EQ(scenario->prewarm(), GPGP_SUCCESS);
+  proxy.clear();
+  EXPECT_EQ(scenario->record(cmd, frame, {}), GPGP_NOT_READY) << "not resident";
+  EXPECT_TRUE(proxy.calls.empty()) << proxy.calls.front().name;
+  EXPECT_TRUE(messages.empty()) << lastMessage();
+  ring.drop();
+}
+
+TEST_P(ContractTest, DeviceLostMakesCallsFailAndDestroyingLegal) {
+  prepare();
+  run(device.graphics());
+  gpgpNotifyDeviceLost(context);
+  const GpgpFrame frame{number + 1, number};
+  EXPECT_EQ(gpgpAdvance(context, &frame), GPGP_ERROR_DEVICE_LOST);
+  host::FrameRing ring(device, 1);
+  const VkCommandBuffer cmd = ring.begin();
+  proxy.clear();
+  const GpgpFrame last{number, number - 1};
+  EXPECT_EQ(scenario->record(cmd, last, {}), GPGP_ERROR_DEVICE_LOST);
+  EXPECT_EQ(gpgpRecordUpload(context, cmd, &last, 0, nullptr), GPGP_ERROR_DEVICE_LOST);
+  EXPECT_TRUE(proxy.calls.empty());
+  ring.drop();
+  scenario->destroy();
+  GpgpMemoryReport report = GPGP_MEMORY_REPORT_INIT;
+  ASSERT_EQ(gpgpGetMemoryReport(context, &report), GPGP_SUCCESS);
+  EXPECT_EQ(report.services[GPGP_SERVICE_CORE].pendingBytes, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Services, ContractTest, testing::ValuesIn(scenarioNames()),
+                         [](const auto& service) { return service.param; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ContractTest);
+
+} // namespace

@@ -1,0 +1,37 @@
+#include "counting_new.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+namespace {
+std::atomic<uint64_t> calls{0};
+thread_local int uncounted = 0;
+void* allocate(std::size_t size, std::size_t alignment) {
+  if (!uncounted) ++calls;
+  return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+} // namespace
+
+namespace gpgp::test {
+uint64_t countingNewCalls() { return calls; }
+UncountedNew::UncountedNew() { ++uncounted; }
+UncountedNew::~UncountedNew() { --uncounted; }
+} // namespace gpgp::test
+
+void* operator new(std::size_t size) {
+  if (void* memory = allocate(size, alignof(std::max_align_t))) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  if (void* memory = allocate(size, static_cast<std::size_t>(alignment))) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
