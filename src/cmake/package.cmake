@@ -29,6 +29,11 @@ foreach(target gpgp gpgp_compiler)
   endif()
 endforeach()
 install(TARGETS ${installed} EXPORT gpgpTargets)
+if(TARGET gpgp_cli)
+  file(RELATIVE_PATH relative /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(gpgp_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${relative}")
+  install(TARGETS gpgp_cli)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/gpgp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING
   PATTERN "*.h" PATTERN "*.hpp")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -67,6 +72,7 @@ install(FILES ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake ${PROJECT_BINARY_DI
 
 # pkg-config: paths are relative to the .pc file, so that a prefix can be moved.
 file(RELATIVE_PATH GPGP_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+string(REGEX REPLACE "/$" "" GPGP_PC_PREFIX ${GPGP_PC_PREFIX})
 set(gpgp_description "${PROJECT_DESCRIPTION}")
 set(gpgp_compiler_description "Compilers for gpgp: grammars and SVG to baked assets")
 foreach(target gpgp gpgp_compiler)

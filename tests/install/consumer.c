@@ -1,0 +1,21 @@
+/* What a program that only just found gpgp can do: ask the library for its version, and get a clear error from a call
+ * without a device. Also proves that header and library belong together. */
+#include <gpgp/gpgp.h>
+
+#include <stdio.h>
+#include <string.h>
+
+int main(void) {
+  GpgpContextCreateInfo info = GPGP_CONTEXT_CREATE_INFO_INIT;
+  GpgpContext context = NULL;
+  const GpgpResult result = gpgpCreateContext(&info, &context);
+#ifdef CONSUMER_USES_COMPILER
+  GpgpBlob blob = {NULL, 0};
+  gpgpFreeBlob(&blob);
+#endif
+  if (gpgpGetVersion() != GPGP_VERSION) return 1;
+  if (result != GPGP_ERROR_INVALID_ARGUMENT || context) return 2;
+  if (strcmp(gpgpResultString(result), "GPGP_ERROR_INVALID_ARGUMENT") != 0) return 3;
+  printf("gpgp %u.%u\n", (unsigned)(gpgpGetVersion() >> 22), (unsigned)(gpgpGetVersion() >> 12 & 1023));
+  return 0;
+}

@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Installs gpgp into a prefix, moves the prefix, and builds and runs a consumer of what lies there.
+#
+#   consumers_test.sh WAY BUILD_DIR SCRATCH_DIR TEST_DIR CMAKE CC CXX
+#
+# WAY: install (first), find_package, pkg_config
+set -euo pipefail
+way=$1 build=$2 scratch=$3 tests=$4 cmake=$5 cc=$6 cxx=$7
+prefix=$scratch/moved
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+
+case $way in
+install)
+  rm -rf "$scratch"
+  mkdir -p "$scratch"
+  "$cmake" --install "$build" --prefix "$scratch/prefix" >"$scratch/install.log" || { cat "$scratch/install.log"; exit 1; }
+  mv "$scratch/prefix" "$prefix" # what is installed must not know where
+  texts=$(find "$prefix" \( -name '*.cmake' -o -name '*.pc' -o -name '*.h' -o -name '*.hpp' \))
+  [[ -n $texts ]] || fail "nothing was installed"
+  source=$(sed -nE 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$build/CMakeCache.txt")
+  # shellcheck disable=SC2086
+  if grep -lF -e "$build" -e "$source" -e "$scratch" $texts; then fail "installed files name places of the build"; fi
+  for library in "$prefix"/lib*/libgpgp*.so "$prefix"/lib*/*/libgpgp*.so; do
+    [[ -e $library ]] || continue
+    name=$(basename "$library")
+    major=$(sed -nE 's/^#define GPGP_VERSION_MAJOR ([0-9]+)$/\1/p' "$prefix/include/gpgp/core.h")
+    dynamic=$(readelf -d "$library")
+    grep -q "SONAME.*\[$name\.$major\]" <<<"$dynamic" || fail "$name: the soname is not $name.$major"
+    if grep -E 'RPATH|RUNPATH' <<<"$dynamic"; then fail "$name has a run-time search path"; fi
+    if grep -E 'NEEDED.*(vulkan|glslang|SPIRV)' <<<"$dynamic"; then fail "$name needs what must be inside it or absent"; fi
+  done
+  if [[ -x $prefix/bin/gpgp ]]; then "$prefix/bin/gpgp" --version; fi
+  echo "installed: $(find "$prefix" -type f | wc -l) files"
+  ;;
+find_package)
+  rm -rf "$scratch/find_package"
+  "$cmake" -S "$tests/find_package" -B "$scratch/find_package" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release
+  "$cmake" --build "$scratch/find_package"
+  "$cmake" -S "$tests/find_package" -B "$scratch/find_package_cxx" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCONSUMER_CXX=ON
+  "$cmake" --build "$scratch/find_package_cxx" --target consumer_cxx
+  ran=0
+  for consumer in "$scratch"/find_package/consumer_gpgp* "$scratch"/find_package_cxx/consumer_cxx; do
+    "$consumer" || fail "$(basename "$consumer") returned $?"
+    ran=$((ran + 1))
+  done
+  [[ $ran -ge 2 ]] || fail "no consumer was built"
+  # Another major version is refused.
+  mkdir -p "$scratch/next_major"
+  printf 'cmake_minimum_required(VERSION 3.25)\nproject(next NONE)\nfind_package(gpgp 99 REQUIRED)\n' \
+    >"$scratch/next_major/CMakeLists.txt"
+  if "$cmake" -S "$scratch/next_major" -B "$scratch/next_major/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+    >"$scratch/next_major/log" 2>&1; then
+    fail "find_package(gpgp 99) was accepted"
+  fi
+  grep -q 'compatible with requested version "99"' <(tr -s '\n ' ' ' <"$scratch/next_major/log") || { cat "$scratch/next_major/log"; exit 1; }
+  ;;
+pkg_config)
+  directory=$(dirname "$(find "$prefix" -name gpgp.pc)")
+  export PKG_CONFIG_PATH=$directory
+  mkdir -p "$scratch/pkg_config"
+  ran=0
+  for package in gpgp gpgp_compiler; do
+    pkg-config --exists "$package" || continue
+    libraries=$(pkg-config --variable=libdir "$package")
+    needs=(gpgp)
+    define=()
+    if [[ $package == gpgp_compiler ]]; then
+      needs=(gpgp_compiler gpgp)
+      define=(-DCONSUMER_USES_COMPILER)
+    fi
+    if [[ -e $libraries/lib$package.so ]]; then
+      # shellcheck disable=SC2046
+      "$cc" -std=c99 "${define[@]}" $(pkg-config --cflags "${needs[@]}") "$tests/consumer.c" \
+        $(pkg-config --libs "${needs[@]}") -o "$scratch/pkg_config/shared_$package"
+      LD_LIBRARY_PATH=$libraries "$scratch/pkg_config/shared_$package" || fail "shared_$package returned $?"
+      ran=$((ran + 1))
+    fi
+    if [[ -e $libraries/lib$package.a ]]; then # --static names all that it needs; only gpgp itself is forced static here
+      flags=$(pkg-config --static --libs "$package")
+      for name in gpgp_compiler gpgp; do flags=" $flags "; flags=${flags// -l$name / -l:lib$name.a }; done
+      # shellcheck disable=SC2046,SC2086
+      "$cc" -std=c99 "${define[@]}" $(pkg-config --cflags "$package") "$tests/consumer.c" $flags \
+        -o "$scratch/pkg_config/static_$package"
+      "$scratch/pkg_config/static_$package" || fail "static_$package returned $?"
+      ran=$((ran + 1))
+    fi
+  done
+  [[ $ran -ge 1 ]] || fail "no consumer was built"
+  [[ $(pkg-config --modversion gpgp) == $(sed -nE 's/^Version: //p' "$directory/gpgp.pc") ]]
+  ;;
+*) fail "unknown way $way" ;;
+esac
