@@ -13,19 +13,27 @@ glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, 
                        std::cos(yawRadians) * std::cos(pitchRadians)); // from the middle to the eye
   const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
   const glm::vec3 up = glm::cross(back, right);
-  constexpr float kHalfFieldOfView = 0.35f; // radians, of the smaller side
-  const float radius = std::max(bounds.radius(), 1e-6f);
-  const float distance = radius / std::sin(kHalfFieldOfView);
-  const glm::vec3 eye = bounds.centre() + back * distance;
-  const float near = distance - radius * 1.01f, far = distance + radius * 1.01f;
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
-  const float scale = 1.0f / std::tan(kHalfFieldOfView);
+  const float scale = 1.0f / std::tan(0.35f); // half the field of view of the smaller side, radians
+  const glm::vec2 zoom = aspect >= 1.0f ? glm::vec2(scale / aspect, scale) : glm::vec2(scale, scale * aspect);
+  // Back until the last corner of the box is in the picture, with a twentieth to spare.
+  const glm::vec3 half = glm::max((bounds.high - bounds.low) * 0.5f, glm::vec3(1e-6f));
+  float distance = 0.0f, depth = 0.0f;
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec3 corner(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z);
+    const float side = std::max(std::abs(glm::dot(corner, right)) * zoom.x, std::abs(glm::dot(corner, up)) * zoom.y);
+    distance = std::max(distance, glm::dot(corner, back) + side * 1.05f);
+    depth = std::max(depth, std::abs(glm::dot(corner, back)));
+  }
+  distance = std::max(distance, depth * 1.1f);
+  const glm::vec3 eye = bounds.centre() + back * distance;
+  const float near = (distance - depth) * 0.9f, far = distance + depth * 1.1f;
   const glm::mat4 view(glm::vec4(right.x, up.x, back.x, 0), glm::vec4(right.y, up.y, back.y, 0),
                        glm::vec4(right.z, up.z, back.z, 0),
                        glm::vec4(-glm::dot(right, eye), -glm::dot(up, eye), -glm::dot(back, eye), 1));
   glm::mat4 projection(0.0f);
-  projection[0][0] = aspect >= 1.0f ? scale / aspect : scale;
-  projection[1][1] = aspect >= 1.0f ? -scale : -scale * aspect;
+  projection[0][0] = zoom.x;
+  projection[1][1] = -zoom.y;
   projection[2][2] = far / (near - far);
   projection[2][3] = -1.0f;
   projection[3][2] = near * far / (near - far);

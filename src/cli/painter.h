@@ -16,7 +16,6 @@ struct Bounds {
     high = glm::max(high, point);
   }
   glm::vec3 centre() const { return (low + high) * 0.5f; }
-  float radius() const { return glm::length(high - low) * 0.5f; }
 };
 
 /// World to clip (Vulkan's: +Y down, depth 0 to 1), looking at the middle of the bounds from a direction so that all of

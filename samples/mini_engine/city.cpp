@@ -1,0 +1,182 @@
+// Axioms on a grid of blocks, one indirect draw per bucket, one unit box for every shape.
+#include "city.h"
+
+#include "shaders/mini_city_frag.spv.h"
+#include "shaders/mini_city_vert.spv.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <iterator>
+
+namespace mini {
+namespace {
+
+constexpr uint32_t kMaxInstances = 400000;
+constexpr float kBlock = 26.0f; // metres from block to block; backdrop.frag draws the streets
+constexpr int kBlocks = 6;      // to each side of the square in the middle
+
+/// One building per block, taller towards the middle; the square itself stays free.
+std::vector<GpgpAxiom> layOut() {
+  std::vector<GpgpAxiom> axioms;
+  for (int z = -kBlocks; z <= kBlocks; ++z)
+    for (int x = -kBlocks; x <= kBlocks; ++x) {
+      if (std::abs(x) <= 1 && std::abs(z) <= 1) continue;
+      GpgpAxiom axiom{};
+      axiom.id = static_cast<uint32_t>((z + kBlocks) * (2 * kBlocks + 1) + x + kBlocks);
+      axiom.seed = 7919u * (axiom.id + 1u);
+      const uint32_t random = (axiom.seed * 2654435761u) >> 16;
+      const float fromMiddle = std::sqrt(static_cast<float>(x * x + z * z)) / static_cast<float>(kBlocks);
+      const float floors =
+          std::round(4.0f + 9.0f * std::max(0.0f, 1.1f - fromMiddle) + static_cast<float>(random % 5u));
+      axiom.size[0] = 12.0f + static_cast<float>(random / 5u % 3u) * 2.0f;
+      axiom.size[1] = floors * 3.0f + 1.0f;
+      axiom.size[2] = 12.0f + static_cast<float>(random / 15u % 3u) * 2.0f;
+      axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1.0f;
+      axiom.transform[3] = static_cast<float>(x) * kBlock;
+      axiom.transform[7] =
+          axiom.size[1] * 0.5f; // shapes have their origin in the middle; buildings stand on the ground
+      axiom.transform[11] = static_cast<float>(z) * kBlock;
+      axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+      axiom.attribute = std::nanf("");
+      axioms.push_back(axiom);
+    }
+  return axioms;
+}
+
+/// What a terminal is made of, by its name; names that are not known get a colour each.
+glm::vec4 materialOf(const std::string& name, uint32_t index) {
+  struct Material {
+    const char* part;
+    glm::vec4 colour;
+  };
+  static const std::array<Material, 12> kMaterials = {{
+      {"Glass", {0.10f, 0.19f, 0.27f, 0.1f}},
+      {"Window", {0.10f, 0.19f, 0.27f, 0.1f}},
+      {"Frame", {0.72f, 0.72f, 0.70f, 0.2f}},
+      {"Sill", {0.62f, 0.60f, 0.56f, 0.3f}},
+      {"Ledge", {0.62f, 0.60f, 0.56f, 0.3f}},
+      {"Cornice", {0.60f, 0.57f, 0.52f, 0.3f}},
+      {"Door", {0.22f, 0.11f, 0.06f, 0.2f}},
+      {"Balcony", {0.45f, 0.46f, 0.48f, 0.2f}},
+      {"Rail", {0.14f, 0.15f, 0.16f, 0.1f}},
+      {"Roof", {0.42f, 0.15f, 0.09f, 0.5f}},
+      {"Shop", {0.16f, 0.30f, 0.28f, 0.4f}},
+      {"Wall", {0.62f, 0.54f, 0.44f, 1.0f}},
+  }};
+  for (const Material& material : kMaterials)
+    if (name.find(material.part) != std::string::npos) return material.colour;
+  const float hue = std::fmod(static_cast<float>(index) * 0.618034f, 1.0f) * 6.2831853f;
+  return {0.45f + 0.2f * std::cos(hue), 0.45f + 0.2f * std::cos(hue + 2.1f), 0.45f + 0.2f * std::cos(hue + 4.2f), 0.3f};
+}
+
+void GPGP_CALL onCompileMessage(void*, const GpgpCompileMessage* message) {
+  std::fprintf(stderr, "%s:%u:%u: %s\n", message->file, message->line, message->column, message->text);
+}
+
+} // namespace
+
+City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& grammarFile) : gpgp_(gpgp) {
+  // A shipped game would load a baked grammar; the sample compiles the text.
+  const std::vector<char> text = readFile(grammarFile);
+  auto source = gpgp::init<GpgpGrammarSource>();
+  source.name = grammarFile.c_str();
+  source.text = text.data();
+  source.size = text.size();
+  source.messageFn = onCompileMessage;
+  const gpgp::Blob baked = gpgp.take(gpgp::compileGrammar(source), "gpgpCompileGrammar");
+  auto grammarInfo = gpgp::init<GpgpGrammarCreateInfo>();
+  grammarInfo.label = "city grammar";
+  grammarInfo.data = baked.data();
+  grammarInfo.size = baked.size();
+  grammar_ = gpgp.take(gpgp::Grammar::create(gpgp.context, grammarInfo), "gpgpCreateGrammar");
+  auto spawnerInfo = gpgp::init<GpgpSpawnerCreateInfo>();
+  spawnerInfo.base = gpgp.worker("city spawner");
+  spawner_ = gpgp.take(gpgp::Spawner::create(gpgp.context, spawnerInfo), "gpgpCreateSpawner");
+  gpgp.check(spawner_.prewarm(), "gpgpPrewarm");
+  makeMaterials();
+
+  // The engine's buffers. gpgp fills instances, and in each draw the count and the first instance; the rest is set
+  // here.
+  const std::vector<GpgpAxiom> axioms = layOut();
+  axiomCount_ = static_cast<uint32_t>(axioms.size());
+  axioms_ = makeBuffer(device, axioms, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  instances_ = Buffer(device, VkDeviceSize{kMaxInstances} * sizeof(GpgpInstance),
+                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  VkDrawIndexedIndirectCommand box{};
+  box.indexCount = 36;
+  draws_ = makeBuffer(device, std::vector(materials_.size(), box),
+                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.emplace_back(static_cast<float>(i & 1) - 0.5f, static_cast<float>(i >> 1 & 1) - 0.5f,
+                         static_cast<float>(i >> 2 & 1) - 0.5f);
+  corners_ = makeBuffer(device, corners, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  const std::vector<uint16_t> indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                         2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  indices_ = makeBuffer(device, indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+
+  PipelineInfo info;
+  info.vertex.assign(std::begin(mini_city_vert), std::end(mini_city_vert));
+  info.fragment.assign(std::begin(mini_city_frag), std::end(mini_city_frag));
+  info.bindings = {{0, sizeof(glm::vec3), VK_VERTEX_INPUT_RATE_VERTEX},
+                   {1, sizeof(GpgpInstance), VK_VERTEX_INPUT_RATE_INSTANCE}};
+  info.attributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                     {1, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(GpgpInstance, transform)},
+                     {2, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(GpgpInstance, transform) + 16},
+                     {3, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(GpgpInstance, transform) + 32},
+                     {4, 1, VK_FORMAT_R32G32B32_UINT, offsetof(GpgpInstance, bucket)}};
+  info.pushBytes = 96;
+  pipeline_ = Pipeline(device, forward.renderPass(), Forward::kSamples, info);
+}
+
+void City::makeMaterials() {
+  uint32_t count = 0;
+  gpgp_.check(grammar_.terminals(count, nullptr), "gpgpGetGrammarTerminals");
+  std::vector<GpgpGrammarTerminal> terminals(count);
+  gpgp_.check(grammar_.terminals(count, terminals.data()), "gpgpGetGrammarTerminals");
+  materials_.resize(count, glm::vec4(0.5f));
+  for (const GpgpGrammarTerminal& terminal : terminals)
+    if (terminal.bucket < count) materials_[terminal.bucket] = materialOf(terminal.name, terminal.bucket);
+}
+
+void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
+  auto info = gpgp::init<GpgpSpawnInfo>();
+  info.base.tag = frame.current;
+  info.grammar = grammar_;
+  info.axioms = axioms_.forGpgp(kNoAccess, kNoAccess);
+  info.axiomCount = axiomCount_;
+  info.instances = instances_.forGpgp(kVertexInput, kVertexInput);
+  info.draws = draws_.forGpgp(kIndirect, kIndirect);
+  if (gpgp_.check(spawner_.recordPrepare(commands, frame, info), "gpgpRecordPrepareSpawn") == GPGP_SUCCESS)
+    prepared_ = true;
+}
+
+void City::draw(VkCommandBuffer commands, const Camera& camera) {
+  if (!prepared_) return;
+  struct {
+    glm::mat4 viewProjection;
+    glm::vec4 eye, colour;
+  } push{camera.viewProjection, glm::vec4(camera.eye, 1), glm::vec4(1)};
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle);
+  const VkBuffer buffers[] = {corners_.handle, instances_.handle};
+  const VkDeviceSize offsets[] = {0, 0};
+  vkCmdBindVertexBuffers(commands, 0, 2, buffers, offsets);
+  vkCmdBindIndexBuffer(commands, indices_.handle, 0, VK_INDEX_TYPE_UINT16);
+  for (uint32_t bucket = 0; bucket < materials_.size(); ++bucket) {
+    push.colour = materials_[bucket];
+    vkCmdPushConstants(commands, pipeline_.layout, Pipeline::kStages, 0, sizeof push, &push);
+    vkCmdDrawIndexedIndirect(commands, draws_.handle, bucket * sizeof(VkDrawIndexedIndirectCommand), 1,
+                             sizeof(VkDrawIndexedIndirectCommand));
+  }
+}
+
+void City::collect() {
+  for (auto next = spawner_.report(); next; next = spawner_.report()) {
+    report_ = *next;
+    ++reports_;
+  }
+}
+
+} // namespace mini

@@ -1,0 +1,195 @@
+// One frame: advance, upload, prepare three services, draw everything in one pass.
+#include "engine.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace mini {
+namespace {
+
+Model loadModel(const std::string& dataFolder) {
+  const std::string file = dataFolder + "/fetched/models/2CylinderEngine.glb";
+  Model model;
+  if (fileExists(file)) {
+    model = loadGltf(file);
+  } else {
+    std::fprintf(stderr, "mini_engine: %s is not there (tests/data/fetch.sh fetches it); using a model made here\n",
+                 file.c_str());
+    model = makeFallbackModel();
+  }
+  model.standOnGround(22.0f);
+  return model;
+}
+
+} // namespace
+
+Engine::Engine(Device& device, Target& target, const EngineOptions& options)
+    : device_(device), target_(target), forward_(device, target.format(), target.finalLayout()),
+      gpgp_(device, kFramesInFlight), city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga"),
+      hud_(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
+           options.dataFolder + "/fetched/svg/tiger.svgz"),
+      sight_(device, gpgp_, forward_, loadModel(options.dataFolder)) {
+  for (Slot& slot : slots_) {
+    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    pool.queueFamilyIndex = device.family;
+    check(vkCreateCommandPool(device.device, &pool, nullptr, &slot.pool), "vkCreateCommandPool");
+    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    allocate.commandPool = slot.pool;
+    allocate.commandBufferCount = 1;
+    check(vkAllocateCommandBuffers(device.device, &allocate, &slot.commands), "vkAllocateCommandBuffers");
+    VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    fence.flags = VK_FENCE_CREATE_SIGNALED_BIT;
+    check(vkCreateFence(device.device, &fence, nullptr, &slot.finished), "vkCreateFence");
+  }
+  resize();
+}
+
+Engine::~Engine() {
+  vkDeviceWaitIdle(device_.device);
+  for (const Slot& slot : slots_) {
+    vkDestroyFence(device_.device, slot.finished, nullptr);
+    vkDestroyCommandPool(device_.device, slot.pool, nullptr);
+  }
+}
+
+void Engine::resize() {
+  check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
+  target_.attach(forward_);
+  hud_.resize(target_.extent());
+}
+
+Camera Engine::mainCamera() const {
+  const float angle = 0.62f + 0.01f * static_cast<float>(frame_.current);
+  const VkExtent2D size = target_.extent();
+  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  return lookAt(glm::vec3(std::sin(angle) * 74.0f, 34.0f, std::cos(angle) * 74.0f), glm::vec3(0, 13, 0), 0.85f, aspect,
+                1.0f, 900.0f);
+}
+
+Camera Engine::sideCamera() const {
+  const float angle = 0.62f + 0.01f * static_cast<float>(frame_.current) + 1.9f;
+  const VkExtent2D size = target_.extent();
+  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  return lookAt(glm::vec3(std::sin(angle) * 46.0f, 16.0f, std::cos(angle) * 46.0f), glm::vec3(0, 11, 0), 0.60f, aspect,
+                1.0f, 900.0f);
+}
+
+void Engine::run(uint32_t frames) {
+  for (uint32_t i = 0; (frames == 0 || i < frames) && target_.pollEvents(); ++i) {
+    frame();
+    if (i % 30 == 29) {
+      target_.setTitle("gpgp mini engine: " + std::to_string(city_.report().terminals) + " spawned, " +
+                       std::to_string(hud_.report().patches) + " patches, " + std::to_string(sight_.report().visible) +
+                       " triangles visible");
+    }
+  }
+  check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
+  // Everything is finished: one more advance makes the last reports ready.
+  frame_ = {frame_.current + 1, frame_.current};
+  gpgp_.check(gpgp_.context.advance(frame_), "gpgpAdvance");
+  collect();
+}
+
+void Engine::frame() {
+  // The slot was used two frames ago: once its fence is signalled, everything up to that frame is safe.
+  ++frame_.current;
+  Slot& slot = slots_[frame_.current % kFramesInFlight];
+  check(vkWaitForFences(device_.device, 1, &slot.finished, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  if (frame_.current > kFramesInFlight) frame_.safe = frame_.current - kFramesInFlight;
+  std::optional<Acquired> acquired = target_.acquire(static_cast<uint32_t>(frame_.current));
+  while (!acquired) {
+    resize();
+    acquired = target_.acquire(static_cast<uint32_t>(frame_.current));
+  }
+  gpgp_.check(gpgp_.context.advance(frame_), "gpgpAdvance");
+  collect();
+
+  check(vkResetFences(device_.device, 1, &slot.finished), "vkResetFences");
+  check(vkResetCommandPool(device_.device, slot.pool, 0), "vkResetCommandPool");
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
+  record(slot.commands, *acquired);
+  check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
+
+  const VkPipelineStageFlags waitStage = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+  VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+  if (acquired->available) {
+    submit.waitSemaphoreCount = submit.signalSemaphoreCount = 1;
+    submit.pWaitSemaphores = &acquired->available;
+    submit.pWaitDstStageMask = &waitStage;
+    submit.pSignalSemaphores = &acquired->rendered;
+  }
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &slot.commands;
+  check(vkQueueSubmit(device_.queue, 1, &submit, slot.finished), "vkQueueSubmit");
+  target_.present(*acquired);
+}
+
+void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
+  const Camera camera = mainCamera(), side = sideCamera();
+  gpgp_.check(gpgp_.context.recordUpload(commands, frame_).code(), "gpgpRecordUpload");
+  city_.prepare(commands, frame_);
+  sight_.prepare(commands, frame_, camera, target_.extent());
+  hud_.prepare(commands, frame_);
+
+  forward_.begin(commands, acquired.framebuffer);
+  forward_.drawBackdrop(commands, camera);
+  city_.draw(commands, camera);
+  sight_.draw(commands, camera);
+  // The same model from the side, in a corner: what the main camera cannot see stays dark.
+  const VkExtent2D extent = forward_.extent();
+  const VkExtent2D inset{extent.width * 3 / 10, extent.height * 3 / 10};
+  const VkRect2D corner{{static_cast<int32_t>(extent.width - inset.width - extent.height * 3 / 100),
+                         static_cast<int32_t>(extent.height - inset.height - extent.height * 3 / 100)},
+                        inset};
+  forward_.setArea(commands, corner, true);
+  forward_.drawBackdrop(commands, side);
+  sight_.draw(commands, side);
+  forward_.setArea(commands, {{0, 0}, extent});
+  hud_.draw(commands, frame_);
+  vkCmdEndRenderPass(commands);
+
+  if (const auto* offscreen = dynamic_cast<const Offscreen*>(&target_)) {
+    forward_.begin(commands, offscreen->sideFramebuffer());
+    forward_.drawBackdrop(commands, side);
+    sight_.draw(commands, side);
+    vkCmdEndRenderPass(commands);
+  }
+}
+
+void Engine::collect() {
+  city_.collect();
+  hud_.collect();
+  sight_.collect();
+}
+
+bool Engine::allWell() const {
+  return city_.report().base.status == GPGP_SUCCESS && city_.reports() > 0 &&
+         hud_.report().base.status == GPGP_SUCCESS && hud_.reports() > 0 &&
+         sight_.report().base.status == GPGP_SUCCESS && sight_.reports() > 0;
+}
+
+void Engine::printSummary() const {
+  const GpgpSpawnReport& spawn = city_.report();
+  const GpgpCanvasReport& canvas = hud_.report();
+  const GpgpSampleReport& sample = sight_.report();
+  const auto line = [](const char* service, const GpgpReportHeader& base) {
+    std::printf("%-11s %-20s frame %llu: ", service, gpgpResultString(base.status),
+                static_cast<unsigned long long>(base.frame));
+  };
+  std::printf("device      %s\n", device_.properties.deviceName);
+  line("spawn", spawn.base);
+  std::printf("%u buildings became %u instances in %u rounds, key hash %08x%08x\n", city_.buildings(),
+              spawn.instancesWritten, spawn.rounds, spawn.keyHash[1], spawn.keyHash[0]);
+  line("vector", canvas.base);
+  std::printf("%u paths, %u patches, %u tile entries\n", hud_.paths(), canvas.patches, canvas.tileEntries);
+  line("visibility", sample.base);
+  std::printf("%u of %u triangles of %s visible, %u pixels covered, %u appeared, %u disappeared\n", sample.visible,
+              sight_.model().triangleCount, sight_.model().name.c_str(), sample.coveredPixels, sample.appeared,
+              sample.disappeared);
+  std::printf("memory      gpgp holds %.1f MiB in %u allocations of the engine's\n",
+              static_cast<double>(gpgp_.memory.bytes()) / 1048576.0, gpgp_.memory.allocations());
+}
+
+} // namespace mini

@@ -1,0 +1,52 @@
+// The frame loop: two frames in flight; what gpgp records goes into the engine's own command buffer.
+#pragma once
+#include "city.h"
+#include "hud.h"
+#include "sight.h"
+#include "target.h"
+
+namespace mini {
+
+struct EngineOptions {
+  std::string dataFolder; // tests/data
+};
+
+class Engine {
+public:
+  static constexpr uint32_t kFramesInFlight = 2;
+  Engine(Device& device, Target& target, const EngineOptions& options);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  /// Renders frame after frame until `frames` are done (0: until the window closes), then waits.
+  void run(uint32_t frames);
+  void printSummary() const;
+  /// Whether every record of every frame was executed and nothing exceeded its budget.
+  bool allWell() const;
+
+private:
+  struct Slot {
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkFence finished = VK_NULL_HANDLE;
+  };
+  void frame();
+  void record(VkCommandBuffer commands, const Acquired& acquired);
+  void resize();
+  void collect();
+  Camera mainCamera() const;
+  Camera sideCamera() const;
+
+  Device& device_;
+  Target& target_;
+  Forward forward_;
+  Gpgp gpgp_;
+  City city_;
+  Hud hud_;
+  Sight sight_;
+  Slot slots_[kFramesInFlight];
+  GpgpFrame frame_{};
+};
+
+} // namespace mini

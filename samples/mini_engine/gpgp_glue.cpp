@@ -1,0 +1,88 @@
+// The engine's side of the contract: memory, messages, files.
+#include "gpgp_glue.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace mini {
+
+GpgpGpuAllocator EngineMemory::callbacks() { return {this, allocate, free}; }
+
+VkResult EngineMemory::allocate(void* user, const GpgpGpuAllocationRequest* request, GpgpGpuAllocation* allocation) {
+  auto& self = *static_cast<EngineMemory*>(user);
+  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  info.allocationSize = request->requirements.size;
+  try {
+    info.memoryTypeIndex =
+        self.device_.memoryType(request->requirements.memoryTypeBits, request->required, request->preferred);
+  } catch (const std::runtime_error&) {
+    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
+  *allocation = GpgpGpuAllocation{};
+  VkResult result = vkAllocateMemory(self.device_.device, &info, nullptr, &allocation->memory);
+  if (result == VK_SUCCESS && (request->required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT)) {
+    result = vkMapMemory(self.device_.device, allocation->memory, 0, VK_WHOLE_SIZE, 0, &allocation->mapped);
+    if (result != VK_SUCCESS) vkFreeMemory(self.device_.device, allocation->memory, nullptr);
+  }
+  if (result != VK_SUCCESS) return result;
+  allocation->userData = reinterpret_cast<void*>(static_cast<uintptr_t>(info.allocationSize));
+  self.bytes_ += info.allocationSize;
+  ++self.allocations_;
+  return VK_SUCCESS;
+}
+
+void EngineMemory::free(void* user, const GpgpGpuAllocation* allocation) {
+  auto& self = *static_cast<EngineMemory*>(user);
+  vkFreeMemory(self.device_.device, allocation->memory, nullptr); // unmaps as well
+  self.bytes_ -= static_cast<VkDeviceSize>(reinterpret_cast<uintptr_t>(allocation->userData));
+  --self.allocations_;
+}
+
+Gpgp::Gpgp(Device& device, uint32_t framesInFlight) : memory(device), device_(device) {
+  const GpgpGpuAllocator allocator = memory.callbacks();
+  auto info = gpgp::init<GpgpContextCreateInfo>();
+  info.label = "mini engine";
+  info.instance = device.instance;
+  info.physicalDevice = device.physical;
+  info.device = device.device;
+  info.getInstanceProcAddr = vkGetInstanceProcAddr;
+  info.apiVersion = VK_API_VERSION_1_2;
+  info.features = device.gpgpFeatures;
+  info.maxFramesInFlight = framesInFlight;
+  info.gpuAllocator = &allocator;
+  info.messageFn = onMessage;
+  info.messageUserData = this;
+  context = take(gpgp::Context::create(info), "gpgpCreateContext");
+}
+
+void Gpgp::onMessage(void* user, const GpgpMessage* message) {
+  if (message->severity == GPGP_SEVERITY_ERROR) static_cast<Gpgp*>(user)->lastError_ = message->text;
+  std::fprintf(stderr, "gpgp: %s: %s%s%s\n", message->function, message->label, message->label[0] ? ": " : "",
+               message->text);
+}
+
+GpgpResult Gpgp::check(GpgpResult result, const char* what) {
+  if (result >= 0) return result;
+  throw std::runtime_error(std::string(what) + ": " + gpgpResultString(result) +
+                           (lastError_.empty() ? "" : ": " + lastError_));
+}
+
+GpgpWorkerCreateInfo Gpgp::worker(const char* label) const {
+  GpgpWorkerCreateInfo info{};
+  info.label = label;
+  info.queueFamily = device_.family;
+  info.queueFlags = device_.queueFlags;
+  return info;
+}
+
+std::vector<char> readFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error("cannot read " + path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool fileExists(const std::string& path) { return std::filesystem::is_regular_file(path); }
+
+} // namespace mini

@@ -1,0 +1,128 @@
+// Drawings become a canvas in each frame; the canvas is one blended rectangle in the forward pass.
+#include "hud.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace mini {
+namespace {
+
+void GPGP_CALL onSvgMessage(void*, const GpgpMessage* message) {
+  std::fprintf(stderr, "svg: %s: %s\n", message->label, message->text);
+}
+
+/// Puts a drawing's page into a rectangle, undistorted, in its middle.
+void fit(const GpgpDrawingInfo& drawing, float left, float top, float width, float height, float (&transform)[6]) {
+  const float scale = std::min(width / drawing.viewport[2], height / drawing.viewport[3]);
+  transform[0] = transform[3] = scale;
+  transform[1] = transform[2] = 0.0f;
+  transform[4] = left + (width - drawing.viewport[2] * scale) * 0.5f - drawing.viewport[0] * scale;
+  transform[5] = top + (height - drawing.viewport[3] * scale) * 0.5f - drawing.viewport[1] * scale;
+}
+
+} // namespace
+
+Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFile, const std::string& pictureFile)
+    : gpgp_(gpgp) {
+  load(frameFile, true);
+  load(pictureFile, false);
+  auto info = gpgp::init<GpgpCanvasCreateInfo>();
+  info.base = gpgp.worker("hud canvas");
+  info.maxWidth = 4096;
+  info.maxHeight = 2304;
+  canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
+  target_ = gpgp::init<GpgpTargetInfo>();
+  target_.renderPass = forward.renderPass();
+  target_.samples = Forward::kSamples;
+  auto prewarm = gpgp::init<GpgpPrewarmInfo>();
+  prewarm.targets = &target_;
+  prewarm.targetCount = 1;
+  gpgp.check(canvas_.prewarm(prewarm), "gpgpPrewarm");
+}
+
+void Hud::load(const std::string& file, bool isFrame) {
+  if (!fileExists(file)) {
+    std::fprintf(stderr, "mini_engine: %s is not there (tests/data/fetch.sh fetches drawings); going on without it\n",
+                 file.c_str());
+    return;
+  }
+  const std::vector<char> bytes = readFile(file);
+  auto source = gpgp::init<GpgpSvgSource>();
+  source.name = file.c_str();
+  source.data = bytes.data();
+  source.size = bytes.size();
+  source.messageFn = onSvgMessage;
+  const gpgp::Blob baked = gpgp_.take(gpgp::compileSvg(source), "gpgpCompileSvg");
+  auto info = gpgp::init<GpgpDrawingCreateInfo>();
+  info.label = isFrame ? "hud frame" : "hud picture";
+  info.data = baked.data();
+  info.size = baked.size();
+  Item item;
+  item.drawing = gpgp_.take(gpgp::Drawing::create(gpgp_.context, info), "gpgpCreateDrawing");
+  item.info = gpgp_.take(item.drawing.info(), "gpgpGetDrawingInfo");
+  item.isFrame = isFrame;
+  items_.push_back(std::move(item));
+}
+
+void Hud::resize(VkExtent2D extent) {
+  extent_ = extent;
+  auto info = gpgp::init<GpgpCanvasViewCreateInfo>();
+  info.label = "hud";
+  info.width = extent.width;
+  info.height = extent.height;
+  view_ = gpgp_.take(gpgp::CanvasView::create(gpgp_.context, info), "gpgpCreateCanvasView");
+  prepared_ = false;
+}
+
+void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
+  const float width = static_cast<float>(extent_.width), height = static_cast<float>(extent_.height);
+  std::vector<GpgpCanvasItem> items;
+  for (const Item& item : items_) {
+    GpgpCanvasItem entry{};
+    entry.drawing = item.drawing;
+    entry.opacity = 1.0f;
+    if (item.isFrame)
+      fit(item.info, 0, 0, width, height, entry.transform);
+    else
+      fit(item.info, height * 0.03f, height * 0.03f, height * 0.26f, height * 0.26f, entry.transform);
+    items.push_back(entry);
+  }
+  auto info = gpgp::init<GpgpCanvasInfo>();
+  info.base.tag = frame.current;
+  info.width = extent_.width;
+  info.height = extent_.height;
+  info.items = items.data();
+  info.itemCount = static_cast<uint32_t>(items.size());
+  info.view = view_;
+  if (gpgp_.check(canvas_.recordPrepare(commands, frame, info), "gpgpRecordPrepareCanvas") == GPGP_SUCCESS)
+    prepared_ = true;
+}
+
+void Hud::draw(VkCommandBuffer commands, const GpgpFrame& frame) {
+  if (!prepared_) return;
+  auto info = gpgp::init<GpgpCanvasDrawInfo>();
+  info.view = view_;
+  info.target = &target_;
+  info.width = extent_.width;
+  info.height = extent_.height;
+  info.clip[0] = 2.0f / static_cast<float>(extent_.width); // canvas pixels to clip space: both have +Y down
+  info.clip[5] = 2.0f / static_cast<float>(extent_.height);
+  info.clip[10] = info.clip[15] = 1.0f;
+  info.clip[12] = info.clip[13] = -1.0f;
+  gpgp_.check(canvas_.recordDraw(commands, frame, info), "gpgpRecordDrawCanvas");
+}
+
+void Hud::collect() {
+  for (auto next = canvas_.report(); next; next = canvas_.report()) {
+    report_ = *next;
+    ++reports_;
+  }
+}
+
+uint32_t Hud::paths() const {
+  uint32_t count = 0;
+  for (const Item& item : items_) count += item.info.paths;
+  return count;
+}
+
+} // namespace mini

@@ -1,0 +1,121 @@
+// A small engine that uses all three gpgp services in one frame: a city from a grammar, a head-up display from SVG
+// drawings, and a model whose visible triangles are found and coloured.
+#include "engine.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a vector HUD and sampled visibility
+
+  --out FOLDER     write city.png and side.png there (default: pictures)
+  --frames N       render N frames before the pictures are written (default 3)
+  --size WxH       picture size (default 1280x720)
+  --window         open a window instead; Escape closes it (with --frames: after N frames)
+  --device NAME    GPU: part of its name, or an index (default: $GPGP_DEVICE, else the software device)
+  --data FOLDER    test data (default: the source tree's)
+  --validate       run under the Khronos validation layer; any message of it is an error
+
+Exit code 0: all is well; 1: an error, a validation message or an exceeded budget; 2: wrong usage.
+)";
+
+struct Options {
+  std::string out = "pictures", device, data = MINI_ENGINE_DATA;
+  uint32_t frames = 0;
+  VkExtent2D size{1280, 720};
+  bool window = false, validate = false;
+};
+
+bool parse(int argc, char** argv, Options& options) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    if (name == "--window") {
+      options.window = true;
+      continue;
+    }
+    if (name == "--validate") {
+      options.validate = true;
+      continue;
+    }
+    if (i + 1 == argc) return false;
+    const char* value = argv[++i];
+    char rest = 0;
+    if (name == "--out")
+      options.out = value;
+    else if (name == "--device")
+      options.device = value;
+    else if (name == "--data")
+      options.data = value;
+    else if (name == "--frames" && std::sscanf(value, "%u%c", &options.frames, &rest) == 1 && options.frames > 0)
+      continue;
+    else if (name == "--size" && std::sscanf(value, "%ux%u%c", &options.size.width, &options.size.height, &rest) == 2 &&
+             options.size.width >= 64 && options.size.height >= 64 && options.size.width <= 4096 &&
+             options.size.height <= 2304)
+      continue;
+    else
+      return false;
+  }
+  return true;
+}
+
+int run(const Options& options) {
+  mini::DeviceOptions deviceOptions;
+  deviceOptions.name = options.device;
+  deviceOptions.validate = options.validate;
+#ifdef MINI_ENGINE_WINDOW
+  if (options.window) {
+    deviceOptions.instanceExtensions = mini::windowExtensions();
+    deviceOptions.swapchain = true;
+  }
+#else
+  if (options.window) throw std::runtime_error("built without SDL2; there is no window");
+#endif
+  bool well = false;
+  uint32_t messages = 0;
+  {
+    mini::Device device(deviceOptions);
+    std::unique_ptr<mini::Target> target;
+#ifdef MINI_ENGINE_WINDOW
+    if (options.window) target = mini::makeWindow(device, options.size);
+#endif
+    if (!target) target = std::make_unique<mini::Offscreen>(device, options.size);
+    {
+      mini::Engine engine(device, *target, {options.data});
+      engine.run(options.frames ? options.frames : options.window ? 0 : 3);
+      engine.printSummary();
+      well = engine.allWell();
+    }
+    if (auto* offscreen = dynamic_cast<mini::Offscreen*>(target.get())) {
+      offscreen->writePng(0, options.out + "/city.png");
+      offscreen->writePng(1, options.out + "/side.png");
+      std::printf("pictures    %s/city.png: the frame; %s/side.png: the model from the side\n", options.out.c_str(),
+                  options.out.c_str());
+    }
+    messages = device.validationMessages();
+  }
+  if (options.validate) std::printf("validation  %u messages\n", messages);
+  return well && messages == 0 ? 0 : 1;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) {
+      std::fputs(kHelp, stdout);
+      return EXIT_SUCCESS;
+    }
+  Options options;
+  if (!parse(argc, argv, options)) {
+    std::fputs(kHelp, stderr);
+    return 2;
+  }
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "mini_engine: %s\n", error.what());
+    return EXIT_FAILURE;
+  }
+}

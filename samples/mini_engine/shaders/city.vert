@@ -1,0 +1,32 @@
+#version 450
+// One unit box, bent into what the terminal is: a box, a flat polygon, or a triangular prism (a roof).
+layout(location = 0) in vec3 corner;
+layout(location = 1) in vec4 row0; // GpgpInstance::transform, as instance-rate vertex attributes
+layout(location = 2) in vec4 row1;
+layout(location = 3) in vec4 row2;
+layout(location = 4) in uvec3 kind; // bucket, shape, axiomId
+
+layout(push_constant) uniform Push {
+  mat4 viewProjection;
+  vec4 eye;
+  vec4 colour;
+} push;
+
+layout(location = 0) out vec3 world;
+layout(location = 1) out vec3 normal;
+layout(location = 2) out vec3 colour;
+
+const uint kOctagon = 5u, kPrism3 = 6u, kDynamicConvexPolygon = 12u, kDynamicPolygon = 13u; // GpgpShape
+
+void main() {
+  vec3 p = corner;
+  uint shape = kind.y;
+  if (shape <= kOctagon || shape == kDynamicConvexPolygon || shape == kDynamicPolygon) p.z = 0.0;
+  if (shape == kPrism3 || shape == 0u) p.x *= 0.5 - p.y;
+  vec4 local = vec4(p, 1.0);
+  world = vec3(dot(row0, local), dot(row1, local), dot(row2, local));
+  normal = vec3(0.0); // flat: the fragment shader takes it from the surface
+  float tone = fract(float(kind.z) * 0.618034);
+  colour = push.colour.rgb * mix(vec3(1.0), vec3(0.80, 0.86, 0.95) + vec3(0.30, 0.16, 0.0) * tone, push.colour.a);
+  gl_Position = push.viewProjection * vec4(world, 1.0);
+}

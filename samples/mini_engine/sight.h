@@ -1,0 +1,42 @@
+// The model and what of it is seen: gpgp visibility samples its triangles, the forward pass colours them.
+#pragma once
+#include "forward.h"
+#include "gpgp_glue.h"
+#include "scene.h"
+
+namespace mini {
+
+class Sight {
+public:
+  Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model);
+  ~Sight();
+  Sight(const Sight&) = delete;
+  Sight& operator=(const Sight&) = delete;
+  /// Finds the triangles that this camera sees in a picture of this size.
+  void prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Camera& camera, VkExtent2D extent);
+  /// Draws the model, visible triangles orange, from any camera.
+  void draw(VkCommandBuffer commands, const Camera& camera);
+  void collect();
+  const GpgpSampleReport& report() const { return report_; }
+  uint32_t reports() const { return reports_; }
+  const Model& model() const { return model_; }
+
+private:
+  void bindBuffers();
+  Device& device_;
+  Gpgp& gpgp_;
+  Model model_;
+  Buffer positions_, normals_, indices_, draws_, visibleBits_;
+  gpgp::GeometrySet geometry_;
+  gpgp::Sampler sampler_;
+  gpgp::CameraView view_;
+  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  Pipeline pipeline_;
+  bool prepared_ = false;
+  uint32_t reports_ = 0;
+  GpgpSampleReport report_{};
+};
+
+} // namespace mini

@@ -1,0 +1,63 @@
+// Where pictures go: images of the engine's own that become PNG files, or a window.
+#pragma once
+#include "forward.h"
+
+#include <memory>
+#include <optional>
+
+namespace mini {
+
+/// One picture to draw into in this frame.
+struct Acquired {
+  uint32_t index = 0;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  VkSemaphore available = VK_NULL_HANDLE; // the frame's submit waits for it; null: nothing to wait for
+  VkSemaphore rendered = VK_NULL_HANDLE;  // and signals it
+};
+
+class Target {
+public:
+  virtual ~Target() = default;
+  virtual VkFormat format() const = 0;
+  virtual VkImageLayout finalLayout() const = 0;
+  virtual VkExtent2D extent() const = 0;
+  /// Sizes the forward pass to this target and makes framebuffers for it. The device must be idle.
+  virtual void attach(Forward& forward) = 0;
+  /// Nothing: the size has changed; call attach and try again.
+  virtual std::optional<Acquired> acquire(uint32_t slot) = 0;
+  virtual void present(const Acquired& acquired) = 0;
+  /// False: the person wants to end.
+  virtual bool pollEvents() { return true; }
+  virtual void setTitle(const std::string&) {}
+};
+
+/// Two images: the picture, and the same scene from the side. After the frame is finished they can be written.
+class Offscreen : public Target {
+public:
+  Offscreen(Device& device, VkExtent2D extent);
+  ~Offscreen() override;
+  VkFormat format() const override { return VK_FORMAT_R8G8B8A8_SRGB; }
+  VkImageLayout finalLayout() const override { return VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; }
+  VkExtent2D extent() const override { return extent_; }
+  void attach(Forward& forward) override;
+  std::optional<Acquired> acquire(uint32_t slot) override;
+  void present(const Acquired&) override {}
+  VkFramebuffer sideFramebuffer() const { return framebuffers_[1]; }
+  /// Waits for everything and writes image 0 or 1.
+  void writePng(uint32_t image, const std::string& file);
+
+private:
+  void destroyFramebuffers();
+  Device& device_;
+  VkExtent2D extent_;
+  Image images_[2];
+  VkFramebuffer framebuffers_[2] = {};
+};
+
+#ifdef MINI_ENGINE_WINDOW
+/// What SDL needs of the instance. Throws where no window system is there.
+std::vector<const char*> windowExtensions();
+std::unique_ptr<Target> makeWindow(Device& device, VkExtent2D extent);
+#endif
+
+} // namespace mini
