@@ -137,8 +137,7 @@ typedef struct GpgpSpawnInfo {
   GpgpBuffer instances;  /**< out: GpgpInstance[]; its size is the budget; STORAGE usage */
   GpgpBuffer draws;      /**< out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket: instanceCount and
                               firstInstance are written, the other fields are left as the engine set them. With it,
-                              instances are sorted by bucket, at the price of a second derivation; without it they lie
-                              in no stated order */
+                              instances are sorted by bucket; without it they lie in no stated order */
   GpgpBuffer count;      /**< out, optional: uint32_t, instances written (4 bytes); STORAGE usage */
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)

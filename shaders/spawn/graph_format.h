@@ -28,7 +28,7 @@ GPGP_CONST uint kHeaderVersion = 1u;
 GPGP_CONST uint kHeaderWords = 2u;    // of everything
 GPGP_CONST uint kHeaderChecksum = 3u; // of all words from kHeaderChecked on
 GPGP_CONST uint kHeaderChecked = 4u;
-GPGP_CONST uint kHeaderSections = 4u; // count and offset of each section
+GPGP_CONST uint kHeaderSections = 4u;      // count and offset of each section
 GPGP_CONST uint kHeaderAxiomShape = 24u;   // GpgpShape
 GPGP_CONST uint kHeaderAxiomPolygon = 25u; // its polygon, by number
 GPGP_CONST uint kHeaderAxiomNode = 26u;    // where a derivation starts by default
@@ -123,22 +123,22 @@ GPGP_CONST uint kCodeLessEqual = 10u;
 GPGP_CONST uint kCodeGreaterEqual = 11u;
 GPGP_CONST uint kCodeAnd = 12u;
 GPGP_CONST uint kCodeOr = 13u;
-GPGP_CONST uint kCodeRandom = 14u;     // minimum, maximum
-GPGP_CONST uint kCodePosition = 32u;   // + axis
-GPGP_CONST uint kCodeShapeSize = 35u;  // + axis
-GPGP_CONST uint kCodeNormal = 38u;     // + axis
-GPGP_CONST uint kCodeRotation = 41u;   // + 3 * axis + component
+GPGP_CONST uint kCodeRandom = 14u;    // minimum, maximum
+GPGP_CONST uint kCodePosition = 32u;  // + axis
+GPGP_CONST uint kCodeShapeSize = 35u; // + axis
+GPGP_CONST uint kCodeNormal = 38u;    // + axis
+GPGP_CONST uint kCodeRotation = 41u;  // + 3 * axis + component
 GPGP_CONST uint kCodeSeed = 50u;
 GPGP_CONST uint kCodeCustom = 51u;
 GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
 GPGP_CONST uint kCodeCount = 52u;
 
 // limits that the interpreter relies on
-GPGP_CONST uint kMaxStack = 8u;         // of expressions
-GPGP_CONST uint kMaxSuccessors = 32u;   // of one operator
+GPGP_CONST uint kMaxStack = 8u;       // of expressions
+GPGP_CONST uint kMaxSuccessors = 32u; // of one operator
 GPGP_CONST uint kMaxBuckets = 1024u;
-GPGP_CONST uint kMaxChain = 64u;        // operators that one shape passes in one round
-GPGP_CONST uint kMaxRepeat = 1048576u;  // copies that one Repeat makes
+GPGP_CONST uint kMaxChain = 64u;       // operators that one shape passes in one round
+GPGP_CONST uint kMaxRepeat = 1048576u; // copies that one Repeat makes
 
 // shape types, as GpgpShape
 GPGP_CONST uint kShapeTriangle = 0u;

@@ -7,7 +7,7 @@ GPGP_SHADER_BEGIN
 
 /// Counters of one record, cleared at its start. The first eight words are the report.
 struct SpawnState {
-  uint terminals;        // derived, those that did not fit included
+  uint terminals; // derived, those that did not fit included
   uint instancesWritten;
   uint peakShapes;
   uint droppedShapes;
@@ -15,7 +15,7 @@ struct SpawnState {
   uint rounds;
   uint keyHashX;
   uint keyHashY;
-  uint shapes[4];        // in the queue of round r: shapes[r % 3], those that did not fit included
+  uint shapes[4]; // in the queue of round r: shapes[r % 3], those that did not fit included
 };
 GPGP_CONST uint kSpawnReportWords = 8u;
 

@@ -16,8 +16,9 @@ GPGP_CONST uint kEndFan = 2u;      // shape.node multiplies the shape
 /// How a chain ended.
 struct ChainEnd {
   uint kind;
-  uint count;     // kEndFan: children
-  uint successors;// kEndFan: bit i set: successor i takes part; 0: the chain only paused, the child is the shape itself
+  uint count; // kEndFan: children
+  uint
+      successors; // kEndFan: bit i set: successor i takes part; 0: the chain only paused, the child is the shape itself
 };
 
 GPGP_FN float parameter(GPGP_GRAPH Shape s, uint index) {
@@ -237,8 +238,10 @@ GPGP_FN Shape childOf(GPGP_GRAPH Shape s, uint successors, uint index) {
     float weightBefore = 0.0f;
     for (uint i = 0u; i < successor; ++i) {
       const float v = parameter(GPGP_G s, i);
-      if (v > 0.0f) fixedBefore = add(fixedBefore, v);
-      else weightBefore = subtract(weightBefore, v);
+      if (v > 0.0f)
+        fixedBefore = add(fixedBefore, v);
+      else
+        weightBefore = subtract(weightBefore, v);
     }
     const float own = parameter(GPGP_G s, successor);
     const float extent = own > 0.0f ? own : shareOf(d, -own);

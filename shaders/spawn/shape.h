@@ -16,7 +16,7 @@ struct Shape {
   vec3 axisZ;
   vec3 position; // of the centre
   vec3 size;     // extents; 0 where a polygon has none
-  float custom; // attribute; GLSL reserves that word
+  float custom;  // attribute; GLSL reserves that word
   uint geometry; // GpgpShape, and its polygon << 8
   uint seed;
   uvec2 key;
@@ -29,9 +29,7 @@ GPGP_CONST uint kShapePlanes = 6u; // uvec4 each
 GPGP_FN uvec4 packPlane(vec3 v, uint last) {
   return uvec4(floatBitsToUint(v.x), floatBitsToUint(v.y), floatBitsToUint(v.z), last);
 }
-GPGP_FN vec3 unpackVector(uvec4 p) {
-  return vec3(uintBitsToFloat(p.x), uintBitsToFloat(p.y), uintBitsToFloat(p.z));
-}
+GPGP_FN vec3 unpackVector(uvec4 p) { return vec3(uintBitsToFloat(p.x), uintBitsToFloat(p.y), uintBitsToFloat(p.z)); }
 /// One sixth of a shape.
 GPGP_FN uvec4 packShape(Shape s, uint plane) {
   if (plane == 0u) return packPlane(s.axisX, s.geometry);
@@ -75,7 +73,8 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
   s.axiom = index;
   const uint section = kHeaderSections + 2u * kSectionRules;
   s.node = graphWords[kHeaderAxiomNode];
-  if (rule != 0xffffffffu) s.node = rule < graphWords[section] ? graphWords[graphWords[section + 1u] + rule * kRuleSize + 1u] : 0u;
+  if (rule != 0xffffffffu)
+    s.node = rule < graphWords[section] ? graphWords[graphWords[section + 1u] + rule * kRuleSize + 1u] : 0u;
   return s;
 }
 

@@ -1,0 +1,39 @@
+// The CPU twin of the derivation on the GPU: one thread, depth first, the same functions on the same words.
+//
+// Counts, keys, seeds, shapes and the hash are bit-identical to the GPU's; transforms agree within rounding. Used as
+// the oracle of tests, by the command, and as the baseline of benchmarks.
+#pragma once
+#include <gpgp/spawn.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gpgp::spawn {
+
+struct DeriveOptions {
+  uint32_t maxDepth = 64;           ///< rounds, as GpgpSpawnerCreateInfo
+  bool keepInstances = true;        ///< false: only count
+  uint64_t maxShapes = 100'000'000; ///< gives up beyond, so that a grammar without end cannot hang the caller
+};
+
+struct Derivation {
+  std::vector<GpgpInstance> instances; ///< by axiom, then depth first
+  std::vector<uint32_t> buckets;       ///< terminals by bucket
+  std::vector<uint64_t> shapesByRound;
+  uint64_t terminals = 0;
+  uint32_t peakShapes = 0;
+  uint32_t unfinishedShapes = 0;
+  uint32_t rounds = 0; ///< rounds that had work
+  uint32_t keyHash[2] = {0, 0};
+  bool complete = true; ///< false: maxShapes was reached
+};
+
+/// Derives axioms with a baked grammar's words, which load() has accepted.
+Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> axioms,
+                  const DeriveOptions& options = {});
+
+/// An axiom at the origin.
+GpgpAxiom makeAxiom(float x, float y, float z, uint32_t seed = 0, uint32_t id = 0);
+
+} // namespace gpgp::spawn

@@ -1,0 +1,87 @@
+// The operator graph (thesis 4.1): nodes are operators with parameters, edges are the ways that shapes take.
+//
+// A plain value: the language builds it, blob.h turns it into words and back, print.h shows it. References are indices;
+// kNoNode as a target discards the shape.
+#pragma once
+#include "core/result.h"
+#include "spawn/graph_format.h"
+
+#include <memory_resource>
+#include <string>
+#include <vector>
+
+namespace gpgp::spawn {
+
+constexpr uint32_t kNoNode = UINT32_MAX;
+
+struct Parameter {
+  uint32_t kind = shader::kParameterConstant;
+  uint32_t value = 0; ///< float bits, an attribute's code, or an index in Graph::code
+};
+
+struct Edge {
+  uint32_t target = kNoNode;
+  uint32_t multiplicity = shader::kMultiplicityOne;
+  uint32_t shapes = 0; ///< bit set of the shape types that travel along it
+};
+
+struct Node {
+  uint32_t op = shader::kOpTerminal;
+  uint32_t argument = 0, argument2 = 0;
+  uint32_t firstParameter = 0, parameterCount = 0;
+  uint32_t firstEdge = 0, edgeCount = 0;
+  uint32_t shapes = 0; ///< bit set of the shape types that can arrive, from the axiom or as a start rule
+};
+
+struct Polygon {
+  uint32_t firstVertex = 0, vertexCount = 0; ///< in Graph::vertices, two floats each
+};
+
+struct Terminal {
+  uint32_t name = 0; ///< byte offset in Graph::names
+  uint32_t kind = 0, index = 0, bucket = 0;
+};
+
+struct Rule {
+  uint32_t name = 0;
+  uint32_t node = kNoNode;
+};
+
+struct Graph {
+  explicit Graph(std::pmr::memory_resource* memory)
+      : nodes(memory), edges(memory), parameters(memory), code(memory), polygons(memory), vertices(memory),
+        terminals(memory), rules(memory), names(memory) {}
+
+  std::pmr::vector<Node> nodes;
+  std::pmr::vector<Edge> edges;
+  std::pmr::vector<Parameter> parameters;
+  std::pmr::vector<uint32_t> code;
+  std::pmr::vector<Polygon> polygons;
+  std::pmr::vector<float> vertices;
+  std::pmr::vector<Terminal> terminals;
+  std::pmr::vector<Rule> rules;
+  std::pmr::vector<char> names; ///< each ends in 0
+  uint32_t axiomShape = shader::kShapeBox, axiomPolygon = 0, axiomNode = kNoNode;
+  uint32_t buckets = 0; ///< terminal lines
+  uint32_t rounds = 0;  ///< the most rounds that a derivation can need; 0: not bounded
+
+  const char* nameAt(uint32_t offset) const { return names.data() + offset; }
+};
+
+/// The six pairs of regular polygons that every graph begins with. A polygon with n corners spans [-0.5, 0.5] on both
+/// axes; its number is 2 (n - 3).
+void addRegularPolygons(Graph& graph);
+/// Adds a polygon and its mirror image; corners counter-clockwise. Returns the first one's number.
+uint32_t addPolygon(Graph& graph, const float* corners, uint32_t count);
+
+/// Fills in what follows from nodes and edges: multiplicities, the shape types on nodes and edges, rounds.
+void analyse(Graph& graph);
+
+/// Every index, enum, count and program. What passes can be derived without further checks and without end only where
+/// the graph has a cycle.
+core::Result<void> validate(const Graph& graph);
+
+const char* operatorName(uint32_t op);
+const char* shapeName(uint32_t shape);
+
+} // namespace gpgp::spawn

@@ -1,0 +1,210 @@
+// Checks of an operator graph, so that the interpreter needs none.
+#include "spawn/graph/graph.h"
+
+#include <cstring>
+
+namespace gpgp::spawn {
+namespace {
+using core::makeError;
+using core::Result;
+using namespace shader;
+
+struct Rules { // what an operator needs
+  const char* name;
+  uint32_t parameters; // kPerEdge: one each
+  uint32_t edges;      // kPerEdge: 1 to kMaxSuccessors
+};
+constexpr uint32_t kPerEdge = UINT32_MAX;
+constexpr uint32_t kPerEdgeAndOne = UINT32_MAX - 1;
+constexpr Rules kOperators[kOpCount] = {
+    {"Terminal", 0, 0},    {"Translate", 3, 1},
+    {"Rotate", 3, 1},      {"Scale", 3, 1},
+    {"Extrude", 1, 1},     {"SwapSize", 0, 1},
+    {"SetGeometry", 0, 1}, {"If", 1, 2},
+    {"IfSizeLess", 1, 2},  {"RandomRule", kPerEdgeAndOne, kPerEdge},
+    {"CompSplit", 0, 3},   {"SubDiv", kPerEdge, kPerEdge},
+    {"Repeat", 1, 1},      {"Replicate", 0, kPerEdge},
+};
+constexpr const char* kShapes[kShapeCount] = {"Triangle",
+                                              "Quad",
+                                              "Pentagon",
+                                              "Hexagon",
+                                              "Heptagon",
+                                              "Octagon",
+                                              "Prism3",
+                                              "Box",
+                                              "Prism5",
+                                              "Prism6",
+                                              "Prism7",
+                                              "Prism8",
+                                              "DynamicConvexPolygon",
+                                              "DynamicPolygon",
+                                              "DynamicConvexRightPrism",
+                                              "DynamicRightPrism",
+                                              "Sphere"};
+
+/// A settled float: what the interpreter's arithmetic expects. Own test, as NaN must not pass.
+bool isSettled(uint32_t bits) {
+  const uint32_t exponent = (bits >> 23) & 0xffu;
+  return bits == 0 || (exponent >= 27 && exponent <= 226) || (bits & 0x7fffffffu) == 0x71800000u;
+}
+
+/// Programs lie back to back in the code; marks where they start. Linear in the code's size.
+Result<void> checkCode(const Graph& graph, std::pmr::vector<uint8_t>& starts) {
+  size_t at = 0;
+  while (at < graph.code.size()) {
+    const size_t start = at;
+    starts[start] = 1;
+    uint32_t depth = 0;
+    for (;;) {
+      if (at >= graph.code.size()) return makeError(GPGP_ERROR_INVALID_DATA, "program %zu has no end", start);
+      const uint32_t code = graph.code[at++];
+      if (code == kCodeEnd) break;
+      if (code == kCodeNumber) {
+        if (at >= graph.code.size() || !isSettled(graph.code[at]))
+          return makeError(GPGP_ERROR_INVALID_DATA, "program %zu has a bad number", start);
+        ++at;
+        ++depth;
+      } else if (code >= kCodeAttributes && code < kCodeCount) {
+        ++depth;
+      } else if (code >= kCodeAdd && code <= kCodeRandom) {
+        if (depth < 2) return makeError(GPGP_ERROR_INVALID_DATA, "program %zu takes from an empty stack", start);
+        --depth;
+      } else {
+        return makeError(GPGP_ERROR_INVALID_DATA, "program %zu has unknown code %u", start, code);
+      }
+      if (depth > kMaxStack)
+        return makeError(GPGP_ERROR_INVALID_DATA, "program %zu needs more than %u values at once", start, kMaxStack);
+    }
+    if (depth != 1) return makeError(GPGP_ERROR_INVALID_DATA, "program %zu leaves %u values", start, depth);
+  }
+  return {};
+}
+
+bool nameEnds(const Graph& graph, uint32_t offset) {
+  return offset < graph.names.size() &&
+         std::memchr(graph.names.data() + offset, 0, graph.names.size() - offset) != nullptr;
+}
+
+/// The corners that a shape type's polygon must have; 0: any.
+uint32_t cornersOf(uint32_t shape) {
+  if (shape <= kShapeOctagon) return shape + 3;
+  if (shape <= kShapePrism8) return shape - 3;
+  return 0;
+}
+
+Result<void> checkGeometry(const Graph& graph, const char* where, uint32_t shape, uint32_t polygon) {
+  if (shape >= kShapeCount) return makeError(GPGP_ERROR_INVALID_DATA, "%s has unknown shape %u", where, shape);
+  if (polygon >= graph.polygons.size())
+    return makeError(GPGP_ERROR_INVALID_DATA, "%s names polygon %u of %zu", where, polygon, graph.polygons.size());
+  const uint32_t corners = cornersOf(shape);
+  if (corners && graph.polygons[polygon].vertexCount != corners)
+    return makeError(GPGP_ERROR_INVALID_DATA, "%s: a %s needs %u corners", where, kShapes[shape], corners);
+  return {};
+}
+
+Result<void> checkNode(const Graph& graph, uint32_t index) {
+  const Node& node = graph.nodes[index];
+  const auto bad = [&](const char* what) {
+    return makeError(GPGP_ERROR_INVALID_DATA, "node %u (%s): %s", index, operatorName(node.op), what);
+  };
+  if (node.op >= kOpCount) return bad("unknown operator");
+  if (node.parameterCount > graph.parameters.size() ||
+      node.firstParameter > graph.parameters.size() - node.parameterCount)
+    return bad("parameters out of range");
+  if (node.edgeCount > graph.edges.size() || node.firstEdge > graph.edges.size() - node.edgeCount)
+    return bad("edges out of range");
+  const Rules& rules = kOperators[node.op];
+  if (rules.edges == kPerEdge) {
+    if (node.edgeCount < 1 || node.edgeCount > kMaxSuccessors) return bad("wrong number of successors");
+  } else if (node.edgeCount != rules.edges) {
+    return bad("wrong number of successors");
+  }
+  const uint32_t parameters = rules.parameters == kPerEdge         ? node.edgeCount
+                              : rules.parameters == kPerEdgeAndOne ? node.edgeCount + 1
+                                                                   : rules.parameters;
+  if (node.parameterCount != parameters) return bad("wrong number of parameters");
+  switch (node.op) {
+  case kOpTerminal:
+    if (node.argument >= graph.terminals.size()) return bad("unknown terminal");
+    if (node.argument2 != graph.terminals[node.argument].bucket) return bad("wrong bucket");
+    break;
+  case kOpIfSizeLess:
+  case kOpSubDiv:
+    if (node.argument > 2) return bad("unknown axis");
+    break;
+  case kOpRepeat:
+    if (node.argument > 2) return bad("unknown axis");
+    if (node.argument2 > kRepeatAnchorToEnd) return bad("unknown mode");
+    break;
+  case kOpSwapSize:
+    if (node.argument > 63 || (node.argument & 3) == 3 || (node.argument >> 2 & 3) == 3 || node.argument >> 4 == 3)
+      return bad("unknown axis");
+    break;
+  case kOpSetGeometry: return checkGeometry(graph, "SetGeometry", node.argument, node.argument2);
+  default: break;
+  }
+  return {};
+}
+} // namespace
+
+const char* operatorName(uint32_t op) { return op < kOpCount ? kOperators[op].name : "?"; }
+const char* shapeName(uint32_t shape) { return shape < kShapeCount ? kShapes[shape] : "?"; }
+
+Result<void> validate(const Graph& graph) {
+  const size_t nodes = graph.nodes.size();
+  const auto isTarget = [&](uint32_t node) { return node < nodes || node == kNoNode; };
+  for (const Edge& edge : graph.edges) {
+    if (!isTarget(edge.target))
+      return makeError(GPGP_ERROR_INVALID_DATA, "an edge leads to node %u of %zu", edge.target, nodes);
+    if (edge.multiplicity > kMultiplicityAny)
+      return makeError(GPGP_ERROR_INVALID_DATA, "an edge has an unknown multiplicity");
+  }
+  std::pmr::vector<uint8_t> starts(graph.code.size(), 0, graph.code.get_allocator().resource());
+  if (auto ok = checkCode(graph, starts); !ok) return ok;
+  for (const Parameter& parameter : graph.parameters) {
+    if (parameter.kind == kParameterConstant) {
+      if (!isSettled(parameter.value)) return makeError(GPGP_ERROR_INVALID_DATA, "a parameter is not a usable number");
+    } else if (parameter.kind == kParameterAttribute) {
+      if (parameter.value < kCodeAttributes || parameter.value >= kCodeCount)
+        return makeError(GPGP_ERROR_INVALID_DATA, "a parameter is an unknown attribute");
+    } else if (parameter.kind == kParameterProgram) {
+      if (parameter.value >= starts.size() || !starts[parameter.value])
+        return makeError(GPGP_ERROR_INVALID_DATA, "a parameter has no program");
+    } else {
+      return makeError(GPGP_ERROR_INVALID_DATA, "a parameter has an unknown kind");
+    }
+  }
+  if (graph.polygons.size() < kRegularPolygons || graph.polygons.size() % 2 || graph.polygons.size() > 0xffffff)
+    return makeError(GPGP_ERROR_INVALID_DATA, "%zu polygons", graph.polygons.size());
+  const size_t vertices = graph.vertices.size() / 2;
+  for (size_t i = 0; i < graph.polygons.size(); ++i) {
+    const Polygon& polygon = graph.polygons[i];
+    if (polygon.vertexCount < 3 || polygon.vertexCount > 65536 || polygon.vertexCount > vertices ||
+        polygon.firstVertex > vertices - polygon.vertexCount)
+      return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has vertices out of range", i);
+    if (polygon.vertexCount != graph.polygons[i ^ 1].vertexCount ||
+        (i < kRegularPolygons && polygon.vertexCount != i / 2 + 3))
+      return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has %u corners", i, polygon.vertexCount);
+  }
+  if (graph.vertices.size() % 2) return makeError(GPGP_ERROR_INVALID_DATA, "half a vertex");
+  for (const float v : graph.vertices) {
+    uint32_t bits;
+    std::memcpy(&bits, &v, 4);
+    if (!isSettled(bits)) return makeError(GPGP_ERROR_INVALID_DATA, "a vertex is not a usable number");
+  }
+  if (graph.buckets > kMaxBuckets)
+    return makeError(GPGP_ERROR_INVALID_DATA, "%u terminal lines; at most %u", graph.buckets, kMaxBuckets);
+  for (const Terminal& terminal : graph.terminals)
+    if (!nameEnds(graph, terminal.name) || terminal.bucket >= graph.buckets || terminal.kind > 1)
+      return makeError(GPGP_ERROR_INVALID_DATA, "a terminal has a bad name, kind or bucket");
+  for (const Rule& rule : graph.rules)
+    if (!nameEnds(graph, rule.name) || !isTarget(rule.node))
+      return makeError(GPGP_ERROR_INVALID_DATA, "a rule has a bad name or node");
+  for (uint32_t i = 0; i < nodes; ++i)
+    if (auto ok = checkNode(graph, i); !ok) return ok;
+  if (!isTarget(graph.axiomNode)) return makeError(GPGP_ERROR_INVALID_DATA, "the axiom has no such node");
+  return checkGeometry(graph, "the axiom", graph.axiomShape, graph.axiomPolygon);
+}
+
+} // namespace gpgp::spawn

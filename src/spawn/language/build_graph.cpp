@@ -1,0 +1,481 @@
+#include "spawn/language/build_graph.h"
+
+#include "spawn/expression.h"
+#include "spawn/language/expressions.h"
+
+#include <algorithm>
+#include <array>
+
+namespace gpgp::spawn {
+namespace {
+using namespace shader;
+
+std::optional<uint32_t> shapeNamed(const std::string& name) {
+  for (uint32_t s = 0; s < kShapeCount; ++s)
+    if (name == shapeName(s)) return s;
+  return std::nullopt;
+}
+
+std::string count(size_t n, const char* noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
+
+class Builder {
+public:
+  Builder(const SyntaxTree& tree, Diagnostics& diagnostics, std::pmr::memory_resource* memory)
+      : tree_(tree), diagnostics_(diagnostics), graph_(memory), expressions_(variables_, graph_, diagnostics) {}
+
+  Graph run(std::span<const GpgpVariable> overrides) {
+    addRegularPolygons(graph_);
+    defineVariables(overrides);
+    defineTerminals();
+    defineRules();
+    for (size_t i = 0; i < tree_.rules.size(); ++i) buildRule(i);
+    for (size_t i = 0; i < tree_.rules.size(); ++i) graph_.rules[i].node = resolveRule(i);
+    for (const auto& [edge, rule] : ruleEdges_) graph_.edges[edge].target = graph_.rules[rule].node;
+    buildAxiom();
+    if (!diagnostics_.hasErrors()) {
+      analyse(graph_);
+      warn();
+    }
+    return std::move(graph_);
+  }
+
+private:
+  enum class NameKind { terminal, rule };
+  struct Name {
+    NameKind kind;
+    size_t index;
+    Place place;
+  };
+  /// Where a successor leads: a node, nowhere, or to a rule whose node is not known yet.
+  struct Target {
+    uint32_t node = kNoNode;
+    std::optional<size_t> rule;
+  };
+
+  uint32_t addName(const std::string& name) {
+    const uint32_t at = static_cast<uint32_t>(graph_.names.size());
+    graph_.names.insert(graph_.names.end(), name.begin(), name.end());
+    graph_.names.push_back(0);
+    return at;
+  }
+
+  bool define(const std::string& name, Name what) {
+    const auto [it, isNew] = names_.try_emplace(name, what);
+    if (!isNew)
+      diagnostics_.error(what.place, "'" + name + "' is defined twice; the first time in line " +
+                                         std::to_string(it->second.place.line));
+    else if (isOperatorName(name))
+      diagnostics_.error(what.place, "'" + name + "' is the name of an operator; expected another name");
+    return isNew;
+  }
+
+  void defineVariables(std::span<const GpgpVariable> overrides) {
+    std::map<std::string, float> set;
+    for (const GpgpVariable& variable : overrides) {
+      if (!variable.name) continue;
+      const bool known = std::any_of(tree_.variables.begin(), tree_.variables.end(),
+                                     [&](const VariableDefinition& v) { return v.name == variable.name; });
+      if (!known) diagnostics_.error({}, std::string("there is no var '") + variable.name + "' that could be set");
+      set[variable.name] = settle(variable.value);
+    }
+    for (const VariableDefinition& variable : tree_.variables) {
+      const float value = expressions_.constant(variable.value, "a var");
+      const auto it = set.find(variable.name);
+      if (!variables_.try_emplace(variable.name, it == set.end() ? value : it->second).second)
+        diagnostics_.error(variable.place, "var '" + variable.name + "' is defined twice");
+    }
+  }
+
+  void defineTerminals() {
+    for (const TerminalDefinition& line : tree_.terminals) {
+      const uint32_t bucket = graph_.buckets++;
+      if (bucket == kMaxBuckets)
+        diagnostics_.error(line.place, "more than " + std::to_string(kMaxBuckets) + " terminal lines");
+      uint32_t kind = 1, index = 0;
+      if (line.arguments.size() < 2) {
+        diagnostics_.error(line.place,
+                           "a terminal needs (kind, index), found " + count(line.arguments.size(), "value"));
+      } else {
+        kind = integer(line.arguments[0], 1, "a terminal's kind is 0 (triangles) or 1 (an instanced mesh)");
+        index = integer(line.arguments[1], 1 << 24, "a terminal's index is a whole number from 0");
+        for (size_t i = 2; i < line.arguments.size(); ++i)
+          expressions_.constant(line.arguments[i], "a terminal's value");
+      }
+      for (const auto& [place, name] : line.names) {
+        const size_t terminal = graph_.terminals.size();
+        if (define(name, {NameKind::terminal, terminal, place}))
+          graph_.terminals.push_back({addName(name), kind, index, bucket});
+      }
+    }
+  }
+
+  uint32_t integer(const Expression& expression, uint32_t largest, const char* expected) {
+    const float value = expressions_.constant(expression, "a terminal's value");
+    if (value >= 0 && value <= static_cast<float>(largest) && value == floor(value))
+      return static_cast<uint32_t>(value);
+    diagnostics_.error(expression.place, expected);
+    return 0;
+  }
+
+  void defineRules() {
+    ruleTargets_.resize(tree_.rules.size());
+    for (size_t i = 0; i < tree_.rules.size(); ++i) {
+      define(tree_.rules[i].name, {NameKind::rule, i, tree_.rules[i].place});
+      graph_.rules.push_back({addName(tree_.rules[i].name), kNoNode});
+    }
+  }
+
+  void buildRule(size_t index) {
+    const RuleDefinition& rule = tree_.rules[index];
+    if (rule.alternatives.empty()) {
+      ruleTargets_[index] = buildSuccessor(rule.body);
+      return;
+    }
+    // 20%: A else: B is RandomRule(ShapeSeed()) with probabilities
+    float given = 0;
+    std::vector<Parameter> parameters{{kParameterAttribute, kCodeSeed}};
+    for (const Branch& branch : rule.alternatives) {
+      const float p =
+          branch.isElse ? std::max(0.0f, 100.0f - given) : expressions_.constant(*branch.label, "a probability");
+      if (p < 0) diagnostics_.error(branch.label->place, "a probability must not be negative");
+      given += p;
+      parameters.push_back({kParameterConstant, floatBitsToUint(settle(p))});
+    }
+    ruleTargets_[index] = {addNode(rule.place, kOpRandomRule, parameters, rule.alternatives), std::nullopt};
+  }
+
+  /// A rule that is only a name leads to what the name leads to.
+  uint32_t resolveRule(size_t index) {
+    std::vector<bool> seen(tree_.rules.size());
+    size_t rule = index;
+    while (ruleTargets_[rule].rule) {
+      if (seen[rule]) {
+        if (rule == index)
+          diagnostics_.error(tree_.rules[index].place,
+                             "rule '" + tree_.rules[index].name + "' leads back to itself without any operator");
+        return kNoNode;
+      }
+      seen[rule] = true;
+      rule = *ruleTargets_[rule].rule;
+    }
+    return ruleTargets_[rule].node;
+  }
+
+  Target buildSuccessor(const Successor& successor) {
+    if (successor.call) return buildCall(*successor.call);
+    const auto it = names_.find(successor.name);
+    if (it == names_.end()) {
+      diagnostics_.error(successor.place, isOperatorName(successor.name)
+                                              ? "expected '(' after the operator " + successor.name
+                                              : "there is no rule or terminal '" + successor.name + "'");
+      return {};
+    }
+    if (it->second.kind == NameKind::rule) {
+      if (it->second.index >= usedRules_.size()) usedRules_.resize(tree_.rules.size());
+      usedRules_[it->second.index] = true;
+      return {kNoNode, it->second.index};
+    }
+    return {terminalNode(static_cast<uint32_t>(it->second.index), successor.place), std::nullopt};
+  }
+
+  uint32_t terminalNode(uint32_t terminal, Place place) {
+    const auto [it, isNew] = terminalNodes_.try_emplace(terminal, static_cast<uint32_t>(graph_.nodes.size()));
+    if (isNew) {
+      graph_.nodes.push_back({kOpTerminal, terminal, graph_.terminals[terminal].bucket});
+      places_.push_back(place);
+    }
+    return it->second;
+  }
+
+  // ---------------------------------------------------------------- operators
+
+  /// How an operator is written. Parameters: axes and modes come first, then values.
+  struct Spelling {
+    const char* name;
+    uint32_t op;
+    const char* arguments; ///< one letter each: a axis, m mode, v value
+    uint32_t branches;     ///< 1: one successor, 2 or 3: exactly, kMany: any number
+    bool labels;           ///< value: successor
+  };
+  static constexpr uint32_t kMany = UINT32_MAX;
+  static constexpr uint32_t kSetGeometry = kOpSetGeometry;
+  static constexpr Spelling kSpellings[] = {
+      {"Translate", kOpTranslate, "vvv", 1, false},
+      {"Rotate", kOpRotate, "vvv", 1, false},
+      {"Scale", kOpScale, "vvv", 1, false},
+      {"Extrude", kOpExtrude, "v", 1, false},
+      {"SwapSize", kOpSwapSize, "aaa", 1, false},
+      {"CompSplit", kOpCompSplit, "", 3, false},
+      {"SubDiv", kOpSubDiv, "a", kMany, true},
+      {"Repeat", kOpRepeat, "avm", 1, false},
+      {"If", kOpIf, "v", 2, false},
+      {"IfSizeLess", kOpIfSizeLess, "av", 2, false},
+      {"RandomRule", kOpRandomRule, "v", kMany, true},
+      {"Replicate", kOpReplicate, "", kMany, false},
+  };
+  static constexpr std::array<const char*, 8> kOtherOperators{"Discard",
+                                                              "Generate",
+                                                              "Collider",
+                                                              "IfCollides",
+                                                              "SetAsDynamicConvexPolygon",
+                                                              "SetAsDynamicConcavePolygon",
+                                                              "SetAsDynamicConvexRightPrism",
+                                                              "SetAsDynamicConcaveRightPrism"};
+  static bool isOperatorName(const std::string& name) {
+    return std::any_of(std::begin(kSpellings), std::end(kSpellings),
+                       [&](const Spelling& s) { return name == s.name; }) ||
+           std::any_of(kOtherOperators.begin(), kOtherOperators.end(), [&](const char* s) { return name == s; });
+  }
+
+  Target buildCall(const Call& call) {
+    for (const Spelling& spelling : kSpellings)
+      if (call.name == spelling.name) return {buildOperator(call, spelling), std::nullopt};
+    if (call.name == "Discard" || call.name == "Generate") {
+      if (!call.arguments.empty() || !call.branches.empty())
+        diagnostics_.error(call.place, call.name + "() takes neither arguments nor successors");
+      if (call.name == "Discard") return {};
+      if (!generate_) { // a terminal without a name of its own
+        generate_ = static_cast<uint32_t>(graph_.terminals.size());
+        graph_.terminals.push_back({addName("Generate"), 0, 0, graph_.buckets++});
+      }
+      return {terminalNode(*generate_, call.place), std::nullopt};
+    }
+    if (call.name.substr(0, 12) == "SetAsDynamic") return {buildSetGeometry(call), std::nullopt};
+    if (call.name == "Collider" || call.name == "IfCollides")
+      diagnostics_.error(call.place, call.name + " is not supported yet: shapes cannot see each other");
+    else if (names_.count(call.name))
+      diagnostics_.error(call.place, "'" + call.name + "' is no operator; expected no '(' after it");
+    else
+      diagnostics_.error(call.place, "there is no operator '" + call.name + "'");
+    for (const Branch& branch : call.branches) buildSuccessor(branch.successor);
+    return {};
+  }
+
+  uint32_t buildOperator(const Call& call, const Spelling& spelling) {
+    const std::string arguments = spelling.arguments;
+    std::vector<Parameter> parameters;
+    uint32_t argument = 0, argument2 = 0, axes = 0;
+    if (call.arguments.size() != arguments.size()) {
+      diagnostics_.error(call.place, call.name + " takes " + count(arguments.size(), "argument") + ", found " +
+                                         std::to_string(call.arguments.size()));
+    } else {
+      for (size_t i = 0; i < arguments.size(); ++i) {
+        if (arguments[i] == 'a') {
+          argument |= axisOf(call.arguments[i], diagnostics_).value_or(0) << (2 * axes++);
+        } else if (arguments[i] == 'm') {
+          argument2 = modeOf(call.arguments[i]);
+        } else {
+          parameters.push_back(expressions_.parameter(call.arguments[i]));
+        }
+      }
+    }
+    checkBranches(call, spelling);
+    if (spelling.labels)
+      for (const Branch& branch : call.branches)
+        parameters.push_back(branch.label ? expressions_.parameter(*branch.label) : Parameter{});
+    std::vector<Branch> branches = call.branches;
+    if (spelling.op == kOpCompSplit && call.form == SuccessorForm::chain && branches.size() == 1)
+      branches.assign(3, branches[0]); // all faces alike
+    const uint32_t node = addNode(call.place, spelling.op, parameters, branches);
+    graph_.nodes[node].argument = argument;
+    graph_.nodes[node].argument2 = argument2;
+    return node;
+  }
+
+  void checkBranches(const Call& call, const Spelling& spelling) {
+    const size_t found = call.branches.size();
+    const bool comp = spelling.op == kOpCompSplit;
+    if (found == 0) {
+      diagnostics_.error(call.place, call.name + " needs a successor; shapes end in a terminal or Discard()");
+    } else if (call.form == SuccessorForm::chain &&
+               (spelling.labels || (spelling.branches > 1 && !comp && spelling.branches != kMany))) {
+      diagnostics_.error(call.branches[0].successor.place, "expected '{' after " + call.name + "(...)");
+    } else if (spelling.branches != kMany && found != spelling.branches &&
+               !(comp && call.form == SuccessorForm::chain)) {
+      diagnostics_.error(call.place, call.name + " takes " + count(spelling.branches, "successor") +
+                                         (comp ? " (top | bottom | sides)" : "") + ", found " + std::to_string(found));
+    } else if (found > kMaxSuccessors) {
+      diagnostics_.error(call.place, call.name + " takes at most " + std::to_string(kMaxSuccessors) +
+                                         " successors, found " + std::to_string(found));
+    }
+    for (const Branch& branch : call.branches) {
+      if (branch.isElse)
+        diagnostics_.error(branch.successor.place, "'else' has no meaning in " + call.name);
+      else if (spelling.labels && !branch.label && call.form == SuccessorForm::braces)
+        diagnostics_.error(branch.successor.place, "expected a value and ':' before the successor of " + call.name);
+      else if (!spelling.labels && branch.label)
+        diagnostics_.error(branch.label->place, call.name + " takes successors without a value before them");
+    }
+  }
+
+  uint32_t modeOf(const Expression& expression) {
+    if (expression.kind == ExpressionKind::name) {
+      if (expression.name == "ADJUST_TO_FILL") return kRepeatAdjustToFill;
+      if (expression.name == "ANCHOR_TO_START") return kRepeatAnchorToStart;
+      if (expression.name == "ANCHOR_TO_END") return kRepeatAnchorToEnd;
+    }
+    diagnostics_.error(expression.place, "expected ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END");
+    return 0;
+  }
+
+  uint32_t buildSetGeometry(const Call& call) {
+    const bool prism = call.name.find("RightPrism") != std::string::npos;
+    const bool convex = call.name.find("Convex") != std::string::npos;
+    uint32_t shape = prism ? kShapeDynamicRightPrism : kShapeDynamicPolygon;
+    if (convex) shape = prism ? kShapeDynamicConvexRightPrism : kShapeDynamicConvexPolygon;
+    if (!isOperatorName(call.name)) diagnostics_.error(call.place, "there is no operator '" + call.name + "'");
+    checkBranches(call, {call.name.c_str(), kSetGeometry, "", 1, false});
+    const uint32_t polygon = buildPolygon(call.place, call.arguments, convex);
+    const uint32_t node = addNode(call.place, kOpSetGeometry, {}, call.branches);
+    graph_.nodes[node].argument = shape;
+    graph_.nodes[node].argument2 = polygon;
+    return node;
+  }
+
+  /// Corners in either order; the graph keeps them counter-clockwise.
+  uint32_t buildPolygon(Place place, const std::vector<Expression>& corners, bool convex) {
+    std::vector<std::array<float, 2>> points;
+    for (const Expression& corner : corners) {
+      if (corner.kind != ExpressionKind::pair) {
+        diagnostics_.error(corner.place, "expected a corner as (x, y)");
+        return 0;
+      }
+      points.push_back({expressions_.constant(corner.arguments[0], "a corner"),
+                        expressions_.constant(corner.arguments[1], "a corner")});
+    }
+    if (points.size() < 3 || points.size() > 65536) {
+      diagnostics_.error(place, "expected 3 to 65536 corners, found " + std::to_string(points.size()));
+      return 0;
+    }
+    double area = 0;
+    bool left = false, right = false;
+    for (size_t i = 0; i < points.size(); ++i) {
+      const auto &a = points[i], &b = points[(i + 1) % points.size()], &c = points[(i + 2) % points.size()];
+      area += double(a[0]) * b[1] - double(b[0]) * a[1];
+      const double turn = (double(b[0]) - a[0]) * (double(c[1]) - b[1]) - (double(b[1]) - a[1]) * (double(c[0]) - b[0]);
+      left |= turn > 0;
+      right |= turn < 0;
+    }
+    if (area == 0)
+      diagnostics_.error(place, "the polygon has no area");
+    else if (convex && left && right)
+      diagnostics_.error(place, "the polygon is not convex");
+    if (area < 0) std::reverse(points.begin(), points.end());
+    return addPolygon(graph_, points[0].data(), static_cast<uint32_t>(points.size()));
+  }
+
+  uint32_t addNode(Place place, uint32_t op, const std::vector<Parameter>& parameters,
+                   const std::vector<Branch>& branches) {
+    const uint32_t index = static_cast<uint32_t>(graph_.nodes.size());
+    Node node;
+    node.op = op;
+    node.firstParameter = static_cast<uint32_t>(graph_.parameters.size());
+    node.parameterCount = static_cast<uint32_t>(parameters.size());
+    node.firstEdge = static_cast<uint32_t>(graph_.edges.size());
+    node.edgeCount = static_cast<uint32_t>(branches.size());
+    graph_.parameters.insert(graph_.parameters.end(), parameters.begin(), parameters.end());
+    graph_.edges.resize(graph_.edges.size() + branches.size());
+    graph_.nodes.push_back(node);
+    places_.push_back(place);
+    for (size_t i = 0; i < branches.size(); ++i) {
+      const Target target = buildSuccessor(branches[i].successor);
+      const uint32_t edge = node.firstEdge + static_cast<uint32_t>(i);
+      if (target.rule)
+        ruleEdges_.emplace_back(edge, *target.rule);
+      else
+        graph_.edges[edge].target = target.node;
+    }
+    return index;
+  }
+
+  void buildAxiom() {
+    if (tree_.axioms.empty()) {
+      diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box Start;");
+      return;
+    }
+    for (size_t i = 1; i < tree_.axioms.size(); ++i)
+      diagnostics_.error(tree_.axioms[i].place,
+                         "there is a second axiom; the first is in line " + std::to_string(tree_.axioms[0].place.line));
+    const AxiomDefinition& axiom = tree_.axioms[0];
+    Successor start;
+    start.place = axiom.namePlace;
+    start.name = axiom.name;
+    const Target target = buildSuccessor(start);
+    graph_.axiomNode = target.rule ? graph_.rules[*target.rule].node : target.node;
+    const auto shape = shapeNamed(axiom.shape);
+    if (!shape) {
+      diagnostics_.error(axiom.shapePlace,
+                         "there is no shape '" + axiom.shape +
+                             "'; expected Triangle, Quad, Pentagon, "
+                             "Hexagon, Heptagon, Octagon, Prism3, Box, Prism5 to Prism8, Sphere or a Dynamic... shape");
+      return;
+    }
+    graph_.axiomShape = *shape;
+    const bool dynamic = *shape >= kShapeDynamicConvexPolygon && *shape <= kShapeDynamicRightPrism;
+    if (dynamic) {
+      graph_.axiomPolygon =
+          buildPolygon(axiom.shapePlace, axiom.corners,
+                       *shape == kShapeDynamicConvexPolygon || *shape == kShapeDynamicConvexRightPrism);
+    } else {
+      if (!axiom.corners.empty())
+        diagnostics_.error(axiom.corners[0].place, "only Dynamic... shapes have corners of their own");
+      const uint32_t corners = *shape <= kShapeOctagon ? *shape + 3 : *shape <= kShapePrism8 ? *shape - 3 : 3;
+      graph_.axiomPolygon = 2 * (corners - 3);
+    }
+  }
+
+  // ---------------------------------------------------------------- warnings
+
+  void warn() {
+    usedRules_.resize(tree_.rules.size());
+    for (size_t i = 0; i < tree_.rules.size(); ++i)
+      if (!usedRules_[i])
+        diagnostics_.warning(tree_.rules[i].place, "rule '" + tree_.rules[i].name + "' is never used");
+    for (size_t i = 0; i < graph_.nodes.size(); ++i) {
+      const Node& node = graph_.nodes[i];
+      if (node.shapes == 0) continue;
+      uint32_t fitting = node.shapes;
+      for (uint32_t s = 0; s < kShapeCount; ++s) {
+        if (node.op == kOpExtrude && !isPolygon(s)) fitting &= ~(1u << s);
+        if (node.op == kOpCompSplit && !isPrism(s)) fitting &= ~(1u << s);
+      }
+      if (fitting == 0)
+        diagnostics_.warning(places_[i], std::string(operatorName(node.op)) + " has no effect here: only " +
+                                             list(node.shapes) + " arrives");
+    }
+  }
+
+  static std::string list(uint32_t shapes) {
+    std::string text;
+    for (uint32_t s = 0; s < kShapeCount; ++s)
+      if (shapes >> s & 1) text += (text.empty() ? "" : ", ") + std::string(shapeName(s));
+    return text;
+  }
+
+  const SyntaxTree& tree_;
+  Diagnostics& diagnostics_;
+  Graph graph_;
+  std::map<std::string, float> variables_;
+  ExpressionCompiler expressions_;
+  std::map<std::string, Name> names_;
+  std::vector<Target> ruleTargets_;
+  std::vector<std::pair<uint32_t, size_t>> ruleEdges_;
+  std::map<uint32_t, uint32_t> terminalNodes_;
+  std::vector<bool> usedRules_;
+  std::vector<Place> places_; // by node
+  std::optional<uint32_t> generate_;
+};
+} // namespace
+
+Graph buildGraph(const SyntaxTree& tree, std::span<const GpgpVariable> overrides, Diagnostics& diagnostics,
+                 std::pmr::memory_resource* memory) {
+  return Builder(tree, diagnostics, memory).run(overrides);
+}
+
+Graph compile(std::string_view text, std::span<const GpgpVariable> overrides, Diagnostics& diagnostics,
+              std::pmr::memory_resource* memory) {
+  const SyntaxTree tree = parse(text, diagnostics);
+  return buildGraph(tree, overrides, diagnostics, memory);
+}
+
+} // namespace gpgp::spawn

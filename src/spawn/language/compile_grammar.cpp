@@ -1,0 +1,52 @@
+// gpgpCompileGrammar: text to a baked grammar.
+#include "spawn/graph/blob.h"
+#include "spawn/language/build_graph.h"
+
+#include <cstdlib>
+#include <cstring>
+
+using namespace gpgp;
+
+namespace {
+void report(const GpgpGrammarSource& source, uint32_t line, uint32_t column, GpgpSeverity severity, const char* text) {
+  if (!source.messageFn) return;
+  const GpgpCompileMessage message{source.name ? source.name : "", line, column, severity, text};
+  source.messageFn(source.messageUserData, &message);
+}
+
+GpgpResult fail(const GpgpGrammarSource& source, GpgpResult result, const char* text) {
+  report(source, 1, 1, GPGP_SEVERITY_ERROR, text);
+  return result;
+}
+} // namespace
+
+GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob) {
+  if (!source || !blob) return GPGP_ERROR_INVALID_ARGUMENT;
+  if (source->sType != GPGP_STRUCTURE_GRAMMAR_SOURCE || source->pNext) return GPGP_ERROR_INVALID_STRUCT;
+  try {
+    if (!source->text && source->size) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
+    if (!source->variables && source->variableCount)
+      return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
+    for (uint32_t i = 0; i < source->variableCount; ++i)
+      if (!source->variables[i].name) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "a variable's name is NULL");
+    if (source->size > (size_t(1) << 28)) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "the text is over 256 MiB");
+    std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
+    spawn::Diagnostics diagnostics;
+    const spawn::Graph graph = spawn::compile({source->text ? source->text : "", source->size},
+                                              {source->variables, source->variableCount}, diagnostics, memory);
+    for (const spawn::Diagnostic& d : diagnostics.sorted())
+      report(*source, d.place.line, d.place.column, d.severity, d.text.c_str());
+    if (diagnostics.hasErrors()) return GPGP_ERROR_INVALID_DATA;
+    if (auto ok = spawn::validate(graph); !ok) return fail(*source, GPGP_ERROR_UNSUPPORTED, ok.error().text);
+    const auto words = spawn::serialize(graph, memory);
+    GpgpBlob made{std::malloc(words.size() * 4), words.size() * 4};
+    if (!made.data) return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+    std::memcpy(made.data, words.data(), made.size);
+    *blob = made;
+    return GPGP_SUCCESS;
+  } catch (const std::bad_alloc&) {
+    return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+  } catch (...) {
+    return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "the compiler failed");
+  }
+}

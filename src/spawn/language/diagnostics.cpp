@@ -1,0 +1,21 @@
+#include "spawn/language/diagnostics.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace gpgp::spawn {
+
+std::vector<Diagnostic> Diagnostics::sorted() const {
+  std::vector<Diagnostic> result = all_;
+  std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+  });
+  return result;
+}
+
+std::string format(const Diagnostic& diagnostic, const std::string& file) {
+  return file + ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column) +
+         (diagnostic.severity == GPGP_SEVERITY_ERROR ? ": error: " : ": warning: ") + diagnostic.text;
+}
+
+} // namespace gpgp::spawn

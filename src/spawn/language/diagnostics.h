@@ -1,0 +1,44 @@
+// Messages of the grammar compiler: all of them, each with its place.
+#pragma once
+#include <gpgp/spawn.h>
+
+#include <string>
+#include <vector>
+
+namespace gpgp::spawn {
+
+struct Place {
+  uint32_t line = 1, column = 1; ///< from 1; columns count bytes
+};
+
+struct Diagnostic {
+  Place place;
+  GpgpSeverity severity = GPGP_SEVERITY_ERROR;
+  std::string text;
+};
+
+class Diagnostics {
+public:
+  static constexpr size_t kLimit = 1000; ///< further messages would only be noise
+
+  void error(Place place, std::string text) {
+    ++errors_;
+    add(place, GPGP_SEVERITY_ERROR, std::move(text));
+  }
+  void warning(Place place, std::string text) { add(place, GPGP_SEVERITY_WARNING, std::move(text)); }
+  bool hasErrors() const { return errors_ > 0; }
+  /// In the order of places.
+  std::vector<Diagnostic> sorted() const;
+
+private:
+  void add(Place place, GpgpSeverity severity, std::string text) {
+    if (all_.size() < kLimit) all_.push_back({place, severity, std::move(text)});
+  }
+  std::vector<Diagnostic> all_;
+  size_t errors_ = 0;
+};
+
+/// file:line:column: error: text
+std::string format(const Diagnostic& diagnostic, const std::string& file);
+
+} // namespace gpgp::spawn

@@ -1,0 +1,127 @@
+#include "spawn/language/expressions.h"
+
+#include "spawn/expression.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gpgp::spawn {
+namespace {
+using namespace shader;
+
+std::string plural(size_t count, const char* noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+} // namespace
+
+std::optional<uint32_t> axisOf(const Expression& expression, Diagnostics& diagnostics) {
+  if (expression.kind == ExpressionKind::name) {
+    if (expression.name == "X") return 0;
+    if (expression.name == "Y") return 1;
+    if (expression.name == "Z") return 2;
+  }
+  diagnostics.error(expression.place, "expected an axis: X, Y or Z");
+  return std::nullopt;
+}
+
+ExpressionCompiler::Code ExpressionCompiler::number(float value) const {
+  Code code;
+  code.isConstant = true;
+  code.value = settle(value);
+  code.stack = 1;
+  code.words = {kCodeNumber, floatBitsToUint(code.value)};
+  return code;
+}
+
+ExpressionCompiler::Code ExpressionCompiler::attribute(const Expression& expression, uint32_t code, uint32_t axes) {
+  if (expression.arguments.size() != axes) {
+    diagnostics_.error(expression.place, expression.name + " takes " + (axes ? plural(axes, "axis") : "no argument") +
+                                             (axes == 2 ? " (axis and component)" : "") + ", found " +
+                                             plural(expression.arguments.size(), "argument"));
+    return number(0);
+  }
+  for (uint32_t i = 0; i < axes; ++i) {
+    const auto axis = axisOf(expression.arguments[i], diagnostics_);
+    if (!axis) return number(0);
+    code += axes == 2 && i == 0 ? 3 * *axis : *axis;
+  }
+  Code result;
+  result.words = {code};
+  result.stack = 1;
+  return result;
+}
+
+ExpressionCompiler::Code ExpressionCompiler::join(Place place, uint32_t op, Code left, Code right) {
+  if (left.isConstant && right.isConstant && op != kCodeRandom) return number(combine(op, left.value, right.value, 0));
+  Code result;
+  result.words = std::move(left.words);
+  result.words.insert(result.words.end(), right.words.begin(), right.words.end());
+  result.words.push_back(op);
+  result.stack = std::max(left.stack, right.stack + 1);
+  if (result.stack > kMaxStack) {
+    diagnostics_.error(place, "this expression needs more than " + std::to_string(kMaxStack) +
+                                  " values at once; write its inner parts first");
+    return number(0);
+  }
+  return result;
+}
+
+ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
+  const auto wants = [&](size_t count) {
+    if (e.arguments.size() == count) return true;
+    diagnostics_.error(e.place, e.name + " takes " + plural(count, "argument") + ", found " +
+                                    std::to_string(e.arguments.size()));
+    return false;
+  };
+  if (e.name == "Exp") return wants(1) ? compile(e.arguments[0]) : number(0);
+  if (e.name == "Rand") {
+    if (!wants(2)) return number(0);
+    Code low = compile(e.arguments[0]);
+    return join(e.place, kCodeRandom, std::move(low), compile(e.arguments[1]));
+  }
+  if (e.name == "ShapePos") return attribute(e, kCodePosition, 1);
+  if (e.name == "ShapeSize") return attribute(e, kCodeShapeSize, 1);
+  if (e.name == "ShapeNormal") return attribute(e, kCodeNormal, 1);
+  if (e.name == "ShapeRotation") return attribute(e, kCodeRotation, 2);
+  if (e.name == "ShapeSeed") return attribute(e, kCodeSeed, 0);
+  if (e.name == "ShapeCustomAttribute") return attribute(e, kCodeCustom, 0);
+  diagnostics_.error(e.place, "'" + e.name +
+                                  "' is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, "
+                                  "ShapeNormal, ShapeSeed or ShapeCustomAttribute");
+  return number(0);
+}
+
+ExpressionCompiler::Code ExpressionCompiler::compile(const Expression& e) {
+  switch (e.kind) {
+  case ExpressionKind::number: return number(e.number);
+  case ExpressionKind::name: {
+    const auto variable = variables_.find(e.name);
+    if (variable != variables_.end()) return number(variable->second);
+    diagnostics_.error(e.place, "there is no var '" + e.name + "'; expected a value");
+    return number(0);
+  }
+  case ExpressionKind::pair: diagnostics_.error(e.place, "expected one value, found a pair (x, y)"); return number(0);
+  case ExpressionKind::call: return call(e);
+  case ExpressionKind::binary: break;
+  }
+  Code left = compile(e.arguments[0]);
+  return join(e.place, e.op, std::move(left), compile(e.arguments[1]));
+}
+
+Parameter ExpressionCompiler::parameter(const Expression& expression) {
+  Code code = compile(expression);
+  if (code.isConstant) return {kParameterConstant, floatBitsToUint(code.value)};
+  if (code.words.size() == 1) return {kParameterAttribute, code.words[0]};
+  code.words.push_back(kCodeEnd);
+  const auto [program, isNew] = programs_.try_emplace(code.words, static_cast<uint32_t>(graph_.code.size()));
+  if (isNew) graph_.code.insert(graph_.code.end(), code.words.begin(), code.words.end());
+  return {kParameterProgram, program->second};
+}
+
+float ExpressionCompiler::constant(const Expression& expression, const char* what) {
+  const Code code = compile(expression);
+  if (!code.isConstant) diagnostics_.error(expression.place, std::string(what) + " must not depend on the shape");
+  return code.value;
+}
+
+} // namespace gpgp::spawn
