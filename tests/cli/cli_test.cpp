@@ -1,38 +1,8 @@
 // The `gpgp` command as a person or a script meets it: exit codes, one JSON object, nothing else on standard output.
-#include "process.h"
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <set>
+#include "run.h"
 
 namespace gpgp::test {
 namespace {
-
-using nlohmann::json;
-
-ProcessResult gpgp(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), GPGP_CLI);
-  return runProcess(arguments);
-}
-
-/// Runs with --json and expects success, one object, and nothing on standard error.
-json gpgpJson(std::vector<std::string> arguments) {
-  arguments.push_back("--json");
-  const ProcessResult result = gpgp(arguments);
-  EXPECT_EQ(result.exitCode, 0) << result.err;
-  EXPECT_EQ(result.err, "");
-  json object = json::parse(result.out, nullptr, false); // fails where anything stands beside the object
-  EXPECT_TRUE(object.is_object()) << result.out;
-  EXPECT_EQ(object.value("ok", false), true);
-  return object;
-}
-
-std::set<std::string> keys(const json& object) {
-  std::set<std::string> result;
-  for (const auto& [key, value] : object.items()) result.insert(key);
-  return result;
-}
 
 TEST(Cli, InfoSaysWhatThereIs) {
   const json info = gpgpJson({"info", "--validate"});
@@ -59,16 +29,11 @@ TEST(Cli, ADeviceCanBeNamed) {
 }
 
 TEST(Cli, FailedWorkIsOneAndStillOneObject) {
-  const ProcessResult result = gpgp({"info", "--device", "no such device", "--json"});
-  EXPECT_EQ(result.exitCode, 1);
-  const json object = json::parse(result.out, nullptr, false);
-  ASSERT_TRUE(object.is_object()) << result.out;
-  EXPECT_EQ(object["ok"], false);
-  EXPECT_NE(object["error"].get<std::string>().find("no such device"), std::string::npos);
-  EXPECT_NE(result.err.find("no such device"), std::string::npos);
+  EXPECT_NE(gpgpFailure({"info", "--device", "no such device"}).find("no such device"), std::string::npos);
   const ProcessResult text = gpgp({"info", "--device", "no such device"});
   EXPECT_EQ(text.exitCode, 1);
   EXPECT_EQ(text.out, "");
+  EXPECT_NE(text.err, "");
 }
 
 TEST(Cli, WrongUsageIsTwoAndSilentOnStandardOutput) {

@@ -1,0 +1,54 @@
+// Runs the `gpgp` command.
+#pragma once
+#include "process.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace gpgp::test {
+
+using nlohmann::json;
+
+inline ProcessResult gpgp(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), GPGP_CLI);
+  return runProcess(arguments);
+}
+
+/// Runs with --json and expects success, one object, and nothing on standard error.
+inline json gpgpJson(std::vector<std::string> arguments) {
+  arguments.push_back("--json");
+  const ProcessResult result = gpgp(arguments);
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  json object = json::parse(result.out, nullptr, false); // fails where anything stands beside the object
+  EXPECT_TRUE(object.is_object()) << result.out;
+  EXPECT_EQ(object.value("ok", false), true);
+  return object.is_object() ? object : json::object();
+}
+
+/// Runs with --json and expects failed work: exit code 1, one object with the error, the same on standard error.
+inline std::string gpgpFailure(std::vector<std::string> arguments) {
+  arguments.push_back("--json");
+  const ProcessResult result = gpgp(arguments);
+  EXPECT_EQ(result.exitCode, 1) << result.err;
+  const json object = json::parse(result.out, nullptr, false);
+  EXPECT_TRUE(object.is_object()) << result.out;
+  if (!object.is_object()) return {};
+  EXPECT_EQ(object.value("ok", true), false);
+  const std::string error = object.value("error", "");
+  EXPECT_NE(error, "");
+  EXPECT_NE(result.err.find(error), std::string::npos) << result.err;
+  return error;
+}
+
+inline std::set<std::string> keys(const json& object) {
+  std::set<std::string> result;
+  for (const auto& [key, value] : object.items()) result.insert(key);
+  return result;
+}
+
+} // namespace gpgp::test
