@@ -63,7 +63,8 @@ extern "C" {
 #define GPGP_VERSION_MAJOR 0
 #define GPGP_VERSION_MINOR 1
 #define GPGP_VERSION_PATCH 0
-#define GPGP_MAKE_VERSION(major, minor, patch) (((uint32_t)(major) << 22) | ((uint32_t)(minor) << 12) | (uint32_t)(patch))
+#define GPGP_MAKE_VERSION(major, minor, patch)                                                                         \
+  (((uint32_t)(major) << 22) | ((uint32_t)(minor) << 12) | (uint32_t)(patch))
 /** The version of this header. */
 #define GPGP_VERSION GPGP_MAKE_VERSION(GPGP_VERSION_MAJOR, GPGP_VERSION_MINOR, GPGP_VERSION_PATCH)
 
@@ -83,17 +84,17 @@ enum {
   GPGP_INCOMPLETE = 4,      /**< an array or byte range was too small; what fits was written, the count says all */
   /* errors: nothing was changed */
   GPGP_ERROR_INVALID_ARGUMENT = -1,
-  GPGP_ERROR_INVALID_STRUCT = -2,      /**< sType is unknown, or a pNext chain holds a struct that does not belong */
-  GPGP_ERROR_INVALID_HANDLE = -3,      /**< destroyed, of another kind, or of another context */
-  GPGP_ERROR_MISSING_FEATURE = -4,     /**< the device or the declared features lack something; the message names it */
+  GPGP_ERROR_INVALID_STRUCT = -2,  /**< sType is unknown, or a pNext chain holds a struct that does not belong */
+  GPGP_ERROR_INVALID_HANDLE = -3,  /**< destroyed, of another kind, or of another context */
+  GPGP_ERROR_MISSING_FEATURE = -4, /**< the device or the declared features lack something; the message names it */
   GPGP_ERROR_OUT_OF_HOST_MEMORY = -5,
   GPGP_ERROR_OUT_OF_DEVICE_MEMORY = -6,
   GPGP_ERROR_DEVICE_LOST = -7,
-  GPGP_ERROR_TOO_MANY_RECORDS = -8,    /**< maxRecordsPerFrame or maxFramesInFlight is used up */
-  GPGP_ERROR_INVALID_DATA = -9,        /**< bytes that are not what they claim: magic, version, checksum or content */
-  GPGP_ERROR_UNSUPPORTED = -10,        /**< valid input that this build or device cannot handle */
+  GPGP_ERROR_TOO_MANY_RECORDS = -8, /**< maxRecordsPerFrame or maxFramesInFlight is used up */
+  GPGP_ERROR_INVALID_DATA = -9,     /**< bytes that are not what they claim: magic, version, checksum or content */
+  GPGP_ERROR_UNSUPPORTED = -10,     /**< valid input that this build or device cannot handle */
   GPGP_ERROR_IO = -11,
-  GPGP_ERROR_VULKAN = -12              /**< Vulkan failed otherwise; the message holds its code */
+  GPGP_ERROR_VULKAN = -12 /**< Vulkan failed otherwise; the message holds its code */
 };
 
 /** The name of a result as spelled in this header, "GPGP_UNKNOWN" otherwise. Static string. @threads any */
@@ -155,7 +156,8 @@ template <class T> inline T gpgpInitStruct(GpgpStructureType type) {
 extern "C" {
 #define GPGP_INIT(Type, type) gpgpInitStruct<Type>(type)
 #else
-#define GPGP_INIT(Type, type) {.sType = (type)}
+#define GPGP_INIT(Type, type)                                                                                          \
+  { .sType = (type) }
 #endif
 
 /* Every descriptor struct begins with sType and pNext. pNext is NULL or points to a struct that the base struct's
@@ -266,7 +268,8 @@ typedef struct GpgpJobSystem {
   void(GPGP_CALL* parallelFor)(void* userData, uint32_t count, GpgpJobFn job, void* argument);
 } GpgpJobSystem;
 
-/** The engine's files. read returns GPGP_SUCCESS and sets size; it copies at most capacity bytes when data is not NULL. */
+/** The engine's files. read returns GPGP_SUCCESS and sets size; it copies at most capacity bytes when data is not NULL.
+ */
 typedef struct GpgpFileSystem {
   void* userData;
   GpgpResult(GPGP_CALL* read)(void* userData, const char* path, void* data, size_t capacity, size_t* size);
@@ -282,11 +285,11 @@ typedef struct GpgpContextCreateInfo {
   VkPhysicalDevice physicalDevice;
   VkDevice device;
   PFN_vkGetInstanceProcAddr getInstanceProcAddr;
-  uint32_t apiVersion;      /**< the version that instance and device were created with; 0: 1.2 */
-  GpgpFeatures features;    /**< what was enabled on the device */
-  uint32_t maxFramesInFlight;  /**< 1 to 8; 0: 3 */
-  uint32_t maxRecordsPerFrame; /**< gpgpRecord... calls per frame and worker; 0: 16 */
-  VkDeviceSize uploadRingBytes; /**< staging memory for gpgpRecordUpload, all frames together; 0: 8 MiB */
+  uint32_t apiVersion;           /**< the version that instance and device were created with; 0: 1.2 */
+  GpgpFeatures features;         /**< what was enabled on the device */
+  uint32_t maxFramesInFlight;    /**< 1 to 8; 0: 3 */
+  uint32_t maxRecordsPerFrame;   /**< gpgpRecord... calls per frame and worker; 0: 16 */
+  VkDeviceSize uploadRingBytes;  /**< staging memory for gpgpRecordUpload, all frames together; 0: 8 MiB */
   VkPipelineCache pipelineCache; /**< the engine's, used for all pipelines; or VK_NULL_HANDLE: gpgp's own */
   const void* pipelineCacheData; /**< initial bytes for gpgp's own cache, from gpgpGetPipelineCacheData */
   size_t pipelineCacheSize;
@@ -346,8 +349,8 @@ typedef struct GpgpAccess {
 } GpgpAccess;
 
 typedef uint64_t GpgpAccessMode;
-/** The engine's render graph places the barriers at the edges itself; before and after are ignored, the resources are in
- *  the state that gpgpGetRecordAccess tells, and stay in it. gpgp still places those between its own passes. */
+/** The engine's render graph places the barriers at the edges itself; before and after are ignored, the resources are
+ * in the state that gpgpGetRecordAccess tells, and stay in it. gpgp still places those between its own passes. */
 #define GPGP_ACCESS_SYNCHRONISED ((GpgpAccessMode)1 << 0)
 
 typedef struct GpgpBuffer {
@@ -371,10 +374,10 @@ typedef struct GpgpImage {
 
 /** Common part of every worker's create info; each service's struct embeds it as `base`. */
 typedef struct GpgpWorkerCreateInfo {
-  const char* label;           /**< copied */
-  uint32_t queueFamily;        /**< all records of this worker go to queues of this family */
-  VkQueueFlags queueFlags;     /**< of that family; 0: gpgp asks the physical device */
-  VkBool32 engineScratch;      /**< VK_TRUE: no scratch is allocated, each record brings its own */
+  const char* label;       /**< copied */
+  uint32_t queueFamily;    /**< all records of this worker go to queues of this family */
+  VkQueueFlags queueFlags; /**< of that family; 0: gpgp asks the physical device */
+  VkBool32 engineScratch;  /**< VK_TRUE: no scratch is allocated, each record brings its own */
 } GpgpWorkerCreateInfo;
 
 typedef struct GpgpTargetInfo {
@@ -383,10 +386,10 @@ typedef struct GpgpTargetInfo {
   VkRenderPass renderPass; /**< VK_NULL_HANDLE: dynamic rendering (needs GPGP_FEATURE_DYNAMIC_RENDERING) */
   uint32_t subpass;
   uint32_t viewMask;
-  VkFormat colorFormat; /**< dynamic rendering: attachment 0 */
-  VkFormat depthFormat; /**< dynamic rendering: VK_FORMAT_UNDEFINED for none */
+  VkFormat colorFormat;          /**< dynamic rendering: attachment 0 */
+  VkFormat depthFormat;          /**< dynamic rendering: VK_FORMAT_UNDEFINED for none */
   VkSampleCountFlagBits samples; /**< 0: 1 */
-  VkBool32 depthTest;   /**< tests against the bound depth attachment, never writes it */
+  VkBool32 depthTest;            /**< tests against the bound depth attachment, never writes it */
   VkCompareOp depthCompare;
 } GpgpTargetInfo;
 #define GPGP_TARGET_INFO_INIT GPGP_INIT(GpgpTargetInfo, GPGP_STRUCTURE_TARGET_INFO)
@@ -427,8 +430,8 @@ GPGP_API void GPGP_CALL gpgpGetRecordAccess(GpgpAccess* buffer, GpgpAccess* imag
 
 /** Common part of every record info; each service's struct embeds it as `base`. */
 typedef struct GpgpRecordInfo {
-  uint64_t tag;              /**< the engine's own number, found again in the report */
-  GpgpBuffer scratch;        /**< for workers with engineScratch: contents undefined before and after */
+  uint64_t tag;       /**< the engine's own number, found again in the report */
+  GpgpBuffer scratch; /**< for workers with engineScratch: contents undefined before and after */
   GpgpTimestamps timestamps;
   GpgpAccessMode accessMode;
 } GpgpRecordInfo;
@@ -455,10 +458,10 @@ GPGP_API void GPGP_CALL gpgpDestroyWorker(GpgpWorker worker);
 GPGP_API void GPGP_CALL gpgpDestroyView(GpgpView view);
 
 typedef struct GpgpServiceMemory {
-  VkDeviceSize deviceBytes;     /**< device-local: assets and scratch */
-  VkDeviceSize hostVisibleBytes;/**< rings and report buffers */
-  VkDeviceSize pendingBytes;    /**< destroyed, waiting for frames to be safe */
-  uint64_t hostBytes;           /**< from the host allocator; all of it is counted under GPGP_SERVICE_CORE */
+  VkDeviceSize deviceBytes;      /**< device-local: assets and scratch */
+  VkDeviceSize hostVisibleBytes; /**< rings and report buffers */
+  VkDeviceSize pendingBytes;     /**< destroyed, waiting for frames to be safe */
+  uint64_t hostBytes;            /**< from the host allocator; all of it is counted under GPGP_SERVICE_CORE */
 } GpgpServiceMemory;
 
 typedef struct GpgpMemoryReport {

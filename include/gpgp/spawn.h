@@ -27,25 +27,37 @@ typedef struct GpgpAxiom {
 /** What a terminal becomes. 96 bytes, std430. The mesh's unit shape spans [-0.5, 0.5] on each axis; the transform
  *  includes the shape's size. Polygons face +Z and have size[2] 0; their transform keeps 1 metre for that axis. */
 typedef struct GpgpInstance {
-  float transform[12];   /**< rows of a 3x4 matrix, unit shape to world */
-  uint32_t bucket;       /**< GpgpGrammarTerminal::bucket of its terminal: which draw */
-  uint32_t shape;        /**< GpgpShape */
-  uint32_t axiomId;      /**< GpgpAxiom::id */
-  uint32_t terminal;     /**< index as in gpgpGetGrammarTerminals; several terminals may share a bucket */
-  uint32_t seed;         /**< of the shape */
-  float attribute;       /**< custom attribute of the shape */
-  uint32_t key[2];       /**< path key: the same on every device and schedule */
-  float size[3];         /**< of the shape, metres */
+  float transform[12]; /**< rows of a 3x4 matrix, unit shape to world */
+  uint32_t bucket;     /**< GpgpGrammarTerminal::bucket of its terminal: which draw */
+  uint32_t shape;      /**< GpgpShape */
+  uint32_t axiomId;    /**< GpgpAxiom::id */
+  uint32_t terminal;   /**< index as in gpgpGetGrammarTerminals; several terminals may share a bucket */
+  uint32_t seed;       /**< of the shape */
+  float attribute;     /**< custom attribute of the shape */
+  uint32_t key[2];     /**< path key: the same on every device and schedule */
+  float size[3];       /**< of the shape, metres */
   uint32_t reserved;
 } GpgpInstance;
 
 typedef uint32_t GpgpShape;
 enum {
-  GPGP_SHAPE_TRIANGLE = 0, GPGP_SHAPE_QUAD = 1, GPGP_SHAPE_PENTAGON = 2, GPGP_SHAPE_HEXAGON = 3,
-  GPGP_SHAPE_HEPTAGON = 4, GPGP_SHAPE_OCTAGON = 5, GPGP_SHAPE_PRISM3 = 6, GPGP_SHAPE_BOX = 7,
-  GPGP_SHAPE_PRISM5 = 8, GPGP_SHAPE_PRISM6 = 9, GPGP_SHAPE_PRISM7 = 10, GPGP_SHAPE_PRISM8 = 11,
-  GPGP_SHAPE_DYNAMIC_CONVEX_POLYGON = 12, GPGP_SHAPE_DYNAMIC_POLYGON = 13,
-  GPGP_SHAPE_DYNAMIC_CONVEX_RIGHT_PRISM = 14, GPGP_SHAPE_DYNAMIC_RIGHT_PRISM = 15, GPGP_SHAPE_SPHERE = 16
+  GPGP_SHAPE_TRIANGLE = 0,
+  GPGP_SHAPE_QUAD = 1,
+  GPGP_SHAPE_PENTAGON = 2,
+  GPGP_SHAPE_HEXAGON = 3,
+  GPGP_SHAPE_HEPTAGON = 4,
+  GPGP_SHAPE_OCTAGON = 5,
+  GPGP_SHAPE_PRISM3 = 6,
+  GPGP_SHAPE_BOX = 7,
+  GPGP_SHAPE_PRISM5 = 8,
+  GPGP_SHAPE_PRISM6 = 9,
+  GPGP_SHAPE_PRISM7 = 10,
+  GPGP_SHAPE_PRISM8 = 11,
+  GPGP_SHAPE_DYNAMIC_CONVEX_POLYGON = 12,
+  GPGP_SHAPE_DYNAMIC_POLYGON = 13,
+  GPGP_SHAPE_DYNAMIC_CONVEX_RIGHT_PRISM = 14,
+  GPGP_SHAPE_DYNAMIC_RIGHT_PRISM = 15,
+  GPGP_SHAPE_SPHERE = 16
 };
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
@@ -99,10 +111,10 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext context, const GpgpG
                                                 GpgpAsset* grammar);
 
 typedef struct GpgpGrammarTerminal {
-  const char* name;   /**< @lifetime handle */
-  uint32_t kind;      /**< 0: triangles are generated, 1: an instanced mesh of the engine's */
-  uint32_t index;     /**< mesh or material, as the grammar says */
-  uint32_t bucket;    /**< GpgpInstance::bucket of its instances: the number of its line among terminal lines */
+  const char* name; /**< @lifetime handle */
+  uint32_t kind;    /**< 0: triangles are generated, 1: an instanced mesh of the engine's */
+  uint32_t index;   /**< mesh or material, as the grammar says */
+  uint32_t bucket;  /**< GpgpInstance::bucket of its instances: the number of its line among terminal lines */
 } GpgpGrammarTerminal;
 
 /** The grammar's terminals. count in: capacity, out: all. terminals NULL asks for the count. @threads any */
@@ -115,9 +127,9 @@ typedef struct GpgpSpawnerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpWorkerCreateInfo base;
-  uint32_t maxShapes; /**< shapes alive in one round of derivation; 0: 262144. What does not fit is counted */
+  uint32_t maxShapes;    /**< shapes alive in one round of derivation; 0: 262144. What does not fit is counted */
   uint32_t maxTerminals; /**< terminal shapes of one record; 0: 524288. What does not fit is counted */
-  uint32_t maxDepth;  /**< rounds, the longest path of dynamic edges; 0: 64. Shapes left over are counted */
+  uint32_t maxDepth;     /**< rounds, the longest path of dynamic edges; 0: 64. Shapes left over are counted */
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
@@ -132,13 +144,13 @@ typedef struct GpgpSpawnInfo {
   const void* pNext;
   GpgpRecordInfo base;
   GpgpAsset grammar;
-  GpgpBuffer axioms;     /**< GpgpAxiom[axiomCount]; STORAGE usage */
+  GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]; STORAGE usage */
   uint32_t axiomCount;
-  GpgpBuffer instances;  /**< out: GpgpInstance[]; its size is the budget; STORAGE usage */
-  GpgpBuffer draws;      /**< out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket: instanceCount and
-                              firstInstance are written, the other fields are left as the engine set them. With it,
-                              instances are sorted by bucket; without it they lie in no stated order */
-  GpgpBuffer count;      /**< out, optional: uint32_t, instances written (4 bytes); STORAGE usage */
+  GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage */
+  GpgpBuffer draws;     /**< out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket: instanceCount and
+                             firstInstance are written, the other fields are left as the engine set them. With it,
+                             instances are sorted by bucket; without it they lie in no stated order */
+  GpgpBuffer count;     /**< out, optional: uint32_t, instances written (4 bytes); STORAGE usage */
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 

@@ -65,7 +65,7 @@ typedef struct GpgpDrawingCreateInfo {
   /* exactly one of the three: */
   const void* data; /**< a baked drawing */
   size_t size;
-  const char* filePath; /**< of a baked drawing, read through the file callbacks */
+  const char* filePath;  /**< of a baked drawing, read through the file callbacks */
   const GpgpPath* paths; /**< painted in order, the first at the bottom */
   uint32_t pathCount;
 } GpgpDrawingCreateInfo;
@@ -131,14 +131,14 @@ typedef struct GpgpCanvasInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpRecordInfo base;
-  uint32_t width, height; /**< pixels */
+  uint32_t width, height;      /**< pixels */
   const GpgpCanvasItem* items; /**< in painting order, the first at the bottom */
   uint32_t itemCount;
-  uint32_t samples;       /**< 1, 4, 8 or 16 per pixel; 0: 16 */
-  float background[4];    /**< linear, premultiplied */
-  GpgpView view;          /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
-  GpgpImage target;       /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
-                               Receives premultiplied linear colour; sRGB-encoded where encodeSrgb is set */
+  uint32_t samples;    /**< 1, 4, 8 or 16 per pixel; 0: 16 */
+  float background[4]; /**< linear, premultiplied */
+  GpgpView view;       /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
+  GpgpImage target;    /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
+                            Receives premultiplied linear colour; sRGB-encoded where encodeSrgb is set */
   VkBool32 encodeSrgb;
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
@@ -172,10 +172,10 @@ typedef struct GpgpCanvasReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t patches;           /**< transformed and binned */
-  uint32_t tileEntries;       /**< needed */
-  uint32_t tileEntriesGiven;  /**< maxTileEntries */
-  uint32_t pathsDropped;      /**< whole paths left out where the budget did not suffice */
+  uint32_t patches;          /**< transformed and binned */
+  uint32_t tileEntries;      /**< needed */
+  uint32_t tileEntriesGiven; /**< maxTileEntries */
+  uint32_t pathsDropped;     /**< whole paths left out where the budget did not suffice */
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 

@@ -66,11 +66,11 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const Gp
 /** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. Draws may share triangle numbers: the bit is
  *  then set if any of them is visible. A transform that mirrors does not turn front faces into back faces. */
 typedef struct GpgpVisibilityDraw {
-  float transform[12]; /**< rows of a 3x4 matrix, object to world */
-  uint32_t mesh;       /**< index in the geometry set */
+  float transform[12];    /**< rows of a 3x4 matrix, object to world */
+  uint32_t mesh;          /**< index in the geometry set */
   uint32_t firstTriangle; /**< where this draw's triangles start in the visible bits and lists; a multiple of 32 lets
                                draws be cleared apart */
-  uint32_t flags;      /**< GPGP_DRAW_... */
+  uint32_t flags;         /**< GPGP_DRAW_... */
   uint32_t reserved;
 } GpgpVisibilityDraw;
 #define GPGP_DRAW_TWO_SIDED 1u /**< back faces count as visible */
@@ -93,20 +93,20 @@ typedef struct GpgpSampleInfo {
   GpgpView view; /**< optional: history of this camera; its previous record is what `appeared` compares with */
   GpgpSamplingMethod method;
   GpgpCamera camera;
-  uint32_t width, height; /**< viewport, pixels */
-  GpgpBuffer positions;   /**< vertex positions, 3 floats each at positionStride; STORAGE usage */
-  uint32_t positionStride;/**< bytes, a multiple of 4; 0: 12 */
-  GpgpBuffer indices;     /**< STORAGE usage; size a multiple of 4 for UINT16 too */
-  VkIndexType indexType;  /**< UINT16 or UINT32 */
-  GpgpBuffer draws;       /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
+  uint32_t width, height;  /**< viewport, pixels */
+  GpgpBuffer positions;    /**< vertex positions, 3 floats each at positionStride; STORAGE usage */
+  uint32_t positionStride; /**< bytes, a multiple of 4; 0: 12 */
+  GpgpBuffer indices;      /**< STORAGE usage; size a multiple of 4 for UINT16 too */
+  VkIndexType indexType;   /**< UINT16 or UINT32 */
+  GpgpBuffer draws;        /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
   uint32_t drawCount;
-  uint32_t triangleCount; /**< of all draws: one past the last triangle number; at most 2^31 */
-  GpgpBuffer visibleBits; /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
-  GpgpBuffer visibleList; /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
-                               budget */
-  GpgpBuffer visibleCount;/**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
-                               of 64 per 64 listed triangles, in rows of 65535 (workgroup y * 65535 + x; the last row
-                               may run past the list); STORAGE usage */
+  uint32_t triangleCount;  /**< of all draws: one past the last triangle number; at most 2^31 */
+  GpgpBuffer visibleBits;  /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
+  GpgpBuffer visibleList;  /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
+                                budget */
+  GpgpBuffer visibleCount; /**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
+                                of 64 per 64 listed triangles, in rows of 65535 (workgroup y * 65535 + x; the last row
+                                may run past the list); STORAGE usage */
 } GpgpSampleInfo;
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
@@ -123,12 +123,12 @@ typedef struct GpgpSampleReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t triangles;      /**< in front of the near plane, in the viewport, facing the camera */
-  uint32_t visible;        /**< in the bits */
-  uint32_t listed;         /**< written to the list */
+  uint32_t triangles; /**< in front of the near plane, in the viewport, facing the camera */
+  uint32_t visible;   /**< in the bits */
+  uint32_t listed;    /**< written to the list */
   uint32_t coveredPixels;
-  uint32_t appeared;       /**< with a view: visible now, not in its previous record */
-  uint32_t disappeared;    /**< with a view: the reverse */
+  uint32_t appeared;         /**< with a view: visible now, not in its previous record */
+  uint32_t disappeared;      /**< with a view: the reverse */
   uint32_t neededTriangles;  /**< of all draws, whatever the budget */
   uint32_t skippedTriangles; /**< index or triangle number out of range, coordinate not finite or too large */
   uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set */

@@ -64,8 +64,8 @@ list(REMOVE_DUPLICATES GPGP_PACKAGES)
 
 set(cmake_directory ${CMAKE_INSTALL_LIBDIR}/cmake/gpgp)
 install(EXPORT gpgpTargets NAMESPACE gpgp:: DESTINATION ${cmake_directory})
-configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gpgpConfig.cmake.in ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake
-  INSTALL_DESTINATION ${cmake_directory} NO_SET_AND_CHECK_MACRO)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gpgpConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake INSTALL_DESTINATION ${cmake_directory} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake ${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake
   DESTINATION ${cmake_directory})

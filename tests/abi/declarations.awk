@@ -1,5 +1,5 @@
-# Prints one line per GPGP_API function of the headers given: NAME, a tab, its parameters, a tab, the comment before it on
-# one line. Functions that follow each other without a blank line or another comment share the comment.
+# Prints one line per GPGP_API function of the headers given: NAME, a tab, its parameters, a tab, the comment before it
+# on one line. Functions that follow each other without a blank line or another comment share the comment.
 function flush_comment() { comment = "" }
 /^[ \t]*\/\*\*/ { comment = ""; inside = 1 }
 inside {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Each C header alone, and all their structs, compile as C99, C11, C17, C++11, C++17 and C++20; gpgp.hpp as C++17 and C++20;
-# warnings are errors; with every compiler named.
+# Each C header alone, and all their structs, compile as C99, C11, C17, C++11, C++17 and C++20; gpgp.hpp as C++17 and
+# C++20; warnings are errors; with every compiler named.
 #
 #   headers_test.sh INCLUDE_DIRS SOURCE_DIR CC:CXX...     INCLUDE_DIRS: separated by colons
 set -uo pipefail

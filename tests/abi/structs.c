@@ -1,5 +1,5 @@
-/* Compiled, never run, as C99, C11, C++11 and C++20: every _INIT macro makes its struct, and structs that also lie in GPU
- * buffers have the size that their comments state. */
+/* Compiled, never run, as C99, C11, C++11 and C++20: every _INIT macro makes its struct, and structs that also lie in
+ * GPU buffers have the size that their comments state. */
 #include <gpgp/gpgp.h>
 
 #define GPGP_SIZE_IS(Type, bytes) typedef char sizeOf##Type[sizeof(Type) == (bytes) ? 1 : -1]

@@ -1,5 +1,5 @@
-// Compiled, never run, as C++17 and C++20: every member of gpgp.hpp, and that its handles are move-only and no larger than
-// the C handles.
+// Compiled, never run, as C++17 and C++20: every member of gpgp.hpp, and that its handles are move-only and no larger
+// than the C handles.
 #include <gpgp/gpgp.hpp>
 
 #include <type_traits>

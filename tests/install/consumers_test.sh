@@ -16,7 +16,10 @@ case $way in
 install)
   rm -rf "$scratch"
   mkdir -p "$scratch"
-  "$cmake" --install "$build" --prefix "$scratch/prefix" >"$scratch/install.log" || { cat "$scratch/install.log"; exit 1; }
+  if ! "$cmake" --install "$build" --prefix "$scratch/prefix" >"$scratch/install.log"; then
+    cat "$scratch/install.log"
+    exit 1
+  fi
   mv "$scratch/prefix" "$prefix" # what is installed must not know where
   texts=$(find "$prefix" \( -name '*.cmake' -o -name '*.pc' -o -name '*.h' -o -name '*.hpp' \))
   [[ -n $texts ]] || fail "nothing was installed"
@@ -30,7 +33,7 @@ install)
     dynamic=$(readelf -d "$library")
     grep -q "SONAME.*\[$name\.$major\]" <<<"$dynamic" || fail "$name: the soname is not $name.$major"
     if grep -E 'RPATH|RUNPATH' <<<"$dynamic"; then fail "$name has a run-time search path"; fi
-    if grep -E 'NEEDED.*(vulkan|glslang|SPIRV)' <<<"$dynamic"; then fail "$name needs what must be inside it or absent"; fi
+    if grep -E 'NEEDED.*(vulkan|glslang|SPIRV)' <<<"$dynamic"; then fail "$name needs a library that it must not"; fi
   done
   if [[ -x $prefix/bin/gpgp ]]; then "$prefix/bin/gpgp" --version; fi
   echo "installed: $(find "$prefix" -type f | wc -l) files"
@@ -57,7 +60,10 @@ find_package)
     >"$scratch/next_major/log" 2>&1; then
     fail "find_package(gpgp 99) was accepted"
   fi
-  grep -q 'compatible with requested version "99"' <(tr -s '\n ' ' ' <"$scratch/next_major/log") || { cat "$scratch/next_major/log"; exit 1; }
+  if ! tr -s '\n ' ' ' <"$scratch/next_major/log" | grep 'compatible with requested version "99"' >/dev/null; then
+    cat "$scratch/next_major/log"
+    fail "find_package(gpgp 99) failed for another reason than its version"
+  fi
   ;;
 pkg_config)
   directory=$(dirname "$(find "$prefix" -name gpgp.pc)")
@@ -80,7 +86,7 @@ pkg_config)
       LD_LIBRARY_PATH=$libraries "$scratch/pkg_config/shared_$package" || fail "shared_$package returned $?"
       ran=$((ran + 1))
     fi
-    if [[ -e $libraries/lib$package.a ]]; then # --static names all that it needs; only gpgp itself is forced static here
+    if [[ -e $libraries/lib$package.a ]]; then # --static names all that it needs; only gpgp itself is forced static
       flags=$(pkg-config --static --libs "$package")
       for name in gpgp_compiler gpgp; do flags=" $flags "; flags=${flags// -l$name / -l:lib$name.a }; done
       # shellcheck disable=SC2046,SC2086

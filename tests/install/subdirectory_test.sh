@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds and runs a project that has gpgp as a subdirectory, with the services given and no other; the libraries must have
-# the functions of those services and of no other. No optimisation: what counts is that it builds and links.
+# Builds and runs a project that has gpgp as a subdirectory, with the services given and no other; the libraries must
+# have the functions of those services and of no other. No optimisation: what counts is that it builds and links.
 #
 #   subdirectory_test.sh SOURCE_DIR SCRATCH_DIR TEST_DIR CMAKE CC CXX NM [--compiler] SERVICE...
 set -euo pipefail
