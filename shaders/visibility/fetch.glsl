@@ -1,7 +1,8 @@
 // From a work item's number to a triangle in clip space: reads the engine's buffers.
 //
 // Guarantees: nothing is read outside the ranges that the engine gave. Work items count the triangles of all draws in
-// order; `starts` holds each draw's first item (made by plan.comp).
+// order; `starts` (made by plan.comp) holds each draw's first
+// item and first chunk.
 #include "visibility/triangle.h"
 
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
@@ -9,7 +10,7 @@ layout(std430, set = 0, binding = kBindPositions) readonly buffer PositionBuffer
 layout(std430, set = 0, binding = kBindIndices) readonly buffer IndexBuffer { uint indices[]; };
 layout(std430, set = 0, binding = kBindDraws) readonly buffer DrawBuffer { Draw draws[]; };
 layout(std430, set = 0, binding = kBindMeshes) readonly buffer MeshBuffer { Mesh meshes[]; };
-layout(std430, set = 0, binding = kBindStarts) readonly buffer StartBuffer { uint starts[]; };
+layout(std430, set = 0, binding = kBindStarts) readonly buffer StartBuffer { uvec2 starts[]; };
 
 struct Fetched {
   vec4 a;
@@ -29,7 +30,7 @@ uint findDraw(uint item) {
   uint high = params.drawCount - 1u;
   while (low < high) {
     uint middle = low + (high - low + 1u) / 2u;
-    if (starts[middle] <= item) low = middle;
+    if (starts[middle].x <= item) low = middle;
     else high = middle - 1u;
   }
   return low;
@@ -51,11 +52,9 @@ bool fetchVertex(Mesh mesh, uint index, out vec3 position) {
   return isModerate(position.x) && isModerate(position.y) && isModerate(position.z);
 }
 
-Fetched fetchTriangle(uint item) {
+Fetched fetchTriangle(uint drawIndex, uint local) {
   Fetched f;
-  uint drawIndex = findDraw(item);
   Draw draw = draws[drawIndex];
-  uint local = item - starts[drawIndex];
   Mesh mesh = meshes[draw.mesh]; // plan.comp gave draws of no mesh no items
   f.id = draw.firstTriangle + local;
   f.valid = draw.firstTriangle < params.triangleCount && local < params.triangleCount - draw.firstTriangle;
@@ -78,4 +77,9 @@ Fetched fetchTriangle(uint item) {
 uint classifyFetched(Fetched f, out ScreenTriangle triangle) {
   if (!f.valid) return kSkipped;
   return classify(f.a, f.b, f.c, viewport(), f.mirrored, f.twoSided, triangle);
+}
+
+Fetched fetchItem(uint item) {
+  uint drawIndex = findDraw(item);
+  return fetchTriangle(drawIndex, item - starts[drawIndex].x);
 }

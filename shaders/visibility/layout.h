@@ -14,6 +14,8 @@ GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay belo
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
 GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle
+GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
+GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 
 /// Binding numbers of set 0, which are resource numbers of the pass list.
 GPGP_CONST int kBindParams = 0;
@@ -30,6 +32,7 @@ GPGP_CONST int kBindBits = 10;
 GPGP_CONST int kBindList = 11;
 GPGP_CONST int kBindCount = 12;
 GPGP_CONST int kBindView = 13;
+GPGP_CONST int kBindRecords = 14;
 
 /// GpgpMesh
 struct Mesh {
@@ -61,10 +64,12 @@ struct Params {
   uint shortIndices; // 1: 16 bits each
   uint vertexCount;  // that the position range holds
   uint strideWords;
-  uint listCapacity; // in triangles
-  uint hasList;      // 1: visibleList is there
-  uint writeCount;   // 1: visibleCount is there
-  uint viewWords;    // 0: no view
+  uint listCapacity;  // in triangles
+  uint hasList;       // 1: visibleList is there
+  uint writeCount;    // 1: visibleCount is there
+  uint viewWords;     // 0: no view
+  uint mediumRecords; // capacities of the record buffer: its front
+  uint largeRecords;  // and what follows
 };
 
 /// GPU counters; the words up to `hasList` inclusive are the report.
@@ -79,13 +84,17 @@ struct Counters {
   uint skippedDraws;     // mesh out of range
   uint listed;
   uint hasList;     // 1: the record has a list
-  uint mediumCount; // queued from the front of the queue
-  uint largeCount;  // queued from its back
-  uint smallArgs[3];
+  uint chunks;      // of all draws
+  uint queueCount;  // triangles that one invocation should not draw alone
+  uint mediumCount; // records asked for
+  uint largeCount;
+  uint smallArgs[3]; // indirect dispatches
+  uint unfoldArgs[3];
   uint mediumArgs[3];
   uint largeArgs[3];
+  uint leftArgs[3];
 };
-GPGP_CONST uint kCounterWords = 21u;
+GPGP_CONST uint kCounterWords = 29u;
 GPGP_CONST uint kReportWords = 10u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
@@ -96,7 +105,7 @@ GPGP_FN uvec3 listGroups(uint listed) {
 
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
-static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 124 &&
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 132 &&
               sizeof(Counters) == 4 * kCounterWords);
 #endif
 

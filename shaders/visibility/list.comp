@@ -11,7 +11,7 @@ layout(std430, set = 0, binding = kBindBits) readonly buffer BitBuffer { uint bi
 layout(std430, set = 0, binding = kBindList) writeonly buffer ListBuffer { uint list[]; };
 layout(std430, set = 0, binding = kBindView) buffer ViewBuffer { uint viewBits[]; };
 
-shared uint sums[256];
+shared uint groupVisible;
 shared uint groupFirst;
 shared uint groupAppeared;
 shared uint groupDisappeared;
@@ -23,14 +23,14 @@ void main() {
   uint stride = gl_NumWorkGroups.x * 256u;
   for (uint base = gl_WorkGroupID.x * 256u; base < all_; base += stride) {
     if (lane == 0u) {
+      groupVisible = 0u;
       groupAppeared = 0u;
       groupDisappeared = 0u;
     }
+    barrier();
     uint word = base + lane;
     uint now = word < words ? bits[word] : 0u;
-    uint own = uint(bitCount(now));
-    sums[lane] = own;
-    barrier();
+    uint place = now != 0u ? atomicAdd(groupVisible, uint(bitCount(now))) : 0u;
     if (word < params.viewWords) {
       uint before = viewBits[word];
       if (before != now) viewBits[word] = now;
@@ -39,19 +39,14 @@ void main() {
       if (appeared != 0u) atomicAdd(groupAppeared, uint(bitCount(appeared)));
       if (disappeared != 0u) atomicAdd(groupDisappeared, uint(bitCount(disappeared)));
     }
-    for (uint step = 1u; step < 256u; step *= 2u) {
-      uint before = lane >= step ? sums[lane - step] : 0u;
-      barrier();
-      sums[lane] += before;
-      barrier();
-    }
+    barrier();
     if (lane == 0u) {
-      groupFirst = sums[255] != 0u ? atomicAdd(counters.visible, sums[255]) : 0u;
+      groupFirst = groupVisible != 0u ? atomicAdd(counters.visible, groupVisible) : 0u;
       if (groupAppeared != 0u) atomicAdd(counters.appeared, groupAppeared);
       if (groupDisappeared != 0u) atomicAdd(counters.disappeared, groupDisappeared);
     }
     barrier();
-    uint place = groupFirst + sums[lane] - own;
+    place += groupFirst;
     while (now != 0u && place < params.listCapacity) {
       list[place++] = word * 32u + uint(findLSB(now));
       now &= now - 1u;

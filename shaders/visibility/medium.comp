@@ -1,29 +1,20 @@
 // One workgroup a triangle of up to 64 pixels' extent: its pixels are shared out.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "visibility/fetch.glsl"
+#include "visibility/triangle.h"
+
+layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
 #include "visibility/pixels.glsl"
+#include "visibility/records.glsl"
 layout(local_size_x = 64) in;
 
-layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
 layout(std430, set = 0, binding = kBindCounters) readonly buffer CounterBuffer { Counters counters; };
 
-shared ScreenTriangle triangle;
-shared uint id;
-
 void main() {
-  uint count = counters.mediumCount;
+  uint count = min(counters.mediumCount, params.mediumRecords);
   for (uint entry = gl_WorkGroupID.x; entry < count; entry += gl_NumWorkGroups.x) {
-    barrier();
-    if (gl_LocalInvocationIndex == 0u) {
-      Fetched f = fetchTriangle(queue[entry]);
-      ScreenTriangle made;
-      classifyFetched(f, made);
-      triangle = made;
-      id = f.id;
-    }
-    barrier();
-    ScreenTriangle t = triangle;
+    ScreenTriangle t = records[entry].triangle;
+    uint id = records[entry].id;
     int width = t.bounds.z - t.bounds.x;
     int pixels = width * (t.bounds.w - t.bounds.y);
     for (int i = int(gl_LocalInvocationIndex); i < pixels; i += 64) {

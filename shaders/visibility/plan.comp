@@ -1,5 +1,6 @@
-// Numbers the work items: each draw's first item is the sum of the triangles of the draws before it. One workgroup: each
-// invocation sums a run of draws, the sums are scanned, and the runs are written.
+// Numbers the work: each draw's first item (triangle) and first chunk are the sums over the draws before it. A chunk holds
+// triangles of one draw only, so that a workgroup reads one transform. One workgroup: each invocation sums a run of draws,
+// the sums are scanned, and the runs are written.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -8,22 +9,27 @@ layout(local_size_x = 256) in;
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindDraws) readonly buffer DrawBuffer { Draw draws[]; };
 layout(std430, set = 0, binding = kBindMeshes) readonly buffer MeshBuffer { Mesh meshes[]; };
-layout(std430, set = 0, binding = kBindStarts) writeonly buffer StartBuffer { uint starts[]; };
+layout(std430, set = 0, binding = kBindStarts) writeonly buffer StartBuffer { uvec2 starts[]; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 
-shared uint sums[256];
+shared uvec2 sums[256];
 shared uint skipped;
 
 /// Sums stay at 2^32 - 1: more is beyond every budget.
-uint saturatedSum(uint a, uint b) { return a + b < a ? 0xffffffffu : a + b; }
+uvec2 saturatedSum(uvec2 a, uvec2 b) {
+  uvec2 sum = a + b;
+  return uvec2(sum.x < a.x ? 0xffffffffu : sum.x, sum.y < a.y ? 0xffffffffu : sum.y);
+}
 
-uint trianglesOf(uint draw, inout uint bad) {
+/// Triangles and chunks of a draw; none where there is no such mesh.
+uvec2 sizeOf(uint draw, inout uint bad) {
   uint mesh = draws[draw].mesh;
   if (mesh >= params.meshCount) {
     ++bad;
-    return 0u;
+    return uvec2(0u);
   }
-  return meshes[mesh].indexCount / 3u;
+  uint triangles = meshes[mesh].indexCount / 3u;
+  return uvec2(triangles, (triangles + kChunk - 1u) / kChunk);
 }
 
 void main() {
@@ -33,32 +39,40 @@ void main() {
   uint run = (params.drawCount + 255u) / 256u;
   uint first = min(lane * run, params.drawCount);
   uint end = min(first + run, params.drawCount);
-  uint own = 0u;
+  uvec2 own = uvec2(0u);
   uint bad = 0u;
-  for (uint i = first; i < end; ++i) own = saturatedSum(own, trianglesOf(i, bad));
+  for (uint i = first; i < end; ++i) own = saturatedSum(own, sizeOf(i, bad));
   if (bad != 0u) atomicAdd(skipped, bad);
   sums[lane] = own;
   barrier();
   for (uint step = 1u; step < 256u; step *= 2u) {
-    uint before = lane >= step ? sums[lane - step] : 0u;
+    uvec2 before = lane >= step ? sums[lane - step] : uvec2(0u);
     barrier();
     sums[lane] = saturatedSum(sums[lane], before);
     barrier();
   }
-  uint start = lane == 0u ? 0u : sums[lane - 1u];
+  uvec2 start = lane == 0u ? uvec2(0u) : sums[lane - 1u];
   uint ignored = 0u;
   for (uint i = first; i < end; ++i) {
     starts[i] = start;
-    start = saturatedSum(start, trianglesOf(i, ignored));
+    start = saturatedSum(start, sizeOf(i, ignored));
   }
   if (lane == 255u) {
-    uint items = sums[255];
-    counters.items = items;
+    counters.items = sums[255].x;
+    counters.chunks = sums[255].y;
     counters.skippedDraws = skipped;
     counters.hasList = params.hasList;
-    uint groups = (min(items, params.maxItems) + 127u) / 128u; // small.comp strides beyond the limit
-    counters.smallArgs[0] = min(groups, kMaxGroups);
+    // The shaders stride beyond kMaxGroups. Later passes raise the x of the other dispatches.
+    counters.smallArgs[0] = min(sums[255].y, kMaxGroups);
     counters.smallArgs[1] = 1u;
     counters.smallArgs[2] = 1u;
+    counters.unfoldArgs[1] = 1u;
+    counters.unfoldArgs[2] = 1u;
+    counters.mediumArgs[1] = 1u;
+    counters.mediumArgs[2] = 1u;
+    counters.largeArgs[1] = kLargeSplit;
+    counters.largeArgs[2] = 1u;
+    counters.leftArgs[1] = kLargeSplit;
+    counters.leftArgs[2] = 1u;
   }
 }

@@ -19,12 +19,12 @@ GPGP_CONST int kSmallPixels = 64;
 
 /// A triangle on the grid: x right, y down, 256 units a pixel, area positive (so clockwise as seen).
 struct ScreenTriangle {
+  ivec4 bounds; ///< pixels that may be covered: x, y (first), z, w (one past the last), inside the viewport
   ivec2 p0;
   ivec2 p1;
   ivec2 p2;
-  ivec4 bounds; ///< pixels that may be covered: x, y (first), z, w (one past the last), inside the viewport
-  float z0;     ///< depth of p0
-  float dz1;    ///< of p1, less z0
+  float z0;  ///< depth of p0
+  float dz1; ///< of p1, less z0
   float dz2;
   float zMin;
   float zMax;

@@ -1,17 +1,27 @@
-// One invocation a triangle: rejects, draws small ones at once and, in the depth phase, queues the others. Medium ones
-// go to the queue's front and large or clipped ones to its back; each item takes one place at most, so the queue never
-// overflows.
+// One invocation a triangle: rejects, draws small ones at once and, in the depth phase, queues the others. Each item
+// takes one place at most, so the queue never overflows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
 #include "visibility/pixels.glsl"
-layout(local_size_x = 128) in;
+layout(local_size_x = 64) in; // kChunk
 
 layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 
 shared uint groupTriangles;
 shared uint groupSkipped;
+
+uint findChunk(uint chunk) {
+  uint low = 0u;
+  uint high = params.drawCount - 1u;
+  while (low < high) {
+    uint middle = low + (high - low + 1u) / 2u;
+    if (starts[middle].y <= chunk) low = middle;
+    else high = middle - 1u;
+  }
+  return low;
+}
 
 void drawSmall(ScreenTriangle t, uint id) {
   for (int y = t.bounds.y; y < t.bounds.w; ++y)
@@ -27,21 +37,29 @@ void main() {
     groupSkipped = 0u;
   }
   barrier();
-  uint items = min(counters.items, params.maxItems);
-  uint stride = gl_NumWorkGroups.x * 128u;
+  uint chunks = counters.chunks;
   uint triangles = 0u;
   uint skipped = 0u;
-  for (uint item = gl_GlobalInvocationID.x; item < items; item += stride) {
-    Fetched f = fetchTriangle(item);
+  for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
+    uint drawIndex = findChunk(chunk);
+    uvec2 start = starts[drawIndex];
+    if (start.x >= params.maxItems) break; // and so does all that follows
+    uint end = min(meshes[draws[drawIndex].mesh].indexCount / 3u, params.maxItems - start.x);
+    uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
+    if (local >= end) continue;
+    Fetched f = fetchTriangle(drawIndex, local);
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
     if (fate == kSkipped) ++skipped;
     if (fate == kWhole) ++triangles;
     if (fate == kWhole && isEmpty(t)) continue;
-    if (fate == kWhole && isSmall(t)) drawSmall(t, f.id);
-    else if (kPhase == 0u && fate == kWhole && isCompact(t)) queue[atomicAdd(counters.mediumCount, 1u)] = item;
-    else if (kPhase == 0u && (fate == kWhole || fate == kClipped))
-      queue[params.maxItems - 1u - atomicAdd(counters.largeCount, 1u)] = item;
+    if (fate == kWhole && isSmall(t)) {
+      drawSmall(t, f.id);
+    } else if (kPhase == 0u && (fate == kWhole || fate == kClipped)) {
+      uint entry = atomicAdd(counters.queueCount, 1u);
+      queue[entry] = start.x + local;
+      atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
+    }
   }
   if (kPhase != 0u) return;
   if (triangles != 0u) atomicAdd(groupTriangles, triangles);

@@ -40,7 +40,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 16u);
+    EXPECT_EQ(offsets.size(), 18u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -52,20 +52,23 @@ TEST(Layout, ParamsAgree) {
     EXPECT_OFFSET(offsets, Params, hasList);
     EXPECT_OFFSET(offsets, Params, writeCount);
     EXPECT_OFFSET(offsets, Params, viewWords);
+    EXPECT_OFFSET(offsets, Params, largeRecords);
   }
 }
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 15u);
+    EXPECT_EQ(offsets.size(), 19u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);
     EXPECT_OFFSET(offsets, Counters, hasList);
     EXPECT_OFFSET(offsets, Counters, mediumCount);
     EXPECT_OFFSET(offsets, Counters, smallArgs);
+    EXPECT_OFFSET(offsets, Counters, unfoldArgs);
     EXPECT_OFFSET(offsets, Counters, mediumArgs);
     EXPECT_OFFSET(offsets, Counters, largeArgs);
+    EXPECT_OFFSET(offsets, Counters, leftArgs);
   }
   EXPECT_EQ(offsetof(shader::Counters, hasList) + 4, shader::kReportWords * 4);
 }

@@ -114,6 +114,38 @@ TEST_F(VisibilityGpuTest, TooManyTrianglesAreCutAndReported) {
   EXPECT_EQ(gpu.report.neededTriangles, scene.params.triangleCount);
 }
 
+// Few records for triangles that workgroups share: the rest is drawn the slow way, and nothing is lost.
+TEST_F(VisibilityGpuTest, TrianglesWithoutARecordAreDrawnAllTheSame) {
+  Scene scene; // triangles all round the camera, so that most are cut into several pieces
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(-40.0f, 40.0f);
+  for (uint32_t i = 0; i < 120; ++i) scene.indices.push_back(scene.addVertex(unit(random), unit(random), unit(random)));
+  scene.addDraw(scene.addMesh(0), glm::mat4(1.0f), shader::kTwoSided);
+  scene.setCamera(perspective(1.5f, 1.5f, 0.05f, 50.0f), 300, 200);
+  const TwinInput input = scene.input();
+  uint32_t pieces = 0;
+  for (uint32_t i = 0; i < 40; ++i)
+    for (const auto& piece : placeTriangle(input, input.draws[0], i).pieces)
+      pieces += !isEmpty(piece) && !isCompact(piece);
+  ASSERT_GT(pieces, 30u);
+  const TwinResult twin = sampleOnCpu(input);
+  expectEqual(sample(scene), twin, "room for all");
+  const GpuResult gpu = sample(scene, {}, 40); // ten records each for medium and large ones
+  expectEqual(gpu, twin, "too few records");
+  EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
+  EXPECT_GT(twin.counters.visible, 4u);
+}
+
+TEST_F(VisibilityGpuTest, MediumTrianglesWithoutARecordAreDrawnAllTheSame) {
+  Scene scene = sheet(1, 20, 0.3f); // 800 triangles of about 20 x 20 pixels
+  scene.addDraw(0);
+  scene.setCamera(perspective(1.0f, 1.0f, 0.05f, 10.0f) * lookAt({0.1f, 0.05f, 1.7f}, {0, 0, 0}), 400, 400);
+  const TwinResult twin = sampleOnCpu(scene.input());
+  EXPECT_GT(twin.counters.visible, 700u);
+  expectEqual(sample(scene), twin, "room for all");
+  expectEqual(sample(scene, {}, 800), twin, "too few records");
+}
+
 TEST_F(VisibilityGpuTest, CountAndArgumentsMatchTheList) {
   Scene scene = bunny(300, 300);
   const TwinResult twin = sampleOnCpu(scene.input());

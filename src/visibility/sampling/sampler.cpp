@@ -4,11 +4,12 @@
 #include "shaders/visibility_finish.spv.h"
 #include "shaders/visibility_gather.spv.h"
 #include "shaders/visibility_large.spv.h"
+#include "shaders/visibility_left.spv.h"
 #include "shaders/visibility_list.spv.h"
 #include "shaders/visibility_medium.spv.h"
 #include "shaders/visibility_plan.spv.h"
 #include "shaders/visibility_small.spv.h"
-#include "shaders/visibility_split.spv.h"
+#include "shaders/visibility_unfold.spv.h"
 #include "visibility/layout.h"
 
 #include <algorithm>
@@ -25,6 +26,11 @@ using shader::Params;
 static_assert(sizeof(GpgpMesh) == sizeof(shader::Mesh) && sizeof(GpgpVisibilityDraw) == sizeof(shader::Draw));
 static_assert(offsetof(GpgpVisibilityDraw, flags) == offsetof(shader::Draw, flags));
 static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided);
+
+// Room for triangles that are made once for both phases, at most a quarter of all; more are made again by each
+// workgroup that draws them.
+constexpr uint32_t kMediumRecords = 65536, kLargeRecords = 16384;
+constexpr VkDeviceSize kRecordBytes = 80; // TriangleRecord of records.glsl
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3;
@@ -54,6 +60,9 @@ Sampler::Sampler(core::Context& owner, const GpgpSamplerCreateInfo& info)
       maxDraws_(info.maxDraws ? info.maxDraws : 65536),
       maxTriangles_(info.maxTriangles ? info.maxTriangles : 1u << 22) {}
 
+uint32_t Sampler::mediumRecords() const { return std::clamp(maxTriangles_ / 4, 1u, kMediumRecords); }
+uint32_t Sampler::largeRecords() const { return std::clamp(maxTriangles_ / 4, 1u, kLargeRecords); }
+
 Result<core::Unique<Sampler>> Sampler::create(core::Context& context, const GpgpSamplerCreateInfo& info) {
   auto sampler = core::makeUnique<Sampler>(context.host(), context, info);
   if (auto ok = sampler->init(sampler->describe()); !ok) return ok.error();
@@ -71,7 +80,7 @@ core::PassList Sampler::describe() const {
   const auto indices = list.add({"indices", buffer, 0, true});
   const auto draws = list.add({"draws", buffer, 0, true});
   const auto meshes = list.add({"geometrySet", buffer});
-  const auto starts = list.add({"draw starts", scratch, VkDeviceSize(maxDraws_) * 4});
+  const auto starts = list.add({"draw starts", scratch, VkDeviceSize(maxDraws_) * 8});
   const auto queue = list.add({"queue", scratch, VkDeviceSize(maxTriangles_) * 4});
   const auto depth = list.add({"depth", scratch, pixelBytes});
   const auto ids = list.add({"ids", scratch, pixelBytes});
@@ -80,6 +89,7 @@ core::PassList Sampler::describe() const {
   const auto visible = list.add({"visibleList", buffer, 0, true});
   const auto count = list.add({"visibleCount", buffer, 0, true});
   const auto view = list.add({"view", buffer, 0, true});
+  const auto records = list.add({"records", scratch, (mediumRecords() + largeRecords()) * kRecordBytes});
 
   const auto shader = [&](const char* name, std::span<const uint32_t> spirv, uint32_t phase = 0) {
     core::ShaderDesc desc{name, spirv};
@@ -92,27 +102,51 @@ core::PassList Sampler::describe() const {
                 {{params, read}, {depth, write}, {ids, write}, {counters, write}, {bits, write}}, kClearGroups);
   list.dispatch("plan", shader("plan", visibility_plan),
                 {{params, read}, {draws, read}, {meshes, read}, {starts, write}, {counters, readWrite}}, kOneGroup);
-  const char* const names[2][3] = {{"depth small", "depth medium", "depth large"},
-                                   {"ids small", "ids medium", "ids large"}};
+  const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
+                                   {"ids small", "ids medium", "ids large", "ids left"}};
   for (uint32_t phase = 0; phase < 2; ++phase) {
-    const auto raster = [&](uint32_t size, uint32_t program, VkDeviceSize arguments) {
-      list.dispatchIndirect(names[phase][size], program,
+    list.dispatchIndirect(names[phase][0], shader("small", visibility_small, phase),
+                          {{params, read},
+                           {positions, read},
+                           {indices, read},
+                           {draws, read},
+                           {meshes, read},
+                           {starts, read},
+                           {queue, write},
+                           {depth, readWrite},
+                           {ids, readWrite},
+                           {counters, readWrite}},
+                          counters, offsetof(Counters, smallArgs));
+    if (phase == 0)
+      list.dispatchIndirect("unfold", shader("unfold", visibility_unfold),
                             {{params, read},
                              {positions, read},
                              {indices, read},
                              {draws, read},
                              {meshes, read},
                              {starts, read},
-                             {queue, size == 0 ? write : read},
-                             {depth, readWrite},
-                             {ids, readWrite},
+                             {queue, readWrite},
+                             {records, write},
                              {counters, readWrite}},
-                            counters, arguments);
-    };
-    raster(0, shader("small", visibility_small, phase), offsetof(Counters, smallArgs));
-    if (phase == 0) list.dispatch("split", shader("split", visibility_split), {{counters, readWrite}}, kOneGroup);
-    raster(1, shader("medium", visibility_medium, phase), offsetof(Counters, mediumArgs));
-    raster(2, shader("large", visibility_large, phase), offsetof(Counters, largeArgs));
+                            counters, offsetof(Counters, unfoldArgs));
+    list.dispatchIndirect(names[phase][1], shader("medium", visibility_medium, phase),
+                          {{params, read}, {records, read}, {depth, readWrite}, {ids, readWrite}, {counters, read}},
+                          counters, offsetof(Counters, mediumArgs));
+    list.dispatchIndirect(names[phase][2], shader("large", visibility_large, phase),
+                          {{params, read}, {records, read}, {depth, readWrite}, {ids, readWrite}, {counters, read}},
+                          counters, offsetof(Counters, largeArgs));
+    list.dispatchIndirect(names[phase][3], shader("left", visibility_left, phase),
+                          {{params, read},
+                           {positions, read},
+                           {indices, read},
+                           {draws, read},
+                           {meshes, read},
+                           {starts, read},
+                           {queue, read},
+                           {depth, readWrite},
+                           {ids, readWrite},
+                           {counters, read}},
+                          counters, offsetof(Counters, leftArgs));
   }
   list.dispatch("gather", shader("gather", visibility_gather),
                 {{params, read}, {ids, read}, {counters, readWrite}, {bits, readWrite}}, kPixelGroups);
@@ -189,6 +223,8 @@ Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInf
       params.hasList ? static_cast<uint32_t>(std::min<VkDeviceSize>(info.visibleList.size / 4, UINT32_MAX)) : 0;
   params.writeCount = info.visibleCount.buffer ? 1 : 0;
   params.viewWords = view ? view->words() : 0;
+  params.mediumRecords = mediumRecords();
+  params.largeRecords = largeRecords();
 
   core::Record record;
   record.commandBuffer = commandBuffer;

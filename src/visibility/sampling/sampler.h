@@ -23,6 +23,9 @@ private:
   core::PassList describe() const;
   core::Result<void> checkInfo(const GpgpSampleInfo& info, const CameraView* view) const;
 
+  uint32_t mediumRecords() const;
+  uint32_t largeRecords() const;
+
   const uint32_t maxWidth_, maxHeight_, maxDraws_, maxTriangles_;
 };
 

@@ -1,0 +1,7 @@
+// Triangles that several invocations draw together, made once and drawn in both phases: medium ones (up to 64 pixels'
+// extent) in the buffer's front, large ones and the pieces of clipped ones behind them.
+struct TriangleRecord {
+  ScreenTriangle triangle;
+  uint id;
+};
+layout(std430, set = 0, binding = kBindRecords) buffer RecordBuffer { TriangleRecord records[]; };

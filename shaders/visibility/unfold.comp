@@ -1,0 +1,59 @@
+// One invocation a queued triangle: makes its records, clipping where needed. A triangle for which there are not enough
+// records stays in the queue with a flag, and left.comp draws it: records bound time, not output.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/fetch.glsl"
+#include "visibility/records.glsl"
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = kBindQueue) buffer QueueBuffer { uint queue[]; };
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+
+bool addMedium(ScreenTriangle t, uint id) {
+  uint place = atomicAdd(counters.mediumCount, 1u);
+  if (place >= params.mediumRecords) return false;
+  records[place].triangle = t;
+  records[place].id = id;
+  atomicMax(counters.mediumArgs[0], min(place + 1u, kMaxGroups));
+  return true;
+}
+
+bool addLarge(ScreenTriangle t, uint id) {
+  uint place = atomicAdd(counters.largeCount, 1u);
+  if (place >= params.largeRecords) return false;
+  records[params.mediumRecords + place].triangle = t;
+  records[params.mediumRecords + place].id = id;
+  atomicMax(counters.largeArgs[0], min(place + 1u, kMaxGroups));
+  return true;
+}
+
+bool add(ScreenTriangle t, uint id) {
+  if (isEmpty(t)) return true;
+  if (isCompact(t)) return addMedium(t, id);
+  return addLarge(t, id);
+}
+
+void main() {
+  uint count = counters.queueCount;
+  for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
+    Fetched f = fetchItem(queue[entry]);
+    ScreenTriangle t;
+    uint fate = classifyFetched(f, t);
+    bool placed = true;
+    if (fate == kWhole) placed = add(t, f.id);
+    if (fate == kClipped) {
+      ScreenPolygon polygon;
+      fate = clipTriangle(f.a, f.b, f.c, viewport(), f.mirrored, f.twoSided, polygon);
+      if (fate == kSkipped) atomicAdd(counters.skippedTriangles, 1u);
+      if (fate == kClipped) {
+        atomicAdd(counters.triangles, 1u);
+        for (int k = 0; k + 2 < polygon.count; ++k)
+          if (fanPiece(polygon, k, viewport(), t) && !add(t, f.id)) placed = false;
+      }
+    }
+    if (!placed) {
+      queue[entry] |= kNoRecord;
+      atomicMax(counters.leftArgs[0], min(entry + 1u, kMaxGroups));
+    }
+  }
+}
