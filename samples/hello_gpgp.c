@@ -138,8 +138,9 @@ int main(void) {
   VkBuffer instances = makeBuffer(gpu, device, kMaxInstances * sizeof(GpgpInstance), &memories[1], &mapped[1]);
   VkBuffer count = makeBuffer(gpu, device, sizeof(uint32_t), &memories[2], &mapped[2]);
   GpgpAxiom axiom = {{0}}; /* zero is the default of every field that is not set below */
-  axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1.0f; /* no rotation, at the origin */
-  axiom.size[0] = 4.0f; /* a tower of 4 x 10 x 4 metres */
+  axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1.0f; /* no rotation */
+  axiom.transform[7] = 5.0f; /* shapes have their origin in the middle: this one stands on the ground */
+  axiom.size[0] = 4.0f;      /* a tower of 4 x 10 x 4 metres */
   axiom.size[1] = 10.0f;
   axiom.size[2] = 4.0f;
   axiom.seed = 1;
@@ -163,7 +164,7 @@ int main(void) {
   GpgpFrame frame = {1, 0}; /* this is frame 1, and nothing has finished before it */
   need(gpgpAdvance(context, &frame), "gpgpAdvance");
   need(gpgpRecordUpload(context, commands, &frame, 0, NULL), "gpgpRecordUpload"); /* the grammar goes to the GPU */
-  const GpgpAccess none = {0, 0, VK_IMAGE_LAYOUT_UNDEFINED}; /* nothing to wait for before */
+  const GpgpAccess none = {0, 0, VK_IMAGE_LAYOUT_UNDEFINED};                      /* nothing to wait for before */
   const GpgpAccess host = {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED};
   GpgpSpawnInfo spawn = GPGP_SPAWN_INFO_INIT;
   spawn.grammar = grammar;

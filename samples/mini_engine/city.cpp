@@ -17,22 +17,23 @@ constexpr uint32_t kMaxInstances = 400000;
 constexpr float kBlock = 26.0f; // metres from block to block; backdrop.frag draws the streets
 constexpr int kBlocks = 6;      // to each side of the square in the middle
 
-/// One building per block, taller towards the middle; the square itself stays free.
+/// One building per block, low around the square in the middle, which
+/// stays free like the avenue, and taller towards the edge of town.
 std::vector<GpgpAxiom> layOut() {
   std::vector<GpgpAxiom> axioms;
   for (int z = -kBlocks; z <= kBlocks; ++z)
     for (int x = -kBlocks; x <= kBlocks; ++x) {
-      if (std::abs(x) <= 1 && std::abs(z) <= 1) continue;
+      if (std::abs(x) <= 1 && std::abs(z) <= 1) continue; // the square
+      if ((x == 0 || x == 1) && z > 1) continue;          // an avenue, through which the camera looks
       GpgpAxiom axiom{};
       axiom.id = static_cast<uint32_t>((z + kBlocks) * (2 * kBlocks + 1) + x + kBlocks);
       axiom.seed = 7919u * (axiom.id + 1u);
       const uint32_t random = (axiom.seed * 2654435761u) >> 16;
-      const float fromMiddle = std::sqrt(static_cast<float>(x * x + z * z)) / static_cast<float>(kBlocks);
-      const float floors =
-          std::round(4.0f + 9.0f * std::max(0.0f, 1.1f - fromMiddle) + static_cast<float>(random % 5u));
-      axiom.size[0] = 12.0f + static_cast<float>(random / 5u % 3u) * 2.0f;
+      const float fromMiddle = std::sqrt(static_cast<float>(x * x + z * z)); // in blocks
+      const float floors = std::round(2.0f + 1.6f * fromMiddle + static_cast<float>(random % 4u));
+      axiom.size[0] = 12.0f + static_cast<float>(random / 4u % 3u) * 2.0f;
       axiom.size[1] = floors * 3.0f + 1.0f;
-      axiom.size[2] = 12.0f + static_cast<float>(random / 15u % 3u) * 2.0f;
+      axiom.size[2] = 12.0f + static_cast<float>(random / 12u % 3u) * 2.0f;
       axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1.0f;
       axiom.transform[3] = static_cast<float>(x) * kBlock;
       axiom.transform[7] =
@@ -52,18 +53,18 @@ glm::vec4 materialOf(const std::string& name, uint32_t index) {
     glm::vec4 colour;
   };
   static const std::array<Material, 12> kMaterials = {{
-      {"Glass", {0.10f, 0.19f, 0.27f, 0.1f}},
-      {"Window", {0.10f, 0.19f, 0.27f, 0.1f}},
-      {"Frame", {0.72f, 0.72f, 0.70f, 0.2f}},
-      {"Sill", {0.62f, 0.60f, 0.56f, 0.3f}},
-      {"Ledge", {0.62f, 0.60f, 0.56f, 0.3f}},
-      {"Cornice", {0.60f, 0.57f, 0.52f, 0.3f}},
+      {"Glass", {0.05f, 0.10f, 0.15f, 0.0f}},
+      {"Chimney", {0.24f, 0.11f, 0.08f, 0.3f}},
+      {"Frame", {0.55f, 0.54f, 0.52f, 0.2f}},
+      {"Sill", {0.44f, 0.42f, 0.38f, 0.3f}},
+      {"Ledge", {0.46f, 0.43f, 0.38f, 0.5f}},
+      {"Cornice", {0.42f, 0.39f, 0.34f, 0.5f}},
       {"Door", {0.22f, 0.11f, 0.06f, 0.2f}},
-      {"Balcony", {0.45f, 0.46f, 0.48f, 0.2f}},
-      {"Rail", {0.14f, 0.15f, 0.16f, 0.1f}},
-      {"Roof", {0.42f, 0.15f, 0.09f, 0.5f}},
-      {"Shop", {0.16f, 0.30f, 0.28f, 0.4f}},
-      {"Wall", {0.62f, 0.54f, 0.44f, 1.0f}},
+      {"Balcony", {0.34f, 0.34f, 0.34f, 0.2f}},
+      {"Rail", {0.05f, 0.055f, 0.06f, 0.0f}},
+      {"Roof", {0.30f, 0.085f, 0.045f, 0.4f}},
+      {"Shop", {0.06f, 0.17f, 0.16f, 0.4f}},
+      {"Wall", {0.46f, 0.37f, 0.27f, 1.0f}},
   }};
   for (const Material& material : kMaterials)
     if (name.find(material.part) != std::string::npos) return material.colour;
@@ -137,8 +138,8 @@ void City::makeMaterials() {
   std::vector<GpgpGrammarTerminal> terminals(count);
   gpgp_.check(grammar_.terminals(count, terminals.data()), "gpgpGetGrammarTerminals");
   materials_.resize(count, glm::vec4(0.5f));
-  for (const GpgpGrammarTerminal& terminal : terminals)
-    if (terminal.bucket < count) materials_[terminal.bucket] = materialOf(terminal.name, terminal.bucket);
+  for (auto terminal = terminals.rbegin(); terminal != terminals.rend(); ++terminal) // the first name of a bucket counts
+    if (terminal->bucket < count) materials_[terminal->bucket] = materialOf(terminal->name, terminal->bucket);
 }
 
 void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {

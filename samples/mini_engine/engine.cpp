@@ -17,7 +17,7 @@ Model loadModel(const std::string& dataFolder) {
                  file.c_str());
     model = makeFallbackModel();
   }
-  model.standOnGround(22.0f);
+  model.place(54.0f, 0.2f); // metres
   return model;
 }
 
@@ -58,20 +58,13 @@ void Engine::resize() {
   hud_.resize(target_.extent());
 }
 
-Camera Engine::mainCamera() const {
-  const float angle = 0.62f + 0.01f * static_cast<float>(frame_.current);
+/// Around the square: angle in radians, distance and height of the eye in metres.
+Camera Engine::orbit(float angle, float distance, float height, float fieldOfView) const {
   const VkExtent2D size = target_.extent();
   const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  return lookAt(glm::vec3(std::sin(angle) * 74.0f, 34.0f, std::cos(angle) * 74.0f), glm::vec3(0, 13, 0), 0.85f, aspect,
-                1.0f, 900.0f);
-}
-
-Camera Engine::sideCamera() const {
-  const float angle = 0.62f + 0.01f * static_cast<float>(frame_.current) + 1.9f;
-  const VkExtent2D size = target_.extent();
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  return lookAt(glm::vec3(std::sin(angle) * 46.0f, 16.0f, std::cos(angle) * 46.0f), glm::vec3(0, 11, 0), 0.60f, aspect,
-                1.0f, 900.0f);
+  angle += 0.24f + 0.01f * static_cast<float>(frame_.current);
+  return lookAt(glm::vec3(std::sin(angle) * distance, height, std::cos(angle) * distance), glm::vec3(0, 12, 0),
+                fieldOfView, aspect, 1.0f, 900.0f);
 }
 
 void Engine::run(uint32_t frames) {
@@ -127,7 +120,8 @@ void Engine::frame() {
 }
 
 void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
-  const Camera camera = mainCamera(), side = sideCamera();
+  const Camera camera = orbit(0.0f, 84.0f, 36.0f, 0.80f);
+  const Camera side = orbit(2.5f, 74.0f, 26.0f, 0.56f); // what the camera cannot see lies here
   gpgp_.check(gpgp_.context.recordUpload(commands, frame_).code(), "gpgpRecordUpload");
   city_.prepare(commands, frame_);
   sight_.prepare(commands, frame_, camera, target_.extent());

@@ -35,8 +35,7 @@ private:
   void record(VkCommandBuffer commands, const Acquired& acquired);
   void resize();
   void collect();
-  Camera mainCamera() const;
-  Camera sideCamera() const;
+  Camera orbit(float angle, float distance, float height, float fieldOfView) const;
 
   Device& device_;
   Target& target_;

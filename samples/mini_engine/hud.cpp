@@ -1,6 +1,8 @@
 // Drawings become a canvas in each frame; the canvas is one blended rectangle in the forward pass.
 #include "hud.h"
 
+#include "target.h"
+
 #include <algorithm>
 #include <cstdio>
 
@@ -28,8 +30,8 @@ Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFi
   load(pictureFile, false);
   auto info = gpgp::init<GpgpCanvasCreateInfo>();
   info.base = gpgp.worker("hud canvas");
-  info.maxWidth = 4096;
-  info.maxHeight = 2304;
+  info.maxWidth = kMaxExtent.width;
+  info.maxHeight = kMaxExtent.height;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
   target_ = gpgp::init<GpgpTargetInfo>();
   target_.renderPass = forward.renderPass();
@@ -84,7 +86,7 @@ void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
     if (item.isFrame)
       fit(item.info, 0, 0, width, height, entry.transform);
     else
-      fit(item.info, height * 0.03f, height * 0.03f, height * 0.26f, height * 0.26f, entry.transform);
+      fit(item.info, height * 0.033f, height * 0.033f, height * 0.272f, height * 0.272f, entry.transform);
     items.push_back(entry);
   }
   auto info = gpgp::init<GpgpCanvasInfo>();

@@ -51,8 +51,8 @@ bool parse(int argc, char** argv, Options& options) {
     else if (name == "--frames" && std::sscanf(value, "%u%c", &options.frames, &rest) == 1 && options.frames > 0)
       continue;
     else if (name == "--size" && std::sscanf(value, "%ux%u%c", &options.size.width, &options.size.height, &rest) == 2 &&
-             options.size.width >= 64 && options.size.height >= 64 && options.size.width <= 4096 &&
-             options.size.height <= 2304)
+             options.size.width >= 64 && options.size.height >= 64 && options.size.width <= mini::kMaxExtent.width &&
+             options.size.height <= mini::kMaxExtent.height)
       continue;
     else
       return false;

@@ -1,6 +1,7 @@
 // Placing models, and the one that needs no file.
 #include "scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mini {
@@ -36,9 +37,10 @@ void Model::addDraw(uint32_t mesh, const glm::mat4& world) {
   }
 }
 
-void Model::standOnGround(float height) {
-  const float scale = height / std::max(high.y - low.y, 1e-6f);
-  const glm::vec3 foot((low.x + high.x) * 0.5f, low.y, (low.z + high.z) * 0.5f);
+void Model::place(float width, float ground) {
+  const glm::vec3 extent = high - low;
+  const float scale = width / std::max({extent.x, extent.y, extent.z, 1e-6f});
+  const glm::vec3 foot((low.x + high.x) * 0.5f, low.y - ground / scale, (low.z + high.z) * 0.5f);
   glm::mat4 placing(scale);
   placing[3] = glm::vec4(-foot * scale, 1.0f);
   for (GpgpVisibilityDraw& draw : draws) setRows(placing * matrixOf(draw.transform), draw.transform);

@@ -20,8 +20,8 @@ struct Model {
 
   /// One use of a mesh; placed by a matrix.
   void addDraw(uint32_t mesh, const glm::mat4& world);
-  /// Moves and scales all draws so that the model stands on the ground at the origin and is this high.
-  void standOnGround(float height);
+  /// Moves and scales all draws so that the model stands at the origin, on y = ground, and is this wide at most.
+  void place(float width, float ground);
 };
 
 /// Throws std::runtime_error where the file is no glTF 2 with triangles.

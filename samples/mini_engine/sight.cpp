@@ -1,6 +1,8 @@
 // The same position, index and draw buffers serve gpgp's sampler and the engine's own vertex shader.
 #include "sight.h"
 
+#include "target.h"
+
 #include "shaders/mini_model_frag.spv.h"
 #include "shaders/mini_model_vert.spv.h"
 
@@ -30,8 +32,8 @@ Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model)
   geometry_ = gpgp.take(gpgp::GeometrySet::create(gpgp.context, geometryInfo), "gpgpCreateGeometrySet");
   auto samplerInfo = gpgp::init<GpgpSamplerCreateInfo>();
   samplerInfo.base = gpgp.worker("model sampler");
-  samplerInfo.maxWidth = 4096;
-  samplerInfo.maxHeight = 2304;
+  samplerInfo.maxWidth = kMaxExtent.width;
+  samplerInfo.maxHeight = kMaxExtent.height;
   samplerInfo.maxDraws = static_cast<uint32_t>(model_.draws.size());
   samplerInfo.maxTriangles = model_.triangleCount;
   sampler_ = gpgp.take(gpgp::Sampler::create(gpgp.context, samplerInfo), "gpgpCreateSampler");

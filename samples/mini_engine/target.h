@@ -7,6 +7,9 @@
 
 namespace mini {
 
+/// Pictures are no larger: what gpgp is created with is sized for it.
+constexpr VkExtent2D kMaxExtent = {2560, 1440};
+
 /// One picture to draw into in this frame.
 struct Acquired {
   uint32_t index = 0;

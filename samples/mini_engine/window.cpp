@@ -70,7 +70,7 @@ public:
       SDL_Vulkan_GetDrawableSize(sdl().window, &width, &height);
       extent_ = {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
     }
-    extent_ = {std::clamp(extent_.width, 1u, 4096u), std::clamp(extent_.height, 1u, 2304u)};
+    extent_ = {std::clamp(extent_.width, 1u, kMaxExtent.width), std::clamp(extent_.height, 1u, kMaxExtent.height)};
     VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
     info.surface = surface_;
     info.minImageCount = can.maxImageCount ? std::min(can.minImageCount + 1, can.maxImageCount) : can.minImageCount + 1;

@@ -27,7 +27,10 @@ void main() {
   // Streets run between the blocks, which stand 26 m apart (city.cpp).
   float street = max(stripes(ground.x + 13.0, 26.0, 8.0, footprint), stripes(ground.y + 13.0, 26.0, 8.0, footprint));
   float line = max(stripes(ground.x + 13.0, 26.0, 0.35, footprint), stripes(ground.y + 13.0, 26.0, 0.35, footprint));
-  vec3 colour = mix(vec3(0.30, 0.31, 0.28), vec3(0.11, 0.115, 0.125), street);
-  colour = mix(colour, vec3(0.55, 0.52, 0.40), line);
+  vec3 colour = mix(vec3(0.20, 0.20, 0.18), vec3(0.055, 0.058, 0.065), street);
+  colour = mix(colour, vec3(0.42, 0.38, 0.26), line);
+  // Under the model, which stands across the square (54 m wide), it is dark.
+  vec2 under = max(abs(ground) - vec2(17.0, 4.0), 0.0);
+  colour *= 1.0 - 0.75 * exp(-dot(under, under) / 40.0);
   result = vec4(haze(colour, push.eye.xyz, vec3(ground.x, 0.0, ground.y)), 1.0);
 }

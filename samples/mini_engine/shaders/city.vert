@@ -27,6 +27,6 @@ void main() {
   world = vec3(dot(row0, local), dot(row1, local), dot(row2, local));
   normal = vec3(0.0); // flat: the fragment shader takes it from the surface
   float tone = fract(float(kind.z) * 0.618034);
-  colour = push.colour.rgb * mix(vec3(1.0), vec3(0.80, 0.86, 0.95) + vec3(0.30, 0.16, 0.0) * tone, push.colour.a);
+  colour = push.colour.rgb * mix(vec3(1.0), mix(vec3(0.72, 0.84, 1.02), vec3(1.28, 1.0, 0.78), tone), push.colour.a);
   gl_Position = push.viewProjection * vec4(world, 1.0);
 }

@@ -3,13 +3,13 @@ const vec3 kSun = vec3(0.48, 0.72, 0.50);
 
 vec3 skyColour(vec3 direction) {
   float up = clamp(direction.y, 0.0, 1.0);
-  vec3 sky = mix(vec3(0.62, 0.74, 0.86), vec3(0.13, 0.31, 0.62), pow(up, 0.55));
+  vec3 sky = mix(vec3(0.52, 0.62, 0.74), vec3(0.07, 0.20, 0.50), pow(up, 0.55));
   float glow = max(dot(direction, normalize(kSun)), 0.0);
   return sky + vec3(0.9, 0.6, 0.3) * (0.25 * pow(glow, 24.0));
 }
 
 vec3 haze(vec3 colour, vec3 eye, vec3 world) {
   vec3 ray = world - eye;
-  float amount = 1.0 - exp(-length(ray) * 0.0016);
+  float amount = 1.0 - exp(-length(ray) * 0.0012);
   return mix(colour, skyColour(vec3(0.0, 0.02, 0.0)), amount);
 }

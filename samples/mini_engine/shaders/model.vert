@@ -30,6 +30,6 @@ void main() {
   normal = vec3(dot(draw.row0.xyz, n), dot(draw.row1.xyz, n), dot(draw.row2.xyz, n));
   uint triangle = draw.firstTriangle + uint(gl_VertexIndex) / 3u;
   bool visible = (visibleBits[triangle >> 5] >> (triangle & 31u) & 1u) != 0u;
-  colour = visible ? vec3(0.95, 0.42, 0.06) : vec3(0.16, 0.17, 0.20);
+  colour = visible ? vec3(0.90, 0.30, 0.02) : vec3(0.10, 0.11, 0.14);
   gl_Position = push.viewProjection * vec4(world, 1.0);
 }

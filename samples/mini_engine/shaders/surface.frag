@@ -19,8 +19,9 @@ void main() {
   vec3 toEye = push.eye.xyz - world;
   vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : normalize(cross(dFdx(world), dFdy(world)));
   if (dot(n, toEye) < 0.0) n = -n;
-  vec3 light = vec3(1.0, 0.93, 0.80) * (0.95 * max(dot(n, normalize(kSun)), 0.0)) +
-               vec3(0.42, 0.50, 0.62) * (0.55 + 0.35 * n.y);
+  vec3 light = vec3(1.0, 0.93, 0.80) * (1.25 * max(dot(n, normalize(kSun)), 0.0)) +
+               vec3(0.42, 0.50, 0.62) * (0.42 + 0.26 * n.y);
+  light *= 0.55 + 0.45 * smoothstep(0.0, 14.0, world.y); // less of the sky is seen from down in the streets
   vec3 halfway = normalize(normalize(kSun) + normalize(toEye));
 #ifdef FLAT_COLOUR
   vec3 shine = vec3(0.35) * pow(max(dot(n, halfway), 0.0), 40.0);
