@@ -3,9 +3,9 @@
 // One round of derivation: each invocation takes a shape through its chain of operators; terminals are appended as
 // records, and the children of all shapes of a workgroup are made by all its invocations together, whoever the parent.
 //
-// Round 0 reads axioms, later ones the queue that the round before wrote. Workgroups stride over the shapes, so the
-// number of workgroups is the CPU's choice and no indirect arguments are needed. Space in the queue and among the
-// records is taken by one atomic a workgroup. What does not fit is counted and not written.
+// Round 0 reads axioms, later ones the queue that the round before wrote, which also left the arguments of this
+// dispatch. Workgroups stride over the shapes. Space in the queue and among the records is taken by one atomic a
+// workgroup. What does not fit is counted and not written.
 #include "spawn/bindings.glsl"
 #include "spawn/operators.h"
 layout(push_constant) uniform Push { uint round; };
@@ -45,10 +45,9 @@ void prefixSum(uint value) {
 
 void main() {
   const uint lane = gl_LocalInvocationIndex;
-  const uint needed = round == 0 ? record.axiomCount : state.shapes[round % 3];
+  const uint needed = round == 0 ? record.axiomCount : rounds[round].shapes;
   const uint count = round == 0 ? needed : min(needed, maxShapes);
   if (gl_GlobalInvocationID.x == 0) {
-    state.shapes[(round + 2) % 3] = 0; // the round before is done with it, the one after next will count in it
     if (count > 0) state.rounds = round + 1;
     if (round > 0) {
       state.peakShapes = max(state.peakShapes, needed);
@@ -103,8 +102,11 @@ void main() {
     const uint total = min(childrenUpTo[kSpawnGroupSize - 1], maxShapes + 1);
     if (lane == 0 && total > 0) {
       const uint full = 0x40000000u;
-      groupBase = atomicAdd(state.shapes[(round + 1) % 3], 0) < full ? atomicAdd(state.shapes[(round + 1) % 3], total)
-                                                                      : full;
+      groupBase = atomicAdd(rounds[round + 1].shapes, 0) < full ? atomicAdd(rounds[round + 1].shapes, total) : full;
+      const uint made = min(groupBase + total, maxShapes);
+      atomicMax(rounds[round + 1].groupsX, min((made + kSpawnGroupSize - 1) / kSpawnGroupSize, record.maxGroups));
+      rounds[round + 1].groupsY = 1;
+      rounds[round + 1].groupsZ = 1;
     }
     barrier();
     for (uint child = lane; child < total && groupBase + child < maxShapes; child += kSpawnGroupSize) {

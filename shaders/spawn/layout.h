@@ -15,9 +15,14 @@ struct SpawnState {
   uint rounds;
   uint keyHashX;
   uint keyHashY;
-  uint shapes[4]; // in the queue of round r: shapes[r % 3], those that did not fit included
 };
 GPGP_CONST uint kSpawnReportWords = 8u;
+
+/// One round of derivation: the arguments of its dispatch, and what its queue holds.
+struct SpawnRound {
+  uint groupsX, groupsY, groupsZ; // VkDispatchIndirectCommand
+  uint shapes;                    // that the round before made, those that did not fit included
+};
 
 /// What the CPU says with each record.
 struct SpawnConstants {
@@ -26,6 +31,7 @@ struct SpawnConstants {
   uint drawCapacity;     // VkDrawIndexedIndirectCommand; 0: instances are not sorted
   uint writeCount;       // 1: the count buffer is there
   uint rounds;           // that were recorded
+  uint maxGroups;        // workgroups that fill the device; shaders stride beyond them
 };
 
 GPGP_CONST uint kSpawnGroupSize = 64u;

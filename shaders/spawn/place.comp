@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Between derivation and emission, one workgroup: where each bucket starts among the instances, the engine's draw
-// commands, and the rest of the report.
+// commands, the dispatch of emission, and the rest of the report.
 #include "spawn/bindings.glsl"
 
 shared uint sums[kSpawnGroupSize];
@@ -35,11 +35,14 @@ void main() {
     }
   }
   if (lane == 0) {
-    const uint left = record.rounds == 0 ? record.axiomCount : state.shapes[record.rounds % 3];
+    const uint left = rounds[record.rounds].shapes;
     state.peakShapes = max(state.peakShapes, left);
     state.droppedShapes += left - min(left, maxShapes);
     state.unfinishedShapes = min(left, maxShapes);
     state.instancesWritten = written;
+    rounds[rounds.length() - 1].groupsX = min((kept + kSpawnGroupSize - 1) / kSpawnGroupSize, record.maxGroups);
+    rounds[rounds.length() - 1].groupsY = 1;
+    rounds[rounds.length() - 1].groupsZ = 1;
     if (record.writeCount != 0) instanceCount = written;
   }
 }

@@ -22,8 +22,12 @@ enum : core::ResourceIndex {
   kRecords,
   kState,
   kBuckets,
+  kRounds,
   kConstants
 };
+
+// Workgroup counts of a record.
+constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1;
 
 constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
 constexpr uint32_t kDefaultShapes = 262144, kDefaultTerminals = 524288, kDefaultDepth = 64;
@@ -32,7 +36,7 @@ constexpr uint32_t kDefaultShapes = 262144, kDefaultTerminals = 524288, kDefault
 uint32_t fillingGroups(const core::Device& device) {
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
   device.vki.GetPhysicalDeviceProperties2(device.physicalDevice, &properties);
-  return properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 16 : 2048;
+  return properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 4 : 2048;
 }
 
 } // namespace
@@ -55,6 +59,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"records", scratch, kShapeBytes * maxTerminals});
   list.add({"state", scratch, sizeof(shader::SpawnState)});
   list.add({"buckets", scratch, 2 * sizeof(uint32_t) * shader::kMaxBuckets});
+  const VkDeviceSize rounds = spawner->maxDepth_ + 2; // the leftover of the last one, and emission
+  list.add({"rounds", scratch, sizeof(shader::SpawnRound) * rounds});
   list.add({"constants", constants, sizeof(shader::SpawnConstants)});
 
   const std::array<uint32_t, 4> budgets{maxShapes, maxTerminals};
@@ -65,34 +71,30 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   using enum core::UseKind;
   list.fill("clear counters", kState, 0);
   list.fill("clear buckets", kBuckets, 0);
-  for (uint32_t round = 0; round < spawner->maxDepth_; ++round)
-    list.dispatch("derive", derive,
-                  {{kGraph, read},
-                   {kAxioms, read},
-                   {kQueues, readWrite},
-                   {kRecords, write},
-                   {kState, readWrite},
-                   {kBuckets, readWrite},
-                   {kConstants, read}},
-                  0, {round})
-        .level = round;
+  list.fill("clear rounds", kRounds, 0);
+  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},       {kQueues, readWrite}, {kRecords, write},
+                     {kState, readWrite},     {kBuckets, readWrite}, {kRounds, readWrite}, {kConstants, read}};
+  list.dispatch("derive", derive, uses, kAxiomGroups, {0});
+  for (uint32_t round = 1; round < spawner->maxDepth_; ++round)
+    list.dispatchIndirect("derive", derive, uses, kRounds, sizeof(shader::SpawnRound) * round, {round}).level = round;
   list.dispatch("place", place,
                 {{kGraph, read},
                  {kDraws, readWrite},
                  {kCount, write},
                  {kState, readWrite},
                  {kBuckets, readWrite},
+                 {kRounds, readWrite},
                  {kConstants, read}},
-                1);
-  list.dispatch("emit", emit,
-                {{kGraph, read},
-                 {kAxioms, read},
-                 {kRecords, read},
-                 {kInstances, write},
-                 {kState, read},
-                 {kBuckets, readWrite},
-                 {kConstants, read}},
-                0);
+                kOneGroup);
+  list.dispatchIndirect("emit", emit,
+                        {{kGraph, read},
+                         {kAxioms, read},
+                         {kRecords, read},
+                         {kInstances, write},
+                         {kState, read},
+                         {kBuckets, readWrite},
+                         {kConstants, read}},
+                        kRounds, sizeof(shader::SpawnRound) * (rounds - 1));
   list.report = kState;
   list.reportBytes = 4 * shader::kSpawnReportWords;
   if (auto ok = spawner->init(std::move(list)); !ok) return ok.error();
@@ -102,9 +104,12 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
   const uint32_t rounds = grammar.graph.rounds ? std::min(grammar.graph.rounds, maxDepth_) : maxDepth_;
   const shader::SpawnConstants constants{
-      info.axiomCount, static_cast<uint32_t>(info.instances.size / sizeof(GpgpInstance)),
+      info.axiomCount,
+      static_cast<uint32_t>(info.instances.size / sizeof(GpgpInstance)),
       static_cast<uint32_t>(info.draws.buffer ? info.draws.size / sizeof(VkDrawIndexedIndirectCommand) : 0),
-      info.count.buffer ? 1u : 0u, rounds};
+      info.count.buffer ? 1u : 0u,
+      rounds,
+      groups_};
   core::Record record;
   record.commandBuffer = commandBuffer;
   record.info = &info.base;
@@ -114,8 +119,9 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[kInstances].engineBuffer = &info.instances;
   record.bindings[kDraws].engineBuffer = &info.draws;
   record.bindings[kCount].engineBuffer = &info.count;
-  record.groups[0] = {groups_, 1, 1};
-  record.groups[1] = {1, 1, 1};
+  record.groups[kOneGroup] = {1, 1, 1};
+  const uint32_t axiomGroups = (info.axiomCount + shader::kSpawnGroupSize - 1) / shader::kSpawnGroupSize;
+  record.groups[kAxiomGroups] = {std::min(axiomGroups, groups_), 1, 1};
   record.levels = rounds;
   record.constants = std::as_bytes(std::span(&constants, 1));
   if (auto ok = check(record); !ok) return ok;
