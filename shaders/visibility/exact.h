@@ -1,7 +1,7 @@
-// Exact integers and repeatable division for the rasteriser.
+// Exact integers for the rasteriser, and which floats it computes with.
 //
 // Guarantees: every function gives the same bits on every device and in the CPU twin. 64-bit integers are two 32-bit
-// words, because shaderInt64 is not part of the baseline; division is Newton's iteration in + - * only.
+// words, because shaderInt64 is not part of the baseline.
 #ifndef GPGP_SHADERS_VISIBILITY_EXACT_H
 #define GPGP_SHADERS_VISIBILITY_EXACT_H
 #include "core/shared.h"
@@ -74,23 +74,10 @@ GPGP_FN bool isModerate(float v) { return (floatBitsToUint(v) & 0x7f800000u) < (
 /// Zero instead of numbers below 2^-100 in magnitude: some devices flush subnormal numbers, so none may arise.
 GPGP_FN float withoutTiny(float v) { return (floatBitsToUint(v) & 0x7f800000u) < (27u << 23u) ? 0.0f : v; }
 
-/// Whether divisionReciprocal may be used: 2^-100 <= v < 2^100.
+/// Whether a positive number may be divided by: 2^-100 <= v < 2^100, the range of core/math.h's divide.
 GPGP_FN bool isDivisor(float v) {
   uint bits = floatBitsToUint(v);
   return bits >= (27u << 23u) && bits < (227u << 23u);
-}
-
-/// 1 / v within 2 ulp, for isDivisor(v). Newton's iteration on the mantissa, then the exponent.
-GPGP_FN float divisionReciprocal(float v) {
-  uint bits = floatBitsToUint(v);
-  GPGP_PRECISE float m = uintBitsToFloat((bits & 0x7fffffu) | 0x3f000000u); // 0.5 <= m < 1
-  GPGP_PRECISE float r = 2.8235294f - 1.8823529f * m;                       // within 1/17
-  r = r + r * (1.0f - m * r);
-  r = r + r * (1.0f - m * r);
-  r = r + r * (1.0f - m * r);
-  r = r + r * (1.0f - m * r);
-  GPGP_PRECISE float scaled = r * uintBitsToFloat((253u - (bits >> 23u)) << 23u);
-  return scaled;
 }
 
 GPGP_SHADER_END

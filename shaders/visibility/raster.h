@@ -6,6 +6,7 @@
 // the pixel alone: whichever pass or thread asks, the bits are the same.
 #ifndef GPGP_SHADERS_VISIBILITY_RASTER_H
 #define GPGP_SHADERS_VISIBILITY_RASTER_H
+#include "core/math.h"
 #include "visibility/exact.h"
 
 GPGP_SHADER_BEGIN
@@ -67,7 +68,7 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
   t.z0 = za;
   t.dz1 = dz1;
   t.dz2 = dz2;
-  t.inverseArea = divisionReciprocal(wideToFloat(twiceArea(a, b, c)));
+  t.inverseArea = divide(1.0f, wideToFloat(twiceArea(a, b, c)));
   return t;
 }
 

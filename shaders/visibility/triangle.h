@@ -82,7 +82,7 @@ GPGP_FN vec4 cutEdge(int plane, vec4 inner, vec4 outer) {
   GPGP_PRECISE float di = planeDistance(plane, inner);
   GPGP_PRECISE float span = di - planeDistance(plane, outer);
   GPGP_PRECISE float t = 0.0f; // a span too short to divide by: both ends are the plane
-  if (isDivisor(span)) t = di * divisionReciprocal(span);
+  if (isDivisor(span)) t = divide(di, span);
   GPGP_PRECISE float x = inner.x + (outer.x - inner.x) * t;
   GPGP_PRECISE float y = inner.y + (outer.y - inner.y) * t;
   GPGP_PRECISE float z = inner.z + (outer.z - inner.z) * t;
@@ -133,7 +133,7 @@ GPGP_FN bool project(vec4 c, ivec2 viewport, GPGP_OUT(ivec2) p, GPGP_OUT(float) 
   p = ivec2(0, 0);
   z = 0.0f;
   if (!isDivisor(c.w)) return false;
-  GPGP_PRECISE float inverse = divisionReciprocal(c.w);
+  GPGP_PRECISE float inverse = divide(1.0f, c.w);
   GPGP_PRECISE float x = c.x * inverse;
   GPGP_PRECISE float y = c.y * inverse;
   GPGP_PRECISE float depth = c.z * inverse;
