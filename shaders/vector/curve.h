@@ -1,0 +1,106 @@
+// On which side of a curve a point lies: the test that bounds a CPatch.
+//
+// The curve is a cubic that never turns in x or y. Its box decides first: left of the box is left, right of it is
+// right. Inside, the curve is halved until it is a parabola within the tolerance, each time keeping the half at the
+// point's height and asking its box again. A parabola's implicit form decides the rest: with A, B the control and end
+// point relative to the start and w the point, f(w) = cross(w, B - 2A)^2 + 4 cross(A, B) cross(w, A) is zero on it,
+// positive outside, negative inside (Salmon; Loop and Blinn 2005 use the same form with interpolated coordinates).
+// Outside the segment's hull that sign means nothing, so the chord guards it: a line meets a parabola at most twice,
+// hence on the bulge's side of the chord f decides, and on the other side the chord does.
+//
+// Guarantee: only + - * on precise floats, so CPU and GPU agree on every bit; wrong only within tolerance plus a few
+// units of the last place of the curve's box.
+#ifndef GPGP_SHADERS_VECTOR_CURVE_H
+#define GPGP_SHADERS_VECTOR_CURVE_H
+#include "layout.h"
+
+GPGP_SHADER_BEGIN
+
+// Whether (x, y) lies right of the curve or on it. y is clamped to the curve's range.
+GPGP_FN bool rightOfCurve(CurveRecord c, float x, float y, float tolerance) {
+  GPGP_PRECISE float u = x - c.ends.x;
+  GPGP_PRECISE float v = y - c.ends.y;
+  GPGP_PRECISE float p3x = c.ends.z;
+  GPGP_PRECISE float p3y = c.ends.w;
+  if (u < min(0.0f, p3x)) return false;
+  if (u >= max(0.0f, p3x)) return true;
+  v = clamp(v, 0.0f, p3y);
+  if (c.bend < 0.0f) return p3x * v <= p3y * u;
+  GPGP_PRECISE float p0x = 0.0f;
+  GPGP_PRECISE float p0y = 0.0f;
+  GPGP_PRECISE float p1x = c.controls.x;
+  GPGP_PRECISE float p1y = c.controls.y;
+  GPGP_PRECISE float p2x = c.controls.z;
+  GPGP_PRECISE float p2y = c.controls.w;
+  float bend = c.bend;
+  for (uint i = 0u; i < 8u && bend > tolerance; ++i) {
+    bend *= 0.125f;
+    GPGP_PRECISE float ax = (p0x + p1x) * 0.5f;
+    GPGP_PRECISE float ay = (p0y + p1y) * 0.5f;
+    GPGP_PRECISE float bx = (p1x + p2x) * 0.5f;
+    GPGP_PRECISE float by = (p1y + p2y) * 0.5f;
+    GPGP_PRECISE float dx = (p2x + p3x) * 0.5f;
+    GPGP_PRECISE float dy = (p2y + p3y) * 0.5f;
+    GPGP_PRECISE float ex = (ax + bx) * 0.5f;
+    GPGP_PRECISE float ey = (ay + by) * 0.5f;
+    GPGP_PRECISE float fx = (bx + dx) * 0.5f;
+    GPGP_PRECISE float fy = (by + dy) * 0.5f;
+    GPGP_PRECISE float mx = (ex + fx) * 0.5f;
+    GPGP_PRECISE float my = (ey + fy) * 0.5f;
+    if (v < my) {
+      p1x = ax;
+      p1y = ay;
+      p2x = ex;
+      p2y = ey;
+      p3x = mx;
+      p3y = my;
+    } else {
+      p0x = mx;
+      p0y = my;
+      p1x = fx;
+      p1y = fy;
+      p2x = dx;
+      p2y = dy;
+    }
+    if (u < min(p0x, p3x)) return false;
+    if (u >= max(p0x, p3x)) return true;
+  }
+  GPGP_PRECISE float wx = u - p0x;
+  GPGP_PRECISE float wy = v - p0y;
+  GPGP_PRECISE float bx = p3x - p0x;
+  GPGP_PRECISE float by = p3y - p0y;
+  GPGP_PRECISE float ax = (p1x + p2x) * 0.75f - (p3x + p0x) * 0.25f - p0x;
+  GPGP_PRECISE float ay = (p1y + p2y) * 0.75f - (p3y + p0y) * 0.25f - p0y;
+  bool right = bx * wy <= by * wx; // of the chord
+  GPGP_PRECISE float bulge = ax * by - ay * bx;
+  GPGP_PRECISE float cx = bx - 2.0f * ax;
+  GPGP_PRECISE float cy = by - 2.0f * ay;
+  GPGP_PRECISE float k = wx * cy - wy * cx;
+  GPGP_PRECISE float l = wx * ay - wy * ax;
+  GPGP_PRECISE float f = k * k + 4.0f * (bulge * l);
+  if (bulge > 0.0f) return right && f >= 0.0f;
+  if (bulge < 0.0f) return right || f <= 0.0f;
+  return right;
+}
+
+// Where in a tile's box (drawing units) a patch lies: 0 nowhere, else kEntry… flags of what is still to be tested,
+// with bit 0 set so that "everywhere" is not 0. Uses that the curves never turn: a box is right of a curve where its
+// leftmost corner on the curve's far side is.
+GPGP_FN uint classifyTile(PatchRecord p, CurveRecord left, CurveRecord right, float x0, float y0, float x1, float y1,
+                          float tolerance) {
+  if (y1 < p.top || y0 >= p.bottom || x1 < p.x0 || x0 > p.x1) return 0u;
+  float ya = max(y0, p.top);
+  float yb = min(y1, p.bottom);
+  uint flags = 1u;
+  if (y0 < p.top || y1 >= p.bottom) flags |= kTestRows;
+  bool falls = left.ends.z >= 0.0f; // x grows on the way down
+  if (!rightOfCurve(left, x1, falls ? ya : yb, tolerance)) return 0u;
+  if (!rightOfCurve(left, x0, falls ? yb : ya, tolerance)) flags |= kTestLeft;
+  falls = right.ends.z >= 0.0f;
+  if (rightOfCurve(right, x0, falls ? yb : ya, tolerance)) return 0u;
+  if (rightOfCurve(right, x1, falls ? ya : yb, tolerance)) flags |= kTestRight;
+  return flags;
+}
+
+GPGP_SHADER_END
+#endif

@@ -1,0 +1,53 @@
+// Cubic Béziers in double precision, cut where they turn in x or y.
+//
+// A Monotone is what the whole service works with: top to bottom, never turning, end points exactly representable as
+// float, so that neighbours share them bit for bit. Lines and quadratics are elevated to cubics (exact in double).
+#pragma once
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace gpgp::vector {
+
+struct Point {
+  double x = 0, y = 0;
+  friend bool operator==(const Point&, const Point&) = default;
+};
+inline Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y}; }
+inline Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
+inline Point operator*(double s, Point a) { return {s * a.x, s * a.y}; }
+
+struct Cubic {
+  Point p[4];
+  bool line = false; ///< controls at the thirds
+
+  static Cubic fromLine(Point a, Point b);
+  static Cubic fromQuadratic(Point a, Point control, Point b);
+  Point at(double t) const;
+  /// The part from t0 to t1.
+  Cubic part(double t0, double t1) const;
+  /// How far it is from the parabola with the same ends and middle, at most.
+  double bend() const;
+};
+
+/// A cubic that grows in y and never turns in x or y. Horizontal pieces bound nothing and are left out everywhere.
+struct Monotone {
+  Cubic curve;
+  int winding = 1; ///< +1 where the path runs down along it, -1 up; sums where several coincide
+
+  double top() const { return curve.p[0].y; }
+  double bottom() const { return curve.p[3].y; }
+  /// The curve's x at a height, by safeguarded Newton; heights outside give the ends.
+  double xAt(double y) const;
+};
+
+/// Real roots of a t^2 + b t + c in (0, 1), ascending; returns their number. Any input, NaN included.
+int rootsInside(double a, double b, double c, double roots[2]);
+
+/// Appends the monotone pieces of one cubic. A curve and its reverse give the same pieces with opposite winding.
+void cutMonotone(const Cubic& curve, std::pmr::vector<Monotone>& pieces);
+
+/// Adds up the windings of identical pieces and drops those that cancel. Order becomes canonical.
+void mergeCoincident(std::pmr::vector<Monotone>& pieces);
+
+} // namespace gpgp::vector

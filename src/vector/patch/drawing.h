@@ -1,0 +1,70 @@
+// A drawing as patches: the intermediate form of the vector service, and the stages that make it.
+//
+// Stages (each a function on values, a file each): outline -> crossings -> sweep -> drawing; baked reads and writes the
+// result, print shows it. Everything here is run-time code: memory comes from the resource that is passed in.
+#pragma once
+#include "core/result.h"
+#include "vector/geometry/curve.h"
+#include "vector/layout.h"
+
+#include <gpgp/vector.h>
+
+#include <string>
+
+namespace gpgp::vector {
+
+using shader::CurveRecord;
+using shader::PatchRecord;
+using shader::PathRecord;
+
+struct Drawing {
+  explicit Drawing(std::pmr::memory_resource* memory) : curves(memory), patches(memory), paths(memory) {}
+  std::pmr::vector<CurveRecord> curves;
+  std::pmr::vector<PatchRecord> patches; ///< grouped by path, paths in painting order
+  std::pmr::vector<PathRecord> paths;
+  float bounds[4] = {};   ///< left, top, right, bottom of the ink; all 0 where there is none
+  float viewport[4] = {}; ///< x, y, width, height
+};
+
+constexpr float kMaxCoordinate = 1e7f;
+
+/// Checks one path (verbs known, points enough, finite and within kMaxCoordinate, colour in range) and appends its
+/// monotone pieces, open contours closed by a line. The error names the verb or point.
+core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces);
+
+/// Where a piece must be cut because another crosses it there.
+struct Cut {
+  uint32_t piece;
+  float y;
+};
+/// All heights at which two pieces change sides, both pieces named. Cost near linear for drawings whose pieces are
+/// short against the whole: pieces are dealt into horizontal bands of about their own height, and within a band only
+/// those whose x ranges overlap are compared. UNSUPPORTED where a path has more than kMaxCrossings.
+constexpr size_t kMaxCrossings = size_t(1) << 22;
+core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vector<Cut>& cuts);
+
+/// A patch before it has a place in a table: pieces left and right, rows.
+struct Slab {
+  uint32_t left, right;
+  float top, bottom;
+};
+/// Sweeps from top to bottom over pieces cut at `cuts` (sorted by piece, then y) and appends what the fill rule calls
+/// inside as slabs, each as tall as its pair of pieces stays neighbours.
+void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule,
+           std::pmr::vector<Slab>& slabs);
+
+/// All stages for one path; appends its patches, the curves they use and its colour.
+core::Result<void> addPath(const GpgpPath& path, Drawing& drawing);
+
+/// The drawing of paths in painting order. Errors name the path.
+core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
+
+/// Baked form: little-endian, versioned, checksummed.
+std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory);
+/// Checks everything that a shader would trust: sizes, indices, finite numbers, order. Errors: INVALID_DATA.
+core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory);
+
+/// The patches as SVG, outlined over their fill, for people to look at.
+std::pmr::string patchesToSvg(const Drawing& drawing, std::pmr::memory_resource* memory);
+
+} // namespace gpgp::vector

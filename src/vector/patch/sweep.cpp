@@ -1,0 +1,249 @@
+// Stage 3: a sweep from top to bottom that turns pieces into slabs.
+//
+// The status is the list of edges (pieces between two cuts) that the sweep line meets, ordered by x. Between cuts no
+// two edges change sides, so two edges are ordered by comparing them in the middle of the rows they share, which is
+// safe where they touch at an end; nothing is ever compared on the sweep line itself. At each height all edges that
+// end leave, all that begin enter, and only around those places windings and slabs are worked out again. A slab stays
+// open while the pair of pieces that bounds it stays the same, whatever happens outside or inside of it.
+#include "vector/patch/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace gpgp::vector {
+namespace {
+
+struct Edge {
+  uint32_t piece;
+  float top, bottom;
+};
+
+class Sweep {
+public:
+  Sweep(std::span<const Monotone> pieces, GpgpFillRule rule, std::pmr::vector<Slab>& slabs)
+      : pieces_(pieces), rule_(rule), slabs_(slabs), memory_(slabs.get_allocator().resource()), edges_(memory_),
+        status_(Order{this}, memory_), places_(memory_), edgeOf_(memory_), windings_(memory_), dirty_(memory_),
+        visited_(memory_), open_(memory_), touched_(memory_), runs_(memory_), starts_(memory_) {}
+
+  void run(std::span<const Cut> cuts) {
+    makeEdges(cuts);
+    const uint32_t count = static_cast<uint32_t>(edges_.size());
+    places_.assign(count, status_.end());
+    edgeOf_.resize(count);
+    for (uint32_t i = 0; i < count; ++i) edgeOf_[i] = i;
+    windings_.assign(count, 0);
+    dirty_.assign(count, 0);
+    visited_.assign(count, 0);
+    open_.assign(pieces_.size(), Open{});
+    std::pmr::vector<uint32_t> begins(count, 0, memory_), ends(count, 0, memory_);
+    for (uint32_t i = 0; i < count; ++i) begins[i] = ends[i] = i;
+    std::sort(begins.begin(), begins.end(), [this](uint32_t a, uint32_t b) {
+      return edges_[a].top != edges_[b].top ? edges_[a].top < edges_[b].top : a < b;
+    });
+    std::sort(ends.begin(), ends.end(), [this](uint32_t a, uint32_t b) {
+      return edges_[a].bottom != edges_[b].bottom ? edges_[a].bottom < edges_[b].bottom : a < b;
+    });
+    uint32_t begin = 0, end = 0;
+    while (end < count) {
+      y_ = edges_[ends[end]].bottom;
+      if (begin < count) y_ = std::min(y_, edges_[begins[begin]].top);
+      ++batch_;
+      starts_.clear();
+      touched_.clear();
+      for (; end < count && edges_[ends[end]].bottom == y_; ++end) remove(ends[end]);
+      for (; begin < count && edges_[begins[begin]].top == y_; ++begin) insert(begins[begin]);
+      repair();
+      update();
+    }
+  }
+
+private:
+  struct Order {
+    const Sweep* sweep;
+    bool operator()(uint32_t a, uint32_t b) const { return sweep->leftOf(sweep->edgeOf_[a], sweep->edgeOf_[b]); }
+  };
+  using Status = std::pmr::multiset<uint32_t, Order>; // of slots; edgeOf_ says which edge a slot holds
+  struct Open {                                       // the slab whose left side is a piece
+    uint32_t right = 0, stamp = 0;
+    float top = 0;
+    bool active = false;
+  };
+
+  void makeEdges(std::span<const Cut> cuts) {
+    size_t next = 0;
+    for (uint32_t i = 0; i < pieces_.size(); ++i) {
+      float top = static_cast<float>(pieces_[i].top());
+      for (; next < cuts.size() && cuts[next].piece == i; ++next) {
+        edges_.push_back({i, top, cuts[next].y});
+        top = cuts[next].y;
+      }
+      edges_.push_back({i, top, static_cast<float>(pieces_[i].bottom())});
+    }
+  }
+
+  bool leftOf(uint32_t a, uint32_t b) const {
+    if (a == b) return false;
+    const Edge &l = edges_[a], &r = edges_[b];
+    const Monotone &lp = pieces_[l.piece], &rp = pieces_[r.piece];
+    // Boxes of whole pieces first: most pairs are far apart.
+    const auto& lc = lp.curve;
+    const auto& rc = rp.curve;
+    if (std::max(lc.p[0].x, lc.p[3].x) < std::min(rc.p[0].x, rc.p[3].x)) return true;
+    if (std::max(rc.p[0].x, rc.p[3].x) < std::min(lc.p[0].x, lc.p[3].x)) return false;
+    const double top = std::max(l.top, r.top), bottom = std::min(l.bottom, r.bottom);
+    double widest = 0;
+    for (const double at : {0.5, 0.25, 0.75}) {
+      const double y = top + (bottom - top) * at;
+      const double lx = lp.xAt(y), rx = rp.xAt(y);
+      const double d = rx - lx;
+      if (std::abs(d) > std::abs(widest)) widest = d;
+      if (std::abs(widest) > (std::abs(lx) + std::abs(rx)) * 1e-7) break;
+    }
+    return widest != 0 ? widest > 0 : a < b;
+  }
+
+  bool inside(int winding) const { return rule_ == GPGP_FILL_EVEN_ODD ? (winding & 1) != 0 : winding != 0; }
+  int windingBefore(Status::iterator it) const {
+    return it == status_.begin() ? 0 : windings_[edgeOf_[*std::prev(it)]];
+  }
+
+  void markDirty(uint32_t edge) {
+    if (dirty_[edge] == batch_) return;
+    dirty_[edge] = batch_;
+    starts_.push_back(edge);
+  }
+
+  void remove(uint32_t edge) {
+    const auto it = places_[edge];
+    if (it != status_.begin()) markDirty(edgeOf_[*std::prev(it)]);
+    if (const auto next = std::next(it); next != status_.end()) markDirty(edgeOf_[*next]);
+    touched_.push_back(edges_[edge].piece);
+    status_.erase(it);
+    places_[edge] = status_.end();
+  }
+
+  void insert(uint32_t edge) {
+    places_[edge] = status_.insert(edge);
+    markDirty(edge);
+  }
+
+  /// Edges that are compared over rows no taller than noise may have been put in the wrong place, and others beside
+  /// them. Whenever two edges become neighbours they are asked again and change places where needed.
+  void repair() {
+    size_t swaps = 64 + 8 * starts_.size();
+    for (size_t i = 0; i < starts_.size() && swaps; ++i) {
+      const auto it = places_[starts_[i]];
+      if (it == status_.end()) continue;
+      auto at = it;
+      for (; at != status_.begin() && swaps && leftOf(edgeOf_[*at], edgeOf_[*std::prev(at)]); --at, --swaps)
+        swap(at, std::prev(at));
+      for (auto next = std::next(at); next != status_.end() && swaps && leftOf(edgeOf_[*next], edgeOf_[*at]);
+           ++next, ++at, --swaps)
+        swap(at, next);
+    }
+  }
+
+  void swap(Status::iterator a, Status::iterator b) {
+    uint32_t &ea = edgeOf_[*a], &eb = edgeOf_[*b];
+    std::swap(ea, eb);
+    places_[ea] = a;
+    places_[eb] = b;
+    markDirty(ea);
+    markDirty(eb);
+    for (const auto it : {a, b}) {
+      if (it != status_.begin()) markDirty(edgeOf_[*std::prev(it)]);
+      if (const auto next = std::next(it); next != status_.end()) markDirty(edgeOf_[*next]);
+    }
+  }
+
+  /// Windings from each changed place on until they agree with what was there, then the slabs around those places.
+  void update() {
+    runs_.clear();
+    for (const uint32_t edge : starts_) {
+      const auto first = places_[edge];
+      if (first == status_.end() || visited_[edge] == batch_) continue; // left in this batch, or done
+      if (first != status_.begin() && dirty_[edgeOf_[*std::prev(first)]] == batch_) continue; // reached from there
+      auto it = first;
+      int winding = windingBefore(it);
+      uint32_t last = edge;
+      while (it != status_.end()) {
+        const uint32_t e = edgeOf_[*it];
+        const int after = winding + pieces_[edges_[e].piece].winding;
+        if (dirty_[e] != batch_ && windings_[e] == after) break;
+        windings_[e] = after;
+        visited_[e] = batch_;
+        last = e;
+        winding = after;
+        ++it;
+      }
+      runs_.push_back({edge, last});
+    }
+    for (const Run& run : runs_) cover(places_[run.first], places_[run.last]);
+    for (const uint32_t piece : touched_) {
+      Open& open = open_[piece];
+      if (open.active && open.stamp != batch_) close(piece, open);
+    }
+  }
+
+  /// Opens and closes slabs from the outside left of `first` to the outside right of `last`.
+  void cover(Status::iterator first, Status::iterator last) {
+    while (first != status_.begin() && inside(windingBefore(first))) --first;
+    while (std::next(last) != status_.end() && inside(windings_[edgeOf_[*last]])) ++last;
+    const auto end = std::next(last);
+    int before = windingBefore(first);
+    uint32_t left = 0;
+    for (auto it = first; it != end; ++it) {
+      const uint32_t edge = edgeOf_[*it], piece = edges_[edge].piece;
+      const int after = windings_[edge];
+      touched_.push_back(piece);
+      if (!inside(before) && inside(after))
+        left = piece;
+      else if (inside(before) && !inside(after))
+        bound(left, piece);
+      before = after;
+    }
+  }
+
+  void bound(uint32_t left, uint32_t right) {
+    Open& open = open_[left];
+    if (open.active && open.right != right) close(left, open);
+    if (!open.active) open = {right, 0, y_, true};
+    open.stamp = batch_;
+  }
+
+  void close(uint32_t left, Open& open) {
+    if (open.top < y_) slabs_.push_back({left, open.right, open.top, y_});
+    open.active = false;
+  }
+
+  struct Run {
+    uint32_t first, last;
+  };
+  std::span<const Monotone> pieces_;
+  const GpgpFillRule rule_;
+  std::pmr::vector<Slab>& slabs_;
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<Edge> edges_;
+  Status status_;
+  std::pmr::vector<Status::iterator> places_;
+  std::pmr::vector<uint32_t> edgeOf_;          // by slot
+  std::pmr::vector<int> windings_;             // right of each edge
+  std::pmr::vector<uint32_t> dirty_, visited_; // batch numbers
+  std::pmr::vector<Open> open_;                // by left piece
+  std::pmr::vector<uint32_t> touched_;
+  std::pmr::vector<Run> runs_;
+  std::pmr::vector<uint32_t> starts_;
+  float y_ = 0;
+  uint32_t batch_ = 0;
+};
+
+} // namespace
+
+void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule,
+           std::pmr::vector<Slab>& slabs) {
+  if (pieces.empty()) return;
+  Sweep(pieces, rule, slabs).run(cuts);
+}
+
+} // namespace gpgp::vector

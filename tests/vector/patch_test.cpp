@@ -1,0 +1,315 @@
+// Paths to patches: the union of a path's patches is what the fill rule calls inside, and patches do not overlap.
+#include "oracle.h"
+#include "vector/curve.h"
+#include "vector/patch/drawing.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <random>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+using vector::Drawing;
+
+std::pmr::memory_resource* heap() { return std::pmr::get_default_resource(); }
+
+bool contains(const Drawing& d, const vector::PatchRecord& p, float x, float y) {
+  return y >= p.top && y < p.bottom && shader::rightOfCurve(d.curves[p.left], x, y, 0) &&
+         !shader::rightOfCurve(d.curves[p.right], x, y, 0);
+}
+
+struct Verdict {
+  size_t tested = 0, wrong = 0, doubled = 0, insideCount = 0;
+  double x = 0, y = 0; // of the first wrong one
+};
+
+/// Random points, most of them near the path's box, against the oracle; points within float distance of an edge are
+/// left out.
+Verdict judge(const GpgpPath& path, size_t points, uint32_t seed) {
+  auto made = vector::makeDrawing(std::span(&path, 1), heap());
+  EXPECT_TRUE(made) << made.error().text;
+  if (!made) return {};
+  const Drawing& d = *made;
+  const PathOracle oracle(path);
+  const double slack = oracle.magnitude() * 1.5e-6;
+  std::mt19937 random(seed);
+  const double w = std::max(oracle.right - oracle.left, slack), h = std::max(oracle.bottom - oracle.top, slack);
+  std::uniform_real_distribution<double> xs(oracle.left - 0.05 * w, oracle.right + 0.05 * w),
+      ys(oracle.top - 0.05 * h, oracle.bottom + 0.05 * h);
+  Verdict v;
+  for (size_t i = 0; i < points; ++i) {
+    const float x = static_cast<float>(xs(random)), y = static_cast<float>(ys(random));
+    if (!oracle.certain(x, y, slack)) continue;
+    int count = 0;
+    for (const auto& patch : d.patches) count += contains(d, patch, x, y);
+    const bool inside = oracle.inside(x, y);
+    ++v.tested;
+    v.insideCount += inside;
+    if ((count > 0) != inside && v.wrong++ == 0) v.x = x, v.y = y;
+    v.doubled += count > 1;
+  }
+  return v;
+}
+
+void expectRight(const TestPath& path, size_t points, uint32_t seed = 1) {
+  for (const GpgpFillRule rule : {GPGP_FILL_NON_ZERO, GPGP_FILL_EVEN_ODD}) {
+    GpgpPath view = path.view();
+    view.fillRule = rule;
+    const Verdict v = judge(view, points, seed);
+    EXPECT_EQ(v.wrong, 0u) << "of " << v.tested << ", rule " << rule << ", seed " << seed << ", first at " << v.x << " "
+                           << v.y;
+    EXPECT_EQ(v.doubled, 0u) << "of " << v.tested << ", rule " << rule << ", seed " << seed;
+    EXPECT_GT(v.tested, points / 4);
+  }
+}
+
+TestPath randomPath(uint32_t seed, int verbs, int kinds, float snap) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> coordinate(-100, 100);
+  const auto c = [&] {
+    const float v = coordinate(random);
+    return snap > 0 ? std::round(v / snap) * snap : v;
+  };
+  TestPath path;
+  path.move(c(), c());
+  for (int i = 0; i < verbs; ++i) {
+    const float a = c(), b = c(), d = c(), e = c(), f = c(), g = c();
+    switch (random() % 8) {
+    case 0: path.close(), path.move(a, b); break;
+    case 1:
+    case 2: path.line(a, b); break;
+    case 3:
+    case 4:
+      if (kinds > 1)
+        path.quad(a, b, d, e);
+      else
+        path.line(d, e);
+      break;
+    default:
+      if (kinds > 2)
+        path.cubic(a, b, d, e, f, g);
+      else
+        path.line(f, g);
+      break;
+    }
+  }
+  return path;
+}
+
+TEST(Patches, SquareIsOnePatch) {
+  TestPath path;
+  path.move(0, 0).line(10, 0).line(10, 10).line(0, 10).close();
+  const GpgpPath view = path.view();
+  auto d = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(d);
+  ASSERT_EQ(d->patches.size(), 1u);
+  EXPECT_EQ(d->curves.size(), 2u);
+  EXPECT_TRUE(contains(*d, d->patches[0], 0, 0)); // half-open: left and top belong to it
+  EXPECT_FALSE(contains(*d, d->patches[0], 10, 5));
+  EXPECT_FALSE(contains(*d, d->patches[0], 5, 10));
+}
+
+TEST(Patches, CircleNeedsFewPatches) {
+  TestPath path;
+  const float k = 0.5522847f;
+  path.move(1, 0)
+      .cubic(1, k, k, 1, 0, 1)
+      .cubic(-k, 1, -1, k, -1, 0)
+      .cubic(-1, -k, -k, -1, 0, -1)
+      .cubic(k, -1, 1, -k, 1, 0);
+  const GpgpPath view = path.view();
+  auto d = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(d);
+  EXPECT_EQ(d->patches.size(), 2u);
+  expectRight(path, 20000);
+}
+
+TEST(Patches, StarsFollowTheFillRule) {
+  TestPath star;
+  for (int i = 0; i < 5; ++i) {
+    const float a = static_cast<float>(i) * 2 * 2.5132741f;
+    i ? star.line(std::sin(a), std::cos(a)) : star.move(std::sin(a), std::cos(a));
+  }
+  star.close();
+  expectRight(star, 20000);
+}
+
+TEST(Patches, LoopsCuspsAndInflections) {
+  TestPath loop;
+  loop.move(0, 0).cubic(100, 80, -80, 80, 20, 0).close();
+  expectRight(loop, 20000);
+  TestPath cusp;
+  cusp.move(0, 0).cubic(50, 50, 0, 50, 50, 0).close();
+  expectRight(cusp, 20000);
+  TestPath wave;
+  wave.move(0, 0).cubic(30, 60, 60, -60, 90, 0).line(90, 50).cubic(60, -10, 30, 110, 0, 50).close();
+  expectRight(wave, 20000);
+}
+
+TEST(Patches, CoincidentEdges) {
+  TestPath twice; // two rectangles that share an edge, one in each direction; a third on top of the first
+  twice.move(0, 0).line(10, 0).line(10, 10).line(0, 10).close();
+  twice.move(10, 2).line(20, 2).line(20, 8).line(10, 8).close();
+  twice.move(0, 0).line(0, 10).line(10, 10).line(10, 0).close();
+  twice.move(3, 10).cubic(4, 20, 6, 20, 7, 10).close();
+  twice.move(7, 10).cubic(6, 20, 4, 20, 3, 10).close();
+  expectRight(twice, 20000);
+}
+
+TEST(Patches, DegenerateInputGivesNothing) {
+  TestPath path;
+  path.move(3, 3).line(3, 3).quad(3, 3, 3, 3).cubic(3, 3, 3, 3, 3, 3).close().move(1, 1).line(5, 1).close();
+  path.move(0, 0).cubic(0, 0, 5, 5, 5, 5).close();
+  const GpgpPath view = path.view();
+  auto d = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(d);
+  // a line there and back: at most slivers without area
+  for (const auto& p : d->patches) EXPECT_FALSE(contains(*d, p, 2.5f, 1.5f));
+}
+
+TEST(Patches, RandomLines) {
+  for (uint32_t seed = 0; seed < 60; ++seed)
+    expectRight(randomPath(seed, 3 + seed, 1, seed % 2 ? 10.0f : 0.0f), 2000, seed);
+}
+TEST(Patches, RandomQuadratics) {
+  for (uint32_t seed = 0; seed < 60; ++seed)
+    expectRight(randomPath(seed, 3 + seed / 2, 2, seed % 2 ? 10.0f : 0.0f), 2000, seed);
+}
+TEST(Patches, RandomCubics) {
+  for (uint32_t seed = 0; seed < 120; ++seed)
+    expectRight(randomPath(seed, 3 + seed / 3, 3, seed % 2 ? 10.0f : 0.0f), 2000, seed);
+}
+
+TEST(Patches, FarFromTheOriginAndHuge) {
+  TestPath path = randomPath(5, 12, 3, 0);
+  for (float& v : path.points) v = v * 50000;
+  expectRight(path, 5000);
+  path = randomPath(6, 12, 3, 0);
+  for (size_t i = 0; i < path.points.size(); ++i) path.points[i] += i % 2 ? 30000.0f : -20000.0f;
+  expectRight(path, 5000);
+}
+
+TEST(Patches, BadPathsAreRefusedByIndex) {
+  TestPath good, bad;
+  good.move(0, 0).line(1, 0).line(1, 1);
+  for (int kind = 0; kind < 7; ++kind) {
+    bad = good;
+    GpgpPath view = bad.view();
+    std::vector<float> points = bad.points;
+    std::vector<GpgpPathVerb> verbs = bad.verbs;
+    view.points = points.data();
+    view.verbs = verbs.data();
+    const char* words = "";
+    if (kind == 0) points[3] = NAN, words = "points[1].y";
+    if (kind == 1) points[2] = INFINITY, words = "points[1].x";
+    if (kind == 2) points[0] = -2e7f, words = "points[0].x";
+    if (kind == 3) verbs[2] = 9, words = "verbs[2]";
+    if (kind == 4) view.pointCount = 2, words = "pointCount";
+    if (kind == 5) verbs[0] = GPGP_PATH_LINE, words = "GPGP_PATH_MOVE";
+    if (kind == 6) view.color[1] = 1.5f, words = "color[1]";
+    const GpgpPath both[] = {good.view(), view};
+    const auto d = vector::makeDrawing(both, heap());
+    ASSERT_FALSE(d) << kind;
+    EXPECT_EQ(d.error().code, GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(d.error().text).find("paths[1]"), std::string::npos) << d.error().text;
+    EXPECT_NE(std::string(d.error().text).find(words), std::string::npos) << d.error().text;
+  }
+}
+
+TEST(Patches, CostGrowsAboutLinearly) {
+  // The same shape n times beside and below itself in one path: 16 times the curves may take 40 times the time at most,
+  // where comparing all pairs would take 256 times.
+  const auto make = [](int side) {
+    TestPath path;
+    for (int i = 0; i < side * side; ++i) {
+      const float x = static_cast<float>(i % side) * 10,
+                  y = static_cast<float>(i / side) * 10 + static_cast<float>(i % 7);
+      path.move(x, y).cubic(x + 9, y, x + 9, y + 9, x, y + 9).cubic(x - 3, y + 6, x + 6, y + 3, x, y).close();
+    }
+    return path;
+  };
+  const auto measure = [&](int side) {
+    const TestPath path = make(side);
+    const GpgpPath view = path.view();
+    const auto start = std::chrono::steady_clock::now();
+    const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+    EXPECT_TRUE(d);
+    EXPECT_GE(d->patches.size(), static_cast<size_t>(side) * side);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  measure(20);
+  const double small = std::min(measure(20), measure(20)), large = measure(80);
+  RecordProperty("microseconds_per_curve", static_cast<int>(large * 1e6 / (80 * 80 * 2)));
+  EXPECT_LT(large / small, 40) << small << " s, then " << large << " s";
+}
+
+TEST(Patches, PrintAsSvg) {
+  TestPath path;
+  path.move(0, 0).cubic(9, 0, 9, 9, 0, 9).close();
+  const GpgpPath view = path.view();
+  const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(d);
+  const std::pmr::string svg = vector::patchesToSvg(*d, heap());
+  size_t count = 0;
+  for (size_t at = 0; (at = svg.find("<path", at)) != std::string::npos; ++at) ++count;
+  EXPECT_EQ(count, d->patches.size());
+  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+}
+
+TEST(Baked, ComesBackTheSame) {
+  const TestPath a = randomPath(3, 20, 3, 0), b = randomPath(4, 20, 3, 0);
+  const GpgpPath views[] = {a.view(), b.view()};
+  const auto d = vector::makeDrawing(views, heap());
+  ASSERT_TRUE(d);
+  const auto bytes = vector::bake(*d, heap());
+  const auto back = vector::loadBaked(bytes, heap());
+  ASSERT_TRUE(back) << back.error().text;
+  EXPECT_EQ(vector::bake(*back, heap()), bytes);
+  EXPECT_EQ(back->patches.size(), d->patches.size());
+}
+
+TEST(Baked, DamagedBytesAreRefused) {
+  const TestPath a = randomPath(3, 20, 3, 0);
+  const GpgpPath view = a.view();
+  const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(d);
+  const auto bytes = vector::bake(*d, heap());
+  std::mt19937 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    auto damaged = bytes;
+    if (i % 3 == 0)
+      damaged.resize(random() % bytes.size());
+    else
+      damaged[random() % bytes.size()] ^= std::byte(1 + random() % 255);
+    const auto back = vector::loadBaked(damaged, heap());
+    ASSERT_FALSE(back) << i;
+    ASSERT_EQ(back.error().code, GPGP_ERROR_INVALID_DATA);
+  }
+}
+
+TEST(Baked, ContentsAreCheckedBehindARightChecksum) {
+  const TestPath a = randomPath(3, 20, 3, 0);
+  const GpgpPath view = a.view();
+  const auto made = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(made);
+  const auto refused = [&](auto&& damage) {
+    Drawing d = *made;
+    damage(d);
+    const auto back = vector::loadBaked(vector::bake(d, heap()), heap());
+    return !back && back.error().code == GPGP_ERROR_INVALID_DATA;
+  };
+  EXPECT_FALSE(refused([](Drawing&) {}));
+  EXPECT_TRUE(refused([](Drawing& d) { d.patches[2].left = static_cast<uint32_t>(d.curves.size()); }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.patches[0].right = UINT32_MAX; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.patches[0].path = 1; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.patches[1].top = d.patches[1].bottom; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.patches[1].x0 = NAN; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.curves[1].ends.w = -1; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.curves[1].controls.x = INFINITY; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.paths[0].color.x = 2; }));
+}
+
+} // namespace
