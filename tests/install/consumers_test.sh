@@ -36,6 +36,9 @@ install)
     if grep -E 'NEEDED.*(vulkan|glslang|SPIRV)' <<<"$dynamic"; then fail "$name needs a library that it must not"; fi
   done
   if [[ -x $prefix/bin/gpgp ]]; then "$prefix/bin/gpgp" --version; fi
+  version=$(sed -nE 's/^#define GPGP_VERSION_(MAJOR|MINOR|PATCH) ([0-9]+)$/\2/p' "$prefix/include/gpgp/core.h" | paste -sd.)
+  described=$(sed -nE 's/^Version: //p' $(find "$prefix" -name gpgp.pc))
+  [[ $version == "$described" ]] || fail "the header says version $version, gpgp.pc says $described"
   echo "installed: $(find "$prefix" -type f | wc -l) files"
   ;;
 find_package)
