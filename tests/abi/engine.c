@@ -1,6 +1,7 @@
 /* A small engine, in C, that hosts gpgp: own instance, device and queue, three frames, one context, one object of each
- * service that is built. It is linked four times: beside libvulkan or with its own volk and glslang, with the shared or
- * the static gpgp. Exits 0 when every call succeeded and gpgp sent no message.
+ * service that is built; a grammar is derived where there is a compiler for it. It is linked four times: beside
+ * libvulkan or with its own volk and glslang, with the shared or the static gpgp. Exits 0 when every call succeeded,
+ * the GPU counted what the grammar says, and gpgp sent no message.
  *
  *   ENGINE_VOLK        Vulkan through volk's global function pointers, and a glslang of its own
  *   ENGINE_SPAWN ...   the service is in the library; ENGINE_COMPILE_...: so is its compiler */
@@ -60,9 +61,11 @@ static uint32_t chooseFamily(VkPhysicalDevice device) {
 }
 
 #ifdef ENGINE_SPAWN
+static GpgpAsset grammar = NULL;
+static GpgpWorker spawner = NULL;
+
 static void useSpawn(GpgpContext context, uint32_t family) {
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
-  GpgpWorker spawner = NULL;
   info.base.label = "spawner";
   info.base.queueFamily = family;
   info.maxShapes = 1024;
@@ -70,11 +73,11 @@ static void useSpawn(GpgpContext context, uint32_t family) {
   GPGP_CHECK(gpgpPrewarm(spawner, NULL));
 #ifdef ENGINE_COMPILE_GRAMMAR
   {
-    static const char text[] = "axiom Box A;\nterminal T (1,0);\nA = SubDiv(X) { -1: T | -1: T };\n";
+    static const char text[] =
+        "axiom Box A;\nterminal T (1,0);\nA = SubDiv(X) { -1: T | -1: T | -1: T | -1: T | -1: T };\n";
     GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
     GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
     GpgpBlob blob = {NULL, 0};
-    GpgpAsset grammar = NULL;
     source.name = "engine.pga";
     source.text = text;
     source.size = sizeof text - 1;
@@ -85,11 +88,44 @@ static void useSpawn(GpgpContext context, uint32_t family) {
     GPGP_CHECK(gpgpCreateGrammar(context, &grammarInfo, &grammar));
     gpgpFreeBlob(&blob);
     check(blob.data == NULL, "gpgpFreeBlob zeroes the blob");
-    gpgpDestroyAsset(grammar);
   }
 #endif
-  gpgpDestroyWorker(spawner);
 }
+
+#ifdef ENGINE_COMPILE_GRAMMAR
+/* Records the derivation of two axioms, five terminals each, into the first half of the buffer that `range` describes.
+ */
+static void recordSpawn(VkCommandBuffer commandBuffer, const GpgpFrame* frame, GpgpBuffer range, void* mapped) {
+  GpgpAxiom* axioms = (GpgpAxiom*)mapped;
+  GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+  memset(axioms, 0, 2 * sizeof *axioms);
+  axioms[0].transform[0] = axioms[0].transform[5] = axioms[0].transform[10] = 1;
+  axioms[0].size[0] = axioms[0].size[1] = axioms[0].size[2] = 5;
+  axioms[0].rule = GPGP_AXIOM_DEFAULT_RULE;
+  axioms[1] = axioms[0];
+  axioms[1].seed = 1;
+  info.base.tag = 7;
+  info.grammar = grammar;
+  info.axiomCount = 2;
+  info.axioms = info.instances = range;
+  info.axioms.size = range.size / 2;
+  info.instances.offset = info.instances.size = range.size / 2;
+  info.instances.after.stages = VK_PIPELINE_STAGE_2_HOST_BIT;
+  info.instances.after.access = VK_ACCESS_2_HOST_READ_BIT;
+  GPGP_CHECK(gpgpRecordPrepareSpawn(spawner, commandBuffer, frame, &info));
+}
+
+static void checkSpawn(const void* mapped, VkDeviceSize offset) {
+  const GpgpInstance* instances = (const GpgpInstance*)((const char*)mapped + offset);
+  GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+  int i;
+  GPGP_CHECK(gpgpGetSpawnReport(spawner, &report));
+  check(report.base.status == GPGP_SUCCESS && report.base.tag == 7, "the record ran");
+  check(report.terminals == 10 && report.instancesWritten == 10, "two axioms of five terminals");
+  for (i = 0; i < 10; ++i) check(instances[i].size[0] == 1 && instances[i].size[1] == 5, "slices of one metre");
+  check(gpgpGetSpawnReport(spawner, &report) == GPGP_NOT_READY, "one report a record");
+}
+#endif
 #endif
 
 #ifdef ENGINE_VECTOR
@@ -158,7 +194,37 @@ static void useVisibility(GpgpContext context, uint32_t family) {
 }
 #endif
 
-static void renderFrames(VkDevice device, uint32_t family, GpgpContext context) {
+/* A buffer in memory that the host reaches, mapped for good. */
+static VkBuffer makeBuffer(VkPhysicalDevice physicalDevice, VkDevice device, VkDeviceSize size, VkDeviceMemory* memory,
+                           void** mapped) {
+  VkBufferCreateInfo info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                             NULL,
+                             0,
+                             0,
+                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                             VK_SHARING_MODE_EXCLUSIVE,
+                             0,
+                             NULL};
+  VkMemoryAllocateInfo allocation = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, NULL, 0, 0};
+  const VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkPhysicalDeviceMemoryProperties types;
+  VkMemoryRequirements needs;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  info.size = size;
+  VK_CHECK(vkCreateBuffer(device, &info, NULL, &buffer));
+  vkGetBufferMemoryRequirements(device, buffer, &needs);
+  vkGetPhysicalDeviceMemoryProperties(physicalDevice, &types);
+  while (!(needs.memoryTypeBits >> allocation.memoryTypeIndex & 1u) ||
+         (types.memoryTypes[allocation.memoryTypeIndex].propertyFlags & wanted) != wanted)
+    ++allocation.memoryTypeIndex; /* Vulkan promises one */
+  allocation.allocationSize = needs.size;
+  VK_CHECK(vkAllocateMemory(device, &allocation, NULL, memory));
+  VK_CHECK(vkBindBufferMemory(device, buffer, *memory, 0));
+  VK_CHECK(vkMapMemory(device, *memory, 0, VK_WHOLE_SIZE, 0, mapped));
+  return buffer;
+}
+
+static void renderFrames(VkPhysicalDevice physicalDevice, VkDevice device, uint32_t family, GpgpContext context) {
   VkCommandPoolCreateInfo poolInfo = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, NULL, 0, 0};
   VkCommandBufferAllocateInfo bufferInfo = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, NULL, VK_NULL_HANDLE,
                                             VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
@@ -168,6 +234,12 @@ static void renderFrames(VkDevice device, uint32_t family, GpgpContext context) 
   VkCommandBuffer commandBuffer = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   GpgpFrame frame = {1, 0};
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  void* mapped = NULL;
+  GpgpBuffer range;
+  memset(&range, 0, sizeof range);
+  range.size = 1 << 14;
+  range.buffer = makeBuffer(physicalDevice, device, range.size, &memory, &mapped);
   vkGetDeviceQueue(device, family, 0, &queue);
   poolInfo.queueFamilyIndex = family;
   VK_CHECK(vkCreateCommandPool(device, &poolInfo, NULL, &pool));
@@ -181,6 +253,10 @@ static void renderFrames(VkDevice device, uint32_t family, GpgpContext context) 
     VK_CHECK(vkBeginCommandBuffer(commandBuffer, &beginInfo));
     GPGP_CHECK(gpgpRecordUpload(context, commandBuffer, &frame, 0, &pending));
     check(pending == 0, "everything is uploaded");
+#ifdef ENGINE_COMPILE_GRAMMAR
+    if (frame.current == 2) recordSpawn(commandBuffer, &frame, range, mapped);
+    if (frame.current == 3) checkSpawn(mapped, range.size / 2);
+#endif
     VK_CHECK(vkEndCommandBuffer(commandBuffer));
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commandBuffer;
@@ -188,6 +264,8 @@ static void renderFrames(VkDevice device, uint32_t family, GpgpContext context) 
     VK_CHECK(vkQueueWaitIdle(queue));
   }
   vkDestroyCommandPool(device, pool, NULL);
+  vkDestroyBuffer(device, range.buffer, NULL);
+  vkFreeMemory(device, memory, NULL);
 }
 
 int main(void) {
@@ -252,7 +330,7 @@ int main(void) {
 #ifdef ENGINE_VISIBILITY
     useVisibility(context, queueInfo.queueFamilyIndex);
 #endif
-    renderFrames(device, queueInfo.queueFamilyIndex, context);
+    renderFrames(requirementsInfo.physicalDevice, device, queueInfo.queueFamilyIndex, context);
     gpgpDestroyContext(context);
   }
 #ifdef ENGINE_VOLK
