@@ -1,3 +1,4 @@
+// What creation copies: a mesh table as bytes to upload, or a size to clear.
 #include "visibility/geometry_set.h"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// An engine's frame in small: upload, record, submit, advance, read back.
 #include "gpu.h"
 
 #include "api/check.h"

@@ -1,3 +1,4 @@
+// Double precision throughout; every triangle is tried in every pixel near it.
 #include "oracle.h"
 
 #include <algorithm>

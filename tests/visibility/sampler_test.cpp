@@ -2,6 +2,7 @@
 #include "gpu.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/ext/matrix_transform.hpp>
 #include <limits>
 #include <random>
@@ -77,6 +78,61 @@ TEST_F(VisibilityGpuTest, BadInputIsSkippedAndCountedAsByTheTwin) {
   EXPECT_EQ(twin.counters.skippedDraws, 1u);
   EXPECT_GT(twin.counters.skippedTriangles, 300u);
   EXPECT_GT(twin.counters.visible, 15u);
+}
+
+TEST_F(VisibilityGpuTest, NumbersOfAllSizesEqualTheTwin) {
+  std::mt19937 random(11);
+  const GpgpWorker sampler = createSampler(64, 64, 0, true);
+  uint32_t visible = 0, skipped = 0;
+  for (int n = 0; n < 10; ++n) {
+    Scene scene;
+    const int reach = n < 5 ? 12 : 115; // powers of two
+    const auto number = [&] {
+      const float v = std::ldexp(float(random() % 2048) / 1024 - 1, int(random() % (2 * reach)) - reach);
+      return random() % 16 ? v : 0.0f;
+    };
+    for (int i = 0; i < 900; ++i) scene.indices.push_back(scene.addVertex(number(), number(), number()));
+    scene.addDraw(scene.addMesh(0), glm::mat4(1.0f), shader::kTwoSided);
+    glm::mat4 any(0.0f);
+    for (int i = 0; i < 16; ++i) any[i / 4][i % 4] = number();
+    scene.addDraw(0, any, shader::kTwoSided);
+    if (n % 2)
+      scene.setCamera(perspective(1.5f, 1.0f, 0.01f, 1000.0f) * lookAt({0, 0, 2}, {0, 0, 0}), 64, 64);
+    else
+      scene.setCamera(any, 64, 64, n % 4 == 0);
+    const TwinResult twin = sampleOnCpu(scene.input());
+    expectEqual(sample(scene, sampler, createGeometrySet(scene), {}), twin, "scene " + std::to_string(n));
+    visible += twin.counters.visible;
+    skipped += twin.counters.skippedTriangles;
+  }
+  EXPECT_GT(visible, 10u);
+  EXPECT_GT(skipped, 10u);
+}
+
+TEST_F(VisibilityGpuTest, LongViewportsEqualTheTwin) {
+  for (const glm::uvec2 size : {glm::uvec2(8192, 9), glm::uvec2(7, 8192), glm::uvec2(1, 1)}) {
+    Scene scene = colonnade(size.x, size.y);
+    scene.setCamera(perspective(1.0f, 1.0f, 0.1f, 100.0f) * lookAt({0.4f, 0.3f, 4}, {0, -0.5f, -4}), size.x, size.y);
+    const TwinResult twin = sampleOnCpu(scene.input());
+    expectEqual(sample(scene), twin, std::to_string(size.x));
+    EXPECT_GT(twin.counters.coveredPixels, 0u);
+  }
+}
+
+TEST_F(VisibilityGpuTest, AViewportThatTheDeviceCannotBindIsRefusedWithItsSize) {
+  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+  info.base.queueFamily = queue().family;
+  info.base.engineScratch = VK_TRUE;
+  info.maxWidth = info.maxHeight = 8192;
+  GpgpWorker sampler = nullptr;
+  const GpgpResult result = gpgpCreateSampler(context, &info, &sampler);
+  if (device.properties().limits.maxStorageBufferRange >= 8192u * 8192u * 4u) {
+    EXPECT_EQ(result, GPGP_SUCCESS);
+  } else {
+    EXPECT_EQ(result, GPGP_ERROR_UNSUPPORTED);
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].find("268435456"), std::string::npos) << messages[0];
+  }
 }
 
 TEST_F(VisibilityGpuTest, AListTooSmallIsFilledAndReported) {

@@ -1,3 +1,4 @@
+// Meshes and cameras made by hand; matrices are made here so that tests do not depend on a library's conventions.
 #include "scenes.h"
 
 #include <bit>

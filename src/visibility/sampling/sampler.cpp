@@ -1,3 +1,4 @@
+// The passes of the sampler, the checks of a record, and what a record fills in.
 #include "visibility/sampling/sampler.h"
 
 #include "shaders/visibility_clear.spv.h"

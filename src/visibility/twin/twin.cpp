@@ -1,3 +1,4 @@
+// The sampler in plain loops, pass after pass.
 #include "visibility/twin/twin.h"
 
 #include <algorithm>
