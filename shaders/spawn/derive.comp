@@ -43,6 +43,20 @@ void prefixSum(uint value) {
   }
 }
 
+/// Places in the next queue. The count stays exact up to 2^30 and never wraps: usual amounts are too small for all
+/// workgroups together to get there from below the limit; large ones are added with care.
+uint reserve(uint total) {
+  const uint limit = 0x40000000u;
+  uint before = atomicAdd(rounds[round + 1].shapes, 0);
+  if (total <= 0x10000u) return before < limit ? atomicAdd(rounds[round + 1].shapes, total) : before;
+  for (;;) {
+    if (before >= limit) return before;
+    const uint found = atomicCompSwap(rounds[round + 1].shapes, before, before + total);
+    if (found == before) return before;
+    before = found;
+  }
+}
+
 void main() {
   const uint lane = gl_LocalInvocationIndex;
   const uint needed = round == 0 ? record.axiomCount : rounds[round].shapes;
@@ -97,12 +111,10 @@ void main() {
       for (uint plane = 0; plane < kShapePlanes; ++plane) parents[plane][lane] = packShape(s, plane);
       successorsOf[lane] = end.successors;
     }
-    prefixSum(fans ? min(end.count, maxShapes + 1) : 0);
-    // A saturated sum keeps the shared counter far from wrapping: past maxShapes nothing is written anyway.
-    const uint total = min(childrenUpTo[kSpawnGroupSize - 1], maxShapes + 1);
+    prefixSum(fans ? end.count : 0); // at most kSpawnGroupSize * kMaxRepeat
+    const uint total = childrenUpTo[kSpawnGroupSize - 1];
     if (lane == 0 && total > 0) {
-      const uint full = 0x40000000u;
-      groupBase = atomicAdd(rounds[round + 1].shapes, 0) < full ? atomicAdd(rounds[round + 1].shapes, total) : full;
+      groupBase = reserve(total);
       const uint made = min(groupBase + total, maxShapes);
       atomicMax(rounds[round + 1].groupsX, min((made + kSpawnGroupSize - 1) / kSpawnGroupSize, record.maxGroups));
       rounds[round + 1].groupsY = 1;

@@ -81,8 +81,9 @@ Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> 
     stack.clear();
   }
   out.rounds = static_cast<uint32_t>(out.shapesByRound.size());
-  for (const uint64_t count : out.shapesByRound)
-    out.peakShapes = std::max(out.peakShapes, static_cast<uint32_t>(std::min<uint64_t>(count, UINT32_MAX)));
+  uint64_t peak = out.unfinishedShapes;
+  for (size_t round = 1; round < out.shapesByRound.size(); ++round) peak = std::max(peak, out.shapesByRound[round]);
+  out.peakShapes = static_cast<uint32_t>(std::min<uint64_t>(peak, UINT32_MAX));
   return out;
 }
 

@@ -92,7 +92,9 @@ private:
       if (bucket == kMaxBuckets)
         diagnostics_.error(line.place, "more than " + std::to_string(kMaxBuckets) + " terminal lines");
       uint32_t kind = 1, index = 0;
-      if (line.arguments.size() < 2) {
+      if (line.broken) {
+        // was reported
+      } else if (line.arguments.size() < 2) {
         diagnostics_.error(line.place,
                            "a terminal needs (kind, index), found " + count(line.arguments.size(), "value"));
       } else {
@@ -127,6 +129,7 @@ private:
 
   void buildRule(size_t index) {
     const RuleDefinition& rule = tree_.rules[index];
+    if (rule.broken) return;
     if (rule.alternatives.empty()) {
       ruleTargets_[index] = buildSuccessor(rule.body);
       return;
@@ -335,6 +338,7 @@ private:
   /// Corners in either order; the graph keeps them counter-clockwise.
   uint32_t buildPolygon(Place place, const std::vector<Expression>& corners, bool convex) {
     std::vector<std::array<float, 2>> points;
+    const size_t errors = diagnostics_.errorCount();
     for (const Expression& corner : corners) {
       if (corner.kind != ExpressionKind::pair) {
         diagnostics_.error(corner.place, "expected a corner as (x, y)");
@@ -343,6 +347,7 @@ private:
       points.push_back({expressions_.constant(corner.arguments[0], "a corner"),
                         expressions_.constant(corner.arguments[1], "a corner")});
     }
+    if (diagnostics_.errorCount() > errors) return 0;
     if (points.size() < 3 || points.size() > 65536) {
       diagnostics_.error(place, "expected 3 to 65536 corners, found " + std::to_string(points.size()));
       return 0;
@@ -390,7 +395,7 @@ private:
 
   void buildAxiom() {
     if (tree_.axioms.empty()) {
-      diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box Start;");
+      if (!tree_.brokenAxiom) diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box Start;");
       return;
     }
     for (size_t i = 1; i < tree_.axioms.size(); ++i)

@@ -27,6 +27,7 @@ public:
   }
   void warning(Place place, std::string text) { add(place, GPGP_SEVERITY_WARNING, std::move(text)); }
   bool hasErrors() const { return errors_ > 0; }
+  size_t errorCount() const { return errors_; }
   /// In the order of places.
   std::vector<Diagnostic> sorted() const;
 

@@ -35,8 +35,8 @@ ExpressionCompiler::Code ExpressionCompiler::number(float value) const {
 
 ExpressionCompiler::Code ExpressionCompiler::attribute(const Expression& expression, uint32_t code, uint32_t axes) {
   if (expression.arguments.size() != axes) {
-    diagnostics_.error(expression.place, expression.name + " takes " + (axes ? plural(axes, "axis") : "no argument") +
-                                             (axes == 2 ? " (axis and component)" : "") + ", found " +
+    const char* wanted = axes == 0 ? "no argument" : axes == 1 ? "an axis" : "an axis and a component";
+    diagnostics_.error(expression.place, expression.name + " takes " + wanted + ", found " +
                                              plural(expression.arguments.size(), "argument"));
     return number(0);
   }

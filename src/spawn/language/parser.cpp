@@ -78,33 +78,38 @@ private:
     if (isName("var") && !definition) return variable(tree);
     if (isName("axiom") && !definition) return axiom(tree);
     if (isName("terminal") && !definition) return terminal(tree);
-    RuleDefinition rule;
-    rule.place = peek().place;
-    rule.name = expectName("'var', 'axiom', 'terminal' or the name of a rule");
+    const Place place = peek().place;
+    std::string name = expectName("'var', 'axiom', 'terminal' or the name of a rule");
     expect(TokenKind::arrow, "'-->' or '=' after the name of a rule");
-    if ((peek().kind == TokenKind::number && peek(1).kind == TokenKind::percent))
+    RuleDefinition& rule = tree.rules.emplace_back();
+    rule.place = place;
+    rule.name = std::move(name);
+    rule.broken = true;
+    if (peek().kind == TokenKind::number && peek(1).kind == TokenKind::percent)
       rule.alternatives = alternatives();
     else
       rule.body = successor();
+    rule.broken = false;
     expect(TokenKind::semicolon, "';' at the end of the rule");
-    tree.rules.push_back(std::move(rule));
   }
 
   void variable(SyntaxTree& tree) {
-    VariableDefinition variable;
     next();
-    variable.place = peek().place;
-    variable.name = expectName("the name of the variable");
+    const Place place = peek().place;
+    std::string name = expectName("the name of the variable");
     if (peek().kind != TokenKind::arrow) fail("'=' after the name of the variable");
     next();
+    VariableDefinition& variable = tree.variables.emplace_back();
+    variable.place = place;
+    variable.name = std::move(name);
     variable.value = expression();
     expect(TokenKind::semicolon, "';' after the variable");
-    tree.variables.push_back(std::move(variable));
   }
 
   void axiom(SyntaxTree& tree) {
     AxiomDefinition axiom;
     axiom.place = next().place;
+    tree.brokenAxiom = true;
     axiom.shapePlace = peek().place;
     axiom.shape = expectName("the shape of the axiom, as Box or Quad");
     if (accept(TokenKind::openBrace)) {
@@ -114,13 +119,15 @@ private:
     }
     axiom.namePlace = peek().place;
     axiom.name = expectName("the name of the rule that the axiom starts with");
-    expect(TokenKind::semicolon, "';' after the axiom");
     tree.axioms.push_back(std::move(axiom));
+    expect(TokenKind::semicolon, "';' after the axiom");
   }
 
   void terminal(SyntaxTree& tree) {
-    TerminalDefinition terminal;
-    terminal.place = next().place;
+    const Place line = next().place;
+    TerminalDefinition& terminal = tree.terminals.emplace_back();
+    terminal.place = line;
+    terminal.broken = true;
     do {
       const Place place = peek().place;
       terminal.names.emplace_back(place, expectName("the name of a terminal"));
@@ -128,8 +135,8 @@ private:
     } while (peek().kind == TokenKind::name || peek().kind == TokenKind::number);
     expect(TokenKind::open, "'(' with kind and index after the names of terminals");
     terminal.arguments = arguments();
+    terminal.broken = false;
     expect(TokenKind::semicolon, "';' after the terminal");
-    tree.terminals.push_back(std::move(terminal));
   }
 
   /// Up to ')' ; '(' was taken.

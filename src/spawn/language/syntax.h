@@ -66,6 +66,7 @@ struct TerminalDefinition {
   Place place;
   std::vector<std::pair<Place, std::string>> names;
   std::vector<Expression> arguments;
+  bool broken = false;
 };
 
 struct RuleDefinition {
@@ -73,13 +74,16 @@ struct RuleDefinition {
   std::string name;
   Successor body;                   ///< where alternatives is empty
   std::vector<Branch> alternatives; ///< 20%: A 30%: B else: C
+  bool broken = false;
 };
 
+/// Statements with a syntax error are kept as far as their names were read, so that uses of the names are no errors.
 struct SyntaxTree {
   std::vector<VariableDefinition> variables;
   std::vector<AxiomDefinition> axioms;
   std::vector<TerminalDefinition> terminals;
   std::vector<RuleDefinition> rules;
+  bool brokenAxiom = false;
 };
 
 /// Parses a file. Errors are reported and parsing goes on after the statement's ';', so that all are found.

@@ -1,0 +1,368 @@
+// The interpreter kernel against the CPU evaluator, through the C API, with validation.
+#include "grammars.h"
+#include "host/device.h"
+#include "host/memory.h"
+#include "random_grammar.h"
+#include "spawn/evaluator/evaluator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+using spawn::makeAxiom;
+
+struct Derived {
+  GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+  std::vector<GpgpInstance> instances;
+  std::vector<VkDrawIndexedIndirectCommand> draws;
+  uint32_t count = 0;
+};
+
+struct SpawnTest : testing::Test {
+  static constexpr uint32_t kPoison = 0xbaadf00d;
+  std::unique_ptr<host::HeadlessDevice> device =
+      std::make_unique<host::HeadlessDevice>(host::DeviceOptions{.validation = true});
+  GpgpContext context = nullptr;
+  GpgpWorker spawner = nullptr;
+  std::vector<std::string> messages;
+  uint64_t frame = 0;
+
+  void SetUp() override {
+    GpgpContextCreateInfo info = device->contextCreateInfo();
+    info.label = "spawn test";
+    info.messageUserData = &messages;
+    info.messageFn = [](void* user, const GpgpMessage* m) {
+      static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
+    };
+    ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+    makeSpawner({});
+  }
+  void TearDown() override {
+    device->waitIdle();
+    gpgpDestroyContext(context);
+    for (const std::string& message : device->validationMessages()) ADD_FAILURE() << message;
+    for (const std::string& message : messages) ADD_FAILURE() << message;
+  }
+
+  void makeSpawner(const GpgpSpawnerCreateInfo& budgets) {
+    if (spawner) device->waitIdle();
+    gpgpDestroyWorker(spawner);
+    GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
+    info.base.label = "spawner";
+    info.base.queueFamily = device->graphics().family;
+    info.maxShapes = budgets.maxShapes;
+    info.maxTerminals = budgets.maxTerminals;
+    info.maxDepth = budgets.maxDepth;
+    ASSERT_EQ(gpgpCreateSpawner(context, &info, &spawner), GPGP_SUCCESS);
+    ASSERT_EQ(gpgpPrewarm(spawner, nullptr), GPGP_SUCCESS);
+  }
+
+  GpgpFrame advance() {
+    ++frame;
+    const GpgpFrame f{frame, frame - 1};
+    EXPECT_EQ(gpgpAdvance(context, &f), GPGP_SUCCESS);
+    return f;
+  }
+
+  /// Uploads, derives once and reads everything back.
+  Derived run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity,
+              bool sorted) {
+    Derived result;
+    GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
+    grammarInfo.data = words.data();
+    grammarInfo.size = words.size() * 4;
+    GpgpAsset grammar = nullptr;
+    EXPECT_EQ(gpgpCreateGrammar(context, &grammarInfo, &grammar), GPGP_SUCCESS);
+    const uint32_t buckets = words[shader::kHeaderBuckets];
+    const auto axiomBuffer = host::makeBuffer(*device, axioms, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    const host::Buffer instances(*device, VkDeviceSize(capacity) * sizeof(GpgpInstance),
+                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    host::fill(*device, instances, kPoison);
+    const auto draws =
+        host::makeBuffer(*device, std::vector<VkDrawIndexedIndirectCommand>(buckets, {36, kPoison, 5, 6, kPoison}),
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    const host::Buffer count(*device, 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+    info.base.tag = frame + 1000;
+    info.grammar = grammar;
+    info.axioms = axiomBuffer.range();
+    info.axiomCount = static_cast<uint32_t>(axioms.size());
+    info.instances = instances.range();
+    if (sorted) info.draws = draws.range();
+    info.count = count.range();
+    const GpgpFrame f = advance();
+    device->submitAndWait([&](VkCommandBuffer cmd) {
+      EXPECT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareSpawn(spawner, cmd, &f, &info), GPGP_SUCCESS);
+    });
+    advance();
+    EXPECT_EQ(gpgpGetSpawnReport(spawner, &result.report), GPGP_SUCCESS);
+    EXPECT_EQ(result.report.base.tag, info.base.tag);
+    result.count = host::download<uint32_t>(*device, count, 1)[0];
+    EXPECT_EQ(result.count, result.report.instancesWritten);
+    EXPECT_LE(result.count, capacity);
+    const auto all = host::download<GpgpInstance>(*device, instances, capacity);
+    result.instances.assign(all.begin(), all.begin() + std::min(result.count, capacity));
+    for (size_t i = result.count; i < all.size(); ++i) // nothing beyond the count is touched
+      if (all[i].bucket != kPoison || all[i].reserved != kPoison) {
+        ADD_FAILURE() << "instance " << i << " of " << result.count << " was written";
+        break;
+      }
+    result.draws = host::download<VkDrawIndexedIndirectCommand>(*device, draws, buckets);
+    gpgpDestroyAsset(grammar);
+    return result;
+  }
+
+  static uint64_t keyOf(const GpgpInstance& i) { return uint64_t(i.key[0]) << 32 | i.key[1]; }
+
+  /// Equal in everything that must be, bit for bit; transforms within 1e-4 of their size.
+  static void compare(const spawn::Derivation& cpu, const Derived& gpu, const std::string& what) {
+    ASSERT_EQ(gpu.report.terminals, cpu.terminals) << what;
+    ASSERT_EQ(gpu.report.keyHash[0], cpu.keyHash[0]) << what;
+    ASSERT_EQ(gpu.report.keyHash[1], cpu.keyHash[1]) << what;
+    EXPECT_EQ(gpu.report.rounds, cpu.rounds) << what;
+    EXPECT_EQ(gpu.report.unfinishedShapes, cpu.unfinishedShapes) << what;
+    EXPECT_EQ(gpu.report.droppedShapes, 0u) << what;
+    EXPECT_EQ(gpu.report.base.status, cpu.unfinishedShapes ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS) << what;
+    ASSERT_EQ(gpu.instances.size(), cpu.terminals) << what;
+    const auto order = [](const GpgpInstance* a, const GpgpInstance* b) {
+      return std::pair(keyOf(*a), a->axiomId) < std::pair(keyOf(*b), b->axiomId);
+    };
+    std::vector<const GpgpInstance*> a, b;
+    for (const GpgpInstance& i : cpu.instances) a.push_back(&i);
+    for (const GpgpInstance& i : gpu.instances) b.push_back(&i);
+    std::sort(a.begin(), a.end(), order);
+    std::sort(b.begin(), b.end(), order);
+    for (size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(keyOf(*a[i]), keyOf(*b[i])) << what;
+      ASSERT_EQ(a[i]->bucket, b[i]->bucket) << what;
+      ASSERT_EQ(a[i]->shape, b[i]->shape) << what;
+      ASSERT_EQ(a[i]->axiomId, b[i]->axiomId) << what;
+      ASSERT_EQ(a[i]->terminal, b[i]->terminal) << what;
+      ASSERT_EQ(a[i]->seed, b[i]->seed) << what;
+      ASSERT_EQ(std::memcmp(&a[i]->attribute, &b[i]->attribute, 4), 0) << what;
+      ASSERT_EQ(std::memcmp(a[i]->size, b[i]->size, 12), 0) << what;
+      float largest = 1;
+      for (const float v : a[i]->transform) largest = std::max(largest, std::fabs(v));
+      for (int t = 0; t < 12; ++t) ASSERT_NEAR(a[i]->transform[t], b[i]->transform[t], 1e-4f * largest) << what;
+    }
+  }
+
+  /// Buckets are runs in order, and the draws say where.
+  static void checkDraws(const spawn::Derivation& cpu, const Derived& gpu) {
+    uint32_t first = 0;
+    for (size_t bucket = 0; bucket < gpu.draws.size(); ++bucket) {
+      const VkDrawIndexedIndirectCommand& draw = gpu.draws[bucket];
+      ASSERT_EQ(draw.firstInstance, first);
+      ASSERT_EQ(draw.instanceCount, cpu.buckets[bucket]);
+      ASSERT_EQ(draw.indexCount, 36u);
+      ASSERT_EQ(draw.firstIndex, 5u);
+      ASSERT_EQ(draw.vertexOffset, 6);
+      for (uint32_t i = 0; i < draw.instanceCount; ++i) ASSERT_EQ(gpu.instances[first + i].bucket, bucket);
+      first += draw.instanceCount;
+    }
+    ASSERT_EQ(first, cpu.terminals);
+  }
+
+  void check(const std::string& what, const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms) {
+    const spawn::Derivation cpu = spawn::derive(words, axioms);
+    ASSERT_TRUE(cpu.complete) << what;
+    const uint32_t capacity = static_cast<uint32_t>(cpu.terminals) + 10;
+    const Derived sorted = run(words, axioms, capacity, true);
+    compare(cpu, sorted, what);
+    checkDraws(cpu, sorted);
+    EXPECT_EQ(sorted.report.peakShapes, cpu.peakShapes) << what;
+    const Derived plain = run(words, axioms, capacity, false);
+    compare(cpu, plain, what);
+    for (const VkDrawIndexedIndirectCommand& draw : plain.draws) ASSERT_EQ(draw.instanceCount, kPoison) << what;
+  }
+};
+
+/// Axioms turned and moved, with seeds and attributes of their own.
+std::vector<GpgpAxiom> axioms(uint32_t count, float x, float y, float z) {
+  std::vector<GpgpAxiom> result;
+  for (uint32_t i = 0; i < count; ++i) {
+    GpgpAxiom axiom = makeAxiom(x, y, z, i * 2654435761u + 1, 100 + i);
+    const float angle = float(i) * 0.7f;
+    axiom.transform[0] = axiom.transform[10] = std::cos(angle);
+    axiom.transform[2] = std::sin(angle);
+    axiom.transform[8] = -std::sin(angle);
+    axiom.transform[3] = float(i % 16) * 50;
+    axiom.transform[11] = float(i / 16) * 50;
+    if (i % 3 == 1) axiom.attribute = float(i) / 10;
+    result.push_back(axiom);
+  }
+  return result;
+}
+
+TEST_F(SpawnTest, OwnGrammarsEqualTheEvaluator) {
+  for (const std::string& name : ownGrammarNames()) check(name, bake(ownGrammar(name)), axioms(7, 12, 16, 10));
+}
+
+TEST_F(SpawnTest, GivenGrammarsEqualTheEvaluator) {
+  if (!sharedGrammar("balcony.pga")) GTEST_SKIP() << "the published grammars are not in the shared data folder";
+  const auto given = [](const char* name) { return bake(*sharedGrammar(name)); };
+  check("menger", given("menger_sponge_3.pga"), axioms(20, 1, 1, 1));
+  check("menger 8000", bake(replaced(*sharedGrammar("menger_sponge_3.pga"), "0.333", "0.111")), axioms(3, 1, 1, 1));
+  check("menger 160000", bake(replaced(*sharedGrammar("menger_sponge_3.pga"), "0.333", "1")), axioms(1, 27, 27, 27));
+  check("tree 4", given("3d_tree_4_3.pga"), axioms(5, 16, 16, 16));
+  check("tree 8", given("3d_tree_8_3.pga"), axioms(2, 16, 16, 16));
+  check("balcony", given("balcony.pga"), axioms(256, 24, 34, 24));
+  check("commercial", given("commercial.pga"), axioms(64, 30, 45, 30));
+  check("skyscraper", given("mc_skyscraper.pga"), axioms(8, 30, 90, 30));
+}
+
+TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
+  uint32_t checked = 0, instances = 0;
+  spawn::DeriveOptions options;
+  options.maxShapes = 30000;
+  for (uint32_t seed = 0; checked < 200; ++seed) {
+    const auto words = bake(randomGrammar(seed));
+    const auto all = axioms(1 + seed % 5, 6, 9, 7);
+    const auto cpu = spawn::derive(words, all, options);
+    if (!cpu.complete || cpu.terminals < 5) continue; // too large, or nothing to see
+    check("seed " + std::to_string(seed) + "\n" + randomGrammar(seed), words, all);
+    if (HasFatalFailure()) return;
+    instances += static_cast<uint32_t>(cpu.terminals);
+    ++checked;
+  }
+  EXPECT_GT(instances, 20000u);
+}
+
+TEST_F(SpawnTest, AnyOrderOfAxiomsGivesTheSame) {
+  const auto words = bake(ownGrammar("building.pga"));
+  auto all = axioms(40, 13, 19, 11);
+  const Derived first = run(words, all, 100000, true);
+  std::reverse(all.begin(), all.end());
+  std::rotate(all.begin(), all.begin() + 11, all.end());
+  const Derived second = run(words, all, 100000, true);
+  EXPECT_EQ(first.report.keyHash[0], second.report.keyHash[0]);
+  EXPECT_EQ(first.report.keyHash[1], second.report.keyHash[1]);
+  EXPECT_EQ(first.report.terminals, second.report.terminals);
+  EXPECT_GT(first.report.terminals, 0u);
+}
+
+TEST_F(SpawnTest, NoAxiomsGiveNothing) {
+  const Derived none = run(bake(ownGrammar("building.pga")), {}, 10, true);
+  EXPECT_EQ(none.report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(none.report.terminals, 0u);
+  EXPECT_EQ(none.report.rounds, 0u);
+  for (const auto& draw : none.draws) EXPECT_EQ(draw.instanceCount, 0u);
+}
+
+TEST_F(SpawnTest, FewerInstancesThanTerminalsAreReported) {
+  const auto words = bake(ownGrammar("building.pga"));
+  const auto all = axioms(3, 13, 19, 11);
+  const auto cpu = spawn::derive(words, all);
+  for (const bool sorted : {true, false}) {
+    const Derived gpu = run(words, all, 500, sorted);
+    EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+    EXPECT_EQ(gpu.report.terminals, cpu.terminals);
+    EXPECT_EQ(gpu.report.instancesWritten, 500u);
+    std::map<uint64_t, const GpgpInstance*> known;
+    for (const GpgpInstance& i : cpu.instances) known[keyOf(i)] = &i;
+    uint32_t drawn = 0;
+    for (const GpgpInstance& i : gpu.instances) { // what is written is valid, once each
+      ASSERT_EQ(known.count(keyOf(i)), 1u);
+      ASSERT_EQ(known[keyOf(i)]->bucket, i.bucket);
+      known.erase(keyOf(i));
+    }
+    if (sorted)
+      for (uint32_t b = 0; b < gpu.draws.size(); ++b) {
+        for (uint32_t i = 0; i < gpu.draws[b].instanceCount; ++i)
+          ASSERT_EQ(gpu.instances[gpu.draws[b].firstInstance + i].bucket, b);
+        drawn += gpu.draws[b].instanceCount;
+      }
+    EXPECT_EQ(drawn, sorted ? 500u : 0u);
+  }
+}
+
+TEST_F(SpawnTest, FewerTerminalRecordsAreReported) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.maxTerminals = 300;
+  makeSpawner(budgets);
+  const auto words = bake(ownGrammar("building.pga"));
+  const auto all = axioms(3, 13, 19, 11);
+  const auto cpu = spawn::derive(words, all);
+  const Derived gpu = run(words, all, 100000, true);
+  EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(gpu.report.terminals, cpu.terminals);
+  EXPECT_EQ(gpu.report.keyHash[0], cpu.keyHash[0]);
+  EXPECT_EQ(gpu.report.instancesWritten, 300u);
+}
+
+TEST_F(SpawnTest, ShapesThatDoNotFitAreCounted) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.maxShapes = 100;
+  makeSpawner(budgets);
+  const auto words = bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) T;");
+  const auto exact = run(words, {makeAxiom(100, 1, 1)}, 1000, true);
+  EXPECT_EQ(exact.report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(exact.report.terminals, 100u);
+  EXPECT_EQ(exact.report.peakShapes, 100u);
+  const auto beyond = run(words, {makeAxiom(70, 1, 1), makeAxiom(60, 1, 1)}, 1000, true);
+  EXPECT_EQ(beyond.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(beyond.report.terminals, 100u);
+  EXPECT_EQ(beyond.report.droppedShapes, 30u);
+  EXPECT_EQ(beyond.report.peakShapes, 130u);
+  EXPECT_EQ(beyond.instances.size(), 100u);
+}
+
+TEST_F(SpawnTest, RoundsThatAreMissingAreReported) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.maxDepth = 5;
+  makeSpawner(budgets);
+  const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | A | A };");
+  spawn::DeriveOptions options;
+  options.maxDepth = 5;
+  const std::vector<GpgpAxiom> all = {makeAxiom(1, 1, 1)};
+  const auto cpu = spawn::derive(words, all, options);
+  const Derived gpu = run(words, all, 1000, true);
+  EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(gpu.report.terminals, cpu.terminals);
+  EXPECT_EQ(gpu.report.unfinishedShapes, cpu.unfinishedShapes);
+  EXPECT_EQ(gpu.report.rounds, 5u);
+}
+
+TEST_F(SpawnTest, TerminalsCanBeListed) {
+  const auto words = bake(ownGrammar("building.pga"));
+  GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+  info.data = words.data();
+  info.size = words.size() * 4;
+  GpgpAsset grammar = nullptr;
+  ASSERT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_SUCCESS);
+  uint32_t count = 0;
+  ASSERT_EQ(gpgpGetGrammarTerminals(grammar, &count, nullptr), GPGP_SUCCESS);
+  std::vector<GpgpGrammarTerminal> terminals(count);
+  ASSERT_EQ(gpgpGetGrammarTerminals(grammar, &count, terminals.data()), GPGP_SUCCESS);
+  ASSERT_EQ(count, 15u);
+  EXPECT_STREQ(terminals[0].name, "Wall");
+  EXPECT_STREQ(terminals[10].name, "RoofFlat");
+  EXPECT_EQ(terminals[10].bucket, 9u);
+  EXPECT_EQ(terminals[14].bucket, 11u);
+  count = 3;
+  EXPECT_EQ(gpgpGetGrammarTerminals(grammar, &count, terminals.data()), GPGP_INCOMPLETE);
+  EXPECT_EQ(count, 15u);
+  gpgpDestroyAsset(grammar);
+}
+
+TEST_F(SpawnTest, BadGrammarsAreRefusedWithAReason) {
+  auto words = bake(ownGrammar("sponge.pga"));
+  words[50] ^= 4;
+  GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+  info.data = words.data();
+  info.size = words.size() * 4;
+  GpgpAsset grammar = nullptr;
+  EXPECT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_ERROR_INVALID_DATA);
+  EXPECT_EQ(grammar, nullptr);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0], "gpgpCreateGrammar: not a baked grammar: its checksum is wrong");
+  messages.clear();
+}
+
+} // namespace

@@ -1,0 +1,27 @@
+// Compiling grammars in tests, and where grammar files are.
+#pragma once
+#include "spawn/graph/blob.h"
+#include "spawn/language/build_graph.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gpgp::test {
+
+/// Published grammars outside the project; empty where they are absent.
+std::optional<std::string> sharedGrammar(const std::string& name);
+/// The project's own: tests/data/grammars. Throws where it is absent.
+std::string ownGrammar(const std::string& name);
+/// Names of all own grammars.
+std::vector<std::string> ownGrammarNames();
+
+/// Compiles text to words; throws with all messages where it has errors.
+std::vector<uint32_t> bake(const std::string& text, const std::vector<GpgpVariable>& variables = {});
+/// The messages of compiling, as "line:column: error: text".
+std::vector<std::string> messagesOf(const std::string& text, const std::vector<GpgpVariable>& variables = {});
+
+/// In text, the first `from` becomes `to`; throws where there is none.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
+
+} // namespace gpgp::test

@@ -1,0 +1,231 @@
+// The PGA-shape front end: what is accepted, and every error with its exact place.
+#include "grammars.h"
+#include "spawn/language/print.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+using Messages = std::vector<std::string>;
+
+constexpr const char* kHead = "axiom Box A;\nterminal T (1,0);\n"; // rules begin in line 3
+
+Messages ofRules(const std::string& rules) { return messagesOf(kHead + rules); }
+
+TEST(Language, AcceptsEveryArrow) {
+  for (const char* arrow : {"-->", "->", "==>", "=>", "=", ">>"})
+    EXPECT_EQ(ofRules("A " + std::string(arrow) + " T;"), Messages{}) << arrow;
+}
+
+TEST(Language, NamesMayBeginWithDigits) {
+  EXPECT_EQ(messagesOf("axiom Box 2A; terminal 3rd_Floor (1,0); 2A = 3rd_Floor;"), Messages{});
+}
+
+TEST(Language, CommentsAndLayout) {
+  EXPECT_EQ(ofRules("/* a\n * b */ A // c\n=\r\n\tT // d"),
+            Messages{"6:8: error: expected ';' at the end of the rule, found the end of the file"});
+  EXPECT_EQ(ofRules("A = T; /* no end"), Messages{"3:8: error: this comment has no end; expected '*/'"});
+}
+
+TEST(Language, ReportsAllErrorsInOrder) {
+  EXPECT_EQ(messagesOf("axiom Box A;\n"
+                       "terminal T (1,0);\n"
+                       "A = Translate(1,2) T;\n"
+                       "B = Nowhere;\n"
+                       "C = { T };\n"
+                       "D = Translate(1,0,0) T\n"
+                       "E = SubDiv(W) { 1: T | T };\n"
+                       "F = Translate(1,0,0) Q;\n"),
+            (Messages{"3:5: error: Translate takes 3 arguments, found 2",
+                      "4:5: error: there is no rule or terminal 'Nowhere'",
+                      "5:5: error: expected an operator, a rule or a terminal, found '{'",
+                      "7:1: error: expected ';' at the end of the rule, found 'E'",
+                      "7:12: error: expected an axis: X, Y or Z",
+                      "7:24: error: expected a value and ':' before the successor of SubDiv",
+                      "8:22: error: there is no rule or terminal 'Q'"}));
+}
+
+struct Case {
+  const char* rules;
+  const char* message;
+};
+class LanguageError : public testing::TestWithParam<Case> {};
+TEST_P(LanguageError, HasItsPlace) { EXPECT_EQ(ofRules(GetParam().rules), Messages{GetParam().message}); }
+INSTANTIATE_TEST_SUITE_P(
+    All, LanguageError,
+    testing::Values(
+        Case{"A = B;", "3:5: error: there is no rule or terminal 'B'"},
+        Case{"A = Foo(1) T;", "3:5: error: there is no operator 'Foo'"},
+        Case{"A = T(1);", "3:5: error: 'T' is no operator; expected no '(' after it"},
+        Case{"A = T T;", "3:7: error: expected ';' at the end of the rule, found 'T'"},
+        Case{"A = Translate;", "3:5: error: expected '(' after the operator Translate"},
+        Case{"A = Translate(1,2) T;", "3:5: error: Translate takes 3 arguments, found 2"},
+        Case{"A = Extrude(1);", "3:5: error: Extrude needs a successor; shapes end in a terminal or Discard()"},
+        Case{"A = SubDiv(X) T;", "3:15: error: expected '{' after SubDiv(...)"},
+        Case{"A = SubDiv(X) { 1: T | T };", "3:24: error: expected a value and ':' before the successor of SubDiv"},
+        Case{"A = SubDiv(Q) { 1: T };", "3:12: error: expected an axis: X, Y or Z"},
+        Case{"A = SubDiv(X) { 1: T | };", "3:24: error: expected an operator, a rule or a terminal, found '}'"},
+        Case{"A = Repeat(X, 1, FILL) T;", "3:18: error: expected ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END"},
+        Case{"A = If(1) { T };", "3:5: error: If takes 2 successors, found 1"},
+        Case{"A = If(1) T;", "3:11: error: expected '{' after If(...)"},
+        Case{"A = CompSplit() { T | T };", "3:5: error: CompSplit takes 3 successors (top | bottom | sides), found 2"},
+        Case{"A = Replicate() { 1: T };", "3:19: error: Replicate takes successors without a value before them"},
+        Case{"A = Translate(x,0,0) T;", "3:15: error: there is no var 'x'; expected a value"},
+        Case{"A = Translate((1,2),0,0) T;", "3:15: error: expected one value, found a pair (x, y)"},
+        Case{"A = Translate(ShapeSize(),0,0) T;", "3:15: error: ShapeSize takes an axis, found 0 arguments"},
+        Case{"A = Translate(ShapeRotation(X),0,0) T;",
+             "3:15: error: ShapeRotation takes an axis and a component, found 1 argument"},
+        Case{"A = Translate(Sin(1),0,0) T;",
+             "3:15: error: 'Sin' is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
+             "ShapeSeed or ShapeCustomAttribute"},
+        Case{"A = Translate(1 +,0,0) T;", "3:18: error: expected a value, found ','"},
+        Case{"A = Translate(1,0,0 T;", "3:21: error: expected ',' or ')' after an argument, found 'T'"},
+        Case{"A = Collider(1) T;", "3:5: error: Collider is not supported yet: shapes cannot see each other"},
+        Case{"A = IfCollides(1) { T | T };",
+             "3:5: error: IfCollides is not supported yet: shapes cannot see each other"},
+        Case{"A = A;", "3:1: error: rule 'A' leads back to itself without any operator"},
+        Case{"A = T; A = T;", "3:8: error: 'A' is defined twice; the first time in line 3"},
+        Case{"A = T; Scale = T;", "3:8: error: 'Scale' is the name of an operator; expected another name"},
+        Case{"A = T; var x = 1; var x = 2;", "3:23: error: var 'x' is defined twice"},
+        Case{"A = T; axiom Box A;", "3:8: error: there is a second axiom; the first is in line 1"},
+        Case{"A = T; terminal U (2,0);", "3:20: error: a terminal's kind is 0 (triangles) or 1 (an instanced mesh)"},
+        Case{"A = T; terminal U (1,0.5);", "3:22: error: a terminal's index is a whole number from 0"},
+        Case{"A = T; terminal U (1);", "3:8: error: a terminal needs (kind, index), found 1 value"},
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(1,0)) T;", "3:5: error: expected 3 to 65536 corners, found 2"},
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(1,0),(2,0)) T;", "3:5: error: the polygon has no area"},
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(2,0),(1,1),(1,3)) T;", "3:5: error: the polygon is not convex"},
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(ShapeSize(X),0),(1,1)) T;",
+             "3:38: error: a corner must not depend on the shape"},
+        Case{"A = Discard() T;", "3:5: error: Discard() takes neither arguments nor successors"},
+        Case{"A = $ T;", "3:5: error: '$' has no meaning here"},
+        Case{"A = T; x", "3:9: error: expected '-->' or '=' after the name of a rule, found the end of the file"},
+        Case{"A = Translate(1e99,0,0) T;", "3:15: error: the number is too large"}));
+
+TEST(Language, MissingAxiomAndUnknownShape) {
+  EXPECT_EQ(messagesOf("terminal T (1,0);"),
+            Messages{"1:1: error: there is no axiom; expected a line as: axiom Box Start;"});
+  const Messages shape = messagesOf("axiom Cube A;\nterminal T (1,0); A = T;");
+  ASSERT_EQ(shape.size(), 1u);
+  EXPECT_EQ(shape[0].substr(0, 43), "1:7: error: there is no shape 'Cube'; expec");
+}
+
+TEST(Language, WarnsOfWhatHasNoEffect) {
+  EXPECT_EQ(
+      ofRules("A = Extrude(1) T;\nB = T;"),
+      (Messages{"3:5: warning: Extrude has no effect here: only Box arrives", "4:1: warning: rule 'B' is never used"}));
+}
+
+TEST(Language, VariablesCanBeSet) {
+  const std::string text = "var h = 2; axiom Box A; terminal T (1,0); A = Translate(h,Exp(h*2),0) T;";
+  const GpgpVariable set{"h", 5}, unknown{"k", 5};
+  EXPECT_EQ(bake(text), bake(replaced(text, "h = 2", "h = 2")));
+  EXPECT_EQ(bake(text, {set}), bake(replaced(text, "h = 2", "h = 5")));
+  EXPECT_EQ(messagesOf(text, {unknown}), Messages{"1:1: error: there is no var 'k' that could be set"});
+}
+
+TEST(Language, DeepNestingIsAnErrorNotACrash) {
+  std::string rules = "A = ", chain = "A = ", sum = "A = Translate(1";
+  for (int i = 0; i < 20000; ++i) rules += "Replicate() { ", chain += "Translate(1,0,0) ", sum += "+(1";
+  EXPECT_EQ(ofRules(rules).size(), 1u);
+  EXPECT_EQ(ofRules(chain + "T;").size(), 1u);
+  EXPECT_EQ(ofRules(sum).size(), 1u);
+  std::string flat = "A = Translate(ShapeSize(X)";
+  for (int i = 0; i < 60; ++i) flat += " + 1";
+  EXPECT_EQ(ofRules(flat + ",0,0) T;"), Messages{}); // long, but never more than two values at once
+}
+
+TEST(Language, ConstantsAreFolded) {
+  const std::string text = std::string(kHead) + "A = Translate(Exp(Exp(1+2)*3), Exp(7/2), Exp(1 < 2)) T;";
+  const auto words = bake(text);
+  EXPECT_EQ(words, bake(std::string(kHead) + "A = Translate(9, 3.5, 1) T;"));
+}
+
+TEST(Language, PrintsTextAndDot) {
+  spawn::Diagnostics diagnostics;
+  const spawn::Graph graph = spawn::compile(
+      "axiom Box A; terminal T (1,0); A = SubDiv(X) { -1: T | 2: Translate(0,Exp(ShapeSize(Y)*1.5),0) A };", {},
+      diagnostics, std::pmr::new_delete_resource());
+  EXPECT_EQ(spawn::printText(graph), "axiom Box -> 0\n"
+                                     "rule A = 0\n"
+                                     "0 SubDiv(X) { -1: [/] 1 | 2: [/] 2 }\n"
+                                     "1 T\n"
+                                     "2 Translate(0,(ShapeSize(Y) * 1.5),0) { [1] 0 }\n");
+  const std::string dot = spawn::printDot(graph);
+  EXPECT_NE(dot.find("n0 -> n1 [label=\"-1: /\"]"), std::string::npos);
+  EXPECT_NE(dot.find("n1 [label=\"T\", color=orange]"), std::string::npos);
+}
+
+TEST(Language, AllGrammarsCompileWithoutMessages) {
+  for (const std::string& name : ownGrammarNames()) EXPECT_EQ(messagesOf(ownGrammar(name)), Messages{}) << name;
+  for (const char* name : {"menger_sponge_3.pga", "3d_tree_4_3.pga", "3d_tree_8_3.pga", "balcony.pga", "commercial.pga",
+                           "mc_skyscraper.pga"})
+    if (const auto text = sharedGrammar(name)) {
+      EXPECT_EQ(messagesOf(*text), Messages{}) << name;
+    }
+}
+
+TEST(Language, CutGrammarsNeverCrash) {
+  for (const std::string& name : ownGrammarNames()) {
+    const std::string text = ownGrammar(name);
+    for (size_t cut = 0; cut < text.size(); cut += 7) messagesOf(text.substr(0, cut));
+  }
+  EXPECT_FALSE(messagesOf(ownGrammar("building.pga").substr(0, 900)).empty());
+}
+
+TEST(Language, RandomTextNeverCrashes) {
+  const char* words[] = {"axiom ", "Box ", "A ", "= ", "; ", "SubDiv", "( ",        ") ",   "{ ",     "} ",
+                         "| ",     ": ",   "1 ", "-",  "X ", ", ",     "terminal ", "T ",   "Exp",    "Rand",
+                         "\"",     "/*",   "//", "\n", "%",  "else",   "==",        "\xff", "1e9999", "Replicate() "};
+  uint32_t state = 1;
+  size_t messages = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string text;
+    for (int n = 0; n < 60; ++n) {
+      state = state * 1664525u + 1013904223u;
+      text += words[(state >> 8) % std::size(words)];
+    }
+    messages += messagesOf(text).size();
+  }
+  EXPECT_GT(messages, 3000u);
+}
+
+// ---------------------------------------------------------------- the C function
+
+TEST(CompileGrammar, ReportsAndFreesNothingOnError) {
+  std::vector<std::string> messages;
+  GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+  const std::string text = "axiom Box A;\nA = B;\n";
+  source.name = "town.pga";
+  source.text = text.data();
+  source.size = text.size();
+  source.messageUserData = &messages;
+  source.messageFn = [](void* user, const GpgpCompileMessage* m) {
+    static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->file) + ":" + std::to_string(m->line) + ":" +
+                                                            std::to_string(m->column) + ": " + m->text);
+  };
+  GpgpBlob blob{};
+  EXPECT_EQ(gpgpCompileGrammar(&source, &blob), GPGP_ERROR_INVALID_DATA);
+  EXPECT_EQ(blob.data, nullptr);
+  EXPECT_EQ(messages, Messages{"town.pga:2:5: there is no rule or terminal 'B'"});
+  source.sType = 0;
+  EXPECT_EQ(gpgpCompileGrammar(&source, &blob), GPGP_ERROR_INVALID_STRUCT);
+  EXPECT_EQ(gpgpCompileGrammar(nullptr, &blob), GPGP_ERROR_INVALID_ARGUMENT);
+}
+
+TEST(CompileGrammar, IsAPureFunction) {
+  const std::string text = ownGrammar("building.pga");
+  GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+  source.text = text.data();
+  source.size = text.size();
+  GpgpBlob a{}, b{};
+  ASSERT_EQ(gpgpCompileGrammar(&source, &a), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpCompileGrammar(&source, &b), GPGP_SUCCESS);
+  ASSERT_EQ(a.size, b.size);
+  EXPECT_EQ(std::memcmp(a.data, b.data, a.size), 0);
+  gpgpFreeBlob(&a);
+  gpgpFreeBlob(&b);
+  EXPECT_EQ(a.data, nullptr);
+}
+
+} // namespace
