@@ -66,9 +66,9 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
   s.axisZ = vec3(0.0f, 0.0f, 1.0f);
   s.position = vec3(0.0f);
   s.size = settle3(size);
-  s.custom = isNan(custom) ? unitFloat(seed) : settle(custom);
+  s.seed = childSeed(seed, 0u); // engines may count seeds up: 1, 2, 3 must not look alike
+  s.custom = isNan(custom) ? unitFloat(s.seed) : settle(custom);
   s.geometry = graphWords[kHeaderAxiomShape] | (graphWords[kHeaderAxiomPolygon] << 8);
-  s.seed = seed;
   s.key = childKey(uvec2(seed, id), 0u);
   s.axiom = index;
   const uint section = kHeaderSections + 2u * kSectionRules;

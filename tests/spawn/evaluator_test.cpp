@@ -234,7 +234,7 @@ TEST(Operators, RandomRuleFollowsItsProbabilities) {
   const auto words = bake("axiom Box A; terminal T (1,0); terminal U (1,1); terminal V (1,2);"
                           "A = RandomRule(ShapeSeed()) { 1: T | 2: U | 1: V };");
   std::vector<GpgpAxiom> all;
-  for (uint32_t i = 0; i < 40000; ++i) all.push_back(makeAxiom(1, 1, 1, i * 2654435761u, i));
+  for (uint32_t i = 0; i < 40000; ++i) all.push_back(makeAxiom(1, 1, 1, i, i));
   const auto d = derive(words, all);
   EXPECT_NEAR(d.buckets[0], 10000, 500);
   EXPECT_NEAR(d.buckets[1], 20000, 500);
@@ -244,7 +244,7 @@ TEST(Operators, RandomRuleFollowsItsProbabilities) {
 TEST(Operators, PrefixStochastics) {
   const auto words = bake("axiom Box A; terminal T (1,0); terminal U (1,1); A --> 20%: T else: U;");
   std::vector<GpgpAxiom> all;
-  for (uint32_t i = 0; i < 10000; ++i) all.push_back(makeAxiom(1, 1, 1, i * 2654435761u, i));
+  for (uint32_t i = 0; i < 10000; ++i) all.push_back(makeAxiom(1, 1, 1, i, i));
   const auto d = derive(words, all);
   EXPECT_NEAR(d.buckets[0], 2000, 200);
   EXPECT_EQ(d.buckets[0] + d.buckets[1], 10000u);

@@ -343,8 +343,11 @@ TEST_F(SpawnTest, TerminalsCanBeListed) {
   ASSERT_EQ(count, 15u);
   EXPECT_STREQ(terminals[0].name, "Wall");
   EXPECT_STREQ(terminals[10].name, "RoofFlat");
-  EXPECT_EQ(terminals[10].bucket, 9u);
-  EXPECT_EQ(terminals[14].bucket, 11u);
+  EXPECT_EQ(terminals[10].bucket, 10u);
+  EXPECT_STREQ(terminals[13].name, "Chimney");
+  EXPECT_STREQ(terminals[14].name, "Tank"); // one line, one bucket
+  EXPECT_EQ(terminals[13].bucket, 13u);
+  EXPECT_EQ(terminals[14].bucket, 13u);
   count = 3;
   EXPECT_EQ(gpgpGetGrammarTerminals(grammar, &count, terminals.data()), GPGP_INCOMPLETE);
   EXPECT_EQ(count, 15u);
