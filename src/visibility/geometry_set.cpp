@@ -2,6 +2,7 @@
 #include "visibility/geometry_set.h"
 
 #include <cstring>
+#include <utility>
 
 namespace gpgp::visibility {
 
@@ -20,8 +21,8 @@ core::Result<core::Unique<CameraView>> CameraView::create(core::Context& context
                                                           const GpgpCameraViewCreateInfo& info) {
   auto view = core::makeUnique<CameraView>(context.host(), context, info.label);
   view->maxTriangles_ = info.maxTriangles ? info.maxTriangles : 1u << 22;
-  const std::pmr::vector<std::byte> none(&context.host());
-  if (auto ok = view->makeResident(GPGP_SERVICE_VISIBILITY, none, VkDeviceSize(view->words()) * 4); !ok)
+  std::pmr::vector<std::byte> none(&context.host());
+  if (auto ok = view->makeResident(GPGP_SERVICE_VISIBILITY, std::move(none), VkDeviceSize(view->words()) * 4); !ok)
     return ok.error();
   return view;
 }
