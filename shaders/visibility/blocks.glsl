@@ -1,19 +1,19 @@
-// Draws one large triangle with kLargeSplit workgroups of 64: a workgroup tests 64 blocks of 8 x 8 pixels at a time, a block
-// an invocation, and then draws the blocks that the triangle may touch, a pixel an invocation. All invocations of the
-// workgroup must call it, with the same triangle.
+// Draws one slice of a large triangle with a workgroup of 64: tests 64 blocks of 8 x 8 pixels at a time, a block an
+// invocation, and then draws the blocks that the triangle may touch, a pixel an invocation. All invocations of the
+// workgroup must call it, with the same arguments.
 shared uint blockCount;
 shared ivec2 blockCorner[64];
 shared ivec3 blockEdges[64];
 
-void drawLarge(ScreenTriangle t, uint id) {
+void drawLarge(ScreenTriangle t, uint id, uint slice, uint slices) {
   if (isEmpty(t)) return;
   ivec2 s0 = edgeSlope(t.p1, t.p2);
   ivec2 s1 = edgeSlope(t.p2, t.p0);
   ivec2 s2 = edgeSlope(t.p0, t.p1);
   uint columns = uint(t.bounds.z - t.bounds.x + 7) / 8u;
-  uint blocks = columns * (uint(t.bounds.w - t.bounds.y + 7) / 8u);
+  uint blocks = blocksOf(t);
   ivec2 inBlock = ivec2(int(gl_LocalInvocationIndex) & 7, int(gl_LocalInvocationIndex) >> 3);
-  for (uint first = gl_WorkGroupID.y * 64u; first < blocks; first += kLargeSplit * 64u) {
+  for (uint first = slice * 64u; first < blocks; first += slices * 64u) {
     if (gl_LocalInvocationIndex == 0u) blockCount = 0u;
     barrier();
     uint block = first + gl_LocalInvocationIndex;

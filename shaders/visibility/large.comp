@@ -1,4 +1,4 @@
-// Large triangles and pieces of clipped ones: kLargeSplit workgroups each.
+// Large triangles and pieces of clipped ones: a workgroup a slice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/triangle.h"
@@ -14,5 +14,6 @@ layout(std430, set = 0, binding = kBindCounters) readonly buffer CounterBuffer {
 void main() {
   uint count = min(counters.largeCount, params.largeRecords);
   for (uint entry = gl_WorkGroupID.x; entry < count; entry += gl_NumWorkGroups.x)
-    drawLarge(records[params.mediumRecords + entry].triangle, records[params.mediumRecords + entry].id);
+    drawLarge(records[params.mediumRecords + entry].triangle, records[params.mediumRecords + entry].id,
+              records[params.mediumRecords + entry].slice, records[params.mediumRecords + entry].slices);
 }

@@ -13,7 +13,8 @@ GPGP_CONST uint kTwoSided = 1u;            ///< GPGP_DRAW_TWO_SIDED
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
-GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle
+GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle at most
+GPGP_CONST uint kSliceBlocks = 256u;       ///< blocks of 8 x 8 pixels that one workgroup is given at least
 GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
 GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 

@@ -39,7 +39,7 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) makeAgain(item & ~kNoRecord);
     barrier();
     int parts = pieces;
-    if (parts < 0) drawLarge(triangle, id);
+    if (parts < 0) drawLarge(triangle, id, gl_WorkGroupID.y, kLargeSplit);
     for (int k = 0; k < parts; ++k) {
       barrier();
       if (gl_LocalInvocationIndex == 0u) {
@@ -48,7 +48,7 @@ void main() {
         triangle = made;
       }
       barrier();
-      if (pieceValid) drawLarge(triangle, id);
+      if (pieceValid) drawLarge(triangle, id, gl_WorkGroupID.y, kLargeSplit);
     }
   }
 }

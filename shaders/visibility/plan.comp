@@ -70,7 +70,7 @@ void main() {
     counters.unfoldArgs[2] = 1u;
     counters.mediumArgs[1] = 1u;
     counters.mediumArgs[2] = 1u;
-    counters.largeArgs[1] = kLargeSplit;
+    counters.largeArgs[1] = 1u;
     counters.largeArgs[2] = 1u;
     counters.leftArgs[1] = kLargeSplit;
     counters.leftArgs[2] = 1u;

@@ -74,6 +74,11 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
 
 GPGP_FN bool isEmpty(ScreenTriangle t) { return t.bounds.x >= t.bounds.z || t.bounds.y >= t.bounds.w; }
 
+/// Blocks of 8 x 8 pixels that hold the bounds of a triangle that is not empty.
+GPGP_FN uint blocksOf(ScreenTriangle t) {
+  return uint(t.bounds.z - t.bounds.x + 7) / 8u * (uint(t.bounds.w - t.bounds.y + 7) / 8u);
+}
+
 GPGP_FN bool isCompact(ScreenTriangle t) {
   int width = max(t.p0.x, max(t.p1.x, t.p2.x)) - min(t.p0.x, min(t.p1.x, t.p2.x));
   int height = max(t.p0.y, max(t.p1.y, t.p2.y)) - min(t.p0.y, min(t.p1.y, t.p2.y));

@@ -19,12 +19,18 @@ bool addMedium(ScreenTriangle t, uint id) {
 }
 
 bool addLarge(ScreenTriangle t, uint id) {
-  uint place = atomicAdd(counters.largeCount, 1u);
-  if (place >= params.largeRecords) return false;
-  records[params.mediumRecords + place].triangle = t;
-  records[params.mediumRecords + place].id = id;
-  atomicMax(counters.largeArgs[0], min(place + 1u, kMaxGroups));
-  return true;
+  uint slices = clamp(blocksOf(t) / kSliceBlocks, 1u, kLargeSplit);
+  uint place = atomicAdd(counters.largeCount, slices);
+  // What is counted below the capacity is written, so that no record lies unwritten among the others.
+  uint end = min(place + slices, params.largeRecords);
+  for (uint i = place; i < end; ++i) {
+    records[params.mediumRecords + i].triangle = t;
+    records[params.mediumRecords + i].id = id;
+    records[params.mediumRecords + i].slice = i - place;
+    records[params.mediumRecords + i].slices = slices;
+  }
+  if (place < end) atomicMax(counters.largeArgs[0], min(end, kMaxGroups));
+  return place + slices <= params.largeRecords;
 }
 
 bool add(ScreenTriangle t, uint id) {

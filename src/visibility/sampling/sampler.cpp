@@ -30,7 +30,7 @@ static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided);
 
 // Room for triangles that are made once for both phases, at most a quarter of all; more are made again by each
 // workgroup that draws them.
-constexpr uint32_t kMediumRecords = 65536, kLargeRecords = 16384;
+constexpr uint32_t kMediumRecords = 65536, kLargeRecords = 32768;
 constexpr VkDeviceSize kRecordBytes = 80; // TriangleRecord of records.glsl
 
 // Workgroup counts of a record.
