@@ -16,6 +16,7 @@
 
 #ifdef __cplusplus
 #include <cstdint>
+#include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/integer.hpp>
@@ -24,7 +25,6 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <cstring>
 
 #define GPGP_SHADER_BEGIN namespace gpgp::shader {
 #define GPGP_SHADER_END }
@@ -36,17 +36,6 @@
 
 namespace gpgp::shader {
 using uint = std::uint32_t;
-using glm::ivec2;
-using glm::ivec3;
-using glm::ivec4;
-using glm::mat3;
-using glm::mat4;
-using glm::uvec2;
-using glm::uvec3;
-using glm::uvec4;
-using glm::vec2;
-using glm::vec3;
-using glm::vec4;
 using glm::abs;
 using glm::all;
 using glm::any;
@@ -60,12 +49,23 @@ using glm::findMSB;
 using glm::floor;
 using glm::greaterThan;
 using glm::greaterThanEqual;
+using glm::ivec2;
+using glm::ivec3;
+using glm::ivec4;
 using glm::lessThan;
 using glm::lessThanEqual;
+using glm::mat3;
+using glm::mat4;
 using glm::max;
 using glm::min;
 using glm::mix;
 using glm::sign;
+using glm::uvec2;
+using glm::uvec3;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
 
 inline uint floatBitsToUint(float v) {
   uint u;

@@ -60,7 +60,7 @@ struct Pass {
   std::array<uint32_t, kMaxPassConstants> constants = {};          ///< push constants, the same in every record
   uint32_t constantCount = 0;
   uint32_t condition = UINT32_MAX; ///< index in a record's list of flags: left out of the record when false
-  uint32_t level = 0;                      ///< left out of records that ask for as many levels or fewer
+  uint32_t level = 0;              ///< left out of records that ask for as many levels or fewer
   bool barrierBefore = false;      ///< worked out by finish()
 };
 

@@ -28,7 +28,7 @@ struct Record {
   std::array<Binding, kMaxResources> bindings = {};
   std::array<std::array<uint32_t, 3>, kMaxGroupCounts> groups = {};
   std::array<bool, kMaxGroupCounts> conditions = {};
-  uint32_t levels = UINT32_MAX; ///< passes of this level and above are left out
+  uint32_t levels = UINT32_MAX;         ///< passes of this level and above are left out
   std::span<const std::byte> constants; ///< for the first constants resource
 };
 
