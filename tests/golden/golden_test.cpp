@@ -1,0 +1,50 @@
+// The mini-engine's frame against the stored pictures: what a person sees must stay what it is, on every device.
+//
+// Tolerance: devices round differently when they rasterise and blend, so edges may move by a sample. At most 1 % of the
+// pixels may differ by more than 16/255 in a channel, and the mean difference stays under 0.5/255. A lost roof, a wrong
+// colour or a missing HUD is far outside of that. Pictures are made anew by tests/golden/regenerate.sh.
+#include "host/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace {
+using gpgp::host::Picture;
+
+/// Share of pixels with a channel that differs by more than a limit.
+double shareBeyond(const Picture& a, const Picture& b, int limit) {
+  size_t beyond = 0;
+  for (size_t i = 0; i < a.rgba.size(); i += 4) {
+    int largest = 0;
+    for (size_t c = 0; c < 4; ++c) largest = std::max(largest, std::abs(int(a.rgba[i + c]) - int(b.rgba[i + c])));
+    beyond += largest > limit;
+  }
+  return static_cast<double>(beyond) / (static_cast<double>(a.rgba.size()) / 4);
+}
+
+TEST(Golden, MiniEngine) {
+  // The stored pictures show the fetched model and drawing, not the small ones that stand in for them.
+  for (const char* needed : {"/fetched/models/2CylinderEngine.glb", "/fetched/svg/tiger.svgz"})
+    if (!std::filesystem::exists(std::string(GPGP_TEST_DATA) + needed))
+      GTEST_SKIP() << GPGP_TEST_DATA << needed << " is missing: run tests/data/fetch.sh";
+  const std::filesystem::path out = GPGP_GOLDEN_OUT;
+  std::filesystem::remove_all(out);
+  const std::string command = std::string("\"") + GPGP_MINI_ENGINE + "\" --frames 3 --size 640x360 --out \"" +
+                              out.string() + "\" --data \"" + GPGP_TEST_DATA + "\"";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  for (const char* name : {"city.png", "side.png"}) {
+    const Picture made = gpgp::host::readPng(out / name);
+    const Picture stored = gpgp::host::readPng(std::filesystem::path(GPGP_GOLDEN) / name);
+    ASSERT_EQ(made.width, stored.width);
+    ASSERT_EQ(made.height, stored.height);
+    const double mean = gpgp::host::compare(made, stored).mean, share = shareBeyond(made, stored, 16);
+    RecordProperty(std::string(name) + " mean", std::to_string(mean));
+    std::printf("%s: mean difference %.4f/255, %.4f %% of pixels beyond 16/255\n", name, mean, 100 * share);
+    EXPECT_LT(mean, 0.5) << (out / name);
+    EXPECT_LT(share, 0.01) << (out / name);
+  }
+}
+
+} // namespace
