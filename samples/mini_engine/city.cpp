@@ -138,7 +138,8 @@ void City::makeMaterials() {
   std::vector<GpgpGrammarTerminal> terminals(count);
   gpgp_.check(grammar_.terminals(count, terminals.data()), "gpgpGetGrammarTerminals");
   materials_.resize(count, glm::vec4(0.5f));
-  for (auto terminal = terminals.rbegin(); terminal != terminals.rend(); ++terminal) // the first name of a bucket counts
+  for (auto terminal = terminals.rbegin(); terminal != terminals.rend();
+       ++terminal) // the first name of a bucket counts
     if (terminal->bucket < count) materials_[terminal->bucket] = materialOf(terminal->name, terminal->bucket);
 }
 

@@ -12,5 +12,6 @@ layout(set = 0, binding = 5, std430) buffer Queues { uvec4 queues[]; };   // two
 layout(set = 0, binding = 6, std430) buffer Records { uvec4 records[]; }; // terminals, plane after plane
 layout(set = 0, binding = 7, std430) buffer State { SpawnState state; };
 layout(set = 0, binding = 8, std430) buffer Buckets { uint bucketCounts[]; }; // counts, then places, kMaxBuckets each
-layout(set = 0, binding = 9, std430) buffer Rounds { SpawnRound rounds[]; }; // one more than can be recorded: the last is emission's
+// One round more than can be recorded: the last is emission's.
+layout(set = 0, binding = 9, std430) buffer Rounds { SpawnRound rounds[]; };
 layout(set = 0, binding = 10, std430) readonly buffer Constants { SpawnConstants record; };

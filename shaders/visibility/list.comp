@@ -1,5 +1,5 @@
-// From bits to a compact list, and the change since the view's previous record. One invocation a word of 32 triangles; a
-// workgroup takes its places in the list with one atomic.
+// From bits to a compact list, and the change since the view's previous record. One invocation a word of 32 triangles;
+// a workgroup takes its places in the list with one atomic.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"

@@ -12,7 +12,8 @@ layout(location = 0) out vec4 result;
 // How much of a pixel's footprint a line pattern covers: no shimmer in the distance.
 float stripes(float position, float period, float width, float footprint) {
   float offset = abs(fract(position / period + 0.5) - 0.5) * period;
-  return clamp((width * 0.5 - offset) / max(footprint, 1e-3) + 0.5, 0.0, 1.0) * clamp(period / footprint - 1.0, 0.0, 1.0);
+  float stripe = clamp((width * 0.5 - offset) / max(footprint, 1e-3) + 0.5, 0.0, 1.0);
+  return stripe * clamp(period / footprint - 1.0, 0.0, 1.0);
 }
 
 void main() {

@@ -1,6 +1,6 @@
 #version 450
-// The glTF model, pulled from the same buffers that gpgp reads. Each triangle knows its number, and so whether gpgp found
-// it visible: gl_PrimitiveID would need a feature, the vertex number does not.
+// The glTF model, pulled from the same buffers that gpgp reads. Each triangle knows its number, and so whether gpgp
+// found it visible: gl_PrimitiveID would need a feature, the vertex number does not.
 struct Draw { // GpgpVisibilityDraw
   vec4 row0, row1, row2;
   uint mesh, firstTriangle, flags, reserved;
