@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # The code of docs/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17 file.
+# The links of README.md and of all pages beside that one lead to files, and docs/README.md lists each page.
 #
 #   pages_test.sh INCLUDE_DIRS PAGE CC CXX     INCLUDE_DIRS: separated by colons
 set -euo pipefail
@@ -14,4 +15,16 @@ code() {
 [[ $(code c | grep -c .) -gt 50 && $(code cpp | grep -c .) -gt 5 ]] || { echo "no code in $page" >&2; exit 1; }
 code c | "$cc" -std=c99 "${flags[@]}" -x c -
 code cpp | "$cxx" -std=c++17 "${flags[@]}" -x c++ -
+failed=no
+docs=$(dirname "$page")
+for from in "$docs/../README.md" "$docs"/*.md; do
+  while read -r link; do
+    target=$(dirname "$from")/${link%%#*}
+    [[ -e $target ]] || { echo "FAILED: $from links to $link, which is not there" >&2; failed=yes; }
+  done < <(grep -oE '\]\([^)]+\)' "$from" | sed -E 's/^\]\(|\)$//g' | grep -vE '^(https?:|mailto:|#)')
+  name=$(basename "$from")
+  grep -q "($name)" "$docs/README.md" || [[ $name == README.md ]] ||
+    { echo "FAILED: docs/README.md does not list $name" >&2; failed=yes; }
+done
+[[ $failed == no ]]
 echo "$(code c | grep -c .) lines of C, $(code cpp | grep -c .) lines of C++"
