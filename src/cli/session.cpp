@@ -67,7 +67,7 @@ Session::Session(const CommonOptions& options)
   info.label = "gpgp command";
   info.messageFn = onMessage;
   info.messageUserData = this;
-  check(gpgpCreateContext(&info, context_.out()), "gpgpCreateContext");
+  context_ = take(Context::create(info), "gpgpCreateContext");
 }
 
 Session::~Session() { device_.vk().vkDeviceWaitIdle(device_.device()); }
@@ -99,7 +99,8 @@ void Session::upload() {
   }
 }
 
-GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, const Record& record) {
+GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, const Record& record,
+                      const std::function<void()>& collectReports) {
   uint32_t passCount = 0;
   check(gpgpGetPasses(worker, &passCount, nullptr), "gpgpGetPasses");
   std::vector<const char*> names(passCount);
@@ -115,6 +116,7 @@ GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, con
   for (uint32_t i = 0; i < repeat; ++i) {
     VkCommandBuffer commands = frames_.begin();
     check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
+    collectReports();
     GpgpRecordInfo base{};
     base.tag = i;
     if (timed) {
@@ -138,15 +140,14 @@ GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, con
     }
     progress.advance();
   }
-  for (uint32_t p = 0; p < passCount; ++p) times.passes.emplace_back(names[p], medianOf(perPass[p]));
-  return times;
-}
-
-void Session::harvest() {
+  // Everything is finished: one more advance makes the last report ready.
   frames_.begin();
   check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
   frames_.submit();
   frames_.waitAll();
+  collectReports();
+  for (uint32_t p = 0; p < passCount; ++p) times.passes.emplace_back(names[p], medianOf(perPass[p]));
+  return times;
 }
 
 void Session::checkValidation() {

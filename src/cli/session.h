@@ -4,24 +4,9 @@
 #include "host/frames.h"
 #include "host/memory.h"
 
-#include <map>
+#include <gpgp/gpgp.hpp>
 
 namespace gpgp::cli {
-
-/// Destroys a gpgp handle. The context must still live.
-template <class Handle, void(GPGP_CALL* destroy)(Handle)> struct Owned {
-  Handle handle = nullptr;
-  Owned() = default;
-  Owned(const Owned&) = delete;
-  Owned& operator=(const Owned&) = delete;
-  ~Owned() { destroy(handle); }
-  operator Handle() const { return handle; }
-  Handle* out() { return &handle; }
-};
-using Context = Owned<GpgpContext, gpgpDestroyContext>;
-using Asset = Owned<GpgpAsset, gpgpDestroyAsset>;
-using Worker = Owned<GpgpWorker, gpgpDestroyWorker>;
-using View = Owned<GpgpView, gpgpDestroyView>;
 
 /// GPU times of a repeated record, milliseconds.
 struct GpuTimes {
@@ -30,6 +15,11 @@ struct GpuTimes {
   double median() const;
   double least() const;
   Json json() const;
+};
+
+template <class Report> struct Measured {
+  GpuTimes times;
+  Report report{};
 };
 
 class Session {
@@ -44,19 +34,36 @@ public:
 
   /// Throws Failure with gpgp's own message where result is an error; returns it otherwise.
   GpgpResult check(GpgpResult result, const char* what);
+  /// The same for what creates something.
+  template <class T> T take(Result<T> result, const char* what) {
+    check(result.code(), what);
+    return std::move(*result);
+  }
   GpgpWorkerCreateInfo workerInfo(const char* label) const;
   /// Uploads all pending assets.
   void upload();
   /// Runs record `repeat` times, a frame each, and waits for it; measures every one. record is given the info's common
-  /// part with timestamps set, and returns what the record function returned.
+  /// part with timestamps set, and returns what the record function returned. The report is the last run's.
   using Record = std::function<GpgpResult(VkCommandBuffer, const GpgpFrame&, const GpgpRecordInfo&)>;
-  GpuTimes run(GpgpWorker worker, const char* label, uint32_t repeat, const Record& record);
-  /// After the last run: makes reports ready.
-  void harvest();
+  template <class WorkerType>
+  auto measure(WorkerType& worker, const char* label, uint32_t repeat, const Record& record) {
+    Measured<std::decay_t<decltype(*worker.report())>> result;
+    bool found = false;
+    result.times = run(worker, label, repeat, record, [&] { // every frame: the worker keeps only a few
+      for (auto report = worker.report(); report; report = worker.report()) {
+        result.report = *report;
+        found = report->base.tag == repeat - 1;
+      }
+    });
+    if (!found) throw Failure("the last record gave no report");
+    return result;
+  }
   /// Throws Failure where the validation layer had anything to say.
   void checkValidation();
 
 private:
+  GpuTimes run(GpgpWorker worker, const char* label, uint32_t repeat, const Record& record,
+               const std::function<void()>& collectReports);
   static void GPGP_CALL onMessage(void* userData, const GpgpMessage* message);
   host::HeadlessDevice device_;
   std::string lastError_;

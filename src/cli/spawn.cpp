@@ -25,13 +25,6 @@ struct SpawnOptions {
   uint32_t maxInstances = 1u << 20, maxShapes = 0, maxDepth = 0;
 };
 
-struct Blob : GpgpBlob {
-  Blob() : GpgpBlob{} {}
-  Blob(const Blob&) = delete;
-  Blob& operator=(const Blob&) = delete;
-  ~Blob() { gpgpFreeBlob(this); }
-};
-
 std::vector<GpgpVariable> variables(const std::vector<std::string>& assignments) {
   std::vector<GpgpVariable> result;
   for (const std::string& assignment : assignments) {
@@ -45,7 +38,7 @@ std::vector<GpgpVariable> variables(const std::vector<std::string>& assignments)
   return result;
 }
 
-void compile(const SpawnOptions& options, Blob& blob) {
+Blob compile(const SpawnOptions& options) {
   const std::string text = host::readText(options.grammar);
   std::vector<GpgpVariable> overrides = variables(options.set);
   std::vector<std::string> names;
@@ -74,9 +67,9 @@ void compile(const SpawnOptions& options, Blob& blob) {
     if (message->severity != GPGP_SEVERITY_ERROR) return;
     if (all->count++ == 0) all->first = line.str();
   };
-  const GpgpResult result = gpgpCompileGrammar(&source, &blob);
-  if (result >= 0) return;
-  if (errors.count == 0) throw Failure(options.grammar + ": " + gpgpResultString(result));
+  Result<Blob> blob = compileGrammar(source);
+  if (blob) return std::move(*blob);
+  if (errors.count == 0) throw Failure(options.grammar + ": " + blob.name());
   throw Failure(errors.first + (errors.count > 1 ? " (and " + std::to_string(errors.count - 1) + " more)" : ""));
 }
 
@@ -129,30 +122,27 @@ void paint(const SpawnOptions& options, const std::vector<GpgpInstance>& instanc
 }
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
-  Blob blob;
-  compile(options, blob);
+  const Blob blob = compile(options);
   Session session(common);
   host::HeadlessDevice& device = session.device();
-  Asset grammar;
   GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
   grammarInfo.label = options.grammar.c_str();
-  grammarInfo.data = blob.data;
-  grammarInfo.size = blob.size;
-  session.check(gpgpCreateGrammar(session.context(), &grammarInfo, grammar.out()), "gpgpCreateGrammar");
+  grammarInfo.data = blob.data();
+  grammarInfo.size = blob.size();
+  const Grammar grammar = session.take(Grammar::create(session.context(), grammarInfo), "gpgpCreateGrammar");
   uint32_t terminalCount = 0;
-  session.check(gpgpGetGrammarTerminals(grammar, &terminalCount, nullptr), "gpgpGetGrammarTerminals");
+  session.check(grammar.terminals(terminalCount, nullptr), "gpgpGetGrammarTerminals");
   std::vector<GpgpGrammarTerminal> terminals(terminalCount);
-  session.check(gpgpGetGrammarTerminals(grammar, &terminalCount, terminals.data()), "gpgpGetGrammarTerminals");
+  session.check(grammar.terminals(terminalCount, terminals.data()), "gpgpGetGrammarTerminals");
   uint32_t buckets = 1;
   for (const GpgpGrammarTerminal& terminal : terminals) buckets = std::max(buckets, terminal.bucket + 1);
 
-  Worker spawner;
   GpgpSpawnerCreateInfo spawnerInfo = GPGP_SPAWNER_CREATE_INFO_INIT;
   spawnerInfo.base = session.workerInfo("spawner");
   spawnerInfo.maxShapes = options.maxShapes;
   spawnerInfo.maxDepth = options.maxDepth;
-  session.check(gpgpCreateSpawner(session.context(), &spawnerInfo, spawner.out()), "gpgpCreateSpawner");
-  session.check(gpgpPrewarm(spawner, nullptr), "gpgpPrewarm");
+  Spawner spawner = session.take(Spawner::create(session.context(), spawnerInfo), "gpgpCreateSpawner");
+  session.check(spawner.prewarm(), "gpgpPrewarm");
   session.upload();
 
   const host::Buffer axioms =
@@ -168,22 +158,18 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "draws");
   const GpgpAccess transfer{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                             VK_IMAGE_LAYOUT_UNDEFINED};
-  const GpuTimes times = session.run(spawner, "deriving", options.repeat,
-                                     [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
-                                       GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
-                                       info.base = base;
-                                       info.grammar = grammar;
-                                       info.axioms = axioms.range();
-                                       info.axiomCount = options.axioms;
-                                       info.instances = instances.range({}, transfer);
-                                       info.draws = draws.range({}, transfer);
-                                       return gpgpRecordPrepareSpawn(spawner, commands, &frame, &info);
-                                     });
-  session.harvest();
-  GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
-  for (uint32_t i = 0; i < options.repeat; ++i)
-    if (session.check(gpgpGetSpawnReport(spawner, &report), "gpgpGetSpawnReport") != GPGP_SUCCESS)
-      throw Failure("a derivation gave no report");
+  const auto [times, report] =
+      session.measure(spawner, "deriving", options.repeat,
+                      [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                        GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+                        info.base = base;
+                        info.grammar = grammar;
+                        info.axioms = axioms.range();
+                        info.axiomCount = options.axioms;
+                        info.instances = instances.range({}, transfer);
+                        info.draws = draws.range({}, transfer);
+                        return spawner.recordPrepare(commands, frame, info);
+                      });
   const auto commands = host::download<VkDrawIndexedIndirectCommand>(device, draws, buckets);
   if (!options.image.empty()) paint(options, host::download<GpgpInstance>(device, instances, report.instancesWritten));
   session.checkValidation();

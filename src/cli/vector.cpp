@@ -69,23 +69,18 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   source.messageFn = onSvgMessage;
   source.messageUserData = &messages;
   const auto begin = std::chrono::steady_clock::now();
-  GpgpBlob blob{};
-  const GpgpResult result = gpgpCompileSvg(&source, &blob);
-  const std::unique_ptr<GpgpBlob, void (*)(GpgpBlob*)> freeBlob(&blob, gpgpFreeBlob);
-  if (result < 0)
-    throw Failure(options.file + ": " + (messages.error.empty() ? gpgpResultString(result) : messages.error));
+  const Result<Blob> blob = compileSvg(source);
+  if (!blob) throw Failure(options.file + ": " + (messages.error.empty() ? blob.name() : messages.error));
   const double compileMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 
   Session session(common);
   host::HeadlessDevice& device = session.device();
-  Asset drawing;
   GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
   drawingInfo.label = options.file.c_str();
-  drawingInfo.data = blob.data;
-  drawingInfo.size = blob.size;
-  session.check(gpgpCreateDrawing(session.context(), &drawingInfo, drawing.out()), "gpgpCreateDrawing");
-  GpgpDrawingInfo facts = GPGP_DRAWING_INFO_INIT;
-  session.check(gpgpGetDrawingInfo(drawing, &facts), "gpgpGetDrawingInfo");
+  drawingInfo.data = blob->data();
+  drawingInfo.size = blob->size();
+  const Drawing drawing = session.take(Drawing::create(session.context(), drawingInfo), "gpgpCreateDrawing");
+  const GpgpDrawingInfo facts = session.take(drawing.info(), "gpgpGetDrawingInfo");
   if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(options.file + ": the drawing has no extent");
   Size size = options.size;
   if (size.width == 0) {
@@ -93,15 +88,14 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     size.height = static_cast<uint32_t>(std::clamp(std::ceil(facts.viewport[3]), 1.0f, 4096.0f));
   }
 
-  Worker canvas;
   GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
   canvasInfo.base = session.workerInfo("canvas");
   canvasInfo.maxWidth = size.width;
   canvasInfo.maxHeight = size.height;
   canvasInfo.maxPatches = std::max(facts.patches, 1024u);
   canvasInfo.maxTileEntries = options.maxTileEntries;
-  session.check(gpgpCreateCanvas(session.context(), &canvasInfo, canvas.out()), "gpgpCreateCanvas");
-  session.check(gpgpPrewarm(canvas, nullptr), "gpgpPrewarm");
+  Canvas canvas = session.take(Canvas::create(session.context(), canvasInfo), "gpgpCreateCanvas");
+  session.check(canvas.prewarm(), "gpgpPrewarm");
   session.upload();
 
   const host::Image target(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = size.width, .height = size.height},
@@ -111,25 +105,21 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   item.opacity = 1.0f;
   fit(facts, size, item.transform);
   const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
-  const GpuTimes times = session.run(canvas, "rasterising", options.repeat,
-                                     [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
-                                       GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-                                       info.base = base;
-                                       info.width = size.width;
-                                       info.height = size.height;
-                                       info.items = &item;
-                                       info.itemCount = 1;
-                                       info.samples = options.samples;
-                                       std::copy(std::begin(background), std::end(background), info.background);
-                                       info.target = target.target({}, after);
-                                       info.encodeSrgb = VK_TRUE;
-                                       return gpgpRecordPrepareCanvas(canvas, commands, &frame, &info);
-                                     });
-  session.harvest();
-  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
-  for (uint32_t i = 0; i < options.repeat; ++i)
-    if (session.check(gpgpGetCanvasReport(canvas, &report), "gpgpGetCanvasReport") != GPGP_SUCCESS)
-      throw Failure("a record gave no report");
+  const auto [times, report] =
+      session.measure(canvas, "rasterising", options.repeat,
+                      [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                        GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+                        info.base = base;
+                        info.width = size.width;
+                        info.height = size.height;
+                        info.items = &item;
+                        info.itemCount = 1;
+                        info.samples = options.samples;
+                        std::copy(std::begin(background), std::end(background), info.background);
+                        info.target = target.target({}, after);
+                        info.encodeSrgb = VK_TRUE;
+                        return canvas.recordPrepare(commands, frame, info);
+                      });
   if (!options.out.empty()) {
     const std::vector<uint8_t> pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
     host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));

@@ -70,21 +70,20 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
 
   Session session(common);
   host::HeadlessDevice& device = session.device();
-  Asset geometry;
   GpgpGeometrySetCreateInfo geometryInfo = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
   geometryInfo.label = options.model.c_str();
   geometryInfo.meshes = model.meshes.data();
   geometryInfo.meshCount = static_cast<uint32_t>(model.meshes.size());
-  session.check(gpgpCreateGeometrySet(session.context(), &geometryInfo, geometry.out()), "gpgpCreateGeometrySet");
-  Worker sampler;
+  const GeometrySet geometry =
+      session.take(GeometrySet::create(session.context(), geometryInfo), "gpgpCreateGeometrySet");
   GpgpSamplerCreateInfo samplerInfo = GPGP_SAMPLER_CREATE_INFO_INIT;
   samplerInfo.base = session.workerInfo("sampler");
   samplerInfo.maxWidth = options.size.width;
   samplerInfo.maxHeight = options.size.height;
   samplerInfo.maxDraws = static_cast<uint32_t>(model.draws.size());
   samplerInfo.maxTriangles = model.triangleCount;
-  session.check(gpgpCreateSampler(session.context(), &samplerInfo, sampler.out()), "gpgpCreateSampler");
-  session.check(gpgpPrewarm(sampler, nullptr), "gpgpPrewarm");
+  Sampler sampler = session.take(Sampler::create(session.context(), samplerInfo), "gpgpCreateSampler");
+  session.check(sampler.prewarm(), "gpgpPrewarm");
   session.upload();
 
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
@@ -98,32 +97,28 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
   const host::Buffer visibleCount(device, 16, kStorage, host::Memory::device, "visible count");
   const glm::mat4 camera = viewAll(bounds, options.yaw, options.pitch, options.size.width, options.size.height);
   const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED};
-  const GpuTimes times = session.run(sampler, "sampling", options.repeat,
-                                     [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
-                                       GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
-                                       info.base = base;
-                                       info.geometrySet = geometry;
-                                       info.method = GPGP_SAMPLING_STANDARD;
-                                       std::copy_n(glm::value_ptr(camera), 16, info.camera.viewProjection);
-                                       info.width = options.size.width;
-                                       info.height = options.size.height;
-                                       info.positions = positions.range();
-                                       info.positionStride = 12;
-                                       info.indices = indices.range();
-                                       info.indexType = VK_INDEX_TYPE_UINT32;
-                                       info.draws = draws.range();
-                                       info.drawCount = static_cast<uint32_t>(model.draws.size());
-                                       info.triangleCount = model.triangleCount;
-                                       info.visibleBits = visibleBits.range({}, after);
-                                       info.visibleList = visibleList.range({}, after);
-                                       info.visibleCount = visibleCount.range({}, after);
-                                       return gpgpRecordPrepareVisibility(sampler, commands, &frame, &info);
-                                     });
-  session.harvest();
-  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
-  for (uint32_t i = 0; i < options.repeat; ++i)
-    if (session.check(gpgpGetSampleReport(sampler, &report), "gpgpGetSampleReport") != GPGP_SUCCESS)
-      throw Failure("a record gave no report");
+  const auto [times, report] =
+      session.measure(sampler, "sampling", options.repeat,
+                      [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                        GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+                        info.base = base;
+                        info.geometrySet = geometry;
+                        info.method = GPGP_SAMPLING_STANDARD;
+                        std::copy_n(glm::value_ptr(camera), 16, info.camera.viewProjection);
+                        info.width = options.size.width;
+                        info.height = options.size.height;
+                        info.positions = positions.range();
+                        info.positionStride = 12;
+                        info.indices = indices.range();
+                        info.indexType = VK_INDEX_TYPE_UINT32;
+                        info.draws = draws.range();
+                        info.drawCount = static_cast<uint32_t>(model.draws.size());
+                        info.triangleCount = model.triangleCount;
+                        info.visibleBits = visibleBits.range({}, after);
+                        info.visibleList = visibleList.range({}, after);
+                        info.visibleCount = visibleCount.range({}, after);
+                        return sampler.recordPrepare(commands, frame, info);
+                      });
   if (!options.image.empty()) paint(options, corners, bounds, host::download<uint32_t>(device, visibleBits, words));
   session.checkValidation();
 

@@ -40,7 +40,8 @@ TEST(CliVisibility, SeesWhatIsInFront) {
   const uint8_t* middle = &seen.rgba[(24 * 128 + 32) * 4];
   EXPECT_GT(middle[0], middle[2] + 60) << "the seen square is orange";
 
-  const json behind = gpgpJson({"visibility", model.path(), "--yaw", "180", "--pitch", "0", "--size", "64x48"});
+  const json behind =
+      gpgpJson({"visibility", model.path(), "--yaw", "180", "--pitch", "0", "--size", "64x48", "--repeat", "100"});
   EXPECT_EQ(behind["visible"], 0) << "back faces are not visible";
   const json twoSided =
       gpgpJson({"visibility", model.path(), "--yaw", "180", "--pitch", "0", "--size", "64x48", "--two-sided"});
