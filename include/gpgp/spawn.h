@@ -169,7 +169,8 @@ typedef struct GpgpSpawnReport {
   uint32_t instancesWritten; /**< <= terminals; less only with BUDGET_EXCEEDED */
   uint32_t peakShapes;       /**< the most shapes alive in a round after the axioms, those that did not fit
                                   included: a maxShapes that would have been enough for them */
-  uint32_t droppedShapes;    /**< shapes that did not fit maxShapes; what lay below them is not known */
+  uint32_t droppedShapes;    /**< shapes that did not fit maxShapes, and axioms whose rule does not exist; what lay
+                                  below them is not known */
   uint32_t unfinishedShapes; /**< shapes left when maxDepth rounds were over */
   uint32_t rounds;           /**< rounds that had work */
   uint32_t keyHash[2];       /**< order-free hash of (path key, bucket, shape) over all terminals */

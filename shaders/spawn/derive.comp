@@ -23,6 +23,7 @@ Shape loadShape(uint index) {
   if (round == 0) {
     const uvec4 a = axioms[index * 6 + 3];
     const uvec4 b = axioms[index * 6 + 4];
+    if (!hasRule(b.y)) atomicAdd(state.droppedShapes, 1);
     return axiomShape(unpackVector(a), a.w, b.x, b.y, uintBitsToFloat(b.z), index);
   }
   const uint start = (round & 1) * kShapePlanes * maxShapes + index;
@@ -65,7 +66,7 @@ void main() {
     if (count > 0) state.rounds = round + 1;
     if (round > 0) {
       state.peakShapes = max(state.peakShapes, needed);
-      state.droppedShapes += needed - count;
+      if (needed > count) atomicAdd(state.droppedShapes, needed - count);
     }
   }
   if (lane == 0) {

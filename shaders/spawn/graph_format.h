@@ -133,6 +133,8 @@ GPGP_CONST uint kCodeCustom = 51u;
 GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
 GPGP_CONST uint kCodeCount = 52u;
 
+GPGP_CONST uint kDefaultRule = 0xffffffffu; // GPGP_AXIOM_DEFAULT_RULE
+
 // limits that the interpreter relies on
 GPGP_CONST uint kMaxStack = 8u;       // of expressions
 GPGP_CONST uint kMaxSuccessors = 32u; // of one operator

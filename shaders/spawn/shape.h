@@ -58,6 +58,11 @@ GPGP_FN Shape unpackShape(uvec4 p0, uvec4 p1, uvec4 p2, uvec4 p3, uvec4 p4, uvec
 GPGP_FN uint shapeType(Shape s) { return s.geometry & 0xffu; }
 GPGP_FN uint shapePolygon(Shape s) { return s.geometry >> 8; }
 
+/// Whether an axiom's rule exists.
+GPGP_FN bool hasRule(GPGP_GRAPH uint rule) {
+  return rule == kDefaultRule || rule < graphWords[kHeaderSections + 2u * kSectionRules];
+}
+
 /// The start of a derivation, from a GpgpAxiom's fields. node 0 where its rule does not exist.
 GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, float custom, uint index) {
   Shape s;
@@ -71,10 +76,11 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
   s.geometry = graphWords[kHeaderAxiomShape] | (graphWords[kHeaderAxiomPolygon] << 8);
   s.key = childKey(uvec2(seed, id), 0u);
   s.axiom = index;
-  const uint section = kHeaderSections + 2u * kSectionRules;
   s.node = graphWords[kHeaderAxiomNode];
-  if (rule != 0xffffffffu)
-    s.node = rule < graphWords[section] ? graphWords[graphWords[section + 1u] + rule * kRuleSize + 1u] : 0u;
+  if (rule != kDefaultRule) {
+    const uint rules = graphWords[kHeaderSections + 2u * kSectionRules + 1u];
+    s.node = hasRule(GPGP_G rule) ? graphWords[rules + rule * kRuleSize + 1u] : 0u;
+  }
   return s;
 }
 

@@ -281,6 +281,7 @@ TEST(Operators, StartRulesAndUnknownRules) {
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 3u);
   axiom.rule = 2;
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 0u);
+  EXPECT_EQ(derive(words, std::span(&axiom, 1)).droppedShapes, 1u);
 }
 
 TEST(Operators, EndlessGrammarsStop) {

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <sstream>
 
 namespace {
 using namespace gpgp;
@@ -226,7 +228,7 @@ TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
     const auto all = axioms(1 + seed % 5, 6, 9, 7);
     const auto cpu = spawn::derive(words, all, options);
     if (!cpu.complete || cpu.terminals < 5) continue; // too large, or nothing to see
-    check("seed " + std::to_string(seed) + "\n" + randomGrammar(seed), words, all);
+    check(std::string("seed ") + std::to_string(seed) + "\n" + randomGrammar(seed), words, all);
     if (HasFatalFailure()) return;
     instances += static_cast<uint32_t>(cpu.terminals);
     ++checked;
@@ -327,6 +329,69 @@ TEST_F(SpawnTest, RoundsThatAreMissingAreReported) {
   EXPECT_EQ(gpu.report.terminals, cpu.terminals);
   EXPECT_EQ(gpu.report.unfinishedShapes, cpu.unfinishedShapes);
   EXPECT_EQ(gpu.report.rounds, 5u);
+}
+
+TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {
+  const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | B }; B = Replicate() { T | T | T };");
+  std::vector<GpgpAxiom> all(3, makeAxiom(1, 1, 1));
+  all[1].rule = 1;
+  all[2].rule = 2;
+  const Derived gpu = run(words, all, 100, true);
+  EXPECT_EQ(gpu.report.terminals, 4u + 3u);
+  EXPECT_EQ(gpu.report.droppedShapes, 1u);
+  EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+}
+
+TEST_F(SpawnTest, GrammarsTakeTurnsInOneFrame) {
+  // The same spawner, several grammars and outputs in one command buffer: records share scratch, not results.
+  const char* names[] = {"building.pga", "tree.pga", "sponge.pga", "building.pga"};
+  const auto all = axioms(5, 12, 16, 10);
+  std::vector<GpgpAsset> grammars;
+  std::vector<host::Buffer> outputs;
+  const auto axiomBuffer = host::makeBuffer(*device, all, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const GpgpFrame f = advance();
+  device->submitAndWait([&](VkCommandBuffer cmd) {
+    for (const char* name : names) {
+      const auto words = bake(ownGrammar(name));
+      GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+      info.data = words.data();
+      info.size = words.size() * 4;
+      ASSERT_EQ(gpgpCreateGrammar(context, &info, &grammars.emplace_back()), GPGP_SUCCESS);
+      outputs.emplace_back(*device, 50000 * sizeof(GpgpInstance), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    }
+    ASSERT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS);
+    for (size_t i = 0; i < grammars.size(); ++i) {
+      GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+      info.base.tag = i;
+      info.grammar = grammars[i];
+      info.axioms = axiomBuffer.range();
+      info.axiomCount = static_cast<uint32_t>(all.size());
+      info.instances = outputs[i].range();
+      ASSERT_EQ(gpgpRecordPrepareSpawn(spawner, cmd, &f, &info), GPGP_SUCCESS);
+    }
+  });
+  advance();
+  for (size_t i = 0; i < grammars.size(); ++i) {
+    const auto cpu = spawn::derive(bake(ownGrammar(names[i])), all);
+    Derived gpu;
+    ASSERT_EQ(gpgpGetSpawnReport(spawner, &gpu.report), GPGP_SUCCESS);
+    EXPECT_EQ(gpu.report.base.tag, i);
+    gpu.instances = host::download<GpgpInstance>(*device, outputs[i], gpu.report.instancesWritten);
+    compare(cpu, gpu, names[i]);
+    gpgpDestroyAsset(grammars[i]);
+  }
+}
+
+TEST_F(SpawnTest, ThePassesAreTheDocumentedOnes) {
+  uint32_t count = 0;
+  ASSERT_EQ(gpgpGetPasses(spawner, &count, nullptr), GPGP_SUCCESS);
+  std::vector<const char*> names(count);
+  ASSERT_EQ(gpgpGetPasses(spawner, &count, names.data()), GPGP_SUCCESS);
+  std::ifstream file(GPGP_TEST_DATA "/../../docs/spawn.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  for (const char* name : names)
+    EXPECT_NE(text.str().find(std::string("`") + name + "`"), std::string::npos) << name << " is not in docs/spawn.md";
 }
 
 TEST_F(SpawnTest, TerminalsCanBeListed) {

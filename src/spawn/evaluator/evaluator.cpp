@@ -51,6 +51,7 @@ Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> 
   uint64_t shapes = 0;
   for (size_t a = 0; a < axioms.size() && out.complete; ++a) {
     const GpgpAxiom& axiom = axioms[a];
+    if (!hasRule(words, axiom.rule)) ++out.droppedShapes;
     stack.push_back({axiomShape(words, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
                                 axiom.rule, axiom.attribute, static_cast<uint32_t>(a)),
                      0});

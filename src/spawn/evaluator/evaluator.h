@@ -22,7 +22,8 @@ struct Derivation {
   std::vector<uint32_t> buckets;       ///< terminals by bucket
   std::vector<uint64_t> shapesByRound;
   uint64_t terminals = 0;
-  uint32_t peakShapes = 0; ///< axioms do not count
+  uint32_t peakShapes = 0;    ///< axioms do not count
+  uint32_t droppedShapes = 0; ///< axioms whose rule does not exist: nothing else is dropped here
   uint32_t unfinishedShapes = 0;
   uint32_t rounds = 0; ///< rounds that had work
   uint32_t keyHash[2] = {0, 0};

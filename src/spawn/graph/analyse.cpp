@@ -10,7 +10,7 @@ namespace gpgp::spawn {
 namespace {
 using namespace shader;
 
-constexpr uint32_t bit(uint32_t shape) { return 1u << shape; }
+constexpr uint32_t bit(uint32_t shape) { return 1u << (shape & 31u); }
 
 template <class F> uint32_t mapShapes(uint32_t shapes, F&& f) {
   uint32_t result = 0;
@@ -36,8 +36,8 @@ uint32_t multiplicityOf(uint32_t op) {
   switch (op) {
   case kOpIf:
   case kOpIfSizeLess:
-  case kOpRandomRule: return kMultiplicityOptional;
-  case kOpSubDiv: return kMultiplicityOptional; // parts without an extent are skipped
+  case kOpRandomRule:
+  case kOpSubDiv: return kMultiplicityOptional; // SubDiv skips parts without an extent
   case kOpCompSplit: return kMultiplicityFixed;
   case kOpRepeat: return kMultiplicityAny;
   default: return kMultiplicityOne;
