@@ -1,6 +1,6 @@
 // Numbers the work: each draw's first item (triangle) and first chunk are the sums over the draws before it. A chunk
-// holds triangles of one draw only, so that a workgroup reads one transform. One workgroup: each invocation sums a run of
-// draws, the sums are scanned, and the runs are written.
+// holds triangles of one draw only, so that a workgroup reads one transform. One workgroup: each invocation sums a run
+// of draws, the sums are scanned, and the runs are written.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
