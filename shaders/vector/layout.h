@@ -32,19 +32,42 @@ struct PathRecord {
 
 // A drawing placed on the canvas.
 struct ItemRecord {
-  vec4 inverse;    // pixel to drawing: x = i.x px + i.z py + offset.x, y = i.y px + i.w py + offset.y
-  vec4 transform;  // drawing to pixel, the same way
-  vec4 offsets;    // inverse offset x, y; transform offset x, y
+  vec4 inverse;   // pixel to drawing: x = inverse.x px + inverse.z py + offsets.x, y = inverse.y px + inverse.w py +
+                  // offsets.y
+  vec4 transform; // drawing to pixel, the same way with offsets.z, offsets.w
+  vec4 offsets;
   float tolerance; // how far a curve may be off, drawing units
   float opacity;
-  uint drawing;    // binding slot
-  uint firstPatch; // of the item's patches in the record
-  uint patchCount;
-  uint firstPath;   // of the item's paths in the record
-  uint firstCurve;  // of the drawing's curves in the record
-  uint sourcePatch; // 32-bit words from the drawing's start to its patches
+  uint slot;       // the drawing's binding
+  uint firstPatch; // of the item's patches in the record; they end where the next item's begin
+  uint firstPath;  // of the item's paths in the record
+  uint pad0, pad1, pad2;
 };
 
+// A drawing that a record uses: where its curves lie in the record, and where its tables begin, in 32-bit words.
+struct SlotRecord {
+  uint firstCurve, curveEnd; // in the record
+  uint patchWords, pathWords;
+};
+
+struct CanvasHeader {
+  uint width, height, tilesX, tilesY;
+  uint coarseX, coarseCount, groupWords, groupCount;
+  uint patchCount, curveCount, pathCount, itemCount;
+  uint entryLimit, samples, flags, pathsDropped; // flags: kWrite...
+  vec4 background;
+};
+
+// Counters of a record, its report, and the arguments of the passes that only run when the entries did not fit.
+struct CanvasCounters {
+  uint needed, given, cutPath, pathsDropped; // paths from cutPath on are left out
+  uint patches, pad0, pad1, pad2;
+  uint recountX, recountY, recountZ, pad3; // workgroups
+};
+
+GPGP_CONST uint kMaxSlots = 8u;
+GPGP_CONST uint kWriteView = 1u;
+GPGP_CONST uint kEncodeSrgb = 2u;
 GPGP_CONST uint kTileSize = 16u;       // pixels: what one raster workgroup owns
 GPGP_CONST uint kCoarseSize = 128u;    // pixels: the upper level of the hierarchy
 GPGP_CONST uint kPatchGroup = 64u;     // patches that share a box at the upper level
@@ -57,6 +80,7 @@ GPGP_SHADER_END
 
 #ifdef __cplusplus
 static_assert(sizeof(gpgp::shader::CurveRecord) == 48 && sizeof(gpgp::shader::PatchRecord) == 32);
-static_assert(sizeof(gpgp::shader::PathRecord) == 16 && sizeof(gpgp::shader::ItemRecord) == 80);
+static_assert(sizeof(gpgp::shader::PathRecord) == 16 && sizeof(gpgp::shader::ItemRecord) == 80 &&
+              sizeof(gpgp::shader::CanvasHeader) == 80 && sizeof(gpgp::shader::CanvasCounters) == 48);
 #endif
 #endif

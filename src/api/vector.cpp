@@ -1,0 +1,152 @@
+// The C functions of vector.h that belong to the run-time library.
+#include "api/check.h"
+#include "vector/raster/canvas.h"
+
+#include <algorithm>
+
+using namespace gpgp;
+using namespace gpgp::api;
+using namespace gpgp::vector;
+
+GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCreateInfo* info, GpgpAsset* drawing) {
+  return guarded("gpgpCreateDrawing", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_DRAWING_CREATE_INFO, "info"); !ok) return ok;
+    if (!drawing) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawing is NULL");
+    if ((info->data != nullptr) + (info->filePath != nullptr) + (info->paths != nullptr) != 1)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data, filePath and paths must be given");
+    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    std::pmr::memory_resource* memory = &(*context)->host();
+    const auto make = [&]() -> Result<Drawing> {
+      if (info->paths) return makeDrawing(std::span(info->paths, info->pathCount), memory);
+      if (info->data) return loadBaked(std::span(static_cast<const std::byte*>(info->data), info->size), memory);
+      const auto bytes = (*context)->readFile(info->filePath);
+      if (!bytes) return bytes.error();
+      return loadBaked(*bytes, memory);
+    };
+    const auto made = make();
+    if (!made) return made.error();
+    auto asset = DrawingAsset::create(**context, info->label, *made);
+    if (!asset) return asset.error();
+    *drawing = adopt<GpgpAsset>(**context, std::move(*asset));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset handle, GpgpDrawingInfo* info) {
+  return guarded("gpgpGetDrawingInfo", [&](Call& call) -> Result<void> {
+    const auto drawing = resolve<DrawingAsset>(call, handle, Kind::drawing, "drawing");
+    if (!drawing) return drawing.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_DRAWING_INFO, "info"); !ok) return ok;
+    std::copy_n((*drawing)->bounds(), 4, info->bounds);
+    std::copy_n((*drawing)->viewport(), 4, info->viewport);
+    info->paths = (*drawing)->paths();
+    info->curves = (*drawing)->curves();
+    info->patches = (*drawing)->patches();
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreateInfo* info, GpgpWorker* canvas) {
+  return guarded("gpgpCreateCanvas", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_CREATE_INFO, "info"); !ok) return ok;
+    if (!canvas) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "canvas is NULL");
+    if (auto ok = checkWorkerInfo(**context, info->base); !ok) return ok;
+    if (info->maxWidth > 16384 || info->maxHeight > 16384)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 16384 x 16384",
+                       info->maxWidth, info->maxHeight);
+    if (info->maxPatches > 1u << 22)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxPatches is %u; at most 4194304", info->maxPatches);
+    if (info->maxTileEntries > 1u << 28)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTileEntries is %u; at most 268435456", info->maxTileEntries);
+    if (info->maxDrawings > 65536)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDrawings is %u; at most 65536", info->maxDrawings);
+    auto made = Canvas::create(**context, *info);
+    if (!made) return made.error();
+    *canvas = adopt<GpgpWorker>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext handle, const GpgpCanvasViewCreateInfo* info, GpgpView* view) {
+  return guarded("gpgpCreateCanvasView", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO, "info"); !ok) return ok;
+    if (!view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "view is NULL");
+    if (info->width == 0 || info->height == 0 || info->width > 16384 || info->height > 16384)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected 1 x 1 to 16384 x 16384",
+                       info->width, info->height);
+    const uint64_t bytes = uint64_t(info->width) * info->height * 8;
+    if (bytes > (*context)->device.limits.maxStorageBufferRange)
+      return makeError(GPGP_ERROR_UNSUPPORTED, "%u x %u pixels need %llu bytes, but this device binds at most %u",
+                       info->width, info->height, static_cast<unsigned long long>(bytes),
+                       (*context)->device.limits.maxStorageBufferRange);
+    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    auto made = CanvasView::create(**context, *info);
+    if (!made) return made.error();
+    *view = adopt<GpgpView>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
+                                             const GpgpCanvasInfo* info) {
+  return guarded("gpgpRecordPrepareCanvas", [&](Call& call) -> Result<void> {
+    const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
+    if (!canvas) return canvas.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_INFO, "info"); !ok) return ok;
+    const core::Context& context = (*canvas)->context;
+    if (info->itemCount && !info->items)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items is NULL, but itemCount is %u", info->itemCount);
+    if (info->itemCount > (*canvas)->maxDrawings())
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "itemCount is %u; the canvas was made for %u (maxDrawings)",
+                       info->itemCount, (*canvas)->maxDrawings());
+    CanvasView* view = nullptr;
+    if (info->view) {
+      const auto resolved = resolve<CanvasView>(call, info->view, Kind::canvasView, "view", &context);
+      if (!resolved) return resolved.error();
+      view = *resolved;
+    }
+    const std::span<DrawingAsset*> drawings = (*canvas)->drawings(info->itemCount);
+    for (uint32_t i = 0; i < info->itemCount; ++i) {
+      const auto drawing =
+          resolve<DrawingAsset>(call, info->items[i].drawing, Kind::drawing, "items[].drawing", &context);
+      if (!drawing) return drawing.error();
+      drawings[i] = *drawing;
+    }
+    if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
+    for (const DrawingAsset* drawing : drawings)
+      if (!drawing->resident()) return makeError(GPGP_NOT_READY, "a drawing is not resident");
+    if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
+    return (*canvas)->prepare(commandBuffer, *info, drawings, view);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
+                                          const GpgpCanvasDrawInfo* info) {
+  return guarded("gpgpRecordDrawCanvas", [&](Call& call) -> Result<void> {
+    const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
+    if (!canvas) return canvas.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_DRAW_INFO, "info"); !ok) return ok;
+    const auto view = resolve<CanvasView>(call, info->view, Kind::canvasView, "view", &(*canvas)->context);
+    if (!view) return view.error();
+    if (auto ok = checkStruct(info->target, GPGP_STRUCTURE_TARGET_INFO, "target"); !ok) return ok;
+    if (!allFinite(info->clip)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "clip holds a number that is not finite");
+    if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
+    return (*canvas)->draw(commandBuffer, *info, **view);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpWorker handle, GpgpCanvasReport* report) {
+  return guarded("gpgpGetCanvasReport", [&](Call& call) -> Result<void> {
+    const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
+    if (!canvas) return canvas.error();
+    if (auto ok = checkStruct(report, GPGP_STRUCTURE_CANVAS_REPORT, "report"); !ok) return ok;
+    if (!(*canvas)->takeCanvasReport(*report)) return makeError(GPGP_NOT_READY, "no report is there");
+    return {};
+  });
+}

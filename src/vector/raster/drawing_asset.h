@@ -1,0 +1,44 @@
+// Drawings and canvas views as the engine holds them: one device buffer each, resident after upload.
+#pragma once
+#include "core/resident.h"
+#include "vector/patch/drawing.h"
+
+namespace gpgp::vector {
+
+/// A drawing's three tables in one buffer: curves, patches, paths.
+class DrawingAsset final : public core::Resident {
+public:
+  static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label,
+                                                         const Drawing& drawing);
+  DrawingAsset(core::Context& owner, const char* name)
+      : Resident(owner, core::Kind::drawing, name), ends_(&owner.host()) {}
+
+  /// How many patches and curves the first n paths use: what decides how many paths fit a budget.
+  struct Ends {
+    uint32_t patches, curves;
+  };
+  Ends first(size_t paths) const { return paths ? ends_[paths - 1] : Ends{}; }
+  uint32_t paths() const { return static_cast<uint32_t>(ends_.size()); }
+  uint32_t curves() const { return curves_; }
+  uint32_t patches() const { return first(paths()).patches; }
+  uint32_t patchWords() const { return curves_ * uint32_t(sizeof(CurveRecord) / 4); }
+  uint32_t pathWords() const { return patchWords() + patches() * uint32_t(sizeof(PatchRecord) / 4); }
+  const float* bounds() const { return bounds_; }
+  const float* viewport() const { return viewport_; }
+
+private:
+  std::pmr::vector<Ends> ends_; // by path, running
+  uint32_t curves_ = 0;
+  float bounds_[4] = {}, viewport_[4] = {};
+};
+
+/// One rasterised canvas: packed half4, premultiplied linear.
+class CanvasView final : public core::Resident {
+public:
+  static core::Result<core::Unique<CanvasView>> create(core::Context& context, const GpgpCanvasViewCreateInfo& info);
+  CanvasView(core::Context& owner, const char* name) : Resident(owner, core::Kind::canvasView, name) {}
+  uint32_t width = 0, height = 0;                 ///< room
+  uint32_t preparedWidth = 0, preparedHeight = 0; ///< what the last record leaves; 0: nothing yet
+};
+
+} // namespace gpgp::vector
