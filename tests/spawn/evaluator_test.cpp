@@ -15,10 +15,6 @@ using namespace gpgp::test;
 using spawn::derive;
 using spawn::makeAxiom;
 
-#define GIVEN_GRAMMAR(variable, name)                                                                                  \
-  const auto variable = sharedGrammar(name);                                                                           \
-  if (!variable) GTEST_SKIP() << name << " is not in the shared data folder"
-
 uint64_t countOf(const std::string& text, const GpgpAxiom& axiom) {
   const auto words = bake(text);
   const spawn::Derivation d = derive(words, std::span(&axiom, 1));
@@ -28,15 +24,18 @@ uint64_t countOf(const std::string& text, const GpgpAxiom& axiom) {
 }
 
 TEST(GivenGrammars, MengerSponge) {
-  GIVEN_GRAMMAR(text, "menger_sponge_3.pga");
+  const auto text = sharedGrammar("menger_sponge_3.pga");
+  if (!text) GTEST_SKIP() << "menger_sponge_3.pga is not in the shared data folder";
   EXPECT_EQ(countOf(*text, makeAxiom(1, 1, 1)), 400u);
   EXPECT_EQ(countOf(replaced(*text, "0.333", "0.111"), makeAxiom(1, 1, 1)), 8000u);
   EXPECT_EQ(countOf(replaced(*text, "0.333", "1"), makeAxiom(27, 27, 27)), 160000u);
 }
 
 TEST(GivenGrammars, Trees) {
-  GIVEN_GRAMMAR(small, "3d_tree_4_3.pga");
-  GIVEN_GRAMMAR(large, "3d_tree_8_3.pga");
+  const auto small = sharedGrammar("3d_tree_4_3.pga");
+  if (!small) GTEST_SKIP() << "3d_tree_4_3.pga is not in the shared data folder";
+  const auto large = sharedGrammar("3d_tree_8_3.pga");
+  if (!large) GTEST_SKIP() << "3d_tree_8_3.pga is not in the shared data folder";
   EXPECT_EQ(countOf(*small, makeAxiom(16, 16, 16)), 283u);
   EXPECT_EQ(countOf(*large, makeAxiom(16, 16, 16)), 22963u);
 }
@@ -48,20 +47,23 @@ std::vector<GpgpAxiom> axioms(uint32_t count, float x, float y, float z) {
 }
 
 TEST(GivenGrammars, Balcony) {
-  GIVEN_GRAMMAR(text, "balcony.pga");
+  const auto text = sharedGrammar("balcony.pga");
+  if (!text) GTEST_SKIP() << "balcony.pga is not in the shared data folder";
   const auto d = derive(bake(*text), axioms(256, 24, 34, 24));
   EXPECT_EQ(d.terminals, 103424u);
 }
 
 TEST(GivenGrammars, CommercialDependsOnSeeds) {
-  GIVEN_GRAMMAR(text, "commercial.pga");
+  const auto text = sharedGrammar("commercial.pga");
+  if (!text) GTEST_SKIP() << "commercial.pga is not in the shared data folder";
   const auto d = derive(bake(*text), axioms(256, 30, 45, 30));
   EXPECT_GT(d.terminals, 130000u);
   EXPECT_LT(d.terminals, 150000u);
 }
 
 TEST(GivenGrammars, SkyscraperDependsOnSeeds) {
-  GIVEN_GRAMMAR(text, "mc_skyscraper.pga");
+  const auto text = sharedGrammar("mc_skyscraper.pga");
+  if (!text) GTEST_SKIP() << "mc_skyscraper.pga is not in the shared data folder";
   std::vector<GpgpAxiom> all;
   for (uint32_t i = 0; i < 64; ++i)
     all.push_back(
@@ -300,7 +302,8 @@ TEST(Operators, EndlessGrammarsStop) {
 }
 
 TEST(Derivation, DoesNotDependOnPlacementOrOrder) {
-  GIVEN_GRAMMAR(text, "commercial.pga");
+  const auto text = sharedGrammar("commercial.pga");
+  if (!text) GTEST_SKIP() << "commercial.pga is not in the shared data folder";
   const auto words = bake(*text);
   auto all = axioms(20, 30, 45, 30);
   const auto first = derive(words, all);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -120,6 +121,7 @@ struct SpawnTest : testing::Test {
     return result;
   }
 
+  static uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
   static uint64_t keyOf(const GpgpInstance& i) { return uint64_t(i.key[0]) << 32 | i.key[1]; }
 
   /// Equal in everything that must be, bit for bit; transforms within 1e-4 of their size.
@@ -147,8 +149,8 @@ struct SpawnTest : testing::Test {
       ASSERT_EQ(a[i]->axiomId, b[i]->axiomId) << what;
       ASSERT_EQ(a[i]->terminal, b[i]->terminal) << what;
       ASSERT_EQ(a[i]->seed, b[i]->seed) << what;
-      ASSERT_EQ(std::memcmp(&a[i]->attribute, &b[i]->attribute, 4), 0) << what;
-      ASSERT_EQ(std::memcmp(a[i]->size, b[i]->size, 12), 0) << what;
+      ASSERT_EQ(bits(a[i]->attribute), bits(b[i]->attribute)) << what;
+      for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(bits(a[i]->size[axis]), bits(b[i]->size[axis])) << what;
       float largest = 1;
       for (const float v : a[i]->transform) largest = std::max(largest, std::fabs(v));
       for (int t = 0; t < 12; ++t) ASSERT_NEAR(a[i]->transform[t], b[i]->transform[t], 1e-4f * largest) << what;
@@ -195,7 +197,7 @@ std::vector<GpgpAxiom> axioms(uint32_t count, float x, float y, float z) {
     axiom.transform[2] = std::sin(angle);
     axiom.transform[8] = -std::sin(angle);
     axiom.transform[3] = float(i % 16) * 50;
-    axiom.transform[11] = float(i / 16) * 50;
+    axiom.transform[11] = 50 * std::floor(float(i) / 16);
     if (i % 3 == 1) axiom.attribute = float(i) / 10;
     result.push_back(axiom);
   }

@@ -58,7 +58,8 @@ TEST(Math, SettlesEverything) {
 }
 
 TEST(Math, SinesAreAccurate) {
-  for (double degrees = -1000; degrees < 1000; degrees += 0.37) {
+  for (int step = -2700; step <= 2700; ++step) {
+    const double degrees = step * 0.37;
     const vec2 d = sineCosineDegrees(float(degrees));
     const double x = double(float(degrees)) * M_PI / 180;
     ASSERT_NEAR(d.x, std::sin(x), 2e-7) << degrees;

@@ -7,6 +7,7 @@
 #include "spawn/shape.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace gpgp::spawn {
 namespace {
@@ -28,6 +29,11 @@ enum : core::ResourceIndex {
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1;
+
+// The shaders read and write these as uvec4[6].
+static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
+static_assert(sizeof(GpgpInstance) == 96 && offsetof(GpgpInstance, bucket) == 48 && offsetof(GpgpInstance, size) == 80);
+static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
 constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
 constexpr uint32_t kDefaultShapes = 262144, kDefaultTerminals = 524288, kDefaultDepth = 64;
