@@ -1,0 +1,50 @@
+// gpgpCompileSvg: SVG to a baked drawing.
+#include "vector/import/svg/import.h"
+#include "vector/patch/drawing.h"
+
+#include <cstdlib>
+#include <cstring>
+
+using namespace gpgp;
+
+namespace {
+using vector::svg::Reporter;
+
+GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& reporter) {
+  const auto fail = [&reporter](GpgpResult code, const char* text) { return reporter.error(text, code), code; };
+  if (!source.data && source.size) return fail(GPGP_ERROR_INVALID_ARGUMENT, "data is NULL, size is not 0");
+  const auto imported =
+      vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter);
+  if (!imported) return fail(imported.error().code, imported.error().text);
+  std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
+  std::vector<GpgpPath> paths;
+  paths.reserve(imported->paths.size());
+  for (const auto& path : imported->paths) paths.push_back(path.view());
+  auto drawing = vector::makeDrawing(paths, memory);
+  if (!drawing) return fail(drawing.error().code, drawing.error().text);
+  if (imported->width > 0 && imported->height > 0) {
+    const double page[4] = {0, 0, imported->width, imported->height};
+    for (size_t i = 0; i < 4; ++i) drawing->viewport[i] = static_cast<float>(page[i]);
+  }
+  const auto bytes = vector::bake(*drawing, memory);
+  GpgpBlob made{std::malloc(bytes.size()), bytes.size()};
+  if (!made.data) return fail(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+  std::memcpy(made.data, bytes.data(), made.size);
+  blob = made;
+  return GPGP_SUCCESS;
+}
+} // namespace
+
+GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBlob* blob) {
+  if (!source || !blob) return GPGP_ERROR_INVALID_ARGUMENT;
+  if (source->sType != GPGP_STRUCTURE_SVG_SOURCE || source->pNext) return GPGP_ERROR_INVALID_STRUCT;
+  Reporter reporter(source->messageFn, source->messageUserData, source->name);
+  try {
+    return compile(*source, *blob, reporter);
+  } catch (const std::bad_alloc&) {
+    reporter.error("out of memory", GPGP_ERROR_OUT_OF_HOST_MEMORY);
+  } catch (...) {
+    reporter.error("the importer failed", GPGP_ERROR_OUT_OF_HOST_MEMORY);
+  }
+  return GPGP_ERROR_OUT_OF_HOST_MEMORY;
+}

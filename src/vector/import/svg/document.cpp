@@ -1,0 +1,213 @@
+// Loading: inflate, to UTF-8, parse in place, index lines and ids. Document type definitions are skipped, so their
+// entities are never expanded.
+#include "vector/import/svg/document.h"
+
+#include <algorithm>
+#include <zlib.h>
+
+namespace gpgp::vector::svg {
+namespace {
+using core::makeError;
+
+struct Inflater {
+  z_stream stream{};
+  bool ready = false;
+  Inflater() { ready = inflateInit2(&stream, 15 + 16) == Z_OK; }
+  ~Inflater() {
+    if (ready) inflateEnd(&stream);
+  }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+};
+
+void appendUtf8(std::string& out, uint32_t c) {
+  const auto put = [&out](uint32_t v) { out.push_back(static_cast<char>(v)); };
+  if (c < 0x80) {
+    put(c);
+  } else if (c < 0x800) {
+    put(0xC0 | c >> 6);
+    put(0x80 | (c & 63));
+  } else if (c < 0x10000) {
+    put(0xE0 | c >> 12);
+    put(0x80 | (c >> 6 & 63));
+    put(0x80 | (c & 63));
+  } else {
+    put(0xF0 | c >> 18);
+    put(0x80 | (c >> 12 & 63));
+    put(0x80 | (c >> 6 & 63));
+    put(0x80 | (c & 63));
+  }
+}
+
+std::string fromUtf16(std::string_view bytes, bool bigEndian) {
+  std::string out;
+  const auto unit = [&](size_t i) {
+    const uint32_t a = static_cast<unsigned char>(bytes[i]), b = static_cast<unsigned char>(bytes[i + 1]);
+    return bigEndian ? a << 8 | b : b << 8 | a;
+  };
+  for (size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    uint32_t c = unit(i);
+    if (c == 0xFEFF) continue;
+    if (c >= 0xD800 && c < 0xDC00 && i + 3 < bytes.size()) {
+      const uint32_t low = unit(i + 2);
+      if (low >= 0xDC00 && low < 0xE000) {
+        c = 0x10000 + ((c - 0xD800) << 10) + (low - 0xDC00);
+        i += 2;
+      }
+    }
+    appendUtf8(out, c >= 0xD800 && c < 0xE000 ? 0xFFFD : c);
+  }
+  return out;
+}
+
+void toUtf8(std::string& text) {
+  const std::string_view view = text;
+  const auto byte = [view](size_t i) { return i < view.size() ? static_cast<unsigned char>(view[i]) : 0u; };
+  if ((byte(0) == 0xFE && byte(1) == 0xFF) || (byte(0) == 0 && byte(1) == '<')) {
+    text = fromUtf16(view, true);
+    return;
+  }
+  if ((byte(0) == 0xFF && byte(1) == 0xFE) || (byte(0) == '<' && byte(1) == 0)) {
+    text = fromUtf16(view, false);
+    return;
+  }
+  if (view.substr(0, 5) != "<?xml") return;
+  std::string head(view.substr(0, std::min(view.find("?>"), size_t{200})));
+  for (char& c : head) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + 0x20 : c);
+  const bool latin = head.find("iso-8859-1") != head.npos || head.find("windows-1252") != head.npos ||
+                     head.find("iso-8859-15") != head.npos;
+  if (!latin) return;
+  std::string out;
+  out.reserve(view.size() + view.size() / 8);
+  for (const char c : view) appendUtf8(out, static_cast<unsigned char>(c));
+  text = std::move(out);
+}
+
+std::string_view localName(std::string_view name) {
+  const size_t colon = name.find(':');
+  return colon == name.npos ? name : name.substr(colon + 1);
+}
+
+/// The element after `node` in the file's order, inside `root`.
+pugi::xml_node following(pugi::xml_node node, pugi::xml_node root) {
+  if (node.first_child()) return node.first_child();
+  while (node && node != root && !node.next_sibling()) node = node.parent();
+  return node && node != root ? node.next_sibling() : pugi::xml_node();
+}
+} // namespace
+
+core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxBytes, std::string& out) {
+  out.clear();
+  const char* begin = reinterpret_cast<const char*>(bytes.data());
+  if (bytes.size() < 2 || bytes[0] != std::byte{0x1f} || bytes[1] != std::byte{0x8b}) {
+    if (bytes.size() > maxBytes)
+      return makeError(GPGP_ERROR_INVALID_DATA, "the file has %zu bytes, more than %zu", bytes.size(), maxBytes);
+    out.assign(begin, bytes.size());
+    return {};
+  }
+  if (bytes.size() > maxBytes)
+    return makeError(GPGP_ERROR_INVALID_DATA, "the file has %zu bytes, more than %zu", bytes.size(), maxBytes);
+  Inflater inflater;
+  if (!inflater.ready) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+  z_stream& z = inflater.stream;
+  z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(begin)); // zlib only reads it
+  z.avail_in = static_cast<uInt>(bytes.size());
+  int status = Z_OK;
+  while (status != Z_STREAM_END) {
+    const size_t had = out.size();
+    if (had >= maxBytes)
+      return makeError(GPGP_ERROR_INVALID_DATA, "the file inflates to more than %zu bytes", maxBytes);
+    out.resize(std::min(std::max(had * 2, size_t{65536}), maxBytes));
+    z.next_out = reinterpret_cast<Bytef*>(out.data() + had);
+    z.avail_out = static_cast<uInt>(out.size() - had);
+    status = inflate(&z, Z_NO_FLUSH);
+    out.resize(out.size() - z.avail_out);
+    if (status == Z_MEM_ERROR) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+    if (status != Z_OK && status != Z_STREAM_END)
+      return makeError(GPGP_ERROR_INVALID_DATA,
+                       z.avail_in == 0 ? "the gzip data is truncated" : "the gzip data is damaged");
+    if (status == Z_OK && z.avail_in == 0 && z.avail_out != 0)
+      return makeError(GPGP_ERROR_INVALID_DATA, "the gzip data is truncated");
+  }
+  return {};
+}
+
+core::Result<void> Document::load(std::span<const std::byte> bytes) {
+  if (auto ok = inflateIfNeeded(bytes, kMaxBytes, text_); !ok) return ok;
+  toUtf8(text_);
+  size_t tags = 0, attributes = 0;
+  for (size_t i = 0; i < text_.size(); ++i) {
+    tags += text_[i] == '<';
+    attributes += text_[i] == '=';
+    if (text_[i] == '\n') newlines_.push_back(i);
+  }
+  if (tags > kMaxTags || attributes > kMaxAttributes)
+    return makeError(GPGP_ERROR_INVALID_DATA, "more than %zu tags or %zu attributes", kMaxTags, kMaxAttributes);
+  const pugi::xml_parse_result parsed =
+      tree_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (parsed.status == pugi::status_out_of_memory) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+  if (!parsed)
+    return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: not well-formed XML (%s)",
+                     lineAt(static_cast<size_t>(std::max<ptrdiff_t>(parsed.offset, 0))), parsed.description());
+  const pugi::xml_node top = tree_.document_element();
+  const std::string_view topName = top.name();
+  if (localName(topName) != "svg")
+    return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: the outermost element is <%.60s>, not <svg>", line(top),
+                     top.name());
+  prefix_ = topName.substr(0, topName.size() - 3);
+  root_ = top;
+  for (pugi::xml_node n = root_; n; n = following(n, root_))
+    if (const pugi::xml_attribute id = n.attribute("id"); id && n.type() == pugi::node_element)
+      ids_.try_emplace(id.value(), n);
+  return {};
+}
+
+size_t Document::lineAt(size_t offset) const {
+  return 1 + static_cast<size_t>(std::lower_bound(newlines_.begin(), newlines_.end(), offset) - newlines_.begin());
+}
+
+size_t Document::line(pugi::xml_node node) const {
+  const ptrdiff_t offset = node.offset_debug();
+  return offset < 0 ? 1 : lineAt(static_cast<size_t>(offset));
+}
+
+size_t Document::line(pugi::xml_attribute attribute, size_t offset) const {
+  // Parsed in place, so values are where they were in the file.
+  const std::less_equal<const char*> ordered;
+  const char* value = attribute.value();
+  if (!ordered(text_.data(), value) || !ordered(value, text_.data() + text_.size())) return 1;
+  return lineAt(static_cast<size_t>(value - text_.data()) + offset);
+}
+
+std::string_view Document::name(pugi::xml_node node) const {
+  if (node.type() != pugi::node_element) return {};
+  std::string_view name = node.name();
+  if (name.substr(0, prefix_.size()) != prefix_) return {};
+  name.remove_prefix(prefix_.size());
+  if (name.find(':') != name.npos) return {};
+  const std::string_view space = node.attribute("xmlns").value();
+  if (prefix_.empty() && !space.empty() && space.find("w3.org/2000/svg") == space.npos &&
+      space.find("&ns_svg;") == space.npos)
+    return {};
+  return name;
+}
+
+pugi::xml_node Document::find(std::string_view reference) const {
+  if (reference.empty() || reference[0] != '#') return {};
+  const auto found = ids_.find(reference.substr(1));
+  return found == ids_.end() ? pugi::xml_node() : found->second;
+}
+
+std::vector<pugi::xml_node> Document::all(std::string_view wanted) const {
+  std::vector<pugi::xml_node> found;
+  for (pugi::xml_node n = root_; n; n = following(n, root_))
+    if (name(n) == wanted) found.push_back(n);
+  return found;
+}
+
+pugi::xml_attribute hrefOf(pugi::xml_node node) {
+  const pugi::xml_attribute href = node.attribute("href");
+  return href ? href : node.attribute("xlink:href");
+}
+
+} // namespace gpgp::vector::svg

@@ -1,0 +1,53 @@
+// The bytes of a drawing as an XML tree whose elements know their lines.
+#pragma once
+#include "core/result.h"
+
+#include <pugixml.hpp>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace gpgp::vector::svg {
+
+/// Inflates gzip; other bytes come out as they are. Errors: damaged or truncated data, more than `maxBytes`.
+core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxBytes, std::string& out);
+
+class Document {
+public:
+  static constexpr size_t kMaxBytes = size_t(64) << 20;     ///< of XML
+  static constexpr size_t kMaxTags = size_t(4) << 20;       ///< '<' signs, so that the tree's size is bounded
+  static constexpr size_t kMaxAttributes = size_t(8) << 20; ///< '=' signs, likewise
+
+  /// Parses SVG or gzip-compressed SVG in UTF-8, UTF-16 or Latin-1. Errors name the line.
+  core::Result<void> load(std::span<const std::byte> bytes);
+
+  /// The outermost <svg>; empty where there is none.
+  pugi::xml_node root() const { return root_; }
+  size_t line(pugi::xml_node node) const;
+  /// Of the character `offset` in an attribute's value.
+  size_t line(pugi::xml_attribute attribute, size_t offset) const;
+  /// The element's name without SVG's prefix; empty for other namespaces and for what is no element.
+  std::string_view name(pugi::xml_node node) const;
+  /// The element a reference such as "#id" means; empty where there is none in this file.
+  pugi::xml_node find(std::string_view reference) const;
+  /// All elements called `name`, in the file's order.
+  std::vector<pugi::xml_node> all(std::string_view name) const;
+
+private:
+  size_t lineAt(size_t offset) const;
+
+  std::string text_; // the tree points into it
+  pugi::xml_document tree_;
+  pugi::xml_node root_;
+  std::string prefix_;
+  std::vector<size_t> newlines_;
+  std::unordered_map<std::string_view, pugi::xml_node> ids_;
+};
+
+/// href, or xlink:href as it was called before.
+pugi::xml_attribute hrefOf(pugi::xml_node node);
+
+} // namespace gpgp::vector::svg

@@ -1,0 +1,51 @@
+// SVG to filled paths.
+//
+// Supported: path, rect, circle, ellipse, line, polyline, polygon, g, a, svg (nested too), use, symbol, switch;
+// transforms; fill, stroke with joins, caps and dashes (made into fills), opacities, colours, style sheets with simple
+// selectors. Gradients become the average of their stops, and what is not supported is named with its line while the
+// rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and a limit that is met is said.
+#pragma once
+#include "core/result.h"
+#include "vector/import/svg/outline.h"
+#include "vector/import/svg/reporter.h"
+
+#include <span>
+#include <string>
+
+namespace gpgp::vector::svg {
+
+/// Flattened strokes are off by less than this, in pixels of the drawing at its own size (1 user unit of the outermost
+/// viewport); arcs by less than a fifth of it.
+constexpr double kTolerance = 0.05;
+
+struct ImportLimits {
+  size_t depth = 200;        ///< of elements in each other, <use> included
+  size_t elements = 500'000; ///< visited, copies by <use> included
+  size_t paths = 250'000;
+  size_t points = 8'000'000;   ///< of all paths
+  size_t matches = 20'000'000; ///< style selectors and declarations looked at
+};
+
+struct ImportedPath {
+  std::vector<GpgpPathVerb> verbs;
+  std::vector<float> points; ///< x, y pairs in pixels of the page
+  GpgpFillRule rule = GPGP_FILL_NON_ZERO;
+  float color[4] = {}; ///< linear RGB, straight alpha
+  size_t line = 1;     ///< of the element it comes from
+
+  GpgpPath view() const {
+    return {verbs.data(),  static_cast<uint32_t>(verbs.size()),
+            points.data(), static_cast<uint32_t>(points.size() / 2),
+            rule,          {color[0], color[1], color[2], color[3]}};
+  }
+};
+
+struct Imported {
+  std::vector<ImportedPath> paths; ///< in painting order
+  double width = 0, height = 0;    ///< of the page in pixels; 0: the file does not say
+};
+
+/// Errors where the bytes are no SVG at all; everything milder goes to the reporter.
+core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits = {});
+
+} // namespace gpgp::vector::svg

@@ -1,0 +1,327 @@
+// The walk: structure, use, viewports, and each shape's fill and stroke as paths.
+#include "vector/import/svg/importer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gpgp::vector::svg {
+namespace {
+
+template <size_t N> bool oneOf(std::string_view name, const std::string_view (&names)[N]) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+constexpr std::string_view kShapes[] = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"};
+/// Drawn only where something refers to them, or never.
+constexpr std::string_view kSilent[] = {
+    "defs",           "symbol",    "title",      "desc",          "metadata",     "style",  "stop",  "linearGradient",
+    "radialGradient", "pattern",   "clipPath",   "mask",          "filter",       "marker", "view",  "cursor",
+    "font",           "font-face", "solidColor", "color-profile", "meshgradient", "hatch",  "glyph", "missing-glyph"};
+
+} // namespace
+
+core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits) {
+  Document document;
+  if (auto ok = document.load(bytes); !ok) return ok.error();
+  return Importer(document, reporter, limits).run();
+}
+
+std::string Importer::element(pugi::xml_node node) const {
+  return std::string("<") + std::string(std::string_view(node.name()).substr(0, 40)) + ">";
+}
+
+void Importer::stop(pugi::xml_node node, const std::string& why) {
+  if (!stopped_) reporter_.error(document_.line(node), why + "; the rest is not drawn", GPGP_ERROR_UNSUPPORTED);
+  stopped_ = true;
+}
+
+bool Importer::stopped(pugi::xml_node node) {
+  if (++elements_ > limits_.elements)
+    stop(node, std::string("more than ") + std::to_string(limits_.elements) + " elements");
+  return stopped_;
+}
+
+Imported Importer::run() {
+  for (const pugi::xml_node node : document_.all("style")) {
+    const std::string_view type = node.attribute("type").value();
+    std::string text;
+    for (const pugi::xml_node part : node.children()) text += part.value();
+    if (type.empty() || type == "text/css") sheet_.parse(text, document_.line(node), reporter_);
+  }
+  const pugi::xml_node root = document_.root();
+  const pugi::xml_attribute boxText = root.attribute("viewBox");
+  const std::optional<ViewBox> box = parseViewBox(boxText.value());
+  if (boxText && !box)
+    reporter_.warn(document_.line(boxText, 0), std::string("<svg> has viewBox '") +
+                                                   std::string(boxText.value()).substr(0, 60) +
+                                                   "', which is not valid; ignored");
+  State state;
+  // A page in percent has the size of its viewBox: there is nothing around it.
+  state.lengths.width = box ? box->width : 100;
+  state.lengths.height = box ? box->height : 100;
+  bool hasWidth = false, hasHeight = false;
+  double width = length(root, "width", state.lengths, LengthAxis::X, 0, &hasWidth);
+  double height = length(root, "height", state.lengths, LengthAxis::Y, 0, &hasHeight);
+  const auto isPercent = [root](const char* name) {
+    return std::string_view(root.attribute(name).value()).find('%') != std::string_view::npos;
+  };
+  if (isPercent("width")) hasWidth = false;
+  if (isPercent("height")) hasHeight = false;
+  if (!(width > 0)) hasWidth = false;
+  if (!(height > 0)) hasHeight = false;
+  if (box && !hasWidth) width = hasHeight ? height * box->width / box->height : box->width;
+  if (box && !hasHeight) height = hasWidth ? width * box->height / box->width : box->height;
+  if (box || (hasWidth && hasHeight)) {
+    result_.width = width;
+    result_.height = height;
+  }
+  if (box) {
+    state.transform = fitViewBox(*box, width, height, root.attribute("preserveAspectRatio").value());
+    state.lengths.width = box->width;
+    state.lengths.height = box->height;
+  } else {
+    if (hasWidth) state.lengths.width = width;
+    if (hasHeight) state.lengths.height = height;
+  }
+  visit(root, state);
+  return std::move(result_);
+}
+
+void Importer::visit(pugi::xml_node node, const State& parent, const double* useSize) {
+  const std::string_view name = document_.name(node);
+  if (name.empty() || stopped(node)) return;
+  const bool isSymbol = name == "symbol" && useSize;
+  if (oneOf(name, kSilent) && !isSymbol) return;
+  if (parent.depth >= limits_.depth) {
+    reporter_.error(document_.line(node),
+                    "elements are nested deeper than " + std::to_string(limits_.depth) +
+                        "; what is inside is not drawn",
+                    GPGP_ERROR_UNSUPPORTED);
+    return;
+  }
+  State state{parent.style.inherited(), parent.transform, parent.lengths, parent.opacity, parent.depth + 1};
+  cascade(node, name, parent.style, parent.lengths, state.style);
+  if (!state.style.displayed) return;
+  if (const pugi::xml_attribute transform = node.attribute("transform")) {
+    Affine own;
+    if (!parseTransform(transform.value(), own))
+      reporter_.error(document_.line(transform, 0), element(node) + " has an error in its transform, which is ignored");
+    state.transform = state.transform * own;
+  }
+  if (!state.transform.finite()) {
+    reporter_.error(document_.line(node), element(node) + " has a transform beyond all numbers; not drawn");
+    return;
+  }
+  state.opacity *= state.style.opacity;
+  reportUnsupported(node, name, state.style);
+  const size_t before = result_.paths.size();
+  if (oneOf(name, kShapes)) {
+    draw(node, name, state);
+  } else if (name == "g" || name == "a") {
+    visitChildren(node, state);
+  } else if (name == "svg" || isSymbol) {
+    visitViewport(node, state, useSize);
+  } else if (name == "use") {
+    visitUse(node, state);
+  } else if (name == "switch") {
+    visitSwitch(node, state);
+  } else {
+    reporter_.warn(document_.line(node), element(node) + " is not supported");
+  }
+  if (state.style.opacity < 1 && result_.paths.size() > before + 1)
+    reporter_.warn(document_.line(node),
+                   "opacity of " + element(node) + " is applied to each of its paths, not to the whole");
+}
+
+void Importer::visitChildren(pugi::xml_node node, const State& state) {
+  for (const pugi::xml_node child : node.children()) {
+    if (stopped_) return;
+    visit(child, state);
+  }
+}
+
+void Importer::visitSwitch(pugi::xml_node node, const State& state) {
+  for (const pugi::xml_node child : node.children()) {
+    const std::string_view name = document_.name(child);
+    if (name.empty() || name == "foreignObject" || oneOf(name, kSilent)) continue;
+    if (!trim(child.attribute("requiredExtensions").value()).empty()) continue;
+    const pugi::xml_attribute language = child.attribute("systemLanguage");
+    if (language && std::string_view(language.value()).find("en") == std::string_view::npos) continue;
+    return visit(child, state);
+  }
+}
+
+void Importer::visitUse(pugi::xml_node node, const State& state) {
+  const pugi::xml_attribute href = hrefOf(node);
+  const pugi::xml_node target = document_.find(trim(href.value()));
+  const size_t line = document_.line(node);
+  const std::string shown = std::string("'") + std::string(href.value()).substr(0, 60) + "'";
+  if (!target) {
+    const bool outside = href && href.value()[0] != '#' && href.value()[0] != '\0';
+    outside ? reporter_.warn(line, "<use> of another file, " + shown + ", is not supported")
+            : reporter_.error(line, "<use> refers to " + shown + ", which is not there");
+    return;
+  }
+  bool inside = std::find(used_.begin(), used_.end(), target) != used_.end();
+  for (pugi::xml_node up = node; up && !inside; up = up.parent()) inside = up == target;
+  if (inside) {
+    reporter_.error(line, "<use> of " + shown + " contains itself; not drawn");
+    return;
+  }
+  State moved = state;
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
+  const double x = length(node, "x", lengths, LengthAxis::X, 0), y = length(node, "y", lengths, LengthAxis::Y, 0);
+  moved.transform = moved.transform * Affine{1, 0, 0, 1, x, y};
+  constexpr double unset = -1;
+  const double size[2] = {length(node, "width", lengths, LengthAxis::X, unset),
+                          length(node, "height", lengths, LengthAxis::Y, unset)};
+  used_.push_back(target);
+  visit(target, moved, size);
+  used_.pop_back();
+}
+
+/// <svg> inside another, or <symbol>: its own coordinates, and nothing cut off at its edge.
+void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
+  const size_t before = result_.paths.size();
+  if (node == document_.root()) return visitChildren(node, state);
+  const LengthContext lengths = state.lengths;
+  const double x = length(node, "x", lengths, LengthAxis::X, 0), y = length(node, "y", lengths, LengthAxis::Y, 0);
+  double w = length(node, "width", lengths, LengthAxis::X, lengths.width);
+  double h = length(node, "height", lengths, LengthAxis::Y, lengths.height);
+  if (useSize && useSize[0] >= 0) w = useSize[0];
+  if (useSize && useSize[1] >= 0) h = useSize[1];
+  if (!(w > 0 && h > 0)) return;
+  state.transform = state.transform * Affine{1, 0, 0, 1, x, y};
+  const Affine frame = state.transform;
+  state.lengths.width = w;
+  state.lengths.height = h;
+  if (const pugi::xml_attribute text = node.attribute("viewBox")) {
+    if (const auto box = parseViewBox(text.value())) {
+      state.transform = state.transform * fitViewBox(*box, w, h, node.attribute("preserveAspectRatio").value());
+      state.lengths.width = box->width;
+      state.lengths.height = box->height;
+    } else {
+      reporter_.warn(document_.line(text, 0), element(node) + " has viewBox '" +
+                                                  std::string(text.value()).substr(0, 60) +
+                                                  "', which is not valid; ignored");
+    }
+  }
+  visitChildren(node, state);
+  if (state.style.overflowVisible) return;
+  const double slack = 1e-3 * std::max(w, h), area = frame.a * frame.d - frame.b * frame.c;
+  for (size_t i = before; i < result_.paths.size(); ++i)
+    for (size_t k = 0; k + 1 < result_.paths[i].points.size(); k += 2) {
+      const double px = result_.paths[i].points[k] - frame.e, py = result_.paths[i].points[k + 1] - frame.f;
+      const double u = (frame.d * px - frame.c * py) / area, v = (frame.a * py - frame.b * px) / area;
+      if (++steps_ > 8 * limits_.points) return;
+      if (u >= -slack && v >= -slack && u <= w + slack && v <= h + slack) continue;
+      reporter_.warn(document_.line(node),
+                     element(node) + " is not clipped to its viewport; its content reaches beyond");
+      return;
+    }
+}
+
+void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style) {
+  const struct {
+    bool is;
+    const char* what;
+  } features[] = {{style.clipPath, "clip-path"},
+                  {style.mask, "mask"},
+                  {style.filter, "filter"},
+                  {style.blendMode, "mix-blend-mode"},
+                  {!style.markers.empty() && name != "g" && name != "svg" && oneOf(name, kShapes), "marker"}};
+  for (const auto& f : features)
+    if (f.is)
+      reporter_.warn(document_.line(node),
+                     std::string(f.what) + " is not supported: " + element(node) + " is drawn without it");
+}
+
+void Importer::draw(pugi::xml_node node, std::string_view name, const State& state) {
+  for (const pugi::xml_node child : node.children()) // animations
+    if (const std::string_view inner = document_.name(child); !inner.empty() && !oneOf(inner, kSilent))
+      reporter_.warn(document_.line(child), element(child) + " is not supported");
+  const Style& style = state.style;
+  if (!style.visible) return;
+  const Shape shape = shapeOf(node, name, state);
+  if (shape.empty()) return;
+  const auto fill = [&] {
+    if (shape.points.size() < 3) return;
+    const std::optional<Color> color = resolve(style.fill, style, node, "fill");
+    if (color) emit(shape, state.transform, style.fillRule, *color, style.fillOpacity * state.opacity, node);
+  };
+  if (!style.strokeFirst) fill();
+  if (style.strokeWidth > 0)
+    if (const std::optional<Color> color = resolve(style.stroke, style, node, "stroke"))
+      stroke(shape, state, *color, node);
+  if (style.strokeFirst) fill();
+}
+
+void Importer::stroke(const Shape& shape, const State& state, const Color& color, pugi::xml_node node) {
+  const Style& style = state.style;
+  Affine transform = state.transform;
+  Shape moved;
+  if (style.nonScalingStroke) {
+    moved = shape;
+    for (Point& p : moved.points) p = transform(p);
+    transform = Affine{};
+  }
+  const Shape& from = style.nonScalingStroke ? moved : shape;
+  const double scale = transform.scale();
+  if (!(scale > 0)) return;
+  // In its own space, so that an uneven transform bends the stroke as it should; what is out of reach is told below.
+  for (const Point& p : from.points) {
+    const Point q = transform(p);
+    if (!(std::fabs(q.x) <= 1e7 && std::fabs(q.y) <= 1e7) || !(style.strokeWidth * scale <= 2e7)) {
+      reporter_.error(document_.line(node), element(node) + " reaches beyond 10000000 pixels; not drawn");
+      return;
+    }
+  }
+  StrokeStyle s{style.strokeWidth, style.cap, style.join, style.miterLimit, style.dashes, style.dashOffset};
+  Shape area;
+  const double tolerance = kTolerance / scale;
+  bool done = strokeShape(from, s, tolerance, {}, area);
+  if (!done && !s.dashes.empty()) {
+    reporter_.error(document_.line(node), element(node) + " has too many dashes; drawn without",
+                    GPGP_ERROR_UNSUPPORTED);
+    s.dashes.clear();
+    done = strokeShape(from, s, tolerance, {}, area);
+  }
+  if (!done) {
+    reporter_.error(document_.line(node), element(node) + " has a stroke of too many points; not drawn",
+                    GPGP_ERROR_UNSUPPORTED);
+    return;
+  }
+  emit(area, transform, GPGP_FILL_NON_ZERO, color, style.strokeOpacity * state.opacity, node);
+}
+
+void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Color& color, double opacity,
+                    pugi::xml_node node) {
+  const double alpha = color.a * opacity;
+  if (shape.empty() || !(alpha > 0)) return;
+  points_ += shape.points.size() + shape.verbs.size();
+  if (points_ > limits_.points)
+    return stop(node, std::string("more than ") + std::to_string(limits_.points) + " points");
+  if (result_.paths.size() >= limits_.paths)
+    return stop(node, std::string("more than ") + std::to_string(limits_.paths) + " paths");
+  ImportedPath path;
+  path.points.reserve(2 * shape.points.size());
+  for (const Point& p : shape.points) {
+    const Point q = transform(p);
+    if (!(std::fabs(q.x) <= 1e7 && std::fabs(q.y) <= 1e7)) {
+      reporter_.error(document_.line(node), element(node) + " reaches beyond 10000000 pixels; not drawn");
+      return;
+    }
+    path.points.push_back(static_cast<float>(q.x));
+    path.points.push_back(static_cast<float>(q.y));
+  }
+  path.verbs = shape.verbs;
+  path.rule = rule;
+  path.line = document_.line(node);
+  const double linear[4] = {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b), alpha};
+  for (size_t i = 0; i < 4; ++i) path.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));
+  result_.paths.push_back(std::move(path));
+}
+
+} // namespace gpgp::vector::svg

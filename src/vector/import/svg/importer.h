@@ -1,0 +1,73 @@
+// The walk over the tree; one per import.
+#pragma once
+#include "vector/import/svg/document.h"
+#include "vector/import/svg/import.h"
+#include "vector/import/svg/style.h"
+#include "vector/import/svg/stylesheet.h"
+
+#include <optional>
+
+namespace gpgp::vector::svg {
+
+/// The map from a viewBox into a viewport of the given size (SVG 2, 8.2); nothing where the box has no area.
+struct ViewBox {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+std::optional<ViewBox> parseViewBox(std::string_view text);
+Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio);
+
+class Importer {
+public:
+  Importer(const Document& document, Reporter& reporter, const ImportLimits& limits)
+      : document_(document), reporter_(reporter), limits_(limits) {}
+  Imported run();
+
+private:
+  /// What an element gets from above.
+  struct State {
+    Style style;
+    Affine transform;
+    LengthContext lengths; ///< of the nearest viewport
+    double opacity = 1;    ///< of all groups around
+    size_t depth = 0;
+  };
+
+  // importer.cpp
+  void visit(pugi::xml_node node, const State& parent, const double* useSize = nullptr);
+  void visitChildren(pugi::xml_node node, const State& state);
+  void visitUse(pugi::xml_node node, const State& state);
+  void visitSwitch(pugi::xml_node node, const State& state);
+  void visitViewport(pugi::xml_node node, State& state, const double* useSize);
+  void draw(pugi::xml_node node, std::string_view name, const State& state);
+  void emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Color& color, double opacity,
+            pugi::xml_node node);
+  void stroke(const Shape& shape, const State& state, const Color& color, pugi::xml_node node);
+  void reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style);
+  bool stopped(pugi::xml_node node);
+  void stop(pugi::xml_node node, const std::string& why);
+
+  // shapes.cpp
+  Shape shapeOf(pugi::xml_node node, std::string_view name, const State& state);
+  double length(pugi::xml_node node, const char* attribute, const LengthContext& lengths, LengthAxis axis,
+                double otherwise, bool* given = nullptr);
+
+  // cascade.cpp
+  void cascade(pugi::xml_node node, std::string_view name, const Style& parent, const LengthContext& lengths,
+               Style& style);
+  std::optional<Color> resolve(const Paint& paint, const Style& style, pugi::xml_node node, const char* property);
+  std::optional<Color> averageOfStops(pugi::xml_node gradient, const Style& style);
+
+  std::string element(pugi::xml_node node) const;
+
+  const Document& document_;
+  Reporter& reporter_;
+  const ImportLimits& limits_;
+  StyleSheet sheet_;
+  Imported result_;
+  std::vector<pugi::xml_node> used_;                          // the <use> targets we are inside of
+  std::unordered_map<size_t, std::optional<Color>> averages_; // by element
+  size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
+  bool stopped_ = false;
+};
+
+} // namespace gpgp::vector::svg

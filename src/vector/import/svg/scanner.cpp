@@ -1,0 +1,169 @@
+// Numbers, lengths and transform lists (SVG 2, chapters 4 and 8; CSS Values 4 for units).
+#include "vector/import/svg/scanner.h"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace gpgp::vector::svg {
+namespace {
+bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+bool isNameCharacter(char c) {
+  return isDigit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+}
+} // namespace
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+void Scanner::skipSpace() {
+  while (!done() && isSpace(text_[at_])) ++at_;
+}
+
+void Scanner::skipCommaSpace() {
+  skipSpace();
+  if (peek() != ',') return;
+  ++at_;
+  skipSpace();
+}
+
+bool Scanner::number(double& value) {
+  size_t i = at_;
+  const auto digit = [&](size_t k) { return k < text_.size() && isDigit(text_[k]); };
+  if (i < text_.size() && (text_[i] == '+' || text_[i] == '-')) ++i;
+  const size_t digits = i;
+  while (digit(i)) ++i;
+  size_t count = i - digits;
+  if (i < text_.size() && text_[i] == '.' && (digit(i + 1) || count)) {
+    const size_t fraction = ++i;
+    while (digit(i)) ++i;
+    count += i - fraction;
+  }
+  if (!count) return false;
+  bool tiny = false;
+  if (i < text_.size() && (text_[i] == 'e' || text_[i] == 'E')) { // an exponent, or the unit em or ex
+    size_t k = i + 1;
+    tiny = k < text_.size() && text_[k] == '-';
+    if (k < text_.size() && (text_[k] == '+' || text_[k] == '-')) ++k;
+    if (digit(k)) {
+      while (digit(k)) ++k;
+      i = k;
+    }
+  }
+  const size_t begin = text_[at_] == '+' ? at_ + 1 : at_;
+  double parsed = 0;
+  const auto result = std::from_chars(text_.data() + begin, text_.data() + i, parsed);
+  if (result.ec == std::errc::result_out_of_range) {
+    if (!tiny) return false;
+    parsed = 0;
+  } else if (result.ec != std::errc()) {
+    return false;
+  }
+  value = parsed;
+  at_ = i;
+  return true;
+}
+
+bool Scanner::flag(bool& value) {
+  if (peek() != '0' && peek() != '1') return false;
+  value = text_[at_++] == '1';
+  return true;
+}
+
+bool Scanner::take(std::string_view word) {
+  if (text_.substr(at_, word.size()) != word) return false;
+  at_ += word.size();
+  return true;
+}
+
+std::string_view Scanner::name() {
+  const size_t begin = at_;
+  while (!done() && isNameCharacter(text_[at_])) ++at_;
+  return text_.substr(begin, at_ - begin);
+}
+
+bool parseLength(std::string_view text, const LengthContext& context, LengthAxis axis, double& value) {
+  Scanner s(trim(text));
+  double v = 0;
+  if (!s.number(v)) return false;
+  const double diagonal = std::sqrt((context.width * context.width + context.height * context.height) / 2);
+  const struct {
+    const char* name;
+    double factor;
+  } units[] = {{"px", 1},
+               {"pt", 96.0 / 72},
+               {"pc", 16},
+               {"mm", 96 / 25.4},
+               {"cm", 96 / 2.54},
+               {"in", 96},
+               {"em", context.fontSize},
+               {"rem", 16},
+               {"ex", context.fontSize / 2},
+               {"ch", context.fontSize / 2},
+               {"Q", 96 / 101.6},
+               {"%", (axis == LengthAxis::X   ? context.width
+                      : axis == LengthAxis::Y ? context.height
+                                              : diagonal) /
+                         100}};
+  if (!s.done()) {
+    const auto* unit = std::begin(units);
+    while (unit != std::end(units) && !s.take(unit->name)) ++unit;
+    if (unit == std::end(units) || !s.done()) return false;
+    v *= unit->factor;
+  }
+  if (!std::isfinite(v)) return false;
+  value = v;
+  return true;
+}
+
+bool parseTransform(std::string_view text, Affine& transform) {
+  Affine all;
+  Scanner s(text);
+  s.skipSpace();
+  if (s.take("none")) return s.skipSpace(), s.done();
+  while (!s.done()) {
+    const std::string_view name = s.name();
+    s.skipSpace();
+    if (!s.take("(")) return false;
+    double v[6] = {};
+    int count = 0;
+    s.skipSpace();
+    while (!s.done() && s.peek() != ')') {
+      if (count == 6 || !s.number(v[count])) return false;
+      ++count;
+      s.take("deg") || s.take("px"); // as CSS writes them
+      s.skipCommaSpace();
+    }
+    if (!s.take(")")) return false;
+    Affine m;
+    const double radians = v[0] * (std::numbers::pi / 180);
+    if (name == "matrix" && count == 6) {
+      m = {v[0], v[1], v[2], v[3], v[4], v[5]};
+    } else if (name == "translate" && (count == 1 || count == 2)) {
+      m.e = v[0];
+      m.f = v[1];
+    } else if (name == "scale" && (count == 1 || count == 2)) {
+      m.a = v[0];
+      m.d = count == 2 ? v[1] : v[0];
+    } else if (name == "rotate" && (count == 1 || count == 3)) {
+      const double c = std::cos(radians), n = std::sin(radians);
+      m = {c, n, -n, c, v[1] - c * v[1] + n * v[2], v[2] - n * v[1] - c * v[2]};
+    } else if (name == "skewX" && count == 1) {
+      m.c = std::tan(radians);
+    } else if (name == "skewY" && count == 1) {
+      m.b = std::tan(radians);
+    } else {
+      return false;
+    }
+    all = all * m;
+    s.skipCommaSpace();
+  }
+  transform = all;
+  return true;
+}
+
+} // namespace gpgp::vector::svg

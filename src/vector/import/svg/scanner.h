@@ -1,0 +1,55 @@
+// The small languages inside SVG attributes: numbers, lists, lengths, transforms, path data.
+//
+// Any bytes are fine as input; what does not follow the grammar stops the scan and is reported by its offset.
+#pragma once
+#include "vector/import/svg/outline.h"
+
+#include <string>
+#include <string_view>
+
+namespace gpgp::vector::svg {
+
+/// Reads from the front of a text.
+class Scanner {
+public:
+  explicit Scanner(std::string_view text) : text_(text) {}
+  bool done() const { return at_ >= text_.size(); }
+  char peek() const { return done() ? '\0' : text_[at_]; }
+  size_t offset() const { return at_; }
+  void advance() { ++at_; }
+  void skipSpace();
+  void skipCommaSpace();
+  /// SVG's number: sign, digits, fraction, exponent; "1.5.5-3e2" holds three. Not consumed where there is none, or one
+  /// that a double cannot hold.
+  bool number(double& value);
+  bool flag(bool& value);
+  /// Consumes `word` if it is next.
+  bool take(std::string_view word);
+  /// Letters, digits, - and _.
+  std::string_view name();
+
+private:
+  std::string_view text_;
+  size_t at_ = 0;
+};
+
+std::string_view trim(std::string_view text);
+
+/// What percentages and font units refer to.
+struct LengthContext {
+  double width = 100, height = 100, fontSize = 16;
+};
+enum class LengthAxis { X, Y, Diagonal };
+/// A length with unit in user units; false where it is none.
+bool parseLength(std::string_view text, const LengthContext& context, LengthAxis axis, double& value);
+
+/// A transform list, e.g. "translate(3 4) rotate(30)"; false where it is malformed.
+bool parseTransform(std::string_view text, Affine& transform);
+
+/// Appends path data. On an error, what came before it stays and the offset of the error is returned, otherwise npos.
+size_t parsePathData(std::string_view text, Shape& shape, double tolerance);
+
+/// Appends the points of a polyline or polygon; false where the list is malformed or odd (the good part stays).
+bool parsePoints(std::string_view text, bool close, Shape& shape);
+
+} // namespace gpgp::vector::svg

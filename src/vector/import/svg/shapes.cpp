@@ -1,0 +1,109 @@
+// Basic shapes (SVG 2, chapter 10) and viewBoxes (8.2).
+#include "vector/import/svg/importer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::vector::svg {
+
+double Importer::length(pugi::xml_node node, const char* name, const LengthContext& lengths, LengthAxis axis,
+                        double otherwise, bool* given) {
+  const pugi::xml_attribute a = node.attribute(name);
+  if (given) *given = false;
+  const std::string_view text = trim(a.value());
+  if (!a || text == "auto") return otherwise;
+  double value = 0;
+  if (!parseLength(text, lengths, axis, value)) {
+    reporter_.error(document_.line(a, 0),
+                    element(node) + " has " + name + " '" + std::string(text.substr(0, 60)) + "', which is no length");
+    return otherwise;
+  }
+  if (given) *given = true;
+  return value;
+}
+
+Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State& state) {
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
+  const double scale = state.transform.scale();
+  const double tolerance = 0.2 * kTolerance / std::clamp(std::isfinite(scale) ? scale : 1.0, 1e-9, 1e9);
+  const auto along = [&](const char* attribute, LengthAxis axis, double otherwise = 0, bool* given = nullptr) {
+    return length(node, attribute, lengths, axis, otherwise, given);
+  };
+  // A size below zero is an error, one of zero draws nothing.
+  const auto positive = [&](const char* attribute, double value) {
+    if (value < 0) reporter_.error(document_.line(node), element(node) + " has a negative " + attribute);
+    return value > 0;
+  };
+  Shape shape;
+  if (name == "path") {
+    const pugi::xml_attribute d = node.attribute("d");
+    const size_t bad = parsePathData(d.value(), shape, tolerance);
+    if (bad != std::string_view::npos)
+      reporter_.error(document_.line(d, bad), element(node) + " has an error in its path data at character " +
+                                                  std::to_string(bad + 1) + "; drawn up to there");
+  } else if (name == "rect") {
+    const double w = along("width", LengthAxis::X), h = along("height", LengthAxis::Y);
+    bool hasX = false, hasY = false;
+    double rx = along("rx", LengthAxis::X, 0, &hasX), ry = along("ry", LengthAxis::Y, 0, &hasY);
+    if (!hasX) rx = ry;
+    if (!hasY) ry = rx;
+    if (positive("width", w) && positive("height", h))
+      shape = rectangle(along("x", LengthAxis::X), along("y", LengthAxis::Y), w, h, std::max(rx, 0.0),
+                        std::max(ry, 0.0), tolerance);
+  } else if (name == "circle") {
+    const double r = along("r", LengthAxis::Diagonal);
+    if (positive("r", r)) shape = ellipse(along("cx", LengthAxis::X), along("cy", LengthAxis::Y), r, r, tolerance);
+  } else if (name == "ellipse") {
+    bool hasX = false, hasY = false;
+    double rx = along("rx", LengthAxis::X, 0, &hasX), ry = along("ry", LengthAxis::Y, 0, &hasY);
+    if (!hasX) rx = ry;
+    if (!hasY) ry = rx;
+    if (positive("rx", rx) && positive("ry", ry))
+      shape = ellipse(along("cx", LengthAxis::X), along("cy", LengthAxis::Y), rx, ry, tolerance);
+  } else if (name == "line") {
+    shape.move({along("x1", LengthAxis::X), along("y1", LengthAxis::Y)});
+    shape.line({along("x2", LengthAxis::X), along("y2", LengthAxis::Y)});
+  } else { // polyline, polygon
+    const pugi::xml_attribute points = node.attribute("points");
+    if (!parsePoints(points.value(), name == "polygon", shape))
+      reporter_.error(document_.line(points, 0), element(node) + " has an error in its points; drawn up to there");
+  }
+  return shape;
+}
+
+std::optional<ViewBox> parseViewBox(std::string_view text) {
+  double v[4] = {};
+  Scanner s(text);
+  s.skipSpace();
+  for (double& n : v) {
+    if (!s.number(n)) return std::nullopt;
+    s.skipCommaSpace();
+  }
+  if (!s.done() || !(v[2] > 0 && v[3] > 0)) return std::nullopt;
+  return ViewBox{v[0], v[1], v[2], v[3]};
+}
+
+Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio) {
+  double sx = width / box.width, sy = height / box.height, alignX = 0.5, alignY = 0.5;
+  Scanner s(preserveAspectRatio);
+  s.skipSpace();
+  if (s.take("defer")) s.skipSpace();
+  const std::string_view align = s.name();
+  s.skipSpace();
+  const bool slice = s.take("slice");
+  if (align == "none") {
+    alignX = alignY = 0;
+  } else {
+    sx = sy = slice ? std::max(sx, sy) : std::min(sx, sy);
+    const auto has = [align](const char* part) { return align.find(part) != align.npos; };
+    if (has("xMin")) alignX = 0;
+    if (has("xMax")) alignX = 1;
+    if (has("YMin")) alignY = 0;
+    if (has("YMax")) alignY = 1;
+  }
+  return {
+      sx, 0, 0, sy, alignX * (width - box.width * sx) - box.x * sx, alignY * (height - box.height * sy) - box.y * sy};
+}
+
+} // namespace gpgp::vector::svg

@@ -1,0 +1,232 @@
+// One property at a time (SVG 2, chapters 6, 11 and 13).
+#include "vector/import/svg/style.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::vector::svg {
+namespace {
+
+/// A list of lengths, an odd one doubled; "none" and all zero mean no dashes.
+bool parseDashes(std::string_view text, const LengthContext& lengths, std::vector<double>& dashes) {
+  std::vector<double> read;
+  if (text != "none") {
+    while (!(text = trim(text)).empty()) {
+      const size_t end = std::min(text.find_first_of(", \t\r\n\f"), text.size());
+      double v = 0;
+      if (!parseLength(text.substr(0, end), lengths, LengthAxis::Diagonal, v) || v < 0 || read.size() >= 1024)
+        return false;
+      read.push_back(v);
+      text = trim(text.substr(end));
+      if (!text.empty() && text[0] == ',') text.remove_prefix(1);
+    }
+  }
+  double sum = 0;
+  for (const double v : read) sum += v;
+  if (!(sum > 0) || !std::isfinite(sum)) read.clear();
+  const size_t n = read.size();
+  if (n % 2)
+    for (size_t i = 0; i < n; ++i) read.push_back(double{read[i]});
+  dashes = std::move(read);
+  return true;
+}
+
+bool isCurrentColor(std::string_view text) { return text == "currentColor" || text == "currentcolor"; }
+
+bool parsePaint(std::string_view text, Paint& paint) {
+  Paint p;
+  if (text.substr(0, 4) == "url(") {
+    const size_t end = text.find(')');
+    if (end == text.npos) return false;
+    std::string_view target = trim(text.substr(4, end - 4));
+    if (target.size() >= 2 && (target[0] == '"' || target[0] == '\'')) target = target.substr(1, target.size() - 2);
+    p.kind = Paint::Kind::Reference;
+    p.reference = target;
+    text = trim(text.substr(end + 1));
+    if (!text.empty()) {
+      Paint rest;
+      if (text.substr(0, 4) == "url(" || !parsePaint(text, rest)) return false;
+      p.hasFallback = true;
+      p.fallback = rest.kind;
+      p.color = rest.color;
+    }
+  } else if (text == "none" || text == "context-fill" || text == "context-stroke") {
+    p.kind = Paint::Kind::None;
+  } else if (isCurrentColor(text)) {
+    p.kind = Paint::Kind::Current;
+  } else {
+    // An ICC colour after the sRGB one is for printers.
+    if (const size_t icc = text.find("icc-color("); icc != text.npos && icc > 0) text = text.substr(0, icc);
+    if (!parseColor(text, p.color)) return false;
+    p.kind = Paint::Kind::Solid;
+  }
+  paint = std::move(p);
+  return true;
+}
+
+bool parseOpacity(std::string_view text, double& value) {
+  Scanner s(text);
+  double v = 0;
+  if (!s.number(v)) return false;
+  if (s.take("%")) v /= 100;
+  if (!s.done()) return false;
+  value = std::clamp(v, 0.0, 1.0);
+  return true;
+}
+
+bool parseFontSize(std::string_view v, const Style& parent, LengthContext lengths, double& size) {
+  const struct {
+    std::string_view name;
+    double size;
+  } names[] = {{"xx-small", 9},
+               {"x-small", 10},
+               {"small", 13},
+               {"medium", 16},
+               {"large", 18},
+               {"x-large", 24},
+               {"xx-large", 32},
+               {"larger", parent.fontSize * 1.2},
+               {"smaller", parent.fontSize / 1.2}};
+  for (const auto& n : names)
+    if (v == n.name) return size = n.size, true;
+  lengths.width = lengths.height = lengths.fontSize = parent.fontSize;
+  double read = 0;
+  return parseLength(v, lengths, LengthAxis::X, read) && read >= 0 && (size = read, true);
+}
+
+template <class T> struct Word {
+  std::string_view word;
+  T value;
+};
+template <class T, size_t N> bool choose(std::string_view text, const Word<T> (&words)[N], T& value) {
+  for (const auto& w : words)
+    if (w.word == text) return value = w.value, true;
+  return false;
+}
+constexpr Word<GpgpFillRule> kRules[] = {{"nonzero", GPGP_FILL_NON_ZERO}, {"evenodd", GPGP_FILL_EVEN_ODD}};
+constexpr Word<Cap> kCaps[] = {{"butt", Cap::Butt}, {"round", Cap::Round}, {"square", Cap::Square}};
+constexpr Word<Join> kJoins[] = {{"miter", Join::Miter},
+                                 {"round", Join::Round},
+                                 {"bevel", Join::Bevel},
+                                 {"miter-clip", Join::Miter},
+                                 {"arcs", Join::Miter}};
+constexpr Word<bool> kVisibilities[] = {{"visible", true}, {"hidden", false}, {"collapse", false}};
+
+struct Context {
+  Style& style;
+  const Style& parent;
+  std::string_view value;
+  const LengthContext& lengths;
+};
+
+bool setStrokeWidth(const Context& c) {
+  double v = 0;
+  return parseLength(c.value, c.lengths, LengthAxis::Diagonal, v) && v >= 0 && (c.style.strokeWidth = v, true);
+}
+bool setMiterLimit(const Context& c) {
+  double v = 0;
+  Scanner s(c.value);
+  return s.number(v) && s.done() && v >= 1 && (c.style.miterLimit = v, true);
+}
+bool setColor(const Context& c) {
+  if (isCurrentColor(c.value)) return c.style.color = c.parent.color, true;
+  return parseColor(c.value, c.style.color);
+}
+bool setStopColor(const Context& c) {
+  c.style.stopIsCurrent = isCurrentColor(c.value);
+  return c.style.stopIsCurrent || parseColor(c.value, c.style.stopColor);
+}
+bool setPaintOrder(const Context& c) {
+  const size_t fill = c.value.find("fill"), stroke = c.value.find("stroke");
+  c.style.strokeFirst = stroke != c.value.npos && (fill == c.value.npos || stroke < fill);
+  return true;
+}
+bool setMarker(const Context& c, const char* name) {
+  if (c.value != "none") c.style.markers = name;
+  return true;
+}
+bool setRefers(const Context& c, bool& flag) { return flag = c.value != "none" && !c.value.empty(), true; }
+
+struct Property {
+  std::string_view name;
+  bool (*set)(const Context&);
+  void (*inherit)(const Context&);
+};
+
+#define GPGP_PROPERTY(name, member, setter)                                                                            \
+  {                                                                                                                    \
+    name, [](const Context& c) { return setter; }, [](const Context& c) { c.style.member = c.parent.member; }          \
+  }
+const Property kProperties[] = {
+    GPGP_PROPERTY("fill", fill, parsePaint(c.value, c.style.fill)),
+    GPGP_PROPERTY("stroke", stroke, parsePaint(c.value, c.style.stroke)),
+    GPGP_PROPERTY("fill-rule", fillRule, choose(c.value, kRules, c.style.fillRule)),
+    GPGP_PROPERTY("fill-opacity", fillOpacity, parseOpacity(c.value, c.style.fillOpacity)),
+    GPGP_PROPERTY("stroke-opacity", strokeOpacity, parseOpacity(c.value, c.style.strokeOpacity)),
+    GPGP_PROPERTY("opacity", opacity, parseOpacity(c.value, c.style.opacity)),
+    GPGP_PROPERTY("stroke-width", strokeWidth, setStrokeWidth(c)),
+    GPGP_PROPERTY("stroke-linecap", cap, choose(c.value, kCaps, c.style.cap)),
+    GPGP_PROPERTY("stroke-linejoin", join, choose(c.value, kJoins, c.style.join)),
+    GPGP_PROPERTY("stroke-miterlimit", miterLimit, setMiterLimit(c)),
+    GPGP_PROPERTY("stroke-dasharray", dashes, parseDashes(c.value, c.lengths, c.style.dashes)),
+    GPGP_PROPERTY("stroke-dashoffset", dashOffset,
+                  parseLength(c.value, c.lengths, LengthAxis::Diagonal, c.style.dashOffset)),
+    GPGP_PROPERTY("color", color, setColor(c)),
+    GPGP_PROPERTY("visibility", visible, choose(c.value, kVisibilities, c.style.visible)),
+    GPGP_PROPERTY("display", displayed, (c.style.displayed = c.value != "none", true)),
+    GPGP_PROPERTY("overflow", overflowVisible,
+                  (c.style.overflowVisible = c.value == "visible" || c.value == "auto", true)),
+    GPGP_PROPERTY("font-size", fontSize, parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize)),
+    GPGP_PROPERTY("paint-order", strokeFirst, setPaintOrder(c)),
+    GPGP_PROPERTY("vector-effect", nonScalingStroke,
+                  (c.style.nonScalingStroke = c.value.find("non-scaling-stroke") == 0, true)),
+    GPGP_PROPERTY("stop-color", stopColor, setStopColor(c)),
+    GPGP_PROPERTY("stop-opacity", stopOpacity, parseOpacity(c.value, c.style.stopOpacity)),
+    GPGP_PROPERTY("clip-path", clipPath, setRefers(c, c.style.clipPath)),
+    GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
+    GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
+    GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = c.value != "normal", true)),
+    GPGP_PROPERTY("marker", markers, setMarker(c, "marker")),
+    GPGP_PROPERTY("marker-start", markers, setMarker(c, "marker-start")),
+    GPGP_PROPERTY("marker-mid", markers, setMarker(c, "marker-mid")),
+    GPGP_PROPERTY("marker-end", markers, setMarker(c, "marker-end")),
+};
+#undef GPGP_PROPERTY
+
+const Property* findProperty(std::string_view name) {
+  for (const Property& p : kProperties)
+    if (p.name == name) return &p;
+  return nullptr;
+}
+
+} // namespace
+
+Style Style::inherited() const {
+  Style s = *this;
+  const Style fresh;
+  s.opacity = fresh.opacity;
+  s.displayed = fresh.displayed;
+  s.nonScalingStroke = fresh.nonScalingStroke;
+  s.overflowVisible = fresh.overflowVisible;
+  s.stopColor = fresh.stopColor;
+  s.stopIsCurrent = fresh.stopIsCurrent;
+  s.stopOpacity = fresh.stopOpacity;
+  s.clipPath = s.mask = s.filter = s.blendMode = false;
+  return s;
+}
+
+bool isProperty(std::string_view name) { return findProperty(name) != nullptr; }
+
+Applied applyProperty(Style& style, const Style& parent, std::string_view name, std::string_view value,
+                      const LengthContext& lengths) {
+  const Property* property = findProperty(name);
+  if (!property) return Applied::Unknown;
+  const Context context{style, parent, trim(value), lengths};
+  if (context.value == "inherit") {
+    property->inherit(context);
+    return Applied::Yes;
+  }
+  return property->set(context) ? Applied::Yes : Applied::Invalid;
+}
+
+} // namespace gpgp::vector::svg

@@ -1,0 +1,60 @@
+// Presentation properties: what an element looks like, from its parent, its attributes and the style sheets.
+#pragma once
+#include "vector/import/svg/scanner.h"
+#include "vector/import/svg/stroke.h"
+
+#include <string>
+#include <string_view>
+
+namespace gpgp::vector::svg {
+
+/// sRGB as files write it, 0 to 1, straight alpha.
+struct Color {
+  double r = 0, g = 0, b = 0, a = 1;
+};
+bool parseColor(std::string_view text, Color& color);
+double linearFromSrgb(double value);
+
+struct Paint {
+  enum class Kind { None, Solid, Current, Reference };
+  Kind kind = Kind::None;
+  Color color;
+  std::string reference;      ///< "#id"
+  Kind fallback = Kind::None; ///< of a reference that cannot be followed
+  bool hasFallback = false;
+};
+
+struct Style {
+  // inherited
+  Paint fill{Paint::Kind::Solid, {}, {}, Paint::Kind::None, false}, stroke;
+  GpgpFillRule fillRule = GPGP_FILL_NON_ZERO;
+  double fillOpacity = 1, strokeOpacity = 1, strokeWidth = 1, miterLimit = 4, dashOffset = 0;
+  Cap cap = Cap::Butt;
+  Join join = Join::Miter;
+  std::vector<double> dashes;
+  Color color;
+  bool visible = true, strokeFirst = false;
+  double fontSize = 16;
+  std::string markers; ///< the property that asks for some
+  // not inherited
+  double opacity = 1;
+  bool displayed = true, nonScalingStroke = false, overflowVisible = false;
+  Color stopColor;
+  bool stopIsCurrent = false;
+  double stopOpacity = 1;
+  /// clip-path, mask and filter where they refer to something, mix-blend-mode where it is not normal.
+  bool clipPath = false, mask = false, filter = false, blendMode = false;
+
+  /// What a child begins with.
+  Style inherited() const;
+};
+
+/// Whether an attribute of this name is a presentation property we know.
+bool isProperty(std::string_view name);
+
+enum class Applied { Yes, Unknown, Invalid };
+/// Sets one property. `parent` answers "inherit". Lengths in the value use `lengths` (its font size is the element's).
+Applied applyProperty(Style& style, const Style& parent, std::string_view name, std::string_view value,
+                      const LengthContext& lengths);
+
+} // namespace gpgp::vector::svg
