@@ -365,8 +365,9 @@ typedef struct GpgpImage {
   VkImage image;
   VkImageView view; /**< 2D, one mip level, one layer */
   VkFormat format;
-  uint32_t width, height;
-  GpgpAccess before; /**< layout UNDEFINED: contents may be lost */
+  uint32_t mipLevel, arrayLayer; /**< that the view shows: barriers touch no other part of the image */
+  uint32_t width, height;        /**< of that level */
+  GpgpAccess before;             /**< layout UNDEFINED: contents may be lost */
   GpgpAccess after;
 } GpgpImage;
 

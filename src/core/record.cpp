@@ -204,7 +204,7 @@ void Worker::edgeBarrier(const Record& record, bool entry) const {
       barrier.newLayout = entry ? VK_IMAGE_LAYOUT_GENERAL : access.layout;
       barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
       barrier.image = binding.image->image;
-      barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+      barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, binding.image->mipLevel, 1, binding.image->arrayLayer, 1};
     }
   }
   VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};

@@ -69,10 +69,9 @@ Result<void> fillRequirements(const GpgpRequirementsInfo& info, GpgpRequirements
     return {};
   }
 
-  const bool hasSync2 = device.apiVersion >= VK_API_VERSION_1_3 ||
-                        hasExtension(*vki, info.physicalDevice, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
-  const bool hasDynamic = device.apiVersion >= VK_API_VERSION_1_3 ||
-                          hasExtension(*vki, info.physicalDevice, VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME);
+  // Both are core since 1.3, but an engine's instance may be older than its device: so always as extensions.
+  const bool hasSync2 = hasExtension(*vki, info.physicalDevice, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
+  const bool hasDynamic = hasExtension(*vki, info.physicalDevice, VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME);
   VkPhysicalDeviceFeatures2 have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
   VkPhysicalDeviceVulkan11Features have11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
   VkPhysicalDeviceVulkan12Features have12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
@@ -110,8 +109,8 @@ Result<void> fillRequirements(const GpgpRequirementsInfo& info, GpgpRequirements
     *last = &out.dynamicRendering, last = &out.dynamicRendering.pNext;
   }
   *last = nullptr;
-  // Core since 1.3; below that the two extensions, in the order of kAllExtensions.
-  if (device.apiVersion < VK_API_VERSION_1_3 && (hasSync2 || hasDynamic)) {
+  if (hasSync2 || hasDynamic) { // neighbours in kAllExtensions
+
     out.extensions = hasSync2 ? kAllExtensions : kAllExtensions + 1;
     out.extensionCount = static_cast<uint32_t>(hasSync2) + static_cast<uint32_t>(hasDynamic);
   }
