@@ -1,0 +1,331 @@
+// The SVG importer: elements and attributes against closed forms, messages with their lines, real drawings, hostile
+// input.
+#include "oracle.h"
+#include "vector/import/svg/import.h"
+#include "vector/patch/drawing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <random>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+using vector::svg::Imported;
+
+struct Import {
+  Imported drawing;
+  std::vector<std::string> messages;
+  std::string error; // empty: it is SVG
+};
+
+Import import(std::string_view text, const vector::svg::ImportLimits& limits = {}) {
+  Import result;
+  const auto listen = [](void* user, const GpgpMessage* m) {
+    static_cast<Import*>(user)->messages.push_back((m->severity == GPGP_SEVERITY_ERROR ? "E " : "W ") +
+                                                   std::string(m->text));
+  };
+  vector::svg::Reporter reporter(listen, &result, "test.svg");
+  auto drawing = vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, limits);
+  if (drawing)
+    result.drawing = std::move(*drawing);
+  else
+    result.error = drawing.error().text;
+  return result;
+}
+
+/// A page of 100 x 100 pixels around the text, which begins in line 2.
+Import page(const std::string& inside) {
+  return import("<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>\n" + inside + "</svg>");
+}
+
+/// The area by counting points of a grid, an independent look at what fills.
+double area(const vector::svg::ImportedPath& path, int grid = 500) {
+  const GpgpPath view = path.view();
+  const PathOracle oracle(view);
+  int inside = 0;
+  for (int y = 0; y < grid; ++y)
+    for (int x = 0; x < grid; ++x) inside += oracle.inside((x + 0.4989) * 100 / grid, (y + 0.5013) * 100 / grid);
+  return inside * 1e4 / grid / grid;
+}
+
+using Floats = std::vector<float>;
+using Texts = std::vector<std::string>;
+
+std::string bytesOf(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(SvgImport, PathCommands) {
+  const struct {
+    const char* d;
+    Floats points;
+  } cases[] = {
+      {"M1 2 3 4 5 6", {1, 2, 3, 4, 5, 6}},
+      {"m1 2 3 4 5 6z m1 1 1 0 0 1", {1, 2, 4, 6, 9, 12, 2, 3, 3, 3, 3, 4}},
+      {"M0 0h10v10H5V5", {0, 0, 10, 0, 10, 10, 5, 10, 5, 5}},
+      {"M1.5.5-3e1-1E-1 2 2", {1.5f, 0.5f, -30, -0.1f, 2, 2}},
+      {"M0,0C1 2,3 4,5 6s3 4 5 6", {0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8, 10, 10, 12}},
+      {"M0 0Q1 2 4 0T8 0", {0, 0, 1, 2, 4, 0, 7, -2, 8, 0}},
+      {"M1 1L2 2L3 1ZL9 9L9 1", {1, 1, 2, 2, 3, 1, 1, 1, 9, 9, 9, 1}},
+  };
+  for (const auto& c : cases) {
+    const Import i = page(std::string("<path d='") + c.d + "'/>");
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << c.d;
+    EXPECT_EQ(i.drawing.paths[0].points, c.points) << c.d;
+    EXPECT_EQ(i.messages, Texts()) << c.d;
+  }
+}
+
+TEST(SvgImport, ArcsLieOnTheirCircle) {
+  const Import i = page("<path d='M10 50a40 40 0 0180 0 40 40 0 01-80 0z'/>");
+  ASSERT_EQ(i.drawing.paths.size(), 1u);
+  EXPECT_NEAR(area(i.drawing.paths[0]), 1600 * std::numbers::pi, 8);
+  for (size_t k = 0; k < i.drawing.paths[0].points.size(); k += 6) // ends of the cubics
+    EXPECT_NEAR(std::hypot(i.drawing.paths[0].points[k] - 50, i.drawing.paths[0].points[k + 1] - 50), 40, 1e-4);
+}
+
+TEST(SvgImport, ErrorsInPathDataKeepWhatCameBefore) {
+  const Import i = page("<g>\n<path d='M0 0 L10 0 10 10\nL 5 x 7'/></g>");
+  ASSERT_EQ(i.drawing.paths.size(), 1u);
+  EXPECT_EQ(i.drawing.paths[0].points, (Floats{0, 0, 10, 0, 10, 10}));
+  EXPECT_EQ(i.messages, (Texts{"E line 4: <path> has an error in its path data at character 22; drawn up to there"}));
+}
+
+TEST(SvgImport, ShapesHaveTheirAreas) {
+  const double pi = std::numbers::pi;
+  const struct {
+    const char* element;
+    double area;
+  } cases[] = {
+      {"<rect x='10' y='20' width='50' height='30'/>", 1500},
+      {"<rect x='10%' y='20' width='50' height='30' rx='10'/>", 1500 - (4 - pi) * 100},
+      {"<rect x='10' y='20' width='50' height='30' rx='20' ry='99'/>", 1500 - (4 - pi) * 300},
+      {"<circle cx='50' cy='50' r='30'/>", 900 * pi},
+      {"<ellipse cx='50' cy='50' rx='30' ry='20'/>", 600 * pi},
+      {"<polygon points='10,10 90,10 90,90'/>", 3200},
+      {"<polyline points='10 10,90 10 90 90'/>", 3200},
+      {"<rect width='1in' height='10'/>", 960},
+      {"<rect width='20' height='10' transform='translate(30,30) rotate(30) scale(2,1) skewX(20)'/>", 400},
+      {"<rect width='20' height='10' transform='matrix(0 2 -1 0 60 10)'/>", 400},
+      {"<g transform='scale(2)'><svg x='5' y='5' width='20' height='20' viewBox='0 0 10 10'>"
+       "<rect width='10' height='5'/></svg></g>",
+       800},
+      {"<defs><rect id='a' width='10' height='10'/></defs><use href='#a' x='20' y='30'/>", 100},
+      {"<symbol id='s' viewBox='0 0 10 10'><rect width='10' height='10'/></symbol>"
+       "<use href='#s' width='40' height='20'/>",
+       400},
+      {"<path fill-rule='evenodd' d='M0 0H50V50H0zM10 10H40V40H10z'/>", 1600},
+  };
+  for (const auto& c : cases) {
+    const Import i = page(c.element);
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << c.element;
+    EXPECT_NEAR(area(i.drawing.paths[0]), c.area, 0.006 * c.area) << c.element;
+    EXPECT_EQ(i.messages, Texts()) << c.element;
+  }
+}
+
+TEST(SvgImport, StrokesCoverLengthTimesWidth) {
+  const double pi = std::numbers::pi;
+  const struct {
+    const char* element;
+    double area;
+  } cases[] = {
+      {"<path d='M10 50H90' stroke-width='10'/>", 800},
+      {"<path d='M20 50H80' stroke-width='10' stroke-linecap='square'/>", 700},
+      {"<path d='M20 50H80' stroke-width='10' stroke-linecap='round'/>", 600 + 25 * pi},
+      {"<path d='M20 20H80V80' stroke-width='20'/>", 2400},
+      {"<path d='M20 20H80V80' stroke-width='20' stroke-linejoin='bevel'/>", 2350},
+      {"<path d='M20 20H80V80' stroke-width='20' stroke-linejoin='round'/>", 2300 + 25 * pi},
+      {"<path d='M20 20H80V80' stroke-width='20' stroke-miterlimit='1'/>", 2350},
+      {"<rect x='20' y='20' width='60' height='60' stroke-width='10'/>", 2400},
+      {"<circle cx='50' cy='50' r='30' stroke-width='10'/>", 600 * pi},
+      {"<circle cx='50' cy='50' r='3' stroke-width='20'/>", 169 * pi},
+      {"<path d='M10 50H90' stroke-width='10' stroke-dasharray='10'/>", 400},
+      {"<path d='M10 50H90' stroke-width='10' stroke-dasharray='10 5 5' stroke-dashoffset='-3'/>", 400},
+      {"<path d='M50 50z' stroke-width='20' stroke-linecap='round'/>", 100 * pi},
+      {"<g transform='scale(2 1)'><path d='M10 50H40' stroke-width='10'/></g>", 600},
+      {"<g transform='scale(2)'><path d='M10 25H40' stroke-width='10' vector-effect='non-scaling-stroke'/></g>", 600},
+  };
+  for (const auto& c : cases) {
+    const Import i = page(std::string("<g fill='none' stroke='red'>") + c.element + "</g>");
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << c.element;
+    EXPECT_EQ(i.drawing.paths[0].rule, GPGP_FILL_NON_ZERO);
+    EXPECT_NEAR(area(i.drawing.paths[0]), c.area, 0.01 * c.area) << c.element;
+  }
+}
+
+TEST(SvgImport, Colours) {
+  const struct {
+    const char* attributes;
+    std::array<double, 4> srgb;
+  } cases[] = {
+      {"", {0, 0, 0, 1}},
+      {"fill='#f00'", {1, 0, 0, 1}},
+      {"fill='#00ff0080'", {0, 1, 0, 128 / 255.0}},
+      {"fill='RebeccaPurple'", {0.4, 0.2, 0.6, 1}},
+      {"fill='rgb(51, 102,153)'", {0.2, 0.4, 0.6, 1}},
+      {"fill='rgba(20%,40%,60%,.5)' fill-opacity='.5'", {0.2, 0.4, 0.6, 0.25}},
+      {"color='blue' fill='currentColor'", {0, 0, 1, 1}},
+      {"fill='red' style='fill: lime'", {0, 1, 0, 1}},
+      {"class='x y' fill='red'", {0, 0, 1, 1}},
+      {"class='y' id='i' fill='red'", {1, 1, 0, 1}},
+      {"class='z' style='fill:red'", {1, 1, 1, 1}},
+      {"fill='inherit' opacity='0.5'", {0, 0, 0, 0.5}},
+  };
+  for (const auto& c : cases) {
+    const Import i = page(std::string("<style>/* c */ rect.y, .x { fill: blue } #i{fill:yellow} .z{fill:white "
+                                      "!important}</style><rect width='9' height='9' ") +
+                          c.attributes + "/>");
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << c.attributes;
+    for (size_t k = 0; k < 4; ++k) {
+      const double v = c.srgb[k], linear = k == 3 ? v : v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+      EXPECT_NEAR(i.drawing.paths[0].color[k], linear, 1e-6) << c.attributes << " " << k;
+    }
+  }
+}
+
+TEST(SvgImport, WhatIsNotShownIsNoPath) {
+  for (const char* a : {"fill='none'", "display='none'", "visibility='hidden'", "opacity='0'", "style='fill:none'"})
+    EXPECT_TRUE(page(std::string("<rect width='9' height='9' ") + a + "/>").drawing.paths.empty()) << a;
+  EXPECT_EQ(page("<g visibility='hidden'><rect width='9' height='9' visibility='visible'/></g>").drawing.paths.size(),
+            1u);
+}
+
+TEST(SvgImport, MessagesNameElementAndLine) {
+  const struct {
+    const char* text;
+    const char* message;
+  } cases[] = {
+      {"<text x='1'>a</text>", "W line 2: <text> is not supported"},
+      {"\n<image href='a.png'/>", "W line 3: <image> is not supported"},
+      {"<rect width='9' height='9' clip-path='url(#c)'/>",
+       "W line 2: clip-path is not supported: <rect> is drawn without it"},
+      {"<rect width='9' height='9' filter='url(#c)'/>",
+       "W line 2: filter is not supported: <rect> is drawn without it"},
+      {"<linearGradient id='g'><stop stop-color='red'/></linearGradient>\n<rect width='9' height='9' fill='url(#g)'/>",
+       "W line 3: gradient approximated by its average colour: <rect> fill"},
+      {"<pattern id='p'/><rect width='9' height='9' fill='url(#p) red'/>",
+       "W line 2: <rect> fill refers to a <pattern>, which is not supported; its fallback is used"},
+      {"<g opacity='.5'><rect width='9' height='9'/><rect width='9' height='9'/></g>",
+       "W line 2: opacity of <g> is applied to each of its paths, not to the whole"},
+      {"<g id='a'><use href='#a'/></g>", "E line 2: <use> of '#a' contains itself; not drawn"},
+      {"<use href='#no'/>", "E line 2: <use> refers to '#no', which is not there"},
+      {"<circle r='-1'/>", "E line 2: <circle> has a negative r"},
+      {"<rect width='9' height='nan'/>", "E line 2: <rect> has height 'nan', which is no length"},
+      {"<rect width='1e30' height='9'/>", "E line 2: <rect> reaches beyond 10000000 pixels; not drawn"},
+      {"<rect width='9' height='9' transform='turn(3)'/>",
+       "E line 2: <rect> has an error in its transform, which is ignored"},
+      {"<style>\ng rect { fill: red }</style>", "W line 3: style selector 'g rect' is not supported"},
+      {"<rect width='9' height='9' fill='blurple'/>",
+       "W line 2: <rect> has fill 'blurple', which is not valid; ignored"},
+  };
+  for (const auto& c : cases) EXPECT_EQ(page(c.text).messages, Texts{c.message});
+}
+
+TEST(SvgImport, ThePageIsWhatTheFileSays) {
+  const Import fitted = import("<svg xmlns='http://www.w3.org/2000/svg' width='200' height='100' viewBox='10 10 10 10'>"
+                               "<rect x='10' y='10' width='10' height='10'/></svg>");
+  EXPECT_EQ(fitted.drawing.width, 200);
+  EXPECT_EQ(fitted.drawing.paths.at(0).points, (Floats{50, 0, 150, 0, 150, 100, 50, 100}));
+  const Import filled = import("<svg width='200' height='100' viewBox='0 0 10 10' preserveAspectRatio='none'>"
+                               "<path d='M0 0H10V10'/></svg>");
+  EXPECT_EQ(filled.drawing.paths.at(0).points, (Floats{0, 0, 200, 0, 200, 100}));
+  EXPECT_EQ(import("<svg viewBox='0 0 30 20' width='100%'/>").drawing.width, 30);
+  EXPECT_EQ(import("<svg/>").drawing.width, 0);
+}
+
+TEST(SvgImport, CompilesToADrawingWithThePage) {
+  const std::string text = bytesOf(GPGP_TEST_DATA "/svg/hud.svg");
+  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+  source.data = text.data();
+  source.size = text.size();
+  GpgpBlob blob{};
+  ASSERT_EQ(gpgpCompileSvg(&source, &blob), GPGP_SUCCESS);
+  const auto drawing =
+      vector::loadBaked({static_cast<const std::byte*>(blob.data), blob.size}, std::pmr::get_default_resource());
+  std::free(blob.data);
+  ASSERT_TRUE(drawing) << drawing.error().text;
+  EXPECT_EQ(drawing->paths.size(), 43u);
+  EXPECT_EQ(drawing->viewport[2], 1280);
+  EXPECT_EQ(drawing->viewport[3], 720);
+  source.size = 20;
+  EXPECT_EQ(gpgpCompileSvg(&source, &blob), GPGP_ERROR_INVALID_DATA);
+  source.sType = 0;
+  EXPECT_EQ(gpgpCompileSvg(&source, &blob), GPGP_ERROR_INVALID_STRUCT);
+}
+
+TEST(SvgImport, NoSvgIsAnError) {
+  EXPECT_NE(import("this is no drawing").error, "");
+  EXPECT_NE(import("").error, "");
+  EXPECT_EQ(import("<html/>").error, "line 1: the outermost element is <html>, not <svg>");
+  EXPECT_EQ(import("<svg>\n<g>\n</svg>").error.substr(0, 6), "line 3");
+  EXPECT_EQ(import("\x1f\x8b\x08").error, "the gzip data is truncated");
+}
+
+TEST(SvgImport, HostileInputIsBounded) {
+  std::string deep, copies = "<g id='c0'><rect width='1' height='1'/></g>";
+  for (int i = 0; i < 100000; ++i) deep += "<g>";
+  for (int i = 0; i < 100000; ++i) deep += "</g>";
+  EXPECT_EQ(page(deep).messages, (Texts{"E line 2: elements are nested deeper than 200; what is inside is not drawn"}));
+  for (int i = 1; i < 40; ++i) {
+    const std::string last = "<use href='#c" + std::to_string(i - 1) + "'/>";
+    copies += "<g id='c" + std::to_string(i) + "'>" + last + last + last + "</g>";
+  }
+  vector::svg::ImportLimits limits;
+  limits.elements = 10000;
+  const Import many = import("<svg>" + copies + "</svg>", limits);
+  EXPECT_EQ(many.messages, (Texts{"E line 1: more than 10000 elements; the rest is not drawn"}));
+  EXPECT_LE(many.drawing.paths.size(), 10000u);
+  EXPECT_EQ(page("<path d='M0 0H90' stroke='red' stroke-dasharray='1e-9'/>").messages,
+            (Texts{"E line 2: <path> has too many dashes; drawn without"}));
+  EXPECT_EQ(import("<!DOCTYPE svg [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;&a;'>]><svg>&b;</svg>").error, "");
+}
+
+TEST(SvgImport, RealDrawings) {
+  for (const auto& [name, paths] : {std::pair{"tiger", 250u}, {"car", 400u}, {"gallardo", 300u}}) {
+    const std::string file = GPGP_TEST_DATA "/fetched/svg/" + std::string(name) + ".svgz";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is missing: run tests/data/fetch.sh";
+    const Import i = import(bytesOf(file));
+    EXPECT_EQ(i.error, "");
+    EXPECT_GT(i.drawing.paths.size(), paths) << name;
+    EXPECT_GT(i.drawing.width, 0) << name;
+  }
+}
+
+TEST(SvgImport, ManyDrawingsAndDamagedOnes) {
+  const std::string folder = GPGP_TEST_DATA "/fetched/openclipart";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is missing: run tests/data/fetch.sh";
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.path().string().find(".svg") != std::string::npos) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::mt19937 random(7);
+  std::shuffle(files.begin(), files.end(), random);
+  files.resize(std::min(files.size(), size_t{300}));
+  size_t drawn = 0, refused = 0;
+  for (const std::string& file : files) {
+    std::string bytes = bytesOf(file);
+    const Import i = import(bytes);
+    drawn += !i.drawing.paths.empty();
+    for (const auto& path : i.drawing.paths)
+      for (const float v : path.points) ASSERT_LE(std::fabs(v), 1e7f) << file;
+    if (bytes.size() > 200000) continue;
+    bytes.resize(random() % (bytes.size() + 1));
+    refused += !import(bytes).error.empty();
+    for (int k = 0; k < 20 && !bytes.empty(); ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
+    import(bytes);
+  }
+  EXPECT_GT(drawn, files.size() * 9 / 10);
+  EXPECT_GT(refused, files.size() / 2);
+}
+
+} // namespace
