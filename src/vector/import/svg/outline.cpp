@@ -1,4 +1,4 @@
-// Arcs, rectangles and ellipses as cubics. The error of the usual cubic for an arc of angle a is r 2.73e-4 (a / 90°)^6,
+// Arcs, rectangles and ellipses as cubics. The usual cubic for an arc of angle a is off by r 2.73e-4 (a / 90 deg)^6,
 // so the number of pieces follows from the tolerance.
 #include "vector/import/svg/outline.h"
 
