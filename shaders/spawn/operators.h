@@ -97,14 +97,13 @@ GPGP_FN uint sideCount(GPGP_GRAPH uint geometry) {
 
 /// The edge that a conditional or random operator takes.
 GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op) {
-  if (op == kOpIf) return parameter(GPGP_G s, 0u) != 0.0f ? 0u : 1u;
-  if (op == kOpIfSizeLess)
-    return component(s.size, graphWords[s.node + kNodeArgument]) < parameter(GPGP_G s, 0u) ? 0u : 1u;
+  const float first = parameter(GPGP_G s, 0u);
+  if (op == kOpIf) return first != 0.0f ? 0u : 1u;
+  if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
   const uint count = graphWords[s.node + kNodeEdgeCount];
   float total = 0.0f;
   for (uint i = 0u; i < count; ++i) total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u)));
-  const float chance = parameter(GPGP_G s, 0u);
-  const float x = multiply(subtract(chance, floor(chance)), total);
+  const float x = multiply(subtract(first, floor(first)), total);
   float sum = 0.0f;
   uint chosen = 0u;
   for (uint i = 0u; i < count; ++i) {
@@ -119,13 +118,17 @@ GPGP_FN float scaled(float size, float v) { return v < 0.0f ? multiply(size, -v)
 
 /// The shape after one of the operators that pass on exactly one shape; its node stays.
 GPGP_FN Shape transformed(GPGP_GRAPH Shape s, uint op) {
+  // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called.
+  vec3 value = vec3(0.0f);
+  const uint count = min(graphWords[s.node + kNodeParameterCount], 3u);
+  for (uint i = 0u; i < count; ++i) value = withComponent(value, i, parameter(GPGP_G s, i));
   Shape r = s;
   if (op == kOpTranslate) {
-    r.position = framePoint(s, vec3(parameter(GPGP_G s, 0u), parameter(GPGP_G s, 1u), parameter(GPGP_G s, 2u)));
+    r.position = framePoint(s, value);
   } else if (op == kOpRotate) {
-    const vec2 x = sineCosineDegrees(parameter(GPGP_G s, 0u));
-    const vec2 y = sineCosineDegrees(parameter(GPGP_G s, 1u));
-    const vec2 z = sineCosineDegrees(parameter(GPGP_G s, 2u));
+    const vec2 x = sineCosineDegrees(value.x);
+    const vec2 y = sineCosineDegrees(value.y);
+    const vec2 z = sineCosineDegrees(value.z);
     // columns of Rz * Ry * Rx
     const float sxsy = multiply(x.x, y.x);
     const float cxsy = multiply(x.y, y.x);
@@ -138,13 +141,12 @@ GPGP_FN Shape transformed(GPGP_GRAPH Shape s, uint op) {
     r.axisY = frameDirection(s, c1);
     r.axisZ = frameDirection(s, c2);
   } else if (op == kOpScale) {
-    r.size = vec3(scaled(s.size.x, parameter(GPGP_G s, 0u)), scaled(s.size.y, parameter(GPGP_G s, 1u)),
-                  scaled(s.size.z, parameter(GPGP_G s, 2u)));
+    r.size = vec3(scaled(s.size.x, value.x), scaled(s.size.y, value.y), scaled(s.size.z, value.z));
   } else if (op == kOpExtrude) {
     if (isPolygon(shapeType(s))) { // solids stay as they are
       r.axisY = s.axisZ;
       r.axisZ = vec3(settle(-s.axisY.x), settle(-s.axisY.y), settle(-s.axisY.z));
-      r.size = vec3(s.size.x, scaled(s.size.z, parameter(GPGP_G s, 0u)), s.size.y);
+      r.size = vec3(s.size.x, scaled(s.size.z, value.x), s.size.y);
       r.geometry = prismOf(shapeType(s)) | (s.geometry & 0xffffff00u);
       r.seed = childSeed(s.seed, 0u);
     }
@@ -236,14 +238,14 @@ GPGP_FN Shape childOf(GPGP_GRAPH Shape s, uint successors, uint index) {
     const Division d = divisionOf(GPGP_G s);
     float fixedBefore = 0.0f;
     float weightBefore = 0.0f;
-    for (uint i = 0u; i < successor; ++i) {
-      const float v = parameter(GPGP_G s, i);
-      if (v > 0.0f)
-        fixedBefore = add(fixedBefore, v);
+    float own = 0.0f;
+    for (uint i = 0u; i <= successor; ++i) {
+      if (own > 0.0f)
+        fixedBefore = add(fixedBefore, own);
       else
-        weightBefore = subtract(weightBefore, v);
+        weightBefore = subtract(weightBefore, own);
+      own = parameter(GPGP_G s, i);
     }
-    const float own = parameter(GPGP_G s, successor);
     const float extent = own > 0.0f ? own : shareOf(d, -own);
     const float start = weightBefore > 0.0f ? add(fixedBefore, shareOf(d, weightBefore)) : fixedBefore;
     const float centre = subtract(add(start, multiply(extent, 0.5f)), multiply(component(s.size, axis), 0.5f));
