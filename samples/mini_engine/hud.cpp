@@ -13,13 +13,17 @@ void GPGP_CALL onSvgMessage(void*, const GpgpMessage* message) {
   std::fprintf(stderr, "svg: %s: %s\n", message->label, message->text);
 }
 
-/// Puts a drawing's page into a rectangle, undistorted, in its middle.
-void fit(const GpgpDrawingInfo& drawing, float left, float top, float width, float height, float (&transform)[6]) {
-  const float scale = std::min(width / drawing.viewport[2], height / drawing.viewport[3]);
+struct Rectangle {
+  float x, y, width, height;
+};
+
+/// Drawing space to pixels: puts one rectangle into another, undistorted, in its middle.
+void fit(const Rectangle& from, const Rectangle& to, float (&transform)[6]) {
+  const float scale = std::min(to.width / from.width, to.height / from.height);
   transform[0] = transform[3] = scale;
   transform[1] = transform[2] = 0.0f;
-  transform[4] = left + (width - drawing.viewport[2] * scale) * 0.5f - drawing.viewport[0] * scale;
-  transform[5] = top + (height - drawing.viewport[3] * scale) * 0.5f - drawing.viewport[1] * scale;
+  transform[4] = to.x + (to.width - from.width * scale) * 0.5f - from.x * scale;
+  transform[5] = to.y + (to.height - from.height * scale) * 0.5f - from.y * scale;
 }
 
 } // namespace
@@ -83,10 +87,13 @@ void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
     GpgpCanvasItem entry{};
     entry.drawing = item.drawing;
     entry.opacity = 1.0f;
-    if (item.isFrame)
-      fit(item.info, 0, 0, width, height, entry.transform);
-    else
-      fit(item.info, height * 0.033f, height * 0.033f, height * 0.272f, height * 0.272f, entry.transform);
+    const float* page = item.info.viewport;
+    const float* ink = item.info.bounds;
+    if (item.isFrame) // its whole page covers the picture
+      fit({page[0], page[1], page[2], page[3]}, {0, 0, width, height}, entry.transform);
+    else // what is drawn, without the page's margins, fills the panel
+      fit({ink[0], ink[1], ink[2] - ink[0], ink[3] - ink[1]},
+          {height * 0.028f, height * 0.028f, height * 0.283f, height * 0.283f}, entry.transform);
     items.push_back(entry);
   }
   auto info = gpgp::init<GpgpCanvasInfo>();
