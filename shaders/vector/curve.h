@@ -16,6 +16,41 @@
 
 GPGP_SHADER_BEGIN
 
+// One halving of the cubic p0 p1 p2 p3, with the decision of the box that is left.
+#define GPGP_VECTOR_HALVE                                                                                              \
+  if (bend > tolerance) {                                                                                              \
+    bend *= 0.125f;                                                                                                    \
+    GPGP_PRECISE float sx = (p0x + p1x) * 0.5f;                                                                        \
+    GPGP_PRECISE float sy = (p0y + p1y) * 0.5f;                                                                        \
+    GPGP_PRECISE float tx = (p1x + p2x) * 0.5f;                                                                        \
+    GPGP_PRECISE float ty = (p1y + p2y) * 0.5f;                                                                        \
+    GPGP_PRECISE float dx = (p2x + p3x) * 0.5f;                                                                        \
+    GPGP_PRECISE float dy = (p2y + p3y) * 0.5f;                                                                        \
+    GPGP_PRECISE float ex = (sx + tx) * 0.5f;                                                                          \
+    GPGP_PRECISE float ey = (sy + ty) * 0.5f;                                                                          \
+    GPGP_PRECISE float fx = (tx + dx) * 0.5f;                                                                          \
+    GPGP_PRECISE float fy = (ty + dy) * 0.5f;                                                                          \
+    GPGP_PRECISE float mx = (ex + fx) * 0.5f;                                                                          \
+    GPGP_PRECISE float my = (ey + fy) * 0.5f;                                                                          \
+    if (v < my) {                                                                                                      \
+      p1x = sx;                                                                                                        \
+      p1y = sy;                                                                                                        \
+      p2x = ex;                                                                                                        \
+      p2y = ey;                                                                                                        \
+      p3x = mx;                                                                                                        \
+      p3y = my;                                                                                                        \
+    } else {                                                                                                           \
+      p0x = mx;                                                                                                        \
+      p0y = my;                                                                                                        \
+      p1x = fx;                                                                                                        \
+      p1y = fy;                                                                                                        \
+      p2x = dx;                                                                                                        \
+      p2y = dy;                                                                                                        \
+    }                                                                                                                  \
+    if (u < min(p0x, p3x)) return false;                                                                               \
+    if (u >= max(p0x, p3x)) return true;                                                                               \
+  }
+
 // Whether (x, y) lies right of the curve or on it. y is clamped to the curve's range.
 GPGP_FN bool rightOfCurve(CurveRecord c, float x, float y, float tolerance) {
   GPGP_PRECISE float u = x - c.ends.x;
@@ -33,37 +68,13 @@ GPGP_FN bool rightOfCurve(CurveRecord c, float x, float y, float tolerance) {
   GPGP_PRECISE float p2x = c.controls.z;
   GPGP_PRECISE float p2y = c.controls.w;
   float bend = c.bend;
-  for (uint i = 0u; i < 8u && bend > tolerance; ++i) {
-    bend *= 0.125f;
-    GPGP_PRECISE float ax = (p0x + p1x) * 0.5f;
-    GPGP_PRECISE float ay = (p0y + p1y) * 0.5f;
-    GPGP_PRECISE float bx = (p1x + p2x) * 0.5f;
-    GPGP_PRECISE float by = (p1y + p2y) * 0.5f;
-    GPGP_PRECISE float dx = (p2x + p3x) * 0.5f;
-    GPGP_PRECISE float dy = (p2y + p3y) * 0.5f;
-    GPGP_PRECISE float ex = (ax + bx) * 0.5f;
-    GPGP_PRECISE float ey = (ay + by) * 0.5f;
-    GPGP_PRECISE float fx = (bx + dx) * 0.5f;
-    GPGP_PRECISE float fy = (by + dy) * 0.5f;
-    GPGP_PRECISE float mx = (ex + fx) * 0.5f;
-    GPGP_PRECISE float my = (ey + fy) * 0.5f;
-    if (v < my) {
-      p1x = ax;
-      p1y = ay;
-      p2x = ex;
-      p2y = ey;
-      p3x = mx;
-      p3y = my;
-    } else {
-      p0x = mx;
-      p0y = my;
-      p1x = fx;
-      p1y = fy;
-      p2x = dx;
-      p2y = dy;
-    }
-    if (u < min(p0x, p3x)) return false;
-    if (u >= max(p0x, p3x)) return true;
+  // Written out three times, because lavapipe ends a shader's loops after 65535 rounds in all; more than three
+  // halvings are rare.
+  GPGP_VECTOR_HALVE
+  GPGP_VECTOR_HALVE
+  GPGP_VECTOR_HALVE
+  for (uint i = 3u; i < 8u && bend > tolerance; ++i) {
+    GPGP_VECTOR_HALVE
   }
   GPGP_PRECISE float wx = u - p0x;
   GPGP_PRECISE float wy = v - p0y;

@@ -44,8 +44,11 @@ void main() {
     if (nextPath != path) {
       if (mask != 0) {
         const vec4 source = paths[path].color;
-        for (uint i = 0; i < 4; ++i)
-          if ((mask & (1u << i)) != 0) color[i] = source + color[i] * (1.0 - source.a);
+        const float keep = 1.0 - source.a;
+        if ((mask & 1) != 0) color[0] = source + color[0] * keep;
+        if ((mask & 2) != 0) color[1] = source + color[1] * keep;
+        if ((mask & 4) != 0) color[2] = source + color[2] * keep;
+        if ((mask & 8) != 0) color[3] = source + color[3] * keep;
       }
       path = nextPath;
       mask = 0;
@@ -56,7 +59,15 @@ void main() {
       mask = (1u << count) - 1;
     else {
       const PatchRecord p = patches[index];
-      mask |= coverageMask(items[p.item], p, curves[p.left], curves[p.right], pixel.x, pixel.y, first, count, n, flags);
+      const CurveRecord l = curves[p.left], r = curves[p.right];
+      const ItemRecord item = items[p.item];
+      // Written out for the same reason as the halvings of curve.h.
+      mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first, n, flags));
+      if (count == 4) {
+        mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first + 1, n, flags)) << 1;
+        mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first + 2, n, flags)) << 2;
+        mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first + 3, n, flags)) << 3;
+      }
     }
   }
   vec4 sum = color[0];

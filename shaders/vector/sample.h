@@ -32,18 +32,23 @@ GPGP_FN bool insidePatch(PatchRecord p, CurveRecord left, CurveRecord right, flo
   return (flags & kTestRight) == 0u || !rightOfCurve(right, x, y, tolerance);
 }
 
+// Whether sample i of n of a pixel lies in a patch.
+GPGP_FN bool sampleInside(ItemRecord item, PatchRecord p, CurveRecord left, CurveRecord right, uint pixelX, uint pixelY,
+                          uint i, uint n, uint flags) {
+  GPGP_PRECISE float step = sampleStep(n);
+  GPGP_PRECISE float px = float(pixelX) + (float(i) + 0.5f) * step;
+  GPGP_PRECISE float py = float(pixelY) + (float(sampleRow(i, n)) + 0.5f) * step;
+  float x = drawingX(item, px, py);
+  float y = drawingY(item, px, py);
+  return insidePatch(p, left, right, x, y, item.tolerance, flags);
+}
+
 // Samples first ... first + count - 1 of n of a pixel, as bits 0 ... count - 1.
 GPGP_FN uint coverageMask(ItemRecord item, PatchRecord p, CurveRecord left, CurveRecord right, uint pixelX, uint pixelY,
                           uint first, uint count, uint n, uint flags) {
   uint mask = 0u;
-  GPGP_PRECISE float step = sampleStep(n);
-  for (uint i = 0u; i < count; ++i) {
-    GPGP_PRECISE float px = float(pixelX) + (float(first + i) + 0.5f) * step;
-    GPGP_PRECISE float py = float(pixelY) + (float(sampleRow(first + i, n)) + 0.5f) * step;
-    float x = drawingX(item, px, py);
-    float y = drawingY(item, px, py);
-    if (insidePatch(p, left, right, x, y, item.tolerance, flags)) mask |= 1u << i;
-  }
+  for (uint i = 0u; i < count; ++i)
+    if (sampleInside(item, p, left, right, pixelX, pixelY, first + i, n, flags)) mask |= 1u << i;
   return mask;
 }
 

@@ -90,4 +90,20 @@ int PathOracle::winding(double x, double y) const {
   return winding;
 }
 
+std::vector<PathOracle::Crossing> PathOracle::crossings(double y) const {
+  std::vector<Crossing> row;
+  for (const Piece& p : pieces_) {
+    const bool down = p.y0 <= y && y < p.y1, up = p.y1 <= y && y < p.y0;
+    if (!down && !up) continue;
+    double low = p.t0, high = p.t1;
+    for (int i = 0; i < 40; ++i) {
+      const double t = 0.5 * (low + high);
+      ((bernstein(p.c, 1, t) <= y) == down ? low : high) = t;
+    }
+    row.push_back({bernstein(p.c, 0, 0.5 * (low + high)), down ? 1 : -1});
+  }
+  std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+  return row;
+}
+
 } // namespace gpgp::test

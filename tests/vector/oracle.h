@@ -49,6 +49,12 @@ public:
     return inside(x - distance, y) == in && inside(x + distance, y) == in && inside(x, y - distance) == in &&
            inside(x, y + distance) == in;
   }
+  struct Crossing {
+    double x;
+    int direction;
+  };
+  /// All crossings of a row, from left to right.
+  std::vector<Crossing> crossings(double y) const;
   double left = 1e30, top = 1e30, right = -1e30, bottom = -1e30;
   /// The largest coordinate, in magnitude.
   double magnitude() const;

@@ -1,0 +1,502 @@
+// The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, the draw path, bad arguments, and
+// real drawings against a truth of 256 samples a pixel made from winding numbers.
+#include "host/files.h"
+#include "host/frames.h"
+#include "host/memory.h"
+#include "host/picture.h"
+#include "oracle.h"
+#include "vector/import/svg/import.h"
+#include "vector/patch/drawing.h"
+#include "vector/raster/place.h"
+#include "vector/sample.h"
+
+#include <gpgp/vector.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <random>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+
+float fromHalf(uint16_t h) {
+  const int exponent = (h >> 10) & 31;
+  const float mantissa = static_cast<float>(h & 1023);
+  const float value = exponent ? std::ldexp(1024 + mantissa, exponent - 25) : std::ldexp(mantissa, -24);
+  return h >> 15 ? -value : value;
+}
+
+struct Rgba {
+  float r = 0, g = 0, b = 0, a = 0;
+};
+
+struct CanvasTest : testing::Test {
+  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  GpgpContext context = nullptr;
+  GpgpWorker canvas = nullptr;
+  std::vector<std::string> messages;
+  uint64_t number = 0;
+
+  void SetUp() override {
+    GpgpContextCreateInfo info = device.contextCreateInfo();
+    info.messageUserData = &messages;
+    info.messageFn = [](void* user, const GpgpMessage* m) {
+      static_cast<std::vector<std::string>*>(user)->push_back(m->text);
+    };
+    ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+  }
+  void TearDown() override {
+    device.waitIdle();
+    gpgpDestroyContext(context);
+    for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+  }
+  std::string lastMessage() const { return messages.empty() ? "" : messages.back(); }
+
+  void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t patches = 0,
+                  const GpgpTargetInfo* target = nullptr) {
+    GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+    info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+    info.maxWidth = info.maxHeight = size;
+    info.maxTileEntries = entries;
+    info.maxPatches = patches ? patches : 65536;
+    ASSERT_EQ(gpgpCreateCanvas(context, &info, &canvas), GPGP_SUCCESS) << lastMessage();
+    GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
+    prewarm.targets = target;
+    prewarm.targetCount = target ? 1 : 0;
+    ASSERT_EQ(gpgpPrewarm(canvas, &prewarm), GPGP_SUCCESS) << lastMessage();
+  }
+  GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths) {
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = paths.data();
+    info.pathCount = static_cast<uint32_t>(paths.size());
+    GpgpAsset drawing = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), GPGP_SUCCESS) << lastMessage();
+    return drawing;
+  }
+  GpgpView makeView(uint32_t width, uint32_t height) {
+    GpgpCanvasViewCreateInfo info = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
+    info.width = width;
+    info.height = height;
+    GpgpView view = nullptr;
+    EXPECT_EQ(gpgpCreateCanvasView(context, &info, &view), GPGP_SUCCESS) << lastMessage();
+    return view;
+  }
+  GpgpFrame advance() {
+    ++number;
+    const GpgpFrame frame{number, number - 1};
+    EXPECT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS);
+    return frame;
+  }
+  static GpgpCanvasItem place(GpgpAsset drawing, float scale = 1, float x = 0, float y = 0) {
+    return {drawing, {scale, 0, 0, scale, x, y}, 1};
+  }
+
+  /// Rasterises into a half-float image and reads it back.
+  std::vector<Rgba> raster(const std::vector<GpgpCanvasItem>& items, uint32_t width, uint32_t height, uint32_t samples,
+                           GpgpCanvasReport* report = nullptr) {
+    const host::Image image(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = width, .height = height});
+    const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+    const GpgpFrame frame = advance();
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+      GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+      info.width = width;
+      info.height = height;
+      info.items = items.data();
+      info.itemCount = static_cast<uint32_t>(items.size());
+      info.samples = samples;
+      info.target = image.target({}, after);
+      EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
+    });
+    advance();
+    GpgpCanvasReport taken = GPGP_CANVAS_REPORT_INIT;
+    EXPECT_EQ(gpgpGetCanvasReport(canvas, &taken), GPGP_SUCCESS);
+    if (report) *report = taken;
+    const std::vector<uint8_t> bytes = host::downloadImage(device, image, VK_IMAGE_LAYOUT_GENERAL);
+    std::vector<Rgba> pixels(size_t(width) * height);
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      uint16_t h[4];
+      std::memcpy(h, bytes.data() + i * 8, 8);
+      pixels[i] = {fromHalf(h[0]), fromHalf(h[1]), fromHalf(h[2]), fromHalf(h[3])};
+    }
+    return pixels;
+  }
+};
+
+TestPath randomShape(uint32_t seed, float size) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> at(-0.1f * size, 1.1f * size);
+  TestPath path;
+  path.move(at(random), at(random));
+  for (int i = 0; i < 8; ++i) {
+    const float a = at(random), b = at(random), c = at(random), d = at(random), e = at(random), f = at(random);
+    if (i % 3 == 0) path.line(a, b);
+    if (i % 3 == 1) path.quad(a, b, c, d);
+    if (i % 3 == 2) path.cubic(a, b, c, d, e, f);
+  }
+  path.close();
+  path.color = {1, 1, 1, 1};
+  return path;
+}
+
+/// Samples that a path covers in a pixel, from all its patches, without tiles: the CPU twin.
+uint32_t twinMask(const vector::Drawing& d, const shader::ItemRecord& item, uint32_t x, uint32_t y, uint32_t n) {
+  uint32_t mask = 0;
+  for (const auto& patch : d.patches)
+    mask |= shader::coverageMask(item, patch, d.curves[patch.left], d.curves[patch.right], x, y, 0, n, n,
+                                 shader::kTestLeft | shader::kTestRight | shader::kTestRows);
+  return mask;
+}
+
+TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
+  makeCanvas(128);
+  for (uint32_t seed = 0; seed < 4; ++seed) {
+    TestPath path = randomShape(seed, 90);
+    path.rule = seed % 2 ? GPGP_FILL_EVEN_ODD : GPGP_FILL_NON_ZERO;
+    const GpgpPath view = path.view();
+    const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+    ASSERT_TRUE(twin);
+    const GpgpAsset drawing = makeDrawing({view});
+    const float transforms[][6] = {{1, 0, 0, 1, 0, 0}, {0.8f, 0.6f, -0.6f, 0.8f, 30, -10}, {7, 0.5f, 1, -9, -250, 400}};
+    for (const auto& t : transforms)
+      for (const uint32_t samples : {1u, 4u, 8u, 16u}) {
+        GpgpCanvasItem item{drawing, {}, 1};
+        std::copy_n(t, 6, item.transform);
+        shader::ItemRecord record{};
+        ASSERT_TRUE(vector::placeItem(t, record));
+        const auto pixels = raster({item}, 100, 90, samples);
+        size_t different = 0, covered = 0;
+        for (uint32_t y = 0; y < 90; ++y)
+          for (uint32_t x = 0; x < 100; ++x) {
+            const int count = std::popcount(twinMask(*twin, record, x, y, samples));
+            covered += count > 0;
+            different += pixels[y * 100 + x].a * static_cast<float>(samples) != static_cast<float>(count);
+          }
+        EXPECT_EQ(different, 0u) << "seed " << seed << ", transform " << &t - transforms << ", samples " << samples;
+        EXPECT_GT(covered, 20u);
+      }
+    gpgpDestroyAsset(drawing);
+  }
+}
+
+TEST_F(CanvasTest, AbuttingPathsAndCutsInsidePathsLeaveNoSeams) {
+  makeCanvas(256);
+  // Two paths that share a curved edge, the same colour and opaque: together they must cover everything.
+  TestPath left, right;
+  left.move(-50, -50).line(90, -50).cubic(10, 90, 190, 130, 77, 300).line(-50, 300).close();
+  right.move(90, -50).line(300, -50).line(300, 300).line(77, 300).cubic(190, 130, 10, 90, 90, -50).close();
+  left.color = right.color = {0.25f, 0.5f, 1, 1};
+  const GpgpAsset drawing = makeDrawing({left.view(), right.view()});
+  for (const float scale : {1.0f, 0.37f, 13.0f})
+    for (const uint32_t samples : {1u, 4u, 16u}) {
+      const auto pixels =
+          raster({place(drawing, scale, scale > 1 ? -900.0f : 13.0f, scale > 1 ? -1100.0f : 11.0f)}, 64, 64, samples);
+      for (const Rgba& p : pixels) {
+        ASSERT_EQ(p.a, 1.0f) << scale << " " << samples;
+        ASSERT_EQ(p.b, 1.0f);
+      }
+    }
+}
+
+TEST_F(CanvasTest, PaintsInOrderWithAlphaAndOpacity) {
+  makeCanvas(64);
+  TestPath below, above;
+  below.move(0, 0).line(64, 0).line(64, 64).line(0, 64).close();
+  above = below;
+  below.color = {1, 0, 0, 1};
+  above.color = {0, 1, 0, 0.5f};
+  const GpgpAsset a = makeDrawing({below.view()}), b = makeDrawing({above.view()});
+  GpgpCanvasItem top = place(b);
+  top.opacity = 0.5f;
+  const auto pixels = raster({place(a), top}, 64, 64, 16);
+  for (const Rgba& p : pixels) {
+    ASSERT_FLOAT_EQ(p.r, 0.75f);
+    ASSERT_FLOAT_EQ(p.g, 0.25f);
+    ASSERT_FLOAT_EQ(p.a, 1);
+  }
+  const auto reversed = raster({top, place(a)}, 64, 64, 4);
+  EXPECT_EQ(reversed[100].r, 1);
+  EXPECT_EQ(reversed[100].g, 0);
+}
+
+TEST_F(CanvasTest, ExceededBudgetsLeaveOutWholePathsAndSayHowMany) {
+  std::vector<TestPath> shapes;
+  for (uint32_t i = 0; i < 20; ++i) shapes.push_back(randomShape(i, 120));
+  for (size_t i = 0; i < shapes.size(); ++i) shapes[i].color = {0, 0, 0, 0.5f};
+  std::vector<GpgpPath> views;
+  for (const TestPath& s : shapes) views.push_back(s.view());
+  makeCanvas(128);
+  GpgpAsset all = makeDrawing(views);
+  GpgpCanvasReport whole = GPGP_CANVAS_REPORT_INIT;
+  raster({place(all)}, 128, 128, 4, &whole);
+  EXPECT_EQ(whole.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(whole.pathsDropped, 0u);
+  ASSERT_GT(whole.tileEntries, 100u);
+  const GpgpWorker roomy = canvas;
+  makeCanvas(128, whole.tileEntries / 2);
+  GpgpCanvasReport part = GPGP_CANVAS_REPORT_INIT;
+  const auto pixels = raster({place(all)}, 128, 128, 4, &part);
+  EXPECT_EQ(part.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(part.tileEntries, whole.tileEntries);
+  EXPECT_EQ(part.tileEntriesGiven, whole.tileEntries / 2);
+  ASSERT_GT(part.pathsDropped, 0u);
+  ASSERT_LT(part.pathsDropped, 20u);
+  // The picture is that of the paths that remain.
+  canvas = roomy;
+  const GpgpAsset few = makeDrawing({views.begin(), views.end() - part.pathsDropped});
+  const auto expected = raster({place(few)}, 128, 128, 4);
+  for (size_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(pixels[i].a, expected[i].a) << i;
+
+  makeCanvas(128, 0, whole.patches / 2); // too few patches
+  GpgpCanvasReport patches = GPGP_CANVAS_REPORT_INIT;
+  raster({place(all)}, 128, 128, 4, &patches);
+  EXPECT_EQ(patches.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_LE(patches.patches, whole.patches / 2);
+  EXPECT_GT(patches.patches, 0u);
+  EXPECT_GT(patches.pathsDropped, 0u);
+}
+
+TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
+  GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
+  VkAttachmentDescription attachment{0,
+                                     VK_FORMAT_R8G8B8A8_UNORM,
+                                     VK_SAMPLE_COUNT_1_BIT,
+                                     VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                     VK_ATTACHMENT_STORE_OP_STORE,
+                                     VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                     VK_ATTACHMENT_STORE_OP_DONT_CARE,
+                                     VK_IMAGE_LAYOUT_UNDEFINED,
+                                     VK_IMAGE_LAYOUT_GENERAL};
+  const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  VkSubpassDescription subpass{};
+  subpass.colorAttachmentCount = 1;
+  subpass.pColorAttachments = &reference;
+  VkRenderPassCreateInfo passInfo{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  passInfo.attachmentCount = 1;
+  passInfo.pAttachments = &attachment;
+  passInfo.subpassCount = 1;
+  passInfo.pSubpasses = &subpass;
+  VkRenderPass pass = VK_NULL_HANDLE;
+  ASSERT_EQ(device.vk().vkCreateRenderPass(device.device(), &passInfo, nullptr, &pass), VK_SUCCESS);
+  const host::Image image(
+      device,
+      {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = 64, .height = 48, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
+  const VkImageView imageView = image.view();
+  VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  framebufferInfo.renderPass = pass;
+  framebufferInfo.attachmentCount = 1;
+  framebufferInfo.pAttachments = &imageView;
+  framebufferInfo.width = 64;
+  framebufferInfo.height = 48;
+  framebufferInfo.layers = 1;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  ASSERT_EQ(device.vk().vkCreateFramebuffer(device.device(), &framebufferInfo, nullptr, &framebuffer), VK_SUCCESS);
+
+  target.renderPass = pass;
+  makeCanvas(64, 0, 0, &target);
+  const GpgpView view = makeView(64, 48);
+  TestPath square;
+  square.move(10, 10).line(40, 10).line(40, 30).line(10, 30).close();
+  square.color = {1, 0.5f, 0, 1};
+  const GpgpAsset drawing = makeDrawing({square.view()});
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    const GpgpCanvasItem item = place(drawing);
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    info.width = 64;
+    info.height = 48;
+    info.items = &item;
+    info.itemCount = 1;
+    info.view = view;
+    GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
+    draw.view = view;
+    draw.target = &target;
+    draw.width = 64;
+    draw.height = 48;
+    draw.clip[0] = 2.0f / 64, draw.clip[5] = 2.0f / 48, draw.clip[10] = draw.clip[15] = 1;
+    draw.clip[12] = draw.clip[13] = -1;
+    EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_NOT_READY);
+    ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea.extent = {64, 48};
+    VkClearValue clear{};
+    clear.color.float32[2] = 1;
+    begin.clearValueCount = 1;
+    begin.pClearValues = &clear;
+    device.vk().vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport viewport{0, 0, 64, 48, 0, 1};
+    const VkRect2D scissor{{0, 0}, {64, 48}};
+    device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
+    device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+    EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
+    device.vk().vkCmdEndRenderPass(commands);
+  });
+  const auto pixels = host::downloadImage(device, image, VK_IMAGE_LAYOUT_GENERAL);
+  const auto at = [&](size_t x, size_t y) {
+    return std::vector<uint8_t>(&pixels[(y * 64 + x) * 4], &pixels[(y * 64 + x) * 4] + 3);
+  };
+  EXPECT_EQ(at(5, 5), (std::vector<uint8_t>{0, 0, 255}));
+  EXPECT_EQ(at(20, 20)[0], 255);
+  EXPECT_NEAR(at(20, 20)[1], 128, 1);
+  EXPECT_EQ(at(20, 20)[2], 0);
+  EXPECT_EQ(at(39, 29)[0], 255);
+  EXPECT_EQ(at(40, 30)[0], 0);
+  device.vk().vkDestroyFramebuffer(device.device(), framebuffer, nullptr);
+  device.vk().vkDestroyRenderPass(device.device(), pass, nullptr);
+}
+
+TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
+  makeCanvas(64);
+  TestPath square;
+  square.move(1, 1).line(4, 1).line(4, 3).close();
+  const GpgpAsset drawing = makeDrawing({square.view()});
+  const GpgpView view = makeView(64, 64);
+  GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    const GpgpCanvasItem good = place(drawing);
+    GpgpCanvasItem item = good;
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    const auto reset = [&] {
+      item = good;
+      info = GPGP_CANVAS_INFO_INIT;
+      info.width = info.height = 32;
+      info.items = &item;
+      info.itemCount = 1;
+      info.view = view;
+    };
+    const auto expect = [&](GpgpResult result, const char* words) {
+      messages.clear();
+      EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), result) << words;
+      if (result < 0) {
+        EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+      }
+      reset();
+    };
+    reset();
+    expect(GPGP_NOT_READY, "");
+    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    expect(GPGP_SUCCESS, "");
+    info.sType = 7, expect(GPGP_ERROR_INVALID_STRUCT, "sType");
+    info.width = 0, expect(GPGP_ERROR_INVALID_ARGUMENT, "0 x 32");
+    info.width = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "65 x 32");
+    info.samples = 3, expect(GPGP_ERROR_INVALID_ARGUMENT, "samples");
+    info.view = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "neither view nor target");
+    info.items = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "items is NULL");
+    info.itemCount = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "itemCount");
+    item.opacity = 2, expect(GPGP_ERROR_INVALID_ARGUMENT, "opacity");
+    item.transform[3] = NAN, expect(GPGP_ERROR_INVALID_ARGUMENT, "transform");
+    item.drawing = nullptr, expect(GPGP_ERROR_INVALID_HANDLE, "drawing");
+    info.background[1] = INFINITY, expect(GPGP_ERROR_INVALID_ARGUMENT, "background");
+    EXPECT_EQ(gpgpRecordPrepareCanvas(nullptr, commands, &frame, &info), GPGP_ERROR_INVALID_HANDLE);
+  });
+  GpgpDrawingCreateInfo none = GPGP_DRAWING_CREATE_INFO_INIT;
+  GpgpAsset asset = nullptr;
+  EXPECT_EQ(gpgpCreateDrawing(context, &none, &asset), GPGP_ERROR_INVALID_ARGUMENT);
+  none.data = "nonsense";
+  none.size = 8;
+  EXPECT_EQ(gpgpCreateDrawing(context, &none, &asset), GPGP_ERROR_INVALID_DATA);
+  EXPECT_EQ(asset, nullptr);
+}
+
+/// 16 x 16 samples a pixel on a grid, each composited by winding numbers, averaged.
+std::vector<Rgba> truth(const std::vector<GpgpPath>& paths, const float t[6], uint32_t width, uint32_t height) {
+  constexpr uint32_t kGrid = 16;
+  shader::ItemRecord item{};
+  EXPECT_TRUE(vector::placeItem(t, item));
+  std::vector<Rgba> samples(size_t(width) * height * kGrid * kGrid);
+  for (const GpgpPath& path : paths) {
+    const PathOracle oracle(path);
+    const double x0 = oracle.left * t[0] + t[4], x1 = oracle.right * t[0] + t[4], y0 = oracle.top * t[3] + t[5],
+                 y1 = oracle.bottom * t[3] + t[5];
+    const int left = std::max(0, static_cast<int>(std::floor(x0)) - 1),
+              right = std::min<int>(static_cast<int>(width), static_cast<int>(std::ceil(x1)) + 1);
+    const int top = std::max(0, static_cast<int>(std::floor(y0)) - 1),
+              bottom = std::min<int>(static_cast<int>(height), static_cast<int>(std::ceil(y1)) + 1);
+    for (int y = top * int(kGrid); y < bottom * int(kGrid); ++y) {
+      const double py = (y + 0.5) / kGrid;
+      const std::vector<PathOracle::Crossing> row = oracle.crossings((py - t[5]) / t[3]);
+      size_t next = 0;
+      int winding = 0;
+      for (int x = left * int(kGrid); x < right * int(kGrid); ++x) {
+        const double dx = ((x + 0.5) / kGrid - t[4]) / t[0];
+        for (; next < row.size() && row[next].x <= dx; ++next) winding += row[next].direction;
+        if (path.fillRule == GPGP_FILL_EVEN_ODD ? !(winding & 1) : winding == 0) continue;
+        Rgba& s = samples[(size_t(y / int(kGrid)) * width + size_t(x / int(kGrid))) * kGrid * kGrid +
+                          size_t(y % int(kGrid)) * kGrid + size_t(x % int(kGrid))];
+        const float a = path.color[3], k = 1 - a;
+        s = {path.color[0] * a + s.r * k, path.color[1] * a + s.g * k, path.color[2] * a + s.b * k, a + s.a * k};
+      }
+    }
+  }
+  std::vector<Rgba> pixels(size_t(width) * height);
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    for (size_t k = 0; k < kGrid * kGrid; ++k) {
+      const Rgba& s = samples[i * kGrid * kGrid + k];
+      pixels[i] = {pixels[i].r + s.r / 256, pixels[i].g + s.g / 256, pixels[i].b + s.b / 256, pixels[i].a + s.a / 256};
+    }
+  }
+  return pixels;
+}
+
+/// Of sRGB-encoded colour over white.
+double psnr(const std::vector<Rgba>& a, const std::vector<Rgba>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const float u[3] = {a[i].r, a[i].g, a[i].b}, v[3] = {b[i].r, b[i].g, b[i].b};
+    for (int c = 0; c < 3; ++c) {
+      const double d = host::srgbFromLinear(std::min(1.0f, u[c] + 1 - a[i].a)) -
+                       host::srgbFromLinear(std::min(1.0f, v[c] + 1 - b[i].a));
+      sum += d * d;
+    }
+  }
+  return -10 * std::log10(sum / (3.0 * static_cast<double>(a.size())) + 1e-12);
+}
+
+struct RealDrawing : CanvasTest, testing::WithParamInterface<const char*> {};
+
+TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
+  const std::string file = std::string(GPGP_TEST_DATA) + "/" + GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: run tests/data/fetch.sh --only svg";
+  const auto bytes = host::readFile(file);
+  vector::svg::Reporter reporter(nullptr, nullptr, GetParam());
+  const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter);
+  ASSERT_TRUE(svg) << svg.error().text;
+  std::vector<GpgpPath> paths;
+  for (const auto& path : svg->paths) paths.push_back(path.view());
+  ASSERT_GT(paths.size(), 5u);
+  const uint32_t size = 256;
+  const float s = std::min(float(size) / float(svg->width), float(size) / float(svg->height));
+  GpgpCanvasItem item = place(nullptr, s);
+  makeCanvas(size, 1u << 22, 1u << 18);
+  item.drawing = makeDrawing(paths);
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto pixels = raster({item}, size, size, 16, &report);
+  EXPECT_EQ(report.pathsDropped, 0u);
+  const auto expected = truth(paths, item.transform, size, size);
+  const double db = psnr(pixels, expected);
+  RecordProperty("psnr_centibel", static_cast<int>(db * 10));
+  std::printf("%s: %.1f dB, %zu paths, %u patches, %u entries\n", GetParam(), db, paths.size(), report.patches,
+              report.tileEntries);
+  EXPECT_GE(db, 38.0);
+  if (const char* folder = std::getenv("GPGP_TEST_PICTURES")) {
+    const std::string base = std::string(folder) + "/" + std::filesystem::path(GetParam()).stem().string();
+    for (const auto& [name, picture] : {std::pair{".gpu.png", &pixels}, {".truth.png", &expected}}) {
+      std::vector<float> flat;
+      for (const Rgba& p : *picture) flat.insert(flat.end(), {p.r, p.g, p.b, p.a});
+      host::writePng(base + name, host::fromLinearPremultiplied(size, size, flat));
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Svg, RealDrawing,
+                         testing::Values("svg/hud.svg", "fetched/svg/tiger.svgz", "fetched/svg/car.svgz",
+                                         "fetched/svg/gallardo.svgz"));
+
+} // namespace
