@@ -24,7 +24,8 @@
  *
  * Documentation tags:
  *   @threads any      safe from any thread at any time
- *   @threads context  one thread at a time per context
+ *   @threads context  one thread at a time per context; beside records of its workers, too, but for gpgpAdvance, which
+ *                     changes what records and reports read, and for destroying what a record uses
  *   @threads handle   one thread at a time per handle named first; different handles run side by side
  *   @lifetime call    pointers are read during the call only; frame: until the frame is safe; handle: until destroyed
  *   @pass outside     command buffer must be outside a render pass; inside: inside; any: either
@@ -68,7 +69,8 @@ extern "C" {
 /** The version of this header. */
 #define GPGP_VERSION GPGP_MAKE_VERSION(GPGP_VERSION_MAJOR, GPGP_VERSION_MINOR, GPGP_VERSION_PATCH)
 
-/** The version of the library that is loaded, as GPGP_MAKE_VERSION makes it. Same major: compatible.
+/** The version of the library that is loaded, as GPGP_MAKE_VERSION makes it. Compatible: the same major version, and
+ *  while that is 0 the same minor version too.
  *  @threads any */
 GPGP_API uint32_t GPGP_CALL gpgpGetVersion(void);
 
@@ -228,7 +230,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetRequirements(const GpgpRequirementsInfo* in
 /* ---------------------------------------------------------------- callbacks of the engine */
 
 /** Host memory. allocate returns NULL on failure; alignment is a power of two. All of gpgp's own host memory comes
- *  from here; strings and blobs returned to the engine too. May be called from any thread that calls gpgp. */
+ *  from here; blobs of libgpgp_compiler do not. May be called from any thread that calls gpgp. */
 typedef struct GpgpHostAllocator {
   void* userData;
   void*(GPGP_CALL* allocate)(void* userData, size_t size, size_t alignment);
@@ -259,8 +261,7 @@ typedef struct GpgpGpuAllocator {
   void(GPGP_CALL* free)(void* userData, const GpgpGpuAllocation* allocation);
 } GpgpGpuAllocator;
 
-/** The engine's job system. run(job, argument) must be called once for each submitted job, on any thread; wait returns
- *  when all jobs of the group have run. Used by conversions and prewarm; without it work runs on the calling thread. */
+/** The engine's job system, used by gpgpPrewarm; without it work runs on the calling thread. */
 typedef void(GPGP_CALL* GpgpJobFn)(void* argument, uint32_t index);
 typedef struct GpgpJobSystem {
   void* userData;
@@ -296,7 +297,7 @@ typedef struct GpgpContextCreateInfo {
   const GpgpHostAllocator* hostAllocator; /**< NULL: malloc. The struct is copied */
   const GpgpGpuAllocator* gpuAllocator;   /**< NULL: own blocks. The struct is copied */
   const GpgpJobSystem* jobSystem;         /**< NULL: none */
-  const GpgpFileSystem* fileSystem;       /**< NULL: gpgp...FromFile functions use the C library */
+  const GpgpFileSystem* fileSystem;       /**< NULL: baked files are read through the C library */
   GpgpMessageFn messageFn;
   void* messageUserData;
 } GpgpContextCreateInfo;
@@ -322,19 +323,22 @@ typedef struct GpgpFrame {
  *  function that does. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAdvance(GpgpContext context, const GpgpFrame* frame);
 
-/** Tells gpgp that the device is lost: later calls return GPGP_ERROR_DEVICE_LOST, destroying stays legal and frees at
+/** Tells gpgp that the device is lost: what creates, records or advances then returns
+ *  GPGP_ERROR_DEVICE_LOST, no report comes any more, destroying stays legal and frees at
  *  once. @threads context */
 GPGP_API void GPGP_CALL gpgpNotifyDeviceLost(GpgpContext context);
 
-/** Copies up to byteBudget bytes of pending asset data into device memory, oldest asset first (0: all that the ring
- *  holds). pendingBytes, if not NULL, receives what is left. Records transfer commands and one barrier that makes the
- *  data visible to all later gpgp records on the same queue; between queues the engine synchronises.
+/** Copies up to byteBudget bytes of pending asset data into device memory, oldest asset first (at least 16 are taken;
+ * 0: all that the ring holds). pendingBytes, if not NULL, receives what is left. Records transfer commands and one
+ * barrier that makes the data visible to all later gpgp records on the same queue; between queues the engine
+ * synchronises.
  *  @threads context @lifetime call @pass outside @state none */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordUpload(GpgpContext context, VkCommandBuffer commandBuffer,
                                                const GpgpFrame* frame, VkDeviceSize byteBudget,
                                                VkDeviceSize* pendingBytes);
 
-/** gpgp's own pipeline cache as bytes, for the next start. size in: capacity, out: needed. data NULL asks for the size.
+/** The pipeline cache in use (gpgp's own or the engine's) as bytes, for the next start. size in: capacity, out: needed.
+ * data NULL asks for the size.
  *  @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetPipelineCacheData(GpgpContext context, size_t* size, void* data);
 

@@ -99,9 +99,9 @@ typedef struct GpgpGrammarCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  const void* data; /**< a baked grammar; or NULL: read from path through the file callbacks */
+  const void* data; /**< a baked grammar; or NULL: read from filePath through the file callbacks */
   size_t size;
-  const char* path;
+  const char* filePath;
 } GpgpGrammarCreateInfo;
 #define GPGP_GRAMMAR_CREATE_INFO_INIT GPGP_INIT(GpgpGrammarCreateInfo, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO)
 

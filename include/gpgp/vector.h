@@ -5,7 +5,7 @@
  *   canvas view      keeps one rasterised canvas, to be drawn inside the engine's render pass
  *
  *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
- *   GpgpPath[] -> gpgpCreateDrawingFromPaths                                made live
+ *   GpgpPath[] -> gpgpCreateDrawing                                made live
  *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
  */
 #ifndef GPGP_VECTOR_H

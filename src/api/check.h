@@ -52,11 +52,14 @@ inline Result<Context*> resolve(Call& call, GpgpContext handle) {
   return context;
 }
 
-/// The object behind an asset, worker or view handle; null and destroyed handles are INVALID_HANDLE.
-template <class Handle> core::Object* objectOf(Handle handle) {
+/// The object behind an asset, worker or view handle, null for NULL and destroyed handles. Where `context` is still
+/// null it receives the handle's, also of a destroyed one: it gets the message.
+template <class Handle> core::Object* objectOf(Handle handle, const Context** context) {
   const uintptr_t bits = reinterpret_cast<uintptr_t>(handle);
   core::Slot* slot = reinterpret_cast<core::Slot*>(bits & ~uintptr_t(alignof(core::Slot) - 1));
-  if (!slot || slot->magic != core::Slot::kMagic || !slot->object) return nullptr;
+  if (!slot || slot->magic != core::Slot::kMagic) return nullptr;
+  if (!*context) *context = slot->context;
+  if (!slot->object) return nullptr;
   return slot->generation == (bits & (alignof(core::Slot) - 1)) ? slot->object : nullptr;
 }
 template <class Handle> Handle handleOf(const core::Slot* slot) {
@@ -66,14 +69,11 @@ template <class Handle> Handle handleOf(const core::Slot* slot) {
 /// A handle that must be of a kind (and, where given, of a context). `name` is the argument's name for the message.
 template <class T, class Handle>
 Result<T*> resolve(Call& call, Handle handle, Kind kind, const char* name, const Context* context = nullptr) {
-  core::Object* object = objectOf(handle);
+  core::Object* object = objectOf(handle, &call.context);
   if (!object)
     return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is %s; expected a %s", name, handle ? "destroyed" : "NULL",
                      core::kindName(kind));
-  if (!call.context) {
-    call.context = &object->context;
-    call.label = object->label.text;
-  }
+  if (!call.label[0]) call.label = object->name();
   if (object->kind != kind)
     return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is a %s; expected a %s", name, core::kindName(object->kind),
                      core::kindName(kind));

@@ -129,7 +129,10 @@ GpgpResult GPGP_CALL gpgpGetPipelineCacheData(GpgpContext handle, size_t* size, 
     if (!size) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "size is NULL");
     const core::Device& device = (*context)->device;
     const VkResult result = device.vk.GetPipelineCacheData(device.device, (*context)->pipelineCache, size, data);
-    if (result == VK_INCOMPLETE) return makeError(GPGP_INCOMPLETE, "size is too small");
+    if (result == VK_INCOMPLETE) {
+      device.vk.GetPipelineCacheData(device.device, (*context)->pipelineCache, size, nullptr);
+      return makeError(GPGP_INCOMPLETE, "size is too small");
+    }
     if (result != VK_SUCCESS) return core::vulkanError(result, "vkGetPipelineCacheData");
     return {};
   });
@@ -141,10 +144,9 @@ namespace {
 /// Any worker, asset or view: the kind is in the handle's type, so only these ranges are accepted.
 template <class T, class Handle>
 Result<T*> resolveAny(Call& call, Handle handle, Kind first, Kind last, const char* name) {
-  core::Object* object = objectOf(handle);
+  core::Object* object = objectOf(handle, &call.context);
   if (!object) return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is %s", name, handle ? "destroyed" : "NULL");
-  call.context = &object->context;
-  call.label = object->label.text;
+  call.label = object->name();
   if (object->kind < first || object->kind > last)
     return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is a %s", name, core::kindName(object->kind));
   return static_cast<T*>(object);

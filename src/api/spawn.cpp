@@ -17,12 +17,12 @@ GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext handle, const GpgpGrammarCrea
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO, "info"); !ok) return ok;
     if (!grammar) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "grammar is NULL");
     if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
-    if (!info->data == !info->path)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data and path must be set");
+    if (!info->data == !info->filePath)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data and filePath must be set");
     std::span<const std::byte> bytes(static_cast<const std::byte*>(info->data), info->data ? info->size : 0);
     std::pmr::vector<std::byte> file(&(*context)->host());
-    if (info->path) {
-      auto read = (*context)->readFile(info->path);
+    if (info->filePath) {
+      auto read = (*context)->readFile(info->filePath);
       if (!read) return read.error();
       file = std::move(*read);
       bytes = file;
@@ -78,6 +78,8 @@ GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer c
     const auto grammar =
         resolve<spawn::Grammar>(call, info->grammar, Kind::grammar, "info->grammar", &(*spawner)->context);
     if (!grammar) return grammar.error();
+    if (info->axiomCount && !info->axioms.buffer)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.buffer is NULL, axiomCount is %u", info->axiomCount);
     if (info->axioms.buffer && info->axioms.size / sizeof(GpgpAxiom) < info->axiomCount)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
                        static_cast<unsigned long long>(info->axioms.size), info->axiomCount,

@@ -8,6 +8,14 @@
 
 namespace gpgp::core {
 
+namespace {
+/// The deleter lies in the object, so it is taken out first.
+void destroyObject(Object* object) {
+  const PmrDelete deleter = object->deleter;
+  deleter(object);
+}
+} // namespace
+
 const char* kindName(Kind kind) {
   switch (kind) {
   case Kind::none: return "destroyed object";
@@ -91,7 +99,7 @@ Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
 }
 
 Context::~Context() {
-  for (Object* object : living_) object->deleter(object);
+  for (Object* object : living_) destroyObject(object);
   freeRetired(UINT64_MAX);
   uploads_.reset();
   if (ownsPipelineCache_) device.vk.DestroyPipelineCache(device.device, pipelineCache, nullptr);
@@ -107,13 +115,14 @@ void Context::message(GpgpSeverity severity, GpgpResult code, const char* functi
 }
 
 Slot* Context::adopt(Unique<Object> object) {
-  living_.reserve(living_.size() + 1);
+  if (living_.size() == living_.capacity()) living_.reserve(std::max<size_t>(64, 2 * living_.size()));
   if (!freeSlots_) {
     slotBlocks_.reserve(slotBlocks_.size() + 1);
     Slot* block = static_cast<Slot*>(host_.allocate(sizeof(Slot) * 64, alignof(Slot)));
     slotBlocks_.push_back(block);
     for (uint32_t i = 0; i < 64; ++i) {
       new (&block[i]) Slot();
+      block[i].context = this;
       block[i].nextFree = freeSlots_;
       freeSlots_ = &block[i];
     }
@@ -123,6 +132,7 @@ Slot* Context::adopt(Unique<Object> object) {
   object->deleter = object.get_deleter();
   object->handle = slot;
   slot->object = object.release();
+  slot->object->livingIndex = living_.size();
   living_.push_back(slot->object);
   return slot;
 }
@@ -130,17 +140,18 @@ Slot* Context::adopt(Unique<Object> object) {
 void Context::retire(Object& object) {
   Slot& slot = *object.handle;
   slot.object = nullptr;
-  slot.generation = (slot.generation + 1) % alignof(Slot);
-  slot.nextFree = freeSlots_;
-  freeSlots_ = &slot;
-  const auto at = std::find(living_.begin(), living_.end(), &object);
-  *at = living_.back();
+  if (++slot.generation < alignof(Slot)) {
+    slot.nextFree = freeSlots_;
+    freeSlots_ = &slot;
+  }
+  living_[object.livingIndex] = living_.back();
+  living_[object.livingIndex]->livingIndex = object.livingIndex;
   living_.pop_back();
-  object.markPending();
+  object.retire();
   object.destroyedInFrame = frame_.current;
   object.next = retired_;
   retired_ = &object;
-  if (lost_) freeRetired(UINT64_MAX);
+  if (lost()) freeRetired(UINT64_MAX);
 }
 
 void Context::freeRetired(uint64_t safeFrame) {
@@ -151,12 +162,12 @@ void Context::freeRetired(uint64_t safeFrame) {
       continue;
     }
     *link = object->next;
-    object->deleter(object);
+    destroyObject(object);
   }
 }
 
 void Context::setLost() {
-  lost_ = true;
+  lost_.store(true, std::memory_order_relaxed);
   freeRetired(UINT64_MAX);
 }
 

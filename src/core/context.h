@@ -7,6 +7,7 @@
 #include "core/gpu_memory.h"
 #include "core/object.h"
 
+#include <atomic>
 #include <vector>
 
 namespace gpgp::core {
@@ -48,14 +49,14 @@ public:
   // ---- frames (context; current and safe are read by recording threads)
   uint64_t current() const { return frame_.current; }
   uint64_t safe() const { return frame_.safe; }
-  bool lost() const { return lost_; }
+  bool lost() const { return lost_.load(std::memory_order_relaxed); }
   void setLost();
   Result<void> advance(const GpgpFrame& frame);
   /// Checks a frame that a record names: same as the last advance's.
   Result<void> checkFrame(const GpgpFrame* frame) const;
 
   // ---- lists of living objects that advance visits (context); intrusive, see Resident and Worker
-  Resident* residents = nullptr;
+  Resident *residents = nullptr, *lastResident = nullptr; ///< those whose upload is pending or in flight, oldest first
   Worker* workers = nullptr;
   UploadRing& uploads() { return *uploads_; }
 
@@ -78,7 +79,8 @@ private:
   Object* retired_ = nullptr;
   std::pmr::vector<Object*> living_;
   GpgpFrame frame_{1, 0};
-  bool lost_ = false, ownsPipelineCache_ = false;
+  std::atomic<bool> lost_{false};
+  bool ownsPipelineCache_ = false;
 };
 
 } // namespace gpgp::core

@@ -1,5 +1,6 @@
-// Objects behind handles. A handle is the address of a slot with a generation in its low bits; slots are never given
-// back while the context lives, so a destroyed handle is recognised instead of followed.
+// Objects behind handles. A handle is the address of a slot with a generation in its low bits. Slots are never given
+// back while the context lives, and a slot whose generations are used up is not used again, so a destroyed handle is
+// always recognised and never followed.
 #pragma once
 #include "core/host_memory.h"
 #include "core/result.h"
@@ -16,6 +17,7 @@ struct alignas(64) Slot {
   static constexpr uint64_t kMagic = 0x67706770'736c6f74; // "gpgpslot"
   uint64_t magic = kMagic;
   Object* object = nullptr; // null: free
+  Context* context = nullptr;
   uint32_t generation = 0;
   Slot* nextFree = nullptr;
 };
@@ -32,8 +34,10 @@ public:
   virtual ~Object() = default;
   Object(const Object&) = delete;
   Object& operator=(const Object&) = delete;
-  /// Called when the handle is destroyed and frames may still use the object.
-  virtual void markPending() {}
+  /// Called when the handle is destroyed and frames may still use the object: no new work may find it.
+  virtual void retire() {}
+  /// What messages call the object.
+  const char* name() const { return label.text[0] ? label.text : kindName(kind); }
 
   Context& context;
   const Kind kind;
@@ -42,6 +46,7 @@ public:
 
   // owned by Context
   PmrDelete deleter;
+  size_t livingIndex = 0; // in the context's list
   Object* next = nullptr; // graveyard list
   uint64_t destroyedInFrame = 0;
 };

@@ -27,14 +27,25 @@ VkPipelineStageFlags stages32(VkPipelineStageFlags2 stages) {
   if (stages & (VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT))
     mapped |= VK_PIPELINE_STAGE_VERTEX_INPUT_BIT;
   if (stages & VK_PIPELINE_STAGE_2_PRE_RASTERIZATION_SHADERS_BIT) mapped |= VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+  constexpr VkPipelineStageFlags2 kKnown =
+      0xffffffffu | VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_RESOLVE_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT |
+      VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
+      VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_PRE_RASTERIZATION_SHADERS_BIT;
+  if (stages & ~kKnown) mapped |= VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
   return mapped;
 }
 
-VkAccessFlags access32(VkAccessFlags2 access) {
+/// Accesses of stages, the same way; none without a stage.
+VkAccessFlags access32(const GpgpAccess& use) {
+  if (!use.stages) return 0;
+  const VkAccessFlags2 access = use.access;
   VkAccessFlags mapped = static_cast<VkAccessFlags>(access & 0xffffffffu);
   if (access & (VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT))
     mapped |= VK_ACCESS_SHADER_READ_BIT;
   if (access & VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT) mapped |= VK_ACCESS_SHADER_WRITE_BIT;
+  constexpr VkAccessFlags2 kKnown = 0xffffffffu | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
+                                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  if (access & ~kKnown) mapped |= VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
   return mapped;
 }
 
@@ -55,6 +66,8 @@ Result<void> Worker::check(const Record& record) const {
   if (timestamps.queryPool && timestamps.queryCount < passes_.passes.size() + 1)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.timestamps.queryCount is %u, but %zu passes need %zu",
                      timestamps.queryCount, passes_.passes.size(), passes_.passes.size() + 1);
+  if (timestamps.queryPool && timestampBits_ == 0)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "queue family %u writes no timestamps", queueFamily_);
   if (record.info->accessMode & ~GPGP_ACCESS_SYNCHRONISED)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.accessMode has unknown bits");
   if (engineScratch_) {
@@ -65,6 +78,8 @@ Result<void> Worker::check(const Record& record) const {
     if (scratch.offset % scratchAlignment())
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.offset must be a multiple of %llu",
                        static_cast<unsigned long long>(scratchAlignment()));
+    if (scratch.offset > UINT64_MAX - scratch.size)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.offset + size is beyond 64 bits");
     if (scratch.size < passes_.scratchBytes)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.size is %llu, gpgpGetScratchSize says %llu",
                        static_cast<unsigned long long>(scratch.size),
@@ -83,6 +98,8 @@ Result<void> Worker::check(const Record& record) const {
       if (buffer.size == 0 || buffer.size > limits.maxStorageBufferRange)
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.size is %llu; it must be 1 to %u (maxStorageBufferRange)",
                          resource.name, static_cast<unsigned long long>(buffer.size), limits.maxStorageBufferRange);
+      if (buffer.offset > UINT64_MAX - buffer.size)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.offset + size is beyond 64 bits", resource.name);
       if (buffer.offset % limits.minStorageBufferOffsetAlignment)
         return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                          "%s.offset must be a multiple of %llu (minStorageBufferOffsetAlignment)", resource.name,
@@ -94,6 +111,10 @@ Result<void> Worker::check(const Record& record) const {
         if (resource.optional) continue;
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.view is NULL", resource.name);
       }
+      if (binding.image->after.stages && binding.image->after.layout == VK_IMAGE_LAYOUT_UNDEFINED &&
+          !(record.info->accessMode & GPGP_ACCESS_SYNCHRONISED))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.after.layout is UNDEFINED: nothing could be found there",
+                         resource.name);
       if (!binding.image->image) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.image is NULL", resource.name);
       for (const auto& [edge, access] : {std::pair{"before", binding.image->before}, {"after", binding.image->after}})
         if (auto ok = checkStages(resource.name, edge, access, queueFlags_); !ok) return ok;
@@ -189,7 +210,7 @@ void Worker::edgeBarrier(const Record& record, bool entry) const {
     if (binding.engineBuffer && binding.engineBuffer->buffer) {
       const GpgpAccess& access = entry ? binding.engineBuffer->before : binding.engineBuffer->after;
       outside |= stages32(access.stages);
-      outsideAccess |= access32(access.access);
+      outsideAccess |= access32(access);
     }
     if (binding.image && binding.image->view && imageCount < images.size()) {
       const GpgpAccess& access = entry ? binding.image->before : binding.image->after;
@@ -197,9 +218,9 @@ void Worker::edgeBarrier(const Record& record, bool entry) const {
       outside |= stages32(access.stages);
       VkImageMemoryBarrier& barrier = images[imageCount++];
       barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
-      barrier.srcAccessMask = entry ? access32(access.access) : VkAccessFlags(VK_ACCESS_SHADER_WRITE_BIT);
+      barrier.srcAccessMask = entry ? access32(access) : VkAccessFlags(VK_ACCESS_SHADER_WRITE_BIT);
       barrier.dstAccessMask =
-          entry ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT) : access32(access.access);
+          entry ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT) : access32(access);
       barrier.oldLayout = entry ? access.layout : VK_IMAGE_LAYOUT_GENERAL;
       barrier.newLayout = entry ? VK_IMAGE_LAYOUT_GENERAL : access.layout;
       barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;

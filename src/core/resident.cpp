@@ -8,10 +8,18 @@ namespace {
 constexpr VkDeviceSize kAlignment = 16; // of pieces and sizes: covers every copy and fill rule
 } // namespace
 
-Resident::~Resident() {
+Resident::~Resident() { unlink(); }
+
+void Resident::unlink() {
   if (!linked_) return;
+  linked_ = false;
   (previous_ ? previous_->next_ : context.residents) = next_;
-  if (next_) next_->previous_ = previous_;
+  (next_ ? next_->previous_ : context.lastResident) = previous_;
+}
+
+void Resident::retire() {
+  unlink();
+  buffer_.markPending();
 }
 
 Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize) {
@@ -25,10 +33,9 @@ Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::b
   buffer_ = std::move(*buffer);
   bytes_ = std::move(bytes);
   // oldest first: append
-  Resident* last = context.residents;
-  while (last && last->next_) last = last->next_;
-  previous_ = last;
-  (last ? last->next_ : context.residents) = this;
+  previous_ = context.lastResident;
+  (previous_ ? previous_->next_ : context.residents) = this;
+  context.lastResident = this;
   linked_ = true;
   return {};
 }
@@ -65,7 +72,7 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
                      records_.size());
   const DeviceTable& vk = context_.device.vk;
   const uint64_t number = nextNumber_;
-  VkDeviceSize budget = byteBudget ? byteBudget : VK_WHOLE_SIZE;
+  VkDeviceSize budget = byteBudget ? std::max(byteBudget, kAlignment) : VK_WHOLE_SIZE;
   const VkDeviceSize ringSize = ring_.size();
   bool any = false;
   for (Resident* r = context_.residents; r && budget >= kAlignment; r = r->next_) {
@@ -119,7 +126,8 @@ void UploadRing::advance() {
     if (!oldest || oldest->frame > context_.safe()) return;
     const size_t index = static_cast<size_t>(oldest - records_.data());
     const bool ran = *static_cast<volatile uint32_t*>(stamp(index)) == static_cast<uint32_t>(oldest->number);
-    for (Resident* r = context_.residents; r; r = r->next_) {
+    for (Resident *r = context_.residents, *next = nullptr; r; r = next) {
+      next = r->next_;
       if (r->firstUpload_ == 0 || oldest->number < r->firstUpload_ || oldest->number > r->lastUpload_) continue;
       if (!ran) {
         r->uploaded_.store(0, std::memory_order_release);
@@ -129,7 +137,7 @@ void UploadRing::advance() {
       } else if (r->lastUpload_ == oldest->number && r->resident()) {
         r->firstUpload_ = r->lastUpload_ = 0;
         r->bytes_ = std::pmr::vector<std::byte>(&context_.host());
-        r->bytes_.shrink_to_fit();
+        r->unlink();
       }
     }
     tail_ = oldest->ringEnd;

@@ -12,7 +12,7 @@ namespace gpgp::core {
 class Resident : public Object {
 public:
   ~Resident() override;
-  void markPending() override { buffer_.markPending(); }
+  void retire() override;
 
   bool resident() const { return uploaded_.load(std::memory_order_acquire) == size_; }
   VkBuffer buffer() const { return buffer_.handle(); }
@@ -34,6 +34,8 @@ private:
   VkDeviceSize size_ = 0;
   std::atomic<VkDeviceSize> uploaded_{0};
   uint64_t firstUpload_ = 0, lastUpload_ = 0; // numbers of the upload records that hold its pieces; 0: none
+  // Linked in the context's list from creation until the upload is known to have run, or the handle is destroyed.
+  void unlink();
   Resident *previous_ = nullptr, *next_ = nullptr;
   bool linked_ = false;
 };

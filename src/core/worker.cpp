@@ -20,11 +20,15 @@ Worker::Worker(Context& ctx, Kind workerKind, const GpgpWorkerCreateInfo& info, 
       queueFlags_(info.queueFlags), engineScratch_(info.engineScratch != VK_FALSE), passes_(&ctx.host()),
       sets_(&ctx.host()), pipelines_(&ctx.host()), slots_(&ctx.host()), harvested_(&ctx.host()), queue_(&ctx.host()) {}
 
+void Worker::unlink() {
+  if (!linked_) return;
+  linked_ = false;
+  (previousWorker_ ? previousWorker_->nextWorker_ : context.workers) = nextWorker_;
+  if (nextWorker_) nextWorker_->previousWorker_ = previousWorker_;
+}
+
 Worker::~Worker() {
-  if (linked_) {
-    (previousWorker_ ? previousWorker_->nextWorker_ : context.workers) = nextWorker_;
-    if (nextWorker_) nextWorker_->previousWorker_ = previousWorker_;
-  }
+  unlink();
   const Device& device = context.device;
   for (VkPipeline pipeline : pipelines_) device.vk.DestroyPipeline(device.device, pipeline, nullptr);
   for (uint32_t i = 0; i < targetCount_; ++i) device.vk.DestroyPipeline(device.device, targets_[i].pipeline, nullptr);
@@ -33,7 +37,8 @@ Worker::~Worker() {
   device.vk.DestroyDescriptorSetLayout(device.device, setLayout_, nullptr);
 }
 
-void Worker::markPending() {
+void Worker::retire() {
+  unlink(); // nobody can ask for its reports any more
   scratch_.markPending();
   constants_.markPending();
   reports_.markPending();
@@ -50,6 +55,7 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
   if (queueFamily_ >= familyCount)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.queueFamily is %u, but the device has %u families",
                      queueFamily_, familyCount);
+  timestampBits_ = families[queueFamily_].timestampValidBits;
   if (queueFlags_ == 0) queueFlags_ = families[queueFamily_].queueFlags;
   if (!(queueFlags_ & VK_QUEUE_COMPUTE_BIT))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "queue family %u has no VK_QUEUE_COMPUTE_BIT", queueFamily_);

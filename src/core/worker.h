@@ -56,7 +56,7 @@ inline bool sameTarget(const GpgpTargetInfo& a, const GpgpTargetInfo& b) {
 class Worker : public Object {
 public:
   ~Worker() override;
-  void markPending() override;
+  void retire() override;
 
   bool ready() const { return ready_.load(std::memory_order_acquire); }
   Result<void> prewarm(const GpgpPrewarmInfo* info);
@@ -131,6 +131,8 @@ private:
   std::pmr::vector<RawReport> queue_;    // ring of harvested reports
   size_t queueHead_ = 0, queueCount_ = 0;
   uint32_t nextStamp_ = 1;
+  void unlink();
+  uint32_t timestampBits_ = 0; // of the queue family
   Worker *previousWorker_ = nullptr, *nextWorker_ = nullptr;
   bool linked_ = false;
 };

@@ -177,11 +177,60 @@ TEST(Slots, AHandleIsNotMistakenForItsSuccessor) {
   const GpgpAsset first = make();
   gpgpDestroyAsset(first);
   VkBool32 resident = VK_FALSE;
-  for (int i = 0; i < 60; ++i) { // the slot is reused, the handle is not
+  for (int i = 0; i < 300; ++i) { // slots are reused, handles never
     const GpgpAsset next = make();
     EXPECT_NE(next, first);
     EXPECT_EQ(gpgpGetResidency(first, &resident), GPGP_ERROR_INVALID_HANDLE);
     gpgpDestroyAsset(next);
+  }
+  gpgpDestroyContext(handle);
+}
+
+TEST(Residency, WhatIsDestroyedBeforeItsUploadIsForgotten) {
+  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  const GpgpContextCreateInfo info = device.contextCreateInfo();
+  GpgpContext handle = nullptr;
+  ASSERT_EQ(gpgpCreateContext(&info, &handle), GPGP_SUCCESS);
+  const std::vector<uint32_t> data(1 << 16, 1);
+  GpgpFrame frame{1, 0};
+  ASSERT_EQ(gpgpAdvance(handle, &frame), GPGP_SUCCESS);
+  gpgpDestroyAsset(api::adopt<GpgpAsset>(of(handle), ToyAsset::create(of(handle), data)));
+  frame.current = 2;
+  ASSERT_EQ(gpgpAdvance(handle, &frame), GPGP_SUCCESS);
+  VkDeviceSize pending = 1;
+  device.submitAndWait([&](VkCommandBuffer cmd) {
+    EXPECT_EQ(gpgpRecordUpload(handle, cmd, &frame, 0, &pending), GPGP_SUCCESS);
+    frame = {3, 1};
+    EXPECT_EQ(gpgpAdvance(handle, &frame), GPGP_SUCCESS); // frees it, before the GPU runs the frame
+  });
+  EXPECT_EQ(pending, 0u);
+  gpgpDestroyContext(handle);
+  for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+}
+
+TEST(Residency, ThousandsOfAssetsAreCheapOnceTheyAreThere) {
+  host::HeadlessDevice device;
+  GpgpContextCreateInfo info = device.contextCreateInfo();
+  info.uploadRingBytes = 1 << 20;
+  GpgpContext handle = nullptr;
+  ASSERT_EQ(gpgpCreateContext(&info, &handle), GPGP_SUCCESS);
+  const std::vector<uint32_t> data(4, 1);
+  std::vector<GpgpAsset> assets;
+  for (int i = 0; i < 4000; ++i)
+    assets.push_back(api::adopt<GpgpAsset>(of(handle), ToyAsset::create(of(handle), data)));
+  GpgpFrame frame{1, 0};
+  for (VkDeviceSize pending = 1; pending; ++frame.current, ++frame.safe) {
+    ASSERT_EQ(gpgpAdvance(handle, &frame), GPGP_SUCCESS);
+    device.submitAndWait(
+        [&](VkCommandBuffer cmd) { ASSERT_EQ(gpgpRecordUpload(handle, cmd, &frame, 0, &pending), GPGP_SUCCESS); });
+  }
+  ASSERT_EQ(gpgpAdvance(handle, &frame), GPGP_SUCCESS);
+  EXPECT_EQ(of(handle).residents, nullptr) << "finished uploads must not be visited every frame";
+  for (const GpgpAsset asset : assets) {
+    VkBool32 resident = VK_FALSE;
+    ASSERT_EQ(gpgpGetResidency(asset, &resident), GPGP_SUCCESS);
+    EXPECT_TRUE(resident);
+    gpgpDestroyAsset(asset);
   }
   gpgpDestroyContext(handle);
 }

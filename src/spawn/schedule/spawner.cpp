@@ -38,12 +38,10 @@ static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
 constexpr uint32_t kDefaultShapes = 262144, kDefaultTerminals = 524288, kDefaultDepth = 64;
 
-/// Workgroups that fill the device. A CPU pays for each workgroup, a GPU for each that is missing.
-uint32_t fillingGroups(const core::Device& device) {
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
-  device.vki.GetPhysicalDeviceProperties2(device.physicalDevice, &properties);
-  return properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 4 : 2048;
-}
+/// Workgroups that fill any device; an invocation takes further shapes only where there are more than these. Rounds are
+/// dispatched by what there is, so small ones cost little. (Fewer, longer loops would run into software devices' limits
+/// on iterations.)
+constexpr uint32_t kMaxGroups = 16384;
 
 } // namespace
 
@@ -52,12 +50,11 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const uint32_t maxShapes = info.maxShapes ? info.maxShapes : kDefaultShapes;
   const uint32_t maxTerminals = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
-  spawner->groups_ = fillingGroups(context.device);
 
   core::PassList list(&context.host());
   using enum core::ResourceKind;
   list.add({"grammar", buffer});
-  list.add({"axioms", buffer});
+  list.add({"axioms", buffer, 0, true});
   list.add({"instances", buffer});
   list.add({"draws", buffer, 0, true});
   list.add({"count", buffer, 0, true});
@@ -115,7 +112,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
       static_cast<uint32_t>(info.draws.buffer ? info.draws.size / sizeof(VkDrawIndexedIndirectCommand) : 0),
       info.count.buffer ? 1u : 0u,
       rounds,
-      groups_};
+      kMaxGroups};
   core::Record record;
   record.commandBuffer = commandBuffer;
   record.info = &info.base;
@@ -127,7 +124,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[kCount].engineBuffer = &info.count;
   record.groups[kOneGroup] = {1, 1, 1};
   const uint32_t axiomGroups = (info.axiomCount + shader::kSpawnGroupSize - 1) / shader::kSpawnGroupSize;
-  record.groups[kAxiomGroups] = {std::min(axiomGroups, groups_), 1, 1};
+  record.groups[kAxiomGroups] = {std::min(axiomGroups, kMaxGroups), 1, 1};
   record.levels = rounds;
   record.constants = std::as_bytes(std::span(&constants, 1));
   if (auto ok = check(record); !ok) return ok;

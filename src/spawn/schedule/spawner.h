@@ -23,7 +23,6 @@ public:
 
 private:
   uint32_t maxDepth_ = 0;
-  uint32_t groups_ = 0; ///< workgroups of a striding dispatch
 };
 
 } // namespace gpgp::spawn
