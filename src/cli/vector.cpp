@@ -17,12 +17,16 @@ namespace {
 struct VectorOptions {
   std::string file, out, background;
   Size size;
+  bool allWarnings = false;
   uint32_t samples = 16, repeat = 1, maxTileEntries = 0;
 };
+
+constexpr uint32_t kShownWarnings = 10;
 
 struct Messages {
   std::string error;
   uint32_t warnings = 0;
+  bool showAll = false;
 };
 
 void GPGP_CALL onSvgMessage(void* userData, const GpgpMessage* message) {
@@ -31,7 +35,7 @@ void GPGP_CALL onSvgMessage(void* userData, const GpgpMessage* message) {
     if (messages->error.empty()) messages->error = message->text;
     return;
   }
-  if (message->severity == GPGP_SEVERITY_WARNING) ++messages->warnings;
+  if (message->severity == GPGP_SEVERITY_WARNING && ++messages->warnings > kShownWarnings && !messages->showAll) return;
   std::fprintf(stderr, "%s: %s\n", message->label, message->text);
 }
 
@@ -62,6 +66,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   parseBackground(options.background, background);
   const std::vector<uint8_t> bytes = host::readFile(options.file);
   Messages messages;
+  messages.showAll = options.allWarnings;
   GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
   source.name = options.file.c_str();
   source.data = bytes.data();
@@ -71,6 +76,9 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const auto begin = std::chrono::steady_clock::now();
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(options.file + ": " + (messages.error.empty() ? blob.name() : messages.error));
+  if (!options.allWarnings && messages.warnings > kShownWarnings)
+    std::fprintf(stderr, "%s: %u more; --all-warnings shows them\n", options.file.c_str(),
+                 messages.warnings - kShownWarnings);
   const double compileMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 
   Session session(common);
@@ -136,7 +144,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   if (report.pathsDropped)
     text << "budget exceeded: " << report.pathsDropped << " paths were left out; --max-tile-entries "
          << report.tileEntries << " would have held them\n";
-  if (messages.warnings) text << messages.warnings << " elements are not supported (listed on standard error)\n";
+  if (messages.warnings) text << messages.warnings << " parts of the drawing are approximated or left out\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
   outcome.json = {{"file", options.file},
@@ -176,6 +184,7 @@ Work addVector(CLI::App& app) {
   command->add_option("--repeat", options->repeat, "Rasterise N times and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
+  command->add_flag("--all-warnings", options->allWarnings, "Name every part that is approximated or left out");
   command->add_option("--max-tile-entries", options->maxTileEntries,
                       "Budget: patch references over all tiles (0: the library's default)");
   command->footer(R"(
@@ -184,7 +193,8 @@ Examples:
   gpgp vector tiger.svgz --size 2048x2048 --background ffffff --out tiger.png
   gpgp vector map.svg --samples 4 --repeat 100 --json | jq .gpuMilliseconds.median
 
-Elements that are not supported are named on standard error with their line, and counted.)");
+What is approximated or left out is named on standard error with its line, the first ten unless --all-warnings is given,
+and counted.)");
   return [options](const CommonOptions& common) { return vector(*options, common); };
 }
 

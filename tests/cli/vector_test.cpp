@@ -3,6 +3,8 @@
 #include "host/picture.h"
 #include "run.h"
 
+#include <algorithm>
+
 namespace gpgp::test {
 namespace {
 
@@ -52,6 +54,21 @@ TEST(CliVector, RealDrawing) {
   ASSERT_TRUE(drawn.is_object()) << result.out;
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
   EXPECT_GT(drawn["paths"], 200);
+}
+
+TEST(CliVector, WarningsAreCountedAndNotAFlood) {
+  std::string svg = R"(<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20"><filter id="f"/>)";
+  for (int i = 0; i < 30; ++i) svg += "\n<path d=\"M0 0 H20 V20 Z\" filter=\"url(#f)\"/>";
+  const TemporaryFile file("warnings.svg", svg + "\n</svg>\n");
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  const ProcessResult some = gpgp({"vector", file.path(), "--json"});
+  const ProcessResult all = gpgp({"vector", file.path(), "--json", "--all-warnings"});
+  ASSERT_EQ(some.exitCode, 0) << some.err;
+  const json counted = json::parse(some.out, nullptr, false);
+  ASSERT_TRUE(counted.is_object()) << some.out;
+  EXPECT_GE(counted["warnings"], 30);
+  EXPECT_EQ(lines(some.err), 11) << some.err;
+  EXPECT_EQ(lines(all.err), counted["warnings"]) << all.err;
 }
 
 TEST(CliVector, BadDrawingsAreNamed) {
