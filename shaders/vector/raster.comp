@@ -59,8 +59,9 @@ void main() {
       mask = (1u << count) - 1;
     else {
       const PatchRecord p = patches[index];
-      const CurveRecord l = curves[p.left], r = curves[p.right];
       const ItemRecord item = items[p.item];
+      if (!mayTouch(item, p, pixel.x, pixel.y)) continue;
+      const CurveRecord l = curves[p.left], r = curves[p.right];
       // Written out for the same reason as the halvings of curve.h.
       mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first, n, flags));
       if (count == 4) {

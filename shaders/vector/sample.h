@@ -52,6 +52,18 @@ GPGP_FN uint coverageMask(ItemRecord item, PatchRecord p, CurveRecord left, Curv
   return mask;
 }
 
+// Whether a pixel may have samples in a patch, from the patch's box alone: most pixels of a tile do not.
+GPGP_FN bool mayTouch(ItemRecord item, PatchRecord p, uint pixelX, uint pixelY) {
+  float px = float(pixelX) + 0.5f;
+  float py = float(pixelY) + 0.5f;
+  float x = drawingX(item, px, py);
+  float y = drawingY(item, px, py);
+  float margin = 2.0f * item.tolerance + 2e-6f * max(abs(x), abs(y));
+  float width = 0.5f * (abs(item.inverse.x) + abs(item.inverse.z)) + margin;
+  float height = 0.5f * (abs(item.inverse.y) + abs(item.inverse.w)) + margin;
+  return x + width >= p.x0 && x - width <= p.x1 && y + height >= p.top && y - height <= p.bottom;
+}
+
 // What of a tile a patch covers, in terms of classifyTile; the tile's corners are taken to the drawing and the box
 // around them is widened by what rounding and the curves' tolerance may shift.
 GPGP_FN uint classifyPixels(ItemRecord item, PatchRecord p, CurveRecord left, CurveRecord right, float px0, float py0,
