@@ -98,7 +98,8 @@ typedef struct GpgpCanvasCreateInfo {
   uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
   uint32_t maxPatches;          /**< CPatches in one record, all drawings and their instances; 0: 262144 */
   uint32_t maxTileEntries;      /**< patch references over all tiles; 0: 1048576 */
-  uint32_t maxDrawings;         /**< drawings (with a transform each) in one record; 0: 64 */
+  uint32_t maxDrawings;         /**< items (a drawing with a transform) in one record; 0: 64. They may show at most 8
+                                     different drawings */
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 

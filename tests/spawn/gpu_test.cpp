@@ -259,6 +259,18 @@ TEST_F(SpawnTest, NoAxiomsGiveNothing) {
   for (const auto& draw : none.draws) EXPECT_EQ(draw.instanceCount, 0u);
 }
 
+TEST_F(SpawnTest, HundredsOfThousandsOfShapesEqualTheEvaluator) {
+  // Long loops over a queue are where software devices give up silently: every shape must still be counted.
+  const std::vector<uint32_t> words = bake("axiom Box A; terminal T (1, 0);\n"
+                                           "A = Translate(1, 0, 0) Rotate(0, 10, 0) Scale(-0.9, -1, -1) "
+                                           "Translate(0, 1, 0) Rotate(5, 0, 0) SubDiv(X) { -1: T | -1: T };\n");
+  const std::vector<GpgpAxiom> many = axioms(120000, 1, 1, 1);
+  makeSpawner({});
+  const spawn::Derivation cpu = spawn::derive(words, many);
+  ASSERT_EQ(cpu.terminals, 240000u);
+  compare(cpu, run(words, many, 240000, true), "240 000 terminals");
+}
+
 TEST_F(SpawnTest, FewerInstancesThanTerminalsAreReported) {
   const auto words = bake(ownGrammar("building.pga"));
   const auto all = axioms(3, 13, 19, 11);

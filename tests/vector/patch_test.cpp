@@ -304,6 +304,8 @@ TEST(Baked, ContentsAreCheckedBehindARightChecksum) {
   EXPECT_FALSE(refused([](Drawing&) {}));
   EXPECT_TRUE(refused([](Drawing& d) { d.patches[2].left = static_cast<uint32_t>(d.curves.size()); }));
   EXPECT_TRUE(refused([](Drawing& d) { d.patches[0].right = UINT32_MAX; }));
+  // in the table, but beyond what the patches before it account for
+  EXPECT_TRUE(refused([](Drawing& d) { d.patches[0].right = static_cast<uint32_t>(d.curves.size() - 1); }));
   EXPECT_TRUE(refused([](Drawing& d) { d.patches[0].path = 1; }));
   EXPECT_TRUE(refused([](Drawing& d) { d.patches[1].top = d.patches[1].bottom; }));
   EXPECT_TRUE(refused([](Drawing& d) { d.patches[1].x0 = NAN; }));

@@ -4,6 +4,7 @@
 // then index without asking again.
 #include "vector/patch/drawing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -47,7 +48,10 @@ core::Result<void> checkContents(const Drawing& d) {
   uint32_t path = 0;
   for (size_t i = 0; i < d.patches.size(); ++i) {
     const PatchRecord& p = d.patches[i];
-    if (p.left >= d.curves.size() || p.right >= d.curves.size() || p.path >= d.paths.size() || p.path < path)
+    // Curves lie in the order in which patches first use them, so the first n patches need at most 2 n of them: the
+    // canvas sizes its table by that.
+    const size_t most = std::min(d.curves.size(), 2 * (i + 1));
+    if (p.left >= most || p.right >= most || p.path >= d.paths.size() || p.path < path)
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: patch %zu refers to what is not there", i);
     if (!sane(p.top) || !sane(p.bottom) || !sane(p.x0) || !sane(p.x1) || !(p.top < p.bottom) || p.item)
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: patch %zu is not a patch", i);
