@@ -137,7 +137,8 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
 
   VkDeviceSize scratchBytes = 0;
   EXPECT_EQ(gpgpGetScratchSize(handle, &scratchBytes, nullptr, nullptr), GPGP_SUCCESS);
-  const auto* worker = static_cast<const core::Worker*>(api::objectOf(handle));
+  const core::Context* owner = nullptr;
+  const auto* worker = static_cast<const core::Worker*>(api::objectOf(handle, &owner));
   host::Buffer scratch;
   if (worker->engineScratch()) {
     scratch = host::Buffer(device, scratchBytes, core::Worker::kScratchUsage);
