@@ -2,11 +2,19 @@
 # Builds the mini-engine and runs it: pictures always, a window too when there is a display.
 #
 # Installs what is missing (Debian 12, as root or through sudo), asks nothing, can be run again. Options are handed to
-# the mini-engine: samples/run.sh --help shows them.
+# the mini-engine: samples/run.sh --help shows them once it is built.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=samples/setup.sh
 source samples/setup.sh
+
+case ${1:-} in
+-h | --help)
+  sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  if [[ -x build/release/mini_engine ]]; then build/release/mini_engine --help; fi
+  exit 0
+  ;;
+esac
 
 say "1/4 Debian packages (samples/packages.txt)"
 installMissing samples/packages.txt

@@ -129,7 +129,7 @@ typedef struct GpgpSpawnerCreateInfo {
   GpgpWorkerCreateInfo base;
   uint32_t maxShapes;    /**< shapes alive in one round of derivation; 0: 262144. What does not fit is counted */
   uint32_t maxTerminals; /**< terminal shapes of one record; 0: 524288. What does not fit is counted */
-  uint32_t maxDepth;     /**< rounds, the longest path of dynamic edges; 0: 64. Shapes left over are counted */
+  uint32_t maxDepth; /**< rounds, the longest path of dynamic edges, a pass each; 0: 64. Shapes left over are counted */
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 

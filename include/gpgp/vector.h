@@ -117,7 +117,8 @@ typedef struct GpgpCanvasViewCreateInfo {
 } GpgpCanvasViewCreateInfo;
 #define GPGP_CANVAS_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasViewCreateInfo, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO)
 
-/** Makes a place where a canvas keeps its result between gpgpRecordPrepareCanvas and gpgpRecordDrawCanvas.
+/** Makes a place where a canvas keeps its result between gpgpRecordPrepareCanvas and gpgpRecordDrawCanvas. It is ready
+ *  once a gpgpRecordUpload has cleared it.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext context, const GpgpCanvasViewCreateInfo* info,
                                                    GpgpView* view);

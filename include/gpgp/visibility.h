@@ -58,7 +58,8 @@ typedef struct GpgpCameraViewCreateInfo {
 } GpgpCameraViewCreateInfo;
 #define GPGP_CAMERA_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO)
 
-/** Makes the history of one camera: all triangles unseen until its first record.
+/** Makes the history of one camera: all triangles unseen until its first record. It is ready once a gpgpRecordUpload
+ *  has cleared it.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const GpgpCameraViewCreateInfo* info,
                                                    GpgpView* view);

@@ -85,6 +85,11 @@ Result<void> Worker::check(const Record& record) const {
                        static_cast<unsigned long long>(scratch.size),
                        static_cast<unsigned long long>(passes_.scratchBytes));
   }
+  for (uint32_t i = 0; i < passes_.groupCounts; ++i)
+    for (uint32_t axis = 0; axis < 3; ++axis)
+      if (record.groups[i][axis] > limits.maxComputeWorkGroupCount[axis])
+        return makeError(GPGP_ERROR_UNSUPPORTED, "the record needs %u workgroups in a row; this device dispatches %u",
+                         record.groups[i][axis], limits.maxComputeWorkGroupCount[axis]);
   for (size_t i = 0; i < passes_.resources.size(); ++i) {
     const Resource& resource = passes_.resources[i];
     const Binding& binding = record.bindings[i];

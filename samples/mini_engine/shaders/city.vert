@@ -22,7 +22,8 @@ void main() {
   vec3 p = corner;
   uint shape = kind.y;
   if (shape <= kOctagon || shape == kDynamicConvexPolygon || shape == kDynamicPolygon) p.z = 0.0;
-  if (shape == kPrism3 || shape == 0u) p.x *= 0.5 - p.y;
+  if (shape == 0u) p.x *= 0.5 - p.y;       // a triangle, apex along +Y
+  if (shape == kPrism3) p.x *= 0.5 + p.z; // it stands along Y, its triangle's apex lies along -Z
   vec4 local = vec4(p, 1.0);
   world = vec3(dot(row0, local), dot(row1, local), dot(row2, local));
   normal = vec3(0.0); // flat: the fragment shader takes it from the surface
