@@ -11,7 +11,7 @@ using namespace gpgp;
 using namespace gpgp::test;
 
 struct ArgumentsTest : testing::Test {
-  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  host::HeadlessDevice& device = sharedDevice();
   VulkanProxy proxy{device};
   std::vector<std::string> messages;
   GpgpContext context = nullptr;
@@ -22,7 +22,7 @@ struct ArgumentsTest : testing::Test {
   }
   void TearDown() override {
     gpgpDestroyContext(context);
-    for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+    for (const std::string& message : device.takeValidationMessages()) ADD_FAILURE() << message;
   }
   GpgpContextCreateInfo goodInfo() {
     GpgpContextCreateInfo info = scenarioContextInfo(device, &messages);

@@ -5,6 +5,7 @@
 #include "scenarios.h"
 #include "vulkan_proxy.h"
 
+#include <gpgp/gpgp.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -15,7 +16,7 @@ using namespace gpgp;
 using namespace gpgp::test;
 
 struct ContractTest : testing::TestWithParam<std::string> {
-  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  host::HeadlessDevice& device = sharedDevice();
   VulkanProxy proxy{device};
   std::vector<std::string> messages;
   GpgpContext context = nullptr;
@@ -42,7 +43,7 @@ struct ContractTest : testing::TestWithParam<std::string> {
     device.waitIdle();
     gpgpDestroyContext(context);
     scenario.reset();
-    for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+    for (const std::string& message : device.takeValidationMessages()) ADD_FAILURE() << message;
   }
 
   /// Asset, worker and view made, prewarmed and uploaded, in frame 1.
@@ -102,6 +103,103 @@ TEST_P(ContractTest, RecordingOnlyRecords) {
     if (call.name.rfind("vkCmd", 0) != 0 && call.name != "vkUpdateDescriptorSets") strange.insert(call.name);
   EXPECT_TRUE(strange.empty()) << "recording called " << *strange.begin();
   ring.drop();
+}
+
+TEST_P(ContractTest, UploadingOnlyRecordsTransfersAndOneBarrier) {
+  ASSERT_EQ(scenario->createAsset(context), GPGP_SUCCESS);
+  ASSERT_EQ(scenario->createView(context), GPGP_SUCCESS);
+  const GpgpFrame frame = advance();
+  host::FrameRing ring(device, 1);
+  const VkCommandBuffer cmd = ring.begin();
+  proxy.clear();
+  const uint64_t allocationsBefore = hostAllocations, newBefore = countingNewCalls();
+  const GpgpResult result = gpgpRecordUpload(context, cmd, &frame, 0, nullptr);
+  const uint64_t newCalls = countingNewCalls() - newBefore;
+  ASSERT_EQ(result, GPGP_SUCCESS) << lastMessage();
+  EXPECT_EQ(hostAllocations, allocationsBefore);
+  EXPECT_EQ(newCalls, 0u);
+  ASSERT_GE(proxy.calls.size(), 2u);
+  for (size_t i = 0; i < proxy.calls.size(); ++i) {
+    const std::string_view name = proxy.calls[i].name;
+    if (i + 1 < proxy.calls.size())
+      EXPECT_TRUE(name == "vkCmdCopyBuffer" || name == "vkCmdFillBuffer") << name;
+    else
+      EXPECT_EQ(name, "vkCmdPipelineBarrier");
+  }
+  const LoggedCall& barrier = proxy.calls.back();
+  EXPECT_EQ(barrier.sourceStages, VkPipelineStageFlags(VK_PIPELINE_STAGE_TRANSFER_BIT));
+  EXPECT_TRUE(barrier.targetStages & VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+  EXPECT_TRUE(barrier.targetAccess & VK_ACCESS_MEMORY_READ_BIT);
+
+  proxy.clear(); // nothing is pending any more: nothing is recorded
+  EXPECT_EQ(gpgpRecordUpload(context, cmd, &frame, 0, nullptr), GPGP_SUCCESS);
+  EXPECT_TRUE(proxy.calls.empty());
+  ring.drop();
+}
+
+TEST_P(ContractTest, DrawingOnlyRecordsADraw) {
+  if (GetParam() != "vector") GTEST_SKIP() << GetParam() << " records nothing inside a render pass";
+#if defined(GPGP_WITH_VECTOR)
+  if (!(device.features() & GPGP_FEATURE_DYNAMIC_RENDERING)) GTEST_SKIP() << device.name() << " renders in passes only";
+  prepare();
+  GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
+  target.colorFormat = VK_FORMAT_R8G8B8A8_UNORM;
+  GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
+  prewarm.targets = &target;
+  prewarm.targetCount = 1;
+  ASSERT_EQ(gpgpPrewarm(scenario->worker, &prewarm), GPGP_SUCCESS) << lastMessage();
+  const host::Image image(device, {target.colorFormat, 64, 64, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
+  const GpgpFrame frame = advance();
+  host::FrameRing ring(device, 1);
+  const VkCommandBuffer cmd = ring.begin();
+  GpgpCanvasDrawInfo info = GPGP_CANVAS_DRAW_INFO_INIT;
+  info.view = scenario->view;
+  info.target = &target;
+  info.width = info.height = 64;
+  for (int i = 0; i < 4; ++i) info.clip[i * 5] = 1;
+  EXPECT_EQ(gpgpRecordDrawCanvas(scenario->worker, cmd, &frame, &info), GPGP_NOT_READY) << "nothing was prepared";
+  ASSERT_EQ(scenario->record(cmd, frame, {}), GPGP_SUCCESS) << lastMessage();
+
+  host::imageBarrier(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+  VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+  attachment.imageView = image.view();
+  attachment.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  rendering.renderArea.extent = {64, 64};
+  rendering.layerCount = 1;
+  rendering.colorAttachmentCount = 1;
+  rendering.pColorAttachments = &attachment;
+  const VolkDeviceTable& vk = device.vk();
+  vk.vkCmdBeginRenderingKHR(cmd, &rendering);
+  const VkViewport viewport{0, 0, 64, 64, 0, 1};
+  const VkRect2D scissor{{0, 0}, {64, 64}};
+  vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
+  vk.vkCmdSetScissor(cmd, 0, 1, &scissor);
+  proxy.clear();
+  const uint64_t allocationsBefore = hostAllocations, newBefore = countingNewCalls();
+  const GpgpResult result = gpgpRecordDrawCanvas(scenario->worker, cmd, &frame, &info);
+  const uint64_t newCalls = countingNewCalls() - newBefore;
+  ASSERT_EQ(result, GPGP_SUCCESS) << lastMessage();
+  EXPECT_EQ(hostAllocations, allocationsBefore);
+  EXPECT_EQ(newCalls, 0u);
+  int draws = 0;
+  for (const LoggedCall& call : proxy.calls) {
+    draws += call.name == "vkCmdDraw";
+    if (call.name == "vkCmdBindPipeline" || call.name == "vkCmdBindDescriptorSets") {
+      EXPECT_EQ(call.bindPoint, VK_PIPELINE_BIND_POINT_GRAPHICS);
+      continue;
+    }
+    EXPECT_TRUE(call.name == "vkCmdDraw" || call.name == "vkCmdPushConstants" ||
+                call.name == "vkUpdateDescriptorSets" || call.name.find("Label") != std::string_view::npos)
+        << call.name;
+  }
+  EXPECT_EQ(draws, 1);
+  vk.vkCmdEndRenderingKHR(cmd);
+  ring.submit(); // validation sees the whole
+  ring.waitAll();
+#endif
 }
 
 TEST_P(ContractTest, LeavesExactlyTheDocumentedState) {

@@ -66,7 +66,7 @@ struct Faults {
 };
 
 struct FaultTest : testing::TestWithParam<std::string> {
-  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  host::HeadlessDevice& device = sharedDevice();
   VulkanProxy proxy{device};
   std::vector<std::string> messages;
   Faults faults;
@@ -78,7 +78,7 @@ struct FaultTest : testing::TestWithParam<std::string> {
   }
   void TearDown() override {
     scenario.reset();
-    for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+    for (const std::string& message : device.takeValidationMessages()) ADD_FAILURE() << message;
   }
   GpgpResult createContext(GpgpContext& context, bool engineGpu) {
     GpgpContextCreateInfo info = scenarioContextInfo(device, &messages);

@@ -43,6 +43,10 @@ public:
   GpgpView view = nullptr;
 };
 
+/// One device with validation for all tests of a process: drivers allow only so many instances, and they take time.
+/// Destroyed after the last test.
+host::HeadlessDevice& sharedDevice();
+
 /// All services that this build has.
 std::vector<std::string> scenarioNames();
 std::unique_ptr<Scenario> makeScenario(const std::string& name, host::HeadlessDevice& device);
