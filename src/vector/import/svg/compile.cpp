@@ -22,6 +22,8 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   for (const auto& path : imported->paths) paths.push_back(path.view());
   auto drawing = vector::makeDrawing(paths, memory);
   if (!drawing) return fail(drawing.error().code, drawing.error().text);
+  if (imported->width > vector::kMaxCoordinate || imported->height > vector::kMaxCoordinate)
+    return fail(GPGP_ERROR_INVALID_DATA, "the page is wider or taller than 1e7 pixels");
   if (imported->width > 0 && imported->height > 0) {
     const double page[4] = {0, 0, imported->width, imported->height};
     for (size_t i = 0; i < 4; ++i) drawing->viewport[i] = static_cast<float>(page[i]);
