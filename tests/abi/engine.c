@@ -61,7 +61,9 @@ static uint32_t chooseFamily(VkPhysicalDevice device) {
 }
 
 #ifdef ENGINE_SPAWN
+#ifdef ENGINE_COMPILE_GRAMMAR
 static GpgpAsset grammar = NULL;
+#endif
 static GpgpWorker spawner = NULL;
 
 static void useSpawn(GpgpContext context, uint32_t family) {
