@@ -92,14 +92,9 @@ template <class T> Result<void> checkStruct(const T* info, GpgpStructureType typ
   return {};
 }
 
-inline Result<void> checkWorkerInfo(const Context& context, const GpgpWorkerCreateInfo&) {
-  if (context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
-  return {};
-}
-
 /// The common beginning of every record function, after the worker was resolved.
 inline Result<void> checkRecord(const core::Worker& worker, const GpgpFrame* frame) {
-  if (worker.context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+  if (auto ok = worker.context.checkAlive(); !ok) return ok;
   if (auto ok = worker.context.checkFrame(frame); !ok) return ok;
   if (!worker.ready()) return makeError(GPGP_NOT_READY, "call gpgpPrewarm first");
   return {};

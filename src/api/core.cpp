@@ -93,7 +93,7 @@ GpgpResult GPGP_CALL gpgpAdvance(GpgpContext handle, const GpgpFrame* frame) {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
     if (!frame) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame is NULL");
-    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     return (*context)->advance(*frame);
   });
 }
@@ -113,7 +113,7 @@ GpgpResult GPGP_CALL gpgpRecordUpload(GpgpContext handle, VkCommandBuffer comman
     const auto context = resolve(call, handle);
     if (!context) return context.error();
     if (!commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
-    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (auto ok = (*context)->checkFrame(frame); !ok) return ok;
     const auto pending = (*context)->uploads().record(commandBuffer, byteBudget);
     if (!pending) return pending.error();
@@ -169,7 +169,7 @@ GpgpResult GPGP_CALL gpgpPrewarm(GpgpWorker handle, const GpgpPrewarmInfo* info)
     if (!worker) return worker.error();
     if (info)
       if (auto ok = checkStruct(info, GPGP_STRUCTURE_PREWARM_INFO, "info"); !ok) return ok;
-    if ((*worker)->context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*worker)->context.checkAlive(); !ok) return ok;
     return (*worker)->prewarm(info);
   });
 }

@@ -16,7 +16,7 @@ GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext handle, const GpgpGrammarCrea
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO, "info"); !ok) return ok;
     if (!grammar) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "grammar is NULL");
-    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (!info->data == !info->filePath)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data and filePath must be set");
     std::span<const std::byte> bytes(static_cast<const std::byte*>(info->data), info->data ? info->size : 0);
@@ -58,7 +58,7 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_SPAWNER_CREATE_INFO, "info"); !ok) return ok;
     if (!spawner) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "spawner is NULL");
-    if (auto ok = checkWorkerInfo(**context, info->base); !ok) return ok;
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (info->maxShapes > (1u << 24) || info->maxTerminals > (1u << 24))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes and maxTerminals are at most 16777216");
     if (info->maxDepth > 1024) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDepth is at most 1024");

@@ -16,7 +16,7 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     if (!drawing) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawing is NULL");
     if ((info->data != nullptr) + (info->filePath != nullptr) + (info->paths != nullptr) != 1)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data, filePath and paths must be given");
-    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     std::pmr::memory_resource* memory = &(*context)->host();
     const auto make = [&]() -> Result<Drawing> {
       if (info->paths) return makeDrawing(std::span(info->paths, info->pathCount), memory);
@@ -54,7 +54,7 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_CREATE_INFO, "info"); !ok) return ok;
     if (!canvas) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "canvas is NULL");
-    if (auto ok = checkWorkerInfo(**context, info->base); !ok) return ok;
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (info->maxWidth > 16384 || info->maxHeight > 16384)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 16384 x 16384",
                        info->maxWidth, info->maxHeight);
@@ -85,7 +85,7 @@ GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext handle, const GpgpCanvasVi
       return makeError(GPGP_ERROR_UNSUPPORTED, "%u x %u pixels need %llu bytes, but this device binds at most %u",
                        info->width, info->height, static_cast<unsigned long long>(bytes),
                        (*context)->device.limits.maxStorageBufferRange);
-    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = CanvasView::create(**context, *info);
     if (!made) return made.error();
     *view = adopt<GpgpView>(**context, std::move(*made));

@@ -28,7 +28,7 @@ GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext handle, const GpgpGeometr
     if (uint64_t(info->meshCount) * sizeof(GpgpMesh) > (*context)->device.limits.maxStorageBufferRange)
       return makeError(GPGP_ERROR_UNSUPPORTED, "meshCount is %u, but this device binds at most %u bytes",
                        info->meshCount, (*context)->device.limits.maxStorageBufferRange);
-    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = GeometrySet::create(**context, *info);
     if (!made) return made.error();
     *geometrySet = adopt<GpgpAsset>(**context, std::move(*made));
@@ -42,7 +42,7 @@ GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext handle, const GpgpSamplerCrea
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_SAMPLER_CREATE_INFO, "info"); !ok) return ok;
     if (!sampler) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "sampler is NULL");
-    if (auto ok = checkWorkerInfo(**context, info->base); !ok) return ok;
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (info->maxWidth > 8192 || info->maxHeight > 8192)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192",
                        info->maxWidth, info->maxHeight);
@@ -67,7 +67,7 @@ GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext handle, const GpgpCameraVi
     if (bytes > (*context)->device.limits.maxStorageBufferRange)
       return makeError(GPGP_ERROR_UNSUPPORTED, "maxTriangles is %u, but this device binds at most %u bytes",
                        info->maxTriangles, (*context)->device.limits.maxStorageBufferRange);
-    if ((*context)->lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = CameraView::create(**context, *info);
     if (!made) return made.error();
     *view = adopt<GpgpView>(**context, std::move(*made));

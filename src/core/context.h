@@ -50,6 +50,11 @@ public:
   uint64_t current() const { return frame_.current; }
   uint64_t safe() const { return frame_.safe; }
   bool lost() const { return lost_.load(std::memory_order_relaxed); }
+  /// DEVICE_LOST once the engine has said so.
+  Result<void> checkAlive() const {
+    if (lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+    return {};
+  }
   void setLost();
   Result<void> advance(const GpgpFrame& frame);
   /// Checks a frame that a record names: same as the last advance's.

@@ -53,18 +53,6 @@ Pass& PassList::fill(const char* name, ResourceIndex target, uint32_t value, VkD
   return pass;
 }
 
-Pass& PassList::copy(const char* name, ResourceIndex source, VkDeviceSize sourceOffset, ResourceIndex target,
-                     VkDeviceSize offset, VkDeviceSize size) {
-  Pass& pass = passes.emplace_back(Pass{name, PassKind::copy});
-  pass.source = source;
-  pass.sourceOffset = sourceOffset;
-  pass.target = target;
-  pass.offset = offset;
-  pass.size = size;
-  setUses(pass, {{source, UseKind::read}, {target, UseKind::write}});
-  return pass;
-}
-
 void PassList::finish(VkDeviceSize alignment) {
   scratchOffsets.assign(resources.size(), 0);
   scratchBytes = constantsBytes = 0;

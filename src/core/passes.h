@@ -42,7 +42,7 @@ struct ShaderDesc {
   uint32_t specializationCount = 0;
 };
 
-enum class PassKind : uint8_t { dispatch, dispatchIndirect, fill, copy };
+enum class PassKind : uint8_t { dispatch, dispatchIndirect, fill };
 constexpr uint32_t kMaxUses = 16;
 constexpr uint32_t kMaxPassConstants = 8;
 
@@ -52,12 +52,11 @@ struct Pass {
   uint32_t shader = 0;                 ///< index in PassList::shaders
   std::array<Use, kMaxUses> uses = {}; ///< all that its shader could touch, for barriers
   uint32_t useCount = 0;
-  uint32_t groups = 0;      ///< dispatch: index in a record's list of workgroup counts
-  ResourceIndex target = 0; ///< indirect: arguments; fill and copy: destination
-  ResourceIndex source = 0; ///< copy
-  VkDeviceSize offset = 0, sourceOffset = 0, size = VK_WHOLE_SIZE; ///< indirect, fill, copy: bytes in the resource
-  uint32_t value = 0;                                              ///< fill
-  std::array<uint32_t, kMaxPassConstants> constants = {};          ///< push constants, the same in every record
+  uint32_t groups = 0;                                    ///< dispatch: index in a record's list of workgroup counts
+  ResourceIndex target = 0;                               ///< indirect: arguments; fill: destination
+  VkDeviceSize offset = 0, size = VK_WHOLE_SIZE;          ///< indirect, fill: bytes in the resource
+  uint32_t value = 0;                                     ///< fill
+  std::array<uint32_t, kMaxPassConstants> constants = {}; ///< push constants, the same in every record
   uint32_t constantCount = 0;
   uint32_t condition = UINT32_MAX; ///< index in a record's list of flags: left out of the record when false
   uint32_t level = 0;              ///< left out of records that ask for as many levels or fewer
@@ -73,7 +72,6 @@ struct PassList {
   ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end
   uint32_t reportBytes = 0;
   uint32_t groupCounts = 0; ///< how many workgroup counts a record gives
-  uint32_t conditions = 0;  ///< how many flags a record gives
 
   // worked out by finish()
   std::pmr::vector<VkDeviceSize> scratchOffsets; ///< by resource
@@ -94,8 +92,6 @@ struct PassList {
                          VkDeviceSize offset, std::initializer_list<uint32_t> constants = {});
   Pass& fill(const char* name, ResourceIndex target, uint32_t value, VkDeviceSize offset = 0,
              VkDeviceSize size = VK_WHOLE_SIZE);
-  Pass& copy(const char* name, ResourceIndex source, VkDeviceSize sourceOffset, ResourceIndex target,
-             VkDeviceSize offset, VkDeviceSize size);
 
   /// Lays out scratch (alignment: minStorageBufferOffsetAlignment) and decides barriers: a pass gets one before it
   /// when it uses what a pass since the last barrier wrote, or writes what one used.

@@ -59,7 +59,7 @@ Result<void> checkStages(const char* resource, const char* edge, const GpgpAcces
 } // namespace
 
 Result<void> Worker::check(const Record& record) const {
-  if (context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+  if (auto ok = context.checkAlive(); !ok) return ok;
   if (!record.commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
   const VkPhysicalDeviceLimits& limits = context.device.limits;
   const GpgpTimestamps& timestamps = record.info->timestamps;
@@ -294,11 +294,6 @@ Result<void> Worker::record(const Record& record) {
         const auto [buffer, offset] = place(pass.target);
         const VkDeviceSize size = pass.size == VK_WHOLE_SIZE ? placeSize(pass.target) - pass.offset : pass.size;
         vk.CmdFillBuffer(cmd, buffer, offset + pass.offset, size / 4 * 4, pass.value);
-      } else if (pass.kind == PassKind::copy) {
-        const auto [source, sourceOffset] = place(pass.source);
-        const auto [target, offset] = place(pass.target);
-        const VkBufferCopy region{sourceOffset + pass.sourceOffset, offset + pass.offset, pass.size};
-        vk.CmdCopyBuffer(cmd, source, target, 1, &region);
       } else {
         if (bound != pipelines_[pass.shader]) {
           bound = pipelines_[pass.shader];
@@ -338,7 +333,7 @@ Result<void> Worker::record(const Record& record) {
 }
 
 Result<void> Worker::recordDraw(const DrawRecord& record) {
-  if (context.lost()) return makeError(GPGP_ERROR_DEVICE_LOST, "the device is lost");
+  if (auto ok = context.checkAlive(); !ok) return ok;
   if (!record.commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
   VkPipeline pipeline = VK_NULL_HANDLE;
   for (uint32_t i = 0; i < targetCount_.load(std::memory_order_acquire); ++i)

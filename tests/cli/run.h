@@ -45,6 +45,15 @@ inline std::string gpgpFailure(std::vector<std::string> arguments) {
   return error;
 }
 
+/// Each of these is wrong usage: exit code 2 and nothing on standard output.
+inline void expectWrongUsage(const std::vector<std::vector<std::string>>& wrong) {
+  for (const auto& arguments : wrong) {
+    const ProcessResult result = gpgp(arguments);
+    EXPECT_EQ(result.exitCode, 2) << testing::PrintToString(arguments);
+    EXPECT_EQ(result.out, "");
+  }
+}
+
 inline std::set<std::string> keys(const json& object) {
   std::set<std::string> result;
   for (const auto& [key, value] : object.items()) result.insert(key);

@@ -48,19 +48,14 @@ TEST(CliSpawn, ErrorsHaveAPlace) {
 
 TEST(CliSpawn, WrongUsage) {
   const TemporaryFile grammar("usage.pga", kTower);
-  const std::vector<std::vector<std::string>> wrong = {{"spawn"},
-                                                       {"spawn", "no_such_file.pga"},
-                                                       {"spawn", grammar.path(), "--axioms", "0"},
-                                                       {"spawn", grammar.path(), "--axiom-size", "1,2"},
-                                                       {"spawn", grammar.path(), "--axiom-size", "1,2,-3"},
-                                                       {"spawn", grammar.path(), "--set", "floors"},
-                                                       {"spawn", grammar.path(), "--set", "=3"},
-                                                       {"spawn", grammar.path(), "--set", "floors=many"}};
-  for (const auto& arguments : wrong) {
-    const ProcessResult result = gpgp(arguments);
-    EXPECT_EQ(result.exitCode, 2) << testing::PrintToString(arguments);
-    EXPECT_EQ(result.out, "");
-  }
+  expectWrongUsage({{"spawn"},
+                    {"spawn", "no_such_file.pga"},
+                    {"spawn", grammar.path(), "--axioms", "0"},
+                    {"spawn", grammar.path(), "--axiom-size", "1,2"},
+                    {"spawn", grammar.path(), "--axiom-size", "1,2,-3"},
+                    {"spawn", grammar.path(), "--set", "floors"},
+                    {"spawn", grammar.path(), "--set", "=3"},
+                    {"spawn", grammar.path(), "--set", "floors=many"}});
 }
 
 } // namespace

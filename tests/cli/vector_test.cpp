@@ -78,16 +78,11 @@ TEST(CliVector, BadDrawingsAreNamed) {
 
 TEST(CliVector, WrongUsage) {
   const TemporaryFile file("usage.svg", kHalves);
-  const std::vector<std::vector<std::string>> wrong = {{"vector"},
-                                                       {"vector", "no_such_file.svg"},
-                                                       {"vector", file.path(), "--samples", "3"},
-                                                       {"vector", file.path(), "--background", "red"},
-                                                       {"vector", file.path(), "--size", "big"}};
-  for (const auto& arguments : wrong) {
-    const ProcessResult result = gpgp(arguments);
-    EXPECT_EQ(result.exitCode, 2) << testing::PrintToString(arguments);
-    EXPECT_EQ(result.out, "");
-  }
+  expectWrongUsage({{"vector"},
+                    {"vector", "no_such_file.svg"},
+                    {"vector", file.path(), "--samples", "3"},
+                    {"vector", file.path(), "--background", "red"},
+                    {"vector", file.path(), "--size", "big"}});
 }
 
 } // namespace

@@ -74,19 +74,14 @@ TEST(CliVisibility, BadModelsAreNamed) {
 
 TEST(CliVisibility, WrongUsage) {
   const TemporaryFile model("usage.obj", kTwoSquares);
-  const std::vector<std::vector<std::string>> wrong = {{"visibility"},
-                                                       {"visibility", "no_such_file.obj"},
-                                                       {"visibility", model.path(), "--size", "0x5"},
-                                                       {"visibility", model.path(), "--size", "64"},
-                                                       {"visibility", model.path(), "--size", "-4x4"},
-                                                       {"visibility", model.path(), "--size", "64x64x64"},
-                                                       {"visibility", model.path(), "--pitch", "90"},
-                                                       {"visibility", model.path(), "--repeat", "0"}};
-  for (const auto& arguments : wrong) {
-    const ProcessResult result = gpgp(arguments);
-    EXPECT_EQ(result.exitCode, 2) << testing::PrintToString(arguments);
-    EXPECT_EQ(result.out, "");
-  }
+  expectWrongUsage({{"visibility"},
+                    {"visibility", "no_such_file.obj"},
+                    {"visibility", model.path(), "--size", "0x5"},
+                    {"visibility", model.path(), "--size", "64"},
+                    {"visibility", model.path(), "--size", "-4x4"},
+                    {"visibility", model.path(), "--size", "64x64x64"},
+                    {"visibility", model.path(), "--pitch", "90"},
+                    {"visibility", model.path(), "--repeat", "0"}});
 }
 
 } // namespace

@@ -120,7 +120,6 @@ core::PassList Canvas::describe() const {
   raster("raster", vector_raster, kNoImage, view);
   raster("raster rgba8", vector_raster_rgba8, kHasImage8, image8);
   raster("raster rgba16f", vector_raster_rgba16, kHasImage16, image16);
-  list.conditions = 3;
   list.report = counters;
   list.reportBytes = sizeof(CanvasCounters);
   return list;
