@@ -76,6 +76,11 @@ typedef struct GpgpVariable {
   float value;
 } GpgpVariable;
 
+typedef uint64_t GpgpCompileFlags;
+/** Generate a kernel for the grammar, in the default schedule. It derives what the interpreter does, many times faster.
+ */
+#define GPGP_COMPILE_KERNEL ((GpgpCompileFlags)1)
+
 typedef struct GpgpGrammarSource {
   GpgpStructureType sType;
   const void* pNext;
@@ -86,6 +91,7 @@ typedef struct GpgpGrammarSource {
   uint32_t variableCount;
   GpgpCompileMessageFn messageFn; /**< every error of the file, in order */
   void* messageUserData;
+  GpgpCompileFlags flags;
 } GpgpGrammarSource;
 #define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
 
@@ -123,13 +129,21 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset grammar, uint32_
 
 /* ---------------------------------------------------------------- spawner */
 
+typedef uint64_t GpgpSpawnerFlags;
+/** Terminals become vertices and indices, not instances: records give GpgpSpawnInfo::vertices. */
+#define GPGP_SPAWNER_VERTICES ((GpgpSpawnerFlags)1)
+
 typedef struct GpgpSpawnerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpWorkerCreateInfo base;
-  uint32_t maxShapes;    /**< shapes alive in one round of derivation; 0: 262144. What does not fit is counted */
+  GpgpSpawnerFlags flags;
+  uint32_t maxShapes;    /**< shapes that wait for a round of derivation; 0: 131072. What does not fit is counted */
   uint32_t maxTerminals; /**< terminal shapes of one record; 0: 524288. What does not fit is counted */
-  uint32_t maxDepth; /**< rounds, the longest path of dynamic edges, a pass each; 0: 64. Shapes left over are counted */
+  uint32_t maxDepth;     /**< how deep rules may nest in themselves; 0: 64. Deeper shapes are counted, not derived */
+  uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 8, or 32 on software devices. Few are
+                         needed: workgroups derive by themselves, and rounds only share work out again. What is left is
+                         counted */
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
@@ -139,6 +153,52 @@ typedef struct GpgpSpawnerCreateInfo {
 GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpSpawnerCreateInfo* info,
                                                 GpgpWorker* spawner);
 
+/** Compiles the kernels that a grammar was baked with and that are for this device, on the calling thread. Until it has
+ *  returned, and for grammars without such kernels, records run the interpreter, which derives the same. The pipelines
+ *  belong to the grammar and serve all spawners of the context. May run beside records.
+ *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY. @threads handle: one call for a grammar at a time */
+GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker spawner, GpgpAsset grammar);
+
+typedef uint32_t GpgpVertexSemantic;
+enum {
+  GPGP_VERTEX_POSITION = 0, /**< world space; w is 1 where the format has it */
+  GPGP_VERTEX_NORMAL = 1,   /**< of the face, unit length, world space; UNORM holds n / 2 + 1 / 2 */
+  GPGP_VERTEX_UV = 2,       /**< on the face, [0, 1] to the right and upwards */
+  GPGP_VERTEX_BUCKET = 3,   /**< GpgpGrammarTerminal::bucket of the terminal */
+  GPGP_VERTEX_AXIOM_ID = 4, /**< GpgpAxiom::id */
+  GPGP_VERTEX_TERMINAL = 5, /**< index as in gpgpGetGrammarTerminals */
+  GPGP_VERTEX_SEED = 6      /**< of the shape */
+};
+
+typedef struct GpgpVertexAttribute {
+  GpgpVertexSemantic semantic;
+  VkFormat format; /**< R32G32B32_SFLOAT, R32G32_SFLOAT, R16G16B16A16_SFLOAT, R8G8B8A8_SNORM or R8G8B8A8_UNORM for
+                        positions, normals and uvs; R32_UINT for the others */
+  uint32_t offset; /**< bytes in the vertex, a multiple of 4 */
+} GpgpVertexAttribute;
+
+#define GPGP_MAX_VERTEX_ATTRIBUTES 8
+
+/** Where terminals go as triangles, and how a vertex looks. Every terminal becomes quads of four vertices and the six
+ *  indices v + {0, 1, 2, 0, 2, 3}, flat-shaded, counter-clockwise from outside also where an axiom mirrors: a box is
+ *  six quads, a polygon of n corners (n - 1) / 2, a prism two polygons and n quads, a sphere 96. Shapes with concave
+ *  polygons are counted (GpgpSpawnReport::notDrawn). A terminal that fits only in part is left out whole. */
+typedef struct GpgpVertexOutput {
+  GpgpBuffer vertices;   /**< out; its size is the budget; STORAGE usage. Whole vertices are written: bytes that no
+                              attribute covers become 0. NULL: the record only counts, see GpgpSpawnInfo::draws */
+  GpgpBuffer indices;    /**< out; its size is the budget; STORAGE usage. NULL: none are written; they are the same
+                              pattern in every record */
+  VkIndexType indexType; /**< UINT16 or UINT32. 16 bits reach 65532 vertices of a draw */
+  uint32_t stride;       /**< bytes of a vertex, a multiple of 4, at most 64 */
+  uint32_t attributeCount;
+  GpgpVertexAttribute attributes[GPGP_MAX_VERTEX_ATTRIBUTES];
+} GpgpVertexOutput;
+
+typedef uint64_t GpgpSpawnFlags;
+/** Buckets have regions of the engine's: draws say where each begins, and it reaches to where the next one begins, or
+ *  to the buffer's end. Regions lie in the order of the buckets. */
+#define GPGP_SPAWN_REGIONS ((GpgpSpawnFlags)1)
+
 typedef struct GpgpSpawnInfo {
   GpgpStructureType sType;
   const void* pNext;
@@ -146,15 +206,25 @@ typedef struct GpgpSpawnInfo {
   GpgpAsset grammar;
   GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]; STORAGE usage */
   uint32_t axiomCount;
-  GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage */
-  GpgpBuffer draws;     /**< out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket: instanceCount and
-                             firstInstance are written, the other fields are left as the engine set them. With it,
-                             instances are sorted by bucket; without it they lie in no stated order */
-  GpgpBuffer count;     /**< out, optional: uint32_t, instances written (4 bytes); STORAGE usage */
+  GpgpSpawnFlags flags;
+  GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage. NULL with draws: the record
+                           only counts */
+  const GpgpVertexOutput* vertices; /**< for spawners with GPGP_SPAWNER_VERTICES, instead of instances */
+  /** Out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket; STORAGE usage. Fields that are not named
+   * here are left as the engine set them. Instances: they are sorted by bucket; instanceCount and firstInstance are
+   * written. Without draws they lie in no stated order. Vertices: they lie in no stated order; indexCount of the first
+   * command is written, which draws all buckets. GPGP_SPAWN_REGIONS: firstInstance is read and instanceCount written;
+   * or firstIndex is read, a multiple of 6, and indexCount and vertexOffset (firstIndex / 6 * 4) are written. Only
+   * counting: instanceCount and firstInstance, or indexCount, firstIndex and vertexOffset are written, regions that fit
+   * exactly for a later record with GPGP_SPAWN_REGIONS. */
+  GpgpBuffer draws;
+  GpgpBuffer needed; /**< out, optional: uint32_t[buckets], instances or indices that each bucket needs; only with
+                          GPGP_SPAWN_REGIONS or where the record only counts; STORAGE usage */
+  GpgpBuffer count;  /**< out, optional: uint32_t, instances or indices written (4 bytes); STORAGE usage */
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 
-/** Derives the axioms and writes one instance for each terminal shape.
+/** Derives the axioms and writes one instance for each terminal shape, or its vertices and indices, or counts.
  *  NOT_READY: grammar not resident or spawner not prewarmed.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
@@ -166,14 +236,18 @@ typedef struct GpgpSpawnReport {
   void* pNext;
   GpgpReportHeader base;
   uint32_t terminals;        /**< terminal shapes derived */
-  uint32_t instancesWritten; /**< <= terminals; less only with BUDGET_EXCEEDED */
-  uint32_t peakShapes;       /**< the most shapes alive in a round after the axioms, those that did not fit
-                                  included: a maxShapes that would have been enough for them */
-  uint32_t droppedShapes;    /**< shapes that did not fit maxShapes, and axioms whose rule does not exist; what lay
-                                  below them is not known */
-  uint32_t unfinishedShapes; /**< shapes left when maxDepth rounds were over */
+  uint32_t instancesWritten; /**< <= terminals; less only with BUDGET_EXCEEDED, and where others are asked for */
+  uint32_t peakShapes;       /**< the most shapes that waited for a round, those that did not fit included: a
+                                  maxShapes that would have been enough for them */
+  uint32_t droppedShapes;    /**< shapes that did not fit maxShapes or were left after maxRounds, and axioms whose
+                                  rule does not exist; what lay below them is not known */
+  uint32_t unfinishedShapes; /**< shapes deeper than maxDepth */
   uint32_t rounds;           /**< rounds that had work */
   uint32_t keyHash[2];       /**< order-free hash of (path key, bucket, shape) over all terminals */
+  uint32_t depth;            /**< how deep rules nested in themselves */
+  uint32_t vertices;         /**< that the terminals have; 6 indices for each 4 of them */
+  uint32_t verticesWritten;  /**< <= vertices; less only with BUDGET_EXCEEDED, and where the record only counts */
+  uint32_t notDrawn;         /**< terminals without vertices: their polygon is concave */
 } GpgpSpawnReport;
 #define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
 

@@ -20,7 +20,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 1u;
+GPGP_CONST uint kGraphVersion = 2u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -33,7 +33,6 @@ GPGP_CONST uint kHeaderAxiomShape = 24u;   // GpgpShape
 GPGP_CONST uint kHeaderAxiomPolygon = 25u; // its polygon, by number
 GPGP_CONST uint kHeaderAxiomNode = 26u;    // where a derivation starts by default
 GPGP_CONST uint kHeaderBuckets = 27u;      // terminal lines
-GPGP_CONST uint kHeaderRounds = 28u;       // the most rounds any derivation can need; 0: not bounded
 GPGP_CONST uint kHeaderSize = 32u;
 
 // sections, in order
@@ -46,10 +45,11 @@ GPGP_CONST uint kSectionVertices = 5u;
 GPGP_CONST uint kSectionTerminals = 6u;
 GPGP_CONST uint kSectionRules = 7u;
 GPGP_CONST uint kSectionNames = 8u; // bytes in words, each name ends in 0
-GPGP_CONST uint kSectionCount = 9u;
+GPGP_CONST uint kSectionDivisions = 9u;
+GPGP_CONST uint kSectionCount = 10u;
 
 // node: eight words
-GPGP_CONST uint kNodeOperator = 0u;
+GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter
 GPGP_CONST uint kNodeArgument = 1u;
 GPGP_CONST uint kNodeArgument2 = 2u;
 GPGP_CONST uint kNodeParameters = 3u; // offset of the first
@@ -58,12 +58,17 @@ GPGP_CONST uint kNodeEdges = 5u; // offset of the first
 GPGP_CONST uint kNodeEdgeCount = 6u;
 GPGP_CONST uint kNodeShapes = 7u; // bit set of the GpgpShape values that can arrive
 GPGP_CONST uint kNodeSize = 8u;
+GPGP_CONST uint kOperatorMask = 0xffu;
+/// The node could multiply shapes, but at most one of its successors is not discarded: it passes on one shape or none.
+GPGP_CONST uint kNodeFilter = 0x100u;
 
 // edge: target, multiplicity, count
-GPGP_CONST uint kEdgeTarget = 0u; // offset of a node, 0: discard
+GPGP_CONST uint kEdgeTarget = 0u; // offset of a node, 0: discard; and kEdgeRecursive
 GPGP_CONST uint kEdgeMultiplicity = 1u;
 GPGP_CONST uint kEdgeShapes = 2u;
 GPGP_CONST uint kEdgeSize = 3u;
+/// The edge closes a cycle: every derivation without end passes such edges for ever, so they are what depth counts.
+GPGP_CONST uint kEdgeRecursive = 0x80000000u;
 
 GPGP_CONST uint kMultiplicityOne = 0u;      // always one shape
 GPGP_CONST uint kMultiplicityFixed = 1u;    // a number known from the shape's type
@@ -75,6 +80,17 @@ GPGP_CONST uint kParameterConstant = 0u;  // value: float bits
 GPGP_CONST uint kParameterAttribute = 1u; // value: an attribute's code
 GPGP_CONST uint kParameterProgram = 2u;   // value: offset of its first code word
 GPGP_CONST uint kParameterSize = 2u;
+
+// division: what a SubDiv with constant parts makes of them. Fixed length, parts with a fixed length and parts with a
+// weight as bit sets (without those that are discarded), then for each part four values.
+GPGP_CONST uint kDivisionFixedParts = 1u;
+GPGP_CONST uint kDivisionWeightedParts = 2u;
+GPGP_CONST uint kDivisionParts = 3u;
+GPGP_CONST uint kPartFixed = 0u;       // its length, or
+GPGP_CONST uint kPartShare = 1u;       // its share of what fixed lengths leave
+GPGP_CONST uint kPartFixedBefore = 2u; // sums over the parts before it
+GPGP_CONST uint kPartShareBefore = 3u;
+GPGP_CONST uint kPartSize = 4u;
 
 // polygon: first vertex (offset), vertex count. Polygons come in pairs, 2 k + 1 is 2 k seen from behind: (x, -y) in
 // reverse order. The first six pairs are the regular ones with 3 to 8 corners.
@@ -99,7 +115,7 @@ GPGP_CONST uint kOpIf = 7u;
 GPGP_CONST uint kOpIfSizeLess = 8u; // argument: axis
 GPGP_CONST uint kOpRandomRule = 9u; // parameters: chance, then one probability an edge
 GPGP_CONST uint kOpCompSplit = 10u; // edges: top, bottom, sides
-GPGP_CONST uint kOpSubDiv = 11u;    // argument: axis; one parameter an edge
+GPGP_CONST uint kOpSubDiv = 11u;    // argument: axis, argument2: division or 0; one parameter an edge
 GPGP_CONST uint kOpRepeat = 12u;    // argument: axis, argument2: mode
 GPGP_CONST uint kOpReplicate = 13u;
 GPGP_CONST uint kOpCount = 14u;
@@ -139,7 +155,7 @@ GPGP_CONST uint kDefaultRule = 0xffffffffu; // GPGP_AXIOM_DEFAULT_RULE
 GPGP_CONST uint kMaxStack = 8u;       // of expressions
 GPGP_CONST uint kMaxSuccessors = 32u; // of one operator
 GPGP_CONST uint kMaxBuckets = 1024u;
-GPGP_CONST uint kMaxChain = 64u;       // operators that one shape passes in one round
+GPGP_CONST uint kMaxChain = 64u;       // operators that one shape passes before others get their turn
 GPGP_CONST uint kMaxRepeat = 1048576u; // copies that one Repeat makes
 
 // shape types, as GpgpShape

@@ -5,23 +5,32 @@
 
 GPGP_SHADER_BEGIN
 
-/// Counters of one record, cleared at its start. The first eight words are the report.
+/// Counters of one record, cleared at its start. The first words are the report.
 struct SpawnState {
   uint terminals; // derived, those that did not fit included
   uint instancesWritten;
-  uint peakShapes;
+  uint peakShapes; // that waited for a round, those that did not fit included
   uint droppedShapes;
   uint unfinishedShapes;
   uint rounds;
   uint keyHashX;
   uint keyHashY;
+  uint depth;
+  uint quads; // of terminals as vertices, those that did not fit included
+  uint quadsWritten;
+  uint notDrawn; // terminals whose shape has no mesh
+  uint exceeded; // 1: something did not fit the engine's buffers, or what goes before them
+  uint reserved0, reserved1, reserved2;
 };
-GPGP_CONST uint kSpawnReportWords = 8u;
+GPGP_CONST uint kSpawnReportWords = 13u;
 
 /// One round of derivation: the arguments of its dispatch, and what its queue holds.
 struct SpawnRound {
   uint groupsX, groupsY, groupsZ; // VkDispatchIndirectCommand
-  uint shapes;                    // that the round before made, those that did not fit included
+  uint shapes;                    // that the round before left, those that did not fit included
+  uint taken;                     // by workgroups of this round
+  uint finished;                  // workgroups
+  uint reserved0, reserved1;
 };
 
 /// What the CPU says with each record.
@@ -31,11 +40,36 @@ struct SpawnConstants {
   uint drawCapacity;     // VkDrawIndexedIndirectCommand; 0: instances are not sorted
   uint writeCount;       // 1: the count buffer is there
   uint rounds;           // that were recorded
-  uint maxGroups;        // workgroups that fill the device; shaders stride beyond them
+  uint maxGroups;        // workgroups of a round at most
+  uint maxDepth;         // recursive edges that a shape may pass
+  uint spread;           // shapes that a round should at least begin with: below, workgroups give work away
+  uint steps;            // after which a workgroup leaves its work to the next round
+  uint maxShapes;        // that each queue holds
+  uint maxTerminals;     // that the records hold
+  uint terminalsTo;      // kTo..., below
+  uint regions;          // 1: the engine's draws say where each bucket begins
+  uint writeNeeded;      // 1: the buffer for needed counts is there
+  uint quadCapacity;     // that vertices and indices hold
+  uint regionQuads;      // that indices of one draw can reach
+  uint indexWords;       // of a quad: 6, 3, or 0 without indices
+  uint strideWords;      // of a vertex
+  uint attributeCount;
+  uint attributes[8]; // kMaxVertexAttributes
 };
 
-GPGP_CONST uint kSpawnGroupSize = 64u;
-GPGP_CONST uint kDrawWords = 5u; // VkDrawIndexedIndirectCommand
+// What becomes of terminals.
+GPGP_CONST uint kToInstances = 0u; // at once, to instances; or, by a kernel for them, to vertices
+GPGP_CONST uint kToRecords = 1u;   // to records, which emit sorts
+GPGP_CONST uint kToCounts = 2u;    // they are counted by bucket
+
+/// Words by bucket: what it needs, where it begins, and what the shape that fits only in part left free.
+GPGP_CONST uint kBucketPlaces = kMaxBuckets;
+GPGP_CONST uint kBucketGaps = 2u * kMaxBuckets;
+GPGP_CONST uint kBucketWords = 3u * kMaxBuckets;
+
+GPGP_CONST uint kSpawnGroupSize = 64u; // of place and emit
+GPGP_CONST uint kInstanceWords4 = 6u;  // GpgpInstance as uvec4
+GPGP_CONST uint kDrawWords = 5u;       // VkDrawIndexedIndirectCommand
 
 GPGP_SHADER_END
 #endif

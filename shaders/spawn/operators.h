@@ -1,90 +1,155 @@
-// The operators, and the interpreter's two halves: runChain takes a shape through operators with one successor until
-// it ends, becomes a terminal or multiplies; childOf makes any one of the shapes into which it multiplies.
+// The operators as pure functions of a shape and the values of their parameters.
 //
-// Both are pure functions of the shape and the graph. That a child can be made alone, by its number, lets a workgroup
-// spread the children of its shapes evenly over its invocations.
+// One definition for all that derives: the interpreter (interpret.h), generated code, and the CPU evaluator. Everything
+// that decides a count, a size or a position is settled arithmetic, so that all of them agree to the last bit.
 #ifndef GPGP_SHADERS_SPAWN_OPERATORS_H
 #define GPGP_SHADERS_SPAWN_OPERATORS_H
 #include "spawn/expression.h"
 
 GPGP_SHADER_BEGIN
 
-GPGP_CONST uint kEndDiscarded = 0u;
-GPGP_CONST uint kEndTerminal = 1u; // shape.node is the terminal's node
-GPGP_CONST uint kEndFan = 2u;      // shape.node multiplies the shape
+// ---------------------------------------------------------------- one shape to one shape
 
-/// How a chain ended.
-struct ChainEnd {
-  uint kind;
-  uint count; // kEndFan: children
-  uint
-      successors; // kEndFan: bit i set: successor i takes part; 0: the chain only paused, the child is the shape itself
+/// Absolute, or a factor where negative.
+GPGP_FN float scaled(float size, float v) { return v < 0.0f ? multiply(size, -v) : v; }
+
+GPGP_FN Shape translated(Shape s, vec3 v) {
+  Shape r = s;
+  r.position = framePoint(s, v);
+  return r;
+}
+
+/// The columns of Rz * Ry * Rx.
+struct Rotation {
+  vec3 c0, c1, c2;
 };
+GPGP_FN Rotation rotationOf(vec3 degrees) {
+  const vec2 x = sineCosineDegrees(degrees.x);
+  const vec2 y = sineCosineDegrees(degrees.y);
+  const vec2 z = sineCosineDegrees(degrees.z);
+  const float sxsy = multiply(x.x, y.x);
+  const float cxsy = multiply(x.y, y.x);
+  Rotation r;
+  r.c0 = vec3(multiply(z.y, y.y), multiply(z.x, y.y), -y.x);
+  r.c1 = vec3(subtract(multiply(z.y, sxsy), multiply(z.x, x.y)), add(multiply(z.x, sxsy), multiply(z.y, x.y)),
+              multiply(y.y, x.x));
+  r.c2 = vec3(add(multiply(z.y, cxsy), multiply(z.x, x.x)), subtract(multiply(z.x, cxsy), multiply(z.y, x.x)),
+              multiply(y.y, x.y));
+  return r;
+}
+/// From the right.
+GPGP_FN Shape rotated(Shape s, Rotation rotation) {
+  Shape r = s;
+  r.axisX = frameDirection(s, rotation.c0);
+  r.axisY = frameDirection(s, rotation.c1);
+  r.axisZ = frameDirection(s, rotation.c2);
+  return r;
+}
 
-GPGP_FN float parameter(GPGP_GRAPH Shape s, uint index) {
-  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize);
-}
-GPGP_FN uint edgeTarget(GPGP_GRAPH uint node, uint index) {
-  return graphWords[graphWords[node + kNodeEdges] + index * kEdgeSize + kEdgeTarget];
-}
-/// The place of the n-th set bit.
-GPGP_FN uint selectBit(uint bits, uint n) {
-  for (uint i = 0u; i < n; ++i) bits &= bits - 1u;
-  return uint(findLSB(bits));
+GPGP_FN Shape resized(Shape s, vec3 v) {
+  Shape r = s;
+  r.size = vec3(scaled(s.size.x, v.x), scaled(s.size.y, v.y), scaled(s.size.z, v.z));
+  return r;
 }
 
-/// What SubDiv makes of its parameters: the length that weights share, and the sum of weights.
-struct Division {
-  float remainder;
-  float weights;
-  uint live; // bit i: part i has an extent and a successor
+/// A polygon becomes a prism, Y along its normal; solids stay as they are.
+GPGP_FN Shape extruded(Shape s, float height) {
+  if (!isPolygon(shapeType(s))) return s;
+  Shape r = s;
+  r.axisY = s.axisZ;
+  r.axisZ = opposite(s.axisY);
+  r.size = vec3(s.size.x, scaled(s.size.z, height), s.size.y);
+  r.geometry = prismOf(shapeType(s)) | (s.geometry & 0xffffff00u);
+  r.seed = childSeed(s.seed, 0u);
+  return r;
+}
+
+GPGP_FN Shape swapped(Shape s, uint axes) {
+  Shape r = s;
+  r.size = vec3(component(s.size, axes & 3u), component(s.size, (axes >> 2) & 3u), component(s.size, axes >> 4));
+  return r;
+}
+
+GPGP_FN Shape withGeometry(Shape s, uint shape, uint polygon) {
+  Shape r = s;
+  r.geometry = shape | (polygon << 8);
+  return r;
+}
+
+/// Takes an edge: target is its word in the graph.
+GPGP_FN void follow(GPGP_INOUT(Shape) s, uint target) {
+  s.node = target & ~kEdgeRecursive;
+  s.depth += target >> 31;
+}
+
+// ---------------------------------------------------------------- one shape to many
+
+/// A piece along an axis, from start on; number is its place in the path.
+GPGP_FN Shape pieceOf(Shape s, uint axis, float start, float extent, uint number) {
+  const float centre = subtract(add(start, multiply(extent, 0.5f)), multiply(component(s.size, axis), 0.5f));
+  Shape r = s;
+  r.position = axisPoint(s, axis, centre);
+  r.size = withComponent(s.size, axis, extent);
+  r.seed = childSeed(s.seed, number);
+  r.key = childKey(s.key, number);
+  return r;
+}
+
+/// What weights share in SubDiv.
+GPGP_FN float remainderOf(float size, float fixedLength) { return max(0.0f, subtract(size, fixedLength)); }
+/// A part of SubDiv: one of fixed and share is zero. What comes before it, likewise.
+struct Part {
+  float fixedLength;
+  float share;
+  float fixedBefore;
+  float shareBefore;
 };
-GPGP_FN Division divisionOf(GPGP_GRAPH Shape s) {
-  Division d;
-  float fixedLength = 0.0f;
-  d.weights = 0.0f;
-  uint fixedParts = 0u;
-  uint weightedParts = 0u;
-  const uint count = graphWords[s.node + kNodeEdgeCount];
-  for (uint i = 0u; i < count; ++i) {
-    const float v = parameter(GPGP_G s, i);
-    const uint bit = edgeTarget(GPGP_G s.node, i) != 0u ? 1u << i : 0u;
-    if (v > 0.0f) {
-      fixedLength = add(fixedLength, v);
-      fixedParts |= bit;
-    } else if (v < 0.0f) {
-      d.weights = subtract(d.weights, v);
-      weightedParts |= bit;
-    }
-  }
-  d.remainder = max(0.0f, subtract(component(s.size, graphWords[s.node + kNodeArgument]), fixedLength));
-  d.live = fixedParts | (d.remainder > 0.0f ? weightedParts : 0u);
-  return d;
+GPGP_FN Shape partOf(Shape s, uint axis, float remainder, Part part, uint number) {
+  return pieceOf(s, axis, add(part.fixedBefore, multiply(remainder, part.shareBefore)),
+                 add(part.fixedLength, multiply(remainder, part.share)), number);
 }
 
-/// The length of v where v weights share a remainder.
-GPGP_FN float shareOf(Division d, float weight) { return divide(multiply(d.remainder, weight), d.weights); }
+/// What a shape multiplies into.
+struct Fan {
+  uint count;      // children
+  uint successors; // bit i: successor i takes part; 0: the operator passes on one shape, and the only child is the
+                   // shape itself, which has not passed it yet. Repeat: the children
+  float extent;    // SubDiv: what weights share; Repeat: the length of a copy
+};
 
 /// How many times Repeat's extent fits. A part in ten thousand of a copy is taken for rounding.
-struct Repetition {
-  uint count;
-  float extent;
-};
-GPGP_FN Repetition repetitionOf(GPGP_GRAPH Shape s) {
-  const float size = component(s.size, graphWords[s.node + kNodeArgument]);
-  const uint mode = graphWords[s.node + kNodeArgument2];
-  const float wanted = parameter(GPGP_G s, 0u);
-  Repetition r;
+GPGP_FN Fan repetitionOf(float size, uint mode, float wanted) {
+  Fan r;
   r.extent = wanted < 0.0f ? multiply(size, -wanted) : wanted;
   r.count = 0u;
-  if (!(r.extent > 0.0f) || !(size > 0.0f)) return r;
-  const float fits = min(divide(size, r.extent), float(kMaxRepeat));
-  if (mode == kRepeatAdjustToFill) {
-    r.count = uint(floor(add(fits, 1.0e-4f)));
-    if (r.count > 0u) r.extent = divide(size, float(r.count));
-  } else {
-    r.count = uint(max(1.0f, -floor(subtract(1.0e-4f, fits))));
+  if (r.extent > 0.0f && size > 0.0f) {
+    const float fits = min(divide(size, r.extent), float(kMaxRepeat));
+    if (mode == kRepeatAdjustToFill) {
+      r.count = uint(floor(add(fits, 1.0e-4f)));
+      if (r.count > 0u) r.extent = divide(size, float(r.count));
+    } else {
+      r.count = uint(max(1.0f, -floor(subtract(1.0e-4f, fits))));
+    }
   }
+  r.successors = r.count;
+  return r;
+}
+GPGP_FN Shape repeatOf(Shape s, uint axis, uint mode, uint count, float copyExtent, uint index) {
+  const float last = subtract(component(s.size, axis), multiply(float(count - 1u), copyExtent));
+  float extent = copyExtent;
+  float start = multiply(float(index), extent);
+  if (mode == kRepeatAnchorToStart && index + 1u == count) extent = last;
+  if (mode == kRepeatAnchorToEnd) {
+    extent = index == 0u ? last : copyExtent;
+    start = index == 0u ? 0.0f : add(last, multiply(float(index - 1u), copyExtent));
+  }
+  return pieceOf(s, axis, start, extent, index);
+}
+
+/// Replicate: a copy with the seed unchanged.
+GPGP_FN Shape copyOf(Shape s, uint number) {
+  Shape r = s;
+  r.key = childKey(s.key, number);
   return r;
 }
 
@@ -95,107 +160,45 @@ GPGP_FN uint sideCount(GPGP_GRAPH uint geometry) {
   return graphWords[graphWords[kHeaderSections + 2u * kSectionPolygons + 1u] + (geometry >> 8) * kPolygonSize + 1u];
 }
 
-/// The edge that a conditional or random operator takes.
-GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op) {
-  const float first = parameter(GPGP_G s, 0u);
-  if (op == kOpIf) return first != 0.0f ? 0u : 1u;
-  if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
-  const uint count = graphWords[s.node + kNodeEdgeCount];
-  float total = 0.0f;
-  for (uint i = 0u; i < count; ++i) total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u)));
-  const float x = multiply(subtract(first, floor(first)), total);
-  float sum = 0.0f;
-  uint chosen = 0u;
-  for (uint i = 0u; i < count; ++i) {
-    const float p = max(0.0f, parameter(GPGP_G s, i + 1u));
-    if (p > 0.0f && (sum <= x)) chosen = i;
-    sum = add(sum, p);
-  }
-  return chosen;
-}
-
-GPGP_FN float scaled(float size, float v) { return v < 0.0f ? multiply(size, -v) : v; }
-
-/// The shape after one of the operators that pass on exactly one shape; its node stays.
-GPGP_FN Shape transformed(GPGP_GRAPH Shape s, uint op) {
-  // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called.
-  vec3 value = vec3(0.0f);
-  const uint count = min(graphWords[s.node + kNodeParameterCount], 3u);
-  for (uint i = 0u; i < count; ++i) value = withComponent(value, i, parameter(GPGP_G s, i));
-  Shape r = s;
-  if (op == kOpTranslate) {
-    r.position = framePoint(s, value);
-  } else if (op == kOpRotate) {
-    const vec2 x = sineCosineDegrees(value.x);
-    const vec2 y = sineCosineDegrees(value.y);
-    const vec2 z = sineCosineDegrees(value.z);
-    // columns of Rz * Ry * Rx
-    const float sxsy = multiply(x.x, y.x);
-    const float cxsy = multiply(x.y, y.x);
-    const vec3 c0 = vec3(multiply(z.y, y.y), multiply(z.x, y.y), -y.x);
-    const vec3 c1 = vec3(subtract(multiply(z.y, sxsy), multiply(z.x, x.y)),
-                         add(multiply(z.x, sxsy), multiply(z.y, x.y)), multiply(y.y, x.x));
-    const vec3 c2 = vec3(add(multiply(z.y, cxsy), multiply(z.x, x.x)),
-                         subtract(multiply(z.x, cxsy), multiply(z.y, x.x)), multiply(y.y, x.y));
-    r.axisX = frameDirection(s, c0);
-    r.axisY = frameDirection(s, c1);
-    r.axisZ = frameDirection(s, c2);
-  } else if (op == kOpScale) {
-    r.size = vec3(scaled(s.size.x, value.x), scaled(s.size.y, value.y), scaled(s.size.z, value.z));
-  } else if (op == kOpExtrude) {
-    if (isPolygon(shapeType(s))) { // solids stay as they are
-      r.axisY = s.axisZ;
-      r.axisZ = vec3(settle(-s.axisY.x), settle(-s.axisY.y), settle(-s.axisY.z));
-      r.size = vec3(s.size.x, scaled(s.size.z, value.x), s.size.y);
-      r.geometry = prismOf(shapeType(s)) | (s.geometry & 0xffffff00u);
-      r.seed = childSeed(s.seed, 0u);
-    }
-  } else if (op == kOpSwapSize) {
-    const uint axes = graphWords[s.node + kNodeArgument];
-    r.size = vec3(component(s.size, axes & 3u), component(s.size, (axes >> 2) & 3u), component(s.size, axes >> 4));
-  } else { // kOpSetGeometry
-    r.geometry = graphWords[s.node + kNodeArgument] | (graphWords[s.node + kNodeArgument2] << 8);
-  }
-  return r;
-}
-
 /// A face of a box: 0 top, 1 bottom, then back, front, left, right. X runs to the right and Z out of the face.
 GPGP_FN Shape boxFace(Shape s, uint face) {
   Shape r = s;
-  const vec3 zero = vec3(0.0f);
-  const vec3 notX = settle3(zero - s.axisX);
-  const vec3 notY = settle3(zero - s.axisY);
-  const vec3 notZ = settle3(zero - s.axisZ);
-  const vec3 halfSize = vec3(multiply(s.size.x, 0.5f), multiply(s.size.y, 0.5f), multiply(s.size.z, 0.5f));
+  const vec3 notX = opposite(s.axisX);
+  const vec3 notY = opposite(s.axisY);
+  const vec3 notZ = opposite(s.axisZ);
+  uint axis = 1u; // of the face's normal
+  float side = 0.5f;
   if (face == 0u) {
     r.axisY = notZ;
     r.axisZ = s.axisY;
-    r.position = framePoint(s, vec3(0.0f, halfSize.y, 0.0f));
     r.size = vec3(s.size.x, s.size.z, 0.0f);
   } else if (face == 1u) {
     r.axisY = s.axisZ;
     r.axisZ = notY;
-    r.position = framePoint(s, vec3(0.0f, -halfSize.y, 0.0f));
+    side = -0.5f;
     r.size = vec3(s.size.x, s.size.z, 0.0f);
   } else if (face == 2u) {
     r.axisX = notX;
     r.axisZ = notZ;
-    r.position = framePoint(s, vec3(0.0f, 0.0f, -halfSize.z));
+    axis = 2u;
+    side = -0.5f;
     r.size = vec3(s.size.x, s.size.y, 0.0f);
   } else if (face == 3u) {
-    r.position = framePoint(s, vec3(0.0f, 0.0f, halfSize.z));
+    axis = 2u;
     r.size = vec3(s.size.x, s.size.y, 0.0f);
   } else if (face == 4u) {
     r.axisX = s.axisZ;
     r.axisZ = notX;
-    r.position = framePoint(s, vec3(-halfSize.x, 0.0f, 0.0f));
+    axis = 0u;
+    side = -0.5f;
     r.size = vec3(s.size.z, s.size.y, 0.0f);
   } else {
     r.axisX = notZ;
     r.axisZ = s.axisX;
-    r.position = framePoint(s, vec3(halfSize.x, 0.0f, 0.0f));
+    axis = 0u;
     r.size = vec3(s.size.z, s.size.y, 0.0f);
   }
+  r.position = axisPoint(s, axis, multiply(component(s.size, axis), side));
   r.geometry = kShapeQuad | (kQuadPolygon << 8);
   return r;
 }
@@ -224,140 +227,57 @@ GPGP_FN Shape prismSide(GPGP_GRAPH Shape s, uint side) {
   return r;
 }
 
-/// Child number index of a shape that multiplies, index below ChainEnd::count.
-GPGP_FN Shape childOf(GPGP_GRAPH Shape s, uint successors, uint index) {
-  if (successors == 0u) return s;
-  const uint op = graphWords[s.node + kNodeOperator];
-  Shape r = s;
-  uint successor = 0u;
-  uint number = index; // in the path
-  if (op == kOpSubDiv) {
-    successor = selectBit(successors, index);
-    number = successor;
-    const uint axis = graphWords[s.node + kNodeArgument];
-    const Division d = divisionOf(GPGP_G s);
-    float fixedBefore = 0.0f;
-    float weightBefore = 0.0f;
-    float own = 0.0f;
-    for (uint i = 0u; i <= successor; ++i) {
-      if (own > 0.0f)
-        fixedBefore = add(fixedBefore, own);
-      else
-        weightBefore = subtract(weightBefore, own);
-      own = parameter(GPGP_G s, i);
-    }
-    const float extent = own > 0.0f ? own : shareOf(d, -own);
-    const float start = weightBefore > 0.0f ? add(fixedBefore, shareOf(d, weightBefore)) : fixedBefore;
-    const float centre = subtract(add(start, multiply(extent, 0.5f)), multiply(component(s.size, axis), 0.5f));
-    r.position = framePoint(s, withComponent(vec3(0.0f), axis, centre));
-    r.size = withComponent(s.size, axis, extent);
-    r.seed = childSeed(s.seed, number);
-  } else if (op == kOpRepeat) {
-    const uint axis = graphWords[s.node + kNodeArgument];
-    const uint mode = graphWords[s.node + kNodeArgument2];
-    const float size = component(s.size, axis);
-    const Repetition repetition = repetitionOf(GPGP_G s);
-    const float last = subtract(size, multiply(float(repetition.count - 1u), repetition.extent));
-    float extent = repetition.extent;
-    float start = multiply(float(index), extent);
-    if (mode == kRepeatAnchorToStart && index + 1u == repetition.count) extent = last;
-    if (mode == kRepeatAnchorToEnd) {
-      extent = index == 0u ? last : repetition.extent;
-      start = index == 0u ? 0.0f : add(last, multiply(float(index - 1u), repetition.extent));
-    }
-    const float centre = subtract(add(start, multiply(extent, 0.5f)), multiply(size, 0.5f));
-    r.position = framePoint(s, withComponent(vec3(0.0f), axis, centre));
-    r.size = withComponent(s.size, axis, extent);
-    r.seed = childSeed(s.seed, number);
-  } else if (op == kOpCompSplit) {
-    const uint ends = successors & 3u;
-    const uint endCount = (ends & 1u) + (ends >> 1);
-    number = index < endCount ? (ends == 2u ? 1u : index) : 2u + index - endCount; // top 0, bottom 1, sides from 2
-    successor = min(number, 2u);
-    if (isPrism(shapeType(s))) { // a polygon's only face is itself
-      if (number < 2u || shapeType(s) == kShapeBox) {
-        r = boxFace(s, number);
-        // seen from below, the polygon is its mirror image, which is the other one of its pair
-        if (number < 2u) r.geometry = polygonOf(shapeType(s)) | ((shapePolygon(s) ^ number) << 8);
-      } else {
-        r = prismSide(GPGP_G s, number - 2u);
-      }
-    }
-    r.seed = childSeed(s.seed, number);
-  } else { // kOpReplicate: copies with the seed unchanged
-    successor = selectBit(successors, index);
-    number = successor;
-  }
+/// CompSplit's successors that take part for a shape, of those in wanted (bits: top, bottom, sides), and its children.
+struct Faces {
+  uint successors;
+  uint count;
+};
+GPGP_FN Faces facesOf(GPGP_GRAPH uint geometry, uint wanted) {
+  const uint shape = geometry & 0xffu;
+  const uint sides = (wanted & 4u) != 0u ? sideCount(GPGP_G geometry) : 0u;
+  const uint top = shape != kShapeSphere ? wanted & 1u : 0u;
+  const uint bottom = isPrism(shape) ? wanted & 2u : 0u;
+  Faces f;
+  f.successors = top | bottom | (sides > 0u ? 4u : 0u);
+  f.count = top + (bottom >> 1) + sides;
+  return f;
+}
+/// The number of a face from its place among the children: top 0, bottom 1, sides from 2.
+GPGP_FN uint faceNumber(uint successors, uint index) {
+  const uint ends = successors & 3u;
+  const uint endCount = (ends & 1u) + (ends >> 1);
+  return index < endCount ? (ends == 2u ? 1u : index) : 2u + index - endCount;
+}
+/// Any face of a box, the ends of any prism.
+GPGP_FN Shape boxFaceOf(Shape s, uint number) {
+  Shape r = boxFace(s, number);
+  // seen from below, the polygon is its mirror image, which is the other one of its pair
+  if (number < 2u) r.geometry = polygonOf(shapeType(s)) | ((shapePolygon(s) ^ number) << 8);
+  r.seed = childSeed(s.seed, number);
   r.key = childKey(s.key, number);
-  r.node = edgeTarget(GPGP_G s.node, successor);
+  return r;
+}
+GPGP_FN Shape faceOf(GPGP_GRAPH Shape s, uint number) {
+  const bool prism = isPrism(shapeType(s));
+  if (prism && (number < 2u || shapeType(s) == kShapeBox)) return boxFaceOf(s, number);
+  Shape r = s; // a polygon's only face is itself
+  if (prism) r = prismSide(GPGP_G s, number - 2u);
+  r.seed = childSeed(s.seed, number);
+  r.key = childKey(s.key, number);
   return r;
 }
 
-/// How many shapes an operator makes of one, and by which successors.
-GPGP_FN ChainEnd fanOf(GPGP_GRAPH Shape s, uint op) {
-  ChainEnd end;
-  end.kind = kEndFan;
-  if (op == kOpSubDiv) {
-    end.successors = divisionOf(GPGP_G s).live;
-    end.count = uint(bitCount(end.successors));
-  } else if (op == kOpRepeat) {
-    end.successors = edgeTarget(GPGP_G s.node, 0u) != 0u ? 1u : 0u;
-    end.count = end.successors != 0u ? repetitionOf(GPGP_G s).count : 0u;
-  } else if (op == kOpCompSplit) {
-    const bool prism = isPrism(shapeType(s));
-    const uint sides = edgeTarget(GPGP_G s.node, 2u) != 0u ? sideCount(GPGP_G s.geometry) : 0u;
-    const uint top = edgeTarget(GPGP_G s.node, 0u) != 0u && shapeType(s) != kShapeSphere ? 1u : 0u;
-    const uint bottom = edgeTarget(GPGP_G s.node, 1u) != 0u && prism ? 1u : 0u;
-    end.successors = top | (bottom << 1) | (sides > 0u ? 4u : 0u);
-    end.count = top + bottom + sides;
-  } else {
-    end.successors = 0u;
-    const uint count = graphWords[s.node + kNodeEdgeCount];
-    for (uint i = 0u; i < count; ++i)
-      if (edgeTarget(GPGP_G s.node, i) != 0u) end.successors |= 1u << i;
-    end.count = uint(bitCount(end.successors));
-  }
-  return end;
+/// The place of the n-th set bit.
+GPGP_FN uint selectBit(uint bits, uint n) {
+  for (uint i = 0u; i < n; ++i) bits &= bits - 1u;
+  return uint(findLSB(bits));
 }
 
-/// Takes a shape from operator to operator while each passes on one shape.
-GPGP_FN ChainEnd runChain(GPGP_GRAPH GPGP_INOUT(Shape) s) {
-  ChainEnd end;
-  end.count = 0u;
-  end.successors = 0u;
-  for (uint step = 0u; step < kMaxChain; ++step) {
-    if (s.node == 0u) {
-      end.kind = kEndDiscarded;
-      return end;
-    }
-    const uint op = graphWords[s.node + kNodeOperator];
-    if (op == kOpTerminal) {
-      end.kind = kEndTerminal;
-      return end;
-    }
-    if (op <= kOpSetGeometry) {
-      const Shape next = transformed(GPGP_G s, op);
-      const uint node = edgeTarget(GPGP_G s.node, 0u);
-      s = next;
-      s.node = node;
-    } else if (op <= kOpRandomRule) {
-      s.node = edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op));
-    } else {
-      end = fanOf(GPGP_G s, op);
-      if (end.count == 0u) {
-        end.kind = kEndDiscarded;
-        return end;
-      }
-      if (end.count > 1u) return end;
-      const Shape child = childOf(GPGP_G s, end.successors, 0u); // a single child stays with this invocation
-      s = child;
-    }
-  }
-  end.kind = kEndFan;
-  end.count = 1u;
-  end.successors = 0u;
-  return end;
-}
+/// How a chain of operators that pass on one shape ended.
+GPGP_CONST uint kEndDiscarded = 0u;
+GPGP_CONST uint kEndTerminal = 1u;   // shape.node is the terminal's node
+GPGP_CONST uint kEndWaits = 2u;      // the shape waits for shape.node
+GPGP_CONST uint kEndUnfinished = 3u; // deeper than allowed
 
 GPGP_SHADER_END
 #endif

@@ -1,20 +1,43 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Between derivation and emission, one workgroup: where each bucket starts among the instances, the engine's draw
-// commands, the dispatch of emission, and the rest of the report.
+// After derivation, one workgroup: what each bucket got and where it begins, the engine's draw commands, the dispatch
+// of emission, and the rest of the report.
 #include "spawn/bindings.glsl"
 
+#include "spawn/regions.glsl"
+layout(local_size_x = 64) in;                 // kSpawnGroupSize
+layout(constant_id = 0) const bool quads = false; // terminals are quads of vertices, not instances
+
 shared uint sums[kSpawnGroupSize];
+shared uint allWritten;
+
+void writeDraw(uint bucket, uint start, uint count, bool setStart) {
+  if (bucket >= record.drawCapacity) return;
+  const uint draw = bucket * kDrawWords;
+  if (quads) {
+    draws[draw] = count * 6;
+    if (setStart) draws[draw + 2] = start * 6;
+    draws[draw + 3] = start * 4;
+  } else {
+    draws[draw + 1] = count;
+    if (setStart) draws[draw + 4] = start;
+  }
+}
 
 void main() {
   const uint lane = gl_LocalInvocationIndex;
-  const uint kept = min(state.terminals, maxTerminals);
-  const uint written = min(kept, record.instanceCapacity);
-  if (record.drawCapacity > 0) {
+  const bool regions = record.regions != 0;
+  const bool counted = record.terminalsTo == kToCounts;
+  const bool sorted = record.terminalsTo == kToRecords;
+  const uint kept = sorted ? min(state.terminals, record.maxTerminals) : state.terminals;
+  const uint fitting = min(kept, record.instanceCapacity);
+  const uint buckets = graphWords[kHeaderBuckets];
+  if (lane == 0) allWritten = 0;
+  uint needed = 0;
+  if (sorted || regions || counted) {
     const uint each = kMaxBuckets / kSpawnGroupSize;
-    uint own = 0;
-    for (uint i = 0; i < each; ++i) own += bucketCounts[lane * each + i];
-    sums[lane] = own;
+    for (uint i = 0; i < each; ++i) needed += bucketCounts[lane * each + i];
+    sums[lane] = needed;
     barrier();
     for (uint step = 1; step < kSpawnGroupSize; step *= 2) {
       const uint before = lane >= step ? sums[lane - step] : 0;
@@ -22,27 +45,55 @@ void main() {
       sums[lane] += before;
       barrier();
     }
-    uint start = sums[lane] - own;
+    uint start = sums[lane] - needed;
+    needed = sums[kSpawnGroupSize - 1];
+    uint written = 0;
     for (uint i = 0; i < each; ++i) {
       const uint bucket = lane * each + i;
+      if (bucket >= buckets) break;
       const uint count = bucketCounts[bucket];
-      bucketCounts[kMaxBuckets + bucket] = start;
-      if (bucket < graphWords[kHeaderBuckets] && bucket < record.drawCapacity) {
-        draws[bucket * kDrawWords + 1] = min(start + count, written) - min(start, written);
-        draws[bucket * kDrawWords + 4] = min(start, written);
+      uint begin = start;
+      uint got = count;
+      if (sorted) {
+        begin = min(start, fitting);
+        got = min(start + count, fitting) - begin;
+        bucketCounts[kBucketPlaces + bucket] = start;
+      } else if (regions) {
+        begin = regionStart(bucket, quads);
+        got = min(count, regionCapacity(bucket, quads)) - bucketCounts[kBucketGaps + bucket];
       }
+      writeDraw(bucket, begin, got, !regions);
+      if (record.writeNeeded != 0) neededCounts[bucket] = quads ? count * 6 : count;
+      written += counted ? 0 : got;
       start += count;
+    }
+    atomicAdd(allWritten, written);
+    barrier();
+  } else if (lane == 0) {
+    needed = quads ? bucketCounts[0] : state.terminals;
+    allWritten = quads ? min(needed, record.quadCapacity) - bucketCounts[kBucketGaps] : fitting;
+    if (record.drawCapacity > 0 && buckets > 0) {
+      if (quads)
+        draws[0] = allWritten * 6;
+      else
+        writeDraw(0, 0, allWritten, true);
     }
   }
   if (lane == 0) {
     const uint left = rounds[record.rounds].shapes;
     state.peakShapes = max(state.peakShapes, left);
-    state.droppedShapes += left - min(left, maxShapes);
-    state.unfinishedShapes = min(left, maxShapes);
-    state.instancesWritten = written;
-    rounds[rounds.length() - 1].groupsX = min((kept + kSpawnGroupSize - 1) / kSpawnGroupSize, record.maxGroups);
+    state.droppedShapes += left;
+    if (quads) {
+      state.quads = needed;
+      state.quadsWritten = allWritten;
+    } else {
+      state.instancesWritten = allWritten;
+      if (sorted) needed = state.terminals;
+    }
+    state.exceeded = !counted && allWritten < needed ? 1 : 0;
+    rounds[rounds.length() - 1].groupsX = min((kept + kSpawnGroupSize - 1) / kSpawnGroupSize, record.maxGroups * 16);
     rounds[rounds.length() - 1].groupsY = 1;
     rounds[rounds.length() - 1].groupsZ = 1;
-    if (record.writeCount != 0) instanceCount = written;
+    if (record.writeCount != 0) instanceCount = quads ? allWritten * 6 : allWritten;
   }
 }

@@ -22,6 +22,8 @@ struct Shape {
   uvec2 key;
   uint axiom; // index
   uint node;  // the operator it waits for, a word offset; 0: discarded
+  uint depth; // recursive edges on its path
+  uint made;  // where it waits for an operator that multiplies: children that exist already
 };
 
 GPGP_CONST uint kShapePlanes = 6u; // uvec4 each
@@ -37,7 +39,7 @@ GPGP_FN uvec4 packShape(Shape s, uint plane) {
   if (plane == 2u) return packPlane(s.axisZ, floatBitsToUint(s.custom));
   if (plane == 3u) return packPlane(s.position, s.axiom);
   if (plane == 4u) return packPlane(s.size, s.node);
-  return uvec4(s.key.x, s.key.y, 0u, 0u);
+  return uvec4(s.key.x, s.key.y, s.depth, s.made);
 }
 GPGP_FN Shape unpackShape(uvec4 p0, uvec4 p1, uvec4 p2, uvec4 p3, uvec4 p4, uvec4 p5) {
   Shape s;
@@ -52,6 +54,8 @@ GPGP_FN Shape unpackShape(uvec4 p0, uvec4 p1, uvec4 p2, uvec4 p3, uvec4 p4, uvec
   s.key = uvec2(p5.x, p5.y);
   s.axiom = p3.w;
   s.node = p4.w;
+  s.depth = p5.z;
+  s.made = p5.w;
   return s;
 }
 
@@ -76,6 +80,8 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
   s.geometry = graphWords[kHeaderAxiomShape] | (graphWords[kHeaderAxiomPolygon] << 8);
   s.key = childKey(uvec2(seed, id), 0u);
   s.axiom = index;
+  s.depth = 0u;
+  s.made = 0u;
   s.node = graphWords[kHeaderAxiomNode];
   if (rule != kDefaultRule) {
     const uint rules = graphWords[kHeaderSections + 2u * kSectionRules + 1u];
@@ -84,24 +90,37 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
   return s;
 }
 
+// Axes have unit length but for rounding, so nothing below overflows to infinity. Terms that are zero may be left out
+// and factors of one as well: the settled result is the same.
+
 /// A point of the local frame.
 GPGP_FN vec3 framePoint(Shape s, vec3 local) {
   GPGP_PRECISE vec3 p = s.position + s.axisX * local.x + s.axisY * local.y + s.axisZ * local.z;
-  return settle3(p);
+  return settleFinite3(p);
+}
+/// A point on one of the local axes.
+GPGP_FN vec3 axisPoint(Shape s, uint axis, float distance) {
+  const vec3 direction = axis == 0u ? s.axisX : (axis == 1u ? s.axisY : s.axisZ);
+  GPGP_PRECISE vec3 p = s.position + direction * distance;
+  return settleFinite3(p);
 }
 /// A direction of the local frame.
 GPGP_FN vec3 frameDirection(Shape s, vec3 local) {
   GPGP_PRECISE vec3 d = s.axisX * local.x + s.axisY * local.y + s.axisZ * local.z;
-  return settle3(d);
+  return settleFinite3(d);
 }
+GPGP_FN vec3 opposite(vec3 v) { return settleFinite3(vec3(0.0f) - v); }
 
 /// One of the three rows of unit shape to world, for row vectors of the axiom's transform.
 GPGP_FN vec4 instanceRow(Shape s, vec4 axiomRow) {
   const vec3 row = vec3(axiomRow.x, axiomRow.y, axiomRow.z);
   // A polygon without thickness keeps a unit normal, so that the matrix stays invertible.
   const float thickness = isPolygon(shapeType(s)) && s.size.z == 0.0f ? 1.0f : s.size.z;
-  return vec4(dot(row, s.axisX) * s.size.x, dot(row, s.axisY) * s.size.y, dot(row, s.axisZ) * thickness,
-              dot(row, s.position) + axiomRow.w);
+  GPGP_PRECISE float x = (row.x * s.axisX.x + row.y * s.axisX.y + row.z * s.axisX.z) * s.size.x;
+  GPGP_PRECISE float y = (row.x * s.axisY.x + row.y * s.axisY.y + row.z * s.axisY.z) * s.size.y;
+  GPGP_PRECISE float z = (row.x * s.axisZ.x + row.y * s.axisZ.y + row.z * s.axisZ.z) * thickness;
+  GPGP_PRECISE float w = row.x * s.position.x + row.y * s.position.y + row.z * s.position.z + axiomRow.w;
+  return vec4(x, y, z, w);
 }
 
 /// A terminal's contribution to the order-free hash of a derivation.

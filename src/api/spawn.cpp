@@ -59,15 +59,84 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_SPAWNER_CREATE_INFO, "info"); !ok) return ok;
     if (!spawner) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "spawner is NULL");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
+    if (info->flags & ~GPGP_SPAWNER_VERTICES) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
     if (info->maxShapes > (1u << 24) || info->maxTerminals > (1u << 24))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes and maxTerminals are at most 16777216");
-    if (info->maxDepth > 1024) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDepth is at most 1024");
+    if (info->maxDepth > 65535) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDepth is at most 65535");
+    if (info->maxRounds > 256) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRounds is at most 256");
     auto made = spawn::Spawner::create(**context, *info);
     if (!made) return made.error();
     *spawner = adopt<GpgpWorker>(**context, std::move(*made));
     return {};
   });
 }
+
+GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker handle, GpgpAsset grammarHandle) {
+  return guarded("gpgpPrewarmGrammar", [&](Call& call) -> Result<void> {
+    const auto spawner = resolve<spawn::Spawner>(call, handle, Kind::spawner, "spawner");
+    if (!spawner) return spawner.error();
+    const auto grammar = resolve<spawn::Grammar>(call, grammarHandle, Kind::grammar, "grammar", &(*spawner)->context);
+    if (!grammar) return grammar.error();
+    if (auto ok = (*spawner)->context.checkAlive(); !ok) return ok;
+    return (*spawner)->prewarm(**grammar);
+  });
+}
+
+namespace {
+/// Where terminals go, and what is read and written for that.
+Result<spawn::VertexLayout> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& info, uint32_t buckets) {
+  spawn::VertexLayout layout;
+  const bool regions = info.flags & GPGP_SPAWN_REGIONS;
+  bool counts = !info.instances.buffer;
+  if (info.flags & ~GPGP_SPAWN_REGIONS) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
+  if (spawner.vertices()) {
+    if (!info.vertices)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices is NULL; the spawner was made with "
+                                                    "GPGP_SPAWNER_VERTICES");
+    if (info.instances.buffer)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.buffer is set; the spawner was made with "
+                                                    "GPGP_SPAWNER_VERTICES");
+    const GpgpVertexOutput& output = *info.vertices;
+    counts = !output.vertices.buffer;
+    if (!counts) {
+      auto made = spawn::layoutOf(output);
+      if (!made) return made.error();
+      layout = *made;
+      if (output.indexType != VK_INDEX_TYPE_UINT16 && output.indexType != VK_INDEX_TYPE_UINT32)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices->indexType is neither UINT16 nor UINT32");
+    } else if (output.indices.buffer) {
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices->vertices.buffer is NULL, indices.buffer is not");
+    }
+  } else if (info.vertices) {
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "vertices is set; the spawner was made without GPGP_SPAWNER_VERTICES");
+  }
+  if (info.instances.buffer && info.instances.size < sizeof(GpgpInstance))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.size is below one GpgpInstance (%zu bytes)",
+                     sizeof(GpgpInstance));
+  if (counts && !info.draws.buffer)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL, and draws.buffer, where a record could count",
+                     spawner.vertices() ? "vertices->vertices" : "instances");
+  if (regions && counts)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWN_REGIONS is set, but nothing is written to them");
+  if (regions && !info.draws.buffer)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWN_REGIONS is set, draws.buffer is NULL");
+  const uint64_t draws = spawner.vertices() && !regions && !counts ? 1 : buckets;
+  const uint64_t drawBytes = draws * sizeof(VkDrawIndexedIndirectCommand);
+  if (info.draws.buffer && info.draws.size < drawBytes)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "draws.size is %llu bytes, the grammar's %u buckets need %llu",
+                     static_cast<unsigned long long>(info.draws.size), buckets,
+                     static_cast<unsigned long long>(drawBytes));
+  if (info.needed.buffer && !regions && !counts)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "needed.buffer is set, but there are no regions to fill");
+  if (info.needed.buffer && info.needed.size < 4ull * buckets)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "needed.size is %llu bytes, the grammar's %u buckets need %llu",
+                     static_cast<unsigned long long>(info.needed.size), buckets, 4ull * buckets);
+  if (info.count.buffer && info.count.size < 4)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count.size is below 4 bytes");
+  return layout;
+}
+} // namespace
 
 GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
                                             const GpgpSpawnInfo* info) {
@@ -84,19 +153,11 @@ GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer c
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
                        static_cast<unsigned long long>(info->axioms.size), info->axiomCount,
                        static_cast<unsigned long long>(info->axiomCount) * sizeof(GpgpAxiom));
-    if (info->instances.buffer && info->instances.size < sizeof(GpgpInstance))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.size is below one GpgpInstance (%zu bytes)",
-                       sizeof(GpgpInstance));
-    const uint64_t drawBytes = uint64_t((*grammar)->graph.buckets) * sizeof(VkDrawIndexedIndirectCommand);
-    if (info->draws.buffer && info->draws.size < drawBytes)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "draws.size is %llu bytes, the grammar's %u buckets need %llu",
-                       static_cast<unsigned long long>(info->draws.size), (*grammar)->graph.buckets,
-                       static_cast<unsigned long long>(drawBytes));
-    if (info->count.buffer && info->count.size < 4)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count.size is below 4 bytes");
+    const auto layout = checkOutput(**spawner, *info, (*grammar)->graph.buckets);
+    if (!layout) return layout.error();
     if (auto ok = checkRecord(**spawner, frame); !ok) return ok;
     if (!(*grammar)->resident()) return makeError(GPGP_NOT_READY, "the grammar is not resident");
-    return (*spawner)->prepare(commandBuffer, *info, **grammar);
+    return (*spawner)->prepare(commandBuffer, *info, **grammar, *layout);
   });
 }
 

@@ -1,6 +1,5 @@
 // The PGA-shape front end: what is accepted, and every error with its exact place.
 #include "grammars.h"
-#include "spawn/language/print.h"
 
 #include <gtest/gtest.h>
 
@@ -139,21 +138,6 @@ TEST(Language, ConstantsAreFolded) {
   const std::string text = std::string(kHead) + "A = Translate(Exp(Exp(1+2)*3), Exp(7/2), Exp(1 < 2)) T;";
   const auto words = bake(text);
   EXPECT_EQ(words, bake(std::string(kHead) + "A = Translate(9, 3.5, 1) T;"));
-}
-
-TEST(Language, PrintsTextAndDot) {
-  spawn::Diagnostics diagnostics;
-  const spawn::Graph graph = spawn::compile(
-      "axiom Box A; terminal T (1,0); A = SubDiv(X) { -1: T | 2: Translate(0,Exp(ShapeSize(Y)*1.5),0) A };", {},
-      diagnostics, std::pmr::new_delete_resource());
-  EXPECT_EQ(spawn::printText(graph), "axiom Box -> 0\n"
-                                     "rule A = 0\n"
-                                     "0 SubDiv(X) { -1: [/] 1 | 2: [/] 2 }\n"
-                                     "1 T\n"
-                                     "2 Translate(0,(ShapeSize(Y) * 1.5),0) { [1] 0 }\n");
-  const std::string dot = spawn::printDot(graph);
-  EXPECT_NE(dot.find("n0 -> n1 [label=\"-1: /\"]"), std::string::npos);
-  EXPECT_NE(dot.find("n1 [label=\"T\", color=orange]"), std::string::npos);
 }
 
 TEST(Language, AllGrammarsCompileWithoutMessages) {

@@ -1,6 +1,6 @@
 #include "spawn/evaluator/evaluator.h"
 
-#include "spawn/operators.h"
+#include "spawn/interpret.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,12 +9,35 @@ namespace gpgp::spawn {
 namespace {
 using namespace shader;
 
-struct Pending {
-  Shape shape;
-  uint32_t round;
-};
+/// All vertices of a terminal, quad after quad.
+void emitVertices(Derivation& out, const uint32_t* words, const Shape& shape, const GpgpInstance& instance,
+                  const VertexLayout& layout) {
+  const float* t = instance.transform;
+  const vec4 rows[3] = {{t[0], t[1], t[2], t[3]}, {t[4], t[5], t[6], t[7]}, {t[8], t[9], t[10], t[11]}};
+  const uint32_t numbers[4] = {instance.bucket, instance.axiomId, instance.terminal, instance.seed};
+  const bool mirrored = isMirrored(rows[0], rows[1], rows[2]);
+  const uint32_t quads = meshQuads(words, shape.geometry);
+  out.quads.push_back(quads);
+  for (uint32_t i = 0; i < 4 * quads; ++i) {
+    const MeshVertex vertex = meshVertex(words, shape.geometry, i / 4, mirrored ? mirroredCorner(i % 4) : i % 4);
+    const size_t start = out.vertexWords.size();
+    out.vertexWords.resize(start + layout.strideWords);
+    for (uint32_t a = 0; a < layout.attributeCount; ++a) {
+      const uint32_t semantic = attributeSemantic(layout.attributes[a]), format = attributeFormat(layout.attributes[a]);
+      vec4 value(vertex.uv.x, vertex.uv.y, 0, 0);
+      if (semantic == kVertexPosition) value = vec4(meshPosition(rows[0], rows[1], rows[2], vertex.position), 1);
+      if (semantic == kVertexNormal) value = vec4(meshNormal(rows[0], rows[1], rows[2], vertex, mirrored), 0);
+      if (semantic == kVertexNormal && format == kVertexUnorm4) value = withoutSign(value);
+      const uvec4 encoded =
+          attributeValue(format, value, semantic >= kVertexBucket ? numbers[semantic - kVertexBucket] : 0);
+      for (uint32_t w = 0; w < attributeWords(format); ++w)
+        out.vertexWords[start + attributeOffset(layout.attributes[a]) + w] = encoded[static_cast<int>(w)];
+    }
+  }
+}
 
-void emit(Derivation& out, const uint32_t* words, const Shape& shape, const GpgpAxiom& axiom, bool keep) {
+void emit(Derivation& out, const uint32_t* words, const Shape& shape, const GpgpAxiom& axiom,
+          const DeriveOptions& options) {
   const uint32_t bucket = words[shape.node + kNodeArgument2];
   const uint32_t type = shapeType(shape);
   const uvec2 hash = terminalHash(shape.key, bucket, type);
@@ -22,7 +45,7 @@ void emit(Derivation& out, const uint32_t* words, const Shape& shape, const Gpgp
   out.keyHash[1] += hash.y;
   ++out.terminals;
   ++out.buckets[bucket];
-  if (!keep) return;
+  if (!options.keepInstances) return;
   GpgpInstance& instance = out.instances.emplace_back();
   for (uint32_t r = 0; r < 3; ++r) {
     const float* t = axiom.transform + 4 * r;
@@ -40,6 +63,7 @@ void emit(Derivation& out, const uint32_t* words, const Shape& shape, const Gpgp
   instance.size[0] = shape.size.x;
   instance.size[1] = shape.size.y;
   instance.size[2] = shape.size.z;
+  if (options.vertices) emitVertices(out, words, shape, instance, *options.vertices);
 }
 } // namespace
 
@@ -47,44 +71,30 @@ Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> 
   const uint32_t* words = grammar.data();
   Derivation out;
   out.buckets.assign(words[kHeaderBuckets], 0);
-  std::vector<Pending> stack;
-  uint64_t shapes = 0;
+  std::vector<Shape> stack;
   for (size_t a = 0; a < axioms.size() && out.complete; ++a) {
     const GpgpAxiom& axiom = axioms[a];
     if (!hasRule(words, axiom.rule)) ++out.droppedShapes;
-    stack.push_back({axiomShape(words, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
-                                axiom.rule, axiom.attribute, static_cast<uint32_t>(a)),
-                     0});
+    stack.push_back(axiomShape(words, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
+                               axiom.rule, axiom.attribute, static_cast<uint32_t>(a)));
     while (!stack.empty()) {
-      Pending pending = stack.back();
+      Shape shape = stack.back();
       stack.pop_back();
-      if (pending.round >= options.maxDepth) {
-        ++out.unfinishedShapes;
-        continue;
-      }
-      if (pending.round >= out.shapesByRound.size()) out.shapesByRound.push_back(0);
-      ++out.shapesByRound[pending.round];
-      if (++shapes > options.maxShapes) {
+      ++out.shapes;
+      const uint end = runChain(words, shape, false, options.maxDepth);
+      out.depth = std::max(out.depth, shape.depth);
+      if (end == kEndTerminal) emit(out, words, shape, axiom, options);
+      if (end == kEndUnfinished) ++out.unfinishedShapes;
+      if (end != kEndWaits) continue;
+      const Fan fan = fanOf(words, shape);
+      if (out.shapes + stack.size() + fan.count > options.maxShapes) {
         out.complete = false;
         break;
       }
-      const ChainEnd end = runChain(words, pending.shape);
-      if (end.kind == kEndTerminal) emit(out, words, pending.shape, axiom, options.keepInstances);
-      if (end.kind == kEndFan) {
-        if (shapes + stack.size() + end.count > options.maxShapes) {
-          out.complete = false;
-          break;
-        }
-        for (uint32_t i = end.count; i-- > 0;)
-          stack.push_back({childOf(words, pending.shape, end.successors, i), pending.round + 1});
-      }
+      for (uint32_t i = fan.count; i-- > 0;) stack.push_back(childOf(words, shape, fan, i));
     }
     stack.clear();
   }
-  out.rounds = static_cast<uint32_t>(out.shapesByRound.size());
-  uint64_t peak = out.unfinishedShapes;
-  for (size_t round = 1; round < out.shapesByRound.size(); ++round) peak = std::max(peak, out.shapesByRound[round]);
-  out.peakShapes = static_cast<uint32_t>(std::min<uint64_t>(peak, UINT32_MAX));
   return out;
 }
 

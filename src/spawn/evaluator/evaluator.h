@@ -3,6 +3,8 @@
 // Counts, keys, seeds, shapes and the hash are bit-identical to the GPU's; transforms agree within rounding. Used as
 // the oracle of tests, by the command, and as the baseline of benchmarks.
 #pragma once
+#include "spawn/schedule/vertices.h"
+
 #include <gpgp/spawn.h>
 
 #include <cstdint>
@@ -12,20 +14,22 @@
 namespace gpgp::spawn {
 
 struct DeriveOptions {
-  uint32_t maxDepth = 64;           ///< rounds, as GpgpSpawnerCreateInfo
-  bool keepInstances = true;        ///< false: only count
-  uint64_t maxShapes = 100'000'000; ///< gives up beyond, so that a grammar without end cannot hang the caller
+  uint32_t maxDepth = 64;                 ///< recursive edges, as GpgpSpawnerCreateInfo
+  bool keepInstances = true;              ///< false: only count
+  const VertexLayout* vertices = nullptr; ///< instances come with their vertices
+  uint64_t maxShapes = 100'000'000;       ///< gives up beyond, so that a grammar without end cannot hang the caller
 };
 
 struct Derivation {
   std::vector<GpgpInstance> instances; ///< by axiom, then depth first
+  std::vector<uint32_t> vertexWords;   ///< of all instances, one after the other
+  std::vector<uint32_t> quads;         ///< of each instance: 4 vertices, 6 indices
   std::vector<uint32_t> buckets;       ///< terminals by bucket
-  std::vector<uint64_t> shapesByRound;
   uint64_t terminals = 0;
-  uint32_t peakShapes = 0;    ///< axioms do not count
+  uint64_t shapes = 0;        ///< that were taken up, terminals included
   uint32_t droppedShapes = 0; ///< axioms whose rule does not exist: nothing else is dropped here
   uint32_t unfinishedShapes = 0;
-  uint32_t rounds = 0; ///< rounds that had work
+  uint32_t depth = 0; ///< the most recursive edges on a path
   uint32_t keyHash[2] = {0, 0};
   bool complete = true; ///< false: maxShapes was reached
 };

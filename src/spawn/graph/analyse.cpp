@@ -1,10 +1,10 @@
-// What follows from a graph's shape: multiplicities, the types of shapes on each edge, and the number of rounds.
+// What follows from a graph's shape: multiplicities, the types of shapes on each edge, which operators only filter, and
+// which edges are recursive.
 //
 // Types flow from the axiom and, since a derivation may start with any rule, from every rule with the axiom's type.
-// Rounds: a shape leaves a round where it multiplies (more than one successor may live) or after kMaxChain operators.
+// Recursive are the back edges of a depth-first search from the axiom's node: without them there is no cycle.
+#include "core/math.h"
 #include "spawn/graph/graph.h"
-
-#include <algorithm>
 
 namespace gpgp::spawn {
 namespace {
@@ -43,14 +43,48 @@ uint32_t multiplicityOf(uint32_t op) {
   default: return kMultiplicityOne;
   }
 }
+
+/// The division of a SubDiv, where all parts are constant.
+void divide(Graph& graph, Node& node) {
+  node.division = UINT32_MAX;
+  if (node.op != kOpSubDiv) return;
+  const auto value = [&](uint32_t i) { return uintBitsToFloat(graph.parameters[node.firstParameter + i].value); };
+  float fixedLength = 0, weights = 0;
+  uint32_t fixedParts = 0, weightedParts = 0;
+  for (uint32_t i = 0; i < node.edgeCount; ++i) {
+    if (graph.parameters[node.firstParameter + i].kind != kParameterConstant) return;
+    const uint32_t own = graph.edges[node.firstEdge + i].target != kNoNode ? bit(i) : 0;
+    if (value(i) > 0) fixedLength = add(fixedLength, value(i)), fixedParts |= own;
+    if (value(i) < 0) weights = subtract(weights, value(i)), weightedParts |= own;
+  }
+  node.division = static_cast<uint32_t>(graph.divisions.size());
+  graph.divisions.insert(graph.divisions.end(), {floatBitsToUint(fixedLength), fixedParts, weightedParts});
+  float fixedBefore = 0, weightBefore = 0;
+  for (uint32_t i = 0; i < node.edgeCount; ++i) {
+    const float v = value(i);
+    for (const float word : {v > 0 ? v : 0.0f, v < 0 ? shader::divide(-v, weights) : 0.0f, fixedBefore,
+                             weightBefore > 0 ? shader::divide(weightBefore, weights) : 0.0f})
+      graph.divisions.push_back(floatBitsToUint(word));
+    if (v > 0) fixedBefore = add(fixedBefore, v);
+    if (v < 0) weightBefore = subtract(weightBefore, v);
+  }
+}
 } // namespace
 
 void analyse(Graph& graph) {
   const auto memory = graph.nodes.get_allocator().resource();
+  graph.divisions.clear();
   for (Node& node : graph.nodes) {
     node.shapes = 0;
-    for (uint32_t e = 0; e < node.edgeCount; ++e)
-      graph.edges[node.firstEdge + e].multiplicity = multiplicityOf(node.op);
+    divide(graph, node);
+    uint32_t kept = 0;
+    for (uint32_t e = 0; e < node.edgeCount; ++e) {
+      Edge& edge = graph.edges[node.firstEdge + e];
+      edge.multiplicity = multiplicityOf(node.op);
+      const bool many = node.op == kOpRepeat || (node.op == kOpCompSplit && e == 2);
+      if (edge.target != kNoNode) kept += many ? 2 : 1;
+    }
+    node.filter = node.op >= kOpCompSplit && kept <= 1;
   }
   std::pmr::vector<uint32_t> changed(memory); // nodes whose outgoing types must be worked out
   const auto arrive = [&](uint32_t node, uint32_t shapes) {
@@ -70,50 +104,33 @@ void analyse(Graph& graph) {
     }
   }
 
-  // Longest paths, depth first with an explicit stack: a graph may be deep. A cycle leaves rounds at 0.
+  // Edges that close a cycle, depth first with an explicit stack: a graph may be deep.
   struct Visit {
     uint32_t node, edge;
   };
-  struct Length {
-    uint32_t fans = 0, operators = 0;
-  };
   std::pmr::vector<uint8_t> state(graph.nodes.size(), 0, memory); // 1 on the stack, 2 done
-  std::pmr::vector<Length> lengths(graph.nodes.size(), memory);
   std::pmr::vector<Visit> stack(memory);
-  graph.rounds = 0;
-  Length longest;
-  for (uint32_t root = 0; root < graph.nodes.size(); ++root) {
-    if (state[root]) continue;
+  const auto visit = [&](uint32_t root) {
+    if (root == kNoNode || state[root]) return;
     stack.push_back({root, 0});
     state[root] = 1;
     while (!stack.empty()) {
-      Visit& visit = stack.back();
-      const Node& node = graph.nodes[visit.node];
-      if (visit.edge < node.edgeCount) {
-        const uint32_t target = graph.edges[node.firstEdge + visit.edge++].target;
-        if (target == kNoNode || state[target] == 2) continue;
-        if (state[target] == 1) return; // a cycle
-        state[target] = 1;
-        stack.push_back({target, 0});
+      Visit& top = stack.back();
+      const Node& node = graph.nodes[top.node];
+      if (top.edge == node.edgeCount) {
+        state[top.node] = 2;
+        stack.pop_back();
         continue;
       }
-      Length length;
-      for (uint32_t e = 0; e < node.edgeCount; ++e) {
-        const uint32_t target = graph.edges[node.firstEdge + e].target;
-        if (target == kNoNode) continue;
-        length.fans = std::max(length.fans, lengths[target].fans);
-        length.operators = std::max(length.operators, lengths[target].operators);
-      }
-      length.fans += node.op >= kOpCompSplit;
-      length.operators += 1;
-      lengths[visit.node] = length;
-      longest.fans = std::max(longest.fans, length.fans);
-      longest.operators = std::max(longest.operators, length.operators);
-      state[visit.node] = 2;
-      stack.pop_back();
+      Edge& edge = graph.edges[node.firstEdge + top.edge++];
+      edge.recursive = edge.target != kNoNode && state[edge.target] == 1;
+      if (edge.target == kNoNode || state[edge.target]) continue;
+      state[edge.target] = 1;
+      stack.push_back({edge.target, 0});
     }
-  }
-  graph.rounds = 1 + longest.fans + longest.operators / kMaxChain;
+  };
+  visit(graph.axiomNode);
+  for (uint32_t root = 0; root < graph.nodes.size(); ++root) visit(root);
 }
 
 } // namespace gpgp::spawn

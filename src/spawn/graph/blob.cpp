@@ -10,7 +10,7 @@ using namespace shader;
 
 /// Words of each section, from counts of entries.
 constexpr uint32_t kEntryWords[kSectionCount] = {kNodeSize, kEdgeSize,     kParameterSize, 1, kPolygonSize,
-                                                 2,         kTerminalSize, kRuleSize,      1};
+                                                 2,         kTerminalSize, kRuleSize,      1, 1};
 
 uint32_t bitsOf(float v) {
   uint32_t bits;
@@ -28,13 +28,19 @@ uint32_t checksum(std::span<const uint32_t> words) {
   return hash;
 }
 
+size_t sizeOfGraph(std::span<const std::byte> bytes) {
+  uint32_t words = 0;
+  if (bytes.size() >= kHeaderSize * 4) std::memcpy(&words, bytes.data() + 4 * kHeaderWords, 4);
+  return words >= kHeaderSize && uint64_t(words) * 4 < bytes.size() ? size_t(words) * 4 : bytes.size();
+}
+
 std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resource* memory) {
   const uint32_t counts[kSectionCount] = {
-      static_cast<uint32_t>(graph.nodes.size()),          static_cast<uint32_t>(graph.edges.size()),
-      static_cast<uint32_t>(graph.parameters.size()),     static_cast<uint32_t>(graph.code.size()),
-      static_cast<uint32_t>(graph.polygons.size()),       static_cast<uint32_t>(graph.vertices.size() / 2),
-      static_cast<uint32_t>(graph.terminals.size()),      static_cast<uint32_t>(graph.rules.size()),
-      static_cast<uint32_t>((graph.names.size() + 3) / 4)};
+      static_cast<uint32_t>(graph.nodes.size()),           static_cast<uint32_t>(graph.edges.size()),
+      static_cast<uint32_t>(graph.parameters.size()),      static_cast<uint32_t>(graph.code.size()),
+      static_cast<uint32_t>(graph.polygons.size()),        static_cast<uint32_t>(graph.vertices.size() / 2),
+      static_cast<uint32_t>(graph.terminals.size()),       static_cast<uint32_t>(graph.rules.size()),
+      static_cast<uint32_t>((graph.names.size() + 3) / 4), static_cast<uint32_t>(graph.divisions.size())};
   std::pmr::vector<uint32_t> words(kHeaderSize, 0u, memory);
   uint32_t offsets[kSectionCount];
   uint32_t offset = kHeaderSize;
@@ -53,11 +59,13 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   words[kHeaderAxiomPolygon] = graph.axiomPolygon;
   words[kHeaderAxiomNode] = nodeAt(graph.axiomNode);
   words[kHeaderBuckets] = graph.buckets;
-  words[kHeaderRounds] = graph.rounds;
   for (const Node& n : graph.nodes)
-    words.insert(words.end(), {n.op, n.argument, n.argument2, at(kSectionParameters, n.firstParameter),
-                               n.parameterCount, at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
-  for (const Edge& e : graph.edges) words.insert(words.end(), {nodeAt(e.target), e.multiplicity, e.shapes});
+    words.insert(words.end(), {n.op | (n.filter ? kNodeFilter : 0u), n.argument,
+                               n.division == UINT32_MAX ? n.argument2 : at(kSectionDivisions, n.division),
+                               at(kSectionParameters, n.firstParameter), n.parameterCount,
+                               at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
+  for (const Edge& e : graph.edges)
+    words.insert(words.end(), {nodeAt(e.target) | (e.recursive ? kEdgeRecursive : 0u), e.multiplicity, e.shapes});
   for (const Parameter& p : graph.parameters)
     words.insert(words.end(), {p.kind, p.kind == kParameterProgram ? at(kSectionCode, p.value) : p.value});
   words.insert(words.end(), graph.code.begin(), graph.code.end());
@@ -66,7 +74,8 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   for (const float v : graph.vertices) words.push_back(bitsOf(v));
   for (const Terminal& t : graph.terminals) words.insert(words.end(), {t.name, t.kind, t.index, t.bucket});
   for (const Rule& r : graph.rules) words.insert(words.end(), {r.name, nodeAt(r.node)});
-  words.resize(offset, 0u);
+  words.resize(offset - graph.divisions.size(), 0u);
+  words.insert(words.end(), graph.divisions.begin(), graph.divisions.end());
   if (!graph.names.empty()) std::memcpy(words.data() + offsets[kSectionNames], graph.names.data(), graph.names.size());
   words[kHeaderChecksum] = checksum(std::span(words).subspan(kHeaderChecked));
   return words;
@@ -117,14 +126,15 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   graph.nodes.reserve(counts[kSectionNodes]);
   for (uint32_t i = 0; i < counts[kSectionNodes]; ++i) {
     const uint32_t* w = entry(kSectionNodes, i);
-    graph.nodes.push_back({w[kNodeOperator], w[kNodeArgument], w[kNodeArgument2],
+    const uint32_t op = w[kNodeOperator] & ~kNodeFilter;
+    graph.nodes.push_back({op, w[kNodeArgument], op == kOpSubDiv ? 0 : w[kNodeArgument2],
                            indexOf(kSectionParameters, w[kNodeParameters], 1), w[kNodeParameterCount],
                            indexOf(kSectionEdges, w[kNodeEdges], 1), w[kNodeEdgeCount], w[kNodeShapes]});
   }
   graph.edges.reserve(counts[kSectionEdges]);
   for (uint32_t i = 0; i < counts[kSectionEdges]; ++i) {
     const uint32_t* w = entry(kSectionEdges, i);
-    graph.edges.push_back({nodeIndex(w[kEdgeTarget]), w[kEdgeMultiplicity], w[kEdgeShapes]});
+    graph.edges.push_back({nodeIndex(w[kEdgeTarget] & ~kEdgeRecursive), w[kEdgeMultiplicity], w[kEdgeShapes]});
   }
   graph.parameters.reserve(counts[kSectionParameters]);
   for (uint32_t i = 0; i < counts[kSectionParameters]; ++i) {
@@ -150,9 +160,9 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   graph.names.resize(size_t(counts[kSectionNames]) * 4);
   if (!graph.names.empty()) std::memcpy(graph.names.data(), entry(kSectionNames, 0), graph.names.size());
   if (auto ok = validate(graph); !ok) return ok.error();
-  // What follows from the rest is worked out again rather than believed.
+  // What follows from the rest is worked out again rather than believed: the interpreter reads it from the words.
   analyse(graph);
-  if (words[kHeaderRounds] != graph.rounds) return bad("its number of rounds is wrong");
+  if (serialize(graph, memory) != words) return bad("it does not follow from its own nodes and edges");
   return graph;
 }
 

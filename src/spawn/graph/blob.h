@@ -13,6 +13,9 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
 /// error, never a graph that the interpreter cannot run. Everything is allocated from memory.
 core::Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* memory);
 
+/// How many of the bytes are the graph's, as its header says; all where that cannot be. Kernels may follow (kernel.h).
+size_t sizeOfGraph(std::span<const std::byte> bytes);
+
 /// Of words from kHeaderChecked on.
 uint32_t checksum(std::span<const uint32_t> words);
 

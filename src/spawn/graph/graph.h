@@ -22,7 +22,8 @@ struct Parameter {
 struct Edge {
   uint32_t target = kNoNode;
   uint32_t multiplicity = shader::kMultiplicityOne;
-  uint32_t shapes = 0; ///< bit set of the shape types that travel along it
+  uint32_t shapes = 0;    ///< bit set of the shape types that travel along it
+  bool recursive = false; ///< closes a cycle
 };
 
 struct Node {
@@ -30,7 +31,9 @@ struct Node {
   uint32_t argument = 0, argument2 = 0;
   uint32_t firstParameter = 0, parameterCount = 0;
   uint32_t firstEdge = 0, edgeCount = 0;
-  uint32_t shapes = 0; ///< bit set of the shape types that can arrive, from the axiom or as a start rule
+  uint32_t shapes = 0;            ///< bit set of the shape types that can arrive, from the axiom or as a start rule
+  uint32_t division = UINT32_MAX; ///< in Graph::divisions
+  bool filter = false;            ///< could multiply shapes, but passes on at most one
 };
 
 struct Polygon {
@@ -50,7 +53,7 @@ struct Rule {
 struct Graph {
   explicit Graph(std::pmr::memory_resource* memory)
       : nodes(memory), edges(memory), parameters(memory), code(memory), polygons(memory), vertices(memory),
-        terminals(memory), rules(memory), names(memory) {}
+        terminals(memory), rules(memory), names(memory), divisions(memory) {}
 
   std::pmr::vector<Node> nodes;
   std::pmr::vector<Edge> edges;
@@ -60,10 +63,10 @@ struct Graph {
   std::pmr::vector<float> vertices;
   std::pmr::vector<Terminal> terminals;
   std::pmr::vector<Rule> rules;
-  std::pmr::vector<char> names; ///< each ends in 0
+  std::pmr::vector<char> names;         ///< each ends in 0
+  std::pmr::vector<uint32_t> divisions; ///< of SubDivs with constant parts, as in the baked form; from analyse()
   uint32_t axiomShape = shader::kShapeBox, axiomPolygon = 0, axiomNode = kNoNode;
   uint32_t buckets = 0; ///< terminal lines
-  uint32_t rounds = 0;  ///< the most rounds that a derivation can need; 0: not bounded
 
   const char* nameAt(uint32_t offset) const { return names.data() + offset; }
 };
@@ -74,7 +77,7 @@ void addRegularPolygons(Graph& graph);
 /// Adds a polygon and its mirror image; corners counter-clockwise. Returns the first one's number.
 uint32_t addPolygon(Graph& graph, const float* corners, uint32_t count);
 
-/// Fills in what follows from nodes and edges: multiplicities, the shape types on nodes and edges, rounds.
+/// Fills in what follows from nodes and edges: multiplicities, the shape types on nodes and edges, filters, recursion.
 void analyse(Graph& graph);
 
 /// Every index, enum, count and program. What passes can be derived without further checks and without end only where

@@ -1,5 +1,8 @@
 // gpgpCompileGrammar: text to a baked grammar.
+#include "spawn/codegen/compile_kernel.h"
+#include "spawn/codegen/generate.h"
 #include "spawn/graph/blob.h"
+#include "spawn/graph/kernel.h"
 #include "spawn/language/build_graph.h"
 
 #include <cstdlib>
@@ -29,6 +32,8 @@ GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlo
       return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
     for (uint32_t i = 0; i < source->variableCount; ++i)
       if (!source->variables[i].name) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "a variable's name is NULL");
+    if (source->flags & ~GPGP_COMPILE_KERNEL)
+      return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
     if (source->size > (size_t(1) << 28)) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "the text is over 256 MiB");
     std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
     spawn::Diagnostics diagnostics;
@@ -38,7 +43,17 @@ GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlo
       report(*source, d.place.line, d.place.column, d.severity, d.text.c_str());
     if (diagnostics.hasErrors()) return GPGP_ERROR_INVALID_DATA;
     if (auto ok = spawn::validate(graph); !ok) return fail(*source, GPGP_ERROR_UNSUPPORTED, ok.error().text);
-    const auto words = spawn::serialize(graph, memory);
+    auto words = spawn::serialize(graph, memory);
+    if (source->flags & GPGP_COMPILE_KERNEL) {
+      const std::string functions = spawn::generate(graph, spawn::waitsAtFans(graph));
+      for (const bool subgroups : {true, false}) { // the first that a device can run is taken
+        const auto spirv = spawn::compileKernel(functions, subgroups);
+        if (!spirv) return fail(*source, spirv.error().code, spirv.error().text);
+        const auto kernel = spawn::serialize({.subgroups = subgroups, .schedule = "default"}, *spirv,
+                                             words[shader::kHeaderChecksum], memory);
+        words.insert(words.end(), kernel.begin(), kernel.end());
+      }
+    }
     GpgpBlob made{std::malloc(words.size() * 4), words.size() * 4};
     if (!made.data) return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
     std::memcpy(made.data, words.data(), made.size);

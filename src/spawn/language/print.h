@@ -1,14 +1,40 @@
-// Operator graphs for people: a text form that reads like a rule set, and Graphviz.
+// The printed form of operator graphs: text that people read and edit, and that gives the same graph back.
+//
+//   axiom Box -> 0                          the start shape and the node where it goes; a polygon's number in ( )
+//   terminal Wall (1, 4) bucket 2           kind, index, bucket
+//   polygon 12 { (0,0.5) (-0.5,0) (0.5,0) } corners of Dynamic... shapes; 13 is its mirror image
+//   rule A -> 0                             or Discard
+//   0 SubDiv(X) { -1: / -> 1 | 2: / -> 2 }  a node with its edges: value, multiplicity (1, n, / or *), target
+//   1 Wall
+//   2 Translate(0,(ShapeSize(Y) * 1.5),0) { 1 -> 0 }
+//   group { 0 2 }                           execution groups, all or none of them; the root first
+//   group { 1 }
+//
+// Comments are those of the language. Multiplicities follow from operators; ones that do not fit are errors.
 #pragma once
-#include "spawn/graph/graph.h"
+#include "spawn/graph/partition.h"
+#include "spawn/language/diagnostics.h"
 
+#include <memory_resource>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace gpgp::spawn {
 
-/// One line a node: number, operator with parameters, then an arrow with multiplicity and target for each edge.
-std::string printText(const Graph& graph);
-/// For `dot`: the start is blue, terminals are orange, edges carry their multiplicity.
-std::string printDot(const Graph& graph);
+std::string printGraph(const Graph& graph);
+std::string printGroups(const Partition& partition);
+
+struct PrintedGraph {
+  Graph graph;
+  std::optional<Partition> partition; ///< valid
+};
+
+/// Nothing where there was an error; all are reported with their places.
+std::optional<PrintedGraph> parseGraph(std::string_view text, Diagnostics& diagnostics,
+                                       std::pmr::memory_resource* memory);
+
+/// The groups alone, for a graph that is known. Text that has the graph as well must have the same one.
+std::optional<Partition> parseGroups(std::string_view text, const Graph& graph, Diagnostics& diagnostics);
 
 } // namespace gpgp::spawn

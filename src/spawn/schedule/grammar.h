@@ -1,26 +1,48 @@
-// A grammar as an asset: the checked graph for questions of the CPU, its words on the device for the interpreter.
+// A grammar as an asset: the checked graph for questions of the CPU, its words on the device for the interpreter, and
+// the kernels that it was baked with, which are pipelines once gpgpPrewarmGrammar has made them.
 #pragma once
 #include "core/resident.h"
 #include "spawn/graph/blob.h"
+#include "spawn/graph/kernel.h"
+
+#include <array>
+#include <cstring>
 
 namespace gpgp::spawn {
 
 class Grammar final : public core::Resident {
 public:
-  /// Checks baked bytes and queues them for upload.
+  /// Checks baked bytes and queues the graph for upload.
   static core::Result<core::Unique<Grammar>> create(core::Context& context, const char* label,
-                                                    std::span<const std::byte> bytes) {
-    auto graph = load(bytes, &context.host());
-    if (!graph) return graph.error();
-    auto grammar = core::makeUnique<Grammar>(context.host(), context, label, std::move(*graph));
-    std::pmr::vector<std::byte> words(bytes.begin(), bytes.end(), &context.host());
-    if (auto ok = grammar->makeResident(GPGP_SERVICE_SPAWN, std::move(words)); !ok) return ok.error();
-    return grammar;
+                                                    std::span<const std::byte> bytes);
+  Grammar(core::Context& owner, const char* name, Graph&& checked, std::pmr::vector<Kernel>&& baked)
+      : Resident(owner, core::Kind::grammar, name), graph(std::move(checked)), kernels(std::move(baked)) {}
+  ~Grammar() override;
+
+  /// A kernel that can run.
+  struct Ready {
+    KernelInfo info;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    bool vertices = false; // it writes vertices, not instances
+  };
+  /// The best one for a number of axioms: tuned for the nearest number, or for any. Null: the interpreter.
+  const Ready* kernelFor(uint32_t axioms, bool vertices) const;
+  bool isReady(const KernelInfo& info, bool vertices) const {
+    for (uint32_t i = 0; i < readyCount(); ++i)
+      if (ready_[i].vertices == vertices && std::memcmp(&ready_[i].info, &info, sizeof info) == 0) return true;
+    return false;
   }
-  Grammar(core::Context& owner, const char* name, Graph&& checked)
-      : Resident(owner, core::Kind::grammar, name), graph(std::move(checked)) {}
+  /// Adds one. Calls for the same grammar come one after the other.
+  void add(const Ready& ready);
+  static constexpr uint32_t kMaxReady = 16;
+  uint32_t readyCount() const { return readyCount_.load(std::memory_order_acquire); }
 
   const Graph graph;
+  const std::pmr::vector<Kernel> kernels;
+
+private:
+  std::array<Ready, kMaxReady> ready_{};
+  std::atomic<uint32_t> readyCount_{0};
 };
 
 } // namespace gpgp::spawn

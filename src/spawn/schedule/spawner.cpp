@@ -1,6 +1,7 @@
 #include "spawn/schedule/spawner.h"
 
 #include "shaders/spawn_derive.spv.h"
+#include "shaders/spawn_derive_subgroups.spv.h"
 #include "shaders/spawn_emit.spv.h"
 #include "shaders/spawn_place.spv.h"
 #include "spawn/layout.h"
@@ -20,15 +21,20 @@ enum : core::ResourceIndex {
   kDraws,
   kCount,
   kQueues,
+  kStacks,
   kRecords,
-  kState,
+  kCounters,
   kBuckets,
-  kRounds,
-  kConstants
+  kConstants,
+  kVertices,
+  kIndices,
+  kNeeded
 };
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1;
+// Conditions of a record.
+constexpr uint32_t kSorted = 0, kBucketed = 1;
 
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
@@ -36,83 +42,147 @@ static_assert(sizeof(GpgpInstance) == 96 && offsetof(GpgpInstance, bucket) == 48
 static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
 constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
-constexpr uint32_t kDefaultShapes = 262144, kDefaultTerminals = 524288, kDefaultDepth = 64;
+/// Shared memory of derive.glsl for each invocation: a parent with its fan, what is staged, a sum.
+constexpr uint32_t kSharedBytesEach = 16 * (shader::kShapePlanes + shader::kInstanceWords4) + 20;
+constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 8,
+                   kSoftwareRounds = 32;
 
-/// Workgroups that fill any device; an invocation takes further shapes only where there are more than these. Rounds are
-/// dispatched by what there is, so small ones cost little. (Fewer, longer loops would run into software devices' limits
-/// on iterations.)
-constexpr uint32_t kMaxGroups = 16384;
+/// The interpreter's fit to a kind of device, and what no schedule changes.
+struct Limits {
+  Fit fit;
+  uint32_t steps;       // of a workgroup in a round
+  uint32_t vertexStage; // 16 bytes an invocation of shared memory for vertices
+};
+/// Software devices end a shader's loops silently after 65 535 iterations in all, so workgroups give up early there.
+constexpr Limits kHardware{{32, 2048, 256, 4096}, 16384, 3}, kSoftware{{64, 16, 1024, 512}, 256, 2};
+const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
+
+/// Shapes on the stacks of all workgroups.
+uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
+
+std::array<uint32_t, 4> specialization(const Fit& fit, uint32_t vertexStage) {
+  return {fit.groupSize, fit.stackShapes, vertexStage};
+}
+
+/// The most quads that 16-bit indices reach, without 65535, which could restart a primitive.
+constexpr uint32_t kShortQuads = 65535 / 4;
+
+template <class Element> uint32_t elementsIn(const GpgpBuffer& buffer) {
+  return static_cast<uint32_t>(buffer.buffer ? buffer.size / sizeof(Element) : 0);
+}
 
 } // namespace
 
 core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, const GpgpSpawnerCreateInfo& info) {
   auto spawner = core::makeUnique<Spawner>(context.host(), context, info.base);
-  const uint32_t maxShapes = info.maxShapes ? info.maxShapes : kDefaultShapes;
-  const uint32_t maxTerminals = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
+  const uint32_t maxShapes = spawner->maxShapes_ = info.maxShapes ? info.maxShapes : kDefaultShapes;
+  const uint32_t maxTerminals = spawner->maxTerminals_ = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
+  const bool vertices = spawner->vertices_ = info.flags & GPGP_SPAWNER_VERTICES;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
+  spawner->rounds_ = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
+  const Limits& limits = limitsOf(context.device);
 
   core::PassList list(&context.host());
   using enum core::ResourceKind;
   list.add({"grammar", buffer});
   list.add({"axioms", buffer, 0, true});
-  list.add({"instances", buffer});
+  list.add({"instances", buffer, 0, true});
   list.add({"draws", buffer, 0, true});
   list.add({"count", buffer, 0, true});
   list.add({"queues", scratch, 2 * kShapeBytes * maxShapes});
-  list.add({"records", scratch, kShapeBytes * maxTerminals});
-  list.add({"state", scratch, sizeof(shader::SpawnState)});
-  list.add({"buckets", scratch, 2 * sizeof(uint32_t) * shader::kMaxBuckets});
-  const VkDeviceSize rounds = spawner->maxDepth_ + 2; // the leftover of the last one, and emission
-  list.add({"rounds", scratch, sizeof(shader::SpawnRound) * rounds});
+  list.add({"stacks", scratch, kShapeBytes * stackShapesOf(maxShapes)});
+  list.add({"records", scratch, kShapeBytes * (vertices ? 1 : maxTerminals)});
+  const auto roundAt = [](uint32_t round) { return sizeof(shader::SpawnState) + sizeof(shader::SpawnRound) * round; };
+  const uint32_t rounds = spawner->rounds_ + 2; // what the last one left, and emission
+  list.add({"counters", scratch, roundAt(rounds)});
+  list.add({"buckets", scratch, sizeof(uint32_t) * shader::kBucketWords});
   list.add({"constants", constants, sizeof(shader::SpawnConstants)});
+  list.add({"vertices", buffer, 0, true});
+  list.add({"indices", buffer, 0, true});
+  list.add({"needed", buffer, 0, true});
 
-  const std::array<uint32_t, 4> budgets{maxShapes, maxTerminals};
-  const uint32_t derive = list.add(core::ShaderDesc{"derive", spawn_derive, budgets, 2});
-  const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, budgets, 2});
-  const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, budgets, 2});
+  const std::span<const uint32_t> interpreter = context.device.subgroupArithmetic
+                                                    ? std::span<const uint32_t>(spawn_derive_subgroups)
+                                                    : std::span<const uint32_t>(spawn_derive);
+  const uint32_t derive = spawner->derive_ = list.add(
+      core::ShaderDesc{"derive", interpreter, specialization(limits.fit, vertices ? limits.vertexStage : 0), 3});
+  const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
+  const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit});
 
   using enum core::UseKind;
-  list.fill("clear counters", kState, 0);
-  list.fill("clear buckets", kBuckets, 0);
-  list.fill("clear rounds", kRounds, 0);
-  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},       {kQueues, readWrite}, {kRecords, write},
-                     {kState, readWrite},     {kBuckets, readWrite}, {kRounds, readWrite}, {kConstants, read}};
+  list.fill("clear counters", kCounters, 0);
+  list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
+  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write}, {kDraws, read},
+                     {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},   {kCounters, readWrite},
+                     {kBuckets, readWrite},   {kConstants, read},   {kVertices, write},  {kIndices, write}};
   list.dispatch("derive", derive, uses, kAxiomGroups, {0});
-  for (uint32_t round = 1; round < spawner->maxDepth_; ++round)
-    list.dispatchIndirect("derive", derive, uses, kRounds, sizeof(shader::SpawnRound) * round, {round}).level = round;
+  for (uint32_t round = 1; round < spawner->rounds_; ++round)
+    list.dispatchIndirect("derive", derive, uses, kCounters, roundAt(round), {round}).level = round;
   list.dispatch("place", place,
                 {{kGraph, read},
                  {kDraws, readWrite},
                  {kCount, write},
-                 {kState, readWrite},
+                 {kCounters, readWrite},
                  {kBuckets, readWrite},
-                 {kRounds, readWrite},
-                 {kConstants, read}},
+                 {kConstants, read},
+                 {kNeeded, write}},
                 kOneGroup);
   list.dispatchIndirect("emit", emit,
                         {{kGraph, read},
                          {kAxioms, read},
                          {kRecords, read},
                          {kInstances, write},
-                         {kState, read},
+                         {kCounters, read},
                          {kBuckets, readWrite},
                          {kConstants, read}},
-                        kRounds, sizeof(shader::SpawnRound) * (rounds - 1));
-  list.report = kState;
+                        kCounters, roundAt(rounds - 1))
+      .condition = kSorted;
+  list.report = kCounters;
   list.reportBytes = 4 * shader::kSpawnReportWords;
   if (auto ok = spawner->init(std::move(list)); !ok) return ok.error();
   return spawner;
 }
 
-core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
-  const uint32_t rounds = grammar.graph.rounds ? std::min(grammar.graph.rounds, maxDepth_) : maxDepth_;
-  const shader::SpawnConstants constants{
-      info.axiomCount,
-      static_cast<uint32_t>(info.instances.size / sizeof(GpgpInstance)),
-      static_cast<uint32_t>(info.draws.buffer ? info.draws.size / sizeof(VkDrawIndexedIndirectCommand) : 0),
-      info.count.buffer ? 1u : 0u,
-      rounds,
-      kMaxGroups};
+core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar,
+                                    const VertexLayout& layout) {
+  const Limits& limits = limitsOf(context.device);
+  const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount, vertices_);
+  const Fit& fit = kernel ? kernel->info.fit : limits.fit;
+  const uint32_t rounds = fit.rounds ? std::min(fit.rounds, rounds_) : rounds_;
+  const uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
+  const bool regions = info.flags & GPGP_SPAWN_REGIONS;
+  const bool counts = vertices_ ? !info.vertices->vertices.buffer : !info.instances.buffer;
+  // One bucket is sorted as it is.
+  const bool sorted = !vertices_ && !regions && !counts && info.draws.buffer && grammar.graph.buckets > 1;
+  shader::SpawnConstants constants{};
+  constants.axiomCount = info.axiomCount;
+  constants.instanceCapacity = elementsIn<GpgpInstance>(info.instances);
+  constants.drawCapacity = elementsIn<VkDrawIndexedIndirectCommand>(info.draws);
+  constants.writeCount = info.count.buffer ? 1 : 0;
+  constants.rounds = rounds;
+  constants.maxGroups = maxGroups;
+  constants.maxDepth = maxDepth_;
+  constants.spread = fit.spread;
+  constants.steps = limits.steps;
+  constants.maxShapes = maxShapes_;
+  constants.maxTerminals = maxTerminals_;
+  constants.terminalsTo = counts ? shader::kToCounts : sorted ? shader::kToRecords : shader::kToInstances;
+  constants.regions = regions;
+  constants.writeNeeded = info.needed.buffer ? 1 : 0;
+  if (vertices_ && !counts) {
+    const GpgpVertexOutput& output = *info.vertices;
+    const bool shortIndices = output.indexType == VK_INDEX_TYPE_UINT16;
+    const uint32_t indexBytes = shortIndices ? 2 : 4;
+    VkDeviceSize quads = output.vertices.size / (4 * output.stride);
+    if (output.indices.buffer) quads = std::min(quads, output.indices.size / (6 * indexBytes));
+    constants.regionQuads = shortIndices ? kShortQuads : UINT32_MAX;
+    constants.quadCapacity = static_cast<uint32_t>(quads);
+    if (!regions) constants.quadCapacity = std::min(constants.quadCapacity, constants.regionQuads);
+    constants.indexWords = output.indices.buffer ? 6 * indexBytes / 4 : 0;
+    constants.strideWords = layout.strideWords;
+    constants.attributeCount = layout.attributeCount;
+    std::copy(layout.attributes.begin(), layout.attributes.end(), constants.attributes);
+  }
   core::Record record;
   record.commandBuffer = commandBuffer;
   record.info = &info.base;
@@ -122,13 +192,50 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[kInstances].engineBuffer = &info.instances;
   record.bindings[kDraws].engineBuffer = &info.draws;
   record.bindings[kCount].engineBuffer = &info.count;
+  record.bindings[kNeeded].engineBuffer = &info.needed;
+  if (info.vertices) {
+    record.bindings[kVertices].engineBuffer = &info.vertices->vertices;
+    record.bindings[kIndices].engineBuffer = &info.vertices->indices;
+  }
   record.groups[kOneGroup] = {1, 1, 1};
-  const uint32_t axiomGroups = (info.axiomCount + shader::kSpawnGroupSize - 1) / shader::kSpawnGroupSize;
-  record.groups[kAxiomGroups] = {std::min(axiomGroups, kMaxGroups), 1, 1};
+  record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
+  record.conditions[kSorted] = sorted;
+  record.conditions[kBucketed] = sorted || regions || counts || vertices_;
   record.levels = rounds;
   record.constants = std::as_bytes(std::span(&constants, 1));
+  if (kernel) {
+    record.replacedShader = derive_;
+    record.replacement = kernel->pipeline;
+  }
   if (auto ok = check(record); !ok) return ok;
   return Worker::record(record);
+}
+
+core::Result<void> Spawner::prewarm(Grammar& grammar) const {
+  const VkPhysicalDeviceLimits& device = context.device.limits;
+  const uint32_t stage = vertices_ ? limitsOf(context.device).vertexStage : 0;
+  for (const Kernel& kernel : grammar.kernels) {
+    KernelInfo info = kernel.info;
+    if (!info.fit.groupSize) {
+      info.fit = limitsOf(context.device).fit;
+      info.fit.rounds = kernel.info.fit.rounds;
+    }
+    if (grammar.readyCount() == Grammar::kMaxReady) break;
+    if (info.subgroups && !context.device.subgroupArithmetic) continue;
+    info.subgroups = 0; // of two that differ only here, the first is made
+    if (grammar.isReady(info, vertices_) || info.fit.stackShapes > stackShapesOf(maxShapes_)) continue;
+    if ((info.vendor && info.vendor != context.device.vendor) || (info.device && info.device != context.device.model))
+      continue; // tuned for another device
+    if (info.fit.groupSize > device.maxComputeWorkGroupInvocations ||
+        info.fit.groupSize > device.maxComputeWorkGroupSize[0] ||
+        info.fit.groupSize * (kSharedBytesEach + 16 * stage) + 64 > device.maxComputeSharedMemorySize)
+      continue;
+    const auto pipeline =
+        createComputePipeline({kernel.info.schedule, kernel.spirv, specialization(info.fit, stage), 3});
+    if (!pipeline) return pipeline.error();
+    grammar.add({info, *pipeline, vertices_});
+  }
+  return {};
 }
 
 bool Spawner::takeReport(GpgpSpawnReport& report) {
@@ -143,8 +250,11 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   report.rounds = raw.words[5];
   report.keyHash[0] = raw.words[6];
   report.keyHash[1] = raw.words[7];
-  if (report.base.status == GPGP_SUCCESS &&
-      (report.instancesWritten < report.terminals || report.droppedShapes || report.unfinishedShapes))
+  report.depth = raw.words[8];
+  report.vertices = 4 * raw.words[9];
+  report.verticesWritten = 4 * raw.words[10];
+  report.notDrawn = raw.words[11];
+  if (report.base.status == GPGP_SUCCESS && (raw.words[12] || report.droppedShapes || report.unfinishedShapes))
     report.base.status = GPGP_BUDGET_EXCEEDED;
   return true;
 }

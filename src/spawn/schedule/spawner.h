@@ -1,11 +1,13 @@
-// The spawner: derives any grammar with the interpreter kernel, in wavefront rounds.
+// The spawner: derives any grammar with the interpreter kernel, in rounds of workgroups that derive by themselves.
 //
-// Passes of a record: clear, then `maxDepth` rounds (those that the grammar cannot need are left out), place, emit.
-// A round takes every shape of a queue through its chain of operators and writes the children into the other queue
-// (the thesis's rewriting schedule, section 4.2.2, with chains fused). No pass depends on the grammar.
+// Passes of a record: clear, then the rounds, place, emit. A round shares a queue of shapes among workgroups; each
+// derives what comes of its shapes with a stack of its own and leaves to the next round what it should not or cannot do
+// alone (shaders/spawn/derive.comp). Terminals leave as instances, or, from a spawner for vertices, as vertices and
+// indices. Where instances are sorted by bucket, terminals become records first, and emit puts them in their places.
 #pragma once
 #include "core/worker.h"
 #include "spawn/schedule/grammar.h"
+#include "spawn/schedule/vertices.h"
 
 #include <gpgp/spawn.h>
 
@@ -17,12 +19,20 @@ public:
   Spawner(core::Context& owner, const GpgpWorkerCreateInfo& base)
       : Worker(owner, core::Kind::spawner, base, GPGP_SERVICE_SPAWN) {}
 
-  /// Sizes of buffers are the caller's to check; the rest is checked here.
-  core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar);
+  /// Sizes of buffers are the caller's to check; the rest is checked here. layout: of info.vertices.
+  core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar,
+                             const VertexLayout& layout);
+  /// Makes pipelines of the grammar's kernels that are for this device and fit it.
+  core::Result<void> prewarm(Grammar& grammar) const;
+  using Worker::prewarm;
   bool takeReport(GpgpSpawnReport& report);
+  /// It writes vertices, not instances.
+  bool vertices() const { return vertices_; }
 
 private:
-  uint32_t maxDepth_ = 0;
+  uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0;
+  uint32_t derive_ = 0; // its shader
+  bool vertices_ = false;
 };
 
 } // namespace gpgp::spawn

@@ -1,0 +1,402 @@
+// One round of derivation. A workgroup takes shapes from the round's queue and derives all that comes of them by
+// itself, depth first by batches, with a stack of its own: most derivations end in the round in which they began.
+//
+// A batch is one shape for each invocation, waiting for an operator that multiplies. Step by step its children are
+// made, one an invocation whoever the parent, and each goes through its chain of operators until it is a terminal, or
+// waits in its turn: on the stack, or, in the batch's last step, where it is, as a part of the next batch. Terminals
+// leave at once, a workgroup's together.
+// Work goes over to the next round, through the other queue, where a round began with too few shapes to keep the device
+// busy and a workgroup has enough to give (`spread`), where the stack is full, and after `steps`, so that no workgroup
+// runs for ever. Round 0 reads axioms. What does not fit the queue is counted and dropped.
+layout(constant_id = 0) const uint groupSize = 64;
+layout(constant_id = 1) const uint stackShapes = 1024;
+layout(constant_id = 2) const uint vertexStage = 0; // not 0: vertices are written, staged in 16 bytes an invocation
+layout(local_size_x_id = 0) in;
+layout(push_constant) uniform Push { uint round; };
+
+shared uvec4 parents[kShapePlanes * groupSize];
+shared uvec2 fans[groupSize];         // of the parents: successors, length
+shared uint childrenUpTo[groupSize];  // of the parents: inclusive sums
+shared uvec4 staged[kInstanceWords4 * groupSize];
+shared uint stackSize;
+shared uint taken;
+shared uint terminalBase;
+shared uint queueBase;
+shared uint hashX;
+shared uint hashY;
+shared uint deepest;
+
+#ifdef GPGP_SUBGROUPS
+shared uint subgroupSums[groupSize];
+uint laneIndex() { return gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
+/// Sums of value over the invocations before this one, and over all. A barrier for shared memory.
+uint sumBefore(uint value, out uint total) {
+  const uint own = subgroupExclusiveAdd(value);
+  if (gl_NumSubgroups == 1) {
+    total = subgroupAdd(value);
+    barrier();
+    return own;
+  }
+  if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) subgroupSums[gl_SubgroupID] = own + value;
+  barrier();
+  uint before = 0;
+  total = 0;
+  for (uint i = 0; i < gl_NumSubgroups; ++i) {
+    if (i == gl_SubgroupID) before = total;
+    total += subgroupSums[i];
+  }
+  barrier();
+  return before + own;
+}
+/// How many invocations before this one have a, in the low half, and b, in the high half; counts: of all. No invocation
+/// has both. A barrier for shared memory.
+uint ranksOf(bool a, bool b, out uint counts) {
+  if (gl_NumSubgroups > 1) return sumBefore((a ? 1 : 0) | (b ? 0x10000u : 0), counts);
+  const uvec4 as = subgroupBallot(a);
+  const uvec4 bs = subgroupBallot(b);
+  counts = subgroupBallotBitCount(as) | (subgroupBallotBitCount(bs) << 16);
+  barrier();
+  return subgroupBallotExclusiveBitCount(as) | (subgroupBallotExclusiveBitCount(bs) << 16);
+}
+#else
+shared uint sums[groupSize];
+uint laneIndex() { return gl_LocalInvocationIndex; }
+uint sumBefore(uint value, out uint total) {
+  const uint lane = laneIndex();
+  uint sum = value;
+  for (uint stride = 1; stride < groupSize; stride *= 2) {
+    sums[lane] = sum;
+    barrier();
+    if (lane >= stride) sum += sums[lane - stride];
+    barrier();
+  }
+  sums[lane] = sum;
+  barrier();
+  total = sums[groupSize - 1];
+  barrier();
+  return sum - value;
+}
+uint ranksOf(bool a, bool b, out uint counts) { return sumBefore((a ? 1 : 0) | (b ? 0x10000u : 0), counts); }
+#endif
+
+/// A barrier for the workgroup's stack as well. It stands before the stack is read, when what was written has long
+/// arrived, not after it is written, where everybody would wait.
+void stackBarrier() {
+  controlBarrier(gl_ScopeWorkgroup, gl_ScopeWorkgroup, gl_StorageSemanticsBuffer | gl_StorageSemanticsShared,
+                 gl_SemanticsAcquireRelease);
+}
+
+Shape axiomAt(uint index) {
+  const uvec4 a = axioms[index * 6 + 3];
+  const uvec4 b = axioms[index * 6 + 4];
+  if (!hasRule(b.y)) atomicAdd(state.droppedShapes, 1);
+  return axiomShape(unpackVector(a), a.w, b.x, b.y, uintBitsToFloat(b.z), index);
+}
+Shape queuedAt(uint index) {
+  const uint start = (round & 1) * kShapePlanes * record.maxShapes + index;
+  return unpackShape(queues[start], queues[start + record.maxShapes], queues[start + 2 * record.maxShapes],
+                     queues[start + 3 * record.maxShapes], queues[start + 4 * record.maxShapes],
+                     queues[start + 5 * record.maxShapes]);
+}
+uint stackPlane(uint plane) { return (gl_WorkGroupID.x * kShapePlanes + plane) * stackShapes; }
+Shape stackedAt(uint index) {
+  return unpackShape(stacks[stackPlane(0) + index], stacks[stackPlane(1) + index], stacks[stackPlane(2) + index],
+                     stacks[stackPlane(3) + index], stacks[stackPlane(4) + index], stacks[stackPlane(5) + index]);
+}
+Shape parentAt(uint index) {
+  return unpackShape(parents[index], parents[groupSize + index], parents[2 * groupSize + index],
+                     parents[3 * groupSize + index], parents[4 * groupSize + index], parents[5 * groupSize + index]);
+}
+
+/// Moves the stack to the next round's queue.
+void giveAway() {
+  const uint lane = laneIndex();
+  const uint count = stackSize;
+  if (lane == 0) {
+    queueBase = atomicAdd(rounds[round + 1].shapes, count); // stays far below 2^32: steps and groups are bounded
+    const uint held = min(queueBase + count, record.maxShapes);
+    atomicMax(rounds[round + 1].groupsX, min(held, record.maxGroups));
+    rounds[round + 1].groupsY = 1;
+    rounds[round + 1].groupsZ = 1;
+  }
+  stackBarrier();
+  const uint target = ((round + 1) & 1) * kShapePlanes * record.maxShapes + queueBase;
+  const uint fitting = queueBase < record.maxShapes ? min(count, record.maxShapes - queueBase) : 0;
+  for (uint plane = 0; plane < kShapePlanes; ++plane)
+    for (uint i = lane; i < fitting; i += groupSize)
+      queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
+  if (lane == 0) stackSize = 0;
+  barrier();
+}
+
+/// Shapes onto the stack, or by it to the next round. place: among count of them.
+void push(bool own, uint place, uint count, Shape s) {
+  if (count == 0) return;
+  if (stackSize + count > stackShapes) giveAway();
+  const uint base = stackSize;
+  if (own)
+    for (uint plane = 0; plane < kShapePlanes; ++plane) stacks[stackPlane(plane) + base + place] = packShape(s, plane);
+  barrier();
+  if (laneIndex() == 0) stackSize = base + count;
+  barrier();
+}
+
+#include "spawn/mesh.h"
+
+#include "spawn/regions.glsl"
+
+#include "spawn/vertices.glsl"
+
+/// Terminals to records or instances. place: among count of them.
+void emit(bool own, uint place, uint count, Shape s) {
+  if (count == 0) return;
+  const uint lane = laneIndex();
+  if (lane == 0) terminalBase = atomicAdd(state.terminals, count);
+  if (record.terminalsTo == kToCounts) {
+    if (own) atomicAdd(bucketCounts[graphWords[s.node + kNodeArgument2]], 1);
+    barrier();
+    return;
+  }
+  if (own) {
+    if (record.terminalsTo == kToRecords) {
+      for (uint plane = 0; plane < kShapePlanes; ++plane) staged[plane * groupSize + place] = packShape(s, plane);
+    } else {
+      const uint axiom = s.axiom * 6;
+      for (uint row = 0; row < 3; ++row)
+        staged[place * 6 + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
+      staged[place * 6 + 3] = uvec4(graphWords[s.node + kNodeArgument2], shapeType(s), axioms[axiom + 4].x,
+                                    graphWords[s.node + kNodeArgument]);
+      staged[place * 6 + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
+      uint target = 0;
+      if (record.regions != 0) {
+        const uint bucket = graphWords[s.node + kNodeArgument2];
+        const uint before = atomicAdd(bucketCounts[bucket], 1);
+        target = before < regionCapacity(bucket, false) ? regionStart(bucket, false) + before : 0xffffffffu;
+      }
+      staged[place * 6 + 5] = packPlane(s.size, target);
+    }
+  }
+  barrier();
+  if (record.terminalsTo == kToRecords) {
+    const uint fitting = terminalBase < record.maxTerminals ? min(count, record.maxTerminals - terminalBase) : 0;
+    if (lane < fitting) {
+      for (uint plane = 0; plane < kShapePlanes; ++plane)
+        records[plane * record.maxTerminals + terminalBase + lane] = staged[plane * groupSize + lane];
+      atomicAdd(bucketCounts[graphWords[staged[4 * groupSize + lane].w + kNodeArgument2]], 1);
+    }
+  } else if (record.regions != 0) {
+    for (uint i = lane; i < count * 6; i += groupSize) {
+      const uint terminal = i / 6;
+      const uint row = i - terminal * 6;
+      const uint target = staged[terminal * 6 + 5].w;
+      if (target == 0xffffffffu) continue;
+      instances[target * 6 + row] = row == 5 ? uvec4(staged[i].xyz, 0) : staged[i];
+    }
+  } else {
+    const uint capacity = record.instanceCapacity;
+    const uint fitting = terminalBase < capacity ? min(count, capacity - terminalBase) : 0;
+    for (uint i = lane; i < fitting * 6; i += groupSize) instances[terminalBase * 6 + i] = staged[i];
+  }
+  barrier();
+}
+
+/// The shapes of a round that nobody took, once all workgroups have run out of steps: the last one leaves them to the
+/// next round.
+void leaveRest(uint count) {
+  const uint lane = laneIndex();
+  if (stackSize > 0) giveAway();
+  if (lane == 0) taken = atomicAdd(rounds[round].finished, 1) + 1 == gl_NumWorkGroups.x ? 1 : 0;
+  barrier();
+  if (taken == 0) return;
+  for (;;) {
+    barrier();
+    if (lane == 0) taken = atomicAdd(rounds[round].taken, groupSize);
+    barrier();
+    const uint first = taken;
+    if (first >= count) break;
+    const uint rest = min(count - first, groupSize);
+    Shape s;
+    if (lane < rest) {
+      if (round == 0)
+        s = axiomAt(first + lane);
+      else
+        s = queuedAt(first + lane);
+    }
+    push(lane < rest, lane, rest, s);
+  }
+  if (stackSize > 0) giveAway();
+}
+
+void main() {
+  const uint lane = laneIndex();
+  const uint needed = round == 0 ? record.axiomCount : rounds[round].shapes;
+  const uint count = round == 0 ? needed : min(needed, record.maxShapes);
+  if (gl_GlobalInvocationID.x == 0) {
+    if (count > 0) state.rounds = round + 1;
+    if (round > 0) {
+      state.peakShapes = max(state.peakShapes, needed);
+      if (needed > count) atomicAdd(state.droppedShapes, needed - count);
+    }
+  }
+  const uint share = clamp(count / (2 * gl_NumWorkGroups.x), 1, groupSize);
+  const uint enough =
+      count >= record.spread ? 0xffffffffu : clamp(record.spread / max(count, 1), 16, 4 * groupSize);
+  if (lane == 0) {
+    stackSize = 0;
+    hashX = 0;
+    hashY = 0;
+    deepest = 0;
+  }
+  if (vertexStage > 0) clearVertexWords();
+  barrier();
+  uvec2 hash = uvec2(0);
+  uint depth = 0;
+  uint unfinished = 0;
+
+  Shape s;
+  bool waits = false; // s is a part of the next batch
+  uint waiting = 0;   // how many are
+  uint total = 0;     // shapes that the batch makes
+  uint made = 0;      // of them
+  bool fetched = false; // axioms, which are made of nothing
+  uint first = 0;
+  for (uint step = 0; step < record.steps; ++step) {
+    if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
+      total = 0;
+      made = 0;
+      fetched = false;
+      if (waiting + stackSize >= enough) {
+        uint all;
+        const uint place = ranksOf(waits, false, all);
+        push(waits, place, all, s);
+        giveAway();
+        waits = false;
+        waiting = 0;
+      }
+      const uint space = groupSize - waiting;
+      const uint more = min(stackSize, min(space, max((stackShapes - stackSize) / 8, 1)));
+      if (more > 0) {
+        uint idle;
+        const uint place = ranksOf(!waits, false, idle);
+        stackBarrier();
+        if (!waits && place < more) {
+          s = stackedAt(stackSize - 1 - place);
+          waits = true;
+        }
+        barrier();
+        if (lane == 0) stackSize -= more;
+        waiting += more;
+      }
+      if (waiting == 0) {
+        if (lane == 0) taken = atomicAdd(rounds[round].taken, share);
+        barrier();
+        first = taken;
+        if (first >= count) break;
+        waiting = min(share, count - first);
+        fetched = round == 0;
+        if (fetched) {
+          total = waiting;
+        } else if (lane < waiting) {
+          s = queuedAt(first + lane);
+          waits = true;
+        }
+      }
+      if (!fetched) {
+        Fan fan;
+        fan.count = 0;
+        if (waits) {
+          fan = fanOf(s);
+          fan.count -= s.made;
+          for (uint plane = 0; plane < kShapePlanes; ++plane) parents[plane * groupSize + lane] = packShape(s, plane);
+          fans[lane] = uvec2(fan.successors, floatBitsToUint(fan.extent));
+        }
+        const uint before = sumBefore(fan.count, total); // at most groupSize * kMaxRepeat
+        childrenUpTo[lane] = before + fan.count;
+        const uint room = stackShapes - stackSize;
+        if (total > room) { // only as many parents as could all have waiting children; the first in any case
+          const bool late = waits && before > 0 && before + fan.count > room;
+          if (late) childrenUpTo[lane] = 0xffffffffu;
+          uint back;
+          const uint place = ranksOf(late, false, back);
+          push(late, place, back, s);
+          if (lane == 0) taken = 0;
+          barrier();
+          if (waits && !late) atomicMax(taken, before + fan.count);
+          barrier();
+          total = taken;
+        }
+      }
+      waits = false;
+      waiting = 0;
+      barrier();
+    }
+
+    const uint batch = min(total - made, groupSize);
+    uint end = kEndDiscarded;
+    if (lane < batch) {
+      bool arrives = false;
+      if (fetched) {
+        s = axiomAt(first + lane);
+      } else {
+        const uint child = made + lane;
+        uint parent = 0; // the first whose sum lies above child
+        for (uint stride = groupSize / 2; stride > 0; stride /= 2)
+          if (childrenUpTo[parent + stride - 1] <= child) parent += stride;
+        const Shape p = parentAt(parent);
+        Fan fan;
+        fan.successors = fans[parent].x;
+        fan.extent = uintBitsToFloat(fans[parent].y);
+        s = childOf(p, fan, p.made + child - (parent > 0 ? childrenUpTo[parent - 1] : 0));
+        s.made = 0;
+        arrives = fan.successors != 0;
+      }
+      end = runChain(s, arrives, record.maxDepth);
+      depth = max(depth, s.depth);
+      if (end == kEndUnfinished) unfinished += 1;
+      if (end == kEndTerminal) hash += terminalHash(s.key, graphWords[s.node + kNodeArgument2], shapeType(s));
+    }
+    made += batch;
+    uint leaving;
+    const uint places = ranksOf(end == kEndTerminal, end == kEndWaits, leaving);
+    if (vertexStage > 0)
+      step += emitVertices(end == kEndTerminal, leaving & 0xffffu, s);
+    else
+      emit(end == kEndTerminal, places & 0xffffu, leaving & 0xffffu, s);
+    if (made < total) {
+      push(end == kEndWaits, places >> 16, leaving >> 16, s);
+    } else {
+      waits = end == kEndWaits;
+      waiting = leaving >> 16;
+    }
+  }
+
+  // What there were no steps left for goes over: the next batch, or this one's parents with the children that they
+  // have.
+  uint rest;
+  if (made < total) {
+    const uint before = lane > 0 ? childrenUpTo[lane - 1] : 0;
+    waits = childrenUpTo[lane] > max(made, before) && childrenUpTo[lane] <= total;
+    if (waits) {
+      s = parentAt(lane);
+      s.made += made - min(made, before);
+    }
+  }
+  const uint place = ranksOf(waits, false, rest);
+  push(waits, place, rest, s);
+  leaveRest(count);
+
+  if (hash != uvec2(0)) {
+    atomicAdd(hashX, hash.x);
+    atomicAdd(hashY, hash.y);
+  }
+  atomicMax(deepest, depth);
+  if (unfinished > 0) atomicAdd(state.unfinishedShapes, unfinished);
+  barrier();
+  if (lane == 0) {
+    if ((hashX | hashY) != 0) {
+      atomicAdd(state.keyHashX, hashX);
+      atomicAdd(state.keyHashY, hashY);
+    }
+    atomicMax(state.depth, deepest);
+  }
+}

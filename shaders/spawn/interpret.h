@@ -1,0 +1,82 @@
+// The interpreter: operators by switch, parameters from the graph's words. It runs any graph at once, without a
+// compiler.
+//
+// runChain takes a shape through operators that pass on one shape until it ends, becomes a terminal or waits for an
+// operator that multiplies; those are in fans.h. All are pure functions of a shape and the graph. That a child can be
+// made alone, by its number, lets a workgroup spread the children of its shapes evenly over its invocations.
+#ifndef GPGP_SHADERS_SPAWN_INTERPRET_H
+#define GPGP_SHADERS_SPAWN_INTERPRET_H
+#include "spawn/operators.h"
+
+GPGP_SHADER_BEGIN
+
+GPGP_FN float parameter(GPGP_GRAPH Shape s, uint index) {
+  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize);
+}
+
+GPGP_SHADER_END
+#include "spawn/fans.h"
+GPGP_SHADER_BEGIN
+
+/// The edge that a conditional or random operator takes.
+GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op) {
+  const float first = parameter(GPGP_G s, 0u);
+  if (op == kOpIf) return first != 0.0f ? 0u : 1u;
+  if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
+  const uint count = graphWords[s.node + kNodeEdgeCount];
+  float total = 0.0f;
+  for (uint i = 0u; i < count; ++i) total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u)));
+  const float x = multiply(subtract(first, floor(first)), total);
+  float sum = 0.0f;
+  uint chosen = 0u;
+  for (uint i = 0u; i < count; ++i) {
+    const float p = max(0.0f, parameter(GPGP_G s, i + 1u));
+    if (p > 0.0f && (sum <= x)) chosen = i;
+    sum = add(sum, p);
+  }
+  return chosen;
+}
+
+/// The shape after one of the operators that pass on exactly one shape; its node stays.
+GPGP_FN Shape transformed(GPGP_GRAPH Shape s, uint op) {
+  // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called.
+  vec3 value = vec3(0.0f);
+  const uint count = min(graphWords[s.node + kNodeParameterCount], 3u);
+  for (uint i = 0u; i < count; ++i) value = withComponent(value, i, parameter(GPGP_G s, i));
+  if (op == kOpTranslate) return translated(s, value);
+  if (op == kOpRotate) return rotated(s, rotationOf(value));
+  if (op == kOpScale) return resized(s, value);
+  if (op == kOpExtrude) return extruded(s, value.x);
+  if (op == kOpSwapSize) return swapped(s, graphWords[s.node + kNodeArgument]);
+  return withGeometry(s, graphWords[s.node + kNodeArgument], graphWords[s.node + kNodeArgument2]);
+}
+
+/// Takes a shape from operator to operator while each passes on one shape. Returns a kEnd value. Whether the shape
+/// arrives from an operator that multiplies or has waited makes no difference here; some generated kernels let it wait
+/// first.
+GPGP_FN uint runChain(GPGP_GRAPH GPGP_INOUT(Shape) s, bool /* arrives */, uint maxDepth) {
+  for (uint step = 0u; step < kMaxChain; ++step) {
+    if (s.node == 0u) return kEndDiscarded;
+    if (s.depth > maxDepth) return kEndUnfinished;
+    const uint operatorWord = graphWords[s.node + kNodeOperator];
+    const uint op = operatorWord & kOperatorMask;
+    if (op == kOpTerminal) return kEndTerminal;
+    if (op <= kOpSetGeometry) {
+      const uint target = edgeTarget(GPGP_G s.node, 0u);
+      s = transformed(GPGP_G s, op);
+      follow(s, target);
+    } else if (op <= kOpRandomRule) {
+      follow(s, edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op)));
+    } else {
+      if ((operatorWord & kNodeFilter) == 0u) return kEndWaits;
+      const Fan fan = fanOf(GPGP_G s);
+      if (fan.count == 0u) return kEndDiscarded;
+      const Shape child = childOf(GPGP_G s, fan, 0u);
+      s = child;
+    }
+  }
+  return kEndWaits;
+}
+
+GPGP_SHADER_END
+#endif

@@ -1,0 +1,323 @@
+#include "spawn/codegen/generate.h"
+
+#include "spawn/operators.h"
+
+#include <array>
+#include <cstdio>
+
+namespace gpgp::spawn {
+namespace {
+using namespace shader;
+
+bool multiplies(const Node& node) { return node.op >= kOpCompSplit && !node.filter; }
+
+/// A float whose bits survive.
+std::string literal(float value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.9gf", static_cast<double>(value));
+  std::string result = text;
+  if (result.find_first_of(".en") == std::string::npos) result.insert(result.size() - 1, ".0");
+  if (value < 0) result = "(" + result + ")";
+  return result;
+}
+std::string number(uint32_t value) { return std::to_string(value) + "u"; }
+
+class Generator {
+public:
+  Generator(const Graph& graph, const std::vector<bool>& waits) : graph_(graph), waits_(waits) {}
+
+  std::string run() {
+    writeParameters();
+    uint32_t operators = 0;
+    for (const Node& node : graph_.nodes) {
+      if (!multiplies(node) && (node.op < kOpCompSplit || node.division != UINT32_MAX)) continue;
+      operators |= 1u << node.op;
+      if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= 1u << 30;
+      if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= 1u << 31;
+    }
+    add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/fans.h\"\n");
+    std::vector<uint8_t> written(graph_.nodes.size());
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) writeChain(n, written);
+    writeRunChain();
+    return std::move(out_);
+  }
+
+private:
+  void add(const std::string& text) { out_ += text; }
+
+  /// As nodes appear in Shape::node: their offset among the baked words.
+  static uint32_t offsetOf(uint32_t node) { return kHeaderSize + node * kNodeSize; }
+  const Edge& edgeOf(const Node& node, uint32_t index) const { return graph_.edges[node.firstEdge + index]; }
+  bool isChain(uint32_t node) const {
+    const Node& n = graph_.nodes[node];
+    return n.op != kOpTerminal && !multiplies(n);
+  }
+
+  // ---------------------------------------------------------------- parameters
+
+  static std::string attribute(uint32_t code) {
+    static constexpr const char* kAxes[] = {"x", "y", "z"};
+    const auto axis = [&](const char* vector, uint32_t i) { return std::string("s.") + vector + "." + kAxes[i]; };
+    if (code >= kCodeRotation && code < kCodeRotation + 9) {
+      static constexpr const char* kFrame[] = {"axisX", "axisY", "axisZ"};
+      return axis(kFrame[(code - kCodeRotation) / 3], (code - kCodeRotation) % 3);
+    }
+    if (code >= kCodePosition && code < kCodePosition + 3) return axis("position", code - kCodePosition);
+    if (code >= kCodeShapeSize && code < kCodeShapeSize + 3) return axis("size", code - kCodeShapeSize);
+    if (code >= kCodeNormal && code < kCodeNormal + 3) return axis("axisZ", code - kCodeNormal);
+    return code == kCodeSeed ? "unitFloat(s.seed)" : "s.custom";
+  }
+  static std::string operation(uint32_t code, const std::string& a, const std::string& b) {
+    const auto call = [&](const char* function) { return std::string(function) + "(" + a + ", " + b + ")"; };
+    const auto compare = [&](const char* op) { return "truth(" + a + " " + op + " " + b + ")"; };
+    switch (code) {
+    case kCodeAdd: return call("add");
+    case kCodeSubtract: return call("subtract");
+    case kCodeMultiply: return call("multiply");
+    case kCodeDivide: return call("divide");
+    case kCodeEqual: return "truth(" + call("nearlyEqual") + ")";
+    case kCodeNotEqual: return "truth(!" + call("nearlyEqual") + ")";
+    case kCodeLess: return compare("<");
+    case kCodeGreater: return compare(">");
+    case kCodeLessEqual: return compare("<=");
+    case kCodeGreaterEqual: return compare(">=");
+    case kCodeAnd: return "truth(" + a + " != 0.0f && " + b + " != 0.0f)";
+    case kCodeOr: return "truth(" + a + " != 0.0f || " + b + " != 0.0f)";
+    default: return "add(" + a + ", multiply(subtract(" + b + ", " + a + "), unitFloat(s.seed)))";
+    }
+  }
+  std::string expression(const Parameter& parameter) const {
+    if (parameter.kind == kParameterConstant) return literal(uintBitsToFloat(parameter.value));
+    if (parameter.kind == kParameterAttribute) return attribute(parameter.value);
+    std::vector<std::string> stack;
+    for (size_t at = parameter.value; graph_.code[at] != kCodeEnd; ++at) {
+      const uint32_t code = graph_.code[at];
+      if (code == kCodeNumber) {
+        stack.push_back(literal(uintBitsToFloat(graph_.code[++at])));
+      } else if (code >= kCodeAttributes) {
+        stack.push_back(attribute(code));
+      } else {
+        const std::string b = std::move(stack.back());
+        stack.pop_back();
+        stack.back() = operation(code, stack.back(), b);
+      }
+    }
+    return stack.back();
+  }
+  std::string parameter(const Node& node, uint32_t index) const {
+    return expression(graph_.parameters[node.firstParameter + index]);
+  }
+  bool areConstant(const Node& node) const {
+    for (uint32_t i = 0; i < node.parameterCount; ++i)
+      if (graph_.parameters[node.firstParameter + i].kind != kParameterConstant) return false;
+    return true;
+  }
+  float constant(const Node& node, uint32_t index) const {
+    return uintBitsToFloat(graph_.parameters[node.firstParameter + index].value);
+  }
+  std::string vector(const Node& node) const {
+    return "vec3(" + parameter(node, 0) + ", " + parameter(node, 1) + ", " + parameter(node, 2) + ")";
+  }
+  static std::string component(uint32_t axis) { return std::string("s.size.") + "xyz"[axis]; }
+  std::string array(const Node& node) const { // of RandomRule's probabilities
+    std::string text = "float[" + std::to_string(node.edgeCount) + "](";
+    for (uint32_t i = 0; i < node.edgeCount; ++i)
+      text += (i ? ", max(0.0f, " : "max(0.0f, ") + parameter(node, i + 1) + ")";
+    return text + ")";
+  }
+
+  /// parameter() of fans.h: constants from the words, the rest by expressions.
+  void writeParameters() {
+    add("float parameter(Shape s, uint index) {\n"
+        "  const uint at = graphWords[s.node + kNodeParameters] + index * kParameterSize;\n"
+        "  if (graphWords[at] == kParameterConstant) return uintBitsToFloat(graphWords[at + 1u]);\n  switch (at) {\n");
+    const size_t first = kHeaderSize + graph_.nodes.size() * kNodeSize + graph_.edges.size() * kEdgeSize;
+    for (const Node& node : graph_.nodes)
+      for (uint32_t i = node.firstParameter; node.op >= kOpCompSplit && i < node.firstParameter + node.parameterCount;
+           ++i)
+        if (graph_.parameters[i].kind != kParameterConstant)
+          add("  case " + number(static_cast<uint32_t>(first + i * kParameterSize)) + ": return " +
+              expression(graph_.parameters[i]) + ";\n");
+    add("  default: return 0.0f;\n  }\n}\n");
+  }
+
+  // ---------------------------------------------------------------- chains
+
+  /// A shape leaves along an edge: goes on, waits or ends. followed: depth has been counted.
+  std::string take(const Edge& edge, bool followed = false) const {
+    if (edge.target == kNoNode) return "return kEndDiscarded;";
+    std::string text = "s.node = " + number(offsetOf(edge.target)) + "; ";
+    if (edge.recursive && !followed) text += "s.depth += 1u; ";
+    if (edge.recursive) text += "if (s.depth > maxDepth) return kEndUnfinished; ";
+    if (graph_.nodes[edge.target].op == kOpTerminal) return text + "return kEndTerminal;";
+    if (waits_[edge.target] || edge.recursive) return text + "return kEndWaits;";
+    return text + "return chain" + std::to_string(edge.target) + "(s, maxDepth);";
+  }
+
+  void writeChain(uint32_t index, std::vector<uint8_t>& written) {
+    // Depth first by hand, as chains may be long: what a chain calls is written before it.
+    std::vector<std::pair<uint32_t, uint32_t>> stack;
+    const auto open = [&](uint32_t node) {
+      if (written[node] || !isChain(node)) return;
+      written[node] = 1;
+      stack.push_back({node, 0});
+    };
+    open(index);
+    while (!stack.empty()) {
+      const auto [node, edge] = stack.back();
+      const Node& n = graph_.nodes[node];
+      if (edge < n.edgeCount) {
+        ++stack.back().second;
+        const Edge& e = edgeOf(n, edge);
+        if (e.target != kNoNode && !e.recursive && !waits_[e.target]) open(e.target);
+        continue;
+      }
+      stack.pop_back();
+      add("uint chain" + std::to_string(node) + "(inout Shape s, uint maxDepth) { // " + operatorName(n.op) + "\n");
+      writeOperator(node, n);
+      add("}\n");
+    }
+  }
+
+  void writeOperator(uint32_t index, const Node& node) {
+    const auto pass = [&](const std::string& expression) {
+      add("  s = " + expression + ";\n  " + take(edgeOf(node, 0)) + "\n");
+    };
+    switch (node.op) {
+    case kOpTranslate: {
+      const std::string terms = frameTerms(node);
+      if (!terms.empty()) add("  precise vec3 p = s.position" + terms + ";\n  s.position = settleFinite3(p);\n");
+      add("  " + take(edgeOf(node, 0)) + "\n");
+      return;
+    }
+    case kOpRotate:
+      if (!areConstant(node)) return pass("rotated(s, rotationOf(" + vector(node) + "))");
+      writeRotation(rotationOf(vec3(constant(node, 0), constant(node, 1), constant(node, 2))));
+      add("  " + take(edgeOf(node, 0)) + "\n");
+      return;
+    case kOpScale: return pass("resized(s, " + vector(node) + ")");
+    case kOpExtrude: return pass("extruded(s, " + parameter(node, 0) + ")");
+    case kOpSwapSize: return pass("swapped(s, " + number(node.argument) + ")");
+    case kOpSetGeometry: return pass("withGeometry(s, " + number(node.argument) + ", " + number(node.argument2) + ")");
+    case kOpIf: return writeIf(node, parameter(node, 0) + " != 0.0f");
+    case kOpIfSizeLess: return writeIf(node, component(node.argument) + " < " + parameter(node, 0));
+    case kOpRandomRule: return writeRandomRule(node);
+    default: return writeFilter(index, node);
+    }
+  }
+  /// + axisX * x + axisY * y + axisZ * z, without what is always zero.
+  std::string frameTerms(const Node& node) const {
+    static constexpr const char* kAxes[] = {" + s.axisX * ", " + s.axisY * ", " + s.axisZ * "};
+    std::string terms;
+    for (uint32_t i = 0; i < 3; ++i) {
+      const Parameter& p = graph_.parameters[node.firstParameter + i];
+      if (p.kind != kParameterConstant || p.value != 0) terms += kAxes[i] + ("(" + expression(p) + ")");
+    }
+    return terms;
+  }
+  /// rotated() with known columns: zeros are left out, ones are not multiplied with.
+  void writeRotation(const Rotation& rotation) {
+    static constexpr const char* kAxes[] = {"s.axisX", "s.axisY", "s.axisZ"};
+    const std::array<vec3, 3> columns{rotation.c0, rotation.c1, rotation.c2};
+    for (int c = 0; c < 3; ++c) {
+      std::string terms;
+      for (int i = 0; i < 3; ++i) {
+        const float v = columns[c][i];
+        if (v == 0) continue;
+        terms += (terms.empty() ? "" : " + ") + std::string(kAxes[i]) + (v == 1 ? "" : " * " + literal(v));
+      }
+      add("  precise vec3 c" + std::to_string(c) + " = " + (terms.empty() ? "vec3(0.0f)" : terms) + ";\n");
+    }
+    add("  s.axisX = settleFinite3(c0);\n  s.axisY = settleFinite3(c1);\n  s.axisZ = settleFinite3(c2);\n");
+  }
+  void writeIf(const Node& node, const std::string& condition) {
+    add("  if (" + condition + ") { " + take(edgeOf(node, 0)) + " }\n  " + take(edgeOf(node, 1)) + "\n");
+  }
+  void writeRandomRule(const Node& node) {
+    const uint32_t count = node.edgeCount;
+    add("  const float p[" + std::to_string(count) + "] = " + array(node) + ";\n");
+    add("  const float first = " + parameter(node, 0) + ";\n  float total = 0.0f;\n");
+    for (uint32_t i = 0; i < count; ++i) add("  total = add(total, p[" + std::to_string(i) + "]);\n");
+    add("  const float x = multiply(subtract(first, floor(first)), total);\n  float sum = 0.0f;\n  uint chosen = "
+        "0u;\n");
+    for (uint32_t i = 0; i < count; ++i) {
+      const std::string at = "p[" + std::to_string(i) + "]";
+      add("  if (" + at + " > 0.0f && sum <= x) chosen = " + number(i) + ";\n");
+      if (i + 1 < count) add("  sum = add(sum, " + at + ");\n");
+    }
+    add("  switch (chosen) {\n");
+    for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(edgeOf(node, i)) + "\n");
+    add("  default: " + take(edgeOf(node, count - 1)) + "\n  }\n");
+  }
+  /// An operator that could multiply, but keeps one successor at most.
+  void writeFilter(uint32_t index, const Node& node) {
+    uint32_t kept = kNoNode;
+    for (uint32_t e = 0; e < node.edgeCount; ++e)
+      if (edgeOf(node, e).target != kNoNode) kept = e;
+    if (kept == kNoNode) {
+      add("  return kEndDiscarded;\n");
+      return;
+    }
+    const std::string place = number(kept);
+    bool followed = false;
+    if (node.op == kOpReplicate) {
+      add("  s = copyOf(s, " + place + ");\n");
+    } else if (node.op == kOpCompSplit) {
+      const bool boxes = node.shapes == 1u << kShapeBox;
+      if (!boxes) add("  if (facesOf(s.geometry, " + number(1u << kept) + ").count == 0u) return kEndDiscarded;\n");
+      add(std::string("  s = ") + (boxes ? "boxFaceOf" : "faceOf") + "(s, " + place + ");\n");
+    } else if (node.division != UINT32_MAX) {
+      const uint32_t* division = graph_.divisions.data() + node.division;
+      const bool fixed = division[kDivisionFixedParts] != 0;
+      if (!fixed && division[kDivisionWeightedParts] == 0) {
+        add("  return kEndDiscarded;\n");
+        return;
+      }
+      add("  const float remainder = remainderOf(" + component(node.argument) + ", " +
+          literal(uintBitsToFloat(division[0])) + ");\n");
+      if (!fixed) add("  if (!(remainder > 0.0f)) return kEndDiscarded;\n");
+      const uint32_t* part = division + kDivisionParts + kept * kPartSize;
+      std::string values;
+      for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
+      add("  s = partOf(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place + ");\n");
+    } else { // by the words, which also take the edge
+      add("  s.node = " + number(offsetOf(index)) +
+          ";\n  const Fan fan = fanOf(s);\n"
+          "  if (fan.count == 0u) return kEndDiscarded;\n  s = childOf(s, fan, 0u);\n");
+      followed = true;
+    }
+    add("  " + take(edgeOf(node, kept), followed) + "\n");
+  }
+
+  /// A shape comes from an operator that multiplies (arrives), or has waited for this one.
+  void writeRunChain() {
+    add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n  if (s.node == 0u) return kEndDiscarded;\n"
+        "  if (s.depth > maxDepth) return kEndUnfinished;\n  switch (s.node) {\n");
+    std::string terminals;
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
+      const std::string label = "  case " + number(offsetOf(n)) + ":";
+      if (graph_.nodes[n].op == kOpTerminal)
+        terminals += label + "\n";
+      else if (isChain(n))
+        add(label + (waits_[n] ? " if (arrives) return kEndWaits;" : "") + " return chain" + std::to_string(n) +
+            "(s, maxDepth);\n");
+    }
+    if (!terminals.empty()) add(terminals + "    return kEndTerminal;\n");
+    add("  default: return kEndWaits;\n  }\n}\n");
+  }
+
+  const Graph& graph_;
+  const std::vector<bool>& waits_;
+  std::string out_;
+};
+} // namespace
+
+std::string generate(const Graph& graph, const std::vector<bool>& waits) { return Generator(graph, waits).run(); }
+
+std::vector<bool> waitsAtFans(const Graph& graph) {
+  std::vector<bool> waits(graph.nodes.size());
+  for (size_t n = 0; n < graph.nodes.size(); ++n) waits[n] = multiplies(graph.nodes[n]);
+  return waits;
+}
+
+} // namespace gpgp::spawn

@@ -1,0 +1,22 @@
+// Operator graph to GLSL: the three functions of the interpreter (shaders/spawn/interpret.h) for one graph, with
+// operators in straight lines and parameters folded.
+//
+// What a node is decides little: operators that pass on one shape become functions that call the next one, operators
+// that multiply become cases of fanOf and childOf. `waits` is the schedule: a shape on its way to such a node goes
+// through a queue, to any other it goes on in the same invocation. The result equals the interpreter's to the last bit,
+// as both call shaders/spawn/operators.h and constants are folded with the same arithmetic.
+#pragma once
+#include "spawn/graph/graph.h"
+
+#include <string>
+#include <vector>
+
+namespace gpgp::spawn {
+
+/// GLSL of a valid graph. waits: by node; operators that multiply must wait, filters and others may.
+std::string generate(const Graph& graph, const std::vector<bool>& waits);
+
+/// Only operators that multiply wait: the schedule with the fewest queues.
+std::vector<bool> waitsAtFans(const Graph& graph);
+
+} // namespace gpgp::spawn

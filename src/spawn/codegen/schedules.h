@@ -1,0 +1,34 @@
+// Schedules by name and by search, as generated kernels take them: which nodes shapes wait for (generate.h).
+//
+// A partition's roots wait. Operators that multiply always do: their children go through the workgroup's stack, which
+// measured better than to unroll them in one invocation (docs/spawn.md). So partitions that differ only in the edges
+// into those give the same kernel, and a search meets each kernel once.
+#pragma once
+#include "spawn/graph/partition.h"
+
+#include <random>
+#include <string>
+
+namespace gpgp::spawn {
+
+struct Schedule {
+  std::string name;
+  size_t groups = 0;       ///< of the partition
+  std::vector<bool> waits; ///< by node
+};
+
+/// sgl, rw, rules, heuristic, or default (what multiplies waits, nothing else); nothing for other names.
+std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name);
+constexpr const char* kScheduleNames[] = {"default", "sgl", "rw", "rules", "heuristic"};
+
+Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, std::string name);
+
+enum class Search {
+  exhaustive, ///< every valid partition
+  random,     ///< random partitions
+  heuristic   ///< the heuristics, and coins for the edges that they leave open
+};
+/// The named schedules, then what a search finds: at most `limit` in all, no kernel twice. complete: all there are.
+std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t limit, uint32_t seed, bool& complete);
+
+} // namespace gpgp::spawn

@@ -1,0 +1,68 @@
+#include "spawn/graph/kernel.h"
+
+#include "spawn/graph/blob.h"
+
+#include <cstring>
+
+namespace gpgp::spawn {
+namespace {
+using core::makeError;
+
+constexpr uint32_t kKernelMagic = 0x6b677067u; // "gpgk"
+constexpr uint32_t kKernelVersion = 2;
+constexpr uint32_t kSpirvMagic = 0x07230203u;
+/// Words before the SPIR-V: magic, version, words of everything, checksum of what follows it, graph, info.
+constexpr uint32_t kChecked = 4, kInfo = 5, kInfoWords = sizeof(KernelInfo) / 4, kHeader = kInfo + kInfoWords;
+static_assert(sizeof(KernelInfo) == 68);
+
+bool isUsable(const KernelInfo& info) {
+  const Fit& fit = info.fit;
+  if (info.schedule[31] != 0) return false;
+  if (fit == Fit{.rounds = fit.rounds}) return true; // as the device's kind suggests
+  const bool power = (fit.groupSize & (fit.groupSize - 1)) == 0;
+  return power && fit.groupSize >= 8 && fit.groupSize <= 1024 && fit.maxGroups >= 1 && fit.maxGroups <= 65535 &&
+         fit.stackShapes >= 2 * fit.groupSize && fit.stackShapes <= (1u << 20);
+}
+} // namespace
+
+std::pmr::vector<uint32_t> serialize(const KernelInfo& info, std::span<const uint32_t> spirv, uint32_t graphChecksum,
+                                     std::pmr::memory_resource* memory) {
+  std::pmr::vector<uint32_t> words(kHeader, 0u, memory);
+  words[0] = kKernelMagic;
+  words[1] = kKernelVersion;
+  words[2] = static_cast<uint32_t>(kHeader + spirv.size());
+  words[kChecked] = graphChecksum;
+  std::memcpy(words.data() + kInfo, &info, sizeof info);
+  words.insert(words.end(), spirv.begin(), spirv.end());
+  words[3] = checksum(std::span(words).subspan(kChecked));
+  return words;
+}
+
+core::Result<std::pmr::vector<Kernel>> loadKernels(std::span<const std::byte> bytes, uint32_t graphChecksum,
+                                                   std::pmr::memory_resource* memory) {
+  const auto bad = [](size_t kernel, const char* what) {
+    return makeError(GPGP_ERROR_INVALID_DATA, "kernel %zu of the baked grammar: %s", kernel, what);
+  };
+  if (bytes.size() % 4) return bad(0, "its size is not a number of words");
+  std::pmr::vector<uint32_t> words(bytes.size() / 4, memory);
+  if (!words.empty()) std::memcpy(words.data(), bytes.data(), bytes.size());
+  std::pmr::vector<Kernel> kernels(memory);
+  for (std::span<const uint32_t> rest = words; !rest.empty();) {
+    const size_t number = kernels.size();
+    if (rest.size() < kHeader || rest[0] != kKernelMagic) return bad(number, "what follows is no kernel");
+    if (rest[1] != kKernelVersion) return bad(number, "it has a format that this library does not read");
+    if (rest[2] <= kHeader || rest[2] > rest.size()) return bad(number, "it was cut");
+    const auto own = rest.first(rest[2]);
+    if (own[3] != checksum(own.subspan(kChecked))) return bad(number, "its checksum is wrong");
+    if (own[kChecked] != graphChecksum) return bad(number, "it was made for another graph");
+    Kernel kernel{{}, std::pmr::vector<uint32_t>(own.begin() + kHeader, own.end(), memory)};
+    std::memcpy(static_cast<void*>(&kernel.info), own.data() + kInfo, sizeof kernel.info);
+    if (!isUsable(kernel.info)) return bad(number, "its schedule has numbers that cannot run");
+    if (kernel.spirv[0] != kSpirvMagic) return bad(number, "it holds no SPIR-V");
+    kernels.push_back(std::move(kernel));
+    rest = rest.subspan(own.size());
+  }
+  return kernels;
+}
+
+} // namespace gpgp::spawn

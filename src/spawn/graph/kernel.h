@@ -1,0 +1,48 @@
+// Kernels baked behind a graph: SPIR-V that derives this one graph, and the schedule it stands for.
+//
+// A baked grammar is the graph's words (blob.h), then any number of kernels, each with a header, a checksum of its own
+// and the checksum of the graph that it was made for. A grammar without kernels is complete: the interpreter runs it.
+#pragma once
+#include "core/result.h"
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace gpgp::spawn {
+
+/// How derivation fits a device and a grammar: the part of a schedule that is numbers.
+struct Fit {
+  uint32_t groupSize = 0;   ///< invocations of a workgroup, a power of two from 8; 0: all as the device's kind suggests
+  uint32_t maxGroups = 0;   ///< workgroups of a round
+  uint32_t stackShapes = 0; ///< shapes on a workgroup's stack
+  uint32_t spread = 0;      ///< shapes that a round should at least begin with
+  uint32_t rounds = 0;      ///< that are recorded; 0: as many as the spawner may
+
+  bool operator==(const Fit&) const = default;
+};
+
+/// What one kernel is for.
+struct KernelInfo {
+  Fit fit;
+  uint32_t vendor = 0, device = 0; ///< VkPhysicalDeviceProperties; 0: any
+  uint32_t axioms = 0;             ///< tuned for this many axioms; 0: any
+  uint32_t subgroups = 0;          ///< 1: needs subgroup arithmetic in compute shaders
+  char schedule[32] = {};          ///< a name for people
+};
+
+struct Kernel {
+  KernelInfo info;
+  std::pmr::vector<uint32_t> spirv;
+};
+
+/// Words to append to a graph's words.
+std::pmr::vector<uint32_t> serialize(const KernelInfo& info, std::span<const uint32_t> spirv, uint32_t graphChecksum,
+                                     std::pmr::memory_resource* memory);
+
+/// The kernels behind a graph. Damaged ones, and ones for another graph, are an error.
+core::Result<std::pmr::vector<Kernel>> loadKernels(std::span<const std::byte> bytes, uint32_t graphChecksum,
+                                                   std::pmr::memory_resource* memory);
+
+} // namespace gpgp::spawn

@@ -1,0 +1,450 @@
+// The printed form back to a graph. One pass over the tokens; what it names by number is checked once all is read.
+#include "spawn/expression.h"
+#include "spawn/graph/export_labels.h"
+#include "spawn/language/lexer.h"
+#include "spawn/language/print.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+
+namespace gpgp::spawn {
+namespace {
+using namespace shader;
+
+struct Stop {}; // an error that leaves no way to go on in the statement
+
+class Parser {
+public:
+  Parser(std::string_view text, Diagnostics& diagnostics, std::pmr::memory_resource* memory)
+      : diagnostics_(diagnostics), tokens_(tokenize(text, diagnostics)), graph_(memory) {
+    addRegularPolygons(graph_);
+    while (!is(TokenKind::end)) {
+      const size_t before = at_;
+      try {
+        statement();
+      } catch (const Stop&) {
+        if (at_ == before) ++at_;
+        while (!is(TokenKind::end) && !atStatement()) ++at_;
+      }
+    }
+  }
+
+  bool hasGraph() const { return axiomPlace_ || !graph_.nodes.empty(); }
+
+  std::optional<Graph> takeGraph() {
+    if (!axiomPlace_) diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box -> 0");
+    finish();
+    if (diagnostics_.hasErrors()) return std::nullopt;
+    analyse(graph_);
+    checkMultiplicities();
+    if (auto ok = validate(graph_); !ok) diagnostics_.error({}, ok.error().text);
+    if (diagnostics_.hasErrors()) return std::nullopt;
+    return std::move(graph_);
+  }
+
+  std::optional<Partition> partitionOf(const Graph& graph) {
+    if (groups_.empty() || diagnostics_.hasErrors()) return std::nullopt;
+    const Flow flow = makeFlow(graph);
+    std::vector<uint32_t> groupOf(graph.nodes.size(), kNoGroup);
+    std::map<uint32_t, Place> placeOf;
+    for (uint32_t g = 0; g < groups_.size(); ++g)
+      for (const auto& [place, node] : groups_[g].nodes) {
+        if (node >= graph.nodes.size())
+          diagnostics_.error(place, std::string("there is no node ") + std::to_string(node));
+        else if (!placeOf.try_emplace(node, place).second)
+          diagnostics_.error(place, std::string("node ") + std::to_string(node) + " is already in the group of line " +
+                                        std::to_string(groups_[groupOf[node]].place.line));
+        else
+          groupOf[node] = g;
+      }
+    if (diagnostics_.hasErrors()) return std::nullopt;
+    if (const auto found = violation(flow, groupOf)) {
+      const auto place = placeOf.find(found->node);
+      diagnostics_.error(place == placeOf.end() ? groups_[0].place : place->second,
+                         (found->condition ? std::string("condition ") + std::to_string(found->condition) + ": " : "") +
+                             found->text);
+      return std::nullopt;
+    }
+    return partitionOfGroups(flow, groupOf);
+  }
+
+private:
+  struct GroupLine {
+    Place place;
+    std::vector<std::pair<Place, uint32_t>> nodes;
+  };
+  /// A value as code; what kind of parameter it makes depends on how it is written.
+  struct Value {
+    std::vector<uint32_t> words;
+    uint32_t kind = kParameterProgram;
+  };
+
+  // ---------------------------------------------------------------- tokens
+
+  const Token& now() const { return tokens_[at_]; }
+  bool is(TokenKind kind) const { return now().kind == kind; }
+  bool isName(std::string_view name) const { return is(TokenKind::name) && now().text == name; }
+  [[noreturn]] void fail(const Token& token, const std::string& text) {
+    diagnostics_.error(token.place, text);
+    throw Stop{};
+  }
+  const Token& expect(TokenKind kind, const char* what) {
+    if (!is(kind)) fail(now(), std::string("expected ") + what + ", found " + describe(now()));
+    return tokens_[at_++];
+  }
+  bool accept(TokenKind kind) {
+    if (!is(kind)) return false;
+    ++at_;
+    return true;
+  }
+  uint32_t whole(const char* what) {
+    const Token& token = expect(TokenKind::number, what);
+    if (token.number < 0 || token.number >= 1e9f || token.text.find_first_not_of("0123456789") != token.text.npos)
+      fail(token, std::string("expected ") + what + ", found " + describe(token));
+    return static_cast<uint32_t>(std::stoul(std::string(token.text)));
+  }
+  std::string name(const char* what) { return std::string(expect(TokenKind::name, what).text); }
+  float number() {
+    const bool negative = accept(TokenKind::minus);
+    const Token& token = expect(TokenKind::number, "a number");
+    const float value = negative ? -token.number : token.number;
+    if (settle(value) != value) fail(token, "this number is too small or too large");
+    return value;
+  }
+  uint32_t oneOf(uint32_t count, const char* (*text)(uint32_t), const char* what) {
+    const Token& token = expect(TokenKind::name, what);
+    for (uint32_t i = 0; i < count; ++i)
+      if (token.text == text(i)) return i;
+    fail(token, std::string("expected ") + what + ", found " + describe(token));
+  }
+  uint32_t axis() { return oneOf(3, axisText, "an axis: X, Y or Z"); }
+
+  // ---------------------------------------------------------------- statements
+
+  bool atStatement() const {
+    const bool keyword =
+        isName("axiom") || isName("terminal") || isName("polygon") || isName("rule") || isName("group");
+    return keyword || (is(TokenKind::number) && tokens_[at_ + 1].kind == TokenKind::name &&
+                       tokens_[at_].place.line != (at_ ? tokens_[at_ - 1].place.line : 0));
+  }
+
+  void statement() {
+    if (is(TokenKind::number)) return node();
+    const Token& keyword = now();
+    if (isName("axiom")) return ++at_, axiom(keyword.place);
+    if (isName("terminal")) return ++at_, terminal();
+    if (isName("polygon")) return ++at_, polygon();
+    if (isName("rule")) return ++at_, rule();
+    if (isName("group")) return ++at_, group(keyword.place);
+    fail(keyword,
+         std::string("expected a node's number, axiom, terminal, polygon, rule or group, found ") + describe(keyword));
+  }
+
+  uint32_t target() {
+    if (isName("Discard")) return ++at_, kNoNode;
+    const Place place = now().place;
+    const uint32_t node = whole("a node's number or Discard");
+    targets_.emplace_back(place, node);
+    return node;
+  }
+
+  void axiom(Place place) {
+    if (axiomPlace_)
+      diagnostics_.error(place, std::string("there is a second axiom; the first is in line ") +
+                                    std::to_string(axiomPlace_->line));
+    axiomPlace_ = place;
+    graph_.axiomShape = oneOf(kShapeCount, shapeName, "a shape");
+    graph_.axiomPolygon = usualPolygon(graph_.axiomShape);
+    if (accept(TokenKind::open)) {
+      graph_.axiomPolygon = whole("a polygon's number");
+      expect(TokenKind::close, "')'");
+    }
+    expect(TokenKind::arrow, "'->'");
+    graph_.axiomNode = target();
+  }
+
+  uint32_t addName(const std::string& text) {
+    const uint32_t at = static_cast<uint32_t>(graph_.names.size());
+    graph_.names.insert(graph_.names.end(), text.begin(), text.end());
+    graph_.names.push_back(0);
+    return at;
+  }
+
+  void terminal() {
+    const Token& token = expect(TokenKind::name, "a terminal's name");
+    Terminal terminal;
+    if (!terminals_.try_emplace(std::string(token.text), static_cast<uint32_t>(graph_.terminals.size())).second)
+      fail(token, std::string("terminal ") + describe(token) + " is defined twice");
+    terminal.name = addName(std::string(token.text));
+    graph_.terminals.push_back(terminal); // also where the rest is wrong, so that uses of the name are no errors
+    expect(TokenKind::open, "'('");
+    terminal.kind = whole("a kind, 0 or 1");
+    expect(TokenKind::comma, "','");
+    terminal.index = whole("an index");
+    expect(TokenKind::close, "')'");
+    if (!isName("bucket")) fail(now(), std::string("expected 'bucket', found ") + describe(now()));
+    ++at_;
+    terminal.bucket = whole("a bucket's number");
+    graph_.terminals.back() = terminal;
+    graph_.buckets = std::max(graph_.buckets, terminal.bucket + 1);
+  }
+
+  void polygon() {
+    const Token& token = now();
+    const uint32_t index = whole("a polygon's number");
+    expect(TokenKind::openBrace, "'{'");
+    std::vector<float> corners;
+    while (!is(TokenKind::closeBrace)) {
+      expect(TokenKind::open, "a corner as (x,y)");
+      corners.push_back(number());
+      expect(TokenKind::comma, "','");
+      corners.push_back(number());
+      expect(TokenKind::close, "')'");
+    }
+    ++at_;
+    if (index != graph_.polygons.size())
+      fail(token,
+           std::string("expected polygon ") + std::to_string(graph_.polygons.size()) + ", found " + describe(token));
+    if (corners.size() < 6)
+      fail(token, std::string("expected 3 corners or more, found ") + std::to_string(corners.size() / 2));
+    addPolygon(graph_, corners.data(), static_cast<uint32_t>(corners.size() / 2));
+  }
+
+  void rule() {
+    Rule rule;
+    rule.name = addName(name("a rule's name"));
+    expect(TokenKind::arrow, "'->'");
+    rule.node = target();
+    graph_.rules.push_back(rule);
+  }
+
+  void group(Place place) {
+    GroupLine line{place, {}};
+    expect(TokenKind::openBrace, "'{'");
+    while (!accept(TokenKind::closeBrace)) {
+      const Place nodePlace = now().place;
+      line.nodes.emplace_back(nodePlace, whole("a node's number or '}'"));
+    }
+    if (line.nodes.empty()) diagnostics_.error(place, "a group has one node or more");
+    groups_.push_back(std::move(line));
+  }
+
+  // ---------------------------------------------------------------- nodes
+
+  void node() {
+    const Token& token = now();
+    if (whole("a node's number") != graph_.nodes.size())
+      diagnostics_.error(token.place, std::string("expected node ") + std::to_string(graph_.nodes.size()) + ", found " +
+                                          describe(token));
+    // The node is kept as far as it was read: the numbers of those that follow stay right.
+    Node& node = graph_.nodes.emplace_back();
+    const Token& word = expect(TokenKind::name, "an operator or a terminal");
+    const std::string name(word.text);
+    node.op = kOpTerminal + 1;
+    while (node.op < kOpCount && name != operatorName(node.op)) ++node.op;
+    if (node.op == kOpCount) {
+      node.op = kOpTerminal;
+      terminalNodes_.emplace_back(word, static_cast<uint32_t>(graph_.nodes.size() - 1));
+      return;
+    }
+    node.firstParameter = static_cast<uint32_t>(graph_.parameters.size());
+    node.firstEdge = static_cast<uint32_t>(graph_.edges.size());
+    arguments(node);
+    if (is(TokenKind::openBrace)) edges(node);
+    node.parameterCount = static_cast<uint32_t>(graph_.parameters.size()) - node.firstParameter;
+    node.edgeCount = static_cast<uint32_t>(graph_.edges.size()) - node.firstEdge;
+  }
+
+  void arguments(Node& node) {
+    expect(TokenKind::open, "'('");
+    bool first = true;
+    const auto next = [&] {
+      if (!first) expect(TokenKind::comma, "','");
+      first = false;
+    };
+    if (node.op == kOpSubDiv || node.op == kOpRepeat || node.op == kOpIfSizeLess) next(), node.argument = axis();
+    if (node.op == kOpSwapSize)
+      for (uint32_t i = 0; i < 3; ++i) next(), node.argument |= axis() << (2 * i);
+    if (node.op == kOpSetGeometry) {
+      node.argument = oneOf(kShapeCount, shapeName, "a shape");
+      expect(TokenKind::comma, "','");
+      node.argument2 = whole("a polygon's number");
+      first = false;
+    }
+    uint32_t values = 0;
+    if (node.op == kOpTranslate || node.op == kOpRotate || node.op == kOpScale) values = 3;
+    if (node.op == kOpExtrude || node.op == kOpIf || node.op == kOpIfSizeLess || node.op == kOpRepeat ||
+        node.op == kOpRandomRule)
+      values = 1;
+    for (uint32_t i = 0; i < values; ++i) next(), parameter();
+    if (node.op == kOpRepeat)
+      next(), node.argument2 = oneOf(3, repeatModeText, "ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END");
+    expect(TokenKind::close, "')'");
+  }
+
+  void edges(const Node& node) {
+    expect(TokenKind::openBrace, "'{'");
+    do {
+      if (node.op == kOpSubDiv || node.op == kOpRandomRule) {
+        parameter();
+        expect(TokenKind::colon, "':'");
+      }
+      const Token& token = now();
+      const bool fits = is(TokenKind::number) || is(TokenKind::divided) || is(TokenKind::times) || isName("n");
+      if (!fits) fail(token, std::string("expected a multiplicity: 1, n, / or *, found ") + describe(token));
+      ++at_;
+      multiplicities_.push_back(token);
+      expect(TokenKind::arrow, "'->'");
+      Edge edge;
+      edge.target = target();
+      graph_.edges.push_back(edge);
+    } while (accept(TokenKind::bar));
+    expect(TokenKind::closeBrace, "'|' or '}'");
+  }
+
+  // ---------------------------------------------------------------- values
+
+  void parameter() {
+    Value v = value();
+    Parameter p{v.kind, v.words.back()};
+    if (v.kind == kParameterProgram) {
+      v.words.push_back(kCodeEnd);
+      const auto [program, isNew] = programs_.try_emplace(v.words, static_cast<uint32_t>(graph_.code.size()));
+      if (isNew) graph_.code.insert(graph_.code.end(), v.words.begin(), v.words.end());
+      p.value = program->second;
+    }
+    graph_.parameters.push_back(p);
+  }
+
+  /// Long sums are deep on their left, which is a loop here; depth is that of right sides and of calls.
+  Value value(uint32_t depth = 0) {
+    if (depth > 1000) fail(now(), "these parentheses are too deep");
+    uint32_t opened = 0;
+    while (accept(TokenKind::open)) ++opened;
+    Value left = leaf(depth);
+    for (; opened; --opened) {
+      const uint32_t op = binary();
+      left = close(std::move(left), op, value(depth + 1));
+    }
+    return left;
+  }
+
+  Value leaf(uint32_t depth) {
+    if (is(TokenKind::minus) || is(TokenKind::number))
+      return {{kCodeNumber, std::bit_cast<uint32_t>(number())}, kParameterConstant};
+    const Token& word = expect(TokenKind::name, "a value");
+    expect(TokenKind::open, "'('");
+    if (word.text == "Exp") {
+      Value inner = value(depth + 1);
+      expect(TokenKind::close, "')'");
+      return {std::move(inner.words), kParameterProgram};
+    }
+    if (word.text == "Rand") {
+      Value left = value(depth + 1);
+      expect(TokenKind::comma, "','");
+      return close(std::move(left), kCodeRandom, value(depth + 1));
+    }
+    uint32_t code = 0;
+    if (word.text == "ShapeSeed") {
+      code = kCodeSeed;
+    } else if (word.text == "ShapeCustomAttribute") {
+      code = kCodeCustom;
+    } else if (word.text == "ShapePos") {
+      code = kCodePosition + axis();
+    } else if (word.text == "ShapeSize") {
+      code = kCodeShapeSize + axis();
+    } else if (word.text == "ShapeNormal") {
+      code = kCodeNormal + axis();
+    } else if (word.text == "ShapeRotation") {
+      code = kCodeRotation + 3 * axis();
+      expect(TokenKind::comma, "','");
+      code += axis();
+    } else {
+      fail(word, std::string("expected a value, found ") + describe(word));
+    }
+    expect(TokenKind::close, "')'");
+    return {{code}, kParameterAttribute};
+  }
+
+  Value close(Value left, uint32_t op, const Value& right) {
+    expect(TokenKind::close, "')'");
+    left.words.insert(left.words.end(), right.words.begin(), right.words.end());
+    left.words.push_back(op);
+    return {std::move(left.words), kParameterProgram};
+  }
+
+  uint32_t binary() {
+    const Token& token = now();
+    for (uint32_t code = kCodeAdd; code <= kCodeOr; ++code)
+      if (std::string(" ") + std::string(token.text) + " " == binaryText(code)) return ++at_, code;
+    fail(token, std::string("expected an operator as in (1 + 2), found ") + describe(token));
+  }
+
+  // ---------------------------------------------------------------- once all is read
+
+  void finish() {
+    for (const auto& [place, node] : targets_)
+      if (node >= graph_.nodes.size())
+        diagnostics_.error(place, std::string("there is no node ") + std::to_string(node));
+    for (const auto& [word, n] : terminalNodes_) {
+      const auto found = terminals_.find(std::string(word.text));
+      if (found == terminals_.end()) {
+        diagnostics_.error(word.place, std::string("there is no operator or terminal ") + describe(word));
+        continue;
+      }
+      graph_.nodes[n].argument = found->second;
+      graph_.nodes[n].argument2 = graph_.terminals[found->second].bucket;
+    }
+  }
+
+  void checkMultiplicities() {
+    size_t next = 0;
+    for (const Node& node : graph_.nodes)
+      for (uint32_t e = 0; e < node.edgeCount; ++e, ++next)
+        if (multiplicities_[next].text != multiplicityText(graph_, node, e))
+          diagnostics_.error(multiplicities_[next].place,
+                             std::string("the multiplicity of this edge of ") + operatorName(node.op) + " is " +
+                                 multiplicityText(graph_, node, e) + ", found " + describe(multiplicities_[next]));
+  }
+
+  Diagnostics& diagnostics_;
+  std::vector<Token> tokens_;
+  size_t at_ = 0;
+  Graph graph_;
+  std::optional<Place> axiomPlace_;
+  std::vector<std::pair<Token, uint32_t>> terminalNodes_; // with the node
+  std::vector<std::pair<Place, uint32_t>> targets_;
+  std::vector<Token> multiplicities_; // by edge
+  std::map<std::string, uint32_t> terminals_;
+  std::map<std::vector<uint32_t>, uint32_t> programs_;
+  std::vector<GroupLine> groups_;
+};
+} // namespace
+
+std::optional<PrintedGraph> parseGraph(std::string_view text, Diagnostics& diagnostics,
+                                       std::pmr::memory_resource* memory) {
+  Parser parser(text, diagnostics, memory);
+  auto graph = parser.takeGraph();
+  if (!graph) return std::nullopt;
+  auto partition = parser.partitionOf(*graph);
+  if (diagnostics.hasErrors()) return std::nullopt;
+  return PrintedGraph{std::move(*graph), std::move(partition)};
+}
+
+std::optional<Partition> parseGroups(std::string_view text, const Graph& graph, Diagnostics& diagnostics) {
+  Parser parser(text, diagnostics, graph.nodes.get_allocator().resource());
+  if (parser.hasGraph()) {
+    const auto printed = parser.takeGraph();
+    if (printed && printGraph(*printed) != printGraph(graph))
+      diagnostics.error({},
+                        "these groups are of another graph; expected those of this grammar, with the same variables");
+  }
+  auto partition = parser.partitionOf(graph);
+  if (!partition && !diagnostics.hasErrors())
+    diagnostics.error({}, "there are no groups; expected lines as: group { 0 1 2 }");
+  return partition;
+}
+
+} // namespace gpgp::spawn

@@ -1,0 +1,47 @@
+#include "spawn/schedule/grammar.h"
+
+#include <bit>
+#include <cstdlib>
+
+namespace gpgp::spawn {
+
+core::Result<core::Unique<Grammar>> Grammar::create(core::Context& context, const char* label,
+                                                    std::span<const std::byte> bytes) {
+  const size_t graphBytes = sizeOfGraph(bytes);
+  auto graph = load(bytes.first(graphBytes), &context.host());
+  if (!graph) return graph.error();
+  uint32_t graphChecksum = 0;
+  std::memcpy(&graphChecksum, bytes.data() + 4 * shader::kHeaderChecksum, 4);
+  auto kernels = loadKernels(bytes.subspan(graphBytes), graphChecksum, &context.host());
+  if (!kernels) return kernels.error();
+  auto grammar = core::makeUnique<Grammar>(context.host(), context, label, std::move(*graph), std::move(*kernels));
+  std::pmr::vector<std::byte> words(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(graphBytes),
+                                    &context.host());
+  if (auto ok = grammar->makeResident(GPGP_SERVICE_SPAWN, std::move(words)); !ok) return ok.error();
+  return grammar;
+}
+
+Grammar::~Grammar() {
+  const core::Device& device = context.device;
+  for (const Ready& ready : ready_) device.vk.DestroyPipeline(device.device, ready.pipeline, nullptr);
+}
+
+const Grammar::Ready* Grammar::kernelFor(uint32_t axioms, bool vertices) const {
+  const auto distance = [axioms](const Ready& ready) { // in powers of two; a kernel for any number is the last choice
+    return ready.info.axioms ? std::abs(static_cast<int>(std::bit_width(ready.info.axioms)) -
+                                        static_cast<int>(std::bit_width(axioms)))
+                             : 64;
+  };
+  const Ready* best = nullptr;
+  for (uint32_t i = 0; i < readyCount(); ++i)
+    if (ready_[i].vertices == vertices && (!best || distance(ready_[i]) < distance(*best))) best = &ready_[i];
+  return best;
+}
+
+void Grammar::add(const Ready& ready) {
+  const uint32_t count = readyCount();
+  ready_[count] = ready;
+  readyCount_.store(count + 1, std::memory_order_release);
+}
+
+} // namespace gpgp::spawn
