@@ -29,17 +29,72 @@ enum {
 typedef int32_t GpgpFillRule;
 enum { GPGP_FILL_NON_ZERO = 0, GPGP_FILL_EVEN_ODD = 1 };
 
-/** A filled path in drawing space. */
+typedef int32_t GpgpGradientKind;
+enum {
+  GPGP_GRADIENT_LINEAR = 0, /**< along the line from `start` to `end` */
+  GPGP_GRADIENT_RADIAL = 1  /**< from the circle (start, startRadius) to the circle (end, endRadius) */
+};
+
+typedef int32_t GpgpSpread; /**< what is painted beyond the first and last stop */
+enum { GPGP_SPREAD_PAD = 0, GPGP_SPREAD_REPEAT = 1, GPGP_SPREAD_REFLECT = 2 };
+
+typedef struct GpgpGradientStop {
+  float offset;   /**< 0 to 1; one below its predecessor's counts as equal to it */
+  float color[4]; /**< linear RGB, straight alpha, 0 to 1 */
+} GpgpGradientStop;
+
+typedef struct GpgpGradient {
+  GpgpGradientKind kind;
+  GpgpSpread spread;
+  float transform[6]; /**< gradient space to drawing: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
+  float start[2], end[2];
+  float startRadius, endRadius; /**< radial only; not negative, the first below the second */
+  const GpgpGradientStop* stops;
+  uint32_t stopCount;       /**< 1 to 65536 */
+  VkBool32 interpolateSrgb; /**< mix stops as sRGB encodes them, as SVG does; else linearly */
+} GpgpGradient;
+
+typedef int32_t GpgpCap;
+enum { GPGP_CAP_BUTT = 0, GPGP_CAP_ROUND = 1, GPGP_CAP_SQUARE = 2 };
+
+typedef int32_t GpgpJoin;
+enum { GPGP_JOIN_MITER = 0, GPGP_JOIN_ROUND = 1, GPGP_JOIN_BEVEL = 2 };
+
+/** A line along a path, as SVG has it. Its outline is off by less than a twentieth of a pixel at `scale`. */
+typedef struct GpgpStroke {
+  float width; /**< drawing units, not negative; 0: a hairline, a pixel wide at `scale` */
+  GpgpCap cap;
+  GpgpJoin join;
+  float miterLimit;    /**< miters longer than this many widths become bevels; at least 1, or 0: 4 */
+  const float* dashes; /**< lengths on, off, on, ...; an odd number of them counts twice; NULL: none */
+  uint32_t dashCount;
+  float dashOffset; /**< where in the pattern the path begins */
+  float scale;      /**< the largest at which the drawing is shown, pixels per drawing unit; 0: 1 */
+} GpgpStroke;
+
+/** A filled or stroked path in drawing space. */
 typedef struct GpgpPath {
   const GpgpPathVerb* verbs;
   uint32_t verbCount;
   const float* points; /**< x, y pairs, as many as the verbs need; finite, within +-1e7 */
   uint32_t pointCount;
   GpgpFillRule fillRule;
-  float color[4]; /**< linear RGB, straight alpha, 0 to 1 */
+  float color[4];               /**< linear RGB, straight alpha, 0 to 1; with a gradient, only alpha counts */
+  const GpgpGradient* gradient; /**< NULL: the colour */
+  const GpgpStroke* stroke;     /**< NULL: filled; otherwise the stroke is painted instead, and fillRule is not used */
 } GpgpPath;
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
+
+/** What an import held and took. */
+typedef struct GpgpSvgReport {
+  uint32_t paths, curves, patches;
+  double parseMilliseconds;   /**< bytes to paths */
+  double convertMilliseconds; /**< strokes to fills, and paths to CPatches */
+} GpgpSvgReport;
+
+/** Receives a stage of the conversion as a picture for people: SVG text, not terminated. @lifetime call */
+typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const char* svg, size_t size);
 
 typedef struct GpgpSvgSource {
   GpgpStructureType sType;
@@ -49,6 +104,10 @@ typedef struct GpgpSvgSource {
   size_t size;
   GpgpMessageFn messageFn; /**< errors, and each unsupported element with its line (severity WARNING) */
   void* messageUserData;
+  const GpgpJobSystem* jobSystem; /**< optional: converts paths side by side */
+  GpgpSvgReport* report;          /**< optional, written where the import succeeds */
+  GpgpStageFn stageFn;            /**< optional: "paths", "pieces", "crossings", "patches", in that order */
+  void* stageUserData;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 
@@ -97,9 +156,10 @@ typedef struct GpgpCanvasCreateInfo {
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
   uint32_t maxPatches;          /**< CPatches in one record, all drawings and their instances; 0: 262144 */
-  uint32_t maxTileEntries;      /**< patch references over all tiles; 0: 1048576 */
-  uint32_t maxDrawings;         /**< items (a drawing with a transform) in one record; 0: 64. They may show at most 8
-                                     different drawings */
+  uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
+                                each; 0: 131072 */
+  uint32_t maxDrawings;    /**< items (a drawing with a transform) in one record; 0: 64. They may show at most 8
+                                different drawings */
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
@@ -142,6 +202,9 @@ typedef struct GpgpCanvasInfo {
   GpgpImage target;    /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
                             Receives premultiplied linear colour; sRGB-encoded where encodeSrgb is set */
   VkBool32 encodeSrgb;
+  VkBool32 exactArea; /**< the first edge that a pixel meets, from the front, counts by its area instead of its samples:
+                           fewer steps where only one edge passes, still nothing shows through where two meet */
+  VkBool32 blendSrgb; /**< colours mix as sRGB encodes them, as SVG renderers do; background is then encoded too */
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 

@@ -1,18 +1,56 @@
-// The canvas's bindings, in the order of its resources (src/vector/raster/canvas.cpp).
-#include "sample.h"
+// The canvas's bindings, in the order of its resources (src/vector/raster/canvas.cpp), and what passes share.
+#include "edge.h"
 
-#define DRAWING(n) layout(set = 0, binding = n, std430) readonly buffer Drawing##n { uint drawing##n[]; };
-layout(set = 0, binding = 11, std430) readonly buffer Constants {
+#ifndef SHARING // coherent, in passes whose last workgroup reads what the others wrote
+#define SHARING
+#endif
+#define DRAWING(n) layout(set = 0, binding = n, std430) readonly buffer Drawing##n { vec4 drawing##n[]; };
+#if ONE_DRAWING
+DRAWING(0)
+#else
+DRAWING(0) DRAWING(1) DRAWING(2) DRAWING(3) DRAWING(4) DRAWING(5) DRAWING(6) DRAWING(7)
+#endif
+layout(set = 0, binding = 17, std430) readonly buffer Constants {
   CanvasHeader header;
   SlotRecord slots[kMaxSlots];
   ItemRecord items[];
 };
-layout(set = 0, binding = 12, std430) buffer Patches { PatchRecord patches[]; };
-layout(set = 0, binding = 13, std430) buffer Curves { CurveRecord curves[]; };
-layout(set = 0, binding = 14, std430) buffer Paths { PathRecord paths[]; };
-layout(set = 0, binding = 15, std430) buffer GroupBoxes { vec4 groupBoxes[]; };
-layout(set = 0, binding = 16, std430) buffer CoarseMasks { uint coarseMasks[]; };
-layout(set = 0, binding = 17, std430) buffer Tiles { uvec4 tiles[]; }; // first entry, entries, first patch, 0
-layout(set = 0, binding = 18, std430) buffer PathCounts { uint pathCounts[]; };
-layout(set = 0, binding = 19, std430) buffer Entries { uint entries[]; };
-layout(set = 0, binding = 20, std430) buffer Counters { CanvasCounters counters; };
+layout(set = 0, binding = 12, std430) SHARING buffer Paths { PlacedPath paths[]; };
+layout(set = 0, binding = 13, std430) SHARING buffer Words { TileWord words[]; };
+layout(set = 0, binding = 14, std430) buffer Bins { uint bins[]; };
+layout(set = 0, binding = 16, std430) SHARING buffer Counters { CanvasCounters counters; };
+
+#if ONE_DRAWING // a record of one drawing need not choose at each access
+vec4 fetch(uint slot, uint i) { return drawing0[i]; }
+#else
+vec4 fetch(uint slot, uint i) {
+  switch (slot) {
+  case 0: return drawing0[i];
+  case 1: return drawing1[i];
+  case 2: return drawing2[i];
+  case 3: return drawing3[i];
+  case 4: return drawing4[i];
+  case 5: return drawing5[i];
+  case 6: return drawing6[i];
+  default: return drawing7[i];
+  }
+}
+#endif
+
+SegmentRecord fetchSegment(uint slot, uint i) {
+  SegmentRecord s;
+  s.first = fetch(slot, i * 4);
+  s.second = fetch(slot, i * 4 + 1);
+  s.ends = fetch(slot, i * 4 + 2);
+  const vec4 rest = fetch(slot, i * 4 + 3);
+  s.path = floatBitsToUint(rest.x);
+  s.side = rest.y;
+  s.line = floatBitsToUint(rest.z);
+  s.pad0 = 0;
+  return s;
+}
+
+uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
+Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }
+int tileOf(int column) { return (column + int(kTileSize)) / int(kTileSize) - 1; } // of column -1: -1

@@ -94,24 +94,5 @@ GPGP_FN bool rightOfCurve(CurveRecord c, float x, float y, float tolerance) {
   return right;
 }
 
-// Where in a tile's box (drawing units) a patch lies: 0 nowhere, else kEntry… flags of what is still to be tested,
-// with bit 0 set so that "everywhere" is not 0. Uses that the curves never turn: a box is right of a curve where its
-// leftmost corner on the curve's far side is.
-GPGP_FN uint classifyTile(PatchRecord p, CurveRecord left, CurveRecord right, float x0, float y0, float x1, float y1,
-                          float tolerance) {
-  if (y1 < p.top || y0 >= p.bottom || x1 < p.x0 || x0 > p.x1) return 0u;
-  float ya = max(y0, p.top);
-  float yb = min(y1, p.bottom);
-  uint flags = 1u;
-  if (y0 < p.top || y1 >= p.bottom) flags |= kTestRows;
-  bool falls = left.ends.z >= 0.0f; // x grows on the way down
-  if (!rightOfCurve(left, x1, falls ? ya : yb, tolerance)) return 0u;
-  if (!rightOfCurve(left, x0, falls ? yb : ya, tolerance)) flags |= kTestLeft;
-  falls = right.ends.z >= 0.0f;
-  if (rightOfCurve(right, x0, falls ? yb : ya, tolerance)) return 0u;
-  if (rightOfCurve(right, x1, falls ? ya : yb, tolerance)) flags |= kTestRight;
-  return flags;
-}
-
 GPGP_SHADER_END
 #endif

@@ -10,10 +10,11 @@ GPGP_SHADER_BEGIN
 // A curve of a drawing: a cubic that never turns in x or y, from its top point down (lines and quadratics elevated).
 // Control points are relative to the start, which keeps their low bits.
 struct CurveRecord {
-  vec4 ends;     // start x, y; end - start
-  vec4 controls; // first control - start, second control - start
-  float bend;    // how far the cubic is from a parabola at most (drawing units); negative: a straight line
-  uint pad0, pad1, pad2;
+  vec4 ends;        // start x, y; end - start
+  vec4 controls;    // first control - start, second control - start
+  float bend;       // how far the cubic is from a parabola at most (drawing units); negative: a straight line
+  float endX, endY; // the end, bit for bit as other curves begin there
+  uint pad0;
 };
 
 // A CPatch: what lies between top and bottom (half-open), right of the left curve and left of the right one.
@@ -22,12 +23,48 @@ struct PatchRecord {
   uint left, right;  // curves
   float top, bottom; // y of the lines
   float x0, x1;      // the box's other sides
-  uint path;         // in the drawing (as baked), in the record (after gathering)
-  uint item;         // 0 as baked; the canvas item after gathering
+  uint path;         // in the drawing
+  uint item;         // 0
 };
 
 struct PathRecord {
-  vec4 color; // linear RGB, straight alpha as baked; premultiplied, times the item's opacity, after gathering
+  vec4 color; // linear RGB, straight alpha; where a gradient gives the colour, only alpha counts: it multiplies the
+              // gradient's
+  uint paint; // 1 + index of the gradient; 0: none
+  uint pad0, pad1, pad2;
+};
+
+// A gradient. A point of the drawing is taken to gradient space (x = matrix.x dx + matrix.z dy + origin.x, y = matrix.y
+// dx + matrix.w dy + origin.y), where the ramp's place t is, for kPaintLinear, x itself; for kPaintRadial, the largest
+// t with radius(t) >= 0 at which the point lies on the circle that moves from the focus (t = 0) to the unit circle
+// around 0 (t = 1). Where there is no such t, nothing is painted.
+struct PaintRecord {
+  vec4 matrix;
+  vec4 origin;               // x, y; focus x, y
+  float focusRadius;         // below 1
+  uint kind;                 // kPaint...
+  uint spread;               // kSpread...
+  uint flags;                // kInterpolateSrgb
+  uint firstStop, stopCount; // at least one
+  uint pad0, pad1;
+};
+
+// Where a ramp has which colour; offsets never fall from one stop to the next.
+struct StopRecord {
+  vec4 color; // straight alpha; linear RGB, or as sRGB encodes it with kInterpolateSrgb (interpolated so, then decoded)
+  float offset; // 0 to 1
+  uint pad0, pad1, pad2;
+};
+
+// A part of a curve on the boundary of a path's filled region. All of a path's form closed outlines, level ones
+// included.
+struct SegmentRecord {
+  vec4 first, second; // the whole curve: start and first control, second control and end; it runs down or is level
+  vec4 ends;          // where the segment begins and ends on it
+  uint path;
+  float side; // 1: the region lies right of it (below a level one that runs to the left), -1: left of it
+  uint line;  // 1: straight
+  uint pad0;
 };
 
 // A drawing placed on the canvas.
@@ -36,51 +73,85 @@ struct ItemRecord {
                   // offsets.y
   vec4 transform; // drawing to pixel, the same way with offsets.z, offsets.w
   vec4 offsets;
-  float tolerance; // how far a curve may be off, drawing units
+  float side; // -1 where the transform mirrors, else 1
   float opacity;
-  uint slot;       // the drawing's binding
-  uint firstPatch; // of the item's patches in the record; they end where the next item's begin
-  uint firstPath;  // of the item's paths in the record
+  uint slot;         // the drawing's binding
+  uint firstSegment; // of the item's segments in the record; they end where the next item's begin
+  uint firstPath;    // of the item's paths in the record
   uint pad0, pad1, pad2;
 };
 
-// A drawing that a record uses: where its curves lie in the record, and where its tables begin, in 32-bit words.
+// A drawing that a record uses: where its tables begin in its buffer, in vec4.
 struct SlotRecord {
-  uint firstCurve, curveEnd; // in the record
-  uint patchWords, pathWords;
+  uint boxes, paths, paints, stops; // segments begin at 0
+};
+
+// A path on the canvas.
+struct PlacedPath {
+  uint left, top, right, bottom; // the box of its tiles, right and bottom exclusive
+  uint firstWord;                // of its tile words; one row of tiles has wordsOf(left, right) of them
+  uint item, paint, pad0;        // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
+  vec4 color;                    // premultiplied, times the item's opacity
+};
+
+// 32 tiles of a row of a path's box: one bit each.
+struct TileWord {
+  uint edges;      // the path's boundary passes through the tile
+  uint inside;     // the tile's first sample row is inside at its left edge
+  uint firstEntry; // of the tiles with edges, in order
+  uint pad0;
 };
 
 struct CanvasHeader {
   uint width, height, tilesX, tilesY;
-  uint coarseX, coarseCount, groupWords, groupCount;
-  uint patchCount, curveCount, pathCount, itemCount;
-  uint entryLimit, samples, flags, pathsDropped; // flags: kWrite...
+  uint segmentCount, pathCount, itemCount, pathWords; // pathWords: 32 paths each
+  uint wordLimit, entryLimit, samples, flags;         // flags: kWrite...
+  uint pathsDropped, binsX, binCount, patchCount;
+  uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
+  uint pad0, pad1;
   vec4 background;
 };
 
 // Counters of a record, its report, and the arguments of the passes that only run when the entries did not fit.
 struct CanvasCounters {
-  uint needed, given, cutPath, pathsDropped; // paths from cutPath on are left out
+  uint words, entries;        // needed
+  uint cutPath, pathsDropped; // paths from cutPath on are left out
+  uint wordsGiven, entriesGiven;
+  uint placed, allotted; // workgroups that are done
   uint patches, pad0, pad1, pad2;
-  uint recountX, recountY, recountZ, pad3; // workgroups
 };
 
+GPGP_CONST uint kPaintLinear = 0u;
+GPGP_CONST uint kPaintRadial = 1u;
+GPGP_CONST uint kSpreadPad = 0u;
+GPGP_CONST uint kSpreadRepeat = 1u;
+GPGP_CONST uint kSpreadReflect = 2u;
+GPGP_CONST uint kInterpolateSrgb = 1u;
 GPGP_CONST uint kMaxSlots = 8u;
 GPGP_CONST uint kWriteView = 1u;
 GPGP_CONST uint kEncodeSrgb = 2u;
-GPGP_CONST uint kTileSize = 16u;       // pixels: what one raster workgroup owns
-GPGP_CONST uint kCoarseSize = 128u;    // pixels: the upper level of the hierarchy
-GPGP_CONST uint kPatchGroup = 64u;     // patches that share a box at the upper level
-GPGP_CONST uint kTestLeft = 1u << 30;  // tile entries: the left curve passes through the tile
-GPGP_CONST uint kTestRight = 1u << 31; // the right one
-GPGP_CONST uint kTestRows = 1u << 29;  // top or bottom does
-GPGP_CONST uint kEntryPatch = (1u << 29) - 1u;
+GPGP_CONST uint kExactArea = 4u; // of a pixel's first edge
+GPGP_CONST uint kBlendSrgb = 8u; // colours mix as sRGB encodes them
+GPGP_CONST uint kTileSize = 8u;  // pixels: what one entry holds of a path
+GPGP_CONST uint kBinSize = 128u; // pixels: the upper level of the hierarchy
+// An entry: for each pair of pixels of a tile's row, whose samples change sides there (16 bits a pixel), then by how
+// much the pixel's area differs from its samples (16 signed bits a pixel, in 1/256 of a sample).
+GPGP_CONST uint kEntryWords = 64u;
+// At the beginning of the bins: for tiles painted from lists and for crowded ones, indirect arguments and how many.
+GPGP_CONST uint kPaintedArguments = 0u;
+GPGP_CONST uint kCrowdedArguments = 4u;
+GPGP_CONST uint kMostSegments = 32u; // of a workgroup, a power of two
+GPGP_CONST uint kFirstBin = 8u;
+GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
 
 GPGP_SHADER_END
 
 #ifdef __cplusplus
 static_assert(sizeof(gpgp::shader::CurveRecord) == 48 && sizeof(gpgp::shader::PatchRecord) == 32);
-static_assert(sizeof(gpgp::shader::PathRecord) == 16 && sizeof(gpgp::shader::ItemRecord) == 80 &&
-              sizeof(gpgp::shader::CanvasHeader) == 80 && sizeof(gpgp::shader::CanvasCounters) == 48);
+static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::PaintRecord) == 64 &&
+              sizeof(gpgp::shader::StopRecord) == 32 && sizeof(gpgp::shader::SegmentRecord) == 64);
+static_assert(sizeof(gpgp::shader::ItemRecord) == 80 && sizeof(gpgp::shader::PlacedPath) == 48 &&
+              sizeof(gpgp::shader::TileWord) == 16 && sizeof(gpgp::shader::CanvasHeader) == 96 &&
+              sizeof(gpgp::shader::CanvasCounters) == 48);
 #endif
 #endif

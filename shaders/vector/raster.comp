@@ -1,86 +1,105 @@
 #version 460
-// The fine level: a tile's entries, bottom to top, over the samples of its pixels.
+// The fine level: the paths of four tiles, front to back, over the samples of their pixels.
 //
-// A thread owns up to four samples of a pixel; four threads share a pixel at 16 samples, two at 8. The masks of a
-// path's patches are joined before its colour is applied, and every sample keeps its own colour, so neither cuts inside
-// a path nor edges shared by two paths let the background through.
-// TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
+// A workgroup owns a square of 16 pixels, four tiles, a thread a pixel. The bin's paths are sifted, 256 at a time, for
+// those that touch the square; they wait in shared memory in painting order.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
+#include "composite.glsl"
 layout(local_size_x = 256) in;
-layout(set = 0, binding = 8, std430) writeonly buffer View { uvec2 view[]; };
-#if TARGET == 1
-layout(set = 0, binding = 9, rgba8) uniform writeonly image2D image;
-#elif TARGET == 2
-layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D image;
+const uint kRoom = 256;
+shared uint counts[kRoom], groupCounts[16], candidates[kRoom];
+shared uvec4 coverage[kRoom]; // of each tile: 0 none, 1 all, 2: entry * 4 + 2 + inside
+shared vec4 colors[kRoom];
+#if PAINTS
+shared uvec2 paints[kRoom]; // item, paint
 #endif
-shared vec4 partial[256];
-
-vec4 encode(vec4 color) { // straight colour to sRGB, premultiplied again
-  if (color.a <= 0) return color;
-  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
-  const vec3 low = straight * 12.92, high = 1.055 * pow(straight, vec3(1.0 / 2.4)) - 0.055;
-  return vec4(mix(high, low, lessThanEqual(straight, vec3(0.0031308))) * color.a, color.a);
-}
+shared uint touching[2][kRoom / 32]; // of the 256 paths at hand, in turn
+shared uint open[2];
 
 void main() {
-  const uint lane = gl_LocalInvocationIndex;
-  const uint n = header.samples;
-  const uint sharing = max(n / 4, 1), count = min(n, 4);
-  const uint pixelIndex = lane / sharing, first = (lane % sharing) * 4;
-  uvec2 pixel = gl_WorkGroupID.xy * kTileSize;
-  if (sharing == 4)
-    pixel += uvec2(pixelIndex % 8 + 8 * (gl_WorkGroupID.z % 2), pixelIndex / 8 + 8 * (gl_WorkGroupID.z / 2));
-  else
-    pixel += uvec2(pixelIndex % 16, pixelIndex / 16 + 8 * gl_WorkGroupID.z);
-  const uvec4 tile = tiles[gl_WorkGroupID.y * header.tilesX + gl_WorkGroupID.x];
-  vec4 color[4] = vec4[4](header.background, header.background, header.background, header.background);
-  uint path = ~0u, mask = 0;
-  for (uint e = 0; e <= tile.y; ++e) {
-    const bool end = e == tile.y;
-    const uint entry = end ? 0 : entries[tile.x + e];
-    const uint index = entry & kEntryPatch;
-    const uint nextPath = end ? ~0u : patches[index].path;
-    if (nextPath != path) {
-      if (mask != 0) {
-        const vec4 source = paths[path].color;
-        const float keep = 1.0 - source.a;
-        if ((mask & 1) != 0) color[0] = source + color[0] * keep;
-        if ((mask & 2) != 0) color[1] = source + color[1] * keep;
-        if ((mask & 4) != 0) color[2] = source + color[2] * keep;
-        if ((mask & 8) != 0) color[3] = source + color[3] * keep;
-      }
-      path = nextPath;
-      mask = 0;
+  const uint lane = gl_LocalInvocationIndex, quarter = lane / 64;
+  const uvec2 inTile = uvec2(lane % 8, lane / 8 % 8);
+  const uvec2 firstTile = gl_WorkGroupID.xy * 2;
+  const uvec2 pixel = (firstTile + uvec2(quarter & 1, quarter >> 1)) * kTileSize + inTile;
+  const uint perBin = kBinSize / kTileSize;
+  const uint bin = kFirstBin + (firstTile.y / perBin * header.binsX + firstTile.x / perBin) * header.pathWords;
+  const uint cutPath = counters.cutPath;
+
+  beginPixel();
+  if (lane < kRoom / 32) touching[0][lane] = 0;
+  if (lane == kRoom / 32) open[0] = 0;
+  bool done = false;
+  uint turn = 0;
+  for (uint wordEnd = header.pathWords; wordEnd > 0 && !done; wordEnd -= min(wordEnd, 256)) {
+    // Each lane has one word of the bin, the foremost paths first, and learns how many paths lie before its own.
+    const uint word = wordEnd - 1 - min(lane, wordEnd - 1);
+    const uint found = lane < wordEnd ? bins[bin + word] : 0;
+    counts[lane] = bitCount(found);
+    barrier();
+    if (lane < 16) {
+      uint group = 0;
+      for (uint k = 0; k < 16; ++k) group += counts[lane * 16 + k];
+      groupCounts[lane] = group;
     }
-    if (end || mask == (1u << count) - 1) continue;
-    const uint flags = entry & ~kEntryPatch;
-    if (flags == 0)
-      mask = (1u << count) - 1;
-    else {
-      const PatchRecord p = patches[index];
-      const ItemRecord item = items[p.item];
-      if (!mayTouch(item, p, pixel.x, pixel.y)) continue;
-      const CurveRecord l = curves[p.left], r = curves[p.right];
-      // Written out for the same reason as the halvings of curve.h.
-      mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first, n, flags));
-      if (count == 4) {
-        mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first + 1, n, flags)) << 1;
-        mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first + 2, n, flags)) << 2;
-        mask |= uint(sampleInside(item, p, l, r, pixel.x, pixel.y, first + 3, n, flags)) << 3;
+    uint before = 0, total = 0;
+    for (uint k = lane & ~15u; k < lane; ++k) before += counts[k];
+    barrier();
+    for (uint k = 0; k < 16; ++k) {
+      if (k < lane / 16) before += groupCounts[k];
+      total += groupCounts[k];
+    }
+    for (uint base = 0; base < total && !done; base += kRoom) {
+      if (before < base + kRoom && before + bitCount(found) > base) {
+        uint place = before;
+        for (uint bits = found; bits != 0; ++place) {
+          const uint bit = findMSB(bits);
+          bits ^= 1u << bit;
+          if (place >= base && place < base + kRoom) candidates[place - base] = word * 32 + bit;
+        }
       }
+      barrier();
+      const uint path = lane < total - base ? candidates[lane] : ~0u;
+      uvec4 own = uvec4(0);
+      PlacedPath p;
+      if (path < cutPath) {
+        p = paths[path];
+        if (p.left < firstTile.x + 2 && p.right > firstTile.x && p.top < firstTile.y + 2 && p.bottom > firstTile.y)
+          for (uint q = 0; q < 4; ++q) own[q] = coverageOf(p, firstTile + uvec2(q & 1, q >> 1));
+      }
+      const bool touches = (own.x | own.y | own.z | own.w) != 0;
+      if (touches) atomicOr(touching[turn][lane / 32], 1u << (lane & 31));
+      barrier();
+      uint count = 0, place = 0;
+      for (uint k = 0; k < kRoom / 32; ++k) {
+        if (k == lane / 32) place = count + bitCount(touching[turn][k] & ((1u << (lane & 31)) - 1));
+        count += bitCount(touching[turn][k]);
+      }
+      if (touches) {
+        coverage[place] = own;
+        colors[place] = p.color;
+#if PAINTS
+        paints[place] = uvec2(p.item, p.paint);
+#endif
+      }
+      if (lane < kRoom / 32) touching[turn ^ 1][lane] = 0;
+      if (lane == kRoom / 32) open[turn ^ 1] = 0;
+      barrier();
+      for (uint e = 0; e < count && pixelOpen(); ++e) {
+        const uint code = coverage[e][quarter];
+        if (code == 0) continue;
+#if PAINTS
+        paintOver(code, inTile, pixel, colors[e], paints[e]);
+#else
+        paintOver(code, inTile, pixel, colors[e], uvec2(0));
+#endif
+      }
+      if (base + kRoom >= total && wordEnd <= 256) break;
+      if (pixelOpen()) open[turn] = 1;
+      barrier();
+      done = open[turn] == 0;
+      turn ^= 1;
     }
   }
-  vec4 sum = color[0];
-  for (uint i = 1; i < count; ++i) sum += color[i];
-  partial[lane] = sum;
-  barrier();
-  if (first != 0 || pixel.x >= header.width || pixel.y >= header.height) return;
-  for (uint i = 1; i < sharing; ++i) sum += partial[lane + i];
-  sum /= float(n);
-  if ((header.flags & kWriteView) != 0)
-    view[pixel.y * header.width + pixel.x] = uvec2(packHalf2x16(sum.rg), packHalf2x16(sum.ba));
-#if TARGET
-  imageStore(image, ivec2(pixel), (header.flags & kEncodeSrgb) != 0 ? encode(sum) : sum);
-#endif
+  writePixel(pixel);
 }

@@ -19,7 +19,7 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     std::pmr::memory_resource* memory = &(*context)->host();
     const auto make = [&]() -> Result<Drawing> {
-      if (info->paths) return makeDrawing(std::span(info->paths, info->pathCount), memory);
+      if (info->paths) return makeDrawing(std::span(info->paths, info->pathCount), memory, &(*context)->jobSystem);
       if (info->data) return loadBaked(std::span(static_cast<const std::byte*>(info->data), info->size), memory);
       const auto bytes = (*context)->readFile(info->filePath);
       if (!bytes) return bytes.error();

@@ -1,14 +1,16 @@
 // The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, the draw path, bad arguments, and
 // real drawings against a truth of 256 samples a pixel made from winding numbers.
+#include "cli/vector_truth.h"
 #include "host/files.h"
 #include "host/frames.h"
 #include "host/memory.h"
 #include "host/picture.h"
 #include "oracle.h"
+#include "vector/edge.h"
 #include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
 #include "vector/raster/place.h"
-#include "vector/sample.h"
+#include "vector/raster/segments.h"
 
 #include <gpgp/vector.h>
 #include <gtest/gtest.h>
@@ -41,6 +43,7 @@ struct CanvasTest : testing::Test {
   GpgpWorker canvas = nullptr;
   std::vector<std::string> messages;
   uint64_t number = 0;
+  bool exactArea = false, blendSrgb = false;
 
   void SetUp() override {
     GpgpContextCreateInfo info = device.contextCreateInfo();
@@ -110,6 +113,8 @@ struct CanvasTest : testing::Test {
       info.items = items.data();
       info.itemCount = static_cast<uint32_t>(items.size());
       info.samples = samples;
+      info.exactArea = exactArea;
+      info.blendSrgb = blendSrgb;
       info.target = image.target({}, after);
       EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
     });
@@ -144,14 +149,57 @@ TestPath randomShape(uint32_t seed, float size) {
   return path;
 }
 
-/// Samples that a path covers in a pixel, from all its patches, without tiles: the CPU twin.
-uint32_t twinMask(const vector::Drawing& d, const shader::ItemRecord& item, uint32_t x, uint32_t y, uint32_t n) {
-  uint32_t mask = 0;
-  for (const auto& patch : d.patches)
-    mask |= shader::coverageMask(item, patch, d.curves[patch.left], d.curves[patch.right], x, y, 0, n, n,
-                                 shader::kTestLeft | shader::kTestRight | shader::kTestRows);
-  return mask;
-}
+/// The CPU twin: the samples that each path of a drawing covers, pixel by pixel, and by how much each pixel's area
+/// differs from them (1/256 of a sample). No tiles: every chord turns over all samples right of it in its rows.
+struct Twin {
+  struct Pixel {
+    uint32_t mask = 0;
+    int difference = 0;
+  };
+  Twin(const vector::Drawing& drawing, const shader::ItemRecord& item, uint32_t w, uint32_t h, uint32_t n)
+      : width(w), height(h), paths(drawing.paths.size(), std::vector<Pixel>(size_t(w) * h)) {
+    const vector::Outlines outlines = vector::makeOutlines(drawing, std::pmr::get_default_resource());
+    const shader::Grid grid{n, static_cast<int>(h * n), static_cast<int>(w)};
+    for (const shader::SegmentRecord& segment : outlines.segments) {
+      const uint32_t chords = shader::chordCount(item, segment);
+      const float step = shader::chordStep(chords);
+      for (uint32_t i = 0; i < chords; ++i) {
+        shader::Chord chord;
+        if (!shader::chordOf(grid, item, segment, i, chords, step, chord)) continue;
+        for (int row = chord.first; row < chord.last; ++row) turn(paths[segment.path], grid, chord, row);
+      }
+    }
+    for (auto& path : paths)
+      for (uint32_t y = 0; y < h; ++y)
+        for (uint32_t x = 1; x < w; ++x) path[y * w + x].mask ^= path[y * w + x - 1].mask;
+  }
+  const Pixel& at(size_t path, uint32_t x, uint32_t y) const { return paths[path][y * width + x]; }
+
+  uint32_t width, height;
+  std::vector<std::vector<Pixel>> paths;
+
+private:
+  void turn(std::vector<Pixel>& path, const shader::Grid& grid, const shader::Chord& chord, int row) const {
+    const float x = shader::crossingOf(grid, chord, row);
+    const int column = shader::columnOf(grid, x);
+    if (column >= grid.columns) return;
+    const uint32_t bit = static_cast<uint32_t>(row) % grid.samples;
+    Pixel* pixel = &path[static_cast<uint32_t>(row) / grid.samples * width];
+    if (column < 0) {
+      pixel->mask ^= 1u << bit;
+      return;
+    }
+    const float part = x - static_cast<float>(column);
+    const int filled = static_cast<int>(part * 256);
+    const bool covered =
+        part <= (static_cast<float>(shader::sampleColumn(bit, grid.samples)) + 0.5f) * shader::sampleStep(grid.samples);
+    pixel[column].difference += (chord.side > 0 ? 1 : -1) * (covered ? -filled : 256 - filled);
+    if (covered)
+      pixel[column].mask ^= 1u << bit;
+    else if (column + 1 < grid.columns)
+      pixel[column + 1].mask ^= 1u << bit;
+  }
+};
 
 TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
   makeCanvas(128);
@@ -169,16 +217,26 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
         std::copy_n(t, 6, item.transform);
         shader::ItemRecord record{};
         ASSERT_TRUE(vector::placeItem(t, record));
-        const auto pixels = raster({item}, 100, 90, samples);
-        size_t different = 0, covered = 0;
-        for (uint32_t y = 0; y < 90; ++y)
-          for (uint32_t x = 0; x < 100; ++x) {
-            const int count = std::popcount(twinMask(*twin, record, x, y, samples));
-            covered += count > 0;
-            different += pixels[y * 100 + x].a * static_cast<float>(samples) != static_cast<float>(count);
-          }
-        EXPECT_EQ(different, 0u) << "seed " << seed << ", transform " << &t - transforms << ", samples " << samples;
-        EXPECT_GT(covered, 20u);
+        const Twin covers(*twin, record, 100, 90, samples);
+        for (const bool area : {false, true}) {
+          exactArea = area;
+          const auto pixels = raster({item}, 100, 90, samples);
+          size_t different = 0, covered = 0;
+          for (uint32_t y = 0; y < 90; ++y)
+            for (uint32_t x = 0; x < 100; ++x) {
+              const Twin::Pixel& pixel = covers.at(0, x, y);
+              float expected = static_cast<float>(std::popcount(pixel.mask)) / static_cast<float>(samples);
+              if (area)
+                expected = std::clamp(
+                    expected + static_cast<float>(pixel.difference) / static_cast<float>(256 * samples), 0.0f, 1.0f);
+              covered += expected > 0;
+              different += std::abs(pixels[y * 100 + x].a - expected) > (area ? 0.001f : 0.0f); // half floats
+            }
+          EXPECT_EQ(different, 0u) << "seed " << seed << ", transform " << &t - transforms << ", samples " << samples
+                                   << ", area " << area;
+          EXPECT_GT(covered, 20u);
+        }
+        exactArea = false;
       }
     gpgpDestroyAsset(drawing);
   }
@@ -192,15 +250,17 @@ TEST_F(CanvasTest, AbuttingPathsAndCutsInsidePathsLeaveNoSeams) {
   right.move(90, -50).line(300, -50).line(300, 300).line(77, 300).cubic(190, 130, 10, 90, 90, -50).close();
   left.color = right.color = {0.25f, 0.5f, 1, 1};
   const GpgpAsset drawing = makeDrawing({left.view(), right.view()});
-  for (const float scale : {1.0f, 0.37f, 13.0f})
-    for (const uint32_t samples : {1u, 4u, 16u}) {
-      const auto pixels =
-          raster({place(drawing, scale, scale > 1 ? -900.0f : 13.0f, scale > 1 ? -1100.0f : 11.0f)}, 64, 64, samples);
-      for (const Rgba& p : pixels) {
-        ASSERT_EQ(p.a, 1.0f) << scale << " " << samples;
-        ASSERT_EQ(p.b, 1.0f);
+  for (const bool area : {false, true})
+    for (const float scale : {1.0f, 0.37f, 13.0f})
+      for (const uint32_t samples : {1u, 4u, 16u}) {
+        exactArea = area;
+        const auto pixels =
+            raster({place(drawing, scale, scale > 1 ? -900.0f : 13.0f, scale > 1 ? -1100.0f : 11.0f)}, 64, 64, samples);
+        for (const Rgba& p : pixels) {
+          ASSERT_NEAR(p.a, 1.0f, area ? 0.001f : 0.0f) << scale << " " << samples;
+          ASSERT_NEAR(p.b, 1.0f, area ? 0.001f : 0.0f);
+        }
       }
-    }
 }
 
 TEST_F(CanvasTest, PaintsInOrderWithAlphaAndOpacity) {
@@ -259,6 +319,113 @@ TEST_F(CanvasTest, ExceededBudgetsLeaveOutWholePathsAndSayHowMany) {
   EXPECT_LE(patches.patches, whole.patches / 2);
   EXPECT_GT(patches.patches, 0u);
   EXPECT_GT(patches.pathsDropped, 0u);
+}
+
+TEST_F(CanvasTest, TooFewTileWordsLeaveOutTheLastPaths) {
+  makeCanvas(512, 65536); // as many tile words, of which a path across the whole canvas takes 128
+  std::vector<TestPath> squares(700);
+  std::vector<GpgpPath> views;
+  for (TestPath& s : squares) {
+    s.move(0, 0).line(512, 0).line(512, 512).line(0, 512).close();
+    s.color = {1, 1, 1, 1.0f / 1024};
+    views.push_back(s.view());
+  }
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto pixels = raster({place(makeDrawing(views))}, 512, 512, 4, &report);
+  EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(report.pathsDropped, 188u);
+  const float expected = 1 - std::pow(1 - 1.0f / 1024, 512.0f);
+  for (const Rgba& p : pixels) ASSERT_NEAR(p.a, expected, 0.002f);
+}
+
+TEST_F(CanvasTest, AThousandInstancesOfOneDrawingInOneRecord) {
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+  info.maxWidth = info.maxHeight = 256;
+  info.maxDrawings = 1024;
+  ASSERT_EQ(gpgpCreateCanvas(context, &info, &canvas), GPGP_SUCCESS) << lastMessage();
+  ASSERT_EQ(gpgpPrewarm(canvas, nullptr), GPGP_SUCCESS);
+  TestPath square, dot;
+  square.move(0, 0).line(4, 0).line(4, 4).line(0, 4).close();
+  dot.move(1, 1).line(3, 1).line(3, 3).line(1, 3).close();
+  square.color = {0, 0, 1, 1};
+  dot.color = {1, 0, 0, 1};
+  const GpgpAsset drawing = makeDrawing({square.view(), dot.view()});
+  std::vector<GpgpCanvasItem> items;
+  for (int i = 0; i < 1024; ++i) // turned by quarters: all look alike
+    items.push_back(
+        i % 2 ? place(drawing, 1, static_cast<float>(i % 32 * 8), static_cast<float>(i / 32 * 8))
+              : GpgpCanvasItem{
+                    drawing, {0, 1, -1, 0, static_cast<float>(i % 32 * 8 + 4), static_cast<float>(i / 32 * 8)}, 1});
+  const auto pixels = raster(items, 256, 256, 16);
+  for (size_t y = 0; y < 256; ++y)
+    for (size_t x = 0; x < 256; ++x) {
+      const size_t u = x % 8, v = y % 8;
+      const bool in = u < 4 && v<4, red = u> 0 && u < 3 && v > 0 && v < 3;
+      const Rgba& p = pixels[y * 256 + x];
+      ASSERT_EQ(p.a, in ? 1.0f : 0.0f) << x << " " << y;
+      ASSERT_EQ(p.r, red ? 1.0f : 0.0f) << x << " " << y;
+    }
+}
+
+TEST_F(CanvasTest, GradientsFollowTheirSpreadsAndCircles) {
+  makeCanvas(64);
+  TestPath square;
+  square.move(0, 0).line(64, 0).line(64, 64).line(0, 64).close();
+  const GpgpGradientStop stops[] = {{0, {0, 0, 0, 1}}, {0.5f, {1, 0, 0, 1}}, {1, {1, 1, 0, 0.5f}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = 2, gradient.transform[3] = 2; // the gradient's space has half the size
+  gradient.stops = stops;
+  gradient.stopCount = 3;
+  gradient.start[0] = 8, gradient.end[0] = 16; // pixels 16 to 32
+  const auto expectAt = [&](const Rgba& p, double t, double tolerance, const std::string& where) {
+    const double a = t <= 0.5 ? 1 : 1 - (t - 0.5), r = std::min(1.0, 2 * t) * a, g = t <= 0.5 ? 0 : (2 * t - 1) * a;
+    ASSERT_NEAR(p.a, a, tolerance) << where;
+    ASSERT_NEAR(p.r, r, tolerance) << where;
+    ASSERT_NEAR(p.g, g, tolerance) << where;
+  };
+  for (const GpgpSpread spread : {GPGP_SPREAD_PAD, GPGP_SPREAD_REPEAT, GPGP_SPREAD_REFLECT}) {
+    gradient.spread = spread;
+    GpgpPath view = square.view();
+    view.gradient = &gradient;
+    const GpgpAsset elsewhere = makeDrawing({square.view()}); // two drawings take other shaders than one
+    const auto pixels = raster({place(elsewhere, 1, 200, 200), place(makeDrawing({view}))}, 64, 64, 4);
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      double t = (static_cast<double>(i % 64) + 0.5 - 16) / 16;
+      if (spread == GPGP_SPREAD_PAD) t = std::clamp(t, 0.0, 1.0);
+      if (spread == GPGP_SPREAD_REPEAT) t -= std::floor(t);
+      if (spread == GPGP_SPREAD_REFLECT) t = std::abs(t - 2 * std::floor(t / 2 + 0.5));
+      expectAt(pixels[i], t, 0.002, "spread " + std::to_string(spread) + ", pixel " + std::to_string(i));
+    }
+  }
+  // Two circles: every point of the circle for t has the colour of t.
+  gradient.kind = GPGP_GRADIENT_RADIAL;
+  gradient.spread = GPGP_SPREAD_PAD;
+  gradient.start[0] = 13, gradient.start[1] = 15, gradient.startRadius = 2;
+  gradient.end[0] = gradient.end[1] = 16, gradient.endRadius = 14;
+  GpgpPath view = square.view();
+  view.gradient = &gradient;
+  const auto pixels = raster({place(makeDrawing({view}))}, 64, 64, 4);
+  for (double t = 0.02; t < 0.98; t += 0.01)
+    for (double angle = 0; angle < 6.28; angle += 0.1) {
+      const double radius = 2 + 12 * t;
+      const double x = 2 * (13 + 3 * t + radius * std::cos(angle)), y = 2 * (15 + t + radius * std::sin(angle));
+      expectAt(pixels[static_cast<size_t>(y) * 64 + static_cast<size_t>(x)], t, 0.09, "circle");
+    }
+}
+
+TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {
+  makeCanvas(64);
+  TestPath white;
+  white.move(0, 0).line(64, 0).line(64, 64).line(0, 64).close();
+  white.color = {1, 1, 1, 0.5f};
+  TestPath black = white;
+  black.color = {0, 0, 0, 1};
+  const GpgpAsset drawing = makeDrawing({black.view(), white.view()});
+  blendSrgb = true;
+  EXPECT_NEAR(raster({place(drawing)}, 64, 64, 4)[100].r, host::linearFromSrgb(0.5f), 0.001f);
+  blendSrgb = false;
+  EXPECT_NEAR(raster({place(drawing)}, 64, 64, 4)[100].r, 0.5f, 0.001f);
 }
 
 TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
@@ -406,60 +573,6 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
   EXPECT_EQ(asset, nullptr);
 }
 
-/// 16 x 16 samples a pixel on a grid, each composited by winding numbers, averaged.
-std::vector<Rgba> truth(const std::vector<GpgpPath>& paths, const float t[6], uint32_t width, uint32_t height) {
-  constexpr uint32_t kGrid = 16;
-  shader::ItemRecord item{};
-  EXPECT_TRUE(vector::placeItem(t, item));
-  std::vector<Rgba> samples(size_t(width) * height * kGrid * kGrid);
-  for (const GpgpPath& path : paths) {
-    const PathOracle oracle(path);
-    const double x0 = oracle.left * t[0] + t[4], x1 = oracle.right * t[0] + t[4], y0 = oracle.top * t[3] + t[5],
-                 y1 = oracle.bottom * t[3] + t[5];
-    const int left = std::max(0, static_cast<int>(std::floor(x0)) - 1),
-              right = std::min<int>(static_cast<int>(width), static_cast<int>(std::ceil(x1)) + 1);
-    const int top = std::max(0, static_cast<int>(std::floor(y0)) - 1),
-              bottom = std::min<int>(static_cast<int>(height), static_cast<int>(std::ceil(y1)) + 1);
-    for (int y = top * int(kGrid); y < bottom * int(kGrid); ++y) {
-      const double py = (y + 0.5) / kGrid;
-      const std::vector<PathOracle::Crossing> row = oracle.crossings((py - t[5]) / t[3]);
-      size_t next = 0;
-      int winding = 0;
-      for (int x = left * int(kGrid); x < right * int(kGrid); ++x) {
-        const double dx = ((x + 0.5) / kGrid - t[4]) / t[0];
-        for (; next < row.size() && row[next].x <= dx; ++next) winding += row[next].direction;
-        if (path.fillRule == GPGP_FILL_EVEN_ODD ? !(winding & 1) : winding == 0) continue;
-        Rgba& s = samples[(size_t(y / int(kGrid)) * width + size_t(x / int(kGrid))) * kGrid * kGrid +
-                          size_t(y % int(kGrid)) * kGrid + size_t(x % int(kGrid))];
-        const float a = path.color[3], k = 1 - a;
-        s = {path.color[0] * a + s.r * k, path.color[1] * a + s.g * k, path.color[2] * a + s.b * k, a + s.a * k};
-      }
-    }
-  }
-  std::vector<Rgba> pixels(size_t(width) * height);
-  for (size_t i = 0; i < pixels.size(); ++i) {
-    for (size_t k = 0; k < kGrid * kGrid; ++k) {
-      const Rgba& s = samples[i * kGrid * kGrid + k];
-      pixels[i] = {pixels[i].r + s.r / 256, pixels[i].g + s.g / 256, pixels[i].b + s.b / 256, pixels[i].a + s.a / 256};
-    }
-  }
-  return pixels;
-}
-
-/// Of sRGB-encoded colour over white.
-double psnr(const std::vector<Rgba>& a, const std::vector<Rgba>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    const float u[3] = {a[i].r, a[i].g, a[i].b}, v[3] = {b[i].r, b[i].g, b[i].b};
-    for (int c = 0; c < 3; ++c) {
-      const double d = host::srgbFromLinear(std::min(1.0f, u[c] + 1 - a[i].a)) -
-                       host::srgbFromLinear(std::min(1.0f, v[c] + 1 - b[i].a));
-      sum += d * d;
-    }
-  }
-  return -10 * std::log10(sum / (3.0 * static_cast<double>(a.size())) + 1e-12);
-}
-
 struct RealDrawing : CanvasTest, testing::WithParamInterface<const char*> {};
 
 TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
@@ -475,24 +588,30 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
   const uint32_t size = 256;
   const float s = std::min(float(size) / float(svg->width), float(size) / float(svg->height));
   GpgpCanvasItem item = place(nullptr, s);
-  makeCanvas(size, 1u << 22, 1u << 18);
+  makeCanvas(size, 0, 1u << 18);
   item.drawing = makeDrawing(paths);
   GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
   const auto pixels = raster({item}, size, size, 16, &report);
   EXPECT_EQ(report.pathsDropped, 0u);
-  const auto expected = truth(paths, item.transform, size, size);
-  const double db = psnr(pixels, expected);
+  const float nothing[4] = {};
+  const std::vector<float> expected = cli::vectorTruth(paths, item.transform, nothing, size, size);
+  const auto psnr = [&expected](const std::vector<Rgba>& picture) {
+    return cli::psnrOverWhite(std::span(&picture[0].r, picture.size() * 4), expected);
+  };
+  const double db = psnr(pixels);
   RecordProperty("psnr_centibel", static_cast<int>(db * 10));
   std::printf("%s: %.1f dB, %zu paths, %u patches, %u entries\n", GetParam(), db, paths.size(), report.patches,
               report.tileEntries);
   EXPECT_GE(db, 38.0);
+  exactArea = true;
+  const double areaDb = psnr(raster({item}, size, size, 16));
+  std::printf("%s: %.1f dB with the area of first edges\n", GetParam(), areaDb);
+  EXPECT_GE(areaDb, 42.0);
   if (const char* folder = std::getenv("GPGP_TEST_PICTURES")) {
     const std::string base = std::string(folder) + "/" + std::filesystem::path(GetParam()).stem().string();
-    for (const auto& [name, picture] : {std::pair{".gpu.png", &pixels}, {".truth.png", &expected}}) {
-      std::vector<float> flat;
-      for (const Rgba& p : *picture) flat.insert(flat.end(), {p.r, p.g, p.b, p.a});
-      host::writePng(base + name, host::fromLinearPremultiplied(size, size, flat));
-    }
+    host::writePng(base + ".gpu.png",
+                   host::fromLinearPremultiplied(size, size, std::span(&pixels[0].r, pixels.size() * 4)));
+    host::writePng(base + ".truth.png", host::fromLinearPremultiplied(size, size, expected));
   }
 }
 INSTANTIATE_TEST_SUITE_P(Svg, RealDrawing,

@@ -193,6 +193,70 @@ TEST(SvgImport, Colours) {
   }
 }
 
+TEST(SvgImport, GradientsReachTheDrawing) {
+  const auto gradient = [](const std::string& text) {
+    const Import i = page("<defs><linearGradient id='stops'><stop offset='-1' stop-color='red'/>"
+                          "<stop offset='50%' style='stop-color:#00f;stop-opacity:.5'/>"
+                          "<stop offset='.2' class='w'/></linearGradient></defs><style>.w{stop-color:white}</style>" +
+                          text + "<rect x='20' y='10' width='40' height='20' fill='url(#g)' fill-opacity='.25'/>");
+    EXPECT_EQ(i.messages, Texts()) << text;
+    EXPECT_EQ(i.drawing.paths.size(), 1u) << text;
+    EXPECT_EQ(i.drawing.paths[0].color[3], 0.25f);
+    EXPECT_TRUE(i.drawing.paths[0].gradient) << text;
+    return i.drawing.paths[0].gradient;
+  };
+  // Where the ramp begins and ends in the drawing, and the radius there.
+  const auto ends = [](const vector::svg::Gradient& made) {
+    const GpgpGradient& g = made.gradient;
+    const auto map = [&g](const float* p, Floats& to) {
+      to.push_back(g.transform[0] * p[0] + g.transform[2] * p[1] + g.transform[4]);
+      to.push_back(g.transform[1] * p[0] + g.transform[3] * p[1] + g.transform[5]);
+    };
+    Floats f;
+    map(g.start, f);
+    map(g.end, f);
+    if (g.kind == GPGP_GRADIENT_RADIAL) f.insert(f.end(), {g.startRadius, g.endRadius});
+    return f;
+  };
+  const auto plain = gradient("<linearGradient id='g' href='#stops'/>");
+  EXPECT_EQ(ends(*plain), (Floats{20, 10, 60, 10}));
+  EXPECT_EQ(plain->gradient.spread, GPGP_SPREAD_PAD);
+  EXPECT_TRUE(plain->gradient.interpolateSrgb);
+  ASSERT_EQ(plain->gradient.stopCount, 3u);
+  const GpgpGradientStop* stops = plain->gradient.stops;
+  EXPECT_EQ(stops[0].offset, 0);
+  EXPECT_EQ(stops[1].offset, 0.5f);
+  EXPECT_EQ(stops[2].offset, 0.5f); // never before the one before
+  EXPECT_EQ(stops[0].color[0], 1);
+  EXPECT_EQ(stops[1].color[2], 1);
+  EXPECT_EQ(stops[1].color[3], 0.5f);
+  EXPECT_EQ(stops[2].color[1], 1);
+  EXPECT_EQ(ends(*gradient("<linearGradient id='g' xlink:href='#stops' x1='50%' y1='.5' x2='.5' y2='100%'/>")),
+            (Floats{40, 20, 40, 30}));
+  EXPECT_EQ(ends(*gradient("<linearGradient id='g' href='#stops' gradientUnits='userSpaceOnUse' x1='10%' x2='30' "
+                           "y2='5' gradientTransform='translate(1 2)'/>")),
+            (Floats{11, 2, 31, 7}));
+  // Attributes come along the references, the nearest first.
+  const auto far = gradient("<linearGradient id='b' href='#stops' x2='.5' spreadMethod='reflect'/>"
+                            "<linearGradient id='g' href='#b' y2='1'/>");
+  EXPECT_EQ(ends(*far), (Floats{20, 10, 40, 30}));
+  EXPECT_EQ(far->gradient.spread, GPGP_SPREAD_REFLECT);
+  const auto radial = gradient("<radialGradient id='g' href='#stops' fx='.25' fr='.1' spreadMethod='repeat' "
+                               "color-interpolation='linearRGB'/>");
+  EXPECT_EQ(radial->gradient.kind, GPGP_GRADIENT_RADIAL);
+  EXPECT_EQ(ends(*radial), (Floats{30, 20, 40, 20, 0.1f, 0.5f}));
+  EXPECT_EQ(radial->gradient.spread, GPGP_SPREAD_REPEAT);
+  EXPECT_FALSE(radial->gradient.interpolateSrgb);
+  // A line has no box to be measured by.
+  EXPECT_TRUE(
+      page("<linearGradient id='g'><stop/></linearGradient><path d='M0 5H9' stroke='url(#g)'/>").drawing.paths.empty());
+  // The box is the geometry's, not the stroke's, and as tight as the curves are.
+  const Import stroked = page("<linearGradient id='g'><stop/></linearGradient>"
+                              "<path d='M10 10C10 50 50 50 50 10' fill='none' stroke='url(#g)' stroke-width='8'/>");
+  ASSERT_EQ(stroked.drawing.paths.size(), 1u);
+  EXPECT_EQ(stroked.drawing.paths[0].gradient->gradient.transform[3], 30);
+}
+
 TEST(SvgImport, WhatIsNotShownIsNoPath) {
   for (const char* a : {"fill='none'", "display='none'", "visibility='hidden'", "opacity='0'", "style='fill:none'"})
     EXPECT_TRUE(page(std::string("<rect width='9' height='9' ") + a + "/>").drawing.paths.empty()) << a;
@@ -211,8 +275,10 @@ TEST(SvgImport, MessagesNameElementAndLine) {
        "W line 2: clip-path is not supported: <rect> is drawn without it"},
       {"<rect width='9' height='9' filter='url(#c)'/>",
        "W line 2: filter is not supported: <rect> is drawn without it"},
-      {"<linearGradient id='g'><stop stop-color='red'/></linearGradient>\n<rect width='9' height='9' fill='url(#g)'/>",
-       "W line 3: gradient approximated by its average colour: <rect> fill"},
+      {"<linearGradient id='g'/>\n<rect width='9' height='9' fill='url(#g)'/>",
+       "W line 3: <rect> fill refers to a gradient without stops or extent; it is not painted"},
+      {"<linearGradient id='g' x1='a'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "E line 2: <linearGradient> has x1 'a', which is no length"},
       {"<pattern id='p'/><rect width='9' height='9' fill='url(#p) red'/>",
        "W line 2: <rect> fill refers to a <pattern>, which is not supported; its fallback is used"},
       {"<g opacity='.5'><rect width='9' height='9'/><rect width='9' height='9'/></g>",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace gpgp::vector {
 namespace {
@@ -16,8 +17,13 @@ double round32(double v) {
 }
 Point round32(Point p) { return {round32(p.x), round32(p.y)}; }
 
-std::array<double, 8> key(const Cubic& c) {
-  return {c.p[0].y, c.p[0].x, c.p[3].y, c.p[3].x, c.p[1].y, c.p[1].x, c.p[2].y, c.p[2].x};
+/// By start, end and controls; below zero, zero, above.
+int compare(const Cubic& a, const Cubic& b) {
+  for (const int i : {0, 3, 1, 2}) {
+    if (a.p[i].y != b.p[i].y) return a.p[i].y < b.p[i].y ? -1 : 1;
+    if (a.p[i].x != b.p[i].x) return a.p[i].x < b.p[i].x ? -1 : 1;
+  }
+  return 0;
 }
 
 /// Whether a curve should be walked from its other end, so that it and its reverse are cut alike.
@@ -71,28 +77,101 @@ int rootsInside(double a, double b, double c, double roots[2]) {
   return count;
 }
 
+namespace {
+/// Where a monotone cubic, not a line, reaches a height strictly between its ends.
+double parameterAt(const Point* p, double y) {
+  const double c0 = p[0].y - y, c1 = 3 * (p[1].y - p[0].y), c2 = 3 * (p[2].y - 2 * p[1].y + p[0].y),
+               c3 = p[3].y - 3 * p[2].y + 3 * p[1].y - p[0].y;
+  double low = 0, high = 1;
+  // From where the parabola with the same ends reaches it (t^3 is about 3/2 t^2 - 1/2 t).
+  const double a = c2 + 1.5 * c3, b = c1 - 0.5 * c3;
+  double t = -2 * c0 / (b + std::sqrt(std::max(b * b - 4 * a * c0, 0.0)));
+  if (!(t > 0 && t < 1)) t = (y - p[0].y) / (p[3].y - p[0].y);
+  for (int i = 0; i < 60; ++i) {
+    const double f = ((c3 * t + c2) * t + c1) * t + c0;
+    if (f == 0) break;
+    (f < 0 ? low : high) = t;
+    double next = t - f / ((3 * c3 * t + 2 * c2) * t + c1);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const double step = std::abs(next - t);
+    t = next;
+    if (step < 1e-8) break; // the step after it would be about its square
+  }
+  return t;
+}
+} // namespace
+
 double Monotone::xAt(double y) const {
   const Point* p = curve.p;
   if (!(y > p[0].y)) return p[0].x;
   if (!(y < p[3].y)) return p[3].x;
-  const double height = p[3].y - p[0].y;
-  double t = (y - p[0].y) / height;
-  if (curve.line) return mix(p[0].x, p[3].x, t);
-  const double c1 = 3 * (p[1].y - p[0].y), c2 = 3 * (p[2].y - 2 * p[1].y + p[0].y),
-               c3 = p[3].y - 3 * p[2].y + 3 * p[1].y - p[0].y;
-  double low = 0, high = 1;
-  for (int i = 0; i < 60; ++i) {
-    const double f = ((c3 * t + c2) * t + c1) * t + p[0].y - y;
-    if (f == 0) break;
-    (f < 0 ? low : high) = t;
-    const double slope = (3 * c3 * t + 2 * c2) * t + c1;
-    double next = t - f / slope;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - t) < 1e-16) break;
-    t = next;
-  }
-  const double x = curve.at(t).x;
+  if (curve.line) return mix(p[0].x, p[3].x, (y - p[0].y) / (p[3].y - p[0].y));
+  const double t = parameterAt(p, y), s = 1 - t;
+  const double x = s * s * (s * p[0].x + 3 * t * p[1].x) + t * t * (3 * s * p[2].x + t * p[3].x);
   return std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x));
+}
+
+Monotone::Place Monotone::placeAt(double y) const {
+  const Point* p = curve.p;
+  if (curve.line) return {xAt(y), (p[3].x - p[0].x) / (p[3].y - p[0].y)};
+  const double t = y > p[0].y ? y < p[3].y ? parameterAt(p, y) : 1.0 : 0.0, s = 1 - t;
+  const double x = s * s * (s * p[0].x + 3 * t * p[1].x) + t * t * (3 * s * p[2].x + t * p[3].x);
+  Point d = s * s * (p[1] - p[0]) + 2 * s * t * (p[2] - p[1]) + t * t * (p[3] - p[2]);
+  if (d == Point{}) { // a control on its end: the tangent is towards the next
+    if (t == 0) d = p[2] == p[0] ? p[3] - p[0] : p[2] - p[0];
+    if (t == 1) d = p[1] == p[3] ? p[3] - p[0] : p[3] - p[1];
+  }
+  // Rounded ends may turn a level tangent by a little; which way the piece leans is certain.
+  const bool right = p[3].x >= p[0].x;
+  const double along = right ? std::max(d.x, 0.0) : std::min(d.x, 0.0);
+  const double down = std::max(d.y, 0.0);
+  const double infinite = std::numeric_limits<double>::infinity();
+  return {t == 0   ? p[0].x
+          : t == 1 ? p[3].x
+                   : std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x)),
+          down > 0 ? along / down
+          : right  ? infinite
+                   : -infinite};
+}
+
+int Monotone::inflections(double heights[2]) const {
+  if (curve.line) return 0;
+  const Point* p = curve.p;
+  const Point c = p[1] - p[0], b = p[2] - 2 * p[1] + p[0], a = p[3] - 3 * p[2] + 3 * p[1] - p[0];
+  const auto cross = [](Point u, Point v) { return u.x * v.y - u.y * v.x; };
+  const int count = rootsInside(cross(b, a), cross(c, a), cross(c, b), heights);
+  for (int i = 0; i < count; ++i) heights[i] = curve.at(heights[i]).y;
+  return count;
+}
+
+namespace {
+/// How far a piece's control points lie to the left of another's chord.
+struct Spread {
+  double low, high;
+};
+Spread leftOfChord(const Monotone& chord, const Monotone& of) {
+  const Point* c = chord.curve.p;
+  const Point d = c[3] - c[0];
+  const auto at = [&](int i) { return d.x * (of.curve.p[i].y - c[0].y) - d.y * (of.curve.p[i].x - c[0].x); };
+  const double a = at(0), b = at(3);
+  Spread s{std::min(a, b), std::max(a, b)};
+  if (of.curve.line) return s;
+  const double e = at(1), f = at(2);
+  return {std::min({s.low, e, f}), std::max({s.high, e, f})};
+}
+} // namespace
+
+int sideByHull(const Monotone& a, const Monotone& b) {
+  const Point *p = a.curve.p, *q = b.curve.p;
+  if (std::max(p[0].x, p[3].x) < std::min(q[0].x, q[3].x)) return -1;
+  if (std::max(q[0].x, q[3].x) < std::min(p[0].x, p[3].x)) return 1;
+  const Spread ofA = leftOfChord(b, a), ofB = b.curve.line ? Spread{0, 0} : leftOfChord(b, b);
+  if (ofA.low >= ofB.high && ofA.high > ofB.low) return -1;
+  if (ofA.high <= ofB.low && ofA.low < ofB.high) return 1;
+  const Spread mineB = leftOfChord(a, b), mineA = a.curve.line ? Spread{0, 0} : leftOfChord(a, a);
+  if (mineB.low >= mineA.high && mineB.high > mineA.low) return 1;
+  if (mineB.high <= mineA.low && mineB.low < mineA.high) return -1;
+  return 0;
 }
 
 void cutMonotone(const Cubic& source, std::pmr::vector<Monotone>& pieces) {
@@ -142,15 +221,28 @@ void cutMonotone(const Cubic& source, std::pmr::vector<Monotone>& pieces) {
 }
 
 void mergeCoincident(std::pmr::vector<Monotone>& pieces) {
-  std::sort(pieces.begin(), pieces.end(),
-            [](const Monotone& a, const Monotone& b) { return key(a.curve) < key(b.curve); });
-  size_t kept = 0;
-  for (size_t i = 0; i < pieces.size();) {
-    Monotone sum = pieces[i++];
-    while (i < pieces.size() && key(pieces[i].curve) == key(sum.curve)) sum.winding += pieces[i++].winding;
-    if (sum.winding != 0) pieces[kept++] = sum;
+  // Places are sorted, not pieces, which are large.
+  struct Place {
+    double y, x;
+    uint32_t piece;
+  };
+  std::pmr::vector<Place> order(pieces.get_allocator());
+  order.reserve(pieces.size());
+  for (uint32_t i = 0; i < pieces.size(); ++i) order.push_back({pieces[i].curve.p[0].y, pieces[i].curve.p[0].x, i});
+  std::sort(order.begin(), order.end(), [&pieces](const Place& a, const Place& b) {
+    if (a.y != b.y) return a.y < b.y;
+    if (a.x != b.x) return a.x < b.x;
+    return compare(pieces[a.piece].curve, pieces[b.piece].curve) < 0;
+  });
+  std::pmr::vector<Monotone> kept(pieces.get_allocator());
+  kept.reserve(pieces.size());
+  for (size_t i = 0; i < order.size();) {
+    Monotone sum = pieces[order[i++].piece];
+    while (i < order.size() && compare(pieces[order[i].piece].curve, sum.curve) == 0)
+      sum.winding += pieces[order[i++].piece].winding;
+    if (sum.winding != 0) kept.push_back(sum);
   }
-  pieces.resize(kept);
+  pieces.swap(kept);
 }
 
 } // namespace gpgp::vector

@@ -39,7 +39,18 @@ struct Monotone {
   double bottom() const { return curve.p[3].y; }
   /// The curve's x at a height, by safeguarded Newton; heights outside give the ends.
   double xAt(double y) const;
+  /// The same with the slope dx / dy there, which may be infinite.
+  struct Place {
+    double x, slope;
+  };
+  Place placeAt(double y) const;
+  /// Heights where it changes from bending left to bending right or back; at most two.
+  int inflections(double heights[2]) const;
 };
+
+/// Below zero: all of `a` lies left of `b` in the rows they share, or touches it; above: right. 0: their hulls do not
+/// say. Cheap: no curve is evaluated.
+int sideByHull(const Monotone& a, const Monotone& b);
 
 /// Real roots of a t^2 + b t + c in (0, 1), ascending; returns their number. Any input, NaN included.
 int rootsInside(double a, double b, double c, double roots[2]);

@@ -1,4 +1,4 @@
-// Baked drawings (.gpgpv): a header of 16 words, then curves, patches and paths as the GPU reads them.
+// Baked drawings (.gpgpv): a header of 20 words, then curves, patches, paths, gradients and their stops.
 //
 // Little-endian, as all targets are. What is loaded is checked as strictly as what a stranger sends: a shader may
 // then index without asking again.
@@ -16,12 +16,12 @@ struct Header {
   char magic[4];
   uint32_t version;
   uint64_t checksum; // of all bytes after it
-  uint32_t curves, patches, paths, reserved;
+  uint32_t curves, patches, paths, paints, stops, reserved[3];
   float bounds[4], viewport[4];
 };
-static_assert(sizeof(Header) == 64);
+static_assert(sizeof(Header) == 80);
 constexpr char kMagic[4] = {'G', 'P', 'V', 'D'};
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr size_t kSummedFrom = 16;
 
 /// FNV-1a over 8-byte words: every input bit reaches the result.
@@ -42,7 +42,8 @@ bool sane(const shader::vec4& v) { return sane(v.x) && sane(v.y) && sane(v.z) &&
 core::Result<void> checkContents(const Drawing& d) {
   for (size_t i = 0; i < d.curves.size(); ++i) {
     const CurveRecord& c = d.curves[i];
-    if (!sane(c.ends) || !sane(c.controls) || !sane(c.bend) || !(c.ends.w >= 0) || c.pad0 || c.pad1 || c.pad2)
+    if (!sane(c.ends) || !sane(c.controls) || !sane(c.bend) || !(c.ends.w >= 0) || !sane(c.endX) || !sane(c.endY) ||
+        c.pad0)
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: curve %zu is not a curve", i);
   }
   uint32_t path = 0;
@@ -61,6 +62,27 @@ core::Result<void> checkContents(const Drawing& d) {
     for (int k = 0; k < 4; ++k)
       if (!(d.paths[i].color[k] >= 0 && d.paths[i].color[k] <= 1))
         return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the colour of path %zu is out of range", i);
+  for (size_t i = 0; i < d.paths.size(); ++i)
+    if (d.paths[i].paint > d.paints.size())
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: path %zu refers to what is not there", i);
+  for (size_t i = 0; i < d.paints.size(); ++i) {
+    const PaintRecord& p = d.paints[i];
+    if (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop)
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu refers to what is not there", i);
+    bool good = p.kind <= shader::kPaintRadial && p.spread <= shader::kSpreadReflect &&
+                p.flags <= shader::kInterpolateSrgb && p.focusRadius >= 0 && p.focusRadius < 1;
+    for (int k = 0; k < 4; ++k) good = good && std::isfinite(p.matrix[k]) && std::isfinite(p.origin[k]);
+    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not a gradient", i);
+    for (uint32_t k = 1; k < p.stopCount; ++k)
+      if (!(d.stops[p.firstStop + k - 1].offset <= d.stops[p.firstStop + k].offset))
+        return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the stops of paint %zu are not in order", i);
+  }
+  for (size_t i = 0; i < d.stops.size(); ++i) {
+    const StopRecord& s = d.stops[i];
+    bool good = s.offset >= 0 && s.offset <= 1;
+    for (int k = 0; k < 4; ++k) good = good && s.color[k] >= 0 && s.color[k] <= 1;
+    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: stop %zu is out of range", i);
+  }
   for (int k = 0; k < 4; ++k)
     if (!sane(d.bounds[k]) || !sane(d.viewport[k]))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: bounds or viewport are not finite");
@@ -75,14 +97,18 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
   header.curves = static_cast<uint32_t>(drawing.curves.size());
   header.patches = static_cast<uint32_t>(drawing.patches.size());
   header.paths = static_cast<uint32_t>(drawing.paths.size());
+  header.paints = static_cast<uint32_t>(drawing.paints.size());
+  header.stops = static_cast<uint32_t>(drawing.stops.size());
   std::memcpy(header.bounds, drawing.bounds, sizeof header.bounds);
   std::memcpy(header.viewport, drawing.viewport, sizeof header.viewport);
   const auto curves = std::as_bytes(std::span(drawing.curves));
   const auto patches = std::as_bytes(std::span(drawing.patches));
   const auto paths = std::as_bytes(std::span(drawing.paths));
+  const auto paints = std::as_bytes(std::span(drawing.paints));
+  const auto stops = std::as_bytes(std::span(drawing.stops));
   std::pmr::vector<std::byte> bytes(sizeof header, std::byte{}, memory);
-  bytes.reserve(sizeof header + curves.size() + patches.size() + paths.size());
-  for (const auto part : {curves, patches, paths}) bytes.insert(bytes.end(), part.begin(), part.end());
+  bytes.reserve(sizeof header + curves.size() + patches.size() + paths.size() + paints.size() + stops.size());
+  for (const auto part : {curves, patches, paths, paints, stops}) bytes.insert(bytes.end(), part.begin(), part.end());
   std::memcpy(bytes.data(), &header, sizeof header);
   header.checksum = checksum(std::span(bytes).subspan(kSummedFrom));
   std::memcpy(bytes.data(), &header, sizeof header);
@@ -100,7 +126,8 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: version %u, this library reads %u; bake it again",
                      header.version, kVersion);
   const uint64_t size = sizeof header + uint64_t(header.curves) * sizeof(CurveRecord) +
-                        uint64_t(header.patches) * sizeof(PatchRecord) + uint64_t(header.paths) * sizeof(PathRecord);
+                        uint64_t(header.patches) * sizeof(PatchRecord) + uint64_t(header.paths) * sizeof(PathRecord) +
+                        uint64_t(header.paints) * sizeof(PaintRecord) + uint64_t(header.stops) * sizeof(StopRecord);
   if (size != bytes.size())
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: %zu bytes, the header says %llu", bytes.size(),
                      static_cast<unsigned long long>(size));
@@ -117,6 +144,8 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
   take(drawing.curves, header.curves);
   take(drawing.patches, header.patches);
   take(drawing.paths, header.paths);
+  take(drawing.paints, header.paints);
+  take(drawing.stops, header.stops);
   std::memcpy(drawing.bounds, header.bounds, sizeof header.bounds);
   std::memcpy(drawing.viewport, header.viewport, sizeof header.viewport);
   if (auto ok = checkContents(drawing); !ok) return ok.error();

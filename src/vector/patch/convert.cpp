@@ -3,37 +3,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <new>
+#include <optional>
 
 namespace gpgp::vector {
 namespace {
 
-CurveRecord record(const Monotone& piece) {
+CurveRecord curveRecord(const Monotone& piece) {
   const Point* p = piece.curve.p;
   const auto relative = [&](int i, double Point::*axis) { return static_cast<float>(p[i].*axis - p[0].*axis); };
   CurveRecord r{};
   r.ends = {static_cast<float>(p[0].x), static_cast<float>(p[0].y), relative(3, &Point::x), relative(3, &Point::y)};
   r.controls = {relative(1, &Point::x), relative(1, &Point::y), relative(2, &Point::x), relative(2, &Point::y)};
   r.bend = piece.curve.line ? -1.0f : static_cast<float>(piece.curve.bend());
+  r.endX = static_cast<float>(p[3].x);
+  r.endY = static_cast<float>(p[3].y);
   return r;
 }
 
 float below(double v) { return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity()); }
 float above(double v) { return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity()); }
 
+core::Error tooManyPatches() {
+  return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing needs more than %u patches", shader::kEntryPatch);
+}
+
 } // namespace
 
 core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
-  std::pmr::memory_resource* memory = drawing.curves.get_allocator().resource();
+  // What the stages leave to each other goes at once; small paths find room here.
+  alignas(std::max_align_t) std::byte room[32 << 10];
+  std::pmr::monotonic_buffer_resource scratch(room, sizeof room, drawing.curves.get_allocator().resource());
+  std::pmr::memory_resource* memory = &scratch;
   std::pmr::vector<Monotone> pieces(memory);
+  pieces.reserve(path.verbCount + path.verbCount / 2);
   if (auto ok = outline(path, pieces); !ok) return ok;
   mergeCoincident(pieces);
   std::pmr::vector<Cut> cuts(memory);
   if (auto ok = findCrossings(pieces, cuts); !ok) return ok;
   std::pmr::vector<Slab> slabs(memory);
-  sweep(pieces, cuts, path.fillRule, slabs);
-  if (slabs.size() + drawing.patches.size() > shader::kEntryPatch)
-    return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing needs more than %u patches", shader::kEntryPatch);
+  sweep(pieces, cuts, path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule, slabs);
+  if (slabs.size() + drawing.patches.size() > shader::kEntryPatch) return tooManyPatches();
   // Neighbours in the list share boxes at the raster's upper level, so keep the order of the sweep.
   std::sort(slabs.begin(), slabs.end(), [](const Slab& a, const Slab& b) {
     return a.top != b.top ? a.top < b.top : a.left != b.left ? a.left < b.left : a.right < b.right;
@@ -43,7 +55,7 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
   const auto place = [&](uint32_t piece) {
     if (places[piece] == kNone) {
       places[piece] = static_cast<uint32_t>(drawing.curves.size());
-      drawing.curves.push_back(record(pieces[piece]));
+      drawing.curves.push_back(curveRecord(pieces[piece]));
     }
     return places[piece];
   };
@@ -68,20 +80,107 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
     drawing.bounds[2] = std::max(drawing.bounds[2], p.x1);
     drawing.bounds[3] = std::max(drawing.bounds[3], p.bottom);
   }
-  drawing.paths.push_back({{path.color[0], path.color[1], path.color[2], path.color[3]}});
+  PathRecord record{};
+  record.color = {path.color[0], path.color[1], path.color[2], path.color[3]};
+  if (path.gradient) {
+    const auto paint = addGradient(*path.gradient, drawing);
+    if (!paint) return paint.error();
+    record.paint = 1 + *paint;
+  }
+  drawing.paths.push_back(record);
   return {};
 }
 
-core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory) {
+core::Result<void> append(const Drawing& part, Drawing& drawing) {
+  if (part.patches.size() + drawing.patches.size() > shader::kEntryPatch) return tooManyPatches();
+  const uint32_t curve = static_cast<uint32_t>(drawing.curves.size()),
+                 path = static_cast<uint32_t>(drawing.paths.size()),
+                 paint = static_cast<uint32_t>(drawing.paints.size()),
+                 stop = static_cast<uint32_t>(drawing.stops.size());
+  drawing.curves.insert(drawing.curves.end(), part.curves.begin(), part.curves.end());
+  drawing.stops.insert(drawing.stops.end(), part.stops.begin(), part.stops.end());
+  for (size_t k = 0; k < 4 && !part.patches.empty(); ++k)
+    drawing.bounds[k] = drawing.patches.empty() ? part.bounds[k]
+                        : k < 2                 ? std::min(drawing.bounds[k], part.bounds[k])
+                                                : std::max(drawing.bounds[k], part.bounds[k]);
+  for (PatchRecord p : part.patches) {
+    p.left += curve;
+    p.right += curve;
+    p.path += path;
+    drawing.patches.push_back(p);
+  }
+  for (PathRecord p : part.paths) {
+    if (p.paint) p.paint += paint;
+    drawing.paths.push_back(p);
+  }
+  for (PaintRecord p : part.paints) {
+    p.firstStop += stop;
+    drawing.paints.push_back(p);
+  }
+  return {};
+}
+
+namespace {
+
+core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, std::pmr::memory_resource* memory) {
   Drawing drawing(memory);
   drawing.paths.reserve(paths.size());
   for (size_t i = 0; i < paths.size(); ++i)
     if (auto ok = addPath(paths[i], drawing); !ok)
-      return core::makeError(ok.error().code, "paths[%zu]: %s", i, ok.error().text);
-  drawing.viewport[0] = drawing.bounds[0];
-  drawing.viewport[1] = drawing.bounds[1];
-  drawing.viewport[2] = drawing.bounds[2] - drawing.bounds[0];
-  drawing.viewport[3] = drawing.bounds[3] - drawing.bounds[1];
+      return core::makeError(ok.error().code, "paths[%zu]: %s", first + i, ok.error().text);
+  return drawing;
+}
+
+/// Paths in a row with about as many verbs as others.
+struct Batch {
+  std::span<const GpgpPath> paths;
+  size_t first;
+  std::pmr::memory_resource* memory;
+  std::optional<core::Result<Drawing>> made;
+
+  static void GPGP_CALL run(void* batches, uint32_t index) {
+    Batch& b = static_cast<Batch*>(batches)[index];
+    try {
+      b.made.emplace(convert(b.paths, b.first, b.memory));
+    } catch (...) { // bad_alloc; nothing else is thrown. An engine's job must not see it
+      b.made.reset();
+    }
+  }
+};
+
+} // namespace
+
+core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
+                                  const GpgpJobSystem* jobs) {
+  constexpr uint64_t kVerbsOfBatch = 1000; // some tenths of a millisecond
+  core::Result<Drawing> drawing = Drawing(memory);
+  std::pmr::vector<Batch> batches(memory);
+  if (jobs && jobs->parallelFor) {
+    uint64_t verbs = kVerbsOfBatch;
+    for (size_t i = 0; i < paths.size(); ++i) {
+      if (verbs >= kVerbsOfBatch) {
+        batches.push_back({paths.subspan(i, 0), i, memory, {}});
+        verbs = 0;
+      }
+      batches.back().paths = paths.subspan(batches.back().first, i + 1 - batches.back().first);
+      verbs += paths[i].verbCount;
+    }
+  }
+  if (batches.size() > 1) {
+    jobs->parallelFor(jobs->userData, static_cast<uint32_t>(batches.size()), Batch::run, batches.data());
+    for (const Batch& batch : batches) {
+      if (!batch.made) throw std::bad_alloc();
+      if (!*batch.made) return batch.made->error();
+      if (auto ok = append(**batch.made, *drawing); !ok) return ok.error();
+    }
+  } else {
+    drawing = convert(paths, 0, memory);
+    if (!drawing) return drawing;
+  }
+  drawing->viewport[0] = drawing->bounds[0];
+  drawing->viewport[1] = drawing->bounds[1];
+  drawing->viewport[2] = drawing->bounds[2] - drawing->bounds[0];
+  drawing->viewport[3] = drawing->bounds[3] - drawing->bounds[1];
   return drawing;
 }
 

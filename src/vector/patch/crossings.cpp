@@ -1,9 +1,9 @@
 // Stage 2: where pieces of one path change sides.
 //
 // Two monotone pieces are compared over the rows they share inside one band. Boxes that do not overlap decide at once
-// (pieces never turn, so end points bound them); else lines are solved directly and curves are bisected until their
-// boxes part or the rows are as fine as float. The work per pair is bounded, so coincident curves cannot stall it:
-// what is undecided then differs by less than float distance anyway.
+// (pieces never turn, so end points bound them); else lines are solved directly, and curves between their inflections,
+// where tangents and chords bound them. The work per pair is bounded, so coincident curves cannot stall it: what is
+// undecided then differs by less than float distance anyway.
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -12,42 +12,125 @@
 namespace gpgp::vector {
 namespace {
 
+/// A piece in a band: all of it where it is short, its part in the band's rows where it is long.
 struct BandEntry {
   uint32_t piece;
-  double top, bottom, xTop, xBottom;
-  double xMin() const { return std::min(xTop, xBottom); }
-  double xMax() const { return std::max(xTop, xBottom); }
+  bool isLong;
+  double top, bottom, xMin, xMax;
 };
+constexpr uint32_t kLong = 4; // bands
 
+/// Looks for changes of sides between two pieces over rows in which neither has an inflection, so that each is convex
+/// or concave as a function of y: between its tangents and its chord. Where these bounds keep the pieces apart there is
+/// no change; where the slopes do, there is at most one, which bracketed Newton steps find. Everything else is halved.
 class PairSearch {
 public:
   PairSearch(const Monotone& a, const Monotone& b) : a_(a), b_(b) {}
-  /// The rows [y0, y1] with both pieces' x at either end. Calls found(y) for each change of sides.
-  template <class Found> void run(double y0, double a0, double b0, double y1, double a1, double b1, Found&& found) {
-    const double aMax = std::max(a0, a1), aMin = std::min(a0, a1), bMax = std::max(b0, b1), bMin = std::min(b0, b1);
-    if (aMax < bMin || bMax < aMin) return;
-    const double d0 = b0 - a0, d1 = b1 - a1;
-    const bool changes = (d0 >= 0) != (d1 >= 0); // meeting counts as being left, so that a meeting is found once
-    if (!changes && (aMax == bMin || bMax == aMin)) return;
+
+  /// Calls found(y) for each change of sides between y0 and y1, rows of both.
+  template <class Found> void run(double y0, double y1, Found&& found) {
     if (a_.curve.line && b_.curve.line) {
-      if (changes) found(y0 + (y1 - y0) * (d0 / (d0 - d1)));
+      const double d0 = b_.xAt(y0) - a_.xAt(y0), d1 = b_.xAt(y1) - a_.xAt(y1);
+      if ((d0 >= 0) != (d1 >= 0)) found(y0 + (y1 - y0) * (d0 / (d0 - d1)));
       return;
     }
-    const double middle = 0.5 * (y0 + y1);
-    const double fine = std::max({std::abs(y0), std::abs(y1), 1e-30}) * 6e-8;
-    if (budget_ == 0 || y1 - y0 <= fine || middle <= y0 || middle >= y1) {
-      if (changes) found(middle);
-      return;
+    Row from = row(y0);
+    const Row last = row(y1);
+    if (apart(from, last)) return;
+    double turns[5];
+    int count = 0;
+    for (const Monotone* piece : {&a_, &b_}) {
+      double heights[2];
+      for (int i = piece->inflections(heights); i-- > 0;) {
+        if (!(heights[i] > y0 && heights[i] < y1)) continue;
+        int at = count++;
+        for (; at > 0 && turns[at - 1] > heights[i]; --at) turns[at] = turns[at - 1];
+        turns[at] = heights[i];
+      }
     }
-    --budget_;
-    const double am = a_.xAt(middle), bm = b_.xAt(middle);
-    run(y0, a0, b0, middle, am, bm, found);
-    run(middle, am, bm, y1, a1, b1, found);
+    turns[count++] = y1;
+    for (int i = 0; i < count; ++i) {
+      const Row to = i + 1 == count ? last : row(turns[i]);
+      part(from, to, found);
+      from = to;
+    }
   }
 
 private:
+  struct Row {
+    double y;
+    Monotone::Place a, b;
+    double gap() const { return b.x - a.x; }
+    bool left() const { return gap() >= 0; } // meeting counts as being left, so that a meeting is found once
+  };
+  Row row(double y) const { return {y, a_.placeAt(y), b_.placeAt(y)}; }
+  /// Whether boxes alone say that there is no change.
+  static bool apart(const Row& from, const Row& to) {
+    const double aMin = std::min(from.a.x, to.a.x), aMax = std::max(from.a.x, to.a.x),
+                 bMin = std::min(from.b.x, to.b.x), bMax = std::max(from.b.x, to.b.x);
+    if (aMax < bMin || bMax < aMin) return true;
+    return (aMax == bMin || bMax == aMin) && from.left() == to.left();
+  }
+
+  template <class Found> void part(const Row& from, const Row& to, Found& found) {
+    const bool changes = from.left() != to.left();
+    if (apart(from, to)) return;
+    const double height = to.y - from.y, middle = 0.5 * (from.y + to.y);
+    const double fine = std::max({std::abs(from.y), std::abs(to.y), 1e-30}) * 6e-8;
+    if (budget_ == 0 || height <= fine || middle <= from.y || middle >= to.y) {
+      if (changes) found(middle);
+      return;
+    }
+    if (!changes && apart(from, to, height)) return;
+    const auto range = [](double u, double v) { return std::pair(std::min(u, v), std::max(u, v)); };
+    const auto [aLow, aHigh] = range(from.a.slope, to.a.slope);
+    const auto [bLow, bHigh] = range(from.b.slope, to.b.slope);
+    if (aHigh <= bLow || bHigh <= aLow) { // the gap only grows, or only shrinks
+      if (changes) found(from.gap() == 0 ? from.y : cross(from, to, fine));
+      return;
+    }
+    --budget_;
+    const Row between = row(middle);
+    part(from, between, found);
+    part(between, to, found);
+  }
+
+  /// Whether bounds by tangents and chords keep the pieces on the sides that they have at the ends.
+  static bool apart(const Row& from, const Row& to, double height) {
+    const bool aLeft = from.gap() + to.gap() > 0;
+    const auto& l0 = aLeft ? from.a : from.b;
+    const auto& l1 = aLeft ? to.a : to.b;
+    const auto& r0 = aLeft ? from.b : from.a;
+    const auto& r1 = aLeft ? to.b : to.a;
+    if (!(l0.x <= r0.x && l1.x <= r1.x)) return false;
+    // By how much a piece bulges beyond its chord to one side: no more than where its end tangents meet.
+    const auto bulge = [height](const Monotone::Place& p, const Monotone::Place& q, double side) {
+      const double chord = (q.x - p.x) / height, u = side * (p.slope - chord), v = side * (chord - q.slope);
+      if (!(u > 0 && v > 0)) return 0.0; // to the other side, or straight
+      if (!(u < 1e30)) return v < 1e30 ? v * height : 1e30;
+      if (!(v < 1e30)) return u * height;
+      return u * v / (u + v) * height;
+    };
+    const double out = bulge(l0, l1, 1) + bulge(r0, r1, -1);
+    return out < std::min(r0.x - l0.x, r1.x - l1.x) || (out == 0 && (r0.x > l0.x || r1.x > l1.x));
+  }
+
+  double cross(const Row& from, const Row& to, double fine) const {
+    double low = from.y, high = to.y, y = low + (high - low) * (from.gap() / (from.gap() - to.gap()));
+    const bool rises = to.gap() > from.gap();
+    for (int i = 0; i < 60 && high - low > fine; ++i) {
+      if (!(y > low && y < high)) y = 0.5 * (low + high);
+      const Row at = row(y);
+      ((at.gap() < 0) == rises ? low : high) = y;
+      const double next = y - at.gap() / (at.b.slope - at.a.slope);
+      if (std::abs(next - y) < 0.25 * fine) return std::clamp(next, low, high);
+      y = next;
+    }
+    return std::clamp(y, low, high);
+  }
+
   const Monotone &a_, &b_;
-  int budget_ = 400;
+  int budget_ = 200;
 };
 
 } // namespace
@@ -62,7 +145,8 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
     heights += piece.bottom() - piece.top();
   }
   const double count = static_cast<double>(pieces.size());
-  const double wanted = std::clamp((bottom - top) / heights * count, 1.0, count);
+  // A few are sorted at once sooner than dealt.
+  const double wanted = count <= 48 ? 1 : std::clamp((bottom - top) / heights * count, 1.0, count);
   const uint32_t bands = static_cast<uint32_t>(wanted);
   const double height = (bottom - top) / bands;
   const auto bandOf = [&](double y) {
@@ -93,31 +177,38 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
     entries.clear();
     for (uint32_t i = first[b]; i < first[b + 1]; ++i) {
       const Monotone& piece = pieces[dealt[i]];
-      const double pieceTop = std::max(y0, piece.top()), pieceBottom = std::min(y1, piece.bottom());
-      if (pieceTop < pieceBottom)
-        entries.push_back({dealt[i], pieceTop, pieceBottom, piece.xAt(pieceTop), piece.xAt(pieceBottom)});
+      const bool isLong = bandOf(piece.bottom()) - bandOf(piece.top()) > kLong;
+      const double pieceTop = isLong ? std::max(y0, piece.top()) : piece.top(),
+                   pieceBottom = isLong ? std::min(y1, piece.bottom()) : piece.bottom();
+      if (pieceTop < pieceBottom) {
+        const double p = piece.xAt(pieceTop), q = piece.xAt(pieceBottom);
+        entries.push_back({dealt[i], isLong, pieceTop, pieceBottom, std::min(p, q), std::max(p, q)});
+      }
     }
     std::sort(entries.begin(), entries.end(), [](const BandEntry& l, const BandEntry& r) {
-      return l.xMin() != r.xMin() ? l.xMin() < r.xMin() : l.piece < r.piece;
+      return l.xMin != r.xMin ? l.xMin < r.xMin : l.piece < r.piece;
     });
     for (size_t i = 0; i < entries.size(); ++i) {
-      const double reach = entries[i].xMax();
-      for (size_t j = i + 1; j < entries.size() && entries[j].xMin() <= reach; ++j) {
+      const double reach = entries[i].xMax;
+      for (size_t j = i + 1; j < entries.size() && entries[j].xMin <= reach; ++j) {
         // The same way round in every band: a meeting exactly on a band's border counts for one of the two.
+        if (entries[i].top >= entries[j].bottom || entries[j].top >= entries[i].bottom) continue;
         const bool inOrder = entries[i].piece < entries[j].piece;
         const BandEntry &l = entries[inOrder ? i : j], &r = entries[inOrder ? j : i];
-        const double from = std::max(l.top, r.top), to = std::min(l.bottom, r.bottom);
+        double from = std::max(l.top, r.top), to = std::min(l.bottom, r.bottom);
+        if (l.isLong || r.isLong)
+          from = std::max(from, y0), to = std::min(to, y1);
+        else if (bandOf(from) != b)
+          continue; // two short ones meet once, in the first band that they share
         if (!(from < to)) continue;
         const Monotone &lp = pieces[l.piece], &rp = pieces[r.piece];
-        PairSearch(lp, rp).run(from, from == l.top ? l.xTop : lp.xAt(from), from == r.top ? r.xTop : rp.xAt(from), to,
-                               to == l.bottom ? l.xBottom : lp.xAt(to), to == r.bottom ? r.xBottom : rp.xAt(to),
-                               [&](double y) {
-                                 const float cut = static_cast<float>(std::round(y / grid) * grid);
-                                 ++crossings;
-                                 for (const uint32_t piece : {l.piece, r.piece})
-                                   if (cut > pieces[piece].top() && cut < pieces[piece].bottom())
-                                     cuts.push_back({piece, cut});
-                               });
+        if (sideByHull(lp, rp) != 0) continue;
+        PairSearch(lp, rp).run(from, to, [&](double y) {
+          const float cut = static_cast<float>(std::round(y / grid) * grid);
+          ++crossings;
+          for (const uint32_t piece : {l.piece, r.piece})
+            if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back({piece, cut});
+        });
         if (crossings > kMaxCrossings)
           return core::makeError(GPGP_ERROR_UNSUPPORTED, "the path crosses itself more than %zu times", kMaxCrossings);
       }

@@ -14,16 +14,21 @@
 namespace gpgp::vector {
 
 using shader::CurveRecord;
+using shader::PaintRecord;
 using shader::PatchRecord;
 using shader::PathRecord;
+using shader::StopRecord;
 
 struct Drawing {
-  explicit Drawing(std::pmr::memory_resource* memory) : curves(memory), patches(memory), paths(memory) {}
+  explicit Drawing(std::pmr::memory_resource* memory)
+      : curves(memory), patches(memory), paths(memory), paints(memory), stops(memory) {}
   std::pmr::vector<CurveRecord> curves;
   std::pmr::vector<PatchRecord> patches; ///< grouped by path, paths in painting order
   std::pmr::vector<PathRecord> paths;
-  float bounds[4] = {};   ///< left, top, right, bottom of the ink; all 0 where there is none
-  float viewport[4] = {}; ///< x, y, width, height
+  std::pmr::vector<PaintRecord> paints; ///< gradients that paths refer to
+  std::pmr::vector<StopRecord> stops;   ///< of all gradients, each one's in a row
+  float bounds[4] = {};                 ///< left, top, right, bottom of the ink; all 0 where there is none
+  float viewport[4] = {};               ///< x, y, width, height
 };
 
 constexpr float kMaxCoordinate = 1e7f;
@@ -53,18 +58,31 @@ struct Slab {
 void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule,
            std::pmr::vector<Slab>& slabs);
 
+/// Checks a gradient and appends its paint and stops; returns its index. A gradient that has no area to spread over
+/// (equal ends, no radius, a transform without inverse) paints its last stop's colour, as SVG says.
+core::Result<uint32_t> addGradient(const GpgpGradient& gradient, Drawing& drawing);
+
 /// All stages for one path; appends its patches, the curves they use and its colour.
 core::Result<void> addPath(const GpgpPath& path, Drawing& drawing);
 
-/// The drawing of paths in painting order. Errors name the path.
-core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
+/// Paints another drawing on top: how paths that were converted apart, or earlier, become one.
+core::Result<void> append(const Drawing& part, Drawing& drawing);
+
+/// The drawing of paths in painting order; the same with and without jobs, which then call the memory resource side by
+/// side. Errors name the path.
+core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
+                                  const GpgpJobSystem* jobs = nullptr);
 
 /// Baked form: little-endian, versioned, checksummed.
 std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory);
 /// Checks everything that a shader would trust: sizes, indices, finite numbers, order. Errors: INVALID_DATA.
 core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory);
 
-/// The patches as SVG, outlined over their fill, for people to look at.
+/// The stages as SVG, for people to look at: paths as they came, filled; pieces, blue where they run down and red where
+/// up, with their ends; where pieces are cut; and the patches, outlined over their fill. Bad paths are left out.
+std::pmr::string pathsToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
+std::pmr::string piecesToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
+std::pmr::string crossingsToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
 std::pmr::string patchesToSvg(const Drawing& drawing, std::pmr::memory_resource* memory);
 
 } // namespace gpgp::vector

@@ -1,4 +1,5 @@
-// Stage 1: a path's verbs and points to monotone pieces.
+// Stage 1: a path's verbs and points, or its stroke's, to monotone pieces.
+#include "vector/geometry/stroke.h"
 #include "vector/patch/drawing.h"
 
 #include <cmath>
@@ -35,10 +36,74 @@ core::Result<void> checkPath(const GpgpPath& path) {
                        static_cast<double>(path.color[i]));
   return {};
 }
+
+core::Result<void> checkStroke(const GpgpStroke& s) {
+  const auto bad = [](const char* what, double value) {
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.%s is %g", what, value);
+  };
+  if (!(s.width >= 0 && s.width <= kMaxCoordinate)) return bad("width", static_cast<double>(s.width));
+  if (s.cap < GPGP_CAP_BUTT || s.cap > GPGP_CAP_SQUARE) return bad("cap", s.cap);
+  if (s.join < GPGP_JOIN_MITER || s.join > GPGP_JOIN_BEVEL) return bad("join", s.join);
+  if (s.miterLimit != 0 && !(s.miterLimit >= 1 && std::isfinite(s.miterLimit)))
+    return bad("miterLimit", static_cast<double>(s.miterLimit));
+  if (!std::isfinite(s.dashOffset)) return bad("dashOffset", static_cast<double>(s.dashOffset));
+  if (!(s.scale >= 0 && std::isfinite(s.scale))) return bad("scale", static_cast<double>(s.scale));
+  if (s.dashCount && !s.dashes) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.dashes is NULL");
+  for (uint32_t i = 0; i < s.dashCount; ++i)
+    if (!(s.dashes[i] >= 0 && std::isfinite(s.dashes[i])))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.dashes[%u] is %g", i, static_cast<double>(s.dashes[i]));
+  return {};
+}
+
+/// The stroke's outline as cubics, closed contour by contour.
+core::Result<void> strokeOutline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces) {
+  const GpgpStroke& s = *path.stroke;
+  if (auto ok = checkStroke(s); !ok) return ok;
+  std::pmr::memory_resource* memory = pieces.get_allocator().resource();
+  const double scale = s.scale > 0 ? static_cast<double>(s.scale) : 1;
+  std::pmr::vector<double> dashes(memory);
+  double sum = 0;
+  for (uint32_t k = 0; k < (s.dashCount % 2 ? 2 * s.dashCount : s.dashCount); ++k)
+    sum += dashes.emplace_back(s.dashes[k % s.dashCount]);
+  if (!(sum > 0)) dashes.clear();
+  Shape shape(memory), area(memory);
+  shape.verbs.assign(path.verbs, path.verbs + path.verbCount);
+  for (uint32_t i = 0; i < path.pointCount; ++i) shape.points.push_back({path.points[2 * i], path.points[2 * i + 1]});
+  const StrokeStyle style{s.width > 0 ? static_cast<double>(s.width) : 1 / scale,
+                          static_cast<Cap>(s.cap),
+                          static_cast<Join>(s.join),
+                          s.miterLimit > 0 ? static_cast<double>(s.miterLimit) : 4,
+                          dashes,
+                          s.dashOffset};
+  constexpr double kTolerance = 0.05; // pixels
+  if (!strokeShape(shape, style, kTolerance / scale, {}, area))
+    return makeError(GPGP_ERROR_UNSUPPORTED, "the stroke has too many points or dashes");
+  const Point* next = area.points.data();
+  Point start, at;
+  for (const GpgpPathVerb verb : area.verbs) {
+    Cubic curve;
+    if (verb == GPGP_PATH_MOVE) {
+      start = at = *next++;
+      continue;
+    }
+    if (verb == GPGP_PATH_CUBIC) {
+      curve = {{at, next[0], next[1], next[2]}};
+      next += 3;
+    } else {
+      curve = Cubic::fromLine(at, verb == GPGP_PATH_LINE ? *next++ : start);
+    }
+    at = curve.p[3];
+    if (!(std::abs(at.x) <= kMaxCoordinate && std::abs(at.y) <= kMaxCoordinate))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the stroke reaches beyond +-1e7");
+    cutMonotone(curve, pieces);
+  }
+  return {};
+}
 } // namespace
 
 core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces) {
   if (auto ok = checkPath(path); !ok) return ok;
+  if (path.stroke) return strokeOutline(path, pieces);
   const float* next = path.points;
   const auto take = [&next] {
     const Point p{next[0], next[1]};

@@ -1,4 +1,4 @@
-// Patches as SVG: each one outlined over its fill, so that cuts can be seen.
+// Stages as SVG.
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -40,6 +40,99 @@ int byteFromLinear(float v) {
   return static_cast<int>(std::lround(std::clamp(s, 0.0, 1.0) * 255));
 }
 } // namespace
+
+namespace {
+
+void open(std::pmr::string& out, std::span<const GpgpPath> paths, double& unit) {
+  double box[4] = {1e30, 1e30, -1e30, -1e30};
+  for (const GpgpPath& path : paths)
+    for (uint32_t i = 0; i < path.pointCount; ++i)
+      for (uint32_t k = 0; k < 2; ++k) {
+        const double v = path.points[2 * i + k];
+        box[k] = std::min(box[k], v);
+        box[2 + k] = std::max(box[2 + k], v);
+      }
+  const double width = std::max(box[2] - box[0], 0.0), height = std::max(box[3] - box[1], 0.0);
+  unit = std::max({width, height, 1e-6}) / 2000;
+  append(out, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"%.9g %.9g %.9g %.9g\">\n", box[0] - unit,
+         box[1] - unit, width + 2 * unit, height + 2 * unit);
+}
+
+void curve(std::pmr::string& out, const Cubic& c) {
+  append(out, "M%.9g %.9gC%.9g %.9g %.9g %.9g %.9g %.9g", c.p[0].x, c.p[0].y, c.p[1].x, c.p[1].y, c.p[2].x, c.p[2].y,
+         c.p[3].x, c.p[3].y);
+}
+
+template <class Draw> void forPieces(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory, Draw&& draw) {
+  for (const GpgpPath& path : paths) {
+    std::pmr::vector<Monotone> pieces(memory);
+    if (!outline(path, pieces)) continue;
+    mergeCoincident(pieces);
+    draw(pieces);
+  }
+}
+
+} // namespace
+
+std::pmr::string pathsToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory) {
+  std::pmr::string out(memory);
+  double unit = 0;
+  open(out, paths, unit);
+  for (const GpgpPath& path : paths) {
+    append(out,
+           "<path fill-rule=\"%s\" fill=\"#%02x%02x%02x\" fill-opacity=\"%.3g\" stroke=\"#06f\" "
+           "stroke-width=\"%.4g\" d=\"",
+           path.fillRule == GPGP_FILL_EVEN_ODD ? "evenodd" : "nonzero", byteFromLinear(path.color[0]),
+           byteFromLinear(path.color[1]), byteFromLinear(path.color[2]), static_cast<double>(path.color[3]), unit);
+    constexpr uint32_t kPoints[] = {1, 1, 2, 3, 0};
+    const float* p = path.points;
+    for (uint32_t i = 0; i < path.verbCount; ++i) {
+      append(out, "%c", "MLQCZ"[path.verbs[i]]);
+      for (uint32_t k = 0; k < 2 * kPoints[path.verbs[i]]; ++k) append(out, "%.9g ", static_cast<double>(*p++));
+    }
+    out += "\"/>\n";
+  }
+  out += "</svg>\n";
+  return out;
+}
+
+std::pmr::string piecesToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory) {
+  std::pmr::string out(memory);
+  double unit = 0;
+  open(out, paths, unit);
+  append(out, "<g fill=\"none\" stroke-width=\"%.4g\" stroke-linecap=\"round\">\n", unit);
+  forPieces(paths, memory, [&](std::span<const Monotone> pieces) {
+    for (const Monotone& piece : pieces) {
+      append(out, "<path stroke=\"%s\" d=\"", piece.winding > 0 ? "#06f" : "#e30");
+      curve(out, piece.curve);
+      append(out, "\"/><path stroke=\"#000\" stroke-width=\"%.4g\" d=\"M%.9g %.9gzM%.9g %.9gz\"/>\n", 3 * unit,
+             piece.curve.p[0].x, piece.curve.p[0].y, piece.curve.p[3].x, piece.curve.p[3].y);
+    }
+  });
+  out += "</g>\n</svg>\n";
+  return out;
+}
+
+std::pmr::string crossingsToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory) {
+  std::pmr::string out(memory);
+  double unit = 0;
+  open(out, paths, unit);
+  append(out, "<g fill=\"none\" stroke=\"#999\" stroke-width=\"%.4g\" stroke-linecap=\"round\">\n", unit);
+  forPieces(paths, memory, [&](std::span<const Monotone> pieces) {
+    std::pmr::vector<Cut> cuts(memory);
+    if (!findCrossings(pieces, cuts)) return;
+    for (const Monotone& piece : pieces) {
+      out += "<path d=\"";
+      curve(out, piece.curve);
+      out += "\"/>\n";
+    }
+    for (const Cut& cut : cuts)
+      append(out, "<path stroke=\"#e30\" stroke-width=\"%.4g\" d=\"M%.9g %.9gz\"/>\n", 4 * unit,
+             pieces[cut.piece].xAt(static_cast<double>(cut.y)), static_cast<double>(cut.y));
+  });
+  out += "</g>\n</svg>\n";
+  return out;
+}
 
 std::pmr::string patchesToSvg(const Drawing& d, std::pmr::memory_resource* memory) {
   std::pmr::string out(memory);

@@ -19,12 +19,14 @@ struct Edge {
   float top, bottom;
 };
 
+constexpr uint32_t kNone = UINT32_MAX;
+
 class Sweep {
 public:
   Sweep(std::span<const Monotone> pieces, GpgpFillRule rule, std::pmr::vector<Slab>& slabs)
       : pieces_(pieces), rule_(rule), slabs_(slabs), memory_(slabs.get_allocator().resource()), edges_(memory_),
         status_(Order{this}, memory_), places_(memory_), edgeOf_(memory_), windings_(memory_), dirty_(memory_),
-        visited_(memory_), open_(memory_), touched_(memory_), runs_(memory_), starts_(memory_) {}
+        visited_(memory_), known_(memory_), open_(memory_), touched_(memory_), runs_(memory_), starts_(memory_) {}
 
   void run(std::span<const Cut> cuts) {
     makeEdges(cuts);
@@ -35,24 +37,27 @@ public:
     windings_.assign(count, 0);
     dirty_.assign(count, 0);
     visited_.assign(count, 0);
+    known_.assign(count, kNone);
     open_.assign(pieces_.size(), Open{});
-    std::pmr::vector<uint32_t> begins(count, 0, memory_), ends(count, 0, memory_);
-    for (uint32_t i = 0; i < count; ++i) begins[i] = ends[i] = i;
-    std::sort(begins.begin(), begins.end(), [this](uint32_t a, uint32_t b) {
-      return edges_[a].top != edges_[b].top ? edges_[a].top < edges_[b].top : a < b;
-    });
-    std::sort(ends.begin(), ends.end(), [this](uint32_t a, uint32_t b) {
-      return edges_[a].bottom != edges_[b].bottom ? edges_[a].bottom < edges_[b].bottom : a < b;
-    });
+    std::pmr::vector<Event> begins(count, Event{}, memory_), ends(count, Event{}, memory_);
+    for (uint32_t i = 0; i < count; ++i) {
+      begins[i] = {edges_[i].top, i};
+      ends[i] = {edges_[i].bottom, i};
+    }
+    std::sort(begins.begin(), begins.end());
+    std::sort(ends.begin(), ends.end());
     uint32_t begin = 0, end = 0;
     while (end < count) {
-      y_ = edges_[ends[end]].bottom;
-      if (begin < count) y_ = std::min(y_, edges_[begins[begin]].top);
+      y_ = ends[end].y;
+      if (begin < count) y_ = std::min(y_, begins[begin].y);
       ++batch_;
       starts_.clear();
       touched_.clear();
-      for (; end < count && edges_[ends[end]].bottom == y_; ++end) remove(ends[end]);
-      for (; begin < count && edges_[begins[begin]].top == y_; ++begin) insert(begins[begin]);
+      const uint32_t firstEnd = end, firstBegin = begin;
+      while (end < count && ends[end].y == y_) ++end;
+      while (begin < count && begins[begin].y == y_) ++begin;
+      advance(std::span(ends).subspan(firstEnd, end - firstEnd),
+              std::span(begins).subspan(firstBegin, begin - firstBegin));
       repair();
       update();
     }
@@ -70,6 +75,41 @@ private:
     bool active = false;
   };
 
+  struct Event {
+    float y;
+    uint32_t edge;
+    bool operator<(const Event& o) const { return y != o.y ? y < o.y : edge < o.edge; }
+  };
+
+  /// Edges that end leave, edges that begin enter. Most often one goes on where another ends; it then takes that one's
+  /// place, and repair() sees to it that the place is right.
+  void advance(std::span<Event> ends, std::span<Event> begins) {
+    constexpr size_t kFew = 8; // more are sorted in, which is cheaper than trying all pairs and swapping many
+    if (ends.size() <= kFew && begins.size() <= kFew) {
+      for (Event& end : ends)
+        for (Event& begin : begins)
+          if (begin.edge != kNone && goesOn(edges_[end.edge], edges_[begin.edge])) {
+            const auto place = places_[end.edge];
+            touched_.push_back(edges_[end.edge].piece);
+            places_[end.edge] = status_.end();
+            places_[begin.edge] = place;
+            edgeOf_[*place] = begin.edge;
+            markDirty(begin.edge);
+            end.edge = begin.edge = kNone;
+            break;
+          }
+    }
+    for (const Event& end : ends)
+      if (end.edge != kNone) remove(end.edge);
+    for (const Event& begin : begins)
+      if (begin.edge != kNone) insert(begin.edge);
+  }
+  bool goesOn(const Edge& upper, const Edge& lower) const {
+    if (upper.piece == lower.piece) return true;
+    const Point &p = pieces_[upper.piece].curve.p[3], &q = pieces_[lower.piece].curve.p[0];
+    return p.x == q.x && p.y == q.y && lower.top == static_cast<float>(q.y);
+  }
+
   void makeEdges(std::span<const Cut> cuts) {
     size_t next = 0;
     for (uint32_t i = 0; i < pieces_.size(); ++i) {
@@ -86,11 +126,7 @@ private:
     if (a == b) return false;
     const Edge &l = edges_[a], &r = edges_[b];
     const Monotone &lp = pieces_[l.piece], &rp = pieces_[r.piece];
-    // Boxes of whole pieces first: most pairs are far apart.
-    const auto& lc = lp.curve;
-    const auto& rc = rp.curve;
-    if (std::max(lc.p[0].x, lc.p[3].x) < std::min(rc.p[0].x, rc.p[3].x)) return true;
-    if (std::max(rc.p[0].x, rc.p[3].x) < std::min(lc.p[0].x, lc.p[3].x)) return false;
+    if (const int side = sideByHull(lp, rp)) return side < 0; // most pairs are far apart
     const double top = std::max(l.top, r.top), bottom = std::min(l.bottom, r.bottom);
     double widest = 0;
     for (const double at : {0.5, 0.25, 0.75}) {
@@ -124,8 +160,11 @@ private:
   }
 
   void insert(uint32_t edge) {
-    places_[edge] = status_.insert(edge);
+    const auto it = places_[edge] = status_.insert(edge);
     markDirty(edge);
+    // Its neighbours were asked on the way down.
+    if (it != status_.begin()) known_[edgeOf_[*std::prev(it)]] = edge;
+    if (const auto next = std::next(it); next != status_.end()) known_[edge] = edgeOf_[*next];
   }
 
   /// Edges that are compared over rows no taller than noise may have been put in the wrong place, and others beside
@@ -136,12 +175,20 @@ private:
       const auto it = places_[starts_[i]];
       if (it == status_.end()) continue;
       auto at = it;
-      for (; at != status_.begin() && swaps && leftOf(edgeOf_[*at], edgeOf_[*std::prev(at)]); --at, --swaps)
+      for (; at != status_.begin() && swaps && wrong(edgeOf_[*std::prev(at)], edgeOf_[*at]); --at, --swaps)
         swap(at, std::prev(at));
-      for (auto next = std::next(at); next != status_.end() && swaps && leftOf(edgeOf_[*next], edgeOf_[*at]);
+      for (auto next = std::next(at); next != status_.end() && swaps && wrong(edgeOf_[*at], edgeOf_[*next]);
            ++next, ++at, --swaps)
         swap(at, next);
     }
+  }
+
+  /// Whether two neighbours must change places; the same two are asked once.
+  bool wrong(uint32_t left, uint32_t right) {
+    if (known_[left] == right) return false;
+    if (leftOf(right, left)) return true;
+    known_[left] = right;
+    return false;
   }
 
   void swap(Status::iterator a, Status::iterator b) {
@@ -230,6 +277,7 @@ private:
   std::pmr::vector<uint32_t> edgeOf_;          // by slot
   std::pmr::vector<int> windings_;             // right of each edge
   std::pmr::vector<uint32_t> dirty_, visited_; // batch numbers
+  std::pmr::vector<uint32_t> known_;           // by edge, an edge that is right of it
   std::pmr::vector<Open> open_;                // by left piece
   std::pmr::vector<uint32_t> touched_;
   std::pmr::vector<Run> runs_;

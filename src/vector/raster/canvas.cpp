@@ -1,19 +1,56 @@
 // The passes of the canvas, the checks of a record, and what a record fills in.
 #include "vector/raster/canvas.h"
 
+#include "shaders/vector_allot.spv.h"
 #include "shaders/vector_bin.spv.h"
-#include "shaders/vector_boxes.spv.h"
-#include "shaders/vector_coarse.spv.h"
+#include "shaders/vector_copy.spv.h"
+#include "shaders/vector_crowded0.spv.h"
+#include "shaders/vector_crowded1.spv.h"
+#include "shaders/vector_crowded2.spv.h"
+#include "shaders/vector_crowded_paints0.spv.h"
+#include "shaders/vector_crowded_paints1.spv.h"
+#include "shaders/vector_crowded_paints2.spv.h"
+#include "shaders/vector_crowded_paints_one0.spv.h"
+#include "shaders/vector_crowded_paints_one1.spv.h"
+#include "shaders/vector_crowded_paints_one2.spv.h"
 #include "shaders/vector_draw_frag.spv.h"
 #include "shaders/vector_draw_vert.spv.h"
-#include "shaders/vector_gather.spv.h"
-#include "shaders/vector_raster.spv.h"
-#include "shaders/vector_raster_rgba16.spv.h"
-#include "shaders/vector_raster_rgba8.spv.h"
-#include "shaders/vector_scan.spv.h"
+#include "shaders/vector_fill.spv.h"
+#include "shaders/vector_fill_one.spv.h"
+#include "shaders/vector_fill_software.spv.h"
+#include "shaders/vector_fill_software_one.spv.h"
+#include "shaders/vector_mark.spv.h"
+#include "shaders/vector_mark_one.spv.h"
+#include "shaders/vector_mark_software.spv.h"
+#include "shaders/vector_mark_software_one.spv.h"
+#include "shaders/vector_place.spv.h"
+#include "shaders/vector_place_one.spv.h"
+#include "shaders/vector_raster0.spv.h"
+#include "shaders/vector_raster1.spv.h"
+#include "shaders/vector_raster2.spv.h"
+#include "shaders/vector_raster_paints0.spv.h"
+#include "shaders/vector_raster_paints1.spv.h"
+#include "shaders/vector_raster_paints2.spv.h"
+#include "shaders/vector_raster_paints_one0.spv.h"
+#include "shaders/vector_raster_paints_one1.spv.h"
+#include "shaders/vector_raster_paints_one2.spv.h"
+#include "shaders/vector_sift.spv.h"
+#include "shaders/vector_tiles0.spv.h"
+#include "shaders/vector_tiles1.spv.h"
+#include "shaders/vector_tiles2.spv.h"
+#include "shaders/vector_tiles_paints0.spv.h"
+#include "shaders/vector_tiles_paints1.spv.h"
+#include "shaders/vector_tiles_paints2.spv.h"
+#include "shaders/vector_tiles_paints_one0.spv.h"
+#include "shaders/vector_tiles_paints_one1.spv.h"
+#include "shaders/vector_tiles_paints_one2.spv.h"
+#include "shaders/vector_tiles_solid0.spv.h"
+#include "shaders/vector_tiles_solid1.spv.h"
+#include "shaders/vector_tiles_solid2.spv.h"
 #include "vector/raster/place.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -31,18 +68,22 @@ using shader::SlotRecord;
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10;
 // Workgroup counts and conditions of a record.
-enum Groups : uint32_t { kPatches, kCurves, kPaths, kGroups, kCoarse, kTiles, kOne, kRaster };
-enum Conditions : uint32_t { kNoImage, kHasImage8, kHasImage16 };
+enum Groups : uint32_t { kParams, kPaths, kSegments, kSlices, kBins, kWords, kRaster, kTiles, kSift };
+constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
+enum Conditions : uint32_t { kPlain = 0, kPaints = 3, kPaintsOne = 6, kAny = 9, kOneDrawing = 12, kDrawings };
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
+/// As many workgroups, in rows (canvas.glsl, groupIndex).
+std::array<uint32_t, 3> rows(uint32_t groups) { return {std::min(groups, 32768u), divide(groups, 32768), 1}; }
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Worker(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
       maxPatches_(info.maxPatches ? info.maxPatches : 262144),
-      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 1048576),
-      maxDrawings_(info.maxDrawings ? info.maxDrawings : 64), constants_(&owner.host()), drawings_(&owner.host()) {}
+      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072), maxWords_(std::max(maxEntries_, 65536u)),
+      maxDrawings_(info.maxDrawings ? info.maxDrawings : 64), software_(owner.device.software),
+      constants_(&owner.host()), drawings_(&owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
@@ -53,73 +94,126 @@ Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCa
   return canvas;
 }
 
+uint64_t Canvas::tiles() const {
+  return uint64_t(divide(maxWidth_, shader::kTileSize)) * divide(maxHeight_, shader::kTileSize);
+}
+uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would take more than 64 MiB
+  return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 4, 63));
+}
+
 core::PassList Canvas::describe() const {
   using enum core::ResourceKind;
   using enum core::UseKind;
   core::PassList list(&context.host());
-  const uint32_t groups = divide(maxPatches_, shader::kPatchGroup), words = divide(groups, 32);
-  const VkDeviceSize coarse =
-      VkDeviceSize(divide(maxWidth_, shader::kCoarseSize)) * divide(maxHeight_, shader::kCoarseSize);
-  const VkDeviceSize fine = VkDeviceSize(divide(maxWidth_, shader::kTileSize)) * divide(maxHeight_, shader::kTileSize);
+  const VkDeviceSize bins = VkDeviceSize(divide(maxWidth_, shader::kBinSize)) * divide(maxHeight_, shader::kBinSize);
   static constexpr const char* kNames[kMaxSlots] = {"drawing 0", "drawing 1", "drawing 2", "drawing 3",
                                                     "drawing 4", "drawing 5", "drawing 6", "drawing 7"};
   for (const char* name : kNames) list.add({name, buffer, 0, true});
   const auto view = list.add({"view", buffer, 0, true});
   const auto image8 = list.add({"target", image, 0, true});
   const auto image16 = list.add({"target", image, 0, true});
-  const auto params = list.add(
-      {"items", core::ResourceKind::constants,
-       sizeof(CanvasHeader) + kMaxSlots * sizeof(SlotRecord) + VkDeviceSize(maxDrawings_) * sizeof(ItemRecord)});
-  const auto patches = list.add({"patches", scratch, VkDeviceSize(maxPatches_) * sizeof(PatchRecord)});
-  // A patch has two curves, so that many always suffice.
-  const auto curves = list.add({"curves", scratch, VkDeviceSize(maxPatches_) * 2 * sizeof(CurveRecord)});
-  const auto paths = list.add({"paths", scratch, VkDeviceSize(maxPatches_) * sizeof(PathRecord)});
-  const auto boxes = list.add({"group boxes", scratch, VkDeviceSize(groups) * 16});
-  const auto masks = list.add({"coarse masks", scratch, coarse * words * 4});
-  const auto tiles = list.add({"tiles", scratch, fine * 16});
-  const auto pathCounts = list.add({"path counts", scratch, VkDeviceSize(maxPatches_) * 4});
-  const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * 4});
+  const VkDeviceSize paramBytes =
+      sizeof(CanvasHeader) + kMaxSlots * sizeof(SlotRecord) + VkDeviceSize(maxDrawings_) * sizeof(ItemRecord);
+  const auto fromHost = list.add({"constants", core::ResourceKind::constants, paramBytes});
+  const auto paths = list.add({"paths", scratch, VkDeviceSize(maxPatches_) * sizeof(shader::PlacedPath)});
+  const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
+  const VkDeviceSize lists = software_ ? tiles() * (listWords() + 2) : 0;
+  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + bins * divide(maxPatches_, 32) + lists) * 4});
+  const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
-  const auto gather = list.add(core::ShaderDesc{"gather", vector_gather});
-  const auto bin = list.add(core::ShaderDesc{"bin", vector_bin});
-  const auto scan = list.add(core::ShaderDesc{"scan", vector_scan});
-  list.fill("clear path counts", pathCounts, 0);
-  const char* const gatherNames[] = {"gather patches", "gather curves", "gather paths"};
-  for (uint32_t mode = 0; mode < 3; ++mode) {
-    core::Pass& pass = list.dispatch(gatherNames[mode], gather, {{params, read}}, kPatches + mode, {mode});
+  const auto params = list.add({"items", scratch, paramBytes});
+
+  list.fill("clear counters", counters, 0);
+  list.fill("clear words", words, 0);
+  list.dispatch("copy", list.add(core::ShaderDesc{"copy", vector_copy}), {{fromHost, read}, {params, write}}, kParams);
+  const auto dispatch = [&](const char* name, const core::ShaderDesc& shader, std::initializer_list<core::Use> uses,
+                            uint32_t groups) -> core::Pass& {
+    core::Pass& pass = list.dispatch(name, list.add(shader), {{params, read}}, groups);
     for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
-    for (const auto table : {patches, curves, paths}) pass.uses[pass.useCount++] = {table, write};
-  }
-  list.dispatch("boxes", list.add(core::ShaderDesc{"boxes", vector_boxes}),
-                {{params, read}, {patches, read}, {boxes, write}}, kGroups);
-  list.dispatch("coarse", list.add(core::ShaderDesc{"coarse", vector_coarse}),
-                {{params, read}, {boxes, read}, {masks, write}}, kCoarse);
-  const std::initializer_list<core::Use> binUses = {{params, read},     {patches, read},         {curves, read},
-                                                    {paths, read},      {masks, read},           {counters, read},
-                                                    {tiles, readWrite}, {pathCounts, readWrite}, {entries, write}};
-  const std::initializer_list<core::Use> scanUses = {
-      {params, read}, {tiles, readWrite}, {pathCounts, read}, {counters, readWrite}};
-  const auto recount = VkDeviceSize(offsetof(CanvasCounters, recountX));
-  list.dispatch("count", bin, binUses, kTiles, {0});
-  list.dispatch("place", scan, scanUses, kOne, {0});
-  list.dispatchIndirect("count by path", bin, binUses, counters, recount, {1});
-  list.dispatch("cut", scan, scanUses, kOne, {1});
-  list.dispatchIndirect("recount", bin, binUses, counters, recount, {2});
-  list.dispatch("place again", scan, scanUses, kOne, {2});
-  list.dispatch("emit", bin, binUses, kTiles, {3});
-  const auto raster = [&](const char* name, std::span<const uint32_t> spirv, uint32_t condition,
-                          core::ResourceIndex target) {
-    core::Pass& pass = list.dispatch(
-        name, list.add(core::ShaderDesc{name, spirv}),
-        {{params, read}, {patches, read}, {curves, read}, {paths, read}, {tiles, read}, {entries, read}, {view, write}},
-        kRaster);
-    if (target != view) pass.uses[pass.useCount++] = {target, write};
-    pass.condition = condition;
+    for (const core::Use& use : uses) pass.uses[pass.useCount++] = use;
+    return pass;
   };
-  raster("raster", vector_raster, kNoImage, view);
-  raster("raster rgba8", vector_raster_rgba8, kHasImage8, image8);
-  raster("raster rgba16f", vector_raster_rgba16, kHasImage16, image16);
+  // Shaders that fetch from drawings come in two forms: one need not choose among drawings at each access.
+  const auto either = [&](const char* name, const char* manyName, std::span<const uint32_t> one,
+                          std::span<const uint32_t> many, std::initializer_list<core::Use> uses, uint32_t groups) {
+    dispatch(name, {name, one}, uses, groups).condition = kOneDrawing;
+    dispatch(manyName, {manyName, many}, uses, groups).condition = kDrawings;
+  };
+  either("place", "place, several drawings", vector_place_one, vector_place,
+         {{paths, readWrite}, {words, readWrite}, {counters, readWrite}}, kPaths);
+  // Before mark, which comes in two forms: a barrier for the one left out would part them.
+  dispatch("bin", {"bin", vector_bin}, {{paths, read}, {counters, read}, {masks, write}}, kBins);
+  const std::span<const uint32_t> mark[] = {vector_mark_one, vector_mark, vector_mark_software_one,
+                                            vector_mark_software};
+  const std::span<const uint32_t> fill[] = {vector_fill_one, vector_fill, vector_fill_software_one,
+                                            vector_fill_software};
+  const size_t form = software_ ? 2 : 0;
+  either("mark", "mark, several drawings", mark[form], mark[form + 1],
+         {{paths, read}, {words, readWrite}, {counters, read}}, kSegments);
+  dispatch("allot", {"allot", vector_allot},
+           {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
+  either("fill", "fill, several drawings", fill[form], fill[form + 1],
+         {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSlices);
+  // By target: the view alone, rgba8, rgba16f.
+  using Spirv = std::span<const uint32_t>;
+  const auto addTarget = [&](core::Pass& pass, uint32_t target, uint32_t condition) {
+    if (target != kNoImage) pass.uses[pass.useCount++] = {target == kHasImage8 ? image8 : image16, write};
+    pass.condition = condition + target;
+  };
+  const auto raster = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition) {
+    for (uint32_t t = 0; t < 3; ++t)
+      addTarget(
+          dispatch(names[t], {names[t], spirv[t]},
+                   {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}},
+                   kRaster),
+          t, condition);
+  };
+  // On software devices: from lists, without barriers.
+  const auto tilesOf = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition,
+                           VkDeviceSize arguments) {
+    for (uint32_t t = 0; t < 3; ++t) {
+      core::Pass& pass = list.dispatchIndirect(
+          names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
+          {{params, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
+          arguments * 4);
+      const uint32_t drawings = condition == kPaints ? kMaxSlots : 1;
+      for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
+      addTarget(pass, t, condition);
+    }
+  };
+  if (software_) {
+    dispatch("sift", {"sift", vector_sift}, {{paths, read}, {words, read}, {masks, readWrite}, {counters, read}},
+             kSift);
+    const std::array<const char*, 3> solid = {"solid tiles", "solid tiles rgba8", "solid tiles rgba16f"};
+    const std::array<Spirv, 3> shaders = {vector_tiles_solid0, vector_tiles_solid1, vector_tiles_solid2};
+    for (uint32_t t = 0; t < 3; ++t)
+      addTarget(dispatch(solid[t], {solid[t], shaders[t]}, {{masks, read}, {view, write}}, kTiles), t, kAny);
+    tilesOf({"raster", "raster rgba8", "raster rgba16f"}, {vector_tiles0, vector_tiles1, vector_tiles2}, kPlain,
+            shader::kPaintedArguments);
+    tilesOf({"raster gradients, several drawings", "raster gradients rgba8, several drawings",
+             "raster gradients rgba16f, several drawings"},
+            {vector_tiles_paints0, vector_tiles_paints1, vector_tiles_paints2}, kPaints, shader::kPaintedArguments);
+    tilesOf({"raster gradients", "raster gradients rgba8", "raster gradients rgba16f"},
+            {vector_tiles_paints_one0, vector_tiles_paints_one1, vector_tiles_paints_one2}, kPaintsOne,
+            shader::kPaintedArguments);
+    tilesOf({"crowded", "crowded rgba8", "crowded rgba16f"}, {vector_crowded0, vector_crowded1, vector_crowded2},
+            kPlain, shader::kCrowdedArguments);
+    tilesOf({"crowded gradients, several drawings", "crowded gradients rgba8, several drawings",
+             "crowded gradients rgba16f, several drawings"},
+            {vector_crowded_paints0, vector_crowded_paints1, vector_crowded_paints2}, kPaints,
+            shader::kCrowdedArguments);
+    tilesOf({"crowded gradients", "crowded gradients rgba8", "crowded gradients rgba16f"},
+            {vector_crowded_paints_one0, vector_crowded_paints_one1, vector_crowded_paints_one2}, kPaintsOne,
+            shader::kCrowdedArguments);
+  } else {
+    raster({"raster", "raster rgba8", "raster rgba16f"}, {vector_raster0, vector_raster1, vector_raster2}, kPlain);
+    raster({"raster gradients, several drawings", "raster gradients rgba8, several drawings",
+            "raster gradients rgba16f, several drawings"},
+           {vector_raster_paints0, vector_raster_paints1, vector_raster_paints2}, kPaints);
+    raster({"raster gradients", "raster gradients rgba8", "raster gradients rgba16f"},
+           {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
+  }
   list.report = counters;
   list.reportBytes = sizeof(CanvasCounters);
   return list;
@@ -168,7 +262,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   SlotRecord slots[kMaxSlots] = {};
   std::byte* itemBytes = constants_.data() + sizeof header + sizeof slots;
   const DrawingAsset* bound[kMaxSlots] = {};
-  uint32_t usedPaths[kMaxSlots] = {}; // of each drawing, by any item
+  uint64_t patchCount = 0;
+  bool gradients = false;
   uint32_t slotCount = 0;
 
   // Items in painting order, each with as many of its first paths as there is room for; after one that did not fit
@@ -182,7 +277,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     while (slot < slotCount && bound[slot] != &drawing) ++slot;
     if (slot == kMaxSlots)
       return makeError(GPGP_ERROR_UNSUPPORTED, "items[%u]: a record draws at most %u different drawings", i, kMaxSlots);
-    const uint32_t room = maxPatches_ - header.patchCount, pathRoom = maxPatches_ - header.pathCount;
+    const uint32_t room = maxPatches_ - static_cast<uint32_t>(patchCount), pathRoom = maxPatches_ - header.pathCount;
     uint32_t paths = full ? 0 : std::min(drawing.paths(), pathRoom);
     if (drawing.first(paths).patches > room) { // the largest number of first paths that fits
       uint32_t low = 0, high = paths;
@@ -199,34 +294,41 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
       bound[slotCount++] = &drawing;
       r.bindings[slot].ownBuffer = drawing.buffer();
       r.bindings[slot].ownSize = drawing.size();
+      slots[slot] = drawing.tables();
+      gradients = gradients || drawing.gradients();
     }
-    usedPaths[slot] = std::max(usedPaths[slot], paths);
     item.opacity = info.items[i].opacity;
     item.slot = slot;
-    item.firstPatch = header.patchCount;
+    item.firstSegment = header.segmentCount;
     item.firstPath = header.pathCount;
-    header.patchCount += drawing.first(paths).patches;
+    header.segmentCount += drawing.first(paths).segments;
+    patchCount += drawing.first(paths).patches;
     header.pathCount += paths;
     std::memcpy(itemBytes + header.itemCount * sizeof item, &item, sizeof item);
     ++header.itemCount;
   }
-  for (uint32_t slot = 0; slot < slotCount; ++slot) {
-    const uint32_t count = bound[slot]->first(usedPaths[slot]).curves;
-    slots[slot] = {header.curveCount, header.curveCount + count, bound[slot]->patchWords(), bound[slot]->pathWords()};
-    header.curveCount += count;
-  }
 
+  header.patchCount = static_cast<uint32_t>(patchCount);
   header.width = info.width;
   header.height = info.height;
   header.tilesX = divide(info.width, shader::kTileSize);
   header.tilesY = divide(info.height, shader::kTileSize);
-  header.coarseX = divide(info.width, shader::kCoarseSize);
-  header.coarseCount = header.coarseX * divide(info.height, shader::kCoarseSize);
-  header.groupCount = divide(header.patchCount, shader::kPatchGroup);
-  header.groupWords = divide(header.groupCount, 32);
+  header.binsX = divide(info.width, shader::kBinSize);
+  header.binCount = header.binsX * divide(info.height, shader::kBinSize);
+  header.pathWords = divide(header.pathCount, 32);
+  header.wordLimit = maxWords_;
   header.entryLimit = maxEntries_;
   header.samples = info.samples ? info.samples : 16;
-  header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0);
+  header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
+                 (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
+  // Few segments are dealt out to many workgroups, which then each wait for less; many are better taken together.
+  const uint32_t perGroup = software_                      ? 64
+                            : header.segmentCount < 16384  ? 4
+                            : header.segmentCount < 131072 ? 8
+                            : header.segmentCount < 400000 ? 16
+                                                           : shader::kMostSegments;
+  header.groupSegments = perGroup;
+  header.listWords = listWords();
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
   std::memcpy(constants_.data(), &header, sizeof header);
   std::memcpy(constants_.data() + sizeof header, slots, sizeof slots);
@@ -239,17 +341,25 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   const bool wide = info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT;
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
-  r.conditions[kNoImage] = !info.target.view;
-  r.conditions[kHasImage8] = info.target.view && !wide;
-  r.conditions[kHasImage16] = info.target.view && wide;
-  r.groups[kPatches] = {divide(header.patchCount, 64), 1, 1};
-  r.groups[kCurves] = {divide(header.curveCount, 64), 1, 1};
-  r.groups[kPaths] = {divide(header.pathCount, 64), 1, 1};
-  r.groups[kGroups] = {header.groupCount, 1, 1};
-  r.groups[kCoarse] = {divide(uint64_t(header.coarseCount) * header.groupWords, 64), 1, 1};
-  r.groups[kTiles] = {header.tilesX, header.tilesY, 1};
-  r.groups[kOne] = {1, 1, 1};
-  r.groups[kRaster] = {header.tilesX, header.tilesY, std::max(header.samples / 4, 1u)};
+  r.conditions[slotCount > 1 ? kDrawings : kOneDrawing] = true;
+  const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
+  r.conditions[(!gradients ? kPlain : slotCount > 1 ? kPaints : kPaintsOne) + image] = true;
+  r.conditions[kAny + image] = true;
+  r.groups[kPaths] = rows(divide(header.pathCount, 64));
+  r.groups[kParams] = {divide(r.constants.size(), 64 * 16), 1, 1};
+  r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
+  // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops; else,
+  // where there are few segments, more workgroups share each one's rows.
+  const uint32_t few = 4096 / std::max(divide(header.segmentCount, perGroup), 1u);
+  if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
+  r.groups[kSlices] = r.groups[kSegments];
+  if (!software_) r.groups[kSlices][2] = std::clamp(few, 1u, 16u);
+  r.groups[kBins] =
+      rows(divide(std::max(uint64_t(header.binCount) * header.pathWords, uint64_t(shader::kFirstBin)), 64));
+  r.groups[kWords] = {std::min(256u, divide(maxWords_, 64)), 1, 1};
+  r.groups[kTiles] = rows(divide(uint64_t(header.tilesX) * header.tilesY, 8));
+  r.groups[kSift] = {divide(uint64_t(header.binCount) * (shader::kBinSize / shader::kTileSize), 64), 1, 1};
+  r.groups[kRaster] = {divide(info.width, 16), divide(info.height, 16), 1};
   if (auto ok = check(r); !ok) return ok;
   if (auto ok = record(r); !ok) return ok;
   if (view) {
@@ -289,8 +399,8 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   if (raw.header.status == GPGP_SUCCESS) std::memcpy(&counters, raw.words.data(), sizeof counters);
   report.base = raw.header;
   report.patches = counters.patches;
-  report.tileEntries = counters.needed;
-  report.tileEntriesGiven = counters.given;
+  report.tileEntries = counters.entries;
+  report.tileEntriesGiven = counters.entriesGiven;
   report.pathsDropped = counters.pathsDropped;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   return true;

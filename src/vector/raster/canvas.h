@@ -1,9 +1,9 @@
 // The canvas: drawings to pixels in one record.
 //
-// gather -> boxes -> coarse (which groups of 64 patches may touch a tile of 128 pixels) -> bin (which patches touch a
-// tile of 16 pixels, and which of their curves pass through it) -> raster (samples). Lists are in painting order by
-// construction. Where the lists do not fit, the last paths are left out whole and the lists are made again, all on
-// the GPU.
+// place (paths' boxes) -> mark (which tiles each path's boundary meets, which lie inside) and bin (which paths may
+// touch a square of 128 pixels) -> allot (room for the tiles with edges) -> fill (what boundaries do to their pixels)
+// -> raster (front to back). Lists need no sorting: paths are bits in painting order. Where room does not suffice, the
+// last paths are left out whole, on the GPU.
 #pragma once
 #include "core/worker.h"
 #include "vector/raster/drawing_asset.h"
@@ -26,9 +26,12 @@ public:
 
 private:
   core::PassList describe() const;
+  uint64_t tiles() const;
+  uint32_t listWords() const; ///< of a tile's list on software devices
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const;
 
-  const uint32_t maxWidth_, maxHeight_, maxPatches_, maxEntries_, maxDrawings_;
+  const uint32_t maxWidth_, maxHeight_, maxPatches_, maxEntries_, maxWords_, maxDrawings_;
+  const bool software_;                   ///< the device has shaders without barriers
   std::pmr::vector<std::byte> constants_; // room for one record's
   std::pmr::vector<DrawingAsset*> drawings_;
 };

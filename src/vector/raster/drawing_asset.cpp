@@ -9,24 +9,27 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
                                                               const Drawing& drawing) {
   auto asset = core::makeUnique<DrawingAsset>(context.host(), context, label);
   asset->curves_ = static_cast<uint32_t>(drawing.curves.size());
+  const Outlines outlines = makeOutlines(drawing, &context.host());
   asset->ends_.assign(drawing.paths.size(), Ends{});
-  for (const PatchRecord& patch : drawing.patches) {
-    Ends& ends = asset->ends_[patch.path];
-    ++ends.patches;
-    ends.curves = std::max(ends.curves, std::max(patch.left, patch.right) + 1);
-  }
-  for (size_t i = 1; i < asset->ends_.size(); ++i) {
-    asset->ends_[i].patches += asset->ends_[i - 1].patches;
-    asset->ends_[i].curves = std::max(asset->ends_[i].curves, asset->ends_[i - 1].curves);
+  for (const PatchRecord& patch : drawing.patches) ++asset->ends_[patch.path].patches;
+  for (size_t i = 0; i < asset->ends_.size(); ++i) {
+    if (i) asset->ends_[i].patches += asset->ends_[i - 1].patches;
+    asset->ends_[i].segments = outlines.ends[i];
   }
   std::copy_n(drawing.bounds, 4, asset->bounds_);
   std::copy_n(drawing.viewport, 4, asset->viewport_);
-  const auto curves = std::as_bytes(std::span(drawing.curves));
-  const auto patches = std::as_bytes(std::span(drawing.patches));
-  const auto paths = std::as_bytes(std::span(drawing.paths));
   std::pmr::vector<std::byte> bytes(&context.host());
-  bytes.reserve(curves.size() + patches.size() + paths.size());
-  for (const auto part : {curves, patches, paths}) bytes.insert(bytes.end(), part.begin(), part.end());
+  const auto add = [&bytes](const auto& records) { // returns where, in vec4
+    const auto part = std::as_bytes(std::span(records));
+    const size_t at = bytes.size() / sizeof(shader::vec4);
+    bytes.insert(bytes.end(), part.begin(), part.end());
+    return static_cast<uint32_t>(at);
+  };
+  add(outlines.segments);
+  asset->tables_.boxes = add(outlines.boxes);
+  asset->tables_.paths = add(drawing.paths);
+  asset->tables_.paints = add(drawing.paints);
+  asset->tables_.stops = add(drawing.stops);
   if (bytes.size() > context.device.limits.maxStorageBufferRange)
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
                            bytes.size(), context.device.limits.maxStorageBufferRange);

@@ -1,11 +1,11 @@
 // Drawings and canvas views as the engine holds them: one device buffer each, resident after upload.
 #pragma once
 #include "core/resident.h"
-#include "vector/patch/drawing.h"
+#include "vector/raster/segments.h"
 
 namespace gpgp::vector {
 
-/// A drawing's three tables in one buffer: curves, patches, paths.
+/// A drawing's tables in one buffer: segments, boxes of paths, paths, paints, stops.
 class DrawingAsset final : public core::Resident {
 public:
   static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label,
@@ -13,22 +13,23 @@ public:
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), ends_(&owner.host()) {}
 
-  /// How many patches and curves the first n paths use: what decides how many paths fit a budget.
+  /// How many patches and segments the first n paths have: what decides how many paths fit a budget.
   struct Ends {
-    uint32_t patches, curves;
+    uint32_t patches, segments;
   };
   Ends first(size_t paths) const { return paths ? ends_[paths - 1] : Ends{}; }
   uint32_t paths() const { return static_cast<uint32_t>(ends_.size()); }
   uint32_t curves() const { return curves_; }
   uint32_t patches() const { return first(paths()).patches; }
-  uint32_t patchWords() const { return curves_ * uint32_t(sizeof(CurveRecord) / 4); }
-  uint32_t pathWords() const { return patchWords() + patches() * uint32_t(sizeof(PatchRecord) / 4); }
+  const shader::SlotRecord& tables() const { return tables_; }
+  bool gradients() const { return tables_.stops > tables_.paints; }
   const float* bounds() const { return bounds_; }
   const float* viewport() const { return viewport_; }
 
 private:
   std::pmr::vector<Ends> ends_; // by path, running
   uint32_t curves_ = 0;
+  shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};
 };
 

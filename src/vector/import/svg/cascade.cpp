@@ -1,5 +1,5 @@
 // What an element looks like: presentation attributes, then style sheets, then the style attribute, then what is
-// important (CSS Cascade 4); and the colour a paint comes to.
+// important (CSS Cascade 4); and what a paint comes to.
 #include "vector/import/svg/importer.h"
 
 #include <algorithm>
@@ -42,11 +42,11 @@ void Importer::cascade(pugi::xml_node node, std::string_view name, const Style& 
     if (s.name != "font-size") apply(s);
 }
 
-std::optional<Color> Importer::resolve(const Paint& paint, const Style& style, pugi::xml_node node,
-                                       const char* property) {
-  const auto plain = [&](Paint::Kind kind) -> std::optional<Color> {
-    if (kind == Paint::Kind::Solid) return paint.color;
-    if (kind == Paint::Kind::Current) return style.color;
+std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& state, const Shape& shape,
+                                               pugi::xml_node node, const char* property) {
+  const auto plain = [&](Paint::Kind kind) -> std::optional<Ink> {
+    if (kind == Paint::Kind::Solid) return Ink{paint.color, nullptr};
+    if (kind == Paint::Kind::Current) return Ink{state.style.color, nullptr};
     return std::nullopt;
   };
   if (paint.kind != Paint::Kind::Reference) return plain(paint.kind);
@@ -55,14 +55,9 @@ std::optional<Color> Importer::resolve(const Paint& paint, const Style& style, p
   const std::string who = element(node) + " " + property;
   const std::string instead = paint.hasFallback ? "its fallback is used" : "it is not painted";
   if (name == "linearGradient" || name == "radialGradient") {
-    const auto known = averages_.find(target.hash_value());
-    const std::optional<Color> average =
-        known != averages_.end() ? known->second : (averages_[target.hash_value()] = averageOfStops(target, style));
-    if (average) {
-      reporter_.warn(document_.line(node), std::string("gradient approximated by its average colour: ") + who);
-      return average;
-    }
-    reporter_.warn(document_.line(node), who + " refers to a gradient without stops; " + instead);
+    if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
+      return Ink{{0, 0, 0, 1}, std::move(gradient)};
+    reporter_.warn(document_.line(node), who + " refers to a gradient without stops or extent; " + instead);
     return plain(paint.fallback);
   }
   const std::string shown = std::string("'") + paint.reference.substr(0, 60) + "'";
@@ -72,46 +67,6 @@ std::optional<Color> Importer::resolve(const Paint& paint, const Style& style, p
     reporter_.warn(document_.line(node),
                    who + " refers to a <" + std::string(name.substr(0, 40)) + ">, which is not supported; " + instead);
   return plain(paint.fallback);
-}
-
-/// The mean over the gradient's length, of premultiplied linear light, so that a transparent end takes nothing along.
-std::optional<Color> Importer::averageOfStops(pugi::xml_node gradient, const Style& style) {
-  std::vector<std::pair<double, Color>> stops; // linear, premultiplied
-  for (int hops = 0; gradient && hops < 32 && stops.empty(); ++hops) {
-    for (const pugi::xml_node child : gradient.children()) {
-      if (document_.name(child) != "stop") continue;
-      if (++steps_ > limits_.points) return std::nullopt;
-      Style own = style.inherited();
-      cascade(child, "stop", style, {}, own);
-      double offset = 0;
-      Scanner s(trim(child.attribute("offset").value()));
-      if (s.number(offset) && s.take("%")) offset /= 100;
-      offset = std::clamp(offset, stops.empty() ? 0.0 : stops.back().first, 1.0);
-      const Color c = own.stopIsCurrent ? own.color : own.stopColor;
-      const double alpha = c.a * own.stopOpacity;
-      stops.push_back(
-          {offset, {linearFromSrgb(c.r) * alpha, linearFromSrgb(c.g) * alpha, linearFromSrgb(c.b) * alpha, alpha}});
-    }
-    gradient = document_.find(hrefOf(gradient).value());
-  }
-  if (stops.empty()) return std::nullopt;
-  Color sum{0, 0, 0, 0};
-  const auto add = [&sum](double weight, const Color& c) {
-    sum = {sum.r + weight * c.r, sum.g + weight * c.g, sum.b + weight * c.b, sum.a + weight * c.a};
-  };
-  add(stops.front().first, stops.front().second);
-  add(1 - stops.back().first, stops.back().second);
-  for (size_t i = 0; i + 1 < stops.size(); ++i) {
-    const double half = (stops[i + 1].first - stops[i].first) / 2;
-    add(half, stops[i].second);
-    add(half, stops[i + 1].second);
-  }
-  if (!(sum.a > 0)) return Color{0, 0, 0, 0};
-  const auto srgb = [&sum](double v) {
-    v = std::clamp(v / sum.a, 0.0, 1.0);
-    return v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-  };
-  return Color{srgb(sum.r), srgb(sum.g), srgb(sum.b), std::min(sum.a, 1.0)};
 }
 
 } // namespace gpgp::vector::svg

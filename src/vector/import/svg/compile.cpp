@@ -2,6 +2,7 @@
 #include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 
@@ -13,6 +14,11 @@ using vector::svg::Reporter;
 GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& reporter) {
   const auto fail = [&reporter](GpgpResult code, const char* text) { return reporter.error(text, code), code; };
   if (!source.data && source.size) return fail(GPGP_ERROR_INVALID_ARGUMENT, "data is NULL, size is not 0");
+  using Clock = std::chrono::steady_clock;
+  const auto milliseconds = [](Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+  };
+  const auto begin = Clock::now();
   const auto imported =
       vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter);
   if (!imported) return fail(imported.error().code, imported.error().text);
@@ -20,7 +26,9 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   std::vector<GpgpPath> paths;
   paths.reserve(imported->paths.size());
   for (const auto& path : imported->paths) paths.push_back(path.view());
-  auto drawing = vector::makeDrawing(paths, memory);
+  const auto parsed = Clock::now();
+  auto drawing = vector::makeDrawing(paths, memory, source.jobSystem);
+  const auto converted = Clock::now();
   if (!drawing) return fail(drawing.error().code, drawing.error().text);
   if (imported->width > vector::kMaxCoordinate || imported->height > vector::kMaxCoordinate)
     return fail(GPGP_ERROR_INVALID_DATA, "the page is wider or taller than 1e7 pixels");
@@ -33,6 +41,20 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   if (!made.data) return fail(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
   std::memcpy(made.data, bytes.data(), made.size);
   blob = made;
+  if (source.report)
+    *source.report = {static_cast<uint32_t>(drawing->paths.size()), static_cast<uint32_t>(drawing->curves.size()),
+                      static_cast<uint32_t>(drawing->patches.size()),
+                      milliseconds(begin, parsed) - imported->strokeMilliseconds,
+                      milliseconds(parsed, converted) + imported->strokeMilliseconds};
+  if (source.stageFn) {
+    const auto show = [&source](const char* stage, const std::pmr::string& svg) {
+      source.stageFn(source.stageUserData, stage, svg.data(), svg.size());
+    };
+    show("paths", vector::pathsToSvg(paths, memory));
+    show("pieces", vector::piecesToSvg(paths, memory));
+    show("crossings", vector::crossingsToSvg(paths, memory));
+    show("patches", vector::patchesToSvg(*drawing, memory));
+  }
   return GPGP_SUCCESS;
 }
 } // namespace

@@ -2,13 +2,14 @@
 //
 // Supported: path, rect, circle, ellipse, line, polyline, polygon, g, a, svg (nested too), use, symbol, switch;
 // transforms; fill, stroke with joins, caps and dashes (made into fills), opacities, colours, style sheets with simple
-// selectors. Gradients become the average of their stops, and what is not supported is named with its line while the
-// rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and a limit that is met is said.
+// selectors; linear and radial gradients. What is not supported is named with its line while the rest is drawn. Any
+// bytes are safe: depth, copies, points and messages are limited, and a limit that is met is said.
 #pragma once
 #include "core/result.h"
-#include "vector/import/svg/outline.h"
+#include "vector/geometry/shape.h"
 #include "vector/import/svg/reporter.h"
 
+#include <memory>
 #include <span>
 #include <string>
 
@@ -26,23 +27,34 @@ struct ImportLimits {
   size_t matches = 20'000'000; ///< style selectors and declarations looked at
 };
 
+struct Gradient {
+  GpgpGradient gradient{}; ///< its stops are the ones beside it
+  std::vector<GpgpGradientStop> stops;
+};
+
 struct ImportedPath {
   std::vector<GpgpPathVerb> verbs;
   std::vector<float> points; ///< x, y pairs in pixels of the page
   GpgpFillRule rule = GPGP_FILL_NON_ZERO;
-  float color[4] = {}; ///< linear RGB, straight alpha
-  size_t line = 1;     ///< of the element it comes from
+  float color[4] = {};                      ///< linear RGB, straight alpha
+  std::shared_ptr<const Gradient> gradient; ///< instead of the colour, whose alpha still counts
+  size_t line = 1;                          ///< of the element it comes from
 
   GpgpPath view() const {
-    return {verbs.data(),  static_cast<uint32_t>(verbs.size()),
-            points.data(), static_cast<uint32_t>(points.size() / 2),
-            rule,          {color[0], color[1], color[2], color[3]}};
+    return {verbs.data(),
+            static_cast<uint32_t>(verbs.size()),
+            points.data(),
+            static_cast<uint32_t>(points.size() / 2),
+            rule,
+            {color[0], color[1], color[2], color[3]},
+            gradient ? &gradient->gradient : nullptr};
   }
 };
 
 struct Imported {
   std::vector<ImportedPath> paths; ///< in painting order
   double width = 0, height = 0;    ///< of the page in pixels; 0: the file does not say
+  double strokeMilliseconds = 0;   ///< of the time that importing took, on making strokes into fills
 };
 
 /// Errors where the bytes are no SVG at all; everything milder goes to the reporter.

@@ -2,6 +2,7 @@
 #include "vector/import/svg/importer.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -248,17 +249,17 @@ void Importer::draw(pugi::xml_node node, std::string_view name, const State& sta
   if (shape.empty()) return;
   const auto fill = [&] {
     if (shape.points.size() < 3) return;
-    const std::optional<Color> color = resolve(style.fill, style, node, "fill");
-    if (color) emit(shape, state.transform, style.fillRule, *color, style.fillOpacity * state.opacity, node);
+    const std::optional<Ink> ink = resolve(style.fill, state, shape, node, "fill");
+    if (ink) emit(shape, state.transform, style.fillRule, *ink, style.fillOpacity * state.opacity, node);
   };
   if (!style.strokeFirst) fill();
   if (style.strokeWidth > 0)
-    if (const std::optional<Color> color = resolve(style.stroke, style, node, "stroke"))
-      stroke(shape, state, *color, node);
+    if (const std::optional<Ink> ink = resolve(style.stroke, state, shape, node, "stroke"))
+      stroke(shape, state, *ink, node);
   if (style.strokeFirst) fill();
 }
 
-void Importer::stroke(const Shape& shape, const State& state, const Color& color, pugi::xml_node node) {
+void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pugi::xml_node node) {
   const Style& style = state.style;
   Affine transform = state.transform;
   Shape moved;
@@ -281,23 +282,27 @@ void Importer::stroke(const Shape& shape, const State& state, const Color& color
   StrokeStyle s{style.strokeWidth, style.cap, style.join, style.miterLimit, style.dashes, style.dashOffset};
   Shape area;
   const double tolerance = kTolerance / scale;
+  const auto begin = std::chrono::steady_clock::now();
   bool done = strokeShape(from, s, tolerance, {}, area);
   if (!done && !s.dashes.empty()) {
     reporter_.error(document_.line(node), element(node) + " has too many dashes; drawn without",
                     GPGP_ERROR_UNSUPPORTED);
-    s.dashes.clear();
+    s.dashes = {};
     done = strokeShape(from, s, tolerance, {}, area);
   }
+  result_.strokeMilliseconds +=
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (!done) {
     reporter_.error(document_.line(node), element(node) + " has a stroke of too many points; not drawn",
                     GPGP_ERROR_UNSUPPORTED);
     return;
   }
-  emit(area, transform, GPGP_FILL_NON_ZERO, color, style.strokeOpacity * state.opacity, node);
+  emit(area, transform, GPGP_FILL_NON_ZERO, ink, style.strokeOpacity * state.opacity, node);
 }
 
-void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Color& color, double opacity,
+void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Ink& ink, double opacity,
                     pugi::xml_node node) {
+  const Color& color = ink.color;
   const double alpha = color.a * opacity;
   if (shape.empty() || !(alpha > 0)) return;
   points_ += shape.points.size() + shape.verbs.size();
@@ -316,8 +321,9 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
     path.points.push_back(static_cast<float>(q.x));
     path.points.push_back(static_cast<float>(q.y));
   }
-  path.verbs = shape.verbs;
+  path.verbs.assign(shape.verbs.begin(), shape.verbs.end());
   path.rule = rule;
+  path.gradient = ink.gradient;
   path.line = document_.line(node);
   const double linear[4] = {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b), alpha};
   for (size_t i = 0; i < 4; ++i) path.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));

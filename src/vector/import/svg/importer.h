@@ -39,9 +39,14 @@ private:
   void visitSwitch(pugi::xml_node node, const State& state);
   void visitViewport(pugi::xml_node node, State& state, const double* useSize);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
-  void emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Color& color, double opacity,
+  /// What a paint property comes to.
+  struct Ink {
+    Color color;
+    std::shared_ptr<const Gradient> gradient;
+  };
+  void emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Ink& ink, double opacity,
             pugi::xml_node node);
-  void stroke(const Shape& shape, const State& state, const Color& color, pugi::xml_node node);
+  void stroke(const Shape& shape, const State& state, const Ink& ink, pugi::xml_node node);
   void reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style);
   bool stopped(pugi::xml_node node);
   void stop(pugi::xml_node node, const std::string& why);
@@ -54,8 +59,14 @@ private:
   // cascade.cpp
   void cascade(pugi::xml_node node, std::string_view name, const Style& parent, const LengthContext& lengths,
                Style& style);
-  std::optional<Color> resolve(const Paint& paint, const Style& style, pugi::xml_node node, const char* property);
-  std::optional<Color> averageOfStops(pugi::xml_node gradient, const Style& style);
+  std::optional<Ink> resolve(const Paint& paint, const State& state, const Shape& shape, pugi::xml_node node,
+                             const char* property);
+
+  // gradient.cpp
+  pugi::xml_attribute gradientAttribute(pugi::xml_node gradient, const char* name) const;
+  std::vector<GpgpGradientStop> gradientStops(pugi::xml_node gradient, const Style& style);
+  /// Nothing where it has no stops, or no box to be measured by.
+  std::shared_ptr<const Gradient> gradientOf(pugi::xml_node node, bool radial, const State& state, const Shape& shape);
 
   std::string element(pugi::xml_node node) const;
 
@@ -64,8 +75,7 @@ private:
   const ImportLimits& limits_;
   StyleSheet sheet_;
   Imported result_;
-  std::vector<pugi::xml_node> used_;                          // the <use> targets we are inside of
-  std::unordered_map<size_t, std::optional<Color>> averages_; // by element
+  std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
   bool stopped_ = false;
 };

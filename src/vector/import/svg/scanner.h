@@ -2,7 +2,7 @@
 //
 // Any bytes are fine as input; what does not follow the grammar stops the scan and is reported by its offset.
 #pragma once
-#include "vector/import/svg/outline.h"
+#include "vector/geometry/shape.h"
 
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 // Presentation properties: what an element looks like, from its parent, its attributes and the style sheets.
 #pragma once
+#include "vector/geometry/stroke.h"
 #include "vector/import/svg/scanner.h"
-#include "vector/import/svg/stroke.h"
 
 #include <string>
 #include <string_view>

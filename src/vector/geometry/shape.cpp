@@ -1,12 +1,12 @@
 // Arcs, rectangles and ellipses as cubics. The usual cubic for an arc of angle a is off by r 2.73e-4 (a / 90 deg)^6,
 // so the number of pieces follows from the tolerance.
-#include "vector/import/svg/outline.h"
+#include "vector/geometry/shape.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace gpgp::vector::svg {
+namespace gpgp::vector {
 
 double Affine::scale() const {
   const double p = std::hypot(a - d, b + c), q = std::hypot(a + d, b - c);
@@ -103,4 +103,4 @@ Shape ellipse(double cx, double cy, double rx, double ry, double tolerance) {
   return s;
 }
 
-} // namespace gpgp::vector::svg
+} // namespace gpgp::vector

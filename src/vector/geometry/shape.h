@@ -1,12 +1,13 @@
-// Paths in double precision and the maps between spaces: what all files of the importer share.
+// Paths in double precision and the maps between spaces: what strokes, importers and the path builder share.
 #pragma once
 #include "vector/geometry/curve.h"
 
 #include <gpgp/vector.h>
 
+#include <memory_resource>
 #include <vector>
 
-namespace gpgp::vector::svg {
+namespace gpgp::vector {
 
 /// x' = a x + c y + e, y' = b x + d y + f: the order of SVG's matrix().
 struct Affine {
@@ -22,8 +23,10 @@ Affine operator*(const Affine& outer, const Affine& inner);
 
 /// Contours as verbs and points. Every contour begins with a MOVE, also those that follow a CLOSE.
 struct Shape {
-  std::vector<GpgpPathVerb> verbs;
-  std::vector<Point> points;
+  explicit Shape(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : verbs(memory), points(memory) {}
+  std::pmr::vector<GpgpPathVerb> verbs;
+  std::pmr::vector<Point> points;
 
   bool empty() const { return verbs.empty(); }
   void move(Point p) { add(GPGP_PATH_MOVE, p); }
@@ -57,4 +60,4 @@ void appendSvgArc(Shape& shape, Point from, double rx, double ry, double degrees
 Shape rectangle(double x, double y, double width, double height, double rx, double ry, double tolerance);
 Shape ellipse(double cx, double cy, double rx, double ry, double tolerance);
 
-} // namespace gpgp::vector::svg
+} // namespace gpgp::vector

@@ -1,8 +1,10 @@
-// Strokes as filled shapes.
+// Strokes as filled shapes (SVG 2, 13.5 and 13.7).
 #pragma once
-#include "vector/import/svg/outline.h"
+#include "vector/geometry/shape.h"
 
-namespace gpgp::vector::svg {
+#include <span>
+
+namespace gpgp::vector {
 
 enum class Cap { Butt, Round, Square };
 enum class Join { Miter, Round, Bevel };
@@ -12,7 +14,7 @@ struct StrokeStyle {
   Cap cap = Cap::Butt;
   Join join = Join::Miter;
   double miterLimit = 4;
-  std::vector<double> dashes; ///< even count, none negative, sum positive; or empty: no dashes
+  std::span<const double> dashes; ///< even count, none negative, sum positive; or empty: no dashes
   double dashOffset = 0;
 };
 
@@ -22,10 +24,10 @@ struct StrokeLimits {
   size_t dashes = size_t(1) << 16;
 };
 
-/// The area a stroke covers, to be filled non-zero; overlaps never show because every part turns the same way.
-/// Curves become lines off by less than `tolerance`, round joins and caps stay curves. Returns false, with nothing
-/// appended, where the limits are exceeded.
+/// Appends the area that a stroke covers, to be filled non-zero; overlaps never show because every part turns the same
+/// way. The outline is off by less than `tolerance`. Memory comes from where the result has its own. False, with
+/// nothing appended, where the limits are exceeded.
 bool strokeShape(const Shape& shape, const StrokeStyle& style, double tolerance, const StrokeLimits& limits,
                  Shape& result);
 
-} // namespace gpgp::vector::svg
+} // namespace gpgp::vector

@@ -1,0 +1,68 @@
+#version 460
+// Gives each tile with edges an entry, and clears it.
+//
+// Entries are taken in any order. Where they do not suffice, the workgroup that finishes last deals them out again in
+// painting order, and from the first path that does not fit on all are left out.
+#extension GL_GOOGLE_include_directive : require
+#define SHARING coherent
+#include "canvas.glsl"
+layout(local_size_x = 64) in;
+#include "scan.glsl"
+layout(set = 0, binding = 15, std430) coherent buffer Entries { uvec4 entries[]; };
+shared uint start;
+shared bool last;
+
+void clearEntries(uint lane, uint first, uint count) {
+  const uvec4 none = uvec4(0);
+  for (uint i = lane; i < count * (kEntryWords / 4); i += 64) entries[first * (kEntryWords / 4) + i] = none;
+}
+
+void main() {
+  const uint lane = gl_LocalInvocationID.x;
+  const uint total = min(counters.words, header.wordLimit);
+  for (uint first = gl_WorkGroupID.x * 64; first < total; first += gl_NumWorkGroups.x * 64) {
+    const uint i = first + lane;
+    const uint count = i < total ? bitCount(words[i].edges) : 0;
+    const uint end = scan(lane, count);
+    if (lane == 63) start = atomicAdd(counters.entries, end);
+    barrier();
+    if (i < total) words[i].firstEntry = start + end - count;
+    const uint sum = scanTotal();
+    if (start <= header.entryLimit && sum <= header.entryLimit - start) clearEntries(lane, start, sum);
+  }
+  memoryBarrierBuffer();
+  barrier();
+  if (lane == 0) last = atomicAdd(counters.allotted, 1) + 1 == gl_NumWorkGroups.x;
+  barrier();
+  if (!last) return;
+  memoryBarrierBuffer();
+  if (counters.entries <= header.entryLimit) return;
+  const uint pathEnd = counters.cutPath;
+  uint cut = pathEnd, used = 0;
+  for (uint first = 0; first < pathEnd && cut == pathEnd; first += 64) {
+    const uint path = first + lane;
+    uint count = 0, wordCount = 0, firstWord = 0;
+    if (path < pathEnd) {
+      const PlacedPath p = paths[path];
+      firstWord = p.firstWord;
+      wordCount = wordsInRow(p) * (p.bottom - p.top);
+      for (uint w = 0; w < wordCount; ++w) count += bitCount(words[firstWord + w].edges);
+    }
+    const uint end = add(used, scan(lane, count));
+    const uint fits = countLanes(lane, end <= header.entryLimit);
+    if (lane < fits) {
+      uint next = end - count;
+      for (uint w = 0; w < wordCount; ++w) {
+        words[firstWord + w].firstEntry = next;
+        next += bitCount(words[firstWord + w].edges);
+      }
+    }
+    if (fits < 64) cut = min(cut, first + fits);
+    used = add(used, scanTotal());
+  }
+  clearEntries(lane, 0, header.entryLimit);
+  if (lane == 0) {
+    counters.cutPath = cut;
+    counters.pathsDropped = header.pathsDropped + header.pathCount - cut;
+  }
+}

@@ -1,0 +1,144 @@
+// One pixel painted front to back, and what is written of it.
+//
+// A pixel keeps which of its samples are still open, and how much light each still lets through where something
+// translucent lies in front, and stops when none is left. Every sample is thus composited by itself: neither cuts
+// inside a path nor edges shared by two paths let anything through. The first edge that a pixel meets counts by its
+// area; what lies behind is scaled to what that leaves.
+// PAINTS: whether there are gradients. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if
+// one is given).
+#include "color.glsl"
+#if PAINTS
+#include "paint.glsl"
+#endif
+layout(set = 0, binding = 15, std430) readonly buffer Entries { uvec4 entries[]; };
+layout(set = 0, binding = 8, std430) writeonly buffer View { uvec2 view[]; };
+#if TARGET == 1
+layout(set = 0, binding = 9, rgba8) uniform writeonly image2D image;
+#elif TARGET == 2
+layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D image;
+#endif
+
+uint all;        // samples
+float share;     // of one sample
+bool first;      // no edge so far, and area counts
+bool soft;       // something translucent so far
+uint alive;
+float scale;
+float gap; // light past the first edge where its samples say that none is left: the next path's that is there
+float through[16];
+vec4 sum;
+
+void beginPixel() {
+  all = (1u << header.samples) - 1;
+  share = 1.0 / float(header.samples);
+  first = (header.flags & kExactArea) != 0;
+  soft = false;
+  alive = all;
+  scale = 1.0;
+  gap = 0;
+  for (uint k = 0; k < 16; ++k) through[k] = 1.0;
+  sum = vec4(0);
+}
+bool pixelOpen() { return alive != 0 || gap > 0; }
+
+vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
+  if (color.a <= 0) return color;
+  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
+  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
+}
+
+// What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
+uint coverageOf(PlacedPath p, uvec2 tile) {
+  if (tile.x < p.left || tile.x >= p.right || tile.y < p.top || tile.y >= p.bottom) return 0;
+  const uint bit = tile.x - p.left;
+  const TileWord w = words[p.firstWord + (tile.y - p.top) * wordsInRow(p) + bit / 32];
+  const uint inside = w.inside >> (bit & 31) & 1, mask = 1u << (bit & 31);
+  return (w.edges & mask) == 0 ? inside : (w.firstEntry + bitCount(w.edges & (mask - 1))) * 4 + 2 + inside;
+}
+
+// Samples of pixel x of a tile's row that change sides at or left of it.
+uint foldRow(uvec4 row, uint x) {
+  const uint lower = (x & 1) != 0 ? ~0u : 0xffffu; // of the pair that the pixel is in
+  uint sum = row.x & (x < 2 ? lower : ~0u);
+  sum ^= row.y & (x < 2 ? 0 : x < 4 ? lower : ~0u);
+  sum ^= row.z & (x < 4 ? 0 : x < 6 ? lower : ~0u);
+  sum ^= row.w & (x < 6 ? 0 : lower);
+  return (sum ^ sum >> 16) & 0xffffu;
+}
+
+int differenceAt(uvec4 row, uint x) {
+  const uint pair = x < 4 ? (x < 2 ? row.x : row.y) : (x < 6 ? row.z : row.w);
+  const int low = int(pair << 16) >> 16;
+  return (x & 1) != 0 ? (int(pair) - low) >> 16 : low;
+}
+
+// A path over pixel `at` of the tile and `pixel` of the canvas; `paint` is its item and its paint.
+void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec2 paint) {
+  uint mask = all;
+  int difference = 0;
+  if (code > 1) {
+    const uint row = (code >> 2) * (kEntryWords / 4) + at.y;
+    mask = foldRow(entries[row], at.x) ^ ((code & 1) != 0 ? all : 0);
+    if (first || gap > 0) difference = differenceAt(entries[row + kEntryWords / 8], at.x);
+    if (mask == 0 && (first ? difference == 0 : gap * float(difference) <= 0)) return;
+  }
+#if PAINTS
+  if (paint.y != 0) {
+    const ItemRecord item = items[paint.x];
+    const vec2 middle = vec2(pixel) + 0.5;
+    source *= gradientAt(item.slot, paint.y - 1,
+                         item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy);
+  }
+#endif
+  float weight;
+  if (first && (mask != all || difference != 0)) {
+    first = false;
+    // All before covered the pixel evenly, so one sample speaks for all.
+    const float covered = float(bitCount(mask)) * share;
+    const float area = clamp(covered + float(difference) * share * (1.0 / 256.0), 0.0, 1.0);
+    const float left = 1.0 - source.a * covered;
+    weight = through[0] * area;
+    if (left > 0) scale = (1.0 - source.a * area) / left;
+    else gap = through[0] - weight;
+  } else {
+    const uint hit = mask & alive;
+    weight = float(bitCount(hit));
+    if (soft) {
+      weight = 0;
+      for (uint k = 0; k < 16; ++k) weight += (hit >> k & 1) != 0 ? through[k] : 0.0;
+    }
+    weight = weight * share * scale + gap;
+    gap *= 1.0 - source.a;
+  }
+  sum += source * weight;
+  if (source.a >= 1.0) {
+    alive &= ~mask;
+  } else {
+    soft = true;
+    const float keep = 1.0 - source.a;
+    for (uint k = 0; k < 16; ++k)
+      if ((mask >> k & 1) != 0) through[k] *= keep;
+  }
+}
+
+vec4 linearColor(vec4 color) { return (header.flags & kBlendSrgb) != 0 ? convert(color, false) : color; }
+vec4 targetColor(vec4 color) {
+  const bool encoded = (header.flags & kBlendSrgb) != 0, wanted = (header.flags & kEncodeSrgb) != 0;
+  return encoded == wanted ? color : convert(color, wanted);
+}
+void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
+  if (pixel.x >= header.width || pixel.y >= header.height) return;
+  if ((header.flags & kWriteView) != 0)
+    view[pixel.y * header.width + pixel.x] = uvec2(packHalf2x16(linear.rg), packHalf2x16(linear.ba));
+#if TARGET
+  imageStore(image, ivec2(pixel), target);
+#endif
+}
+
+// What is left of the light reaches the background; then the pixel is written.
+void writePixel(uvec2 pixel) {
+  float light = 0;
+  for (uint k = 0; k < 16; ++k) light += (alive >> k & 1) != 0 ? through[k] : 0.0;
+  sum += header.background * (light * share * scale + gap);
+  storePixel(pixel, linearColor(sum), targetColor(sum));
+}

@@ -1,0 +1,55 @@
+#version 460
+// Which tiles a path's boundary passes through, and for the others whether they lie inside.
+//
+// A chord marks the tiles it meets, those into which it brings a change of sides across their left edge included, and
+// turns over "inside" for all tiles right of where it meets the first sample row of a row of tiles. As outlines are
+// closed and all comparisons are made on rows and columns that neighbours agree on, that is exact.
+#extension GL_GOOGLE_include_directive : require
+#include "canvas.glsl"
+#include "segments.glsl"
+
+uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
+
+void takeChord(Grid g, PlacedPath p, Chord c) {
+  const int tileRows = int(kTileSize * g.samples);
+  const int inRow = int(wordsInRow(p));
+  const int tileRowEnd = min(c.last / tileRows + 1, int(p.bottom));
+  for (int row = max(c.first / tileRows, int(p.top)); row < tileRowEnd; ++row) {
+    const int begin = row * tileRows, end = begin + tileRows;
+    const int first = max(c.first, begin), last = min(c.last, end);
+    const bool meets = first < last;
+    if (!meets && (c.first == begin || c.last <= begin)) continue;
+    int from = 0, to = 0, low = int(p.right), high = -1; // tiles at either end of the rows, tiles met
+    if (meets) {
+      from = tileOf(columnOf(g, crossingOf(g, c, first)));
+      to = tileOf(columnOf(g, crossingOf(g, c, last - 1)));
+      low = min(from, to);
+      high = max(from, to);
+    }
+    const int firstWord = int(p.firstWord) + (row - int(p.top)) * inRow;
+    if (meets && first == begin)
+      for (int word = max(from + 1 - int(p.left), 0) / 32; word < inRow; ++word)
+        atomicXor(words[firstWord + word].inside, bitsFrom(from + 1 - int(p.left) - word * 32));
+    if (c.first > begin) from = tileOf(columnOf(g, c.top.x));
+    if (c.last < end) to = tileOf(columnOf(g, c.bottom.x));
+    low = clamp(min(low, min(from, to) + 1) - int(p.left), 0, int(p.right - p.left));
+    high = min(max(high, max(from, to)), int(p.right) - 1) - int(p.left);
+    for (int word = low / 32; word <= high / 32 && low <= high; ++word)
+      atomicOr(words[firstWord + word].edges, bitsFrom(low - word * 32) & ~bitsFrom(high + 1 - word * 32));
+  }
+}
+
+#if SOFTWARE
+void main() { takeSegment(); }
+#else
+void main() {
+  loadSegments();
+  const Grid g = canvasGrid();
+  const uint total = chordTotal();
+  for (uint i = gl_LocalInvocationID.x; i < total; i += 64) {
+    const uint s = segmentOf(i);
+    Chord c;
+    if (fetchChord(g, s, i, c)) takeChord(g, paths[segmentPath[s]], c);
+  }
+}
+#endif

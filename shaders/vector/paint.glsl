@@ -1,0 +1,45 @@
+// A gradient's colour at a point of the drawing, premultiplied; `paint` is the vec4 of its record in the drawing.
+vec4 stopColor(uint slot, uint first, uint count, float t) {
+  uint low = 0, high = count; // how many stops lie at or before t
+  while (low < high) {
+    const uint middle = (low + high) / 2;
+    if (fetch(slot, first + middle * 2 + 1).x <= t) low = middle + 1;
+    else high = middle;
+  }
+  if (low == 0) return fetch(slot, first);
+  const vec4 a = fetch(slot, first + (low - 1) * 2);
+  if (low == count) return a;
+  const float from = fetch(slot, first + (low - 1) * 2 + 1).x, to = fetch(slot, first + low * 2 + 1).x;
+  return mix(a, fetch(slot, first + low * 2), (t - from) / (to - from));
+}
+
+vec4 gradientAt(uint slot, uint paint, vec2 at) {
+  const vec4 matrix = fetch(slot, paint), origin = fetch(slot, paint + 1);
+  const uvec4 kinds = floatBitsToUint(fetch(slot, paint + 2)), ramp = floatBitsToUint(fetch(slot, paint + 3));
+  const vec2 p = matrix.xy * at.x + matrix.zw * at.y + origin.xy;
+  float t = p.x;
+  if (kinds.y == kPaintRadial) {
+    const float radius = uintBitsToFloat(kinds.x), growth = 1.0 - radius;
+    const vec2 focus = origin.zw, q = p - focus;
+    const float a = dot(focus, focus) - growth * growth, b = dot(q, focus) - radius * growth;
+    const float c = dot(q, q) - radius * radius;
+    if (abs(a) < 1e-6) {
+      if (b == 0) return vec4(0);
+      t = -c / (2.0 * b);
+    } else {
+      const float inner = b * b - a * c;
+      if (inner < 0) return vec4(0);
+      const float root = sqrt(inner), u = (-b + root) / a, v = (-b - root) / a;
+      t = max(u, v);
+      if (radius + t * growth < 0) t = min(u, v);
+    }
+    if (radius + t * growth < 0) return vec4(0);
+  }
+  if (kinds.z == kSpreadRepeat) t -= floor(t);
+  else if (kinds.z == kSpreadReflect) t = abs(t - 2.0 * floor(t * 0.5 + 0.5));
+  vec4 color = stopColor(slot, slots[slot].stops + ramp.x * 2, ramp.y, clamp(t, 0.0, 1.0));
+  const bool encoded = (kinds.w & kInterpolateSrgb) != 0, wanted = (header.flags & kBlendSrgb) != 0;
+  if (encoded && !wanted) color.rgb = decodeSrgb(color.rgb);
+  if (!encoded && wanted) color.rgb = encodeSrgb(color.rgb);
+  return vec4(color.rgb * color.a, color.a);
+}

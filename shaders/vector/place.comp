@@ -1,0 +1,96 @@
+#version 460
+// Where each path lies on the canvas, its colour, and room for the words of its tiles.
+//
+// Room is taken in any order. Where not all paths fit, the workgroup that finishes last deals it out again in painting
+// order, and from the first path that does not fit on all are left out.
+#extension GL_GOOGLE_include_directive : require
+#define SHARING coherent
+#include "canvas.glsl"
+#include "color.glsl"
+layout(local_size_x = 64) in;
+#include "scan.glsl"
+shared bool last;
+
+uint wordsOf(PlacedPath p) {
+  return p.left < p.right && p.top < p.bottom ? wordsInRow(p) * (p.bottom - p.top) : 0;
+}
+
+void main() {
+  const uint lane = gl_LocalInvocationID.x, i = groupIndex() * 64 + lane;
+  if (i < header.pathCount) {
+    uint low = 0, high = header.itemCount; // the item: the last one that begins at or before i
+    while (low + 1 < high) {
+      const uint middle = (low + high) / 2;
+      if (items[middle].firstPath <= i) low = middle;
+      else high = middle;
+    }
+    const ItemRecord item = items[low];
+    const uint path = i - item.firstPath;
+    const SlotRecord slot = slots[item.slot];
+    const vec4 box = fetch(item.slot, slot.boxes + path);
+    const vec4 color = fetch(item.slot, slot.paths + path * 2);
+    const uint paint = floatBitsToUint(fetch(item.slot, slot.paths + path * 2 + 1).x);
+    PlacedPath p;
+    p.left = p.top = p.right = p.bottom = 0;
+    if (box.x <= box.z) {
+      vec2 a = vec2(3e38), b = vec2(-3e38);
+      for (uint corner = 0; corner < 4; ++corner) {
+        const vec2 at = toPixel(item, (corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
+        a = min(a, at);
+        b = max(b, at);
+      }
+      const vec2 margin = 1.0 + 1e-5 * max(abs(a), abs(b)); // far more than rounding
+      const vec2 tiles = vec2(header.tilesX, header.tilesY);
+      const vec2 from = clamp(floor((a - margin) / float(kTileSize)), vec2(0), tiles);
+      const vec2 to = clamp(ceil((b + margin) / float(kTileSize)), vec2(0), tiles);
+      if (from.x < to.x && from.y < to.y) {
+        p.left = uint(from.x);
+        p.top = uint(from.y);
+        p.right = uint(to.x);
+        p.bottom = uint(to.y);
+      }
+    }
+    const float alpha = color.a * item.opacity;
+    p.item = low;
+    p.paint = paint == 0 ? 0 : slot.paints + (paint - 1) * 4 + 1;
+    p.pad0 = 0;
+    p.color = vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color.rgb) : color.rgb) * alpha, alpha);
+    if (p.paint != 0) p.color = vec4(alpha);
+    const uint count = wordsOf(p);
+    p.firstWord = count == 0 ? 0 : atomicAdd(counters.words, count);
+    paths[i] = p;
+  }
+  memoryBarrierBuffer();
+  barrier();
+  if (lane == 0) last = atomicAdd(counters.placed, 1) + 1 == gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  barrier();
+  if (!last) return;
+  memoryBarrierBuffer();
+  uint cut = header.pathCount;
+  if (counters.words > header.wordLimit) {
+    uint total = 0;
+    for (uint first = 0; first < header.pathCount && cut == header.pathCount; first += 64) {
+      const uint path = first + lane;
+      PlacedPath p;
+      uint count = 0;
+      if (path < header.pathCount) {
+        p = paths[path];
+        count = wordsOf(p);
+      }
+      const uint end = add(total, scan(lane, count));
+      const uint fits = countLanes(lane, end <= header.wordLimit);
+      if (lane < fits && path < header.pathCount) {
+        paths[path].firstWord = end - count;
+      }
+      if (fits < 64) cut = min(cut, first + fits);
+      total = add(total, scanTotal());
+    }
+  }
+  if (lane == 0) {
+    counters.patches = header.patchCount;
+    counters.wordsGiven = header.wordLimit;
+    counters.entriesGiven = header.entryLimit;
+    counters.cutPath = cut;
+    counters.pathsDropped = header.pathsDropped + header.pathCount - cut;
+  }
+}

@@ -1,0 +1,57 @@
+#version 460
+// The fine level for software devices: the pixels of tiles from their lists, without barriers.
+//
+// TILES: 0 every tile's colour, as if it had no edges, an invocation a row of eight pixels; 1 the tiles with edges or
+// gradients, a workgroup each; 2 the crowded ones, whose paths are looked up in their bin.
+#extension GL_GOOGLE_include_directive : require
+#include "canvas.glsl"
+#include "composite.glsl"
+#include "lists.glsl"
+layout(local_size_x = 64) in;
+
+void paintPath(uint code, uint path, uvec2 at, uvec2 pixel) {
+  paintOver(code, at, pixel, paths[path].color, uvec2(paths[path].item, paths[path].paint));
+}
+
+#if TILES == 0
+void main() {
+  const uint tile = groupIndex() * 8 + gl_LocalInvocationIndex / 8, row = gl_LocalInvocationIndex % 8;
+  if (tile >= header.tilesX * header.tilesY) return;
+  const uint list = listOf(tile);
+  sum = vec4(uintBitsToFloat(bins[list]), uintBitsToFloat(bins[list + 1]), uintBitsToFloat(bins[list + 2]),
+             uintBitsToFloat(bins[list + 3]));
+  const uvec2 pixel = uvec2(tile % header.tilesX, tile / header.tilesX) * kTileSize + uvec2(0, row);
+  const vec4 linear = linearColor(sum), target = targetColor(sum);
+  for (uint x = 0; x < kTileSize; ++x) storePixel(pixel + uvec2(x, 0), linear, target);
+}
+#else
+void main() {
+  const uint lane = gl_LocalInvocationIndex;
+#if TILES == 1
+  const uint end = bins[kPaintedArguments + 3], list = paintedTiles();
+#else
+  const uint end = bins[kCrowdedArguments + 3], list = crowdedTiles();
+#endif
+  if (groupIndex() >= end) return;
+  const uint tile = bins[list + groupIndex()];
+  const uvec2 at = uvec2(lane % 8, lane / 8), place = uvec2(tile % header.tilesX, tile / header.tilesX);
+  const uvec2 pixel = place * kTileSize + at;
+  beginPixel();
+  const uint own = listOf(tile);
+#if TILES == 1
+  const uint count = bins[own];
+  for (uint k = 0; k < count && pixelOpen(); ++k) paintPath(bins[own + 1 + k * 2], bins[own + 2 + k * 2], at, pixel);
+#else
+  const uint perBin = kBinSize / kTileSize, cutPath = bins[own];
+  const uint bin = kFirstBin + (place.y / perBin * header.binsX + place.x / perBin) * header.pathWords;
+  for (uint word = header.pathWords; word > 0 && pixelOpen(); --word)
+    for (uint bits = bins[bin + word - 1]; bits != 0 && pixelOpen();) {
+      const uint bit = findMSB(bits), path = (word - 1) * 32 + bit;
+      bits ^= 1u << bit;
+      const uint code = path < cutPath ? coverageOf(paths[path], place) : 0;
+      if (code != 0) paintPath(code, path, at, pixel);
+    }
+#endif
+  writePixel(pixel);
+}
+#endif

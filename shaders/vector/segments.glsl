@@ -1,0 +1,90 @@
+// What the passes over segments share: a workgroup takes header.groupSegments of them and deals their chords out
+// evenly. SOFTWARE: without barriers; an invocation takes a segment, or a share of its chords.
+layout(local_size_x = 64) in;
+uint itemOf(uint segment) { // the last one that begins at or before it
+  uint low = 0, high = header.itemCount;
+  while (low + 1 < high) {
+    const uint middle = (low + high) / 2;
+    if (items[middle].firstSegment <= segment) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+bool matters(Grid g, uint path, ItemRecord item, SegmentRecord s) {
+  return path < counters.cutPath && paths[path].left < paths[path].right && mayMatter(g, item, s);
+}
+#if SOFTWARE
+void takeChord(Grid g, PlacedPath p, Chord c); // the pass's work
+void takeSegment() {
+  const uint i = groupIndex() * 64 + gl_LocalInvocationID.x;
+  if (i >= header.segmentCount) return;
+  const ItemRecord item = items[itemOf(i)];
+  const SegmentRecord s = fetchSegment(item.slot, i - item.firstSegment);
+  const uint path = item.firstPath + s.path;
+  const Grid g = canvasGrid();
+  if (!matters(g, path, item, s)) return;
+  const PlacedPath p = paths[path];
+  const uint count = chordCount(item, s);
+  const float step = chordStep(count);
+  for (uint k = gl_WorkGroupID.z; k < count; k += gl_NumWorkGroups.z) {
+    Chord c;
+    if (chordOf(g, item, s, k, count, step, c)) takeChord(g, p, c);
+  }
+}
+#else
+shared SegmentRecord segment[kMostSegments];
+shared uint segmentItem[kMostSegments];
+shared uint segmentPath[kMostSegments]; // in the record
+shared float segmentStep[kMostSegments];
+shared uint firstChord[kMostSegments + 1];
+
+// Loads the workgroup's segments and counts their chords; none for those that cannot matter.
+void loadSegments() {
+  const uint lane = gl_LocalInvocationID.x;
+  if (lane < header.groupSegments) {
+    const uint i = groupIndex() * header.groupSegments + lane;
+    uint count = 0;
+    if (i < header.segmentCount) {
+      const uint low = itemOf(i);
+      const ItemRecord item = items[low];
+      const SegmentRecord s = fetchSegment(item.slot, i - item.firstSegment);
+      const uint path = item.firstPath + s.path;
+      segment[lane] = s;
+      segmentItem[lane] = low;
+      segmentPath[lane] = path;
+      if (matters(canvasGrid(), path, item, s)) {
+        count = chordCount(item, s);
+        segmentStep[lane] = chordStep(count);
+      }
+    }
+    firstChord[lane + 1] = count;
+  }
+  if (lane == 0) firstChord[0] = 0;
+  barrier();
+  for (uint step = 1; step < header.groupSegments; step *= 2) {
+    const bool adds = lane >= step && lane < header.groupSegments;
+    const uint other = adds ? firstChord[lane + 1 - step] : 0;
+    barrier();
+    if (adds) firstChord[lane + 1] += other;
+    barrier();
+  }
+}
+
+uint chordTotal() { return firstChord[header.groupSegments]; }
+
+// Chord i of the workgroup's: its segment's place in the tables above.
+uint segmentOf(uint i) {
+  uint low = 0, high = header.groupSegments;
+  while (low + 1 < high) {
+    const uint middle = (low + high) / 2;
+    if (firstChord[middle] <= i) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+bool fetchChord(Grid g, uint s, uint i, out Chord chord) {
+  const uint first = firstChord[s];
+  return chordOf(g, items[segmentItem[s]], segment[s], i - first, firstChord[s + 1] - first, segmentStep[s], chord);
+}
+#endif

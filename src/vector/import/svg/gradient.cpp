@@ -1,0 +1,146 @@
+// Gradients (SVG 2, 14.2): attributes and stops along a chain of references, and the maps into the drawing.
+#include "vector/import/svg/importer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::vector::svg {
+namespace {
+
+/// The smallest box around a shape's curves.
+struct Box {
+  double left = 1e300, top = 1e300, right = -1e300, bottom = -1e300;
+  void add(Point p) {
+    left = std::min(left, p.x), right = std::max(right, p.x);
+    top = std::min(top, p.y), bottom = std::max(bottom, p.y);
+  }
+};
+Box boxOf(const Shape& shape) {
+  Box box;
+  const Point* p = shape.points.data();
+  Point at;
+  const auto add = [&box](const Cubic& c) {
+    box.add(c.p[0]);
+    box.add(c.p[3]);
+    for (double Point::*axis : {&Point::x, &Point::y}) {
+      const double a = c.p[0].*axis, b = c.p[1].*axis, d = c.p[2].*axis, e = c.p[3].*axis;
+      double turns[2];
+      for (int i = rootsInside(e - 3 * d + 3 * b - a, 2 * (d - 2 * b + a), b - a, turns); i-- > 0;)
+        box.add(c.at(turns[i]));
+    }
+  };
+  for (const GpgpPathVerb verb : shape.verbs) switch (verb) {
+    case GPGP_PATH_MOVE:
+    case GPGP_PATH_LINE: box.add(at = *p++); break;
+    case GPGP_PATH_QUAD: add(Cubic::fromQuadratic(at, p[0], p[1])), at = p[1], p += 2; break;
+    case GPGP_PATH_CUBIC: add({{at, p[0], p[1], p[2]}}), at = p[2], p += 3; break;
+    default: break;
+    }
+  return box;
+}
+
+} // namespace
+
+/// The first along the references that has the attribute.
+pugi::xml_attribute Importer::gradientAttribute(pugi::xml_node gradient, const char* name) const {
+  for (int hops = 0; gradient && hops < 32; ++hops, gradient = document_.find(trim(hrefOf(gradient).value())))
+    if (const pugi::xml_attribute a = gradient.attribute(name)) return a;
+  return {};
+}
+
+std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, const Style& style) {
+  std::vector<GpgpGradientStop> stops;
+  for (int hops = 0; gradient && hops < 32 && stops.empty(); ++hops) {
+    for (const pugi::xml_node child : gradient.children()) {
+      if (document_.name(child) != "stop") continue;
+      if (++steps_ > limits_.points || stops.size() >= 65536) {
+        stop(child, "more stops of gradients than are allowed");
+        return stops;
+      }
+      Style own = style.inherited();
+      cascade(child, "stop", style, {}, own);
+      double offset = 0;
+      Scanner s(trim(child.attribute("offset").value()));
+      if (s.number(offset) && s.take("%")) offset /= 100;
+      offset = std::clamp(offset, stops.empty() ? 0.0 : static_cast<double>(stops.back().offset), 1.0);
+      const Color c = own.stopIsCurrent ? own.color : own.stopColor;
+      const double linear[4] = {linearFromSrgb(c.r), linearFromSrgb(c.g), linearFromSrgb(c.b), c.a * own.stopOpacity};
+      GpgpGradientStop stop{static_cast<float>(offset), {}};
+      for (size_t i = 0; i < 4; ++i) stop.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));
+      stops.push_back(stop);
+    }
+    gradient = document_.find(trim(hrefOf(gradient).value()));
+  }
+  return stops;
+}
+
+std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool radial, const State& state,
+                                                     const Shape& shape) {
+  auto made = std::make_shared<Gradient>();
+  made->stops = gradientStops(node, state.style);
+  if (made->stops.empty()) return nullptr;
+  const auto text = [&](const char* name) { return std::string_view(gradientAttribute(node, name).value()); };
+  const bool userSpace = trim(text("gradientUnits")) == "userSpaceOnUse";
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
+  if (!userSpace) lengths.width = lengths.height = 1;
+  const auto number = [&](const char* name, LengthAxis axis, double percent) {
+    const double whole = axis == LengthAxis::X   ? lengths.width
+                         : axis == LengthAxis::Y ? lengths.height
+                                                 : std::hypot(lengths.width, lengths.height) / std::sqrt(2);
+    const pugi::xml_attribute a = gradientAttribute(node, name);
+    double value = percent / 100 * whole;
+    if (a && !parseLength(trim(a.value()), lengths, axis, value)) {
+      reporter_.error(document_.line(a, 0), element(node) + " has " + name + " '" +
+                                                std::string(a.value()).substr(0, 60) + "', which is no length");
+      value = percent / 100 * whole;
+    }
+    return static_cast<float>(value);
+  };
+  GpgpGradient& g = made->gradient;
+  g.kind = radial ? GPGP_GRADIENT_RADIAL : GPGP_GRADIENT_LINEAR;
+  if (radial) {
+    g.end[0] = number("cx", LengthAxis::X, 50);
+    g.end[1] = number("cy", LengthAxis::Y, 50);
+    g.endRadius = std::max(number("r", LengthAxis::Diagonal, 50), 0.0f);
+    g.start[0] = gradientAttribute(node, "fx") ? number("fx", LengthAxis::X, 50) : g.end[0];
+    g.start[1] = gradientAttribute(node, "fy") ? number("fy", LengthAxis::Y, 50) : g.end[1];
+    g.startRadius = std::clamp(number("fr", LengthAxis::Diagonal, 0), 0.0f, g.endRadius);
+  } else {
+    g.start[0] = number("x1", LengthAxis::X, 0);
+    g.start[1] = number("y1", LengthAxis::Y, 0);
+    g.end[0] = number("x2", LengthAxis::X, 100);
+    g.end[1] = number("y2", LengthAxis::Y, 0);
+  }
+  const std::string_view spread = trim(text("spreadMethod"));
+  g.spread = spread == "reflect" ? GPGP_SPREAD_REFLECT : spread == "repeat" ? GPGP_SPREAD_REPEAT : GPGP_SPREAD_PAD;
+  g.interpolateSrgb = trim(text("color-interpolation")) != "linearRGB";
+  Affine map = state.transform;
+  if (!userSpace) {
+    const Box box = boxOf(shape);
+    const double w = box.right - box.left, h = box.bottom - box.top;
+    if (!(w > 0 && h > 0)) return nullptr; // nothing to measure by: not painted
+    map = map * Affine{w, 0, 0, h, box.left, box.top};
+  }
+  if (const pugi::xml_attribute a = gradientAttribute(node, "gradientTransform")) {
+    Affine own;
+    if (parseTransform(a.value(), own))
+      map = map * own;
+    else
+      reporter_.error(document_.line(a, 0), element(node) + " has an error in its gradientTransform, which is ignored");
+  }
+  const double to[6] = {map.a, map.b, map.c, map.d, map.e, map.f};
+  bool finite = true;
+  for (size_t i = 0; i < 6; ++i) finite = finite && std::isfinite(g.transform[i] = static_cast<float>(to[i]));
+  for (const float v : {g.start[0], g.start[1], g.end[0], g.end[1], g.startRadius, g.endRadius})
+    finite = finite && std::isfinite(v);
+  if (!finite) {
+    reporter_.error(document_.line(node), element(node) + " reaches beyond all numbers; not painted");
+    return nullptr;
+  }
+  g.stops = made->stops.data();
+  g.stopCount = static_cast<uint32_t>(made->stops.size());
+  return made;
+}
+
+} // namespace gpgp::vector::svg

@@ -1,0 +1,96 @@
+// A gradient as the API takes it to the paint that shaders evaluate.
+//
+// Linear: gradient space is turned, scaled and moved so that start lies at x = 0 and end at x = 1. Radial: so that the
+// end circle is the unit circle around 0; what is left of the two circles is the focus and its radius.
+#include "vector/patch/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::vector {
+namespace {
+using core::makeError;
+
+core::Result<void> checkGradient(const GpgpGradient& g) {
+  if (g.kind != GPGP_GRADIENT_LINEAR && g.kind != GPGP_GRADIENT_RADIAL)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.kind is %d", g.kind);
+  if (g.spread < GPGP_SPREAD_PAD || g.spread > GPGP_SPREAD_REFLECT)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.spread is %d", g.spread);
+  for (const float v : g.transform)
+    if (!std::isfinite(v))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.transform holds a number that is not finite");
+  for (const float v : {g.start[0], g.start[1], g.end[0], g.end[1], g.startRadius, g.endRadius})
+    if (!std::isfinite(v))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: start, end or a radius is not finite");
+  if (g.kind == GPGP_GRADIENT_RADIAL && (g.startRadius < 0 || g.endRadius < 0 || g.startRadius > g.endRadius))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: radii are %g and %g; expected 0 <= start < end",
+                     static_cast<double>(g.startRadius), static_cast<double>(g.endRadius));
+  if (!g.stops || g.stopCount == 0 || g.stopCount > 65536)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: %u stops; expected 1 to 65536", g.stops ? g.stopCount : 0);
+  for (uint32_t i = 0; i < g.stopCount; ++i) {
+    bool good = g.stops[i].offset >= 0 && g.stops[i].offset <= 1;
+    for (const float v : g.stops[i].color) good = good && v >= 0 && v <= 1;
+    if (!good) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.stops[%u] is not within 0 to 1", i);
+  }
+  return {};
+}
+
+float encodeSrgb(float v) { return v <= 0.0031308f ? v * 12.92f : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
+} // namespace
+
+core::Result<uint32_t> addGradient(const GpgpGradient& g, Drawing& drawing) {
+  if (auto ok = checkGradient(g); !ok) return ok.error();
+  PaintRecord paint{};
+  paint.kind = g.kind == GPGP_GRADIENT_LINEAR ? shader::kPaintLinear : shader::kPaintRadial;
+  paint.spread = static_cast<uint32_t>(g.spread);
+  paint.flags = g.interpolateSrgb ? shader::kInterpolateSrgb : 0;
+  // Gradient space to ramp: u = a x + c y + e, v = b x + d y + f.
+  const double sx = g.start[0], sy = g.start[1], ex = g.end[0], ey = g.end[1];
+  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
+  const double dx = ex - sx, dy = ey - sy, length = dx * dx + dy * dy;
+  bool spreads = true;
+  if (g.kind == GPGP_GRADIENT_LINEAR) {
+    spreads = length > 0;
+    a = dx / length, c = dy / length, b = -dy / length, d = dx / length;
+    e = -(a * sx + c * sy), f = -(b * sx + d * sy);
+  } else {
+    const double r = g.endRadius;
+    spreads = g.startRadius < g.endRadius;
+    a = d = 1 / r, e = -ex / r, f = -ey / r;
+    paint.origin.z = static_cast<float>((sx - ex) / r);
+    paint.origin.w = static_cast<float>((sy - ey) / r);
+    paint.focusRadius = std::min(static_cast<float>(g.startRadius / r), std::nextafter(1.0f, 0.0f));
+  }
+  // Drawing to gradient space: the transform's inverse.
+  const double t0 = g.transform[0], t1 = g.transform[1], t2 = g.transform[2], t3 = g.transform[3], t4 = g.transform[4],
+               t5 = g.transform[5];
+  const double determinant = t0 * t3 - t1 * t2;
+  const double i0 = t3 / determinant, i1 = -t1 / determinant, i2 = -t2 / determinant, i3 = t0 / determinant;
+  const double i4 = -(i0 * t4 + i2 * t5), i5 = -(i1 * t4 + i3 * t5);
+  const auto narrow = [](double v) { return static_cast<float>(v); };
+  paint.matrix = {narrow(a * i0 + c * i1), narrow(b * i0 + d * i1), narrow(a * i2 + c * i3), narrow(b * i2 + d * i3)};
+  paint.origin.x = narrow(a * i4 + c * i5 + e);
+  paint.origin.y = narrow(b * i4 + d * i5 + f);
+  for (int k = 0; k < 4; ++k) spreads = spreads && std::isfinite(paint.matrix[k]) && std::isfinite(paint.origin[k]);
+  if (!spreads) { // the last stop everywhere
+    paint.kind = shader::kPaintLinear;
+    paint.spread = shader::kSpreadPad;
+    paint.matrix = {0, 0, 0, 0};
+    paint.origin = {1, 0, 0, 0};
+    paint.focusRadius = 0;
+  }
+  paint.firstStop = static_cast<uint32_t>(drawing.stops.size());
+  paint.stopCount = spreads ? g.stopCount : 1;
+  float last = 0;
+  for (const GpgpGradientStop& from : std::span(g.stops, g.stopCount).last(paint.stopCount)) {
+    StopRecord stop{};
+    for (int k = 0; k < 4; ++k)
+      stop.color[k] = k < 3 && g.interpolateSrgb ? std::clamp(encodeSrgb(from.color[k]), 0.0f, 1.0f) : from.color[k];
+    stop.offset = last = std::max(last, from.offset);
+    drawing.stops.push_back(stop);
+  }
+  drawing.paints.push_back(paint);
+  return static_cast<uint32_t>(drawing.paints.size() - 1);
+}
+
+} // namespace gpgp::vector

@@ -1,0 +1,177 @@
+// Patches to outlines.
+//
+// The region of a path is the union of its patches, and a sample is inside where an odd number of its patches' sides
+// lies left of it. So each curve bounds the region wherever an odd number of patches uses it: rows that follow each
+// other are joined, rows used from both sides cancel. What is left over at a height, sorted by x, is joined in pairs by
+// level segments: the outlines are then closed whatever the transform, and share their vertices bit for bit.
+#include "vector/raster/segments.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::vector {
+namespace {
+using shader::SegmentRecord;
+using shader::vec4;
+
+struct Rise { // a patch's side begins (or ends) to bound there
+  uint32_t curve;
+  float y;
+  int side;
+};
+struct End { // of a segment
+  float y, x;
+  uint32_t segment;
+  bool bottom;
+};
+
+float xAt(const CurveRecord& c, float y) {
+  if (y <= c.ends.y) return c.ends.x;
+  if (y >= c.endY) return c.endX;
+  const double height = static_cast<double>(c.endY) - static_cast<double>(c.ends.y);
+  const double width = static_cast<double>(c.endX) - static_cast<double>(c.ends.x);
+  const double wanted = static_cast<double>(y) - static_cast<double>(c.ends.y);
+  double t = wanted / height;
+  double x = t * width;
+  if (c.bend >= 0) {
+    const double y1 = static_cast<double>(c.controls.y), y2 = static_cast<double>(c.controls.w);
+    const double x1 = static_cast<double>(c.controls.x), x2 = static_cast<double>(c.controls.z);
+    double low = 0, high = 1;
+    for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
+      const double u = 1 - t, f = 3 * u * u * t * y1 + 3 * u * t * t * y2 + t * t * t * height - wanted;
+      if (f == 0) break;
+      (f < 0 ? low : high) = t;
+      const double slope = 3 * (u * u * y1 + 2 * u * t * (y2 - y1) + t * t * (height - y2));
+      const double next = t - f / slope;
+      t = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    const double u = 1 - t;
+    x = 3 * u * u * t * x1 + 3 * u * t * t * x2 + t * t * t * width;
+  }
+  return std::clamp(static_cast<float>(static_cast<double>(c.ends.x) + x), std::min(c.ends.x, c.endX),
+                    std::max(c.ends.x, c.endX));
+}
+
+SegmentRecord wholeCurve(const CurveRecord& c) {
+  SegmentRecord s{};
+  s.first = {c.ends.x, c.ends.y, c.ends.x + c.controls.x, c.ends.y + c.controls.y};
+  s.second = {c.ends.x + c.controls.z, c.ends.y + c.controls.w, c.endX, c.endY};
+  s.line = c.bend < 0;
+  return s;
+}
+
+class PathOutline {
+public:
+  PathOutline(const Drawing& drawing, Outlines& outlines)
+      : drawing_(drawing), segments_(outlines.segments), rises_(segments_.get_allocator()),
+        ends_(segments_.get_allocator()) {}
+
+  void run(uint32_t path, size_t firstPatch, size_t lastPatch) {
+    rises_.clear();
+    ends_.clear();
+    for (size_t i = firstPatch; i < lastPatch; ++i) {
+      const PatchRecord& p = drawing_.patches[i];
+      rises_.push_back({p.left, p.top, 1});
+      rises_.push_back({p.left, p.bottom, -1});
+      rises_.push_back({p.right, p.top, -1});
+      rises_.push_back({p.right, p.bottom, 1});
+    }
+    std::sort(rises_.begin(), rises_.end(),
+              [](const Rise& a, const Rise& b) { return a.curve != b.curve ? a.curve < b.curve : a.y < b.y; });
+    const size_t first = segments_.size();
+    int side = 0;
+    for (size_t i = 0; i < rises_.size();) {
+      const Rise at = rises_[i];
+      int next = side;
+      for (; i < rises_.size() && rises_[i].curve == at.curve && rises_[i].y == at.y; ++i) next += rises_[i].side;
+      if (next == side) continue;
+      if (side & 1) end(at.curve, at.y);
+      if (next & 1) begin(path, at.curve, at.y, next);
+      side = next;
+    }
+    close(path);
+    // Neighbours in the table run through the same tiles.
+    std::sort(segments_.begin() + static_cast<std::ptrdiff_t>(first), segments_.end(),
+              [](const SegmentRecord& a, const SegmentRecord& b) {
+                return a.ends.y != b.ends.y ? a.ends.y < b.ends.y : a.ends.x < b.ends.x;
+              });
+  }
+
+private:
+  void begin(uint32_t path, uint32_t curve, float y, int side) {
+    SegmentRecord s = wholeCurve(drawing_.curves[curve]);
+    s.path = path;
+    s.side = side > 0 ? 1.0f : -1.0f;
+    s.ends = {xAt(drawing_.curves[curve], y), y, 0, 0};
+    ends_.push_back({y, s.ends.x, static_cast<uint32_t>(segments_.size()), false});
+    segments_.push_back(s);
+  }
+  void end(uint32_t curve, float y) {
+    SegmentRecord& s = segments_.back();
+    s.ends.z = xAt(drawing_.curves[curve], y);
+    s.ends.w = y;
+    ends_.push_back({y, s.ends.z, static_cast<uint32_t>(segments_.size() - 1), true});
+  }
+
+  /// Joins what ends at a height in pairs. Ends that only rounding keeps apart, at least one of them inside its curve,
+  /// become one instead.
+  void close(uint32_t path) {
+    std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) {
+      return a.y != b.y ? a.y < b.y : a.x != b.x ? a.x < b.x : a.segment < b.segment;
+    });
+    for (size_t i = 0; i + 1 < ends_.size(); i += 2) {
+      const End &a = ends_[i], &b = ends_[i + 1];
+      if (a.x == b.x) continue;
+      if (b.x - a.x <= 1e-6f * (std::abs(a.x) + std::abs(a.y)) && (free(a) || free(b))) {
+        const End &moved = free(a) ? a : b, &kept = free(a) ? b : a;
+        SegmentRecord& s = segments_[moved.segment];
+        (moved.bottom ? s.ends.z : s.ends.x) = kept.x;
+        continue;
+      }
+      SegmentRecord s{};
+      s.first = {a.x, a.y, a.x, a.y};
+      s.second = {b.x, a.y, b.x, a.y};
+      s.ends = {a.x, a.y, b.x, a.y};
+      s.line = 1;
+      s.path = path;
+      // Outlines run down where the region lies right and up where it lies left, so they leave a point that a left
+      // side reaches from above or a right side from below.
+      const bool arrives = (segments_[a.segment].side > 0) == a.bottom;
+      s.side = arrives ? 1.0f : -1.0f;
+      segments_.push_back(s);
+    }
+  }
+  bool free(const End& e) const { // inside its curve
+    const SegmentRecord& s = segments_[e.segment];
+    return e.bottom ? e.y < s.second.w : e.y > s.first.y;
+  }
+
+  const Drawing& drawing_;
+  std::pmr::vector<SegmentRecord>& segments_;
+  std::pmr::vector<Rise> rises_;
+  std::pmr::vector<End> ends_;
+};
+
+} // namespace
+
+Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory) {
+  Outlines outlines(memory);
+  PathOutline outline(drawing, outlines);
+  outlines.boxes.reserve(drawing.paths.size());
+  outlines.ends.reserve(drawing.paths.size());
+  size_t patch = 0;
+  for (uint32_t path = 0; path < drawing.paths.size(); ++path) {
+    const size_t first = patch;
+    vec4 box{3e38f, 3e38f, -3e38f, -3e38f};
+    for (; patch < drawing.patches.size() && drawing.patches[patch].path == path; ++patch) {
+      const PatchRecord& p = drawing.patches[patch];
+      box = {std::min(box.x, p.x0), std::min(box.y, p.top), std::max(box.z, p.x1), std::max(box.w, p.bottom)};
+    }
+    outline.run(path, first, patch);
+    outlines.boxes.push_back(box);
+    outlines.ends.push_back(static_cast<uint32_t>(outlines.segments.size()));
+  }
+  return outlines;
+}
+
+} // namespace gpgp::vector

@@ -1,0 +1,57 @@
+// Any bytes as a baked drawing, the header's sizes and the checksum made right first, so that the checks behind them
+// are reached; what loads must make closed outlines without harm and bake to bytes that load again.
+#include "vector/patch/drawing.h"
+#include "vector/raster/segments.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+/// As src/vector/patch/baked.cpp sums.
+uint64_t checksum(std::span<const std::byte> bytes) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (size_t i = 0; i < bytes.size(); i += 8) {
+    uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, bytes.size() - i));
+    hash = (hash ^ word) * 0x100000001b3u;
+    hash ^= hash >> 29;
+  }
+  return hash ^ bytes.size();
+}
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace gpgp::vector;
+  const auto memory = std::pmr::get_default_resource();
+  (void)loadBaked(std::as_bytes(std::span(data, size)), memory); // as it came
+  // A good drawing with bytes of its tables exchanged, and the sum made right.
+  const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_CUBIC, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
+  const float points[] = {0, 0, 5, 9, -3, 7, 8, 20, 12, 3};
+  const GpgpGradientStop stops[] = {{0, {1, 0, 0, 1}}, {1, {0, 1, 0, 0.5f}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = gradient.transform[3] = 1;
+  gradient.end[0] = 9;
+  gradient.stops = stops;
+  gradient.stopCount = 2;
+  const GpgpPath paths[] = {{verbs, 4, points, 5, GPGP_FILL_EVEN_ODD, {0, 0, 1, 1}},
+                            {verbs, 4, points, 5, GPGP_FILL_NON_ZERO, {0, 0, 1, 1}, &gradient}};
+  const auto good = makeDrawing(paths, memory);
+  if (!good) std::abort();
+  std::pmr::vector<std::byte> bytes = bake(*good, memory);
+  constexpr size_t kTables = 80, kSummedFrom = 16, kSum = 8; // where in a baked drawing
+  for (size_t i = 0; i + 4 <= size; i += 4) {                // place, place, how, value
+    const size_t at = (data[i] | size_t(data[i + 1]) << 8) % (bytes.size() - kTables);
+    std::byte& byte = bytes[kTables + at];
+    byte = data[i + 2] % 2 ? static_cast<std::byte>(data[i + 3]) : byte ^ static_cast<std::byte>(1u << data[i + 3] % 8);
+    if (i % 64 != 0) continue;
+    const uint64_t sum = checksum(std::span(bytes).subspan(kSummedFrom));
+    std::memcpy(bytes.data() + kSum, &sum, sizeof sum);
+    const auto drawing = loadBaked(bytes, memory);
+    if (!drawing) continue;
+    const Outlines outlines = makeOutlines(*drawing, memory);
+    if (outlines.ends.size() != drawing->paths.size()) std::abort();
+    if (bake(*drawing, memory) != bytes) std::abort();
+  }
+  return 0;
+}
