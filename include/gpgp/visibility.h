@@ -41,6 +41,12 @@ typedef struct GpgpSamplerCreateInfo {
   uint32_t maxDraws;            /**< 0: 65536 */
   uint32_t maxTriangles;        /**< of one record, all draws together; 0: 4194304. What is beyond is not sampled and
                                      the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle */
+  uint32_t methods;             /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
+  uint32_t maxSamples;    /**< per pixel in each direction, a power of two up to 64; 0: 1. Scratch: 8 bytes each */
+  uint32_t maxCandidates; /**< exact: triangles that may be seen, and those that may hide them; 0: a quarter
+                               of maxTriangles, at least 65536. Scratch: 64 bytes each */
+  uint32_t maxPairs;      /**< exact: of a candidate and a pixel; 0: 4 each and 4 a pixel, as far as the device
+                               binds them. Scratch: 24 bytes each */
 } GpgpSamplerCreateInfo;
 #define GPGP_SAMPLER_CREATE_INFO_INIT GPGP_INIT(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO)
 
@@ -78,8 +84,14 @@ typedef struct GpgpVisibilityDraw {
 
 typedef int32_t GpgpSamplingMethod;
 enum {
-  GPGP_SAMPLING_STANDARD = 0 /**< one sample a pixel, at its centre */
+  GPGP_SAMPLING_STANDARD = 0, /**< a grid of `samples` x `samples` a pixel; 1: its centre */
+  GPGP_SAMPLING_EXACT = 1,    /**< standard, and then, among those that it did not find, the triangles with one of
+                                   64 x 64 samples a pixel that nothing in front of them covers */
+  GPGP_SAMPLING_TRUTH = 2     /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
 };
+#define GPGP_SAMPLING_STANDARD_BIT 1u
+#define GPGP_SAMPLING_EXACT_BIT 2u
+#define GPGP_SAMPLING_TRUTH_BIT 4u
 
 typedef struct GpgpCamera {
   float viewProjection[16]; /**< world to clip, column-major */
@@ -94,8 +106,11 @@ typedef struct GpgpSampleInfo {
   GpgpView view; /**< optional: history of this camera; its previous record is what `appeared` compares with */
   GpgpSamplingMethod method;
   GpgpCamera camera;
-  uint32_t width, height;  /**< viewport, pixels */
-  GpgpBuffer positions;    /**< vertex positions, 3 floats each at positionStride; STORAGE usage */
+  uint32_t width, height; /**< viewport, pixels */
+  uint32_t samples;     /**< standard, truth: per pixel in each direction, a power of two up to 256; 0: 1 (truth: 64) */
+  uint32_t slice;       /**< truth: 0 to n * n, where n = max(samples / maxSamples, 1); the last one is the centre */
+  VkBool32 accumulate;  /**< bits and pixel counts are added to, not overwritten: unites slices, views, a view cell */
+  GpgpBuffer positions; /**< vertex positions, 3 floats each at positionStride; STORAGE usage */
   uint32_t positionStride; /**< bytes, a multiple of 4; 0: 12 */
   GpgpBuffer indices;      /**< STORAGE usage; size a multiple of 4 for UINT16 too */
   VkIndexType indexType;   /**< UINT16 or UINT32 */
@@ -103,6 +118,7 @@ typedef struct GpgpSampleInfo {
   uint32_t drawCount;
   uint32_t triangleCount;  /**< of all draws: one past the last triangle number; at most 2^31 */
   GpgpBuffer visibleBits;  /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
+  GpgpBuffer pixelCounts;  /**< out, optional: uint32_t per triangle: samples that show it (exact: centres) */
   GpgpBuffer visibleList;  /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
                                 budget */
   GpgpBuffer visibleCount; /**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
@@ -124,15 +140,18 @@ typedef struct GpgpSampleReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t triangles; /**< in front of the near plane, in the viewport, facing the camera */
-  uint32_t visible;   /**< in the bits */
-  uint32_t listed;    /**< written to the list */
-  uint32_t coveredPixels;
+  uint32_t triangles;        /**< in front of the near plane, in the viewport, facing the camera */
+  uint32_t visible;          /**< in the bits */
+  uint32_t listed;           /**< written to the list */
+  uint32_t coveredPixels;    /**< samples that show a triangle (exact: centres) */
   uint32_t appeared;         /**< with a view: visible now, not in its previous record */
   uint32_t disappeared;      /**< with a view: the reverse */
   uint32_t neededTriangles;  /**< of all draws, whatever the budget */
   uint32_t skippedTriangles; /**< index or triangle number out of range, coordinate not finite or too large */
   uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set */
+  uint32_t neededCandidates; /**< exact: at least, where there is too little room */
+  uint32_t neededPairs;
+  uint32_t unresolved; /**< exact: triangles and pairs without room; the triangles are reported visible */
 } GpgpSampleReport;
 #define GPGP_SAMPLE_REPORT_INIT GPGP_INIT(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT)
 

@@ -1,5 +1,5 @@
-// Draws one slice of a large triangle with a workgroup of 64: tests 64 blocks of 8 x 8 pixels at a time, a block an
-// invocation, and then draws the blocks that the triangle may touch, a pixel an invocation. All invocations of the
+// Draws one slice of a large triangle with a workgroup of 64: tests 64 blocks of 8 x 8 samples at a time, a block an
+// invocation, and then draws the blocks that the triangle may touch, a sample an invocation. All invocations of the
 // workgroup must call it, with the same arguments.
 shared uint blockCount;
 shared ivec2 blockCorner[64];
@@ -19,7 +19,8 @@ void drawLarge(ScreenTriangle t, uint id, uint slice, uint slices) {
     uint block = first + gl_LocalInvocationIndex;
     if (block < blocks) {
       ivec2 corner = t.bounds.xy + 8 * ivec2(int(block % columns), int(block / columns));
-      ivec3 edges = ivec3(edgeBlock(t.p1, s0, corner), edgeBlock(t.p2, s1, corner), edgeBlock(t.p0, s2, corner));
+      ivec3 edges = ivec3(edgeBlock(t.p1, s0, corner, grid()), edgeBlock(t.p2, s1, corner, grid()),
+                          edgeBlock(t.p0, s2, corner, grid()));
       if (!blockOutside(edges.x, s0, 8) && !blockOutside(edges.y, s1, 8) && !blockOutside(edges.z, s2, 8)) {
         uint place = atomicAdd(blockCount, 1u);
         blockCorner[place] = corner;
@@ -32,7 +33,8 @@ void drawLarge(ScreenTriangle t, uint id, uint slice, uint slices) {
       ivec2 pixel = blockCorner[i] + inBlock;
       ivec3 edges = blockEdges[i] + ivec3(s0.x, s1.x, s2.x) * inBlock.x + ivec3(s0.y, s1.y, s2.y) * inBlock.y;
       bool inside = edges.x >= 0 && edges.y >= 0 && edges.z >= 0;
-      if (inside && pixel.x < t.bounds.z && pixel.y < t.bounds.w) coverPixel(pixel, depthWide(t, pixel), id);
+      if (inside && pixel.x < t.bounds.z && pixel.y < t.bounds.w)
+        coverPixel(t, pixel, depthWide(t, samplePoint(pixel, grid())), id);
     }
     barrier();
   }

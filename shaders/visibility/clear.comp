@@ -1,4 +1,4 @@
-// Empties what the other passes accumulate into: depth, ids, visible bits, counters.
+// Empties what the other passes accumulate into: depth, ids, limits, visible bits, counters.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -9,17 +9,24 @@ layout(std430, set = 0, binding = kBindDepth) writeonly buffer DepthBuffer { uin
 layout(std430, set = 0, binding = kBindIds) writeonly buffer IdBuffer { uint ids[]; };
 layout(std430, set = 0, binding = kBindCounters) writeonly buffer CounterBuffer { uint counters[]; };
 layout(std430, set = 0, binding = kBindBits) writeonly buffer BitBuffer { uint bits[]; };
+layout(std430, set = 0, binding = kBindSizes) writeonly buffer SizeBuffer { uint sizes[]; };
+layout(std430, set = 0, binding = kBindLimits) writeonly buffer LimitBuffer { uint limits[]; };
 
 void main() {
-  uint pixels = params.width * params.height;
+  uint samples = 1u << (16u - 2u * params.gridShift);
+  uint pixels = params.width * params.height * samples;
   uint words = (params.triangleCount + 31u) / 32u;
+  uint slots = params.method == kExact ? (params.width + 7u) / 8u * ((params.height + 7u) / 8u) * 64u : 0u;
+  uint count = max(max(pixels, slots), max(words, params.hasSizes != 0u ? params.triangleCount : 0u));
   uint stride = gl_NumWorkGroups.x * 256u;
-  for (uint i = gl_GlobalInvocationID.x; i < max(pixels, words); i += stride) {
+  for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
     if (i < pixels) {
       depths[i] = kFarthest;
       ids[i] = kNoTriangle;
     }
-    if (i < words) bits[i] = 0u;
+    if (i < slots) limits[i] = kFarthest;
+    if (i < words && params.accumulate == 0u) bits[i] = 0u;
+    if (i < params.triangleCount && params.accumulate == 0u && params.hasSizes != 0u) sizes[i] = 0u;
   }
   if (gl_GlobalInvocationID.x < kCounterWords) counters[gl_GlobalInvocationID.x] = 0u;
 }

@@ -60,10 +60,10 @@ GPGP_FN float wideToFloat(Wide a) {
 
 GPGP_CONST int kSaturated = 1 << 30;
 
-/// floor(a / 256), held within +-2^30.
-GPGP_FN int widePixels(Wide a) {
-  int low = int((a.low >> 8u) | (uint(a.high) << 24u));
-  bool fits = (a.high >> 8) == (low >> 31);
+/// floor(a / 2^shift), held within +-2^30; shift is 0 to 8.
+GPGP_FN int wideShifted(Wide a, int shift) {
+  int low = shift == 0 ? int(a.low) : int((a.low >> uint(shift)) | (uint(a.high) << uint(32 - shift)));
+  bool fits = (a.high >> shift) == (low >> 31);
   if (!fits) return a.high < 0 ? -kSaturated : kSaturated;
   return clamp(low, -kSaturated, kSaturated);
 }

@@ -6,6 +6,8 @@
 #include "visibility/triangle.h"
 
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+#include "visibility/grid.glsl"
+
 layout(std430, set = 0, binding = kBindPositions) readonly buffer PositionBuffer { uint positions[]; };
 layout(std430, set = 0, binding = kBindIndices) readonly buffer IndexBuffer { uint indices[]; };
 layout(std430, set = 0, binding = kBindDraws) readonly buffer DrawBuffer { Draw draws[]; };
@@ -21,8 +23,6 @@ struct Fetched {
   bool mirrored;
   bool twoSided;
 };
-
-ivec2 viewport() { return ivec2(int(params.width), int(params.height)); }
 
 /// The draw that an item belongs to: the last one that starts at or before it.
 uint findDraw(uint item) {
@@ -76,7 +76,7 @@ Fetched fetchTriangle(uint drawIndex, uint local) {
 
 uint classifyFetched(Fetched f, out ScreenTriangle triangle) {
   if (!f.valid) return kSkipped;
-  return classify(f.a, f.b, f.c, viewport(), f.mirrored, f.twoSided, triangle);
+  return classify(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, triangle);
 }
 
 Fetched fetchItem(uint item) {

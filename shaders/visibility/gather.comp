@@ -1,4 +1,5 @@
-// From ids per pixel to a bit per triangle (6.1.1: "gathering the ids").
+// From ids per sample to a bit per triangle (6.1.1: "gathering the ids"), and how many samples show it. An invocation
+// takes eight neighbours, which mostly show the same triangle.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -8,21 +9,40 @@ layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Pa
 layout(std430, set = 0, binding = kBindIds) readonly buffer IdBuffer { uint ids[]; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
+layout(std430, set = 0, binding = kBindSizes) buffer SizeBuffer { uint sizes[]; };
 
 shared uint groupCovered;
+
+void note(uint id, uint count, bool known) {
+  if (id == kNoTriangle) return;
+  if (!known) atomicOr(bits[id >> 5u], 1u << (id & 31u));
+  if (params.hasSizes != 0u) atomicAdd(sizes[id], count);
+}
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) groupCovered = 0u;
   barrier();
-  uint pixels = params.width * params.height;
+  uint samples = params.width * params.height * (1u << (16u - 2u * params.gridShift));
   uint stride = gl_NumWorkGroups.x * 256u;
   uint covered = 0u;
-  for (uint i = gl_GlobalInvocationID.x; i < pixels; i += stride) {
-    uint id = ids[i];
-    if (id == kNoTriangle) continue;
-    ++covered;
-    // A pixel whose neighbour has the same triangle leaves the bit to it; the first of the row's run sets it.
-    if (i % params.width == 0u || ids[i - 1u] != id) atomicOr(bits[id >> 5u], 1u << (id & 31u));
+  for (uint first = gl_GlobalInvocationID.x * 8u; first < samples; first += stride * 8u) {
+    uint end = min(first + 8u, samples);
+    uint before = kNoTriangle;
+    uint count = 0u;
+    bool known = false; // the neighbour to the left sets the bit
+    for (uint i = first; i < end; ++i) {
+      uint id = ids[i];
+      if (id != kNoTriangle) ++covered;
+      if (i != first && id == before) {
+        ++count;
+        continue;
+      }
+      note(before, count, known);
+      known = i == first && first != 0u && ids[first - 1u] == id;
+      before = id;
+      count = 1u;
+    }
+    note(before, count, known);
   }
   if (covered != 0u) atomicAdd(groupCovered, covered);
   barrier();

@@ -16,6 +16,9 @@ GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup o
 GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle at most
 GPGP_CONST uint kSliceBlocks = 256u;       ///< blocks of 8 x 8 pixels that one workgroup is given at least
 GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
+GPGP_CONST uint kExact = 1u;               ///< GPGP_SAMPLING_EXACT
+GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
+GPGP_CONST uint kSorted = 256u;            ///< entries of a pixel's list that are sorted together
 GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 
 /// Binding numbers of set 0, which are resource numbers of the pass list.
@@ -34,6 +37,14 @@ GPGP_CONST int kBindList = 11;
 GPGP_CONST int kBindCount = 12;
 GPGP_CONST int kBindView = 13;
 GPGP_CONST int kBindRecords = 14;
+GPGP_CONST int kBindSizes = 15;
+GPGP_CONST int kBindLimits = 16; // per pixel; then where its list begins
+GPGP_CONST int kBindCandidates = 17;
+GPGP_CONST int kBindBigs = 18;
+GPGP_CONST int kBindLengths = 19;
+GPGP_CONST int kBindPairs = 20;
+GPGP_CONST int kBindEntries = 21;
+GPGP_CONST int kBindOpen = kBindIds; // once ids are gathered: pixels with lists
 
 /// GpgpMesh
 struct Mesh {
@@ -71,6 +82,46 @@ struct Params {
   uint viewWords;     // 0: no view
   uint mediumRecords; // capacities of the record buffer: its front
   uint largeRecords;  // and what follows
+  uint gridShift;     // Grid::shift, and offset
+  uint gridX;
+  uint gridY;
+  uint accumulate;    // 1: bits and pixel counts are added to
+  uint hasSizes;      // 1: pixelCounts is there
+  uint method;        // GpgpSamplingMethod
+  uint maxCandidates; // capacities of exact sampling
+  uint maxBig;
+  uint maxPairs;
+};
+
+/// A triangle, or a piece of a clipped one, in a pixel's list.
+struct Candidate {
+  ivec2 p0; // ScreenTriangle
+  ivec2 p1;
+  ivec2 p2;
+  float z0;
+  float dz1;
+  float dz2;
+  float zMin;
+  float zMax;
+  float inverseArea;
+  float slope0; // x per y along the edges p1 p2, p2 p0, p0 p1; 0 for horizontal ones
+  float slope1;
+  float slope2;
+  uint id;
+};
+
+/// A candidate in a pixel, before the pixels' lists have their places.
+struct Pair {
+  uint slot;  // the pixel
+  uint place; // in its list
+  uint candidate;
+  uint key; // depthKey of its depth there
+};
+
+/// The same in its list.
+struct Entry {
+  uint candidate;
+  uint key;
 };
 
 /// GPU counters; the words up to `hasList` inclusive are the report.
@@ -85,6 +136,9 @@ struct Counters {
   uint skippedDraws;     // mesh out of range
   uint listed;
   uint hasList;     // 1: the record has a list
+  uint candidates;  // exact sampling: asked for
+  uint pairs;       // asked for
+  uint unresolved;  // triangles and pairs that found no room, whose triangles count as visible
   uint chunks;      // of all draws
   uint queueCount;  // triangles that one invocation should not draw alone
   uint mediumCount; // records asked for
@@ -94,9 +148,19 @@ struct Counters {
   uint mediumArgs[3];
   uint largeArgs[3];
   uint leftArgs[3];
+  uint bigQueueCount; // triangles that reach over more than 8 x 8 pixels, or are clipped
+  uint bigUnfoldArgs[3];
+  uint bigCount;
+  uint bigArgs[3];
+  uint seenCount; // small triangles that are seen at a pixel's centre
+  uint seenArgs[3];
+  uint placeArgs[3];
+  uint entryCount; // in the lists that have their place
+  uint openCount;  // pixels with lists
+  uint openArgs[3];
 };
-GPGP_CONST uint kCounterWords = 29u;
-GPGP_CONST uint kReportWords = 10u;
+GPGP_CONST uint kCounterWords = 52u;
+GPGP_CONST uint kReportWords = 13u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
 GPGP_FN uvec3 listGroups(uint listed) {
@@ -106,8 +170,8 @@ GPGP_FN uvec3 listGroups(uint listed) {
 
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
-static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 132 &&
-              sizeof(Counters) == 4 * kCounterWords);
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 168 && sizeof(Candidate) == 64 &&
+              sizeof(Pair) == 16 && sizeof(Entry) == 8 && sizeof(Counters) == 4 * kCounterWords);
 #endif
 
 GPGP_SHADER_END

@@ -25,7 +25,7 @@ void makeAgain(uint item) {
   pieces = fate == kWhole ? -1 : 0;
   if (fate != kClipped) return;
   ScreenPolygon cut;
-  if (clipTriangle(f.a, f.b, f.c, viewport(), f.mirrored, f.twoSided, cut) != kClipped) return;
+  if (clipTriangle(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, cut) != kClipped) return;
   polygon = cut;
   pieces = cut.count - 2;
 }
@@ -44,7 +44,7 @@ void main() {
       barrier();
       if (gl_LocalInvocationIndex == 0u) {
         ScreenTriangle made;
-        pieceValid = fanPiece(polygon, k, viewport(), made);
+        pieceValid = fanPiece(polygon, k, grid(), made);
         triangle = made;
       }
       barrier();

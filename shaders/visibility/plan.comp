@@ -72,6 +72,14 @@ void main() {
     counters.mediumArgs[2] = 1u;
     counters.largeArgs[1] = 1u;
     counters.largeArgs[2] = 1u;
+    counters.bigUnfoldArgs[1] = 1u;
+    counters.bigUnfoldArgs[2] = 1u;
+    counters.bigArgs[1] = 1u;
+    counters.bigArgs[2] = 1u;
+    counters.seenArgs[1] = 1u;
+    counters.seenArgs[2] = 1u;
+    counters.openArgs[1] = 1u;
+    counters.openArgs[2] = 1u;
     counters.leftArgs[1] = kLargeSplit;
     counters.leftArgs[2] = 1u;
   }

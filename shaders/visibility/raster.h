@@ -1,9 +1,9 @@
-// One triangle on the pixel grid: snapping, fill rule, coverage, depth. Chapter 6's "standard" sampling, as rasterising
-// hardware does it: one sample a pixel, at its centre.
+// One triangle on the sample grid: snapping, fill rule, coverage, depth. Chapter 6's "standard" sampling, as
+// rasterising hardware does it: one sample a pixel, at its centre; or a grid of them in each pixel.
 //
 // Guarantees: vertices are snapped to 1/256 pixel and all decisions are exact integers, so two triangles that share an
-// edge never both cover, nor both miss, a pixel centre on it (top-left rule). Depth is a function of the triangle and
-// the pixel alone: whichever pass or thread asks, the bits are the same.
+// edge never both cover, nor both miss, a point on it (top-left rule). Depth is a function of the triangle and the
+// point alone: whichever pass or thread asks, the bits are the same.
 #ifndef GPGP_SHADERS_VISIBILITY_RASTER_H
 #define GPGP_SHADERS_VISIBILITY_RASTER_H
 #include "core/math.h"
@@ -15,12 +15,38 @@ GPGP_SHADER_BEGIN
 GPGP_CONST int kGuard = 7;
 /// A triangle of at most this extent in sub-pixels has edge functions below 2^31 wherever it covers pixels.
 GPGP_CONST int kCompactExtent = 16384;
-/// A compact triangle whose pixel bounds hold at most this many pixels is drawn by one invocation.
+/// A compact triangle whose bounds hold at most this many samples is drawn by one invocation.
 GPGP_CONST int kSmallPixels = 64;
+
+/// Samples lie 2^shift units apart (256 units a pixel).
+struct Grid {
+  ivec2 pixels; ///< of the viewport
+  int shift;    ///< 8: one sample a pixel; 2: 64 x 64; 0: every point that a vertex can lie on
+  ivec2 offset; ///< of the first sample, in units; 0 to 2^shift - 1
+};
+
+/// Samples of a viewport, in each direction.
+GPGP_FN ivec2 samplesOf(Grid grid) {
+  return ivec2(grid.pixels.x << (8 - grid.shift), grid.pixels.y << (8 - grid.shift));
+}
+
+/// Where a sample lies, in units.
+GPGP_FN ivec2 samplePoint(ivec2 i, Grid grid) {
+  return ivec2((i.x << grid.shift) + grid.offset.x, (i.y << grid.shift) + grid.offset.y);
+}
+
+/// As many samples a pixel as shift says, each in the middle of its part: the pixel's centre for 8.
+GPGP_FN Grid middleGrid(ivec2 pixels, int shift) {
+  Grid grid;
+  grid.pixels = pixels;
+  grid.shift = shift;
+  grid.offset = ivec2((1 << shift) >> 1, (1 << shift) >> 1);
+  return grid;
+}
 
 /// A triangle on the grid: x right, y down, 256 units a pixel, area positive (so clockwise as seen).
 struct ScreenTriangle {
-  ivec4 bounds; ///< pixels that may be covered: x, y (first), z, w (one past the last), inside the viewport
+  ivec4 bounds; ///< samples that may be covered: x, y (first), z, w (one past the last), inside the viewport
   ivec2 p0;
   ivec2 p1;
   ivec2 p2;
@@ -47,7 +73,7 @@ GPGP_FN int snap(float normalised, int pixels) {
 }
 
 /// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1].
-GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float zb, float zc, ivec2 viewport) {
+GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float zb, float zc, Grid grid) {
   ScreenTriangle t;
   t.p0 = a;
   t.p1 = b;
@@ -56,11 +82,12 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
   int top = min(a.y, min(b.y, c.y));
   int right = max(a.x, max(b.x, c.x));
   int bottom = max(a.y, max(b.y, c.y));
-  // Pixel i's centre is at 256 i + 128.
-  t.bounds.x = max((left + 127) >> 8, 0);
-  t.bounds.y = max((top + 127) >> 8, 0);
-  t.bounds.z = min(((right - 128) >> 8) + 1, viewport.x);
-  t.bounds.w = min(((bottom - 128) >> 8) + 1, viewport.y);
+  int roundUp = (1 << grid.shift) - 1;
+  ivec2 samples = samplesOf(grid);
+  t.bounds.x = max((left - grid.offset.x + roundUp) >> grid.shift, 0);
+  t.bounds.y = max((top - grid.offset.y + roundUp) >> grid.shift, 0);
+  t.bounds.z = min(((right - grid.offset.x) >> grid.shift) + 1, samples.x);
+  t.bounds.w = min(((bottom - grid.offset.y) >> grid.shift) + 1, samples.y);
   t.zMin = min(za, min(zb, zc));
   t.zMax = max(za, max(zb, zc));
   GPGP_PRECISE float dz1 = zb - za;
@@ -74,7 +101,7 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
 
 GPGP_FN bool isEmpty(ScreenTriangle t) { return t.bounds.x >= t.bounds.z || t.bounds.y >= t.bounds.w; }
 
-/// Blocks of 8 x 8 pixels that hold the bounds of a triangle that is not empty.
+/// Blocks of 8 x 8 samples that hold the bounds of a triangle that is not empty.
 GPGP_FN uint blocksOf(ScreenTriangle t) {
   return uint(t.bounds.z - t.bounds.x + 7) / 8u * (uint(t.bounds.w - t.bounds.y + 7) / 8u);
 }
@@ -95,26 +122,26 @@ GPGP_FN ivec2 edgeSlope(ivec2 u, ivec2 v) { return ivec2(u.y - v.y, v.x - u.x); 
 /// 0 where an edge owns the points on it (top or left edge), 1 where it does not.
 GPGP_FN int edgeBias(ivec2 slope) { return slope.x > 0 || (slope.x == 0 && slope.y > 0) ? 0 : 1; }
 
-/// The edge function at a pixel's centre, exact.
-GPGP_FN Wide edgeWide(ivec2 u, ivec2 slope, ivec2 pixel) {
-  return wideSum(wideProduct(slope.x, pixel.x * 256 + 128 - u.x), wideProduct(slope.y, pixel.y * 256 + 128 - u.y));
+/// The edge function at a point, exact.
+GPGP_FN Wide edgeWide(ivec2 u, ivec2 slope, ivec2 point) {
+  return wideSum(wideProduct(slope.x, point.x - u.x), wideProduct(slope.y, point.y - u.y));
 }
 
-/// The same in 32 bits, for compact triangles and pixels within their bounds.
-GPGP_FN int edgeCompact(ivec2 u, ivec2 slope, ivec2 pixel) {
-  return slope.x * (pixel.x * 256 + 128 - u.x) + slope.y * (pixel.y * 256 + 128 - u.y);
+/// The same in 32 bits, for compact triangles and points within a pixel of their bounds.
+GPGP_FN int edgeCompact(ivec2 u, ivec2 slope, ivec2 point) {
+  return slope.x * (point.x - u.x) + slope.y * (point.y - u.y);
 }
 
-/// What tells inside from outside in a block of up to 16 x 16 pixels that starts at `pixel`: the pixel at (i, j) of the
+/// What tells inside from outside in a block of up to 16 x 16 samples that starts at `first`: sample (i, j) of the
 /// block is inside the edge exactly if edgeBlock + slope.x * i + slope.y * j >= 0, which cannot overflow.
-GPGP_FN int edgeBlock(ivec2 u, ivec2 slope, ivec2 pixel) {
+GPGP_FN int edgeBlock(ivec2 u, ivec2 slope, ivec2 first, Grid grid) {
   Wide bias;
   bias.high = edgeBias(slope) == 0 ? 0 : -1;
   bias.low = bias.high == 0 ? 0u : 0xffffffffu;
-  return widePixels(wideSum(edgeWide(u, slope, pixel), bias));
+  return wideShifted(wideSum(edgeWide(u, slope, samplePoint(first, grid)), bias), grid.shift);
 }
 
-/// Whether no pixel of a block of size x size pixels is inside the edge.
+/// Whether no sample of a block of size x size samples is inside the edge.
 GPGP_FN bool blockOutside(int block, ivec2 slope, int size) {
   return block + max(slope.x, 0) * (size - 1) + max(slope.y, 0) * (size - 1) < 0;
 }
@@ -127,10 +154,10 @@ GPGP_FN float depthOf(ScreenTriangle t, float weight1, float weight2) {
   return z < 1.17549435e-38f ? 0.0f : z;
 }
 
-/// Depth at a covered pixel's centre, any triangle.
-GPGP_FN float depthWide(ScreenTriangle t, ivec2 pixel) {
-  float weight1 = wideToFloat(edgeWide(t.p2, edgeSlope(t.p2, t.p0), pixel));
-  float weight2 = wideToFloat(edgeWide(t.p0, edgeSlope(t.p0, t.p1), pixel));
+/// Depth at a covered point, any triangle.
+GPGP_FN float depthWide(ScreenTriangle t, ivec2 point) {
+  float weight1 = wideToFloat(edgeWide(t.p2, edgeSlope(t.p2, t.p0), point));
+  float weight2 = wideToFloat(edgeWide(t.p0, edgeSlope(t.p0, t.p1), point));
   return depthOf(t, weight1, weight2);
 }
 
@@ -141,20 +168,25 @@ GPGP_FN float compactToFloat(int v) {
   return wideToFloat(w);
 }
 
-/// Whether the triangle owns a pixel's centre, any triangle.
-GPGP_FN bool coversWide(ScreenTriangle t, ivec2 pixel) {
-  return edgeBlock(t.p1, edgeSlope(t.p1, t.p2), pixel) >= 0 && edgeBlock(t.p2, edgeSlope(t.p2, t.p0), pixel) >= 0 &&
-         edgeBlock(t.p0, edgeSlope(t.p0, t.p1), pixel) >= 0;
+/// Whether a point is inside an edge or on one that owns it.
+GPGP_FN bool insideWide(ivec2 u, ivec2 slope, ivec2 point) {
+  return wideSign(edgeWide(u, slope, point)) >= edgeBias(slope);
+}
+
+/// Whether the triangle owns a point, any triangle.
+GPGP_FN bool coversWide(ScreenTriangle t, ivec2 point) {
+  return insideWide(t.p1, edgeSlope(t.p1, t.p2), point) && insideWide(t.p2, edgeSlope(t.p2, t.p0), point) &&
+         insideWide(t.p0, edgeSlope(t.p0, t.p1), point);
 }
 
 /// The same for compact triangles, with the depth where it is covered.
-GPGP_FN bool coversCompact(ScreenTriangle t, ivec2 pixel, GPGP_OUT(float) z) {
+GPGP_FN bool coversCompact(ScreenTriangle t, ivec2 point, GPGP_OUT(float) z) {
   ivec2 s0 = edgeSlope(t.p1, t.p2);
   ivec2 s1 = edgeSlope(t.p2, t.p0);
   ivec2 s2 = edgeSlope(t.p0, t.p1);
-  int e0 = edgeCompact(t.p1, s0, pixel);
-  int e1 = edgeCompact(t.p2, s1, pixel);
-  int e2 = edgeCompact(t.p0, s2, pixel);
+  int e0 = edgeCompact(t.p1, s0, point);
+  int e1 = edgeCompact(t.p2, s1, point);
+  int e2 = edgeCompact(t.p0, s2, point);
   z = 0.0f;
   if (e0 < edgeBias(s0) || e1 < edgeBias(s1) || e2 < edgeBias(s2)) return false;
   z = depthOf(t, compactToFloat(e1), compactToFloat(e2));

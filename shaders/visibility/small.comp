@@ -3,31 +3,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
+#include "visibility/chunks.glsl"
 #include "visibility/pixels.glsl"
 layout(local_size_x = 64) in; // kChunk
 
 layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
-layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 
 shared uint groupTriangles;
 shared uint groupSkipped;
-
-uint findChunk(uint chunk) {
-  uint low = 0u;
-  uint high = params.drawCount - 1u;
-  while (low < high) {
-    uint middle = low + (high - low + 1u) / 2u;
-    if (starts[middle].y <= chunk) low = middle;
-    else high = middle - 1u;
-  }
-  return low;
-}
 
 void drawSmall(ScreenTriangle t, uint id) {
   for (int y = t.bounds.y; y < t.bounds.w; ++y)
     for (int x = t.bounds.x; x < t.bounds.z; ++x) {
       float z;
-      if (coversCompact(t, ivec2(x, y), z)) coverPixel(ivec2(x, y), z, id);
+      if (coversCompact(t, samplePoint(ivec2(x, y), grid()), z)) coverPixel(t, ivec2(x, y), z, id);
     }
 }
 

@@ -129,7 +129,7 @@ struct ScreenPolygon {
 };
 
 /// Projects a clip-space point; false where its w cannot be divided by.
-GPGP_FN bool project(vec4 c, ivec2 viewport, GPGP_OUT(ivec2) p, GPGP_OUT(float) z) {
+GPGP_FN bool project(vec4 c, Grid grid, GPGP_OUT(ivec2) p, GPGP_OUT(float) z) {
   p = ivec2(0, 0);
   z = 0.0f;
   if (!isDivisor(c.w)) return false;
@@ -137,15 +137,15 @@ GPGP_FN bool project(vec4 c, ivec2 viewport, GPGP_OUT(ivec2) p, GPGP_OUT(float) 
   GPGP_PRECISE float x = c.x * inverse;
   GPGP_PRECISE float y = c.y * inverse;
   GPGP_PRECISE float depth = c.z * inverse;
-  p = ivec2(snap(x, viewport.x), snap(y, viewport.y));
+  p = ivec2(snap(x, grid.pixels.x), snap(y, grid.pixels.y));
   z = clamp(withoutTiny(depth), 0.0f, 1.0f);
   return true;
 }
 
 /// Sorts a triangle's clip coordinates into one of the cases above; for kWhole makes it, unless it is turned away.
-GPGP_FN uint classify(vec4 a, vec4 b, vec4 c, ivec2 viewport, bool mirrored, bool twoSided,
+GPGP_FN uint classify(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool twoSided,
                       GPGP_OUT(ScreenTriangle) triangle) {
-  triangle = makeTriangle(ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), 0.0f, 0.0f, 0.0f, viewport);
+  triangle = makeTriangle(ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), 0.0f, 0.0f, 0.0f, grid);
   if (!isModerateVector(a) || !isModerateVector(b) || !isModerateVector(c)) return kSkipped;
   if ((outCode(a) & outCode(b) & outCode(c)) != 0u) return kOutside;
   if (needsClip(a) || needsClip(b) || needsClip(c)) return kClipped;
@@ -155,22 +155,22 @@ GPGP_FN uint classify(vec4 a, vec4 b, vec4 c, ivec2 viewport, bool mirrored, boo
   float z0;
   float z1;
   float z2;
-  bool ok0 = project(a, viewport, p0, z0);
-  bool ok1 = project(b, viewport, p1, z1);
-  bool ok2 = project(c, viewport, p2, z2);
+  bool ok0 = project(a, grid, p0, z0);
+  bool ok1 = project(b, grid, p1, z1);
+  bool ok2 = project(c, grid, p2, z2);
   if (!ok0 || !ok1 || !ok2) return kSkipped;
   int turn = wideSign(twiceArea(p0, p1, p2));
   // Counter-clockwise as seen is negative with y down.
   if (turn == 0 || (!twoSided && (turn > 0) != mirrored)) return kBackFacing;
   if (turn > 0)
-    triangle = makeTriangle(p0, p1, p2, z0, z1, z2, viewport);
+    triangle = makeTriangle(p0, p1, p2, z0, z1, z2, grid);
   else
-    triangle = makeTriangle(p0, p2, p1, z0, z2, z1, viewport);
+    triangle = makeTriangle(p0, p2, p1, z0, z2, z1, grid);
   return kWhole;
 }
 
 /// For kClipped: the polygon that is left. Returns kOutside, kBackFacing, kSkipped or kClipped.
-GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, ivec2 viewport, bool mirrored, bool twoSided,
+GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool twoSided,
                           GPGP_OUT(ScreenPolygon) screen) {
   screen.count = 0;
   screen.reversedOrder = false;
@@ -184,7 +184,7 @@ GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, ivec2 viewport, bool mirrored,
   for (int i = 0; i < polygon.count; ++i) {
     ivec2 p;
     float z;
-    if (!project(polygon.v[i], viewport, p, z)) return kSkipped;
+    if (!project(polygon.v[i], grid, p, z)) return kSkipped;
     screen.p[i] = p;
     screen.z[i] = z;
   }
@@ -201,14 +201,14 @@ GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, ivec2 viewport, bool mirrored,
 
 /// Piece k (0 to count - 3) of the fan; false where snapping left it no area, or turned it over: then the others cover
 /// it.
-GPGP_FN bool fanPiece(ScreenPolygon screen, int k, ivec2 viewport, GPGP_OUT(ScreenTriangle) triangle) {
+GPGP_FN bool fanPiece(ScreenPolygon screen, int k, Grid grid, GPGP_OUT(ScreenTriangle) triangle) {
   int i = screen.reversedOrder ? k + 2 : k + 1;
   int j = screen.reversedOrder ? k + 1 : k + 2;
   bool positive = wideSign(twiceArea(screen.p[0], screen.p[i], screen.p[j])) > 0;
   if (positive)
-    triangle = makeTriangle(screen.p[0], screen.p[i], screen.p[j], screen.z[0], screen.z[i], screen.z[j], viewport);
+    triangle = makeTriangle(screen.p[0], screen.p[i], screen.p[j], screen.z[0], screen.z[i], screen.z[j], grid);
   else
-    triangle = makeTriangle(ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), 0.0f, 0.0f, 0.0f, viewport);
+    triangle = makeTriangle(ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), 0.0f, 0.0f, 0.0f, grid);
   return positive;
 }
 

@@ -49,12 +49,12 @@ void main() {
     if (fate == kWhole) placed = add(t, f.id);
     if (fate == kClipped) {
       ScreenPolygon polygon;
-      fate = clipTriangle(f.a, f.b, f.c, viewport(), f.mirrored, f.twoSided, polygon);
+      fate = clipTriangle(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, polygon);
       if (fate == kSkipped) atomicAdd(counters.skippedTriangles, 1u);
       if (fate == kClipped) {
         atomicAdd(counters.triangles, 1u);
         for (int k = 0; k + 2 < polygon.count; ++k)
-          if (fanPiece(polygon, k, viewport(), t) && !add(t, f.id)) placed = false;
+          if (fanPiece(polygon, k, grid(), t) && !add(t, f.id)) placed = false;
       }
     }
     if (!placed) {

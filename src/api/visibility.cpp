@@ -48,6 +48,11 @@ GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext handle, const GpgpSamplerCrea
                        info->maxWidth, info->maxHeight);
     if (info->maxTriangles > 1u << 30)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 1073741824", info->maxTriangles);
+    if (info->maxSamples > 64 || (info->maxSamples & (info->maxSamples - 1)))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxSamples is %u; expected a power of two up to 64",
+                       info->maxSamples);
+    if (info->methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_TRUTH_BIT))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods is 0x%x; it has unknown bits", info->methods);
     auto made = Sampler::create(**context, *info);
     if (!made) return made.error();
     *sampler = adopt<GpgpWorker>(**context, std::move(*made));
@@ -90,8 +95,6 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker handle, VkCommandBuf
       if (!resolved) return resolved.error();
       view = *resolved;
     }
-    if (info->method != GPGP_SAMPLING_STANDARD)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d; there is GPGP_SAMPLING_STANDARD", info->method);
     if (!allFinite(info->camera.viewProjection))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
     if (auto ok = checkRecord(**sampler, frame); !ok) return ok;

@@ -21,11 +21,12 @@ TEST(Exact, ProductsSumsAndSignsMatch64BitIntegers) {
     const std::int64_t y = static_cast<std::int64_t>(random()) >> (2 + random() % 60);
     ASSERT_EQ(value(wideSum(wide(x), wide(y))), x + y);
     ASSERT_EQ(wideSign(wide(x)), x < 0 ? -1 : x > 0);
-    ASSERT_EQ(widePixels(wide(x)), std::clamp<std::int64_t>(x >> 8, -kSaturated, kSaturated)) << x;
+    for (int shift = 0; shift <= 8; ++shift)
+      ASSERT_EQ(wideShifted(wide(x), shift), std::clamp<std::int64_t>(x >> shift, -kSaturated, kSaturated)) << x;
   }
   EXPECT_EQ(wideSign(wide(0)), 0);
-  EXPECT_EQ(widePixels(wide(-1)), -1);
-  EXPECT_EQ(widePixels(wide(255)), 0);
+  EXPECT_EQ(wideShifted(wide(-1), 8), -1);
+  EXPECT_EQ(wideShifted(wide(255), 8), 0);
 }
 
 TEST(Exact, FloatsOfWideNumbersAreTheNearest) {

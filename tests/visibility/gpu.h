@@ -15,9 +15,12 @@ struct GpuOptions {
   bool count = true;
   GpgpView view = nullptr;
   uint64_t tag = 0;
+  GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;
+  uint32_t samples = 0, slice = 0;
 };
 
 struct GpuResult {
+  std::vector<uint32_t> sizes;             ///< samples per triangle
   std::vector<uint32_t> bits, list, count; ///< list: as much as was written, sorted
   std::vector<uint32_t> depth, ids;        ///< from the scratch buffer
   GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
@@ -40,7 +43,9 @@ struct VisibilityGpuTest : testing::Test {
   GpgpFrame advance(uint64_t inFlight = 1);
   const host::Queue& queue() const { return device.computeOnly() ? *device.computeOnly() : device.graphics(); }
 
-  GpgpWorker createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false);
+  GpgpWorker createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false,
+                           uint32_t methods = 0, uint32_t maxSamples = 0, uint32_t maxCandidates = 0,
+                           uint32_t maxPairs = 0);
   GpgpAsset createGeometrySet(const Scene& scene);
   GpgpView createView(uint32_t maxTriangles);
   /// Copies all that is pending.

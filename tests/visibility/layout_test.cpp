@@ -40,7 +40,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 18u);
+    EXPECT_EQ(offsets.size(), 27u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -58,7 +58,7 @@ TEST(Layout, ParamsAgree) {
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 19u);
+    EXPECT_EQ(offsets.size(), 32u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);
@@ -70,7 +70,7 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, largeArgs);
     EXPECT_OFFSET(offsets, Counters, leftArgs);
   }
-  EXPECT_EQ(offsetof(shader::Counters, hasList) + 4, shader::kReportWords * 4);
+  EXPECT_EQ(offsetof(shader::Counters, unresolved) + 4, shader::kReportWords * 4);
 }
 
 TEST(Layout, TheEnginesStructsAreTheShaders) {

@@ -39,7 +39,7 @@ bool orient(ivec2& a, ivec2& b, ivec2& c) {
 
 TEST(Raster, CoverageIsTheFillRuleExactly) {
   Random random(1);
-  const ivec2 viewport(64, 48);
+  const Grid viewport = middleGrid(ivec2(64, 48), 8);
   int covered = 0;
   for (int n = 0; n < 3000; ++n) {
     const int reach = n % 3 == 0 ? 256 : n % 3 == 1 ? 16384 : 64 * 128 * 6;
@@ -50,11 +50,11 @@ TEST(Raster, CoverageIsTheFillRuleExactly) {
     a += ivec2(4096, 4096), b += ivec2(4096, 4096), c += ivec2(4096, 4096);
     if (!orient(a, b, c)) continue;
     const ScreenTriangle t = makeTriangle(a, b, c, 0.25f, 0.5f, 0.75f, viewport);
-    for (int y = 0; y < viewport.y; ++y)
-      for (int x = 0; x < viewport.x; ++x) {
+    for (int y = 0; y < viewport.pixels.y; ++y)
+      for (int x = 0; x < viewport.pixels.x; ++x) {
         const bool inBounds = x >= t.bounds.x && y >= t.bounds.y && x < t.bounds.z && y < t.bounds.w;
         const bool expected = ownsPoint(a, b, c, ivec2(x * 256 + 128, y * 256 + 128));
-        ASSERT_EQ(coversWide(t, ivec2(x, y)), expected) << n << ": " << x << ", " << y;
+        ASSERT_EQ(coversWide(t, samplePoint(ivec2(x, y), viewport)), expected) << n << ": " << x << ", " << y;
         ASSERT_TRUE(inBounds || !expected) << n;
         covered += expected;
       }
@@ -64,7 +64,7 @@ TEST(Raster, CoverageIsTheFillRuleExactly) {
 
 TEST(Raster, CompactAndBlockFormsEqualTheExactOne) {
   Random random(2);
-  const ivec2 viewport(8192, 8192);
+  const Grid viewport = middleGrid(ivec2(8192, 8192), 8);
   for (int n = 0; n < 20000; ++n) {
     const bool compact = n % 2 == 0;
     const int reach = compact ? 8192 : 3 * 8192 * 256;
@@ -77,21 +77,22 @@ TEST(Raster, CompactAndBlockFormsEqualTheExactOne) {
     if (isEmpty(t)) continue;
     const ivec2 corner(random(t.bounds.x, t.bounds.z - 1), random(t.bounds.y, t.bounds.w - 1));
     const ivec2 s0 = edgeSlope(b, c), s1 = edgeSlope(c, a), s2 = edgeSlope(a, b);
-    const int e0 = edgeBlock(b, s0, corner), e1 = edgeBlock(c, s1, corner), e2 = edgeBlock(a, s2, corner);
+    const int e0 = edgeBlock(b, s0, corner, viewport), e1 = edgeBlock(c, s1, corner, viewport),
+              e2 = edgeBlock(a, s2, corner, viewport);
     bool any = false;
     for (int j = 0; j < 8; ++j)
       for (int i = 0; i < 8; ++i) {
         const ivec2 pixel = corner + ivec2(i, j);
-        const bool expected = coversWide(t, pixel);
+        const bool expected = coversWide(t, samplePoint(pixel, viewport));
         const bool block =
             e0 + s0.x * i + s0.y * j >= 0 && e1 + s1.x * i + s1.y * j >= 0 && e2 + s2.x * i + s2.y * j >= 0;
         ASSERT_EQ(block, expected);
         any |= expected;
         if (!isCompact(t) || pixel.x >= t.bounds.z || pixel.y >= t.bounds.w) continue;
         float z = -1;
-        ASSERT_EQ(coversCompact(t, pixel, z), expected);
+        ASSERT_EQ(coversCompact(t, samplePoint(pixel, viewport), z), expected);
         if (expected) {
-          ASSERT_EQ(floatBitsToUint(z), floatBitsToUint(depthWide(t, pixel)));
+          ASSERT_EQ(floatBitsToUint(z), floatBitsToUint(depthWide(t, samplePoint(pixel, viewport))));
         }
       }
     if (blockOutside(e0, s0, 8) || blockOutside(e1, s1, 8) || blockOutside(e2, s2, 8)) {
@@ -102,7 +103,7 @@ TEST(Raster, CompactAndBlockFormsEqualTheExactOne) {
 
 TEST(Raster, DepthIsTheMixOfTheCornersDepths) {
   Random random(3);
-  const ivec2 viewport(2048, 2048);
+  const Grid viewport = middleGrid(ivec2(2048, 2048), 8);
   double worst = 0;
   for (int n = 0; n < 2000; ++n) {
     const int reach = n % 4 == 0 ? 300000 : 3000;
@@ -115,12 +116,12 @@ TEST(Raster, DepthIsTheMixOfTheCornersDepths) {
     const ScreenTriangle t = makeTriangle(a, b, c, z[0], z[1], z[2], viewport);
     for (int k = 0; k < 50 && !isEmpty(t); ++k) {
       const ivec2 pixel(random(t.bounds.x, t.bounds.z - 1), random(t.bounds.y, t.bounds.w - 1));
-      if (!coversWide(t, pixel)) continue;
+      if (!coversWide(t, samplePoint(pixel, viewport))) continue;
       const ivec2 p(pixel.x * 256 + 128, pixel.y * 256 + 128);
       const double total = double(area(a, b, c));
       const double exact =
           (double(area(b, c, p)) * z[0] + double(area(c, a, p)) * z[1] + double(area(a, b, p)) * z[2]) / total;
-      worst = std::max(worst, std::abs(exact - double(depthWide(t, pixel))));
+      worst = std::max(worst, std::abs(exact - double(depthWide(t, samplePoint(pixel, viewport)))));
     }
   }
   EXPECT_LT(worst, 4e-7);
@@ -153,7 +154,7 @@ TEST(Raster, DepthKeysAreOrderedNearestFirst) {
 // spokes run; half the cases have spokes that go exactly through centres.
 TEST(Raster, SharedEdgesAreHitExactlyOnce) {
   Random random(4);
-  const ivec2 viewport(48, 48);
+  const Grid viewport = middleGrid(ivec2(48, 48), 8);
   for (int n = 0; n < 400; ++n) {
     const int grid = n % 2 ? 1 : 128;
     const ivec2 hub(random(5000, 7000) / grid * grid, random(5000, 7000) / grid * grid);
@@ -174,7 +175,7 @@ TEST(Raster, SharedEdgesAreHitExactlyOnce) {
       const ScreenTriangle t = makeTriangle(hub, a, b, 0.5f, 0.5f, 0.5f, viewport);
       for (int y = t.bounds.y; y < t.bounds.w; ++y)
         for (int x = t.bounds.x; x < t.bounds.z; ++x)
-          hits[static_cast<size_t>(y * 48 + x)] += coversWide(t, ivec2(x, y));
+          hits[static_cast<size_t>(y * 48 + x)] += coversWide(t, samplePoint(ivec2(x, y), viewport));
     }
     if (!proper) continue;
     for (int y = 0; y < 48; ++y)

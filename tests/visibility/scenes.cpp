@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <glm/ext/matrix_transform.hpp>
 #include <random>
@@ -43,6 +44,8 @@ void Scene::setCamera(const glm::mat4& viewProjection, uint32_t width, uint32_t 
 visibility::TwinInput Scene::input() {
   positionWords.resize(positions.size());
   for (size_t i = 0; i < positions.size(); ++i) positionWords[i] = std::bit_cast<uint32_t>(positions[i]);
+  params.gridShift = 8;
+  params.gridX = params.gridY = 128;
   params.drawCount = static_cast<uint32_t>(draws.size());
   params.meshCount = static_cast<uint32_t>(meshes.size());
   if (params.maxItems == 0) params.maxItems = 1u << 22;
@@ -155,7 +158,8 @@ Scene colonnade(uint32_t width, uint32_t height) {
 }
 
 Scene bunny(uint32_t width, uint32_t height) {
-  const std::string path = std::string(GPGP_TEST_DATA) + "/fetched/models/bunny.obj";
+  const char* data = std::getenv("GPGP_TEST_DATA"); // for programs that run elsewhere than they were built
+  const std::string path = std::string(data ? data : GPGP_TEST_DATA) + "/fetched/models/bunny.obj";
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read " + path + "; run tests/data/fetch.sh --only models");
   Scene scene;

@@ -4,6 +4,7 @@
 #pragma once
 #include "core/worker.h"
 #include "visibility/geometry_set.h"
+#include "visibility/layout.h"
 
 namespace gpgp::visibility {
 
@@ -21,12 +22,17 @@ public:
 
 private:
   core::PassList describe() const;
+  void describeExact(core::PassList& list) const;
+  static uint32_t samplesOf(const GpgpSampleInfo& info);
+  void setGrid(const GpgpSampleInfo& info, shader::Params& params) const;
   core::Result<void> checkInfo(const GpgpSampleInfo& info, const CameraView* view) const;
 
   uint32_t mediumRecords() const;
   uint32_t largeRecords() const;
 
-  const uint32_t maxWidth_, maxHeight_, maxDraws_, maxTriangles_;
+  uint32_t defaultPairs() const;
+
+  const uint32_t maxWidth_, maxHeight_, maxDraws_, maxTriangles_, maxSamples_, methods_, maxCandidates_, maxPairs_;
 };
 
 } // namespace gpgp::visibility

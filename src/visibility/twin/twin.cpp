@@ -27,18 +27,26 @@ bool fetchVertex(const TwinInput& in, const Mesh& mesh, uint32_t index, vec3& po
 }
 
 void draw(TwinResult& out, const Params& params, const ScreenTriangle& t, uint32_t id) {
+  const Grid grid = gridOf(params);
+  const auto width = static_cast<size_t>(samplesOf(grid).x);
   for (int y = t.bounds.y; y < t.bounds.w; ++y)
     for (int x = t.bounds.x; x < t.bounds.z; ++x) {
-      if (!coversWide(t, ivec2(x, y))) continue;
-      const uint32_t key = depthKey(depthWide(t, ivec2(x, y)), params.reversedDepth != 0);
-      const size_t pixel = size_t(y) * params.width + static_cast<size_t>(x);
-      if (key < out.depth[pixel])
-        out.depth[pixel] = key, out.ids[pixel] = id;
-      else if (key == out.depth[pixel])
-        out.ids[pixel] = std::min(out.ids[pixel], id);
+      const ivec2 point = samplePoint(ivec2(x, y), grid);
+      if (!coversWide(t, point)) continue;
+      const uint32_t key = depthKey(depthWide(t, point), params.reversedDepth != 0);
+      const size_t at = size_t(y) * width + static_cast<size_t>(x);
+      if (key < out.depth[at])
+        out.depth[at] = key, out.ids[at] = id;
+      else if (key == out.depth[at])
+        out.ids[at] = std::min(out.ids[at], id);
     }
 }
 } // namespace
+
+shader::Grid gridOf(const Params& params) {
+  return {ivec2(static_cast<int>(params.width), static_cast<int>(params.height)), static_cast<int>(params.gridShift),
+          ivec2(static_cast<int>(params.gridX), static_cast<int>(params.gridY))};
+}
 
 TwinTriangle placeTriangle(const TwinInput& in, const Draw& draw, uint32_t localTriangle) {
   TwinTriangle result;
@@ -52,24 +60,43 @@ TwinTriangle placeTriangle(const TwinInput& in, const Draw& draw, uint32_t local
     }
     clip[i] = transformToClip(draw, in.params, position);
   }
-  const ivec2 viewport(static_cast<int>(in.params.width), static_cast<int>(in.params.height));
+  const Grid grid = gridOf(in.params);
   const bool mirrored = mirrors(draw), twoSided = (draw.flags & kTwoSided) != 0;
   ScreenTriangle triangle;
-  result.fate = classify(clip[0], clip[1], clip[2], viewport, mirrored, twoSided, triangle);
+  result.fate = classify(clip[0], clip[1], clip[2], grid, mirrored, twoSided, triangle);
   if (result.fate == kWhole) result.pieces.push_back(triangle);
   if (result.fate != kClipped) return result;
   ScreenPolygon polygon;
-  result.fate = clipTriangle(clip[0], clip[1], clip[2], viewport, mirrored, twoSided, polygon);
+  result.fate = clipTriangle(clip[0], clip[1], clip[2], grid, mirrored, twoSided, polygon);
   if (result.fate == kClipped)
     for (int k = 0; k + 2 < polygon.count; ++k)
-      if (fanPiece(polygon, k, viewport, triangle)) result.pieces.push_back(triangle);
+      if (fanPiece(polygon, k, grid, triangle)) result.pieces.push_back(triangle);
   return result;
+}
+
+/// From bits to list and counts.
+void finish(const TwinInput& in, TwinResult& out) {
+  const Params& params = in.params;
+  Counters& counters = out.counters;
+  for (size_t word = 0; word < out.bits.size(); ++word)
+    for (uint32_t rest = out.bits[word]; rest; rest &= rest - 1)
+      out.list.push_back(static_cast<uint32_t>(word * 32) + static_cast<uint32_t>(std::countr_zero(rest)));
+  counters.visible = static_cast<uint32_t>(out.list.size());
+  counters.hasList = params.hasList;
+  counters.listed = std::min(counters.visible, params.listCapacity);
+  for (size_t word = 0; params.viewWords && word < std::max(out.bits.size(), in.previousBits.size()); ++word) {
+    const uint32_t now = word < out.bits.size() ? out.bits[word] : 0;
+    const uint32_t before = word < in.previousBits.size() ? in.previousBits[word] : 0;
+    counters.appeared += static_cast<uint32_t>(std::popcount(now & ~before));
+    counters.disappeared += static_cast<uint32_t>(std::popcount(before & ~now));
+  }
 }
 
 TwinResult sampleOnCpu(const TwinInput& in) {
   const Params& params = in.params;
   TwinResult out;
-  const size_t pixels = size_t(params.width) * params.height;
+  const ivec2 samples = samplesOf(gridOf(params));
+  const size_t pixels = static_cast<size_t>(samples.x) * static_cast<size_t>(samples.y);
   out.depth.assign(pixels, kFarthest);
   out.ids.assign(pixels, kNoTriangle);
   out.bits.assign((size_t(params.triangleCount) + 31) / 32, 0);
@@ -101,18 +128,7 @@ TwinResult sampleOnCpu(const TwinInput& in) {
     ++counters.coveredPixels;
     out.bits[id / 32] |= 1u << (id % 32);
   }
-  for (size_t word = 0; word < out.bits.size(); ++word)
-    for (uint32_t rest = out.bits[word]; rest; rest &= rest - 1)
-      out.list.push_back(static_cast<uint32_t>(word * 32) + static_cast<uint32_t>(std::countr_zero(rest)));
-  counters.visible = static_cast<uint32_t>(out.list.size());
-  counters.hasList = params.hasList;
-  counters.listed = std::min(counters.visible, params.listCapacity);
-  for (size_t word = 0; params.viewWords && word < std::max(out.bits.size(), in.previousBits.size()); ++word) {
-    const uint32_t now = word < out.bits.size() ? out.bits[word] : 0;
-    const uint32_t before = word < in.previousBits.size() ? in.previousBits[word] : 0;
-    counters.appeared += static_cast<uint32_t>(std::popcount(now & ~before));
-    counters.disappeared += static_cast<uint32_t>(std::popcount(before & ~now));
-  }
+  finish(in, out);
   return out;
 }
 

@@ -34,6 +34,19 @@ struct TwinTriangle {
 };
 TwinTriangle placeTriangle(const TwinInput& input, const shader::Draw& draw, uint32_t localTriangle);
 
+/// Which samples a record draws.
+shader::Grid gridOf(const shader::Params& params);
+
+/// Methods standard and truth: the samples of params' grid.
 TwinResult sampleOnCpu(const TwinInput& input);
+
+/// Method exact. depth: at the pixels' centres; ids: empty. counters.candidates and .pairs have no budget.
+TwinResult sampleExactOnCpu(const TwinInput& input);
+
+/// The union of all slices of method truth with samples x samples a pixel and the centre; sizes: samples per triangle.
+TwinResult truthOnCpu(TwinInput input, uint32_t samples, std::vector<uint32_t>& sizes);
+
+/// What follows the bits: list and counts.
+void finish(const TwinInput& input, TwinResult& result);
 
 } // namespace gpgp::visibility

@@ -1,0 +1,47 @@
+// Gives each pixel's list its place: a workgroup sums the lengths of its tile of 8 x 8 pixels and takes that much room,
+// and notes the pixels that have one.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/layout.h"
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+layout(std430, set = 0, binding = kBindLengths) readonly buffer LengthBuffer { uint lengths[]; };
+layout(std430, set = 0, binding = kBindOpen) writeonly buffer OpenBuffer { uint open[]; };
+#include "visibility/lists.glsl"
+
+shared uvec2 sums[64]; // entries, pixels with lists
+shared uvec2 first;
+
+void main() {
+  uint lane = gl_LocalInvocationIndex;
+  if (gl_WorkGroupID.x == 0u && lane == 0u) {
+    counters.placeArgs[0] = min((min(counters.pairs, params.maxPairs) + 255u) / 256u, kMaxGroups);
+    counters.placeArgs[1] = 1u;
+    counters.placeArgs[2] = 1u;
+  }
+  for (uint tile = gl_WorkGroupID.x; tile < tileCount(); tile += gl_NumWorkGroups.x) {
+    uint slot = tile * 64u + lane;
+    uvec2 own = uvec2(lengths[slot], lengths[slot] != 0u ? 1u : 0u);
+    sums[lane] = own;
+    barrier();
+    for (uint step = 1u; step < 64u; step *= 2u) {
+      uvec2 before = lane >= step ? sums[lane - step] : uvec2(0u);
+      barrier();
+      sums[lane] += before;
+      barrier();
+    }
+    if (lane == 0u && sums[63].y != 0u) {
+      first = uvec2(atomicAdd(counters.entryCount, sums[63].x), atomicAdd(counters.openCount, sums[63].y));
+      atomicMax(counters.openArgs[0], min(first.y + sums[63].y, kMaxGroups));
+    }
+    barrier();
+    if (own.y != 0u) {
+      uvec2 place = first + sums[lane] - own;
+      limits[slot] = place.x;
+      open[place.y] = slot;
+    }
+    barrier();
+  }
+}

@@ -1,0 +1,231 @@
+// One triangle within one pixel, for the methods that look below a pixel: whether it touches the pixel, how near it
+// comes there, and which of the pixel's 64 x 64 samples it covers, a row at a time.
+//
+// Guarantees: one result on every device. The rows' masks are made with floats and may be wrong by a sample at either
+// end; widened by kSeam, two triangles with a common edge leave no sample between them.
+#ifndef GPGP_SHADERS_VISIBILITY_CANDIDATE_H
+#define GPGP_SHADERS_VISIBILITY_CANDIDATE_H
+#include "visibility/layout.h"
+#include "visibility/raster.h"
+
+GPGP_SHADER_BEGIN
+
+/// Pixels whose points may be covered, like ScreenTriangle::bounds.
+GPGP_FN ivec4 pixelBounds(ivec2 a, ivec2 b, ivec2 c, ivec2 viewport) {
+  ivec4 r;
+  r.x = max(min(a.x, min(b.x, c.x)) >> 8, 0);
+  r.y = max(min(a.y, min(b.y, c.y)) >> 8, 0);
+  r.z = min((max(a.x, max(b.x, c.x)) >> 8) + 1, viewport.x);
+  r.w = min((max(a.y, max(b.y, c.y)) >> 8) + 1, viewport.y);
+  return r;
+}
+
+/// The pixel's point where an edge function is greatest.
+GPGP_FN ivec2 innermost(ivec2 slope, ivec2 pixel) {
+  return ivec2(pixel.x * 256 + (slope.x > 0 ? 255 : 0), pixel.y * 256 + (slope.y > 0 ? 255 : 0));
+}
+
+/// Whether a triangle may own a point of a pixel within its pixelBounds: no edge has all of them outside.
+GPGP_FN bool touchesCompact(ScreenTriangle t, ivec2 pixel) {
+  ivec2 s0 = edgeSlope(t.p1, t.p2);
+  ivec2 s1 = edgeSlope(t.p2, t.p0);
+  ivec2 s2 = edgeSlope(t.p0, t.p1);
+  return edgeCompact(t.p1, s0, innermost(s0, pixel)) >= edgeBias(s0) &&
+         edgeCompact(t.p2, s1, innermost(s1, pixel)) >= edgeBias(s1) &&
+         edgeCompact(t.p0, s2, innermost(s2, pixel)) >= edgeBias(s2);
+}
+GPGP_FN bool touchesWide(ScreenTriangle t, ivec2 pixel) {
+  ivec2 s0 = edgeSlope(t.p1, t.p2);
+  ivec2 s1 = edgeSlope(t.p2, t.p0);
+  ivec2 s2 = edgeSlope(t.p0, t.p1);
+  return insideWide(t.p1, s0, innermost(s0, pixel)) && insideWide(t.p2, s1, innermost(s1, pixel)) &&
+         insideWide(t.p0, s2, innermost(s2, pixel));
+}
+
+GPGP_FN float withinDepths(ScreenTriangle t, float z) {
+  float held = clamp(z, t.zMin, t.zMax);
+  return held < 1.17549435e-38f ? 0.0f : held;
+}
+
+/// How the depth of a triangle's plane changes by unit.
+GPGP_FN vec2 depthSlope(ScreenTriangle t) {
+  ivec2 s1 = edgeSlope(t.p2, t.p0);
+  ivec2 s2 = edgeSlope(t.p0, t.p1);
+  GPGP_PRECISE float alongX = (float(s1.x) * t.dz1 + float(s2.x) * t.dz2) * t.inverseArea;
+  GPGP_PRECISE float alongY = (float(s1.y) * t.dz1 + float(s2.y) * t.dz2) * t.inverseArea;
+  return vec2(alongX, alongY);
+}
+
+/// The depth of a triangle's plane at a point within a pixel of its box, and what rounding may add to it: slivers'
+/// planes are steep.
+GPGP_FN vec2 planeDepth(ScreenTriangle t, bool compact, ivec2 point) {
+  ivec2 s1 = edgeSlope(t.p2, t.p0);
+  ivec2 s2 = edgeSlope(t.p0, t.p1);
+  float weight1;
+  float weight2;
+  if (compact) {
+    weight1 = compactToFloat(edgeCompact(t.p2, s1, point));
+    weight2 = compactToFloat(edgeCompact(t.p0, s2, point));
+  } else {
+    weight1 = wideToFloat(edgeWide(t.p2, s1, point));
+    weight2 = wideToFloat(edgeWide(t.p0, s2, point));
+  }
+  GPGP_PRECISE float z = t.z0 + (weight1 * t.dz1 + weight2 * t.dz2) * t.inverseArea;
+  GPGP_PRECISE float rounding = (abs(weight1 * t.dz1) + abs(weight2 * t.dz2)) * t.inverseArea * 4.8e-7f;
+  return vec2(z, rounding);
+}
+
+/// The nearest that the part of a triangle's box that lies in a pixel comes, as a key.
+GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
+  ivec2 low = max(min(t.p0, min(t.p1, t.p2)), pixel * 256);
+  ivec2 high = min(max(t.p0, max(t.p1, t.p2)), pixel * 256 + 255);
+  vec2 depth = planeDepth(t, compact, ivec2((low.x + high.x) >> 1, (low.y + high.y) >> 1));
+  vec2 slope = depthSlope(t);
+  GPGP_PRECISE float reach =
+      (abs(slope.x) * float(high.x - low.x + 1) + abs(slope.y) * float(high.y - low.y + 1)) * 0.5f + depth.y;
+  GPGP_PRECISE float nearest = reversed ? depth.x + reach : depth.x - reach;
+  return depthKey(withinDepths(t, nearest), reversed);
+}
+
+/// Whether an edge has all points of a pixel inside.
+GPGP_FN bool fillsEdge(ivec2 u, ivec2 slope, ivec2 pixel, Grid grid) {
+  return edgeBlock(u, slope, pixel, grid) >= (abs(slope.x) + abs(slope.y) + 1) >> 1;
+}
+
+/// Whether a triangle owns all points of a pixel; one sample a pixel, at its centre.
+GPGP_FN bool fillsPixel(ScreenTriangle t, ivec2 pixel, Grid grid) {
+  return fillsEdge(t.p1, edgeSlope(t.p1, t.p2), pixel, grid) && fillsEdge(t.p2, edgeSlope(t.p2, t.p0), pixel, grid) &&
+         fillsEdge(t.p0, edgeSlope(t.p0, t.p1), pixel, grid);
+}
+
+/// The key of what a triangle that fills a pixel hides for certain, from its depth at the centre.
+GPGP_FN uint fillKey(ScreenTriangle t, float z, bool reversed) {
+  vec2 slope = depthSlope(t);
+  GPGP_PRECISE float reach = (abs(slope.x) + abs(slope.y)) * 128.0f + (abs(t.dz1) + abs(t.dz2)) * 4.8e-7f;
+  GPGP_PRECISE float farthest = reversed ? z - reach : z + reach;
+  return depthKey(withinDepths(t, farthest), reversed);
+}
+
+/// x per y along an edge; 0 for horizontal ones.
+GPGP_FN float edgeLean(ivec2 u, ivec2 v) { return u.y == v.y ? 0.0f : divide(float(v.x - u.x), float(v.y - u.y)); }
+
+GPGP_FN Candidate makeCandidate(ScreenTriangle t, uint id) {
+  Candidate c;
+  c.p0 = t.p0;
+  c.p1 = t.p1;
+  c.p2 = t.p2;
+  c.z0 = t.z0;
+  c.dz1 = t.dz1;
+  c.dz2 = t.dz2;
+  c.zMin = t.zMin;
+  c.zMax = t.zMax;
+  c.inverseArea = t.inverseArea;
+  c.slope0 = edgeLean(t.p1, t.p2);
+  c.slope1 = edgeLean(t.p2, t.p0);
+  c.slope2 = edgeLean(t.p0, t.p1);
+  c.id = id;
+  return c;
+}
+
+/// All of a triangle but its bounds.
+GPGP_FN ScreenTriangle triangleOf(Candidate c) {
+  ScreenTriangle t;
+  t.bounds = ivec4(0, 0, 0, 0);
+  t.p0 = c.p0;
+  t.p1 = c.p1;
+  t.p2 = c.p2;
+  t.z0 = c.z0;
+  t.dz1 = c.dz1;
+  t.dz2 = c.dz2;
+  t.zMin = c.zMin;
+  t.zMax = c.zMax;
+  t.inverseArea = c.inverseArea;
+  return t;
+}
+
+GPGP_FN bool touches(ScreenTriangle t, bool compact, ivec2 pixel) {
+  if (compact) return touchesCompact(t, pixel);
+  return touchesWide(t, pixel);
+}
+
+GPGP_CONST float kSeam = 0.03125f; ///< units
+
+/// Bits a to b of 64, both clamped.
+GPGP_FN uvec2 bitRange(int a, int b) {
+  int first = max(a, 0);
+  int last = min(b, 63);
+  uvec2 m = uvec2(0u, 0u);
+  if (first > last) return m;
+  if (first < 32) m.x = 0xffffffffu << uint(first);
+  if (last < 31) m.x &= (2u << uint(last)) - 1u;
+  if (last >= 32) m.y = 0xffffffffu >> uint(63 - last);
+  if (first > 32) m.y &= 0xffffffffu << uint(first - 32);
+  return m;
+}
+
+/// A candidate's corners in units from a pixel's first, and its edges' slopes.
+struct Outline {
+  ivec2 p0;
+  ivec2 p1;
+  ivec2 p2;
+  float slope0;
+  float slope1;
+  float slope2;
+};
+
+GPGP_FN Outline outlineOf(Candidate c, ivec2 first) {
+  Outline o;
+  o.p0 = c.p0 - first;
+  o.p1 = c.p1 - first;
+  o.p2 = c.p2 - first;
+  o.slope0 = c.slope0;
+  o.slope1 = c.slope1;
+  o.slope2 = c.slope2;
+  return o;
+}
+
+GPGP_FN int lowestBit(uvec2 m) { return m.x != 0u ? findLSB(m.x) : 32 + findLSB(m.y); }
+
+/// Where a pixel's row at unit y, which the outline must reach, enters and leaves it.
+GPGP_FN vec2 rowRange(Outline c, int y) {
+  GPGP_PRECISE float low = 0.0f;
+  GPGP_PRECISE float high = 256.0f;
+  GPGP_PRECISE float x0 = float(c.p1.x) + float(y - c.p1.y) * c.slope0;
+  GPGP_PRECISE float x1 = float(c.p2.x) + float(y - c.p2.y) * c.slope1;
+  GPGP_PRECISE float x2 = float(c.p0.x) + float(y - c.p0.y) * c.slope2;
+  // An edge that runs upwards bounds from the left; the triangle is clockwise as seen.
+  if (c.p1.y > c.p2.y) low = max(low, x0);
+  if (c.p2.y > c.p0.y) low = max(low, x1);
+  if (c.p0.y > c.p1.y) low = max(low, x2);
+  if (c.p1.y < c.p2.y) high = min(high, x0);
+  if (c.p2.y < c.p0.y) high = min(high, x1);
+  if (c.p0.y < c.p1.y) high = min(high, x2);
+  return vec2(low, high);
+}
+
+/// The depth of a candidate in a pixel, as a key: in the middle of the row that halves its box there.
+GPGP_FN uint middleKey(Candidate c, bool compact, ivec2 pixel, bool reversed) {
+  ivec2 first = pixel * 256;
+  ivec2 low = max(min(c.p0, min(c.p1, c.p2)), first);
+  ivec2 high = min(max(c.p0, max(c.p1, c.p2)), first + 255);
+  ivec2 middle = ivec2((low.x + high.x) >> 1, (low.y + high.y) >> 1);
+  vec2 range = rowRange(outlineOf(c, first), middle.y - first.y);
+  if (range.x < range.y) middle.x = first.x + int(floor((range.x + range.y) * 0.5f));
+  ScreenTriangle t = triangleOf(c);
+  return depthKey(withinDepths(t, planeDepth(t, compact, middle).x), reversed);
+}
+
+/// Which of a row's samples lie in a range.
+GPGP_FN uvec2 samplesIn(vec2 range, float widen) {
+  GPGP_PRECISE float from = (range.x - widen - 2.0f) * 0.25f;
+  GPGP_PRECISE float to = (range.y + widen - 2.0f) * 0.25f;
+  return bitRange(-int(floor(-from)), int(floor(to)));
+}
+
+/// Whether an outline reaches a row.
+GPGP_FN bool reachesRow(Outline c, int y) {
+  return y >= min(c.p0.y, min(c.p1.y, c.p2.y)) && y <= max(c.p0.y, max(c.p1.y, c.p2.y));
+}
+
+GPGP_SHADER_END
+#endif

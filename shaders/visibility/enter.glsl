@@ -1,0 +1,33 @@
+// Candidates and pairs: what a triangle adds to the lists of pixels. Needs lists.glsl and `counters`.
+layout(std430, set = 0, binding = kBindLengths) buffer LengthBuffer { uint lengths[]; }; // entries of a pixel's list
+layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
+layout(std430, set = 0, binding = kBindCandidates) buffer CandidateBuffer { Candidate candidates[]; };
+layout(std430, set = 0, binding = kBindPairs) writeonly buffer PairBuffer { Pair pairs[]; };
+
+bool isSeen(uint id) { return (bits[id >> 5u] & (1u << (id & 31u))) != 0u; }
+
+/// What finds no room counts as visible.
+void show(uint id) {
+  atomicOr(bits[id >> 5u], 1u << (id & 31u));
+  atomicAdd(counters.unresolved, 1u);
+}
+
+/// Whether a triangle is to be entered in a pixel within its bounds: it touches it in front of its limit. One that is
+/// seen already only hides others, so it is entered where there are such.
+bool isWanted(ScreenTriangle t, bool compact, ivec2 pixel, bool seen) {
+  uint slot = slotOf(pixel);
+  if (seen && lengths[slot] == 0u) return false;
+  bool reversed = params.reversedDepth != 0u;
+  uint limit = limits[slot];
+  if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, compact, pixel)) return false;
+  return limit == kFarthest || nearestKey(t, compact, pixel, reversed) <= limit;
+}
+
+void enter(Candidate c, bool compact, uint candidate, ivec2 pixel, uint pair) {
+  Pair p;
+  p.slot = slotOf(pixel);
+  p.candidate = candidate;
+  p.key = middleKey(c, compact, pixel, params.reversedDepth != 0u);
+  p.place = atomicAdd(lengths[p.slot], 1u);
+  pairs[pair] = p;
+}

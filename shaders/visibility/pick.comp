@@ -1,0 +1,70 @@
+// One invocation a triangle: enters those that are not seen at any pixel's centre, in the pixels in which they may be
+// seen. Those that are seen are queued for hide.comp; in the same buffer, from its end, those that are clipped or reach
+// over more than 8 x 8 pixels.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/fetch.glsl"
+#include "visibility/lists.glsl"
+#include "visibility/chunks.glsl"
+#include "visibility/enter.glsl"
+#include "visibility/small_pairs.glsl"
+layout(local_size_x = 64) in; // kChunk
+
+layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
+
+shared uint groupSeen;
+shared uint groupBig;
+shared uint firstSeen;
+shared uint firstBig;
+
+void main() {
+  uint chunks = counters.chunks;
+  for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
+    uint drawIndex = findChunk(chunk);
+    uvec2 start = starts[drawIndex];
+    if (start.x >= params.maxItems) break; // and so does all that follows
+    if (gl_LocalInvocationIndex == 0u) {
+      groupSeen = 0u;
+      groupBig = 0u;
+    }
+    barrier();
+    uint end = min(meshes[draws[drawIndex].mesh].indexCount / 3u, params.maxItems - start.x);
+    uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
+    const uint kNone = 0xffffffffu;
+    uint big = kNone;
+    uint seen = kNone;
+    uvec2 mask = uvec2(0u);
+    ScreenTriangle t;
+    uint id = 0u;
+    ivec4 bounds = ivec4(0);
+    if (local < end) {
+      Fetched f = fetchTriangle(drawIndex, local);
+      id = f.id;
+      uint fate = classifyFetched(f, t);
+      if (fate == kClipped) big = atomicAdd(groupBig, 1u);
+      if (fate == kWhole) {
+        bounds = pixelBounds(t.p0, t.p1, t.p2, viewport());
+        if (bounds.x < bounds.z && bounds.y < bounds.w) {
+          if (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8) big = atomicAdd(groupBig, 1u);
+          else if (isSeen(id)) seen = atomicAdd(groupSeen, 1u);
+          else mask = wantedPixels(t, bounds, false);
+        }
+      }
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) {
+      if (groupSeen != 0u) {
+        firstSeen = atomicAdd(counters.seenCount, groupSeen);
+        atomicMax(counters.seenArgs[0], min((firstSeen + groupSeen + 63u) / 64u, kMaxGroups));
+      }
+      if (groupBig != 0u) {
+        firstBig = atomicAdd(counters.bigQueueCount, groupBig);
+        atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
+      }
+    }
+    barrier();
+    if (seen != kNone) queue[firstSeen + seen] = start.x + local;
+    if (big != kNone) queue[params.maxItems - 1u - firstBig - big] = start.x + local;
+    enterSmall(t, id, bounds.xy, mask);
+  }
+}

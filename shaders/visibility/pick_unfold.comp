@@ -1,0 +1,46 @@
+// One invocation a queued triangle: makes it, or the pieces that clipping leaves, candidates that workgroups share.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/fetch.glsl"
+#include "visibility/candidate.h"
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
+layout(std430, set = 0, binding = kBindCandidates) writeonly buffer CandidateBuffer { Candidate candidates[]; };
+layout(std430, set = 0, binding = kBindBigs) writeonly buffer BigBuffer { uvec2 bigs[]; };
+
+void add(ScreenTriangle t, uint id) {
+  ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, viewport());
+  if (bounds.x >= bounds.z || bounds.y >= bounds.w) return;
+  uint place = atomicAdd(counters.candidates, 1u);
+  if (place < params.maxCandidates) {
+    candidates[place] = makeCandidate(t, id);
+    uint blocks = uint(bounds.z - bounds.x + 7) / 8u * (uint(bounds.w - bounds.y + 7) / 8u);
+    uint slices = clamp(blocks / 64u, 1u, kLargeSplit);
+    uint first = atomicAdd(counters.bigCount, slices);
+    // What is counted below the capacity is written, so that no entry lies unwritten among the others.
+    uint end = min(first + slices, params.maxBig);
+    for (uint i = first; i < end; ++i) bigs[i] = uvec2(place, (i - first) | (slices << 16u));
+    if (first < end) atomicMax(counters.bigArgs[0], min(end, kMaxGroups));
+    if (first + slices <= params.maxBig) return;
+  }
+  atomicOr(bits[id >> 5u], 1u << (id & 31u));
+  atomicAdd(counters.unresolved, 1u);
+}
+
+void main() {
+  uint count = counters.bigQueueCount;
+  for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
+    Fetched f = fetchItem(queue[params.maxItems - 1u - entry]);
+    ScreenTriangle t;
+    uint fate = classifyFetched(f, t);
+    if (fate == kWhole) add(t, f.id);
+    if (fate != kClipped) continue;
+    ScreenPolygon polygon;
+    if (clipTriangle(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, polygon) != kClipped) continue;
+    for (int k = 0; k + 2 < polygon.count; ++k)
+      if (fanPiece(polygon, k, grid(), t)) add(t, f.id);
+  }
+}

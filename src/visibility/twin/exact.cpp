@@ -1,0 +1,148 @@
+// Exact and truth sampling in plain loops.
+#include "visibility/candidate.h"
+#include "visibility/twin/twin.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <tuple>
+
+namespace gpgp::visibility {
+namespace {
+using namespace shader;
+
+/// A pixel's list: candidates and the keys of their depths there.
+using List = std::vector<Entry>;
+
+/// Front to back: those with a sample that nothing before them covers become visible.
+void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, std::vector<uint32_t>& bits) {
+  const auto rank = [&](const Entry& e) {
+    const Candidate& c = candidates[e.candidate];
+    return std::tuple(e.key, c.id, c.p1.x, c.p1.y);
+  };
+  std::sort(list.begin(), list.end(), [&](const Entry& a, const Entry& b) { return rank(a) < rank(b); });
+  std::array<uvec2, 64> covered{};
+  for (const Entry& entry : list) {
+    const Candidate& c = candidates[entry.candidate];
+    const Outline outline = outlineOf(c, pixel * 256);
+    bool seen = false;
+    for (int row = 0; row < 64; ++row) {
+      const int y = row * 4 + 2;
+      if (!reachesRow(outline, y)) continue;
+      uvec2& mask = covered[static_cast<size_t>(row)];
+      const vec2 range = rowRange(outline, y);
+      const uvec2 own = samplesIn(range, 0.0f), wide = samplesIn(range, kSeam);
+      seen = seen || ((own.x & ~mask.x) | (own.y & ~mask.y));
+      mask = uvec2(mask.x | wide.x, mask.y | wide.y);
+    }
+    if (seen) bits[c.id / 32] |= 1u << (c.id % 32);
+  }
+}
+} // namespace
+
+TwinResult sampleExactOnCpu(const TwinInput& in) {
+  const Params& params = in.params;
+  const bool reversed = params.reversedDepth != 0;
+  TwinResult out = sampleOnCpu(in);
+  out.list.clear();
+  out.counters.appeared = out.counters.disappeared = 0;
+  const std::vector<uint32_t> standard = out.bits;
+  const int width = static_cast<int>(params.width), height = static_cast<int>(params.height);
+  const auto at = [&](ivec2 pixel) { return static_cast<size_t>(pixel.y * width + pixel.x); };
+
+  struct Piece {
+    ScreenTriangle triangle;
+    ivec4 bounds;
+    uint32_t id;
+    bool shared, seen; // by several invocations: the GPU makes a candidate before it knows
+  };
+  std::vector<Piece> pieces;
+  uint64_t items = 0;
+  for (const Draw& d : in.draws) {
+    if (d.mesh >= params.meshCount) continue;
+    const uint32_t triangles = in.meshes[d.mesh].indexCount / 3;
+    for (uint32_t local = 0; local < triangles && items + local < params.maxItems; ++local) {
+      if (d.firstTriangle >= params.triangleCount || local >= params.triangleCount - d.firstTriangle) continue;
+      const TwinTriangle placed = placeTriangle(in, d, local);
+      const uint32_t id = d.firstTriangle + local;
+      for (const ScreenTriangle& t : placed.pieces) {
+        const ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, ivec2(width, height));
+        if (bounds.x < bounds.z && bounds.y < bounds.w)
+          pieces.push_back({t, bounds, id,
+                            placed.fate == kClipped || bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8,
+                            (standard[id / 32] >> (id % 32) & 1) != 0});
+      }
+    }
+    items += triangles;
+  }
+
+  std::vector<uint32_t> limits(out.depth.size(), kFarthest);
+  const Grid grid = gridOf(params);
+  for (const Piece& piece : pieces)
+    for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
+      for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
+        const ivec2 pixel(x, y), point = samplePoint(pixel, grid);
+        if (!coversWide(piece.triangle, point) || !fillsPixel(piece.triangle, pixel, grid)) continue;
+        const float z = depthWide(piece.triangle, point);
+        if (depthKey(z, reversed) == out.depth[at(pixel)])
+          limits[at(pixel)] = std::min(limits[at(pixel)], fillKey(piece.triangle, z, reversed));
+      }
+
+  std::vector<Candidate> candidates;
+  std::vector<List> lists(out.depth.size());
+  std::vector<bool> open;
+  for (const bool seen : {false, true}) {
+    open.clear();
+    for (const List& list : lists) open.push_back(!list.empty());
+    for (const Piece& piece : pieces) {
+      const ScreenTriangle& t = piece.triangle;
+      if (piece.seen != seen) continue;
+      const auto index = static_cast<uint32_t>(candidates.size());
+      const Candidate candidate = makeCandidate(t, piece.id);
+      bool any = false;
+      for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
+        for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
+          const ivec2 pixel(x, y);
+          const uint32_t limit = limits[at(pixel)];
+          if (seen && !open[at(pixel)]) continue;
+          if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, isCompact(t), pixel)) continue;
+          if (nearestKey(t, isCompact(t), pixel, reversed) > limit) continue;
+          any = true;
+          lists[at(pixel)].push_back({index, middleKey(candidate, isCompact(t), pixel, reversed)});
+          ++out.counters.pairs;
+        }
+      if (any || piece.shared) candidates.push_back(candidate);
+    }
+  }
+  out.counters.candidates = static_cast<uint32_t>(candidates.size());
+
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), out.bits);
+  out.ids.clear();
+  finish(in, out);
+  return out;
+}
+
+TwinResult truthOnCpu(TwinInput in, uint32_t samples, std::vector<uint32_t>& sizes) {
+  sizes.assign(in.params.triangleCount, 0);
+  const uint32_t part = 256 / samples, perRecord = std::min(samples, 4u), perSide = samples / perRecord;
+  TwinResult all;
+  for (uint32_t slice = 0; slice <= perSide * perSide; ++slice) {
+    const bool centre = slice == perSide * perSide;
+    in.params.gridShift = centre ? 8 : static_cast<uint32_t>(std::countr_zero(256 / perRecord));
+    in.params.gridX = centre ? 128 : slice % perSide * part + part / 2;
+    in.params.gridY = centre ? 128 : slice / perSide * part + part / 2;
+    TwinResult one = sampleOnCpu(in);
+    for (const uint32_t id : one.ids)
+      if (id != kNoTriangle) ++sizes[id];
+    if (slice == 0)
+      all = one;
+    else
+      for (size_t word = 0; word < all.bits.size(); ++word) all.bits[word] |= one.bits[word];
+  }
+  all.list.clear();
+  finish(in, all);
+  return all;
+}
+
+} // namespace gpgp::visibility

@@ -1,0 +1,122 @@
+// Exact and truth sampling: the GPU against the twin bit for bit, and exact against truth.
+#include "gpu.h"
+#include "measured_scenes.h"
+#include "visibility/sampling/sampler.h"
+
+#include <bit>
+#include <glm/ext/matrix_transform.hpp>
+
+namespace gpgp::test {
+namespace {
+using namespace visibility;
+
+struct Compared {
+  uint32_t truth = 0, found = 0, extra = 0;
+};
+Compared compare(const std::vector<uint32_t>& bits, const std::vector<uint32_t>& truth) {
+  Compared c;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    c.truth += static_cast<uint32_t>(std::popcount(truth[i]));
+    c.found += static_cast<uint32_t>(std::popcount(truth[i] & bits[i]));
+    c.extra += static_cast<uint32_t>(std::popcount(bits[i] & ~truth[i]));
+  }
+  return c;
+}
+
+/// Small pictures of the measured scenes.
+std::vector<std::pair<std::string, Scene>> smallScenes() {
+  std::vector<std::pair<std::string, Scene>> scenes;
+  Scene bunnies = bunnyGrid(1, 2);
+  setOrbitCamera(bunnies, 1, 8, 3.0f, 96, 72);
+  scenes.emplace_back("bunnies", std::move(bunnies));
+  Scene columns = colonnadeWithWires(0.4f);
+  setWalkingCamera(columns, {0.3f, 1.7f, 3}, {0, 1.5f, -10}, 96, 54, true);
+  scenes.emplace_back("colonnade", std::move(columns));
+  Scene hedge = foliage(4000);
+  setWalkingCamera(hedge, {1, 1.7f, 7}, {0, 1.5f, 0}, 80, 45, true);
+  scenes.emplace_back("foliage", std::move(hedge));
+  Scene houses = city(6);
+  setOrbitCamera(houses, 1, 8, 1.2f, 96, 54, false);
+  scenes.emplace_back("city", std::move(houses));
+  return scenes;
+}
+
+TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
+  for (auto& [name, scene] : smallScenes()) {
+    std::vector<uint32_t> sizes;
+    const TwinResult truth = truthOnCpu(scene.input(), 64, sizes);
+    const TwinResult exact = sampleExactOnCpu(scene.input());
+    const Compared c = compare(exact.bits, truth.bits);
+    EXPECT_GT(c.truth, 500u) << name;
+    EXPECT_GE(c.found, c.truth * 0.99) << name;
+    // The colonnade's far columns are tens of slivers a pixel that interleave in depth.
+    EXPECT_LE(c.extra, c.truth * (name == "colonnade" ? 0.03 : 0.01)) << name;
+    const TwinResult standard = sampleOnCpu(scene.input());
+    EXPECT_LT(compare(standard.bits, truth.bits).found, c.truth * 0.8) << name; // or the scene tests nothing
+    uint32_t counted = 0;
+    for (const uint32_t size : sizes) counted += size > 0;
+    EXPECT_EQ(counted, c.truth);
+  }
+}
+
+TEST_F(VisibilityGpuTest, ExactEqualsTheTwin) {
+  for (auto& [name, scene] : smallScenes()) {
+    const TwinResult twin = sampleExactOnCpu(scene.input());
+    expectEqual(sample(scene, {.method = GPGP_SAMPLING_EXACT}), twin, name);
+    EXPECT_GT(twin.counters.pairs, 1000u) << name;
+  }
+}
+
+TEST_F(VisibilityGpuTest, ExactOfTrianglesThroughAllPlanesEqualsTheTwin) {
+  for (uint32_t seed = 0; seed < 6; ++seed) {
+    Scene scene = randomSoup(seed, 20 + 60 * seed, 150 + 7 * seed, 90, seed % 2, seed % 3 == 0);
+    const TwinResult twin = sampleExactOnCpu(scene.input());
+    expectEqual(sample(scene, {.method = GPGP_SAMPLING_EXACT}), twin, "seed " + std::to_string(seed));
+    EXPECT_GE(twin.counters.visible, sampleOnCpu(scene.input()).counters.visible);
+  }
+}
+
+TEST_F(VisibilityGpuTest, TruthEqualsTheTwinSliceBySlice) {
+  Scene scene = colonnadeWithWires(0.3f);
+  setWalkingCamera(scene, {0.3f, 1.7f, 3}, {0, 1.5f, -10}, 48, 27, true);
+  for (const uint32_t slice : {0u, 5u, 255u, 256u}) {
+    const TwinInput in = [&] {
+      TwinInput input = scene.input();
+      const bool centre = slice == 256;
+      input.params.gridShift = centre ? 8 : 6;
+      input.params.gridX = centre ? 128 : slice % 16 * 4 + 2;
+      input.params.gridY = centre ? 128 : slice / 16 * 4 + 2;
+      return input;
+    }();
+    const TwinResult twin = sampleOnCpu(in);
+    GpuResult gpu = sample(scene, {.method = GPGP_SAMPLING_TRUTH, .samples = 64, .slice = slice});
+    gpu.ids.resize(twin.ids.size());
+    gpu.depth.resize(twin.depth.size());
+    expectEqual(gpu, twin, "slice " + std::to_string(slice));
+    std::vector<uint32_t> sizes(scene.params.triangleCount, 0);
+    for (const uint32_t id : twin.ids)
+      if (id != shader::kNoTriangle) ++sizes[id];
+    EXPECT_EQ(gpu.sizes, sizes);
+  }
+}
+
+// What finds no room counts as visible and is reported; the truth is still covered.
+TEST_F(VisibilityGpuTest, ExactWithoutRoomShowsTooMuchAndSaysSo) {
+  auto scenes = smallScenes();
+  Scene& scene = scenes[3].second;
+  const TwinResult twin = sampleExactOnCpu(scene.input());
+  const GpgpAsset set = createGeometrySet(scene);
+  for (const bool candidates : {true, false}) {
+    const GpgpWorker sampler = createSampler(scene.params.width, scene.params.height, 0, true, GPGP_SAMPLING_EXACT_BIT,
+                                             0, candidates ? 500 : 0, candidates ? 0 : 3000);
+    const GpuResult gpu = sample(scene, sampler, set, {.method = GPGP_SAMPLING_EXACT});
+    EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+    EXPECT_GT(gpu.report.unresolved, 0u);
+    EXPECT_GT(candidates ? gpu.report.neededCandidates : gpu.report.neededPairs, candidates ? 500u : 3000u);
+    EXPECT_EQ(compare(gpu.bits, twin.bits).found, compare(twin.bits, twin.bits).found);
+    EXPECT_GT(gpu.report.visible, twin.counters.visible);
+  }
+}
+
+} // namespace
+} // namespace gpgp::test
