@@ -221,6 +221,9 @@ public:
   static Result<Spawner> create(GpgpContext context, const GpgpSpawnerCreateInfo& info) noexcept {
     return detail::create<Spawner>(gpgpCreateSpawner, context, info);
   }
+  /// Makes the kernels that the grammar was baked with ready.
+  [[nodiscard]] GpgpResult prewarm(const Grammar& grammar) noexcept { return gpgpPrewarmGrammar(get(), grammar.get()); }
+  using Worker::prewarm;
   [[nodiscard]] GpgpResult recordPrepare(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
                                          const GpgpSpawnInfo& info) noexcept {
     return gpgpRecordPrepareSpawn(get(), commandBuffer, &frame, &info);

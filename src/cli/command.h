@@ -53,7 +53,10 @@ CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, con
 // One file per subcommand. Each adds itself to the app and returns what it does when chosen.
 Work addInfo(CLI::App& app);
 Work addSpawn(CLI::App& app);
+Work addGraph(CLI::App& app);
+Work addTune(CLI::App& app);
 Work addVector(CLI::App& app);
+Work addBake(CLI::App& app);
 Work addVisibility(CLI::App& app);
 
 } // namespace gpgp::cli

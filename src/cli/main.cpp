@@ -15,6 +15,7 @@ constexpr const char* kExamples = R"(
 Examples:
   gpgp info                                   what this machine offers and gpgp would use
   gpgp spawn city.pga --axioms 64 --spacing 40 --image city.png
+  gpgp graph city.pga --schedule rules --format svg -o city.svg
   gpgp vector tiger.svg --size 800x800 --out tiger.png
   gpgp visibility engine.glb --size 1280x720 --image seen.png
   gpgp spawn city.pga --json | jq .terminals  one object on standard output, nothing else there
@@ -34,7 +35,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "gpgp " + std::to_string(GPGP_VERSION_MAJOR) + "." +
                                         std::to_string(GPGP_VERSION_MINOR) + "." + std::to_string(GPGP_VERSION_PATCH));
   std::vector<Subcommand> subcommands;
-  subcommands.reserve(4); // options are bound by address
+  subcommands.reserve(8); // options are bound by address
   const auto add = [&](Work (*adder)(CLI::App&)) {
     Subcommand& subcommand = subcommands.emplace_back();
     subcommand.work = adder(app);
@@ -44,9 +45,14 @@ int run(int argc, char** argv) {
   add(addInfo);
 #ifdef GPGP_CLI_SPAWN
   add(addSpawn);
+  add(addGraph);
+  add(addTune);
 #endif
 #ifdef GPGP_CLI_VECTOR
   add(addVector);
+#endif
+#if defined GPGP_CLI_SPAWN || defined GPGP_CLI_VECTOR
+  add(addBake);
 #endif
 #ifdef GPGP_CLI_VISIBILITY
   add(addVisibility);

@@ -44,43 +44,99 @@ Painter::Painter(uint32_t width, uint32_t height)
     : width_(width), height_(height), depth_(size_t{width} * height * 4, 1.0f),
       colour_(size_t{width} * height * 4, glm::vec3(0.97f)) {}
 
-void Painter::triangle(const glm::mat4& viewProjection, std::span<const glm::vec3, 3> corners,
-                       const glm::vec3& colour) {
-  const float width = static_cast<float>(width_ * 2), height = static_cast<float>(height_ * 2);
-  std::array<glm::vec3, 3> p;
-  for (size_t i = 0; i < 3; ++i) {
-    const glm::vec4 clip = viewProjection * glm::vec4(corners[i], 1.0f);
-    if (!(clip.w > 1e-6f)) return;
-    p[i] =
-        glm::vec3((clip.x / clip.w * 0.5f + 0.5f) * width, (clip.y / clip.w * 0.5f + 0.5f) * height, clip.z / clip.w);
-  }
-  const auto edge = [](const glm::vec3& a, const glm::vec3& b, float x, float y) {
-    return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
-  };
-  const float area = edge(p[0], p[1], p[2].x, p[2].y);
-  if (!(std::abs(area) > 1e-9f)) return;
-  const glm::vec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const float length = glm::length(cross);
-  const glm::vec3 sun(0.45f, 0.8f, 0.4f);
-  const float light = length > 0 ? 0.45f + 0.55f * std::abs(glm::dot(cross / length, glm::normalize(sun))) : 1.0f;
+namespace {
+
+constexpr uint32_t kSunPixels = 4096; // a side of the shadow map
+const glm::vec3 kToSun = glm::normalize(glm::vec3(0.45f, 0.8f, 0.4f));
+
+float edge(const glm::vec3& a, const glm::vec3& b, float x, float y) {
+  return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+}
+
+/// Calls paint(x, y, weights) for each pixel centre in a triangle of pixel positions.
+template <class Paint>
+void fill(const std::array<glm::vec3, 3>& p, float area, uint32_t width, uint32_t height, const Paint& paint) {
   const auto range = [](float a, float b, float c, float limit) {
     const float low = std::clamp(std::floor(std::min({a, b, c})), 0.0f, limit);
     const float high = std::clamp(std::ceil(std::max({a, b, c})), 0.0f, limit);
     return std::pair(static_cast<uint32_t>(low), static_cast<uint32_t>(high));
   };
-  const auto [left, right] = range(p[0].x, p[1].x, p[2].x, width);
-  const auto [top, bottom] = range(p[0].y, p[1].y, p[2].y, height);
+  const auto [left, right] = range(p[0].x, p[1].x, p[2].x, static_cast<float>(width));
+  const auto [top, bottom] = range(p[0].y, p[1].y, p[2].y, static_cast<float>(height));
   for (uint32_t y = top; y < bottom; ++y)
     for (uint32_t x = left; x < right; ++x) {
       const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
       const float a = edge(p[1], p[2], px, py) / area, b = edge(p[2], p[0], px, py) / area, c = 1.0f - a - b;
-      if (a < 0 || b < 0 || c < 0) continue;
-      const float z = a * p[0].z + b * p[1].z + c * p[2].z;
-      const size_t index = size_t{y} * width_ * 2 + x;
-      if (z < 0 || z >= depth_[index]) continue;
-      depth_[index] = z;
-      colour_[index] = colour * light;
+      if (a >= 0 && b >= 0 && c >= 0) paint(x, y, glm::vec3(a, b, c));
     }
+}
+
+} // namespace
+
+void Painter::sun(const Bounds& bounds) {
+  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), kToSun)), up = glm::cross(kToSun, right);
+  const float radius = std::max(glm::length(bounds.high - bounds.low) * 0.5f, 1e-6f);
+  const float scale = kSunPixels * 0.5f / radius;
+  const glm::vec3 centre = bounds.centre();
+  toSun_ = glm::transpose(glm::mat4(glm::vec4(right * scale, kSunPixels * 0.5f - glm::dot(right, centre) * scale),
+                                    glm::vec4(up * scale, kSunPixels * 0.5f - glm::dot(up, centre) * scale),
+                                    glm::vec4(-kToSun, glm::dot(kToSun, centre)), glm::vec4(0, 0, 0, 1)));
+  sunPixel_ = 1.0f / scale;
+  sunDepth_.assign(size_t{kSunPixels} * kSunPixels, 1e30f);
+}
+
+void Painter::shadow(std::span<const glm::vec3, 3> corners) {
+  std::array<glm::vec3, 3> p;
+  for (size_t i = 0; i < 3; ++i) p[i] = glm::vec3(toSun_ * glm::vec4(corners[i], 1.0f));
+  const float area = edge(p[0], p[1], p[2].x, p[2].y);
+  if (!(std::abs(area) > 1e-9f)) return;
+  fill(p, area, kSunPixels, kSunPixels, [&](uint32_t x, uint32_t y, const glm::vec3& weights) {
+    float& depth = sunDepth_[size_t{y} * kSunPixels + x];
+    depth = std::min(depth, glm::dot(weights, glm::vec3(p[0].z, p[1].z, p[2].z)));
+  });
+}
+
+bool Painter::lit(const glm::vec3& point, float tolerance) const {
+  const glm::vec3 p(toSun_ * glm::vec4(point, 1.0f));
+  if (!(p.x >= 0 && p.y >= 0 && p.x < kSunPixels && p.y < kSunPixels)) return true;
+  return p.z <= sunDepth_[static_cast<size_t>(p.y) * kSunPixels + static_cast<size_t>(p.x)] + tolerance;
+}
+
+void Painter::triangle(const glm::mat4& viewProjection, std::span<const glm::vec3, 3> corners,
+                       const glm::vec3& colour) {
+  const uint32_t width = width_ * 2, height = height_ * 2;
+  std::array<glm::vec3, 3> p;
+  glm::vec3 inverseW;
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec4 clip = viewProjection * glm::vec4(corners[static_cast<size_t>(i)], 1.0f);
+    if (!(clip.w > 1e-6f)) return;
+    inverseW[i] = 1.0f / clip.w;
+    p[static_cast<size_t>(i)] =
+        glm::vec3((clip.x / clip.w * 0.5f + 0.5f) * static_cast<float>(width),
+                  (clip.y / clip.w * 0.5f + 0.5f) * static_cast<float>(height), clip.z / clip.w);
+  }
+  const float area = edge(p[0], p[1], p[2].x, p[2].y);
+  if (!(std::abs(area) > 1e-9f)) return;
+  const glm::vec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const float length = glm::length(cross);
+  if (!(length > 0)) return;
+  const glm::vec3 normal = cross / (area < 0 ? length : -length); // of the side that is seen
+  const float toSun = std::max(glm::dot(normal, kToSun), 0.0f);
+  const float sky = 0.5f + 0.12f * normal.y + 0.05f * normal.x, sun = 0.5f * toSun;
+  const float tolerance = sunPixel_ * (1.5f + 1.5f * std::sqrt(1.0f - toSun * toSun) / std::max(toSun, 0.1f));
+  fill(p, area, width, height, [&](uint32_t x, uint32_t y, const glm::vec3& weights) {
+    const float z = glm::dot(weights, glm::vec3(p[0].z, p[1].z, p[2].z));
+    const size_t index = size_t{y} * width + x;
+    if (z < 0 || z >= depth_[index]) return;
+    depth_[index] = z;
+    bool sunny = toSun > 0;
+    if (sunny && !sunDepth_.empty()) {
+      glm::vec3 w = weights * inverseW;
+      w /= w.x + w.y + w.z;
+      sunny = lit(corners[0] * w.x + corners[1] * w.y + corners[2] * w.z, tolerance);
+    }
+    colour_[index] = colour * (sunny ? sky + sun : sky);
+  });
 }
 
 host::Picture Painter::picture() const {
@@ -99,8 +155,9 @@ host::Picture Painter::picture() const {
 }
 
 glm::vec3 paletteColour(uint32_t n) {
-  constexpr std::array<uint32_t, 10> kColours = {0xb9c4cc, 0x6c9bd2, 0xe0a458, 0x7fb069, 0xd36c6c,
-                                                 0x9b86c2, 0xa98467, 0xe3a3c6, 0x8f8f8f, 0x58a4a4};
+  constexpr std::array<uint32_t, 16> kColours = {0xb9c4cc, 0x6c9bd2, 0xe0a458, 0x7fb069, 0xd36c6c, 0x9b86c2,
+                                                 0xa98467, 0xe3a3c6, 0x8f8f8f, 0x58a4a4, 0xf2efe6, 0x3f4b57,
+                                                 0xb5523b, 0xe8d8b0, 0x4a6fa5, 0x5d7f45};
   const uint32_t rgb = kColours[n % kColours.size()];
   return glm::vec3(static_cast<float>(rgb >> 16 & 255u), static_cast<float>(rgb >> 8 & 255u),
                    static_cast<float>(rgb & 255u)) /

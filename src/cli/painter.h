@@ -1,5 +1,5 @@
-// Triangles to a picture on the CPU, for --image: depth-buffered, flat-lit, four samples a pixel. It shows results; it
-// is no part of how they are computed.
+// Triangles to a picture on the CPU, for --image: depth-buffered, flat-lit, with the sun's shadows where asked for,
+// four samples a pixel. It shows results; it is no part of how they are computed.
 #pragma once
 #include "host/picture.h"
 
@@ -25,14 +25,21 @@ glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, 
 class Painter {
 public:
   Painter(uint32_t width, uint32_t height);
+  /// For shadows: first the bounds of what casts them, then each triangle that does, then the picture's triangles.
+  void sun(const Bounds& bounds);
+  void shadow(std::span<const glm::vec3, 3> corners);
   /// Corners in world space, colour as sRGB 0 to 1. Triangles that reach behind the eye are left out.
   void triangle(const glm::mat4& viewProjection, std::span<const glm::vec3, 3> corners, const glm::vec3& colour);
   host::Picture picture() const;
 
 private:
+  bool lit(const glm::vec3& point, float tolerance) const;
   uint32_t width_, height_; // of the picture; the buffers have twice as many pixels each way
   std::vector<float> depth_;
   std::vector<glm::vec3> colour_;
+  glm::mat4 toSun_{1.0f}; // world to the shadow map: x and y in its pixels, z the distance from the sun in metres
+  float sunPixel_ = 0;    // metres that a pixel of the shadow map covers
+  std::vector<float> sunDepth_;
 };
 
 /// A pleasant colour for the n-th of something.

@@ -1,14 +1,20 @@
-// `gpgp spawn`: compiles a grammar, derives axioms on a grid and says what came out.
+// `gpgp spawn`: compiles a grammar, derives axioms and says what came out, beside the CPU evaluator.
+#include "cli/axioms.h"
+#include "cli/grammar_source.h"
+#include "cli/instances_gltf.h"
 #include "cli/painter.h"
 #include "cli/session.h"
 #include "cli/unit_shapes.h"
 #include "host/files.h"
+#include "spawn/evaluator/evaluator.h"
+#include "spawn/graph/blob.h"
 
 #include <gpgp/spawn.h>
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -19,110 +25,91 @@ struct SpawnOptions {
   uint32_t axioms = 1, seed = 1, repeat = 1;
   std::array<float, 3> size{1, 1, 1};
   float spacing = 0;
+  std::string axiomFile;
   std::vector<std::string> set;
-  std::string image;
+  std::string image, out;
   Size imageSize{1280, 720};
-  uint32_t maxInstances = 1u << 20, maxShapes = 0, maxDepth = 0;
+  float yaw = 35, pitch = 25, zoom = 1;
+  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0;
+  std::string schedule = "default";
 };
 
-std::vector<GpgpVariable> variables(const std::vector<std::string>& assignments) {
-  std::vector<GpgpVariable> result;
-  for (const std::string& assignment : assignments) {
-    const size_t equals = assignment.find('=');
-    char* end = nullptr;
-    const float value = equals == std::string::npos ? 0.0f : std::strtof(assignment.c_str() + equals + 1, &end);
-    if (equals == 0 || equals == std::string::npos || equals + 1 == assignment.size() || *end != 0)
-      throw Usage("--set takes NAME=VALUE with a number, for example --set floors=12; got \"" + assignment + "\"");
-    result.push_back({nullptr, value}); // the name follows once the strings lie still
-  }
-  return result;
+/// What the CPU evaluator derives, on one thread, instances included.
+struct Reference {
+  spawn::Derivation result;
+  double milliseconds = 0;
+};
+
+Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth) {
+  spawn::DeriveOptions options;
+  if (maxDepth) options.maxDepth = maxDepth;
+  Reference reference;
+  const auto begin = std::chrono::steady_clock::now();
+  reference.result = spawn::derive(words, axioms, options);
+  reference.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return reference;
 }
 
-Blob compile(const SpawnOptions& options) {
-  const std::string text = host::readText(options.grammar);
-  std::vector<GpgpVariable> overrides = variables(options.set);
+std::vector<std::string> ruleNames(const Blob& blob) {
+  const std::span bytes(static_cast<const std::byte*>(blob.data()), blob.size()); // kernels lie behind the graph
+  const auto graph = spawn::load(bytes.first(spawn::sizeOfGraph(bytes)), std::pmr::new_delete_resource());
+  if (!graph) throw Failure(graph.error().text);
   std::vector<std::string> names;
-  for (const std::string& assignment : options.set) names.push_back(assignment.substr(0, assignment.find('=')));
-  for (size_t i = 0; i < names.size(); ++i) overrides[i].name = names[i].c_str();
-  GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
-  source.name = options.grammar.c_str();
-  source.text = text.data();
-  source.size = text.size();
-  source.variables = overrides.data();
-  source.variableCount = static_cast<uint32_t>(overrides.size());
-  struct Errors {
-    std::string first;
-    uint32_t count = 0;
-  } errors;
-  source.messageUserData = &errors;
-  source.messageFn = [](void* userData, const GpgpCompileMessage* message) {
-    auto* all = static_cast<Errors*>(userData);
-    std::ostringstream line;
-    line << message->file << ':' << message->line << ':' << message->column << ": "
-         << (message->severity == GPGP_SEVERITY_ERROR     ? "error: "
-             : message->severity == GPGP_SEVERITY_WARNING ? "warning: "
-                                                          : "")
-         << message->text;
-    std::fprintf(stderr, "%s\n", line.str().c_str());
-    if (message->severity != GPGP_SEVERITY_ERROR) return;
-    if (all->count++ == 0) all->first = line.str();
-  };
-  Result<Blob> blob = compileGrammar(source);
-  if (blob) return std::move(*blob);
-  if (errors.count == 0) throw Failure(options.grammar + ": " + blob.name());
-  throw Failure(errors.first + (errors.count > 1 ? " (and " + std::to_string(errors.count - 1) + " more)" : ""));
+  for (const spawn::Rule& rule : graph->rules) names.emplace_back(graph->nameAt(rule.name));
+  return names;
 }
 
-/// A square grid in the ground plane around the origin, row by row; axiom i has the seed S + i.
-std::vector<GpgpAxiom> axiomGrid(const SpawnOptions& options) {
-  const float spacing = options.spacing > 0 ? options.spacing : std::max(options.size[0], options.size[2]) * 1.5f;
-  const uint32_t side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(options.axioms))));
-  std::vector<GpgpAxiom> axioms(options.axioms);
-  for (uint32_t i = 0; i < options.axioms; ++i) {
-    GpgpAxiom& axiom = axioms[i];
-    axiom = GpgpAxiom{};
-    const float offset = static_cast<float>(side - 1) * 0.5f;
-    axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1.0f;
-    axiom.transform[3] = (static_cast<float>(i % side) - offset) * spacing;
-    axiom.transform[7] = options.size[1] * 0.5f; // stands on the ground: shapes have their origin in the middle
-    axiom.transform[11] = (static_cast<float>(i / side) - offset) * spacing;
-    std::copy(options.size.begin(), options.size.end(), axiom.size);
-    axiom.seed = options.seed + i;
-    axiom.id = i;
-    axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
-    axiom.attribute = std::nanf("");
-  }
-  return axioms;
-}
-
-glm::vec3 place(const GpgpInstance& instance, const glm::vec3& p) {
-  const float* m = instance.transform;
-  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
-}
-
-void paint(const SpawnOptions& options, const std::vector<GpgpInstance>& instances) {
+std::vector<std::vector<glm::vec3>> unitShapes() {
   std::vector<std::vector<glm::vec3>> shapes;
   for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
+  return shapes;
+}
+
+/// Terminals are coloured by the index that the grammar gives them, on a square of ground.
+void paint(const SpawnOptions& options, const std::vector<GpgpInstance>& instances,
+           const std::vector<GpgpGrammarTerminal>& terminals) {
+  const std::vector<std::vector<glm::vec3>> shapes = unitShapes();
   Bounds bounds;
   for (const GpgpInstance& instance : instances)
-    for (const glm::vec3& corner : {glm::vec3(-0.5f), glm::vec3(0.5f)}) bounds.add(place(instance, corner));
+    for (int i = 0; i < 8; ++i)
+      bounds.add(placed(instance, {i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f,
+                                   instance.size[2] == 0 ? 0.0f : (i & 4 ? 0.5f : -0.5f)}));
   if (instances.empty()) bounds.add(glm::vec3(0));
-  const glm::mat4 camera = viewAll(bounds, 35, 25, options.imageSize.width, options.imageSize.height);
-  Painter painter(options.imageSize.width, options.imageSize.height);
-  for (const GpgpInstance& instance : instances) {
-    const std::vector<glm::vec3>& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
-    for (size_t i = 0; i + 2 < shape.size(); i += 3) {
-      const std::array corners = {place(instance, shape[i]), place(instance, shape[i + 1]),
-                                  place(instance, shape[i + 2])};
-      painter.triangle(camera, corners, paletteColour(instance.bucket));
-    }
+  glm::mat4 camera = viewAll(bounds, options.yaw, options.pitch, options.imageSize.width, options.imageSize.height);
+  for (int c = 0; c < 4; ++c) {
+    camera[c].x *= options.zoom;
+    camera[c].y *= options.zoom;
   }
+  Painter painter(options.imageSize.width, options.imageSize.height);
+  painter.sun(bounds);
+  for (const bool shadows : {true, false})
+    for (const GpgpInstance& instance : instances) {
+      const std::vector<glm::vec3>& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
+      const glm::vec3 colour = paletteColour(terminals[instance.terminal].index);
+      for (size_t i = 0; i + 2 < shape.size(); i += 3) {
+        const std::array corners = {placed(instance, shape[i]), placed(instance, shape[i + 1]),
+                                    placed(instance, shape[i + 2])};
+        shadows ? painter.shadow(corners) : painter.triangle(camera, corners, colour);
+      }
+    }
+  const glm::vec3 extent = bounds.high - bounds.low;
+  const float margin = 0.15f * std::max({extent.x, extent.y, extent.z});
+  const glm::vec3 a(bounds.low.x - margin, bounds.low.y, bounds.low.z - margin), ground(0.80f, 0.82f, 0.76f);
+  const glm::vec3 b(a.x, a.y, bounds.high.z + margin), c(bounds.high.x + margin, a.y, b.z), d(c.x, a.y, a.z);
+  painter.triangle(camera, std::array{a, b, c}, ground);
+  painter.triangle(camera, std::array{a, c, d}, ground);
   host::writePng(options.image, painter.picture());
 }
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
-  const Blob blob = compile(options);
+  const Blob blob = compileGrammarFile(options.grammar, options.set, options.schedule != "interpreter");
+  const AxiomDefaults defaults{options.size, options.seed};
+  const std::vector<GpgpAxiom> start = options.axiomFile.empty()
+                                           ? axiomGrid(options.axioms, options.spacing, defaults)
+                                           : readAxioms(options.axiomFile, ruleNames(blob), defaults);
+  std::vector<uint32_t> words(blob.size() / sizeof(uint32_t));
+  std::memcpy(words.data(), blob.data(), words.size() * sizeof(uint32_t));
+  const Reference reference = evaluate(words, start, options.maxDepth);
   Session session(common);
   host::HeadlessDevice& device = session.device();
   GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
@@ -137,20 +124,25 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   uint32_t buckets = 1;
   for (const GpgpGrammarTerminal& terminal : terminals) buckets = std::max(buckets, terminal.bucket + 1);
 
+  const uint64_t most = device.properties().limits.maxStorageBufferRange / sizeof(GpgpInstance);
+  if (options.maxInstances > most)
+    throw Usage("--max-instances is too large for this device: at most " + std::to_string(most));
+  const uint32_t maxInstances = options.maxInstances
+                                    ? options.maxInstances
+                                    : static_cast<uint32_t>(std::clamp<uint64_t>(reference.result.terminals, 1,
+                                                                                 std::min<uint64_t>(most, 1u << 30)));
   GpgpSpawnerCreateInfo spawnerInfo = GPGP_SPAWNER_CREATE_INFO_INIT;
   spawnerInfo.base = session.workerInfo("spawner");
   spawnerInfo.maxShapes = options.maxShapes;
+  spawnerInfo.maxTerminals = maxInstances;
   spawnerInfo.maxDepth = options.maxDepth;
   Spawner spawner = session.take(Spawner::create(session.context(), spawnerInfo), "gpgpCreateSpawner");
   session.check(spawner.prewarm(), "gpgpPrewarm");
+  session.check(spawner.prewarm(grammar), "gpgpPrewarmGrammar");
   session.upload();
 
-  const host::Buffer axioms =
-      host::makeBuffer(device, axiomGrid(options), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "axioms");
-  const VkDeviceSize instanceBytes = VkDeviceSize{options.maxInstances} * sizeof(GpgpInstance);
-  if (instanceBytes > device.properties().limits.maxStorageBufferRange)
-    throw Usage("--max-instances is too large for this device: at most " +
-                std::to_string(device.properties().limits.maxStorageBufferRange / sizeof(GpgpInstance)));
+  const host::Buffer axioms = host::makeBuffer(device, start, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "axioms");
+  const VkDeviceSize instanceBytes = VkDeviceSize{maxInstances} * sizeof(GpgpInstance);
   const host::Buffer instances(device, instanceBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, host::Memory::device,
                                "instances");
   const host::Buffer draws =
@@ -165,31 +157,65 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                         info.base = base;
                         info.grammar = grammar;
                         info.axioms = axioms.range();
-                        info.axiomCount = options.axioms;
+                        info.axiomCount = static_cast<uint32_t>(start.size());
                         info.instances = instances.range({}, transfer);
                         info.draws = draws.range({}, transfer);
                         return spawner.recordPrepare(commands, frame, info);
                       });
   const auto commands = host::download<VkDrawIndexedIndirectCommand>(device, draws, buckets);
-  if (!options.image.empty()) paint(options, host::download<GpgpInstance>(device, instances, report.instancesWritten));
+  const auto written = host::download<GpgpInstance>(device, instances, report.instancesWritten);
   session.checkValidation();
+  std::vector<std::string> bucketNames(buckets);
+  for (const GpgpGrammarTerminal& terminal : terminals) {
+    std::string& name = bucketNames[terminal.bucket];
+    name += (name.empty() ? "" : ", ") + std::string(terminal.name);
+  }
+  if (!options.image.empty()) paint(options, written, terminals);
+  if (!options.out.empty()) {
+    const auto colour = [&](uint32_t bucket) {
+      for (const GpgpGrammarTerminal& terminal : terminals)
+        if (terminal.bucket == bucket) return paletteColour(terminal.index);
+      return paletteColour(0);
+    };
+    writeGlb(
+        options.out, written, buckets, [&](uint32_t bucket) { return bucketNames[bucket]; }, colour);
+  }
+  uint64_t triangles = 0;
+  const std::vector<std::vector<glm::vec3>> shapes = unitShapes();
+  for (const GpgpInstance& instance : written)
+    triangles += shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)].size() / 3;
+  const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
+  if (!exceeded && reference.result.complete &&
+      (reference.result.terminals != report.terminals ||
+       std::memcmp(reference.result.keyHash, report.keyHash, sizeof report.keyHash) != 0))
+    throw Failure(options.grammar + ": the device derived something else than the CPU evaluator; please report this");
 
   Outcome outcome;
   char hash[20];
   std::snprintf(hash, sizeof hash, "%08x%08x", report.keyHash[1], report.keyHash[0]);
-  Json bucketList = Json::array();
+  Json bucketList = Json::array(), passes = Json::object();
+  for (const auto& [name, time] : times.passes) passes[name] = time;
+  const uint64_t bytesWritten = uint64_t{report.instancesWritten} * sizeof(GpgpInstance);
   std::ostringstream text;
-  text << report.terminals << " terminals from " << options.axioms << (options.axioms == 1 ? " axiom" : " axioms")
-       << " in " << report.rounds << " rounds on " << device.name() << '\n';
+  text << report.terminals << " terminals (" << triangles << " triangles) from " << start.size()
+       << (start.size() == 1 ? " axiom" : " axioms") << " in " << report.rounds << " rounds on " << device.name()
+       << '\n';
   for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
-    std::string name;
-    for (const GpgpGrammarTerminal& terminal : terminals)
-      if (terminal.bucket == bucket) name += (name.empty() ? "" : ", ") + std::string(terminal.name);
-    bucketList.push_back({{"bucket", bucket}, {"name", name}, {"instances", commands[bucket].instanceCount}});
-    text << "  " << commands[bucket].instanceCount << "  " << name << '\n';
+    bucketList.push_back(
+        {{"bucket", bucket}, {"name", bucketNames[bucket]}, {"instances", commands[bucket].instanceCount}});
+    text << "  " << commands[bucket].instanceCount << "  " << bucketNames[bucket] << '\n';
   }
   text << "peak of " << report.peakShapes << " shapes; GPU " << milliseconds(times.median()) << " (median of "
-       << times.totals.size() << ")\n";
+       << times.totals.size() << "); CPU evaluator, one thread " << milliseconds(reference.milliseconds);
+  if (!reference.result.complete) {
+    text << ", which gave up";
+  } else if (reference.milliseconds > 0) {
+    char rate[32];
+    std::snprintf(rate, sizeof rate, "%.1f",
+                  static_cast<double>(reference.result.terminals) / reference.milliseconds / 1e3);
+    text << " (" << rate << " million terminals a second)";
+  }
+  text << '\n';
   if (report.droppedShapes)
     text << "budget exceeded: " << report.droppedShapes << " shapes did not fit; --max-shapes " << report.peakShapes
          << " would have held that round\n";
@@ -199,22 +225,31 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     text << "budget exceeded: " << report.terminals - report.instancesWritten
          << " instances did not fit; --max-instances " << report.terminals << " would have\n";
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
+  if (!options.out.empty()) text << "triangles: " << options.out << '\n';
   outcome.text = text.str();
   outcome.json = {{"grammar", options.grammar},
                   {"device", device.name()},
                   {"status", statusName(report.base.status)},
-                  {"axioms", options.axioms},
+                  {"schedule", options.schedule},
+                  {"axioms", start.size()},
                   {"seed", options.seed},
                   {"terminals", report.terminals},
                   {"instances", report.instancesWritten},
+                  {"triangles", triangles},
                   {"buckets", bucketList},
                   {"rounds", report.rounds},
-                  {"peakShapes", report.peakShapes},
-                  {"droppedShapes", report.droppedShapes},
-                  {"unfinishedShapes", report.unfinishedShapes},
-                  {"keyHash", hash},
-                  {"gpuMilliseconds", times.json()},
-                  {"image", options.image.empty() ? Json() : Json(options.image)}};
+                  {"peak_shapes", report.peakShapes},
+                  {"dropped_shapes", report.droppedShapes},
+                  {"unfinished_shapes", report.unfinishedShapes},
+                  {"budget_exceeded", exceeded},
+                  {"key_hash", hash},
+                  {"bytes_written", bytesWritten},
+                  {"gpu_ms_median", times.median()},
+                  {"passes", passes},
+                  {"cpu_reference_terminals", reference.result.terminals},
+                  {"cpu_reference_ms", reference.result.complete ? Json(reference.milliseconds) : Json()},
+                  {"image", options.image.empty() ? Json() : Json(options.image)},
+                  {"out", options.out.empty() ? Json() : Json(options.out)}};
   return outcome;
 }
 
@@ -226,9 +261,14 @@ Work addSpawn(CLI::App& app) {
   command->add_option("GRAMMAR", options->grammar, "PGA-shape grammar text (.pga)")
       ->required()
       ->check(CLI::ExistingFile);
-  command->add_option("--axioms", options->axioms, "Start shapes, on a square grid")
-      ->check(CLI::Range(1u, 1000000u))
-      ->capture_default_str();
+  CLI::Option* axioms = command->add_option("--axioms", options->axioms, "Start shapes, on a square grid")
+                            ->check(CLI::Range(1u, 10000000u))
+                            ->capture_default_str();
+  command
+      ->add_option("--axiom-file", options->axiomFile,
+                   "Start shapes from a file, CSV or JSON: position, rotation about Y, size, seed, rule")
+      ->check(CLI::ExistingFile)
+      ->excludes(axioms);
   command
       ->add_option_function<std::string>(
           "--axiom-size", [o = options.get()](const std::string& t) { o->size = parseTriple(t); },
@@ -244,10 +284,23 @@ Work addSpawn(CLI::App& app) {
   command->add_option("--repeat", options->repeat, "Derive N times and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
+  command->add_option("--schedule", options->schedule, "How the derivation runs")
+      ->check(CLI::IsMember({"interpreter", "default"}))
+      ->capture_default_str();
   command->add_option("--image", options->image, "Write a picture of the result")->type_name("FILE.png");
+  command->add_option("--yaw", options->yaw, "That picture's view: degrees around the scene")->capture_default_str();
+  command->add_option("--pitch", options->pitch, "Degrees above the horizon")
+      ->check(CLI::Range(-89.0f, 89.0f))
+      ->capture_default_str();
+  command->add_option("--zoom", options->zoom, "Times closer to the middle than all of the scene")
+      ->check(CLI::Range(0.01f, 1000.0f))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Write the instances as triangles")->type_name("FILE.glb");
   addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)");
-  command->add_option("--max-instances", options->maxInstances, "Budget: instances written")
-      ->check(CLI::Range(1u, 1u << 30))
+  command
+      ->add_option("--max-instances", options->maxInstances,
+                   "Budget: instances written (0: what the CPU evaluator counts, as far as the device binds it)")
+      ->check(CLI::Range(0u, 1u << 30))
       ->capture_default_str();
   command->add_option("--max-shapes", options->maxShapes,
                       "Budget: shapes alive in one round (0: the library's default)");
@@ -256,11 +309,13 @@ Work addSpawn(CLI::App& app) {
 Examples:
   gpgp spawn sponge.pga                                 one axiom of 1 x 1 x 1
   gpgp spawn tower.pga --axioms 256 --axiom-size 24,34,24 --spacing 40
-  gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png
-  gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpuMilliseconds
+  gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
+  gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line
+  gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
 
-Errors in the grammar are printed as FILE:LINE:COLUMN. What exceeds a budget is counted and reported with the size that
-would have fitted; it is never silently lost.)");
+An axiom stands on its position. The CPU evaluator derives the same on one thread: cpu_reference_ms, and a check of what
+the device did. Errors in the grammar and in axiom files are printed with their place. What exceeds a budget is counted
+and reported with the size that would have fitted; it is never silently lost.)");
   return [options](const CommonOptions& common) { return spawn(*options, common); };
 }
 

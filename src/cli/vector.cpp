@@ -1,23 +1,28 @@
 // `gpgp vector`: converts an SVG to a drawing, rasterises it on the GPU and writes a picture.
 #include "cli/session.h"
+#include "cli/vector_truth.h"
 #include "host/files.h"
 #include "host/picture.h"
+#include "vector/import/svg/import.h"
 
 #include <gpgp/vector.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 namespace gpgp::cli {
 namespace {
 
 struct VectorOptions {
-  std::string file, out, background;
+  std::string file, out, background, stages;
   Size size;
   bool allWarnings = false;
+  bool area = false;
+  bool truth = false;
   uint32_t samples = 16, repeat = 1, maxTileEntries = 0;
 };
 
@@ -26,6 +31,7 @@ constexpr uint32_t kShownWarnings = 10;
 struct Messages {
   std::string error;
   uint32_t warnings = 0;
+  Json list = Json::array(); // of what is not supported
   bool showAll = false;
 };
 
@@ -35,8 +41,14 @@ void GPGP_CALL onSvgMessage(void* userData, const GpgpMessage* message) {
     if (messages->error.empty()) messages->error = message->text;
     return;
   }
+  if (message->severity == GPGP_SEVERITY_WARNING) messages->list.push_back(message->text);
   if (message->severity == GPGP_SEVERITY_WARNING && ++messages->warnings > kShownWarnings && !messages->showAll) return;
   std::fprintf(stderr, "%s: %s\n", message->label, message->text);
+}
+
+void GPGP_CALL onStage(void* userData, const char* stage, const char* svg, size_t size) {
+  const std::string file = *static_cast<const std::string*>(userData) + "/" + stage + ".svg";
+  std::ofstream(file, std::ios::binary).write(svg, static_cast<std::streamsize>(size));
 }
 
 /// "rrggbb" as linear premultiplied colour; empty: nothing behind the drawing.
@@ -61,6 +73,22 @@ void fit(const GpgpDrawingInfo& drawing, const Size& size, float (&transform)[6]
   transform[5] = (static_cast<float>(size.height) - height * scale) * 0.5f - drawing.viewport[1] * scale;
 }
 
+/// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
+double compareWithTruth(std::span<const uint8_t> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
+                        const float (&background)[4], const Size& size) {
+  gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
+  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet);
+  if (!svg) throw Failure(svg.error().text);
+  std::vector<GpgpPath> paths;
+  for (const auto& path : svg->paths) paths.push_back(path.view());
+  std::vector<float> pixels(painted.size());
+  for (size_t i = 0; i < painted.size(); ++i) {
+    const float alpha = static_cast<float>(painted[i | 3]) / 255.0f, value = static_cast<float>(painted[i]) / 255.0f;
+    pixels[i] = i % 4 == 3 ? alpha : alpha > 0.0f ? host::linearFromSrgb(std::min(1.0f, value / alpha)) * alpha : 0.0f;
+  }
+  return psnrOverWhite(pixels, vectorTruth(paths, transform, background, size.width, size.height));
+}
+
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   float background[4] = {};
   parseBackground(options.background, background);
@@ -73,13 +101,20 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   source.size = bytes.size();
   source.messageFn = onSvgMessage;
   source.messageUserData = &messages;
-  const auto begin = std::chrono::steady_clock::now();
+  GpgpSvgReport converted{};
+  source.report = &converted;
+  if (!options.stages.empty()) {
+    std::error_code failed;
+    std::filesystem::create_directories(options.stages, failed);
+    if (failed) throw Failure(options.stages + ": " + failed.message());
+    source.stageFn = onStage;
+    source.stageUserData = const_cast<std::string*>(&options.stages);
+  }
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(options.file + ": " + (messages.error.empty() ? blob.name() : messages.error));
   if (!options.allWarnings && messages.warnings > kShownWarnings)
     std::fprintf(stderr, "%s: %u more; --all-warnings shows them\n", options.file.c_str(),
                  messages.warnings - kShownWarnings);
-  const double compileMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 
   Session session(common);
   host::HeadlessDevice& device = session.device();
@@ -123,21 +158,29 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                         info.items = &item;
                         info.itemCount = 1;
                         info.samples = options.samples;
+                        info.exactArea = options.area ? VK_TRUE : VK_FALSE;
                         std::copy(std::begin(background), std::end(background), info.background);
                         info.target = target.target({}, after);
                         info.encodeSrgb = VK_TRUE;
                         return canvas.recordPrepare(commands, frame, info);
                       });
+  std::vector<uint8_t> pixels;
+  if (!options.out.empty() || options.truth) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
+  double psnr = 0;
+  if (options.truth) psnr = compareWithTruth(bytes, pixels, item.transform, background, size);
   if (!options.out.empty()) {
-    const std::vector<uint8_t> pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
     host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
   }
   session.checkValidation();
 
+  Json passes = Json::object();
+  for (const auto& [name, time] : times.passes) passes[name] = time;
+  const auto ratio = [](uint32_t a, uint32_t b) { return b ? static_cast<double>(a) / static_cast<double>(b) : 0.0; };
   Outcome outcome;
   std::ostringstream text;
   text << options.file << ": " << facts.paths << " paths, " << facts.curves << " curves, " << facts.patches
-       << " patches; converted in " << milliseconds(compileMs) << '\n'
+       << " patches; parsed in " << milliseconds(converted.parseMilliseconds) << ", converted in "
+       << milliseconds(converted.convertMilliseconds) << '\n'
        << size.width << " x " << size.height << " pixels, " << options.samples << " samples each, "
        << report.tileEntries << " tile entries; GPU " << milliseconds(times.median()) << " (median of "
        << times.totals.size() << ") on " << device.name() << '\n';
@@ -145,6 +188,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     text << "budget exceeded: " << report.pathsDropped << " paths were left out; --max-tile-entries "
          << report.tileEntries << " would have held them\n";
   if (messages.warnings) text << messages.warnings << " parts of the drawing are approximated or left out\n";
+  if (options.truth) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
   outcome.json = {{"file", options.file},
@@ -156,13 +200,19 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"paths", facts.paths},
                   {"curves", facts.curves},
                   {"patches", facts.patches},
-                  {"tileEntries", report.tileEntries},
-                  {"tileEntriesGiven", report.tileEntriesGiven},
-                  {"pathsDropped", report.pathsDropped},
+                  {"tile_entries_given", report.tileEntriesGiven},
+                  {"paths_dropped", report.pathsDropped},
                   {"warnings", messages.warnings},
-                  {"compileMilliseconds", compileMs},
-                  {"gpuMilliseconds", times.json()},
+                  {"curves_per_patch", ratio(facts.curves, facts.patches)},
+                  {"tile_entries", report.tileEntries},
+                  {"patches_per_tile", ratio(report.tileEntries, ((size.width + 15) / 16) * ((size.height + 15) / 16))},
+                  {"parse_ms", converted.parseMilliseconds},
+                  {"convert_ms", converted.convertMilliseconds},
+                  {"gpu_ms_median", times.median()},
+                  {"passes", passes},
+                  {"unsupported", messages.list},
                   {"image", options.out.empty() ? Json() : Json(options.out)}};
+  if (options.truth) outcome.json["psnr_db"] = psnr;
   return outcome;
 }
 
@@ -180,7 +230,11 @@ Work addVector(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--background", options->background, "Colour behind the drawing (default: transparent)")
       ->type_name("RRGGBB");
-  command->add_option("-o,--out", options->out, "Write the picture")->type_name("FILE.png");
+  command->add_option("-o,--out,OUT", options->out, "Write the picture")->type_name("FILE.png");
+  command->add_flag("--area", options->area, "A pixel's first edge counts by its exact area");
+  command->add_flag("--truth", options->truth,
+                    "Compare with 256 samples a pixel, composited by winding numbers on the CPU (slow)");
+  command->add_option("--stages", options->stages, "Write each stage of the conversion as SVG")->type_name("FOLDER");
   command->add_option("--repeat", options->repeat, "Rasterise N times and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
@@ -191,7 +245,7 @@ Work addVector(CLI::App& app) {
 Examples:
   gpgp vector tiger.svg --out tiger.png
   gpgp vector tiger.svgz --size 2048x2048 --background ffffff --out tiger.png
-  gpgp vector map.svg --samples 4 --repeat 100 --json | jq .gpuMilliseconds.median
+  gpgp vector map.svg --samples 4 --repeat 100 --json | jq .gpu_ms_median
 
 What is approximated or left out is named on standard error with its line, the first ten unless --all-warnings is given,
 and counted.)");

@@ -77,9 +77,16 @@ Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
   const auto vk = loadDeviceTable(device.vki, info.device, device.has(GPGP_FEATURE_DEBUG_UTILS));
   if (!vk) return vk.error();
   device.vk = *vk;
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
   device.vki.GetPhysicalDeviceProperties2(device.physicalDevice, &properties);
   device.limits = properties.properties.limits;
+  device.vendor = properties.properties.vendorID;
+  device.model = properties.properties.deviceID;
+  device.subgroupArithmetic = (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
+                              (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT) &&
+                              (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT);
+  device.software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
 
   gpu_ = makeUnique<GpuMemory>(host_, device, host_, info.gpuAllocator);
   if (info.pipelineCache) {

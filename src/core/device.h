@@ -12,6 +12,9 @@ struct Device {
   DeviceTable vk;
   GpgpFeatures features = 0;
   VkPhysicalDeviceLimits limits{};
+  uint32_t vendor = 0, model = 0;  ///< vendorID and deviceID
+  bool software = false;           ///< runs on the CPU
+  bool subgroupArithmetic = false; ///< and ballots, in compute shaders
 
   bool has(GpgpFeatures wanted) const { return (features & wanted) == wanted; }
   template <class Handle> void setName(VkObjectType type, Handle handle, const char* label, const char* part) const;

@@ -295,8 +295,9 @@ Result<void> Worker::record(const Record& record) {
         const VkDeviceSize size = pass.size == VK_WHOLE_SIZE ? placeSize(pass.target) - pass.offset : pass.size;
         vk.CmdFillBuffer(cmd, buffer, offset + pass.offset, size / 4 * 4, pass.value);
       } else {
-        if (bound != pipelines_[pass.shader]) {
-          bound = pipelines_[pass.shader];
+        const VkPipeline pipeline = pass.shader == record.replacedShader ? record.replacement : pipelines_[pass.shader];
+        if (bound != pipeline) {
+          bound = pipeline;
           vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, bound);
         }
         if (pass.constantCount)

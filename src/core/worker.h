@@ -30,6 +30,8 @@ struct Record {
   std::array<bool, kMaxGroupCounts> conditions = {};
   uint32_t levels = UINT32_MAX;         ///< passes of this level and above are left out
   std::span<const std::byte> constants; ///< for the first constants resource
+  uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
+  VkPipeline replacement = VK_NULL_HANDLE;
 };
 
 struct DrawRecord {
@@ -85,6 +87,8 @@ protected:
   /// Takes the finished description and makes what recording needs. Call once at the end of creation.
   /// Draw shaders (vertex, fragment) may be empty.
   Result<void> init(PassList passes, const ShaderDesc* vertex = nullptr, const ShaderDesc* fragment = nullptr);
+  /// A pipeline with this worker's layout; all workers of a class have layouts that are compatible.
+  Result<VkPipeline> createComputePipeline(const ShaderDesc& shader) const;
 
 private:
   struct InFlight { // one record in flight
@@ -102,7 +106,6 @@ private:
   void take(uint32_t slot, uint64_t tag, bool report);
   void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                         VkDeviceSize scratchOffset) const;
-  Result<VkPipeline> createComputePipeline(const ShaderDesc& shader) const;
   Result<VkPipeline> createDrawPipeline(const GpgpTargetInfo& target) const;
   Result<VkShaderModule> createModule(const ShaderDesc& shader) const;
   void beginLabel(VkCommandBuffer commandBuffer, const char* pass) const;

@@ -15,22 +15,48 @@ TEST(CliSpawn, CountsTerminals) {
   const TemporaryFile grammar("tower.pga", kTower), picture("tower.png");
   const json tower = gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "4,10,4", "--repeat", "2",
                                "--image", picture.path(), "--image-size", "96x64", "--validate"});
-  EXPECT_EQ(keys(tower),
-            (std::set<std::string>{"command", "ok", "grammar", "device", "status", "axioms", "seed", "terminals",
-                                   "instances", "buckets", "rounds", "peakShapes", "droppedShapes", "unfinishedShapes",
-                                   "keyHash", "gpuMilliseconds", "image"}));
+  EXPECT_EQ(keys(tower), (std::set<std::string>{"command",
+                                                "ok",
+                                                "grammar",
+                                                "device",
+                                                "status",
+                                                "schedule",
+                                                "axioms",
+                                                "seed",
+                                                "terminals",
+                                                "instances",
+                                                "triangles",
+                                                "buckets",
+                                                "rounds",
+                                                "peak_shapes",
+                                                "dropped_shapes",
+                                                "unfinished_shapes",
+                                                "budget_exceeded",
+                                                "key_hash",
+                                                "bytes_written",
+                                                "gpu_ms_median",
+                                                "passes",
+                                                "cpu_reference_terminals",
+                                                "cpu_reference_ms",
+                                                "image",
+                                                "out"}));
   EXPECT_EQ(tower["status"], "GPGP_SUCCESS");
   EXPECT_EQ(tower["terminals"], 30);
   EXPECT_EQ(tower["instances"], 30);
+  EXPECT_EQ(tower["triangles"], 30 * 12);
+  EXPECT_EQ(tower["bytes_written"], 30 * 96);
+  EXPECT_EQ(tower["budget_exceeded"], false);
+  EXPECT_EQ(tower["cpu_reference_terminals"], 30);
+  EXPECT_GT(tower["cpu_reference_ms"].get<double>(), 0);
   ASSERT_EQ(tower["buckets"].size(), 1u);
   EXPECT_EQ(tower["buckets"][0]["name"], "Floor");
   EXPECT_EQ(tower["buckets"][0]["instances"], 30);
-  EXPECT_EQ(tower["keyHash"].get<std::string>().size(), 16u);
+  EXPECT_EQ(tower["key_hash"].get<std::string>().size(), 16u);
   EXPECT_EQ(host::readPng(picture.path()).width, 96u);
   const json again = gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "4,10,4"});
-  EXPECT_EQ(again["keyHash"], tower["keyHash"]);
+  EXPECT_EQ(again["key_hash"], tower["key_hash"]);
   const json otherSeed = gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "4,10,4", "--seed", "9"});
-  EXPECT_NE(otherSeed["keyHash"], tower["keyHash"]);
+  EXPECT_NE(otherSeed["key_hash"], tower["key_hash"]);
 }
 
 TEST(CliSpawn, BudgetsAreReported) {
@@ -39,6 +65,67 @@ TEST(CliSpawn, BudgetsAreReported) {
   EXPECT_EQ(tower["status"], "GPGP_BUDGET_EXCEEDED");
   EXPECT_EQ(tower["terminals"], 10);
   EXPECT_EQ(tower["instances"], 4);
+  EXPECT_EQ(tower["budget_exceeded"], true);
+}
+
+TEST(CliSpawn, AxiomFiles) {
+  const TemporaryFile grammar("rules.pga", "axiom Box One;\nterminal T (1, 0);\nOne = Replicate() { T | Two };\n"
+                                           "Two = Replicate() { T | T };\n");
+  const TemporaryFile csv("lots.csv", "# lots\nx, z, rotation, size_x, size_y, size_z, seed, rule\n"
+                                      "10, 20, 90, 2, 4, 6, 5, Two\n\n-1, 0.5, 0, 1, 1, 1, 6,\n");
+  const TemporaryFile listed("lots.json", "[{\"position\": [10, 0, 20], \"rotation\": 90, \"size\": [2, 4, 6], "
+                                          "\"seed\": 5, \"rule\": \"Two\"},\n"
+                                          " {\"position\": [-1, 0, 0.5], \"seed\": 6}]");
+  const json a = gpgpJson({"spawn", grammar.path(), "--axiom-file", csv.path()});
+  const json b = gpgpJson({"spawn", grammar.path(), "--axiom-file", listed.path()});
+  EXPECT_EQ(a["axioms"], 2);
+  EXPECT_EQ(a["terminals"], 2 + 3);
+  EXPECT_EQ(a["key_hash"], b["key_hash"]);
+}
+
+TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
+  const TemporaryFile grammar("rules2.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n");
+  const auto error = [&](const std::string& text) {
+    const TemporaryFile file("wrong_axioms", text);
+    const std::string all =
+        gpgpFailure({"spawn", grammar.path(), "--axiom-file", file.path(), "--schedule", "interpreter"});
+    const size_t name = all.find("wrong_axioms:");
+    return name == std::string::npos ? all : all.substr(name + 13);
+  };
+  EXPECT_EQ(error("x,z\n1,2\n\n3,four\n"), "4: error: z takes a number; \"four\" is none");
+  EXPECT_EQ(error("x,z\n1\n"), "2: error: 1 values for 2 columns");
+  EXPECT_EQ(error("x,z,seed\n1,2,-1\n"), "2: error: seed takes a whole number from 0 to 4294967295; \"-1\" is none");
+  EXPECT_EQ(error("x,y\n1,2\n"), "2: error: an axiom needs a value for z");
+  EXPECT_EQ(error("x,z,size_y\n1,2,0\n"), "2: error: sizes are above 0");
+  EXPECT_EQ(error("x,z,rule\n1,2,Other\n"), "2: error: the grammar has no rule \"Other\"");
+  EXPECT_EQ(error("x,x\n"), "1: error: two columns are named \"x\"");
+  EXPECT_EQ(error("x,w\n").substr(0, 27), "1: error: \"w\" is no column;");
+  EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]"), "3: error: an axiom needs a position");
+  EXPECT_EQ(error("[\n{\"position\": [1, 2]}]"), "2: error: position takes three numbers, [x, y, z]");
+  EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n5]"),
+            "2: error: expected an object with position, rotation, size, seed, rule");
+  EXPECT_EQ(error("[\n{]").substr(0, 9), "2: error:");
+  EXPECT_NE(error("x,z\n").find("no axioms"), std::string::npos);
+}
+
+TEST(CliSpawn, WritesTriangles) {
+  const TemporaryFile grammar("glb.pga", kTower), out("tower.glb");
+  gpgpJson({"spawn", grammar.path(), "--axiom-size", "4,10,4", "--out", out.path()});
+  const std::string bytes = host::readText(out.path());
+  ASSERT_GT(bytes.size(), 20u + 10u * 12u * 3u * 12u); // ten boxes of twelve triangles of three corners
+  EXPECT_EQ(bytes.substr(0, 4), "glTF");
+  const auto word = [&](size_t at) {
+    uint32_t value = 0;
+    for (size_t i = 0; i < 4; ++i) value |= uint32_t(uint8_t(bytes[at + i])) << (8 * i);
+    return value;
+  };
+  EXPECT_EQ(word(8), bytes.size());
+  const json model = json::parse(bytes.substr(20, word(12)));
+  ASSERT_EQ(model["accessors"].size(), 1u);
+  EXPECT_EQ(model["accessors"][0]["count"], 10 * 12 * 3);
+  EXPECT_EQ(model["accessors"][0]["min"], (json{-2.0, 0.0, -2.0}));
+  EXPECT_EQ(model["accessors"][0]["max"], (json{2.0, 10.0, 2.0}));
+  EXPECT_EQ(model["materials"][0]["name"], "Floor");
 }
 
 TEST(CliSpawn, ErrorsHaveAPlace) {
@@ -53,6 +140,8 @@ TEST(CliSpawn, WrongUsage) {
                     {"spawn", grammar.path(), "--axioms", "0"},
                     {"spawn", grammar.path(), "--axiom-size", "1,2"},
                     {"spawn", grammar.path(), "--axiom-size", "1,2,-3"},
+                    {"spawn", grammar.path(), "--axiom-file", "no_such_file.csv"},
+                    {"spawn", grammar.path(), "--axioms", "3", "--axiom-file", grammar.path()},
                     {"spawn", grammar.path(), "--set", "floors"},
                     {"spawn", grammar.path(), "--set", "=3"},
                     {"spawn", grammar.path(), "--set", "floors=many"}});

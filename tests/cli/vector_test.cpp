@@ -17,10 +17,29 @@ TEST(CliVector, DrawsWhatTheFileSays) {
   const TemporaryFile file("halves.svg", kHalves), picture("halves.png");
   const json drawn = gpgpJson(
       {"vector", file.path(), "--out", picture.path(), "--background", "0000ff", "--repeat", "2", "--validate"});
-  EXPECT_EQ(keys(drawn),
-            (std::set<std::string>{"command", "ok", "file", "device", "status", "width", "height", "samples", "paths",
-                                   "curves", "patches", "tileEntries", "tileEntriesGiven", "pathsDropped", "warnings",
-                                   "compileMilliseconds", "gpuMilliseconds", "image"}));
+  EXPECT_EQ(keys(drawn), (std::set<std::string>{"command",
+                                                "ok",
+                                                "file",
+                                                "device",
+                                                "status",
+                                                "width",
+                                                "height",
+                                                "samples",
+                                                "paths",
+                                                "curves",
+                                                "patches",
+                                                "curves_per_patch",
+                                                "tile_entries",
+                                                "tile_entries_given",
+                                                "patches_per_tile",
+                                                "paths_dropped",
+                                                "warnings",
+                                                "unsupported",
+                                                "parse_ms",
+                                                "convert_ms",
+                                                "gpu_ms_median",
+                                                "passes",
+                                                "image"}));
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
   EXPECT_EQ(drawn["width"], 40);
   EXPECT_EQ(drawn["height"], 20);
@@ -45,6 +64,16 @@ TEST(CliVector, FitsIntoASizeAndLeavesTheRestClear) {
   EXPECT_EQ(seen.rgba[(20 * 40 + 5) * 4 + 3], 255) << "the drawing stands in the middle";
 }
 
+TEST(CliVector, StagesArePicturesThatItReadsItself) {
+  const TemporaryFile file("stages.svg", kHalves), picture("stages.png");
+  const std::string folder = picture.path() + ".stages";
+  gpgpJson({"vector", file.path(), picture.path(), "--stages", folder});
+  EXPECT_EQ(host::readPng(picture.path()).width, 40u);
+  for (const char* stage : {"paths", "pieces", "crossings", "patches"})
+    EXPECT_GE(gpgpJson({"vector", folder + "/" + stage + ".svg"})["paths"], 1) << stage;
+  std::filesystem::remove_all(folder);
+}
+
 TEST(CliVector, RealDrawing) {
   const std::string tiger = GPGP_TEST_DATA "/fetched/svg/tiger.svgz";
   ASSERT_TRUE(std::filesystem::exists(tiger)) << "run tests/data/fetch.sh --only svg";
@@ -67,6 +96,8 @@ TEST(CliVector, WarningsAreCountedAndNotAFlood) {
   const json counted = json::parse(some.out, nullptr, false);
   ASSERT_TRUE(counted.is_object()) << some.out;
   EXPECT_GE(counted["warnings"], 30);
+  EXPECT_EQ(counted["unsupported"].size(), counted["warnings"]);
+  EXPECT_EQ(counted["unsupported"][0].get<std::string>().substr(0, 7), "line 2:");
   EXPECT_EQ(lines(some.err), 11) << some.err;
   EXPECT_EQ(lines(all.err), counted["warnings"]) << all.err;
 }

@@ -1,0 +1,33 @@
+// Axioms for `gpgp spawn`: a grid, or a file in CSV or JSON. Each stands on a place: its start shape's middle is half
+// its height above that.
+#pragma once
+#include <gpgp/spawn.h>
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gpgp::cli {
+
+/// What an axiom is where a file does not say.
+struct AxiomDefaults {
+  std::array<float, 3> size{1, 1, 1};
+  uint32_t seed = 1; ///< axiom i has seed + i
+};
+
+/// Standing at a place, turned about Y by degrees.
+GpgpAxiom axiomAt(const std::array<float, 3>& place, float degrees, const std::array<float, 3>& size, uint32_t seed,
+                  uint32_t id);
+
+/// A square grid in the ground plane around the origin, row by row; spacing 0: 1.5 times the axioms' width.
+std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefaults& defaults);
+
+/// A file whose first character is [ is JSON, an array of objects with position [x, y, z], rotation (degrees), size
+/// [x, y, z], seed, rule, attribute; only position is needed. Anything else is CSV: a first line that names the columns
+/// x y z rotation size_x size_y size_z seed rule attribute, of which x and z are needed; # begins a comment.
+/// rules are the grammar's, for names in the file. Throws Failure with FILE:LINE and what was expected.
+std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<std::string>& rules,
+                                  const AxiomDefaults& defaults);
+
+} // namespace gpgp::cli

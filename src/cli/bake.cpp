@@ -1,0 +1,133 @@
+// `gpgp bake`: grammars and drawings as text to the files that a game loads. Needs no GPU.
+#include "cli/command.h"
+#include "host/files.h"
+#ifdef GPGP_CLI_SPAWN
+#include "cli/grammar_source.h"
+#endif
+
+#include <gpgp/gpgp.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <sstream>
+
+namespace gpgp::cli {
+namespace {
+
+struct BakeOptions {
+  std::vector<std::string> in, set;
+  std::string out, type;
+  bool kernel = true;
+};
+
+const std::string kStandard = "-";
+
+/// grammar or drawing: as --type says, else by the file's ending.
+std::string typeOf(const BakeOptions& options, const std::string& file) {
+  if (!options.type.empty()) return options.type;
+  const std::string ending = std::filesystem::path(file).extension();
+  if (ending == ".pga") return "grammar";
+  if (ending == ".svg" || ending == ".svgz") return "drawing";
+  throw Usage(file == kStandard ? "--type says what standard input is: grammar or drawing"
+                                : file + ": neither .pga nor .svg; --type says what it is");
+}
+
+std::string read(const std::string& file) {
+  if (file != kStandard) return host::readText(file);
+  return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
+}
+
+#ifdef GPGP_CLI_VECTOR
+Blob bakeDrawing(const std::string& text, const std::string& name) {
+  std::string error;
+  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+  source.name = name.c_str();
+  source.data = text.data();
+  source.size = text.size();
+  source.messageUserData = &error;
+  source.messageFn = [](void* userData, const GpgpMessage* message) {
+    if (message->severity == GPGP_SEVERITY_ERROR)
+      *static_cast<std::string*>(userData) = message->text;
+    else
+      std::fprintf(stderr, "%s: %s\n", message->label, message->text);
+  };
+  Result<Blob> blob = compileSvg(source);
+  if (!blob) throw Failure(name + ": " + (error.empty() ? blob.name() : error));
+  return std::move(*blob);
+}
+#endif
+
+Blob bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& file, const std::string& type) {
+  const std::string name = file == kStandard ? "<standard input>" : file;
+#ifdef GPGP_CLI_SPAWN
+  if (type == "grammar") return compileGrammarText(read(file), name, options.set, options.kernel);
+#endif
+#ifdef GPGP_CLI_VECTOR
+  if (type == "drawing") return bakeDrawing(read(file), name);
+#endif
+  throw Failure(name + ": this gpgp was built without what bakes a " + type);
+}
+
+Outcome bake(const BakeOptions& options, const CommonOptions& common) {
+  // With several inputs, or where OUT is a folder, each gets a file of its own name there, with .gpgp behind it.
+  const bool folder = options.in.size() > 1 || std::filesystem::is_directory(options.out) || options.out.ends_with('/');
+  if (folder && options.out == kStandard) throw Usage("standard output takes one input");
+  if (options.out == kStandard && common.json) throw Usage("standard output takes the baked file or --json, not both");
+  std::vector<std::pair<std::string, std::string>> work; // file, type: all of them are known before any is written
+  for (const std::string& file : options.in) {
+    if (file == kStandard && folder) throw Usage("standard input has no name for a file in a folder; give it alone");
+    work.emplace_back(file, typeOf(options, file));
+  }
+  Outcome outcome{Json::object(), {}};
+  Json list = Json::array();
+  std::ostringstream text;
+  for (const auto& [file, type] : work) {
+    const Blob blob = bakeOne(options, file, type);
+    const std::string_view bytes(static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size());
+    if (options.out == kStandard) {
+      outcome.text = bytes;
+      return outcome;
+    }
+    const std::string out =
+        folder ? (std::filesystem::path(options.out) / std::filesystem::path(file).filename()).string() + ".gpgp"
+               : options.out;
+    for (const Json& other : list)
+      if (other["out"] == out) throw Usage(file + ": another input goes to " + out + " as well");
+    host::writeFile(out, bytes);
+    list.push_back({{"in", file}, {"type", type}, {"out", out}, {"bytes", blob.size()}});
+    text << file << ": " << type << ", " << blob.size() << " bytes, " << out << '\n';
+  }
+  outcome.text = text.str();
+  outcome.json = {{"baked", list}};
+  return outcome;
+}
+
+} // namespace
+
+Work addBake(CLI::App& app) {
+  auto options = std::make_shared<BakeOptions>();
+  CLI::App* command = app.add_subcommand("bake", "Compile grammars and drawings to the files that a game loads");
+  command->add_option("IN", options->in, "Grammars (.pga) and drawings (.svg, .svgz); - is standard input")->required();
+  command->add_option("-o,--out", options->out, "The file, a folder, or - for standard output")
+      ->type_name("FILE|FOLDER|-")
+      ->required();
+  command->add_option("--type", options->type, "What the inputs are, whatever their names")
+      ->check(CLI::IsMember({"grammar", "drawing"}));
+  command->add_option("--set", options->set, "Override a `var` of the grammars; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("!--no-kernel", options->kernel,
+                    "Grammars run on the interpreter: smaller files, slower derivation");
+  command->footer(R"(
+Examples:
+  gpgp bake city.pga -o city.gpgp
+  gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp
+  cat tree.pga | gpgp bake - --type grammar -o - > tree.gpgp
+
+A baked file depends on its input and this command's version alone, so it can be made on any machine and cached.)");
+  return [options](const CommonOptions& common) { return bake(*options, common); };
+}
+
+} // namespace gpgp::cli

@@ -1,0 +1,89 @@
+#include "cli/instances_gltf.h"
+
+#include "cli/command.h"
+#include "cli/unit_shapes.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace gpgp::cli {
+
+glm::vec3 placed(const GpgpInstance& instance, const glm::vec3& p) {
+  const float* m = instance.transform;
+  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+
+void writeGlb(const std::filesystem::path& file, std::span<const GpgpInstance> instances, uint32_t buckets,
+              const std::function<std::string(uint32_t)>& name, const std::function<glm::vec3(uint32_t)>& colour) {
+  std::vector<std::vector<glm::vec3>> shapes;
+  for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
+  std::vector<std::vector<glm::vec3>> corners(buckets);
+  size_t total = 0;
+  for (const GpgpInstance& instance : instances) {
+    const auto& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
+    total += shape.size() * sizeof(glm::vec3);
+    if (total > 0xf0000000u) throw Failure(file.string() + ": more triangles than a glTF binary file holds (4 GiB)");
+    for (const glm::vec3& p : shape) corners.at(instance.bucket).push_back(placed(instance, p));
+  }
+
+  tinygltf::Model model;
+  model.asset.version = "2.0";
+  model.asset.generator = "gpgp";
+  model.buffers.emplace_back().data.resize(std::max<size_t>(total, 4));
+  tinygltf::Scene& scene = model.scenes.emplace_back();
+  model.defaultScene = 0;
+  size_t offset = 0;
+  for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
+    if (corners[bucket].empty()) continue;
+    glm::vec3 low = corners[bucket][0], high = low;
+    for (const glm::vec3& p : corners[bucket]) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    const int index = static_cast<int>(model.meshes.size());
+    tinygltf::BufferView& view = model.bufferViews.emplace_back();
+    view.buffer = 0;
+    view.byteOffset = offset;
+    view.byteLength = corners[bucket].size() * sizeof(glm::vec3);
+    view.target = TINYGLTF_TARGET_ARRAY_BUFFER;
+    std::memcpy(model.buffers[0].data.data() + offset, corners[bucket].data(), view.byteLength);
+    offset += view.byteLength;
+    tinygltf::Accessor& accessor = model.accessors.emplace_back();
+    accessor.bufferView = index;
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    accessor.type = TINYGLTF_TYPE_VEC3;
+    accessor.count = corners[bucket].size();
+    accessor.minValues = {low.x, low.y, low.z};
+    accessor.maxValues = {high.x, high.y, high.z};
+    tinygltf::Material& material = model.materials.emplace_back();
+    material.name = name(bucket);
+    material.doubleSided = true;
+    const glm::vec3 c = colour(bucket);
+    const auto linear = [](float v) { return std::pow(static_cast<double>(v), 2.2); };
+    material.pbrMetallicRoughness.baseColorFactor = {linear(c.x), linear(c.y), linear(c.z), 1.0};
+    material.pbrMetallicRoughness.metallicFactor = 0;
+    tinygltf::Primitive primitive;
+    primitive.attributes["POSITION"] = index;
+    primitive.material = index;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    tinygltf::Mesh& mesh = model.meshes.emplace_back();
+    mesh.name = material.name;
+    mesh.primitives.push_back(primitive);
+    tinygltf::Node& node = model.nodes.emplace_back();
+    node.mesh = index;
+    scene.nodes.push_back(index);
+  }
+  if (file.has_parent_path()) {
+    std::error_code ignored; // the writer says what is wrong
+    std::filesystem::create_directories(file.parent_path(), ignored);
+  }
+  tinygltf::TinyGLTF writer;
+  if (!writer.WriteGltfSceneToFile(&model, file.string(), false, true, false, true))
+    throw Failure(file.string() + ": cannot be written");
+}
+
+} // namespace gpgp::cli

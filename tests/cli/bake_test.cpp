@@ -1,0 +1,67 @@
+// `gpgp bake`: files, folders and streams hold the same bytes, and the library loads them.
+#include "files.h"
+#include "run.h"
+
+namespace gpgp::test {
+namespace {
+
+constexpr const char* kGrammar = "axiom Box A;\nterminal T (1, 0);\nvar n = 2;\n"
+                                 "A = Repeat(X, n, ADJUST_TO_FILL) T;\n";
+
+std::string bakedWith(std::vector<std::string> arguments) {
+  const TemporaryFile out("baked.gpgp");
+  arguments.insert(arguments.begin(), "bake");
+  arguments.insert(arguments.end(), {"-o", out.path()});
+  const json result = gpgpJson(arguments);
+  EXPECT_EQ(keys(result), (std::set<std::string>{"command", "ok", "baked"}));
+  EXPECT_EQ(result["baked"].size(), 1u);
+  const std::string bytes = host::readText(out.path());
+  EXPECT_EQ(result["baked"][0]["bytes"], bytes.size());
+  EXPECT_EQ(result["baked"][0]["out"], out.path());
+  return bytes;
+}
+
+TEST(CliBake, TheSameInputGivesTheSameBytes) {
+  const TemporaryFile grammar("bake.pga", kGrammar), renamed("bake.text", kGrammar);
+  const std::string once = bakedWith({grammar.path()});
+  EXPECT_EQ(once.substr(0, 4), "gppg");
+  EXPECT_TRUE(once == bakedWith({grammar.path()})); // not EQ, which would print them
+  EXPECT_TRUE(once == bakedWith({renamed.path(), "--type", "grammar"}));
+  const ProcessResult stream = gpgp({"bake", grammar.path(), "-o", "-"});
+  EXPECT_EQ(stream.exitCode, 0) << stream.err;
+  EXPECT_TRUE(stream.out == once) << stream.out.size();
+  EXPECT_TRUE(once != bakedWith({grammar.path(), "--set", "n=3"}));
+  const std::string graph = bakedWith({grammar.path(), "--no-kernel"});
+  EXPECT_LT(graph.size(), once.size());
+  EXPECT_TRUE(graph == once.substr(0, graph.size())); // kernels lie behind the graph
+}
+
+TEST(CliBake, AFolderTakesOneFileEach) {
+  const TemporaryFile one("one.pga", kGrammar), two("two.pga", kGrammar), folder("baked");
+  const json result = gpgpJson({"bake", one.path(), two.path(), "--no-kernel", "-o", folder.path()});
+  ASSERT_EQ(result["baked"].size(), 2u);
+  const std::string first = host::readText(folder.path() + "/gpgp_cli_test_one.pga.gpgp");
+  EXPECT_EQ(first, host::readText(folder.path() + "/gpgp_cli_test_two.pga.gpgp"));
+  std::filesystem::remove_all(folder.path());
+}
+
+TEST(CliBake, ErrorsHaveAPlace) {
+  const TemporaryFile wrong("wrong.pga", "axiom Box A;\nA = Nothing;\n"), out("wrong.gpgp");
+  EXPECT_NE(gpgpFailure({"bake", wrong.path(), "-o", out.path()}).find("wrong.pga:2:"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out.path()));
+  gpgpFailure({"bake", "no_such_file.pga", "-o", out.path()});
+}
+
+TEST(CliBake, WrongUsage) {
+  const TemporaryFile grammar("usage2.pga", kGrammar), text("usage2.text", kGrammar);
+  expectWrongUsage({{"bake"},
+                    {"bake", grammar.path()},
+                    {"bake", text.path(), "-o", "x.gpgp"},
+                    {"bake", "-", "-o", "x.gpgp"},
+                    {"bake", grammar.path(), grammar.path(), "-o", "-"},
+                    {"bake", grammar.path(), "-o", "-", "--json"},
+                    {"bake", grammar.path(), "--set", "n", "-o", "x.gpgp"}});
+}
+
+} // namespace
+} // namespace gpgp::test
