@@ -132,6 +132,11 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset grammar, uint32_
 typedef uint64_t GpgpSpawnerFlags;
 /** Terminals become vertices and indices, not instances: records give GpgpSpawnInfo::vertices. */
 #define GPGP_SPAWNER_VERTICES ((GpgpSpawnerFlags)1)
+/** Instances lie in order of their bucket, then of their path key, and those that do not fit a buffer or region are its
+ *  last ones: which survive does not depend on execution, as long as maxTerminals holds all and no shape is dropped.
+ *  Not together with GPGP_SPAWNER_VERTICES. Axioms should differ in seed or id: equal keys come in the order of the
+ *  axioms, thousands of them in no stated order. */
+#define GPGP_SPAWNER_ORDERED ((GpgpSpawnerFlags)2)
 
 typedef struct GpgpSpawnerCreateInfo {
   GpgpStructureType sType;
@@ -181,8 +186,8 @@ typedef struct GpgpVertexAttribute {
 
 /** Where terminals go as triangles, and how a vertex looks. Every terminal becomes quads of four vertices and the six
  *  indices v + {0, 1, 2, 0, 2, 3}, flat-shaded, counter-clockwise from outside also where an axiom mirrors: a box is
- *  six quads, a polygon of n corners (n - 1) / 2, a prism two polygons and n quads, a sphere 96. Shapes with concave
- *  polygons are counted (GpgpSpawnReport::notDrawn). A terminal that fits only in part is left out whole. */
+ *  six quads, a convex polygon of n corners (n - 1) / 2, a concave one at most n - 2, a prism two polygons and n quads,
+ *  a sphere 96. A terminal that fits only in part is left out whole. */
 typedef struct GpgpVertexOutput {
   GpgpBuffer vertices;   /**< out; its size is the budget; STORAGE usage. Whole vertices are written: bytes that no
                               attribute covers become 0. NULL: the record only counts, see GpgpSpawnInfo::draws */
@@ -212,7 +217,7 @@ typedef struct GpgpSpawnInfo {
   const GpgpVertexOutput* vertices; /**< for spawners with GPGP_SPAWNER_VERTICES, instead of instances */
   /** Out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket; STORAGE usage. Fields that are not named
    * here are left as the engine set them. Instances: they are sorted by bucket; instanceCount and firstInstance are
-   * written. Without draws they lie in no stated order. Vertices: they lie in no stated order; indexCount of the first
+   * written. Without draws they lie in no stated order, unless by GPGP_SPAWNER_ORDERED. Vertices: they lie in no stated order; indexCount of the first
    * command is written, which draws all buckets. GPGP_SPAWN_REGIONS: firstInstance is read and instanceCount written;
    * or firstIndex is read, a multiple of 6, and indexCount and vertexOffset (firstIndex / 6 * 4) are written. Only
    * counting: instanceCount and firstInstance, or indexCount, firstIndex and vertexOffset are written, regions that fit
@@ -247,7 +252,6 @@ typedef struct GpgpSpawnReport {
   uint32_t depth;            /**< how deep rules nested in themselves */
   uint32_t vertices;         /**< that the terminals have; 6 indices for each 4 of them */
   uint32_t verticesWritten;  /**< <= vertices; less only with BUDGET_EXCEEDED, and where the record only counts */
-  uint32_t notDrawn;         /**< terminals without vertices: their polygon is concave */
 } GpgpSpawnReport;
 #define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
 

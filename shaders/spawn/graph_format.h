@@ -20,7 +20,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 2u;
+GPGP_CONST uint kGraphVersion = 3u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -29,10 +29,10 @@ GPGP_CONST uint kHeaderWords = 2u;    // of everything
 GPGP_CONST uint kHeaderChecksum = 3u; // of all words from kHeaderChecked on
 GPGP_CONST uint kHeaderChecked = 4u;
 GPGP_CONST uint kHeaderSections = 4u;      // count and offset of each section
-GPGP_CONST uint kHeaderAxiomShape = 24u;   // GpgpShape
-GPGP_CONST uint kHeaderAxiomPolygon = 25u; // its polygon, by number
-GPGP_CONST uint kHeaderAxiomNode = 26u;    // where a derivation starts by default
-GPGP_CONST uint kHeaderBuckets = 27u;      // terminal lines
+GPGP_CONST uint kHeaderAxiomShape = 26u;   // GpgpShape
+GPGP_CONST uint kHeaderAxiomPolygon = 27u; // its polygon, by number
+GPGP_CONST uint kHeaderAxiomNode = 28u;    // where a derivation starts by default
+GPGP_CONST uint kHeaderBuckets = 29u;      // terminal lines
 GPGP_CONST uint kHeaderSize = 32u;
 
 // sections, in order
@@ -46,7 +46,8 @@ GPGP_CONST uint kSectionTerminals = 6u;
 GPGP_CONST uint kSectionRules = 7u;
 GPGP_CONST uint kSectionNames = 8u; // bytes in words, each name ends in 0
 GPGP_CONST uint kSectionDivisions = 9u;
-GPGP_CONST uint kSectionCount = 10u;
+GPGP_CONST uint kSectionQuads = 10u;
+GPGP_CONST uint kSectionCount = 11u;
 
 // node: eight words
 GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter
@@ -92,9 +93,12 @@ GPGP_CONST uint kPartFixedBefore = 2u; // sums over the parts before it
 GPGP_CONST uint kPartShareBefore = 3u;
 GPGP_CONST uint kPartSize = 4u;
 
-// polygon: first vertex (offset), vertex count. Polygons come in pairs, 2 k + 1 is 2 k seen from behind: (x, -y) in
-// reverse order. The first six pairs are the regular ones with 3 to 8 corners.
-GPGP_CONST uint kPolygonSize = 2u;
+// polygon: first vertex (offset), vertex count, first quad (offset), quad count or 0. Polygons come in pairs, 2 k + 1 is
+// 2 k seen from behind: (x, -y) in reverse order. The first six pairs are the regular ones with 3 to 8 corners. Without
+// quads it is convex: a fan. A quad is four corners as 16 bits each, and means the triangles 0 1 2 and 0 2 3.
+GPGP_CONST uint kPolygonSize = 4u;
+GPGP_CONST uint kQuadSize = 2u;
+GPGP_CONST uint kMaxCorners = 4096u; // of a polygon
 GPGP_CONST uint kRegularPolygons = 12u;
 GPGP_CONST uint kQuadPolygon = 2u;
 

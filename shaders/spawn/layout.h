@@ -18,11 +18,10 @@ struct SpawnState {
   uint depth;
   uint quads; // of terminals as vertices, those that did not fit included
   uint quadsWritten;
-  uint notDrawn; // terminals whose shape has no mesh
   uint exceeded; // 1: something did not fit the engine's buffers, or what goes before them
-  uint reserved0, reserved1, reserved2;
+  uint reserved0, reserved1, reserved2, reserved3;
 };
-GPGP_CONST uint kSpawnReportWords = 13u;
+GPGP_CONST uint kSpawnReportWords = 12u;
 
 /// One round of derivation: the arguments of its dispatch, and what its queue holds.
 struct SpawnRound {
@@ -67,7 +66,16 @@ GPGP_CONST uint kBucketPlaces = kMaxBuckets;
 GPGP_CONST uint kBucketGaps = 2u * kMaxBuckets;
 GPGP_CONST uint kBucketWords = 3u * kMaxBuckets;
 
-GPGP_CONST uint kSpawnGroupSize = 64u; // of place and emit
+GPGP_CONST uint kSpawnGroupSize = 64u; // of place, order and emit
+
+// Stages of shaders/spawn/order.comp.
+GPGP_CONST uint kOrderCount = 0u;  // records of each bin
+GPGP_CONST uint kOrderSum = 1u;    // of a part of the bins
+GPGP_CONST uint kOrderStarts = 2u; // of bins
+GPGP_CONST uint kOrderFill = 3u;   // bins with records
+GPGP_CONST uint kOrderRank = 4u;   // records within their bin
+GPGP_CONST uint kOrderParts = 256u;
+GPGP_CONST uint kOrderWords = 4u; // for each record, and kOrderParts
 GPGP_CONST uint kInstanceWords4 = 6u;  // GpgpInstance as uvec4
 GPGP_CONST uint kDrawWords = 5u;       // VkDrawIndexedIndirectCommand
 

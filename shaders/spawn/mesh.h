@@ -2,8 +2,9 @@
 //
 // Every shape is made of quads, four vertices and the two triangles 0 1 2 and 0 2 3, each flat and with vertices of its
 // own. So one number says how much room a shape takes among vertices and among indices, and indices are the same
-// pattern whatever the shape. A polygon is a fan of (corners - 1) / 2 quads, the last triangle of an odd one without
-// area; prisms have two such ends and a quad a side; a sphere is rings of quads.
+// pattern whatever the shape. A convex polygon is a fan of (corners - 1) / 2 quads, the last triangle of an odd one
+// without area, a concave one the quads that its grammar was compiled with; prisms have two such ends and a quad a side;
+// a sphere is rings of quads.
 // Triangles are counter-clockwise from outside.
 #ifndef GPGP_SHADERS_SPAWN_MESH_H
 #define GPGP_SHADERS_SPAWN_MESH_H
@@ -30,16 +31,20 @@ GPGP_FN uint polygonAt(GPGP_GRAPH uint geometry) {
   return graphWords[kHeaderSections + 2u * kSectionPolygons + 1u] + (geometry >> 8) * kPolygonSize;
 }
 
-/// Quads of a shape. geometry: as Shape's. 0: shapes with concave polygons, which are not drawn.
+GPGP_FN uint polygonQuads(GPGP_GRAPH uint polygon) {
+  const uint quads = graphWords[polygon + 3u];
+  return quads > 0u ? quads : (graphWords[polygon + 1u] - 1u) / 2u;
+}
+
+/// Quads of a shape. geometry: as Shape's.
 GPGP_FN uint meshQuads(GPGP_GRAPH uint geometry) {
   const uint shape = geometry & 0xffu;
   if (shape == kShapeBox) return 6u;
   if (shape == kShapeQuad) return 1u;
   if (shape == kShapeSphere) return kSphereRings * kSphereSegments;
-  if (shape == kShapeDynamicPolygon || shape == kShapeDynamicRightPrism) return 0u;
-  const uint corners = graphWords[polygonAt(GPGP_G geometry) + 1u];
-  const uint fan = (corners - 1u) / 2u;
-  return isPolygon(shape) ? fan : 2u * fan + corners;
+  const uint polygon = polygonAt(GPGP_G geometry);
+  const uint quads = polygonQuads(GPGP_G polygon);
+  return isPolygon(shape) ? quads : 2u * quads + graphWords[polygon + 1u];
 }
 
 /// A vertex of the unit shape; the cross product of along and up is the normal, of any length.
@@ -79,9 +84,14 @@ GPGP_FN vec2 polygonCorner(GPGP_GRAPH uint polygon, uint corner) {
   const uint at = graphWords[polygon] + 2u * corner;
   return vec2(uintBitsToFloat(graphWords[at]), uintBitsToFloat(graphWords[at + 1u]));
 }
-GPGP_FN uint fanCorner(uint quad, uint corner, uint corners) {
-  return corner == 0u ? 0u : min(2u * quad + corner, corners - 1u);
+/// Which of a polygon's corners a quad's is.
+GPGP_FN uint quadCorner(GPGP_GRAPH uint polygon, uint quad, uint corner) {
+  if (graphWords[polygon + 3u] > 0u)
+    return (graphWords[graphWords[polygon + 2u] + kQuadSize * quad + (corner >> 1)] >> (16u * (corner & 1u))) & 0xffffu;
+  return corner == 0u ? 0u : min(2u * quad + corner, graphWords[polygon + 1u] - 1u);
 }
+/// A quad's corners the other way round.
+GPGP_FN uint mirroredCorner(uint corner) { return (4u - corner) & 3u; }
 
 /// A corner of a quad, of shapes other than boxes and quads, with its uv.
 struct MeshPoint {
@@ -102,25 +112,24 @@ GPGP_FN MeshPoint meshPoint(GPGP_GRAPH uint geometry, uint quad, uint corner) {
   }
   const uint polygon = polygonAt(GPGP_G geometry);
   const uint corners = graphWords[polygon + 1u];
-  const uint fan = (corners - 1u) / 2u;
+  const uint quads = polygonQuads(GPGP_G polygon);
   if (isPolygon(shape)) {
-    const vec2 c = polygonCorner(GPGP_G polygon, fanCorner(quad, corner, corners));
+    const vec2 c = polygonCorner(GPGP_G polygon, quadCorner(GPGP_G polygon, quad, corner));
     p.position = vec3(c.x, c.y, 0.0f);
     p.uv = vec2(c.x + 0.5f, c.y + 0.5f);
     return p;
   }
   // A prism: its polygon's (x, y) is (x, -z), Y runs from the lower end to the upper one.
-  if (quad < fan) {
-    const vec2 c = polygonCorner(GPGP_G polygon, fanCorner(quad, corner, corners));
+  if (quad < quads) {
+    const vec2 c = polygonCorner(GPGP_G polygon, quadCorner(GPGP_G polygon, quad, corner));
     p.position = vec3(c.x, 0.5f, -c.y);
     p.uv = vec2(c.x + 0.5f, c.y + 0.5f);
-  } else if (quad < 2u * fan) { // from below: the other way round
-    const uint i = fanCorner(quad - fan, corner, corners);
-    const vec2 c = polygonCorner(GPGP_G polygon, i == 0u ? 0u : corners - i);
+  } else if (quad < 2u * quads) { // from below: the other way round
+    const vec2 c = polygonCorner(GPGP_G polygon, quadCorner(GPGP_G polygon, quad - quads, mirroredCorner(corner)));
     p.position = vec3(c.x, -0.5f, -c.y);
     p.uv = vec2(c.x + 0.5f, 0.5f - c.y);
   } else {
-    const uint from = quad - 2u * fan;
+    const uint from = quad - 2u * quads;
     const bool second = corner == 1u || corner == 2u;
     const vec2 c = polygonCorner(GPGP_G polygon, second ? (from + 1u == corners ? 0u : from + 1u) : from);
     p.position = vec3(c.x, corner >= 2u ? 0.5f : -0.5f, -c.y);
@@ -144,8 +153,7 @@ GPGP_FN MeshVertex meshVertex(GPGP_GRAPH uint geometry, uint quad, uint corner) 
 
 // ---------------------------------------------------------------- in the world
 
-/// Where an axiom mirrors, a quad's corners are taken the other way round, so that triangles still face outwards.
-GPGP_FN uint mirroredCorner(uint corner) { return (4u - corner) & 3u; }
+// Where an axiom mirrors, mirroredCorner takes a quad's corners, so that triangles still face outwards.
 
 GPGP_FN float rowDot(vec4 row, vec3 v) {
   GPGP_PRECISE float sum = row.x * v.x + row.y * v.y + row.z * v.z;

@@ -54,13 +54,13 @@ void main() {
       const uint count = bucketCounts[bucket];
       uint begin = start;
       uint got = count;
-      if (sorted) {
-        begin = min(start, fitting);
-        got = min(start + count, fitting) - begin;
-        bucketCounts[kBucketPlaces + bucket] = start;
-      } else if (regions) {
+      if (sorted) bucketCounts[kBucketPlaces + bucket] = start;
+      if (regions) {
         begin = regionStart(bucket, quads);
         got = min(count, regionCapacity(bucket, quads)) - bucketCounts[kBucketGaps + bucket];
+      } else if (sorted) {
+        begin = min(start, fitting);
+        got = min(start + count, fitting) - begin;
       }
       writeDraw(bucket, begin, got, !regions);
       if (record.writeNeeded != 0) neededCounts[bucket] = quads ? count * 6 : count;

@@ -58,7 +58,6 @@ uint emitVertices(bool own, uint count, Shape s) {
   uint bucket = 0;
   if (own) {
     quads = meshQuads(s.geometry);
-    if (quads == 0) atomicAdd(state.notDrawn, 1);
     bucket = graphWords[s.node + kNodeArgument2];
   }
   uint total;

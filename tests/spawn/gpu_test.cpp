@@ -15,6 +15,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <tuple>
 
 namespace {
 using namespace gpgp;
@@ -64,6 +65,7 @@ struct SpawnTest : testing::Test {
     info.maxTerminals = budgets.maxTerminals;
     info.maxDepth = budgets.maxDepth;
     info.maxRounds = budgets.maxRounds;
+    info.flags = budgets.flags;
     ASSERT_EQ(gpgpCreateSpawner(context, &info, &spawner), GPGP_SUCCESS);
     ASSERT_EQ(gpgpPrewarm(spawner, nullptr), GPGP_SUCCESS);
   }
@@ -373,6 +375,110 @@ TEST_F(SpawnTest, FewerInstancesThanTerminalsAreReported) {
   }
 }
 
+/// The evaluator's instances by bucket, key and axiom.
+std::vector<GpgpInstance> ordered(std::vector<GpgpInstance> instances) {
+  std::stable_sort(instances.begin(), instances.end(), [](const GpgpInstance& a, const GpgpInstance& b) {
+    return std::tie(a.bucket, a.key[0], a.key[1]) < std::tie(b.bucket, b.key[0], b.key[1]);
+  });
+  return instances;
+}
+/// The same instances in the same places, of as many as there are.
+void expectInOrder(const std::vector<GpgpInstance>& cpu, const std::vector<GpgpInstance>& gpu) {
+  ASSERT_LE(gpu.size(), cpu.size());
+  for (size_t i = 0; i < gpu.size(); ++i) {
+    ASSERT_EQ(cpu[i].key[0], gpu[i].key[0]) << i;
+    ASSERT_EQ(cpu[i].key[1], gpu[i].key[1]) << i;
+    ASSERT_EQ(cpu[i].bucket, gpu[i].bucket) << i;
+    ASSERT_EQ(cpu[i].axiomId, gpu[i].axiomId) << i;
+    ASSERT_EQ(cpu[i].seed, gpu[i].seed) << i;
+    ASSERT_EQ(std::memcmp(cpu[i].size, gpu[i].size, sizeof cpu[i].size), 0) << i;
+  }
+}
+
+TEST_F(SpawnTest, OrderedInstancesLieInOrder) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.flags = GPGP_SPAWNER_ORDERED;
+  makeSpawner(budgets);
+  for (const std::string& name : ownGrammarNames()) {
+    SCOPED_TRACE(name);
+    const auto words = bake(ownGrammar(name));
+    auto all = axioms(5, 12, 16, 10);
+    const spawn::Derivation cpu = spawn::derive(words, all);
+    const auto wanted = ordered(cpu.instances);
+    const uint32_t capacity = static_cast<uint32_t>(cpu.terminals) + 10;
+    const Derived sorted = run(words, all, capacity, true);
+    compare(cpu, sorted, name);
+    checkDraws(cpu, sorted);
+    expectInOrder(wanted, sorted.instances);
+    std::reverse(all.begin(), all.end()); // neither the order of axioms matters, nor draws
+    const Derived plain = run(words, all, capacity, false);
+    compare(cpu, plain, name);
+    expectInOrder(wanted, plain.instances);
+    if (HasFatalFailure()) return;
+  }
+  const Derived none = run(bake(ownGrammar("building.pga")), {}, 10, true);
+  EXPECT_EQ(none.report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(none.report.terminals, 0u);
+}
+
+TEST_F(SpawnTest, OrderedInstancesSurviveFromTheFront) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.flags = GPGP_SPAWNER_ORDERED;
+  makeSpawner(budgets);
+  const auto words = bake(ownGrammar("building.pga"));
+  const auto all = axioms(3, 13, 19, 11);
+  const auto wanted = ordered(spawn::derive(words, all).instances);
+  for (const uint32_t capacity : {1u, 63u, 64u, 500u, static_cast<uint32_t>(wanted.size()) - 1}) {
+    const Derived gpu = run(words, all, capacity, true);
+    EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+    EXPECT_EQ(gpu.report.terminals, wanted.size());
+    EXPECT_EQ(gpu.report.instancesWritten, capacity);
+    expectInOrder(wanted, gpu.instances);
+  }
+}
+
+TEST_F(SpawnTest, ManyOrderedInstancesAndEqualKeys) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.flags = GPGP_SPAWNER_ORDERED;
+  makeSpawner(budgets);
+  const std::vector<uint32_t> words = bake(
+      "axiom Box A; terminal S (1, 0); terminal T (1, 1); A = Repeat(X, 1, ADJUST_TO_FILL) SubDiv(Y) { -1: S | -1: "
+      "B }; B = Replicate() { T | S };\n");
+  const auto many = axioms(500, 200, 1, 1);
+  const spawn::Derivation cpu = spawn::derive(words, many);
+  ASSERT_EQ(cpu.terminals, 300000u);
+  expectInOrder(ordered(cpu.instances), run(words, many, 300000, true).instances);
+
+  // Axioms with the same seed and id have the same keys, and come in their order.
+  std::vector<GpgpAxiom> alike(300, makeAxiom(1, 1, 1, 7, 7));
+  for (size_t i = 0; i < alike.size(); ++i) alike[i].attribute = static_cast<float>(i);
+  const Derived gpu = run(words, alike, 900, true);
+  ASSERT_EQ(gpu.instances.size(), 900u);
+  expectInOrder(ordered(spawn::derive(words, alike).instances), gpu.instances);
+  for (size_t i = 1; i < gpu.instances.size(); ++i)
+    if (keyOf(gpu.instances[i]) == keyOf(gpu.instances[i - 1])) {
+      ASSERT_LT(gpu.instances[i - 1].attribute, gpu.instances[i].attribute) << i;
+    }
+
+  // More of them than are compared: all there, each once, by bucket.
+  const std::vector<GpgpAxiom> crowd(3000, makeAxiom(1, 1, 1, 7, 7));
+  const Derived all = run(words, crowd, 9000, true);
+  EXPECT_EQ(all.report.base.status, GPGP_SUCCESS);
+  checkDraws(spawn::derive(words, crowd), all);
+}
+
+TEST_F(SpawnTest, OrderedVerticesAreRefused) {
+  GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
+  info.base.queueFamily = device->graphics().family;
+  info.flags = GPGP_SPAWNER_ORDERED | GPGP_SPAWNER_VERTICES;
+  GpgpWorker refused = nullptr;
+  EXPECT_EQ(gpgpCreateSpawner(context, &info, &refused), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(refused, nullptr);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages[0].find("GPGP_SPAWNER_ORDERED"), std::string::npos);
+  messages.clear();
+}
+
 TEST_F(SpawnTest, FewerTerminalRecordsAreReported) {
   GpgpSpawnerCreateInfo budgets{};
   budgets.maxTerminals = 300;
@@ -496,6 +602,9 @@ TEST_F(SpawnTest, GrammarsTakeTurnsInOneFrame) {
 }
 
 TEST_F(SpawnTest, ThePassesAreTheDocumentedOnes) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.flags = GPGP_SPAWNER_ORDERED; // those of others and more
+  makeSpawner(budgets);
   uint32_t count = 0;
   ASSERT_EQ(gpgpGetPasses(spawner, &count, nullptr), GPGP_SUCCESS);
   std::vector<const char*> names(count);

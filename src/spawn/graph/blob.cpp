@@ -9,8 +9,8 @@ using core::Result;
 using namespace shader;
 
 /// Words of each section, from counts of entries.
-constexpr uint32_t kEntryWords[kSectionCount] = {kNodeSize, kEdgeSize,     kParameterSize, 1, kPolygonSize,
-                                                 2,         kTerminalSize, kRuleSize,      1, 1};
+constexpr uint32_t kEntryWords[kSectionCount] = {
+    kNodeSize, kEdgeSize, kParameterSize, 1, kPolygonSize, 2, kTerminalSize, kRuleSize, 1, 1, kQuadSize};
 
 uint32_t bitsOf(float v) {
   uint32_t bits;
@@ -35,12 +35,17 @@ size_t sizeOfGraph(std::span<const std::byte> bytes) {
 }
 
 std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resource* memory) {
-  const uint32_t counts[kSectionCount] = {
-      static_cast<uint32_t>(graph.nodes.size()),           static_cast<uint32_t>(graph.edges.size()),
-      static_cast<uint32_t>(graph.parameters.size()),      static_cast<uint32_t>(graph.code.size()),
-      static_cast<uint32_t>(graph.polygons.size()),        static_cast<uint32_t>(graph.vertices.size() / 2),
-      static_cast<uint32_t>(graph.terminals.size()),       static_cast<uint32_t>(graph.rules.size()),
-      static_cast<uint32_t>((graph.names.size() + 3) / 4), static_cast<uint32_t>(graph.divisions.size())};
+  const uint32_t counts[kSectionCount] = {static_cast<uint32_t>(graph.nodes.size()),
+                                          static_cast<uint32_t>(graph.edges.size()),
+                                          static_cast<uint32_t>(graph.parameters.size()),
+                                          static_cast<uint32_t>(graph.code.size()),
+                                          static_cast<uint32_t>(graph.polygons.size()),
+                                          static_cast<uint32_t>(graph.vertices.size() / 2),
+                                          static_cast<uint32_t>(graph.terminals.size()),
+                                          static_cast<uint32_t>(graph.rules.size()),
+                                          static_cast<uint32_t>((graph.names.size() + 3) / 4),
+                                          static_cast<uint32_t>(graph.divisions.size()),
+                                          static_cast<uint32_t>(graph.quads.size() / kQuadSize)};
   std::pmr::vector<uint32_t> words(kHeaderSize, 0u, memory);
   uint32_t offsets[kSectionCount];
   uint32_t offset = kHeaderSize;
@@ -70,12 +75,14 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
     words.insert(words.end(), {p.kind, p.kind == kParameterProgram ? at(kSectionCode, p.value) : p.value});
   words.insert(words.end(), graph.code.begin(), graph.code.end());
   for (const Polygon& p : graph.polygons)
-    words.insert(words.end(), {at(kSectionVertices, p.firstVertex), p.vertexCount});
+    words.insert(words.end(),
+                 {at(kSectionVertices, p.firstVertex), p.vertexCount, at(kSectionQuads, p.firstQuad), p.quadCount});
   for (const float v : graph.vertices) words.push_back(bitsOf(v));
   for (const Terminal& t : graph.terminals) words.insert(words.end(), {t.name, t.kind, t.index, t.bucket});
   for (const Rule& r : graph.rules) words.insert(words.end(), {r.name, nodeAt(r.node)});
-  words.resize(offset - graph.divisions.size(), 0u);
+  words.resize(offsets[kSectionDivisions], 0u); // names
   words.insert(words.end(), graph.divisions.begin(), graph.divisions.end());
+  words.insert(words.end(), graph.quads.begin(), graph.quads.end());
   if (!graph.names.empty()) std::memcpy(words.data() + offsets[kSectionNames], graph.names.data(), graph.names.size());
   words[kHeaderChecksum] = checksum(std::span(words).subspan(kHeaderChecked));
   return words;
@@ -144,11 +151,12 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   graph.code.assign(entry(kSectionCode, 0), entry(kSectionCode, counts[kSectionCode]));
   for (uint32_t i = 0; i < counts[kSectionPolygons]; ++i) {
     const uint32_t* w = entry(kSectionPolygons, i);
-    graph.polygons.push_back({indexOf(kSectionVertices, w[0], 0), w[1]});
+    graph.polygons.push_back({indexOf(kSectionVertices, w[0], 0), w[1], indexOf(kSectionQuads, w[2], 1), w[3]});
   }
   graph.vertices.resize(size_t(counts[kSectionVertices]) * 2);
   if (!graph.vertices.empty())
     std::memcpy(graph.vertices.data(), entry(kSectionVertices, 0), graph.vertices.size() * 4);
+  graph.quads.assign(entry(kSectionQuads, 0), entry(kSectionQuads, counts[kSectionQuads]));
   for (uint32_t i = 0; i < counts[kSectionTerminals]; ++i) {
     const uint32_t* w = entry(kSectionTerminals, i);
     graph.terminals.push_back({w[0], w[1], w[2], w[3]});

@@ -38,7 +38,9 @@ struct Node {
 
 struct Polygon {
   uint32_t firstVertex = 0, vertexCount = 0; ///< in Graph::vertices, two floats each
+  uint32_t firstQuad = 0, quadCount = 0;     ///< in Graph::quads, two words each; none: convex, a fan of them
 };
+constexpr uint32_t kNoPolygon = UINT32_MAX;
 
 struct Terminal {
   uint32_t name = 0; ///< byte offset in Graph::names
@@ -53,7 +55,7 @@ struct Rule {
 struct Graph {
   explicit Graph(std::pmr::memory_resource* memory)
       : nodes(memory), edges(memory), parameters(memory), code(memory), polygons(memory), vertices(memory),
-        terminals(memory), rules(memory), names(memory), divisions(memory) {}
+        quads(memory), terminals(memory), rules(memory), names(memory), divisions(memory) {}
 
   std::pmr::vector<Node> nodes;
   std::pmr::vector<Edge> edges;
@@ -61,6 +63,7 @@ struct Graph {
   std::pmr::vector<uint32_t> code;
   std::pmr::vector<Polygon> polygons;
   std::pmr::vector<float> vertices;
+  std::pmr::vector<uint32_t> quads; ///< four corners of their polygon each, 16 bits
   std::pmr::vector<Terminal> terminals;
   std::pmr::vector<Rule> rules;
   std::pmr::vector<char> names;         ///< each ends in 0
@@ -74,7 +77,8 @@ struct Graph {
 /// The six pairs of regular polygons that every graph begins with. A polygon with n corners spans [-0.5, 0.5] on both
 /// axes; its number is 2 (n - 3).
 void addRegularPolygons(Graph& graph);
-/// Adds a polygon and its mirror image; corners counter-clockwise. Returns the first one's number.
+/// Adds a polygon and its mirror image; corners counter-clockwise, at most kMaxCorners. Returns the first one's number,
+/// or kNoPolygon where it crosses itself.
 uint32_t addPolygon(Graph& graph, const float* corners, uint32_t count);
 
 /// Fills in what follows from nodes and edges: multiplicities, the shape types on nodes and edges, filters, recursion.

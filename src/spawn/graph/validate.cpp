@@ -177,15 +177,22 @@ Result<void> validate(const Graph& graph) {
   }
   if (graph.polygons.size() < kRegularPolygons || graph.polygons.size() % 2 || graph.polygons.size() > 0xffffff)
     return makeError(GPGP_ERROR_INVALID_DATA, "%zu polygons", graph.polygons.size());
-  const size_t vertices = graph.vertices.size() / 2;
+  const size_t vertices = graph.vertices.size() / 2, quads = graph.quads.size() / kQuadSize;
   for (size_t i = 0; i < graph.polygons.size(); ++i) {
     const Polygon& polygon = graph.polygons[i];
-    if (polygon.vertexCount < 3 || polygon.vertexCount > 65536 || polygon.vertexCount > vertices ||
+    if (polygon.vertexCount < 3 || polygon.vertexCount > kMaxCorners || polygon.vertexCount > vertices ||
         polygon.firstVertex > vertices - polygon.vertexCount)
       return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has vertices out of range", i);
     if (polygon.vertexCount != graph.polygons[i ^ 1].vertexCount ||
         (i < kRegularPolygons && polygon.vertexCount != i / 2 + 3))
       return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has %u corners", i, polygon.vertexCount);
+    if (polygon.quadCount >= polygon.vertexCount || polygon.firstQuad > quads ||
+        polygon.quadCount > quads - polygon.firstQuad)
+      return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has quads out of range", i);
+    for (size_t word = kQuadSize * size_t(polygon.firstQuad);
+         word < kQuadSize * (size_t(polygon.firstQuad) + polygon.quadCount); ++word)
+      if ((graph.quads[word] & 0xffffu) >= polygon.vertexCount || graph.quads[word] >> 16 >= polygon.vertexCount)
+        return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has a quad with a corner out of range", i);
   }
   if (graph.vertices.size() % 2) return makeError(GPGP_ERROR_INVALID_DATA, "half a vertex");
   for (const float v : graph.vertices) {

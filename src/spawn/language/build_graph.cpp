@@ -348,8 +348,9 @@ private:
                         expressions_.constant(corner.arguments[1], "a corner")});
     }
     if (diagnostics_.errorCount() > errors) return 0;
-    if (points.size() < 3 || points.size() > 65536) {
-      diagnostics_.error(place, "expected 3 to 65536 corners, found " + std::to_string(points.size()));
+    if (points.size() < 3 || points.size() > kMaxCorners) {
+      diagnostics_.error(place, "expected 3 to " + std::to_string(kMaxCorners) + " corners, found " +
+                                    std::to_string(points.size()));
       return 0;
     }
     double area = 0;
@@ -366,7 +367,10 @@ private:
     else if (convex && left && right)
       diagnostics_.error(place, "the polygon is not convex");
     if (area < 0) std::reverse(points.begin(), points.end());
-    return addPolygon(graph_, points[0].data(), static_cast<uint32_t>(points.size()));
+    const uint32_t polygon = addPolygon(graph_, points[0].data(), static_cast<uint32_t>(points.size()));
+    if (polygon != kNoPolygon) return polygon;
+    if (diagnostics_.errorCount() == errors) diagnostics_.error(place, "the polygon crosses itself");
+    return 0;
   }
 
   uint32_t addNode(Place place, uint32_t op, const std::vector<Parameter>& parameters,

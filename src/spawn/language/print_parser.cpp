@@ -207,9 +207,11 @@ private:
     if (index != graph_.polygons.size())
       fail(token,
            std::string("expected polygon ") + std::to_string(graph_.polygons.size()) + ", found " + describe(token));
-    if (corners.size() < 6)
-      fail(token, std::string("expected 3 corners or more, found ") + std::to_string(corners.size() / 2));
-    addPolygon(graph_, corners.data(), static_cast<uint32_t>(corners.size() / 2));
+    if (corners.size() < 6 || corners.size() / 2 > kMaxCorners)
+      fail(token, std::string("expected 3 to ") + std::to_string(kMaxCorners) + " corners, found " +
+                      std::to_string(corners.size() / 2));
+    if (addPolygon(graph_, corners.data(), static_cast<uint32_t>(corners.size() / 2)) == kNoPolygon)
+      fail(token, "the polygon crosses itself");
   }
 
   void rule() {

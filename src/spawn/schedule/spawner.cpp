@@ -3,6 +3,7 @@
 #include "shaders/spawn_derive.spv.h"
 #include "shaders/spawn_derive_subgroups.spv.h"
 #include "shaders/spawn_emit.spv.h"
+#include "shaders/spawn_order.spv.h"
 #include "shaders/spawn_place.spv.h"
 #include "spawn/layout.h"
 #include "spawn/shape.h"
@@ -28,13 +29,14 @@ enum : core::ResourceIndex {
   kConstants,
   kVertices,
   kIndices,
-  kNeeded
+  kNeeded,
+  kOrder
 };
 
 // Workgroup counts of a record.
-constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1;
+constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kPartGroups = 2;
 // Conditions of a record.
-constexpr uint32_t kSorted = 0, kBucketed = 1;
+constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2;
 
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
@@ -78,6 +80,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const uint32_t maxShapes = spawner->maxShapes_ = info.maxShapes ? info.maxShapes : kDefaultShapes;
   const uint32_t maxTerminals = spawner->maxTerminals_ = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
   const bool vertices = spawner->vertices_ = info.flags & GPGP_SPAWNER_VERTICES;
+  const bool ordered = spawner->ordered_ = info.flags & GPGP_SPAWNER_ORDERED;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
   spawner->rounds_ = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
   const Limits& limits = limitsOf(context.device);
@@ -100,6 +103,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"vertices", buffer, 0, true});
   list.add({"indices", buffer, 0, true});
   list.add({"needed", buffer, 0, true});
+  list.add({"order", scratch,
+            sizeof(uint32_t) * (ordered ? shader::kOrderWords * VkDeviceSize(maxTerminals) + shader::kOrderParts : 1)});
 
   const std::span<const uint32_t> interpreter = context.device.subgroupArithmetic
                                                     ? std::span<const uint32_t>(spawn_derive_subgroups)
@@ -107,7 +112,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const uint32_t derive = spawner->derive_ = list.add(
       core::ShaderDesc{"derive", interpreter, specialization(limits.fit, vertices ? limits.vertexStage : 0), 3});
   const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
-  const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit});
+  const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, {ordered}, 1});
 
   using enum core::UseKind;
   list.fill("clear counters", kCounters, 0);
@@ -127,15 +132,35 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                  {kConstants, read},
                  {kNeeded, write}},
                 kOneGroup);
+  const VkDeviceSize perRecord = roundAt(rounds - 1); // dispatch arguments
+  if (ordered) {
+    const auto orderUses = {core::Use{kGraph, read}, {kRecords, read},   {kCounters, read},
+                            {kBuckets, read},        {kConstants, read}, {kOrder, readWrite}};
+    const auto stage = [&](const char* name, uint32_t number) {
+      const uint32_t shader = list.add(core::ShaderDesc{name, spawn_order, {number}, 1});
+      const bool ofParts = number == shader::kOrderSum || number == shader::kOrderStarts;
+      core::Pass& pass = ofParts ? list.dispatch(name, shader, orderUses, kPartGroups)
+                                 : list.dispatchIndirect(name, shader, orderUses, kCounters, perRecord);
+      pass.condition = kOrdered;
+    };
+    list.fill("clear bins", kOrder, 0, 0, sizeof(uint32_t) * maxTerminals).condition = kOrdered;
+    stage("count bins", shader::kOrderCount);
+    stage("sum bins", shader::kOrderSum);
+    stage("place bins", shader::kOrderStarts);
+    stage("fill bins", shader::kOrderFill);
+    stage("rank", shader::kOrderRank);
+  }
   list.dispatchIndirect("emit", emit,
                         {{kGraph, read},
                          {kAxioms, read},
                          {kRecords, read},
                          {kInstances, write},
+                         {kDraws, read},
                          {kCounters, read},
                          {kBuckets, readWrite},
-                         {kConstants, read}},
-                        kCounters, roundAt(rounds - 1))
+                         {kConstants, read},
+                         {kOrder, read}},
+                        kCounters, perRecord)
       .condition = kSorted;
   list.report = kCounters;
   list.reportBytes = 4 * shader::kSpawnReportWords;
@@ -153,7 +178,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
   const bool counts = vertices_ ? !info.vertices->vertices.buffer : !info.instances.buffer;
   // One bucket is sorted as it is.
-  const bool sorted = !vertices_ && !regions && !counts && info.draws.buffer && grammar.graph.buckets > 1;
+  const bool sorted =
+      !vertices_ && !counts && (ordered_ || (!regions && info.draws.buffer && grammar.graph.buckets > 1));
   shader::SpawnConstants constants{};
   constants.axiomCount = info.axiomCount;
   constants.instanceCapacity = elementsIn<GpgpInstance>(info.instances);
@@ -198,8 +224,10 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
     record.bindings[kIndices].engineBuffer = &info.vertices->indices;
   }
   record.groups[kOneGroup] = {1, 1, 1};
+  record.groups[kPartGroups] = {shader::kOrderParts, 1, 1};
   record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
   record.conditions[kSorted] = sorted;
+  record.conditions[kOrdered] = sorted && ordered_;
   record.conditions[kBucketed] = sorted || regions || counts || vertices_;
   record.levels = rounds;
   record.constants = std::as_bytes(std::span(&constants, 1));
@@ -253,8 +281,7 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   report.depth = raw.words[8];
   report.vertices = 4 * raw.words[9];
   report.verticesWritten = 4 * raw.words[10];
-  report.notDrawn = raw.words[11];
-  if (report.base.status == GPGP_SUCCESS && (raw.words[12] || report.droppedShapes || report.unfinishedShapes))
+  if (report.base.status == GPGP_SUCCESS && (raw.words[11] || report.droppedShapes || report.unfinishedShapes))
     report.base.status = GPGP_BUDGET_EXCEEDED;
   return true;
 }

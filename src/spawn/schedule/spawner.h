@@ -3,7 +3,7 @@
 // Passes of a record: clear, then the rounds, place, emit. A round shares a queue of shapes among workgroups; each
 // derives what comes of its shapes with a stack of its own and leaves to the next round what it should not or cannot do
 // alone (shaders/spawn/derive.comp). Terminals leave as instances, or, from a spawner for vertices, as vertices and
-// indices. Where instances are sorted by bucket, terminals become records first, and emit puts them in their places.
+// indices. Where instances are sorted by bucket, or ordered, terminals become records first, and emit puts them in their places.
 #pragma once
 #include "core/worker.h"
 #include "spawn/schedule/grammar.h"
@@ -32,7 +32,7 @@ public:
 private:
   uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0;
   uint32_t derive_ = 0; // its shader
-  bool vertices_ = false;
+  bool vertices_ = false, ordered_ = false;
 };
 
 } // namespace gpgp::spawn
