@@ -121,7 +121,7 @@ TEST(Context, FilesComeFromTheEngineOrTheDisk) {
   info.fileSystem = nullptr;
   ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
   {
-    const auto self = of(context).readFile(__FILE__);
+    const auto self = of(context).readFile(GPGP_TEST_DATA "/README.md");
     ASSERT_TRUE(self) << self.error().text;
     EXPECT_GT(self->size(), 1000u);
   }
