@@ -149,6 +149,9 @@ typedef struct GpgpSpawnerCreateInfo {
   uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 8, or 32 on software devices. Few are
                          needed: workgroups derive by themselves, and rounds only share work out again. What is left is
                          counted */
+  uint32_t maxColliders; /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
+                              grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
+                              devices */
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
@@ -252,6 +255,8 @@ typedef struct GpgpSpawnReport {
   uint32_t depth;            /**< how deep rules nested in themselves */
   uint32_t vertices;         /**< that the terminals have; 6 indices for each 4 of them */
   uint32_t verticesWritten;  /**< <= vertices; less only with BUDGET_EXCEEDED, and where the record only counts */
+  uint32_t colliders;        /**< shapes that Collider had to register: a maxColliders that would have been enough */
+  uint32_t collidersKept;    /**< <= colliders; less only with BUDGET_EXCEEDED: IfCollides did not see the others */
 } GpgpSpawnReport;
 #define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
 

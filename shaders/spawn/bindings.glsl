@@ -18,6 +18,6 @@ layout(set = 0, binding = 10, std430) readonly buffer Constants { SpawnConstants
 layout(set = 0, binding = 11, std430) writeonly buffer Vertices { uvec4 vertices[]; }; // a quad: as many as its words
 layout(set = 0, binding = 12, std430) writeonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 13, std430) writeonly buffer Needed { uint neededCounts[]; };
-layout(set = 0, binding = 14, std430) buffer Order { uint order[]; }; // see order.comp
+layout(set = 0, binding = 16, std430) buffer Order { uint order[]; }; // see order.comp
 /// Where in order[] the record is that comes at a place.
 uint orderedAt(uint place) { return 3 * record.maxTerminals + place; }

@@ -8,11 +8,23 @@
 // Work goes over to the next round, through the other queue, where a round began with too few shapes to keep the device
 // busy and a workgroup has enough to give (`spread`), where the stack is full, and after `steps`, so that no workgroup
 // runs for ever. Round 0 reads axioms. What does not fit the queue is counted and dropped.
+//
+// Kernels of grammars with Collider or IfCollides (GPGP_COLLIDERS) derive in phases, each with rounds of its own. A
+// shape that comes to an IfCollides of a later phase goes to a third queue, where the first round of each phase finds
+// it.
 layout(constant_id = 0) const uint groupSize = 64;
 layout(constant_id = 1) const uint stackShapes = 1024;
 layout(constant_id = 2) const uint vertexStage = 0; // not 0: vertices are written, staged in 16 bytes an invocation
 layout(local_size_x_id = 0) in;
+#ifdef GPGP_COLLIDERS
+layout(push_constant) uniform Push {
+  uint round;
+  uint phase;
+  uint firstRound; // of the phase
+};
+#else
 layout(push_constant) uniform Push { uint round; };
+#endif
 
 shared uvec4 parents[kShapePlanes * groupSize];
 shared uvec2 fans[groupSize];         // of the parents: successors, length
@@ -93,7 +105,12 @@ Shape axiomAt(uint index) {
   return axiomShape(unpackVector(a), a.w, b.x, b.y, uintBitsToFloat(b.z), index);
 }
 Shape queuedAt(uint index) {
-  const uint start = (round & 1) * kShapePlanes * record.maxShapes + index;
+#ifdef GPGP_COLLIDERS
+  const uint queue = round == firstRound ? 2 : round & 1;
+#else
+  const uint queue = round & 1;
+#endif
+  const uint start = queue * kShapePlanes * record.maxShapes + index;
   return unpackShape(queues[start], queues[start + record.maxShapes], queues[start + 2 * record.maxShapes],
                      queues[start + 3 * record.maxShapes], queues[start + 4 * record.maxShapes],
                      queues[start + 5 * record.maxShapes]);
@@ -146,6 +163,10 @@ void push(bool own, uint place, uint count, Shape s) {
 #include "spawn/regions.glsl"
 
 #include "spawn/vertices.glsl"
+
+#ifdef GPGP_COLLIDERS
+#include "spawn/context.glsl"
+#endif
 
 /// Terminals to records or instances. place: among count of them.
 void emit(bool own, uint place, uint count, Shape s) {
@@ -232,7 +253,11 @@ void main() {
   const uint needed = round == 0 ? record.axiomCount : rounds[round].shapes;
   const uint count = round == 0 ? needed : min(needed, record.maxShapes);
   if (gl_GlobalInvocationID.x == 0) {
+#ifdef GPGP_COLLIDERS
+    if (count > 0) state.rounds += 1; // rounds follow each other
+#else
     if (count > 0) state.rounds = round + 1;
+#endif
     if (round > 0) {
       state.peakShapes = max(state.peakShapes, needed);
       if (needed > count) atomicAdd(state.droppedShapes, needed - count);
@@ -246,6 +271,9 @@ void main() {
     hashX = 0;
     hashY = 0;
     deepest = 0;
+#ifdef GPGP_COLLIDERS
+    mostSpent = 0;
+#endif
   }
   if (vertexStage > 0) clearVertexWords();
   barrier();
@@ -350,12 +378,19 @@ void main() {
         s.made = 0;
         arrives = fan.successors != 0;
       }
+#ifdef GPGP_COLLIDERS
+      end = runContext(s, arrives);
+#else
       end = runChain(s, arrives, record.maxDepth);
+#endif
       depth = max(depth, s.depth);
       if (end == kEndUnfinished) unfinished += 1;
       if (end == kEndTerminal) hash += terminalHash(s.key, graphWords[s.node + kNodeArgument2], shapeType(s));
     }
     made += batch;
+#ifdef GPGP_COLLIDERS
+    step += queriedSteps();
+#endif
     uint leaving;
     const uint places = ranksOf(end == kEndTerminal, end == kEndWaits, leaving);
     if (vertexStage > 0)

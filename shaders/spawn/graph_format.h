@@ -33,6 +33,7 @@ GPGP_CONST uint kHeaderAxiomShape = 26u;   // GpgpShape
 GPGP_CONST uint kHeaderAxiomPolygon = 27u; // its polygon, by number
 GPGP_CONST uint kHeaderAxiomNode = 28u;    // where a derivation starts by default
 GPGP_CONST uint kHeaderBuckets = 29u;      // terminal lines
+GPGP_CONST uint kHeaderPhases = 30u;       // of derivation, where there are Collider or IfCollides; else 0
 GPGP_CONST uint kHeaderSize = 32u;
 
 // sections, in order
@@ -118,11 +119,16 @@ GPGP_CONST uint kOpSetGeometry = 6u; // argument: GpgpShape, argument2: polygon
 GPGP_CONST uint kOpIf = 7u;
 GPGP_CONST uint kOpIfSizeLess = 8u; // argument: axis
 GPGP_CONST uint kOpRandomRule = 9u; // parameters: chance, then one probability an edge
-GPGP_CONST uint kOpCompSplit = 10u; // edges: top, bottom, sides
-GPGP_CONST uint kOpSubDiv = 11u;    // argument: axis, argument2: division or 0; one parameter an edge
-GPGP_CONST uint kOpRepeat = 12u;    // argument: axis, argument2: mode
-GPGP_CONST uint kOpReplicate = 13u;
-GPGP_CONST uint kOpCount = 14u;
+GPGP_CONST uint kOpCollider = 10u;   // argument: tag
+GPGP_CONST uint kOpIfCollides = 11u; // argument: tag, argument2: the phase that it runs in
+GPGP_CONST uint kOpCompSplit = 12u;  // edges: top, bottom, sides; what follows may multiply shapes, too
+GPGP_CONST uint kOpSubDiv = 13u;     // argument: axis, argument2: division or 0; one parameter an edge
+GPGP_CONST uint kOpRepeat = 14u;     // argument: axis, argument2: mode
+GPGP_CONST uint kOpReplicate = 15u;
+GPGP_CONST uint kOpCount = 16u;
+
+/// A tag is a number below this, or a name: this and its byte offset in names.
+GPGP_CONST uint kTagName = 0x80000000u;
 
 GPGP_CONST uint kRepeatAdjustToFill = 0u;
 GPGP_CONST uint kRepeatAnchorToStart = 1u;
@@ -159,6 +165,7 @@ GPGP_CONST uint kDefaultRule = 0xffffffffu; // GPGP_AXIOM_DEFAULT_RULE
 GPGP_CONST uint kMaxStack = 8u;       // of expressions
 GPGP_CONST uint kMaxSuccessors = 32u; // of one operator
 GPGP_CONST uint kMaxBuckets = 1024u;
+GPGP_CONST uint kMaxPhases = 8u;
 GPGP_CONST uint kMaxChain = 64u;       // operators that one shape passes before others get their turn
 GPGP_CONST uint kMaxRepeat = 1048576u; // copies that one Repeat makes
 

@@ -4,6 +4,7 @@
 // runChain takes a shape through operators that pass on one shape until it ends, becomes a terminal or waits for an
 // operator that multiplies; those are in fans.h. All are pure functions of a shape and the graph. That a child can be
 // made alone, by its number, lets a workgroup spread the children of its shapes evenly over its invocations.
+// Collider and IfCollides end a chain; whoever calls does what they ask for, and goes on.
 #ifndef GPGP_SHADERS_SPAWN_INTERPRET_H
 #define GPGP_SHADERS_SPAWN_INTERPRET_H
 #include "spawn/operators.h"
@@ -67,6 +68,10 @@ GPGP_FN uint runChain(GPGP_GRAPH GPGP_INOUT(Shape) s, bool /* arrives */, uint m
       follow(s, target);
     } else if (op <= kOpRandomRule) {
       follow(s, edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op)));
+#if defined(__cplusplus) || defined(GPGP_COLLIDERS) // without, no grammar that has them is run
+    } else if (op < kOpCompSplit) {
+      return kEndContext;
+#endif
     } else {
       if ((operatorWord & kNodeFilter) == 0u) return kEndWaits;
       const Fan fan = fanOf(GPGP_G s);

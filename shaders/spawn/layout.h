@@ -19,9 +19,12 @@ struct SpawnState {
   uint quads; // of terminals as vertices, those that did not fit included
   uint quadsWritten;
   uint exceeded; // 1: something did not fit the engine's buffers, or what goes before them
-  uint reserved0, reserved1, reserved2, reserved3;
+  uint colliders; // those that did not fit included
+  uint waiting;   // shapes for later phases, those that did not fit included; they stay where they are
+  uint levels;    // bit set of those that colliders are linked in
+  uint reserved;
 };
-GPGP_CONST uint kSpawnReportWords = 12u;
+GPGP_CONST uint kSpawnReportWords = 13u;
 
 /// One round of derivation: the arguments of its dispatch, and what its queue holds.
 struct SpawnRound {
@@ -29,7 +32,8 @@ struct SpawnRound {
   uint shapes;                    // that the round before left, those that did not fit included
   uint taken;                     // by workgroups of this round
   uint finished;                  // workgroups
-  uint reserved0, reserved1;
+  uint linked;                    // the first round of a phase: colliders that its queries can find
+  uint reserved;
 };
 
 /// What the CPU says with each record.
@@ -38,7 +42,7 @@ struct SpawnConstants {
   uint instanceCapacity; // GpgpInstance
   uint drawCapacity;     // VkDrawIndexedIndirectCommand; 0: instances are not sorted
   uint writeCount;       // 1: the count buffer is there
-  uint rounds;           // that were recorded
+  uint rounds;           // the number of what the last round leaves
   uint maxGroups;        // workgroups of a round at most
   uint maxDepth;         // recursive edges that a shape may pass
   uint spread;           // shapes that a round should at least begin with: below, workgroups give work away
@@ -53,7 +57,10 @@ struct SpawnConstants {
   uint indexWords;       // of a quad: 6, 3, or 0 without indices
   uint strideWords;      // of a vertex
   uint attributeCount;
-  uint attributes[8]; // kMaxVertexAttributes
+  uint attributes[8];    // kMaxVertexAttributes
+  uint phaseRounds;      // rounds that were recorded of each phase
+  uint maxColliders;     // that are held
+  uint cellMask;         // cells that colliders are linked in, a power of two, less 1
 };
 
 // What becomes of terminals.

@@ -30,7 +30,7 @@ struct SpawnOptions {
   std::string image, out;
   Size imageSize{1280, 720};
   float yaw = 35, pitch = 25, zoom = 1;
-  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0;
+  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0;
   std::string schedule = "default";
 };
 
@@ -48,6 +48,11 @@ Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>
   reference.result = spawn::derive(words, axioms, options);
   reference.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return reference;
+}
+
+/// What gpgpCreateSpawner takes.
+uint64_t mostColliders(const host::HeadlessDevice& device) {
+  return device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 8192 : 1u << 24;
 }
 
 std::vector<std::string> ruleNames(const Blob& blob) {
@@ -136,6 +141,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   spawnerInfo.maxShapes = options.maxShapes;
   spawnerInfo.maxTerminals = maxInstances;
   spawnerInfo.maxDepth = options.maxDepth;
+  if (words[shader::kHeaderPhases]) // what the evaluator needed, as for instances
+    spawnerInfo.maxColliders = options.maxColliders
+                                   ? options.maxColliders
+                                   : static_cast<uint32_t>(std::clamp<uint64_t>(reference.result.colliders, 1,
+                                                                                mostColliders(device)));
   Spawner spawner = session.take(Spawner::create(session.context(), spawnerInfo), "gpgpCreateSpawner");
   session.check(spawner.prewarm(), "gpgpPrewarm");
   session.check(spawner.prewarm(grammar), "gpgpPrewarmGrammar");
@@ -219,6 +229,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (report.droppedShapes)
     text << "budget exceeded: " << report.droppedShapes << " shapes did not fit; --max-shapes " << report.peakShapes
          << " would have held that round\n";
+  if (report.collidersKept < report.colliders)
+    text << "budget exceeded: " << report.colliders - report.collidersKept << " colliders did not fit; --max-colliders "
+         << report.colliders << " would have\n";
   if (report.unfinishedShapes)
     text << "budget exceeded: " << report.unfinishedShapes << " shapes were not finished; raise --max-depth\n";
   if (report.instancesWritten < report.terminals)
@@ -241,6 +254,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                   {"peak_shapes", report.peakShapes},
                   {"dropped_shapes", report.droppedShapes},
                   {"unfinished_shapes", report.unfinishedShapes},
+                  {"colliders", report.colliders},
                   {"budget_exceeded", exceeded},
                   {"key_hash", hash},
                   {"bytes_written", bytesWritten},
@@ -304,6 +318,8 @@ Work addSpawn(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--max-shapes", options->maxShapes,
                       "Budget: shapes alive in one round (0: the library's default)");
+  command->add_option("--max-colliders", options->maxColliders,
+                      "Budget: shapes that Collider registers (0: as many as the CPU evaluator derives)");
   command->add_option("--max-depth", options->maxDepth, "Budget: rounds (0: the library's default)");
   command->footer(R"(
 Examples:

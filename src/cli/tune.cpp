@@ -96,6 +96,7 @@ public:
       : session_(session), options_(options), subgroups_(subgroups), words_(std::move(words)) {
     GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
     info.base = session.workerInfo("tuner");
+    if (words_[shader::kHeaderPhases]) info.maxColliders = 8192;
     spawner_.emplace(session.take(Spawner::create(session.context(), info), "gpgpCreateSpawner"));
     session.check(spawner_->prewarm(), "gpgpPrewarm");
     axioms_.emplace(host::makeBuffer(session.device(), axiomList(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "axioms"));
@@ -103,7 +104,7 @@ public:
     instances_.emplace(session.device(), sizeof(GpgpInstance), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     const auto first = derive({}, 1);
     wanted_ = first.report;
-    if (wanted_.droppedShapes || wanted_.unfinishedShapes)
+    if (wanted_.droppedShapes || wanted_.unfinishedShapes || wanted_.collidersKept < wanted_.colliders)
       throw Failure("the derivation exceeds the budgets; use fewer axioms");
     if (!wanted_.terminals) throw Failure("the grammar derives nothing from these axioms");
     const VkDeviceSize bytes = std::min<VkDeviceSize>(VkDeviceSize{wanted_.terminals} * sizeof(GpgpInstance),

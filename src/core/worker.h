@@ -89,6 +89,8 @@ protected:
   Result<void> init(PassList passes, const ShaderDesc* vertex = nullptr, const ShaderDesc* fragment = nullptr);
   /// A pipeline with this worker's layout; all workers of a class have layouts that are compatible.
   Result<VkPipeline> createComputePipeline(const ShaderDesc& shader) const;
+  /// Of a shader of the pass list, once prewarmed.
+  VkPipeline pipelineOf(uint32_t shader) const { return pipelines_[shader]; }
 
 private:
   struct InFlight { // one record in flight

@@ -74,6 +74,22 @@ TEST(Export, PicturesShowEveryNodeEdgeAndGroup) {
   }
 }
 
+TEST(Export, DependenciesAreDrawn) {
+  const Graph graph = ofRules("A = Replicate() { Collider(wall) T | Collider(wall) U | Collider(1) T |"
+                              "  IfCollides(wall) { T | IfCollides(1) { T | U } } };");
+  EXPECT_EQ(dependenciesOf(graph).size(), 3u);
+  EXPECT_EQ(occurrences(exportDot(graph, nullptr), "style=dashed, color=red"), 3u);
+  const Flow flow = makeFlow(graph);
+  const Partition partition = makePartition(flow, heuristicPartition(graph, flow));
+  EXPECT_FALSE(violation(flow, partition.groupOf));
+  for (const Partition* drawn : {static_cast<const Partition*>(nullptr), &partition}) {
+    const std::string svg = exportSvg(graph, drawn);
+    expectWellFormed(svg);
+    EXPECT_EQ(occurrences(svg, "IfCollides(wall) depends on Collider(wall)"), 2u);
+    EXPECT_EQ(occurrences(svg, "IfCollides(1) depends on Collider(1)"), 1u);
+  }
+}
+
 TEST(Export, TextIsEscaped) {
   const Graph graph = ofRules("A = If(ShapeSize(X) < 1 && ShapeSize(Y) > 2) { T | U };");
   const std::string svg = exportSvg(graph);

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <functional>
 
 namespace {
@@ -90,7 +92,7 @@ TEST(Phases, AreAsFewAsPossible) {
     const Graph graph = compiled(randomGrammar(seed));
     std::mt19937 random(seed);
     Flow flow = makeFlow(graph);
-    if (flow.order.size() < 3 || flow.order.size() > 7) continue;
+    if (flow.order.size() < 3 || flow.order.size() > 7 || graph.phases) continue; // with dependencies of its own
     std::vector<Dependency> dependencies;
     for (int i = 0; i < 3; ++i) {
       const uint32_t s = flow.order[random() % flow.order.size()], d = flow.order[random() % flow.order.size()];
@@ -114,6 +116,63 @@ TEST(Phases, AreAsFewAsPossible) {
   EXPECT_GT(feasible, 100u);
   EXPECT_GT(infeasible, 50u);
   EXPECT_GT(many, 20u);
+}
+
+TEST(Phases, OfCollidersAreTheLeast) {
+  uint32_t several = 0, small = 0;
+  for (uint32_t seed = 0; seed < 1500; ++seed) {
+    const Graph graph = compiled(randomGrammar(seed));
+    const auto dependencies = dependenciesOf(graph);
+    std::vector<uint32_t> all(graph.nodes.size()); // a derivation may start with any rule
+    for (uint32_t n = 0; n < all.size(); ++n) all[n] = n;
+    const Flow flow = makeFlow(graph, all);
+    const auto phases = phasesOfNodes(flow);
+    ASSERT_TRUE(phases) << seed;
+    EXPECT_EQ(flow.dependencies.size(), dependencies.size());
+    if (graph.phases == 0) {
+      EXPECT_TRUE(dependencies.empty());
+      continue;
+    }
+    EXPECT_EQ(graph.phases, phases->count) << seed;
+    for (uint32_t n = 0; n < graph.nodes.size(); ++n)
+      if (graph.nodes[n].op == shader::kOpIfCollides) EXPECT_EQ(graph.nodes[n].argument2, phases->phaseOf[n]) << seed;
+    several += graph.phases > 2;
+    if (flow.order.size() > 7 || graph.phases < 2) continue;
+    ++small;
+    EXPECT_TRUE(possible(flow, graph.phases)) << seed;
+    EXPECT_FALSE(possible(flow, graph.phases - 1)) << seed;
+  }
+  EXPECT_GT(several, 5u);
+  EXPECT_GT(small, 2u);
+}
+
+TEST(Phases, CollidersThatWaitForEachOtherAreAnErrorWithBothPlaces) {
+  const std::string head = "axiom Box A; terminal T (1,0); terminal U (1,1);\n";
+  const auto messages = [&](const std::string& rules) {
+    auto all = messagesOf(head + rules);
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [](const std::string& m) { return m.find("error") == std::string::npos; }),
+              all.end());
+    return all;
+  };
+  // Of two tags that wait for each other, each names the other's place.
+  EXPECT_EQ(messages("A = Replicate() { IfCollides(a) { T | Collider(b) U } | IfCollides(b) { T | Collider(a) U } };"),
+            (std::vector<std::string>{"2:19: error: IfCollides(a) waits for all of Collider(a) in line 2, column 77, "
+                                      "which comes after it",
+                                      "2:57: error: IfCollides(b) waits for all of Collider(b) in line 2, column 39, "
+                                      "which comes after it"}));
+  // Eight phases do, nine do not.
+  const auto chain = [&](int phases) {
+    std::string text = "A = ";
+    for (int i = 0; i + 1 < phases; ++i)
+      text += "Collider(" + std::to_string(i) + ") IfCollides(" + std::to_string(i) + ") { T | ";
+    text += "U";
+    for (int i = 0; i + 1 < phases; ++i) text += " }";
+    return messages(text + ";");
+  };
+  EXPECT_EQ(chain(8), std::vector<std::string>{});
+  ASSERT_EQ(chain(9).size(), 1u);
+  EXPECT_NE(chain(9)[0].find("wait for each other in more than 8 phases"), std::string::npos);
 }
 
 } // namespace

@@ -31,11 +31,16 @@ std::vector<std::string> namesOf(const Graph& graph) {
   std::vector<std::string> names;
   for (const Terminal& t : graph.terminals) names.emplace_back(graph.nameAt(t.name));
   for (const Rule& r : graph.rules) names.emplace_back(graph.nameAt(r.name));
+  for (const Node& n : graph.nodes)
+    if (isContext(n.op) && n.argument & shader::kTagName)
+      names.emplace_back(graph.nameAt(n.argument & ~shader::kTagName));
   return names;
 }
 std::vector<uint32_t> wordsWithoutNames(Graph graph) {
   for (Terminal& t : graph.terminals) t.name = 0;
   for (Rule& r : graph.rules) r.name = 0;
+  for (Node& n : graph.nodes)
+    if (isContext(n.op) && n.argument & shader::kTagName) n.argument = shader::kTagName;
   graph.names.assign({0});
   const auto words = serialize(graph, std::pmr::new_delete_resource());
   return {words.begin(), words.end()};
@@ -79,6 +84,26 @@ TEST(Print, ValuesKeepTheirFormAndEveryDigit) {
       "1 Scale(-1.2676506e+30,((1 + 2) && (ShapeRotation(X,Z) < -3)),Rand(Rand(0,1),2)) { 1 -> 2 }\n"
       "2 Replicate() { 1 -> Discard }\n";
   EXPECT_EQ(printGraph(parsed(text).graph), text);
+}
+
+TEST(Print, TagsAreNumbersAndNames) {
+  const Graph graph = ofRules("A = Collider(wall) Collider(3) IfCollides(wall) { T | IfCollides(3) { T | U } };");
+  const std::string text = "axiom Box -> 0\n"
+                           "terminal T (1, 0) bucket 0\n"
+                           "terminal U (1, 1) bucket 1\n"
+                           "rule A -> 0\n"
+                           "0 Collider(wall) { 1 -> 1 }\n"
+                           "1 Collider(3) { 1 -> 2 }\n"
+                           "2 IfCollides(wall) { / -> 3 | / -> 4 }\n"
+                           "3 T\n"
+                           "4 IfCollides(3) { / -> 3 | / -> 5 }\n"
+                           "5 U\n";
+  EXPECT_EQ(printGraph(graph), text);
+  expectSame(parsed(text).graph, graph);
+  EXPECT_EQ(parsed(text).graph.phases, 2u);
+  EXPECT_EQ(errorsOf("axiom Box -> 0\n0 IfCollides(7) { / -> 1 | / -> Discard }\n1 Collider(7) { 1 -> 0 }\n"),
+            Messages{"1:1: error: there is no order of phases in which every Collider is before each IfCollides of its "
+                     "tag"});
 }
 
 TEST(Print, LongSumsComeBack) { // as long as the language allows

@@ -1,5 +1,7 @@
 #include "random_grammar.h"
 
+#include <array>
+#include <cstdint>
 #include <iterator>
 #include <random>
 #include <vector>
@@ -8,7 +10,8 @@ namespace gpgp::test {
 namespace {
 class Generator {
 public:
-  explicit Generator(uint32_t seed) : random_(seed) {}
+  /// Every third one has Collider and IfCollides.
+  explicit Generator(uint32_t seed) : random_(seed), context_(seed % 3 == 0) {}
 
   std::string run() {
     static const char* kShapes[] = {
@@ -18,6 +21,10 @@ public:
     rules_ = 3 + below(8);
     std::string text = std::string("var v = ") + number(0.2, 3) + ";\naxiom " + kShapes[below(std::size(kShapes))] +
                        " R0;\nterminal T0 T1 (1, 0);\nterminal T2 (0, 1);\nterminal T3 (1, 2);\n";
+    if (context_) {
+      phaseAt_[1] = 1 + below(rules_);
+      phaseAt_[2] = phaseAt_[1] + below(rules_);
+    }
     for (uint32_t r = 0; r < rules_; ++r) {
       rule_ = r;
       text += std::string("R") + std::to_string(r) + " = " + (r == 0 ? call(3) : successor(3)) + ";\n";
@@ -73,7 +80,19 @@ private:
     return text + " }";
   }
 
+  /// Rules are in up to three parts; none leads back to a part before its own. Of a tag, Colliders are in parts before
+  /// those with its IfCollides.
+  uint32_t part() const { return rule_ >= phaseAt_[2] ? 2 : rule_ >= phaseAt_[1] ? 1 : 0; }
+  std::string context(int depth) {
+    static const char* kTags[] = {"7", "wall", "v - v"};
+    const uint32_t own = part();
+    if (own == 0 || (own == 1 && below(2)))
+      return std::string("Collider(") + kTags[own == 0 ? below(2) : 1] + ") " + successor(depth - 1);
+    return std::string("IfCollides(") + kTags[own == 1 ? 0 : below(3)] + ")" + list(2, depth, 0, 0, false);
+  }
+
   std::string call(int depth) {
+    if (context_ && below(4) == 0) return context(depth);
     switch (below(15)) {
     case 0:
       return std::string("Translate(") + value(-2, 2) + "," + value(-2, 2) + "," + value(-2, 2) + ") " +
@@ -100,12 +119,15 @@ private:
              std::string("((-0.5,-0.5),(0.5,-0.5),(0.2,0.4),(-0.3,0.5)) ") + successor(depth - 1);
     default: // a way back that ends: sizes shrink
       return std::string("If(Exp(ShapeSize(X) + ShapeSize(Y) + ShapeSize(Z) < ") + number(1, 4) + ")) { " + leaf() +
-             std::string(" | Scale(-0.6,-0.6,-0.6) R") + std::to_string(below(rule_ + 1)) + " }";
+             std::string(" | Scale(-0.6,-0.6,-0.6) R") +
+             std::to_string(phaseAt_[part()] + below(rule_ + 1 - phaseAt_[part()])) + " }";
     }
   }
 
   std::mt19937 random_;
+  bool context_;
   uint32_t rules_ = 1, rule_ = 0;
+  std::array<uint32_t, 3> phaseAt_{0, UINT32_MAX, UINT32_MAX}; // the first rule of each part
 };
 } // namespace
 

@@ -13,13 +13,15 @@ namespace gpgp::test {
 
 class SpawnDevice {
 public:
-  SpawnDevice() {
+  explicit SpawnDevice(const GpgpSpawnerCreateInfo& budgets = {}) {
     GpgpContextCreateInfo info = device_.contextCreateInfo();
     info.messageUserData = this;
     info.messageFn = [](void*, const GpgpMessage* m) { ADD_FAILURE() << m->function << ": " << m->text; };
     EXPECT_EQ(gpgpCreateContext(&info, &context_), GPGP_SUCCESS);
     GpgpSpawnerCreateInfo spawner = GPGP_SPAWNER_CREATE_INFO_INIT;
     spawner.base.queueFamily = device_.graphics().family;
+    spawner.maxShapes = budgets.maxShapes;
+    spawner.maxColliders = budgets.maxColliders;
     EXPECT_EQ(gpgpCreateSpawner(context_, &spawner, &spawner_), GPGP_SUCCESS);
     EXPECT_EQ(gpgpPrewarm(spawner_, nullptr), GPGP_SUCCESS);
   }
@@ -38,6 +40,7 @@ public:
     grammarInfo.size = words.size() * sizeof(uint32_t);
     GpgpAsset grammar = nullptr;
     EXPECT_EQ(gpgpCreateGrammar(context_, &grammarInfo, &grammar), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpPrewarmGrammar(spawner_, grammar), GPGP_SUCCESS);
     const auto start = host::makeBuffer(device_, axioms, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     const host::Buffer instances(device_, VkDeviceSize(capacity) * sizeof(GpgpInstance),
                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);

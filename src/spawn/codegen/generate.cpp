@@ -27,6 +27,7 @@ public:
   Generator(const Graph& graph, const std::vector<bool>& waits) : graph_(graph), waits_(waits) {}
 
   std::string run() {
+    if (graph_.phases) add("#define GPGP_COLLIDERS\n");
     writeParameters();
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
@@ -50,7 +51,7 @@ private:
   const Edge& edgeOf(const Node& node, uint32_t index) const { return graph_.edges[node.firstEdge + index]; }
   bool isChain(uint32_t node) const {
     const Node& n = graph_.nodes[node];
-    return n.op != kOpTerminal && !multiplies(n);
+    return n.op != kOpTerminal && !isContext(n.op) && !multiplies(n);
   }
 
   // ---------------------------------------------------------------- parameters
@@ -151,6 +152,7 @@ private:
     if (edge.recursive) text += "if (s.depth > maxDepth) return kEndUnfinished; ";
     if (graph_.nodes[edge.target].op == kOpTerminal) return text + "return kEndTerminal;";
     if (waits_[edge.target] || edge.recursive) return text + "return kEndWaits;";
+    if (isContext(graph_.nodes[edge.target].op)) return text + "return kEndContext;";
     return text + "return chain" + std::to_string(edge.target) + "(s, maxDepth);";
   }
 
@@ -298,6 +300,8 @@ private:
       const std::string label = "  case " + number(offsetOf(n)) + ":";
       if (graph_.nodes[n].op == kOpTerminal)
         terminals += label + "\n";
+      else if (isContext(graph_.nodes[n].op))
+        add(label + (waits_[n] ? " if (arrives) return kEndWaits;" : "") + " return kEndContext;\n");
       else if (isChain(n))
         add(label + (waits_[n] ? " if (arrives) return kEndWaits;" : "") + " return chain" + std::to_string(n) +
             "(s, maxDepth);\n");

@@ -1,5 +1,6 @@
 #include "spawn/evaluator/evaluator.h"
 
+#include "spawn/evaluator/context.h"
 #include "spawn/interpret.h"
 
 #include <algorithm>
@@ -72,18 +73,17 @@ Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> 
   Derivation out;
   out.buckets.assign(words[kHeaderBuckets], 0);
   std::vector<Shape> stack;
-  for (size_t a = 0; a < axioms.size() && out.complete; ++a) {
-    const GpgpAxiom& axiom = axioms[a];
-    if (!hasRule(words, axiom.rule)) ++out.droppedShapes;
-    stack.push_back(axiomShape(words, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
-                               axiom.rule, axiom.attribute, static_cast<uint32_t>(a)));
+  Context context(words, axioms);
+  const auto deriveFrom = [&](const Shape& start) {
+    stack.push_back(start);
     while (!stack.empty()) {
       Shape shape = stack.back();
       stack.pop_back();
       ++out.shapes;
-      const uint end = runChain(words, shape, false, options.maxDepth);
+      uint end = runChain(words, shape, false, options.maxDepth);
+      if (end == kEndContext) end = context.resume(shape, options.maxDepth);
       out.depth = std::max(out.depth, shape.depth);
-      if (end == kEndTerminal) emit(out, words, shape, axiom, options);
+      if (end == kEndTerminal) emit(out, words, shape, axioms[context.axiomNumber(shape.axiom)], options);
       if (end == kEndUnfinished) ++out.unfinishedShapes;
       if (end != kEndWaits) continue;
       const Fan fan = fanOf(words, shape);
@@ -94,7 +94,17 @@ Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> 
       for (uint32_t i = fan.count; i-- > 0;) stack.push_back(childOf(words, shape, fan, i));
     }
     stack.clear();
+  };
+  for (size_t a = 0; a < axioms.size() && out.complete; ++a) {
+    const GpgpAxiom& axiom = axioms[a];
+    if (!hasRule(words, axiom.rule)) ++out.droppedShapes;
+    deriveFrom(axiomShape(words, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id, axiom.rule,
+                          axiom.attribute, static_cast<uint32_t>(a)));
   }
+  for (uint32_t phase = 1; phase < words[kHeaderPhases] && out.complete; ++phase)
+    for (const Shape& shape : context.begin(phase))
+      if (out.complete) deriveFrom(shape);
+  out.colliders = context.colliders();
   return out;
 }
 

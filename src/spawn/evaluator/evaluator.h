@@ -21,7 +21,7 @@ struct DeriveOptions {
 };
 
 struct Derivation {
-  std::vector<GpgpInstance> instances; ///< by axiom, then depth first
+  std::vector<GpgpInstance> instances; ///< by phase, then by axiom, then depth first
   std::vector<uint32_t> vertexWords;   ///< of all instances, one after the other
   std::vector<uint32_t> quads;         ///< of each instance: 4 vertices, 6 indices
   std::vector<uint32_t> buckets;       ///< terminals by bucket
@@ -29,7 +29,8 @@ struct Derivation {
   uint64_t shapes = 0;        ///< that were taken up, terminals included
   uint32_t droppedShapes = 0; ///< axioms whose rule does not exist: nothing else is dropped here
   uint32_t unfinishedShapes = 0;
-  uint32_t depth = 0; ///< the most recursive edges on a path
+  uint64_t colliders = 0; ///< that Collider registered
+  uint32_t depth = 0;     ///< the most recursive edges on a path
   uint32_t keyHash[2] = {0, 0};
   bool complete = true; ///< false: maxShapes was reached
 };

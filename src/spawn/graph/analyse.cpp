@@ -1,10 +1,14 @@
-// What follows from a graph's shape: multiplicities, the types of shapes on each edge, which operators only filter, and
-// which edges are recursive.
+// What follows from a graph's shape: multiplicities, the types of shapes on each edge, which operators only filter,
+// which edges are recursive, and the phases of Collider and IfCollides.
 //
 // Types flow from the axiom and, since a derivation may start with any rule, from every rule with the axiom's type.
 // Recursive are the back edges of a depth-first search from the axiom's node: without them there is no cycle.
 #include "core/math.h"
 #include "spawn/graph/graph.h"
+#include "spawn/graph/longest_paths.h"
+
+#include <algorithm>
+#include <map>
 
 namespace gpgp::spawn {
 namespace {
@@ -37,6 +41,7 @@ uint32_t multiplicityOf(uint32_t op) {
   case kOpIf:
   case kOpIfSizeLess:
   case kOpRandomRule:
+  case kOpIfCollides:
   case kOpSubDiv: return kMultiplicityOptional; // SubDiv skips parts without an extent
   case kOpCompSplit: return kMultiplicityFixed;
   case kOpRepeat: return kMultiplicityAny;
@@ -68,6 +73,44 @@ void divide(Graph& graph, Node& node) {
     if (v > 0) fixedBefore = add(fixedBefore, v);
     if (v < 0) weightBefore = subtract(weightBefore, v);
   }
+}
+
+/// The phase of each IfCollides: no Collider with its tag can still be reached. Other operators run as soon as a shape
+/// comes to them, so that only these wait. A derivation may start with any rule: all nodes count.
+void assignPhases(Graph& graph) {
+  const auto memory = graph.nodes.get_allocator().resource();
+  graph.phases = 0;
+  std::pmr::map<uint32_t, uint32_t> tags(memory); // of Colliders, to numbers
+  for (Node& node : graph.nodes) {
+    if (!isContext(node.op)) continue;
+    graph.phases = 1;
+    node.argument2 = 0;
+    if (node.op == kOpCollider) tags.try_emplace(node.argument, static_cast<uint32_t>(tags.size()));
+  }
+  if (graph.phases == 0) return;
+  // A tag is a place between its Colliders and its IfCollides, which are one phase further.
+  const uint32_t nodes = static_cast<uint32_t>(graph.nodes.size());
+  std::pmr::vector<std::pmr::vector<uint32_t>> waiting(tags.size(), memory);
+  for (uint32_t n = 0; n < nodes; ++n) {
+    const auto tag = tags.find(graph.nodes[n].argument);
+    if (graph.nodes[n].op == kOpIfCollides && tag != tags.end()) waiting[tag->second].push_back(n);
+  }
+  std::pmr::vector<uint32_t> phaseOf(nodes + tags.size(), 0, memory);
+  const bool ordered = longestPaths(phaseOf, kMaxPhases - 1, [&](uint32_t place, auto&& reach) {
+    if (place >= nodes) {
+      for (const uint32_t n : waiting[place - nodes]) reach(n, 1);
+      return;
+    }
+    const Node& node = graph.nodes[place];
+    for (uint32_t e = 0; e < node.edgeCount; ++e)
+      if (graph.edges[node.firstEdge + e].target != kNoNode) reach(graph.edges[node.firstEdge + e].target, 0);
+    if (node.op == kOpCollider) reach(nodes + tags.at(node.argument), 0);
+  });
+  for (uint32_t n = 0; n < nodes; ++n) {
+    graph.phases = std::max(graph.phases, phaseOf[n] + 1);
+    if (graph.nodes[n].op == kOpIfCollides) graph.nodes[n].argument2 = phaseOf[n];
+  }
+  if (!ordered) graph.phases = kNoPhases;
 }
 } // namespace
 
@@ -131,6 +174,7 @@ void analyse(Graph& graph) {
   };
   visit(graph.axiomNode);
   for (uint32_t root = 0; root < graph.nodes.size(); ++root) visit(root);
+  assignPhases(graph);
 }
 
 } // namespace gpgp::spawn

@@ -64,6 +64,7 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   words[kHeaderAxiomPolygon] = graph.axiomPolygon;
   words[kHeaderAxiomNode] = nodeAt(graph.axiomNode);
   words[kHeaderBuckets] = graph.buckets;
+  words[kHeaderPhases] = graph.phases;
   for (const Node& n : graph.nodes)
     words.insert(words.end(), {n.op | (n.filter ? kNodeFilter : 0u), n.argument,
                                n.division == UINT32_MAX ? n.argument2 : at(kSectionDivisions, n.division),
@@ -170,6 +171,7 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   if (auto ok = validate(graph); !ok) return ok.error();
   // What follows from the rest is worked out again rather than believed: the interpreter reads it from the words.
   analyse(graph);
+  if (graph.phases == kNoPhases) return bad("its IfCollides wait for colliders that come after them");
   if (serialize(graph, memory) != words) return bad("it does not follow from its own nodes and edges");
   return graph;
 }

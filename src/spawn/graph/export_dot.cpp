@@ -76,6 +76,8 @@ std::string exportDot(const Graph& graph, const Partition* partition) {
            value + (value.empty() ? "" : ": ") + multiplicityText(graph, v, e), style);
     }
   }
+  for (const Dependency& d : dependenciesOf(graph))
+    out << "  n" << d.source << " -> n" << d.target << " [style=dashed, color=red, constraint=false];\n";
   out << "}\n";
   return out.str();
 }

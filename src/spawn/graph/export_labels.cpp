@@ -83,10 +83,15 @@ std::string nodeText(const Graph& graph, const Node& node) {
     add(shapeName(node.argument));
     add(std::to_string(node.argument2));
   }
+  if (isContext(node.op)) add(tagText(graph, node.argument));
   const uint32_t own = node.op == kOpSubDiv ? 0 : node.op == kOpRandomRule ? 1 : node.parameterCount;
   for (uint32_t i = 0; i < own; ++i) add(parameterText(graph, graph.parameters[node.firstParameter + i]));
   if (node.op == kOpRepeat) add(repeatModeText(node.argument2));
   return std::string(operatorName(node.op)).append("(").append(arguments).append(")");
+}
+
+std::string tagText(const Graph& graph, uint32_t tag) {
+  return tag & kTagName ? std::string(graph.nameAt(tag & ~kTagName)) : std::to_string(tag);
 }
 
 std::string edgeValueText(const Graph& graph, const Node& node, uint32_t slot) {

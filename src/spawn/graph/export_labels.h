@@ -12,6 +12,8 @@ std::string numberText(float value);
 std::string parameterText(const Graph& graph, const Parameter& parameter);
 /// An operator with what stands before its successors, as in Translate(0,1,0) or SubDiv(X); a terminal's name.
 std::string nodeText(const Graph& graph, const Node& node);
+/// A Collider's tag: a number or a name.
+std::string tagText(const Graph& graph, uint32_t tag);
 /// The value that belongs to an edge: the extent of a SubDiv's part, a probability. Empty where there is none.
 std::string edgeValueText(const Graph& graph, const Node& node, uint32_t slot);
 /// 1, n, / or *.

@@ -5,6 +5,7 @@
 #include "spawn/graph/export_layout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -116,6 +117,7 @@ public:
     for (size_t u = 0; u < units_.size(); ++u) drawInside(u);
     drawBetween();
     for (size_t u = 0; u < units_.size(); ++u) drawCards(u);
+    for (const Dependency& d : dependenciesOf(graph_)) drawDependency(d);
     out_ << "</svg>\n";
     return out_.str();
   }
@@ -301,6 +303,30 @@ private:
         endPath(betweenLinks_[next], endX, endY);
       }
     }
+  }
+
+  /// Of a card: its centre and half of its size.
+  std::array<double, 4> placeOf(uint32_t node) const {
+    const uint32_t u = unitOf_[node];
+    const auto& nodes = units_[u].nodes;
+    const auto box =
+        static_cast<size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+    const double height = cards_[node].height;
+    return {nodesLeft(u) + units_[u].layout.boxes[box].x, nodesTop(u) + units_[u].layout.boxes[box].top + height / 2,
+            cards_[node].width / 2, height / 2};
+  }
+  /// Above all else, from side to side: dependencies are no part of the layout.
+  void drawDependency(const Dependency& d) {
+    const auto [x, y, halfWidth, halfHeight] = placeOf(d.source);
+    const auto [endX, endY, endHalfWidth, endHalfHeight] = placeOf(d.target);
+    const double side = endX >= x ? 1 : -1; // leaves towards the target, enters from the same side
+    const double from = x + side * halfWidth, to = endX + side * endHalfWidth;
+    const double bend = side * (kGroupGap + std::abs(to - from) / 4);
+    out_ << "<path fill=\"none\" stroke=\"#d73027\" stroke-width=\"1.4\" stroke-dasharray=\"5 3\" d=\"M" << from << ' '
+         << y << " C" << from + bend << ' ' << y << ' ' << to + bend << ' ' << endY << ' ' << to << ' ' << endY
+         << "\"><title>" << escaped(nodeText(graph_, graph_.nodes[d.target])) << " depends on "
+         << escaped(nodeText(graph_, graph_.nodes[d.source])) << "</title></path>\n<path fill=\"#d73027\" d=\"M" << to
+         << ' ' << endY << " l" << side * 6 << " -3 v6 z\"/>\n";
   }
 
   void text(double x, double y, const std::string& words, const char* colour) {

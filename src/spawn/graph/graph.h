@@ -13,6 +13,7 @@
 namespace gpgp::spawn {
 
 constexpr uint32_t kNoNode = UINT32_MAX;
+constexpr uint32_t kNoPhases = UINT32_MAX;
 
 struct Parameter {
   uint32_t kind = shader::kParameterConstant;
@@ -70,6 +71,8 @@ struct Graph {
   std::pmr::vector<uint32_t> divisions; ///< of SubDivs with constant parts, as in the baked form; from analyse()
   uint32_t axiomShape = shader::kShapeBox, axiomPolygon = 0, axiomNode = kNoNode;
   uint32_t buckets = 0; ///< terminal lines
+  /// Of derivation; 0 without Collider and IfCollides, kNoPhases where they cannot run in any order. From analyse().
+  uint32_t phases = 0;
 
   const char* nameAt(uint32_t offset) const { return names.data() + offset; }
 };
@@ -81,12 +84,16 @@ void addRegularPolygons(Graph& graph);
 /// or kNoPolygon where it crosses itself.
 uint32_t addPolygon(Graph& graph, const float* corners, uint32_t count);
 
-/// Fills in what follows from nodes and edges: multiplicities, the shape types on nodes and edges, filters, recursion.
+/// Fills in what follows from nodes and edges: multiplicities, the shape types on nodes and edges, filters, recursion,
+/// phases.
 void analyse(Graph& graph);
 
 /// Every index, enum, count and program. What passes can be derived without further checks and without end only where
 /// the graph has a cycle.
 core::Result<void> validate(const Graph& graph);
+
+/// Collider or IfCollides.
+inline bool isContext(uint32_t op) { return op == shader::kOpCollider || op == shader::kOpIfCollides; }
 
 const char* operatorName(uint32_t op);
 const char* shapeName(uint32_t shape);

@@ -51,6 +51,16 @@ std::vector<uint32_t> reversePostorder(std::span<const uint32_t> starts, size_t 
 std::string nodeText(uint32_t node) { return "node " + std::to_string(node); }
 } // namespace
 
+std::vector<Dependency> dependenciesOf(const Graph& graph) {
+  std::vector<Dependency> result;
+  for (uint32_t source = 0; source < graph.nodes.size(); ++source)
+    for (uint32_t target = 0; graph.nodes[source].op == shader::kOpCollider && target < graph.nodes.size(); ++target)
+      if (graph.nodes[target].op == shader::kOpIfCollides &&
+          graph.nodes[target].argument == graph.nodes[source].argument)
+        result.push_back({source, target});
+  return result;
+}
+
 Flow makeFlow(const Graph& graph, std::span<const uint32_t> starts, std::span<const Dependency> dependencies) {
   const size_t nodes = graph.nodes.size();
   Flow flow;
@@ -80,12 +90,14 @@ Flow makeFlow(const Graph& graph, std::span<const uint32_t> starts, std::span<co
     for (const Link& link : flow.out[flow.order[i]]) flow.in[link.target].push_back(link);
   }
   for (const uint32_t start : flow.starts) flow.mustRoot[start] = 1;
-  for (const Dependency& d : dependencies) {
-    if (flow.rank[d.source] == kNoNode || flow.rank[d.target] == kNoNode) continue;
+  const auto depend = [&](const Dependency& d) {
+    if (flow.rank[d.source] == kNoNode || flow.rank[d.target] == kNoNode) return;
     flow.dependencies.push_back(d);
     flow.at[d.source].push_back(d.target);
     flow.at[d.target].push_back(d.source);
-  }
+  };
+  for (const Dependency& d : dependenciesOf(graph)) depend(d);
+  for (const Dependency& d : dependencies) depend(d);
   return flow;
 }
 

@@ -48,8 +48,11 @@ struct Flow {
   std::vector<Dependency> dependencies;
 };
 
+/// What Collider and IfCollides mean: each IfCollides depends on all Colliders with its tag.
+std::vector<Dependency> dependenciesOf(const Graph& graph);
+
 /// starts: as nodes, kNoNode is left out; none: the axiom's node. Give the nodes of further rules where axioms may
-/// start with them.
+/// start with them. dependencies: besides the graph's own.
 Flow makeFlow(const Graph& graph, std::span<const uint32_t> starts = {}, std::span<const Dependency> dependencies = {});
 
 /// A group runs from its root, once for each shape in the root's queue.

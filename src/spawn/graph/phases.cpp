@@ -1,6 +1,7 @@
-// Longest paths, where an edge of the flow is 0 long and a dependency 1. Lengths only grow from pass to pass; as a path
-// without a cycle has each dependency at most once, a length above their number proves a cycle.
+// Longest paths, where an edge of the flow is 0 long and a dependency 1.
 #include "spawn/graph/phases.h"
+
+#include "spawn/graph/longest_paths.h"
 
 #include <algorithm>
 #include <functional>
@@ -11,29 +12,34 @@ namespace {
 
 /// unitOf: by node, what runs at once.
 core::Result<Phases> phasesOfUnits(const Flow& flow, std::span<const uint32_t> unitOf, size_t units, const char* noun) {
-  Phases phases;
-  phases.phaseOf.assign(units, kNoNode);
-  for (const uint32_t n : flow.order) phases.phaseOf[unitOf[n]] = 0;
-  const auto fail = [&](const Dependency& d) {
+  struct Step {
+    uint32_t target;
+    const Dependency* dependency; // null: an edge
+  };
+  std::vector<std::vector<Step>> steps(units);
+  for (const uint32_t n : flow.order)
+    for (const Link& link : flow.out[n]) steps[unitOf[n]].push_back({unitOf[link.target], nullptr});
+  for (const Dependency& d : flow.dependencies) steps[unitOf[d.source]].push_back({unitOf[d.target], &d});
+  std::pmr::vector<uint32_t> length(units);
+  const Dependency* last = nullptr;
+  const auto follow = [&](uint32_t unit, auto&& reach) {
+    for (const Step& step : steps[unit]) {
+      if (step.dependency && length[unit] == flow.dependencies.size()) last = step.dependency;
+      reach(step.target, step.dependency ? 1 : 0);
+      if (last) return;
+    }
+  };
+  // A path without a cycle has each dependency at most once.
+  if (!longestPaths(length, static_cast<uint32_t>(flow.dependencies.size()), follow))
     return core::makeError(GPGP_ERROR_INVALID_DATA,
                            "node %u depends on node %u, but %s %u is also before %s %u: no order of phases can do",
-                           d.target, d.source, noun, unitOf[d.target], noun, unitOf[d.source]);
-  };
-  for (bool more = true; more;) {
-    more = false;
-    const auto raise = [&](uint32_t unit, uint32_t phase) {
-      if (phases.phaseOf[unit] >= phase) return;
-      phases.phaseOf[unit] = phase;
-      more = true;
-    };
-    for (const uint32_t n : flow.order)
-      for (const Link& link : flow.out[n]) raise(unitOf[link.target], phases.phaseOf[unitOf[n]]);
-    for (const Dependency& d : flow.dependencies) {
-      raise(unitOf[d.target], phases.phaseOf[unitOf[d.source]] + 1);
-      if (phases.phaseOf[unitOf[d.target]] > flow.dependencies.size()) return fail(d);
-    }
+                           last->target, last->source, noun, unitOf[last->target], noun, unitOf[last->source]);
+  Phases phases;
+  phases.phaseOf.assign(units, kNoNode);
+  for (const uint32_t n : flow.order) {
+    phases.phaseOf[unitOf[n]] = length[unitOf[n]];
+    phases.count = std::max(phases.count, length[unitOf[n]] + 1);
   }
-  for (const uint32_t n : flow.order) phases.count = std::max(phases.count, phases.phaseOf[unitOf[n]] + 1);
   return phases;
 }
 } // namespace

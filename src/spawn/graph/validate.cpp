@@ -22,6 +22,7 @@ constexpr Rules kOperators[kOpCount] = {
     {"Extrude", 1, 1},     {"SwapSize", 0, 1},
     {"SetGeometry", 0, 1}, {"If", 1, 2},
     {"IfSizeLess", 1, 2},  {"RandomRule", kPerEdgeAndOne, kPerEdge},
+    {"Collider", 0, 1},    {"IfCollides", 0, 2},
     {"CompSplit", 0, 3},   {"SubDiv", kPerEdge, kPerEdge},
     {"Repeat", 1, 1},      {"Replicate", 0, kPerEdge},
 };
@@ -140,6 +141,10 @@ Result<void> checkNode(const Graph& graph, uint32_t index) {
   case kOpSwapSize:
     if (node.argument > 63 || (node.argument & 3) == 3 || (node.argument >> 2 & 3) == 3 || node.argument >> 4 == 3)
       return bad("unknown axis");
+    break;
+  case kOpCollider:
+  case kOpIfCollides:
+    if ((node.argument & kTagName) && !nameEnds(graph, node.argument & ~kTagName)) return bad("a tag has a bad name");
     break;
   case kOpSetGeometry: return checkGeometry(graph, "SetGeometry", node.argument, node.argument2);
   default: break;

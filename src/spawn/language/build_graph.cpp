@@ -1,6 +1,8 @@
 #include "spawn/language/build_graph.h"
 
 #include "spawn/expression.h"
+#include "spawn/graph/export_labels.h"
+#include "spawn/graph/partition.h"
 #include "spawn/language/expressions.h"
 
 #include <algorithm>
@@ -34,6 +36,7 @@ public:
     buildAxiom();
     if (!diagnostics_.hasErrors()) {
       analyse(graph_);
+      if (graph_.phases == kNoPhases) refusePhases();
       warn();
     }
     return std::move(graph_);
@@ -196,7 +199,7 @@ private:
   struct Spelling {
     const char* name;
     uint32_t op;
-    const char* arguments; ///< one letter each: a axis, m mode, v value
+    const char* arguments; ///< one letter each: a axis, m mode, t tag, v value
     uint32_t branches;     ///< 1: one successor, 2 or 3: exactly, kMany: any number
     bool labels;           ///< value: successor
   };
@@ -208,6 +211,8 @@ private:
       {"Scale", kOpScale, "vvv", 1, false},
       {"Extrude", kOpExtrude, "v", 1, false},
       {"SwapSize", kOpSwapSize, "aaa", 1, false},
+      {"Collider", kOpCollider, "t", 1, false},
+      {"IfCollides", kOpIfCollides, "t", 2, false},
       {"CompSplit", kOpCompSplit, "", 3, false},
       {"SubDiv", kOpSubDiv, "a", kMany, true},
       {"Repeat", kOpRepeat, "avm", 1, false},
@@ -216,10 +221,8 @@ private:
       {"RandomRule", kOpRandomRule, "v", kMany, true},
       {"Replicate", kOpReplicate, "", kMany, false},
   };
-  static constexpr std::array<const char*, 8> kOtherOperators{"Discard",
+  static constexpr std::array<const char*, 6> kOtherOperators{"Discard",
                                                               "Generate",
-                                                              "Collider",
-                                                              "IfCollides",
                                                               "SetAsDynamicConvexPolygon",
                                                               "SetAsDynamicConcavePolygon",
                                                               "SetAsDynamicConvexRightPrism",
@@ -244,9 +247,7 @@ private:
       return {terminalNode(*generate_, call.place), std::nullopt};
     }
     if (call.name.substr(0, 12) == "SetAsDynamic") return {buildSetGeometry(call), std::nullopt};
-    if (call.name == "Collider" || call.name == "IfCollides")
-      diagnostics_.error(call.place, call.name + " is not supported yet: shapes cannot see each other");
-    else if (names_.count(call.name))
+    if (names_.count(call.name))
       diagnostics_.error(call.place, "'" + call.name + "' is no operator; expected no '(' after it");
     else
       diagnostics_.error(call.place, "there is no operator '" + call.name + "'");
@@ -267,6 +268,8 @@ private:
           argument |= axisOf(call.arguments[i], diagnostics_).value_or(0) << (2 * axes++);
         } else if (arguments[i] == 'm') {
           argument2 = modeOf(call.arguments[i]);
+        } else if (arguments[i] == 't') {
+          argument = tagOf(call.arguments[i]);
         } else {
           parameters.push_back(expressions_.parameter(call.arguments[i]));
         }
@@ -309,6 +312,19 @@ private:
       else if (!spelling.labels && branch.label)
         diagnostics_.error(branch.label->place, call.name + " takes successors without a value before them");
     }
+  }
+
+  /// A name, unless it is a var, or a whole number.
+  uint32_t tagOf(const Expression& expression) {
+    if (expression.kind == ExpressionKind::name && !variables_.count(expression.name)) {
+      const auto [tag, isNew] = tags_.try_emplace(expression.name);
+      if (isNew) tag->second = kTagName | addName(expression.name);
+      return tag->second;
+    }
+    const float value = expressions_.constant(expression, "a tag");
+    if (value >= 0 && value <= 16777216.0f && value == floor(value)) return static_cast<uint32_t>(value);
+    diagnostics_.error(expression.place, "a tag is a name or a whole number from 0");
+    return 0;
   }
 
   uint32_t modeOf(const Expression& expression) {
@@ -433,6 +449,47 @@ private:
     }
   }
 
+  // ---------------------------------------------------------------- phases
+
+  /// Why there is no order: an IfCollides whose shapes can become colliders with its own tag, also by way of others.
+  void refusePhases() {
+    const std::vector<Dependency> dependencies = dependenciesOf(graph_);
+    bool found = false;
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
+      if (graph_.nodes[n].op != kOpIfCollides) continue;
+      std::vector<bool> reached(graph_.nodes.size());
+      std::vector<uint32_t> open{n};
+      const auto reach = [&](uint32_t node) {
+        if (node == kNoNode || reached[node]) return;
+        reached[node] = true;
+        open.push_back(node);
+      };
+      while (!open.empty()) {
+        const uint32_t from = open.back();
+        open.pop_back();
+        for (uint32_t e = 0; e < graph_.nodes[from].edgeCount; ++e)
+          reach(graph_.edges[graph_.nodes[from].firstEdge + e].target);
+        for (const Dependency& d : dependencies)
+          if (d.source == from) reach(d.target);
+      }
+      for (const Dependency& d : dependencies) {
+        if (d.target != n || !reached[d.source]) continue;
+        const std::string tag = tagText(graph_, graph_.nodes[n].argument);
+        diagnostics_.error(places_[n], "IfCollides(" + tag + ") waits for all of Collider(" + tag + ") in line " +
+                                           std::to_string(places_[d.source].line) + ", column " +
+                                           std::to_string(places_[d.source].column) + ", which comes after it");
+        found = true;
+        break;
+      }
+    }
+    for (uint32_t n = 0; !found && n < graph_.nodes.size(); ++n)
+      if (graph_.nodes[n].op == kOpIfCollides && graph_.nodes[n].argument2 + 1 == kMaxPhases) {
+        diagnostics_.error(places_[n], "IfCollides and Collider wait for each other in more than " +
+                                           std::to_string(kMaxPhases) + " phases");
+        found = true;
+      }
+  }
+
   // ---------------------------------------------------------------- warnings
 
   void warn() {
@@ -442,6 +499,14 @@ private:
         diagnostics_.warning(tree_.rules[i].place, "rule '" + tree_.rules[i].name + "' is never used");
     for (size_t i = 0; i < graph_.nodes.size(); ++i) {
       const Node& node = graph_.nodes[i];
+      const uint32_t other = node.op == kOpCollider ? kOpIfCollides : kOpCollider;
+      if (isContext(node.op) && std::none_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const Node& n) {
+            return n.op == other && n.argument == node.argument;
+          })) {
+        const std::string tag = "(" + tagText(graph_, node.argument) + ")";
+        diagnostics_.warning(places_[i], operatorName(node.op) + tag + " has no effect: there is no " +
+                                             operatorName(other) + tag);
+      }
       if (node.shapes == 0) continue;
       uint32_t fitting = node.shapes;
       for (uint32_t s = 0; s < kShapeCount; ++s) {
@@ -470,6 +535,7 @@ private:
   std::vector<Target> ruleTargets_;
   std::vector<std::pair<uint32_t, size_t>> ruleEdges_;
   std::map<uint32_t, uint32_t> terminalNodes_;
+  std::map<std::string, uint32_t> tags_;
   std::vector<bool> usedRules_;
   std::vector<Place> places_; // by node
   std::optional<uint32_t> generate_;

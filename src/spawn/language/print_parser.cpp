@@ -39,6 +39,8 @@ public:
     if (diagnostics_.hasErrors()) return std::nullopt;
     analyse(graph_);
     checkMultiplicities();
+    if (graph_.phases == kNoPhases)
+      diagnostics_.error({}, "there is no order of phases in which every Collider is before each IfCollides of its tag");
     if (auto ok = validate(graph_); !ok) diagnostics_.error({}, ok.error().text);
     if (diagnostics_.hasErrors()) return std::nullopt;
     return std::move(graph_);
@@ -275,6 +277,7 @@ private:
       node.argument2 = whole("a polygon's number");
       first = false;
     }
+    if (isContext(node.op)) next(), node.argument = tag();
     uint32_t values = 0;
     if (node.op == kOpTranslate || node.op == kOpRotate || node.op == kOpScale) values = 3;
     if (node.op == kOpExtrude || node.op == kOpIf || node.op == kOpIfSizeLess || node.op == kOpRepeat ||
@@ -284,6 +287,13 @@ private:
     if (node.op == kOpRepeat)
       next(), node.argument2 = oneOf(3, repeatModeText, "ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END");
     expect(TokenKind::close, "')'");
+  }
+
+  uint32_t tag() {
+    if (!is(TokenKind::name)) return whole("a tag: a name or a number");
+    const auto [tag, isNew] = tags_.try_emplace(name("a tag"));
+    if (isNew) tag->second = kTagName | addName(tag->first);
+    return tag->second;
   }
 
   void edges(const Node& node) {
@@ -419,7 +429,7 @@ private:
   std::vector<std::pair<Token, uint32_t>> terminalNodes_; // with the node
   std::vector<std::pair<Place, uint32_t>> targets_;
   std::vector<Token> multiplicities_; // by edge
-  std::map<std::string, uint32_t> terminals_;
+  std::map<std::string, uint32_t> terminals_, tags_;
   std::map<std::vector<uint32_t>, uint32_t> programs_;
   std::vector<GroupLine> groups_;
 };

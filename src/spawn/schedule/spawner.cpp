@@ -1,14 +1,18 @@
 #include "spawn/schedule/spawner.h"
 
 #include "shaders/spawn_derive.spv.h"
+#include "shaders/spawn_derive_colliders.spv.h"
+#include "shaders/spawn_derive_colliders_subgroups.spv.h"
 #include "shaders/spawn_derive_subgroups.spv.h"
 #include "shaders/spawn_emit.spv.h"
+#include "shaders/spawn_link.spv.h"
 #include "shaders/spawn_order.spv.h"
 #include "shaders/spawn_place.spv.h"
 #include "spawn/layout.h"
 #include "spawn/shape.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 
 namespace gpgp::spawn {
@@ -30,13 +34,15 @@ enum : core::ResourceIndex {
   kVertices,
   kIndices,
   kNeeded,
+  kColliders,
+  kColliderCells,
   kOrder
 };
 
 // Workgroup counts of a record.
-constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kPartGroups = 2;
-// Conditions of a record.
-constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2;
+constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kLinkGroups = 2, kPartGroups = 3;
+// Conditions of a record; kPhases and on: there are more phases than 1, 2 ...
+constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2, kColliding = 3, kPhases = 4;
 
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
@@ -59,6 +65,11 @@ struct Limits {
 constexpr Limits kHardware{{32, 2048, 256, 4096}, 16384, 3}, kSoftware{{64, 16, 1024, 512}, 256, 2};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
 
+/// Queries of an invocation that look at every collider stay below that many iterations.
+constexpr uint32_t kMostColliders = 1u << 24, kMostSoftwareColliders = 8192;
+/// Cells that colliders are linked in.
+uint32_t cellsOf(uint32_t maxColliders) { return std::bit_ceil(2 * maxColliders); }
+
 /// Shapes on the stacks of all workgroups.
 uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
 
@@ -79,11 +90,16 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   auto spawner = core::makeUnique<Spawner>(context.host(), context, info.base);
   const uint32_t maxShapes = spawner->maxShapes_ = info.maxShapes ? info.maxShapes : kDefaultShapes;
   const uint32_t maxTerminals = spawner->maxTerminals_ = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
+  const uint32_t maxColliders = spawner->maxColliders_ = info.maxColliders;
   const bool vertices = spawner->vertices_ = info.flags & GPGP_SPAWNER_VERTICES;
   const bool ordered = spawner->ordered_ = info.flags & GPGP_SPAWNER_ORDERED;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
   spawner->rounds_ = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
   const Limits& limits = limitsOf(context.device);
+  const uint32_t mostColliders = context.device.software ? kMostSoftwareColliders : kMostColliders;
+  if (maxColliders > mostColliders)
+    return core::makeError(GPGP_ERROR_UNSUPPORTED, "maxColliders is %u; this device takes at most %u", maxColliders,
+                           mostColliders);
 
   core::PassList list(&context.host());
   using enum core::ResourceKind;
@@ -92,17 +108,21 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"instances", buffer, 0, true});
   list.add({"draws", buffer, 0, true});
   list.add({"count", buffer, 0, true});
-  list.add({"queues", scratch, 2 * kShapeBytes * maxShapes});
+  list.add({"queues", scratch, (maxColliders ? 3 : 2) * kShapeBytes * maxShapes});
   list.add({"stacks", scratch, kShapeBytes * stackShapesOf(maxShapes)});
   list.add({"records", scratch, kShapeBytes * (vertices ? 1 : maxTerminals)});
   const auto roundAt = [](uint32_t round) { return sizeof(shader::SpawnState) + sizeof(shader::SpawnRound) * round; };
-  const uint32_t rounds = spawner->rounds_ + 2; // what the last one left, and emission
+  // Of each phase its rounds and what the last one left; emission.
+  const uint32_t phases = maxColliders ? shader::kMaxPhases : 1;
+  const uint32_t rounds = phases * spawner->phaseStride() + 1;
   list.add({"counters", scratch, roundAt(rounds)});
   list.add({"buckets", scratch, sizeof(uint32_t) * shader::kBucketWords});
   list.add({"constants", constants, sizeof(shader::SpawnConstants)});
   list.add({"vertices", buffer, 0, true});
   list.add({"indices", buffer, 0, true});
   list.add({"needed", buffer, 0, true});
+  list.add({"colliders", scratch, VkDeviceSize(64) * std::max(maxColliders, 1u)});
+  list.add({"collider cells", scratch, VkDeviceSize(4) * (cellsOf(maxColliders) + maxColliders)});
   list.add({"order", scratch,
             sizeof(uint32_t) * (ordered ? shader::kOrderWords * VkDeviceSize(maxTerminals) + shader::kOrderParts : 1)});
 
@@ -114,15 +134,45 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
   const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, {ordered}, 1});
 
+  const bool subgroups = context.device.subgroupArithmetic;
+  const auto colliding = subgroups ? std::span<const uint32_t>(spawn_derive_colliders_subgroups)
+                                   : std::span<const uint32_t>(spawn_derive_colliders);
+  uint32_t link = 0;
+  if (maxColliders) {
+    core::ShaderDesc shader = list.shaders[derive];
+    shader.spirv = colliding;
+    spawner->deriveColliding_ = list.add(shader); // takes the other's place in records that need it
+    link = list.add(core::ShaderDesc{"link", spawn_link});
+  }
+
   using enum core::UseKind;
   list.fill("clear counters", kCounters, 0);
   list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
+  if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
   const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write}, {kDraws, read},
                      {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},   {kCounters, readWrite},
-                     {kBuckets, readWrite},   {kConstants, read},   {kVertices, write},  {kIndices, write}};
-  list.dispatch("derive", derive, uses, kAxiomGroups, {0});
-  for (uint32_t round = 1; round < spawner->rounds_; ++round)
-    list.dispatchIndirect("derive", derive, uses, kCounters, roundAt(round), {round}).level = round;
+                     {kBuckets, readWrite},   {kConstants, read},   {kVertices, write},  {kIndices, write},
+                     {kColliders, readWrite}, {kColliderCells, read}};
+  for (uint32_t phase = 0; phase < phases; ++phase) {
+    const uint32_t first = phase * spawner->phaseStride();
+    if (phase == 0)
+      list.dispatch("derive", derive, uses, kAxiomGroups, {0, 0, 0});
+    else
+      list.dispatch("link", link,
+                    {{kAxioms, read},
+                     {kCounters, readWrite},
+                     {kConstants, read},
+                     {kColliders, read},
+                     {kColliderCells, readWrite}},
+                    kLinkGroups, {first, first - spawner->phaseStride()})
+          .condition = kPhases + phase - 1;
+    for (uint32_t round = phase ? 0 : 1; round < spawner->rounds_; ++round) {
+      core::Pass& pass = list.dispatchIndirect("derive", derive, uses, kCounters, roundAt(first + round),
+                                               {first + round, phase, first});
+      pass.level = round;
+      if (phase) pass.condition = kPhases + phase - 1;
+    }
+  }
   list.dispatch("place", place,
                 {{kGraph, read},
                  {kDraws, readWrite},
@@ -171,6 +221,10 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar,
                                     const VertexLayout& layout) {
   const Limits& limits = limitsOf(context.device);
+  const uint32_t phases = std::max(grammar.graph.phases, 1u);
+  if (grammar.graph.phases && !maxColliders_)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "grammar has Collider or IfCollides, and maxColliders of the "
+                                                        "spawner is 0");
   const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount, vertices_);
   const Fit& fit = kernel ? kernel->info.fit : limits.fit;
   const uint32_t rounds = fit.rounds ? std::min(fit.rounds, rounds_) : rounds_;
@@ -185,7 +239,10 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.instanceCapacity = elementsIn<GpgpInstance>(info.instances);
   constants.drawCapacity = elementsIn<VkDrawIndexedIndirectCommand>(info.draws);
   constants.writeCount = info.count.buffer ? 1 : 0;
-  constants.rounds = rounds;
+  constants.rounds = (phases - 1) * phaseStride() + rounds;
+  constants.phaseRounds = rounds;
+  constants.maxColliders = maxColliders_;
+  constants.cellMask = cellsOf(maxColliders_) - 1;
   constants.maxGroups = maxGroups;
   constants.maxDepth = maxDepth_;
   constants.spread = fit.spread;
@@ -226,14 +283,20 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kOneGroup] = {1, 1, 1};
   record.groups[kPartGroups] = {shader::kOrderParts, 1, 1};
   record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
+  record.groups[kLinkGroups] = {std::clamp(maxColliders_ / (4 * shader::kSpawnGroupSize), 1u, 256u), 1, 1};
   record.conditions[kSorted] = sorted;
   record.conditions[kOrdered] = sorted && ordered_;
   record.conditions[kBucketed] = sorted || regions || counts || vertices_;
+  record.conditions[kColliding] = grammar.graph.phases > 1;
+  for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
   record.levels = rounds;
   record.constants = std::as_bytes(std::span(&constants, 1));
   if (kernel) {
     record.replacedShader = derive_;
     record.replacement = kernel->pipeline;
+  } else if (grammar.graph.phases && ready()) {
+    record.replacedShader = derive_;
+    record.replacement = pipelineOf(deriveColliding_);
   }
   if (auto ok = check(record); !ok) return ok;
   return Worker::record(record);
@@ -281,7 +344,10 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   report.depth = raw.words[8];
   report.vertices = 4 * raw.words[9];
   report.verticesWritten = 4 * raw.words[10];
-  if (report.base.status == GPGP_SUCCESS && (raw.words[11] || report.droppedShapes || report.unfinishedShapes))
+  report.colliders = raw.words[12];
+  report.collidersKept = std::min(report.colliders, maxColliders_);
+  if (report.base.status == GPGP_SUCCESS && (raw.words[11] || report.droppedShapes || report.unfinishedShapes ||
+                                             report.colliders > report.collidersKept))
     report.base.status = GPGP_BUDGET_EXCEEDED;
   return true;
 }

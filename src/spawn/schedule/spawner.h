@@ -3,7 +3,11 @@
 // Passes of a record: clear, then the rounds, place, emit. A round shares a queue of shapes among workgroups; each
 // derives what comes of its shapes with a stack of its own and leaves to the next round what it should not or cannot do
 // alone (shaders/spawn/derive.comp). Terminals leave as instances, or, from a spawner for vertices, as vertices and
-// indices. Where instances are sorted by bucket, or ordered, terminals become records first, and emit puts them in their places.
+// indices. Where instances are sorted by bucket, or ordered, terminals become records first, and emit puts them in their
+// places.
+//
+// Grammars with Collider and IfCollides are derived in phases: all rounds of one, link, which makes the colliders so
+// far searchable, all rounds of the next. A spawner made for colliders records those passes for such grammars only.
 #pragma once
 #include "core/worker.h"
 #include "spawn/schedule/grammar.h"
@@ -30,8 +34,11 @@ public:
   bool vertices() const { return vertices_; }
 
 private:
-  uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0;
-  uint32_t derive_ = 0; // its shader
+  /// Counters from the first round of a phase to the next phase's: its rounds, and what the last one left.
+  uint32_t phaseStride() const { return rounds_ + 1; }
+
+  uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0, maxColliders_ = 0;
+  uint32_t derive_ = 0, deriveColliding_ = 0; // shaders
   bool vertices_ = false, ordered_ = false;
 };
 
