@@ -114,6 +114,8 @@ Grammar Deriver::prepare(const std::pmr::vector<uint32_t>& kernel) {
 }
 
 Measured<GpgpSpawnReport> Deriver::derive(const Grammar& grammar, uint32_t repeat) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (begin - lastWork_ > std::chrono::milliseconds(5)) busy_ = {};
   GpgpVertexOutput output = layout();
   if (options_.vertices) {
     output.vertices = vertices_.range({}, kRead);
@@ -135,6 +137,7 @@ Measured<GpgpSpawnReport> Deriver::derive(const Grammar& grammar, uint32_t repea
                                    return spawner_->recordPrepare(commands, frame, info);
                                  });
   lastWork_ = std::chrono::steady_clock::now();
+  busy_ += lastWork_ - begin;
   return result;
 }
 
@@ -166,9 +169,10 @@ GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
 }
 
 Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repeat) {
-  if (std::chrono::steady_clock::now() - lastWork_ > std::chrono::milliseconds(5)) {
-    const double once = derive(grammar, 3).times.median();
-    derive(grammar, static_cast<uint32_t>(std::clamp(100.0 / std::max(once, 0.01), 1.0, 3000.0)));
+  for (uint32_t times = 1;; times = std::min(2 * times, 256u)) {
+    const bool idled = std::chrono::steady_clock::now() - lastWork_ > std::chrono::milliseconds(5);
+    if (!idled && busy_ >= std::chrono::milliseconds(100)) break;
+    derive(grammar, times);
   }
   return derive(grammar, repeat);
 }

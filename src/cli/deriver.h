@@ -70,6 +70,7 @@ private:
   host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_;
   uint64_t elements_ = 0; // instances or vertices that the buffers hold
   std::chrono::steady_clock::time_point lastWork_{};
+  std::chrono::steady_clock::duration busy_{}; // since the device last idled
 };
 
 } // namespace gpgp::cli

@@ -246,7 +246,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   char hash[20];
   std::snprintf(hash, sizeof hash, "%08x%08x", report.keyHash[1], report.keyHash[0]);
   Json bucketList = Json::array(), passes = Json::object();
-  for (const auto& [name, time] : times.passes) passes[name] = time;
+  for (const auto& [name, time] : times.passes) // rounds of derivation have the same name
+    passes[name] = passes.value(name, 0.0) + time;
   std::ostringstream text;
   text << report.terminals << " terminals (" << triangles.total << " triangles) from " << start.size()
        << (start.size() == 1 ? " axiom" : " axioms") << " in " << report.rounds << " rounds on "

@@ -43,9 +43,11 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
     const bool fits = std::isfinite(c.milliseconds);
     scheduleList.push_back({{"schedule", tuned.schedules[c.schedule].name},
                             {"execution_groups", tuned.schedules[c.schedule].groups},
-                            {"gpu_ms_median", fits ? Json(c.milliseconds) : Json()}});
+                            {"gpu_ms_median", fits ? Json(c.milliseconds) : Json()},
+                            {"needs_larger_budgets", c.larger || !fits}});
     text << "  " << (fits ? milliseconds(c.milliseconds) : "exceeds the device's budgets") << "  "
-         << tuned.schedules[c.schedule].name << '\n';
+         << tuned.schedules[c.schedule].name << (c.larger ? ", with larger budgets than the interpreter's" : "")
+         << '\n';
   }
   text << "best: " << milliseconds(best.milliseconds) << " by " << schedule.name;
   if (best.fit.groupSize)

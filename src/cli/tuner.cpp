@@ -37,6 +37,8 @@ Tuned tuneGrammar(Session& session, const BakedGraph& grammar, const std::vector
   if (wanted.droppedShapes || wanted.unfinishedShapes)
     throw Failure("the derivation exceeds the budgets; use fewer axioms");
   if (!wanted.terminals) throw Failure("the grammar derives nothing from these axioms");
+  // A kernel that an engine's spawner has no room for would drop shapes there.
+  const uint32_t maxRounds = deriver.maxRounds(), maxShapes = deriver.maxShapes();
   tuned.interpreter = deriver.measure(interpreted, settings.repeat).times.median();
 
   const auto infoOf = [&](const Candidate& candidate) {
@@ -61,29 +63,33 @@ Tuned tuneGrammar(Session& session, const BakedGraph& grammar, const std::vector
                         std::to_string(r.terminals) + " terminals instead of " + std::to_string(wanted.terminals));
         part[i].milliseconds = deriver.measure(grammars[i], settings.repeat).times.median();
         part[i].rounds = r.rounds;
+        part[i].larger = r.rounds > maxRounds || r.peakShapes > maxShapes;
       }
     }
-    tuned.candidates += list.size();
-    std::stable_sort(list.begin(), list.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.milliseconds < b.milliseconds; });
+    std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
+      return std::pair(a.larger, a.milliseconds) < std::pair(b.larger, b.milliseconds);
+    });
     return list;
   };
   std::vector<Candidate> list;
   for (size_t i = 0; i < tuned.schedules.size(); ++i) list.push_back({i});
   tuned.measured = measureAll(std::move(list), "schedules");
   tuned.best = tuned.measured.front();
+  size_t numbers = 0;
   if (!settings.schedulesOnly) {
     // Two schedules are enough for the numbers: what is behind them now hardly wins by them.
     list.clear();
     for (size_t i = 0; i < std::min<size_t>(2, tuned.measured.size()); ++i)
       for (const spawn::Fit& fit : fits(session.device().isSoftware()))
         list.push_back({tuned.measured[i].schedule, fit});
+    numbers = list.size();
     const Candidate other = measureAll(std::move(list), "numbers").front();
     if (other.milliseconds < tuned.best.milliseconds) tuned.best = other;
   }
   if (!std::isfinite(tuned.best.milliseconds))
     throw Failure("no schedule fits this device's budgets; use fewer axioms");
   tuned.best.fit.rounds = tuned.best.rounds + 1; // one to spare: empty rounds cost time as well
+  tuned.candidates = tuned.schedules.size() + numbers;
   const Candidate kept = measureAll({tuned.best}, "best").front();
   if (std::isfinite(kept.milliseconds))
     tuned.best = kept;

@@ -23,6 +23,7 @@ struct Candidate {
   spawn::Fit fit;
   double milliseconds = std::numeric_limits<double>::infinity(); ///< it exceeds the device's budgets
   uint32_t rounds = 0;
+  bool larger = false; ///< it needs more rounds or shapes than the interpreter does: measured, but never the best
 };
 
 struct Tuned {
