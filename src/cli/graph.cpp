@@ -1,10 +1,10 @@
 // `gpgp graph`: the operator graph of a grammar and its schedules, as text or as a picture. Needs no GPU.
 #include "cli/command.h"
+#include "cli/kernels.h"
 #include "host/files.h"
 #include "spawn/graph/export.h"
 #include "spawn/graph/heuristics.h"
 #include "spawn/graph/matching.h"
-#include "spawn/language/build_graph.h"
 #include "spawn/language/print.h"
 
 #include <cstdio>
@@ -17,6 +17,7 @@ constexpr size_t kMostDrawn = 2000; // nodes; long edges through many layers are
 
 struct GraphOptions {
   std::string grammar, schedule, format = "text", out;
+  std::vector<std::string> set;
   bool partitions = false;
   uint32_t minimumGroupSize = spawn::Heuristics{}.minimumGroupSize;
   uint64_t limit = 1000000;
@@ -54,11 +55,8 @@ std::optional<spawn::Partition> schedule(const GraphOptions& options, const spaw
 }
 
 Outcome drawGraph(const GraphOptions& options) {
-  spawn::Diagnostics diagnostics;
-  const spawn::Graph graph =
-      spawn::compile(host::readText(options.grammar), {}, diagnostics, std::pmr::new_delete_resource());
-  report(diagnostics, options.grammar);
-  if (const auto ok = spawn::validate(graph); !ok) throw Failure(options.grammar + ": " + ok.error().text);
+  const BakedGraph grammar = bakeGraph(options.grammar, options.set);
+  const spawn::Graph& graph = grammar.graph;
   const spawn::Flow flow = spawn::makeFlow(graph);
   const std::optional<spawn::Partition> partition = schedule(options, graph, flow);
 
@@ -123,6 +121,9 @@ Work addGraph(CLI::App& app) {
   command->add_option("GRAMMAR", options->grammar, "PGA-shape grammar text (.pga)")
       ->required()
       ->check(CLI::ExistingFile);
+  command->add_option("--set", options->set, "Override a `var` of the grammar; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
   command
       ->add_option("--schedule", options->schedule,
                    "Execution groups: sgl (as few as possible), rw (one a node), rules (one a rule), heuristic, or a "

@@ -52,6 +52,7 @@ std::string statusName(GpgpResult status) { return gpgpResultString(status); }
 
 void Session::onMessage(void* userData, const GpgpMessage* message) {
   auto* session = static_cast<Session*>(userData);
+  const std::lock_guard lock(session->messages_);
   if (message->severity == GPGP_SEVERITY_ERROR) {
     session->lastError_ = message->text; // thrown, and so printed, by check
     return;

@@ -6,6 +6,8 @@
 
 #include <gpgp/gpgp.hpp>
 
+#include <mutex>
+
 namespace gpgp::cli {
 
 /// GPU times of a repeated record, milliseconds.
@@ -66,6 +68,7 @@ private:
                const std::function<void()>& collectReports);
   static void GPGP_CALL onMessage(void* userData, const GpgpMessage* message);
   host::HeadlessDevice device_;
+  std::mutex messages_; // pipelines are made on several threads
   std::string lastError_;
   Context context_;
   host::FrameRing frames_;

@@ -1,13 +1,11 @@
 // `gpgp spawn`: compiles a grammar, derives axioms and says what came out, beside the CPU evaluator.
 #include "cli/axioms.h"
-#include "cli/grammar_source.h"
-#include "cli/instances_gltf.h"
 #include "cli/painter.h"
-#include "cli/session.h"
+#include "cli/triangles_gltf.h"
+#include "cli/tuner.h"
 #include "cli/unit_shapes.h"
 #include "host/files.h"
 #include "spawn/evaluator/evaluator.h"
-#include "spawn/graph/blob.h"
 
 #include <gpgp/spawn.h>
 
@@ -31,18 +29,22 @@ struct SpawnOptions {
   Size imageSize{1280, 720};
   float yaw = 35, pitch = 25, zoom = 1;
   uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0;
-  std::string schedule = "default";
+  std::string schedule = "default", output = "instances", matching = "off";
+  bool sorted = false;
 };
 
-/// What the CPU evaluator derives, on one thread, instances included.
+/// What the CPU evaluator derives, on one thread, instances or vertices included.
 struct Reference {
   spawn::Derivation result;
   double milliseconds = 0;
 };
 
-Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth) {
+Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
+                   bool vertices) {
   spawn::DeriveOptions options;
   if (maxDepth) options.maxDepth = maxDepth;
+  const auto layout = spawn::layoutOf(Deriver::layout());
+  if (vertices) options.vertices = &*layout;
   Reference reference;
   const auto begin = std::chrono::steady_clock::now();
   reference.result = spawn::derive(words, axioms, options);
@@ -50,36 +52,107 @@ Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>
   return reference;
 }
 
-/// What gpgpCreateSpawner takes.
-uint64_t mostColliders(const host::HeadlessDevice& device) {
-  return device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 8192 : 1u << 24;
+/// The kernel that --schedule names: none for the interpreter.
+struct Chosen {
+  std::pmr::vector<uint32_t> words;
+  std::string name;           ///< of its schedule
+  std::filesystem::path file; ///< that it was taken from
+  size_t groups = 0;
+};
+
+Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
+                    Session& session) {
+  const std::string& name = options.schedule;
+  const uint32_t count = static_cast<uint32_t>(axioms.size());
+  const auto taken = [&](const spawn::Kernel& kernel, const std::filesystem::path& file) {
+    spawn::KernelInfo info = kernel.info;
+    info.vendor = info.device = 0; // it is the only one here
+    return Chosen{kernelWords(grammar, info, kernel.spirv), info.schedule, file, info.groups};
+  };
+  if (name == "interpreter")
+    return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
+  if (name == "tuned") {
+    const std::filesystem::path file = tunedFile(options.grammar, grammar);
+    if (std::filesystem::exists(file))
+      if (const auto kernel = kernelFor(kernelsIn(file, grammar), session.device(), count);
+          kernel && isTunedFor(kernel->info, session.device(), count))
+        return taken(*kernel, file);
+    std::fprintf(stderr, "gpgp spawn: no stored schedule for this grammar, device and number of axioms; tuning\n");
+    TuneSettings settings;
+    settings.matching = options.matching == "on";
+    const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
+    keepKernel(file, grammar, tuned.info, tuned.spirv);
+    std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
+    return taken({tuned.info, {tuned.spirv.begin(), tuned.spirv.end()}}, file);
+  }
+  const bool subgroups = hasSubgroups(session.device());
+  if (spawn::namedSchedule(grammar.graph, name) || !isBaked(name)) {
+    const auto schedule = scheduleFor(grammar.graph, name);
+    if (!schedule)
+      throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
+                  name + "\"");
+    const auto spirv = compileKernels(grammar.graph, std::span(&*schedule, 1), subgroups, options.matching == "on");
+    return {kernelWords(grammar, kernelInfo(*schedule, subgroups), spirv[0]), schedule->name, {}, schedule->groups};
+  }
+  const auto kernel = kernelFor(kernelsIn(name, grammar), session.device(), count);
+  if (!kernel) throw Failure(name + " holds no kernel that is for this device");
+  return taken(*kernel, name);
 }
 
-std::vector<std::string> ruleNames(const Blob& blob) {
-  const std::span bytes(static_cast<const std::byte*>(blob.data()), blob.size()); // kernels lie behind the graph
-  const auto graph = spawn::load(bytes.first(spawn::sizeOfGraph(bytes)), std::pmr::new_delete_resource());
-  if (!graph) throw Failure(graph.error().text);
-  std::vector<std::string> names;
-  for (const spawn::Rule& rule : graph->rules) names.emplace_back(graph->nameAt(rule.name));
-  return names;
-}
+/// What was derived, as triangles with the terminal that each belongs to.
+struct Triangles {
+  bool keep = false;            ///< all of them, not only their number
+  std::vector<uint64_t> counts; ///< by terminal
+  uint64_t total = 0;
+  std::vector<std::array<glm::vec3, 3>> corners;
+  std::vector<uint32_t> terminals;
+  Bounds bounds;
 
-std::vector<std::vector<glm::vec3>> unitShapes() {
+  void count(uint32_t terminal, uint64_t number) {
+    counts.at(terminal) += number;
+    total += number;
+  }
+  void add(const std::array<glm::vec3, 3>& triangle, uint32_t terminal) {
+    count(terminal, 1);
+    if (!keep) return;
+    corners.push_back(triangle);
+    terminals.push_back(terminal);
+    for (const glm::vec3& corner : triangle) bounds.add(corner);
+  }
+};
+
+void addTriangles(Triangles& all, const std::vector<GpgpInstance>& instances) {
   std::vector<std::vector<glm::vec3>> shapes;
   for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
-  return shapes;
+  for (const GpgpInstance& instance : instances) {
+    const std::vector<glm::vec3>& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
+    if (!all.keep) {
+      all.count(instance.terminal, shape.size() / 3);
+      continue;
+    }
+    for (size_t i = 0; i + 2 < shape.size(); i += 3)
+      all.add({placed(instance, shape[i]), placed(instance, shape[i + 1]), placed(instance, shape[i + 2])},
+              instance.terminal);
+  }
+}
+
+void addTriangles(Triangles& all, const std::vector<SpawnedVertex>& vertices, const std::vector<uint32_t>& indices) {
+  const auto at = [&](size_t i) {
+    const float* p = vertices.at(indices[i]).position;
+    return glm::vec3(p[0], p[1], p[2]);
+  };
+  for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const std::array corners = {at(i), at(i + 1), at(i + 2)};
+    // Quads of polygons with an odd number of corners end in a triangle without area, which nobody sees.
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+      all.add(corners, vertices[indices[i]].terminal);
+  }
 }
 
 /// Terminals are coloured by the index that the grammar gives them, on a square of ground.
-void paint(const SpawnOptions& options, const std::vector<GpgpInstance>& instances,
-           const std::vector<GpgpGrammarTerminal>& terminals) {
-  const std::vector<std::vector<glm::vec3>> shapes = unitShapes();
-  Bounds bounds;
-  for (const GpgpInstance& instance : instances)
-    for (int i = 0; i < 8; ++i)
-      bounds.add(placed(instance, {i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f,
-                                   instance.size[2] == 0 ? 0.0f : (i & 4 ? 0.5f : -0.5f)}));
-  if (instances.empty()) bounds.add(glm::vec3(0));
+void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph& graph) {
+  Bounds bounds = all.bounds;
+  if (all.corners.empty()) bounds.add(glm::vec3(0));
   glm::mat4 camera = viewAll(bounds, options.yaw, options.pitch, options.imageSize.width, options.imageSize.height);
   for (int c = 0; c < 4; ++c) {
     camera[c].x *= options.zoom;
@@ -87,16 +160,9 @@ void paint(const SpawnOptions& options, const std::vector<GpgpInstance>& instanc
   }
   Painter painter(options.imageSize.width, options.imageSize.height);
   painter.sun(bounds);
-  for (const bool shadows : {true, false})
-    for (const GpgpInstance& instance : instances) {
-      const std::vector<glm::vec3>& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
-      const glm::vec3 colour = paletteColour(terminals[instance.terminal].index);
-      for (size_t i = 0; i + 2 < shape.size(); i += 3) {
-        const std::array corners = {placed(instance, shape[i]), placed(instance, shape[i + 1]),
-                                    placed(instance, shape[i + 2])};
-        shadows ? painter.shadow(corners) : painter.triangle(camera, corners, colour);
-      }
-    }
+  for (const auto& corners : all.corners) painter.shadow(corners);
+  for (size_t i = 0; i < all.corners.size(); ++i)
+    painter.triangle(camera, all.corners[i], paletteColour(graph.terminals[all.terminals[i]].index));
   const glm::vec3 extent = bounds.high - bounds.low;
   const float margin = 0.15f * std::max({extent.x, extent.y, extent.z});
   const glm::vec3 a(bounds.low.x - margin, bounds.low.y, bounds.low.z - margin), ground(0.80f, 0.82f, 0.76f);
@@ -107,95 +173,72 @@ void paint(const SpawnOptions& options, const std::vector<GpgpInstance>& instanc
 }
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
-  const Blob blob = compileGrammarFile(options.grammar, options.set, options.schedule != "interpreter");
+  const bool vertices = options.output == "vertices";
+  if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
+  const BakedGraph grammar = bakeGraph(options.grammar, options.set);
+  const spawn::Graph& graph = grammar.graph;
   const AxiomDefaults defaults{options.size, options.seed};
-  const std::vector<GpgpAxiom> start = options.axiomFile.empty()
-                                           ? axiomGrid(options.axioms, options.spacing, defaults)
-                                           : readAxioms(options.axiomFile, ruleNames(blob), defaults);
-  std::vector<uint32_t> words(blob.size() / sizeof(uint32_t));
-  std::memcpy(words.data(), blob.data(), words.size() * sizeof(uint32_t));
-  const Reference reference = evaluate(words, start, options.maxDepth);
+  std::vector<std::string> rules;
+  for (size_t rule = 0; rule < graph.rules.size(); ++rule) rules.emplace_back(grammar.ruleName(rule));
+  const std::vector<GpgpAxiom> start = options.axiomFile.empty() ? axiomGrid(options.axioms, options.spacing, defaults)
+                                                                 : readAxioms(options.axiomFile, rules, defaults);
+  const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices);
   Session session(common);
-  host::HeadlessDevice& device = session.device();
-  GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
-  grammarInfo.label = options.grammar.c_str();
-  grammarInfo.data = blob.data();
-  grammarInfo.size = blob.size();
-  const Grammar grammar = session.take(Grammar::create(session.context(), grammarInfo), "gpgpCreateGrammar");
-  uint32_t terminalCount = 0;
-  session.check(grammar.terminals(terminalCount, nullptr), "gpgpGetGrammarTerminals");
-  std::vector<GpgpGrammarTerminal> terminals(terminalCount);
-  session.check(grammar.terminals(terminalCount, terminals.data()), "gpgpGetGrammarTerminals");
-  uint32_t buckets = 1;
-  for (const GpgpGrammarTerminal& terminal : terminals) buckets = std::max(buckets, terminal.bucket + 1);
+  const Chosen chosen = chooseKernel(options, grammar, start, session);
 
-  const uint64_t most = device.properties().limits.maxStorageBufferRange / sizeof(GpgpInstance);
-  if (options.maxInstances > most)
-    throw Usage("--max-instances is too large for this device: at most " + std::to_string(most));
-  const uint32_t maxInstances = options.maxInstances
-                                    ? options.maxInstances
-                                    : static_cast<uint32_t>(std::clamp<uint64_t>(reference.result.terminals, 1,
-                                                                                 std::min<uint64_t>(most, 1u << 30)));
-  GpgpSpawnerCreateInfo spawnerInfo = GPGP_SPAWNER_CREATE_INFO_INIT;
-  spawnerInfo.base = session.workerInfo("spawner");
-  spawnerInfo.maxShapes = options.maxShapes;
-  spawnerInfo.maxTerminals = maxInstances;
-  spawnerInfo.maxDepth = options.maxDepth;
-  if (words[shader::kHeaderPhases]) // what the evaluator needed, as for instances
-    spawnerInfo.maxColliders = options.maxColliders
-                                   ? options.maxColliders
-                                   : static_cast<uint32_t>(std::clamp<uint64_t>(reference.result.colliders, 1,
-                                                                                mostColliders(device)));
-  Spawner spawner = session.take(Spawner::create(session.context(), spawnerInfo), "gpgpCreateSpawner");
-  session.check(spawner.prewarm(), "gpgpPrewarm");
-  session.check(spawner.prewarm(grammar), "gpgpPrewarmGrammar");
-  session.upload();
-
-  const host::Buffer axioms = host::makeBuffer(device, start, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "axioms");
-  const VkDeviceSize instanceBytes = VkDeviceSize{maxInstances} * sizeof(GpgpInstance);
-  const host::Buffer instances(device, instanceBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, host::Memory::device,
-                               "instances");
-  const host::Buffer draws =
-      host::makeBuffer(device, std::vector<VkDrawIndexedIndirectCommand>(std::max(terminalCount, buckets)),
-                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "draws");
-  const GpgpAccess transfer{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
-                            VK_IMAGE_LAYOUT_UNDEFINED};
-  const auto [times, report] =
-      session.measure(spawner, "deriving", options.repeat,
-                      [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
-                        GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
-                        info.base = base;
-                        info.grammar = grammar;
-                        info.axioms = axioms.range();
-                        info.axiomCount = static_cast<uint32_t>(start.size());
-                        info.instances = instances.range({}, transfer);
-                        info.draws = draws.range({}, transfer);
-                        return spawner.recordPrepare(commands, frame, info);
-                      });
-  const auto commands = host::download<VkDrawIndexedIndirectCommand>(device, draws, buckets);
-  const auto written = host::download<GpgpInstance>(device, instances, report.instancesWritten);
+  DeriverOptions deriverOptions;
+  deriverOptions.vertices = vertices;
+  deriverOptions.sorted = options.sorted;
+  deriverOptions.maxShapes = options.maxShapes;
+  deriverOptions.maxDepth = options.maxDepth;
+  deriverOptions.maxColliders = options.maxColliders;
+  deriverOptions.maxInstances = options.maxInstances;
+  deriverOptions.expected =
+      vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals;
+  Deriver deriver(session, grammar, start, deriverOptions);
+  if (options.maxInstances > deriver.mostElements())
+    throw Usage("--max-instances is too large for this device: at most " + std::to_string(deriver.mostElements()));
+  const Grammar prepared = deriver.prepare(chosen.words);
+  GpgpSpawnReport report = deriver.fit(prepared);
+  const auto measured = deriver.measure(prepared, options.repeat);
+  const GpuTimes& times = measured.times;
+  report = measured.report;
+  const std::vector<GpgpInstance> instances = vertices ? std::vector<GpgpInstance>() : deriver.instances();
+  const std::vector<SpawnedVertex> written = vertices ? deriver.vertices() : std::vector<SpawnedVertex>();
+  Triangles triangles{!options.image.empty() || !options.out.empty(), std::vector<uint64_t>(graph.terminals.size())};
+  if (vertices)
+    addTriangles(triangles, written, deriver.indices());
+  else
+    addTriangles(triangles, instances);
+  const uint64_t bytesWritten = deriver.bytesWritten();
   session.checkValidation();
-  std::vector<std::string> bucketNames(buckets);
-  for (const GpgpGrammarTerminal& terminal : terminals) {
+
+  std::vector<std::string> bucketNames(std::max(graph.buckets, 1u));
+  for (const spawn::Terminal& terminal : graph.terminals) {
     std::string& name = bucketNames[terminal.bucket];
-    name += (name.empty() ? "" : ", ") + std::string(terminal.name);
+    name += (name.empty() ? "" : ", ") + std::string(graph.nameAt(terminal.name));
   }
-  if (!options.image.empty()) paint(options, written, terminals);
+  std::vector<uint64_t> bucketInstances(bucketNames.size()), bucketTriangles(bucketNames.size());
+  for (const GpgpInstance& instance : instances) ++bucketInstances.at(instance.bucket);
+  for (size_t terminal = 0; terminal < triangles.counts.size(); ++terminal)
+    bucketTriangles[graph.terminals[terminal].bucket] += triangles.counts[terminal];
+  if (!options.image.empty()) paint(options, triangles, graph);
   if (!options.out.empty()) {
     const auto colour = [&](uint32_t bucket) {
-      for (const GpgpGrammarTerminal& terminal : terminals)
+      for (const spawn::Terminal& terminal : graph.terminals)
         if (terminal.bucket == bucket) return paletteColour(terminal.index);
       return paletteColour(0);
     };
+    std::vector<std::vector<glm::vec3>> corners(bucketNames.size());
+    for (size_t i = 0; i < triangles.corners.size(); ++i)
+      for (const glm::vec3& corner : triangles.corners[i])
+        corners[graph.terminals[triangles.terminals[i]].bucket].push_back(corner);
     writeGlb(
-        options.out, written, buckets, [&](uint32_t bucket) { return bucketNames[bucket]; }, colour);
+        options.out, corners, [&](uint32_t bucket) { return bucketNames[bucket]; }, colour);
   }
-  uint64_t triangles = 0;
-  const std::vector<std::vector<glm::vec3>> shapes = unitShapes();
-  for (const GpgpInstance& instance : written)
-    triangles += shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)].size() / 3;
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
-  if (!exceeded && reference.result.complete &&
+  const bool whole = !report.droppedShapes && report.unfinishedShapes == reference.result.unfinishedShapes;
+  if (whole && reference.result.complete &&
       (reference.result.terminals != report.terminals ||
        std::memcmp(reference.result.keyHash, report.keyHash, sizeof report.keyHash) != 0))
     throw Failure(options.grammar + ": the device derived something else than the CPU evaluator; please report this");
@@ -204,19 +247,23 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   char hash[20];
   std::snprintf(hash, sizeof hash, "%08x%08x", report.keyHash[1], report.keyHash[0]);
   Json bucketList = Json::array(), passes = Json::object();
-  for (const auto& [name, time] : times.passes) passes[name] = time;
-  const uint64_t bytesWritten = uint64_t{report.instancesWritten} * sizeof(GpgpInstance);
+  for (const auto& [name, time] : times.passes) // rounds of derivation have the same name
+    passes[name] = passes.value(name, 0.0) + time;
   std::ostringstream text;
-  text << report.terminals << " terminals (" << triangles << " triangles) from " << start.size()
-       << (start.size() == 1 ? " axiom" : " axioms") << " in " << report.rounds << " rounds on " << device.name()
-       << '\n';
-  for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
-    bucketList.push_back(
-        {{"bucket", bucket}, {"name", bucketNames[bucket]}, {"instances", commands[bucket].instanceCount}});
-    text << "  " << commands[bucket].instanceCount << "  " << bucketNames[bucket] << '\n';
+  text << report.terminals << " terminals (" << triangles.total << " triangles) from " << start.size()
+       << (start.size() == 1 ? " axiom" : " axioms") << " in " << report.rounds << " rounds on "
+       << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups << " execution groups\n";
+  for (uint32_t bucket = 0; bucket < bucketNames.size(); ++bucket) {
+    bucketList.push_back({{"bucket", bucket},
+                          {"name", bucketNames[bucket]},
+                          {"instances", bucketInstances[bucket]},
+                          {"triangles", bucketTriangles[bucket]}});
+    text << "  " << (vertices ? bucketTriangles : bucketInstances)[bucket] << (vertices ? " triangles  " : "  ")
+         << bucketNames[bucket] << '\n';
   }
   text << "peak of " << report.peakShapes << " shapes; GPU " << milliseconds(times.median()) << " (median of "
-       << times.totals.size() << "); CPU evaluator, one thread " << milliseconds(reference.milliseconds);
+       << times.totals.size() << "), " << bytesWritten << " bytes written; CPU evaluator, one thread "
+       << milliseconds(reference.milliseconds);
   if (!reference.result.complete) {
     text << ", which gave up";
   } else if (reference.milliseconds > 0) {
@@ -226,32 +273,44 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     text << " (" << rate << " million terminals a second)";
   }
   text << '\n';
-  if (report.droppedShapes)
-    text << "budget exceeded: " << report.droppedShapes << " shapes did not fit; --max-shapes " << report.peakShapes
-         << " would have held that round\n";
+  if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
+  if (report.droppedShapes) {
+    text << "budget exceeded: " << report.droppedShapes << " shapes did not fit";
+    if (report.peakShapes > deriver.maxShapes())
+      text << "; --max-shapes " << report.peakShapes << " would have held that round";
+    text << '\n';
+  }
   if (report.collidersKept < report.colliders)
     text << "budget exceeded: " << report.colliders - report.collidersKept << " colliders did not fit; --max-colliders "
          << report.colliders << " would have\n";
   if (report.unfinishedShapes)
     text << "budget exceeded: " << report.unfinishedShapes << " shapes were not finished; raise --max-depth\n";
-  if (report.instancesWritten < report.terminals)
+  if (!vertices && report.instancesWritten < report.terminals)
     text << "budget exceeded: " << report.terminals - report.instancesWritten
          << " instances did not fit; --max-instances " << report.terminals << " would have\n";
+  if (report.verticesWritten < report.vertices)
+    text << "budget exceeded: " << report.vertices - report.verticesWritten << " vertices did not fit\n";
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
   outcome.text = text.str();
   outcome.json = {{"grammar", options.grammar},
-                  {"device", device.name()},
+                  {"device", session.device().name()},
                   {"status", statusName(report.base.status)},
-                  {"schedule", options.schedule},
+                  {"output", options.output},
+                  {"schedule", chosen.name},
+                  {"schedule_file", chosen.file.empty() ? Json() : Json(chosen.file.string())},
+                  {"execution_groups", chosen.groups},
                   {"axioms", start.size()},
                   {"seed", options.seed},
                   {"terminals", report.terminals},
-                  {"instances", report.instancesWritten},
-                  {"triangles", triangles},
+                  {"instances", instances.size()},
+                  {"vertices", written.size()},
+                  {"triangles", triangles.total},
                   {"buckets", bucketList},
                   {"rounds", report.rounds},
                   {"peak_shapes", report.peakShapes},
+                  {"max_shapes", deriver.maxShapes()},
+                  {"max_rounds", deriver.maxRounds()},
                   {"dropped_shapes", report.droppedShapes},
                   {"unfinished_shapes", report.unfinishedShapes},
                   {"colliders", report.colliders},
@@ -295,12 +354,31 @@ Work addSpawn(CLI::App& app) {
   command->add_option("--set", options->set, "Override a `var` of the grammar; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--repeat", options->repeat, "Derive N times and report the median time")
+  command->add_option("--repeat", options->repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
-  command->add_option("--schedule", options->schedule, "How the derivation runs")
-      ->check(CLI::IsMember({"interpreter", "default"}))
+  command
+      ->add_option(
+          "--schedule", options->schedule,
+          "How the derivation runs. sgl: as few execution groups as possible; rw: one an operator; rules: one a "
+          "rule; heuristic: the thesis's H1 to H3; default: only operators that multiply wait; interpreter: no "
+          "kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
+          "many axioms, tuning first where it is not stored yet (in $XDG_CACHE_HOME/gpgp or ~/.cache/gpgp); "
+          "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
+      ->type_name("NAME|FILE")
       ->capture_default_str();
+  command
+      ->add_option("--matching", options->matching,
+                   "Execution groups that differ in parameters only share one piece of code; not for baked kernels")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  command
+      ->add_option("--output", options->output,
+                   "What the GPU writes. instances: 96 bytes for each terminal. vertices: 32 bytes each, position "
+                   "float x 3, normal snorm8 x 4, uv float x 2, terminal and axiom id uint32; and 32-bit indices")
+      ->check(CLI::IsMember({"instances", "vertices"}))
+      ->capture_default_str();
+  command->add_flag("--sorted", options->sorted, "Instances lie by bucket, with a draw command each");
   command->add_option("--image", options->image, "Write a picture of the result")->type_name("FILE.png");
   command->add_option("--yaw", options->yaw, "That picture's view: degrees around the scene")->capture_default_str();
   command->add_option("--pitch", options->pitch, "Degrees above the horizon")
@@ -309,18 +387,19 @@ Work addSpawn(CLI::App& app) {
   command->add_option("--zoom", options->zoom, "Times closer to the middle than all of the scene")
       ->check(CLI::Range(0.01f, 1000.0f))
       ->capture_default_str();
-  command->add_option("--out", options->out, "Write the instances as triangles")->type_name("FILE.glb");
+  command->add_option("--out", options->out, "Write what was derived as triangles")->type_name("FILE.glb");
   addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)");
   command
       ->add_option("--max-instances", options->maxInstances,
-                   "Budget: instances written (0: what the CPU evaluator counts, as far as the device binds it)")
+                   "Budget: instances or vertices written (0: as many as there are, as far as the device binds them)")
       ->check(CLI::Range(0u, 1u << 30))
       ->capture_default_str();
   command->add_option("--max-shapes", options->maxShapes,
-                      "Budget: shapes alive in one round (0: the library's default)");
+                      "Budget: shapes that wait for a round (0: the library's default, doubled until all fit)");
   command->add_option("--max-colliders", options->maxColliders,
-                      "Budget: shapes that Collider registers (0: as many as the CPU evaluator derives)");
-  command->add_option("--max-depth", options->maxDepth, "Budget: rounds (0: the library's default)");
+                      "Budget: shapes that Collider registers (0: as many as there are)");
+  command->add_option("--max-depth", options->maxDepth,
+                      "Budget: how deep rules nest in themselves (0: the library's default)");
   command->footer(R"(
 Examples:
   gpgp spawn sponge.pga                                 one axiom of 1 x 1 x 1
@@ -328,6 +407,7 @@ Examples:
   gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
   gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
+  gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50
 
 An axiom stands on its position. The CPU evaluator derives the same on one thread: cpu_reference_ms, and a check of what
 the device did. Errors in the grammar and in axiom files are printed with their place. What exceeds a budget is counted

@@ -68,6 +68,12 @@ std::vector<glm::vec3> sphere() {
 
 } // namespace
 
+glm::vec3 placed(const GpgpInstance& instance, const glm::vec3& p) {
+  const float* m = instance.transform;
+  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+
 std::vector<glm::vec3> unitShape(GpgpShape shape) {
   if (shape <= GPGP_SHAPE_OCTAGON) return polygon(regular(3 + (shape - GPGP_SHAPE_TRIANGLE)));
   if (shape <= GPGP_SHAPE_PRISM8) return prism(regular(3 + (shape - GPGP_SHAPE_PRISM3)));

@@ -11,5 +11,7 @@ namespace gpgp::cli {
 /// Three corners per triangle, counter-clockwise from outside. Shapes with corners of their own (the dynamic ones) come
 /// as their box.
 std::vector<glm::vec3> unitShape(GpgpShape shape);
+/// The unit shape's point p placed by the instance.
+glm::vec3 placed(const GpgpInstance& instance, const glm::vec3& p);
 
 } // namespace gpgp::cli

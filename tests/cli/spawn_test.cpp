@@ -3,6 +3,8 @@
 #include "host/picture.h"
 #include "run.h"
 
+#include <map>
+
 namespace gpgp::test {
 namespace {
 
@@ -20,15 +22,22 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "grammar",
                                                 "device",
                                                 "status",
+                                                "output",
                                                 "schedule",
+                                                "schedule_file",
+                                                "execution_groups",
                                                 "axioms",
                                                 "seed",
                                                 "terminals",
                                                 "instances",
+                                                "vertices",
                                                 "triangles",
+                                                "not_drawn",
                                                 "buckets",
                                                 "rounds",
                                                 "peak_shapes",
+                                                "max_shapes",
+                                                "max_rounds",
                                                 "dropped_shapes",
                                                 "unfinished_shapes",
                                                 "budget_exceeded",
@@ -57,6 +66,110 @@ TEST(CliSpawn, CountsTerminals) {
   EXPECT_EQ(again["key_hash"], tower["key_hash"]);
   const json otherSeed = gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "4,10,4", "--seed", "9"});
   EXPECT_NE(otherSeed["key_hash"], tower["key_hash"]);
+}
+
+constexpr const char* kStreet = R"(axiom Box Street;
+terminal Wall Roof (1, 0);
+terminal Window (1, 1);
+Street = SubDiv(X) { -1: House | -1: Tall | -1: House };
+House = IfSizeLess(Y, 5) { Wall | Floors };
+Tall = Scale(-1, -0.5, -1) Translate(0, 1, 0) Floors;
+Floors = Repeat(Y, 2, ADJUST_TO_FILL) Front;
+Front = CompSplit() { Roof | Discard() | Wide | Wide | Wide | Wide };
+Wide = Extrude(0.1) Window;
+)";
+
+TEST(CliSpawn, EveryScheduleDerivesTheSame) {
+  const TemporaryFile grammar("street.pga", kStreet), groups("street_groups.txt"), baked("street.gpgp");
+  ASSERT_EQ(gpgp({"graph", grammar.path(), "--schedule", "heuristic", "-o", groups.path()}).exitCode, 0);
+  ASSERT_EQ(gpgp({"bake", grammar.path(), "-o", baked.path()}).exitCode, 0);
+  const auto derive = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"spawn", grammar.path(), "--axioms", "2", "--axiom-size", "9,8,4"});
+    return gpgpJson(more);
+  };
+  const json wanted = derive({"--schedule", "interpreter"});
+  EXPECT_EQ(wanted["terminals"], 2 * (4 + 2 + 4) * 5);
+  EXPECT_EQ(wanted["schedule"], "interpreter");
+  std::map<std::string, json> all;
+  for (const std::string& schedule : {std::string("default"), std::string("sgl"), std::string("rw"), groups.path()}) {
+    const json one = all[schedule] = derive({"--schedule", schedule, "--matching", schedule == "rw" ? "on" : "off"});
+    EXPECT_EQ(one["terminals"], wanted["terminals"]) << schedule;
+    EXPECT_EQ(one["key_hash"], wanted["key_hash"]) << schedule;
+    EXPECT_EQ(one["budget_exceeded"], false) << schedule;
+  }
+  for (const char* schedule : {"sgl", "rw"}) {
+    const json graph = gpgpJson({"graph", grammar.path(), "--schedule", schedule});
+    EXPECT_EQ(all[schedule]["execution_groups"], graph["execution_groups"]) << schedule;
+    EXPECT_EQ(all[schedule]["schedule"], schedule);
+  }
+  EXPECT_LT(all["sgl"]["execution_groups"], all["rw"]["execution_groups"]);
+  const json fromFile = derive({"--schedule", baked.path()});
+  EXPECT_EQ(fromFile["schedule"], "default"); // the kernel that it was baked with
+  EXPECT_EQ(fromFile["schedule_file"], baked.path());
+  EXPECT_EQ(fromFile["execution_groups"], all["default"]["execution_groups"]);
+  EXPECT_EQ(fromFile["key_hash"], wanted["key_hash"]);
+}
+
+TEST(CliSpawn, WritesVertices) {
+  const TemporaryFile grammar("vertices.pga", kStreet), picture("vertices.png"), out("vertices.glb");
+  const std::vector<std::string> common = {"spawn",        grammar.path(), "--axioms",   "2",
+                                           "--axiom-size", "9,8,4",        "--schedule", "interpreter",
+                                           "--image-size", "96x64"};
+  const auto derive = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), common.begin(), common.end());
+    return gpgpJson(more);
+  };
+  const json instances = derive({});
+  const json vertices = derive({"--output", "vertices", "--validate", "--image", picture.path(), "--out", out.path()});
+  EXPECT_EQ(vertices["terminals"], instances["terminals"]);
+  EXPECT_EQ(vertices["key_hash"], instances["key_hash"]);
+  EXPECT_EQ(vertices["instances"], 0);
+  // Of five terminals of a floor one is a quad and four are boxes.
+  EXPECT_EQ(vertices["triangles"], 2 * 10 * (2 + 4 * 12));
+  EXPECT_EQ(vertices["triangles"], instances["triangles"]);
+  EXPECT_EQ(vertices["vertices"], 2 * 10 * (4 + 4 * 24));
+  EXPECT_EQ(vertices["bytes_written"], 2 * 10 * ((4 + 4 * 24) * 32 + (2 + 4 * 12) * 3 * 4));
+  EXPECT_EQ(vertices["buckets"][0]["triangles"], 2 * 10 * 2);
+  EXPECT_EQ(host::readPng(picture.path()).width, 96u);
+  EXPECT_EQ(host::readText(out.path()).substr(0, 4), "glTF");
+  const json few = derive({"--output", "vertices", "--max-instances", "100"});
+  EXPECT_EQ(few["budget_exceeded"], true);
+  EXPECT_LE(few["vertices"], 100);
+  EXPECT_EQ(few["terminals"], instances["terminals"]);
+  const json sorted = derive({"--sorted"});
+  EXPECT_EQ(sorted["buckets"], instances["buckets"]);
+}
+
+TEST(CliSpawn, BudgetsGrowUntilItFits) {
+  // Each level doubles: far more shapes wait at once than a stack holds.
+  const TemporaryFile grammar("wide.pga", "axiom Box A;\nterminal T (1, 0);\nA = IfSizeLess(X, 0.002) { T | B };\n"
+                                          "B = SubDiv(X) { -1: C | -1: C };\nC = SubDiv(Y) { -1: A | -1: A };\n");
+  const std::vector<std::string> common = {"spawn", grammar.path(), "--axioms", "2", "--schedule", "interpreter"};
+  const json whole = gpgpJson(common);
+  EXPECT_EQ(whole["terminals"], 2 << 18);
+  EXPECT_EQ(whole["dropped_shapes"], 0);
+  auto small = common;
+  small.insert(small.end(), {"--max-shapes", "64"}); // what the caller sets is kept, and what is lost is told
+  const json told = gpgpJson(small);
+  EXPECT_EQ(told["max_shapes"], 64);
+  EXPECT_EQ(told["budget_exceeded"],
+            told["dropped_shapes"].get<uint32_t>() > 0 || told["instances"] < told["terminals"]);
+}
+
+TEST(CliSpawn, SchedulesFromFilesAreChecked) {
+  const TemporaryFile grammar("checked.pga", kStreet), other("other.pga", kTower), baked("other.gpgp"),
+      groups("wrong_groups.txt", "group { 0 1\n");
+  ASSERT_EQ(gpgp({"bake", other.path(), "--no-kernel", "-o", baked.path()}).exitCode, 0);
+  EXPECT_NE(gpgpFailure({"spawn", grammar.path(), "--schedule", baked.path()}).find("is not a baking of this grammar"),
+            std::string::npos);
+  EXPECT_NE(gpgpFailure({"spawn", other.path(), "--schedule", baked.path()}).find("holds no kernel"),
+            std::string::npos);
+  EXPECT_NE(gpgpFailure({"spawn", grammar.path(), "--schedule", groups.path()}).find("wrong_groups.txt:"),
+            std::string::npos);
+  expectWrongUsage({{"spawn", grammar.path(), "--schedule", "fastest"},
+                    {"spawn", grammar.path(), "--matching", "yes"},
+                    {"spawn", grammar.path(), "--output", "triangles"},
+                    {"spawn", grammar.path(), "--output", "vertices", "--sorted"}});
 }
 
 TEST(CliSpawn, BudgetsAreReported) {

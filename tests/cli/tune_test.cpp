@@ -2,14 +2,16 @@
 #include "files.h"
 #include "run.h"
 
+#include <cstdlib>
 #include <filesystem>
 
 namespace gpgp::test {
 namespace {
 
-constexpr const char* kTower = R"(axiom Box Tower;
+constexpr const char* kTower = R"(var floors = 1;
+axiom Box Tower;
 terminal Wall Roof (1, 0);
-Tower = Repeat(Y, 1, ADJUST_TO_FILL) Floor;
+Tower = Repeat(Y, floors, ADJUST_TO_FILL) Floor;
 Floor = IfSizeLess(X, 2) { Roof | SubDiv(X) { -1: Scale(-0.5, -1, -1) Floor | -1: Translate(0, 1, 0) Wall } };
 )";
 
@@ -26,6 +28,50 @@ TEST(CliTune, FindsAScheduleAndBakesIt) {
   const auto size = static_cast<double>(std::filesystem::file_size(baked.path()));
   gpgpJson(arguments); // tuned again for the same device and number: replaced, not added
   EXPECT_NEAR(static_cast<double>(std::filesystem::file_size(baked.path())), size, 0.3 * size);
+  const json derived = gpgpJson(
+      {"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--schedule", baked.path(), "--validate"});
+  EXPECT_EQ(derived["terminals"], first["terminals"]);
+  EXPECT_EQ(derived["schedule_file"], baked.path());
+}
+
+TEST(CliTune, TunedSchedulesAreKept) {
+  // In a cache of the test's own.
+  const TemporaryFile cache("tuned_cache"), grammar("kept.pga", kTower);
+  std::filesystem::create_directories(cache.path());
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string old = before ? before : "";
+  setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+  const json tuned =
+      gpgpJson({"tune", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--samples", "5", "--repeat", "3",
+                "--schedules-only", "--matching", "on", "--search", "random", "--set", "floors=1"});
+  EXPECT_EQ(tuned["matching"], true);
+  EXPECT_EQ(std::filesystem::path(tuned["out"].get<std::string>()).parent_path(),
+            std::filesystem::path(cache.path()) / "gpgp");
+  const std::vector<std::string> spawn = {"spawn",      grammar.path(), "--axiom-size", "8,4,1",
+                                          "--schedule", "tuned",        "--set",        "floors=1"};
+  auto two = spawn; // 2 and 3 are of one class
+  two.insert(two.end(), {"--axioms", "2"});
+  const json found = gpgpJson(two); // nothing on standard error: it is not tuned again
+  EXPECT_EQ(found["schedule_file"], tuned["out"]);
+  EXPECT_EQ(found["schedule"], tuned["best"]["schedule"]);
+  EXPECT_EQ(found["execution_groups"], tuned["best"]["execution_groups"]);
+  EXPECT_EQ(found["terminals"], 2 * 4 * 3);
+  if (before)
+    setenv("XDG_CACHE_HOME", old.c_str(), 1);
+  else
+    unsetenv("XDG_CACHE_HOME");
+  std::filesystem::remove_all(cache.path());
+}
+
+TEST(CliTune, WrongUsage) {
+  const TemporaryFile grammar("usage_tune.pga", kTower), other("other_file.txt", "no grammar");
+  expectWrongUsage({{"tune"},
+                    {"tune", grammar.path(), "--search", "lucky"},
+                    {"tune", grammar.path(), "--matching", "perhaps"},
+                    {"tune", grammar.path(), "--samples", "1"},
+                    {"tune", grammar.path(), "--set", "floors"}});
+  EXPECT_NE(gpgpFailure({"tune", grammar.path(), "-o", other.path()}).find("is not a baking of this grammar"),
+            std::string::npos);
 }
 
 } // namespace

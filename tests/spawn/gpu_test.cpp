@@ -3,7 +3,13 @@
 #include "host/device.h"
 #include "host/memory.h"
 #include "random_grammar.h"
+#include "spawn/codegen/compile_kernel.h"
+#include "spawn/codegen/generate.h"
+#include "spawn/codegen/schedules.h"
 #include "spawn/evaluator/evaluator.h"
+#include "spawn/graph/blob.h"
+#include "spawn/graph/heuristics.h"
+#include "spawn/graph/kernel.h"
 
 #include <gtest/gtest.h>
 
@@ -281,6 +287,55 @@ TEST_F(SpawnTest, GeneratedKernelsOfRandomGrammarsEqualTheEvaluator) {
     if (!cpu.complete || cpu.terminals < 5) continue;
     check(std::string("seed ") + std::to_string(seed) + "\n" + randomGrammar(seed), bakeKernel(randomGrammar(seed)),
           all);
+    if (HasFatalFailure()) return;
+    ++checked;
+  }
+}
+
+/// With a kernel in which matching groups of a random partition share code.
+std::vector<uint32_t> bakeMatched(const std::string& text, uint32_t seed) {
+  std::vector<uint32_t> words = bake(text);
+  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
+  EXPECT_TRUE(graph);
+  const spawn::Flow flow = spawn::makeFlow(*graph);
+  std::mt19937 random(seed);
+  const auto roots = seed ? spawn::randomPartition(flow, random) : spawn::singleGroups(flow);
+  const auto schedule = spawn::scheduleOf(*graph, flow, roots, "matched");
+  const auto spirv = spawn::compileKernel(spawn::generate(*graph, schedule.waits, schedule.roots), false);
+  EXPECT_TRUE(spirv) << spirv.error().text;
+  const auto kernel =
+      spawn::serialize(spawn::KernelInfo{}, *spirv, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
+  words.insert(words.end(), kernel.begin(), kernel.end());
+  return words;
+}
+
+TEST_F(SpawnTest, MatchedKernelsEqualTheEvaluator) {
+  // Chains of one structure: constants, expressions, targets and terminals differ.
+  check("alike",
+        bakeMatched(R"(axiom Box All;
+terminal Thin (1, 0);
+terminal Flat (1, 1);
+All = SubDiv(X) { -1: One | -1: Two | -1: Three | -2: Four };
+One = Rotate(0, 30, 0) Scale(0.5, -1, Exp(ShapeSize(Z) * 0.5)) IfSizeLess(Y, 10) { Thin | Again };
+Two = Rotate(0, 45, 10) Scale(0.25, -1, Exp(ShapeSize(Z) * 0.7)) IfSizeLess(Y, 20) { Flat | Again };
+Three = Rotate(5, 0, 0) Scale(0.75, -0.5, Exp(ShapeSize(Z) * 0.9)) IfSizeLess(Y, 4) { Flat | Other };
+Four = RandomRule(ShapeSeed()) { 0.3: Thin | 0.7: Translate(0, 1, 0) Flat };
+Again = Repeat(Y, 3, ADJUST_TO_FILL) Thin;
+Other = Repeat(Y, 2, ANCHOR_TO_START) Flat;
+)",
+                    0),
+        axioms(7, 12, 16, 10));
+  check("shapes", bakeMatched(ownGrammar("shapes.pga"), 0), axioms(7, 12, 16, 10));
+  const char* wanted = std::getenv("GPGP_TEST_KERNELS");
+  const uint32_t count = wanted ? static_cast<uint32_t>(std::atoi(wanted)) : 3;
+  spawn::DeriveOptions options;
+  options.maxShapes = 30000;
+  for (uint32_t seed = 2000, checked = 0; checked < count; ++seed) {
+    const auto all = axioms(1 + seed % 5, 6, 9, 7);
+    const auto cpu = spawn::derive(bake(randomGrammar(seed)), all, options);
+    if (!cpu.complete || cpu.terminals < 5) continue;
+    check(std::string("matched, seed ") + std::to_string(seed) + "\n" + randomGrammar(seed),
+          bakeMatched(randomGrammar(seed), seed), all);
     if (HasFatalFailure()) return;
     ++checked;
   }

@@ -78,6 +78,32 @@ TEST(Schedules, AnExhaustiveSearchMeetsEveryKernelOnce) {
   EXPECT_EQ(all.size(), 2u);
 }
 
+TEST(Schedules, MatchingGroupsShareCode) {
+  const spawn::Graph graph = graphOf(R"(axiom Box All;
+terminal T (1, 0);
+terminal U (1, 1);
+All = SubDiv(X) { -1: One | -1: Two | -1: Three };
+One = Translate(1, 0, 0) Rotate(0, 30, 0) T;
+Two = Translate(2, 0, 0) Rotate(0, 40, 0) U;
+Three = Translate(0, 3, 0) Scale(2, 2, 2) T;
+)");
+  const auto chains = [](const std::string& text) {
+    size_t count = 0;
+    for (size_t at = text.find("\nuint chain"); at != std::string::npos; at = text.find("\nuint chain", at + 1))
+      ++count;
+    return count;
+  };
+  const auto schedule = *spawn::namedSchedule(graph, "rules");
+  const std::string own = spawn::generate(graph, schedule.waits);
+  const std::string shared = spawn::generate(graph, schedule.waits, schedule.roots);
+  EXPECT_EQ(chains(own), 6u);
+  EXPECT_EQ(chains(shared), 4u); // One and Two are alike but for their numbers and terminals
+  EXPECT_EQ(own.find("matchedWords"), std::string::npos);
+  EXPECT_NE(shared.find("matchedWords"), std::string::npos);
+  EXPECT_EQ(spawn::generate(graph, schedule.waits, spawn::Roots()), own);
+  for (const bool subgroups : {false, true}) EXPECT_TRUE(spawn::compileKernel(shared, subgroups));
+}
+
 TEST(Schedules, KernelsOfAllSchedulesCompile) {
   for (const char* name : {"shapes.pga"}) {
     const spawn::Graph graph = graphOf(ownGrammar(name));

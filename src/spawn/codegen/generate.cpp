@@ -1,9 +1,12 @@
 #include "spawn/codegen/generate.h"
 
+#include "spawn/graph/matching.h"
 #include "spawn/operators.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
 
 namespace gpgp::spawn {
 namespace {
@@ -24,7 +27,12 @@ std::string number(uint32_t value) { return std::to_string(value) + "u"; }
 
 class Generator {
 public:
-  Generator(const Graph& graph, const std::vector<bool>& waits) : graph_(graph), waits_(waits) {}
+  Generator(const Graph& graph, const std::vector<bool>& waits, const Roots& roots)
+      : graph_(graph), waits_(waits), peers_(graph.nodes.size()), row_(graph.nodes.size()),
+        group_(graph.nodes.size(), kNoGroup) {
+    for (uint32_t n = 0; n < graph.nodes.size(); ++n) peers_[n] = {n};
+    if (!roots.empty()) match(roots);
+  }
 
   std::string run() {
     if (graph_.phases) add("#define GPGP_COLLIDERS\n");
@@ -38,13 +46,78 @@ public:
     }
     add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/fans.h\"\n");
     std::vector<uint8_t> written(graph_.nodes.size());
+    const std::string before = std::move(out_);
+    out_.clear();
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) writeChain(n, written);
     writeRunChain();
-    return std::move(out_);
+    return before + tables() + out_;
   }
 
 private:
   void add(const std::string& text) { out_ += text; }
+
+  // ---------------------------------------------------------------- matched groups
+
+  /// Groups with the same code share it; what differs lies in a table with a row for each of them.
+  void match(const Roots& roots) {
+    const Partition partition = makePartition(makeFlow(graph_), roots);
+    const Matching matching = matchGroups(graph_, partition);
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) group_[n] = partition.groupOf[n];
+    for (const GroupClass& all : matching.classes) {
+      std::map<std::vector<uint32_t>, std::vector<uint32_t>> alike; // to groups
+      for (const uint32_t g : all.members) alike[folded(partition.groups[g])].push_back(g);
+      for (const auto& [key, members] : alike)
+        for (size_t position = 0; position < partition.groups[members[0]].nodes.size(); ++position) {
+          std::vector<uint32_t> peers;
+          for (const uint32_t g : members) peers.push_back(partition.groups[g].nodes[position]);
+          for (uint32_t row = 0; row < peers.size(); ++row) {
+            peers_[peers[row]] = peers;
+            row_[peers[row]] = row;
+          }
+        }
+    }
+  }
+  /// What code has folded in beside its structure.
+  std::vector<uint32_t> folded(const Group& group) const {
+    std::vector<uint32_t> key;
+    for (const uint32_t index : group.nodes) {
+      const Node& node = graph_.nodes[index];
+      if (node.op == kOpTerminal) continue;
+      key.insert(key.end(), {node.argument, node.argument2, node.filter, node.division == UINT32_MAX, waits_[index],
+                             node.op == kOpCompSplit && node.shapes == 1u << kShapeBox});
+      for (uint32_t i = 0; node.filter && i < node.parameterCount; ++i)
+        key.push_back(graph_.parameters[node.firstParameter + i].value);
+      for (uint32_t e = 0; e < node.edgeCount; ++e) {
+        const Edge& edge = edgeOf(node, e);
+        const bool kept = edge.target != kNoNode;
+        key.insert(key.end(),
+                   {edge.recursive, kept && waits_[edge.target], kept && graph_.nodes[edge.target].op == kOpTerminal});
+      }
+    }
+    return key;
+  }
+  uint32_t indexOf(const Node& node) const { return static_cast<uint32_t>(&node - graph_.nodes.data()); }
+  const std::vector<uint32_t>& peersOf(const Node& node) const { return peers_[indexOf(node)]; }
+  std::string chainOf(uint32_t node) const { return "chain" + std::to_string(peers_[node][0]); }
+  /// A word that each of the node's peers has one of.
+  template <class Value> std::string word(const Node& node, bool isFloat, const Value& value) {
+    std::vector<uint32_t> words;
+    for (const uint32_t peer : peersOf(node)) words.push_back(value(graph_.nodes[peer]));
+    if (std::all_of(words.begin(), words.end(), [&](uint32_t w) { return w == words[0]; }))
+      return isFloat ? literal(uintBitsToFloat(words[0])) : number(words[0]);
+    const auto [at, isNew] = columns_.try_emplace(words, static_cast<uint32_t>(table_.size()));
+    if (isNew) table_.insert(table_.end(), words.begin(), words.end());
+    const std::string text = "matchedWords[" + number(at->second) + " + row]";
+    return isFloat ? "uintBitsToFloat(" + text + ")" : text;
+  }
+  std::string tables() const {
+    const auto list = [](const char* name, const std::vector<uint32_t>& words) {
+      std::string text = std::string("const uint ") + name + "[" + std::to_string(words.size()) + "] = uint[](";
+      for (size_t i = 0; i < words.size(); ++i) text += (i % 16 ? ", " : i ? ",\n  " : "\n  ") + number(words[i]);
+      return text + ");\n";
+    };
+    return table_.empty() ? std::string() : list("matchedWords", table_) + list("matchedRows", row_);
+  }
 
   /// As nodes appear in Shape::node: their offset among the baked words.
   static uint32_t offsetOf(uint32_t node) { return kHeaderSize + node * kNodeSize; }
@@ -87,14 +160,21 @@ private:
     default: return "add(" + a + ", multiply(subtract(" + b + ", " + a + "), unitFloat(s.seed)))";
     }
   }
-  std::string expression(const Parameter& parameter) const {
-    if (parameter.kind == kParameterConstant) return literal(uintBitsToFloat(parameter.value));
-    if (parameter.kind == kParameterAttribute) return attribute(parameter.value);
+  const Parameter& parameterOf(const Node& node, uint32_t index) const {
+    return graph_.parameters[node.firstParameter + index];
+  }
+  std::string parameter(const Node& node, uint32_t index) {
+    const Parameter& own = parameterOf(node, index);
+    if (own.kind == kParameterConstant)
+      return word(node, true, [&](const Node& peer) { return parameterOf(peer, index).value; });
+    if (own.kind == kParameterAttribute) return attribute(own.value);
     std::vector<std::string> stack;
-    for (size_t at = parameter.value; graph_.code[at] != kCodeEnd; ++at) {
-      const uint32_t code = graph_.code[at];
+    for (uint32_t at = 0; graph_.code[own.value + at] != kCodeEnd; ++at) {
+      const uint32_t code = graph_.code[own.value + at];
       if (code == kCodeNumber) {
-        stack.push_back(literal(uintBitsToFloat(graph_.code[++at])));
+        ++at;
+        stack.push_back(
+            word(node, true, [&](const Node& peer) { return graph_.code[parameterOf(peer, index).value + at]; }));
       } else if (code >= kCodeAttributes) {
         stack.push_back(attribute(code));
       } else {
@@ -105,22 +185,24 @@ private:
     }
     return stack.back();
   }
-  std::string parameter(const Node& node, uint32_t index) const {
-    return expression(graph_.parameters[node.firstParameter + index]);
+  /// The same constant in all peers.
+  bool isConstant(const Node& node, uint32_t index) const {
+    const Parameter& own = parameterOf(node, index);
+    return own.kind == kParameterConstant && std::all_of(peersOf(node).begin(), peersOf(node).end(), [&](uint32_t n) {
+             return parameterOf(graph_.nodes[n], index).value == own.value;
+           });
   }
   bool areConstant(const Node& node) const {
     for (uint32_t i = 0; i < node.parameterCount; ++i)
-      if (graph_.parameters[node.firstParameter + i].kind != kParameterConstant) return false;
+      if (!isConstant(node, i)) return false;
     return true;
   }
-  float constant(const Node& node, uint32_t index) const {
-    return uintBitsToFloat(graph_.parameters[node.firstParameter + index].value);
-  }
-  std::string vector(const Node& node) const {
+  float constant(const Node& node, uint32_t index) const { return uintBitsToFloat(parameterOf(node, index).value); }
+  std::string vector(const Node& node) {
     return "vec3(" + parameter(node, 0) + ", " + parameter(node, 1) + ", " + parameter(node, 2) + ")";
   }
   static std::string component(uint32_t axis) { return std::string("s.size.") + "xyz"[axis]; }
-  std::string array(const Node& node) const { // of RandomRule's probabilities
+  std::string array(const Node& node) { // of RandomRule's probabilities
     std::string text = "float[" + std::to_string(node.edgeCount) + "](";
     for (uint32_t i = 0; i < node.edgeCount; ++i)
       text += (i ? ", max(0.0f, " : "max(0.0f, ") + parameter(node, i + 1) + ")";
@@ -133,33 +215,40 @@ private:
         "  const uint at = graphWords[s.node + kNodeParameters] + index * kParameterSize;\n"
         "  if (graphWords[at] == kParameterConstant) return uintBitsToFloat(graphWords[at + 1u]);\n  switch (at) {\n");
     const size_t first = kHeaderSize + graph_.nodes.size() * kNodeSize + graph_.edges.size() * kEdgeSize;
+    const auto matched = std::exchange(peers_, {});
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) peers_.push_back({n}); // a case for each node
     for (const Node& node : graph_.nodes)
-      for (uint32_t i = node.firstParameter; node.op >= kOpCompSplit && i < node.firstParameter + node.parameterCount;
-           ++i)
-        if (graph_.parameters[i].kind != kParameterConstant)
-          add("  case " + number(static_cast<uint32_t>(first + i * kParameterSize)) + ": return " +
-              expression(graph_.parameters[i]) + ";\n");
+      for (uint32_t i = 0; node.op >= kOpCompSplit && i < node.parameterCount; ++i)
+        if (parameterOf(node, i).kind != kParameterConstant)
+          add("  case " + number(static_cast<uint32_t>(first + (node.firstParameter + i) * kParameterSize)) +
+              ": return " + parameter(node, i) + ";\n");
+    peers_ = matched;
     add("  default: return 0.0f;\n  }\n}\n");
   }
 
   // ---------------------------------------------------------------- chains
 
   /// A shape leaves along an edge: goes on, waits or ends. followed: depth has been counted.
-  std::string take(const Edge& edge, bool followed = false) const {
+  std::string take(const Node& node, uint32_t index, bool followed = false) {
+    const Edge& edge = edgeOf(node, index);
     if (edge.target == kNoNode) return "return kEndDiscarded;";
-    std::string text = "s.node = " + number(offsetOf(edge.target)) + "; ";
+    std::string text =
+        "s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(edgeOf(peer, index).target); }) + "; ";
     if (edge.recursive && !followed) text += "s.depth += 1u; ";
     if (edge.recursive) text += "if (s.depth > maxDepth) return kEndUnfinished; ";
     if (graph_.nodes[edge.target].op == kOpTerminal) return text + "return kEndTerminal;";
     if (waits_[edge.target] || edge.recursive) return text + "return kEndWaits;";
     if (isContext(graph_.nodes[edge.target].op)) return text + "return kEndContext;";
-    return text + "return chain" + std::to_string(edge.target) + "(s, maxDepth);";
+    const bool inside = group_[edge.target] == group_[indexOf(node)] && group_[edge.target] != kNoGroup;
+    return text + "return " + chainOf(edge.target) + "(s, maxDepth, " + (inside ? "row" : number(row_[edge.target])) +
+           ");";
   }
 
   void writeChain(uint32_t index, std::vector<uint8_t>& written) {
     // Depth first by hand, as chains may be long: what a chain calls is written before it.
     std::vector<std::pair<uint32_t, uint32_t>> stack;
-    const auto open = [&](uint32_t node) {
+    const auto open = [&](uint32_t any) {
+      const uint32_t node = peers_[any][0];
       if (written[node] || !isChain(node)) return;
       written[node] = 1;
       stack.push_back({node, 0});
@@ -175,27 +264,28 @@ private:
         continue;
       }
       stack.pop_back();
-      add("uint chain" + std::to_string(node) + "(inout Shape s, uint maxDepth) { // " + operatorName(n.op) + "\n");
-      writeOperator(node, n);
+      add("uint chain" + std::to_string(node) + "(inout Shape s, uint maxDepth, uint row) { // " + operatorName(n.op) +
+          "\n");
+      writeOperator(n);
       add("}\n");
     }
   }
 
-  void writeOperator(uint32_t index, const Node& node) {
+  void writeOperator(const Node& node) {
     const auto pass = [&](const std::string& expression) {
-      add("  s = " + expression + ";\n  " + take(edgeOf(node, 0)) + "\n");
+      add("  s = " + expression + ";\n  " + take(node, 0) + "\n");
     };
     switch (node.op) {
     case kOpTranslate: {
       const std::string terms = frameTerms(node);
       if (!terms.empty()) add("  precise vec3 p = s.position" + terms + ";\n  s.position = settleFinite3(p);\n");
-      add("  " + take(edgeOf(node, 0)) + "\n");
+      add("  " + take(node, 0) + "\n");
       return;
     }
     case kOpRotate:
       if (!areConstant(node)) return pass("rotated(s, rotationOf(" + vector(node) + "))");
       writeRotation(rotationOf(vec3(constant(node, 0), constant(node, 1), constant(node, 2))));
-      add("  " + take(edgeOf(node, 0)) + "\n");
+      add("  " + take(node, 0) + "\n");
       return;
     case kOpScale: return pass("resized(s, " + vector(node) + ")");
     case kOpExtrude: return pass("extruded(s, " + parameter(node, 0) + ")");
@@ -204,16 +294,15 @@ private:
     case kOpIf: return writeIf(node, parameter(node, 0) + " != 0.0f");
     case kOpIfSizeLess: return writeIf(node, component(node.argument) + " < " + parameter(node, 0));
     case kOpRandomRule: return writeRandomRule(node);
-    default: return writeFilter(index, node);
+    default: return writeFilter(node);
     }
   }
   /// + axisX * x + axisY * y + axisZ * z, without what is always zero.
-  std::string frameTerms(const Node& node) const {
+  std::string frameTerms(const Node& node) {
     static constexpr const char* kAxes[] = {" + s.axisX * ", " + s.axisY * ", " + s.axisZ * "};
     std::string terms;
     for (uint32_t i = 0; i < 3; ++i) {
-      const Parameter& p = graph_.parameters[node.firstParameter + i];
-      if (p.kind != kParameterConstant || p.value != 0) terms += kAxes[i] + ("(" + expression(p) + ")");
+      if (!isConstant(node, i) || parameterOf(node, i).value != 0) terms += kAxes[i] + ("(" + parameter(node, i) + ")");
     }
     return terms;
   }
@@ -233,7 +322,7 @@ private:
     add("  s.axisX = settleFinite3(c0);\n  s.axisY = settleFinite3(c1);\n  s.axisZ = settleFinite3(c2);\n");
   }
   void writeIf(const Node& node, const std::string& condition) {
-    add("  if (" + condition + ") { " + take(edgeOf(node, 0)) + " }\n  " + take(edgeOf(node, 1)) + "\n");
+    add("  if (" + condition + ") { " + take(node, 0) + " }\n  " + take(node, 1) + "\n");
   }
   void writeRandomRule(const Node& node) {
     const uint32_t count = node.edgeCount;
@@ -248,11 +337,11 @@ private:
       if (i + 1 < count) add("  sum = add(sum, " + at + ");\n");
     }
     add("  switch (chosen) {\n");
-    for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(edgeOf(node, i)) + "\n");
-    add("  default: " + take(edgeOf(node, count - 1)) + "\n  }\n");
+    for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + "\n");
+    add("  default: " + take(node, count - 1) + "\n  }\n");
   }
   /// An operator that could multiply, but keeps one successor at most.
-  void writeFilter(uint32_t index, const Node& node) {
+  void writeFilter(const Node& node) {
     uint32_t kept = kNoNode;
     for (uint32_t e = 0; e < node.edgeCount; ++e)
       if (edgeOf(node, e).target != kNoNode) kept = e;
@@ -283,12 +372,12 @@ private:
       for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
       add("  s = partOf(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place + ");\n");
     } else { // by the words, which also take the edge
-      add("  s.node = " + number(offsetOf(index)) +
+      add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n  const Fan fan = fanOf(s);\n"
           "  if (fan.count == 0u) return kEndDiscarded;\n  s = childOf(s, fan, 0u);\n");
       followed = true;
     }
-    add("  " + take(edgeOf(node, kept), followed) + "\n");
+    add("  " + take(node, kept, followed) + "\n");
   }
 
   /// A shape comes from an operator that multiplies (arrives), or has waited for this one.
@@ -297,14 +386,16 @@ private:
         "  if (s.depth > maxDepth) return kEndUnfinished;\n  switch (s.node) {\n");
     std::string terminals;
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
-      const std::string label = "  case " + number(offsetOf(n)) + ":";
-      if (graph_.nodes[n].op == kOpTerminal)
-        terminals += label + "\n";
-      else if (isContext(graph_.nodes[n].op))
-        add(label + (waits_[n] ? " if (arrives) return kEndWaits;" : "") + " return kEndContext;\n");
-      else if (isChain(n))
-        add(label + (waits_[n] ? " if (arrives) return kEndWaits;" : "") + " return chain" + std::to_string(n) +
-            "(s, maxDepth);\n");
+      if (graph_.nodes[n].op == kOpTerminal) terminals += "  case " + number(offsetOf(n)) + ":\n";
+      if (isContext(graph_.nodes[n].op))
+        add("  case " + number(offsetOf(n)) + ":" + (waits_[n] ? " if (arrives) return kEndWaits;" : "") +
+            " return kEndContext;\n");
+      if (!isChain(n) || peers_[n][0] != n) continue;
+      for (const uint32_t peer : peers_[n]) add("  case " + number(offsetOf(peer)) + ":");
+      const std::string row =
+          table_.empty() ? "0u" : "matchedRows[(s.node - " + number(kHeaderSize) + ") / " + number(kNodeSize) + "]";
+      add(std::string(waits_[n] ? " if (arrives) return kEndWaits;" : "") + " return " + chainOf(n) + "(s, maxDepth, " +
+          (peers_[n].size() > 1 ? row : number(row_[n])) + ");\n");
     }
     if (!terminals.empty()) add(terminals + "    return kEndTerminal;\n");
     add("  default: return kEndWaits;\n  }\n}\n");
@@ -312,11 +403,17 @@ private:
 
   const Graph& graph_;
   const std::vector<bool>& waits_;
+  std::vector<std::vector<uint32_t>> peers_; // by node: in its place in matching groups, by row
+  std::vector<uint32_t> row_, group_;        // by node
+  std::vector<uint32_t> table_;
+  std::map<std::vector<uint32_t>, uint32_t> columns_; // to where they begin in the table
   std::string out_;
 };
 } // namespace
 
-std::string generate(const Graph& graph, const std::vector<bool>& waits) { return Generator(graph, waits).run(); }
+std::string generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched) {
+  return Generator(graph, waits, matched).run();
+}
 
 std::vector<bool> waitsAtFans(const Graph& graph) {
   std::vector<bool> waits(graph.nodes.size());

@@ -6,15 +6,18 @@
 // through a queue, to any other it goes on in the same invocation. The result equals the interpreter's to the last bit,
 // as both call shaders/spawn/operators.h and constants are folded with the same arithmetic.
 #pragma once
-#include "spawn/graph/graph.h"
+#include "spawn/graph/partition.h"
 
 #include <string>
 #include <vector>
 
 namespace gpgp::spawn {
 
-/// GLSL of a valid graph. waits: by node; operators that multiply must wait, filters and others may.
-std::string generate(const Graph& graph, const std::vector<bool>& waits);
+/// GLSL of a valid graph. waits: by node; operators that multiply must wait, filters and others may. matched: the roots
+/// of a valid partition; chains of execution groups that differ in parameters only then share their code
+/// (thesis 4.2.3). Without it each node has code of its own. Operators that multiply always take their parameters from
+/// the graph.
+std::string generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched = {});
 
 /// Only operators that multiply wait: the schedule with the fewest queues.
 std::vector<bool> waitsAtFans(const Graph& graph);

@@ -12,7 +12,7 @@ constexpr uint64_t kMostPartitions = 1u << 20;
 } // namespace
 
 Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, std::string name) {
-  Schedule schedule{std::move(name), 0, waitsAtFans(graph)};
+  Schedule schedule{std::move(name), 0, waitsAtFans(graph), roots};
   for (size_t n = 0; n < roots.size(); ++n) {
     if (flow.rank[n] == kNoNode || roots[n] != n) continue;
     ++schedule.groups;
@@ -24,8 +24,13 @@ Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, st
 }
 
 std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name) {
-  if (name == "default") return Schedule{name, 0, waitsAtFans(graph)};
   const Flow flow = makeFlow(graph);
+  if (name == "default") { // a group for each node that shapes wait for, and for the start
+    Schedule schedule{name, 0, waitsAtFans(graph), {}};
+    for (uint32_t n = 0; n < graph.nodes.size(); ++n)
+      schedule.groups += flow.rank[n] != kNoNode && (schedule.waits[n] || n == graph.axiomNode);
+    return schedule;
+  }
   if (name == "sgl") return scheduleOf(graph, flow, coarsestPartition(flow), name);
   if (name == "rw") return scheduleOf(graph, flow, singleGroups(flow), name);
   if (name == "rules") return scheduleOf(graph, flow, rulePartition(graph, flow), name);

@@ -13,8 +13,9 @@ namespace gpgp::spawn {
 
 struct Schedule {
   std::string name;
-  size_t groups = 0;       ///< of the partition
+  size_t groups = 0;       ///< execution groups
   std::vector<bool> waits; ///< by node
+  Roots roots;             ///< of the partition; empty for "default", which is none
 };
 
 /// sgl, rw, rules, heuristic, or default (what multiplies waits, nothing else); nothing for other names.

@@ -9,11 +9,11 @@ namespace {
 using core::makeError;
 
 constexpr uint32_t kKernelMagic = 0x6b677067u; // "gpgk"
-constexpr uint32_t kKernelVersion = 2;
+constexpr uint32_t kKernelVersion = 3;
 constexpr uint32_t kSpirvMagic = 0x07230203u;
 /// Words before the SPIR-V: magic, version, words of everything, checksum of what follows it, graph, info.
 constexpr uint32_t kChecked = 4, kInfo = 5, kInfoWords = sizeof(KernelInfo) / 4, kHeader = kInfo + kInfoWords;
-static_assert(sizeof(KernelInfo) == 68);
+static_assert(sizeof(KernelInfo) == 72);
 
 bool isUsable(const KernelInfo& info) {
   const Fit& fit = info.fit;

@@ -18,7 +18,7 @@ struct Fit {
   uint32_t maxGroups = 0;   ///< workgroups of a round
   uint32_t stackShapes = 0; ///< shapes on a workgroup's stack
   uint32_t spread = 0;      ///< shapes that a round should at least begin with
-  uint32_t rounds = 0;      ///< that are recorded; 0: as many as the spawner may
+  uint32_t rounds = 0; ///< that are recorded for the number of axioms it was tuned for; 0: all that the spawner may
 
   bool operator==(const Fit&) const = default;
 };
@@ -29,6 +29,7 @@ struct KernelInfo {
   uint32_t vendor = 0, device = 0; ///< VkPhysicalDeviceProperties; 0: any
   uint32_t axioms = 0;             ///< tuned for this many axioms; 0: any
   uint32_t subgroups = 0;          ///< 1: needs subgroup arithmetic in compute shaders
+  uint32_t groups = 0;             ///< execution groups of the schedule
   char schedule[32] = {};          ///< a name for people
 };
 

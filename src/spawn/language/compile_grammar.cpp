@@ -1,6 +1,7 @@
 // gpgpCompileGrammar: text to a baked grammar.
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
+#include "spawn/codegen/schedules.h"
 #include "spawn/graph/blob.h"
 #include "spawn/graph/kernel.h"
 #include "spawn/language/build_graph.h"
@@ -45,12 +46,16 @@ GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlo
     if (auto ok = spawn::validate(graph); !ok) return fail(*source, GPGP_ERROR_UNSUPPORTED, ok.error().text);
     auto words = spawn::serialize(graph, memory);
     if (source->flags & GPGP_COMPILE_KERNEL) {
-      const std::string functions = spawn::generate(graph, spawn::waitsAtFans(graph));
+      const spawn::Schedule schedule = *spawn::namedSchedule(graph, "default");
+      const std::string functions = spawn::generate(graph, schedule.waits);
       for (const bool subgroups : {true, false}) { // the first that a device can run is taken
         const auto spirv = spawn::compileKernel(functions, subgroups);
         if (!spirv) return fail(*source, spirv.error().code, spirv.error().text);
-        const auto kernel = spawn::serialize({.subgroups = subgroups, .schedule = "default"}, *spirv,
-                                             words[shader::kHeaderChecksum], memory);
+        spawn::KernelInfo info;
+        info.subgroups = subgroups;
+        info.groups = static_cast<uint32_t>(schedule.groups);
+        schedule.name.copy(info.schedule, sizeof info.schedule - 1);
+        const auto kernel = spawn::serialize(info, *spirv, words[shader::kHeaderChecksum], memory);
         words.insert(words.end(), kernel.begin(), kernel.end());
       }
     }

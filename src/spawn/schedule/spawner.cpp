@@ -227,7 +227,11 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
                                                         "spawner is 0");
   const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount, vertices_);
   const Fit& fit = kernel ? kernel->info.fit : limits.fit;
-  const uint32_t rounds = fit.rounds ? std::min(fit.rounds, rounds_) : rounds_;
+  // Rounds were counted for a number of axioms; for more of them, or far fewer, nothing is known.
+  const bool counted = fit.rounds && (!kernel || kernel->info.axioms == 0 ||
+                                      (info.axiomCount <= kernel->info.axioms &&
+                                       std::bit_width(info.axiomCount) == std::bit_width(kernel->info.axioms)));
+  const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : rounds_;
   const uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
   const bool counts = vertices_ ? !info.vertices->vertices.buffer : !info.instances.buffer;

@@ -1,7 +1,6 @@
-#include "cli/instances_gltf.h"
+#include "cli/triangles_gltf.h"
 
 #include "cli/command.h"
-#include "cli/unit_shapes.h"
 
 #include <tiny_gltf.h>
 
@@ -11,24 +10,11 @@
 
 namespace gpgp::cli {
 
-glm::vec3 placed(const GpgpInstance& instance, const glm::vec3& p) {
-  const float* m = instance.transform;
-  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
-}
-
-void writeGlb(const std::filesystem::path& file, std::span<const GpgpInstance> instances, uint32_t buckets,
+void writeGlb(const std::filesystem::path& file, const std::vector<std::vector<glm::vec3>>& corners,
               const std::function<std::string(uint32_t)>& name, const std::function<glm::vec3(uint32_t)>& colour) {
-  std::vector<std::vector<glm::vec3>> shapes;
-  for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
-  std::vector<std::vector<glm::vec3>> corners(buckets);
   size_t total = 0;
-  for (const GpgpInstance& instance : instances) {
-    const auto& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
-    total += shape.size() * sizeof(glm::vec3);
-    if (total > 0xf0000000u) throw Failure(file.string() + ": more triangles than a glTF binary file holds (4 GiB)");
-    for (const glm::vec3& p : shape) corners.at(instance.bucket).push_back(placed(instance, p));
-  }
+  for (const auto& bucket : corners) total += bucket.size() * sizeof(glm::vec3);
+  if (total > 0xf0000000u) throw Failure(file.string() + ": more triangles than a glTF binary file holds (4 GiB)");
 
   tinygltf::Model model;
   model.asset.version = "2.0";
@@ -37,7 +23,7 @@ void writeGlb(const std::filesystem::path& file, std::span<const GpgpInstance> i
   tinygltf::Scene& scene = model.scenes.emplace_back();
   model.defaultScene = 0;
   size_t offset = 0;
-  for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
+  for (uint32_t bucket = 0; bucket < corners.size(); ++bucket) {
     if (corners[bucket].empty()) continue;
     glm::vec3 low = corners[bucket][0], high = low;
     for (const glm::vec3& p : corners[bucket]) {

@@ -1,0 +1,203 @@
+#include "cli/deriver.h"
+
+#include "cli/processors.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstring>
+
+namespace gpgp::cli {
+namespace {
+
+constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
+                           VK_IMAGE_LAYOUT_UNDEFINED};
+// The library's defaults, and what it takes at most.
+constexpr uint32_t kDefaultShapes = 131072, kDefaultRounds = 8, kSoftwareRounds = 32, kMostRounds = 256,
+                   kMostShapes = 1u << 24;
+constexpr uint32_t kMostColliders = 1u << 24, kMostSoftwareColliders = 8192;
+constexpr uint64_t kShapeBytes = 96, kStackFactor = 4; // of a spawner's largest buffer: stacks for 4 * maxShapes
+
+} // namespace
+
+GpgpVertexOutput Deriver::layout() {
+  GpgpVertexOutput output{};
+  output.indexType = VK_INDEX_TYPE_UINT32;
+  output.stride = sizeof(SpawnedVertex);
+  const auto add = [&](GpgpVertexSemantic semantic, VkFormat format, size_t offset) {
+    output.attributes[output.attributeCount++] = {semantic, format, static_cast<uint32_t>(offset)};
+  };
+  add(GPGP_VERTEX_POSITION, VK_FORMAT_R32G32B32_SFLOAT, offsetof(SpawnedVertex, position));
+  add(GPGP_VERTEX_NORMAL, VK_FORMAT_R8G8B8A8_SNORM, offsetof(SpawnedVertex, normal));
+  add(GPGP_VERTEX_UV, VK_FORMAT_R32G32_SFLOAT, offsetof(SpawnedVertex, uv));
+  add(GPGP_VERTEX_TERMINAL, VK_FORMAT_R32_UINT, offsetof(SpawnedVertex, terminal));
+  add(GPGP_VERTEX_AXIOM_ID, VK_FORMAT_R32_UINT, offsetof(SpawnedVertex, axiom));
+  return output;
+}
+
+Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
+                 const DeriverOptions& options)
+    : session_(session), grammar_(grammar), options_(options),
+      maxShapes_(options.maxShapes ? options.maxShapes : kDefaultShapes),
+      maxRounds_(session.device().isSoftware() ? kSoftwareRounds : kDefaultRounds),
+      maxColliders_(options.maxColliders   ? options.maxColliders
+                    : grammar.graph.phases ? kMostSoftwareColliders
+                                           : 0) {
+  const size_t buckets = std::max(grammar.graph.buckets, 1u);
+  draws_ = host::makeBuffer(session.device(), std::vector<VkDrawIndexedIndirectCommand>(buckets),
+                            kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "draws");
+  count_ = host::Buffer(session.device(), 4, kStorage);
+  setAxioms(axioms);
+  makeOutput(options.maxInstances ? options.maxInstances : std::max<uint64_t>(options.expected, 1));
+  makeSpawner();
+}
+
+void Deriver::setAxioms(const std::vector<GpgpAxiom>& axioms) {
+  if (axioms.size() * sizeof(GpgpAxiom) > session_.device().properties().limits.maxStorageBufferRange)
+    throw Failure(std::to_string(axioms.size()) + " axioms are more than this device binds");
+  axioms_ = host::makeBuffer(session_.device(), axioms, kStorage, "axioms");
+  axiomCount_ = static_cast<uint32_t>(axioms.size());
+}
+
+void Deriver::makeSpawner() {
+  GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
+  info.base = session_.workerInfo("spawner");
+  info.flags = options_.vertices ? GPGP_SPAWNER_VERTICES : 0;
+  info.maxShapes = maxShapes_;
+  info.maxTerminals = maxTerminals_ = options_.sorted ? static_cast<uint32_t>(std::min<uint64_t>(elements_, 1u << 24))
+                                                      : 1; // only sorting keeps records of terminals
+  info.maxDepth = options_.maxDepth;
+  info.maxRounds = maxRounds_;
+  info.maxColliders = maxColliders_;
+  spawner_.reset();
+  spawner_.emplace(session_.take(Spawner::create(session_.context(), info), "gpgpCreateSpawner"));
+  session_.check(spawner_->prewarm(), "gpgpPrewarm");
+}
+
+uint64_t Deriver::mostElements() const {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  if (!options_.vertices) return std::min<uint64_t>(range / sizeof(GpgpInstance), 1u << 30);
+  return std::min<uint64_t>(range / sizeof(SpawnedVertex), range / 6) / 4 * 4; // 6 indices of 4 bytes for 4 vertices
+}
+
+void Deriver::makeOutput(uint64_t elements) {
+  elements_ = std::min(elements, mostElements());
+  if (!options_.vertices) {
+    instances_ = {};
+    instances_ =
+        host::Buffer(session_.device(), elements_ * sizeof(GpgpInstance), kStorage, host::Memory::device, "instances");
+    return;
+  }
+  elements_ = std::max<uint64_t>((elements_ + 3) / 4 * 4, 4);
+  vertices_ = {};
+  indices_ = {};
+  vertices_ =
+      host::Buffer(session_.device(), elements_ * sizeof(SpawnedVertex), kStorage, host::Memory::device, "vertices");
+  indices_ = host::Buffer(session_.device(), elements_ * 6, kStorage, host::Memory::device, "indices");
+}
+
+std::vector<Grammar> Deriver::prepare(std::span<const std::pmr::vector<uint32_t>> kernels) {
+  std::vector<Grammar> grammars;
+  for (const auto& kernel : kernels) {
+    std::pmr::vector<uint32_t> all(grammar_.words);
+    all.insert(all.end(), kernel.begin(), kernel.end());
+    GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+    info.label = "grammar";
+    info.data = all.data();
+    info.size = all.size() * 4;
+    grammars.push_back(session_.take(Grammar::create(session_.context(), info), "gpgpCreateGrammar"));
+  }
+  std::vector<GpgpResult> results(grammars.size());
+  onAllProcessors(grammars.size(), [&](size_t i) { results[i] = spawner_->prewarm(grammars[i]); });
+  for (const GpgpResult result : results) session_.check(result, "gpgpPrewarmGrammar");
+  session_.upload();
+  return grammars;
+}
+
+Grammar Deriver::prepare(const std::pmr::vector<uint32_t>& kernel) {
+  return std::move(prepare(std::span(&kernel, 1)).front());
+}
+
+Measured<GpgpSpawnReport> Deriver::derive(const Grammar& grammar, uint32_t repeat) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (begin - lastWork_ > std::chrono::milliseconds(5)) busy_ = {};
+  GpgpVertexOutput output = layout();
+  if (options_.vertices) {
+    output.vertices = vertices_.range({}, kRead);
+    output.indices = indices_.range({}, kRead);
+  }
+  auto result = session_.measure(*spawner_, "deriving", repeat,
+                                 [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                                   GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+                                   info.base = base;
+                                   info.grammar = grammar.get();
+                                   info.axioms = axioms_.range();
+                                   info.axiomCount = axiomCount_;
+                                   info.count = count_.range({}, kRead);
+                                   if (options_.vertices)
+                                     info.vertices = &output;
+                                   else
+                                     info.instances = instances_.range({}, kRead);
+                                   if (options_.sorted) info.draws = draws_.range({}, kRead);
+                                   return spawner_->recordPrepare(commands, frame, info);
+                                 });
+  lastWork_ = std::chrono::steady_clock::now();
+  busy_ += lastWork_ - begin;
+  return result;
+}
+
+GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  const uint32_t mostShapes =
+      static_cast<uint32_t>(std::min<uint64_t>(range / (kShapeBytes * kStackFactor), kMostShapes));
+  for (;;) {
+    const GpgpSpawnReport report = derive(grammar, 1).report;
+    bool again = false, another = false; // spawner
+    if (report.droppedShapes && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes) {
+      maxShapes_ = static_cast<uint32_t>(std::min<uint64_t>(
+          std::max<uint64_t>(2 * uint64_t{maxShapes_}, std::bit_ceil(uint64_t{report.peakShapes})), mostShapes));
+      another = true;
+    }
+    if (report.droppedShapes && report.rounds >= maxRounds_ && maxRounds_ < kMostRounds) {
+      maxRounds_ *= 2;
+      another = true;
+    }
+    const uint32_t mostColliders = session_.device().isSoftware() ? kMostSoftwareColliders : kMostColliders;
+    if (report.colliders > maxColliders_ && !options_.maxColliders && maxColliders_ < mostColliders) {
+      maxColliders_ = std::min(report.colliders, mostColliders);
+      another = true;
+    }
+    const uint64_t wanted = options_.vertices ? report.vertices : report.terminals;
+    if (!options_.maxInstances && wanted > elements_ && elements_ < mostElements()) {
+      makeOutput(wanted);
+      again = true;
+      another = another || options_.sorted;
+    }
+    if (!again && !another) return report;
+    if (another) makeSpawner();
+  }
+}
+
+Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repeat) {
+  for (uint32_t times = 1;; times = std::min(2 * times, 256u)) {
+    const bool idled = std::chrono::steady_clock::now() - lastWork_ > std::chrono::milliseconds(5);
+    if (!idled && busy_ >= std::chrono::milliseconds(100)) break;
+    derive(grammar, times);
+  }
+  return derive(grammar, repeat);
+}
+
+std::vector<GpgpInstance> Deriver::instances() {
+  return host::download<GpgpInstance>(session_.device(), instances_, count());
+}
+uint32_t Deriver::count() { return host::download<uint32_t>(session_.device(), count_, 1)[0]; }
+std::vector<uint32_t> Deriver::indices() { return host::download<uint32_t>(session_.device(), indices_, count()); }
+std::vector<SpawnedVertex> Deriver::vertices() {
+  return host::download<SpawnedVertex>(session_.device(), vertices_, size_t{count()} / 6 * 4);
+}
+uint64_t Deriver::bytesWritten() {
+  const uint64_t written = count();
+  return options_.vertices ? written / 6 * 4 * sizeof(SpawnedVertex) + written * 4 : written * sizeof(GpgpInstance);
+}
+
+} // namespace gpgp::cli

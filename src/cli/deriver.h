@@ -1,0 +1,77 @@
+// Derives axioms of one grammar over and over: buffers and budgets as large as it takes, times of a warm device.
+#pragma once
+#include "cli/kernels.h"
+#include "cli/session.h"
+
+#include <chrono>
+
+namespace gpgp::cli {
+
+struct DeriverOptions {
+  bool vertices = false;     ///< vertices and indices, not instances
+  bool sorted = false;       ///< instances by bucket, with draws
+  uint32_t maxShapes = 0;    ///< 0: the library's default, and more where that is too little
+  uint32_t maxDepth = 0;     ///< 0: the library's default
+  uint32_t maxColliders = 0; ///< 0: as many as there are
+  uint64_t expected = 0;     ///< instances or vertices, where that is known: spares a second try
+  uint32_t maxInstances = 0; ///< 0: as many as there are, as far as the device binds them
+};
+
+/// A vertex of `--output vertices`: position R32G32B32_SFLOAT, normal R8G8B8A8_SNORM, uv R32G32_SFLOAT, terminal and
+/// axiom id R32_UINT.
+struct SpawnedVertex {
+  float position[3];
+  int8_t normal[4];
+  float uv[2];
+  uint32_t terminal, axiom;
+};
+static_assert(sizeof(SpawnedVertex) == 32);
+
+class Deriver {
+public:
+  /// How SpawnedVertex is told to the library; without buffers.
+  static GpgpVertexOutput layout();
+  Deriver(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
+          const DeriverOptions& options);
+  void setAxioms(const std::vector<GpgpAxiom>& axioms);
+
+  /// For each of the kernels, as words: the grammar on the device with its pipeline, made on all processors. No words:
+  /// the interpreter.
+  std::vector<Grammar> prepare(std::span<const std::pmr::vector<uint32_t>> kernels);
+  Grammar prepare(const std::pmr::vector<uint32_t>& kernel);
+  /// Derives once. Where the report says that shapes were dropped, or that buffers are too small, again with more of
+  /// what was short, as far as the device and the options allow.
+  GpgpSpawnReport fit(const Grammar& grammar);
+  /// Derives `repeat` times, after 0.1 s of the same where the device has idled: its clock takes that long to come
+  /// back.
+  Measured<GpgpSpawnReport> measure(const Grammar& grammar, uint32_t repeat);
+
+  /// Instances or vertices that this device binds at once.
+  uint64_t mostElements() const;
+  uint32_t maxShapes() const { return maxShapes_; }
+  uint32_t maxRounds() const { return maxRounds_; }
+  /// What the last derivation took and wrote, read back.
+  std::vector<GpgpInstance> instances();
+  std::vector<SpawnedVertex> vertices();
+  std::vector<uint32_t> indices();
+  /// Instances or indices written, as the GPU counted them.
+  uint32_t count();
+  uint64_t bytesWritten();
+
+private:
+  void makeSpawner();
+  void makeOutput(uint64_t elements);
+  Measured<GpgpSpawnReport> derive(const Grammar& grammar, uint32_t repeat);
+
+  Session& session_;
+  const BakedGraph& grammar_;
+  DeriverOptions options_;
+  uint32_t axiomCount_ = 0, maxShapes_ = 0, maxRounds_ = 0, maxTerminals_ = 0, maxColliders_ = 0;
+  std::optional<Spawner> spawner_;
+  host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_;
+  uint64_t elements_ = 0; // instances or vertices that the buffers hold
+  std::chrono::steady_clock::time_point lastWork_{};
+  std::chrono::steady_clock::duration busy_{}; // since the device last idled
+};
+
+} // namespace gpgp::cli

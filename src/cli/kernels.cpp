@@ -1,0 +1,151 @@
+#include "cli/kernels.h"
+
+#include "cli/command.h"
+#include "cli/grammar_source.h"
+#include "cli/processors.h"
+#include "host/files.h"
+#include "spawn/codegen/compile_kernel.h"
+#include "spawn/codegen/generate.h"
+#include "spawn/graph/blob.h"
+#include "spawn/language/print.h"
+
+#include <bit>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace gpgp::cli {
+namespace {
+
+std::pmr::memory_resource* memory() { return std::pmr::new_delete_resource(); }
+
+/// Software devices compare by vendor and model like all others.
+bool isFor(const spawn::KernelInfo& info, const host::HeadlessDevice& device) {
+  const auto& properties = device.properties();
+  return (info.vendor == 0 || info.vendor == properties.vendorID) &&
+         (info.device == 0 || info.device == properties.deviceID) && (!info.subgroups || hasSubgroups(device));
+}
+
+} // namespace
+
+BakedGraph bakeGraph(const std::string& file, const std::vector<std::string>& set) {
+  const Blob blob = compileGrammarFile(file, set, false);
+  const auto* bytes = static_cast<const std::byte*>(blob.data());
+  auto graph = spawn::load({bytes, blob.size()}, memory());
+  if (!graph) throw Failure(file + ": " + graph.error().text);
+  std::pmr::vector<uint32_t> words(blob.size() / sizeof(uint32_t), memory());
+  std::memcpy(words.data(), bytes, blob.size());
+  return {std::move(words), std::move(*graph)};
+}
+
+std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile) {
+  if (auto named = spawn::namedSchedule(graph, nameOrFile)) return named;
+  if (!std::filesystem::is_regular_file(nameOrFile)) return std::nullopt;
+  spawn::Diagnostics diagnostics;
+  const auto partition = spawn::parseGroups(host::readText(nameOrFile), graph, diagnostics);
+  if (!partition) throw Failure(spawn::format(diagnostics.sorted().at(0), nameOrFile));
+  spawn::Roots roots(graph.nodes.size(), spawn::kNoNode);
+  for (size_t n = 0; n < roots.size(); ++n)
+    if (partition->groupOf[n] != spawn::kNoGroup) roots[n] = partition->groups[partition->groupOf[n]].root;
+  return spawn::scheduleOf(graph, spawn::makeFlow(graph), roots, std::filesystem::path(nameOrFile).stem().string());
+}
+
+bool hasSubgroups(const host::HeadlessDevice& device) {
+  VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
+  device.vki().getPhysicalDeviceProperties2(device.physicalDevice(), &properties);
+  constexpr VkSubgroupFeatureFlags kWanted = VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+  return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
+         (subgroups.supportedOperations & kWanted) == kWanted;
+}
+
+std::vector<Spirv> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules, bool subgroups,
+                                  bool matching) {
+  std::vector<Spirv> kernels(schedules.size());
+  onAllProcessors(schedules.size(), [&](size_t i) {
+    const spawn::Schedule& schedule = schedules[i];
+    auto spirv = spawn::compileKernel(
+        spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{}), subgroups);
+    if (!spirv) throw Failure(schedule.name + ": " + spirv.error().text);
+    kernels[i] = std::move(*spirv);
+  });
+  return kernels;
+}
+
+spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, bool subgroups) {
+  spawn::KernelInfo info;
+  info.subgroups = subgroups;
+  info.groups = static_cast<uint32_t>(schedule.groups);
+  std::snprintf(info.schedule, sizeof info.schedule, "%s", schedule.name.c_str());
+  return info;
+}
+
+std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::KernelInfo& info,
+                                       std::span<const uint32_t> spirv) {
+  return spawn::serialize(info, spirv, grammar.words[shader::kHeaderChecksum], memory());
+}
+
+bool isBaked(const std::filesystem::path& file) {
+  return std::filesystem::is_regular_file(file) && host::readText(file).starts_with("gppg");
+}
+
+std::pmr::vector<spawn::Kernel> kernelsIn(const std::filesystem::path& file, const BakedGraph& grammar) {
+  const std::string text = host::readText(file);
+  const auto bytes = std::as_bytes(std::span(text.data(), text.size()));
+  const size_t graphBytes = spawn::sizeOfGraph(bytes);
+  if (graphBytes != grammar.words.size() * 4 || std::memcmp(text.data(), grammar.words.data(), graphBytes) != 0)
+    throw Failure(file.string() + " is not a baking of this grammar, with the variables as they are set here");
+  auto kernels = spawn::loadKernels(bytes.subspan(graphBytes), grammar.words[shader::kHeaderChecksum], memory());
+  if (!kernels) throw Failure(file.string() + ": " + kernels.error().text);
+  return std::move(*kernels);
+}
+
+std::optional<spawn::Kernel> kernelFor(std::span<const spawn::Kernel> kernels, const host::HeadlessDevice& device,
+                                       uint32_t axioms) {
+  const auto distance = [&](const spawn::Kernel& kernel) { // as the library's Grammar::kernelFor
+    return kernel.info.axioms ? std::abs(static_cast<int>(std::bit_width(kernel.info.axioms)) -
+                                         static_cast<int>(std::bit_width(axioms)))
+                              : 64;
+  };
+  const spawn::Kernel* best = nullptr;
+  for (const spawn::Kernel& kernel : kernels)
+    if (isFor(kernel.info, device) && (!best || distance(kernel) < distance(*best))) best = &kernel;
+  return best ? std::optional(*best) : std::nullopt;
+}
+
+bool isTunedFor(const spawn::KernelInfo& info, const host::HeadlessDevice& device, uint32_t axioms) {
+  const auto& properties = device.properties();
+  return info.vendor == properties.vendorID && info.device == properties.deviceID && info.axioms &&
+         std::bit_width(info.axioms) == std::bit_width(axioms);
+}
+
+void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, const spawn::KernelInfo& info,
+                std::span<const uint32_t> spirv) {
+  std::pmr::vector<uint32_t> all(grammar.words);
+  const auto append = [&](const spawn::KernelInfo& i, std::span<const uint32_t> code) {
+    const auto words = kernelWords(grammar, i, code);
+    all.insert(all.end(), words.begin(), words.end());
+  };
+  append(info, spirv);
+  if (std::filesystem::exists(file))
+    for (const spawn::Kernel& other : kernelsIn(file, grammar))
+      if (other.info.vendor != info.vendor || other.info.device != info.device ||
+          std::bit_width(other.info.axioms) != std::bit_width(info.axioms))
+        append(other.info, other.spirv);
+  host::writeFile(file, {reinterpret_cast<const char*>(all.data()), all.size() * 4});
+}
+
+std::filesystem::path tunedFile(const std::string& grammarFile, const BakedGraph& grammar) {
+  const auto folder = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::filesystem::path(value ? value : "");
+  };
+  std::filesystem::path cache = folder("XDG_CACHE_HOME");
+  if (cache.empty() && !folder("HOME").empty()) cache = folder("HOME") / ".cache";
+  if (cache.empty()) throw Failure("neither XDG_CACHE_HOME nor HOME say where tuned kernels could be kept");
+  char sum[24];
+  std::snprintf(sum, sizeof sum, "-%08x-%zu", grammar.words[shader::kHeaderChecksum], grammar.words.size());
+  return cache / "gpgp" / (std::filesystem::path(grammarFile).stem().string() + sum + ".gpgp");
+}
+
+} // namespace gpgp::cli

@@ -1,0 +1,60 @@
+// Kernels of a grammar by schedule, and the baked files that keep tuned ones.
+#pragma once
+#include "host/device.h"
+#include "spawn/codegen/schedules.h"
+#include "spawn/graph/kernel.h"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpgp::cli {
+
+/// A grammar's graph, and the same baked.
+struct BakedGraph {
+  std::pmr::vector<uint32_t> words;
+  spawn::Graph graph;
+
+  const char* ruleName(size_t rule) const { return graph.nameAt(graph.rules[rule].name); }
+};
+/// From text, with variables set as --set takes them. Throws Usage and Failure.
+BakedGraph bakeGraph(const std::string& file, const std::vector<std::string>& set);
+
+/// A named schedule, or the one of a file with groups as `gpgp graph` prints it; nothing where there is neither.
+std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile);
+
+/// Whether the library takes kernels that need subgroup operations on this device.
+bool hasSubgroups(const host::HeadlessDevice& device);
+
+using Spirv = std::vector<uint32_t>;
+/// The kernel of each schedule, compiled on all processors. matching: execution groups that differ in parameters only
+/// share code.
+std::vector<Spirv> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules, bool subgroups,
+                                  bool matching);
+
+/// What a kernel says of itself, for any device and number of axioms.
+spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, bool subgroups);
+/// As it stands in a file behind the graph.
+std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::KernelInfo& info,
+                                       std::span<const uint32_t> spirv);
+
+/// Whether a file begins as baked grammars do.
+bool isBaked(const std::filesystem::path& file);
+/// The kernels of a baked file of this very graph. Throws where the file is something else.
+std::pmr::vector<spawn::Kernel> kernelsIn(const std::filesystem::path& file, const BakedGraph& grammar);
+/// Of those, the one that the library would take for this device and number of axioms; nothing where none fits.
+std::optional<spawn::Kernel> kernelFor(std::span<const spawn::Kernel> kernels, const host::HeadlessDevice& device,
+                                       uint32_t axioms);
+/// Whether it was tuned for this device and for about as many axioms: the same power of two.
+bool isTunedFor(const spawn::KernelInfo& info, const host::HeadlessDevice& device, uint32_t axioms);
+/// Writes the graph with this kernel; kernels already there stay, but for one for the same device and about as many
+/// axioms.
+void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, const spawn::KernelInfo& info,
+                std::span<const uint32_t> spirv);
+/// Where tuned kernels are kept unless a file is named: in $XDG_CACHE_HOME/gpgp, or else in ~/.cache/gpgp, by the
+/// grammar's name and the graph's checksum.
+std::filesystem::path tunedFile(const std::string& grammarFile, const BakedGraph& grammar);
+
+} // namespace gpgp::cli
