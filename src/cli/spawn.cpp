@@ -142,10 +142,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   spawnerInfo.maxTerminals = maxInstances;
   spawnerInfo.maxDepth = options.maxDepth;
   if (words[shader::kHeaderPhases]) // what the evaluator needed, as for instances
-    spawnerInfo.maxColliders = options.maxColliders
-                                   ? options.maxColliders
-                                   : static_cast<uint32_t>(std::clamp<uint64_t>(reference.result.colliders, 1,
-                                                                                mostColliders(device)));
+    spawnerInfo.maxColliders =
+        options.maxColliders
+            ? options.maxColliders
+            : static_cast<uint32_t>(std::clamp<uint64_t>(reference.result.colliders, 1, mostColliders(device)));
   Spawner spawner = session.take(Spawner::create(session.context(), spawnerInfo), "gpgpCreateSpawner");
   session.check(spawner.prewarm(), "gpgpPrewarm");
   session.check(spawner.prewarm(grammar), "gpgpPrewarmGrammar");
