@@ -158,8 +158,8 @@ GPGP_FN bool boxesIntersect(ColliderBox a, ColliderBox b) {
 
 // ---------------------------------------------------------------- the grid
 
-GPGP_CONST uint kBoundlessLevel =
-    31u; // the last: one cell for what no other level takes. The first has cells of 1/16 m
+/// The last level has one cell, for what no other takes; the first has edges of 1/16 of a metre.
+GPGP_CONST uint kBoundlessLevel = 31u;
 
 GPGP_FN vec3 worldCentre(ColliderBox b) {
   GPGP_PRECISE vec3 c = b.origin + b.offset;

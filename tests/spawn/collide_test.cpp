@@ -92,6 +92,20 @@ TEST(Boxes, Turned) {
     }
 }
 
+TEST(Boxes, StretchedAndSheared) {
+  GpgpAxiom box = boxAt({0, 0, 0}, {1, 1, 1});
+  box.transform[0] = 3;
+  EXPECT_TRUE(intersect(box, boxAt({1.99, 0, 0}, {1, 1, 1})));
+  EXPECT_FALSE(intersect(box, boxAt({2, 0, 0}, {1, 1, 1})));
+  box.transform[0] = 1;
+  box.transform[1] = 1; // x grows with y
+  EXPECT_TRUE(intersect(box, boxAt({0.9, 0.45, 0}, {0.02, 0.02, 0.02})));
+  EXPECT_FALSE(intersect(box, boxAt({-0.3, 0.45, 0}, {0.02, 0.02, 0.02})));
+  EXPECT_TRUE(intersect(box, boxAt({-0.3, -0.45, 0}, {0.02, 0.02, 0.02})));
+  box.transform[10] = -1; // mirrored
+  EXPECT_TRUE(intersect(box, boxAt({0.9, 0.45, 0}, {0.02, 0.02, 0.02})));
+}
+
 TEST(Boxes, FlatOnes) {
   const GpgpAxiom wall = boxAt({0, 0, 0}, {10, 3, 1});
   EXPECT_TRUE(intersect(wall, boxAt({0, 0, 0}, {1, 1, 0})));     // inside
