@@ -158,8 +158,8 @@ GPGP_FN bool boxesIntersect(ColliderBox a, ColliderBox b) {
 
 // ---------------------------------------------------------------- the grid
 
-GPGP_CONST uint kColliderLevels = 32u;  // cells from 1/16 of a metre on
-GPGP_CONST uint kBoundlessLevel = 31u;  // one cell: what is larger than any other's
+/// The last level has one cell, for what no other takes; the first has edges of 1/16 of a metre.
+GPGP_CONST uint kBoundlessLevel = 31u;
 
 GPGP_FN vec3 worldCentre(ColliderBox b) {
   GPGP_PRECISE vec3 c = b.origin + b.offset;
@@ -224,8 +224,8 @@ GPGP_FN bool collidesWithAny(GPGP_COLLIDER_SET ColliderBox box, uint tag, uint l
     const uint count = all ? 1u : cellCount(range);
     for (uint c = 0u; c < count; ++c) {
       const int n = int(c);
-      const ivec3 place = ivec3(n % range.count.x, n / range.count.x % range.count.y,
-                                n / (range.count.x * range.count.y));
+      const ivec3 place =
+          ivec3(n % range.count.x, n / range.count.x % range.count.y, n / (range.count.x * range.count.y));
       uint i = all ? 0u : firstInCell(GPGP_C cellHash(range.low + place, level));
       spent += 1u;
       while (i < linked) {

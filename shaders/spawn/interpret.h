@@ -80,7 +80,7 @@ GPGP_FN uint runChain(GPGP_GRAPH GPGP_INOUT(Shape) s, bool /* arrives */, uint m
       s = child;
     }
   }
-  return kEndWaits;
+  return s.node == 0u ? kEndDiscarded : kEndWaits;
 }
 
 GPGP_SHADER_END

@@ -18,7 +18,7 @@ struct SpawnState {
   uint depth;
   uint quads; // of terminals as vertices, those that did not fit included
   uint quadsWritten;
-  uint exceeded; // 1: something did not fit the engine's buffers, or what goes before them
+  uint exceeded;  // 1: something did not fit the engine's buffers, or what goes before them
   uint colliders; // those that did not fit included
   uint waiting;   // shapes for later phases, those that did not fit included; they stay where they are
   uint levels;    // bit set of those that colliders are linked in
@@ -57,10 +57,10 @@ struct SpawnConstants {
   uint indexWords;       // of a quad: 6, 3, or 0 without indices
   uint strideWords;      // of a vertex
   uint attributeCount;
-  uint attributes[8];    // kMaxVertexAttributes
-  uint phaseRounds;      // rounds that were recorded of each phase
-  uint maxColliders;     // that are held
-  uint cellMask;         // cells that colliders are linked in, a power of two, less 1
+  uint attributes[8]; // kMaxVertexAttributes
+  uint phaseRounds;   // rounds that were recorded of each phase
+  uint maxColliders;  // that are held
+  uint cellMask;      // cells that colliders are linked in, a power of two, less 1
 };
 
 // What becomes of terminals.

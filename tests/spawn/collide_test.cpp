@@ -28,7 +28,9 @@ GpgpAxiom boxAt(glm::dvec3 centre, glm::dvec3 size, glm::dquat turn = {1, 0, 0, 
   }
   return axiom;
 }
-glm::dquat turned(double degrees, glm::dvec3 axis) { return glm::angleAxis(glm::radians(degrees), glm::normalize(axis)); }
+glm::dquat turned(double degrees, glm::dvec3 axis) {
+  return glm::angleAxis(glm::radians(degrees), glm::normalize(axis));
+}
 
 shader::ColliderBox boxOf(const GpgpAxiom& axiom) {
   shader::Shape shape{};
@@ -90,6 +92,20 @@ TEST(Boxes, Turned) {
     }
 }
 
+TEST(Boxes, StretchedAndSheared) {
+  GpgpAxiom box = boxAt({0, 0, 0}, {1, 1, 1});
+  box.transform[0] = 3;
+  EXPECT_TRUE(intersect(box, boxAt({1.99, 0, 0}, {1, 1, 1})));
+  EXPECT_FALSE(intersect(box, boxAt({2, 0, 0}, {1, 1, 1})));
+  box.transform[0] = 1;
+  box.transform[1] = 1; // x grows with y
+  EXPECT_TRUE(intersect(box, boxAt({0.9, 0.45, 0}, {0.02, 0.02, 0.02})));
+  EXPECT_FALSE(intersect(box, boxAt({-0.3, 0.45, 0}, {0.02, 0.02, 0.02})));
+  EXPECT_TRUE(intersect(box, boxAt({-0.3, -0.45, 0}, {0.02, 0.02, 0.02})));
+  box.transform[10] = -1; // mirrored
+  EXPECT_TRUE(intersect(box, boxAt({0.9, 0.45, 0}, {0.02, 0.02, 0.02})));
+}
+
 TEST(Boxes, FlatOnes) {
   const GpgpAxiom wall = boxAt({0, 0, 0}, {10, 3, 1});
   EXPECT_TRUE(intersect(wall, boxAt({0, 0, 0}, {1, 1, 0})));     // inside
@@ -100,7 +116,7 @@ TEST(Boxes, FlatOnes) {
   EXPECT_FALSE(intersect(quad, quad)); // in one plane
   EXPECT_TRUE(intersect(quad, boxAt({0, 0, 0}, {2, 2, 0}, turned(30, {0, 1, 0}))));
   EXPECT_FALSE(intersect(quad, boxAt({0, 0, 1}, {2, 2, 0}, turned(90, {1, 0, 0})))); // one ends at the other
-  EXPECT_TRUE(intersect(wall, boxAt({0, 0, 0}, {0, 0, 0}))); // a point inside
+  EXPECT_TRUE(intersect(wall, boxAt({0, 0, 0}, {0, 0, 0})));                         // a point inside
   EXPECT_FALSE(intersect(boxAt({0, 0, 0}, {0, 0, 0}), boxAt({0, 0, 0}, {0, 0, 0})));
   EXPECT_FALSE(intersect(boxAt({0, 0, 0}, {5, 0, 0}), boxAt({1, 0, 0}, {5, 0, 0})));
 }
@@ -207,7 +223,8 @@ TEST(Collide, TheGridFindsWhatAllPairsFind) {
 TEST(Collide, NotWithItselfAndWhatItDescendsFrom) {
   const std::vector<GpgpAxiom> one{makeAxiom(4, 4, 4)};
   EXPECT_EQ(hits(kHead + "Query = Collider(1) IfCollides(1) { Hit | Free };", one), 0u);
-  EXPECT_EQ(hits(kHead + "Query = Collider(1) SubDiv(X) { -1: Q | -1: Q }; Q = IfCollides(1) { Hit | Free };", one), 0u);
+  EXPECT_EQ(hits(kHead + "Query = Collider(1) SubDiv(X) { -1: Q | -1: Q }; Q = IfCollides(1) { Hit | Free };", one),
+            0u);
   EXPECT_EQ(hits(kHead + "Query = Collider(1) Collider(1) Translate(1,0,0) IfCollides(1) { Hit | Free };", one), 0u);
   // A sibling's collider is another one's; what only touches it does not hit.
   EXPECT_EQ(hits(kHead + "Query = Replicate() { Collider(1) Discard() | IfCollides(1) { Hit | Free } };", one), 1u);

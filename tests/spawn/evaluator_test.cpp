@@ -301,6 +301,19 @@ TEST(Operators, EndlessGrammarsStop) {
   EXPECT_FALSE(derive(words, std::span(&axiom, 1), options).complete);
 }
 
+TEST(Operators, ChainsOfAnyLengthEnd) { // others get their turn after 64 operators, wherever the chain is then
+  const GpgpAxiom axiom = makeAxiom(1, 1, 1);
+  for (int length = 60; length < 70; ++length) {
+    std::string chain;
+    for (int i = 1; i < length; ++i) chain += "Translate(1,0,0) ";
+    for (const char* condition : {"0", "1"}) {
+      const auto words =
+          bake("axiom Box A; terminal T (1,0); A = " + chain + "If(" + condition + ") { T | Discard() };");
+      EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, condition[0] == '1' ? 1u : 0u) << length;
+    }
+  }
+}
+
 TEST(Derivation, DoesNotDependOnPlacementOrOrder) {
   const auto text = sharedGrammar("commercial.pga");
   if (!text) GTEST_SKIP() << "commercial.pga is not in the shared data folder";

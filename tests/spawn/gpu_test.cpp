@@ -72,6 +72,7 @@ struct SpawnTest : testing::Test {
     info.maxDepth = budgets.maxDepth;
     info.maxRounds = budgets.maxRounds;
     info.flags = budgets.flags;
+    info.maxColliders = budgets.maxColliders;
     ASSERT_EQ(gpgpCreateSpawner(context, &info, &spawner), GPGP_SUCCESS);
     ASSERT_EQ(gpgpPrewarm(spawner, nullptr), GPGP_SUCCESS);
   }
@@ -233,6 +234,7 @@ TEST_F(SpawnTest, GivenGrammarsEqualTheEvaluator) {
 }
 
 TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
+  makeSpawner({.maxColliders = 8192});
   uint32_t checked = 0, instances = 0;
   spawn::DeriveOptions options;
   options.maxShapes = 30000;
@@ -240,7 +242,7 @@ TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
     const auto words = bake(randomGrammar(seed));
     const auto all = axioms(1 + seed % 5, 6, 9, 7);
     const auto cpu = spawn::derive(words, all, options);
-    if (!cpu.complete || cpu.terminals < 5) continue; // too large, or nothing to see
+    if (!cpu.complete || cpu.terminals < 5 || cpu.colliders > 8192) continue; // too large, or nothing to see
     check(std::string("seed ") + std::to_string(seed) + "\n" + randomGrammar(seed), words, all);
     if (HasFatalFailure()) return;
     instances += static_cast<uint32_t>(cpu.terminals);
@@ -279,12 +281,13 @@ TEST_F(SpawnTest, GeneratedKernelsEqualTheEvaluator) {
 TEST_F(SpawnTest, GeneratedKernelsOfRandomGrammarsEqualTheEvaluator) {
   const char* wanted = std::getenv("GPGP_TEST_KERNELS"); // software devices take seconds to compile one
   const uint32_t count = wanted ? static_cast<uint32_t>(std::atoi(wanted)) : 10;
+  makeSpawner({.maxColliders = 8192});
   spawn::DeriveOptions options;
   options.maxShapes = 30000;
   for (uint32_t seed = 1000, checked = 0; checked < count; ++seed) {
     const auto all = axioms(1 + seed % 5, 6, 9, 7);
     const auto cpu = spawn::derive(bake(randomGrammar(seed)), all, options);
-    if (!cpu.complete || cpu.terminals < 5) continue;
+    if (!cpu.complete || cpu.terminals < 5 || cpu.colliders > 8192) continue;
     check(std::string("seed ") + std::to_string(seed) + "\n" + randomGrammar(seed), bakeKernel(randomGrammar(seed)),
           all);
     if (HasFatalFailure()) return;
@@ -657,9 +660,7 @@ TEST_F(SpawnTest, GrammarsTakeTurnsInOneFrame) {
 }
 
 TEST_F(SpawnTest, ThePassesAreTheDocumentedOnes) {
-  GpgpSpawnerCreateInfo budgets{};
-  budgets.flags = GPGP_SPAWNER_ORDERED; // those of others and more
-  makeSpawner(budgets);
+  makeSpawner({.flags = GPGP_SPAWNER_ORDERED, .maxColliders = 16});
   uint32_t count = 0;
   ASSERT_EQ(gpgpGetPasses(spawner, &count, nullptr), GPGP_SUCCESS);
   std::vector<const char*> names(count);

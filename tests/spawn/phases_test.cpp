@@ -135,7 +135,9 @@ TEST(Phases, OfCollidersAreTheLeast) {
     }
     EXPECT_EQ(graph.phases, phases->count) << seed;
     for (uint32_t n = 0; n < graph.nodes.size(); ++n)
-      if (graph.nodes[n].op == shader::kOpIfCollides) EXPECT_EQ(graph.nodes[n].argument2, phases->phaseOf[n]) << seed;
+      if (graph.nodes[n].op == shader::kOpIfCollides) {
+        EXPECT_EQ(graph.nodes[n].argument2, phases->phaseOf[n]) << seed;
+      }
     several += graph.phases > 2;
     if (flow.order.size() > 7 || graph.phases < 2) continue;
     ++small;

@@ -597,6 +597,22 @@ TEST_F(VerticesTest, GeneratedKernelsWriteTheSame) {
   checkAll(*this, "building", words, axioms(5, 12, 16, 10), wideVertex());
 }
 
+TEST_F(VerticesTest, WithCollidersToo) {
+  gpgpDestroyWorker(spawners[1]);
+  GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
+  info.base.queueFamily = device->graphics().family;
+  info.flags = GPGP_SPAWNER_VERTICES;
+  info.maxColliders = 1000;
+  ASSERT_EQ(gpgpCreateSpawner(context, &info, &spawners[1]), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpPrewarm(spawners[1], nullptr), GPGP_SUCCESS);
+  const auto words = bake("axiom Box A; terminal T (1,0); terminal U (1,1);\n"
+                          "A = Scale(60,1,3) Repeat(X,6,ADJUST_TO_FILL) Collider(1) Replicate() { T | Repeat(Y,0.25,"
+                          "ADJUST_TO_FILL) Scale(-1.5,-1,-1) IfCollides(1) { U | T } };\n");
+  const auto all = axioms(30, 1, 1, 1); // some pieces reach into the next one, and some axioms into others
+  EXPECT_GT(spawn::derive(words, all).buckets[1], 500u);
+  checkAll(*this, "colliders", words, all, wideVertex());
+}
+
 TEST_F(VerticesTest, WhatDoesNotFitIsCountedAndNeverTorn) {
   // Boxes and quads with seeds of their own, so that quads can be told apart by terminal.
   const auto words =

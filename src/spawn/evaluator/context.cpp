@@ -49,8 +49,7 @@ std::vector<Shape> Context::begin(uint32_t phase) {
     set_.levels |= 1u << level;
   }
   std::vector<Shape> due, later;
-  for (const Shape& shape : waiting_)
-    (words_[shape.node + kNodeArgument2] == phase ? due : later).push_back(shape);
+  for (const Shape& shape : waiting_) (words_[shape.node + kNodeArgument2] == phase ? due : later).push_back(shape);
   waiting_ = std::move(later);
   return due;
 }

@@ -309,8 +309,7 @@ private:
   std::array<double, 4> placeOf(uint32_t node) const {
     const uint32_t u = unitOf_[node];
     const auto& nodes = units_[u].nodes;
-    const auto box =
-        static_cast<size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+    const auto box = static_cast<size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
     const double height = cards_[node].height;
     return {nodesLeft(u) + units_[u].layout.boxes[box].x, nodesTop(u) + units_[u].layout.boxes[box].top + height / 2,
             cards_[node].width / 2, height / 2};

@@ -11,8 +11,7 @@ namespace gpgp::spawn {
 
 /// length: by place, 0 where paths start; made. follow(place, reach) calls reach(place, 0 or 1) for each edge. False
 /// where a path is longer than limit, as all are that go round a cycle with a length.
-template <class Follow>
-bool longestPaths(std::pmr::vector<uint32_t>& length, uint32_t limit, const Follow& follow) {
+template <class Follow> bool longestPaths(std::pmr::vector<uint32_t>& length, uint32_t limit, const Follow& follow) {
   std::pmr::vector<uint32_t> changed(length.size(), length.get_allocator());
   for (uint32_t p = 0; p < changed.size(); ++p) changed[p] = static_cast<uint32_t>(changed.size()) - 1 - p;
   std::pmr::vector<uint8_t> listed(length.size(), 1, length.get_allocator());

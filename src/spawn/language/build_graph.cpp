@@ -504,8 +504,8 @@ private:
             return n.op == other && n.argument == node.argument;
           })) {
         const std::string tag = "(" + tagText(graph_, node.argument) + ")";
-        diagnostics_.warning(places_[i], operatorName(node.op) + tag + " has no effect: there is no " +
-                                             operatorName(other) + tag);
+        diagnostics_.warning(places_[i],
+                             operatorName(node.op) + tag + " has no effect: there is no " + operatorName(other) + tag);
       }
       if (node.shapes == 0) continue;
       uint32_t fitting = node.shapes;

@@ -40,7 +40,8 @@ public:
     analyse(graph_);
     checkMultiplicities();
     if (graph_.phases == kNoPhases)
-      diagnostics_.error({}, "there is no order of phases in which every Collider is before each IfCollides of its tag");
+      diagnostics_.error({},
+                         "there is no order of phases in which every Collider is before each IfCollides of its tag");
     if (auto ok = validate(graph_); !ok) diagnostics_.error({}, ok.error().text);
     if (diagnostics_.hasErrors()) return std::nullopt;
     return std::move(graph_);

@@ -149,9 +149,9 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.fill("clear counters", kCounters, 0);
   list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
   if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
-  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write}, {kDraws, read},
-                     {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},   {kCounters, readWrite},
-                     {kBuckets, readWrite},   {kConstants, read},   {kVertices, write},  {kIndices, write},
+  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},       {kInstances, write}, {kDraws, read},
+                     {kQueues, readWrite},    {kStacks, readWrite},  {kRecords, write},   {kCounters, readWrite},
+                     {kBuckets, readWrite},   {kConstants, read},    {kVertices, write},  {kIndices, write},
                      {kColliders, readWrite}, {kColliderCells, read}};
   for (uint32_t phase = 0; phase < phases; ++phase) {
     const uint32_t first = phase * spawner->phaseStride();
@@ -350,8 +350,8 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   report.verticesWritten = 4 * raw.words[10];
   report.colliders = raw.words[12];
   report.collidersKept = std::min(report.colliders, maxColliders_);
-  if (report.base.status == GPGP_SUCCESS && (raw.words[11] || report.droppedShapes || report.unfinishedShapes ||
-                                             report.colliders > report.collidersKept))
+  if (report.base.status == GPGP_SUCCESS &&
+      (raw.words[11] || report.droppedShapes || report.unfinishedShapes || report.colliders > report.collidersKept))
     report.base.status = GPGP_BUDGET_EXCEEDED;
   return true;
 }
