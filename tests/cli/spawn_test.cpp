@@ -75,7 +75,7 @@ Street = SubDiv(X) { -1: House | -1: Tall | -1: House };
 House = IfSizeLess(Y, 5) { Wall | Floors };
 Tall = Scale(-1, -0.5, -1) Translate(0, 1, 0) Floors;
 Floors = Repeat(Y, 2, ADJUST_TO_FILL) Front;
-Front = CompSplit() { Roof | Discard() | Wide | Wide | Wide | Wide };
+Front = CompSplit() { Roof | Discard() | Wide };
 Wide = Extrude(0.1) Window;
 )";
 
@@ -140,20 +140,20 @@ TEST(CliSpawn, WritesVertices) {
   EXPECT_EQ(sorted["buckets"], instances["buckets"]);
 }
 
-TEST(CliSpawn, BudgetsGrowUntilItFits) {
-  // Each level doubles: far more shapes wait at once than a stack holds.
-  const TemporaryFile grammar("wide.pga", "axiom Box A;\nterminal T (1, 0);\nA = IfSizeLess(X, 0.002) { T | B };\n"
+TEST(CliSpawn, BudgetsThatAreSetAreKept) { // and what is lost is told; others grow until all fits
+  const TemporaryFile grammar("wide.pga", "axiom Box A;\nterminal T (1, 0);\nA = IfSizeLess(X, 0.03) { T | B };\n"
                                           "B = SubDiv(X) { -1: C | -1: C };\nC = SubDiv(Y) { -1: A | -1: A };\n");
-  const std::vector<std::string> common = {"spawn", grammar.path(), "--axioms", "2", "--schedule", "interpreter"};
+  const std::vector<std::string> common = {"spawn", grammar.path(), "--axioms", "40", "--schedule", "interpreter"};
   const json whole = gpgpJson(common);
-  EXPECT_EQ(whole["terminals"], 2 << 18);
+  EXPECT_EQ(whole["terminals"], 40 << 12);
   EXPECT_EQ(whole["dropped_shapes"], 0);
+  EXPECT_EQ(whole["budget_exceeded"], false);
   auto small = common;
-  small.insert(small.end(), {"--max-shapes", "64"}); // what the caller sets is kept, and what is lost is told
+  small.insert(small.end(), {"--max-shapes", "2"});
   const json told = gpgpJson(small);
-  EXPECT_EQ(told["max_shapes"], 64);
-  EXPECT_EQ(told["budget_exceeded"],
-            told["dropped_shapes"].get<uint32_t>() > 0 || told["instances"] < told["terminals"]);
+  EXPECT_EQ(told["max_shapes"], 2);
+  EXPECT_EQ(told["budget_exceeded"], told["dropped_shapes"].get<uint32_t>() > 0);
+  EXPECT_EQ(told["terminals"] == whole["terminals"], told["dropped_shapes"] == 0);
 }
 
 TEST(CliSpawn, SchedulesFromFilesAreChecked) {

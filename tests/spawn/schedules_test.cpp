@@ -82,7 +82,7 @@ TEST(Schedules, MatchingGroupsShareCode) {
   const spawn::Graph graph = graphOf(R"(axiom Box All;
 terminal T (1, 0);
 terminal U (1, 1);
-All = SubDiv(X) { -1: One | -1: Two | -1: Three };
+All = SubDiv(X) { -1: One | -1: Two | -1: Three | -1: U };
 One = Translate(1, 0, 0) Rotate(0, 30, 0) T;
 Two = Translate(2, 0, 0) Rotate(0, 40, 0) U;
 Three = Translate(0, 3, 0) Scale(2, 2, 2) T;
