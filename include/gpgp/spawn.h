@@ -159,7 +159,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpS
 
 /** Compiles the kernels that a grammar was baked with and that are for this device, on the calling thread. Until it has
  *  returned, and for grammars without such kernels, records run the interpreter, which derives the same. The pipelines
- *  belong to the grammar and serve all spawners of the context. May run beside records.
+ *  belong to the grammar and serve all spawners of the context. May run beside records and gpgpAdvance, so that
+ *  frames go on; only the two handles must live until it returns.
  *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY. @threads handle: one call for a grammar at a time */
 GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker spawner, GpgpAsset grammar);
 
