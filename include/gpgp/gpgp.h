@@ -3,6 +3,7 @@
 #define GPGP_H
 #include <gpgp/core.h>
 #include <gpgp/spawn.h>
+#include <gpgp/spawn_builder.h>
 #include <gpgp/vector.h>
 #include <gpgp/visibility.h>
 #endif

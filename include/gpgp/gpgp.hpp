@@ -16,6 +16,8 @@
 
 #include <gpgp/gpgp.h>
 
+#include <initializer_list>
+#include <type_traits>
 #include <utility>
 
 namespace gpgp {
@@ -87,6 +89,7 @@ inline void destroy(GpgpContext handle) noexcept { gpgpDestroyContext(handle); }
 inline void destroy(GpgpAsset handle) noexcept { gpgpDestroyAsset(handle); }
 inline void destroy(GpgpWorker handle) noexcept { gpgpDestroyWorker(handle); }
 inline void destroy(GpgpView handle) noexcept { gpgpDestroyView(handle); }
+inline void destroy(GpgpGrammarBuilder handle) noexcept { gpgpDestroyGrammarBuilder(handle); }
 } // namespace detail
 
 /// Owns one C handle. Converts to it, so that it can be put in the C structs.
@@ -338,6 +341,188 @@ inline Result<Blob> compileGrammar(const GpgpGrammarSource& source) noexcept {
   const GpgpResult code = gpgpCompileGrammar(&source, &blob);
   return Result<Blob>(code, Blob(blob));
 }
+
+// ---------------------------------------------------------------- grammars in code (libgpgp_compiler)
+
+/// A value in a grammar: a number, or what a GrammarBuilder made. Sums and comparisons of values are values, too; at
+/// least one of the two comes from a builder.
+class GrammarValue {
+public:
+  template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
+  GrammarValue(Number number) noexcept : value_{GPGP_VALUE_NUMBER, static_cast<float>(number)} {}
+  GrammarValue(GpgpGrammarValue value, GpgpGrammarBuilder builder) noexcept : value_(value), builder_(builder) {}
+  const GpgpGrammarValue& get() const noexcept { return value_; }
+
+  friend GrammarValue operator+(GrammarValue a, GrammarValue b) noexcept { return join(GPGP_EXPRESSION_ADD, a, b); }
+  friend GrammarValue operator-(GrammarValue a, GrammarValue b) noexcept {
+    return join(GPGP_EXPRESSION_SUBTRACT, a, b);
+  }
+  friend GrammarValue operator-(GrammarValue a) noexcept { return GrammarValue(0) - a; }
+  friend GrammarValue operator*(GrammarValue a, GrammarValue b) noexcept {
+    return join(GPGP_EXPRESSION_MULTIPLY, a, b);
+  }
+  friend GrammarValue operator/(GrammarValue a, GrammarValue b) noexcept { return join(GPGP_EXPRESSION_DIVIDE, a, b); }
+  friend GrammarValue operator==(GrammarValue a, GrammarValue b) noexcept { return join(GPGP_EXPRESSION_EQUAL, a, b); }
+  friend GrammarValue operator!=(GrammarValue a, GrammarValue b) noexcept {
+    return join(GPGP_EXPRESSION_NOT_EQUAL, a, b);
+  }
+  friend GrammarValue operator<(GrammarValue a, GrammarValue b) noexcept { return join(GPGP_EXPRESSION_LESS, a, b); }
+  friend GrammarValue operator>(GrammarValue a, GrammarValue b) noexcept { return join(GPGP_EXPRESSION_GREATER, a, b); }
+  friend GrammarValue operator<=(GrammarValue a, GrammarValue b) noexcept {
+    return join(GPGP_EXPRESSION_LESS_EQUAL, a, b);
+  }
+  friend GrammarValue operator>=(GrammarValue a, GrammarValue b) noexcept {
+    return join(GPGP_EXPRESSION_GREATER_EQUAL, a, b);
+  }
+  friend GrammarValue operator&&(GrammarValue a, GrammarValue b) noexcept { return join(GPGP_EXPRESSION_AND, a, b); }
+  friend GrammarValue operator||(GrammarValue a, GrammarValue b) noexcept { return join(GPGP_EXPRESSION_OR, a, b); }
+
+private:
+  static GrammarValue join(GpgpExpressionKind kind, GrammarValue a, GrammarValue b) noexcept {
+    const GpgpGrammarBuilder builder = a.builder_ ? a.builder_ : b.builder_;
+    return GrammarValue(gpgpAddExpression(builder, kind, a.value_, b.value_), builder);
+  }
+  GpgpGrammarValue value_;
+  GpgpGrammarBuilder builder_ = nullptr;
+};
+
+/// What a GrammarBuilder's operators return, to be handed to one other operator or rule.
+struct GrammarOperator {
+  GpgpGrammarOperator id = 0;
+};
+
+/// Where shapes go: a name or an operator; { value, name } or { value, operator } in SubDiv and RandomRule.
+struct GrammarSuccessor : GpgpGrammarSuccessor {
+  GrammarSuccessor(const char* to) noexcept : GpgpGrammarSuccessor{{GPGP_VALUE_NONE, 0}, to, 0} {}
+  GrammarSuccessor(GrammarOperator to) noexcept : GpgpGrammarSuccessor{{GPGP_VALUE_NONE, 0}, nullptr, to.id} {}
+  GrammarSuccessor(const GrammarValue& before, const char* to) noexcept : GpgpGrammarSuccessor{before.get(), to, 0} {}
+  GrammarSuccessor(const GrammarValue& before, GrammarOperator to) noexcept
+      : GpgpGrammarSuccessor{before.get(), nullptr, to.id} {}
+};
+static_assert(sizeof(GrammarSuccessor) == sizeof(GpgpGrammarSuccessor), "lists of them are lists of the C struct");
+
+/// A polygon's corner, from GrammarBuilder::corner.
+struct GrammarCorner : GpgpGrammarValue {};
+static_assert(sizeof(GrammarCorner) == sizeof(GpgpGrammarValue), "lists of them are lists of the C struct");
+
+enum class Axis : uint32_t { x, y, z };
+
+/// gpgpCreateGrammarBuilder and what takes a builder. Operators read as in the language:
+///
+///   GrammarBuilder g = *GrammarBuilder::create();
+///   g.axiom(GPGP_SHAPE_BOX, "Tower").terminal("Floor Roof", 1, 0);
+///   const auto height = g.variable("height", 3);
+///   g.rule("Tower", g.subDiv(Axis::y, {{-1, g.repeat(Axis::y, height, "Floor")}, {height * 0.5f, "Roof"}}));
+///   auto blob = g.compile();
+class GrammarBuilder : public Handle<GpgpGrammarBuilder> {
+public:
+  using Handle::Handle;
+  using Value = GrammarValue;
+  using Operator = GrammarOperator;
+  using Successor = GrammarSuccessor;
+  using Successors = std::initializer_list<GrammarSuccessor>;
+  using Corners = std::initializer_list<GrammarCorner>;
+
+  static Result<GrammarBuilder> create() noexcept {
+    GpgpGrammarBuilder raw = nullptr;
+    const GpgpResult code = gpgpCreateGrammarBuilder(&raw);
+    return Result<GrammarBuilder>(code, GrammarBuilder(raw));
+  }
+  /// gpgpCompileGrammar. source: all but its text.
+  Result<Blob> compile(GpgpGrammarSource source = init<GpgpGrammarSource>()) const noexcept {
+    source.builder = get();
+    return compileGrammar(source);
+  }
+
+  GrammarBuilder& axiom(GpgpShape shape, const char* rule) noexcept {
+    gpgpSetAxiom(get(), shape, nullptr, 0, rule);
+    return *this;
+  }
+  /// For dynamic shapes.
+  GrammarBuilder& axiom(GpgpShape shape, Corners corners, const char* rule) noexcept {
+    gpgpSetAxiom(get(), shape, corners.begin(), static_cast<uint32_t>(corners.size()), rule);
+    return *this;
+  }
+  GrammarBuilder& terminal(const char* names, uint32_t kind, uint32_t index) noexcept {
+    gpgpAddTerminal(get(), names, kind, index);
+    return *this;
+  }
+  GrammarBuilder& rule(const char* name, const Successor& to) noexcept {
+    gpgpAddRule(get(), name, to.name, to.op);
+    return *this;
+  }
+  Value variable(const char* name, const Value& value) noexcept {
+    return own(gpgpAddVariable(get(), name, value.get()));
+  }
+
+  Value random(const Value& low, const Value& high) noexcept {
+    return own(gpgpAddExpression(get(), GPGP_EXPRESSION_RANDOM, low.get(), high.get()));
+  }
+  Value shapePos(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_POS_X, axis)); }
+  Value shapeSize(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_SIZE_X, axis)); }
+  Value shapeNormal(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_NORMAL_X, axis)); }
+  Value shapeRotation(Axis axis, Axis component) const noexcept {
+    return own(attribute(GPGP_VALUE_SHAPE_ROTATION_XX + 3 * static_cast<uint32_t>(axis), component));
+  }
+  Value shapeSeed() const noexcept { return own({GPGP_VALUE_SHAPE_SEED, 0}); }
+  Value shapeCustomAttribute() const noexcept { return own({GPGP_VALUE_SHAPE_CUSTOM_ATTRIBUTE, 0}); }
+
+  Operator translate(const Value& x, const Value& y, const Value& z, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_TRANSLATE, {x.get(), y.get(), z.get()}, {to});
+  }
+  Operator rotate(const Value& x, const Value& y, const Value& z, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_ROTATE, {x.get(), y.get(), z.get()}, {to});
+  }
+  Operator scale(const Value& x, const Value& y, const Value& z, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_SCALE, {x.get(), y.get(), z.get()}, {to});
+  }
+  Operator extrude(const Value& height, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_EXTRUDE, {height.get()}, {to});
+  }
+  Operator swapSize(Axis x, Axis y, Axis z, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_SWAP_SIZE, {axisValue(x), axisValue(y), axisValue(z)}, {to});
+  }
+  Operator compSplit(const Successor& faces) noexcept { return add(GPGP_OPERATOR_COMP_SPLIT, {}, {faces}); }
+  Operator compSplit(const Successor& top, const Successor& bottom, const Successor& sides) noexcept {
+    return add(GPGP_OPERATOR_COMP_SPLIT, {}, {top, bottom, sides});
+  }
+  Operator subDiv(Axis axis, Successors parts) noexcept { return add(GPGP_OPERATOR_SUB_DIV, {axisValue(axis)}, parts); }
+  /// mode: GPGP_VALUE_ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END
+  Operator repeat(Axis axis, const Value& extent, const Successor& to,
+                  GpgpGrammarValueId mode = GPGP_VALUE_ADJUST_TO_FILL) noexcept {
+    return add(GPGP_OPERATOR_REPEAT, {axisValue(axis), extent.get(), {mode, 0}}, {to});
+  }
+  Operator ifElse(const Value& condition, const Successor& yes, const Successor& no) noexcept {
+    return add(GPGP_OPERATOR_IF, {condition.get()}, {yes, no});
+  }
+  Operator ifSizeLess(Axis axis, const Value& length, const Successor& yes, const Successor& no) noexcept {
+    return add(GPGP_OPERATOR_IF_SIZE_LESS, {axisValue(axis), length.get()}, {yes, no});
+  }
+  Operator randomRule(const Value& chance, Successors parts) noexcept {
+    return add(GPGP_OPERATOR_RANDOM_RULE, {chance.get()}, parts);
+  }
+  Operator replicate(Successors copies) noexcept { return add(GPGP_OPERATOR_REPLICATE, {}, copies); }
+  Operator discard() noexcept { return add(GPGP_OPERATOR_DISCARD, {}, {}); }
+  Operator generate() noexcept { return add(GPGP_OPERATOR_GENERATE, {}, {}); }
+  GrammarCorner corner(const Value& x, const Value& y) noexcept {
+    return GrammarCorner{gpgpAddExpression(get(), GPGP_EXPRESSION_CORNER, x.get(), y.get())};
+  }
+  /// kind: one of GPGP_OPERATOR_SET_AS_DYNAMIC_...
+  Operator setAsDynamic(GpgpOperatorKind kind, Corners corners, const Successor& to) noexcept {
+    return Operator{gpgpAddOperator(get(), kind, corners.begin(), static_cast<uint32_t>(corners.size()), &to, 1)};
+  }
+
+private:
+  Value own(GpgpGrammarValue value) const noexcept { return Value(value, get()); }
+  static GpgpGrammarValue attribute(GpgpGrammarValueId first, Axis axis) noexcept {
+    return {first + static_cast<uint32_t>(axis), 0};
+  }
+  static GpgpGrammarValue axisValue(Axis axis) noexcept { return attribute(GPGP_VALUE_X, axis); }
+  Operator add(GpgpOperatorKind kind, std::initializer_list<GpgpGrammarValue> values, Successors to) noexcept {
+    return Operator{gpgpAddOperator(get(), kind, values.begin(), static_cast<uint32_t>(values.size()), to.begin(),
+                                    static_cast<uint32_t>(to.size()))};
+  }
+};
 
 inline Result<Blob> compileSvg(const GpgpSvgSource& source) noexcept {
   GpgpBlob blob = GpgpBlob();

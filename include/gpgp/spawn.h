@@ -64,7 +64,7 @@ enum {
 
 typedef struct GpgpCompileMessage {
   const char* file;
-  uint32_t line, column; /**< from 1 */
+  uint32_t line, column; /**< from 1; 0 for a builder: its text begins with the place, by name */
   GpgpSeverity severity;
   const char* text;
 } GpgpCompileMessage;
@@ -81,6 +81,8 @@ typedef uint64_t GpgpCompileFlags;
  */
 #define GPGP_COMPILE_KERNEL ((GpgpCompileFlags)1)
 
+typedef struct GpgpGrammarBuilder_T* GpgpGrammarBuilder; /**< a grammar made in code, see spawn_builder.h */
+
 typedef struct GpgpGrammarSource {
   GpgpStructureType sType;
   const void* pNext;
@@ -92,11 +94,13 @@ typedef struct GpgpGrammarSource {
   GpgpCompileMessageFn messageFn; /**< every error of the file, in order */
   void* messageUserData;
   GpgpCompileFlags flags;
+  GpgpGrammarBuilder builder; /**< instead of text, which then is NULL; read during the call */
 } GpgpGrammarSource;
 #define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
 
-/** Compiles PGA-shape text (.pga) to a baked grammar. In libgpgp_compiler. A pure function of its input.
- *  Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+/** Compiles PGA-shape text (.pga), or what a builder holds, to a baked grammar. In libgpgp_compiler. A pure function of
+ *  its input. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime
+ * call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
 /* ---------------------------------------------------------------- grammar */
@@ -163,7 +167,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpS
 
 /** Compiles the kernels that a grammar was baked with and that are for this device, on the calling thread. Until it has
  *  returned, and for grammars without such kernels, records run the interpreter, which derives the same. The pipelines
- *  belong to the grammar and serve all spawners of the context. May run beside records.
+ *  belong to the grammar and serve all spawners of the context. May run beside records and gpgpAdvance, so that
+ *  frames go on; only the two handles must live until it returns.
  *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY. @threads handle: one call for a grammar at a time */
 GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker spawner, GpgpAsset grammar);
 

@@ -4,6 +4,7 @@
 #include "shaders/mini_city_frag.spv.h"
 #include "shaders/mini_city_vert.spv.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,8 +15,9 @@ namespace mini {
 namespace {
 
 constexpr uint32_t kMaxInstances = 400000;
-constexpr float kBlock = 26.0f; // metres from block to block; backdrop.frag draws the streets
-constexpr int kBlocks = 6;      // to each side of the square in the middle
+constexpr uint32_t kMaxBuckets = 1024; // as many as a grammar can have: the next one may have more than the first
+constexpr float kBlock = 26.0f;        // metres from block to block; backdrop.frag draws the streets
+constexpr int kBlocks = 6;             // to each side of the square in the middle
 
 /// One building per block, low around the square in the middle, which
 /// stays free like the avenue, and taller towards the edge of town.
@@ -78,7 +80,8 @@ void GPGP_CALL onCompileMessage(void*, const GpgpCompileMessage* message) {
 
 } // namespace
 
-City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& grammarFile) : gpgp_(gpgp) {
+City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& grammarFile, bool watch)
+    : gpgp_(gpgp) {
   // A shipped game would load a baked grammar; the sample compiles the text.
   const std::vector<char> text = readFile(grammarFile);
   auto source = gpgp::init<GpgpGrammarSource>();
@@ -97,6 +100,14 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
   spawner_ = gpgp.take(gpgp::Spawner::create(gpgp.context, spawnerInfo), "gpgpCreateSpawner");
   gpgp.check(spawner_.prewarm(), "gpgpPrewarm");
   makeMaterials();
+  if (watch) {
+    GrammarWatchOptions options;
+    options.file = grammarFile;
+    options.text.assign(text.begin(), text.end());
+    options.kernels = true;
+    options.say = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
+    watch_ = std::make_unique<GrammarWatch>(gpgp.context, spawner_, options);
+  }
 
   // The engine's buffers. gpgp fills instances, and in each draw the count and the first instance; the rest is set
   // here.
@@ -107,7 +118,7 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   VkDrawIndexedIndirectCommand box{};
   box.indexCount = 36;
-  draws_ = makeBuffer(device, std::vector(materials_.size(), box),
+  draws_ = makeBuffer(device, std::vector(kMaxBuckets, box),
                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   std::vector<glm::vec3> corners;
   for (int i = 0; i < 8; ++i)
@@ -137,13 +148,19 @@ void City::makeMaterials() {
   gpgp_.check(grammar_.terminals(count, nullptr), "gpgpGetGrammarTerminals");
   std::vector<GpgpGrammarTerminal> terminals(count);
   gpgp_.check(grammar_.terminals(count, terminals.data()), "gpgpGetGrammarTerminals");
-  materials_.resize(count, glm::vec4(0.5f));
+  uint32_t buckets = 0;
+  for (const GpgpGrammarTerminal& terminal : terminals) buckets = std::max(buckets, terminal.bucket + 1);
+  materials_.assign(buckets, glm::vec4(0.5f));
   for (auto terminal = terminals.rbegin(); terminal != terminals.rend();
        ++terminal) // the first name of a bucket counts
-    if (terminal->bucket < count) materials_[terminal->bucket] = materialOf(terminal->name, terminal->bucket);
+    materials_[terminal->bucket] = materialOf(terminal->name, terminal->bucket);
 }
 
 void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
+  if (auto next = watch_ ? watch_->update() : std::nullopt) {
+    grammar_ = std::move(*next); // the old one is destroyed here, and freed when its frames are over
+    makeMaterials();
+  }
   auto info = gpgp::init<GpgpSpawnInfo>();
   info.base.tag = frame.current;
   info.grammar = grammar_;

@@ -2,12 +2,14 @@
 #pragma once
 #include "forward.h"
 #include "gpgp_glue.h"
+#include "grammar_watch.h"
 
 namespace mini {
 
 class City {
 public:
-  City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& grammarFile);
+  /// watch: the grammar follows its file while the engine runs.
+  City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& grammarFile, bool watch);
   /// Outside render passes. Nothing is drawn until this has recorded something.
   void prepare(VkCommandBuffer commands, const GpgpFrame& frame);
   /// Inside the forward pass.
@@ -23,6 +25,7 @@ private:
   Gpgp& gpgp_;
   gpgp::Grammar grammar_;
   gpgp::Spawner spawner_;
+  std::unique_ptr<GrammarWatch> watch_;
   Buffer axioms_, instances_, draws_, corners_, indices_;
   Pipeline pipeline_;
   std::vector<glm::vec4> materials_; // a bucket each: colour, and how much a building tints it

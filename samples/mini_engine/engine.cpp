@@ -25,7 +25,8 @@ Model loadModel(const std::string& dataFolder) {
 
 Engine::Engine(Device& device, Target& target, const EngineOptions& options)
     : device_(device), target_(target), forward_(device, target.format(), target.finalLayout()),
-      gpgp_(device, kFramesInFlight), city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga"),
+      gpgp_(device, kFramesInFlight),
+      city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga", options.watch),
       hud_(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
            options.dataFolder + "/fetched/svg/tiger.svgz"),
       sight_(device, gpgp_, forward_, loadModel(options.dataFolder)) {

@@ -9,6 +9,7 @@ namespace mini {
 
 struct EngineOptions {
   std::string dataFolder; // tests/data
+  bool watch = false;     // grammars follow their files
 };
 
 class Engine {

@@ -15,6 +15,7 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --size WxH       picture size (default 1280x720)
   --window         open a window instead; Escape closes it (with --frames: after N frames)
   --device NAME    GPU: part of its name, or an index (default: $GPGP_DEVICE, else the software device)
+  --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
   --data FOLDER    test data (default: the source tree's)
   --validate       run under the Khronos validation layer; any message of it is an error
 
@@ -25,7 +26,7 @@ struct Options {
   std::string out = "pictures", device, data = MINI_ENGINE_DATA;
   uint32_t frames = 0;
   VkExtent2D size{1280, 720};
-  bool window = false, validate = false;
+  bool window = false, validate = false, watch = false;
 };
 
 bool parse(int argc, char** argv, Options& options) {
@@ -33,6 +34,10 @@ bool parse(int argc, char** argv, Options& options) {
     const std::string name = argv[i];
     if (name == "--window") {
       options.window = true;
+      continue;
+    }
+    if (name == "--watch") {
+      options.watch = true;
       continue;
     }
     if (name == "--validate") {
@@ -82,7 +87,7 @@ int run(const Options& options) {
 #endif
     if (!target) target = std::make_unique<mini::Offscreen>(device, options.size);
     {
-      mini::Engine engine(device, *target, {options.data});
+      mini::Engine engine(device, *target, {options.data, options.watch});
       engine.run(options.frames ? options.frames : options.window ? 0 : 3);
       engine.printSummary();
       well = engine.allWell();

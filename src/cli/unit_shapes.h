@@ -1,4 +1,5 @@
-// Triangles of the unit shapes that spawn's terminals are: each spans [-0.5, 0.5], planar ones lie in z = 0.
+// Triangles of the unit shapes that spawn's terminals are: each spans [-0.5, 0.5], planar ones lie in z = 0, prisms
+// stand along y. Those without area are left out.
 #pragma once
 #include <gpgp/spawn.h>
 

@@ -32,7 +32,7 @@ install(TARGETS ${installed} EXPORT gpgpTargets)
 if(TARGET gpgp_cli)
   file(RELATIVE_PATH relative /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
   set_target_properties(gpgp_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${relative}")
-  install(TARGETS gpgp_cli)
+  install(TARGETS gpgp_cli EXPORT gpgpTargets)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/gpgp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING
   PATTERN "*.h" PATTERN "*.hpp")
@@ -70,7 +70,7 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gpgpConfig.cmake.in
   ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake INSTALL_DESTINATION ${cmake_directory} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake ${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake
-  DESTINATION ${cmake_directory})
+  ${CMAKE_CURRENT_LIST_DIR}/assets.cmake DESTINATION ${cmake_directory})
 
 # pkg-config: paths are relative to the .pc file, so that a prefix can be moved.
 file(RELATIVE_PATH GPGP_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)

@@ -13,6 +13,7 @@ template <class T> constexpr bool isHandle() {
 static_assert(isHandle<gpgp::Context>() && isHandle<gpgp::Grammar>() && isHandle<gpgp::Spawner>());
 static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::Canvas>() && isHandle<gpgp::CanvasView>());
 static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::Sampler>() && isHandle<gpgp::CameraView>());
+static_assert(isHandle<gpgp::GrammarBuilder>());
 static_assert(!std::is_copy_constructible_v<gpgp::Blob> && std::is_nothrow_move_constructible_v<gpgp::Blob>);
 static_assert(!std::is_convertible_v<gpgp::Grammar, gpgp::Drawing>);
 
@@ -60,6 +61,27 @@ GpgpResult useSpawn(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer
   return taken ? GPGP_SUCCESS : GPGP_NOT_READY;
 }
 
+GpgpResult useGrammarBuilder() {
+  auto made = gpgp::GrammarBuilder::create();
+  if (!made) return made.code();
+  gpgp::GrammarBuilder g = *std::move(made);
+  using gpgp::Axis;
+  const auto v = g.variable("v", 3);
+  const auto all =
+      g.random(1, v) + g.shapePos(Axis::x) - g.shapeNormal(Axis::y) * g.shapeRotation(Axis::x, Axis::z) / 2;
+  const auto test = (g.shapeSeed() < 0.5 && all > 1) || (v <= 2 && v >= 1) || v == 2 || 3 != v;
+  g.axiom(GPGP_SHAPE_DYNAMIC_POLYGON, {g.corner(0, 0), g.corner(v, 0), g.corner(0, 1)}, "A").axiom(GPGP_SHAPE_BOX, "A");
+  g.terminal("T U", 1, 0).rule("B", "T");
+  g.rule("A", g.subDiv(Axis::x, {{-1, "B"}, {v * 0.5f, g.discard()}, {1, g.generate()}}));
+  g.rule("C", g.translate(0, g.shapeSize(Axis::y), 0, g.rotate(0, 90, 0, g.scale(-1, all, -1, g.extrude(2, "A")))));
+  g.rule("D", g.swapSize(Axis::y, Axis::x, Axis::z, g.compSplit(g.compSplit("A", "B", "C"))));
+  g.rule("E", g.ifElse(test, g.repeat(Axis::y, 1, "A"), g.ifSizeLess(Axis::z, g.shapeCustomAttribute(), "A", "B")));
+  g.rule("F", g.randomRule(g.shapeSeed(), {{1, "A"}, {2, g.replicate({"A", "B", g.discard()})}}));
+  g.rule("G", g.setAsDynamic(GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON,
+                             {g.corner(0, 0), g.corner(1, 0), g.corner(0, 1)}, "A"));
+  return g.compile().code();
+}
+
 GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
   auto blob = gpgp::compileSvg(gpgp::init<GpgpSvgSource>());
   if (!blob) return blob.code();
@@ -99,6 +121,7 @@ GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd)
   const GpgpFrame frame = {1, 0};
   if (const GpgpResult code = useCore(*context, frame, cmd)) return code;
   if (const GpgpResult code = useSpawn(*context, frame, cmd)) return code;
+  if (const GpgpResult code = useGrammarBuilder()) return code;
   if (const GpgpResult code = useVector(*context, frame, cmd)) return code;
   return useVisibility(*context, frame, cmd);
 }

@@ -25,6 +25,7 @@ done
   -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" "${options[@]}"
 "$cmake" --build "$scratch"
 "$scratch/consumer"
+if [[ " $* " == *" spawn "* ]]; then set -- "$@" spawn_builder; fi # a service in two headers
 symbols=("$tests/../abi/symbols_test.sh" "$nm" "$source/include" "$tests/../abi")
 "${symbols[@]}" run-time "$scratch/gpgp/src/libgpgp.a" core "$@"
 if [[ $compiler == ON ]]; then "${symbols[@]}" compiler "$scratch/gpgp/src/libgpgp_compiler.a" core "$@"; fi

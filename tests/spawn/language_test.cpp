@@ -41,7 +41,7 @@ TEST(Language, ReportsAllErrorsInOrder) {
                       "5:5: error: expected an operator, a rule or a terminal, found '{'",
                       "7:1: error: expected ';' at the end of the rule, found 'E'",
                       "7:12: error: expected an axis: X, Y or Z",
-                      "7:24: error: expected a value and ':' before the successor of SubDiv",
+                      "7:24: error: expected a value before the successor of SubDiv",
                       "8:22: error: there is no rule or terminal 'Q'"}));
 }
 
@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"A = Translate(1,2) T;", "3:5: error: Translate takes 3 arguments, found 2"},
         Case{"A = Extrude(1);", "3:5: error: Extrude needs a successor; shapes end in a terminal or Discard()"},
         Case{"A = SubDiv(X) T;", "3:15: error: expected '{' after SubDiv(...)"},
-        Case{"A = SubDiv(X) { 1: T | T };", "3:24: error: expected a value and ':' before the successor of SubDiv"},
+        Case{"A = SubDiv(X) { 1: T | T };", "3:24: error: expected a value before the successor of SubDiv"},
         Case{"A = SubDiv(Q) { 1: T };", "3:12: error: expected an axis: X, Y or Z"},
         Case{"A = SubDiv(X) { 1: T | };", "3:24: error: expected an operator, a rule or a terminal, found '}'"},
         Case{"A = Repeat(X, 1, FILL) T;", "3:18: error: expected ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END"},

@@ -202,6 +202,13 @@ TEST(Print, GroupsOfAnotherGraphAreRefused) {
   EXPECT_EQ(empty.errorCount(), 1u);
 }
 
+TEST(Print, NumbersBeyondFloatsAreErrors) { // as a float such a number is 0
+  const std::string digits(40, '9');
+  EXPECT_EQ(errorsOf(std::string(kHead) + "0 T\nterminal Q (" + digits + ", 0) bucket 0"),
+            (Messages{"4:13: error: the number is too large",
+                      "4:13: error: expected a kind, 0 or 1, found '" + digits + "'"}));
+}
+
 TEST(Print, CutAndChangedTextNeverCrashes) {
   uint32_t accepted = 0, refused = 0;
   for (uint32_t seed = 0; seed < 300; ++seed) {

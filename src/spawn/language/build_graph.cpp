@@ -65,8 +65,8 @@ private:
   bool define(const std::string& name, Name what) {
     const auto [it, isNew] = names_.try_emplace(name, what);
     if (!isNew)
-      diagnostics_.error(what.place, "'" + name + "' is defined twice; the first time in line " +
-                                         std::to_string(it->second.place.line));
+      diagnostics_.error(what.place,
+                         "'" + name + "' is defined twice; the first time in " + diagnostics_.where(it->second.place));
     else if (isOperatorName(name))
       diagnostics_.error(what.place, "'" + name + "' is the name of an operator; expected another name");
     return isNew;
@@ -308,7 +308,7 @@ private:
       if (branch.isElse)
         diagnostics_.error(branch.successor.place, "'else' has no meaning in " + call.name);
       else if (spelling.labels && !branch.label && call.form == SuccessorForm::braces)
-        diagnostics_.error(branch.successor.place, "expected a value and ':' before the successor of " + call.name);
+        diagnostics_.error(branch.successor.place, "expected a value before the successor of " + call.name);
       else if (!spelling.labels && branch.label)
         diagnostics_.error(branch.label->place, call.name + " takes successors without a value before them");
     }
@@ -420,7 +420,7 @@ private:
     }
     for (size_t i = 1; i < tree_.axioms.size(); ++i)
       diagnostics_.error(tree_.axioms[i].place,
-                         "there is a second axiom; the first is in line " + std::to_string(tree_.axioms[0].place.line));
+                         "there is a second axiom; the first is in " + diagnostics_.where(tree_.axioms[0].place));
     const AxiomDefinition& axiom = tree_.axioms[0];
     Successor start;
     start.place = axiom.namePlace;

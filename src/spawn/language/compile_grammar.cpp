@@ -1,10 +1,11 @@
-// gpgpCompileGrammar: text to a baked grammar.
+// gpgpCompileGrammar: text, or what a builder holds, to a baked grammar.
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
 #include "spawn/codegen/schedules.h"
 #include "spawn/graph/blob.h"
 #include "spawn/graph/kernel.h"
 #include "spawn/language/build_graph.h"
+#include "spawn/language/builder.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -19,8 +20,20 @@ void report(const GpgpGrammarSource& source, uint32_t line, uint32_t column, Gpg
 }
 
 GpgpResult fail(const GpgpGrammarSource& source, GpgpResult result, const char* text) {
-  report(source, 1, 1, GPGP_SEVERITY_ERROR, text);
+  const uint32_t first = source.builder ? 0 : 1;
+  report(source, first, first, GPGP_SEVERITY_ERROR, text);
   return result;
+}
+
+void report(const GpgpGrammarSource& source, const spawn::Diagnostics& diagnostics) {
+  for (const spawn::Diagnostic& d : diagnostics.sorted()) {
+    if (!source.builder) {
+      report(source, d.place.line, d.place.column, d.severity, d.text.c_str());
+    } else { // places have names instead
+      const std::string place = diagnostics.isNamed(d.place) ? diagnostics.where(d.place) + ": " : std::string();
+      report(source, 0, 0, d.severity, (place + d.text).c_str());
+    }
+  }
 }
 } // namespace
 
@@ -28,6 +41,8 @@ GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlo
   if (!source || !blob) return GPGP_ERROR_INVALID_ARGUMENT;
   if (source->sType != GPGP_STRUCTURE_GRAMMAR_SOURCE || source->pNext) return GPGP_ERROR_INVALID_STRUCT;
   try {
+    if (source->builder && source->text)
+      return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "both text and builder are set");
     if (!source->text && source->size) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
     if (!source->variables && source->variableCount)
       return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
@@ -38,10 +53,11 @@ GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlo
     if (source->size > (size_t(1) << 28)) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "the text is over 256 MiB");
     std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
     spawn::Diagnostics diagnostics;
-    const spawn::Graph graph = spawn::compile({source->text ? source->text : "", source->size},
-                                              {source->variables, source->variableCount}, diagnostics, memory);
-    for (const spawn::Diagnostic& d : diagnostics.sorted())
-      report(*source, d.place.line, d.place.column, d.severity, d.text.c_str());
+    const std::string_view text(source->text ? source->text : "", source->size);
+    const spawn::SyntaxTree tree =
+        source->builder ? spawn::treeOf(*source->builder, diagnostics) : spawn::parse(text, diagnostics);
+    const spawn::Graph graph = spawn::buildGraph(tree, {source->variables, source->variableCount}, diagnostics, memory);
+    report(*source, diagnostics);
     if (diagnostics.hasErrors()) return GPGP_ERROR_INVALID_DATA;
     if (auto ok = spawn::validate(graph); !ok) return fail(*source, GPGP_ERROR_UNSUPPORTED, ok.error().text);
     auto words = spawn::serialize(graph, memory);

@@ -5,6 +5,11 @@
 
 namespace gpgp::spawn {
 
+std::string Diagnostics::where(Place place) const {
+  const auto named = names_.find({place.line, place.column});
+  return named != names_.end() ? named->second : "line " + std::to_string(place.line);
+}
+
 std::vector<Diagnostic> Diagnostics::sorted() const {
   std::vector<Diagnostic> result = all_;
   std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) {

@@ -2,7 +2,9 @@
 #pragma once
 #include <gpgp/spawn.h>
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gpgp::spawn {
@@ -28,6 +30,11 @@ public:
   void warning(Place place, std::string text) { add(place, GPGP_SEVERITY_WARNING, std::move(text)); }
   bool hasErrors() const { return errors_ > 0; }
   size_t errorCount() const { return errors_; }
+  /// Names a place of what is no text: messages then call it by that name.
+  void name(Place place, std::string text) { names_[{place.line, place.column}] = std::move(text); }
+  /// The name of a place, else "line 3".
+  std::string where(Place place) const;
+  bool isNamed(Place place) const { return names_.count({place.line, place.column}) != 0; }
   /// In the order of places.
   std::vector<Diagnostic> sorted() const;
 
@@ -36,6 +43,7 @@ private:
     if (all_.size() < kLimit) all_.push_back({place, severity, std::move(text)});
   }
   std::vector<Diagnostic> all_;
+  std::map<std::pair<uint32_t, uint32_t>, std::string> names_;
   size_t errors_ = 0;
 };
 

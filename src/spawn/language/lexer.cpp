@@ -5,9 +5,6 @@
 
 namespace gpgp::spawn {
 namespace {
-bool isNameCharacter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
 struct Symbol {
@@ -142,6 +139,10 @@ private:
   Place place_;
 };
 } // namespace
+
+bool isNameCharacter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
 
 std::vector<Token> tokenize(std::string_view text, Diagnostics& diagnostics) { return Lexer(text, diagnostics).run(); }
 

@@ -41,6 +41,9 @@ struct Token {
   Place place;
 };
 
+/// Letters, digits and _ make names.
+bool isNameCharacter(char c);
+
 /// The tokens of a file; the last is end. Views point into text.
 std::vector<Token> tokenize(std::string_view text, Diagnostics& diagnostics);
 

@@ -5,7 +5,6 @@
 
 namespace gpgp::spawn {
 namespace {
-constexpr int kMaxNesting = 200;   // of successors: bounds the stack
 constexpr int kMaxExpression = 64; // of expressions, and of operands in a row
 
 struct SyntaxError {}; // was reported; the statement is given up

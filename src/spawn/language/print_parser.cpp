@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -104,9 +105,12 @@ private:
   }
   uint32_t whole(const char* what) {
     const Token& token = expect(TokenKind::number, what);
-    if (token.number < 0 || token.number >= 1e9f || token.text.find_first_not_of("0123456789") != token.text.npos)
+    uint32_t value = 0;
+    const char* last = token.text.data() + token.text.size();
+    const auto [end, error] = std::from_chars(token.text.data(), last, value);
+    if (error != std::errc() || end != last || value >= 1000000000)
       fail(token, std::string("expected ") + what + ", found " + describe(token));
-    return static_cast<uint32_t>(std::stoul(std::string(token.text)));
+    return value;
   }
   std::string name(const char* what) { return std::string(expect(TokenKind::name, what).text); }
   float number() {

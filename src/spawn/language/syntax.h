@@ -9,6 +9,8 @@
 
 namespace gpgp::spawn {
 
+constexpr int kMaxNesting = 200; ///< of operators written in place: bounds the stack
+
 enum class ExpressionKind { number, name, call, binary, pair };
 
 /// number; name; name(arguments); left op right; (x, y)

@@ -1,0 +1,114 @@
+#include "grammar_watch.h"
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace mini {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod{100}; // between two looks at the file
+
+/// Nothing where the file is away for the moment, as while an editor replaces it.
+std::optional<std::string> readText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+} // namespace
+
+GrammarWatch::GrammarWatch(GpgpContext context, GpgpWorker spawner, GrammarWatchOptions options)
+    : context_(context), spawner_(spawner), options_(std::move(options)), thread_([this] { run(); }) {}
+
+GrammarWatch::~GrammarWatch() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+// ---------------------------------------------------------------- between two frames
+
+std::optional<gpgp::Grammar> GrammarWatch::update() {
+  const std::lock_guard lock(mutex_);
+  for (const std::string& message : messages_) options_.say(message);
+  messages_.clear();
+  if (toPrewarm_) return std::nullopt; // the thread has next_
+  if (compiled_.size() > 0) {
+    auto info = gpgp::init<GpgpGrammarCreateInfo>();
+    info.label = options_.file.c_str();
+    info.data = compiled_.data();
+    info.size = compiled_.size();
+    auto made = gpgp::Grammar::create(context_, info); // checks the bytes and queues them for upload
+    if (!made) options_.say(options_.file + ": " + made.name());
+    next_ = *std::move(made);
+    compiled_.reset();
+    if (next_ && hasKernel_) {
+      toPrewarm_ = next_;
+      wake_.notify_one();
+      return std::nullopt;
+    }
+  }
+  if (!next_ || !*next_.resident()) return std::nullopt;
+  return std::exchange(next_, {});
+}
+
+// ---------------------------------------------------------------- the thread
+
+void GrammarWatch::run() {
+  std::string text = options_.text; // what was compiled last
+  std::string seen = text;          // at the last look
+  bool kernelMissing = false;
+  std::unique_lock lock(mutex_);
+  while (!stop_) {
+    if (toPrewarm_) {
+      lock.unlock();
+      const GpgpResult result = gpgpPrewarmGrammar(spawner_, toPrewarm_); // compiles pipelines, beside the frames
+      lock.lock();
+      if (result < 0) messages_.push_back(options_.file + ": " + gpgpResultString(result));
+      toPrewarm_ = nullptr;
+    }
+    const bool taken = compiled_.size() == 0;
+    lock.unlock();
+    const std::optional<std::string> now = readText(options_.file);
+    if (now && *now != seen) {
+      seen = *now; // perhaps in the midst of being written: compiled once two looks agree
+    } else if (now && *now != text) {
+      text = *now;
+      kernelMissing = compile(text, 0) && options_.kernels;
+    } else if (kernelMissing && taken) {
+      kernelMissing = false;
+      compile(text, GPGP_COMPILE_KERNEL);
+    }
+    lock.lock();
+    wake_.wait_for(lock, kPeriod, [this] { return stop_ || toPrewarm_; });
+  }
+}
+
+bool GrammarWatch::compile(const std::string& text, GpgpCompileFlags flags) {
+  auto source = gpgp::init<GpgpGrammarSource>();
+  source.name = options_.file.c_str();
+  source.text = text.data();
+  source.size = text.size();
+  source.flags = flags;
+  std::vector<std::string> messages;
+  source.messageUserData = &messages;
+  source.messageFn = [](void* user, const GpgpCompileMessage* m) {
+    static_cast<std::vector<std::string>*>(user)->push_back(
+        std::string(m->file) + ":" + std::to_string(m->line) + ":" + std::to_string(m->column) +
+        (m->severity == GPGP_SEVERITY_ERROR ? ": error: " : ": warning: ") + m->text);
+  };
+  gpgp::Result<gpgp::Blob> blob = gpgp::compileGrammar(source);
+  const std::lock_guard lock(mutex_);
+  if (flags == 0 || !blob) messages_.insert(messages_.end(), messages.begin(), messages.end());
+  if (!blob) return false; // the previous version lives on
+  compiled_ = *std::move(blob);
+  hasKernel_ = (flags & GPGP_COMPILE_KERNEL) != 0;
+  return true;
+}
+
+} // namespace mini

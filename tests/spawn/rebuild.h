@@ -1,0 +1,161 @@
+// A syntax tree handed to a grammar builder call by call, so that what text gives can be compared with what code gives.
+#pragma once
+#include "spawn/language/syntax.h"
+
+#include <gpgp/spawn_builder.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace gpgp::test {
+
+class Rebuild {
+public:
+  Rebuild(const spawn::SyntaxTree& tree, GpgpGrammarBuilder builder) : builder_(builder) {
+    for (const auto& variable : tree.variables)
+      variables_[variable.name] = gpgpAddVariable(builder, variable.name.c_str(), value(variable.value));
+    for (const auto& axiom : tree.axioms) {
+      std::vector<GpgpGrammarValue> corners;
+      for (const auto& corner : axiom.corners) corners.push_back(value(corner));
+      gpgpSetAxiom(builder, shape(axiom.shape), corners.data(), static_cast<uint32_t>(corners.size()),
+                   axiom.name.c_str());
+    }
+    for (const auto& terminal : tree.terminals) {
+      std::string names;
+      for (const auto& name : terminal.names) names += name.second + " ";
+      gpgpAddTerminal(builder, names.c_str(), static_cast<uint32_t>(terminal.arguments.at(0).number),
+                      static_cast<uint32_t>(terminal.arguments.at(1).number));
+    }
+    for (const auto& rule : tree.rules) {
+      if (!rule.alternatives.empty())
+        gpgpAddRule(builder, rule.name.c_str(), nullptr, alternatives(rule.alternatives));
+      else if (rule.body.call)
+        gpgpAddRule(builder, rule.name.c_str(), nullptr, call(*rule.body.call));
+      else
+        gpgpAddRule(builder, rule.name.c_str(), rule.body.name.c_str(), 0);
+    }
+  }
+
+private:
+  static GpgpShape shape(const std::string& name) {
+    static const char* kNames[] = {"Triangle",
+                                   "Quad",
+                                   "Pentagon",
+                                   "Hexagon",
+                                   "Heptagon",
+                                   "Octagon",
+                                   "Prism3",
+                                   "Box",
+                                   "Prism5",
+                                   "Prism6",
+                                   "Prism7",
+                                   "Prism8",
+                                   "DynamicConvexPolygon",
+                                   "DynamicPolygon",
+                                   "DynamicConvexRightPrism",
+                                   "DynamicRightPrism",
+                                   "Sphere"};
+    for (GpgpShape s = 0; s < std::size(kNames); ++s)
+      if (name == kNames[s]) return s;
+    throw std::runtime_error("no shape " + name);
+  }
+
+  GpgpGrammarValue value(const spawn::Expression& e) {
+    using spawn::ExpressionKind;
+    const auto axis = [](const spawn::Expression& a) { return static_cast<uint32_t>(a.name.at(0) - 'X'); };
+    if (e.kind == ExpressionKind::number) return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(e.number);
+    if (e.kind == ExpressionKind::pair)
+      return gpgpAddExpression(builder_, GPGP_EXPRESSION_CORNER, value(e.arguments.at(0)), value(e.arguments.at(1)));
+    if (e.kind == ExpressionKind::name) {
+      if (const auto variable = variables_.find(e.name); variable != variables_.end()) return variable->second;
+      if (e.name == "ADJUST_TO_FILL") return {GPGP_VALUE_ADJUST_TO_FILL, 0};
+      if (e.name == "ANCHOR_TO_START") return {GPGP_VALUE_ANCHOR_TO_START, 0};
+      if (e.name == "ANCHOR_TO_END") return {GPGP_VALUE_ANCHOR_TO_END, 0};
+      return {GPGP_VALUE_X + axis(e), 0};
+    }
+    if (e.kind == ExpressionKind::binary) {
+      using namespace shader;
+      static const std::map<uint32_t, GpgpExpressionKind> kKinds{{kCodeAdd, GPGP_EXPRESSION_ADD},
+                                                                 {kCodeSubtract, GPGP_EXPRESSION_SUBTRACT},
+                                                                 {kCodeMultiply, GPGP_EXPRESSION_MULTIPLY},
+                                                                 {kCodeDivide, GPGP_EXPRESSION_DIVIDE},
+                                                                 {kCodeEqual, GPGP_EXPRESSION_EQUAL},
+                                                                 {kCodeNotEqual, GPGP_EXPRESSION_NOT_EQUAL},
+                                                                 {kCodeLess, GPGP_EXPRESSION_LESS},
+                                                                 {kCodeGreater, GPGP_EXPRESSION_GREATER},
+                                                                 {kCodeLessEqual, GPGP_EXPRESSION_LESS_EQUAL},
+                                                                 {kCodeGreaterEqual, GPGP_EXPRESSION_GREATER_EQUAL},
+                                                                 {kCodeAnd, GPGP_EXPRESSION_AND},
+                                                                 {kCodeOr, GPGP_EXPRESSION_OR}};
+      const GpgpGrammarValue left = value(e.arguments.at(0));
+      return gpgpAddExpression(builder_, kKinds.at(e.op), left, value(e.arguments.at(1)));
+    }
+    if (e.name == "Exp") return value(e.arguments.at(0));
+    if (e.name == "Rand")
+      return gpgpAddExpression(builder_, GPGP_EXPRESSION_RANDOM, value(e.arguments.at(0)), value(e.arguments.at(1)));
+    if (e.name == "ShapeSeed") return {GPGP_VALUE_SHAPE_SEED, 0};
+    if (e.name == "ShapeCustomAttribute") return {GPGP_VALUE_SHAPE_CUSTOM_ATTRIBUTE, 0};
+    if (e.name == "ShapePos") return {GPGP_VALUE_SHAPE_POS_X + axis(e.arguments.at(0)), 0};
+    if (e.name == "ShapeSize") return {GPGP_VALUE_SHAPE_SIZE_X + axis(e.arguments.at(0)), 0};
+    if (e.name == "ShapeNormal") return {GPGP_VALUE_SHAPE_NORMAL_X + axis(e.arguments.at(0)), 0};
+    if (e.name == "ShapeRotation")
+      return {GPGP_VALUE_SHAPE_ROTATION_XX + 3 * axis(e.arguments.at(0)) + axis(e.arguments.at(1)), 0};
+    throw std::runtime_error("no value " + e.name);
+  }
+
+  GpgpGrammarOperator call(const spawn::Call& c) {
+    static const char* kNames[] = {"Translate",
+                                   "Rotate",
+                                   "Scale",
+                                   "Extrude",
+                                   "SwapSize",
+                                   "CompSplit",
+                                   "SubDiv",
+                                   "Repeat",
+                                   "If",
+                                   "IfSizeLess",
+                                   "RandomRule",
+                                   "Replicate",
+                                   "Discard",
+                                   "Generate",
+                                   "SetAsDynamicConvexPolygon",
+                                   "SetAsDynamicConcavePolygon",
+                                   "SetAsDynamicConvexRightPrism",
+                                   "SetAsDynamicConcaveRightPrism"};
+    std::vector<GpgpGrammarValue> values;
+    for (const auto& argument : c.arguments) values.push_back(value(argument));
+    for (GpgpOperatorKind kind = 0; kind < std::size(kNames); ++kind)
+      if (c.name == kNames[kind]) return add(kind, values, c.branches);
+    throw std::runtime_error("no operator " + c.name);
+  }
+
+  GpgpGrammarOperator add(GpgpOperatorKind kind, const std::vector<GpgpGrammarValue>& values,
+                          const std::vector<spawn::Branch>& branches) {
+    std::vector<GpgpGrammarSuccessor> to;
+    float given = 0;
+    for (const auto& branch : branches) {
+      GpgpGrammarSuccessor& successor = to.emplace_back();
+      if (branch.isElse)
+        successor.value = GPGP_GRAMMAR_NUMBER(100 - given);
+      else if (branch.label)
+        successor.value = value(*branch.label);
+      if (branch.label) given += branch.label->number;
+      if (branch.successor.call)
+        successor.op = call(*branch.successor.call);
+      else
+        successor.name = branch.successor.name.c_str();
+    }
+    return gpgpAddOperator(builder_, kind, values.data(), static_cast<uint32_t>(values.size()), to.data(),
+                           static_cast<uint32_t>(to.size()));
+  }
+  GpgpGrammarOperator alternatives(const std::vector<spawn::Branch>& branches) {
+    return add(GPGP_OPERATOR_RANDOM_RULE, {{GPGP_VALUE_SHAPE_SEED, 0}}, branches);
+  }
+
+  GpgpGrammarBuilder builder_;
+  std::map<std::string, GpgpGrammarValue> variables_;
+};
+
+} // namespace gpgp::test
