@@ -504,6 +504,12 @@ public:
   Operator replicate(Successors copies) noexcept { return add(GPGP_OPERATOR_REPLICATE, {}, copies); }
   Operator discard() noexcept { return add(GPGP_OPERATOR_DISCARD, {}, {}); }
   Operator generate() noexcept { return add(GPGP_OPERATOR_GENERATE, {}, {}); }
+  Operator collider(const Value& tag, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_COLLIDER, {tag.get()}, {to});
+  }
+  Operator ifCollides(const Value& tag, const Successor& yes, const Successor& no) noexcept {
+    return add(GPGP_OPERATOR_IF_COLLIDES, {tag.get()}, {yes, no});
+  }
   GrammarCorner corner(const Value& x, const Value& y) noexcept {
     return GrammarCorner{gpgpAddExpression(get(), GPGP_EXPRESSION_CORNER, x.get(), y.get())};
   }

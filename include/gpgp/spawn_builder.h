@@ -109,10 +109,12 @@ enum {
   GPGP_OPERATOR_REPLICATE = 11,                     /**< none; any number */
   GPGP_OPERATOR_DISCARD = 12,                       /**< none; none */
   GPGP_OPERATOR_GENERATE = 13,                      /**< none; none */
-  GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON = 14, /**< corners; one */
-  GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_POLYGON = 15,
-  GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_RIGHT_PRISM = 16,
-  GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_RIGHT_PRISM = 17
+  GPGP_OPERATOR_COLLIDER = 14,                      /**< tag, a whole number; one */
+  GPGP_OPERATOR_IF_COLLIDES = 15,                   /**< tag; two */
+  GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON = 16, /**< corners; one */
+  GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_POLYGON = 17,
+  GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_RIGHT_PRISM = 18,
+  GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_RIGHT_PRISM = 19
 };
 
 typedef uint32_t GpgpGrammarOperator; /**< what gpgpAddOperator returned; 0: none */

@@ -307,9 +307,9 @@ TEST(GrammarBuilder, SurvivesRandomCalls) {
     for (uint32_t i = 0; i < calls; ++i) {
       if (below(3) == 0) values.push_back(gpgpAddExpression(builder, below(15), value(), value()));
       if (below(8) == 0) values.push_back(gpgpAddVariable(builder, names[below(wild)], value()));
-      const GpgpOperatorKind kind = below(run % 4 ? 14 : 20);
-      constexpr uint32_t kValues[] = {3, 3, 3, 1, 3, 0, 1, 3, 1, 2, 1, 0, 0, 0, 3, 3, 3, 3, 0, 0};
-      constexpr uint32_t kSuccessors[] = {1, 1, 1, 1, 1, 3, 2, 1, 2, 2, 3, 2, 0, 0, 1, 1, 1, 1, 0, 0};
+      const GpgpOperatorKind kind = below(run % 4 ? 14 : 22);
+      constexpr uint32_t kValues[] = {3, 3, 3, 1, 3, 0, 1, 3, 1, 2, 1, 0, 0, 0, 1, 1, 3, 3, 3, 3, 0, 0};
+      constexpr uint32_t kSuccessors[] = {1, 1, 1, 1, 1, 3, 2, 1, 2, 2, 3, 2, 0, 0, 1, 2, 1, 1, 1, 1, 0, 0};
       const bool labels = kind == GPGP_OPERATOR_SUB_DIV || kind == GPGP_OPERATOR_RANDOM_RULE;
       std::vector<GpgpGrammarValue> arguments;
       const bool axis = kind == GPGP_OPERATOR_SUB_DIV || kind == GPGP_OPERATOR_REPEAT ||

@@ -120,6 +120,8 @@ private:
                                    "Replicate",
                                    "Discard",
                                    "Generate",
+                                   "Collider",
+                                   "IfCollides",
                                    "SetAsDynamicConvexPolygon",
                                    "SetAsDynamicConcavePolygon",
                                    "SetAsDynamicConvexRightPrism",

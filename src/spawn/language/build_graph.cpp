@@ -475,9 +475,8 @@ private:
       for (const Dependency& d : dependencies) {
         if (d.target != n || !reached[d.source]) continue;
         const std::string tag = tagText(graph_, graph_.nodes[n].argument);
-        diagnostics_.error(places_[n], "IfCollides(" + tag + ") waits for all of Collider(" + tag + ") in line " +
-                                           std::to_string(places_[d.source].line) + ", column " +
-                                           std::to_string(places_[d.source].column) + ", which comes after it");
+        diagnostics_.error(places_[n], "IfCollides(" + tag + ") waits for all of Collider(" + tag + ") in " +
+                                           diagnostics_.where(places_[d.source]) + ", which comes after it");
         found = true;
         break;
       }
