@@ -271,7 +271,7 @@ bool benchScene(host::HeadlessDevice& device, const std::string& name, const Opt
   // The thesis's method, with the epsilons that others were measured with.
   Sampler sampler = bench.sampler(GPGP_SAMPLING_CONSERVATIVE_BIT, 1);
   constexpr uint32_t kFront = GPGP_HEURISTICS_THESIS | GPGP_HEURISTIC_KEEP_FRONT;
-  for (const auto& [name, heuristics, epsilon, refinements] :
+  for (const auto& [what, heuristics, epsilon, refinements] :
        {std::tuple("thesis 0.05", GPGP_HEURISTICS_THESIS, 0.05f, 0u),
         {"thesis 2", GPGP_HEURISTICS_THESIS, 2.0f, 0u},
         {"front 0.05", kFront, 0.05f, 0u},
@@ -279,7 +279,7 @@ bool benchScene(host::HeadlessDevice& device, const std::string& name, const Opt
     bench.heuristics = heuristics;
     bench.epsilon = epsilon;
     bench.refinements = refinements;
-    print(name, bench.run(sampler, GPGP_SAMPLING_CONSERVATIVE, options.repeat));
+    print(what, bench.run(sampler, GPGP_SAMPLING_CONSERVATIVE, options.repeat));
   }
   std::fflush(stdout);
   return good;
