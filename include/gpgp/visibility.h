@@ -37,10 +37,12 @@ typedef struct GpgpSamplerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpWorkerCreateInfo base;
-  uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel */
-  uint32_t maxDraws;            /**< 0: 65536 */
-  uint32_t maxTriangles;        /**< of one record, all draws together; 0: 4194304. What is beyond is not sampled and
-                                     the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle */
+  uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel and camera
+                                     (conservative: 44) */
+  uint32_t maxCameras;          /**< of one record, at most 8; 0: 1 */
+  uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 48 bytes each */
+  uint32_t maxTriangles;        /**< of one record, all draws and cameras together; 0: 4194304. What is beyond is not
+                                     sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle */
   uint32_t methods;             /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
   uint32_t maxSamples;    /**< per pixel in each direction, a power of two up to 64; 0: 1. Scratch: 8 bytes each */
   uint32_t maxCandidates; /**< exact: triangles that may be seen, and those that may hide them; 0: a quarter
@@ -81,22 +83,48 @@ typedef struct GpgpVisibilityDraw {
   uint32_t reserved;
 } GpgpVisibilityDraw;
 #define GPGP_DRAW_TWO_SIDED 1u /**< back faces count as visible */
+#define GPGP_DRAW_CLOCKWISE                                                                                            \
+  2u /**< the front is where the corners are clockwise as seen; so only back faces are seen of                         \
+          a mesh whose front is not. Engines whose mirrored draws turn their faces set it                              \
+          for those */
 
 typedef int32_t GpgpSamplingMethod;
 enum {
-  GPGP_SAMPLING_STANDARD = 0, /**< a grid of `samples` x `samples` a pixel; 1: its centre */
-  GPGP_SAMPLING_EXACT = 1,    /**< standard, and then, among those that it did not find, the triangles with one of
-                                   64 x 64 samples a pixel that nothing in front of them covers */
-  GPGP_SAMPLING_TRUTH = 2     /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
+  GPGP_SAMPLING_STANDARD = 0,    /**< a grid of `samples` x `samples` a pixel; 1: its centre */
+  GPGP_SAMPLING_EXACT = 1,       /**< standard, and then, among those that it did not find, the triangles with one of
+                                      64 x 64 samples a pixel that nothing in front of them covers */
+  GPGP_SAMPLING_TRUTH = 2,       /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
+  GPGP_SAMPLING_CONSERVATIVE = 3 /**< the thesis's (6.1.3): a pixel's centre, and then the triangles that touch a pixel
+                                      and come near what was found there, by `heuristics` */
 };
 #define GPGP_SAMPLING_STANDARD_BIT 1u
 #define GPGP_SAMPLING_EXACT_BIT 2u
 #define GPGP_SAMPLING_TRUTH_BIT 4u
+#define GPGP_SAMPLING_CONSERVATIVE_BIT 8u
 
+/** What the conservative method asks of a triangle that touches a pixel; with none of these every one is visible.
+ *  IN_CIRCLE: its in-circle's radius is at most a pixel (6.1).
+ *  DEPTH: its depths in the pixel are less than epsilon from those of the triangle found at the pixel's centre; where
+ *  none was found it is not visible (6.2 to 6.4).
+ *  KEEP_FRONT, with DEPTH: what lies in front, or before the background, is kept. Not in the thesis; finds wires and
+ *  leaves. */
+#define GPGP_HEURISTIC_IN_CIRCLE 1u
+#define GPGP_HEURISTIC_DEPTH 2u
+#define GPGP_HEURISTIC_KEEP_FRONT 4u
+#define GPGP_HEURISTICS_THESIS (GPGP_HEURISTIC_IN_CIRCLE | GPGP_HEURISTIC_DEPTH)
+
+/** Near and far planes are the projection's; the far one may be infinitely far. Clip space is Vulkan's, y down: an
+ *  engine whose viewports have a negative height negates the matrix' second row. */
 typedef struct GpgpCamera {
   float viewProjection[16]; /**< world to clip, column-major */
   VkBool32 reversedDepth;   /**< near is 1 */
 } GpgpCamera;
+
+/** Projected size of a triangle, of what lies between near and far plane and within three viewports to each side. */
+typedef struct GpgpTriangleSize {
+  float area;          /**< pixels */
+  float width, height; /**< of its box, pixels */
+} GpgpTriangleSize;
 
 typedef struct GpgpSampleInfo {
   GpgpStructureType sType;
@@ -106,28 +134,60 @@ typedef struct GpgpSampleInfo {
   GpgpView view; /**< optional: history of this camera; its previous record is what `appeared` compares with */
   GpgpSamplingMethod method;
   GpgpCamera camera;
-  uint32_t width, height; /**< viewport, pixels */
+  const GpgpCamera* moreCameras; /**< of the same viewport size and reversedDepth: a stereo pair's other eye, views of a
+                                      cell. A triangle that any of them sees is visible */
+  uint32_t moreCameraCount;
+  uint32_t width, height; /**< viewport of each camera, pixels */
   uint32_t samples;     /**< standard, truth: per pixel in each direction, a power of two up to 256; 0: 1 (truth: 64) */
   uint32_t slice;       /**< truth: 0 to n * n, where n = max(samples / maxSamples, 1); the last one is the centre */
-  VkBool32 accumulate;  /**< bits and pixel counts are added to, not overwritten: unites slices, views, a view cell */
-  GpgpBuffer positions; /**< vertex positions, 3 floats each at positionStride; STORAGE usage */
-  uint32_t positionStride; /**< bytes, a multiple of 4; 0: 12 */
+  VkBool32 accumulate;  /**< bits, pixel counts and sizes are added to, not overwritten: unites slices, views, a view
+                             cell */
+  float resolution;     /**< conservative: factor of width and height, 0.25 to 1, rounded to whole pixels; 0: 1 */
+  uint32_t heuristics;  /**< conservative: GPGP_HEURISTIC_... */
+  float epsilonStatic;  /**< conservative: equation 6.2's, in units of clip space's w: for perspective projections
+                             distance along the view; for parallel ones, whose w is 1, of its z */
+  float epsilonDynamic; /**< conservative: times 1 - |cosine| of the two triangles' normals */
+  uint32_t refinements; /**< conservative: at most 4 further passes, each of which shows, in every pixel that visible
+                             triangles do not cover at 8 x 8 samples, the nearest one that covers such a sample */
+  GpgpBuffer positions; /**< vertex positions; STORAGE usage; size a multiple of 4 for 16-bit formats */
+  VkFormat positionFormat; /**< R32G32B32_SFLOAT, R16G16B16_SFLOAT or R16G16B16_SNORM, or the same with A; UNDEFINED:
+                                R32G32B32_SFLOAT. Only the first three numbers are read */
+  uint32_t positionOffset; /**< bytes from a vertex' begin to its position; a multiple of a number's size */
+  uint32_t positionStride; /**< bytes, a multiple of a number's size; 0: three numbers */
   GpgpBuffer indices;      /**< STORAGE usage; size a multiple of 4 for UINT16 too */
   VkIndexType indexType;   /**< UINT16 or UINT32 */
   GpgpBuffer draws;        /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
   uint32_t drawCount;
-  uint32_t triangleCount;  /**< of all draws: one past the last triangle number; at most 2^31 */
-  GpgpBuffer visibleBits;  /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
-  GpgpBuffer pixelCounts;  /**< out, optional: uint32_t per triangle: samples that show it (exact: centres) */
-  GpgpBuffer visibleList;  /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
-                                budget */
-  GpgpBuffer visibleCount; /**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
-                                of 64 per 64 listed triangles, in rows of 65535 (workgroup y * 65535 + x; the last row
-                                may run past the list); STORAGE usage */
+  GpgpBuffer commands;    /**< optional: the engine's VkDrawIndexedIndirectCommand[commandCount]; STORAGE usage. Then
+                               what is drawn are the commands' instances: instance i of a command is of its indices,
+                               and has the transform, flags and triangle numbers of draws[firstInstance + i], whose
+                               `mesh` is not read. Instances beyond `draws` are skipped and counted */
+  uint32_t commandCount;  /**< at most */
+  uint32_t commandStride; /**< bytes, a multiple of 4; 0: 20 */
+  GpgpBuffer drawCountBuffer; /**< optional: uint32_t: how many of the commands, or without them of the draws, there
+                                   are; STORAGE usage */
+  uint32_t triangleCount;     /**< of all draws: one past the last triangle number; at most 2^31 */
+  GpgpBuffer visibleBits;     /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
+  GpgpBuffer pixelCounts;     /**< out, optional: uint32_t per triangle: samples that show it (exact: centres) */
+  GpgpBuffer visibleList;   /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
+                                 budget */
+  GpgpBuffer visibleCount;  /**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
+                                 of 64 per 64 listed triangles, in rows of 65535 (workgroup y * 65535 + x; the last row
+                                 may run past the list); with drawCommands a fifth: their number; STORAGE usage */
+  GpgpBuffer drawCommands;  /**< out, optional: VkDrawIndexedIndirectCommand per draw, over drawIndices: no or one
+                                 instance of its visible triangles, firstInstance its number in `draws`. Of commands:
+                                 per instance, in their order. STORAGE usage */
+  GpgpBuffer drawIndices;   /**< out, optional: uint32_t[3] per visible triangle of each draw, as the engine's indices
+                                 have them; a draw's lie together, in no stated order; its size is the budget */
+  GpgpBuffer drawTriangles; /**< out, optional: uint32_t triangle number per triangle in drawIndices: of a command's
+                                 primitive i [firstIndex / 3 + i]; its size is the budget */
+  GpgpBuffer triangleSizes; /**< out, optional: GpgpTriangleSize per triangle: of visible ones, the largest of all
+                                 cameras and draws; 0 for others */
 } GpgpSampleInfo;
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
-/** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins.
+/** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
+ *  (conservative: the earlier draw).
  *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
  *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
  *  NOT_READY: geometry set or view not resident, or sampler not prewarmed.
@@ -148,15 +208,21 @@ typedef struct GpgpSampleReport {
   uint32_t disappeared;      /**< with a view: the reverse */
   uint32_t neededTriangles;  /**< of all draws, whatever the budget */
   uint32_t skippedTriangles; /**< index or triangle number out of range, coordinate not finite or too large */
-  uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set */
+  uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set; instances beyond `draws` */
   uint32_t neededCandidates; /**< exact: at least, where there is too little room */
   uint32_t neededPairs;
-  uint32_t unresolved; /**< exact: triangles and pairs without room; the triangles are reported visible */
+  uint32_t unresolved;          /**< exact: triangles and pairs without room; the triangles are reported visible */
+  uint32_t neededDraws;         /**< of one camera */
+  uint32_t draws;               /**< of them sampled, and with drawCommands written */
+  uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */
+  uint32_t drawTriangles;       /**< of them written */
 } GpgpSampleReport;
 #define GPGP_SAMPLE_REPORT_INIT GPGP_INIT(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT)
 
 /** The oldest report not yet taken. NOT_READY: none. BUDGET_EXCEEDED in base.status: maxTriangles (neededTriangles says
- *  how many there are) or the list (visible says how many). @threads handle */
+ *  how many there are), maxDraws or drawCommands (neededDraws), the list (visible says how many) or the lists by draw
+ *  (neededDrawTriangles). What is written is valid, and whole triangles. Of several cameras all but visible, listed,
+ *  appeared, disappeared and draws are sums. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetSampleReport(GpgpWorker sampler, GpgpSampleReport* report);
 
 #ifdef __cplusplus

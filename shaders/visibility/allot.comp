@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
-layout(std430, set = 0, binding = kBindLengths) readonly buffer LengthBuffer { uint lengths[]; };
 layout(std430, set = 0, binding = kBindOpen) writeonly buffer OpenBuffer { uint open[]; };
 #include "visibility/lists.glsl"
 
@@ -23,7 +22,7 @@ void main() {
   }
   for (uint tile = gl_WorkGroupID.x; tile < tileCount(); tile += gl_NumWorkGroups.x) {
     uint slot = tile * 64u + lane;
-    uvec2 own = uvec2(lengths[slot], lengths[slot] != 0u ? 1u : 0u);
+    uvec2 own = uvec2(slots[lengthAt(slot)], slots[lengthAt(slot)] != 0u ? 1u : 0u);
     sums[lane] = own;
     barrier();
     for (uint step = 1u; step < 64u; step *= 2u) {
@@ -39,7 +38,7 @@ void main() {
     barrier();
     if (own.y != 0u) {
       uvec2 place = first + sums[lane] - own;
-      limits[slot] = place.x;
+      slots[slot] = place.x;
       open[place.y] = slot;
     }
     barrier();

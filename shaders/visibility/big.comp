@@ -9,8 +9,8 @@ layout(constant_id = 0) const uint kPhase = 0u;
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/lists.glsl"
+#include "visibility/grid.glsl"
 #include "visibility/enter.glsl"
-layout(std430, set = 0, binding = kBindBigs) readonly buffer BigBuffer { uvec2 bigs[]; };
 
 shared uint blockCount;
 shared ivec2 blockCorner[64];
@@ -27,9 +27,10 @@ bool blockInside(ivec2 u, ivec2 slope, ivec2 corner) {
 void main() {
   uint count = min(counters.bigCount, params.maxBig);
   for (uint entry = gl_WorkGroupID.x; entry < count; entry += gl_NumWorkGroups.x) {
-    uint index = bigs[entry].x;
-    uint slice = bigs[entry].y & 0xffffu;
-    uint slices = bigs[entry].y >> 16u;
+    uint index = slots[bigAt(entry)];
+    uint place = slots[bigAt(entry) + 1u];
+    uint slice = place & 0xffu;
+    uint slices = (place >> 8u) & 0xffu;
     Candidate c = candidates[index];
     if (gl_LocalInvocationIndex == 0u) groupSeen = isSeen(c.id); // one answer for all, should another pass' bit arrive
     barrier();
@@ -38,7 +39,7 @@ void main() {
     if (seen != (kPhase == 1u)) continue;
     ScreenTriangle t = triangleOf(c);
     bool compact = isCompact(t);
-    ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, ivec2(int(params.width), int(params.height)));
+    ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(place >> 16u));
     ivec2 inBlock = ivec2(int(gl_LocalInvocationIndex & 7u), int(gl_LocalInvocationIndex >> 3u));
     uint columns = uint(bounds.z - bounds.x + 7) / 8u;
     uint blocks = columns * (uint(bounds.w - bounds.y + 7) / 8u);

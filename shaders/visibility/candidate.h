@@ -11,12 +11,12 @@
 GPGP_SHADER_BEGIN
 
 /// Pixels whose points may be covered, like ScreenTriangle::bounds.
-GPGP_FN ivec4 pixelBounds(ivec2 a, ivec2 b, ivec2 c, ivec2 viewport) {
+GPGP_FN ivec4 pixelBounds(ivec2 a, ivec2 b, ivec2 c, Grid grid) {
   ivec4 r;
   r.x = max(min(a.x, min(b.x, c.x)) >> 8, 0);
-  r.y = max(min(a.y, min(b.y, c.y)) >> 8, 0);
-  r.z = min((max(a.x, max(b.x, c.x)) >> 8) + 1, viewport.x);
-  r.w = min((max(a.y, max(b.y, c.y)) >> 8) + 1, viewport.y);
+  r.y = max(min(a.y, min(b.y, c.y)) >> 8, grid.top);
+  r.z = min((max(a.x, max(b.x, c.x)) >> 8) + 1, grid.pixels.x);
+  r.w = min((max(a.y, max(b.y, c.y)) >> 8) + 1, grid.top + grid.pixels.y);
   return r;
 }
 

@@ -10,23 +10,31 @@ layout(std430, set = 0, binding = kBindIds) writeonly buffer IdBuffer { uint ids
 layout(std430, set = 0, binding = kBindCounters) writeonly buffer CounterBuffer { uint counters[]; };
 layout(std430, set = 0, binding = kBindBits) writeonly buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindSizes) writeonly buffer SizeBuffer { uint sizes[]; };
-layout(std430, set = 0, binding = kBindLimits) writeonly buffer LimitBuffer { uint limits[]; };
+layout(std430, set = 0, binding = kBindSlots) writeonly buffer SlotBuffer { uint slots[]; };
+layout(std430, set = 0, binding = kBindExtents) writeonly buffer ExtentBuffer { uint extents[]; };
 
 void main() {
   uint samples = 1u << (16u - 2u * params.gridShift);
-  uint pixels = params.width * params.height * samples;
+  uint rows = params.height * params.cameraCount;
+  uint pixels = params.width * rows * samples;
   uint words = (params.triangleCount + 31u) / 32u;
-  uint slots = params.method == kExact ? (params.width + 7u) / 8u * ((params.height + 7u) / 8u) * 64u : 0u;
-  uint count = max(max(pixels, slots), max(words, params.hasSizes != 0u ? params.triangleCount : 0u));
+  uint limits = params.method == kExact ? (params.width + 7u) / 8u * ((rows + 7u) / 8u) * 64u : 0u;
+  bool perTriangle = params.hasSizes != 0u || params.hasExtents != 0u;
+  uint count = max(max(pixels, limits), max(words, perTriangle ? params.triangleCount : 0u));
   uint stride = gl_NumWorkGroups.x * 256u;
   for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
     if (i < pixels) {
       depths[i] = kFarthest;
       ids[i] = kNoTriangle;
     }
-    if (i < slots) limits[i] = kFarthest;
+    if (i < limits) slots[i] = kFarthest;
     if (i < words && params.accumulate == 0u) bits[i] = 0u;
     if (i < params.triangleCount && params.accumulate == 0u && params.hasSizes != 0u) sizes[i] = 0u;
+    if (i < params.triangleCount && params.accumulate == 0u && params.hasExtents != 0u) {
+      extents[i * 3u] = 0u;
+      extents[i * 3u + 1u] = 0u;
+      extents[i * 3u + 2u] = 0u;
+    }
   }
   if (gl_GlobalInvocationID.x < kCounterWords) counters[gl_GlobalInvocationID.x] = 0u;
 }

@@ -1,5 +1,4 @@
 // Candidates and pairs: what a triangle adds to the lists of pixels. Needs lists.glsl and `counters`.
-layout(std430, set = 0, binding = kBindLengths) buffer LengthBuffer { uint lengths[]; }; // entries of a pixel's list
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindCandidates) buffer CandidateBuffer { Candidate candidates[]; };
 layout(std430, set = 0, binding = kBindPairs) writeonly buffer PairBuffer { Pair pairs[]; };
@@ -16,9 +15,9 @@ void show(uint id) {
 /// seen already only hides others, so it is entered where there are such.
 bool isWanted(ScreenTriangle t, bool compact, ivec2 pixel, bool seen) {
   uint slot = slotOf(pixel);
-  if (seen && lengths[slot] == 0u) return false;
+  if (seen && slots[lengthAt(slot)] == 0u) return false;
   bool reversed = params.reversedDepth != 0u;
-  uint limit = limits[slot];
+  uint limit = slots[slot];
   if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, compact, pixel)) return false;
   return limit == kFarthest || nearestKey(t, compact, pixel, reversed) <= limit;
 }
@@ -28,6 +27,6 @@ void enter(Candidate c, bool compact, uint candidate, ivec2 pixel, uint pair) {
   p.slot = slotOf(pixel);
   p.candidate = candidate;
   p.key = middleKey(c, compact, pixel, params.reversedDepth != 0u);
-  p.place = atomicAdd(lengths[p.slot], 1u);
+  p.place = atomicAdd(slots[lengthAt(p.slot)], 1u);
   pairs[pair] = p;
 }

@@ -1,8 +1,8 @@
 // From a work item's number to a triangle in clip space: reads the engine's buffers.
 //
-// Guarantees: nothing is read outside the ranges that the engine gave. Work items count the triangles of all draws in
-// order; `starts` (made by plan.comp) holds each draw's first
-// item and first chunk.
+// Guarantees: nothing is read outside the ranges that the engine gave. Work items count the triangles of all cameras'
+// draws in order; the draw table (made by plan.comp and expand.comp) holds each draw's first item and first chunk.
+#include "visibility/position.h"
 #include "visibility/triangle.h"
 
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
@@ -11,75 +11,120 @@ layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Pa
 layout(std430, set = 0, binding = kBindPositions) readonly buffer PositionBuffer { uint positions[]; };
 layout(std430, set = 0, binding = kBindIndices) readonly buffer IndexBuffer { uint indices[]; };
 layout(std430, set = 0, binding = kBindDraws) readonly buffer DrawBuffer { Draw draws[]; };
-layout(std430, set = 0, binding = kBindMeshes) readonly buffer MeshBuffer { Mesh meshes[]; };
-layout(std430, set = 0, binding = kBindStarts) readonly buffer StartBuffer { uvec2 starts[]; };
+#ifndef TABLE_ACCESS
+#define TABLE_ACCESS readonly
+#endif
+#include "visibility/table.glsl"
 
 struct Fetched {
   vec4 a;
   vec4 b;
   vec4 c;
+  vec3 worldA;
+  vec3 worldB;
+  vec3 worldC;
   uint id;
+  uint camera;
   bool valid; // false: skipped, for an index or a number out of range
   bool mirrored;
   bool twoSided;
 };
 
-/// The draw that an item belongs to: the last one that starts at or before it.
-uint findDraw(uint item) {
+/// The entry of the draw table that an item belongs to: the last one that starts at or before it.
+uint findEntry(uint item) {
   uint low = 0u;
-  uint high = params.drawCount - 1u;
+  uint high = params.entryCount - 1u;
   while (low < high) {
     uint middle = low + (high - low + 1u) / 2u;
-    if (starts[middle].x <= item) low = middle;
+    if (startOf(middle).x <= item) low = middle;
     else high = middle - 1u;
   }
   return low;
 }
 
-/// False where an index or the vertex that it names lies outside its range, or a coordinate is not a moderate number.
-bool fetchVertex(Mesh mesh, uint index, out vec3 position) {
-  position = vec3(0.0);
+uint fetchIndex(uint index) {
+  if (params.shortIndices != 0u) return (indices[index >> 1u] >> ((index & 1u) * 16u)) & 0xffffu;
+  return indices[index];
+}
+
+/// Where a vertex lies; false where its index or itself lies outside the ranges.
+bool fetchPlace(DrawEntry e, uint index, out uint vertex) {
+  vertex = 0u;
   if (index >= params.indexCount) return false;
+  vertex = fetchIndex(index);
+  if (params.hasCommands != 0u && int(e.vertexOffset) < 0) {
+    uint back = 0u - e.vertexOffset;
+    if (vertex < back) return false;
+    vertex -= back;
+  } else {
+    if (vertex > 0xffffffffu - e.vertexOffset) return false;
+    vertex += e.vertexOffset;
+  }
+  return vertex < params.vertexCount;
+}
+
+uint shortAt(uint byte_) { return (positions[byte_ >> 2u] >> ((byte_ & 2u) * 8u)) & 0xffffu; }
+
+/// False as above, or where a coordinate is not a moderate number.
+bool fetchVertex(DrawEntry e, uint index, out vec3 position) {
+  position = vec3(0.0);
   uint vertex;
-  if (params.shortIndices != 0u) vertex = (indices[index >> 1u] >> ((index & 1u) * 16u)) & 0xffffu;
-  else vertex = indices[index];
-  if (vertex > 0xffffffffu - mesh.vertexOffset) return false;
-  vertex += mesh.vertexOffset;
-  if (vertex >= params.vertexCount) return false;
-  uint word = vertex * params.strideWords;
-  position = vec3(uintBitsToFloat(positions[word]), uintBitsToFloat(positions[word + 1u]),
-                  uintBitsToFloat(positions[word + 2u]));
+  if (!fetchPlace(e, index, vertex)) return false;
+  uint at = vertex * params.positionStride + params.positionOffset;
+  if (params.positionFormat == kFloats) {
+    uint word = at >> 2u;
+    position = vec3(uintBitsToFloat(positions[word]), uintBitsToFloat(positions[word + 1u]),
+                    uintBitsToFloat(positions[word + 2u]));
+  } else {
+    uvec3 v = uvec3(shortAt(at), shortAt(at + 2u), shortAt(at + 4u));
+    if (params.positionFormat == kHalves) position = vec3(halfToFloat(v.x), halfToFloat(v.y), halfToFloat(v.z));
+    else position = vec3(snormToFloat(v.x), snormToFloat(v.y), snormToFloat(v.z));
+  }
   return isModerate(position.x) && isModerate(position.y) && isModerate(position.z);
 }
 
-Fetched fetchTriangle(uint drawIndex, uint local) {
+mat4 viewProjection(uint camera) {
+  mat4 m;
+  for (uint i = 0u; i < 4u; ++i)
+    m[i] = vec4(params.viewProjection[camera * 16u + i * 4u], params.viewProjection[camera * 16u + i * 4u + 1u],
+                params.viewProjection[camera * 16u + i * 4u + 2u], params.viewProjection[camera * 16u + i * 4u + 3u]);
+  return m;
+}
+
+Fetched fetchTriangle(uint entry, uint local) {
   Fetched f;
-  Draw draw = draws[drawIndex];
-  Mesh mesh = meshes[draw.mesh]; // plan.comp gave draws of no mesh no items
+  DrawEntry e = entryOf(entry);
+  Draw draw = draws[e.draw];
   f.id = draw.firstTriangle + local;
+  f.camera = e.camera;
   f.valid = draw.firstTriangle < params.triangleCount && local < params.triangleCount - draw.firstTriangle;
-  f.mirrored = mirrors(draw);
+  f.mirrored = turnsFaces(draw);
   f.twoSided = (draw.flags & kTwoSided) != 0u;
-  uint index = mesh.firstIndex + local * 3u;
+  uint index = e.firstIndex + local * 3u;
   vec3 p0;
   vec3 p1;
   vec3 p2;
-  f.valid = f.valid && fetchVertex(mesh, index, p0);
-  f.valid = f.valid && fetchVertex(mesh, index + 1u, p1);
-  f.valid = f.valid && fetchVertex(mesh, index + 2u, p2);
+  f.valid = f.valid && index >= e.firstIndex && index <= 0xfffffffdu; // commands may name what is beyond 32 bits
+  f.valid = f.valid && fetchVertex(e, index, p0);
+  f.valid = f.valid && fetchVertex(e, index + 1u, p1);
+  f.valid = f.valid && fetchVertex(e, index + 2u, p2);
   if (!f.valid) return f;
-  f.a = transformToClip(draw, params, p0);
-  f.b = transformToClip(draw, params, p1);
-  f.c = transformToClip(draw, params, p2);
+  mat4 toClip = viewProjection(e.camera);
+  f.worldA = transformToWorld(draw, p0);
+  f.worldB = transformToWorld(draw, p1);
+  f.worldC = transformToWorld(draw, p2);
+  f.a = transformToClip(toClip, f.worldA);
+  f.b = transformToClip(toClip, f.worldB);
+  f.c = transformToClip(toClip, f.worldC);
   return f;
 }
 
 uint classifyFetched(Fetched f, out ScreenTriangle triangle) {
   if (!f.valid) return kSkipped;
-  return classify(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, triangle);
+  return classify(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, triangle);
 }
 
 Fetched fetchItem(uint item) {
-  uint drawIndex = findDraw(item);
-  return fetchTriangle(drawIndex, item - starts[drawIndex].x);
+  uint entry = findEntry(item);
+  return fetchTriangle(entry, item - startOf(entry).x);
 }

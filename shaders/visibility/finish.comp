@@ -17,4 +17,5 @@ void main() {
   countAndArgs[1] = groups.x;
   countAndArgs[2] = groups.y;
   countAndArgs[3] = groups.z;
+  if (params.writeCount > 1u) countAndArgs[4] = counters.drawsGiven;
 }

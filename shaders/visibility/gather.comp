@@ -22,7 +22,7 @@ void note(uint id, uint count, bool known) {
 void main() {
   if (gl_LocalInvocationIndex == 0u) groupCovered = 0u;
   barrier();
-  uint samples = params.width * params.height * (1u << (16u - 2u * params.gridShift));
+  uint samples = params.width * params.height * params.cameraCount * (1u << (16u - 2u * params.gridShift));
   uint stride = gl_NumWorkGroups.x * 256u;
   uint covered = 0u;
   for (uint first = gl_GlobalInvocationID.x * 8u; first < samples; first += stride * 8u) {

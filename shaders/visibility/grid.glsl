@@ -1,13 +1,18 @@
 // Which samples are drawn. Needs the camera block `params`.
 #ifndef GPGP_SHADERS_VISIBILITY_GRID_GLSL
 #define GPGP_SHADERS_VISIBILITY_GRID_GLSL
-ivec2 viewport() { return ivec2(int(params.width), int(params.height)); }
-
-Grid grid() {
+Grid gridOf(uint camera) {
   Grid g;
-  g.pixels = viewport();
+  g.pixels = ivec2(int(params.width), int(params.height));
   g.shift = int(params.gridShift);
   g.offset = ivec2(int(params.gridX), int(params.gridY));
+  g.top = int(camera * params.height);
   return g;
 }
+
+/// What the id buffer holds: surfaces.comp needs to know which draw's triangle it is.
+uint drawnId(uint id, uint item) { return params.method == kConservative ? item : id; }
+
+/// For what does not depend on the camera.
+Grid grid() { return gridOf(0u); }
 #endif

@@ -23,7 +23,7 @@ void main() {
       Fetched f = fetchItem(queue[entry]);
       id = f.id;
       if (classifyFetched(f, t) == kWhole) {
-        bounds = pixelBounds(t.p0, t.p1, t.p2, viewport());
+        bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         mask = wantedPixels(t, bounds, true);
       }
     }

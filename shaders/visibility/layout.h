@@ -10,6 +10,8 @@ GPGP_SHADER_BEGIN
 GPGP_CONST uint kNoTriangle = 0xffffffffu; ///< in the id buffer: nothing
 GPGP_CONST uint kFarthest = 0xffffffffu;   ///< in the depth buffer: nothing
 GPGP_CONST uint kTwoSided = 1u;            ///< GPGP_DRAW_TWO_SIDED
+GPGP_CONST uint kClockwise = 2u;           ///< GPGP_DRAW_CLOCKWISE
+GPGP_CONST uint kMaxCameras = 8u;          ///< of one record
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
@@ -17,17 +19,24 @@ GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large 
 GPGP_CONST uint kSliceBlocks = 256u;       ///< blocks of 8 x 8 pixels that one workgroup is given at least
 GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
 GPGP_CONST uint kExact = 1u;               ///< GPGP_SAMPLING_EXACT
+GPGP_CONST uint kConservative = 3u;        ///< GPGP_SAMPLING_CONSERVATIVE
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
 GPGP_CONST uint kSorted = 256u;            ///< entries of a pixel's list that are sorted together
 GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 
-/// Binding numbers of set 0, which are resource numbers of the pass list.
+/// Formats of positions.
+GPGP_CONST uint kFloats = 0u;
+GPGP_CONST uint kHalves = 1u;
+GPGP_CONST uint kSnorms = 2u;
+
+/// Binding numbers of set 0, which are resource numbers of the pass list. Not more than the storage buffers that every
+/// device offers a shader: what is not needed at the same time shares a number.
 GPGP_CONST int kBindParams = 0;
 GPGP_CONST int kBindPositions = 1;
 GPGP_CONST int kBindIndices = 2;
 GPGP_CONST int kBindDraws = 3;
 GPGP_CONST int kBindMeshes = 4;
-GPGP_CONST int kBindStarts = 5;
+GPGP_CONST int kBindTable = 5;
 GPGP_CONST int kBindQueue = 6;
 GPGP_CONST int kBindDepth = 7;
 GPGP_CONST int kBindIds = 8;
@@ -38,13 +47,19 @@ GPGP_CONST int kBindCount = 12;
 GPGP_CONST int kBindView = 13;
 GPGP_CONST int kBindRecords = 14;
 GPGP_CONST int kBindSizes = 15;
-GPGP_CONST int kBindLimits = 16; // per pixel; then where its list begins
-GPGP_CONST int kBindCandidates = 17;
-GPGP_CONST int kBindBigs = 18;
-GPGP_CONST int kBindLengths = 19;
-GPGP_CONST int kBindPairs = 20;
-GPGP_CONST int kBindEntries = 21;
-GPGP_CONST int kBindOpen = kBindIds; // once ids are gathered: pixels with lists
+GPGP_CONST int kBindSlots = 16; // words per pixel: limits (then where its list begins), list lengths; big candidates
+GPGP_CONST int kBindCommands = 17;
+GPGP_CONST int kBindCommandCount = 18;
+GPGP_CONST int kBindDrawCommands = 19;
+GPGP_CONST int kBindDrawIndices = 20;
+GPGP_CONST int kBindDrawTriangles = 21;
+GPGP_CONST int kBindExtents = 22;
+GPGP_CONST int kBindPairs = 23;
+GPGP_CONST int kBindOpen = kBindIds;           // exact, once ids are gathered: pixels with lists
+GPGP_CONST int kBindCandidates = kBindRecords; // exact, once ids are drawn
+GPGP_CONST int kBindEntries = kBindQueue;      // exact, once all pairs are there
+GPGP_CONST int kBindSurfaces = kBindRecords;   // conservative, once ids are drawn
+GPGP_CONST int kBindGaps = kBindPairs;         // conservative: words per pixel
 
 /// GpgpMesh
 struct Mesh {
@@ -62,35 +77,70 @@ struct Draw {
   uint reserved;
 };
 
+/// One draw of a camera. Lies in the draw table, whose regions hold, for each of `maxEntries`: first item and first
+/// chunk; this; of an indirect command the first entry, item and chunk; the visible triangles and their place.
+struct DrawEntry {
+  uint draw; // in GpgpVisibilityDraw[]
+  uint camera;
+  uint firstIndex;
+  uint indexCount;
+  uint vertexOffset;
+};
+GPGP_CONST uint kEntryWords = 5u;
+GPGP_CONST uint kTableWords = 12u;  ///< of each entry, all regions together
+GPGP_CONST uint kTableEntries = 2u; ///< where each region begins, times maxEntries
+GPGP_CONST uint kTableCommands = 7u;
+GPGP_CONST uint kTableCounts = 10u;
+GPGP_CONST uint kTablePlaces = 11u;
+
 /// Of one record.
 struct Params {
-  float viewProjection[16]; // column-major
+  float viewProjection[128]; // of each camera, column-major
+  uint cameraCount;
   uint width;
-  uint height;
+  uint height; // of each camera; they lie one below the other in the buffers of depth and ids
   uint reversedDepth;
   uint drawCount;
+  uint hasDrawCount; // 1: the buffer of the command count holds the number of draws, or of commands
+  uint hasCommands;  // 1: draws come from the engine's indirect commands
+  uint commandCount; // at most
+  uint commandWords; // stride
+  uint entryCount;   // draws of all cameras, at most
+  uint maxEntries;   // capacity of the draw table
   uint meshCount;
   uint triangleCount;
-  uint maxItems;     // triangles of all draws together: the sampler's budget
-  uint indexCount;   // that the index range holds
-  uint shortIndices; // 1: 16 bits each
-  uint vertexCount;  // that the position range holds
-  uint strideWords;
-  uint listCapacity;  // in triangles
-  uint hasList;       // 1: visibleList is there
-  uint writeCount;    // 1: visibleCount is there
-  uint viewWords;     // 0: no view
+  uint maxItems;       // triangles of all draws together: the sampler's budget
+  uint indexCount;     // that the index range holds
+  uint shortIndices;   // 1: 16 bits each
+  uint vertexCount;    // that the position range holds
+  uint positionFormat; // kFloats, kHalves, kSnorms
+  uint positionOffset; // bytes
+  uint positionStride;
+  uint listCapacity;        // in triangles
+  uint hasList;             // 1: visibleList is there
+  uint writeCount;          // 1: visibleCount is there; 2: with the number of draws
+  uint viewWords;           // 0: no view
+  uint drawCommandCapacity; // in draws
+  uint drawListCapacity;    // in triangles; kNoTriangle: there is no such list
+  uint hasDrawIndices;
+  uint hasDrawTriangles;
   uint mediumRecords; // capacities of the record buffer: its front
   uint largeRecords;  // and what follows
   uint gridShift;     // Grid::shift, and offset
   uint gridX;
   uint gridY;
-  uint accumulate;    // 1: bits and pixel counts are added to
+  uint accumulate;    // 1: bits, pixel counts and sizes are added to
   uint hasSizes;      // 1: pixelCounts is there
+  uint hasExtents;    // 1: triangleSizes is there
   uint method;        // GpgpSamplingMethod
+  uint slotCapacity;  // pixels of the largest viewport, in whole tiles
   uint maxCandidates; // capacities of exact sampling
   uint maxBig;
   uint maxPairs;
+  uint pixelCapacity; // of the largest viewport of all cameras
+  uint heuristics;    // GPGP_HEURISTIC_...
+  float epsilonStatic;
+  float epsilonDynamic;
 };
 
 /// A triangle, or a piece of a clipped one, in a pixel's list.
@@ -124,6 +174,16 @@ struct Entry {
   uint key;
 };
 
+/// What conservative sampling found at a pixel's centre.
+struct Surface {
+  float nearest; // depths within the pixel
+  float farthest;
+  float normalX; // of length 1, or 0
+  float normalY;
+  float normalZ;
+};
+GPGP_CONST uint kGapWords = 3u; ///< of a pixel: its 64 samples that are covered; behind all of those, a depth
+
 /// GPU counters; the words up to `hasList` inclusive are the report.
 struct Counters {
   uint triangles;
@@ -135,10 +195,15 @@ struct Counters {
   uint skippedTriangles; // index out of range, coordinate not finite or too large, number not below triangleCount
   uint skippedDraws;     // mesh out of range
   uint listed;
-  uint hasList;     // 1: the record has a list
-  uint candidates;  // exact sampling: asked for
-  uint pairs;       // asked for
-  uint unresolved;  // triangles and pairs that found no room, whose triangles count as visible
+  uint hasList;    // 1: the record has a list
+  uint candidates; // exact sampling: asked for
+  uint pairs;      // asked for
+  uint unresolved; // triangles and pairs that found no room, whose triangles count as visible
+  uint draws;      // of one camera, whatever the budget; stays at 2^32 - 1
+  uint drawsGiven;
+  uint drawTriangles; // visible ones of all draws: in the lists by draw, whatever their budget
+  uint drawListed;
+  uint drawChunks;  // of one camera's draws
   uint chunks;      // of all draws
   uint queueCount;  // triangles that one invocation should not draw alone
   uint mediumCount; // records asked for
@@ -155,12 +220,14 @@ struct Counters {
   uint seenCount; // small triangles that are seen at a pixel's centre
   uint seenArgs[3];
   uint placeArgs[3];
+  uint overlapCount; // conservative: triangles of more than 8 x 8 pixels, or clipped
+  uint overlapArgs[3];
   uint entryCount; // in the lists that have their place
   uint openCount;  // pixels with lists
   uint openArgs[3];
 };
-GPGP_CONST uint kCounterWords = 52u;
-GPGP_CONST uint kReportWords = 13u;
+GPGP_CONST uint kCounterWords = 61u;
+GPGP_CONST uint kReportWords = 17u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
 GPGP_FN uvec3 listGroups(uint listed) {
@@ -170,8 +237,9 @@ GPGP_FN uvec3 listGroups(uint listed) {
 
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
-static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 168 && sizeof(Candidate) == 64 &&
-              sizeof(Pair) == 16 && sizeof(Entry) == 8 && sizeof(Counters) == 4 * kCounterWords);
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 512 + 45 * 4 &&
+              sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Pair) == 16 &&
+              sizeof(Entry) == 8 && sizeof(Surface) == 20 && sizeof(Counters) == 4 * kCounterWords);
 #endif
 
 GPGP_SHADER_END

@@ -12,6 +12,7 @@ layout(std430, set = 0, binding = kBindCounters) readonly buffer CounterBuffer {
 shared ScreenPolygon polygon;
 shared ScreenTriangle triangle;
 shared uint id;
+shared uint camera;
 shared int pieces; // 0: nothing to draw, -1: one triangle, made already
 shared bool pieceValid;
 
@@ -20,12 +21,13 @@ void makeAgain(uint item) {
   Fetched f = fetchItem(item);
   ScreenTriangle made;
   uint fate = classifyFetched(f, made);
-  id = f.id;
+  id = drawnId(f.id, item);
+  camera = f.camera;
   triangle = made;
   pieces = fate == kWhole ? -1 : 0;
   if (fate != kClipped) return;
   ScreenPolygon cut;
-  if (clipTriangle(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, cut) != kClipped) return;
+  if (clipTriangle(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, cut) != kClipped) return;
   polygon = cut;
   pieces = cut.count - 2;
 }
@@ -44,7 +46,7 @@ void main() {
       barrier();
       if (gl_LocalInvocationIndex == 0u) {
         ScreenTriangle made;
-        pieceValid = fanPiece(polygon, k, grid(), made);
+        pieceValid = fanPiece(polygon, k, gridOf(camera), made);
         triangle = made;
       }
       barrier();

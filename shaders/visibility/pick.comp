@@ -21,14 +21,14 @@ void main() {
   uint chunks = counters.chunks;
   for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
     uint drawIndex = findChunk(chunk);
-    uvec2 start = starts[drawIndex];
+    uvec2 start = startOf(drawIndex);
     if (start.x >= params.maxItems) break; // and so does all that follows
     if (gl_LocalInvocationIndex == 0u) {
       groupSeen = 0u;
       groupBig = 0u;
     }
     barrier();
-    uint end = min(meshes[draws[drawIndex].mesh].indexCount / 3u, params.maxItems - start.x);
+    uint end = min(entryOf(drawIndex).indexCount / 3u, params.maxItems - start.x);
     uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
     const uint kNone = 0xffffffffu;
     uint big = kNone;
@@ -43,7 +43,7 @@ void main() {
       uint fate = classifyFetched(f, t);
       if (fate == kClipped) big = atomicAdd(groupBig, 1u);
       if (fate == kWhole) {
-        bounds = pixelBounds(t.p0, t.p1, t.p2, viewport());
+        bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         if (bounds.x < bounds.z && bounds.y < bounds.w) {
           if (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8) big = atomicAdd(groupBig, 1u);
           else if (isSeen(id)) seen = atomicAdd(groupSeen, 1u);

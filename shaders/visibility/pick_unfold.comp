@@ -2,17 +2,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
-#include "visibility/candidate.h"
+#include "visibility/lists.glsl"
 layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindCandidates) writeonly buffer CandidateBuffer { Candidate candidates[]; };
-layout(std430, set = 0, binding = kBindBigs) writeonly buffer BigBuffer { uvec2 bigs[]; };
 
-void add(ScreenTriangle t, uint id) {
-  ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, viewport());
+void add(ScreenTriangle t, uint id, uint camera) {
+  ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(camera));
   if (bounds.x >= bounds.z || bounds.y >= bounds.w) return;
   uint place = atomicAdd(counters.candidates, 1u);
   if (place < params.maxCandidates) {
@@ -22,7 +21,10 @@ void add(ScreenTriangle t, uint id) {
     uint first = atomicAdd(counters.bigCount, slices);
     // What is counted below the capacity is written, so that no entry lies unwritten among the others.
     uint end = min(first + slices, params.maxBig);
-    for (uint i = first; i < end; ++i) bigs[i] = uvec2(place, (i - first) | (slices << 16u));
+    for (uint i = first; i < end; ++i) {
+      slots[bigAt(i)] = place;
+      slots[bigAt(i) + 1u] = (i - first) | (slices << 8u) | (camera << 16u);
+    }
     if (first < end) atomicMax(counters.bigArgs[0], min(end, kMaxGroups));
     if (first + slices <= params.maxBig) return;
   }
@@ -36,11 +38,11 @@ void main() {
     Fetched f = fetchItem(queue[params.maxItems - 1u - entry]);
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
-    if (fate == kWhole) add(t, f.id);
+    if (fate == kWhole) add(t, f.id, f.camera);
     if (fate != kClipped) continue;
     ScreenPolygon polygon;
-    if (clipTriangle(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, polygon) != kClipped) continue;
+    if (clipTriangle(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, polygon) != kClipped) continue;
     for (int k = 0; k + 2 < polygon.count; ++k)
-      if (fanPiece(polygon, k, grid(), t)) add(t, f.id);
+      if (fanPiece(polygon, k, gridOf(f.camera), t)) add(t, f.id, f.camera);
   }
 }

@@ -20,6 +20,6 @@ void coverPixel(ScreenTriangle t, ivec2 pixel, float z, uint id) {
   } else if (depths[at] == key) {
     atomicMin(ids[at], id);
     if (params.method == kExact && fillsPixel(t, pixel, grid()))
-      atomicMin(limits[slotOf(pixel)], fillKey(t, z, reversed));
+      atomicMin(slots[slotOf(pixel)], fillKey(t, z, reversed));
   }
 }

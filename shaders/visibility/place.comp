@@ -6,7 +6,7 @@ layout(local_size_x = 256) in;
 
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) readonly buffer CounterBuffer { Counters counters; };
-layout(std430, set = 0, binding = kBindLimits) readonly buffer BeginBuffer { uint begins[]; };
+layout(std430, set = 0, binding = kBindSlots) readonly buffer SlotBuffer { uint slots[]; };
 layout(std430, set = 0, binding = kBindPairs) readonly buffer PairBuffer { Pair pairs[]; };
 layout(std430, set = 0, binding = kBindEntries) writeonly buffer EntryBuffer { Entry entries[]; };
 
@@ -17,6 +17,6 @@ void main() {
     Entry e;
     e.candidate = p.candidate;
     e.key = p.key;
-    entries[begins[p.slot] + p.place] = e;
+    entries[slots[p.slot] + p.place] = e;
   }
 }

@@ -1,6 +1,7 @@
 // Numbers the work: each draw's first item (triangle) and first chunk are the sums over the draws before it. A chunk
 // holds triangles of one draw only, so that a workgroup reads one transform. One workgroup: each invocation sums a run
-// of draws, the sums are scanned, and the runs are written.
+// of draws of all cameras (or of indirect commands, whose instances expand.comp writes), the sums are scanned, and the
+// runs are written.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -9,61 +10,108 @@ layout(local_size_x = 256) in;
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindDraws) readonly buffer DrawBuffer { Draw draws[]; };
 layout(std430, set = 0, binding = kBindMeshes) readonly buffer MeshBuffer { Mesh meshes[]; };
-layout(std430, set = 0, binding = kBindStarts) writeonly buffer StartBuffer { uvec2 starts[]; };
+layout(std430, set = 0, binding = kBindCommands) readonly buffer CommandBuffer { uint commands[]; };
+layout(std430, set = 0, binding = kBindCommandCount) readonly buffer CommandCountBuffer { uint commandCount; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+layout(std430, set = 0, binding = kBindTable) writeonly buffer TableBuffer { uint table[]; };
+#include "visibility/table_write.glsl"
 
-shared uvec2 sums[256];
-shared uint skipped;
+shared uvec4 sums[256]; // entries, items, chunks; draws that are skipped
 
-/// Sums stay at 2^32 - 1: more is beyond every budget.
-uvec2 saturatedSum(uvec2 a, uvec2 b) {
-  uvec2 sum = a + b;
-  return uvec2(sum.x < a.x ? 0xffffffffu : sum.x, sum.y < a.y ? 0xffffffffu : sum.y);
+/// Draws of one camera.
+uint drawsGiven() { return params.hasDrawCount != 0u ? min(commandCount, params.drawCount) : params.drawCount; }
+
+uint unitsGiven() {
+  if (params.hasCommands == 0u) return drawsGiven() * params.cameraCount;
+  return params.hasDrawCount != 0u ? min(commandCount, params.commandCount) : params.commandCount;
 }
 
-/// Triangles and chunks of a draw; none where there is no such mesh.
-uvec2 sizeOf(uint draw, inout uint bad) {
-  uint mesh = draws[draw].mesh;
-  if (mesh >= params.meshCount) {
-    ++bad;
-    return uvec2(0u);
+/// Entries, triangles and chunks of a unit, and what it skips: a draw (none where there is no such mesh) or a command.
+uvec4 sizeOf(uint unit, uint givenDraws) {
+  if (params.hasCommands != 0u) {
+    uint at = unit * params.commandWords;
+    uint first = commands[at + 4u];
+    uint instances = min(commands[at + 1u], params.drawCount - min(first, params.drawCount));
+    uint triangles = commands[at] / 3u;
+    return uvec4(instances, saturatedProduct(instances, triangles), saturatedProduct(instances, chunksOf(triangles)),
+                 commands[at + 1u] - instances);
   }
+  uint mesh = draws[unit % givenDraws].mesh;
+  if (mesh >= params.meshCount) return uvec4(1u, 0u, 0u, 1u);
   uint triangles = meshes[mesh].indexCount / 3u;
-  return uvec2(triangles, (triangles + kChunk - 1u) / kChunk);
+  return uvec4(1u, triangles, chunksOf(triangles), 0u);
+}
+
+uvec4 sumOf(uvec4 a, uvec4 b) {
+  return uvec4(saturatedSum(a.x, b.x), saturatedSum(a.y, b.y), saturatedSum(a.z, b.z), saturatedSum(a.w, b.w));
+}
+
+void write(uint unit, uint givenDraws, uvec4 start) {
+  if (params.hasCommands != 0u) {
+    uint at = params.maxEntries * kTableCommands + unit * 3u;
+    table[at] = start.x;
+    table[at + 1u] = start.y;
+    table[at + 2u] = start.z;
+    return;
+  }
+  DrawEntry e;
+  e.draw = unit % givenDraws;
+  e.camera = unit / givenDraws;
+  Mesh mesh;
+  mesh.firstIndex = 0u;
+  mesh.indexCount = 0u;
+  mesh.vertexOffset = 0u;
+  if (draws[e.draw].mesh < params.meshCount) mesh = meshes[draws[e.draw].mesh];
+  e.firstIndex = mesh.firstIndex;
+  e.indexCount = mesh.indexCount;
+  e.vertexOffset = mesh.vertexOffset;
+  writeEntry(unit, start.y, start.z, e);
 }
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  if (lane == 0u) skipped = 0u;
-  barrier();
-  uint run = (params.drawCount + 255u) / 256u;
-  uint first = min(lane * run, params.drawCount);
-  uint end = min(first + run, params.drawCount);
-  uvec2 own = uvec2(0u);
-  uint bad = 0u;
-  for (uint i = first; i < end; ++i) own = saturatedSum(own, sizeOf(i, bad));
-  if (bad != 0u) atomicAdd(skipped, bad);
+  uint givenDraws = drawsGiven();
+  uint units = unitsGiven();
+  uint run = (units + 255u) / 256u;
+  uint first = min(lane * run, units);
+  uint end = min(first + run, units);
+  uvec4 own = uvec4(0u);
+  for (uint i = first; i < end; ++i) own = sumOf(own, sizeOf(i, givenDraws));
   sums[lane] = own;
   barrier();
   for (uint step = 1u; step < 256u; step *= 2u) {
-    uvec2 before = lane >= step ? sums[lane - step] : uvec2(0u);
+    uvec4 before = lane >= step ? sums[lane - step] : uvec4(0u);
     barrier();
-    sums[lane] = saturatedSum(sums[lane], before);
+    sums[lane] = sumOf(sums[lane], before);
     barrier();
   }
-  uvec2 start = lane == 0u ? uvec2(0u) : sums[lane - 1u];
-  uint ignored = 0u;
+  uvec4 start = lane == 0u ? uvec4(0u) : sums[lane - 1u];
   for (uint i = first; i < end; ++i) {
-    starts[i] = start;
-    start = saturatedSum(start, sizeOf(i, ignored));
+    write(i, givenDraws, start);
+    start = sumOf(start, sizeOf(i, givenDraws));
   }
+  if (params.hasCommands == 0u)
+    for (uint i = units + lane; i < params.entryCount; i += 256u) writeNone(i);
   if (lane == 255u) {
-    counters.items = sums[255].x;
-    counters.chunks = sums[255].y;
-    counters.skippedDraws = skipped;
+    uvec4 all_ = sums[255];
+    if (params.hasCommands != 0u) {
+      counters.draws = all_.x;
+      counters.drawsGiven = min(all_.x, params.entryCount / params.cameraCount);
+      counters.drawChunks = all_.z;
+      all_.y = saturatedProduct(all_.y, params.cameraCount);
+      all_.z = saturatedProduct(all_.z, params.cameraCount);
+      all_.w = saturatedProduct(all_.w, params.cameraCount);
+    } else {
+      counters.draws = givenDraws;
+      counters.drawsGiven = givenDraws;
+      counters.drawChunks = all_.z / params.cameraCount;
+    }
+    counters.items = all_.y;
+    counters.chunks = all_.z;
+    counters.skippedDraws = all_.w;
     counters.hasList = params.hasList;
     // The shaders stride beyond kMaxGroups. Later passes raise the x of the other dispatches.
-    counters.smallArgs[0] = min(sums[255].y, kMaxGroups);
+    counters.smallArgs[0] = min(all_.z, kMaxGroups);
     counters.smallArgs[1] = 1u;
     counters.smallArgs[2] = 1u;
     counters.unfoldArgs[1] = 1u;
@@ -80,6 +128,8 @@ void main() {
     counters.seenArgs[2] = 1u;
     counters.openArgs[1] = 1u;
     counters.openArgs[2] = 1u;
+    counters.overlapArgs[1] = kLargeSplit;
+    counters.overlapArgs[2] = 1u;
     counters.leftArgs[1] = kLargeSplit;
     counters.leftArgs[2] = 1u;
   }

@@ -23,6 +23,7 @@ struct Grid {
   ivec2 pixels; ///< of the viewport
   int shift;    ///< 8: one sample a pixel; 2: 64 x 64; 0: every point that a vertex can lie on
   ivec2 offset; ///< of the first sample, in units; 0 to 2^shift - 1
+  int top;      ///< the viewport's first row of pixels: viewports of several cameras lie one below the other
 };
 
 /// Samples of a viewport, in each direction.
@@ -41,6 +42,7 @@ GPGP_FN Grid middleGrid(ivec2 pixels, int shift) {
   grid.pixels = pixels;
   grid.shift = shift;
   grid.offset = ivec2((1 << shift) >> 1, (1 << shift) >> 1);
+  grid.top = 0;
   return grid;
 }
 
@@ -85,9 +87,10 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
   int roundUp = (1 << grid.shift) - 1;
   ivec2 samples = samplesOf(grid);
   t.bounds.x = max((left - grid.offset.x + roundUp) >> grid.shift, 0);
-  t.bounds.y = max((top - grid.offset.y + roundUp) >> grid.shift, 0);
+  int firstRow = grid.top << (8 - grid.shift);
+  t.bounds.y = max((top - grid.offset.y + roundUp) >> grid.shift, firstRow);
   t.bounds.z = min(((right - grid.offset.x) >> grid.shift) + 1, samples.x);
-  t.bounds.w = min(((bottom - grid.offset.y) >> grid.shift) + 1, samples.y);
+  t.bounds.w = min(((bottom - grid.offset.y) >> grid.shift) + 1, firstRow + samples.y);
   t.zMin = min(za, min(zb, zc));
   t.zMax = max(za, max(zb, zc));
   GPGP_PRECISE float dz1 = zb - za;

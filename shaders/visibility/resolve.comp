@@ -8,7 +8,6 @@ layout(local_size_x = 32) in; // kBatch
 layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/lists.glsl"
-layout(std430, set = 0, binding = kBindLengths) readonly buffer LengthBuffer { uint lengths[]; };
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindOpen) readonly buffer OpenBuffer { uint open[]; };
 layout(std430, set = 0, binding = kBindCandidates) readonly buffer CandidateBuffer { Candidate candidates[]; };
@@ -157,8 +156,8 @@ void main() {
   uint pixels = counters.openCount;
   for (uint i = gl_WorkGroupID.x; i < pixels; i += gl_NumWorkGroups.x) {
     uint slot = open[i];
-    uint begin = limits[slot];
-    uint end = begin + lengths[slot];
+    uint begin = slots[slot];
+    uint end = begin + slots[lengthAt(slot)];
     uvec4 covered = uvec4(0u);
     uint low = 0u;
     bool more = true;

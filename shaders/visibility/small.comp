@@ -31,9 +31,9 @@ void main() {
   uint skipped = 0u;
   for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
     uint drawIndex = findChunk(chunk);
-    uvec2 start = starts[drawIndex];
+    uvec2 start = startOf(drawIndex);
     if (start.x >= params.maxItems) break; // and so does all that follows
-    uint end = min(meshes[draws[drawIndex].mesh].indexCount / 3u, params.maxItems - start.x);
+    uint end = min(entryOf(drawIndex).indexCount / 3u, params.maxItems - start.x);
     uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
     if (local >= end) continue;
     Fetched f = fetchTriangle(drawIndex, local);
@@ -43,7 +43,7 @@ void main() {
     if (fate == kWhole) ++triangles;
     if (fate == kWhole && isEmpty(t)) continue;
     if (fate == kWhole && isSmall(t)) {
-      drawSmall(t, f.id);
+      drawSmall(t, drawnId(f.id, start.x + local));
     } else if (kPhase == 0u && (fate == kWhole || fate == kClipped)) {
       uint entry = atomicAdd(counters.queueCount, 1u);
       queue[entry] = start.x + local;

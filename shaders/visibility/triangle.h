@@ -11,7 +11,7 @@
 
 GPGP_SHADER_BEGIN
 
-GPGP_FN vec4 transformToClip(Draw draw, Params params, vec3 p) {
+GPGP_FN vec3 transformToWorld(Draw draw, vec3 p) {
   float w[3];
   for (int r = 0; r < 3; ++r) {
     GPGP_PRECISE float sum =
@@ -19,11 +19,14 @@ GPGP_FN vec4 transformToClip(Draw draw, Params params, vec3 p) {
         draw.transform[r * 4 + 3];
     w[r] = sum;
   }
+  return vec3(w[0], w[1], w[2]);
+}
+
+GPGP_FN vec4 transformToClip(mat4 viewProjection, vec3 w) {
   float c[4];
   for (int r = 0; r < 4; ++r) {
-    GPGP_PRECISE float sum = ((params.viewProjection[r] * w[0] + params.viewProjection[4 + r] * w[1]) +
-                              params.viewProjection[8 + r] * w[2]) +
-                             params.viewProjection[12 + r];
+    GPGP_PRECISE float sum =
+        ((viewProjection[0][r] * w.x + viewProjection[1][r] * w.y) + viewProjection[2][r] * w.z) + viewProjection[3][r];
     c[r] = withoutTiny(sum);
   }
   return vec4(c[0], c[1], c[2], c[3]);
@@ -64,6 +67,9 @@ GPGP_FN bool needsClip(vec4 c) {
     if (planeDistance(plane, c) < 0.0f) return true;
   return false;
 }
+
+/// Whether a draw's front faces are clockwise as seen.
+GPGP_FN bool turnsFaces(Draw draw) { return mirrors(draw) != ((draw.flags & kClockwise) != 0u); }
 
 /// Which of the view volume's six planes a point lies outside of.
 GPGP_FN uint outCode(vec4 c) {
@@ -124,6 +130,7 @@ GPGP_CONST uint kClipped = 4u;    ///< a fan of up to seven
 struct ScreenPolygon {
   ivec2 p[9];
   float z[9];
+  float q[9]; ///< 1 / w
   int count;
   bool reversedOrder;
 };
@@ -137,7 +144,7 @@ GPGP_FN bool project(vec4 c, Grid grid, GPGP_OUT(ivec2) p, GPGP_OUT(float) z) {
   GPGP_PRECISE float x = c.x * inverse;
   GPGP_PRECISE float y = c.y * inverse;
   GPGP_PRECISE float depth = c.z * inverse;
-  p = ivec2(snap(x, grid.pixels.x), snap(y, grid.pixels.y));
+  p = ivec2(snap(x, grid.pixels.x), snap(y, grid.pixels.y) + grid.top * 256);
   z = clamp(withoutTiny(depth), 0.0f, 1.0f);
   return true;
 }
@@ -187,6 +194,7 @@ GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool
     if (!project(polygon.v[i], grid, p, z)) return kSkipped;
     screen.p[i] = p;
     screen.z[i] = z;
+    screen.q[i] = divide(1.0f, polygon.v[i].w);
   }
   screen.count = polygon.count;
   Wide area;

@@ -42,19 +42,21 @@ bool add(ScreenTriangle t, uint id) {
 void main() {
   uint count = counters.queueCount;
   for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
-    Fetched f = fetchItem(queue[entry]);
+    uint item = queue[entry];
+    Fetched f = fetchItem(item);
+    uint id = drawnId(f.id, item);
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
     bool placed = true;
-    if (fate == kWhole) placed = add(t, f.id);
+    if (fate == kWhole) placed = add(t, id);
     if (fate == kClipped) {
       ScreenPolygon polygon;
-      fate = clipTriangle(f.a, f.b, f.c, grid(), f.mirrored, f.twoSided, polygon);
+      fate = clipTriangle(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, polygon);
       if (fate == kSkipped) atomicAdd(counters.skippedTriangles, 1u);
       if (fate == kClipped) {
         atomicAdd(counters.triangles, 1u);
         for (int k = 0; k + 2 < polygon.count; ++k)
-          if (fanPiece(polygon, k, grid(), t) && !add(t, f.id)) placed = false;
+          if (fanPiece(polygon, k, gridOf(f.camera), t) && !add(t, id)) placed = false;
       }
     }
     if (!placed) {

@@ -2,6 +2,7 @@
 #include "api/check.h"
 #include "visibility/sampling/sampler.h"
 
+#include <algorithm>
 #include <iterator>
 
 using namespace gpgp;
@@ -46,12 +47,16 @@ GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext handle, const GpgpSamplerCrea
     if (info->maxWidth > 8192 || info->maxHeight > 8192)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192",
                        info->maxWidth, info->maxHeight);
+    if (info->maxCameras > shader::kMaxCameras)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxCameras is %u; at most %u", info->maxCameras,
+                       shader::kMaxCameras);
     if (info->maxTriangles > 1u << 30)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 1073741824", info->maxTriangles);
     if (info->maxSamples > 64 || (info->maxSamples & (info->maxSamples - 1)))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxSamples is %u; expected a power of two up to 64",
                        info->maxSamples);
-    if (info->methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_TRUTH_BIT))
+    if (info->methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_TRUTH_BIT |
+                          GPGP_SAMPLING_CONSERVATIVE_BIT))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods is 0x%x; it has unknown bits", info->methods);
     auto made = Sampler::create(**context, *info);
     if (!made) return made.error();
@@ -97,6 +102,13 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker handle, VkCommandBuf
     }
     if (!allFinite(info->camera.viewProjection))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
+    if (info->moreCameraCount && !info->moreCameras)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameras is NULL, but moreCameraCount is %u",
+                       info->moreCameraCount);
+    for (uint32_t i = 0; i < std::min(info->moreCameraCount, shader::kMaxCameras); ++i)
+      if (!allFinite(info->moreCameras[i].viewProjection))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                         "moreCameras[%u].viewProjection holds a number that is not finite", i);
     if (auto ok = checkRecord(**sampler, frame); !ok) return ok;
     if (!(*geometry)->resident()) return makeError(GPGP_NOT_READY, "geometrySet is not resident");
     if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");

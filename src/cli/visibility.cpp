@@ -26,7 +26,9 @@ struct VisibilityOptions {
   std::string model, image, overlay, exportIds, camera, method = "standard", cell;
   Size size{1280, 720}, grid{1, 1};
   float yaw = 35, pitch = 20, distance = 2;
-  uint32_t repeat = 1, orbit = 0, samples = 1, truth = 0, recheck = 256;
+  uint32_t repeat = 1, orbit = 0, samples = 1, truth = 0, recheck = 256, refinements = 0;
+  uint32_t heuristics = GPGP_HEURISTICS_THESIS;
+  float epsilonStatic = 0.05f, epsilonDynamic = 0.05f, resolution = 1;
   bool twoSided = false;
 };
 
@@ -65,6 +67,34 @@ glm::mat4 orbitCamera(const Bounds& bounds, uint32_t k, uint32_t n, float distan
                             std::max(distance - 1.2f, 0.01f) * radius, (distance + 1.2f) * radius);
   projection[1][1] *= -1;
   return projection * view;
+}
+
+/// "ABS,DYN"
+void parseEpsilon(const std::string& text, VisibilityOptions& options) {
+  char rest = 0;
+  float values[2];
+  if (std::sscanf(text.c_str(), "%f,%f%c", &values[0], &values[1], &rest) != 2 || !(values[0] >= 0 && values[1] >= 0) ||
+      !(values[0] < 1e30f && values[1] < 1e30f))
+    throw Usage("--epsilon: '" + text + "' is not ABS,DYN, two numbers from 0 on");
+  options.epsilonStatic = values[0];
+  options.epsilonDynamic = values[1];
+}
+
+/// Names of heuristics, or "none".
+uint32_t parseHeuristics(const std::string& text) {
+  uint32_t heuristics = 0;
+  std::istringstream names(text);
+  for (std::string name; std::getline(names, name, ',');) {
+    if (name == "in-circle")
+      heuristics |= GPGP_HEURISTIC_IN_CIRCLE;
+    else if (name == "depth")
+      heuristics |= GPGP_HEURISTIC_DEPTH;
+    else if (name == "front")
+      heuristics |= GPGP_HEURISTIC_DEPTH | GPGP_HEURISTIC_KEEP_FRONT;
+    else if (name != "none")
+      throw Usage("--heuristics: '" + name + "' is none of in-circle, depth, front, none");
+  }
+  return heuristics;
 }
 
 /// World-space viewpoints' offsets of a cell, the middle first; in units of the camera's right, up and back.
@@ -218,6 +248,13 @@ public:
                               info.samples = step.samples;
                               info.slice = step.slice;
                               info.accumulate = step.accumulate;
+                              if (step.method == GPGP_SAMPLING_CONSERVATIVE) {
+                                info.resolution = options_.resolution;
+                                info.heuristics = options_.heuristics;
+                                info.epsilonStatic = options_.epsilonStatic;
+                                info.epsilonDynamic = options_.epsilonDynamic;
+                                info.refinements = options_.refinements;
+                              }
                               info.positions = positions_.range();
                               info.positionStride = 12;
                               info.indices = indices_.range();
@@ -293,7 +330,9 @@ void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>
 Outcome visibility(const VisibilityOptions& options, const CommonOptions& common) {
   const bool isCell = options.method == "cell" || !options.cell.empty();
   if (options.method == "cell" && options.cell.empty()) throw Usage("--method cell needs --cell SPEC");
-  const GpgpSamplingMethod method = options.method == "standard" ? GPGP_SAMPLING_STANDARD : GPGP_SAMPLING_EXACT;
+  const GpgpSamplingMethod method = options.method == "standard"       ? GPGP_SAMPLING_STANDARD
+                                    : options.method == "conservative" ? GPGP_SAMPLING_CONSERVATIVE
+                                                                       : GPGP_SAMPLING_EXACT;
   std::vector<glm::vec3> offsets{glm::vec3(0)};
   if (isCell) offsets = cellOffsets(options.cell);
   const bool inPixels = options.cell.find('x') != std::string::npos;
@@ -464,20 +503,18 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
                   {"listed", report.listed},
                   {"coveredPixels", report.coveredPixels},
                   {"gpuMilliseconds", times.json()},
-                  {"image", options.image.empty() ? Json() : Json(options.image)}};
-  if (method == GPGP_SAMPLING_STANDARD && !options.truth && !options.orbit) return outcome;
-  // What measurements over cameras and against the truth have on top.
-  outcome.json.update(Json{{"cameras", cameras},
-                           {"truth", options.truth ? Json(std::llround(truthCount)) : Json()},
-                           {"coverage", measured(coverage)},
-                           {"overestimation", measured(overestimation)},
-                           {"coverage_area", measured(coverageArea)},
-                           {"overestimation_area", measured(overestimationArea)},
-                           {"neededCandidates", report.neededCandidates},
-                           {"neededPairs", report.neededPairs},
-                           {"unresolved", report.unresolved},
-                           {"gpu_ms_median", median},
-                           {"passes", passTimes}});
+                  {"image", options.image.empty() ? Json() : Json(options.image)},
+                  {"cameras", cameras},
+                  {"truth", options.truth ? Json(std::llround(truthCount)) : Json()},
+                  {"coverage", measured(coverage)},
+                  {"overestimation", measured(overestimation)},
+                  {"coverage_area", measured(coverageArea)},
+                  {"overestimation_area", measured(overestimationArea)},
+                  {"neededCandidates", report.neededCandidates},
+                  {"neededPairs", report.neededPairs},
+                  {"unresolved", report.unresolved},
+                  {"gpu_ms_median", median},
+                  {"passes", passTimes}};
   return outcome;
 }
 
@@ -509,8 +546,25 @@ Work addVisibility(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--camera", options->camera, "16 numbers, world to clip, column-major; a 17th not 0: near is 1")
       ->check(CLI::ExistingFile);
-  command->add_option("--method", options->method, "standard, exact or cell (exact over a view cell)")
-      ->check(CLI::IsMember({"standard", "exact", "cell"}))
+  command->add_option("--method", options->method, "standard, conservative, exact or cell (exact over a view cell)")
+      ->check(CLI::IsMember({"standard", "conservative", "exact", "cell"}))
+      ->capture_default_str();
+  command
+      ->add_option_function<std::string>(
+          "--epsilon", [options](const std::string& text) { parseEpsilon(text, *options); },
+          "Conservative: static and dynamic epsilon, in units along the view (default 0.05,0.05)")
+      ->type_name("ABS,DYN");
+  command
+      ->add_option_function<std::string>(
+          "--heuristics", [options](const std::string& text) { options->heuristics = parseHeuristics(text); },
+          "Conservative: of in-circle, depth, front (depth, but what lies in front is kept), none (default "
+          "in-circle,depth)")
+      ->type_name("LIST");
+  command->add_option("--resolution", options->resolution, "Conservative: factor of the viewport's size")
+      ->check(CLI::Range(0.25f, 1.0f))
+      ->capture_default_str();
+  command->add_option("--refinements", options->refinements, "Conservative: at most N passes that close gaps")
+      ->check(CLI::Range(0u, 4u))
       ->capture_default_str();
   command->add_option("--samples", options->samples, "Standard: N x N samples a pixel")
       ->check(CLI::IsMember({1u, 2u, 4u, 8u}))

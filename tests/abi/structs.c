@@ -6,6 +6,7 @@
 GPGP_SIZE_IS(GpgpAxiom, 96);
 GPGP_SIZE_IS(GpgpInstance, 96);
 GPGP_SIZE_IS(GpgpVisibilityDraw, 64);
+GPGP_SIZE_IS(GpgpTriangleSize, 12);
 GPGP_SIZE_IS(GpgpResult, 4);
 GPGP_SIZE_IS(GpgpFeatures, 8);
 GPGP_SIZE_IS(GpgpAccessMode, 8);

@@ -1,5 +1,6 @@
 // `gpgp visibility` on models whose visible triangles are known.
 #include "files.h"
+#include "host/files.h"
 #include "host/picture.h"
 #include "run.h"
 
@@ -24,9 +25,34 @@ TEST(CliVisibility, SeesWhatIsInFront) {
   const TemporaryFile model("two_squares.obj", kTwoSquares), picture("two_squares.png");
   const json front = gpgpJson({"visibility", model.path(), "--yaw", "0", "--pitch", "0", "--size", "64x48", "--repeat",
                                "2", "--image", picture.path(), "--validate"});
-  EXPECT_EQ(keys(front), (std::set<std::string>{"command", "ok", "model", "device", "status", "method", "width",
-                                                "height", "draws", "triangles", "facing", "visible", "listed",
-                                                "coveredPixels", "gpuMilliseconds", "image"}));
+  EXPECT_EQ(keys(front), (std::set<std::string>{"command",
+                                                "ok",
+                                                "model",
+                                                "device",
+                                                "status",
+                                                "method",
+                                                "width",
+                                                "height",
+                                                "draws",
+                                                "triangles",
+                                                "facing",
+                                                "visible",
+                                                "listed",
+                                                "coveredPixels",
+                                                "gpuMilliseconds",
+                                                "image",
+                                                "cameras",
+                                                "truth",
+                                                "coverage",
+                                                "overestimation",
+                                                "coverage_area",
+                                                "overestimation_area",
+                                                "neededCandidates",
+                                                "neededPairs",
+                                                "unresolved",
+                                                "gpu_ms_median",
+                                                "passes"}));
+  EXPECT_TRUE(front["coverage"].is_null()) << "no truth was asked for";
   EXPECT_EQ(front["status"], "GPGP_SUCCESS");
   EXPECT_EQ(front["triangles"], 4);
   EXPECT_EQ(front["visible"], 2);
@@ -59,6 +85,33 @@ TEST(CliVisibility, RealModel) {
   EXPECT_LE(seen["visible"], seen["coveredPixels"]);
 }
 
+// The first triangle is a tenth of a pixel wide and lies between the pixels' centres.
+TEST(CliVisibility, ConservativeFindsWhatLiesBetweenCentres) {
+  const TemporaryFile model("sliver.obj", "v -0.01 -0.9 0\nv 0.01 -0.9 0\nv 0 0.9 0\nf 1 2 3\n"
+                                          "v -2 -2 -0.01\nv 2 -2 -0.01\nv 0 2 -0.01\nf 4 5 6\n"),
+      ids("sliver.ids");
+  const auto run = [&](std::vector<std::string> more) {
+    std::vector<std::string> args{"visibility", model.path(), "--yaw", "0",         "--pitch",
+                                  "0",          "--size",     "32x32", "--validate"};
+    args.insert(args.end(), more.begin(), more.end());
+    return gpgpJson(args);
+  };
+  EXPECT_EQ(run({})["visible"], 1);
+  const json found = run({"--method", "conservative", "--truth", "16", "--export-ids", ids.path()});
+  EXPECT_EQ(found["visible"], 2);
+  EXPECT_EQ(found["method"], "conservative");
+  for (const char* key : {"triangles", "visible", "truth", "coverage", "overestimation", "coverage_area",
+                          "overestimation_area", "gpu_ms_median", "passes"})
+    EXPECT_TRUE(found.contains(key)) << key;
+  EXPECT_EQ(found["coverage"], 1.0);
+  EXPECT_EQ(found["overestimation"], 0.0);
+  EXPECT_EQ(host::readText(ids.path()), std::string("\0\0\0\0\1\0\0\0", 8));
+  EXPECT_EQ(run({"--method", "conservative", "--epsilon", "0,0"})["visible"], 1) << "a hundredth in front is too far";
+  EXPECT_EQ(run({"--method", "conservative", "--epsilon", "0,0", "--heuristics", "in-circle,front"})["visible"], 2);
+  EXPECT_EQ(run({"--method", "conservative", "--epsilon", "0,0", "--refinements", "1"})["visible"], 2);
+  EXPECT_EQ(run({"--method", "conservative", "--heuristics", "none", "--resolution", "0.5"})["visible"], 2);
+}
+
 TEST(CliVisibility, BadModelsAreNamed) {
   const TemporaryFile badIndex("bad_index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n");
   EXPECT_NE(gpgpFailure({"visibility", badIndex.path()}).find("bad_index.obj:3:"), std::string::npos);
@@ -81,6 +134,11 @@ TEST(CliVisibility, WrongUsage) {
                     {"visibility", model.path(), "--size", "-4x4"},
                     {"visibility", model.path(), "--size", "64x64x64"},
                     {"visibility", model.path(), "--pitch", "90"},
+                    {"visibility", model.path(), "--epsilon", "1"},
+                    {"visibility", model.path(), "--epsilon", "1,-1"},
+                    {"visibility", model.path(), "--heuristics", "depth,luck"},
+                    {"visibility", model.path(), "--resolution", "0.2"},
+                    {"visibility", model.path(), "--refinements", "5"},
                     {"visibility", model.path(), "--repeat", "0"}});
 }
 

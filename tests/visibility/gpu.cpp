@@ -4,14 +4,32 @@
 #include "api/check.h"
 
 #include <algorithm>
+#include <array>
 
 namespace gpgp::test {
 namespace {
+using namespace visibility;
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr uint32_t kPoison = 0xdeadbeef;
 
 GpgpBuffer toHost(const host::Buffer& buffer) {
   return buffer.range({}, {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, {}});
+}
+
+/// A draw's triangles are in no stated order.
+void sortByDraw(GpuResult& result) {
+  for (size_t c = 0; c < result.drawCommands.size(); c += 5) {
+    const size_t first = result.drawCommands[c + 2] / 3, count = result.drawCommands[c] / 3;
+    std::vector<std::array<uint32_t, 4>> triangles(count);
+    for (size_t i = 0; i < count; ++i)
+      triangles[i] = {result.drawTriangles[first + i], result.drawIndices[(first + i) * 3],
+                      result.drawIndices[(first + i) * 3 + 1], result.drawIndices[(first + i) * 3 + 2]};
+    std::sort(triangles.begin(), triangles.end());
+    for (size_t i = 0; i < count; ++i) {
+      result.drawTriangles[first + i] = triangles[i][0];
+      std::copy_n(&triangles[i][1], 3, &result.drawIndices[(first + i) * 3]);
+    }
+  }
 }
 } // namespace
 
@@ -23,6 +41,8 @@ SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
   positions = copy(input.positions, "positions");
   indices = copy(input.indices, "indices");
   draws = copy(input.draws, "draws");
+  if (!scene.commands.empty()) commands = copy(input.commands, "commands");
+  if (scene.drawCount != UINT32_MAX) drawCount = copy(std::array{scene.drawCount}, "draw count");
 }
 
 void VisibilityGpuTest::SetUp() {
@@ -50,7 +70,7 @@ GpgpFrame VisibilityGpuTest::advance(uint64_t inFlight) {
 
 GpgpWorker VisibilityGpuTest::createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles, bool engineScratch,
                                             uint32_t methods, uint32_t maxSamples, uint32_t maxCandidates,
-                                            uint32_t maxPairs) {
+                                            uint32_t maxPairs, uint32_t maxCameras, uint32_t maxDraws) {
   GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
   info.base.label = "sampler";
   info.base.queueFamily = queue().family;
@@ -62,6 +82,8 @@ GpgpWorker VisibilityGpuTest::createSampler(uint32_t width, uint32_t height, uin
   info.maxSamples = maxSamples;
   info.maxCandidates = maxCandidates;
   info.maxPairs = maxPairs;
+  info.maxCameras = maxCameras;
+  info.maxDraws = maxDraws;
   GpgpWorker sampler = nullptr;
   EXPECT_EQ(gpgpCreateSampler(context, &info, &sampler), GPGP_SUCCESS);
   EXPECT_EQ(gpgpPrewarm(sampler, nullptr), GPGP_SUCCESS);
@@ -106,19 +128,28 @@ GpgpSampleInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuff
   info.width = scene.params.width;
   info.height = scene.params.height;
   info.positions = buffers.positions.range();
-  info.positionStride = scene.params.strideWords * 4;
+  info.positionFormat = std::array{VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT,
+                                   VK_FORMAT_R16G16B16_SNORM}[scene.params.positionFormat];
+  info.positionOffset = scene.params.positionOffset;
+  info.positionStride = scene.params.positionStride;
   info.indices = buffers.indices.range();
   info.indexType = scene.useShort ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32;
   info.draws = buffers.draws.range();
   info.drawCount = static_cast<uint32_t>(scene.draws.size());
+  if (buffers.commands.handle()) {
+    info.commands = buffers.commands.range();
+    info.commandCount = scene.params.commandCount;
+  }
+  if (buffers.drawCount.handle()) info.drawCountBuffer = buffers.drawCount.range();
   info.triangleCount = scene.params.triangleCount;
   return info;
 }
 
 GpuResult VisibilityGpuTest::sample(Scene& scene, const GpuOptions& options, uint32_t maxTriangles) {
   scene.input(); // fills in what depends on the scene
-  const GpgpWorker sampler = createSampler(scene.params.width, scene.params.height, maxTriangles, true,
-                                           1u << options.method, std::min(options.samples, 4u));
+  const GpgpWorker sampler =
+      createSampler(scene.params.width, scene.params.height, maxTriangles, true, 1u << options.method,
+                    std::min(options.samples, 4u), 0, 0, scene.params.cameraCount);
   const GpgpAsset set = createGeometrySet(scene);
   const GpuResult result = sample(scene, sampler, set, options);
   gpgpDestroyWorker(sampler);
@@ -135,12 +166,41 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
   info.method = options.method;
   info.samples = options.samples;
   info.slice = options.slice;
+  info.heuristics = scene.params.heuristics;
+  info.epsilonStatic = scene.params.epsilonStatic;
+  info.epsilonDynamic = scene.params.epsilonDynamic;
+  info.refinements = options.refinements;
+  info.resolution = options.resolution;
+  if (options.width) info.width = options.width, info.height = options.height;
   const uint32_t words = (info.triangleCount + 31) / 32;
   const uint32_t capacity = std::min(options.listTriangles, std::max(info.triangleCount, 1u));
   host::Buffer bits(device, std::max(words, 1u) * 4, kStorage), list(device, std::max(capacity, 1u) * 4, kStorage);
   host::Buffer sizes(device, std::max(info.triangleCount, 1u) * 4, kStorage);
-  host::Buffer count(device, 16, kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-  for (const host::Buffer* buffer : {&bits, &list, &count, &sizes}) host::fill(device, *buffer, kPoison);
+  host::Buffer count(device, 20, kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  std::vector<GpgpCamera> cameras(scene.params.cameraCount - 1);
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    std::copy_n(scene.params.viewProjection + (i + 1) * 16, 16, cameras[i].viewProjection);
+    cameras[i].reversedDepth = scene.params.reversedDepth;
+  }
+  info.moreCameras = cameras.data();
+  info.moreCameraCount = static_cast<uint32_t>(cameras.size());
+  TwinEntries entries;
+  uint32_t drawn = 0; // triangles of all draws
+  for (const shader::DrawEntry& e : entriesOf(scene.input(), entries)) drawn += e.indexCount / 3;
+  const uint32_t drawRoom = std::min(options.drawTriangles, std::max(drawn, 1u));
+  const uint32_t commandRoom = std::min(options.drawCommands, std::max(entries.given, 1u));
+  host::Buffer drawCommands(device, commandRoom * 20, kStorage), drawIndices(device, drawRoom * 12, kStorage);
+  host::Buffer drawTriangles(device, drawRoom * 4, kStorage);
+  host::Buffer extents(device, std::max(info.triangleCount, 1u) * 12, kStorage);
+  if (options.byDraw) {
+    info.drawCommands = toHost(drawCommands);
+    info.drawIndices = toHost(drawIndices);
+    info.drawTriangles = toHost(drawTriangles);
+    info.triangleSizes = toHost(extents);
+  }
+  for (const host::Buffer* buffer :
+       {&bits, &list, &count, &sizes, &drawCommands, &drawIndices, &drawTriangles, &extents})
+    host::fill(device, *buffer, kPoison);
   info.visibleBits = toHost(bits);
   info.pixelCounts = toHost(sizes);
   if (capacity) info.visibleList = toHost(list);
@@ -176,9 +236,22 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
     EXPECT_EQ(host::download<uint32_t>(device, list, 1)[0], kPoison);
   }
   result.count = host::download<uint32_t>(device, count, 4);
+  if (options.byDraw) {
+    result.extents = host::download<uint32_t>(device, extents, info.triangleCount * 3);
+    if (options.count) {
+      EXPECT_EQ(host::download<uint32_t>(device, count, 5)[4], result.report.draws);
+    }
+    const uint32_t listed = result.report.drawTriangles;
+    result.drawCommands =
+        host::download<uint32_t>(device, drawCommands, std::min(result.report.draws, commandRoom) * 5);
+    result.drawTriangles = host::download<uint32_t>(device, drawTriangles, listed);
+    result.drawIndices = host::download<uint32_t>(device, drawIndices, listed * 3);
+    sortByDraw(result);
+  }
   if (scratch.handle()) {
     const uint32_t samples = std::max(std::min(options.samples, 4u), 1u);
-    const size_t pixels = size_t(info.width) * info.height * samples * samples;
+    const size_t pixels =
+        size_t(scene.params.width) * scene.params.height * scene.params.cameraCount * samples * samples;
     const auto& offsets = worker->passes().scratchOffsets;
     result.depth = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindDepth]);
     result.ids = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindIds]);
@@ -203,6 +276,14 @@ void expectEqual(const GpuResult& gpu, const visibility::TwinResult& twin, const
   EXPECT_EQ(gpu.report.skippedDraws, twin.counters.skippedDraws) << what;
   EXPECT_EQ(gpu.report.neededCandidates, twin.counters.candidates) << what;
   EXPECT_EQ(gpu.report.neededPairs, twin.counters.pairs) << what;
+  EXPECT_EQ(gpu.report.neededDraws, twin.counters.draws) << what;
+  EXPECT_TRUE(twin.sizes.empty() || gpu.sizes == twin.sizes) << what;
+  if (gpu.extents.empty()) return;
+  EXPECT_TRUE(gpu.extents == twin.extents) << what;
+  EXPECT_EQ(gpu.report.neededDrawTriangles, twin.counters.drawTriangles) << what;
+  EXPECT_TRUE(gpu.drawCommands == twin.drawCommands) << what;
+  EXPECT_TRUE(gpu.drawTriangles == twin.drawTriangles) << what;
+  EXPECT_TRUE(gpu.drawIndices == twin.drawIndices) << what;
 }
 
 } // namespace gpgp::test

@@ -17,10 +17,17 @@ struct GpuOptions {
   uint64_t tag = 0;
   GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;
   uint32_t samples = 0, slice = 0;
+  uint32_t refinements = 0;
+  uint32_t width = 0, height = 0; ///< 0: the scene's
+  float resolution = 0;
+  bool byDraw = true;                                             ///< lists by draw, commands, sizes
+  uint32_t drawTriangles = UINT32_MAX, drawCommands = UINT32_MAX; ///< their budgets
 };
 
 struct GpuResult {
-  std::vector<uint32_t> sizes;             ///< samples per triangle
+  std::vector<uint32_t> sizes;                                    ///< samples per triangle
+  std::vector<uint32_t> drawCommands, drawIndices, drawTriangles; ///< a draw's triangles ascending
+  std::vector<uint32_t> extents;
   std::vector<uint32_t> bits, list, count; ///< list: as much as was written, sorted
   std::vector<uint32_t> depth, ids;        ///< from the scratch buffer
   GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
@@ -29,7 +36,7 @@ struct GpuResult {
 /// The engine's side of one scene: its buffers on the device.
 struct SceneBuffers {
   SceneBuffers(host::HeadlessDevice& device, Scene& scene);
-  host::Buffer positions, indices, draws;
+  host::Buffer positions, indices, draws, commands, drawCount;
 };
 
 struct VisibilityGpuTest : testing::Test {
@@ -45,7 +52,7 @@ struct VisibilityGpuTest : testing::Test {
 
   GpgpWorker createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false,
                            uint32_t methods = 0, uint32_t maxSamples = 0, uint32_t maxCandidates = 0,
-                           uint32_t maxPairs = 0);
+                           uint32_t maxPairs = 0, uint32_t maxCameras = 0, uint32_t maxDraws = 0);
   GpgpAsset createGeometrySet(const Scene& scene);
   GpgpView createView(uint32_t maxTriangles);
   /// Copies all that is pending.

@@ -4,6 +4,7 @@
 
 #include "shaders/visibility_finish.spv.h"
 #include "shaders/visibility_large.spv.h"
+#include "shaders/visibility_plan.spv.h"
 #include "shaders/visibility_small.spv.h"
 
 #include <cstddef>
@@ -40,7 +41,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 27u);
+    EXPECT_EQ(offsets.size(), 46u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -53,12 +54,14 @@ TEST(Layout, ParamsAgree) {
     EXPECT_OFFSET(offsets, Params, writeCount);
     EXPECT_OFFSET(offsets, Params, viewWords);
     EXPECT_OFFSET(offsets, Params, largeRecords);
+    EXPECT_OFFSET(offsets, Params, cameraCount);
+    EXPECT_OFFSET(offsets, Params, epsilonDynamic);
   }
 }
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 32u);
+    EXPECT_EQ(offsets.size(), 39u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);
@@ -69,8 +72,9 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, mediumArgs);
     EXPECT_OFFSET(offsets, Counters, largeArgs);
     EXPECT_OFFSET(offsets, Counters, leftArgs);
+    EXPECT_OFFSET(offsets, Counters, overlapArgs);
   }
-  EXPECT_EQ(offsetof(shader::Counters, unresolved) + 4, shader::kReportWords * 4);
+  EXPECT_EQ(offsetof(shader::Counters, drawListed) + 4, shader::kReportWords * 4);
 }
 
 TEST(Layout, TheEnginesStructsAreTheShaders) {
@@ -79,10 +83,11 @@ TEST(Layout, TheEnginesStructsAreTheShaders) {
   EXPECT_EQ(draw.at("mesh"), offsetof(GpgpVisibilityDraw, mesh));
   EXPECT_EQ(draw.at("firstTriangle"), offsetof(GpgpVisibilityDraw, firstTriangle));
   EXPECT_EQ(draw.at("flags"), offsetof(GpgpVisibilityDraw, flags));
-  const auto mesh = offsetsOf(visibility_small, "Mesh");
+  const auto mesh = offsetsOf(visibility_plan, "Mesh");
   EXPECT_EQ(mesh.at("firstIndex"), offsetof(GpgpMesh, firstIndex));
   EXPECT_EQ(mesh.at("indexCount"), offsetof(GpgpMesh, indexCount));
   EXPECT_EQ(mesh.at("vertexOffset"), offsetof(GpgpMesh, vertexOffset));
+  EXPECT_EQ(sizeof(GpgpTriangleSize), 12u);
 }
 
 TEST(Layout, ListDispatchesCoverTheListInRows) {

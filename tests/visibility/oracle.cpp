@@ -79,7 +79,8 @@ Verdict judge(const visibility::TwinInput& in, const std::vector<uint32_t>& ids)
       const uint32_t id = draw.firstTriangle + local;
       std::array<Vec, 3> t;
       for (uint32_t i = 0; i < 3; ++i) {
-        const size_t at = size_t(in.indices[mesh.firstIndex + local * 3 + i] + mesh.vertexOffset) * params.strideWords;
+        const size_t at =
+            size_t(in.indices[mesh.firstIndex + local * 3 + i] + mesh.vertexOffset) * (params.positionStride / 4);
         double p[3], world[3];
         for (size_t k = 0; k < 3; ++k) p[k] = std::bit_cast<float>(in.positions[at + k]);
         for (size_t k = 0; k < 3; ++k)

@@ -36,14 +36,22 @@ shader::Draw& Scene::addDraw(uint32_t mesh, const glm::mat4& transform, uint32_t
 void Scene::setCamera(const glm::mat4& viewProjection, uint32_t width, uint32_t height, bool reversed) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row) params.viewProjection[column * 4 + row] = viewProjection[column][row];
+  params.cameraCount = 1;
   params.width = width;
   params.height = height;
   params.reversedDepth = reversed;
 }
 
+void Scene::addCamera(const glm::mat4& viewProjection) {
+  float* matrix = params.viewProjection + params.cameraCount++ * 16;
+  for (int i = 0; i < 16; ++i) matrix[i] = viewProjection[i / 4][i % 4];
+}
+
 visibility::TwinInput Scene::input() {
-  positionWords.resize(positions.size());
-  for (size_t i = 0; i < positions.size(); ++i) positionWords[i] = std::bit_cast<uint32_t>(positions[i]);
+  if (params.positionFormat == shader::kFloats) {
+    positionWords.resize(positions.size());
+    for (size_t i = 0; i < positions.size(); ++i) positionWords[i] = std::bit_cast<uint32_t>(positions[i]);
+  }
   params.gridShift = 8;
   params.gridX = params.gridY = 128;
   params.drawCount = static_cast<uint32_t>(draws.size());
@@ -51,14 +59,23 @@ visibility::TwinInput Scene::input() {
   if (params.maxItems == 0) params.maxItems = 1u << 22;
   params.indexCount = static_cast<uint32_t>(indices.size());
   params.shortIndices = useShort;
-  if (params.strideWords == 0) params.strideWords = 3;
-  params.vertexCount = static_cast<uint32_t>(positions.size()) / params.strideWords;
+  if (params.cameraCount == 0) params.cameraCount = 1;
+  if (params.maxEntries == 0) params.maxEntries = 65536;
+  params.hasCommands = !commands.empty();
+  params.commandWords = 5;
+  params.commandCount = static_cast<uint32_t>(commands.size() / 5);
+  params.entryCount =
+      params.hasCommands ? params.maxEntries / params.cameraCount * params.cameraCount : params.drawCount;
+  params.drawListCapacity = params.drawCommandCapacity = UINT32_MAX;
+  if (params.positionStride == 0) params.positionStride = 12;
+  if (params.positionFormat == shader::kFloats)
+    params.vertexCount = static_cast<uint32_t>(positions.size() * 4 / params.positionStride);
   if (useShort) {
     shortIndices.assign((indices.size() + 1) / 2, 0);
     for (size_t i = 0; i < indices.size(); ++i) shortIndices[i / 2] |= (indices[i] & 0xffffu) << (i % 2 * 16);
     params.indexCount = static_cast<uint32_t>(shortIndices.size() * 2);
   }
-  return {params, positionWords, useShort ? shortIndices : indices, draws, meshes, {}};
+  return {params, positionWords, useShort ? shortIndices : indices, draws, meshes, commands, drawCount, {}};
 }
 
 glm::mat4 perspective(float fieldOfView, float aspect, float nearPlane, float farPlane, bool reversed) {

@@ -8,13 +8,15 @@
 namespace gpgp::test {
 
 struct Scene {
-  std::vector<float> positions; ///< strideWords each, 3 used
+  std::vector<float> positions; ///< params.positionStride / 4 each, 3 used
   std::vector<uint32_t> indices;
   std::vector<uint32_t> shortIndices; ///< the same in 16 bits, two a word, where useShort is set
   bool useShort = false;
   std::vector<shader::Mesh> meshes;
   std::vector<shader::Draw> draws;
   std::vector<uint32_t> positionWords; ///< made by input()
+  std::vector<uint32_t> commands;      ///< VkDrawIndexedIndirectCommand[]: draws are their instances
+  uint32_t drawCount = UINT32_MAX;     ///< what drawCountBuffer holds; UINT32_MAX: there is none
   shader::Params params{};
 
   uint32_t addVertex(float x, float y, float z);
@@ -24,6 +26,8 @@ struct Scene {
   shader::Draw& addDraw(uint32_t mesh, const glm::mat4& transform = glm::mat4(1.0f), uint32_t flags = 0,
                         uint32_t firstTriangle = UINT32_MAX);
   void setCamera(const glm::mat4& viewProjection, uint32_t width, uint32_t height, bool reversed = false);
+  /// One more camera of the same size.
+  void addCamera(const glm::mat4& viewProjection);
   /// The scene as the twin reads it; valid until the scene changes.
   visibility::TwinInput input();
 };

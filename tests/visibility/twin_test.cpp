@@ -202,7 +202,7 @@ TEST(Twin, ShortIndicesAndStridesReadTheSame) {
   for (size_t i = 0; i < scene.positions.size(); i += 3)
     wide.insert(wide.end(), {scene.positions[i], scene.positions[i + 1], scene.positions[i + 2], 7e30f, -1});
   scene.positions = wide;
-  scene.params.strideWords = 5;
+  scene.params.positionStride = 20;
   EXPECT_EQ(sampleOnCpu(scene.input()).ids, expected.ids);
 }
 

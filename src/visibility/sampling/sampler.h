@@ -23,16 +23,20 @@ public:
 private:
   core::PassList describe() const;
   void describeExact(core::PassList& list) const;
+  void describeConservative(core::PassList& list) const;
+  void describeDraws(core::PassList& list) const;
   static uint32_t samplesOf(const GpgpSampleInfo& info);
   void setGrid(const GpgpSampleInfo& info, shader::Params& params) const;
   core::Result<void> checkInfo(const GpgpSampleInfo& info, const CameraView* view) const;
 
+  uint64_t slotCapacity() const;
   uint32_t mediumRecords() const;
   uint32_t largeRecords() const;
 
   uint32_t defaultPairs() const;
 
-  const uint32_t maxWidth_, maxHeight_, maxDraws_, maxTriangles_, maxSamples_, methods_, maxCandidates_, maxPairs_;
+  const uint32_t maxWidth_, maxHeight_, maxCameras_, maxDraws_, maxTriangles_, maxSamples_, methods_, maxCandidates_,
+      maxPairs_;
 };
 
 } // namespace gpgp::visibility

@@ -14,6 +14,12 @@ using namespace shader;
 /// A pixel's list: candidates and the keys of their depths there.
 using List = std::vector<Entry>;
 
+/// Takes back what finish() made.
+void clearLists(TwinResult& out) {
+  for (auto* list : {&out.list, &out.drawCommands, &out.drawIndices, &out.drawTriangles}) list->clear();
+  out.counters.appeared = out.counters.disappeared = 0;
+}
+
 /// Front to back: those with a sample that nothing before them covers become visible.
 void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, std::vector<uint32_t>& bits) {
   const auto rank = [&](const Entry& e) {
@@ -44,10 +50,9 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
   const Params& params = in.params;
   const bool reversed = params.reversedDepth != 0;
   TwinResult out = sampleOnCpu(in);
-  out.list.clear();
-  out.counters.appeared = out.counters.disappeared = 0;
+  clearLists(out);
   const std::vector<uint32_t> standard = out.bits;
-  const int width = static_cast<int>(params.width), height = static_cast<int>(params.height);
+  const int width = static_cast<int>(params.width), height = static_cast<int>(params.height * params.cameraCount);
   const auto at = [&](ivec2 pixel) { return static_cast<size_t>(pixel.y * width + pixel.x); };
 
   struct Piece {
@@ -57,24 +62,17 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
     bool shared, seen; // by several invocations: the GPU makes a candidate before it knows
   };
   std::vector<Piece> pieces;
-  uint64_t items = 0;
-  for (const Draw& d : in.draws) {
-    if (d.mesh >= params.meshCount) continue;
-    const uint32_t triangles = in.meshes[d.mesh].indexCount / 3;
-    for (uint32_t local = 0; local < triangles && items + local < params.maxItems; ++local) {
-      if (d.firstTriangle >= params.triangleCount || local >= params.triangleCount - d.firstTriangle) continue;
-      const TwinTriangle placed = placeTriangle(in, d, local);
-      const uint32_t id = d.firstTriangle + local;
-      for (const ScreenTriangle& t : placed.pieces) {
-        const ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, ivec2(width, height));
-        if (bounds.x < bounds.z && bounds.y < bounds.w)
-          pieces.push_back({t, bounds, id,
-                            placed.fate == kClipped || bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8,
-                            (standard[id / 32] >> (id % 32) & 1) != 0});
-      }
+  forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
+    const uint32_t first = in.draws[e.draw].firstTriangle, id = first + local;
+    if (first >= params.triangleCount || local >= params.triangleCount - first) return;
+    const TwinTriangle placed = placeTriangle(in, e, local);
+    for (const ScreenTriangle& t : placed.pieces) {
+      const ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(params, e.camera));
+      if (bounds.x < bounds.z && bounds.y < bounds.w)
+        pieces.push_back({t, bounds, id, placed.fate == kClipped || bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8,
+                          (standard[id / 32] >> (id % 32) & 1) != 0});
     }
-    items += triangles;
-  }
+  });
 
   std::vector<uint32_t> limits(out.depth.size(), kFarthest);
   const Grid grid = gridOf(params);
@@ -140,7 +138,8 @@ TwinResult truthOnCpu(TwinInput in, uint32_t samples, std::vector<uint32_t>& siz
     else
       for (size_t word = 0; word < all.bits.size(); ++word) all.bits[word] |= one.bits[word];
   }
-  all.list.clear();
+  clearLists(all);
+  all.sizes = sizes;
   finish(in, all);
   return all;
 }

@@ -1,6 +1,10 @@
 // The sampler in plain loops, pass after pass.
 #include "visibility/twin/twin.h"
 
+#include "visibility/conservative.h"
+#include "visibility/extent.h"
+#include "visibility/position.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -9,22 +13,36 @@ namespace {
 using namespace shader;
 
 /// False where an index or the vertex that it names lies outside its range.
-bool fetchVertex(const TwinInput& in, const Mesh& mesh, uint32_t index, vec3& position) {
+bool fetchPlace(const TwinInput& in, const DrawEntry& e, uint32_t index, uint32_t& vertex) {
   const Params& params = in.params;
   if (index >= params.indexCount) return false;
-  uint32_t vertex = in.indices[params.shortIndices ? index / 2 : index];
+  vertex = in.indices[params.shortIndices ? index / 2 : index];
   if (params.shortIndices) vertex = index % 2 ? vertex >> 16 : vertex & 0xffffu;
-  if (vertex > UINT32_MAX - mesh.vertexOffset) return false;
-  vertex += mesh.vertexOffset;
-  if (vertex >= params.vertexCount) return false;
-  const size_t word = size_t(vertex) * params.strideWords;
+  int64_t place = int64_t(vertex) + e.vertexOffset;
+  if (params.hasCommands) place = int64_t(vertex) + static_cast<int32_t>(e.vertexOffset);
+  vertex = static_cast<uint32_t>(place);
+  return place >= 0 && place < params.vertexCount;
+}
+
+bool fetchVertex(const TwinInput& in, const DrawEntry& e, uint32_t index, vec3& position) {
+  const Params& params = in.params;
+  uint32_t vertex = 0;
+  if (!fetchPlace(in, e, index, vertex)) return false;
+  const size_t at = size_t(vertex) * params.positionStride + params.positionOffset;
   for (int i = 0; i < 3; ++i) {
-    const float v = uintBitsToFloat(in.positions[word + static_cast<size_t>(i)]);
+    const size_t byte = at + static_cast<size_t>(i) * (params.positionFormat == kFloats ? 4 : 2);
+    const uint32_t word = in.positions[byte / 4], half = byte % 4 ? word >> 16 : word & 0xffffu;
+    const float v = params.positionFormat == kFloats   ? uintBitsToFloat(word)
+                    : params.positionFormat == kHalves ? halfToFloat(half)
+                                                       : snormToFloat(half);
     if (!isModerate(v)) return false;
     position[i] = v;
   }
   return true;
 }
+
+/// Whether a triangle of a draw has three numbers of indices below 2^32.
+bool hasIndices(const DrawEntry& e, uint32_t local) { return uint64_t(e.firstIndex) + local * 3ull + 2 <= UINT32_MAX; }
 
 void draw(TwinResult& out, const Params& params, const ScreenTriangle& t, uint32_t id) {
   const Grid grid = gridOf(params);
@@ -43,44 +61,167 @@ void draw(TwinResult& out, const Params& params, const ScreenTriangle& t, uint32
 }
 } // namespace
 
-shader::Grid gridOf(const Params& params) {
+shader::Grid gridOf(const Params& params, uint32_t camera) {
   return {ivec2(static_cast<int>(params.width), static_cast<int>(params.height)), static_cast<int>(params.gridShift),
-          ivec2(static_cast<int>(params.gridX), static_cast<int>(params.gridY))};
+          ivec2(static_cast<int>(params.gridX), static_cast<int>(params.gridY)),
+          static_cast<int>(camera * params.height)};
+}
+
+std::vector<DrawEntry> entriesOf(const TwinInput& in, TwinEntries& about) {
+  const Params& params = in.params;
+  std::vector<DrawEntry> one;
+  about = {};
+  if (params.hasCommands) {
+    const uint32_t given = std::min(in.drawCount, params.commandCount);
+    for (uint32_t i = 0; i < given; ++i) {
+      const std::span<const uint32_t> c = in.commands.subspan(size_t(i) * params.commandWords, 5);
+      const uint32_t valid = std::min(c[1], params.drawCount - std::min(c[4], params.drawCount));
+      about.skipped += c[1] - valid;
+      about.draws += valid;
+      about.items += uint64_t(valid) * (c[0] / 3);
+      for (uint32_t k = 0; k < valid && one.size() < params.entryCount / params.cameraCount; ++k)
+        one.push_back({c[4] + k, 0, c[2], c[0], c[3]});
+    }
+    about.given = static_cast<uint32_t>(one.size());
+  } else {
+    for (uint32_t i = 0; i < std::min(in.drawCount, params.drawCount); ++i) {
+      const uint32_t mesh = in.draws[i].mesh;
+      about.skipped += mesh >= params.meshCount;
+      const Mesh m = mesh < params.meshCount ? in.meshes[mesh] : Mesh{};
+      about.items += m.indexCount / 3;
+      one.push_back({i, 0, m.firstIndex, m.indexCount, m.vertexOffset});
+    }
+    about.draws = about.given = static_cast<uint32_t>(one.size());
+  }
+  std::vector<DrawEntry> all;
+  for (uint32_t camera = 0; camera < params.cameraCount; ++camera)
+    for (DrawEntry e : one) {
+      e.camera = camera;
+      all.push_back(e);
+    }
+  about.skipped *= params.cameraCount;
+  return all;
+}
+
+void forEachTriangle(const TwinInput& in, const std::function<void(const DrawEntry&, uint32_t, uint32_t)>& visit) {
+  TwinEntries about;
+  const std::vector<DrawEntry> entries = entriesOf(in, about);
+  uint64_t first = 0;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    // Commands beyond the draw table keep their numbers.
+    if (about.given && i % about.given == 0) first = i / about.given * about.items;
+    const uint32_t triangles = entries[i].indexCount / 3;
+    for (uint32_t local = 0; local < triangles && first + local < in.params.maxItems; ++local)
+      visit(entries[i], local, static_cast<uint32_t>(first + local));
+    first += triangles;
+  }
 }
 
 TwinTriangle placeTriangle(const TwinInput& in, const Draw& draw, uint32_t localTriangle) {
-  TwinTriangle result;
   const Mesh& mesh = in.meshes[draw.mesh];
+  const auto record = static_cast<uint32_t>(&draw - in.draws.data());
+  return placeTriangle(in, DrawEntry{record, 0, mesh.firstIndex, mesh.indexCount, mesh.vertexOffset}, localTriangle);
+}
+
+TwinTriangle placeTriangle(const TwinInput& in, const DrawEntry& entry, uint32_t localTriangle) {
+  TwinTriangle result;
+  const Draw& draw = in.draws[entry.draw];
   vec4 clip[3];
+  mat4 viewProjection;
+  for (int i = 0; i < 16; ++i) viewProjection[i / 4][i % 4] = in.params.viewProjection[entry.camera * 16 + uint(i)];
   for (uint32_t i = 0; i < 3; ++i) {
     vec3 position;
-    if (!fetchVertex(in, mesh, mesh.firstIndex + localTriangle * 3 + i, position)) {
+    if (!hasIndices(entry, localTriangle) ||
+        !fetchVertex(in, entry, entry.firstIndex + localTriangle * 3 + i, position)) {
       result.fate = kSkipped;
       return result;
     }
-    clip[i] = transformToClip(draw, in.params, position);
+    result.world[i] = transformToWorld(draw, position);
+    clip[i] = transformToClip(viewProjection, result.world[i]);
   }
-  const Grid grid = gridOf(in.params);
-  const bool mirrored = mirrors(draw), twoSided = (draw.flags & kTwoSided) != 0;
+  const Grid grid = gridOf(in.params, entry.camera);
+  const bool mirrored = turnsFaces(draw), twoSided = (draw.flags & kTwoSided) != 0;
   ScreenTriangle triangle;
   result.fate = classify(clip[0], clip[1], clip[2], grid, mirrored, twoSided, triangle);
-  if (result.fate == kWhole) result.pieces.push_back(triangle);
+  const bool perspective = isPerspective(viewProjection);
+  if (result.fate == kWhole) {
+    result.pieces.push_back(triangle);
+    result.depths.push_back(wholeDepths(clip[0], clip[1], clip[2], triangle, grid, perspective));
+  }
   if (result.fate != kClipped) return result;
   ScreenPolygon polygon;
   result.fate = clipTriangle(clip[0], clip[1], clip[2], grid, mirrored, twoSided, polygon);
   if (result.fate == kClipped)
     for (int k = 0; k + 2 < polygon.count; ++k)
-      if (fanPiece(polygon, k, grid, triangle)) result.pieces.push_back(triangle);
+      if (fanPiece(polygon, k, grid, triangle)) {
+        result.pieces.push_back(triangle);
+        result.depths.push_back(pieceDepths(polygon, k, triangle, perspective));
+      }
   return result;
 }
 
-/// From bits to list and counts.
+/// The lists by draw, and triangles' sizes.
+void listDraws(const TwinInput& in, TwinResult& out) {
+  TwinEntries about;
+  const std::vector<DrawEntry> entries = entriesOf(in, about);
+  const auto isSeen = [&](uint32_t id) {
+    return id < in.params.triangleCount && (out.bits[id / 32] >> (id % 32) & 1) != 0;
+  };
+  for (uint32_t i = 0; i < about.given; ++i) {
+    const DrawEntry& e = entries[i];
+    const auto first = static_cast<uint32_t>(out.drawTriangles.size());
+    for (uint32_t local = 0; local < e.indexCount / 3; ++local) {
+      const uint64_t id = uint64_t(in.draws[e.draw].firstTriangle) + local;
+      if (id >= in.params.triangleCount || !isSeen(static_cast<uint32_t>(id)) || !hasIndices(e, local)) continue;
+      uint32_t vertex = 0, corner[3];
+      bool valid = true;
+      for (uint32_t k = 0; k < 3; ++k) {
+        const uint32_t index = e.firstIndex + local * 3 + k;
+        valid = valid && fetchPlace(in, e, index, vertex);
+        if (!valid) break;
+        corner[k] = in.indices[in.params.shortIndices ? index / 2 : index];
+        if (in.params.shortIndices) corner[k] = index % 2 ? corner[k] >> 16 : corner[k] & 0xffffu;
+      }
+      if (!valid) continue;
+      out.drawTriangles.push_back(static_cast<uint32_t>(id));
+      out.drawIndices.insert(out.drawIndices.end(), corner, corner + 3);
+    }
+    const uint32_t count = static_cast<uint32_t>(out.drawTriangles.size()) - first;
+    for (const uint32_t word : {count * 3, count ? 1u : 0u, first * 3, e.vertexOffset, e.draw})
+      out.drawCommands.push_back(word);
+  }
+  out.counters.draws = static_cast<uint32_t>(std::min<uint64_t>(about.draws, UINT32_MAX));
+  out.counters.drawsGiven = about.given;
+  out.counters.drawTriangles = static_cast<uint32_t>(out.drawTriangles.size());
+  out.extents.assign(size_t(in.params.triangleCount) * 3, 0);
+  forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
+    const uint32_t id = in.draws[e.draw].firstTriangle + local;
+    if (id < local || !isSeen(id)) return;
+    Extent extent = noExtent();
+    for (const ScreenTriangle& t : placeTriangle(in, e, local).pieces) extent = withPiece(extent, t);
+    const uvec3 bits = extentBits(extent);
+    for (int k = 0; k < 3; ++k)
+      out.extents[size_t(id) * 3 + size_t(k)] = std::max(out.extents[size_t(id) * 3 + size_t(k)], bits[k]);
+  });
+}
+
+void gather(const TwinInput& in, TwinResult& out) {
+  out.sizes.assign(in.params.triangleCount, 0);
+  for (const uint32_t id : out.ids) {
+    if (id == kNoTriangle) continue;
+    ++out.counters.coveredPixels;
+    ++out.sizes[id];
+    out.bits[id / 32] |= 1u << (id % 32);
+  }
+}
+
 void finish(const TwinInput& in, TwinResult& out) {
   const Params& params = in.params;
   Counters& counters = out.counters;
   for (size_t word = 0; word < out.bits.size(); ++word)
     for (uint32_t rest = out.bits[word]; rest; rest &= rest - 1)
       out.list.push_back(static_cast<uint32_t>(word * 32) + static_cast<uint32_t>(std::countr_zero(rest)));
+  listDraws(in, out);
   counters.visible = static_cast<uint32_t>(out.list.size());
   counters.hasList = params.hasList;
   counters.listed = std::min(counters.visible, params.listCapacity);
@@ -96,38 +237,31 @@ TwinResult sampleOnCpu(const TwinInput& in) {
   const Params& params = in.params;
   TwinResult out;
   const ivec2 samples = samplesOf(gridOf(params));
-  const size_t pixels = static_cast<size_t>(samples.x) * static_cast<size_t>(samples.y);
+  const size_t pixels = static_cast<size_t>(samples.x) * static_cast<size_t>(samples.y) * params.cameraCount;
   out.depth.assign(pixels, kFarthest);
   out.ids.assign(pixels, kNoTriangle);
   out.bits.assign((size_t(params.triangleCount) + 31) / 32, 0);
   Counters& counters = out.counters;
 
-  uint64_t items = 0;
-  for (const Draw& d : in.draws) {
-    if (d.mesh >= params.meshCount) {
-      ++counters.skippedDraws;
-      continue;
+  forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t item) {
+    const uint32_t first = in.draws[e.draw].firstTriangle;
+    if (first >= params.triangleCount || local >= params.triangleCount - first) {
+      ++counters.skippedTriangles;
+      return;
     }
-    const uint32_t triangles = in.meshes[d.mesh].indexCount / 3;
-    for (uint32_t local = 0; local < triangles && items + local < params.maxItems; ++local) {
-      if (d.firstTriangle >= params.triangleCount || local >= params.triangleCount - d.firstTriangle) {
-        ++counters.skippedTriangles;
-        continue;
-      }
-      const TwinTriangle placed = placeTriangle(in, d, local);
-      counters.skippedTriangles += placed.fate == kSkipped;
-      counters.triangles += placed.fate == kWhole || placed.fate == kClipped;
-      for (const ScreenTriangle& piece : placed.pieces) draw(out, params, piece, d.firstTriangle + local);
-    }
-    items += triangles;
-  }
-  counters.items = static_cast<uint32_t>(std::min<uint64_t>(items, UINT32_MAX));
+    const TwinTriangle placed = placeTriangle(in, e, local);
+    counters.skippedTriangles += placed.fate == kSkipped;
+    counters.triangles += placed.fate == kWhole || placed.fate == kClipped;
+    for (const ScreenTriangle& piece : placed.pieces)
+      draw(out, params, piece, params.method == kConservative ? item : first + local);
+  });
+  TwinEntries about;
+  entriesOf(in, about);
+  counters.skippedDraws = static_cast<uint32_t>(std::min<uint64_t>(about.skipped, UINT32_MAX));
+  counters.items = static_cast<uint32_t>(std::min<uint64_t>(about.items * params.cameraCount, UINT32_MAX));
+  if (params.method == kConservative) return out;
 
-  for (const uint32_t id : out.ids) {
-    if (id == kNoTriangle) continue;
-    ++counters.coveredPixels;
-    out.bits[id / 32] |= 1u << (id % 32);
-  }
+  gather(in, out);
   finish(in, out);
   return out;
 }

@@ -5,6 +5,7 @@
 #include "visibility/layout.h"
 #include "visibility/triangle.h"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,13 +18,20 @@ struct TwinInput {
   std::span<const uint32_t> indices;   ///< 16-bit indices: two a word
   std::span<const shader::Draw> draws;
   std::span<const shader::Mesh> meshes;
+  std::span<const uint32_t> commands;     ///< params.commandWords each
+  uint32_t drawCount = UINT32_MAX;        ///< what the buffer of the draw or command count holds
   std::span<const uint32_t> previousBits; ///< the view's, empty at its first record
 };
 
 struct TwinResult {
   std::vector<uint32_t> depth, ids; ///< a word a pixel, rows from the top
   std::vector<uint32_t> bits;
-  std::vector<uint32_t> list; ///< every visible triangle, ascending; no budget
+  std::vector<uint32_t> list;          ///< every visible triangle, ascending; no budget
+  std::vector<uint32_t> sizes;         ///< samples per triangle
+  std::vector<uint32_t> drawCommands;  ///< 5 words a draw; no budget
+  std::vector<uint32_t> drawIndices;   ///< of each draw's triangles, ascending
+  std::vector<uint32_t> drawTriangles; ///< their numbers
+  std::vector<uint32_t> extents;       ///< GpgpTriangleSize per triangle, as bits
   shader::Counters counters{};
 };
 
@@ -31,11 +39,26 @@ struct TwinResult {
 struct TwinTriangle {
   uint32_t fate = shader::kOutside;
   std::vector<shader::ScreenTriangle> pieces;
+  glm::vec3 world[3] = {};
+  std::vector<glm::vec3> depths; ///< of each piece's corners, as conservative sampling interpolates them
 };
+TwinTriangle placeTriangle(const TwinInput& input, const shader::DrawEntry& entry, uint32_t localTriangle);
+/// Of one of the input's draws, for the first camera.
 TwinTriangle placeTriangle(const TwinInput& input, const shader::Draw& draw, uint32_t localTriangle);
 
+/// Of one camera, but for `skipped`.
+struct TwinEntries {
+  uint64_t draws = 0, items = 0, skipped = 0;
+  uint32_t given = 0;
+};
+/// The draw table: the draws of all cameras.
+std::vector<shader::DrawEntry> entriesOf(const TwinInput& input, TwinEntries& about);
+/// All work items up to the budget: entry, triangle of it, item.
+void forEachTriangle(const TwinInput& input,
+                     const std::function<void(const shader::DrawEntry&, uint32_t, uint32_t)>& visit);
+
 /// Which samples a record draws.
-shader::Grid gridOf(const shader::Params& params);
+shader::Grid gridOf(const shader::Params& params, uint32_t camera = 0);
 
 /// Methods standard and truth: the samples of params' grid.
 TwinResult sampleOnCpu(const TwinInput& input);
@@ -43,10 +66,15 @@ TwinResult sampleOnCpu(const TwinInput& input);
 /// Method exact. depth: at the pixels' centres; ids: empty. counters.candidates and .pairs have no budget.
 TwinResult sampleExactOnCpu(const TwinInput& input);
 
+/// Method conservative, with params.heuristics and epsilons, and at most `refinements` further passes.
+TwinResult sampleConservativelyOnCpu(const TwinInput& input, uint32_t refinements = 0);
+
 /// The union of all slices of method truth with samples x samples a pixel and the centre; sizes: samples per triangle.
 TwinResult truthOnCpu(TwinInput input, uint32_t samples, std::vector<uint32_t>& sizes);
 
-/// What follows the bits: list and counts.
+/// From ids to bits and samples per triangle.
+void gather(const TwinInput& input, TwinResult& result);
+/// What follows the bits: lists, sizes and counts.
 void finish(const TwinInput& input, TwinResult& result);
 
 } // namespace gpgp::visibility

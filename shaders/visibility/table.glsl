@@ -1,0 +1,17 @@
+// The draw table: words in regions of params.maxEntries each (layout.h). Needs `params`, and TABLE_ACCESS.
+layout(std430, set = 0, binding = kBindTable) TABLE_ACCESS buffer TableBuffer { uint table[]; };
+
+/// First item and first chunk of an entry.
+uvec2 startOf(uint entry) { return uvec2(table[entry * 2u], table[entry * 2u + 1u]); }
+uint chunkStart(uint entry) { return table[entry * 2u + 1u]; }
+
+DrawEntry entryOf(uint entry) {
+  uint at = params.maxEntries * kTableEntries + entry * kEntryWords;
+  DrawEntry e;
+  e.draw = table[at];
+  e.camera = table[at + 1u];
+  e.firstIndex = table[at + 2u];
+  e.indexCount = table[at + 3u];
+  e.vertexOffset = table[at + 4u];
+  return e;
+}
