@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"A = Collider(wall) T;", "3:5: warning: Collider(wall) has no effect: there is no IfCollides(wall)"},
         Case{"A = IfCollides(3) { T | T };", "3:5: warning: IfCollides(3) has no effect: there is no Collider(3)"},
         Case{"A = IfCollides(wall) { T | Scale(1,1,1) Collider(wall) A };",
-             "3:5: error: IfCollides(wall) waits for all of Collider(wall) in line 3, column 41, which comes after it"},
+             "3:5: error: IfCollides(wall) waits for all of Collider(wall) in line 3, which comes after it"},
         Case{"A = A;", "3:1: error: rule 'A' leads back to itself without any operator"},
         Case{"A = T; A = T;", "3:8: error: 'A' is defined twice; the first time in line 3"},
         Case{"A = T; Scale = T;", "3:8: error: 'Scale' is the name of an operator; expected another name"},

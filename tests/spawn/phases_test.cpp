@@ -159,9 +159,9 @@ TEST(Phases, CollidersThatWaitForEachOtherAreAnErrorWithBothPlaces) {
   };
   // Of two tags that wait for each other, each names the other's place.
   EXPECT_EQ(messages("A = Replicate() { IfCollides(a) { T | Collider(b) U } | IfCollides(b) { T | Collider(a) U } };"),
-            (std::vector<std::string>{"2:19: error: IfCollides(a) waits for all of Collider(a) in line 2, column 77, "
+            (std::vector<std::string>{"2:19: error: IfCollides(a) waits for all of Collider(a) in line 2, "
                                       "which comes after it",
-                                      "2:57: error: IfCollides(b) waits for all of Collider(b) in line 2, column 39, "
+                                      "2:57: error: IfCollides(b) waits for all of Collider(b) in line 2, "
                                       "which comes after it"}));
   // Eight phases do, nine do not.
   const auto chain = [&](int phases) {
