@@ -458,6 +458,7 @@ public:
   Value random(const Value& low, const Value& high) noexcept {
     return own(gpgpAddExpression(get(), GPGP_EXPRESSION_RANDOM, low.get(), high.get()));
   }
+  Value tag(const char* name) const noexcept { return own(gpgpAddTag(get(), name)); }
   Value shapePos(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_POS_X, axis)); }
   Value shapeSize(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_SIZE_X, axis)); }
   Value shapeNormal(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_NORMAL_X, axis)); }

@@ -52,7 +52,8 @@ enum {
   GPGP_VALUE_SHAPE_ROTATION_XX = 19 /**< ShapeRotation(X, X); + 3 * axis + component */
 };
 
-/** A number, or what an id stands for: one of the above, or what gpgpAddVariable or gpgpAddExpression returned. */
+/** A number, or what an id stands for: one of the above, or what gpgpAddVariable, gpgpAddTag or
+ *  gpgpAddExpression returned. */
 typedef struct GpgpGrammarValue {
   GpgpGrammarValueId id;
   float number; /**< of GPGP_VALUE_NUMBER */
@@ -67,6 +68,10 @@ typedef struct GpgpGrammarValue {
  *  must not depend on the shape. In libgpgp_compiler. @threads handle @lifetime call */
 GPGP_API GpgpGrammarValue GPGP_CALL gpgpAddVariable(GpgpGrammarBuilder builder, const char* name,
                                                     GpgpGrammarValue value);
+
+/** Returns what stands for a tag of Collider and IfCollides by that name. In libgpgp_compiler.
+ *  @threads handle @lifetime call */
+GPGP_API GpgpGrammarValue GPGP_CALL gpgpAddTag(GpgpGrammarBuilder builder, const char* name);
 
 typedef uint32_t GpgpExpressionKind;
 enum {
@@ -109,7 +114,7 @@ enum {
   GPGP_OPERATOR_REPLICATE = 11,                     /**< none; any number */
   GPGP_OPERATOR_DISCARD = 12,                       /**< none; none */
   GPGP_OPERATOR_GENERATE = 13,                      /**< none; none */
-  GPGP_OPERATOR_COLLIDER = 14,                      /**< tag, a whole number; one */
+  GPGP_OPERATOR_COLLIDER = 14,                      /**< tag, or a whole number; one */
   GPGP_OPERATOR_IF_COLLIDES = 15,                   /**< tag; two */
   GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON = 16, /**< corners; one */
   GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_POLYGON = 17,

@@ -73,7 +73,8 @@ private:
       if (e.name == "ADJUST_TO_FILL") return {GPGP_VALUE_ADJUST_TO_FILL, 0};
       if (e.name == "ANCHOR_TO_START") return {GPGP_VALUE_ANCHOR_TO_START, 0};
       if (e.name == "ANCHOR_TO_END") return {GPGP_VALUE_ANCHOR_TO_END, 0};
-      return {GPGP_VALUE_X + axis(e), 0};
+      if (e.name == "X" || e.name == "Y" || e.name == "Z") return {GPGP_VALUE_X + axis(e), 0};
+      return gpgpAddTag(builder_, e.name.c_str());
     }
     if (e.kind == ExpressionKind::binary) {
       using namespace shader;

@@ -54,10 +54,9 @@ struct GpgpGrammarBuilder_T {
     std::string name;
     GpgpGrammarValue value{};
   };
-  /// A variable by number, or two values.
+  /// A variable or tag by name, or two values.
   struct Value {
-    bool isVariable = false;
-    uint32_t variable = 0;
+    std::string name;
     GpgpExpressionKind kind = 0;
     GpgpGrammarValue left{}, right{};
     uint32_t size = 1; // values in it
@@ -249,7 +248,7 @@ private:
       return number(0, at);
     }
     const auto& own = builder_.values[index];
-    if (own.isVariable) return named(ExpressionKind::name, builder_.variables[own.variable].name.c_str(), at);
+    if (!own.name.empty()) return named(ExpressionKind::name, own.name.c_str(), at);
     Expression result;
     result.place = at;
     result.kind = ExpressionKind::binary;
@@ -378,9 +377,15 @@ GpgpGrammarValue GPGP_CALL gpgpAddVariable(GpgpGrammarBuilder builder, const cha
                         "gpgpAddVariable", quoted(name) + " has a meaning of its own; expected another name"))
       return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
     builder->variables.push_back({builder->statements++, name, value});
-    auto& own = builder->values.emplace_back();
-    own.isVariable = true;
-    own.variable = static_cast<uint32_t>(builder->variables.size() - 1);
+    builder->values.emplace_back().name = name;
+    return builder->own();
+  });
+}
+
+GpgpGrammarValue GPGP_CALL gpgpAddTag(GpgpGrammarBuilder builder, const char* name) {
+  return guarded(builder, GpgpGrammarValue{}, [&]() -> GpgpGrammarValue {
+    if (!builder->checkName(name, "gpgpAddTag")) return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
+    builder->values.emplace_back().name = name;
     return builder->own();
   });
 }
