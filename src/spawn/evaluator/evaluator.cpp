@@ -9,6 +9,13 @@ namespace gpgp::spawn {
 namespace {
 using namespace shader;
 
+/// A shape, and, where it waits for an operator that multiplies it, what that makes of it.
+struct Frame {
+  Shape shape;
+  Fan fan;
+  uint made; // of its children
+};
+
 /// All vertices of a terminal, quad after quad.
 void emitVertices(Derivation& out, const uint32_t* words, const Shape& shape, const GpgpInstance& instance,
                   const VertexLayout& layout) {
@@ -71,29 +78,35 @@ Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> 
   const uint32_t* words = grammar.data();
   Derivation out;
   out.buckets.assign(words[kHeaderBuckets], 0);
-  std::vector<Shape> stack;
+  std::vector<Frame> frames(64);
   for (size_t a = 0; a < axioms.size() && out.complete; ++a) {
     const GpgpAxiom& axiom = axioms[a];
     if (!hasRule(words, axiom.rule)) ++out.droppedShapes;
-    stack.push_back(axiomShape(words, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
-                               axiom.rule, axiom.attribute, static_cast<uint32_t>(a)));
-    while (!stack.empty()) {
-      Shape shape = stack.back();
-      stack.pop_back();
-      ++out.shapes;
-      const uint end = runChain(words, shape, false, options.maxDepth);
-      out.depth = std::max(out.depth, shape.depth);
-      if (end == kEndTerminal) emit(out, words, shape, axiom, options);
+    frames[0].shape = axiomShape(words, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
+                                 axiom.rule, axiom.attribute, static_cast<uint32_t>(a));
+    ++out.shapes;
+    for (size_t top = 0;;) {
+      Frame& frame = frames[top];
+      const uint end = runChain(words, frame.shape, false, options.maxDepth);
+      out.depth = std::max(out.depth, frame.shape.depth);
+      if (end == kEndTerminal) emit(out, words, frame.shape, axiom, options);
       if (end == kEndUnfinished) ++out.unfinishedShapes;
-      if (end != kEndWaits) continue;
-      const Fan fan = fanOf(words, shape);
-      if (out.shapes + stack.size() + fan.count > options.maxShapes) {
-        out.complete = false;
-        break;
+      if (end == kEndWaits) {
+        frame.fan = fanOf(words, frame.shape);
+        frame.made = 0;
+        out.shapes += frame.fan.count;
+        if (out.shapes > options.maxShapes) {
+          out.complete = false;
+          break;
+        }
+        if (++top == frames.size()) frames.resize(2 * top);
       }
-      for (uint32_t i = fan.count; i-- > 0;) stack.push_back(childOf(words, shape, fan, i));
+      while (top > 0 && frames[top - 1].made == frames[top - 1].fan.count) --top;
+      if (top == 0) break;
+      Frame& parent = frames[top - 1];
+      frames[top].shape = parent.shape;
+      toChild(words, frames[top].shape, parent.fan, parent.made++);
     }
-    stack.clear();
   }
   return out;
 }
