@@ -15,6 +15,8 @@
 #define GPGP_SHADERS_CORE_SHARED_H
 
 #ifdef __cplusplus
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <glm/common.hpp>
@@ -39,12 +41,10 @@ using uint = std::uint32_t;
 using glm::abs;
 using glm::all;
 using glm::any;
-using glm::bitCount;
 using glm::clamp;
 using glm::cross;
 using glm::dot;
 using glm::equal;
-using glm::findLSB;
 using glm::findMSB;
 using glm::floor;
 using glm::greaterThan;
@@ -77,6 +77,10 @@ inline float uintBitsToFloat(uint u) {
   std::memcpy(&v, &u, sizeof v);
   return v;
 }
+// What GLM does in many steps.
+inline float abs(float v) { return std::fabs(v); }
+inline int bitCount(uint v) { return std::popcount(v); }
+inline int findLSB(uint v) { return v ? std::countr_zero(v) : -1; }
 } // namespace gpgp::shader
 
 #else // GLSL

@@ -36,7 +36,7 @@ struct Derivation {
 
 /// Derives axioms with a baked grammar's words, which load() has accepted.
 Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> axioms,
-                  const DeriveOptions& options = {});
+                  const DeriveOptions& options = {}, Derivation&& memory = {});
 
 /// An axiom at the origin.
 GpgpAxiom makeAxiom(float x, float y, float z, uint32_t seed = 0, uint32_t id = 0);
