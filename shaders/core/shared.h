@@ -10,6 +10,7 @@
 //   GPGP_PRECISE     before a float whose value decides control flow, a count, a key or a mask: no contraction,
 //                    no reassociation. Only + - * on such values; division and roots come from core/math.h.
 //   GPGP_CONST       before a constant at file scope
+//   lanes3, lanes4   vec3 and vec4 for sums and products of vectors; C++ then works on all components at once
 //   GPGP_SHADER_BEGIN / GPGP_SHADER_END around everything: namespace gpgp::shader in C++
 #ifndef GPGP_SHADERS_CORE_SHARED_H
 #define GPGP_SHADERS_CORE_SHARED_H
@@ -81,9 +82,29 @@ inline float uintBitsToFloat(uint u) {
 inline float abs(float v) { return std::fabs(v); }
 inline int bitCount(uint v) { return std::popcount(v); }
 inline int findLSB(uint v) { return v ? std::countr_zero(v) : -1; }
+
+/// What a register holds. Conversions are implicit, so that one text is right in both languages.
+struct Lanes {
+  typedef float Four __attribute__((vector_size(16)));
+  Four v;
+  Lanes(Four four) : v(four) {}
+  Lanes(float x, float y, float z, float w) : v{x, y, z, w} {}
+  Lanes(const vec3& a) : v{a.x, a.y, a.z, 0} {}
+  operator vec3() const { return {v[0], v[1], v[2]}; }
+  operator vec4() const { return {v[0], v[1], v[2], v[3]}; }
+  friend Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
+  friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
+  friend Lanes operator*(Lanes a, float b) { return a.v * b; }
+};
+using lanes3 = Lanes;
+using lanes4 = Lanes;
 } // namespace gpgp::shader
 
 #else // GLSL
+
+#define lanes3 vec3
+#define lanes4 vec4
+
 
 #define GPGP_SHADER_BEGIN
 #define GPGP_SHADER_END

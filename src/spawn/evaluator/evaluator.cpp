@@ -10,8 +10,8 @@ namespace {
 using namespace shader;
 
 /// All vertices of a terminal, quad after quad.
-[[gnu::noinline]] void emitVertices(Derivation& out, const uint32_t* words, const Shape& shape, const GpgpInstance& instance,
-                  const VertexLayout& layout) {
+[[gnu::noinline]] void emitVertices(Derivation& out, const uint32_t* words, const Shape& shape,
+                                    const GpgpInstance& instance, const VertexLayout& layout) {
   const float* t = instance.transform;
   const vec4 rows[3] = {{t[0], t[1], t[2], t[3]}, {t[4], t[5], t[6], t[7]}, {t[8], t[9], t[10], t[11]}};
   const uint32_t numbers[4] = {instance.bucket, instance.axiomId, instance.terminal, instance.seed};
@@ -36,37 +36,7 @@ using namespace shader;
   }
 }
 
-void emit(Derivation& out, const uint32_t* words, const Shape& shape, const GpgpAxiom& axiom,
-          const DeriveOptions& options) {
-  const uint32_t bucket = words[shape.node + kNodeArgument2];
-  const uint32_t type = shapeType(shape);
-  const uvec2 hash = terminalHash(shape.key, bucket, type);
-  out.keyHash[0] += hash.x;
-  out.keyHash[1] += hash.y;
-  ++out.terminals;
-  ++out.buckets[bucket];
-  if (!options.keepInstances) return;
-  GpgpInstance& instance = out.instances.emplace_back();
-  for (uint32_t r = 0; r < 3; ++r) {
-    const float* t = axiom.transform + 4 * r;
-    const vec4 row = instanceRow(shape, vec4(t[0], t[1], t[2], t[3]));
-    for (int c = 0; c < 4; ++c) instance.transform[4 * r + uint32_t(c)] = row[c];
-  }
-  instance.bucket = bucket;
-  instance.shape = type;
-  instance.axiomId = axiom.id;
-  instance.terminal = words[shape.node + kNodeArgument];
-  instance.seed = shape.seed;
-  instance.attribute = shape.custom;
-  instance.key[0] = shape.key.x;
-  instance.key[1] = shape.key.y;
-  instance.size[0] = shape.size.x;
-  instance.size[1] = shape.size.y;
-  instance.size[2] = shape.size.z;
-  if (options.vertices) emitVertices(out, words, shape, instance, *options.vertices);
-}
-
-/// A shape, and, where it waits for an operator that multiplies it, what that makes of it.
+/// A shape before the operator that step says; where that multiplies it, what it makes of it.
 struct Frame {
   Shape shape;
   const Step* step;
@@ -75,32 +45,53 @@ struct Frame {
   uint32_t left; // successors that still get one
 };
 
+/// f(axis), with an axis that the compiler knows.
+template <class F> void forAxis(uint32_t axis, F f) {
+  if (axis == 0) return f(0);
+  if (axis == 1) return f(1);
+  f(2);
+}
+
+/// Depth first with a stack of shapes whose children are made one at a time, each when the one before it is done.
 class Evaluator {
 public:
   Evaluator(const uint32_t* words, const DeriveOptions& options, Derivation& out)
-      : words_(words), options_(options), out_(out), program_(decode(words)), frames_(64) {}
+      : words_(words), options_(options), maxDepth_(options.maxDepth), out_(out), program_(decode(words)), frames_(64) {
+  }
 
+  // Everything becomes one function: what it calls is small, and called for each shape.
   [[gnu::flatten]] void run(const GpgpAxiom& axiom, uint32_t index) {
     if (!hasRule(words_, axiom.rule)) ++out_.droppedShapes;
-    frames_[0].shape = axiomShape(words_, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
-                                  axiom.rule, axiom.attribute, index);
-    for (size_t top = 0;;) {
-      Frame& frame = frames_[top];
-      if (++out_.shapes > options_.maxShapes) {
+    Frame *first = frames_.data(), *end = first + frames_.size(), *frame = first;
+    frame->shape = axiomShape(words_, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id,
+                              axiom.rule, axiom.attribute, index);
+    frame->step = program_.at(frame->shape.node);
+    const uint64_t maxShapes = options_.maxShapes;
+    uint64_t shapes = out_.shapes;
+    uint32_t depth = out_.depth;
+    for (;;) {
+      if (++shapes > maxShapes) {
         out_.complete = false;
-        return;
+        break;
       }
-      const uint32_t end = runChain(frame);
-      out_.depth = std::max(out_.depth, frame.shape.depth);
-      if (end == kEndTerminal) emit(out_, words_, frame.shape, axiom, options_);
-      if (end == kEndUnfinished) ++out_.unfinishedShapes;
-      if (end == kEndWaits && ++top == frames_.size()) frames_.resize(2 * top);
-      while (top > 0 && frames_[top - 1].made == frames_[top - 1].fan.count) --top;
-      if (top == 0) return;
-      Frame& parent = frames_[top - 1];
-      frames_[top].shape = parent.shape;
-      toChild(*parent.step, parent, frames_[top].shape);
+      const uint32_t result = runChain(*frame);
+      depth = std::max(depth, frame->shape.depth);
+      if (result == kEndTerminal) emit(*frame, axiom);
+      if (result == kEndUnfinished) ++out_.unfinishedShapes;
+      if (result == kEndWaits && ++frame == end) {
+        const size_t top = frames_.size();
+        frames_.resize(2 * top);
+        first = frames_.data();
+        frame = first + top;
+        end = frame + top;
+      }
+      while (frame != first && frame[-1].made == frame[-1].fan.count) --frame;
+      if (frame == first) break;
+      frame->shape = frame[-1].shape;
+      frame->step = toChild(frame[-1], frame->shape);
     }
+    out_.shapes = shapes;
+    out_.depth = depth;
   }
 
 private:
@@ -113,14 +104,18 @@ private:
     if (!step.variable) return step.values;
     return {value(step, s, 0), value(step, s, 1), value(step, s, 2)};
   }
+  static const Step* follow(Shape& s, const Way& way) {
+    s.depth += way.recursive;
+    return way.target;
+  }
 
   /// Takes a shape from operator to operator while each passes on one shape, as runChain() of interpret.h.
   uint32_t runChain(Frame& frame) const {
     Shape& s = frame.shape;
     for (uint32_t i = 0; i < kMaxChain; ++i) {
-      const Step& step = program_.steps[s.node / kNodeSize];
-      if (s.depth > options_.maxDepth) return kEndUnfinished;
-      uint32_t edge = 0;
+      const Step& step = *frame.step;
+      if (s.depth > maxDepth_) return kEndUnfinished;
+      uint32_t way = 0;
       switch (step.op) {
       case kDiscard: return kEndDiscarded;
       case kOpTerminal: return kEndTerminal;
@@ -132,86 +127,130 @@ private:
       case kOpExtrude: extrude(s, value(step, s, 0)); break;
       case kOpSwapSize: swapSizes(s, step.argument); break;
       case kOpSetGeometry: setGeometry(s, step.argument, step.argument2); break;
-      case kOpIf: edge = value(step, s, 0) != 0 ? 0 : 1; break;
-      case kOpIfSizeLess: edge = component(s.size, step.argument) < value(step, s, 0) ? 0 : 1; break;
-      case kOpRandomRule: edge = chooseEdge(words_, s, kOpRandomRule); break;
+      case kOpIf: way = value(step, s, 0) != 0 ? 0 : 1; break;
+      case kOpIfSizeLess: way = component(s.size, step.argument) < value(step, s, 0) ? 0 : 1; break;
+      case kOpRandomRule:
+        s.node = step.node;
+        way = chooseEdge(words_, s, kOpRandomRule);
+        break;
       case kChoose: {
         const float chance = value(step, s, 0), x = multiply(subtract(chance, floor(chance)), step.total);
-        const Chance* const chances = program_.chances.data() + step.firstChance;
-        uint32_t chosen = 0;
-        for (uint32_t c = 1; c < step.chanceCount; ++c)
-          if (chances[c].from <= x) chosen = c;
-        follow(s, chances[chosen].target);
-        continue;
+        for (uint32_t w = 1; w < step.wayCount; ++w)
+          if (step.ways[w].from <= x) way = w;
+        break;
       }
-      default: {
-        frame.step = &step;
-        frame.fan = fanOf(step, s);
-        frame.made = 0;
-        frame.left = frame.fan.successors;
+      default:
+        wait(frame);
         if (!step.filter) return kEndWaits;
         if (frame.fan.count == 0) return kEndDiscarded;
-        toChild(step, frame, s);
+        frame.step = toChild(frame, s);
         continue;
       }
-      }
-      follow(s, step.target(edge));
+      frame.step = follow(s, step.ways[way]);
     }
-    frame.step = &program_.steps[0];
-    frame.fan.count = 1;
-    frame.made = 0;
+    wait(frame);
     return kEndWaits;
   }
+  void wait(Frame& frame) const {
+    frame.fan = fanOf(*frame.step, frame.shape);
+    frame.made = 0;
+    frame.left = frame.fan.successors;
+  }
 
-  Fan fanOf(const Step& step, const Shape& s) const {
-    if (step.op == kOpRepeat) {
-      Fan fan = repetitionOf(component(s.size, step.argument), step.argument2, value(step, s, 0));
+  Fan fanOf(const Step& step, Shape& s) const {
+    Fan fan{1, step.successors, 0};
+    switch (step.op) {
+    case kDivide:
+      fan.extent = remainderOf(component(s.size, step.argument), step.total);
+      if (fan.extent > 0) fan.successors |= step.weighted;
+      break;
+    case kOpSubDiv: s.node = step.node; return divisionOf(words_, s, 0).fan;
+    case kOpRepeat:
+      fan = repetitionOf(component(s.size, step.argument), step.argument2, value(step, s, 0));
       if (!step.successors) fan.count = 0;
       return fan;
-    }
-    if (step.op == kOpSubDiv && step.argument2 == 0) return divisionOf(words_, s, 0).fan;
-    Fan fan{0, step.successors, 0};
-    if (step.op == kOpSubDiv) {
-      fan.extent = remainderOf(component(s.size, step.argument), graphFloat(words_, step.argument2));
-      if (!(fan.extent > 0)) fan.successors = words_[step.argument2 + kDivisionFixedParts];
-    } else if (step.op == kOpCompSplit) {
+    case kOpCompSplit: {
       const Faces faces = facesOf(words_, s.geometry, step.successors);
       return {faces.count, faces.successors, 0};
+    }
+    case kOpReplicate: break;
+    default: return fan; // the shape itself, after kMaxChain operators
     }
     fan.count = uint(bitCount(fan.successors));
     return fan;
   }
 
-  /// The next child of a frame's shape.
-  void toChild(const Step& step, Frame& frame, Shape& s) const {
+  /// The next child of a frame's shape, of which s is a copy. Returns where it goes.
+  const Step* toChild(Frame& frame, Shape& s) const {
+    const Step& step = *frame.step;
     const uint32_t index = frame.made++;
-    uint32_t successor = uint(findLSB(frame.left));
-    frame.left &= frame.left - 1;
+    uint32_t way = 0;
+    const auto nextSuccessor = [&] {
+      way = uint(findLSB(frame.left));
+      frame.left &= frame.left - 1;
+    };
     switch (step.op) {
+    case kDivide:
+      nextSuccessor();
+      forAxis(step.argument, [&](uint32_t axis) { toPart(s, axis, frame.fan.extent, step.ways[way].part, way); });
+      break;
     case kOpSubDiv:
-      toPart(s, step.argument, frame.fan.extent,
-             step.argument2 ? partAt(words_, step.argument2 + kDivisionParts + successor * kPartSize)
-                            : divisionOf(words_, s, successor).part,
-             successor);
+      nextSuccessor();
+      toPart(s, step.argument, frame.fan.extent, divisionOf(words_, s, way).part, way);
       break;
     case kOpRepeat:
-      toRepeat(s, step.argument, step.argument2, frame.fan.successors, frame.fan.extent, index);
-      successor = 0;
+      forAxis(step.argument,
+              [&](uint32_t axis) { toRepeat(s, axis, step.argument2, frame.fan.successors, frame.fan.extent, index); });
       break;
     case kOpCompSplit: {
       const uint32_t number = faceNumber(frame.fan.successors, index);
       toFace(words_, s, number);
-      successor = min(number, 2u);
+      way = min(number, 2u);
       break;
     }
-    case kOpReplicate: toCopy(s, successor); break;
-    default: return; // the shape itself, after kMaxChain operators
+    case kOpReplicate:
+      nextSuccessor();
+      toCopy(s, way);
+      break;
+    default: return &step;
     }
-    follow(s, step.target(successor));
+    return follow(s, step.ways[way]);
+  }
+
+  void emit(const Frame& frame, const GpgpAxiom& axiom) {
+    const Shape& shape = frame.shape;
+    const uint32_t bucket = frame.step->argument2, type = shapeType(shape);
+    const uvec2 hash = terminalHash(shape.key, bucket, type);
+    out_.keyHash[0] += hash.x;
+    out_.keyHash[1] += hash.y;
+    ++out_.buckets[bucket];
+    const size_t number = out_.terminals++;
+    if (!options_.keepInstances) return;
+    if (number == out_.instances.size()) out_.instances.resize(std::max<size_t>(64, 2 * number));
+    GpgpInstance& instance = out_.instances[number];
+    for (uint32_t r = 0; r < 3; ++r) {
+      const float* t = axiom.transform + 4 * r;
+      const vec4 row = instanceRow(shape, vec4(t[0], t[1], t[2], t[3]));
+      for (int c = 0; c < 4; ++c) instance.transform[4 * r + uint32_t(c)] = row[c];
+    }
+    instance.bucket = bucket;
+    instance.shape = type;
+    instance.axiomId = axiom.id;
+    instance.terminal = frame.step->argument;
+    instance.seed = shape.seed;
+    instance.attribute = shape.custom;
+    instance.key[0] = shape.key.x;
+    instance.key[1] = shape.key.y;
+    instance.size[0] = shape.size.x;
+    instance.size[1] = shape.size.y;
+    instance.size[2] = shape.size.z;
+    instance.reserved = 0;
+    if (options_.vertices) emitVertices(out_, words_, shape, instance, *options_.vertices);
   }
 
   const uint32_t* const words_;
   const DeriveOptions& options_;
+  const uint32_t maxDepth_;
   Derivation& out_;
   const Program program_;
   std::vector<Frame> frames_;
@@ -222,10 +261,10 @@ Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> 
                   Derivation&& memory) {
   Derivation out;
   out.instances = std::move(memory.instances);
-  out.instances.clear();
   out.buckets.assign(grammar[kHeaderBuckets], 0);
   Evaluator evaluator(grammar.data(), options, out);
   for (size_t a = 0; a < axioms.size() && out.complete; ++a) evaluator.run(axioms[a], static_cast<uint32_t>(a));
+  out.instances.resize(options.keepInstances ? out.terminals : 0);
   return out;
 }
 

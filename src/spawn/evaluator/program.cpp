@@ -6,7 +6,7 @@ using namespace shader;
 
 bool isConstant(const uint32_t* words, uint32_t parameter) { return words[parameter] == kParameterConstant; }
 
-/// Translations along one axis and rotations by constants.
+/// Rotations by constants and translations along one axis.
 void simplify(Step& step) {
   if (step.op == kOpRotate && !step.variable) {
     step.op = kRotateBy;
@@ -18,39 +18,59 @@ void simplify(Step& step) {
     if (component(step.values, i) != 0) used |= 1u << i;
   if (used & (used - 1)) return;
   step.op = kTranslateAlong;
-  step.argument = used == 4 ? 2 : used / 2;
+  step.argument = used / 2;
 }
 
-/// RandomRule whose probabilities are constant.
-void addChances(Program& program, Step& step, const uint32_t* words, uint32_t count) {
-  for (uint32_t i = 0; i < count; ++i)
-    if (!isConstant(words, step.parameters + (i + 1) * kParameterSize)) return;
+/// RandomRule with constant probabilities: of its ways those that can be taken.
+void simplifyChoice(Program& program, Step& step, const uint32_t* words) {
+  const auto probability = [&](uint32_t way) { return step.parameters + (way + 1) * kParameterSize; };
+  for (uint32_t i = 0; i < step.wayCount; ++i)
+    if (!isConstant(words, probability(i))) return;
   step.op = kChoose;
-  step.firstChance = static_cast<uint32_t>(program.chances.size());
-  for (uint32_t i = 0; i < count; ++i) {
-    const float p = max(0.0f, graphFloat(words, step.parameters + (i + 1) * kParameterSize + 1));
-    if (p > 0 || i == 0) program.chances.push_back({i == 0 ? 0 : step.total, step.target(i)});
+  Way* const ways = program.ways.data() + program.ways.size() - step.wayCount;
+  uint32_t kept = 0;
+  for (uint32_t i = 0; i < step.wayCount; ++i) {
+    const float p = max(0.0f, graphFloat(words, probability(i) + 1));
+    ways[i].from = step.total;
+    if (p > 0 || i == 0) ways[kept++] = ways[i];
     step.total = add(step.total, p);
   }
-  step.chanceCount = static_cast<uint32_t>(program.chances.size()) - step.firstChance;
+  step.wayCount = kept;
+}
+
+/// SubDiv with constant parts.
+void simplifyDivision(Program& program, Step& step, const uint32_t* words) {
+  const uint32_t division = step.argument2;
+  step.op = kDivide;
+  step.total = graphFloat(words, division);
+  step.successors = words[division + kDivisionFixedParts];
+  step.weighted = words[division + kDivisionWeightedParts];
+  Way* const ways = program.ways.data() + program.ways.size() - step.wayCount;
+  for (uint32_t i = 0; i < step.wayCount; ++i) ways[i].part = partAt(words, division + kDivisionParts + i * kPartSize);
 }
 } // namespace
 
 Program decode(const uint32_t* words) {
   Program program;
   const uint32_t nodes = words[kHeaderSections + 2 * kSectionNodes];
-  program.steps.resize(kHeaderSize / kNodeSize + nodes);
+  program.steps.resize(1 + nodes);
+  program.ways.reserve(words[kHeaderSections + 2 * kSectionEdges]);
   for (uint32_t n = 0; n < nodes; ++n) {
-    Step& step = program.steps[kHeaderSize / kNodeSize + n];
-    const uint32_t* node = words + kHeaderSize + n * kNodeSize;
+    Step& step = program.steps[1 + n];
+    step.node = kHeaderSize + n * kNodeSize;
+    const uint32_t* node = words + step.node;
     step.op = node[kNodeOperator] & kOperatorMask;
     step.filter = node[kNodeOperator] & kNodeFilter;
     step.argument = node[kNodeArgument];
     step.argument2 = node[kNodeArgument2];
-    step.edges = words + node[kNodeEdges];
     step.parameters = node[kNodeParameters];
-    for (uint32_t e = 0; e < node[kNodeEdgeCount]; ++e)
-      if (step.target(e)) step.successors |= 1u << e;
+    step.wayCount = node[kNodeEdgeCount];
+    step.ways = program.ways.data() + program.ways.size();
+    for (uint32_t e = 0; e < step.wayCount; ++e) {
+      const uint32_t target = edgeTarget(words, step.node, e);
+      program.ways.push_back({program.at(target & ~kEdgeRecursive), target >> 31, 0, {}});
+      if (target) step.successors |= 1u << e;
+    }
     for (uint32_t i = 0; i < min(node[kNodeParameterCount], 3u); ++i) {
       const uint32_t at = step.parameters + i * kParameterSize;
       if (isConstant(words, at))
@@ -59,7 +79,8 @@ Program decode(const uint32_t* words) {
         step.variable |= 1u << i;
     }
     simplify(step);
-    if (step.op == kOpRandomRule) addChances(program, step, words, node[kNodeEdgeCount]);
+    if (step.op == kOpRandomRule) simplifyChoice(program, step, words);
+    if (step.op == kOpSubDiv && step.argument2) simplifyDivision(program, step, words);
   }
   return program;
 }

@@ -7,33 +7,40 @@
 namespace gpgp::spawn {
 
 /// Beside the kOp values: what discards every shape, and cases whose constants save work.
-enum : uint32_t { kDiscard = shader::kOpCount, kTranslateAlong, kRotateBy, kChoose };
+enum : uint32_t { kDiscard = shader::kOpCount, kTranslateAlong, kRotateBy, kChoose, kDivide };
+
+struct Step;
+
+struct Way { ///< along an edge
+  const Step* target;
+  uint32_t recursive; ///< 1: counts as depth
+  float from;         ///< kChoose: it is taken from this value on, unless a later one is
+  shader::Part part;  ///< kDivide
+};
 
 struct Step {
   uint32_t op = kDiscard;
+  uint32_t node = 0;   ///< word offset
   bool filter = false; ///< kNodeFilter
   uint32_t argument = 0, argument2 = 0;
-  const uint32_t* edges = nullptr; ///< in the words
-  uint32_t successors = 0;         ///< bits: edges that do not discard
-  uint32_t parameters = 0;         ///< word offset
-  uint32_t variable = 0;           ///< bits: of the first three parameters those that are not constant
-  shader::vec3 values{0};          ///< of the others
-  shader::Rotation rotation{};     ///< kRotateBy
-  uint32_t firstChance = 0, chanceCount = 0; ///< kChoose: in Program::chances
-  float total = 0;                 ///< of all chances
-
-  uint32_t target(uint32_t edge) const { return edges[edge * shader::kEdgeSize + shader::kEdgeTarget]; }
-};
-
-/// An edge of RandomRule, taken from a value on; later ones go before.
-struct Chance {
-  float from;
-  uint32_t target;
+  const Way* ways = nullptr;
+  uint32_t wayCount = 0;
+  uint32_t successors = 0;     ///< bits: ways that do not discard; kDivide: without what needs a remainder
+  uint32_t weighted = 0;       ///< kDivide: those that do
+  uint32_t parameters = 0;     ///< word offset
+  uint32_t variable = 0;       ///< bits: of the first three parameters those that are not constant
+  shader::vec3 values{0};      ///< of the others
+  shader::Rotation rotation{}; ///< kRotateBy
+  float total = 0;             ///< kChoose: of all chances; kDivide: of fixed lengths
 };
 
 struct Program {
-  std::vector<Step> steps; ///< at their nodes' word offsets / kNodeSize
-  std::vector<Chance> chances;
+  std::vector<Step> steps; ///< the first one discards, then the nodes
+  std::vector<Way> ways;
+
+  const Step* at(uint32_t node) const {
+    return node ? &steps[1 + (node - shader::kHeaderSize) / shader::kNodeSize] : steps.data();
+  }
 };
 
 Program decode(const uint32_t* words);
