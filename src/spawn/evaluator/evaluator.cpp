@@ -97,9 +97,17 @@ public:
 private:
   /// One of the first three parameters.
   float value(const Step& step, const Shape& s, uint32_t i) const {
-    if (step.variable >> i & 1) return evaluate(words_, s, step.parameters + i * kParameterSize);
-    return component(step.values, i);
+    if (!(step.variable >> i & 1)) return component(step.values, i);
+    if (!step.terms[i]) return evaluateWords(s, step.parameters + i * kParameterSize);
+    const Term* term = &program_.terms[step.terms[i]];
+    float result = operand(*term, s);
+    while ((++term)->code != kCodeEnd) result = combine(term->code, result, operand(*term, s), unitFloat(s.seed));
+    return result;
   }
+  static float operand(const Term& term, const Shape& s) {
+    return term.operand == kCodeNumber ? term.number : attributeOf(s, term.operand);
+  }
+  [[gnu::noinline]] float evaluateWords(const Shape& s, uint32_t at) const { return evaluate(words_, s, at); }
   vec3 values(const Step& step, const Shape& s) const {
     if (!step.variable) return step.values;
     return {value(step, s, 0), value(step, s, 1), value(step, s, 2)};

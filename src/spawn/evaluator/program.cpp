@@ -6,6 +6,33 @@ using namespace shader;
 
 bool isConstant(const uint32_t* words, uint32_t parameter) { return words[parameter] == kParameterConstant; }
 
+/// Terms of the parameter at a word. Returns where they are, or 0 where they do not go from left to right.
+uint32_t addTerms(std::vector<Term>& terms, const uint32_t* words, uint32_t at) {
+  const size_t first = terms.size();
+  if (words[at] == kParameterAttribute) {
+    terms.push_back({kCodeEnd, words[at + 1], 0});
+  } else {
+    const uint32_t* code = words + words[at + 1];
+    const auto operand = [&] {
+      if (*code != kCodeNumber && *code < kCodeAttributes) return false;
+      terms.push_back({kCodeEnd, *code, *code == kCodeNumber ? uintBitsToFloat(code[1]) : 0});
+      code += *code == kCodeNumber ? 2 : 1;
+      return true;
+    };
+    bool plain = operand();
+    while (plain && *code != kCodeEnd) {
+      plain = operand() && *code != kCodeNumber && *code < kCodeAttributes && *code != kCodeEnd;
+      if (plain) terms.back().code = *code++;
+    }
+    if (!plain) {
+      terms.resize(first);
+      return 0;
+    }
+  }
+  terms.push_back({kCodeEnd, 0, 0});
+  return static_cast<uint32_t>(first);
+}
+
 /// Rotations by constants and translations along one axis.
 void simplify(Step& step) {
   if (step.op == kOpRotate && !step.variable) {
@@ -54,6 +81,7 @@ Program decode(const uint32_t* words) {
   Program program;
   const uint32_t nodes = words[kHeaderSections + 2 * kSectionNodes];
   program.steps.resize(1 + nodes);
+  program.terms.resize(1);
   program.ways.reserve(words[kHeaderSections + 2 * kSectionEdges]);
   for (uint32_t n = 0; n < nodes; ++n) {
     Step& step = program.steps[1 + n];
@@ -73,10 +101,12 @@ Program decode(const uint32_t* words) {
     }
     for (uint32_t i = 0; i < min(node[kNodeParameterCount], 3u); ++i) {
       const uint32_t at = step.parameters + i * kParameterSize;
-      if (isConstant(words, at))
+      if (isConstant(words, at)) {
         step.values = withComponent(step.values, i, graphFloat(words, at + 1));
-      else
+      } else {
         step.variable |= 1u << i;
+        step.terms[i] = addTerms(program.terms, words, at);
+      }
     }
     simplify(step);
     if (step.op == kOpRandomRule) simplifyChoice(program, step, words);

@@ -18,6 +18,13 @@ struct Way { ///< along an edge
   shader::Part part;  ///< kDivide
 };
 
+/// Of an expression that goes from left to right: a number or an attribute, and how it joins what stands before it.
+struct Term {
+  uint32_t code;    ///< kCodeAdd to kCodeRandom; kCodeEnd behind the last term
+  uint32_t operand; ///< kCodeNumber, or an attribute's code
+  float number;
+};
+
 struct Step {
   uint32_t op = kDiscard;
   uint32_t node = 0;   ///< word offset
@@ -29,6 +36,7 @@ struct Step {
   uint32_t weighted = 0;       ///< kDivide: those that do
   uint32_t parameters = 0;     ///< word offset
   uint32_t variable = 0;       ///< bits: of the first three parameters those that are not constant
+  uint32_t terms[3]{};         ///< of those: in Program::terms; 0: evaluate() does it
   shader::vec3 values{0};      ///< of the others
   shader::Rotation rotation{}; ///< kRotateBy
   float total = 0;             ///< kChoose: of all chances; kDivide: of fixed lengths
@@ -37,6 +45,7 @@ struct Step {
 struct Program {
   std::vector<Step> steps; ///< the first one discards, then the nodes
   std::vector<Way> ways;
+  std::vector<Term> terms;
 
   const Step* at(uint32_t node) const {
     return node ? &steps[1 + (node - shader::kHeaderSize) / shader::kNodeSize] : steps.data();
