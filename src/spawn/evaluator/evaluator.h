@@ -34,7 +34,8 @@ struct Derivation {
   bool complete = true; ///< false: maxShapes was reached
 };
 
-/// Derives axioms with a baked grammar's words, which load() has accepted.
+/// Derives axioms with a baked grammar's words, which load() has accepted. memory: an earlier result that is no longer
+/// needed; its instances' memory is used again.
 Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> axioms,
                   const DeriveOptions& options = {}, Derivation&& memory = {});
 
