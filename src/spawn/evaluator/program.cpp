@@ -82,7 +82,9 @@ Program decode(const uint32_t* words) {
   const uint32_t nodes = words[kHeaderSections + 2 * kSectionNodes];
   program.steps.resize(1 + nodes);
   program.terms.resize(1);
-  program.ways.reserve(words[kHeaderSections + 2 * kSectionEdges]);
+  size_t ways = 0; // steps point at them, so they must not move; nodes of a file may share edges
+  for (uint32_t n = 0; n < nodes; ++n) ways += words[kHeaderSize + n * kNodeSize + kNodeEdgeCount];
+  program.ways.reserve(ways);
   for (uint32_t n = 0; n < nodes; ++n) {
     Step& step = program.steps[1 + n];
     step.node = kHeaderSize + n * kNodeSize;
