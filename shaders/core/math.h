@@ -10,6 +10,9 @@
 
 #ifdef __cplusplus
 #include <cmath>
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
 namespace gpgp::shader {
 using std::sqrt;
 }
@@ -17,7 +20,8 @@ using std::sqrt;
 
 GPGP_SHADER_BEGIN
 
-GPGP_CONST uint kLargestBits = 0x71800000u; // 2^100
+GPGP_CONST uint kLargestBits = 0x71800000u;  // 2^100
+GPGP_CONST uint kSmallestBits = 0x0d800000u; // 2^-100
 
 /// x brought into the range in which all arithmetic here happens. NaN becomes 0.
 GPGP_FN float settle(float x) {
@@ -31,14 +35,32 @@ GPGP_FN float settle(float x) {
   return x;
 }
 
+GPGP_CONST float kLargest = 1.2676506e30f;   // 2^100
+GPGP_CONST float kSmallest = 7.8886091e-31f; // 2^-100
+
 /// The same for what sums and products of settled values can be: never NaN. Fewer instructions.
 GPGP_FN float settleFinite(float x) {
-  const float largest = 1.2676506e30f; // 2^100
-  return abs(x) < 7.8886091e-31f ? 0.0f : clamp(x, -largest, largest);
+#ifdef __cplusplus // nearly always
+  if (2u * (floatBitsToUint(x) - kSmallestBits) <= 2u * (kLargestBits - kSmallestBits)) return x;
+#endif
+  return abs(x) < kSmallest ? 0.0f : clamp(x, -kLargest, kLargest);
 }
 
 GPGP_FN vec3 settle3(vec3 v) { return vec3(settle(v.x), settle(v.y), settle(v.z)); }
 GPGP_FN vec3 settleFinite3(vec3 v) { return vec3(settleFinite(v.x), settleFinite(v.y), settleFinite(v.z)); }
+#ifdef __cplusplus
+inline vec3 settleFinite3(Lanes a) {
+  typedef int Bits __attribute__((vector_size(16)));
+  const Lanes::Four largest = Lanes::Four{} + kLargest;
+#ifdef __SSE2__
+  a.v = _mm_min_ps(_mm_max_ps(a.v, -largest), largest);
+#else
+  a.v = a.v < -largest ? -largest : a.v > largest ? largest : a.v;
+#endif
+  const Lanes::Four magnitude = (Lanes::Four)((Bits)a.v & 0x7fffffff);
+  return Lanes((Lanes::Four)((Bits)a.v & (Bits)(magnitude >= kSmallest)));
+}
+#endif
 
 GPGP_FN bool isNan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
 

@@ -10,11 +10,14 @@
 //   GPGP_PRECISE     before a float whose value decides control flow, a count, a key or a mask: no contraction,
 //                    no reassociation. Only + - * on such values; division and roots come from core/math.h.
 //   GPGP_CONST       before a constant at file scope
+//   lanes3, lanes4   vec3 and vec4 for sums and products of vectors; C++ then works on all components at once
 //   GPGP_SHADER_BEGIN / GPGP_SHADER_END around everything: namespace gpgp::shader in C++
 #ifndef GPGP_SHADERS_CORE_SHARED_H
 #define GPGP_SHADERS_CORE_SHARED_H
 
 #ifdef __cplusplus
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <glm/common.hpp>
@@ -39,12 +42,10 @@ using uint = std::uint32_t;
 using glm::abs;
 using glm::all;
 using glm::any;
-using glm::bitCount;
 using glm::clamp;
 using glm::cross;
 using glm::dot;
 using glm::equal;
-using glm::findLSB;
 using glm::findMSB;
 using glm::floor;
 using glm::greaterThan;
@@ -77,9 +78,33 @@ inline float uintBitsToFloat(uint u) {
   std::memcpy(&v, &u, sizeof v);
   return v;
 }
+// What GLM does in many steps.
+inline float abs(float v) { return std::fabs(v); }
+inline int bitCount(uint v) { return std::popcount(v); }
+inline int findLSB(uint v) { return v ? std::countr_zero(v) : -1; }
+
+/// What a register holds. Conversions are implicit, so that one text is right in both languages.
+struct Lanes {
+  typedef float Four __attribute__((vector_size(16)));
+  Four v;
+  Lanes(Four four) : v(four) {}
+  Lanes(float x, float y, float z, float w) : v{x, y, z, w} {}
+  Lanes(const vec3& a) : v{a.x, a.y, a.z, 0} {}
+  operator vec3() const { return {v[0], v[1], v[2]}; }
+  operator vec4() const { return {v[0], v[1], v[2], v[3]}; }
+  friend Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
+  friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
+  friend Lanes operator*(Lanes a, float b) { return a.v * b; }
+};
+using lanes3 = Lanes;
+using lanes4 = Lanes;
 } // namespace gpgp::shader
 
 #else // GLSL
+
+#define lanes3 vec3
+#define lanes4 vec4
+
 
 #define GPGP_SHADER_BEGIN
 #define GPGP_SHADER_END

@@ -370,11 +370,11 @@ void main() {
         uint parent = 0; // the first whose sum lies above child
         for (uint stride = groupSize / 2; stride > 0; stride /= 2)
           if (childrenUpTo[parent + stride - 1] <= child) parent += stride;
-        const Shape p = parentAt(parent);
+        s = parentAt(parent);
         Fan fan;
         fan.successors = fans[parent].x;
         fan.extent = uintBitsToFloat(fans[parent].y);
-        s = childOf(p, fan, p.made + child - (parent > 0 ? childrenUpTo[parent - 1] : 0));
+        toChild(s, fan, s.made + child - (parent > 0 ? childrenUpTo[parent - 1] : 0));
         s.made = 0;
         arrives = fan.successors != 0;
       }

@@ -1,5 +1,5 @@
-// Operators that multiply shapes, by the graph's words: fanOf says into how many shapes one multiplies a shape, childOf
-// makes any one of them. The interpreter and generated kernels share them; what they need is parameter().
+// Operators that multiply shapes, by the graph's words: fanOf says into how many shapes one multiplies a shape, toChild
+// makes it any one of them. The interpreter and generated kernels share them; what they need is parameter().
 //
 // Operators of a kind run the same instructions with other words, whichever node it is: that shapes of many nodes are
 // in a workgroup at once costs little.
@@ -108,13 +108,12 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
   return fan;
 }
 
-/// Child number index, below fan.count. Of the fan it needs successors and length.
-GPGP_FN Shape childOf(GPGP_GRAPH Shape s, Fan fan, uint index) {
-  if (fan.successors == 0u) return s;
+/// The shape becomes its child number index, below fan.count. Of the fan it needs successors and length.
+GPGP_FN void toChild(GPGP_GRAPH GPGP_INOUT(Shape) s, Fan fan, uint index) {
+  if (fan.successors == 0u) return;
   const uint op = graphWords[s.node + kNodeOperator] & kOperatorMask;
   const uint argument = graphWords[s.node + kNodeArgument];
   const uint argument2 = graphWords[s.node + kNodeArgument2];
-  Shape r;
   uint successor = 0u;
   if (isOperator(op, kOpSubDiv)) {
     successor = selectBit(fan.successors, index);
@@ -123,22 +122,21 @@ GPGP_FN Shape childOf(GPGP_GRAPH Shape s, Fan fan, uint index) {
       part = divisionOf(GPGP_G s, successor).part;
     else
       part = partAt(GPGP_G argument2 + kDivisionParts + successor * kPartSize);
-    r = partOf(s, argument, fan.extent, part, successor);
+    toPart(s, argument, fan.extent, part, successor);
   } else if (isOperator(op, kOpRepeat)) {
-    r = repeatOf(s, argument, argument2, fan.successors, fan.extent, index);
+    toRepeat(s, argument, argument2, fan.successors, fan.extent, index);
   } else if (isOperator(op, kOpCompSplit)) {
     const uint number = faceNumber(fan.successors, index);
     successor = min(number, 2u);
     if ((GPGP_OPERATORS & kHasSides) != 0u)
-      r = faceOf(GPGP_G s, number);
+      toFace(GPGP_G s, number);
     else
-      r = boxFaceOf(s, number);
+      toBoxFace(s, number);
   } else {
     successor = selectBit(fan.successors, index);
-    r = copyOf(s, successor);
+    toCopy(s, successor);
   }
-  follow(r, edgeTarget(GPGP_G s.node, successor));
-  return r;
+  follow(s, edgeTarget(GPGP_G s.node, successor));
 }
 
 GPGP_SHADER_END

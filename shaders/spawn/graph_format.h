@@ -183,9 +183,8 @@ GPGP_CONST uint kShapeDynamicRightPrism = 15u;
 GPGP_CONST uint kShapeSphere = 16u;
 GPGP_CONST uint kShapeCount = 17u;
 
-GPGP_FN bool isPolygon(uint shape) {
-  return shape <= kShapeOctagon || shape == kShapeDynamicConvexPolygon || shape == kShapeDynamicPolygon;
-}
+GPGP_CONST uint kPolygonShapes = 0x303fu; // bits: triangle to octagon, the two dynamic ones
+GPGP_FN bool isPolygon(uint shape) { return ((kPolygonShapes >> shape) & 1u) != 0u; }
 GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape != kShapeSphere; }
 /// What a polygon becomes when it is extruded.
 GPGP_FN uint prismOf(uint polygon) { return polygon <= kShapeOctagon ? polygon + 6u : polygon + 2u; }

@@ -38,18 +38,20 @@ GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op) {
   return chosen;
 }
 
-/// The shape after one of the operators that pass on exactly one shape; its node stays.
-GPGP_FN Shape transformed(GPGP_GRAPH Shape s, uint op) {
+/// One of the operators that pass on exactly one shape; its node stays.
+GPGP_FN void transform(GPGP_GRAPH GPGP_INOUT(Shape) s, uint op) {
   // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called.
   vec3 value = vec3(0.0f);
   const uint count = min(graphWords[s.node + kNodeParameterCount], 3u);
   for (uint i = 0u; i < count; ++i) value = withComponent(value, i, parameter(GPGP_G s, i));
-  if (op == kOpTranslate) return translated(s, value);
-  if (op == kOpRotate) return rotated(s, rotationOf(value));
-  if (op == kOpScale) return resized(s, value);
-  if (op == kOpExtrude) return extruded(s, value.x);
-  if (op == kOpSwapSize) return swapped(s, graphWords[s.node + kNodeArgument]);
-  return withGeometry(s, graphWords[s.node + kNodeArgument], graphWords[s.node + kNodeArgument2]);
+  switch (op) {
+  case kOpTranslate: translate(s, value); break;
+  case kOpRotate: rotate(s, rotationOf(value)); break;
+  case kOpScale: resize(s, value); break;
+  case kOpExtrude: extrude(s, value.x); break;
+  case kOpSwapSize: swapSizes(s, graphWords[s.node + kNodeArgument]); break;
+  default: setGeometry(s, graphWords[s.node + kNodeArgument], graphWords[s.node + kNodeArgument2]);
+  }
 }
 
 /// Takes a shape from operator to operator while each passes on one shape. Returns a kEnd value. Whether the shape
@@ -64,7 +66,7 @@ GPGP_FN uint runChain(GPGP_GRAPH GPGP_INOUT(Shape) s, bool /* arrives */, uint m
     if (op == kOpTerminal) return kEndTerminal;
     if (op <= kOpSetGeometry) {
       const uint target = edgeTarget(GPGP_G s.node, 0u);
-      s = transformed(GPGP_G s, op);
+      transform(GPGP_G s, op);
       follow(s, target);
     } else if (op <= kOpRandomRule) {
       follow(s, edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op)));
@@ -76,8 +78,7 @@ GPGP_FN uint runChain(GPGP_GRAPH GPGP_INOUT(Shape) s, bool /* arrives */, uint m
       if ((operatorWord & kNodeFilter) == 0u) return kEndWaits;
       const Fan fan = fanOf(GPGP_G s);
       if (fan.count == 0u) return kEndDiscarded;
-      const Shape child = childOf(GPGP_G s, fan, 0u);
-      s = child;
+      toChild(GPGP_G s, fan, 0u);
     }
   }
   return s.node == 0u ? kEndDiscarded : kEndWaits;

@@ -1,4 +1,4 @@
-// The operators as pure functions of a shape and the values of their parameters.
+// The operators as functions of a shape, which they change in place, and the values of their parameters.
 //
 // One definition for all that derives: the interpreter (interpret.h), generated code, and the CPU evaluator. Everything
 // that decides a count, a size or a position is settled arithmetic, so that all of them agree to the last bit.
@@ -13,11 +13,7 @@ GPGP_SHADER_BEGIN
 /// Absolute, or a factor where negative.
 GPGP_FN float scaled(float size, float v) { return v < 0.0f ? multiply(size, -v) : v; }
 
-GPGP_FN Shape translated(Shape s, vec3 v) {
-  Shape r = s;
-  r.position = framePoint(s, v);
-  return r;
-}
+GPGP_FN void translate(GPGP_INOUT(Shape) s, vec3 v) { s.position = framePoint(s, v); }
 
 /// The columns of Rz * Ry * Rx.
 struct Rotation {
@@ -38,43 +34,34 @@ GPGP_FN Rotation rotationOf(vec3 degrees) {
   return r;
 }
 /// From the right.
-GPGP_FN Shape rotated(Shape s, Rotation rotation) {
-  Shape r = s;
-  r.axisX = frameDirection(s, rotation.c0);
-  r.axisY = frameDirection(s, rotation.c1);
-  r.axisZ = frameDirection(s, rotation.c2);
-  return r;
+GPGP_FN void rotate(GPGP_INOUT(Shape) s, Rotation rotation) {
+  const vec3 axisX = frameDirection(s, rotation.c0);
+  const vec3 axisY = frameDirection(s, rotation.c1);
+  s.axisZ = frameDirection(s, rotation.c2);
+  s.axisX = axisX;
+  s.axisY = axisY;
 }
 
-GPGP_FN Shape resized(Shape s, vec3 v) {
-  Shape r = s;
-  r.size = vec3(scaled(s.size.x, v.x), scaled(s.size.y, v.y), scaled(s.size.z, v.z));
-  return r;
+GPGP_FN void resize(GPGP_INOUT(Shape) s, vec3 v) {
+  s.size = vec3(scaled(s.size.x, v.x), scaled(s.size.y, v.y), scaled(s.size.z, v.z));
 }
 
 /// A polygon becomes a prism, Y along its normal; solids stay as they are.
-GPGP_FN Shape extruded(Shape s, float height) {
-  if (!isPolygon(shapeType(s))) return s;
-  Shape r = s;
-  r.axisY = s.axisZ;
-  r.axisZ = opposite(s.axisY);
-  r.size = vec3(s.size.x, scaled(s.size.z, height), s.size.y);
-  r.geometry = prismOf(shapeType(s)) | (s.geometry & 0xffffff00u);
-  r.seed = childSeed(s.seed, 0u);
-  return r;
+GPGP_FN void extrude(GPGP_INOUT(Shape) s, float height) {
+  if (!isPolygon(shapeType(s))) return;
+  const vec3 axisZ = opposite(s.axisY);
+  s.axisY = s.axisZ;
+  s.axisZ = axisZ;
+  s.size = vec3(s.size.x, scaled(s.size.z, height), s.size.y);
+  s.geometry = prismOf(shapeType(s)) | (s.geometry & 0xffffff00u);
+  s.seed = childSeed(s.seed, 0u);
 }
 
-GPGP_FN Shape swapped(Shape s, uint axes) {
-  Shape r = s;
-  r.size = vec3(component(s.size, axes & 3u), component(s.size, (axes >> 2) & 3u), component(s.size, axes >> 4));
-  return r;
+GPGP_FN void swapSizes(GPGP_INOUT(Shape) s, uint axes) {
+  s.size = vec3(component(s.size, axes & 3u), component(s.size, (axes >> 2) & 3u), component(s.size, axes >> 4));
 }
 
-GPGP_FN Shape withGeometry(Shape s, uint shape, uint polygon) {
-  Shape r = s;
-  r.geometry = shape | (polygon << 8);
-  return r;
-}
+GPGP_FN void setGeometry(GPGP_INOUT(Shape) s, uint shape, uint polygon) { s.geometry = shape | (polygon << 8); }
 
 /// Takes an edge: target is its word in the graph.
 GPGP_FN void follow(GPGP_INOUT(Shape) s, uint target) {
@@ -82,17 +69,15 @@ GPGP_FN void follow(GPGP_INOUT(Shape) s, uint target) {
   s.depth += target >> 31;
 }
 
-// ---------------------------------------------------------------- one shape to many
+// ---------------------------------------------------------------- one shape to many: to one of them
 
 /// A piece along an axis, from start on; number is its place in the path.
-GPGP_FN Shape pieceOf(Shape s, uint axis, float start, float extent, uint number) {
+GPGP_FN void toPiece(GPGP_INOUT(Shape) s, uint axis, float start, float extent, uint number) {
   const float centre = subtract(add(start, multiply(extent, 0.5f)), multiply(component(s.size, axis), 0.5f));
-  Shape r = s;
-  r.position = axisPoint(s, axis, centre);
-  r.size = withComponent(s.size, axis, extent);
-  r.seed = childSeed(s.seed, number);
-  r.key = childKey(s.key, number);
-  return r;
+  s.position = axisPoint(s, axis, centre);
+  s.size = withComponent(s.size, axis, extent);
+  s.seed = childSeed(s.seed, number);
+  s.key = childKey(s.key, number);
 }
 
 /// What weights share in SubDiv.
@@ -104,9 +89,9 @@ struct Part {
   float fixedBefore;
   float shareBefore;
 };
-GPGP_FN Shape partOf(Shape s, uint axis, float remainder, Part part, uint number) {
-  return pieceOf(s, axis, add(part.fixedBefore, multiply(remainder, part.shareBefore)),
-                 add(part.fixedLength, multiply(remainder, part.share)), number);
+GPGP_FN void toPart(GPGP_INOUT(Shape) s, uint axis, float remainder, Part part, uint number) {
+  toPiece(s, axis, add(part.fixedBefore, multiply(remainder, part.shareBefore)),
+          add(part.fixedLength, multiply(remainder, part.share)), number);
 }
 
 /// What a shape multiplies into.
@@ -134,7 +119,7 @@ GPGP_FN Fan repetitionOf(float size, uint mode, float wanted) {
   r.successors = r.count;
   return r;
 }
-GPGP_FN Shape repeatOf(Shape s, uint axis, uint mode, uint count, float copyExtent, uint index) {
+GPGP_FN void toRepeat(GPGP_INOUT(Shape) s, uint axis, uint mode, uint count, float copyExtent, uint index) {
   const float last = subtract(component(s.size, axis), multiply(float(count - 1u), copyExtent));
   float extent = copyExtent;
   float start = multiply(float(index), extent);
@@ -143,15 +128,11 @@ GPGP_FN Shape repeatOf(Shape s, uint axis, uint mode, uint count, float copyExte
     extent = index == 0u ? last : copyExtent;
     start = index == 0u ? 0.0f : add(last, multiply(float(index - 1u), copyExtent));
   }
-  return pieceOf(s, axis, start, extent, index);
+  toPiece(s, axis, start, extent, index);
 }
 
 /// Replicate: a copy with the seed unchanged.
-GPGP_FN Shape copyOf(Shape s, uint number) {
-  Shape r = s;
-  r.key = childKey(s.key, number);
-  return r;
-}
+GPGP_FN void toCopy(GPGP_INOUT(Shape) s, uint number) { s.key = childKey(s.key, number); }
 
 GPGP_FN uint sideCount(GPGP_GRAPH uint geometry) {
   const uint shape = geometry & 0xffu;
@@ -161,50 +142,37 @@ GPGP_FN uint sideCount(GPGP_GRAPH uint geometry) {
 }
 
 /// A face of a box: 0 top, 1 bottom, then back, front, left, right. X runs to the right and Z out of the face.
-GPGP_FN Shape boxFace(Shape s, uint face) {
-  Shape r = s;
-  const vec3 notX = opposite(s.axisX);
-  const vec3 notY = opposite(s.axisY);
-  const vec3 notZ = opposite(s.axisZ);
-  uint axis = 1u; // of the face's normal
-  float side = 0.5f;
-  if (face == 0u) {
-    r.axisY = notZ;
-    r.axisZ = s.axisY;
-    r.size = vec3(s.size.x, s.size.z, 0.0f);
-  } else if (face == 1u) {
-    r.axisY = s.axisZ;
-    r.axisZ = notY;
-    side = -0.5f;
-    r.size = vec3(s.size.x, s.size.z, 0.0f);
+GPGP_FN void toBoxSide(GPGP_INOUT(Shape) s, uint face) {
+  vec3 axisX = s.axisX;
+  vec3 axisY = s.axisY;
+  vec3 axisZ = s.axisZ;
+  vec3 size = vec3(s.size.x, s.size.y, 0.0f);
+  uint axis = 2u; // of the face's normal
+  float side = face == 0u || face == 3u || face == 5u ? 0.5f : -0.5f;
+  if (face < 2u) {
+    axis = 1u;
+    axisY = face == 0u ? opposite(s.axisZ) : s.axisZ;
+    axisZ = face == 0u ? s.axisY : opposite(s.axisY);
+    size.y = s.size.z;
   } else if (face == 2u) {
-    r.axisX = notX;
-    r.axisZ = notZ;
-    axis = 2u;
-    side = -0.5f;
-    r.size = vec3(s.size.x, s.size.y, 0.0f);
-  } else if (face == 3u) {
-    axis = 2u;
-    r.size = vec3(s.size.x, s.size.y, 0.0f);
-  } else if (face == 4u) {
-    r.axisX = s.axisZ;
-    r.axisZ = notX;
+    axisX = opposite(s.axisX);
+    axisZ = opposite(s.axisZ);
+  } else if (face > 3u) {
     axis = 0u;
-    side = -0.5f;
-    r.size = vec3(s.size.z, s.size.y, 0.0f);
-  } else {
-    r.axisX = notZ;
-    r.axisZ = s.axisX;
-    axis = 0u;
-    r.size = vec3(s.size.z, s.size.y, 0.0f);
+    axisX = face == 4u ? s.axisZ : opposite(s.axisZ);
+    axisZ = face == 4u ? opposite(s.axisX) : s.axisX;
+    size.x = s.size.z;
   }
-  r.position = axisPoint(s, axis, multiply(component(s.size, axis), side));
-  r.geometry = kShapeQuad | (kQuadPolygon << 8);
-  return r;
+  s.position = axisPoint(s, axis, multiply(component(s.size, axis), side));
+  s.axisX = axisX;
+  s.axisY = axisY;
+  s.axisZ = axisZ;
+  s.size = size;
+  s.geometry = kShapeQuad | (kQuadPolygon << 8);
 }
 
 /// A side of a prism whose polygon (x, y) lies at local (x, ., -y), counter-clockwise seen from above.
-GPGP_FN Shape prismSide(GPGP_GRAPH Shape s, uint side) {
+GPGP_FN void toPrismSide(GPGP_GRAPH GPGP_INOUT(Shape) s, uint side) {
   const uint polygon = graphWords[kHeaderSections + 2u * kSectionPolygons + 1u] + shapePolygon(s) * kPolygonSize;
   const uint count = graphWords[polygon + 1u];
   const uint from = graphWords[polygon] + 2u * side;
@@ -218,13 +186,12 @@ GPGP_FN Shape prismSide(GPGP_GRAPH Shape s, uint side) {
   const float length = squareRoot(add(multiply(dx, dx), multiply(dy, dy)));
   const float ux = length > 0.0f ? divide(dx, length) : 1.0f;
   const float uy = length > 0.0f ? divide(dy, length) : 0.0f;
-  Shape r = s;
-  r.axisX = frameDirection(s, vec3(ux, 0.0f, -uy));
-  r.axisZ = frameDirection(s, vec3(uy, 0.0f, ux));
-  r.position = framePoint(s, vec3(multiply(add(ax, bx), 0.5f), 0.0f, multiply(add(ay, by), -0.5f)));
-  r.size = vec3(length, s.size.y, 0.0f);
-  r.geometry = kShapeQuad | (kQuadPolygon << 8);
-  return r;
+  s.position = framePoint(s, vec3(multiply(add(ax, bx), 0.5f), 0.0f, multiply(add(ay, by), -0.5f)));
+  const vec3 axisX = frameDirection(s, vec3(ux, 0.0f, -uy));
+  s.axisZ = frameDirection(s, vec3(uy, 0.0f, ux));
+  s.axisX = axisX;
+  s.size = vec3(length, s.size.y, 0.0f);
+  s.geometry = kShapeQuad | (kQuadPolygon << 8);
 }
 
 /// CompSplit's successors that take part for a shape, of those in wanted (bits: top, bottom, sides), and its children.
@@ -249,22 +216,23 @@ GPGP_FN uint faceNumber(uint successors, uint index) {
   return index < endCount ? (ends == 2u ? 1u : index) : 2u + index - endCount;
 }
 /// Any face of a box, the ends of any prism.
-GPGP_FN Shape boxFaceOf(Shape s, uint number) {
-  Shape r = boxFace(s, number);
+GPGP_FN void toBoxFace(GPGP_INOUT(Shape) s, uint number) {
   // seen from below, the polygon is its mirror image, which is the other one of its pair
-  if (number < 2u) r.geometry = polygonOf(shapeType(s)) | ((shapePolygon(s) ^ number) << 8);
-  r.seed = childSeed(s.seed, number);
-  r.key = childKey(s.key, number);
-  return r;
+  const uint end = polygonOf(shapeType(s)) | ((shapePolygon(s) ^ number) << 8);
+  toBoxSide(s, number);
+  if (number < 2u) s.geometry = end;
+  s.seed = childSeed(s.seed, number);
+  s.key = childKey(s.key, number);
 }
-GPGP_FN Shape faceOf(GPGP_GRAPH Shape s, uint number) {
+GPGP_FN void toFace(GPGP_GRAPH GPGP_INOUT(Shape) s, uint number) {
   const bool prism = isPrism(shapeType(s));
-  if (prism && (number < 2u || shapeType(s) == kShapeBox)) return boxFaceOf(s, number);
-  Shape r = s; // a polygon's only face is itself
-  if (prism) r = prismSide(GPGP_G s, number - 2u);
-  r.seed = childSeed(s.seed, number);
-  r.key = childKey(s.key, number);
-  return r;
+  if (prism && (number < 2u || shapeType(s) == kShapeBox)) {
+    toBoxFace(s, number);
+    return;
+  }
+  if (prism) toPrismSide(GPGP_G s, number - 2u); // a polygon's only face is itself
+  s.seed = childSeed(s.seed, number);
+  s.key = childKey(s.key, number);
 }
 
 /// The place of the n-th set bit.

@@ -95,32 +95,32 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
 
 /// A point of the local frame.
 GPGP_FN vec3 framePoint(Shape s, vec3 local) {
-  GPGP_PRECISE vec3 p = s.position + s.axisX * local.x + s.axisY * local.y + s.axisZ * local.z;
+  GPGP_PRECISE lanes3 p =
+      lanes3(s.position) + lanes3(s.axisX) * local.x + lanes3(s.axisY) * local.y + lanes3(s.axisZ) * local.z;
   return settleFinite3(p);
 }
 /// A point on one of the local axes.
 GPGP_FN vec3 axisPoint(Shape s, uint axis, float distance) {
   const vec3 direction = axis == 0u ? s.axisX : (axis == 1u ? s.axisY : s.axisZ);
-  GPGP_PRECISE vec3 p = s.position + direction * distance;
+  GPGP_PRECISE lanes3 p = lanes3(s.position) + lanes3(direction) * distance;
   return settleFinite3(p);
 }
 /// A direction of the local frame.
 GPGP_FN vec3 frameDirection(Shape s, vec3 local) {
-  GPGP_PRECISE vec3 d = s.axisX * local.x + s.axisY * local.y + s.axisZ * local.z;
+  GPGP_PRECISE lanes3 d = lanes3(s.axisX) * local.x + lanes3(s.axisY) * local.y + lanes3(s.axisZ) * local.z;
   return settleFinite3(d);
 }
 GPGP_FN vec3 opposite(vec3 v) { return settleFinite3(vec3(0.0f) - v); }
 
 /// One of the three rows of unit shape to world, for row vectors of the axiom's transform.
 GPGP_FN vec4 instanceRow(Shape s, vec4 axiomRow) {
-  const vec3 row = vec3(axiomRow.x, axiomRow.y, axiomRow.z);
   // A polygon without thickness keeps a unit normal, so that the matrix stays invertible.
   const float thickness = isPolygon(shapeType(s)) && s.size.z == 0.0f ? 1.0f : s.size.z;
-  GPGP_PRECISE float x = (row.x * s.axisX.x + row.y * s.axisX.y + row.z * s.axisX.z) * s.size.x;
-  GPGP_PRECISE float y = (row.x * s.axisY.x + row.y * s.axisY.y + row.z * s.axisY.z) * s.size.y;
-  GPGP_PRECISE float z = (row.x * s.axisZ.x + row.y * s.axisZ.y + row.z * s.axisZ.z) * thickness;
-  GPGP_PRECISE float w = row.x * s.position.x + row.y * s.position.y + row.z * s.position.z + axiomRow.w;
-  return vec4(x, y, z, w);
+  GPGP_PRECISE lanes4 row = lanes4(s.axisX.x, s.axisY.x, s.axisZ.x, s.position.x) * axiomRow.x +
+                            lanes4(s.axisX.y, s.axisY.y, s.axisZ.y, s.position.y) * axiomRow.y +
+                            lanes4(s.axisX.z, s.axisY.z, s.axisZ.z, s.position.z) * axiomRow.z;
+  row = row * lanes4(s.size.x, s.size.y, thickness, 1.0f) + lanes4(-0.0f, -0.0f, -0.0f, axiomRow.w);
+  return row;
 }
 
 /// A terminal's contribution to the order-free hash of a derivation.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
 
@@ -311,6 +312,22 @@ TEST(Operators, ChainsOfAnyLengthEnd) { // others get their turn after 64 operat
           bake("axiom Box A; terminal T (1,0); A = " + chain + "If(" + condition + ") { T | Discard() };");
       EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, condition[0] == '1' ? 1u : 0u) << length;
     }
+  }
+}
+
+TEST(Derivation, IntoMemoryOfAnEarlierOneIsTheSame) {
+  const auto words = bake(ownGrammar("building.pga"));
+  for (const uint32_t before : {1u, 5u, 9u}) {
+    spawn::DeriveOptions options;
+    const auto fresh = derive(words, axioms(5, 12, 9, 24), options);
+    const auto again = derive(words, axioms(5, 12, 9, 24), options, derive(words, axioms(before, 12, 9, 24)));
+    ASSERT_GT(fresh.terminals, 0u);
+    ASSERT_EQ(again.instances.size(), fresh.instances.size());
+    EXPECT_EQ(
+        0, std::memcmp(again.instances.data(), fresh.instances.data(), fresh.instances.size() * sizeof(GpgpInstance)));
+    options.keepInstances = false;
+    EXPECT_TRUE(
+        derive(words, axioms(5, 12, 9, 24), options, derive(words, axioms(before, 12, 9, 24))).instances.empty());
   }
 }
 

@@ -272,9 +272,7 @@ private:
   }
 
   void writeOperator(const Node& node) {
-    const auto pass = [&](const std::string& expression) {
-      add("  s = " + expression + ";\n  " + take(node, 0) + "\n");
-    };
+    const auto pass = [&](const std::string& expression) { add("  " + expression + ";\n  " + take(node, 0) + "\n"); };
     switch (node.op) {
     case kOpTranslate: {
       const std::string terms = frameTerms(node);
@@ -283,14 +281,14 @@ private:
       return;
     }
     case kOpRotate:
-      if (!areConstant(node)) return pass("rotated(s, rotationOf(" + vector(node) + "))");
+      if (!areConstant(node)) return pass("rotate(s, rotationOf(" + vector(node) + "))");
       writeRotation(rotationOf(vec3(constant(node, 0), constant(node, 1), constant(node, 2))));
       add("  " + take(node, 0) + "\n");
       return;
-    case kOpScale: return pass("resized(s, " + vector(node) + ")");
-    case kOpExtrude: return pass("extruded(s, " + parameter(node, 0) + ")");
-    case kOpSwapSize: return pass("swapped(s, " + number(node.argument) + ")");
-    case kOpSetGeometry: return pass("withGeometry(s, " + number(node.argument) + ", " + number(node.argument2) + ")");
+    case kOpScale: return pass("resize(s, " + vector(node) + ")");
+    case kOpExtrude: return pass("extrude(s, " + parameter(node, 0) + ")");
+    case kOpSwapSize: return pass("swapSizes(s, " + number(node.argument) + ")");
+    case kOpSetGeometry: return pass("setGeometry(s, " + number(node.argument) + ", " + number(node.argument2) + ")");
     case kOpIf: return writeIf(node, parameter(node, 0) + " != 0.0f");
     case kOpIfSizeLess: return writeIf(node, component(node.argument) + " < " + parameter(node, 0));
     case kOpRandomRule: return writeRandomRule(node);
@@ -306,7 +304,7 @@ private:
     }
     return terms;
   }
-  /// rotated() with known columns: zeros are left out, ones are not multiplied with.
+  /// rotate() with known columns: zeros are left out, ones are not multiplied with.
   void writeRotation(const Rotation& rotation) {
     static constexpr const char* kAxes[] = {"s.axisX", "s.axisY", "s.axisZ"};
     const std::array<vec3, 3> columns{rotation.c0, rotation.c1, rotation.c2};
@@ -352,11 +350,11 @@ private:
     const std::string place = number(kept);
     bool followed = false;
     if (node.op == kOpReplicate) {
-      add("  s = copyOf(s, " + place + ");\n");
+      add("  toCopy(s, " + place + ");\n");
     } else if (node.op == kOpCompSplit) {
       const bool boxes = node.shapes == 1u << kShapeBox;
       if (!boxes) add("  if (facesOf(s.geometry, " + number(1u << kept) + ").count == 0u) return kEndDiscarded;\n");
-      add(std::string("  s = ") + (boxes ? "boxFaceOf" : "faceOf") + "(s, " + place + ");\n");
+      add(std::string(boxes ? "  toBoxFace" : "  toFace") + "(s, " + place + ");\n");
     } else if (node.division != UINT32_MAX) {
       const uint32_t* division = graph_.divisions.data() + node.division;
       const bool fixed = division[kDivisionFixedParts] != 0;
@@ -370,11 +368,11 @@ private:
       const uint32_t* part = division + kDivisionParts + kept * kPartSize;
       std::string values;
       for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
-      add("  s = partOf(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place + ");\n");
+      add("  toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place + ");\n");
     } else { // by the words, which also take the edge
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n  const Fan fan = fanOf(s);\n"
-          "  if (fan.count == 0u) return kEndDiscarded;\n  s = childOf(s, fan, 0u);\n");
+          "  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n");
       followed = true;
     }
     add("  " + take(node, kept, followed) + "\n");

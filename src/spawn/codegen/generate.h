@@ -2,7 +2,7 @@
 // operators in straight lines and parameters folded.
 //
 // What a node is decides little: operators that pass on one shape become functions that call the next one, operators
-// that multiply become cases of fanOf and childOf. `waits` is the schedule: a shape on its way to such a node goes
+// that multiply become cases of fanOf and toChild. `waits` is the schedule: a shape on its way to such a node goes
 // through a queue, to any other it goes on in the same invocation. The result equals the interpreter's to the last bit,
 // as both call shaders/spawn/operators.h and constants are folded with the same arithmetic.
 #pragma once

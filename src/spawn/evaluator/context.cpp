@@ -11,28 +11,17 @@ ColliderBox Context::boxOf(const Shape& shape) const {
                        vec4(t[8], t[9], t[10], t[11]));
 }
 
-uint32_t Context::resume(Shape& shape, uint32_t maxDepth) {
-  for (;;) {
-    const uint32_t tag = words_[shape.node + kNodeArgument];
-    uint32_t edge = 0;
-    if ((words_[shape.node + kNodeOperator] & kOperatorMask) == kOpCollider) {
-      colliders_.push_back({boxOf(shape), tag, shape.axiom, kNoCollider});
-      axiomOf_.push_back(axiomNumber(shape.axiom));
-      shape.axiom = kColliderLink | static_cast<uint32_t>(colliders_.size() - 1);
-    } else {
-      if (words_[shape.node + kNodeArgument2] > phase_) {
-        waiting_.push_back(shape);
-        return kEndLater;
-      }
-      uint32_t spent = 0;
-      set_.colliders = colliders_.data(); // which may have moved
-      set_.cells = cells_.data();
-      edge = collidesWithAny(set_, boxOf(shape), tag, shape.axiom, spent) ? 0 : 1;
-    }
-    follow(shape, edgeTarget(words_, shape.node, edge));
-    const uint32_t end = runChain(words_, shape, false, maxDepth);
-    if (end != kEndContext) return end;
-  }
+void Context::add(Shape& shape, uint32_t tag) {
+  colliders_.push_back({boxOf(shape), tag, shape.axiom, kNoCollider});
+  axiomOf_.push_back(axiomNumber(shape.axiom));
+  shape.axiom = kColliderLink | static_cast<uint32_t>(colliders_.size() - 1);
+}
+
+bool Context::collides(const Shape& shape, uint32_t tag) {
+  uint32_t spent = 0;
+  set_.colliders = colliders_.data(); // which may have moved
+  set_.cells = cells_.data();
+  return collidesWithAny(set_, boxOf(shape), tag, shape.axiom, spent);
 }
 
 std::vector<Shape> Context::begin(uint32_t phase) {
@@ -48,8 +37,14 @@ std::vector<Shape> Context::begin(uint32_t phase) {
     first = i;
     set_.levels |= 1u << level;
   }
-  std::vector<Shape> due, later;
-  for (const Shape& shape : waiting_) (words_[shape.node + kNodeArgument2] == phase ? due : later).push_back(shape);
+  std::vector<Shape> due;
+  std::vector<Waiting> later;
+  for (const Waiting& waiting : waiting_) {
+    if (waiting.phase == phase)
+      due.push_back(waiting.shape);
+    else
+      later.push_back(waiting);
+  }
   waiting_ = std::move(later);
   return due;
 }

@@ -1,7 +1,6 @@
 // Collider and IfCollides on the CPU: the colliders of all axioms, and the shapes that wait for later phases.
 #pragma once
 #include "spawn/collide.h"
-#include "spawn/interpret.h"
 
 #include <gpgp/spawn.h>
 
@@ -12,11 +11,15 @@ namespace gpgp::spawn {
 
 class Context {
 public:
-  Context(const uint32_t* words, std::span<const GpgpAxiom> axioms) : words_(words), axioms_(axioms) {}
+  explicit Context(std::span<const GpgpAxiom> axioms) : axioms_(axioms) {}
 
-  /// Goes on where a chain of operators ended with kEndContext. Returns how it ended at last, kEndLater included: the
-  /// shape is kept for begin().
-  uint32_t resume(shader::Shape& shape, uint32_t maxDepth);
+  uint32_t phase() const { return phase_; }
+  /// Registers a shape.
+  void add(shader::Shape& shape, uint32_t tag);
+  /// Whether it meets a collider of a phase before this one.
+  bool collides(const shader::Shape& shape, uint32_t tag);
+  /// Keeps a shape until begin() of a phase.
+  void wait(const shader::Shape& shape, uint32_t phase) { waiting_.push_back({shape, phase}); }
   /// After all of the phase before: its colliders can be found. Returns the shapes that have waited for this phase.
   std::vector<shader::Shape> begin(uint32_t phase);
 
@@ -27,15 +30,18 @@ public:
   uint64_t colliders() const { return colliders_.size(); }
 
 private:
+  struct Waiting {
+    shader::Shape shape;
+    uint32_t phase;
+  };
   shader::ColliderBox boxOf(const shader::Shape& shape) const;
 
-  const uint32_t* words_;
   std::span<const GpgpAxiom> axioms_;
   std::vector<shader::Collider> colliders_;
   std::vector<uint32_t> axiomOf_; // by collider
   std::vector<uint32_t> cells_{shader::kNoCollider};
   shader::ColliderSet set_{};
-  std::vector<shader::Shape> waiting_;
+  std::vector<Waiting> waiting_;
   uint32_t phase_ = 0;
 };
 

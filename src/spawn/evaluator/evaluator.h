@@ -1,4 +1,4 @@
-// The CPU twin of the derivation on the GPU: one thread, depth first, the same functions on the same words.
+// The CPU twin of the derivation on the GPU: one thread, depth first, the same operators on the same graph.
 //
 // Counts, keys, seeds, shapes and the hash are bit-identical to the GPU's; transforms agree within rounding. Used as
 // the oracle of tests, by the command, and as the baseline of benchmarks.
@@ -35,9 +35,10 @@ struct Derivation {
   bool complete = true; ///< false: maxShapes was reached
 };
 
-/// Derives axioms with a baked grammar's words, which load() has accepted.
+/// Derives axioms with a baked grammar's words, which load() has accepted. memory: an earlier result that is no longer
+/// needed; its instances' memory is used again.
 Derivation derive(std::span<const uint32_t> grammar, std::span<const GpgpAxiom> axioms,
-                  const DeriveOptions& options = {});
+                  const DeriveOptions& options = {}, Derivation&& memory = {});
 
 /// An axiom at the origin.
 GpgpAxiom makeAxiom(float x, float y, float z, uint32_t seed = 0, uint32_t id = 0);

@@ -1,0 +1,57 @@
+// A grammar's words decoded for the evaluator: what a node needs side by side, and what is constant worked out.
+#pragma once
+#include "spawn/interpret.h"
+
+#include <vector>
+
+namespace gpgp::spawn {
+
+/// Beside the kOp values: what discards every shape, and cases whose constants save work.
+enum : uint32_t { kDiscard = shader::kOpCount, kTranslateAlong, kRotateBy, kChoose, kDivide };
+
+struct Step;
+
+struct Way { ///< along an edge
+  const Step* target;
+  uint32_t recursive; ///< 1: counts as depth
+  float from;         ///< kChoose: it is taken from this value on, unless a later one is
+  shader::Part part;  ///< kDivide
+};
+
+/// Of an expression that goes from left to right: a number or an attribute, and how it joins what stands before it.
+struct Term {
+  uint32_t code;    ///< kCodeAdd to kCodeRandom; kCodeEnd behind the last term
+  uint32_t operand; ///< kCodeNumber, or an attribute's code
+  float number;
+};
+
+struct Step {
+  uint32_t op = kDiscard;
+  uint32_t node = 0;   ///< word offset
+  bool filter = false; ///< kNodeFilter
+  uint32_t argument = 0, argument2 = 0;
+  const Way* ways = nullptr;
+  uint32_t wayCount = 0;
+  uint32_t successors = 0;     ///< bits: ways that do not discard; kDivide: without what needs a remainder
+  uint32_t weighted = 0;       ///< kDivide: those that do
+  uint32_t parameters = 0;     ///< word offset
+  uint32_t variable = 0;       ///< bits: of the first three parameters those that are not constant
+  uint32_t terms[3]{};         ///< of those: in Program::terms; 0: evaluate() does it
+  shader::vec3 values{0};      ///< of the others
+  shader::Rotation rotation{}; ///< kRotateBy
+  float total = 0;             ///< kChoose: of all chances; kDivide: of fixed lengths
+};
+
+struct Program {
+  std::vector<Step> steps; ///< the first one discards, then the nodes
+  std::vector<Way> ways;
+  std::vector<Term> terms;
+
+  const Step* at(uint32_t node) const {
+    return node ? &steps[1 + (node - shader::kHeaderSize) / shader::kNodeSize] : steps.data();
+  }
+};
+
+Program decode(const uint32_t* words);
+
+} // namespace gpgp::spawn
