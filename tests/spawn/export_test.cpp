@@ -53,6 +53,8 @@ TEST(Export, PicturesShowEveryNodeEdgeAndGroup) {
     const Partition partition = makePartition(flow, randomPartition(flow, random));
     size_t live = graph.axiomNode != kNoNode, fixed = 0, queued = 0;
     for (const Edge& edge : graph.edges) live += edge.target != kNoNode;
+    const size_t dependencies = dependenciesOf(graph).size();
+    live += dependencies;
     for (const Group& group : partition.groups) {
       fixed += group.staticEdges.size();
       queued += group.dynamicEdges.size();
@@ -68,7 +70,7 @@ TEST(Export, PicturesShowEveryNodeEdgeAndGroup) {
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     const std::string dot = exportDot(graph, &partition);
     EXPECT_EQ(occurrences(dot, "subgraph cluster"), partition.groups.size()) << seed;
-    EXPECT_EQ(occurrences(dot, " -> "), graph.edges.size() + 1) << seed;
+    EXPECT_EQ(occurrences(dot, " -> "), graph.edges.size() + 1 + dependencies) << seed;
     EXPECT_EQ(occurrences(dot, "color=darkgreen"), fixed) << seed;
     EXPECT_GE(occurrences(dot, ", color=blue]"), queued) << seed;
   }

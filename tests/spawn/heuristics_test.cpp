@@ -141,6 +141,7 @@ TEST(Heuristics, SchedulesOfTenThousandRandomGrammars) {
     expectValid(flow, heuristic, "H", seed);
     expectDescribes(flow, heuristic, seed);
     expectDescribes(flow, coarsest, seed);
+    if (!flow.dependencies.empty()) continue; // then there are several that cannot be coarser
     // Random ones, and every partition splits the coarsest one's groups further.
     std::vector<Roots> others{finest, rules, heuristic};
     for (int i = 0; i < 4; ++i) others.push_back(randomPartition(flow, random));
