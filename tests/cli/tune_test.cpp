@@ -36,17 +36,18 @@ TEST(CliTune, FindsAScheduleAndBakesIt) {
 
 TEST(CliTune, TunedSchedulesAreKept) {
   // In a cache of the test's own.
-  const TemporaryFile cache("tuned_cache"), grammar("kept.pga", kTower);
-  std::filesystem::create_directories(cache.path());
+  const TemporaryFile grammar("kept.pga", kTower);
+  const std::filesystem::path cache = std::filesystem::path(testing::TempDir()) / "gpgp_cli_test_tuned_cache";
+  std::filesystem::remove_all(cache); // of a run that was ended
+  std::filesystem::create_directories(cache);
   const char* before = std::getenv("XDG_CACHE_HOME");
   const std::string old = before ? before : "";
-  setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+  setenv("XDG_CACHE_HOME", cache.c_str(), 1);
   const json tuned =
       gpgpJson({"tune", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--samples", "5", "--repeat", "3",
                 "--schedules-only", "--matching", "on", "--search", "random", "--set", "floors=1"});
   EXPECT_EQ(tuned["matching"], true);
-  EXPECT_EQ(std::filesystem::path(tuned["out"].get<std::string>()).parent_path(),
-            std::filesystem::path(cache.path()) / "gpgp");
+  EXPECT_EQ(std::filesystem::path(tuned["out"].get<std::string>()).parent_path(), cache / "gpgp");
   const std::vector<std::string> spawn = {"spawn",      grammar.path(), "--axiom-size", "8,4,1",
                                           "--schedule", "tuned",        "--set",        "floors=1"};
   auto two = spawn; // 2 and 3 are of one class
@@ -60,7 +61,7 @@ TEST(CliTune, TunedSchedulesAreKept) {
     setenv("XDG_CACHE_HOME", old.c_str(), 1);
   else
     unsetenv("XDG_CACHE_HOME");
-  std::filesystem::remove_all(cache.path());
+  std::filesystem::remove_all(cache);
 }
 
 TEST(CliTune, WrongUsage) {
