@@ -246,7 +246,7 @@ TEST(CliSpawn, ShapesAreThoseOfTheService) {
   const auto corners = [](const char* shape, const char* size) {
     const TemporaryFile grammar("shape.pga", std::string("axiom ") + shape + " T;\nterminal T (1, 0);\n"),
         out("shape.glb");
-    gpgpJson({"spawn", grammar.path(), "--axiom-size", size, "--out", out.path()});
+    gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--axiom-size", size, "--out", out.path()});
     const std::string bytes = host::readText(out.path());
     uint32_t jsonSize = 0;
     std::memcpy(&jsonSize, bytes.data() + 12, 4);
@@ -271,8 +271,8 @@ TEST(CliSpawn, ShapesAreThoseOfTheService) {
   EXPECT_FLOAT_EQ(high - low, 6);
   for (const auto& p : prism) EXPECT_TRUE(p[1] == low || p[1] == high); // no corner between the ends
   EXPECT_EQ(corners("Box", "1,1,1").size(), 12u * 3u);
-  EXPECT_EQ(corners("Triangle", "1,1,0").size(), 3u);
-  EXPECT_EQ(corners("Pentagon", "1,1,0").size(), 3u * 3u);
+  EXPECT_EQ(corners("Triangle", "1,1,1").size(), 3u);
+  EXPECT_EQ(corners("Pentagon", "1,1,1").size(), 3u * 3u);
   EXPECT_EQ(corners("Sphere", "1,1,1").size(), (96u * 2u - 24u) * 3u);
 }
 
