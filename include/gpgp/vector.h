@@ -187,6 +187,12 @@ typedef struct GpgpCanvasItem {
   GpgpAsset drawing;
   float transform[6]; /**< drawing to pixel: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
   float opacity;      /**< 0 to 1, multiplies each path's alpha */
+  /** The third row of a projective map: w = p0 x + p1 y + p2, and the pixel is (x', y') / w. All 0: affine, w = 1.
+   *  What lies at w <= 0 is behind the eye and not drawn. For a panel in a 3D world with corner o and sides u, v (units
+   *  of the drawing), let o', u', v' be o (as a point), u and v (as directions) times the view-projection matrix, so
+   *  that clip space has x_c = u'.x x + v'.x y + o'.x, likewise y_c and w_c; then t = (W (u'.x + u'.w) / 2,
+   *  H (u'.y + u'.w) / 2, the same of v', the same of o') and p = (u'.w, v'.w, o'.w) for a canvas of W x H pixels. */
+  float perspective[3];
 } GpgpCanvasItem;
 
 typedef struct GpgpCanvasInfo {

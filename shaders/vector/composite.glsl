@@ -4,7 +4,7 @@
 // translucent lies in front, and stops when none is left. Every sample is thus composited by itself: neither cuts
 // inside a path nor edges shared by two paths let anything through. The first edge that a pixel meets counts by its
 // area; what lies behind is scaled to what that leaves.
-// PAINTS: whether there are gradients. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if
+// PAINTS: whether there are gradients. PROJECTIVE: whether items may be projective. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if
 // one is given).
 #include "color.glsl"
 #if PAINTS
@@ -86,8 +86,11 @@ void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec2 paint) {
   if (paint.y != 0) {
     const ItemRecord item = items[paint.x];
     const vec2 middle = vec2(pixel) + 0.5;
-    source *= gradientAt(item.slot, paint.y - 1,
-                         item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy);
+    vec2 at = item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy;
+#if PROJECTIVE
+    if (projects(item)) at /= item.eye.x * middle.x + item.eye.y * middle.y + item.eye.z;
+#endif
+    source *= gradientAt(item.slot, paint.y - 1, at);
   }
 #endif
   float weight;

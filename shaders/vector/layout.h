@@ -73,6 +73,11 @@ struct ItemRecord {
                   // offsets.y
   vec4 transform; // drawing to pixel, the same way with offsets.z, offsets.w
   vec4 offsets;
+  // Projective items (PROJECTIVE shaders): both maps give x w and y w, and w = perspective.x x + perspective.y y +
+  // perspective.z of the drawing's point, 1 / w = eye.x px + eye.y py + eye.z of the pixel. Only what lies at w >=
+  // perspective.w is drawn; that line lies beyond the canvas. perspective.w is 0 for affine items.
+  vec4 perspective;
+  vec4 eye;   // w: 1 where the line at w = perspective.w passes left of the canvas
   float side; // -1 where the transform mirrors, else 1
   float opacity;
   uint slot;         // the drawing's binding
@@ -150,7 +155,7 @@ GPGP_SHADER_END
 static_assert(sizeof(gpgp::shader::CurveRecord) == 48 && sizeof(gpgp::shader::PatchRecord) == 32);
 static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::PaintRecord) == 64 &&
               sizeof(gpgp::shader::StopRecord) == 32 && sizeof(gpgp::shader::SegmentRecord) == 64);
-static_assert(sizeof(gpgp::shader::ItemRecord) == 80 && sizeof(gpgp::shader::PlacedPath) == 48 &&
+static_assert(sizeof(gpgp::shader::ItemRecord) == 112 && sizeof(gpgp::shader::PlacedPath) == 48 &&
               sizeof(gpgp::shader::TileWord) == 16 && sizeof(gpgp::shader::CanvasHeader) == 96 &&
               sizeof(gpgp::shader::CanvasCounters) == 48);
 #endif

@@ -35,7 +35,23 @@ void main() {
     if (box.x <= box.z) {
       vec2 a = vec2(3e38), b = vec2(-3e38);
       for (uint corner = 0; corner < 4; ++corner) {
-        const vec2 at = toPixel(item, (corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
+        const vec2 here = vec2((corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
+#if PROJECTIVE
+        if (projects(item)) { // where a side of the box passes behind the eye, the cut takes the corner's place
+          const uint next = (0x8du >> corner * 2) & 3; // around the box
+          const vec2 there = vec2((next & 1) != 0 ? box.z : box.x, (next & 2) != 0 ? box.w : box.y);
+          const float near = item.perspective.w;
+          const float dh = depthOf(item, here.x, here.y), dt = depthOf(item, there.x, there.y);
+          if ((dh < near) != (dt < near)) {
+            const vec2 cut = mix(here, there, divide(near - dh, dt - dh));
+            const vec2 at = toPixel(item, cut.x, cut.y);
+            a = min(a, at);
+            b = max(b, at);
+          }
+          if (dh < near) continue;
+        }
+#endif
+        const vec2 at = toPixel(item, here.x, here.y);
         a = min(a, at);
         b = max(b, at);
       }

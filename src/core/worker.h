@@ -12,6 +12,7 @@ namespace gpgp::core {
 
 constexpr uint32_t kMaxResources = 24;
 constexpr uint32_t kMaxGroupCounts = 16;
+constexpr uint32_t kMaxConditions = 24;
 constexpr uint32_t kMaxTargets = 16;
 
 /// What one record gives for the resources of kinds buffer and image.
@@ -27,7 +28,7 @@ struct Record {
   const GpgpRecordInfo* info = nullptr;
   std::array<Binding, kMaxResources> bindings = {};
   std::array<std::array<uint32_t, 3>, kMaxGroupCounts> groups = {};
-  std::array<bool, kMaxGroupCounts> conditions = {};
+  std::array<bool, kMaxConditions> conditions = {};
   uint32_t levels = UINT32_MAX;         ///< passes of this level and above are left out
   std::span<const std::byte> constants; ///< for the first constants resource
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout

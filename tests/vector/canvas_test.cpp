@@ -161,7 +161,7 @@ struct Twin {
     const vector::Outlines outlines = vector::makeOutlines(drawing, std::pmr::get_default_resource());
     const shader::Grid grid{n, static_cast<int>(h * n), static_cast<int>(w)};
     for (const shader::SegmentRecord& segment : outlines.segments) {
-      const uint32_t chords = shader::chordCount(item, segment);
+      const uint32_t chords = shader::chordCount(grid, item, segment);
       const float step = shader::chordStep(chords);
       for (uint32_t i = 0; i < chords; ++i) {
         shader::Chord chord;
@@ -210,13 +210,21 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
     const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
     ASSERT_TRUE(twin);
     const GpgpAsset drawing = makeDrawing({view});
-    const float transforms[][6] = {{1, 0, 0, 1, 0, 0}, {0.8f, 0.6f, -0.6f, 0.8f, 30, -10}, {7, 0.5f, 1, -9, -250, 400}};
+    const float transforms[][9] = {{1, 0, 0, 1, 0, 0},
+                                   {0.8f, 0.6f, -0.6f, 0.8f, 30, -10},
+                                   {7, 0.5f, 1, -9, -250, 400},
+                                   {1, 0, 0, 1, 0, 0, 0.004f, 0.002f, 0.8f},        // all before the eye
+                                   {0.9f, 0, 0, 1, -20, 0, 0.01f, 0, -0.2f},        // behind it left of x = 20
+                                   {-0.9f, 0, 0, 0.4f, 30, 9, -0.01f, 0, 0.5f},        // right of x = 50, mirrored
+                                   {1, 0, 0.4f, 0.2f, 0, 3, 0.001f, -0.012f, 0.7f}, // a floor
+                                   {0.5f, 0.3f, 0.2f, 0.6f, -10, -30, 0.01f, 0.011f, -1}};
     for (const auto& t : transforms)
       for (const uint32_t samples : {1u, 4u, 8u, 16u}) {
-        GpgpCanvasItem item{drawing, {}, 1};
+        GpgpCanvasItem item{drawing, {}, 1, {}};
         std::copy_n(t, 6, item.transform);
+        std::copy_n(t + 6, 3, item.perspective);
         shader::ItemRecord record{};
-        ASSERT_TRUE(vector::placeItem(t, record));
+        ASSERT_TRUE(vector::placeItem(item, 100, 90, record));
         const Twin covers(*twin, record, 100, 90, samples);
         for (const bool area : {false, true}) {
           exactArea = area;
@@ -234,11 +242,110 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
             }
           EXPECT_EQ(different, 0u) << "seed " << seed << ", transform " << &t - transforms << ", samples " << samples
                                    << ", area " << area;
-          EXPECT_GT(covered, 20u);
+          EXPECT_GT(covered, 20u) << "seed " << seed << ", transform " << &t - transforms;
         }
         exactArea = false;
       }
     gpgpDestroyAsset(drawing);
+  }
+}
+
+/// How much of a pixel a path covers by 64 samples, each taken back through the map in double precision.
+double projectedCoverage(const PathOracle& path, const GpgpCanvasItem& item, uint32_t x, uint32_t y) {
+  const auto number = [](float v) { return static_cast<double>(v); };
+  const double a = number(item.transform[0]), b = number(item.transform[1]), c = number(item.transform[2]),
+               d = number(item.transform[3]), e = number(item.transform[4]), f = number(item.transform[5]);
+  const double p = number(item.perspective[0]), q = number(item.perspective[1]), r = number(item.perspective[2]);
+  int inside = 0;
+  for (int i = 0; i < 64; ++i) {
+    const double px = x + (i % 8 + 0.5) / 8, py = y + (i / 8 + 0.5) / 8;
+    // (a - p px) u + (c - q px) v = r px - e, and the like for y.
+    const double k = a - p * px, l = c - q * px, m = b - p * py, n = d - q * py;
+    const double s = r * px - e, t = r * py - f, determinant = k * n - l * m;
+    const double u = (s * n - l * t) / determinant, v = (k * t - s * m) / determinant;
+    inside += p * u + q * v + r > 0 && path.inside(u, v);
+  }
+  return inside / 64.0;
+}
+
+TEST_F(CanvasTest, ProjectiveItemsLookLikeTheTruth) {
+  makeCanvas(256);
+  TestPath rings; // circles in each other from the eye's feet to far away
+  for (int i = 1; i < 12; ++i) {
+    const float r = 0.25f * std::pow(1.8f, static_cast<float>(i)), k = 0.5522847f * r;
+    rings.move(r, 0).cubic(r, k, k, r, 0, r).cubic(-k, r, -r, k, -r, 0).cubic(-r, -k, -k, -r, 0, -r);
+    rings.cubic(k, -r, r, -k, r, 0).close();
+  }
+  rings.rule = GPGP_FILL_EVEN_ODD;
+  rings.color = {0, 0, 0, 1};
+  const GpgpPath view = rings.view();
+  const PathOracle oracle(view);
+  const GpgpAsset drawing = makeDrawing({view});
+  const float maps[][9] = {
+      {40, 0, 64, 40, 64, 90, 0, 1, 1},             // a floor, horizon at y = 40; the eye stands in the rings
+      {30, 10, 70, -45, 64, 64, 0.3f, 1, 2},        // tilted, from above
+      {64, 64, 30, -30, 64, 64, 1, 0.02f, 0.5f},    // a wall at the left
+      {-0.5f, 7, 8, 1, 64, 50, -0.05f, 0.03f, 0.9f} // a panel, turned
+  };
+  for (const auto& map : maps) {
+    constexpr uint32_t width = 96, height = 88;
+    GpgpCanvasItem item{drawing, {}, 1, {}};
+    std::copy_n(map, 6, item.transform);
+    std::copy_n(map + 6, 3, item.perspective);
+    std::vector<float> truth;
+    double covered = 0;
+    for (uint32_t i = 0; i < width * height; ++i) {
+      const double coverage = projectedCoverage(oracle, item, i % width, i / width);
+      covered += coverage;
+      truth.insert(truth.end(), {0, 0, 0, static_cast<float>(coverage)});
+    }
+    EXPECT_GT(covered, 500) << &map - maps;
+    for (const bool area : {false, true}) {
+      exactArea = area;
+      const auto pixels = raster({item}, width, height, 16);
+      double sum = 0;
+      for (size_t i = 0; i < pixels.size(); ++i)
+        sum += std::pow(static_cast<double>(pixels[i].a) - static_cast<double>(truth[i * 4 + 3]), 2);
+      const double db = -10 * std::log10(sum / static_cast<double>(pixels.size()) + 1e-12);
+      std::printf("map %td%s: %.1f dB, %.0f pixels covered\n", &map - maps, area ? ", area" : "", db, covered);
+      EXPECT_GE(db, area ? 39.0 : 35.0) << &map - maps;
+      if (const char* folder = std::getenv("GPGP_TEST_PICTURES")) {
+        const std::string base = std::string(folder) + "/projective" + std::to_string(&map - maps) + (area ? "a" : "");
+        host::writePng(base + ".gpu.png",
+                       host::fromLinearPremultiplied(width, height, std::span(&pixels[0].r, pixels.size() * 4)));
+        host::writePng(base + ".truth.png", host::fromLinearPremultiplied(width, height, truth));
+      }
+    }
+  }
+}
+
+TEST_F(CanvasTest, ProjectiveMapsOfOneDistanceAreAffineAndGradientsFollowTheMap) {
+  makeCanvas(64);
+  TestPath square;
+  square.move(0, 0).line(64, 0).line(64, 64).line(0, 64).close();
+  const GpgpGradientStop stops[] = {{0, {0, 0, 0, 1}}, {1, {1, 1, 1, 1}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = gradient.transform[3] = 1;
+  gradient.stops = stops;
+  gradient.stopCount = 2;
+  gradient.end[0] = 64;
+  GpgpPath view = square.view();
+  view.gradient = &gradient;
+  const GpgpAsset drawing = makeDrawing({view});
+  GpgpCanvasItem item = place(drawing, 2, 6, -4);
+  item.perspective[2] = 2;
+  const auto scaled = raster({item}, 64, 64, 4), affine = raster({place(drawing, 1, 3, -2)}, 64, 64, 4);
+  for (size_t i = 0; i < scaled.size(); ++i) ASSERT_EQ(scaled[i].r, affine[i].r) << i;
+  item.perspective[2] = -2;
+  for (const Rgba& p : raster({item}, 64, 64, 4)) ASSERT_EQ(p.a, 0);
+  item = place(drawing);
+  item.perspective[0] = 1.0f / 64, item.perspective[2] = 1; // x / (1 + x / 64)
+  const auto pixels = raster({item}, 64, 64, 4);
+  for (size_t i = 0; i < 64 * 32; ++i) {
+    const double x = static_cast<double>(i % 64) + 0.5;
+    if (i % 64 > 31 || static_cast<double>(i / 64) + 1 > 64 - x) continue; // the square's right edge lies at 32
+    ASSERT_NEAR(pixels[i].r, x / (1 - x / 64) / 64, 0.002) << i;
+    ASSERT_EQ(pixels[i].a, 1);
   }
 }
 
@@ -560,6 +667,8 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
     info.itemCount = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "itemCount");
     item.opacity = 2, expect(GPGP_ERROR_INVALID_ARGUMENT, "opacity");
     item.transform[3] = NAN, expect(GPGP_ERROR_INVALID_ARGUMENT, "transform");
+    item.perspective[1] = INFINITY, expect(GPGP_ERROR_INVALID_ARGUMENT, "perspective");
+    item.perspective[1] = 3e38f, expect(GPGP_SUCCESS, "");
     item.drawing = nullptr, expect(GPGP_ERROR_INVALID_HANDLE, "drawing");
     info.background[1] = INFINITY, expect(GPGP_ERROR_INVALID_ARGUMENT, "background");
     EXPECT_EQ(gpgpRecordPrepareCanvas(nullptr, commands, &frame, &info), GPGP_ERROR_INVALID_HANDLE);

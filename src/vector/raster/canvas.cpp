@@ -13,18 +13,26 @@
 #include "shaders/vector_crowded_paints_one0.spv.h"
 #include "shaders/vector_crowded_paints_one1.spv.h"
 #include "shaders/vector_crowded_paints_one2.spv.h"
+#include "shaders/vector_crowded_rich0.spv.h"
+#include "shaders/vector_crowded_rich1.spv.h"
+#include "shaders/vector_crowded_rich2.spv.h"
 #include "shaders/vector_draw_frag.spv.h"
 #include "shaders/vector_draw_vert.spv.h"
 #include "shaders/vector_fill.spv.h"
 #include "shaders/vector_fill_one.spv.h"
+#include "shaders/vector_fill_projective.spv.h"
 #include "shaders/vector_fill_software.spv.h"
 #include "shaders/vector_fill_software_one.spv.h"
+#include "shaders/vector_fill_software_projective.spv.h"
 #include "shaders/vector_mark.spv.h"
 #include "shaders/vector_mark_one.spv.h"
+#include "shaders/vector_mark_projective.spv.h"
 #include "shaders/vector_mark_software.spv.h"
 #include "shaders/vector_mark_software_one.spv.h"
+#include "shaders/vector_mark_software_projective.spv.h"
 #include "shaders/vector_place.spv.h"
 #include "shaders/vector_place_one.spv.h"
+#include "shaders/vector_place_projective.spv.h"
 #include "shaders/vector_raster0.spv.h"
 #include "shaders/vector_raster1.spv.h"
 #include "shaders/vector_raster2.spv.h"
@@ -34,6 +42,9 @@
 #include "shaders/vector_raster_paints_one0.spv.h"
 #include "shaders/vector_raster_paints_one1.spv.h"
 #include "shaders/vector_raster_paints_one2.spv.h"
+#include "shaders/vector_raster_rich0.spv.h"
+#include "shaders/vector_raster_rich1.spv.h"
+#include "shaders/vector_raster_rich2.spv.h"
 #include "shaders/vector_sift.spv.h"
 #include "shaders/vector_tiles0.spv.h"
 #include "shaders/vector_tiles1.spv.h"
@@ -44,6 +55,9 @@
 #include "shaders/vector_tiles_paints_one0.spv.h"
 #include "shaders/vector_tiles_paints_one1.spv.h"
 #include "shaders/vector_tiles_paints_one2.spv.h"
+#include "shaders/vector_tiles_rich0.spv.h"
+#include "shaders/vector_tiles_rich1.spv.h"
+#include "shaders/vector_tiles_rich2.spv.h"
 #include "shaders/vector_tiles_solid0.spv.h"
 #include "shaders/vector_tiles_solid1.spv.h"
 #include "shaders/vector_tiles_solid2.spv.h"
@@ -70,7 +84,16 @@ constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10;
 // Workgroup counts and conditions of a record.
 enum Groups : uint32_t { kParams, kPaths, kSegments, kSlices, kBins, kWords, kRaster, kTiles, kSift };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
-enum Conditions : uint32_t { kPlain = 0, kPaints = 3, kPaintsOne = 6, kAny = 9, kOneDrawing = 12, kDrawings };
+enum Conditions : uint32_t {
+  kPlain = 0,
+  kPaints = 3,
+  kPaintsOne = 6,
+  kRich = 9,
+  kAny = 12,
+  kOneDrawing = 15,
+  kDrawings,
+  kProjective
+};
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
@@ -134,29 +157,31 @@ core::PassList Canvas::describe() const {
     for (const core::Use& use : uses) pass.uses[pass.useCount++] = use;
     return pass;
   };
-  // Shaders that fetch from drawings come in two forms: one need not choose among drawings at each access.
-  const auto either = [&](const char* name, const char* manyName, std::span<const uint32_t> one,
-                          std::span<const uint32_t> many, std::initializer_list<core::Use> uses, uint32_t groups) {
-    dispatch(name, {name, one}, uses, groups).condition = kOneDrawing;
-    dispatch(manyName, {manyName, many}, uses, groups).condition = kDrawings;
+  // Shaders that fetch from drawings come in three forms: one need not choose among drawings at each access, two know
+  // no projective items.
+  using Spirv = std::span<const uint32_t>;
+  const auto either = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv,
+                          std::initializer_list<core::Use> uses, uint32_t groups) {
+    for (uint32_t k = 0; k < 3; ++k) dispatch(names[k], {names[k], spirv[k]}, uses, groups).condition = kOneDrawing + k;
   };
-  either("place", "place, several drawings", vector_place_one, vector_place,
+  either({"place", "place, several drawings", "place, projective"},
+         {vector_place_one, vector_place, vector_place_projective},
          {{paths, readWrite}, {words, readWrite}, {counters, readWrite}}, kPaths);
-  // Before mark, which comes in two forms: a barrier for the one left out would part them.
+  // Before mark, which comes in several forms: a barrier for those left out would part them.
   dispatch("bin", {"bin", vector_bin}, {{paths, read}, {counters, read}, {masks, write}}, kBins);
-  const std::span<const uint32_t> mark[] = {vector_mark_one, vector_mark, vector_mark_software_one,
-                                            vector_mark_software};
-  const std::span<const uint32_t> fill[] = {vector_fill_one, vector_fill, vector_fill_software_one,
-                                            vector_fill_software};
-  const size_t form = software_ ? 2 : 0;
-  either("mark", "mark, several drawings", mark[form], mark[form + 1],
+  const std::array<Spirv, 3> mark =
+      software_ ? std::array<Spirv, 3>{vector_mark_software_one, vector_mark_software, vector_mark_software_projective}
+                : std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective};
+  const std::array<Spirv, 3> fill =
+      software_ ? std::array<Spirv, 3>{vector_fill_software_one, vector_fill_software, vector_fill_software_projective}
+                : std::array<Spirv, 3>{vector_fill_one, vector_fill, vector_fill_projective};
+  either({"mark", "mark, several drawings", "mark, projective"}, mark,
          {{paths, read}, {words, readWrite}, {counters, read}}, kSegments);
   dispatch("allot", {"allot", vector_allot},
            {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
-  either("fill", "fill, several drawings", fill[form], fill[form + 1],
+  either({"fill", "fill, several drawings", "fill, projective"}, fill,
          {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSlices);
   // By target: the view alone, rgba8, rgba16f.
-  using Spirv = std::span<const uint32_t>;
   const auto addTarget = [&](core::Pass& pass, uint32_t target, uint32_t condition) {
     if (target != kNoImage) pass.uses[pass.useCount++] = {target == kHasImage8 ? image8 : image16, write};
     pass.condition = condition + target;
@@ -177,7 +202,7 @@ core::PassList Canvas::describe() const {
           names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
           {{params, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
           arguments * 4);
-      const uint32_t drawings = condition == kPaints ? kMaxSlots : 1;
+      const uint32_t drawings = condition == kPaints || condition == kRich ? kMaxSlots : 1;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
       addTarget(pass, t, condition);
     }
@@ -206,6 +231,10 @@ core::PassList Canvas::describe() const {
     tilesOf({"crowded gradients", "crowded gradients rgba8", "crowded gradients rgba16f"},
             {vector_crowded_paints_one0, vector_crowded_paints_one1, vector_crowded_paints_one2}, kPaintsOne,
             shader::kCrowdedArguments);
+    tilesOf({"raster all", "raster all rgba8", "raster all rgba16f"},
+            {vector_tiles_rich0, vector_tiles_rich1, vector_tiles_rich2}, kRich, shader::kPaintedArguments);
+    tilesOf({"crowded all", "crowded all rgba8", "crowded all rgba16f"},
+            {vector_crowded_rich0, vector_crowded_rich1, vector_crowded_rich2}, kRich, shader::kCrowdedArguments);
   } else {
     raster({"raster", "raster rgba8", "raster rgba16f"}, {vector_raster0, vector_raster1, vector_raster2}, kPlain);
     raster({"raster gradients, several drawings", "raster gradients rgba8, several drawings",
@@ -213,6 +242,8 @@ core::PassList Canvas::describe() const {
            {vector_raster_paints0, vector_raster_paints1, vector_raster_paints2}, kPaints);
     raster({"raster gradients", "raster gradients rgba8", "raster gradients rgba16f"},
            {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
+    raster({"raster all", "raster all rgba8", "raster all rgba16f"},
+           {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich);
   }
   list.report = counters;
   list.reportBytes = sizeof(CanvasCounters);
@@ -245,6 +276,9 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
     for (const float v : info.items[i].transform)
       if (!std::isfinite(v))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].transform holds a number that is not finite", i);
+    for (const float v : info.items[i].perspective)
+      if (!std::isfinite(v))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].perspective holds a number that is not finite", i);
     if (!(info.items[i].opacity >= 0 && info.items[i].opacity <= 1))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].opacity is %g; it must be 0 to 1", i,
                        static_cast<double>(info.items[i].opacity));
@@ -263,7 +297,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   std::byte* itemBytes = constants_.data() + sizeof header + sizeof slots;
   const DrawingAsset* bound[kMaxSlots] = {};
   uint64_t patchCount = 0;
-  bool gradients = false;
+  bool gradients = false, projective = false;
   uint32_t slotCount = 0;
 
   // Items in painting order, each with as many of its first paths as there is room for; after one that did not fit
@@ -272,7 +306,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t i = 0; i < info.itemCount; ++i) {
     const DrawingAsset& drawing = *drawings[i];
     ItemRecord item{};
-    if (!placeItem(info.items[i].transform, item)) continue; // squeezed to a line: covers nothing
+    if (!placeItem(info.items[i], info.width, info.height, item)) continue; // covers nothing
     uint32_t slot = 0;
     while (slot < slotCount && bound[slot] != &drawing) ++slot;
     if (slot == kMaxSlots)
@@ -297,6 +331,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
       slots[slot] = drawing.tables();
       gradients = gradients || drawing.gradients();
     }
+    projective = projective || item.perspective.w > 0;
     item.opacity = info.items[i].opacity;
     item.slot = slot;
     item.firstSegment = header.segmentCount;
@@ -341,9 +376,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   const bool wide = info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT;
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
-  r.conditions[slotCount > 1 ? kDrawings : kOneDrawing] = true;
+  r.conditions[projective ? kProjective : slotCount > 1 ? kDrawings : kOneDrawing] = true;
   const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
-  r.conditions[(!gradients ? kPlain : slotCount > 1 ? kPaints : kPaintsOne) + image] = true;
+  const bool rich = gradients && projective;
+  r.conditions[(rich ? kRich : !gradients ? kPlain : slotCount > 1 ? kPaints : kPaintsOne) + image] = true;
   r.conditions[kAny + image] = true;
   r.groups[kPaths] = rows(divide(header.pathCount, 64));
   r.groups[kParams] = {divide(r.constants.size(), 64 * 16), 1, 1};
