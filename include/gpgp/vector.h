@@ -54,6 +54,14 @@ typedef struct GpgpGradient {
   VkBool32 interpolateSrgb; /**< mix stops as sRGB encodes them, as SVG does; else linearly */
 } GpgpGradient;
 
+/** A texture of the engine's as paint. Its colours are taken as linear (an sRGB format decodes itself). Beyond 0 to 1
+ *  and between texels the sampler decides: address modes, filters, mip levels, anisotropy. */
+typedef struct GpgpImagePaint {
+  uint32_t image;     /**< in GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES */
+  float transform[6]; /**< texture coordinates (0 to 1 over the image) to drawing: x' = t0 u + t2 v + t4,
+                           y' = t1 u + t3 v + t5 */
+} GpgpImagePaint;
+
 typedef int32_t GpgpCap;
 enum { GPGP_CAP_BUTT = 0, GPGP_CAP_ROUND = 1, GPGP_CAP_SQUARE = 2 };
 
@@ -82,6 +90,7 @@ typedef struct GpgpPath {
   float color[4];               /**< linear RGB, straight alpha, 0 to 1; with a gradient, only alpha counts */
   const GpgpGradient* gradient; /**< NULL: the colour */
   const GpgpStroke* stroke;     /**< NULL: filled; otherwise the stroke is painted instead, and fillRule is not used */
+  const GpgpImagePaint* image;  /**< NULL: none; else instead of the colour, whose alpha counts; without a gradient */
 } GpgpPath;
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
@@ -193,7 +202,18 @@ typedef struct GpgpCanvasItem {
    *  that clip space has x_c = u'.x x + v'.x y + o'.x, likewise y_c and w_c; then t = (W (u'.x + u'.w) / 2,
    *  H (u'.y + u'.w) / 2, the same of v', the same of o') and p = (u'.w, v'.w, o'.w) for a canvas of W x H pixels. */
   float perspective[3];
+  uint32_t firstImage; /**< where in GpgpCanvasInfo::images those of the drawing begin */
 } GpgpCanvasItem;
+
+enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
+
+/** An image that items paint with. The engine has made its contents visible to sampling in compute shaders. */
+typedef struct GpgpCanvasImage {
+  VkImageView view; /**< 2D, a float or normalised format that the sampler may filter */
+  VkSampler sampler;
+  VkImageLayout layout;   /**< it is in: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
+  VkBool32 premultiplied; /**< its colours have been multiplied by its alpha */
+} GpgpCanvasImage;
 
 typedef struct GpgpCanvasInfo {
   GpgpStructureType sType;
@@ -211,13 +231,15 @@ typedef struct GpgpCanvasInfo {
   VkBool32 exactArea; /**< the first edge that a pixel meets, from the front, counts by its area instead of its samples:
                            fewer steps where only one edge passes, still nothing shows through where two meet */
   VkBool32 blendSrgb; /**< colours mix as sRGB encodes them, as SVG renderers do; background is then encoded too */
+  const GpgpCanvasImage* images; /**< that items paint with */
+  uint32_t imageCount;           /**< at most GPGP_MAX_IMAGES */
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
 /** Rasterises the items into the view, the target, or both with the same pixels.
  *  NOT_READY: a drawing is not resident or the canvas not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside
- *  @state compute pipeline, compute descriptor set 0, push constants */
+ *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
                                                       const GpgpFrame* frame, const GpgpCanvasInfo* info);
 

@@ -4,9 +4,14 @@
 // translucent lies in front, and stops when none is left. Every sample is thus composited by itself: neither cuts
 // inside a path nor edges shared by two paths let anything through. The first edge that a pixel meets counts by its
 // area; what lies behind is scaled to what that leaves.
-// PAINTS: whether there are gradients. PROJECTIVE: whether items may be projective. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if
+// PAINTS: whether there are gradients. PROJECTIVE: whether items may be projective. IMAGES: whether there are images. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if
 // one is given).
 #include "color.glsl"
+vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
+  if (color.a <= 0) return color;
+  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
+  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
+}
 #if PAINTS
 #include "paint.glsl"
 #endif
@@ -40,12 +45,6 @@ void beginPixel() {
   sum = vec4(0);
 }
 bool pixelOpen() { return alive != 0 || gap > 0; }
-
-vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
-  if (color.a <= 0) return color;
-  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
-  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
-}
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
 uint coverageOf(PlacedPath p, uvec2 tile) {
@@ -87,8 +86,22 @@ void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec2 paint) {
     const ItemRecord item = items[paint.x];
     const vec2 middle = vec2(pixel) + 0.5;
     vec2 at = item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy;
+    float near = 1.0;
 #if PROJECTIVE
-    if (projects(item)) at /= item.eye.x * middle.x + item.eye.y * middle.y + item.eye.z;
+    if (projects(item)) {
+      near = 1.0 / (item.eye.x * middle.x + item.eye.y * middle.y + item.eye.z);
+      at *= near;
+    }
+#endif
+#if IMAGES
+    if (floatBitsToUint(fetch(item.slot, paint.y + 1)).y == kPaintImage) {
+      vec2 dx = item.inverse.xy, dy = item.inverse.zw;
+      if (projects(item)) {
+        dx -= at * item.eye.x;
+        dy -= at * item.eye.y;
+      }
+      source *= imageAt(item, paint.y - 1, at, dx * near, dy * near);
+    } else
 #endif
     source *= gradientAt(item.slot, paint.y - 1, at);
   }

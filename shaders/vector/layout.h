@@ -37,7 +37,8 @@ struct PathRecord {
 // A gradient. A point of the drawing is taken to gradient space (x = matrix.x dx + matrix.z dy + origin.x, y = matrix.y
 // dx + matrix.w dy + origin.y), where the ramp's place t is, for kPaintLinear, x itself; for kPaintRadial, the largest
 // t with radius(t) >= 0 at which the point lies on the circle that moves from the focus (t = 0) to the unit circle
-// around 0 (t = 1). Where there is no such t, nothing is painted.
+// around 0 (t = 1). Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture
+// coordinates, and firstStop is the image, from the item's first one on; stopCount is 0.
 struct PaintRecord {
   vec4 matrix;
   vec4 origin;               // x, y; focus x, y
@@ -45,7 +46,7 @@ struct PaintRecord {
   uint kind;                 // kPaint...
   uint spread;               // kSpread...
   uint flags;                // kInterpolateSrgb
-  uint firstStop, stopCount; // at least one
+  uint firstStop, stopCount; // at least one for gradients
   uint pad0, pad1;
 };
 
@@ -83,7 +84,8 @@ struct ItemRecord {
   uint slot;         // the drawing's binding
   uint firstSegment; // of the item's segments in the record; they end where the next item's begin
   uint firstPath;    // of the item's paths in the record
-  uint pad0, pad1, pad2;
+  uint firstImage;   // of the record
+  uint pad0, pad1;
 };
 
 // A drawing that a record uses: where its tables begin in its buffer, in vec4.
@@ -113,7 +115,8 @@ struct CanvasHeader {
   uint wordLimit, entryLimit, samples, flags;         // flags: kWrite...
   uint pathsDropped, binsX, binCount, patchCount;
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
-  uint pad0, pad1;
+  uint premultiplied;            // images whose colours are, as bits
+  uint pad0;
   vec4 background;
 };
 
@@ -128,6 +131,8 @@ struct CanvasCounters {
 
 GPGP_CONST uint kPaintLinear = 0u;
 GPGP_CONST uint kPaintRadial = 1u;
+GPGP_CONST uint kPaintImage = 2u;
+GPGP_CONST uint kMaxImages = 8u;
 GPGP_CONST uint kSpreadPad = 0u;
 GPGP_CONST uint kSpreadRepeat = 1u;
 GPGP_CONST uint kSpreadReflect = 2u;

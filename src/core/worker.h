@@ -10,7 +10,7 @@
 
 namespace gpgp::core {
 
-constexpr uint32_t kMaxResources = 24;
+constexpr uint32_t kMaxResources = 32;
 constexpr uint32_t kMaxGroupCounts = 16;
 constexpr uint32_t kMaxConditions = 24;
 constexpr uint32_t kMaxTargets = 16;
@@ -21,6 +21,7 @@ struct Binding {
   VkBuffer ownBuffer = VK_NULL_HANDLE;      ///< an asset's or view's
   VkDeviceSize ownOffset = 0, ownSize = VK_WHOLE_SIZE;
   const GpgpImage* image = nullptr;
+  VkDescriptorImageInfo texture = {}; ///< imageView NULL: left out
 };
 
 struct Record {
@@ -120,10 +121,11 @@ private:
   PassList passes_;
   ShaderDesc vertex_{}, fragment_{};
   bool draws_ = false;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE, textureLayout_ = VK_NULL_HANDLE;
+  uint32_t firstTexture_ = 0; // textures lie in a row
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  std::pmr::vector<VkDescriptorSet> sets_;
+  std::pmr::vector<VkDescriptorSet> sets_, textureSets_;
   std::pmr::vector<VkPipeline> pipelines_; // by shader; filled by prewarm
   std::array<Target, kMaxTargets> targets_ = {};
   std::atomic<uint32_t> targetCount_{0};

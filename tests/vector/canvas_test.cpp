@@ -44,6 +44,7 @@ struct CanvasTest : testing::Test {
   std::vector<std::string> messages;
   uint64_t number = 0;
   bool exactArea = false, blendSrgb = false;
+  std::vector<GpgpCanvasImage> images;
 
   void SetUp() override {
     GpgpContextCreateInfo info = device.contextCreateInfo();
@@ -115,6 +116,8 @@ struct CanvasTest : testing::Test {
       info.samples = samples;
       info.exactArea = exactArea;
       info.blendSrgb = blendSrgb;
+      info.images = images.data();
+      info.imageCount = static_cast<uint32_t>(images.size());
       info.target = image.target({}, after);
       EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
     });
@@ -215,7 +218,7 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
                                    {7, 0.5f, 1, -9, -250, 400},
                                    {1, 0, 0, 1, 0, 0, 0.004f, 0.002f, 0.8f},        // all before the eye
                                    {0.9f, 0, 0, 1, -20, 0, 0.01f, 0, -0.2f},        // behind it left of x = 20
-                                   {-0.9f, 0, 0, 0.4f, 30, 9, -0.01f, 0, 0.5f},        // right of x = 50, mirrored
+                                   {-0.9f, 0, 0, 0.4f, 30, 9, -0.01f, 0, 0.5f},     // right of x = 50, mirrored
                                    {1, 0, 0.4f, 0.2f, 0, 3, 0.001f, -0.012f, 0.7f}, // a floor
                                    {0.5f, 0.3f, 0.2f, 0.6f, -10, -30, 0.01f, 0.011f, -1}};
     for (const auto& t : transforms)
@@ -519,6 +522,175 @@ TEST_F(CanvasTest, GradientsFollowTheirSpreadsAndCircles) {
       const double x = 2 * (13 + 3 * t + radius * std::cos(angle)), y = 2 * (15 + t + radius * std::sin(angle));
       expectAt(pixels[static_cast<size_t>(y) * 64 + static_cast<size_t>(x)], t, 0.09, "circle");
     }
+}
+
+/// An image with one level that canvases can paint with, made of 8-bit RGBA.
+struct Texture {
+  host::HeadlessDevice& device;
+  host::Image image;
+  VkSampler sampler = VK_NULL_HANDLE;
+
+  Texture(host::HeadlessDevice& owner, uint32_t width, uint32_t height, std::span<const uint32_t> texels,
+          VkFilter filter, VkSamplerAddressMode mode)
+      : device(owner), image(owner, {.format = VK_FORMAT_R8G8B8A8_UNORM,
+                                     .width = width,
+                                     .height = height,
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT}) {
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.magFilter = info.minFilter = filter;
+    info.addressModeU = info.addressModeV = mode;
+    EXPECT_EQ(device.vk().vkCreateSampler(device.device(), &info, nullptr, &sampler), VK_SUCCESS);
+    const host::Buffer staging(device, texels.size_bytes(), 0, host::Memory::host);
+    std::memcpy(staging.mapped(), texels.data(), texels.size_bytes());
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+      barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+      barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+      barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+      barrier.image = image.handle();
+      barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      const auto place = [&](VkPipelineStageFlags from, VkPipelineStageFlags to) {
+        device.vk().vkCmdPipelineBarrier(commands, from, to, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+      };
+      place(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
+      VkBufferImageCopy copy{};
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      copy.imageExtent = {width, height, 1};
+      device.vk().vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(),
+                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+      barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+      barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+      barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+      barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+      place(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+    });
+  }
+  ~Texture() { device.vk().vkDestroySampler(device.device(), sampler, nullptr); }
+  Texture(const Texture&) = delete;
+  GpgpCanvasImage view(bool premultiplied = false) const {
+    return {image.view(), sampler, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, premultiplied};
+  }
+};
+
+TEST_F(CanvasTest, ImagesPaintThroughTheirTransformAndSampler) {
+  makeCanvas(64);
+  const uint32_t red = 0xff0000ff, green = 0xff00ff00, half = 0x80ff0000, white = 0xffffffff;
+  const uint32_t first[] = {red, green, half, white}, second[] = {white, red};
+  const Texture chess(device, 2, 2, first, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+  const Texture ramp(device, 2, 1, second, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  TestPath square, lower;
+  square.move(0, 0).line(64, 0).line(64, 64).line(0, 64).close();
+  lower.move(0, 32).line(64, 32).line(64, 64).line(0, 64).close();
+  const GpgpImagePaint tiles{0, {16, 0, 0, 16, 8, 8}}, smooth{1, {32, 0, 0, 1, 16, 0}};
+  GpgpPath below = square.view(), above = lower.view();
+  below.image = &tiles;
+  below.color[3] = 0.5f;
+  above.image = &smooth;
+  const GpgpAsset drawing = makeDrawing({below, above});
+  for (const bool premultiplied : {false, true}) {
+    images = {ramp.view(), chess.view(premultiplied), ramp.view()};
+    GpgpCanvasItem item = place(drawing);
+    item.firstImage = 1;
+    const auto pixels = raster({item}, 64, 64, 4);
+    for (uint32_t y = 0; y < 64; ++y)
+      for (uint32_t x = 0; x < 64; ++x) {
+        const Rgba& p = pixels[y * 64 + x];
+        if (y < 32) { // tiles of 16 pixels from 8, 8 on, half as opaque
+          const bool right = (x + 8) % 16 >= 8, down = (y + 8) % 16 >= 8;
+          const float alpha = down && !right ? 0.5f * 128 / 255 : 0.5f;
+          const Rgba expected = down && right ? Rgba{0.5f, 0.5f, 0.5f, 0.5f}
+                                : down        ? Rgba{0, 0, premultiplied ? 0.5f : alpha, alpha}
+                                : right       ? Rgba{0, 0.5f, 0, 0.5f}
+                                              : Rgba{0.5f, 0, 0, 0.5f};
+          ASSERT_NEAR(p.r, expected.r, 0.002f) << x << " " << y;
+          ASSERT_NEAR(p.g, expected.g, 0.002f) << x << " " << y;
+          ASSERT_NEAR(p.b, expected.b, 0.002f) << x << " " << y;
+          ASSERT_NEAR(p.a, expected.a, 0.002f) << x << " " << y;
+        } else { // white to 24, red from 40 on
+          const float t = std::clamp((static_cast<float>(x) + 0.5f - 24) / 16, 0.0f, 1.0f);
+          ASSERT_NEAR(p.g, 1 - t, 0.006f) << x << " " << y;
+          ASSERT_EQ(p.a, 1) << x << " " << y;
+        }
+      }
+  }
+  // Through a projective map: pixel x shows the drawing's x / (1 - x / 64).
+  images = {chess.view(), ramp.view()};
+  GpgpCanvasItem item = place(drawing);
+  item.perspective[0] = 1.0f / 64, item.perspective[2] = 1;
+  const auto pixels = raster({item}, 64, 64, 4);
+  for (uint32_t x = 0; x < 31; ++x) {
+    const float at = (static_cast<float>(x) + 0.5f) / (1 - (static_cast<float>(x) + 0.5f) / 64);
+    const float y = 0.5f * (1 + at / 64);
+    const bool right = std::fmod(at + 8, 16.0f) >= 8, down = std::fmod(y + 8, 16.0f) >= 8;
+    ASSERT_EQ(pixels[x].g > 0.2f, right) << x << " " << down;
+  }
+}
+
+TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
+  makeCanvas(64);
+  const uint32_t texel[] = {0xffffffff};
+  const Texture white(device, 1, 1, texel, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+  TestPath square;
+  square.move(0, 0).line(64, 0).line(64, 64).close();
+  GpgpImagePaint paint{1, {1, 0, 0, 1, 0, 0}};
+  GpgpPath path = square.view();
+  path.image = &paint;
+  const GpgpAsset drawing = makeDrawing({path});
+  const GpgpView view = makeView(64, 64);
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    GpgpCanvasItem item = place(drawing);
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    info.width = info.height = 32;
+    info.items = &item;
+    info.itemCount = 1;
+    info.view = view;
+    const auto expect = [&](GpgpResult result, const char* words) {
+      info.images = images.data();
+      info.imageCount = static_cast<uint32_t>(images.size());
+      EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), result) << words;
+      EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+    };
+    images = {white.view()};
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "needs 2 images from images[0] on; imageCount is 1");
+    images.push_back(white.view());
+    item.firstImage = 1;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "from images[1] on");
+    item.firstImage = ~0u;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "from images[4294967295] on");
+    item.firstImage = 0;
+    images[1].view = VK_NULL_HANDLE;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "images[1].view");
+    images[1] = white.view();
+    images[1].sampler = VK_NULL_HANDLE;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "images[1].sampler");
+    images[1] = white.view();
+    images[0].layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "images[0].layout");
+    images.assign(9, white.view());
+    expect(GPGP_ERROR_UNSUPPORTED, "at most 8");
+  });
+  const auto refused = [&](const char* words) {
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = &path;
+    info.pathCount = 1;
+    GpgpAsset none = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &none), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  paint.image = 8;
+  refused("image.image is 8");
+  paint = {0, {1, 2, 2, 4, 0, 0}};
+  refused("no inverse");
+  paint = {0, {NAN, 0, 0, 1, 0, 0}};
+  refused("not finite");
+  const GpgpGradientStop stop{0, {0, 0, 0, 1}};
+  GpgpGradient gradient{};
+  gradient.stops = &stop;
+  gradient.stopCount = 1;
+  path.gradient = &gradient;
+  refused("both gradient and image");
 }
 
 TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {

@@ -1,4 +1,4 @@
-// Baked drawings (.gpgpv): a header of 20 words, then curves, patches, paths, gradients and their stops.
+// Baked drawings (.gpgpv): a header of 20 words, then curves, patches, paths, paints and the stops of gradients.
 //
 // Little-endian, as all targets are. What is loaded is checked as strictly as what a stranger sends: a shader may
 // then index without asking again.
@@ -67,12 +67,15 @@ core::Result<void> checkContents(const Drawing& d) {
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: path %zu refers to what is not there", i);
   for (size_t i = 0; i < d.paints.size(); ++i) {
     const PaintRecord& p = d.paints[i];
-    if (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop)
+    const bool image = p.kind == shader::kPaintImage;
+    if (image && (p.firstStop >= shader::kMaxImages || p.stopCount || p.spread || p.flags))
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not an image", i);
+    if (!image && (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu refers to what is not there", i);
-    bool good = p.kind <= shader::kPaintRadial && p.spread <= shader::kSpreadReflect &&
+    bool good = p.kind <= shader::kPaintImage && p.spread <= shader::kSpreadReflect &&
                 p.flags <= shader::kInterpolateSrgb && p.focusRadius >= 0 && p.focusRadius < 1;
     for (int k = 0; k < 4; ++k) good = good && std::isfinite(p.matrix[k]) && std::isfinite(p.origin[k]);
-    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not a gradient", i);
+    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not a gradient or an image", i);
     for (uint32_t k = 1; k < p.stopCount; ++k)
       if (!(d.stops[p.firstStop + k - 1].offset <= d.stops[p.firstStop + k].offset))
         return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the stops of paint %zu are not in order", i);

@@ -25,7 +25,7 @@ struct Drawing {
   std::pmr::vector<CurveRecord> curves;
   std::pmr::vector<PatchRecord> patches; ///< grouped by path, paths in painting order
   std::pmr::vector<PathRecord> paths;
-  std::pmr::vector<PaintRecord> paints; ///< gradients that paths refer to
+  std::pmr::vector<PaintRecord> paints; ///< gradients and images that paths refer to
   std::pmr::vector<StopRecord> stops;   ///< of all gradients, each one's in a row
   float bounds[4] = {};                 ///< left, top, right, bottom of the ink; all 0 where there is none
   float viewport[4] = {};               ///< x, y, width, height
@@ -61,6 +61,9 @@ void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFill
 /// Checks a gradient and appends its paint and stops; returns its index. A gradient that has no area to spread over
 /// (equal ends, no radius, a transform without inverse) paints its last stop's colour, as SVG says.
 core::Result<uint32_t> addGradient(const GpgpGradient& gradient, Drawing& drawing);
+
+/// Checks an image paint and appends it; returns its index.
+core::Result<uint32_t> addImage(const GpgpImagePaint& image, Drawing& drawing);
 
 /// All stages for one path; appends its patches, the curves they use and its colour.
 core::Result<void> addPath(const GpgpPath& path, Drawing& drawing);

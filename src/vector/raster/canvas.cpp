@@ -7,6 +7,9 @@
 #include "shaders/vector_crowded0.spv.h"
 #include "shaders/vector_crowded1.spv.h"
 #include "shaders/vector_crowded2.spv.h"
+#include "shaders/vector_crowded_images0.spv.h"
+#include "shaders/vector_crowded_images1.spv.h"
+#include "shaders/vector_crowded_images2.spv.h"
 #include "shaders/vector_crowded_paints0.spv.h"
 #include "shaders/vector_crowded_paints1.spv.h"
 #include "shaders/vector_crowded_paints2.spv.h"
@@ -36,6 +39,9 @@
 #include "shaders/vector_raster0.spv.h"
 #include "shaders/vector_raster1.spv.h"
 #include "shaders/vector_raster2.spv.h"
+#include "shaders/vector_raster_images0.spv.h"
+#include "shaders/vector_raster_images1.spv.h"
+#include "shaders/vector_raster_images2.spv.h"
 #include "shaders/vector_raster_paints0.spv.h"
 #include "shaders/vector_raster_paints1.spv.h"
 #include "shaders/vector_raster_paints2.spv.h"
@@ -49,6 +55,9 @@
 #include "shaders/vector_tiles0.spv.h"
 #include "shaders/vector_tiles1.spv.h"
 #include "shaders/vector_tiles2.spv.h"
+#include "shaders/vector_tiles_images0.spv.h"
+#include "shaders/vector_tiles_images1.spv.h"
+#include "shaders/vector_tiles_images2.spv.h"
 #include "shaders/vector_tiles_paints0.spv.h"
 #include "shaders/vector_tiles_paints1.spv.h"
 #include "shaders/vector_tiles_paints2.spv.h"
@@ -80,7 +89,7 @@ using shader::kMaxSlots;
 using shader::SlotRecord;
 
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
-constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10;
+constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
 // Workgroup counts and conditions of a record.
 enum Groups : uint32_t { kParams, kPaths, kSegments, kSlices, kBins, kWords, kRaster, kTiles, kSift };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
@@ -89,8 +98,9 @@ enum Conditions : uint32_t {
   kPaints = 3,
   kPaintsOne = 6,
   kRich = 9,
-  kAny = 12,
-  kOneDrawing = 15,
+  kImages = 12,
+  kAny = 15,
+  kOneDrawing = 18,
   kDrawings,
   kProjective
 };
@@ -146,6 +156,16 @@ core::PassList Canvas::describe() const {
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
   const auto params = list.add({"items", scratch, paramBytes});
+  core::ResourceIndex images = 0; // the first
+  static constexpr const char* kImageNames[shader::kMaxImages] = {"images[0]", "images[1]", "images[2]", "images[3]",
+                                                                  "images[4]", "images[5]", "images[6]", "images[7]"};
+  for (uint32_t i = 0; i < shader::kMaxImages; ++i) {
+    const auto added = list.add({kImageNames[i], texture, 0, true});
+    if (i == 0) images = added;
+  }
+  const auto useImages = [images](core::Pass& pass) {
+    for (uint32_t i = 0; i < shader::kMaxImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
+  };
 
   list.fill("clear counters", counters, 0);
   list.fill("clear words", words, 0);
@@ -187,12 +207,13 @@ core::PassList Canvas::describe() const {
     pass.condition = condition + target;
   };
   const auto raster = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition) {
-    for (uint32_t t = 0; t < 3; ++t)
-      addTarget(
-          dispatch(names[t], {names[t], spirv[t]},
-                   {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}},
-                   kRaster),
-          t, condition);
+    for (uint32_t t = 0; t < 3; ++t) {
+      core::Pass& pass = dispatch(
+          names[t], {names[t], spirv[t]},
+          {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}}, kRaster);
+      if (condition == kImages) useImages(pass);
+      addTarget(pass, t, condition);
+    }
   };
   // On software devices: from lists, without barriers.
   const auto tilesOf = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition,
@@ -202,8 +223,9 @@ core::PassList Canvas::describe() const {
           names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
           {{params, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
           arguments * 4);
-      const uint32_t drawings = condition == kPaints || condition == kRich ? kMaxSlots : 1;
+      const uint32_t drawings = condition == kPlain || condition == kPaintsOne ? 1 : kMaxSlots;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
+      if (condition == kImages) useImages(pass);
       addTarget(pass, t, condition);
     }
   };
@@ -235,6 +257,11 @@ core::PassList Canvas::describe() const {
             {vector_tiles_rich0, vector_tiles_rich1, vector_tiles_rich2}, kRich, shader::kPaintedArguments);
     tilesOf({"crowded all", "crowded all rgba8", "crowded all rgba16f"},
             {vector_crowded_rich0, vector_crowded_rich1, vector_crowded_rich2}, kRich, shader::kCrowdedArguments);
+    tilesOf({"raster images", "raster images rgba8", "raster images rgba16f"},
+            {vector_tiles_images0, vector_tiles_images1, vector_tiles_images2}, kImages, shader::kPaintedArguments);
+    tilesOf({"crowded images", "crowded images rgba8", "crowded images rgba16f"},
+            {vector_crowded_images0, vector_crowded_images1, vector_crowded_images2}, kImages,
+            shader::kCrowdedArguments);
   } else {
     raster({"raster", "raster rgba8", "raster rgba16f"}, {vector_raster0, vector_raster1, vector_raster2}, kPlain);
     raster({"raster gradients, several drawings", "raster gradients rgba8, several drawings",
@@ -244,6 +271,8 @@ core::PassList Canvas::describe() const {
            {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
     raster({"raster all", "raster all rgba8", "raster all rgba16f"},
            {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich);
+    raster({"raster images", "raster images rgba8", "raster images rgba16f"},
+           {vector_raster_images0, vector_raster_images1, vector_raster_images2}, kImages);
   }
   list.report = counters;
   list.reportBytes = sizeof(CanvasCounters);
@@ -272,6 +301,17 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the target is %u x %u, the canvas %u x %u", info.target.width,
                        info.target.height, info.width, info.height);
   }
+  if (info.imageCount > shader::kMaxImages)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a record paints with at most %u (GPGP_MAX_IMAGES)",
+                     info.imageCount, shader::kMaxImages);
+  if (info.imageCount && !info.images)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images is NULL, but imageCount is %u", info.imageCount);
+  for (uint32_t i = 0; i < info.imageCount; ++i) {
+    if (!info.images[i].view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].view is NULL", i);
+    if (!info.images[i].sampler) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].sampler is NULL", i);
+    if (info.images[i].layout == VK_IMAGE_LAYOUT_UNDEFINED)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].layout is UNDEFINED: nothing could be found there", i);
+  }
   for (uint32_t i = 0; i < info.itemCount; ++i) {
     for (const float v : info.items[i].transform)
       if (!std::isfinite(v))
@@ -297,7 +337,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   std::byte* itemBytes = constants_.data() + sizeof header + sizeof slots;
   const DrawingAsset* bound[kMaxSlots] = {};
   uint64_t patchCount = 0;
-  bool gradients = false, projective = false;
+  bool gradients = false, projective = false, images = false;
   uint32_t slotCount = 0;
 
   // Items in painting order, each with as many of its first paths as there is room for; after one that did not fit
@@ -306,6 +346,11 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t i = 0; i < info.itemCount; ++i) {
     const DrawingAsset& drawing = *drawings[i];
     ItemRecord item{};
+    const uint32_t firstImage = info.items[i].firstImage;
+    if (drawing.images() && (firstImage > info.imageCount || drawing.images() > info.imageCount - firstImage))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "items[%u]: its drawing needs %u images from images[%u] on; imageCount is %u", i,
+                       drawing.images(), firstImage, info.imageCount);
     if (!placeItem(info.items[i], info.width, info.height, item)) continue; // covers nothing
     uint32_t slot = 0;
     while (slot < slotCount && bound[slot] != &drawing) ++slot;
@@ -332,6 +377,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
       gradients = gradients || drawing.gradients();
     }
     projective = projective || item.perspective.w > 0;
+    images = images || drawing.images();
+    item.firstImage = firstImage;
     item.opacity = info.items[i].opacity;
     item.slot = slot;
     item.firstSegment = header.segmentCount;
@@ -364,6 +411,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                                                            : shader::kMostSegments;
   header.groupSegments = perGroup;
   header.listWords = listWords();
+  for (uint32_t i = 0; i < info.imageCount && images; ++i)
+    header.premultiplied |= info.images[i].premultiplied ? 1u << i : 0;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
   std::memcpy(constants_.data(), &header, sizeof header);
   std::memcpy(constants_.data() + sizeof header, slots, sizeof slots);
@@ -379,8 +428,18 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.conditions[projective ? kProjective : slotCount > 1 ? kDrawings : kOneDrawing] = true;
   const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
   const bool rich = gradients && projective;
-  r.conditions[(rich ? kRich : !gradients ? kPlain : slotCount > 1 ? kPaints : kPaintsOne) + image] = true;
+  r.conditions[(images          ? kImages
+                : rich          ? kRich
+                : !gradients    ? kPlain
+                : slotCount > 1 ? kPaints
+                                : kPaintsOne) +
+               image] = true;
   r.conditions[kAny + image] = true;
+  // Shaders name all images, so those that are not there are bound to the first one.
+  for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
+    const GpgpCanvasImage& from = info.images[i < info.imageCount ? i : 0];
+    r.bindings[kFirstImage + i].texture = {from.sampler, from.view, from.layout};
+  }
   r.groups[kPaths] = rows(divide(header.pathCount, 64));
   r.groups[kParams] = {divide(r.constants.size(), 64 * 16), 1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));

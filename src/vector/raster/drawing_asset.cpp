@@ -16,6 +16,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     if (i) asset->ends_[i].patches += asset->ends_[i - 1].patches;
     asset->ends_[i].segments = outlines.ends[i];
   }
+  for (const PaintRecord& paint : drawing.paints)
+    if (paint.kind == shader::kPaintImage) asset->images_ = std::max(asset->images_, paint.firstStop + 1);
   std::copy_n(drawing.bounds, 4, asset->bounds_);
   std::copy_n(drawing.viewport, 4, asset->viewport_);
   std::pmr::vector<std::byte> bytes(&context.host());

@@ -23,12 +23,13 @@ public:
   uint32_t patches() const { return first(paths()).patches; }
   const shader::SlotRecord& tables() const { return tables_; }
   bool gradients() const { return tables_.stops > tables_.paints; }
+  uint32_t images() const { return images_; } ///< how many of the record's images it needs
   const float* bounds() const { return bounds_; }
   const float* viewport() const { return viewport_; }
 
 private:
   std::pmr::vector<Ends> ends_; // by path, running
-  uint32_t curves_ = 0;
+  uint32_t curves_ = 0, images_ = 0;
   shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};
 };
