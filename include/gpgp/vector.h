@@ -23,7 +23,13 @@ enum {
   GPGP_PATH_LINE = 1,  /**< 1 point */
   GPGP_PATH_QUAD = 2,  /**< 2 points: control, end */
   GPGP_PATH_CUBIC = 3, /**< 3 points: control, control, end */
-  GPGP_PATH_CLOSE = 4  /**< 0 points */
+  GPGP_PATH_CLOSE = 4, /**< 0 points */
+  GPGP_PATH_ARC = 5    /**< 3 points: radii (x, y); turn of the x axis in degrees, GPGP_ARC_... flags; end. SVG's
+                          elliptical    arc: radii that are too small grow, a radius of 0 makes it a line */
+};
+enum {
+  GPGP_ARC_LARGE = 1, /**< the longer of the two ways round */
+  GPGP_ARC_SWEEP = 2  /**< the way on which angles grow (clockwise where y points down) */
 };
 
 typedef int32_t GpgpFillRule;
@@ -91,7 +97,24 @@ typedef struct GpgpPath {
   const GpgpGradient* gradient; /**< NULL: the colour */
   const GpgpStroke* stroke;     /**< NULL: filled; otherwise the stroke is painted instead, and fillRule is not used */
   const GpgpImagePaint* image;  /**< NULL: none; else instead of the colour, whose alpha counts; without a gradient */
+  float scale; /**< the largest at which the drawing is shown, pixels per drawing unit; 0: 1. There arcs are off by less
+                    than 1e-4 of a pixel */
+  uint32_t group; /**< 0: none; else 1 + its index in GpgpDrawingCreateInfo::groups */
 } GpgpPath;
+
+enum {
+  GPGP_MAX_OPACITY_DEPTH = 4, /**< groups less than opaque in each other */
+  GPGP_MAX_CLIP_DEPTH = 16    /**< groups with a clip in each other */
+};
+
+/** Paths that are clipped or faded as one. The paths of a group less than opaque, those of groups inside included,
+ *  follow each other without others between them. */
+typedef struct GpgpPathGroup {
+  uint32_t parent; /**< 0: none; else 1 + the index of an earlier group, which holds this one */
+  float opacity;   /**< 0 to 1, of the group as a whole: where its paths overlap, the lower ones do not shine through */
+  const GpgpPath* clip; /**< what is shown of the group: the union of these, which paint nothing; NULL: all */
+  uint32_t clipCount;   /**< 0 with a clip: nothing is shown */
+} GpgpPathGroup;
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
 
@@ -136,6 +159,8 @@ typedef struct GpgpDrawingCreateInfo {
   const char* filePath;  /**< of a baked drawing, read through the file callbacks */
   const GpgpPath* paths; /**< painted in order, the first at the bottom */
   uint32_t pathCount;
+  const GpgpPathGroup* groups; /**< that paths belong to; only with paths */
+  uint32_t groupCount;
 } GpgpDrawingCreateInfo;
 #define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 

@@ -7,7 +7,7 @@
 // vertices bit for bit: consecutive chords, segments that meet, and paths that have a curve in common.
 //
 // A projective item's lines stay lines, so its chords need no other form; its curves take as many chords as the largest
-// magnification along them asks for. What lies behind the eye is cut off along a line of the drawing that is seen beyond
+// magnification along them asks for. What lies behind the eye is cut off along a line of the drawing that is seen past
 // the canvas, and the outlines are closed along it where it passes left of the canvas: all that then counts are the
 // rows that each cut turns over (placeItem in src/vector/raster/place.h chooses the line).
 //

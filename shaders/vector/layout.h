@@ -30,8 +30,25 @@ struct PatchRecord {
 struct PathRecord {
   vec4 color; // linear RGB, straight alpha; where a gradient gives the colour, only alpha counts: it multiplies the
               // gradient's
-  uint paint; // 1 + index of the gradient; 0: none
-  uint pad0, pad1, pad2;
+  uint paint; // 1 + index of the gradient or image; 0: none
+  uint clip;  // 1 + index of its ClipRecord; 0: none
+  uint layer; // 1 + index of its LayerRecord; 0: none
+  uint pad0;
+};
+
+// Paths of the drawing outside of whose union nothing is shown. They lie before all others, and paint nothing.
+struct ClipRecord {
+  uint firstPath, pathCount;
+  uint parent; // 1 + index of an earlier clip that applies as well; 0: none
+  uint depth;  // 1 without a parent, else one more than the parent's
+};
+
+// Paths that are composited with each other before what is behind them.
+struct LayerRecord {
+  float opacity; // below 1
+  uint parent;   // 1 + index of the earlier layer that holds it; 0: none
+  uint depth;    // as a clip's
+  uint pad0;
 };
 
 // A gradient. A point of the drawing is taken to gradient space (x = matrix.x dx + matrix.z dy + origin.x, y = matrix.y
@@ -91,13 +108,15 @@ struct ItemRecord {
 // A drawing that a record uses: where its tables begin in its buffer, in vec4.
 struct SlotRecord {
   uint boxes, paths, paints, stops; // segments begin at 0
+  uint clips, layers, pad0, pad1;
 };
 
 // A path on the canvas.
 struct PlacedPath {
   uint left, top, right, bottom; // the box of its tiles, right and bottom exclusive
   uint firstWord;                // of its tile words; one row of tiles has wordsOf(left, right) of them
-  uint item, paint, pad0;        // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
+  uint item, paint;              // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
+  uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither
   vec4 color;                    // premultiplied, times the item's opacity
 };
 
@@ -133,6 +152,8 @@ GPGP_CONST uint kPaintLinear = 0u;
 GPGP_CONST uint kPaintRadial = 1u;
 GPGP_CONST uint kPaintImage = 2u;
 GPGP_CONST uint kMaxImages = 8u;
+GPGP_CONST uint kMaxClipDepth = 16u;
+GPGP_CONST uint kMaxLayerDepth = 4u;
 GPGP_CONST uint kSpreadPad = 0u;
 GPGP_CONST uint kSpreadRepeat = 1u;
 GPGP_CONST uint kSpreadReflect = 2u;
@@ -161,7 +182,9 @@ static_assert(sizeof(gpgp::shader::CurveRecord) == 48 && sizeof(gpgp::shader::Pa
 static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::PaintRecord) == 64 &&
               sizeof(gpgp::shader::StopRecord) == 32 && sizeof(gpgp::shader::SegmentRecord) == 64);
 static_assert(sizeof(gpgp::shader::ItemRecord) == 112 && sizeof(gpgp::shader::PlacedPath) == 48 &&
-              sizeof(gpgp::shader::TileWord) == 16 && sizeof(gpgp::shader::CanvasHeader) == 96 &&
+              sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
+              sizeof(gpgp::shader::SlotRecord) == 32 && sizeof(gpgp::shader::TileWord) == 16 &&
+              sizeof(gpgp::shader::CanvasHeader) == 96 &&
               sizeof(gpgp::shader::CanvasCounters) == 48);
 #endif
 #endif

@@ -29,7 +29,8 @@ void main() {
     const SlotRecord slot = slots[item.slot];
     const vec4 box = fetch(item.slot, slot.boxes + path);
     const vec4 color = fetch(item.slot, slot.paths + path * 2);
-    const uint paint = floatBitsToUint(fetch(item.slot, slot.paths + path * 2 + 1).x);
+    const uvec4 rest = floatBitsToUint(fetch(item.slot, slot.paths + path * 2 + 1));
+    const uint paint = rest.x;
     PlacedPath p;
     p.left = p.top = p.right = p.bottom = 0;
     if (box.x <= box.z) {
@@ -69,7 +70,7 @@ void main() {
     const float alpha = color.a * item.opacity;
     p.item = low;
     p.paint = paint == 0 ? 0 : slot.paints + (paint - 1) * 4 + 1;
-    p.pad0 = 0;
+    p.group = (rest.y | rest.z) == 0 ? 0 : slot.paths + path * 2 + 2;
     p.color = vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color.rgb) : color.rgb) * alpha, alpha);
     if (p.paint != 0) p.color = vec4(alpha);
     const uint count = wordsOf(p);

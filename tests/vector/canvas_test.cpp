@@ -82,6 +82,17 @@ struct CanvasTest : testing::Test {
     EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), GPGP_SUCCESS) << lastMessage();
     return drawing;
   }
+  GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths, const std::vector<GpgpPathGroup>& groups,
+                        GpgpResult expected = GPGP_SUCCESS) {
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = paths.data();
+    info.pathCount = static_cast<uint32_t>(paths.size());
+    info.groups = groups.data();
+    info.groupCount = static_cast<uint32_t>(groups.size());
+    GpgpAsset drawing = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), expected) << lastMessage();
+    return drawing;
+  }
   GpgpView makeView(uint32_t width, uint32_t height) {
     GpgpCanvasViewCreateInfo info = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
     info.width = width;
@@ -691,6 +702,141 @@ TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
   gradient.stopCount = 1;
   path.gradient = &gradient;
   refused("both gradient and image");
+}
+
+TEST_F(CanvasTest, ClipsAreTheUnionOfTheirPathsWithinThoseAbove) {
+  makeCanvas(128);
+  // Sample for sample what the clipped path's mask and its clips' masks leave.
+  std::vector<TestPath> shapes;
+  for (uint32_t i = 0; i < 4; ++i) shapes.push_back(randomShape(20 + i, 90));
+  std::vector<GpgpPath> views;
+  for (const TestPath& s : shapes) views.push_back(s.view());
+  const auto twinDrawing = vector::makeDrawing(views, std::pmr::get_default_resource());
+  ASSERT_TRUE(twinDrawing);
+  const GpgpPath either[] = {views[1], views[2]};
+  const std::vector<GpgpPathGroup> groups = {{0, 1, either, 2}, {1, 1, &views[3], 1}, {0, 1, &views[3], 0}};
+  GpgpPath none = views[0], one = views[0], both = views[0];
+  none.group = 3;
+  one.group = 1;
+  both.group = 2;
+  for (const uint32_t samples : {4u, 16u})
+    for (const bool nested : {false, true}) {
+      const GpgpAsset drawing = makeDrawing({none, nested ? both : one, none}, groups);
+      const GpgpCanvasItem item = place(drawing, 0.9f, 3, 2);
+      shader::ItemRecord record{};
+      ASSERT_TRUE(vector::placeItem(item, 100, 90, record));
+      const Twin twin(*twinDrawing, record, 100, 90, samples);
+      const auto pixels = raster({item}, 100, 90, samples);
+      size_t different = 0, covered = 0, cut = 0;
+      for (uint32_t y = 0; y < 90; ++y)
+        for (uint32_t x = 0; x < 100; ++x) {
+          uint32_t mask = twin.at(0, x, y).mask & (twin.at(1, x, y).mask | twin.at(2, x, y).mask);
+          if (nested) mask &= twin.at(3, x, y).mask;
+          const float expected = static_cast<float>(std::popcount(mask)) / static_cast<float>(samples);
+          covered += mask != 0;
+          cut += mask != twin.at(0, x, y).mask;
+          different += pixels[y * 100 + x].a != expected;
+        }
+      EXPECT_EQ(different, 0u) << samples << " " << nested;
+      EXPECT_GT(covered, 100u);
+      EXPECT_GT(cut, 100u);
+    }
+  // With exact areas: a clip of half pixels, around a path without edges there, counts by its area.
+  exactArea = true;
+  TestPath square, window;
+  square.move(-9, -9).line(99, -9).line(99, 99).line(-9, 99).close();
+  window.move(10.3f, 10).line(50, 10).line(50, 50).line(10.3f, 50).close();
+  GpgpPath clipped = square.view();
+  clipped.group = 1;
+  const GpgpPath hole = window.view();
+  const auto pixels = raster({place(makeDrawing({clipped}, {{0, 1, &hole, 1}}))}, 64, 64, 4);
+  EXPECT_NEAR(pixels[20 * 64 + 10].a, 0.7f, 0.005f);
+  EXPECT_EQ(pixels[20 * 64 + 9].a, 0);
+  EXPECT_EQ(pixels[20 * 64 + 11].a, 1);
+}
+
+/// Straight colours over each other from the bottom up, premultiplied in the end.
+Rgba over(Rgba below, const std::array<float, 4>& color, float alpha = 1) {
+  const float a = color[3] * alpha, keep = 1 - a;
+  return {color[0] * a + below.r * keep, color[1] * a + below.g * keep, color[2] * a + below.b * keep,
+          a + below.a * keep};
+}
+
+TEST_F(CanvasTest, GroupsFadeAsAWhole) {
+  makeCanvas(64);
+  // Columns of 8 pixels that paths cover or do not: every combination of five of them.
+  const auto column = [](uint32_t bit, std::array<float, 4> color) {
+    TestPath path;
+    for (uint32_t x = 0; x < 32; ++x)
+      if (x >> bit & 1) {
+        const float left = static_cast<float>(2 * x);
+        path.move(left, 0).line(left + 2, 0).line(left + 2, 64).line(left, 64).close();
+      }
+    path.color = color;
+    return path;
+  };
+  const TestPath paths[] = {column(0, {1, 0, 0, 1}), column(1, {0, 1, 0, 0.5f}), column(2, {0, 0, 1, 1}),
+                            column(3, {1, 1, 0, 1}), column(4, {0, 1, 1, 0.75f})};
+  std::vector<GpgpPath> views;
+  for (const TestPath& p : paths) views.push_back(p.view());
+  // Path 0 below; group 1 holds path 1 and group 2, which holds paths 2 and 3; path 4 above all.
+  views[1].group = 1;
+  views[2].group = views[3].group = 2;
+  const std::vector<GpgpPathGroup> groups = {{0, 0.5f, nullptr, 0}, {1, 0.25f, nullptr, 0}};
+  const GpgpAsset drawing = makeDrawing(views, groups);
+  const auto plus = [](Rgba below, Rgba group, float alpha) {
+    const float keep = 1 - group.a * alpha;
+    return Rgba{group.r * alpha + below.r * keep, group.g * alpha + below.g * keep, group.b * alpha + below.b * keep,
+                group.a * alpha + below.a * keep};
+  };
+  const auto expected = [&](uint32_t bits) {
+    const auto paint = [&](Rgba below, uint32_t k) { return bits >> k & 1 ? over(below, paths[k].color) : below; };
+    const Rgba inner = paint(paint({}, 2), 3), outer = plus(paint({}, 1), inner, 0.25f);
+    return paint(plus(paint({}, 0), outer, 0.5f), 4);
+  };
+  for (const bool area : {false, true})
+    for (const float shift : {0.0f, 0.5f}) { // edges between pixels, and inside them
+      exactArea = area;
+      const auto pixels = raster({place(drawing, 1, shift, 0), place(drawing, 1, 200, 0)}, 64, 64, 16);
+      for (uint32_t x = 1; x < 64; ++x) {
+        const Rgba a = expected(x / 2), b = expected((x - 1) / 2);
+        const float half = shift > 0 && x % 2 == 0 ? 0.5f : 0.0f; // of the column left of it
+        const Rgba& p = pixels[30 * 64 + x];
+        const float tolerance = area && half > 0 ? 0.03f : 0.002f; // several edges in a pixel
+        ASSERT_NEAR(p.r, a.r * (1 - half) + b.r * half, tolerance) << x << " " << shift << " " << area;
+        ASSERT_NEAR(p.g, a.g * (1 - half) + b.g * half, tolerance) << x << " " << shift << " " << area;
+        ASSERT_NEAR(p.b, a.b * (1 - half) + b.b * half, tolerance) << x << " " << shift << " " << area;
+        ASSERT_NEAR(p.a, a.a * (1 - half) + b.a * half, tolerance) << x << " " << shift << " " << area;
+      }
+    }
+}
+
+TEST_F(CanvasTest, GroupsThatCannotBeAreRefusedWithWords) {
+  TestPath square;
+  square.move(0, 0).line(4, 0).line(4, 4).close();
+  GpgpPath path = square.view(), outside = path;
+  path.group = 1;
+  const auto refused = [&](const std::vector<GpgpPath>& paths, const std::vector<GpgpPathGroup>& groups,
+                           GpgpResult result, const char* words) {
+    messages.clear();
+    EXPECT_EQ(makeDrawing(paths, groups, result), nullptr);
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  refused({path}, {}, GPGP_ERROR_INVALID_ARGUMENT, "paths[0].group is 1; there are 0 groups");
+  refused({path}, {{1, 1, nullptr, 0}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].parent is 1");
+  refused({path}, {{0, NAN, nullptr, 0}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].opacity");
+  refused({path}, {{0, 1, nullptr, 2}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].clip is NULL");
+  refused({path, outside, path}, {{0, 0.5f, nullptr, 0}}, GPGP_ERROR_INVALID_ARGUMENT, "paths[2]: others lie");
+  GpgpPath bad = outside;
+  bad.fillRule = 7;
+  refused({path}, {{0, 1, &bad, 1}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].clip[0]: fillRule is 7");
+  std::vector<GpgpPathGroup> deep;
+  for (uint32_t i = 0; i < 5; ++i) deep.push_back({i, 0.5f, nullptr, 0});
+  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "groups[4]: more than 4");
+  deep.clear();
+  for (uint32_t i = 0; i < 17; ++i) deep.push_back({i, 1, &outside, 1});
+  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "groups[16]: more than 16");
+  EXPECT_NE(makeDrawing({path, path, outside}, {{0, 0.5f, nullptr, 0}}), nullptr);
 }
 
 TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {

@@ -337,7 +337,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   std::byte* itemBytes = constants_.data() + sizeof header + sizeof slots;
   const DrawingAsset* bound[kMaxSlots] = {};
   uint64_t patchCount = 0;
-  bool gradients = false, projective = false, images = false;
+  bool gradients = false, projective = false, images = false, groups = false;
   uint32_t slotCount = 0;
 
   // Items in painting order, each with as many of its first paths as there is room for; after one that did not fit
@@ -378,6 +378,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     }
     projective = projective || item.perspective.w > 0;
     images = images || drawing.images();
+    groups = groups || drawing.groups();
     item.firstImage = firstImage;
     item.opacity = info.items[i].opacity;
     item.slot = slot;
@@ -427,7 +428,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
   r.conditions[projective ? kProjective : slotCount > 1 ? kDrawings : kOneDrawing] = true;
   const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
-  const bool rich = gradients && projective;
+  const bool rich = groups || (gradients && projective);
   r.conditions[(images          ? kImages
                 : rich          ? kRich
                 : !gradients    ? kPlain
