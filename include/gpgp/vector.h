@@ -23,7 +23,13 @@ enum {
   GPGP_PATH_LINE = 1,  /**< 1 point */
   GPGP_PATH_QUAD = 2,  /**< 2 points: control, end */
   GPGP_PATH_CUBIC = 3, /**< 3 points: control, control, end */
-  GPGP_PATH_CLOSE = 4  /**< 0 points */
+  GPGP_PATH_CLOSE = 4, /**< 0 points */
+  GPGP_PATH_ARC = 5    /**< 3 points: radii (x, y); turn of the x axis in degrees, GPGP_ARC_... flags; end. SVG's
+                          elliptical    arc: radii that are too small grow, a radius of 0 makes it a line */
+};
+enum {
+  GPGP_ARC_LARGE = 1, /**< the longer of the two ways round */
+  GPGP_ARC_SWEEP = 2  /**< the way on which angles grow (clockwise where y points down) */
 };
 
 typedef int32_t GpgpFillRule;
@@ -54,6 +60,14 @@ typedef struct GpgpGradient {
   VkBool32 interpolateSrgb; /**< mix stops as sRGB encodes them, as SVG does; else linearly */
 } GpgpGradient;
 
+/** A texture of the engine's as paint. Its colours are taken as linear (an sRGB format decodes itself). Beyond 0 to 1
+ *  and between texels the sampler decides: address modes, filters, mip levels, anisotropy. */
+typedef struct GpgpImagePaint {
+  uint32_t image;     /**< in GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES */
+  float transform[6]; /**< texture coordinates (0 to 1 over the image) to drawing: x' = t0 u + t2 v + t4,
+                           y' = t1 u + t3 v + t5 */
+} GpgpImagePaint;
+
 typedef int32_t GpgpCap;
 enum { GPGP_CAP_BUTT = 0, GPGP_CAP_ROUND = 1, GPGP_CAP_SQUARE = 2 };
 
@@ -82,7 +96,25 @@ typedef struct GpgpPath {
   float color[4];               /**< linear RGB, straight alpha, 0 to 1; with a gradient, only alpha counts */
   const GpgpGradient* gradient; /**< NULL: the colour */
   const GpgpStroke* stroke;     /**< NULL: filled; otherwise the stroke is painted instead, and fillRule is not used */
+  const GpgpImagePaint* image;  /**< NULL: none; else instead of the colour, whose alpha counts; without a gradient */
+  float scale; /**< the largest at which the drawing is shown, pixels per drawing unit; 0: 1. There arcs are off by less
+                    than 1e-4 of a pixel */
+  uint32_t group; /**< 0: none; else 1 + its index in GpgpDrawingCreateInfo::groups */
 } GpgpPath;
+
+enum {
+  GPGP_MAX_OPACITY_DEPTH = 4, /**< groups less than opaque in each other */
+  GPGP_MAX_CLIP_DEPTH = 16    /**< groups with a clip in each other */
+};
+
+/** Paths that are clipped or faded as one. The paths of a group less than opaque, those of groups inside included,
+ *  follow each other without others between them. */
+typedef struct GpgpPathGroup {
+  uint32_t parent; /**< 0: none; else 1 + the index of an earlier group, which holds this one */
+  float opacity;   /**< 0 to 1, of the group as a whole: where its paths overlap, the lower ones do not shine through */
+  const GpgpPath* clip; /**< what is shown of the group: the union of these, which paint nothing; NULL: all */
+  uint32_t clipCount;   /**< 0 with a clip: nothing is shown */
+} GpgpPathGroup;
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
 
@@ -127,6 +159,8 @@ typedef struct GpgpDrawingCreateInfo {
   const char* filePath;  /**< of a baked drawing, read through the file callbacks */
   const GpgpPath* paths; /**< painted in order, the first at the bottom */
   uint32_t pathCount;
+  const GpgpPathGroup* groups; /**< that paths belong to; only with paths */
+  uint32_t groupCount;
 } GpgpDrawingCreateInfo;
 #define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 
@@ -187,7 +221,24 @@ typedef struct GpgpCanvasItem {
   GpgpAsset drawing;
   float transform[6]; /**< drawing to pixel: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
   float opacity;      /**< 0 to 1, multiplies each path's alpha */
+  /** The third row of a projective map: w = p0 x + p1 y + p2, and the pixel is (x', y') / w. All 0: affine, w = 1.
+   *  What lies at w <= 0 is behind the eye and not drawn. For a panel in a 3D world with corner o and sides u, v (units
+   *  of the drawing), let o', u', v' be o (as a point), u and v (as directions) times the view-projection matrix, so
+   *  that clip space has x_c = u'.x x + v'.x y + o'.x, likewise y_c and w_c; then t = (W (u'.x + u'.w) / 2,
+   *  H (u'.y + u'.w) / 2, the same of v', the same of o') and p = (u'.w, v'.w, o'.w) for a canvas of W x H pixels. */
+  float perspective[3];
+  uint32_t firstImage; /**< where in GpgpCanvasInfo::images those of the drawing begin */
 } GpgpCanvasItem;
+
+enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
+
+/** An image that items paint with. The engine has made its contents visible to sampling in compute shaders. */
+typedef struct GpgpCanvasImage {
+  VkImageView view; /**< 2D, a float or normalised format that the sampler may filter */
+  VkSampler sampler;
+  VkImageLayout layout;   /**< it is in: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
+  VkBool32 premultiplied; /**< its colours have been multiplied by its alpha */
+} GpgpCanvasImage;
 
 typedef struct GpgpCanvasInfo {
   GpgpStructureType sType;
@@ -205,13 +256,15 @@ typedef struct GpgpCanvasInfo {
   VkBool32 exactArea; /**< the first edge that a pixel meets, from the front, counts by its area instead of its samples:
                            fewer steps where only one edge passes, still nothing shows through where two meet */
   VkBool32 blendSrgb; /**< colours mix as sRGB encodes them, as SVG renderers do; background is then encoded too */
+  const GpgpCanvasImage* images; /**< that items paint with */
+  uint32_t imageCount;           /**< at most GPGP_MAX_IMAGES */
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
 /** Rasterises the items into the view, the target, or both with the same pixels.
  *  NOT_READY: a drawing is not resident or the canvas not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside
- *  @state compute pipeline, compute descriptor set 0, push constants */
+ *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
                                                       const GpgpFrame* frame, const GpgpCanvasInfo* info);
 

@@ -1,5 +1,5 @@
 #version 460
-// The upper level: which paths may touch each bin of tiles, as bits.
+// The upper level: which paths that paint may touch each bin of tiles, as bits.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
@@ -15,7 +15,8 @@ void main() {
   const uint end = min(counters.cutPath - min(counters.cutPath, word * 32), 32);
   for (uint bit = 0; bit < end; ++bit) {
     const PlacedPath p = paths[word * 32 + bit];
-    if (p.left < left + perBin && p.right > left && p.top < top + perBin && p.bottom > top) mask |= 1u << bit;
+    const bool touches = p.left < left + perBin && p.right > left && p.top < top + perBin && p.bottom > top;
+    if (touches && p.color.a > 0) mask |= 1u << bit;
   }
   bins[kFirstBin + bin * header.pathWords + word] = mask;
 }

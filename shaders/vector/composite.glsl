@@ -4,9 +4,14 @@
 // translucent lies in front, and stops when none is left. Every sample is thus composited by itself: neither cuts
 // inside a path nor edges shared by two paths let anything through. The first edge that a pixel meets counts by its
 // area; what lies behind is scaled to what that leaves.
-// PAINTS: whether there are gradients. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if
-// one is given).
+// PAINTS: whether there are gradients. RICH: whether there are groups and projective items. IMAGES: whether there are
+// images. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
 #include "color.glsl"
+vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
+  if (color.a <= 0) return color;
+  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
+  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
+}
 #if PAINTS
 #include "paint.glsl"
 #endif
@@ -28,6 +33,16 @@ float gap; // light past the first edge where its samples say that none is left:
 float through[16];
 vec4 sum;
 
+#if RICH
+// A group less than opaque has light of its own: what reached it times its opacity. Behind its last path that is joined
+// again with what passed the group by.
+uint depth, chainItem;
+uint chain[kMaxLayerDepth]; // the groups that paths at hand belong to, the outermost first
+float opacities[kMaxLayerDepth], outerScale[kMaxLayerDepth], outerGap[kMaxLayerDepth];
+uint outerAlive[kMaxLayerDepth];
+float outer[kMaxLayerDepth * 16];
+#endif
+
 void beginPixel() {
   all = (1u << header.samples) - 1;
   share = 1.0 / float(header.samples);
@@ -36,16 +51,74 @@ void beginPixel() {
   alive = all;
   scale = 1.0;
   gap = 0;
+#if RICH
+  depth = 0;
+  chainItem = 0;
+#endif
   for (uint k = 0; k < 16; ++k) through[k] = 1.0;
   sum = vec4(0);
 }
-bool pixelOpen() { return alive != 0 || gap > 0; }
 
-vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
-  if (color.a <= 0) return color;
-  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
-  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
+#if RICH
+bool pixelOpen() { return depth > 0 || alive != 0 || gap > 0; }
+
+void leaveLayer() {
+  --depth;
+  const float past = 1.0 - opacities[depth];
+  float sumPast = 0, sumLight = 0;
+  for (uint k = 0; k < header.samples; ++k) {
+    const float passed = (outerAlive[depth] >> k & 1) != 0 ? outer[depth * 16 + k] * past : 0.0;
+    const float light = (alive >> k & 1) != 0 ? through[k] : 0.0;
+    through[k] = passed + light;
+    sumPast += passed;
+    sumLight += light;
+  }
+  alive = outerAlive[depth];
+  soft = true;
+  if ((header.flags & kExactArea) == 0) return;
+  const float whole = (sumPast * outerScale[depth] + sumLight * scale) * share + outerGap[depth] * past + gap;
+  const float counted = (sumPast + sumLight) * share;
+  if (counted > 0) scale = whole / counted;
+  gap = counted > 0 ? 0.0 : whole;
 }
+
+uvec4 fetchLayer(ItemRecord item, uint layer) {
+  return floatBitsToUint(fetch(item.slot, slots[item.slot].layers + layer - 1));
+}
+uint layerAt(ItemRecord item, uint layer, uint wanted) { // of the layers that hold it, the one at depth `wanted`
+  uvec4 record = fetchLayer(item, layer);
+  while (record.z > wanted) {
+    layer = record.y;
+    record = fetchLayer(item, layer);
+  }
+  return layer;
+}
+
+// From the groups of the last path to those of the next one. `layer`: 0 none.
+void toLayer(uint index, ItemRecord item, uint layer) {
+  const uint wanted = layer == 0 ? 0 : fetchLayer(item, layer).z;
+  while (depth > 0 && (chainItem != index || depth > wanted || layerAt(item, layer, depth) != chain[depth - 1]))
+    leaveLayer();
+  chainItem = index;
+  while (depth < wanted) {
+    chain[depth] = layerAt(item, layer, depth + 1);
+    const float opacity = uintBitsToFloat(fetchLayer(item, chain[depth]).x);
+    opacities[depth] = opacity;
+    outerScale[depth] = scale;
+    outerGap[depth] = gap;
+    outerAlive[depth] = alive;
+    gap *= opacity;
+    for (uint k = 0; k < 16; ++k) {
+      outer[depth * 16 + k] = through[k];
+      through[k] *= opacity;
+    }
+    soft = true;
+    ++depth;
+  }
+}
+#else
+bool pixelOpen() { return alive != 0 || gap > 0; }
+#endif
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
 uint coverageOf(PlacedPath p, uvec2 tile) {
@@ -72,22 +145,87 @@ int differenceAt(uvec4 row, uint x) {
   return (x & 1) != 0 ? (int(pair) - low) >> 16 : low;
 }
 
-// A path over pixel `at` of the tile and `pixel` of the canvas; `paint` is its item and its paint.
-void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec2 paint) {
-  uint mask = all;
-  int difference = 0;
-  if (code > 1) {
-    const uint row = (code >> 2) * (kEntryWords / 4) + at.y;
-    mask = foldRow(entries[row], at.x) ^ ((code & 1) != 0 ? all : 0);
-    if (first || gap > 0) difference = differenceAt(entries[row + kEntryWords / 8], at.x);
-    if (mask == 0 && (first ? difference == 0 : gap * float(difference) <= 0)) return;
+// What a path does to pixel `at` of the tile: samples, and by how much its area differs from them.
+uint maskAt(uint code, uvec2 at, bool area, out int difference) {
+  difference = 0;
+  if (code == 1) return all;
+  const uint row = (code >> 2) * (kEntryWords / 4) + at.y;
+  if (area) difference = differenceAt(entries[row + kEntryWords / 8], at.x);
+  return foldRow(entries[row], at.x) ^ ((code & 1) != 0 ? all : 0);
+}
+
+#if RICH
+// Where a path and its clips, or two paths of a clip, both have an edge, samples alone count.
+void combine(inout uint mask, inout int difference, uint other, int otherDifference, bool join) {
+  if ((other == 0 || other == all) && otherDifference == 0) {
+    if ((other == all) != join) return;
+    mask = other;
+    difference = 0;
+  } else if ((mask == 0 || mask == all) && difference == 0) {
+    if ((mask == all) == join) return;
+    mask = other;
+    difference = otherDifference;
+  } else {
+    mask = join ? mask | other : mask & other;
+    difference = 0;
   }
+}
+
+void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout int difference) {
+  while (clip != 0 && (mask != 0 || difference != 0)) {
+    const uvec4 record = floatBitsToUint(fetch(item.slot, slots[item.slot].clips + clip - 1));
+    uint shown = 0;
+    int shownDifference = 0;
+    for (uint k = 0; k < record.y; ++k) {
+      const uint code = coverageOf(paths[item.firstPath + record.x + k], tile);
+      if (code == 0) continue;
+      int otherDifference;
+      const uint other = maskAt(code, at, area, otherDifference);
+      combine(shown, shownDifference, other, otherDifference, true);
+    }
+    combine(mask, difference, shown, shownDifference, false);
+    clip = record.z;
+  }
+}
+#endif
+
+// A path over pixel `at` of the tile and `pixel` of the canvas; `paint` is its item, its paint and its group.
+void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec3 paint) {
+  const bool area = first || gap > 0;
+  int difference;
+  uint mask = maskAt(code, at, area, difference);
+#if RICH
+  uvec4 group = uvec4(0);
+  const ItemRecord own = items[paint.x];
+  if (paint.z != 0) group = floatBitsToUint(fetch(own.slot, paint.z - 1));
+  toLayer(paint.x, own, group.z);
+  if (alive == 0 && gap <= 0) return; // the group is hidden, not what lies behind it
+  if (group.y != 0) clipBy(own, group.y, pixel / kTileSize, at, area, mask, difference);
+#endif
+  if (mask == 0 && (first ? difference == 0 : gap * float(difference) <= 0)) return;
 #if PAINTS
   if (paint.y != 0) {
     const ItemRecord item = items[paint.x];
     const vec2 middle = vec2(pixel) + 0.5;
-    source *= gradientAt(item.slot, paint.y - 1,
-                         item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy);
+    vec2 at = item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy;
+    float near = 1.0;
+#if PROJECTIVE
+    if (projects(item)) {
+      near = 1.0 / (item.eye.x * middle.x + item.eye.y * middle.y + item.eye.z);
+      at *= near;
+    }
+#endif
+#if IMAGES
+    if (floatBitsToUint(fetch(item.slot, paint.y + 1)).y == kPaintImage) {
+      vec2 dx = item.inverse.xy, dy = item.inverse.zw;
+      if (projects(item)) {
+        dx -= at * item.eye.x;
+        dy -= at * item.eye.y;
+      }
+      source *= imageAt(item, paint.y - 1, at, dx * near, dy * near);
+    } else
+#endif
+    source *= gradientAt(item.slot, paint.y - 1, at);
   }
 #endif
   float weight;
@@ -137,6 +275,9 @@ void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
 
 // What is left of the light reaches the background; then the pixel is written.
 void writePixel(uvec2 pixel) {
+#if RICH
+  while (depth > 0) leaveLayer();
+#endif
   float light = 0;
   for (uint k = 0; k < 16; ++k) light += (alive >> k & 1) != 0 ? through[k] : 0.0;
   sum += header.background * (light * share * scale + gap);

@@ -6,6 +6,11 @@
 // kFlatness of it; chords that reach beyond the segment's ends are clipped to those. Everything that borders shares its
 // vertices bit for bit: consecutive chords, segments that meet, and paths that have a curve in common.
 //
+// A projective item's lines stay lines, so its chords need no other form; its curves take as many chords as the largest
+// magnification along them asks for. What lies behind the eye is cut off along a line of the drawing that is seen past
+// the canvas, and the outlines are closed along it where it passes left of the canvas: all that then counts are the
+// rows that each cut turns over (placeItem in src/vector/raster/place.h chooses the line).
+//
 // Rows are sample rows: n of them in a pixel, one sample in each. Columns are pixels; -1 stands for all left of the
 // canvas. Only + - * on precise floats and division by core/math.h: CPU and GPU agree on every bit.
 #ifndef GPGP_SHADERS_VECTOR_EDGE_H
@@ -14,16 +19,44 @@
 
 #include "../core/math.h"
 
+#ifdef __cplusplus
+#define PROJECTIVE 1
+#elif !defined(PROJECTIVE) // whether items may be projective
+#define PROJECTIVE 0
+#endif
+
 GPGP_SHADER_BEGIN
 
 GPGP_CONST float kFlatness = 0.03125f;  // pixels: how far a chord may lie from its curve
 GPGP_CONST uint kMaxChords = 1024u;     // of one curve
 GPGP_CONST float kLongestChord = 16.0f; // pixels, so that work is even; longer only beyond kMaxChords
 
-// A drawing's point on the canvas.
+// What the canvas gives to every chord.
+struct Grid {
+  uint samples; // in a pixel, rows as well
+  int rows;     // of samples on the canvas
+  int columns;  // of pixels
+};
+
+#if PROJECTIVE
+GPGP_FN bool projects(ItemRecord item) { return item.perspective.w > 0.0f; }
+// How far a drawing's point lies from the eye.
+GPGP_FN float depthOf(ItemRecord item, float x, float y) {
+  GPGP_PRECISE float w = item.perspective.x * x + (item.perspective.y * y + item.perspective.z);
+  return w;
+}
+#endif
+
+// A drawing's point on the canvas. It must not lie behind the eye.
 GPGP_FN vec2 toPixel(ItemRecord item, float x, float y) {
   GPGP_PRECISE float px = item.transform.x * x + (item.transform.z * y + item.offsets.z);
   GPGP_PRECISE float py = item.transform.y * x + (item.transform.w * y + item.offsets.w);
+#if PROJECTIVE
+  if (projects(item)) {
+    const float w = max(depthOf(item, x, y), item.perspective.w); // the latter only by rounding
+    return vec2(divide(px, w), divide(py, w));
+  }
+#endif
   return vec2(px, py);
 }
 
@@ -36,7 +69,75 @@ GPGP_FN float bendOf(vec2 a, vec2 b, vec2 c) {
 }
 
 // How many chords a curve takes: a power of two, or one and a half times that, which needs neither roots nor division.
-GPGP_FN uint chordCount(ItemRecord item, SegmentRecord s) {
+// `length` in longest chords, `bend` the fourth power of what flatness asks for.
+GPGP_FN uint chordsFor(float length, float bend) {
+  uint n = 1u;
+  while (n < kMaxChords) {
+    GPGP_PRECISE float m = float(n);
+    GPGP_PRECISE float m2 = m * m;
+    GPGP_PRECISE float m4 = m2 * m2;
+    if (m >= length && m4 >= bend) return n;
+    if (n > 1u && m * 1.5f >= length && m4 * 5.0625f >= bend) return n + n / 2u;
+    n *= 2u;
+  }
+  return kMaxChords;
+}
+
+#if PROJECTIVE
+// Of a segment's control points, how many lie in front of the eye: 0 to 4.
+GPGP_FN uint inFront(ItemRecord item, SegmentRecord s) {
+  const float near = item.perspective.w;
+  return (depthOf(item, s.first.x, s.first.y) >= near ? 1u : 0u) +
+         (depthOf(item, s.first.z, s.first.w) >= near ? 1u : 0u) +
+         (depthOf(item, s.second.x, s.second.y) >= near ? 1u : 0u) +
+         (depthOf(item, s.second.z, s.second.w) >= near ? 1u : 0u);
+}
+
+// How far a small step in the drawing reaches on the canvas, at most, times w.
+GPGP_FN vec2 reachOf(Grid g, ItemRecord item, float x, float y) {
+  const float halfX = 0.5f * float(g.columns), halfY = 0.5f * float(g.rows) * sampleStep(g.samples);
+  GPGP_PRECISE float w = item.perspective.x * x + item.perspective.y * y;
+  GPGP_PRECISE float px = item.transform.x * x + item.transform.z * y - halfX * w;
+  GPGP_PRECISE float py = item.transform.y * x + item.transform.w * y - halfY * w;
+  GPGP_PRECISE float u = abs(px) + halfX * abs(w);
+  GPGP_PRECISE float v = abs(py) + halfY * abs(w);
+  return vec2(u, v);
+}
+
+// Chords within kFlatness of the curve and, up to kMaxChords, no longer than kLongestChord, by the part nearest to the
+// eye; twice as many where the segment passes behind the eye, as each chord may then be cut (chordOf).
+GPGP_FN uint projectedChords(Grid g, ItemRecord item, SegmentRecord s) {
+  const float near = item.perspective.w;
+  const float w = max(min(min(depthOf(item, s.first.x, s.first.y), depthOf(item, s.first.z, s.first.w)),
+                          min(depthOf(item, s.second.x, s.second.y), depthOf(item, s.second.z, s.second.w))),
+                      near);
+  GPGP_PRECISE float wholeX = s.second.z - s.first.x;
+  GPGP_PRECISE float wholeY = s.second.w - s.first.y;
+  const vec2 whole = reachOf(g, item, wholeX, wholeY);
+  const float length = divide(max(whole.x, whole.y), w) * (1.0f / kLongestChord);
+  float bend = 0.0f;
+  if (s.line == 0u) {
+    GPGP_PRECISE float ax = s.first.x - (s.first.z + s.first.z) + s.second.x;
+    GPGP_PRECISE float ay = s.first.y - (s.first.w + s.first.w) + s.second.y;
+    GPGP_PRECISE float bx = s.first.z - (s.second.x + s.second.x) + s.second.z;
+    GPGP_PRECISE float by = s.first.w - (s.second.y + s.second.y) + s.second.w;
+    const vec2 a = reachOf(g, item, ax, ay);
+    const vec2 b = reachOf(g, item, bx, by);
+    GPGP_PRECISE float u = a.x * a.x + a.y * a.y;
+    GPGP_PRECISE float v = b.x * b.x + b.y * b.y;
+    GPGP_PRECISE float w2 = w * w;
+    bend = divide(max(u, v), w2) * (0.5625f / (kFlatness * kFlatness));
+  }
+  const uint n = chordsFor(length, bend);
+  const uint front = inFront(item, s);
+  return front == 0u || front == 4u ? n : n + n;
+}
+#endif
+
+GPGP_FN uint chordCount(Grid g, ItemRecord item, SegmentRecord s) {
+#if PROJECTIVE
+  if (projects(item)) return projectedChords(g, item, s);
+#endif
   const vec2 a = toPixel(item, s.first.x, s.first.y);
   const vec2 d = toPixel(item, s.second.z, s.second.w);
   GPGP_PRECISE float width = d.x - a.x;
@@ -50,16 +151,7 @@ GPGP_FN uint chordCount(ItemRecord item, SegmentRecord s) {
     GPGP_PRECISE float square = max(bendOf(a, b, c), bendOf(b, c, d)) * (0.5625f / (kFlatness * kFlatness));
     bend = square;
   }
-  uint n = 1u;
-  while (n < kMaxChords) {
-    GPGP_PRECISE float m = float(n);
-    GPGP_PRECISE float m2 = m * m;
-    GPGP_PRECISE float m4 = m2 * m2;
-    if (m >= length && m4 >= bend) return n;
-    if (n > 1u && m * 1.5f >= length && m4 * 5.0625f >= bend) return n + n / 2u;
-    n *= 2u;
-  }
-  return kMaxChords;
+  return chordsFor(length, bend);
 }
 
 // The parameter's step for as many chords.
@@ -69,15 +161,14 @@ GPGP_FN float chordStep(uint n) {
   return n == power ? step : step * 0.6666667f;
 }
 
-// What the canvas gives to every chord.
-struct Grid {
-  uint samples; // in a pixel, rows as well
-  int rows;     // of samples on the canvas
-  int columns;  // of pixels
-};
-
 // Whether a segment can change anything on the canvas: its curve's box decides.
 GPGP_FN bool mayMatter(Grid g, ItemRecord item, SegmentRecord s) {
+#if PROJECTIVE
+  if (projects(item)) {
+    const uint front = inFront(item, s);
+    if (front < 4u) return front > 0u;
+  }
+#endif
   const vec2 a = toPixel(item, s.first.x, s.first.y);
   const vec2 b = toPixel(item, s.first.z, s.first.w);
   const vec2 c = toPixel(item, s.second.x, s.second.y);
@@ -134,8 +225,31 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
   chord.slope = 0.0f;
   chord.top = vec2(0.0f, 0.0f);
   chord.bottom = chord.top;
+#if PROJECTIVE
+  // Of a segment that passes behind the eye, the second half of the chords are the outline along the cut: where chord
+  // i - n / 2 is cut, down to there from above the canvas.
+  uint chords = n, at = i;
+  float spacing = step;
+  bool closing = false;
+  if (projects(item)) {
+    const uint front = inFront(item, s);
+    if (front == 0u) return false;
+    if (front < 4u) {
+      chords = n / 2u;
+      spacing = step + step;
+      closing = i >= chords;
+      if (closing) {
+        if (item.eye.w == 0.0f) return false;
+        at = i - chords;
+      }
+    }
+  }
+  vec2 a = curvePoint(s, at, chords, spacing);
+  vec2 b = curvePoint(s, at + 1u, chords, spacing);
+#else
   vec2 a = curvePoint(s, i, n, step);
   vec2 b = curvePoint(s, i + 1u, n, step);
+#endif
   if (s.ends.y > s.first.y) { // begins below its curve's begin
     if (b.y <= s.ends.y) return false;
     if (a.y <= s.ends.y) a = vec2(s.ends.x, s.ends.y);
@@ -144,6 +258,29 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
     if (a.y >= s.ends.w) return false;
     if (b.y >= s.ends.w) b = vec2(s.ends.z, s.ends.w);
   }
+#if PROJECTIVE
+  if (projects(item)) {
+    const float near = item.perspective.w;
+    const float da = depthOf(item, a.x, a.y), db = depthOf(item, b.x, b.y);
+    if (da < near && db < near) return false;
+    if (da < near || db < near) {
+      GPGP_PRECISE float missing = near - da;
+      GPGP_PRECISE float whole = db - da;
+      const float t = divide(missing, whole);
+      GPGP_PRECISE float x = a.x + (b.x - a.x) * t;
+      GPGP_PRECISE float y = a.y + (b.y - a.y) * t;
+      if (da < near) a = vec2(x, y);
+      else b = vec2(x, y);
+      if (closing) {
+        chord.bottom = vec2(-1.0f, toPixel(item, x, y).y);
+        chord.top = vec2(-1.0f, min(chord.bottom.y, -1.0f));
+        chord.last = rowOf(g, chord.bottom.y);
+        chord.side = 1.0f;
+        return true;
+      }
+    } else if (closing) return false;
+  }
+#endif
   a = toPixel(item, a.x, a.y);
   b = toPixel(item, b.x, b.y);
   chord.side = s.side * item.side;

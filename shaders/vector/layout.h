@@ -30,14 +30,32 @@ struct PatchRecord {
 struct PathRecord {
   vec4 color; // linear RGB, straight alpha; where a gradient gives the colour, only alpha counts: it multiplies the
               // gradient's
-  uint paint; // 1 + index of the gradient; 0: none
-  uint pad0, pad1, pad2;
+  uint paint; // 1 + index of the gradient or image; 0: none
+  uint clip;  // 1 + index of its ClipRecord; 0: none
+  uint layer; // 1 + index of its LayerRecord; 0: none
+  uint pad0;
+};
+
+// Paths of the drawing outside of whose union nothing is shown. They lie before all others, and paint nothing.
+struct ClipRecord {
+  uint firstPath, pathCount;
+  uint parent; // 1 + index of an earlier clip that applies as well; 0: none
+  uint depth;  // 1 without a parent, else one more than the parent's
+};
+
+// Paths that are composited with each other before what is behind them.
+struct LayerRecord {
+  float opacity; // below 1
+  uint parent;   // 1 + index of the earlier layer that holds it; 0: none
+  uint depth;    // as a clip's
+  uint pad0;
 };
 
 // A gradient. A point of the drawing is taken to gradient space (x = matrix.x dx + matrix.z dy + origin.x, y = matrix.y
 // dx + matrix.w dy + origin.y), where the ramp's place t is, for kPaintLinear, x itself; for kPaintRadial, the largest
 // t with radius(t) >= 0 at which the point lies on the circle that moves from the focus (t = 0) to the unit circle
-// around 0 (t = 1). Where there is no such t, nothing is painted.
+// around 0 (t = 1). Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture
+// coordinates, and firstStop is the image, from the item's first one on; stopCount is 0.
 struct PaintRecord {
   vec4 matrix;
   vec4 origin;               // x, y; focus x, y
@@ -45,7 +63,7 @@ struct PaintRecord {
   uint kind;                 // kPaint...
   uint spread;               // kSpread...
   uint flags;                // kInterpolateSrgb
-  uint firstStop, stopCount; // at least one
+  uint firstStop, stopCount; // at least one for gradients
   uint pad0, pad1;
 };
 
@@ -73,24 +91,32 @@ struct ItemRecord {
                   // offsets.y
   vec4 transform; // drawing to pixel, the same way with offsets.z, offsets.w
   vec4 offsets;
+  // Projective items (PROJECTIVE shaders): both maps give x w and y w, and w = perspective.x x + perspective.y y +
+  // perspective.z of the drawing's point, 1 / w = eye.x px + eye.y py + eye.z of the pixel. Only what lies at w >=
+  // perspective.w is drawn; that line lies beyond the canvas. perspective.w is 0 for affine items.
+  vec4 perspective;
+  vec4 eye;   // w: 1 where the line at w = perspective.w passes left of the canvas
   float side; // -1 where the transform mirrors, else 1
   float opacity;
   uint slot;         // the drawing's binding
   uint firstSegment; // of the item's segments in the record; they end where the next item's begin
   uint firstPath;    // of the item's paths in the record
-  uint pad0, pad1, pad2;
+  uint firstImage;   // of the record
+  uint pad0, pad1;
 };
 
 // A drawing that a record uses: where its tables begin in its buffer, in vec4.
 struct SlotRecord {
   uint boxes, paths, paints, stops; // segments begin at 0
+  uint clips, layers, pad0, pad1;
 };
 
 // A path on the canvas.
 struct PlacedPath {
   uint left, top, right, bottom; // the box of its tiles, right and bottom exclusive
   uint firstWord;                // of its tile words; one row of tiles has wordsOf(left, right) of them
-  uint item, paint, pad0;        // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
+  uint item, paint;              // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
+  uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither
   vec4 color;                    // premultiplied, times the item's opacity
 };
 
@@ -108,7 +134,8 @@ struct CanvasHeader {
   uint wordLimit, entryLimit, samples, flags;         // flags: kWrite...
   uint pathsDropped, binsX, binCount, patchCount;
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
-  uint pad0, pad1;
+  uint premultiplied;            // images whose colours are, as bits
+  uint pad0;
   vec4 background;
 };
 
@@ -123,6 +150,10 @@ struct CanvasCounters {
 
 GPGP_CONST uint kPaintLinear = 0u;
 GPGP_CONST uint kPaintRadial = 1u;
+GPGP_CONST uint kPaintImage = 2u;
+GPGP_CONST uint kMaxImages = 8u;
+GPGP_CONST uint kMaxClipDepth = 16u;
+GPGP_CONST uint kMaxLayerDepth = 4u;
 GPGP_CONST uint kSpreadPad = 0u;
 GPGP_CONST uint kSpreadRepeat = 1u;
 GPGP_CONST uint kSpreadReflect = 2u;
@@ -150,8 +181,10 @@ GPGP_SHADER_END
 static_assert(sizeof(gpgp::shader::CurveRecord) == 48 && sizeof(gpgp::shader::PatchRecord) == 32);
 static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::PaintRecord) == 64 &&
               sizeof(gpgp::shader::StopRecord) == 32 && sizeof(gpgp::shader::SegmentRecord) == 64);
-static_assert(sizeof(gpgp::shader::ItemRecord) == 80 && sizeof(gpgp::shader::PlacedPath) == 48 &&
-              sizeof(gpgp::shader::TileWord) == 16 && sizeof(gpgp::shader::CanvasHeader) == 96 &&
+static_assert(sizeof(gpgp::shader::ItemRecord) == 112 && sizeof(gpgp::shader::PlacedPath) == 48 &&
+              sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
+              sizeof(gpgp::shader::SlotRecord) == 32 && sizeof(gpgp::shader::TileWord) == 16 &&
+              sizeof(gpgp::shader::CanvasHeader) == 96 &&
               sizeof(gpgp::shader::CanvasCounters) == 48);
 #endif
 #endif

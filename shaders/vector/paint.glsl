@@ -43,3 +43,32 @@ vec4 gradientAt(uint slot, uint paint, vec2 at) {
   if (!encoded && wanted) color.rgb = encodeSrgb(color.rgb);
   return vec4(color.rgb * color.a, color.a);
 }
+
+#if IMAGES
+#define IMAGE(n) layout(set = 1, binding = n) uniform sampler2D image##n;
+IMAGE(0) IMAGE(1) IMAGE(2) IMAGE(3) IMAGE(4) IMAGE(5) IMAGE(6) IMAGE(7)
+
+vec4 sampleImage(uint i, vec2 at, vec2 dx, vec2 dy) { // a sampler may only be chosen by a constant
+  switch (i) {
+  case 0: return textureGrad(image0, at, dx, dy);
+  case 1: return textureGrad(image1, at, dx, dy);
+  case 2: return textureGrad(image2, at, dx, dy);
+  case 3: return textureGrad(image3, at, dx, dy);
+  case 4: return textureGrad(image4, at, dx, dy);
+  case 5: return textureGrad(image5, at, dx, dy);
+  case 6: return textureGrad(image6, at, dx, dy);
+  default: return textureGrad(image7, at, dx, dy);
+  }
+}
+
+// An image's colour at a point of the drawing, premultiplied; dx and dy: how far the point moves from pixel to pixel.
+vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
+  const vec4 matrix = fetch(item.slot, paint);
+  const vec2 origin = fetch(item.slot, paint + 1).xy;
+  const uint image = item.firstImage + floatBitsToUint(fetch(item.slot, paint + 3)).x;
+  vec4 color = sampleImage(image, matrix.xy * at.x + matrix.zw * at.y + origin, matrix.xy * dx.x + matrix.zw * dx.y,
+                           matrix.xy * dy.x + matrix.zw * dy.y);
+  if ((header.premultiplied >> image & 1) == 0) color.rgb *= color.a;
+  return (header.flags & kBlendSrgb) != 0 ? convert(color, true) : color;
+}
+#endif

@@ -29,13 +29,30 @@ void main() {
     const SlotRecord slot = slots[item.slot];
     const vec4 box = fetch(item.slot, slot.boxes + path);
     const vec4 color = fetch(item.slot, slot.paths + path * 2);
-    const uint paint = floatBitsToUint(fetch(item.slot, slot.paths + path * 2 + 1).x);
+    const uvec4 rest = floatBitsToUint(fetch(item.slot, slot.paths + path * 2 + 1));
+    const uint paint = rest.x;
     PlacedPath p;
     p.left = p.top = p.right = p.bottom = 0;
     if (box.x <= box.z) {
       vec2 a = vec2(3e38), b = vec2(-3e38);
       for (uint corner = 0; corner < 4; ++corner) {
-        const vec2 at = toPixel(item, (corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
+        const vec2 here = vec2((corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
+#if PROJECTIVE
+        if (projects(item)) { // where a side of the box passes behind the eye, the cut takes the corner's place
+          const uint next = (0x8du >> corner * 2) & 3; // around the box
+          const vec2 there = vec2((next & 1) != 0 ? box.z : box.x, (next & 2) != 0 ? box.w : box.y);
+          const float near = item.perspective.w;
+          const float dh = depthOf(item, here.x, here.y), dt = depthOf(item, there.x, there.y);
+          if ((dh < near) != (dt < near)) {
+            const vec2 cut = mix(here, there, divide(near - dh, dt - dh));
+            const vec2 at = toPixel(item, cut.x, cut.y);
+            a = min(a, at);
+            b = max(b, at);
+          }
+          if (dh < near) continue;
+        }
+#endif
+        const vec2 at = toPixel(item, here.x, here.y);
         a = min(a, at);
         b = max(b, at);
       }
@@ -53,7 +70,7 @@ void main() {
     const float alpha = color.a * item.opacity;
     p.item = low;
     p.paint = paint == 0 ? 0 : slot.paints + (paint - 1) * 4 + 1;
-    p.pad0 = 0;
+    p.group = (rest.y | rest.z) == 0 ? 0 : slot.paths + path * 2 + 2;
     p.color = vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color.rgb) : color.rgb) * alpha, alpha);
     if (p.paint != 0) p.color = vec4(alpha);
     const uint count = wordsOf(p);

@@ -12,7 +12,11 @@ shared uint counts[kRoom], groupCounts[16], candidates[kRoom];
 shared uvec4 coverage[kRoom]; // of each tile: 0 none, 1 all, 2: entry * 4 + 2 + inside
 shared vec4 colors[kRoom];
 #if PAINTS
+#if RICH
+shared uvec3 paints[kRoom]; // item, paint, group
+#else
 shared uvec2 paints[kRoom]; // item, paint
+#endif
 #endif
 shared uint touching[2][kRoom / 32]; // of the 256 paths at hand, in turn
 shared uint open[2];
@@ -79,7 +83,11 @@ void main() {
         coverage[place] = own;
         colors[place] = p.color;
 #if PAINTS
+#if RICH
+        paints[place] = uvec3(p.item, p.paint, p.group);
+#else
         paints[place] = uvec2(p.item, p.paint);
+#endif
 #endif
       }
       if (lane < kRoom / 32) touching[turn ^ 1][lane] = 0;
@@ -88,10 +96,12 @@ void main() {
       for (uint e = 0; e < count && pixelOpen(); ++e) {
         const uint code = coverage[e][quarter];
         if (code == 0) continue;
-#if PAINTS
+#if RICH
         paintOver(code, inTile, pixel, colors[e], paints[e]);
+#elif PAINTS
+        paintOver(code, inTile, pixel, colors[e], uvec3(paints[e], 0));
 #else
-        paintOver(code, inTile, pixel, colors[e], uvec2(0));
+        paintOver(code, inTile, pixel, colors[e], uvec3(0));
 #endif
       }
       if (base + kRoom >= total && wordEnd <= 256) break;

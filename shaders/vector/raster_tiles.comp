@@ -10,7 +10,8 @@
 layout(local_size_x = 64) in;
 
 void paintPath(uint code, uint path, uvec2 at, uvec2 pixel) {
-  paintOver(code, at, pixel, paths[path].color, uvec2(paths[path].item, paths[path].paint));
+  const PlacedPath p = paths[path];
+  paintOver(code, at, pixel, p.color, uvec3(p.item, p.paint, p.group));
 }
 
 #if TILES == 0

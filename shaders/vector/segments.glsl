@@ -24,8 +24,22 @@ void takeSegment() {
   const Grid g = canvasGrid();
   if (!matters(g, path, item, s)) return;
   const PlacedPath p = paths[path];
-  const uint count = chordCount(item, s);
+  const uint count = chordCount(g, item, s);
   const float step = chordStep(count);
+#if PROJECTIVE
+  // Chords may be long and very unlike each other, so invocations share their rows, by rows of tiles.
+  const int tileRows = int(kTileSize * g.samples), parts = int(gl_NumWorkGroups.z);
+  const int perPart = ((g.rows + tileRows - 1) / tileRows + parts - 1) / parts * tileRows;
+  const int begin = int(gl_WorkGroupID.z) * perPart, end = begin + perPart;
+  for (uint k = 0; k < count; ++k) {
+    Chord c;
+    if (!chordOf(g, item, s, k, count, step, c) || c.last < begin || c.first >= end) continue;
+    c.first = max(c.first, begin);
+    c.last = min(c.last, end);
+    takeChord(g, p, c);
+  }
+  return;
+#endif
   for (uint k = gl_WorkGroupID.z; k < count; k += gl_NumWorkGroups.z) {
     Chord c;
     if (chordOf(g, item, s, k, count, step, c)) takeChord(g, p, c);
@@ -53,7 +67,7 @@ void loadSegments() {
       segmentItem[lane] = low;
       segmentPath[lane] = path;
       if (matters(canvasGrid(), path, item, s)) {
-        count = chordCount(item, s);
+        count = chordCount(canvasGrid(), item, s);
         segmentStep[lane] = chordStep(count);
       }
     }

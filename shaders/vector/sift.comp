@@ -2,8 +2,8 @@
 // For software devices, which pay dearly for barriers: the paths that touch each tile, front to back, as lists.
 //
 // An invocation owns a row of tiles of a bin. A tile's list ends at the first path that is opaque and covers all of it.
-// Tiles without edges and gradients get their colour here; the others are listed for the passes that paint pixels, and
-// those whose list is full are crowded: they are painted from the bins.
+// Tiles without edges, gradients, images and groups get their colour here; the others are listed for the passes that
+// paint pixels, and those whose list is full are crowded: they are painted from the bins.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
@@ -56,7 +56,7 @@ void main() {
       }
       edges &= box;
       inside &= box;
-      const bool gradient = paths[path].paint != 0;
+      const bool uneven = (paths[path].paint | paths[path].group) != 0;
       for (uint touched = edges | inside; touched != 0; ++steps) {
         const uint t = findLSB(touched), mask = 1u << t;
         touched ^= mask;
@@ -78,8 +78,8 @@ void main() {
           open &= ~mask;
         }
       }
-      painted |= gradient ? edges | inside : edges;
-      if (!gradient && paths[path].color.a >= 1.0) open &= ~(inside & ~edges);
+      painted |= uneven ? edges | inside : edges;
+      if (!uneven && paths[path].color.a >= 1.0) open &= ~(inside & ~edges);
     }
   }
   for (uint t = 0; t < width; ++t) {

@@ -16,10 +16,15 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     if (!drawing) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawing is NULL");
     if ((info->data != nullptr) + (info->filePath != nullptr) + (info->paths != nullptr) != 1)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data, filePath and paths must be given");
+    if (info->groupCount && (!info->groups || !info->paths))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "groupCount is %u without groups or without paths",
+                       info->groupCount);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     std::pmr::memory_resource* memory = &(*context)->host();
     const auto make = [&]() -> Result<Drawing> {
-      if (info->paths) return makeDrawing(std::span(info->paths, info->pathCount), memory, &(*context)->jobSystem);
+      if (info->paths)
+        return makeDrawing(std::span(info->paths, info->pathCount), std::span(info->groups, info->groupCount), memory,
+                           &(*context)->jobSystem);
       if (info->data) return loadBaked(std::span(static_cast<const std::byte*>(info->data), info->size), memory);
       const auto bytes = (*context)->readFile(info->filePath);
       if (!bytes) return bytes.error();

@@ -13,11 +13,14 @@
 
 namespace gpgp::core {
 
-using ResourceIndex = uint32_t; // its place in PassList::resources, and its binding in descriptor set 0
+using ResourceIndex =
+    uint32_t; // its place in PassList::resources, and its binding in descriptor set 0 (textures: below)
 
 enum class ResourceKind : uint8_t {
   buffer,    ///< given with each record: the engine's, an asset's or a view's
   image,     ///< given with each record: a storage image of the engine's
+  texture,   ///< given with each record: an image of the engine's with a sampler, read only. Textures lie in a row, in
+             ///< descriptor set 1, which records without them leave unbound
   scratch,   ///< part of the scratch buffer, contents undefined between records
   constants, ///< written by the CPU with each record, read by shaders
 };
@@ -26,7 +29,7 @@ struct Resource {
   const char* name;
   ResourceKind kind;
   VkDeviceSize bytes = 0; ///< scratch and constants
-  bool optional = false;  ///< buffer, image: a record may leave it out; an unused range is bound instead
+  bool optional = false;  ///< buffer, image, texture: a record may leave it out; an unused range is bound instead
 };
 
 enum class UseKind : uint8_t { read, write, readWrite, indirect };
@@ -43,7 +46,7 @@ struct ShaderDesc {
 };
 
 enum class PassKind : uint8_t { dispatch, dispatchIndirect, fill };
-constexpr uint32_t kMaxUses = 16;
+constexpr uint32_t kMaxUses = 24;
 constexpr uint32_t kMaxPassConstants = 8;
 
 struct Pass {

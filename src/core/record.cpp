@@ -168,6 +168,14 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
       write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
       write.pImageInfo = &images[i];
       write.pBufferInfo = nullptr;
+    } else if (resource.kind == ResourceKind::texture) {
+      if (!binding.texture.imageView) continue; // passes that use it are skipped
+      images[i] = binding.texture;
+      write.dstSet = textureSets_[slot];
+      write.dstBinding = i - firstTexture_;
+      write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+      write.pImageInfo = &images[i];
+      write.pBufferInfo = nullptr;
     } else if (resource.kind == ResourceKind::scratch) {
       if (scratch)
         buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[i], std::max<VkDeviceSize>(resource.bytes, 4)};
@@ -277,6 +285,8 @@ Result<void> Worker::record(const Record& record) {
   if (timestamps.queryPool)
     vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
   vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &sets_[slot], 0, nullptr);
+  if (!textureSets_.empty() && record.bindings[firstTexture_].texture.imageView)
+    vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 1, 1, &textureSets_[slot], 0, nullptr);
   VkPipeline bound = VK_NULL_HANDLE;
   bool barrier = false; // owed by a pass that was left out, or needed by this one
   for (const Pass& pass : passes_.passes) {

@@ -18,7 +18,8 @@ VkShaderStageFlags shaderStages(bool draws) {
 Worker::Worker(Context& ctx, Kind workerKind, const GpgpWorkerCreateInfo& info, GpgpService service)
     : Object(ctx, workerKind, info.label), service_(service), queueFamily_(info.queueFamily),
       queueFlags_(info.queueFlags), engineScratch_(info.engineScratch != VK_FALSE), passes_(&ctx.host()),
-      sets_(&ctx.host()), pipelines_(&ctx.host()), slots_(&ctx.host()), harvested_(&ctx.host()), queue_(&ctx.host()) {}
+      sets_(&ctx.host()), textureSets_(&ctx.host()), pipelines_(&ctx.host()), slots_(&ctx.host()),
+      harvested_(&ctx.host()), queue_(&ctx.host()) {}
 
 void Worker::unlink() {
   if (!linked_) return;
@@ -35,6 +36,7 @@ Worker::~Worker() {
   device.vk.DestroyDescriptorPool(device.device, pool_, nullptr);
   device.vk.DestroyPipelineLayout(device.device, layout_, nullptr);
   device.vk.DestroyDescriptorSetLayout(device.device, setLayout_, nullptr);
+  device.vk.DestroyDescriptorSetLayout(device.device, textureLayout_, nullptr);
 }
 
 void Worker::retire() {
@@ -71,36 +73,50 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
           static_cast<unsigned long long>(resource.bytes), resource.name, device.limits.maxStorageBufferRange);
 
   const uint32_t resourceCount = static_cast<uint32_t>(passes_.resources.size());
-  std::array<VkDescriptorSetLayoutBinding, kMaxResources> bindings{};
-  uint32_t images = 0;
+  std::array<VkDescriptorSetLayoutBinding, kMaxResources> bindings{}, textureBindings{};
+  uint32_t images = 0, textures = 0;
   for (uint32_t i = 0; i < resourceCount; ++i) {
+    const VkShaderStageFlags stages = shaderStages(draws_);
+    if (passes_.resources[i].kind == ResourceKind::texture) {
+      if (textures == 0) firstTexture_ = i;
+      textureBindings[textures++] = {i - firstTexture_, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, stages, nullptr};
+      continue;
+    }
     const bool image = passes_.resources[i].kind == ResourceKind::image;
+    bindings[i - textures] = {i, image ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                              stages, nullptr};
     images += image;
-    bindings[i] = {i, image ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                   shaderStages(draws_), nullptr};
   }
   VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  setInfo.bindingCount = resourceCount;
+  setInfo.bindingCount = resourceCount - textures;
   setInfo.pBindings = bindings.data();
   VkResult result = device.vk.CreateDescriptorSetLayout(device.device, &setInfo, nullptr, &setLayout_);
   if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorSetLayout");
+  if (textures) {
+    setInfo.bindingCount = textures;
+    setInfo.pBindings = textureBindings.data();
+    result = device.vk.CreateDescriptorSetLayout(device.device, &setInfo, nullptr, &textureLayout_);
+    if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorSetLayout");
+  }
+  const VkDescriptorSetLayout setLayouts[2] = {setLayout_, textureLayout_};
   const VkPushConstantRange range{shaderStages(draws_), 0, kPushConstantBytes};
   VkPipelineLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-  layoutInfo.setLayoutCount = 1;
-  layoutInfo.pSetLayouts = &setLayout_;
+  layoutInfo.setLayoutCount = textures ? 2 : 1;
+  layoutInfo.pSetLayouts = setLayouts;
   layoutInfo.pushConstantRangeCount = 1;
   layoutInfo.pPushConstantRanges = &range;
   result = device.vk.CreatePipelineLayout(device.device, &layoutInfo, nullptr, &layout_);
   if (result != VK_SUCCESS) return vulkanError(result, "vkCreatePipelineLayout");
 
   const uint32_t slotCount = context.maxFramesInFlight * context.maxRecordsPerFrame;
-  const std::array<VkDescriptorPoolSize, 2> sizes{{
-      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(1u, (resourceCount - images) * slotCount)},
-      {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, std::max(1u, images * slotCount)},
-  }};
+  std::array<VkDescriptorPoolSize, 3> sizes{
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(1u, (resourceCount - images - textures) * slotCount)}}};
+  uint32_t sizeCount = 1;
+  if (images) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, images * slotCount};
+  if (textures) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures * slotCount};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-  poolInfo.maxSets = slotCount;
-  poolInfo.poolSizeCount = images ? 2 : 1;
+  poolInfo.maxSets = textures ? 2 * slotCount : slotCount;
+  poolInfo.poolSizeCount = sizeCount;
   poolInfo.pPoolSizes = sizes.data();
   result = device.vk.CreateDescriptorPool(device.device, &poolInfo, nullptr, &pool_);
   if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorPool");
@@ -112,6 +128,12 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
   allocateInfo.pSetLayouts = layouts.data();
   result = device.vk.AllocateDescriptorSets(device.device, &allocateInfo, sets_.data());
   if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
+  if (textures) {
+    std::fill(layouts.begin(), layouts.end(), textureLayout_);
+    textureSets_.resize(slotCount);
+    result = device.vk.AllocateDescriptorSets(device.device, &allocateInfo, textureSets_.data());
+    if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
+  }
 
   if (!engineScratch_ && passes_.scratchBytes) {
     auto scratch = Buffer::create(device, context.gpu(), service_, "scratch", passes_.scratchBytes, kScratchUsage,

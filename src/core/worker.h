@@ -10,8 +10,9 @@
 
 namespace gpgp::core {
 
-constexpr uint32_t kMaxResources = 24;
+constexpr uint32_t kMaxResources = 32;
 constexpr uint32_t kMaxGroupCounts = 16;
+constexpr uint32_t kMaxConditions = 24;
 constexpr uint32_t kMaxTargets = 16;
 
 /// What one record gives for the resources of kinds buffer and image.
@@ -20,6 +21,7 @@ struct Binding {
   VkBuffer ownBuffer = VK_NULL_HANDLE;      ///< an asset's or view's
   VkDeviceSize ownOffset = 0, ownSize = VK_WHOLE_SIZE;
   const GpgpImage* image = nullptr;
+  VkDescriptorImageInfo texture = {}; ///< imageView NULL: left out
 };
 
 struct Record {
@@ -27,7 +29,7 @@ struct Record {
   const GpgpRecordInfo* info = nullptr;
   std::array<Binding, kMaxResources> bindings = {};
   std::array<std::array<uint32_t, 3>, kMaxGroupCounts> groups = {};
-  std::array<bool, kMaxGroupCounts> conditions = {};
+  std::array<bool, kMaxConditions> conditions = {};
   uint32_t levels = UINT32_MAX;         ///< passes of this level and above are left out
   std::span<const std::byte> constants; ///< for the first constants resource
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
@@ -121,10 +123,11 @@ private:
   PassList passes_;
   ShaderDesc vertex_{}, fragment_{};
   bool draws_ = false;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE, textureLayout_ = VK_NULL_HANDLE;
+  uint32_t firstTexture_ = 0; // textures lie in a row
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  std::pmr::vector<VkDescriptorSet> sets_;
+  std::pmr::vector<VkDescriptorSet> sets_, textureSets_;
   std::pmr::vector<VkPipeline> pipelines_; // by shader; filled by prewarm
   std::array<Target, kMaxTargets> targets_ = {};
   std::atomic<uint32_t> targetCount_{0};

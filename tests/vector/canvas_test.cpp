@@ -44,6 +44,7 @@ struct CanvasTest : testing::Test {
   std::vector<std::string> messages;
   uint64_t number = 0;
   bool exactArea = false, blendSrgb = false;
+  std::vector<GpgpCanvasImage> images;
 
   void SetUp() override {
     GpgpContextCreateInfo info = device.contextCreateInfo();
@@ -81,6 +82,17 @@ struct CanvasTest : testing::Test {
     EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), GPGP_SUCCESS) << lastMessage();
     return drawing;
   }
+  GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths, const std::vector<GpgpPathGroup>& groups,
+                        GpgpResult expected = GPGP_SUCCESS) {
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = paths.data();
+    info.pathCount = static_cast<uint32_t>(paths.size());
+    info.groups = groups.data();
+    info.groupCount = static_cast<uint32_t>(groups.size());
+    GpgpAsset drawing = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), expected) << lastMessage();
+    return drawing;
+  }
   GpgpView makeView(uint32_t width, uint32_t height) {
     GpgpCanvasViewCreateInfo info = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
     info.width = width;
@@ -115,6 +127,8 @@ struct CanvasTest : testing::Test {
       info.samples = samples;
       info.exactArea = exactArea;
       info.blendSrgb = blendSrgb;
+      info.images = images.data();
+      info.imageCount = static_cast<uint32_t>(images.size());
       info.target = image.target({}, after);
       EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
     });
@@ -161,7 +175,7 @@ struct Twin {
     const vector::Outlines outlines = vector::makeOutlines(drawing, std::pmr::get_default_resource());
     const shader::Grid grid{n, static_cast<int>(h * n), static_cast<int>(w)};
     for (const shader::SegmentRecord& segment : outlines.segments) {
-      const uint32_t chords = shader::chordCount(item, segment);
+      const uint32_t chords = shader::chordCount(grid, item, segment);
       const float step = shader::chordStep(chords);
       for (uint32_t i = 0; i < chords; ++i) {
         shader::Chord chord;
@@ -210,13 +224,21 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
     const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
     ASSERT_TRUE(twin);
     const GpgpAsset drawing = makeDrawing({view});
-    const float transforms[][6] = {{1, 0, 0, 1, 0, 0}, {0.8f, 0.6f, -0.6f, 0.8f, 30, -10}, {7, 0.5f, 1, -9, -250, 400}};
+    const float transforms[][9] = {{1, 0, 0, 1, 0, 0},
+                                   {0.8f, 0.6f, -0.6f, 0.8f, 30, -10},
+                                   {7, 0.5f, 1, -9, -250, 400},
+                                   {1, 0, 0, 1, 0, 0, 0.004f, 0.002f, 0.8f},        // all before the eye
+                                   {0.9f, 0, 0, 1, -20, 0, 0.01f, 0, -0.2f},        // behind it left of x = 20
+                                   {-0.9f, 0, 0, 0.4f, 30, 9, -0.01f, 0, 0.5f},     // right of x = 50, mirrored
+                                   {1, 0, 0.4f, 0.2f, 0, 3, 0.001f, -0.012f, 0.7f}, // a floor
+                                   {0.5f, 0.3f, 0.2f, 0.6f, -10, -30, 0.01f, 0.011f, -1}};
     for (const auto& t : transforms)
       for (const uint32_t samples : {1u, 4u, 8u, 16u}) {
-        GpgpCanvasItem item{drawing, {}, 1};
+        GpgpCanvasItem item{drawing, {}, 1, {}};
         std::copy_n(t, 6, item.transform);
+        std::copy_n(t + 6, 3, item.perspective);
         shader::ItemRecord record{};
-        ASSERT_TRUE(vector::placeItem(t, record));
+        ASSERT_TRUE(vector::placeItem(item, 100, 90, record));
         const Twin covers(*twin, record, 100, 90, samples);
         for (const bool area : {false, true}) {
           exactArea = area;
@@ -234,11 +256,110 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
             }
           EXPECT_EQ(different, 0u) << "seed " << seed << ", transform " << &t - transforms << ", samples " << samples
                                    << ", area " << area;
-          EXPECT_GT(covered, 20u);
+          EXPECT_GT(covered, 20u) << "seed " << seed << ", transform " << &t - transforms;
         }
         exactArea = false;
       }
     gpgpDestroyAsset(drawing);
+  }
+}
+
+/// How much of a pixel a path covers by 64 samples, each taken back through the map in double precision.
+double projectedCoverage(const PathOracle& path, const GpgpCanvasItem& item, uint32_t x, uint32_t y) {
+  const auto number = [](float v) { return static_cast<double>(v); };
+  const double a = number(item.transform[0]), b = number(item.transform[1]), c = number(item.transform[2]),
+               d = number(item.transform[3]), e = number(item.transform[4]), f = number(item.transform[5]);
+  const double p = number(item.perspective[0]), q = number(item.perspective[1]), r = number(item.perspective[2]);
+  int inside = 0;
+  for (int i = 0; i < 64; ++i) {
+    const double px = x + (i % 8 + 0.5) / 8, py = y + (i / 8 + 0.5) / 8;
+    // (a - p px) u + (c - q px) v = r px - e, and the like for y.
+    const double k = a - p * px, l = c - q * px, m = b - p * py, n = d - q * py;
+    const double s = r * px - e, t = r * py - f, determinant = k * n - l * m;
+    const double u = (s * n - l * t) / determinant, v = (k * t - s * m) / determinant;
+    inside += p * u + q * v + r > 0 && path.inside(u, v);
+  }
+  return inside / 64.0;
+}
+
+TEST_F(CanvasTest, ProjectiveItemsLookLikeTheTruth) {
+  makeCanvas(256);
+  TestPath rings; // circles in each other from the eye's feet to far away
+  for (int i = 1; i < 12; ++i) {
+    const float r = 0.25f * std::pow(1.8f, static_cast<float>(i)), k = 0.5522847f * r;
+    rings.move(r, 0).cubic(r, k, k, r, 0, r).cubic(-k, r, -r, k, -r, 0).cubic(-r, -k, -k, -r, 0, -r);
+    rings.cubic(k, -r, r, -k, r, 0).close();
+  }
+  rings.rule = GPGP_FILL_EVEN_ODD;
+  rings.color = {0, 0, 0, 1};
+  const GpgpPath view = rings.view();
+  const PathOracle oracle(view);
+  const GpgpAsset drawing = makeDrawing({view});
+  const float maps[][9] = {
+      {40, 0, 64, 40, 64, 90, 0, 1, 1},             // a floor, horizon at y = 40; the eye stands in the rings
+      {30, 10, 70, -45, 64, 64, 0.3f, 1, 2},        // tilted, from above
+      {64, 64, 30, -30, 64, 64, 1, 0.02f, 0.5f},    // a wall at the left
+      {-0.5f, 7, 8, 1, 64, 50, -0.05f, 0.03f, 0.9f} // a panel, turned
+  };
+  for (const auto& map : maps) {
+    constexpr uint32_t width = 96, height = 88;
+    GpgpCanvasItem item{drawing, {}, 1, {}};
+    std::copy_n(map, 6, item.transform);
+    std::copy_n(map + 6, 3, item.perspective);
+    std::vector<float> truth;
+    double covered = 0;
+    for (uint32_t i = 0; i < width * height; ++i) {
+      const double coverage = projectedCoverage(oracle, item, i % width, i / width);
+      covered += coverage;
+      truth.insert(truth.end(), {0, 0, 0, static_cast<float>(coverage)});
+    }
+    EXPECT_GT(covered, 500) << &map - maps;
+    for (const bool area : {false, true}) {
+      exactArea = area;
+      const auto pixels = raster({item}, width, height, 16);
+      double sum = 0;
+      for (size_t i = 0; i < pixels.size(); ++i)
+        sum += std::pow(static_cast<double>(pixels[i].a) - static_cast<double>(truth[i * 4 + 3]), 2);
+      const double db = -10 * std::log10(sum / static_cast<double>(pixels.size()) + 1e-12);
+      std::printf("map %td%s: %.1f dB, %.0f pixels covered\n", &map - maps, area ? ", area" : "", db, covered);
+      EXPECT_GE(db, area ? 39.0 : 35.0) << &map - maps;
+      if (const char* folder = std::getenv("GPGP_TEST_PICTURES")) {
+        const std::string base = std::string(folder) + "/projective" + std::to_string(&map - maps) + (area ? "a" : "");
+        host::writePng(base + ".gpu.png",
+                       host::fromLinearPremultiplied(width, height, std::span(&pixels[0].r, pixels.size() * 4)));
+        host::writePng(base + ".truth.png", host::fromLinearPremultiplied(width, height, truth));
+      }
+    }
+  }
+}
+
+TEST_F(CanvasTest, ProjectiveMapsOfOneDistanceAreAffineAndGradientsFollowTheMap) {
+  makeCanvas(64);
+  TestPath square;
+  square.move(0, 0).line(64, 0).line(64, 64).line(0, 64).close();
+  const GpgpGradientStop stops[] = {{0, {0, 0, 0, 1}}, {1, {1, 1, 1, 1}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = gradient.transform[3] = 1;
+  gradient.stops = stops;
+  gradient.stopCount = 2;
+  gradient.end[0] = 64;
+  GpgpPath view = square.view();
+  view.gradient = &gradient;
+  const GpgpAsset drawing = makeDrawing({view});
+  GpgpCanvasItem item = place(drawing, 2, 6, -4);
+  item.perspective[2] = 2;
+  const auto scaled = raster({item}, 64, 64, 4), affine = raster({place(drawing, 1, 3, -2)}, 64, 64, 4);
+  for (size_t i = 0; i < scaled.size(); ++i) ASSERT_EQ(scaled[i].r, affine[i].r) << i;
+  item.perspective[2] = -2;
+  for (const Rgba& p : raster({item}, 64, 64, 4)) ASSERT_EQ(p.a, 0);
+  item = place(drawing);
+  item.perspective[0] = 1.0f / 64, item.perspective[2] = 1; // x / (1 + x / 64)
+  const auto pixels = raster({item}, 64, 64, 4);
+  for (size_t i = 0; i < 64 * 32; ++i) {
+    const double x = static_cast<double>(i % 64) + 0.5;
+    if (i % 64 > 31 || static_cast<double>(i / 64) + 1 > 64 - x) continue; // the square's right edge lies at 32
+    ASSERT_NEAR(pixels[i].r, x / (1 - x / 64) / 64, 0.002) << i;
+    ASSERT_EQ(pixels[i].a, 1);
   }
 }
 
@@ -414,6 +535,310 @@ TEST_F(CanvasTest, GradientsFollowTheirSpreadsAndCircles) {
     }
 }
 
+/// An image with one level that canvases can paint with, made of 8-bit RGBA.
+struct Texture {
+  host::HeadlessDevice& device;
+  host::Image image;
+  VkSampler sampler = VK_NULL_HANDLE;
+
+  Texture(host::HeadlessDevice& owner, uint32_t width, uint32_t height, std::span<const uint32_t> texels,
+          VkFilter filter, VkSamplerAddressMode mode)
+      : device(owner), image(owner, {.format = VK_FORMAT_R8G8B8A8_UNORM,
+                                     .width = width,
+                                     .height = height,
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT}) {
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.magFilter = info.minFilter = filter;
+    info.addressModeU = info.addressModeV = mode;
+    EXPECT_EQ(device.vk().vkCreateSampler(device.device(), &info, nullptr, &sampler), VK_SUCCESS);
+    const host::Buffer staging(device, texels.size_bytes(), 0, host::Memory::host);
+    std::memcpy(staging.mapped(), texels.data(), texels.size_bytes());
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+      barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+      barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+      barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+      barrier.image = image.handle();
+      barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      const auto place = [&](VkPipelineStageFlags from, VkPipelineStageFlags to) {
+        device.vk().vkCmdPipelineBarrier(commands, from, to, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+      };
+      place(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
+      VkBufferImageCopy copy{};
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      copy.imageExtent = {width, height, 1};
+      device.vk().vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(),
+                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+      barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+      barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+      barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+      barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+      place(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+    });
+  }
+  ~Texture() { device.vk().vkDestroySampler(device.device(), sampler, nullptr); }
+  Texture(const Texture&) = delete;
+  GpgpCanvasImage view(bool premultiplied = false) const {
+    return {image.view(), sampler, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, premultiplied};
+  }
+};
+
+TEST_F(CanvasTest, ImagesPaintThroughTheirTransformAndSampler) {
+  makeCanvas(64);
+  const uint32_t red = 0xff0000ff, green = 0xff00ff00, half = 0x80ff0000, white = 0xffffffff;
+  const uint32_t first[] = {red, green, half, white}, second[] = {white, red};
+  const Texture chess(device, 2, 2, first, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+  const Texture ramp(device, 2, 1, second, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  TestPath square, lower;
+  square.move(0, 0).line(64, 0).line(64, 64).line(0, 64).close();
+  lower.move(0, 32).line(64, 32).line(64, 64).line(0, 64).close();
+  const GpgpImagePaint tiles{0, {16, 0, 0, 16, 8, 8}}, smooth{1, {32, 0, 0, 1, 16, 0}};
+  GpgpPath below = square.view(), above = lower.view();
+  below.image = &tiles;
+  below.color[3] = 0.5f;
+  above.image = &smooth;
+  const GpgpAsset drawing = makeDrawing({below, above});
+  for (const bool premultiplied : {false, true}) {
+    images = {ramp.view(), chess.view(premultiplied), ramp.view()};
+    GpgpCanvasItem item = place(drawing);
+    item.firstImage = 1;
+    const auto pixels = raster({item}, 64, 64, 4);
+    for (uint32_t y = 0; y < 64; ++y)
+      for (uint32_t x = 0; x < 64; ++x) {
+        const Rgba& p = pixels[y * 64 + x];
+        if (y < 32) { // tiles of 16 pixels from 8, 8 on, half as opaque
+          const bool right = (x + 8) % 16 >= 8, down = (y + 8) % 16 >= 8;
+          const float alpha = down && !right ? 0.5f * 128 / 255 : 0.5f;
+          const Rgba expected = down && right ? Rgba{0.5f, 0.5f, 0.5f, 0.5f}
+                                : down        ? Rgba{0, 0, premultiplied ? 0.5f : alpha, alpha}
+                                : right       ? Rgba{0, 0.5f, 0, 0.5f}
+                                              : Rgba{0.5f, 0, 0, 0.5f};
+          ASSERT_NEAR(p.r, expected.r, 0.002f) << x << " " << y;
+          ASSERT_NEAR(p.g, expected.g, 0.002f) << x << " " << y;
+          ASSERT_NEAR(p.b, expected.b, 0.002f) << x << " " << y;
+          ASSERT_NEAR(p.a, expected.a, 0.002f) << x << " " << y;
+        } else { // white to 24, red from 40 on
+          const float t = std::clamp((static_cast<float>(x) + 0.5f - 24) / 16, 0.0f, 1.0f);
+          ASSERT_NEAR(p.g, 1 - t, 0.006f) << x << " " << y;
+          ASSERT_EQ(p.a, 1) << x << " " << y;
+        }
+      }
+  }
+  // Through a projective map: pixel x shows the drawing's x / (1 - x / 64).
+  images = {chess.view(), ramp.view()};
+  GpgpCanvasItem item = place(drawing);
+  item.perspective[0] = 1.0f / 64, item.perspective[2] = 1;
+  const auto pixels = raster({item}, 64, 64, 4);
+  for (uint32_t x = 0; x < 31; ++x) {
+    const float at = (static_cast<float>(x) + 0.5f) / (1 - (static_cast<float>(x) + 0.5f) / 64);
+    const float y = 0.5f * (1 + at / 64);
+    const bool right = std::fmod(at + 8, 16.0f) >= 8, down = std::fmod(y + 8, 16.0f) >= 8;
+    ASSERT_EQ(pixels[x].g > 0.2f, right) << x << " " << down;
+  }
+}
+
+TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
+  makeCanvas(64);
+  const uint32_t texel[] = {0xffffffff};
+  const Texture white(device, 1, 1, texel, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+  TestPath square;
+  square.move(0, 0).line(64, 0).line(64, 64).close();
+  GpgpImagePaint paint{1, {1, 0, 0, 1, 0, 0}};
+  GpgpPath path = square.view();
+  path.image = &paint;
+  const GpgpAsset drawing = makeDrawing({path});
+  const GpgpView view = makeView(64, 64);
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    GpgpCanvasItem item = place(drawing);
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    info.width = info.height = 32;
+    info.items = &item;
+    info.itemCount = 1;
+    info.view = view;
+    const auto expect = [&](GpgpResult result, const char* words) {
+      info.images = images.data();
+      info.imageCount = static_cast<uint32_t>(images.size());
+      EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), result) << words;
+      EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+    };
+    images = {white.view()};
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "needs 2 images from images[0] on; imageCount is 1");
+    images.push_back(white.view());
+    item.firstImage = 1;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "from images[1] on");
+    item.firstImage = ~0u;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "from images[4294967295] on");
+    item.firstImage = 0;
+    images[1].view = VK_NULL_HANDLE;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "images[1].view");
+    images[1] = white.view();
+    images[1].sampler = VK_NULL_HANDLE;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "images[1].sampler");
+    images[1] = white.view();
+    images[0].layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "images[0].layout");
+    images.assign(9, white.view());
+    expect(GPGP_ERROR_UNSUPPORTED, "at most 8");
+  });
+  const auto refused = [&](const char* words) {
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = &path;
+    info.pathCount = 1;
+    GpgpAsset none = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &none), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  paint.image = 8;
+  refused("image.image is 8");
+  paint = {0, {1, 2, 2, 4, 0, 0}};
+  refused("no inverse");
+  paint = {0, {NAN, 0, 0, 1, 0, 0}};
+  refused("not finite");
+  const GpgpGradientStop stop{0, {0, 0, 0, 1}};
+  GpgpGradient gradient{};
+  gradient.stops = &stop;
+  gradient.stopCount = 1;
+  path.gradient = &gradient;
+  refused("both gradient and image");
+}
+
+TEST_F(CanvasTest, ClipsAreTheUnionOfTheirPathsWithinThoseAbove) {
+  makeCanvas(128);
+  // Sample for sample what the clipped path's mask and its clips' masks leave.
+  std::vector<TestPath> shapes;
+  for (uint32_t i = 0; i < 4; ++i) shapes.push_back(randomShape(20 + i, 90));
+  std::vector<GpgpPath> views;
+  for (const TestPath& s : shapes) views.push_back(s.view());
+  const auto twinDrawing = vector::makeDrawing(views, std::pmr::get_default_resource());
+  ASSERT_TRUE(twinDrawing);
+  const GpgpPath either[] = {views[1], views[2]};
+  const std::vector<GpgpPathGroup> groups = {{0, 1, either, 2}, {1, 1, &views[3], 1}, {0, 1, &views[3], 0}};
+  GpgpPath none = views[0], one = views[0], both = views[0];
+  none.group = 3;
+  one.group = 1;
+  both.group = 2;
+  for (const uint32_t samples : {4u, 16u})
+    for (const bool nested : {false, true}) {
+      const GpgpAsset drawing = makeDrawing({none, nested ? both : one, none}, groups);
+      const GpgpCanvasItem item = place(drawing, 0.9f, 3, 2);
+      shader::ItemRecord record{};
+      ASSERT_TRUE(vector::placeItem(item, 100, 90, record));
+      const Twin twin(*twinDrawing, record, 100, 90, samples);
+      const auto pixels = raster({item}, 100, 90, samples);
+      size_t different = 0, covered = 0, cut = 0;
+      for (uint32_t y = 0; y < 90; ++y)
+        for (uint32_t x = 0; x < 100; ++x) {
+          uint32_t mask = twin.at(0, x, y).mask & (twin.at(1, x, y).mask | twin.at(2, x, y).mask);
+          if (nested) mask &= twin.at(3, x, y).mask;
+          const float expected = static_cast<float>(std::popcount(mask)) / static_cast<float>(samples);
+          covered += mask != 0;
+          cut += mask != twin.at(0, x, y).mask;
+          different += pixels[y * 100 + x].a != expected;
+        }
+      EXPECT_EQ(different, 0u) << samples << " " << nested;
+      EXPECT_GT(covered, 100u);
+      EXPECT_GT(cut, 100u);
+    }
+  // With exact areas: a clip of half pixels, around a path without edges there, counts by its area.
+  exactArea = true;
+  TestPath square, window;
+  square.move(-9, -9).line(99, -9).line(99, 99).line(-9, 99).close();
+  window.move(10.3f, 10).line(50, 10).line(50, 50).line(10.3f, 50).close();
+  GpgpPath clipped = square.view();
+  clipped.group = 1;
+  const GpgpPath hole = window.view();
+  const auto pixels = raster({place(makeDrawing({clipped}, {{0, 1, &hole, 1}}))}, 64, 64, 4);
+  EXPECT_NEAR(pixels[20 * 64 + 10].a, 0.7f, 0.005f);
+  EXPECT_EQ(pixels[20 * 64 + 9].a, 0);
+  EXPECT_EQ(pixels[20 * 64 + 11].a, 1);
+}
+
+/// Straight colours over each other from the bottom up, premultiplied in the end.
+Rgba over(Rgba below, const std::array<float, 4>& color, float alpha = 1) {
+  const float a = color[3] * alpha, keep = 1 - a;
+  return {color[0] * a + below.r * keep, color[1] * a + below.g * keep, color[2] * a + below.b * keep,
+          a + below.a * keep};
+}
+
+TEST_F(CanvasTest, GroupsFadeAsAWhole) {
+  makeCanvas(64);
+  // Columns of 8 pixels that paths cover or do not: every combination of five of them.
+  const auto column = [](uint32_t bit, std::array<float, 4> color) {
+    TestPath path;
+    for (uint32_t x = 0; x < 32; ++x)
+      if (x >> bit & 1) {
+        const float left = static_cast<float>(2 * x);
+        path.move(left, 0).line(left + 2, 0).line(left + 2, 64).line(left, 64).close();
+      }
+    path.color = color;
+    return path;
+  };
+  const TestPath paths[] = {column(0, {1, 0, 0, 1}), column(1, {0, 1, 0, 0.5f}), column(2, {0, 0, 1, 1}),
+                            column(3, {1, 1, 0, 1}), column(4, {0, 1, 1, 0.75f})};
+  std::vector<GpgpPath> views;
+  for (const TestPath& p : paths) views.push_back(p.view());
+  // Path 0 below; group 1 holds path 1 and group 2, which holds paths 2 and 3; path 4 above all.
+  views[1].group = 1;
+  views[2].group = views[3].group = 2;
+  const std::vector<GpgpPathGroup> groups = {{0, 0.5f, nullptr, 0}, {1, 0.25f, nullptr, 0}};
+  const GpgpAsset drawing = makeDrawing(views, groups);
+  const auto plus = [](Rgba below, Rgba group, float alpha) {
+    const float keep = 1 - group.a * alpha;
+    return Rgba{group.r * alpha + below.r * keep, group.g * alpha + below.g * keep, group.b * alpha + below.b * keep,
+                group.a * alpha + below.a * keep};
+  };
+  const auto expected = [&](uint32_t bits) {
+    const auto paint = [&](Rgba below, uint32_t k) { return bits >> k & 1 ? over(below, paths[k].color) : below; };
+    const Rgba inner = paint(paint({}, 2), 3), outer = plus(paint({}, 1), inner, 0.25f);
+    return paint(plus(paint({}, 0), outer, 0.5f), 4);
+  };
+  for (const bool area : {false, true})
+    for (const float shift : {0.0f, 0.5f}) { // edges between pixels, and inside them
+      exactArea = area;
+      const auto pixels = raster({place(drawing, 1, shift, 0), place(drawing, 1, 200, 0)}, 64, 64, 16);
+      for (uint32_t x = 1; x < 64; ++x) {
+        const Rgba a = expected(x / 2), b = expected((x - 1) / 2);
+        const float half = shift > 0 && x % 2 == 0 ? 0.5f : 0.0f; // of the column left of it
+        const Rgba& p = pixels[30 * 64 + x];
+        const float tolerance = area && half > 0 ? 0.03f : 0.002f; // several edges in a pixel
+        ASSERT_NEAR(p.r, a.r * (1 - half) + b.r * half, tolerance) << x << " " << shift << " " << area;
+        ASSERT_NEAR(p.g, a.g * (1 - half) + b.g * half, tolerance) << x << " " << shift << " " << area;
+        ASSERT_NEAR(p.b, a.b * (1 - half) + b.b * half, tolerance) << x << " " << shift << " " << area;
+        ASSERT_NEAR(p.a, a.a * (1 - half) + b.a * half, tolerance) << x << " " << shift << " " << area;
+      }
+    }
+}
+
+TEST_F(CanvasTest, GroupsThatCannotBeAreRefusedWithWords) {
+  TestPath square;
+  square.move(0, 0).line(4, 0).line(4, 4).close();
+  GpgpPath path = square.view(), outside = path;
+  path.group = 1;
+  const auto refused = [&](const std::vector<GpgpPath>& paths, const std::vector<GpgpPathGroup>& groups,
+                           GpgpResult result, const char* words) {
+    messages.clear();
+    EXPECT_EQ(makeDrawing(paths, groups, result), nullptr);
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  refused({path}, {}, GPGP_ERROR_INVALID_ARGUMENT, "paths[0].group is 1; there are 0 groups");
+  refused({path}, {{1, 1, nullptr, 0}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].parent is 1");
+  refused({path}, {{0, NAN, nullptr, 0}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].opacity");
+  refused({path}, {{0, 1, nullptr, 2}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].clip is NULL");
+  refused({path, outside, path}, {{0, 0.5f, nullptr, 0}}, GPGP_ERROR_INVALID_ARGUMENT, "paths[2]: others lie");
+  GpgpPath bad = outside;
+  bad.fillRule = 7;
+  refused({path}, {{0, 1, &bad, 1}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].clip[0]: fillRule is 7");
+  std::vector<GpgpPathGroup> deep;
+  for (uint32_t i = 0; i < 5; ++i) deep.push_back({i, 0.5f, nullptr, 0});
+  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "groups[4]: more than 4");
+  deep.clear();
+  for (uint32_t i = 0; i < 17; ++i) deep.push_back({i, 1, &outside, 1});
+  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "groups[16]: more than 16");
+  EXPECT_NE(makeDrawing({path, path, outside}, {{0, 0.5f, nullptr, 0}}), nullptr);
+}
+
 TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {
   makeCanvas(64);
   TestPath white;
@@ -560,6 +985,8 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
     info.itemCount = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "itemCount");
     item.opacity = 2, expect(GPGP_ERROR_INVALID_ARGUMENT, "opacity");
     item.transform[3] = NAN, expect(GPGP_ERROR_INVALID_ARGUMENT, "transform");
+    item.perspective[1] = INFINITY, expect(GPGP_ERROR_INVALID_ARGUMENT, "perspective");
+    item.perspective[1] = 3e38f, expect(GPGP_SUCCESS, "");
     item.drawing = nullptr, expect(GPGP_ERROR_INVALID_HANDLE, "drawing");
     info.background[1] = INFINITY, expect(GPGP_ERROR_INVALID_ARGUMENT, "background");
     EXPECT_EQ(gpgpRecordPrepareCanvas(nullptr, commands, &frame, &info), GPGP_ERROR_INVALID_HANDLE);

@@ -251,6 +251,87 @@ TEST(Patches, CostGrowsAboutLinearly) {
   EXPECT_LT(large / small, 40) << small << " s, then " << large << " s";
 }
 
+/// The largest distance of a drawing's curved edges from the circle around 0, after the map that makes it one.
+double offCircle(const vector::Drawing& d, double radius, double turn, double ratio) {
+  double off = 0;
+  for (const auto& c : d.curves) {
+    if (c.bend < 0) continue;
+    for (int i = 0; i <= 16; ++i) {
+      const double t = i / 16.0, u = 1 - t;
+      const auto at = [&](double start, double a, double b, double end) {
+        return start + 3 * u * u * t * a + 3 * u * t * t * b + t * t * t * end;
+      };
+      const double x = at(c.ends.x, c.controls.x, c.controls.z, c.ends.z);
+      const double y = at(c.ends.y, c.controls.y, c.controls.w, c.ends.w);
+      const double p = std::cos(turn) * x + std::sin(turn) * y, q = (std::cos(turn) * y - std::sin(turn) * x) * ratio;
+      off = std::max(off, std::abs(std::hypot(p, q) - radius));
+    }
+  }
+  return off;
+}
+
+TEST(Patches, ArcsAreWithinATenThousandthOfAPixel) {
+  for (const float radius : {3.0f, 70.0f, 300.0f})
+    for (const float scale : {0.0f, 0.01f, 8.0f}) {
+      TestPath path;
+      path.move(radius, 0).add(GPGP_PATH_ARC, {radius, radius, 0, GPGP_ARC_SWEEP, -radius, 0});
+      path.add(GPGP_PATH_ARC, {radius, radius, 0, GPGP_ARC_SWEEP, radius, 0}).close();
+      GpgpPath view = path.view();
+      view.scale = scale;
+      const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+      ASSERT_TRUE(d) << d.error().text;
+      const double bound = 1e-4 / (scale > 0 ? static_cast<double>(scale) : 1.0);
+      EXPECT_LE(offCircle(*d, radius, 0, 1), bound + 2e-7 * radius) << radius << " " << scale; // floats
+      EXPECT_NEAR(d->bounds[1], -radius, bound + 1e-6 * radius);
+      EXPECT_NEAR(d->bounds[3], radius, bound + 1e-6 * radius);
+    }
+  // An ellipse turned by 30 degrees, the long way and the short way: together they are whole.
+  const float x = 40 * std::cos(0.5235988f), y = 40 * std::sin(0.5235988f); // the end of the longer axis
+  const float u = -20 * std::sin(0.5235988f), v = 20 * std::cos(0.5235988f);
+  const auto area = [&](float flags) {
+    TestPath path;
+    path.move(x, y).add(GPGP_PATH_ARC, {40, 20, 30, flags, u, v}).close();
+    const GpgpPath view = path.view();
+    const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+    EXPECT_TRUE(d);
+    EXPECT_LE(offCircle(*d, 40, 0.5235988, 2), 3e-4) << flags; // the map doubles some of it
+    double sum = 0;
+    for (float py = -59.75f; py < 60; py += 0.5f)
+      for (float px = -59.75f; px < 60; px += 0.5f)
+        for (const auto& p : d->patches) sum += contains(*d, p, px, py) ? 0.25 : 0;
+    return sum;
+  };
+  const double whole = 3.14159265 * 40 * 20, quarter = whole / 4 - 40 * 20 / 2;
+  EXPECT_NEAR(area(GPGP_ARC_SWEEP), quarter, 3);
+  EXPECT_NEAR(area(GPGP_ARC_LARGE), whole - quarter, 10);
+  // A radius of 0 makes a line; radii that do not reach grow to half a circle; strokes take arcs as well.
+  const auto boundsOf = [&](std::initializer_list<float> arc, const GpgpStroke* stroke) {
+    TestPath path;
+    path.move(0, 0).add(GPGP_PATH_ARC, arc).line(5, -9).close();
+    GpgpPath view = path.view();
+    view.stroke = stroke;
+    const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+    EXPECT_TRUE(d);
+    return std::array<float, 4>{d->bounds[0], d->bounds[1], d->bounds[2], d->bounds[3]};
+  };
+  EXPECT_NEAR(boundsOf({0, 3, 0, 0, 10, 0}, nullptr)[3], 0, 1e-6);
+  EXPECT_NEAR(boundsOf({1, 1, 0, 0, 10, 0}, nullptr)[3], 5, 2e-4);
+  GpgpStroke stroke{};
+  stroke.width = 2;
+  EXPECT_NEAR(boundsOf({1, 1, 0, 0, 10, 0}, &stroke)[3], 6, 0.05);
+  const auto refused = [](std::initializer_list<float> arc, const char* words) {
+    TestPath path;
+    path.move(0, 0).add(GPGP_PATH_ARC, arc).close();
+    const GpgpPath view = path.view();
+    const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+    ASSERT_FALSE(d);
+    EXPECT_NE(std::string(d.error().text).find(words), std::string::npos) << d.error().text;
+  };
+  refused({1, 1, 0, 4, 9, 9}, "flags of an arc are 4");
+  refused({1, 1, 0, 0.5f, 9, 9}, "flags of an arc are 0.5");
+  refused({1e7f, 1, 0, 0, 0, 1e6f}, "reaches beyond");
+}
+
 TEST(Patches, StrokesAreFilled) {
   TestPath line;
   line.move(10, 10).line(50, 10).line(50, 40);
@@ -367,6 +448,47 @@ TEST(Baked, ComesBackTheSame) {
   ASSERT_TRUE(back) << back.error().text;
   EXPECT_EQ(vector::bake(*back, heap()), bytes);
   EXPECT_EQ(back->patches.size(), d->patches.size());
+}
+
+TEST(Baked, GroupsAndImagesComeBackAndAreChecked) {
+  const TestPath a = randomPath(3, 20, 3, 0), b = randomPath(4, 20, 3, 0);
+  GpgpPath painted = a.view();
+  const GpgpImagePaint image{2, {9, 0, 0, 9, 1, 1}};
+  painted.image = &image;
+  painted.group = 2;
+  const GpgpPath clip = b.view();
+  const GpgpPathGroup groups[] = {{0, 0.5f, &clip, 1}, {1, 0.25f, &clip, 1}};
+  const auto made = vector::makeDrawing(std::span(&painted, 1), groups, heap());
+  ASSERT_TRUE(made) << made.error().text;
+  ASSERT_EQ(made->paths.size(), 3u);
+  EXPECT_EQ(made->paths[2].clip, 2u);
+  EXPECT_EQ(made->paths[2].layer, 2u);
+  EXPECT_EQ(made->clips[1].parent, 1u);
+  const auto alone = vector::makeDrawing(std::span(&painted, 0), groups, heap());
+  ASSERT_TRUE(alone);
+  EXPECT_EQ(alone->bounds[2], 0); // clips have no ink
+  const auto bytes = vector::bake(*made, heap());
+  const auto back = vector::loadBaked(bytes, heap());
+  ASSERT_TRUE(back) << back.error().text;
+  EXPECT_EQ(vector::bake(*back, heap()), bytes);
+  const auto refused = [&](auto&& damage) {
+    Drawing d = *made;
+    damage(d);
+    const auto loaded = vector::loadBaked(vector::bake(d, heap()), heap());
+    return !loaded && loaded.error().code == GPGP_ERROR_INVALID_DATA;
+  };
+  EXPECT_TRUE(refused([](Drawing& d) { d.paths[2].clip = 3; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.paths[2].layer = 3; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.paths[0].clip = 1; })); // clipped paths lie behind all clips
+  EXPECT_TRUE(refused([](Drawing& d) { d.clips[0].pathCount = 4; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.clips[0].firstPath = UINT32_MAX; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.clips[0].parent = 1; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.clips[1].depth = 1; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.layers[0].opacity = 1; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.layers[1].parent = 2; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.layers[1].depth = 9; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.paints[0].firstStop = 8; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.paints[0].stopCount = 1; }));
 }
 
 TEST(Baked, DamagedBytesAreRefused) {

@@ -1,4 +1,5 @@
-// Baked drawings (.gpgpv): a header of 20 words, then curves, patches, paths, gradients and their stops.
+// Baked drawings (.gpgpv): a header of 20 words, then curves, patches, paths, paints, the stops of gradients,
+// clips and layers.
 //
 // Little-endian, as all targets are. What is loaded is checked as strictly as what a stranger sends: a shader may
 // then index without asking again.
@@ -16,12 +17,12 @@ struct Header {
   char magic[4];
   uint32_t version;
   uint64_t checksum; // of all bytes after it
-  uint32_t curves, patches, paths, paints, stops, reserved[3];
+  uint32_t curves, patches, paths, paints, stops, clips, layers, reserved;
   float bounds[4], viewport[4];
 };
 static_assert(sizeof(Header) == 80);
 constexpr char kMagic[4] = {'G', 'P', 'V', 'D'};
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 constexpr size_t kSummedFrom = 16;
 
 /// FNV-1a over 8-byte words: every input bit reaches the result.
@@ -63,19 +64,38 @@ core::Result<void> checkContents(const Drawing& d) {
       if (!(d.paths[i].color[k] >= 0 && d.paths[i].color[k] <= 1))
         return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the colour of path %zu is out of range", i);
   for (size_t i = 0; i < d.paths.size(); ++i)
-    if (d.paths[i].paint > d.paints.size())
+    if (d.paths[i].paint > d.paints.size() || d.paths[i].clip > d.clips.size() || d.paths[i].layer > d.layers.size())
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: path %zu refers to what is not there", i);
   for (size_t i = 0; i < d.paints.size(); ++i) {
     const PaintRecord& p = d.paints[i];
-    if (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop)
+    const bool image = p.kind == shader::kPaintImage;
+    if (image && (p.firstStop >= shader::kMaxImages || p.stopCount || p.spread || p.flags))
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not an image", i);
+    if (!image && (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu refers to what is not there", i);
-    bool good = p.kind <= shader::kPaintRadial && p.spread <= shader::kSpreadReflect &&
+    bool good = p.kind <= shader::kPaintImage && p.spread <= shader::kSpreadReflect &&
                 p.flags <= shader::kInterpolateSrgb && p.focusRadius >= 0 && p.focusRadius < 1;
     for (int k = 0; k < 4; ++k) good = good && std::isfinite(p.matrix[k]) && std::isfinite(p.origin[k]);
-    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not a gradient", i);
+    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not a gradient or an image", i);
     for (uint32_t k = 1; k < p.stopCount; ++k)
       if (!(d.stops[p.firstStop + k - 1].offset <= d.stops[p.firstStop + k].offset))
         return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the stops of paint %zu are not in order", i);
+  }
+  // Clipped paths lie behind all clips: where paths are left out at the end, no clip is missing.
+  size_t clipPaths = 0;
+  for (size_t i = 0; i < d.clips.size(); ++i) {
+    const ClipRecord& c = d.clips[i];
+    const uint32_t above = c.parent && c.parent <= i ? d.clips[c.parent - 1].depth : 0;
+    bool good = c.parent <= i && c.depth == above + 1 && c.depth <= shader::kMaxClipDepth &&
+                c.firstPath <= d.paths.size() && c.pathCount <= d.paths.size() - c.firstPath;
+    for (; good && clipPaths < c.firstPath + size_t(c.pathCount); ++clipPaths) good = d.paths[clipPaths].clip == 0;
+    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: clip %zu is not a clip", i);
+  }
+  for (size_t i = 0; i < d.layers.size(); ++i) {
+    const LayerRecord& l = d.layers[i];
+    const uint32_t above = l.parent && l.parent <= i ? d.layers[l.parent - 1].depth : 0;
+    if (!(l.opacity >= 0 && l.opacity < 1) || l.parent > i || l.depth != above + 1 || l.depth > shader::kMaxLayerDepth)
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: layer %zu is not a layer", i);
   }
   for (size_t i = 0; i < d.stops.size(); ++i) {
     const StopRecord& s = d.stops[i];
@@ -99,6 +119,8 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
   header.paths = static_cast<uint32_t>(drawing.paths.size());
   header.paints = static_cast<uint32_t>(drawing.paints.size());
   header.stops = static_cast<uint32_t>(drawing.stops.size());
+  header.clips = static_cast<uint32_t>(drawing.clips.size());
+  header.layers = static_cast<uint32_t>(drawing.layers.size());
   std::memcpy(header.bounds, drawing.bounds, sizeof header.bounds);
   std::memcpy(header.viewport, drawing.viewport, sizeof header.viewport);
   const auto curves = std::as_bytes(std::span(drawing.curves));
@@ -106,9 +128,13 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
   const auto paths = std::as_bytes(std::span(drawing.paths));
   const auto paints = std::as_bytes(std::span(drawing.paints));
   const auto stops = std::as_bytes(std::span(drawing.stops));
+  const auto clips = std::as_bytes(std::span(drawing.clips));
+  const auto layers = std::as_bytes(std::span(drawing.layers));
   std::pmr::vector<std::byte> bytes(sizeof header, std::byte{}, memory);
-  bytes.reserve(sizeof header + curves.size() + patches.size() + paths.size() + paints.size() + stops.size());
-  for (const auto part : {curves, patches, paths, paints, stops}) bytes.insert(bytes.end(), part.begin(), part.end());
+  bytes.reserve(sizeof header + curves.size() + patches.size() + paths.size() + paints.size() + stops.size() +
+                clips.size() + layers.size());
+  for (const auto part : {curves, patches, paths, paints, stops, clips, layers})
+    bytes.insert(bytes.end(), part.begin(), part.end());
   std::memcpy(bytes.data(), &header, sizeof header);
   header.checksum = checksum(std::span(bytes).subspan(kSummedFrom));
   std::memcpy(bytes.data(), &header, sizeof header);
@@ -127,7 +153,8 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
                      header.version, kVersion);
   const uint64_t size = sizeof header + uint64_t(header.curves) * sizeof(CurveRecord) +
                         uint64_t(header.patches) * sizeof(PatchRecord) + uint64_t(header.paths) * sizeof(PathRecord) +
-                        uint64_t(header.paints) * sizeof(PaintRecord) + uint64_t(header.stops) * sizeof(StopRecord);
+                        uint64_t(header.paints) * sizeof(PaintRecord) + uint64_t(header.stops) * sizeof(StopRecord) +
+                        uint64_t(header.clips) * sizeof(ClipRecord) + uint64_t(header.layers) * sizeof(LayerRecord);
   if (size != bytes.size())
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: %zu bytes, the header says %llu", bytes.size(),
                      static_cast<unsigned long long>(size));
@@ -146,6 +173,8 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
   take(drawing.paths, header.paths);
   take(drawing.paints, header.paints);
   take(drawing.stops, header.stops);
+  take(drawing.clips, header.clips);
+  take(drawing.layers, header.layers);
   std::memcpy(drawing.bounds, header.bounds, sizeof header.bounds);
   std::memcpy(drawing.viewport, header.viewport, sizeof header.viewport);
   if (auto ok = checkContents(drawing); !ok) return ok.error();

@@ -87,6 +87,12 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
     if (!paint) return paint.error();
     record.paint = 1 + *paint;
   }
+  if (path.image) {
+    if (path.gradient) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "both gradient and image are given");
+    const auto paint = addImage(*path.image, drawing);
+    if (!paint) return paint.error();
+    record.paint = 1 + *paint;
+  }
   drawing.paths.push_back(record);
   return {};
 }
@@ -114,7 +120,7 @@ core::Result<void> append(const Drawing& part, Drawing& drawing) {
     drawing.paths.push_back(p);
   }
   for (PaintRecord p : part.paints) {
-    p.firstStop += stop;
+    if (p.kind != shader::kPaintImage) p.firstStop += stop;
     drawing.paints.push_back(p);
   }
   return {};

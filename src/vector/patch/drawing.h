@@ -13,7 +13,9 @@
 
 namespace gpgp::vector {
 
+using shader::ClipRecord;
 using shader::CurveRecord;
+using shader::LayerRecord;
 using shader::PaintRecord;
 using shader::PatchRecord;
 using shader::PathRecord;
@@ -21,14 +23,16 @@ using shader::StopRecord;
 
 struct Drawing {
   explicit Drawing(std::pmr::memory_resource* memory)
-      : curves(memory), patches(memory), paths(memory), paints(memory), stops(memory) {}
+      : curves(memory), patches(memory), paths(memory), paints(memory), stops(memory), clips(memory), layers(memory) {}
   std::pmr::vector<CurveRecord> curves;
   std::pmr::vector<PatchRecord> patches; ///< grouped by path, paths in painting order
   std::pmr::vector<PathRecord> paths;
-  std::pmr::vector<PaintRecord> paints; ///< gradients that paths refer to
+  std::pmr::vector<PaintRecord> paints; ///< gradients and images that paths refer to
   std::pmr::vector<StopRecord> stops;   ///< of all gradients, each one's in a row
-  float bounds[4] = {};                 ///< left, top, right, bottom of the ink; all 0 where there is none
-  float viewport[4] = {};               ///< x, y, width, height
+  std::pmr::vector<ClipRecord> clips;
+  std::pmr::vector<LayerRecord> layers;
+  float bounds[4] = {};   ///< left, top, right, bottom of the ink; all 0 where there is none
+  float viewport[4] = {}; ///< x, y, width, height
 };
 
 constexpr float kMaxCoordinate = 1e7f;
@@ -62,11 +66,18 @@ void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFill
 /// (equal ends, no radius, a transform without inverse) paints its last stop's colour, as SVG says.
 core::Result<uint32_t> addGradient(const GpgpGradient& gradient, Drawing& drawing);
 
+/// Checks an image paint and appends it; returns its index.
+core::Result<uint32_t> addImage(const GpgpImagePaint& image, Drawing& drawing);
+
 /// All stages for one path; appends its patches, the curves they use and its colour.
 core::Result<void> addPath(const GpgpPath& path, Drawing& drawing);
 
 /// Paints another drawing on top: how paths that were converted apart, or earlier, become one.
 core::Result<void> append(const Drawing& part, Drawing& drawing);
+
+/// The same with groups: their clips' paths come first, and paths know their clip and layer. Errors name the group.
+core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
+                                  std::pmr::memory_resource* memory, const GpgpJobSystem* jobs = nullptr);
 
 /// The drawing of paths in painting order; the same with and without jobs, which then call the memory resource side by
 /// side. Errors name the path.

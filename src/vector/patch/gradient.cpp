@@ -1,4 +1,4 @@
-// A gradient as the API takes it to the paint that shaders evaluate.
+// A gradient or an image as the API takes it to the paint that shaders evaluate.
 //
 // Linear: gradient space is turned, scaled and moved so that start lies at x = 0 and end at x = 1. Radial: so that the
 // end circle is the unit circle around 0; what is left of the two circles is the focus and its radius.
@@ -89,6 +89,36 @@ core::Result<uint32_t> addGradient(const GpgpGradient& g, Drawing& drawing) {
     stop.offset = last = std::max(last, from.offset);
     drawing.stops.push_back(stop);
   }
+  drawing.paints.push_back(paint);
+  return static_cast<uint32_t>(drawing.paints.size() - 1);
+}
+
+core::Result<uint32_t> addImage(const GpgpImagePaint& image, Drawing& drawing) {
+  if (image.image >= shader::kMaxImages)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.image is %u; it must be below %u", image.image,
+                     shader::kMaxImages);
+  double t[6];
+  for (int k = 0; k < 6; ++k) {
+    t[k] = static_cast<double>(image.transform[k]);
+    if (!std::isfinite(t[k]))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.transform holds a number that is not finite");
+  }
+  const double determinant = t[0] * t[3] - t[1] * t[2];
+  PaintRecord paint{};
+  const double inverse[6] = {t[3] / determinant,
+                             -t[1] / determinant,
+                             -t[2] / determinant,
+                             t[0] / determinant,
+                             (t[2] * t[5] - t[3] * t[4]) / determinant,
+                             (t[1] * t[4] - t[0] * t[5]) / determinant};
+  for (int k = 0; k < 6; ++k) {
+    const float value = static_cast<float>(inverse[k]);
+    if (!std::isfinite(value))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.transform has no inverse that float can hold");
+    (k < 4 ? paint.matrix[k] : paint.origin[k - 4]) = value;
+  }
+  paint.kind = shader::kPaintImage;
+  paint.firstStop = image.image;
   drawing.paints.push_back(paint);
   return static_cast<uint32_t>(drawing.paints.size() - 1);
 }

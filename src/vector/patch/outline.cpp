@@ -2,13 +2,15 @@
 #include "vector/geometry/stroke.h"
 #include "vector/patch/drawing.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace gpgp::vector {
 namespace {
 using core::makeError;
 
-constexpr uint32_t kPointsOfVerb[] = {1, 1, 2, 3, 0};
+constexpr uint32_t kPointsOfVerb[] = {1, 1, 2, 3, 0, 3};
 
 core::Result<void> checkPath(const GpgpPath& path) {
   if (path.verbCount && !path.verbs) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs is NULL");
@@ -17,7 +19,7 @@ core::Result<void> checkPath(const GpgpPath& path) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "fillRule is %d", path.fillRule);
   uint64_t needed = 0;
   for (uint32_t i = 0; i < path.verbCount; ++i) {
-    if (path.verbs[i] > GPGP_PATH_CLOSE)
+    if (path.verbs[i] > GPGP_PATH_ARC)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u] is %u", i, path.verbs[i]);
     needed += kPointsOfVerb[path.verbs[i]];
   }
@@ -30,10 +32,51 @@ core::Result<void> checkPath(const GpgpPath& path) {
     if (!(std::abs(path.points[i]) <= kMaxCoordinate))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points[%llu].%c is %g; it must be finite and within +-1e7",
                        static_cast<unsigned long long>(i / 2), i % 2 ? 'y' : 'x', static_cast<double>(path.points[i]));
+  if (!(path.scale >= 0 && std::isfinite(path.scale)))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "scale is %g", static_cast<double>(path.scale));
   for (int i = 0; i < 4; ++i)
     if (!(path.color[i] >= 0 && path.color[i] <= 1))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "color[%d] is %g; it must be 0 to 1", i,
                        static_cast<double>(path.color[i]));
+  return {};
+}
+
+bool hasArcs(const GpgpPath& path) {
+  return std::find(path.verbs, path.verbs + path.verbCount, GpgpPathVerb(GPGP_PATH_ARC)) != path.verbs + path.verbCount;
+}
+
+/// The path as a shape, arcs as cubics.
+core::Result<void> shapeOf(const GpgpPath& path, Shape& shape) {
+  constexpr double kArcTolerance = 1e-4; // pixels
+  const double scale = path.scale > 0 ? static_cast<double>(path.scale) : 1;
+  const float* next = path.points;
+  Point at, start;
+  const auto take = [&next] {
+    const Point p{next[0], next[1]};
+    next += 2;
+    return p;
+  };
+  for (uint32_t i = 0; i < path.verbCount; ++i) {
+    const GpgpPathVerb verb = path.verbs[i];
+    if (verb == GPGP_PATH_ARC) {
+      const Point radii = take(), form = take(), end = take();
+      if (!(form.y == 0 || form.y == 1 || form.y == 2 || form.y == 3))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u]: the flags of an arc are %g", i, form.y);
+      const uint32_t flags = static_cast<uint32_t>(form.y);
+      const size_t first = shape.points.size();
+      appendSvgArc(shape, at, std::abs(radii.x), std::abs(radii.y), form.x, (flags & GPGP_ARC_LARGE) != 0,
+                   (flags & GPGP_ARC_SWEEP) != 0, end, kArcTolerance / scale);
+      at = end;
+      for (size_t k = first; k < shape.points.size(); ++k)
+        if (!(std::abs(shape.points[k].x) <= kMaxCoordinate && std::abs(shape.points[k].y) <= kMaxCoordinate))
+          return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u]: the arc reaches beyond +-1e7", i);
+      continue;
+    }
+    shape.verbs.push_back(verb);
+    for (uint32_t k = 0; k < kPointsOfVerb[verb]; ++k) shape.points.push_back(at = take());
+    if (verb == GPGP_PATH_MOVE) start = at;
+    if (verb == GPGP_PATH_CLOSE) at = start;
+  }
   return {};
 }
 
@@ -67,8 +110,7 @@ core::Result<void> strokeOutline(const GpgpPath& path, std::pmr::vector<Monotone
     sum += dashes.emplace_back(s.dashes[k % s.dashCount]);
   if (!(sum > 0)) dashes.clear();
   Shape shape(memory), area(memory);
-  shape.verbs.assign(path.verbs, path.verbs + path.verbCount);
-  for (uint32_t i = 0; i < path.pointCount; ++i) shape.points.push_back({path.points[2 * i], path.points[2 * i + 1]});
+  if (auto ok = shapeOf(path, shape); !ok) return ok;
   const StrokeStyle style{s.width > 0 ? static_cast<double>(s.width) : 1 / scale,
                           static_cast<Cap>(s.cap),
                           static_cast<Join>(s.join),
@@ -99,24 +141,25 @@ core::Result<void> strokeOutline(const GpgpPath& path, std::pmr::vector<Monotone
   }
   return {};
 }
-} // namespace
 
-core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces) {
-  if (auto ok = checkPath(path); !ok) return ok;
-  if (path.stroke) return strokeOutline(path, pieces);
-  const float* next = path.points;
-  const auto take = [&next] {
-    const Point p{next[0], next[1]};
-    next += 2;
-    return p;
-  };
+Point next(const float*& points) {
+  points += 2;
+  return {points[-2], points[-1]};
+}
+Point next(const Point*& points) { return *points++; }
+
+/// Monotone pieces of contours without arcs.
+template <class Points>
+core::Result<void> outlineOf(std::span<const GpgpPathVerb> verbs, const Points* points,
+                             std::pmr::vector<Monotone>& pieces) {
+  const auto take = [&points] { return next(points); };
   Point start, current;
   const auto lineTo = [&](Point to) {
     if (!(to == current)) cutMonotone(Cubic::fromLine(current, to), pieces);
     current = to;
   };
-  for (uint32_t i = 0; i < path.verbCount; ++i) {
-    switch (path.verbs[i]) {
+  for (size_t i = 0; i < verbs.size(); ++i) {
+    switch (verbs[i]) {
     case GPGP_PATH_MOVE:
       lineTo(start);
       start = current = take();
@@ -139,6 +182,18 @@ core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pie
   }
   lineTo(start);
   return {};
+}
+} // namespace
+
+core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces) {
+  if (auto ok = checkPath(path); !ok) return ok;
+  if (path.stroke) return strokeOutline(path, pieces);
+  if (hasArcs(path)) {
+    Shape shape(pieces.get_allocator().resource());
+    if (auto ok = shapeOf(path, shape); !ok) return ok;
+    return outlineOf(shape.verbs, shape.points.data(), pieces);
+  }
+  return outlineOf(std::span(path.verbs, path.verbCount), path.points, pieces);
 }
 
 } // namespace gpgp::vector

@@ -7,43 +7,66 @@
 #include "shaders/vector_crowded0.spv.h"
 #include "shaders/vector_crowded1.spv.h"
 #include "shaders/vector_crowded2.spv.h"
+#include "shaders/vector_crowded_images0.spv.h"
+#include "shaders/vector_crowded_images1.spv.h"
+#include "shaders/vector_crowded_images2.spv.h"
 #include "shaders/vector_crowded_paints0.spv.h"
 #include "shaders/vector_crowded_paints1.spv.h"
 #include "shaders/vector_crowded_paints2.spv.h"
 #include "shaders/vector_crowded_paints_one0.spv.h"
 #include "shaders/vector_crowded_paints_one1.spv.h"
 #include "shaders/vector_crowded_paints_one2.spv.h"
+#include "shaders/vector_crowded_rich0.spv.h"
+#include "shaders/vector_crowded_rich1.spv.h"
+#include "shaders/vector_crowded_rich2.spv.h"
 #include "shaders/vector_draw_frag.spv.h"
 #include "shaders/vector_draw_vert.spv.h"
 #include "shaders/vector_fill.spv.h"
 #include "shaders/vector_fill_one.spv.h"
+#include "shaders/vector_fill_projective.spv.h"
 #include "shaders/vector_fill_software.spv.h"
 #include "shaders/vector_fill_software_one.spv.h"
+#include "shaders/vector_fill_software_projective.spv.h"
 #include "shaders/vector_mark.spv.h"
 #include "shaders/vector_mark_one.spv.h"
+#include "shaders/vector_mark_projective.spv.h"
 #include "shaders/vector_mark_software.spv.h"
 #include "shaders/vector_mark_software_one.spv.h"
+#include "shaders/vector_mark_software_projective.spv.h"
 #include "shaders/vector_place.spv.h"
 #include "shaders/vector_place_one.spv.h"
+#include "shaders/vector_place_projective.spv.h"
 #include "shaders/vector_raster0.spv.h"
 #include "shaders/vector_raster1.spv.h"
 #include "shaders/vector_raster2.spv.h"
+#include "shaders/vector_raster_images0.spv.h"
+#include "shaders/vector_raster_images1.spv.h"
+#include "shaders/vector_raster_images2.spv.h"
 #include "shaders/vector_raster_paints0.spv.h"
 #include "shaders/vector_raster_paints1.spv.h"
 #include "shaders/vector_raster_paints2.spv.h"
 #include "shaders/vector_raster_paints_one0.spv.h"
 #include "shaders/vector_raster_paints_one1.spv.h"
 #include "shaders/vector_raster_paints_one2.spv.h"
+#include "shaders/vector_raster_rich0.spv.h"
+#include "shaders/vector_raster_rich1.spv.h"
+#include "shaders/vector_raster_rich2.spv.h"
 #include "shaders/vector_sift.spv.h"
 #include "shaders/vector_tiles0.spv.h"
 #include "shaders/vector_tiles1.spv.h"
 #include "shaders/vector_tiles2.spv.h"
+#include "shaders/vector_tiles_images0.spv.h"
+#include "shaders/vector_tiles_images1.spv.h"
+#include "shaders/vector_tiles_images2.spv.h"
 #include "shaders/vector_tiles_paints0.spv.h"
 #include "shaders/vector_tiles_paints1.spv.h"
 #include "shaders/vector_tiles_paints2.spv.h"
 #include "shaders/vector_tiles_paints_one0.spv.h"
 #include "shaders/vector_tiles_paints_one1.spv.h"
 #include "shaders/vector_tiles_paints_one2.spv.h"
+#include "shaders/vector_tiles_rich0.spv.h"
+#include "shaders/vector_tiles_rich1.spv.h"
+#include "shaders/vector_tiles_rich2.spv.h"
 #include "shaders/vector_tiles_solid0.spv.h"
 #include "shaders/vector_tiles_solid1.spv.h"
 #include "shaders/vector_tiles_solid2.spv.h"
@@ -66,11 +89,21 @@ using shader::kMaxSlots;
 using shader::SlotRecord;
 
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
-constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10;
+constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
 // Workgroup counts and conditions of a record.
 enum Groups : uint32_t { kParams, kPaths, kSegments, kSlices, kBins, kWords, kRaster, kTiles, kSift };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
-enum Conditions : uint32_t { kPlain = 0, kPaints = 3, kPaintsOne = 6, kAny = 9, kOneDrawing = 12, kDrawings };
+enum Conditions : uint32_t {
+  kPlain = 0,
+  kPaints = 3,
+  kPaintsOne = 6,
+  kRich = 9,
+  kImages = 12,
+  kAny = 15,
+  kOneDrawing = 18,
+  kDrawings,
+  kProjective
+};
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
@@ -123,6 +156,16 @@ core::PassList Canvas::describe() const {
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
   const auto params = list.add({"items", scratch, paramBytes});
+  core::ResourceIndex images = 0; // the first
+  static constexpr const char* kImageNames[shader::kMaxImages] = {"images[0]", "images[1]", "images[2]", "images[3]",
+                                                                  "images[4]", "images[5]", "images[6]", "images[7]"};
+  for (uint32_t i = 0; i < shader::kMaxImages; ++i) {
+    const auto added = list.add({kImageNames[i], texture, 0, true});
+    if (i == 0) images = added;
+  }
+  const auto useImages = [images](core::Pass& pass) {
+    for (uint32_t i = 0; i < shader::kMaxImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
+  };
 
   list.fill("clear counters", counters, 0);
   list.fill("clear words", words, 0);
@@ -134,40 +177,43 @@ core::PassList Canvas::describe() const {
     for (const core::Use& use : uses) pass.uses[pass.useCount++] = use;
     return pass;
   };
-  // Shaders that fetch from drawings come in two forms: one need not choose among drawings at each access.
-  const auto either = [&](const char* name, const char* manyName, std::span<const uint32_t> one,
-                          std::span<const uint32_t> many, std::initializer_list<core::Use> uses, uint32_t groups) {
-    dispatch(name, {name, one}, uses, groups).condition = kOneDrawing;
-    dispatch(manyName, {manyName, many}, uses, groups).condition = kDrawings;
+  // Shaders that fetch from drawings come in three forms: one need not choose among drawings at each access, two know
+  // no projective items.
+  using Spirv = std::span<const uint32_t>;
+  const auto either = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv,
+                          std::initializer_list<core::Use> uses, uint32_t groups) {
+    for (uint32_t k = 0; k < 3; ++k) dispatch(names[k], {names[k], spirv[k]}, uses, groups).condition = kOneDrawing + k;
   };
-  either("place", "place, several drawings", vector_place_one, vector_place,
+  either({"place", "place, several drawings", "place, projective"},
+         {vector_place_one, vector_place, vector_place_projective},
          {{paths, readWrite}, {words, readWrite}, {counters, readWrite}}, kPaths);
-  // Before mark, which comes in two forms: a barrier for the one left out would part them.
+  // Before mark, which comes in several forms: a barrier for those left out would part them.
   dispatch("bin", {"bin", vector_bin}, {{paths, read}, {counters, read}, {masks, write}}, kBins);
-  const std::span<const uint32_t> mark[] = {vector_mark_one, vector_mark, vector_mark_software_one,
-                                            vector_mark_software};
-  const std::span<const uint32_t> fill[] = {vector_fill_one, vector_fill, vector_fill_software_one,
-                                            vector_fill_software};
-  const size_t form = software_ ? 2 : 0;
-  either("mark", "mark, several drawings", mark[form], mark[form + 1],
+  const std::array<Spirv, 3> mark =
+      software_ ? std::array<Spirv, 3>{vector_mark_software_one, vector_mark_software, vector_mark_software_projective}
+                : std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective};
+  const std::array<Spirv, 3> fill =
+      software_ ? std::array<Spirv, 3>{vector_fill_software_one, vector_fill_software, vector_fill_software_projective}
+                : std::array<Spirv, 3>{vector_fill_one, vector_fill, vector_fill_projective};
+  either({"mark", "mark, several drawings", "mark, projective"}, mark,
          {{paths, read}, {words, readWrite}, {counters, read}}, kSegments);
   dispatch("allot", {"allot", vector_allot},
            {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
-  either("fill", "fill, several drawings", fill[form], fill[form + 1],
+  either({"fill", "fill, several drawings", "fill, projective"}, fill,
          {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSlices);
   // By target: the view alone, rgba8, rgba16f.
-  using Spirv = std::span<const uint32_t>;
   const auto addTarget = [&](core::Pass& pass, uint32_t target, uint32_t condition) {
     if (target != kNoImage) pass.uses[pass.useCount++] = {target == kHasImage8 ? image8 : image16, write};
     pass.condition = condition + target;
   };
   const auto raster = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition) {
-    for (uint32_t t = 0; t < 3; ++t)
-      addTarget(
-          dispatch(names[t], {names[t], spirv[t]},
-                   {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}},
-                   kRaster),
-          t, condition);
+    for (uint32_t t = 0; t < 3; ++t) {
+      core::Pass& pass = dispatch(
+          names[t], {names[t], spirv[t]},
+          {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}}, kRaster);
+      if (condition == kImages) useImages(pass);
+      addTarget(pass, t, condition);
+    }
   };
   // On software devices: from lists, without barriers.
   const auto tilesOf = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition,
@@ -177,8 +223,9 @@ core::PassList Canvas::describe() const {
           names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
           {{params, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
           arguments * 4);
-      const uint32_t drawings = condition == kPaints ? kMaxSlots : 1;
+      const uint32_t drawings = condition == kPlain || condition == kPaintsOne ? 1 : kMaxSlots;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
+      if (condition == kImages) useImages(pass);
       addTarget(pass, t, condition);
     }
   };
@@ -206,6 +253,15 @@ core::PassList Canvas::describe() const {
     tilesOf({"crowded gradients", "crowded gradients rgba8", "crowded gradients rgba16f"},
             {vector_crowded_paints_one0, vector_crowded_paints_one1, vector_crowded_paints_one2}, kPaintsOne,
             shader::kCrowdedArguments);
+    tilesOf({"raster all", "raster all rgba8", "raster all rgba16f"},
+            {vector_tiles_rich0, vector_tiles_rich1, vector_tiles_rich2}, kRich, shader::kPaintedArguments);
+    tilesOf({"crowded all", "crowded all rgba8", "crowded all rgba16f"},
+            {vector_crowded_rich0, vector_crowded_rich1, vector_crowded_rich2}, kRich, shader::kCrowdedArguments);
+    tilesOf({"raster images", "raster images rgba8", "raster images rgba16f"},
+            {vector_tiles_images0, vector_tiles_images1, vector_tiles_images2}, kImages, shader::kPaintedArguments);
+    tilesOf({"crowded images", "crowded images rgba8", "crowded images rgba16f"},
+            {vector_crowded_images0, vector_crowded_images1, vector_crowded_images2}, kImages,
+            shader::kCrowdedArguments);
   } else {
     raster({"raster", "raster rgba8", "raster rgba16f"}, {vector_raster0, vector_raster1, vector_raster2}, kPlain);
     raster({"raster gradients, several drawings", "raster gradients rgba8, several drawings",
@@ -213,6 +269,10 @@ core::PassList Canvas::describe() const {
            {vector_raster_paints0, vector_raster_paints1, vector_raster_paints2}, kPaints);
     raster({"raster gradients", "raster gradients rgba8", "raster gradients rgba16f"},
            {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
+    raster({"raster all", "raster all rgba8", "raster all rgba16f"},
+           {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich);
+    raster({"raster images", "raster images rgba8", "raster images rgba16f"},
+           {vector_raster_images0, vector_raster_images1, vector_raster_images2}, kImages);
   }
   list.report = counters;
   list.reportBytes = sizeof(CanvasCounters);
@@ -241,10 +301,24 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the target is %u x %u, the canvas %u x %u", info.target.width,
                        info.target.height, info.width, info.height);
   }
+  if (info.imageCount > shader::kMaxImages)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a record paints with at most %u (GPGP_MAX_IMAGES)",
+                     info.imageCount, shader::kMaxImages);
+  if (info.imageCount && !info.images)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images is NULL, but imageCount is %u", info.imageCount);
+  for (uint32_t i = 0; i < info.imageCount; ++i) {
+    if (!info.images[i].view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].view is NULL", i);
+    if (!info.images[i].sampler) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].sampler is NULL", i);
+    if (info.images[i].layout == VK_IMAGE_LAYOUT_UNDEFINED)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].layout is UNDEFINED: nothing could be found there", i);
+  }
   for (uint32_t i = 0; i < info.itemCount; ++i) {
     for (const float v : info.items[i].transform)
       if (!std::isfinite(v))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].transform holds a number that is not finite", i);
+    for (const float v : info.items[i].perspective)
+      if (!std::isfinite(v))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].perspective holds a number that is not finite", i);
     if (!(info.items[i].opacity >= 0 && info.items[i].opacity <= 1))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].opacity is %g; it must be 0 to 1", i,
                        static_cast<double>(info.items[i].opacity));
@@ -263,7 +337,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   std::byte* itemBytes = constants_.data() + sizeof header + sizeof slots;
   const DrawingAsset* bound[kMaxSlots] = {};
   uint64_t patchCount = 0;
-  bool gradients = false;
+  bool gradients = false, projective = false, images = false, groups = false;
   uint32_t slotCount = 0;
 
   // Items in painting order, each with as many of its first paths as there is room for; after one that did not fit
@@ -272,7 +346,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t i = 0; i < info.itemCount; ++i) {
     const DrawingAsset& drawing = *drawings[i];
     ItemRecord item{};
-    if (!placeItem(info.items[i].transform, item)) continue; // squeezed to a line: covers nothing
+    const uint32_t firstImage = info.items[i].firstImage;
+    if (drawing.images() && (firstImage > info.imageCount || drawing.images() > info.imageCount - firstImage))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "items[%u]: its drawing needs %u images from images[%u] on; imageCount is %u", i,
+                       drawing.images(), firstImage, info.imageCount);
+    if (!placeItem(info.items[i], info.width, info.height, item)) continue; // covers nothing
     uint32_t slot = 0;
     while (slot < slotCount && bound[slot] != &drawing) ++slot;
     if (slot == kMaxSlots)
@@ -297,6 +376,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
       slots[slot] = drawing.tables();
       gradients = gradients || drawing.gradients();
     }
+    projective = projective || item.perspective.w > 0;
+    images = images || drawing.images();
+    groups = groups || drawing.groups();
+    item.firstImage = firstImage;
     item.opacity = info.items[i].opacity;
     item.slot = slot;
     item.firstSegment = header.segmentCount;
@@ -329,6 +412,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                                                            : shader::kMostSegments;
   header.groupSegments = perGroup;
   header.listWords = listWords();
+  for (uint32_t i = 0; i < info.imageCount && images; ++i)
+    header.premultiplied |= info.images[i].premultiplied ? 1u << i : 0;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
   std::memcpy(constants_.data(), &header, sizeof header);
   std::memcpy(constants_.data() + sizeof header, slots, sizeof slots);
@@ -341,10 +426,21 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   const bool wide = info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT;
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
-  r.conditions[slotCount > 1 ? kDrawings : kOneDrawing] = true;
+  r.conditions[projective ? kProjective : slotCount > 1 ? kDrawings : kOneDrawing] = true;
   const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
-  r.conditions[(!gradients ? kPlain : slotCount > 1 ? kPaints : kPaintsOne) + image] = true;
+  const bool rich = groups || (gradients && projective);
+  r.conditions[(images          ? kImages
+                : rich          ? kRich
+                : !gradients    ? kPlain
+                : slotCount > 1 ? kPaints
+                                : kPaintsOne) +
+               image] = true;
   r.conditions[kAny + image] = true;
+  // Shaders name all images, so those that are not there are bound to the first one.
+  for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
+    const GpgpCanvasImage& from = info.images[i < info.imageCount ? i : 0];
+    r.bindings[kFirstImage + i].texture = {from.sampler, from.view, from.layout};
+  }
   r.groups[kPaths] = rows(divide(header.pathCount, 64));
   r.groups[kParams] = {divide(r.constants.size(), 64 * 16), 1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));

@@ -16,6 +16,9 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     if (i) asset->ends_[i].patches += asset->ends_[i - 1].patches;
     asset->ends_[i].segments = outlines.ends[i];
   }
+  for (const PaintRecord& paint : drawing.paints)
+    if (paint.kind == shader::kPaintImage) asset->images_ = std::max(asset->images_, paint.firstStop + 1);
+  asset->layers_ = !drawing.layers.empty();
   std::copy_n(drawing.bounds, 4, asset->bounds_);
   std::copy_n(drawing.viewport, 4, asset->viewport_);
   std::pmr::vector<std::byte> bytes(&context.host());
@@ -30,6 +33,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   asset->tables_.paths = add(drawing.paths);
   asset->tables_.paints = add(drawing.paints);
   asset->tables_.stops = add(drawing.stops);
+  asset->tables_.clips = add(drawing.clips);
+  asset->tables_.layers = add(drawing.layers);
   if (bytes.size() > context.device.limits.maxStorageBufferRange)
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
                            bytes.size(), context.device.limits.maxStorageBufferRange);

@@ -5,7 +5,7 @@
 
 namespace gpgp::vector {
 
-/// A drawing's tables in one buffer: segments, boxes of paths, paths, paints, stops.
+/// A drawing's tables in one buffer: segments, boxes of paths, paths, paints, stops, clips, layers.
 class DrawingAsset final : public core::Resident {
 public:
   static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label,
@@ -22,13 +22,16 @@ public:
   uint32_t curves() const { return curves_; }
   uint32_t patches() const { return first(paths()).patches; }
   const shader::SlotRecord& tables() const { return tables_; }
+  bool groups() const { return tables_.layers > tables_.clips || layers_; } ///< that clip or fade
   bool gradients() const { return tables_.stops > tables_.paints; }
+  uint32_t images() const { return images_; } ///< how many of the record's images it needs
   const float* bounds() const { return bounds_; }
   const float* viewport() const { return viewport_; }
 
 private:
   std::pmr::vector<Ends> ends_; // by path, running
-  uint32_t curves_ = 0;
+  uint32_t curves_ = 0, images_ = 0;
+  bool layers_ = false;
   shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};
 };
