@@ -119,31 +119,26 @@ Grammar Deriver::prepare(const std::pmr::vector<uint32_t>& kernel) {
 }
 
 Measured<GpgpSpawnReport> Deriver::derive(const Grammar& grammar, uint32_t repeat) {
-  const auto begin = std::chrono::steady_clock::now();
-  if (begin - lastWork_ > std::chrono::milliseconds(5)) busy_ = {};
   GpgpVertexOutput output = layout();
   if (options_.vertices) {
     output.vertices = vertices_.range({}, kRead);
     output.indices = indices_.range({}, kRead);
   }
-  auto result = session_.measure(*spawner_, "deriving", repeat,
-                                 [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
-                                   GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
-                                   info.base = base;
-                                   info.grammar = grammar.get();
-                                   info.axioms = axioms_.range();
-                                   info.axiomCount = axiomCount_;
-                                   info.count = count_.range({}, kRead);
-                                   if (options_.vertices)
-                                     info.vertices = &output;
-                                   else
-                                     info.instances = instances_.range({}, kRead);
-                                   if (options_.sorted) info.draws = draws_.range({}, kRead);
-                                   return spawner_->recordPrepare(commands, frame, info);
-                                 });
-  lastWork_ = std::chrono::steady_clock::now();
-  busy_ += lastWork_ - begin;
-  return result;
+  return session_.measure(*spawner_, "deriving", repeat,
+                          [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                            GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+                            info.base = base;
+                            info.grammar = grammar.get();
+                            info.axioms = axioms_.range();
+                            info.axiomCount = axiomCount_;
+                            info.count = count_.range({}, kRead);
+                            if (options_.vertices)
+                              info.vertices = &output;
+                            else
+                              info.instances = instances_.range({}, kRead);
+                            if (options_.sorted) info.draws = draws_.range({}, kRead);
+                            return spawner_->recordPrepare(commands, frame, info);
+                          });
 }
 
 GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
@@ -176,15 +171,6 @@ GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
     if (!again && !another) return report;
     if (another) makeSpawner();
   }
-}
-
-Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repeat) {
-  for (uint32_t times = 1;; times = std::min(2 * times, 256u)) {
-    const bool idled = std::chrono::steady_clock::now() - lastWork_ > std::chrono::milliseconds(5);
-    if (!idled && busy_ >= std::chrono::milliseconds(100)) break;
-    derive(grammar, times);
-  }
-  return derive(grammar, repeat);
 }
 
 std::vector<GpgpInstance> Deriver::instances() {

@@ -3,8 +3,6 @@
 #include "cli/kernels.h"
 #include "cli/session.h"
 
-#include <chrono>
-
 namespace gpgp::cli {
 
 struct DeriverOptions {
@@ -42,9 +40,7 @@ public:
   /// Derives once. Where the report says that shapes were dropped, or that buffers are too small, again with more of
   /// what was short, as far as the device and the options allow.
   GpgpSpawnReport fit(const Grammar& grammar);
-  /// Derives `repeat` times, after 0.1 s of the same where the device has idled: its clock takes that long to come
-  /// back.
-  Measured<GpgpSpawnReport> measure(const Grammar& grammar, uint32_t repeat);
+  Measured<GpgpSpawnReport> measure(const Grammar& grammar, uint32_t repeat) { return derive(grammar, repeat); }
 
   /// Instances or vertices that this device binds at once.
   uint64_t mostElements() const;
@@ -70,8 +66,6 @@ private:
   std::optional<Spawner> spawner_;
   host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_;
   uint64_t elements_ = 0; // instances or vertices that the buffers hold
-  std::chrono::steady_clock::time_point lastWork_{};
-  std::chrono::steady_clock::duration busy_{}; // since the device last idled
 };
 
 } // namespace gpgp::cli

@@ -63,7 +63,7 @@ void Session::onMessage(void* userData, const GpgpMessage* message) {
 
 Session::Session(const CommonOptions& options)
     : device_(host::DeviceOptions{.device = options.device, .validation = options.validate}), frames_(device_, 2),
-      validate_(options.validate) {
+      busy_(device_), validate_(options.validate) {
   GpgpContextCreateInfo info = device_.contextCreateInfo();
   info.label = "gpgp command";
   info.messageFn = onMessage;
@@ -113,11 +113,13 @@ GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, con
 
   GpuTimes times;
   std::vector<std::vector<double>> perPass(passCount);
+  if (repeat > 1) busy_.warmUp();
   Progress progress(label, repeat);
   for (uint32_t i = 0; i < repeat; ++i) {
     VkCommandBuffer commands = frames_.begin();
     check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
     collectReports();
+    if (repeat > 1) busy_.record(commands);
     GpgpRecordInfo base{};
     base.tag = i;
     if (timed) {

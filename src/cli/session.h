@@ -1,6 +1,7 @@
 // A headless device with a gpgp context on it, and the frame that each subcommand runs: upload, record, submit, wait.
 #pragma once
 #include "cli/command.h"
+#include "host/busy_work.h"
 #include "host/frames.h"
 #include "host/memory.h"
 
@@ -45,7 +46,8 @@ public:
   /// Uploads all pending assets.
   void upload();
   /// Runs record `repeat` times, a frame each, and waits for it; measures every one. record is given the info's common
-  /// part with timestamps set, and returns what the record function returned. The report is the last run's.
+  /// part with timestamps set, and returns what the record function returned. The report is the last run's. A GPU is
+  /// kept busy for a while before, and between records: idle ones lower their clocks within milliseconds.
   using Record = std::function<GpgpResult(VkCommandBuffer, const GpgpFrame&, const GpgpRecordInfo&)>;
   template <class WorkerType>
   auto measure(WorkerType& worker, const char* label, uint32_t repeat, const Record& record) {
@@ -72,6 +74,7 @@ private:
   std::string lastError_;
   Context context_;
   host::FrameRing frames_;
+  host::BusyWork busy_;
   bool validate_;
 };
 

@@ -5,6 +5,7 @@
 // map, contours and page are generated: a street map (45 000 paths, 545 000 curves), a contour map (53 000 paths,
 // 188 000 curves), a page of 12 000 glyph-like shapes. Prints medians and ratios; asserts nothing about time, but fails
 // where a record fails or drops paths.
+#include "host/busy_work.h"
 #include "host/files.h"
 #include "host/frames.h"
 #include "host/memory.h"
@@ -327,12 +328,15 @@ void run(host::HeadlessDevice& device, const Scene& scene, uint32_t size, uint32
   std::vector<double> totals, record;
   std::vector<std::vector<double>> each(passes);
   uint32_t entries = 0;
+  const host::BusyWork busy(device);
+  busy.warmUp();
   for (int i = 0; i < repeat + 2; ++i) {
     const uint64_t number = 2 * static_cast<uint64_t>(i) + 1;
     const GpgpFrame frame{number, number - 1};
     expect(gpgpAdvance(context, &frame), "gpgpAdvance");
     device.submitAndWait([&](VkCommandBuffer cmd) {
       expect(gpgpRecordUpload(context, cmd, &frame, 0, nullptr), "gpgpRecordUpload");
+      busy.record(cmd);
       vk.vkCmdResetQueryPool(cmd, queries, 0, passes + 1);
       GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
       info.base.timestamps = {queries, 0, passes + 1};
