@@ -264,6 +264,65 @@ TEST(SvgImport, WhatIsNotShownIsNoPath) {
             1u);
 }
 
+TEST(SvgImport, GroupsFadeAndClip) {
+  const std::string two = "<path d='M0 0h9v9'/><path d='M0 0h9v9'/>";
+  Imported d = page("<g opacity='.5'>" + two + "</g><path d='M0 0h9v9' opacity='.25'/>").drawing;
+  ASSERT_EQ(d.paths.size(), 3u);
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_EQ(d.groups[0].opacity, 0.5f);
+  EXPECT_EQ(d.paths[0].group, 1u);
+  EXPECT_EQ(d.paths[1].group, 1u);
+  EXPECT_EQ(d.paths[1].color[3], 1);
+  EXPECT_EQ(d.paths[2].group, 0u); // one path needs none
+  EXPECT_EQ(d.paths[2].color[3], 0.25f);
+  d = page("<path d='M0 0h9v9' stroke='red' opacity='.5'/><g opacity='.5'><g opacity='.5'><path d='M0 0h9v9'/></g></g>")
+          .drawing;
+  ASSERT_EQ(d.groups.size(), 1u); // fill and stroke
+  EXPECT_EQ(d.paths[0].group, 1u);
+  EXPECT_EQ(d.paths[1].group, 1u);
+  EXPECT_EQ(d.paths[2].color[3], 0.25f);
+  EXPECT_EQ(d.paths[2].group, 0u);
+  EXPECT_TRUE(page("<g opacity='0'>" + two + "</g>").drawing.paths.empty());
+
+  Import imported =
+      page("<clipPath id='c' transform='translate(1 2)' clip-path='url(#d)'><path d='M0 0h9v9' clip-rule='evenodd'/>"
+           "<g><path d='M0 0h9v9'/></g><rect width='4' height='5' fill='none'/></clipPath>"
+           "<clipPath id='d' clipPathUnits='objectBoundingBox'><rect width='.5' height='1'/></clipPath>"
+           "<g transform='scale(2)' clip-path=\"url('#c')\">" +
+           two + "</g>");
+  d = std::move(imported.drawing);
+  EXPECT_EQ(imported.messages,
+            Texts{"W line 2: clip-path with clipPathUnits objectBoundingBox is supported on shapes only: "
+                  "<clipPath> is drawn without it"});
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_TRUE(d.groups[0].clipped);
+  EXPECT_EQ(d.groups[0].opacity, 1);
+  ASSERT_EQ(d.groups[0].clip.size(), 2u);
+  EXPECT_EQ(d.groups[0].clip[0].rule, GPGP_FILL_EVEN_ODD);
+  EXPECT_EQ(d.groups[0].clip[0].points[0], 2);
+  EXPECT_EQ(d.groups[0].clip[0].points[1], 4);
+  EXPECT_EQ(d.groups[0].clip[1].rule, GPGP_FILL_NON_ZERO);
+  EXPECT_EQ(d.paths[1].group, 1u);
+  d = page("<clipPath id='c'><path d='M0 0h9v9'/></clipPath>"
+           "<clipPath id='d' clipPathUnits='objectBoundingBox' clip-path='url(#c)'><rect width='.5' "
+           "height='1'/></clipPath>"
+           "<rect x='10' y='20' width='40' height='8' clip-path='url(#d)' opacity='.5'/>")
+          .drawing;
+  ASSERT_EQ(d.groups.size(), 2u);
+  EXPECT_EQ(d.groups[1].parent, 1u);
+  EXPECT_EQ(d.paths[0].group, 2u);
+  EXPECT_EQ(d.paths[0].color[3], 0.5f);
+  ASSERT_EQ(d.groups[1].clip.size(), 1u);
+  EXPECT_EQ(d.groups[1].clip[0].points[0], 10);
+  EXPECT_EQ(d.groups[1].clip[0].points[2], 30);
+  const vector::svg::Imported empty; // views of nothing
+  EXPECT_TRUE(vector::svg::ImportedViews(empty).groups.empty());
+  d = page("<clipPath id='c'/><path d='M0 0h9v9' clip-path='url(#c)'/>").drawing; // a clip without shapes shows nothing
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_TRUE(d.groups[0].clipped);
+  EXPECT_TRUE(d.groups[0].clip.empty());
+}
+
 TEST(SvgImport, MessagesNameElementAndLine) {
   const struct {
     const char* text;
@@ -272,7 +331,7 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<text x='1'>a</text>", "W line 2: <text> is not supported"},
       {"\n<image href='a.png'/>", "W line 3: <image> is not supported"},
       {"<rect width='9' height='9' clip-path='url(#c)'/>",
-       "W line 2: clip-path is not supported: <rect> is drawn without it"},
+       "W line 2: clip-path 'url(#c)' is no clipPath of this file: <rect> is drawn without it"},
       {"<rect width='9' height='9' filter='url(#c)'/>",
        "W line 2: filter is not supported: <rect> is drawn without it"},
       {"<linearGradient id='g'/>\n<rect width='9' height='9' fill='url(#g)'/>",
@@ -281,8 +340,16 @@ TEST(SvgImport, MessagesNameElementAndLine) {
        "E line 2: <linearGradient> has x1 'a', which is no length"},
       {"<pattern id='p'/><rect width='9' height='9' fill='url(#p) red'/>",
        "W line 2: <rect> fill refers to a <pattern>, which is not supported; its fallback is used"},
-      {"<g opacity='.5'><rect width='9' height='9'/><rect width='9' height='9'/></g>",
-       "W line 2: opacity of <g> is applied to each of its paths, not to the whole"},
+      {"<clipPath id='c' clip-path='url(#c)'/><rect width='9' height='9' clip-path='url(#c)'/>",
+       "W line 2: clip-path 'url(#c)' contains itself: <clipPath> is drawn without it"},
+      {"<clipPath id='c' clipPathUnits='objectBoundingBox'/><g clip-path='url(#c)'><path d='M0 0h9v9'/></g>",
+       "W line 2: clip-path with clipPathUnits objectBoundingBox is supported on shapes only: <g> is drawn without it"},
+      {"<clipPath id='c'><text>a</text></clipPath><rect width='9' height='9' clip-path='url(#c)'/>",
+       "W line 2: <text> is not supported"},
+      {"<g opacity='.5'><g opacity='.5'><g opacity='.5'><g opacity='.5'><g opacity='.5'><path d='M0 0h9v9'/>"
+       "<path d='M0 0h9v9'/></g><path d='M0 0h9v9'/></g><path d='M0 0h9v9'/></g><path d='M0 0h9v9'/></g>"
+       "<path d='M0 0h9v9'/></g>",
+       "W line 2: opacity of <g>, inside too many that fade, is applied to each of its paths"},
       {"<g id='a'><use href='#a'/></g>", "E line 2: <use> of '#a' contains itself; not drawn"},
       {"<use href='#no'/>", "E line 2: <use> refers to '#no', which is not there"},
       {"<circle r='-1'/>", "E line 2: <circle> has a negative r"},

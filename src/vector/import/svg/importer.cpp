@@ -22,6 +22,8 @@ constexpr std::string_view kSilent[] = {
 
 } // namespace
 
+bool isShape(std::string_view element) { return oneOf(element, kShapes); }
+
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits) {
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
@@ -101,7 +103,9 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
                     GPGP_ERROR_UNSUPPORTED);
     return;
   }
-  State state{parent.style.inherited(), parent.transform, parent.lengths, parent.opacity, parent.depth + 1};
+  State state = parent;
+  state.style = parent.style.inherited();
+  ++state.depth;
   cascade(node, name, parent.style, parent.lengths, state.style);
   if (!state.style.displayed) return;
   if (const pugi::xml_attribute transform = node.attribute("transform")) {
@@ -114,9 +118,19 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     reporter_.error(document_.line(node), element(node) + " has a transform beyond all numbers; not drawn");
     return;
   }
-  state.opacity *= state.style.opacity;
+  const size_t before = result_.paths.size(), groupsBefore = result_.groups.size();
+  const double opacity = clipping_ ? 1 : state.style.opacity;
+  if (!(opacity > 0)) return;
+  if (!clipping_ && !state.style.clipPath.empty()) clip(node, name, state);
+  const bool fades = opacity < 1 && state.fading < shader::kMaxLayerDepth;
+  if (fades) {
+    result_.groups.push_back({state.group, static_cast<float>(opacity), false, {}});
+    state.group = static_cast<uint32_t>(result_.groups.size());
+    ++state.fading;
+  } else {
+    state.opacity *= opacity;
+  }
   reportUnsupported(node, name, state.style);
-  const size_t before = result_.paths.size();
   if (oneOf(name, kShapes)) {
     draw(node, name, state);
   } else if (name == "g" || name == "a") {
@@ -130,9 +144,18 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   } else {
     reporter_.warn(document_.line(node), element(node) + " is not supported");
   }
-  if (state.style.opacity < 1 && result_.paths.size() > before + 1)
+  const size_t drawn = result_.paths.size() - before;
+  if (fades && drawn == 1 && result_.paths.back().group == state.group) { // one path needs no group to fade
+    ImportedPath& path = result_.paths.back();
+    path.color[3] = static_cast<float>(static_cast<double>(path.color[3]) * opacity);
+    path.group = result_.groups[state.group - 1].parent;
+    result_.groups.resize(state.group - 1);
+  } else if (drawn == 0) {
+    result_.groups.resize(groupsBefore);
+  } else if (opacity < 1 && !fades && drawn > 1) {
     reporter_.warn(document_.line(node),
-                   "opacity of " + element(node) + " is applied to each of its paths, not to the whole");
+                   "opacity of " + element(node) + ", inside too many that fade, is applied to each of its paths");
+  }
 }
 
 void Importer::visitChildren(pugi::xml_node node, const State& state) {
@@ -228,7 +251,7 @@ void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, con
   const struct {
     bool is;
     const char* what;
-  } features[] = {{style.clipPath, "clip-path"},
+  } features[] = {{clipping_ && !style.clipPath.empty(), "clip-path inside a clipPath"},
                   {style.mask, "mask"},
                   {style.filter, "filter"},
                   {style.blendMode, "mix-blend-mode"},
@@ -247,6 +270,8 @@ void Importer::draw(pugi::xml_node node, std::string_view name, const State& sta
   if (!style.visible) return;
   const Shape shape = shapeOf(node, name, state);
   if (shape.empty()) return;
+  group_ = state.group;
+  if (clipping_) return emit(shape, state.transform, style.clipRule, {}, 1, node);
   const auto fill = [&] {
     if (shape.points.size() < 3) return;
     const std::optional<Ink> ink = resolve(style.fill, state, shape, node, "fill");
@@ -325,6 +350,7 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
   path.rule = rule;
   path.gradient = ink.gradient;
   path.line = document_.line(node);
+  path.group = group_;
   const double linear[4] = {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b), alpha};
   for (size_t i = 0; i < 4; ++i) path.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));
   result_.paths.push_back(std::move(path));

@@ -4,6 +4,7 @@
 #include "vector/import/svg/import.h"
 #include "vector/import/svg/style.h"
 #include "vector/import/svg/stylesheet.h"
+#include "vector/layout.h"
 
 #include <optional>
 
@@ -15,6 +16,15 @@ struct ViewBox {
 };
 std::optional<ViewBox> parseViewBox(std::string_view text);
 Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio);
+
+/// The smallest box around a shape's curves.
+struct Box {
+  double left = 1e300, top = 1e300, right = -1e300, bottom = -1e300;
+  void add(Point p);
+};
+Box boxOf(const Shape& shape);
+
+bool isShape(std::string_view element);
 
 class Importer {
 public:
@@ -28,8 +38,10 @@ private:
     Style style;
     Affine transform;
     LengthContext lengths; ///< of the nearest viewport
-    double opacity = 1;    ///< of all groups around
+    double opacity = 1;    ///< of groups around that could not be one
     size_t depth = 0;
+    uint32_t group = 0;             ///< 1 + index in the result
+    uint32_t fading = 0, clips = 0; ///< groups around that fade, and that clip
   };
 
   // importer.cpp
@@ -39,6 +51,10 @@ private:
   void visitSwitch(pugi::xml_node node, const State& state);
   void visitViewport(pugi::xml_node node, State& state, const double* useSize);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
+
+  // clip.cpp
+  /// Puts what the element refers to around it; says so where that cannot be.
+  void clip(pugi::xml_node node, std::string_view name, State& state);
   /// What a paint property comes to.
   struct Ink {
     Color color;
@@ -78,6 +94,8 @@ private:
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
   bool stopped_ = false;
+  bool clipping_ = false; // inside a clipPath: shapes alone count
+  uint32_t group_ = 0;    // of what is emitted
 };
 
 } // namespace gpgp::vector::svg
