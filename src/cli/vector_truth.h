@@ -148,7 +148,8 @@ inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, std::span
   constexpr size_t kGrid = 16, kSamples = kGrid * kGrid;
   std::vector<WindingPath> windings(paths.begin(), paths.end());
   std::vector<std::vector<WindingPath>> clips(groups.size());
-  for (size_t g = 0; g < groups.size(); ++g) clips[g].assign(groups[g].clip, groups[g].clip + groups[g].clipCount);
+  for (size_t g = 0; g < groups.size(); ++g)
+    for (uint32_t k = 0; k < groups[g].clipCount; ++k) clips[g].emplace_back(groups[g].clip[k]);
   const size_t rowSamples = size_t(width) * kSamples;
   std::vector<float> pixels(size_t(width) * height * 4);
   std::vector<WindingPath::Crossing> row;
@@ -207,12 +208,17 @@ inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, std::span
         if (groups[g - 1].clip) clipping.push_back(g);
       }
       const auto holds = [&](uint32_t g) { return std::find(fading.begin(), fading.end(), g) != fading.end(); };
-      while (levels.size() > 1 && !holds(levels.back().group)) leave();
-      for (size_t k = fading.size(); k-- > 0;)
-        if (fading.size() - k >= levels.size()) levels.push_back({fading[k], std::vector<float>(rowSamples * 4)});
+      bool entered = false; // not before the row has something of the path
+      const auto enter = [&] {
+        while (levels.size() > 1 && !holds(levels.back().group)) leave();
+        for (size_t k = fading.size(); k-- > 0;)
+          if (fading.size() - k >= levels.size()) levels.push_back({fading[k], std::vector<float>(rowSamples * 4)});
+        entered = true;
+      };
       forSamples(path, y, [&](size_t sample, double dx, double dy) {
         for (const uint32_t g : clipping)
           if (!showing(g)[sample]) return;
+        if (!entered) enter();
         const float* color = path.path().color;
         float own[4] = {color[0], color[1], color[2], color[3]};
         if (path.path().gradient) {

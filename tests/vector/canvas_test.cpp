@@ -1026,7 +1026,7 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
   };
   const double db = psnr(pixels);
   RecordProperty("psnr_centibel", static_cast<int>(db * 10));
-  std::printf("%s: %.1f dB, %zu paths, %u patches, %u entries\n", GetParam(), db, paths.size(), report.patches,
+  std::printf("%s: %.1f dB, %zu paths, %u patches, %u entries\n", GetParam(), db, views.paths.size(), report.patches,
               report.tileEntries);
   EXPECT_GE(db, 38.0);
   exactArea = true;

@@ -5,8 +5,6 @@
 #include <cmath>
 
 namespace gpgp::vector::svg {
-namespace {} // namespace
-
 void Box::add(Point p) {
   left = std::min(left, p.x);
   right = std::max(right, p.x);

@@ -7,6 +7,7 @@
 #include "vector/layout.h"
 
 #include <optional>
+#include <unordered_map>
 
 namespace gpgp::vector::svg {
 
@@ -23,8 +24,6 @@ struct Box {
   void add(Point p);
 };
 Box boxOf(const Shape& shape);
-
-bool isShape(std::string_view element);
 
 class Importer {
 public:
@@ -50,11 +49,17 @@ private:
   void visitUse(pugi::xml_node node, const State& state);
   void visitSwitch(pugi::xml_node node, const State& state);
   void visitViewport(pugi::xml_node node, State& state, const double* useSize);
+  /// What is inside of an element whose own properties are in the state.
+  void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
 
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
   void clip(pugi::xml_node node, std::string_view name, State& state);
+  Style styleOf(pugi::xml_node clipPath, const LengthContext& lengths);
+  /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
+  Box boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space);
+  void measure(const Shape& shape, const Affine& transform);
   /// What a paint property comes to.
   struct Ink {
     Color color;
@@ -94,8 +99,16 @@ private:
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
   bool stopped_ = false;
-  bool clipping_ = false; // inside a clipPath: shapes alone count
-  uint32_t group_ = 0;    // of what is emitted
+  enum class Mode {
+    Paint,
+    Clip,   // shapes alone count
+    Measure // so do their boxes
+  };
+  Mode mode_ = Mode::Paint;
+  Box box_; // of what was measured
+  Affine toBox_;
+  std::unordered_map<size_t, Style> clipStyles_;
+  uint32_t group_ = 0; // of what is emitted
 };
 
 } // namespace gpgp::vector::svg
