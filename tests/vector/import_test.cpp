@@ -353,6 +353,18 @@ TEST(SvgImport, ClipPaths) {
   ASSERT_EQ(d.groups[1].clip.size(), 1u);
   EXPECT_EQ(d.groups[1].clip[0].points, (Floats{21, 10, 23, 10, 23, 14, 21, 14}));
 
+  // Neighbours share a clip while it is the same, and what draws nothing leaves none behind.
+  d = page("<clipPath id='c'><path d='M0 0h9v9'/></clipPath><path d='M0 0' clip-path='url(#c)'/>"
+           "<path d='M0 0h9v9' clip-path='url(#c)'/><path d='M0 0h9v9' clip-path='url(#c)'/>"
+           "<path d='M0 0h9v9' clip-path='url(#c)' transform='scale(2)'/>")
+          .drawing;
+  ASSERT_EQ(d.paths.size(), 3u);
+  ASSERT_EQ(d.groups.size(), 2u);
+  EXPECT_EQ(d.paths[0].group, 1u);
+  EXPECT_EQ(d.paths[1].group, 1u);
+  EXPECT_EQ(d.paths[2].group, 2u);
+  EXPECT_EQ(d.groups[1].clip.at(0).points[2], 18);
+
   // A viewport clips what reaches beyond it, unless it says otherwise.
   const std::string circle = "<circle cx='10' cy='10' r='9'/>";
   d = page("<svg x='5' width='15' height='20'>" + circle + "</svg>").drawing;

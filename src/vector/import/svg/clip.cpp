@@ -103,6 +103,13 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
             inner.transform * Affine{box->right - box->left, 0, 0, box->bottom - box->top, box->left, box->top};
     }
     if (!inner.transform.finite()) return without(shown + " has a transform beyond all numbers");
+    ++state.clips;
+    MadeClip& made = madeClips_[target.hash_value()];
+    const MadeClip wanted{inner.transform, state.lengths.width, state.lengths.height, state.group, made.group};
+    if (made.group && made == wanted) { // neighbours often share one
+      state.group = made.group;
+      continue;
+    }
     std::vector<ImportedPath> paths;
     std::swap(paths, result_.paths);
     mode_ = Mode::Clip;
@@ -111,7 +118,8 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
     std::swap(paths, result_.paths);
     result_.groups.push_back({state.group, 1, true, std::move(paths)});
     state.group = static_cast<uint32_t>(result_.groups.size());
-    ++state.clips;
+    made = wanted;
+    made.group = state.group;
   }
 }
 

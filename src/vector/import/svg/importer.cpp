@@ -137,6 +137,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   content(node, name, state, useSize);
   const size_t drawn = result_.paths.size() - before;
   if (drawn == 0) {
+    if (result_.groups.size() > groupsBefore) madeClips_.clear();
     result_.groups.resize(groupsBefore);
   } else if (fades && drawn == 1) { // one path needs no group to fade
     ImportedPath& path = result_.paths.back();

@@ -108,7 +108,14 @@ private:
   Box box_; // of what was measured
   Affine toBox_;
   std::unordered_map<size_t, Style> clipStyles_;
-  uint32_t group_ = 0; // of what is emitted
+  struct MadeClip {
+    Affine transform;
+    double width = 0, height = 0; // of the viewport
+    uint32_t parent = 0, group = 0;
+    bool operator==(const MadeClip&) const = default;
+  };
+  std::unordered_map<size_t, MadeClip> madeClips_; // of each clipPath the last
+  uint32_t group_ = 0;                             // of what is emitted
 };
 
 } // namespace gpgp::vector::svg
