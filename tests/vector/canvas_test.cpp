@@ -1041,7 +1041,7 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Svg, RealDrawing,
-                         testing::Values("svg/hud.svg", "fetched/svg/tiger.svgz", "fetched/svg/car.svgz",
-                                         "fetched/svg/gallardo.svgz"));
+                         testing::Values("svg/hud.svg", "svg/clips.svg", "fetched/svg/tiger.svgz",
+                                         "fetched/svg/car.svgz", "fetched/svg/gallardo.svgz"));
 
 } // namespace
