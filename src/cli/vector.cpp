@@ -79,14 +79,13 @@ double compareWithTruth(std::span<const uint8_t> bytes, std::span<const uint8_t>
   gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
   const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet);
   if (!svg) throw Failure(svg.error().text);
-  std::vector<GpgpPath> paths;
-  for (const auto& path : svg->paths) paths.push_back(path.view());
+  const gpgp::vector::svg::ImportedViews views(*svg);
   std::vector<float> pixels(painted.size());
   for (size_t i = 0; i < painted.size(); ++i) {
     const float alpha = static_cast<float>(painted[i | 3]) / 255.0f, value = static_cast<float>(painted[i]) / 255.0f;
     pixels[i] = i % 4 == 3 ? alpha : alpha > 0.0f ? host::linearFromSrgb(std::min(1.0f, value / alpha)) * alpha : 0.0f;
   }
-  return psnrOverWhite(pixels, vectorTruth(paths, transform, background, size.width, size.height));
+  return psnrOverWhite(pixels, vectorTruth(views.paths, views.groups, transform, background, size.width, size.height));
 }
 
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {

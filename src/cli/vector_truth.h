@@ -143,41 +143,94 @@ inline std::array<double, 4> truthOfGradient(const GpgpGradient& g, double x, do
 }
 
 /// Premultiplied linear colour of each pixel, 4 floats. `t`, drawing to pixel, scales and shifts only.
-inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, const float t[6], const float background[4],
-                                      uint32_t width, uint32_t height) {
+inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
+                                      const float t[6], const float background[4], uint32_t width, uint32_t height) {
   constexpr size_t kGrid = 16, kSamples = kGrid * kGrid;
   std::vector<WindingPath> windings(paths.begin(), paths.end());
-  std::vector<float> pixels(size_t(width) * height * 4), samples(size_t(width) * kSamples * 4);
+  std::vector<std::vector<WindingPath>> clips(groups.size());
+  for (size_t g = 0; g < groups.size(); ++g)
+    for (uint32_t k = 0; k < groups[g].clipCount; ++k) clips[g].emplace_back(groups[g].clip[k]);
+  const size_t rowSamples = size_t(width) * kSamples;
+  std::vector<float> pixels(size_t(width) * height * 4);
   std::vector<WindingPath::Crossing> row;
   const auto number = [t](int i) { return static_cast<double>(t[i]); };
-  for (uint32_t y = 0; y < height; ++y) {
-    for (size_t i = 0; i < samples.size(); ++i) samples[i] = background[i % 4];
-    for (const WindingPath& path : windings)
-      for (size_t line = 0; line < kGrid; ++line) {
-        const double dy = (y + (static_cast<double>(line) + 0.5) / kGrid - number(5)) / number(3);
-        path.crossings(dy, row);
-        int winding = 0;
-        for (size_t next = 0; next + 1 < row.size(); ++next) {
-          winding += row[next].direction;
-          if (!path.inside(winding)) continue;
-          // The samples at or right of one crossing and left of the next.
-          const auto sampleAt = [&](double x) {
-            return std::clamp(std::ceil((x * number(0) + number(4)) * kGrid - 0.5), 0.0, double(width) * kGrid);
-          };
-          const size_t end = static_cast<size_t>(sampleAt(row[next + 1].x));
-          for (size_t x = static_cast<size_t>(sampleAt(row[next].x)); x < end; ++x) {
-            const float* color = path.path().color;
-            float own[4] = {color[0], color[1], color[2], color[3]};
-            if (path.path().gradient) {
-              const double dx = ((static_cast<double>(x) + 0.5) / kGrid - number(4)) / number(0);
-              const auto mixed = truthOfGradient(*path.path().gradient, dx, dy);
-              for (size_t c = 0; c < 4; ++c) own[c] = static_cast<float>(mixed[c]) * (c == 3 ? color[3] : 1);
-            }
-            float* s = &samples[(x / kGrid * kSamples + line * kGrid + x % kGrid) * 4];
-            for (size_t c = 0; c < 4; ++c) s[c] = (c == 3 ? 1 : own[c]) * own[3] + s[c] * (1 - own[3]);
-          }
-        }
+  // Calls with each sample of a row of pixels that a path covers, and where it lies in the drawing.
+  const auto forSamples = [&](const WindingPath& path, uint32_t y, const auto& call) {
+    for (size_t line = 0; line < kGrid; ++line) {
+      const double dy = (y + (static_cast<double>(line) + 0.5) / kGrid - number(5)) / number(3);
+      path.crossings(dy, row);
+      int winding = 0;
+      for (size_t next = 0; next + 1 < row.size(); ++next) {
+        winding += row[next].direction;
+        if (!path.inside(winding)) continue;
+        // The samples at or right of one crossing and left of the next.
+        const auto sampleAt = [&](double x) {
+          return std::clamp(std::ceil((x * number(0) + number(4)) * kGrid - 0.5), 0.0, double(width) * kGrid);
+        };
+        const size_t end = static_cast<size_t>(sampleAt(row[next + 1].x));
+        for (size_t x = static_cast<size_t>(sampleAt(row[next].x)); x < end; ++x)
+          call(x / kGrid * kSamples + line * kGrid + x % kGrid,
+               ((static_cast<double>(x) + 0.5) / kGrid - number(4)) / number(0), dy);
       }
+    }
+  };
+  struct Level { // a group that fades, being painted
+    uint32_t group;
+    std::vector<float> samples;
+  };
+  for (uint32_t y = 0; y < height; ++y) {
+    std::vector<std::vector<uint8_t>> shown(groups.size()); // of clips, made when first asked for
+    const auto showing = [&](uint32_t group) -> const std::vector<uint8_t>& {
+      std::vector<uint8_t>& mask = shown[group - 1];
+      if (mask.empty()) {
+        mask.assign(rowSamples, 0);
+        for (const WindingPath& path : clips[group - 1])
+          forSamples(path, y, [&](size_t sample, double, double) { mask[sample] = 1; });
+      }
+      return mask;
+    };
+    std::vector<Level> levels(1);
+    levels[0].samples.resize(rowSamples * 4);
+    for (size_t i = 0; i < rowSamples * 4; ++i) levels[0].samples[i] = background[i % 4];
+    const auto leave = [&] {
+      const Level inner = std::move(levels.back());
+      levels.pop_back();
+      const float opacity = groups[inner.group - 1].opacity;
+      std::vector<float>& below = levels.back().samples;
+      for (size_t i = 0; i < below.size(); ++i)
+        below[i] = inner.samples[i] * opacity + below[i] * (1 - inner.samples[i | 3] * opacity);
+    };
+    for (const WindingPath& path : windings) {
+      const uint32_t group = groups.empty() ? 0 : path.path().group;
+      std::vector<uint32_t> fading, clipping; // around the path, the innermost first
+      for (uint32_t g = group; g; g = groups[g - 1].parent) {
+        if (groups[g - 1].opacity < 1) fading.push_back(g);
+        if (groups[g - 1].clip) clipping.push_back(g);
+      }
+      const auto holds = [&](uint32_t g) { return std::find(fading.begin(), fading.end(), g) != fading.end(); };
+      bool entered = false; // not before the row has something of the path
+      const auto enter = [&] {
+        while (levels.size() > 1 && !holds(levels.back().group)) leave();
+        for (size_t k = fading.size(); k-- > 0;)
+          if (fading.size() - k >= levels.size()) levels.push_back({fading[k], std::vector<float>(rowSamples * 4)});
+        entered = true;
+      };
+      forSamples(path, y, [&](size_t sample, double dx, double dy) {
+        for (const uint32_t g : clipping)
+          if (!showing(g)[sample]) return;
+        if (!entered) enter();
+        const float* color = path.path().color;
+        float own[4] = {color[0], color[1], color[2], color[3]};
+        if (path.path().gradient) {
+          const auto mixed = truthOfGradient(*path.path().gradient, dx, dy);
+          for (size_t c = 0; c < 4; ++c) own[c] = static_cast<float>(mixed[c]) * (c == 3 ? color[3] : 1);
+        }
+        float* s = &levels.back().samples[sample * 4];
+        for (size_t c = 0; c < 4; ++c) s[c] = (c == 3 ? 1 : own[c]) * own[3] + s[c] * (1 - own[3]);
+      });
+    }
+    while (levels.size() > 1) leave();
+    const std::vector<float>& samples = levels[0].samples;
     for (size_t x = 0; x < width; ++x)
       for (size_t c = 0; c < 4; ++c) {
         double sum = 0;

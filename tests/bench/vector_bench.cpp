@@ -49,21 +49,26 @@ struct Shape {
   float color[4] = {0, 0, 0, 1};
   GpgpFillRule rule = GPGP_FILL_NON_ZERO;
   const GpgpGradient* gradient = nullptr;
+  uint32_t group = 0;
   void add(GpgpPathVerb verb, std::initializer_list<double> values) {
     verbs.push_back(verb);
     for (const double v : values) points.push_back(static_cast<float>(v));
   }
   GpgpPath view() const {
-    return {
-        verbs.data(), static_cast<uint32_t>(verbs.size()),      points.data(), static_cast<uint32_t>(points.size() / 2),
-        rule,         {color[0], color[1], color[2], color[3]}, gradient};
+    return {verbs.data(),  static_cast<uint32_t>(verbs.size()),
+            points.data(), static_cast<uint32_t>(points.size() / 2),
+            rule,          {color[0], color[1], color[2], color[3]},
+            gradient,      nullptr,
+            nullptr,       0,
+            group};
   }
 };
 struct Scene {
   std::string name;
   std::vector<Shape> shapes;
   double width = 1000, height = 1000;
-  std::shared_ptr<void> source; // what shapes refer to
+  std::shared_ptr<void> source; // what shapes and groups refer to
+  std::span<const GpgpPathGroup> groups = {};
 };
 
 void paint(Shape& shape, std::mt19937& random, float alpha = 1) {
@@ -184,22 +189,56 @@ Scene fromSvg(const std::string& file) {
     std::exit(1);
   }
   Scene scene{file.substr(file.find_last_of('/') + 1), {}, svg->width, svg->height};
-  const auto kept = std::make_shared<vector::svg::Imported>(std::move(*svg));
+  struct Kept {
+    explicit Kept(vector::svg::Imported&& from) : imported(std::move(from)), views(imported) {}
+    vector::svg::Imported imported;
+    vector::svg::ImportedViews views;
+  };
+  const auto kept = std::make_shared<Kept>(std::move(*svg));
   scene.source = kept;
-  for (const auto& from : kept->paths) {
-    const GpgpPath path = from.view();
+  scene.groups = kept->views.groups;
+  for (const GpgpPath& path : kept->views.paths) {
     Shape s;
     s.verbs.assign(path.verbs, path.verbs + path.verbCount);
     s.points.assign(path.points, path.points + size_t(path.pointCount) * 2);
     std::copy_n(path.color, 4, s.color);
     s.rule = path.fillRule;
     s.gradient = path.gradient;
+    s.group = path.group;
     scene.shapes.push_back(std::move(s));
   }
   return scene;
 }
 
 #ifdef GPGP_WITH_CAIRO
+void trace(cairo_t* c, const GpgpPath& path) {
+  const float* p = path.points;
+  double x = 0, y = 0;
+  const auto take = [&p, &x, &y] { x = static_cast<double>(p[0]), y = static_cast<double>(p[1]), p += 2; };
+  for (const GpgpPathVerb verb : std::span(path.verbs, path.verbCount)) {
+    if (verb == GPGP_PATH_MOVE) take(), cairo_move_to(c, x, y);
+    if (verb == GPGP_PATH_LINE) take(), cairo_line_to(c, x, y);
+    if (verb == GPGP_PATH_CLOSE) cairo_close_path(c);
+    if (verb == GPGP_PATH_QUAD) {
+      double ax, ay;
+      cairo_get_current_point(c, &ax, &ay);
+      take();
+      const double bx = x, by = y;
+      take();
+      cairo_curve_to(c, (ax + 2 * bx) / 3, (ay + 2 * by) / 3, (x + 2 * bx) / 3, (y + 2 * by) / 3, x, y);
+    }
+    if (verb == GPGP_PATH_CUBIC) {
+      take();
+      const double ax = x, ay = y;
+      take();
+      const double bx = x, by = y;
+      take();
+      cairo_curve_to(c, ax, ay, bx, by, x, y);
+    }
+  }
+  cairo_set_fill_rule(c, path.fillRule == GPGP_FILL_EVEN_ODD ? CAIRO_FILL_RULE_EVEN_ODD : CAIRO_FILL_RULE_WINDING);
+}
+
 /// Cairo mixes stops as sRGB encodes them, whatever the gradient says.
 void setGradient(cairo_t* c, const GpgpGradient& g, float alpha) {
   const auto at = [](float v) { return static_cast<double>(v); };
@@ -239,32 +278,29 @@ double cairoTime([[maybe_unused]] const Scene& scene, [[maybe_unused]] uint32_t 
     cairo_set_source_rgb(c, 1, 1, 1);
     cairo_paint(c);
     cairo_scale(c, scale, scale);
-    for (const Shape& s : scene.shapes) {
-      const float* p = s.points.data();
-      double x = 0, y = 0;
-      const auto take = [&p, &x, &y] { x = static_cast<double>(p[0]), y = static_cast<double>(p[1]), p += 2; };
-      for (const GpgpPathVerb verb : s.verbs) {
-        if (verb == GPGP_PATH_MOVE) take(), cairo_move_to(c, x, y);
-        if (verb == GPGP_PATH_LINE) take(), cairo_line_to(c, x, y);
-        if (verb == GPGP_PATH_CLOSE) cairo_close_path(c);
-        if (verb == GPGP_PATH_QUAD) {
-          double ax, ay;
-          cairo_get_current_point(c, &ax, &ay);
-          take();
-          const double bx = x, by = y;
-          take();
-          cairo_curve_to(c, (ax + 2 * bx) / 3, (ay + 2 * by) / 3, (x + 2 * bx) / 3, (y + 2 * by) / 3, x, y);
-        }
-        if (verb == GPGP_PATH_CUBIC) {
-          take();
-          const double ax = x, ay = y;
-          take();
-          const double bx = x, by = y;
-          take();
-          cairo_curve_to(c, ax, ay, bx, by, x, y);
-        }
+    std::vector<uint32_t> open; // groups, the outermost first
+    const auto enter = [&](uint32_t group) {
+      std::vector<uint32_t> around;
+      for (uint32_t g = group; g; g = scene.groups[g - 1].parent) around.insert(around.begin(), g);
+      size_t same = 0;
+      while (same < std::min(open.size(), around.size()) && open[same] == around[same]) ++same;
+      for (; open.size() > same; open.pop_back()) {
+        const double opacity = static_cast<double>(scene.groups[open.back() - 1].opacity);
+        if (opacity < 1) cairo_pop_group_to_source(c), cairo_paint_with_alpha(c, opacity);
+        cairo_restore(c);
       }
-      cairo_set_fill_rule(c, s.rule == GPGP_FILL_EVEN_ODD ? CAIRO_FILL_RULE_EVEN_ODD : CAIRO_FILL_RULE_WINDING);
+      for (; open.size() < around.size(); open.push_back(around[open.size()])) {
+        const GpgpPathGroup& g = scene.groups[around[open.size()] - 1];
+        cairo_save(c);
+        for (uint32_t k = 0; k < g.clipCount; ++k) trace(c, g.clip[k]); // all by the last one's fill rule
+        if (g.clip) cairo_clip(c);
+        if (g.opacity < 1) cairo_push_group(c);
+      }
+    };
+    for (const Shape& s : scene.shapes) {
+      enter(s.group);
+      const GpgpPath path = s.view();
+      trace(c, path);
       const auto encode = [](float v) { return static_cast<double>(host::srgbFromLinear(v)); };
       if (s.gradient)
         setGradient(c, *s.gradient, s.color[3]);
@@ -273,6 +309,7 @@ double cairoTime([[maybe_unused]] const Scene& scene, [[maybe_unused]] uint32_t 
                               static_cast<double>(s.color[3]));
       cairo_fill(c);
     }
+    enter(0);
     cairo_destroy(c);
     cairo_surface_flush(surface);
     times.push_back(milliseconds(Clock::now() - begin));
@@ -297,6 +334,8 @@ void run(host::HeadlessDevice& device, const Scene& scene, uint32_t size, uint32
   GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
   drawingInfo.paths = paths.data();
   drawingInfo.pathCount = static_cast<uint32_t>(paths.size());
+  drawingInfo.groups = scene.groups.data();
+  drawingInfo.groupCount = static_cast<uint32_t>(scene.groups.size());
   GpgpAsset drawing = nullptr;
   const auto begin = Clock::now();
   expect(gpgpCreateDrawing(context, &drawingInfo, &drawing), "gpgpCreateDrawing");

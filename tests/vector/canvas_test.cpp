@@ -1009,25 +1009,24 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
   vector::svg::Reporter reporter(nullptr, nullptr, GetParam());
   const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter);
   ASSERT_TRUE(svg) << svg.error().text;
-  std::vector<GpgpPath> paths;
-  for (const auto& path : svg->paths) paths.push_back(path.view());
-  ASSERT_GT(paths.size(), 5u);
+  const vector::svg::ImportedViews views(*svg);
+  ASSERT_GT(views.paths.size(), 5u);
   const uint32_t size = 256;
   const float s = std::min(float(size) / float(svg->width), float(size) / float(svg->height));
   GpgpCanvasItem item = place(nullptr, s);
   makeCanvas(size, 0, 1u << 18);
-  item.drawing = makeDrawing(paths);
+  item.drawing = makeDrawing(views.paths, views.groups);
   GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
   const auto pixels = raster({item}, size, size, 16, &report);
   EXPECT_EQ(report.pathsDropped, 0u);
   const float nothing[4] = {};
-  const std::vector<float> expected = cli::vectorTruth(paths, item.transform, nothing, size, size);
+  const std::vector<float> expected = cli::vectorTruth(views.paths, views.groups, item.transform, nothing, size, size);
   const auto psnr = [&expected](const std::vector<Rgba>& picture) {
     return cli::psnrOverWhite(std::span(&picture[0].r, picture.size() * 4), expected);
   };
   const double db = psnr(pixels);
   RecordProperty("psnr_centibel", static_cast<int>(db * 10));
-  std::printf("%s: %.1f dB, %zu paths, %u patches, %u entries\n", GetParam(), db, paths.size(), report.patches,
+  std::printf("%s: %.1f dB, %zu paths, %u patches, %u entries\n", GetParam(), db, views.paths.size(), report.patches,
               report.tileEntries);
   EXPECT_GE(db, 38.0);
   exactArea = true;
@@ -1042,7 +1041,7 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Svg, RealDrawing,
-                         testing::Values("svg/hud.svg", "fetched/svg/tiger.svgz", "fetched/svg/car.svgz",
-                                         "fetched/svg/gallardo.svgz"));
+                         testing::Values("svg/hud.svg", "svg/clips.svg", "fetched/svg/tiger.svgz",
+                                         "fetched/svg/car.svgz", "fetched/svg/gallardo.svgz"));
 
 } // namespace

@@ -264,6 +264,125 @@ TEST(SvgImport, WhatIsNotShownIsNoPath) {
             1u);
 }
 
+TEST(SvgImport, GroupsFadeAndClip) {
+  const std::string two = "<path d='M0 0h9v9'/><path d='M0 0h9v9'/>";
+  Imported d = page("<g opacity='.5'>" + two + "</g><path d='M0 0h9v9' opacity='.25'/>").drawing;
+  ASSERT_EQ(d.paths.size(), 3u);
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_EQ(d.groups[0].opacity, 0.5f);
+  EXPECT_EQ(d.paths[0].group, 1u);
+  EXPECT_EQ(d.paths[1].group, 1u);
+  EXPECT_EQ(d.paths[1].color[3], 1);
+  EXPECT_EQ(d.paths[2].group, 0u); // one path needs none
+  EXPECT_EQ(d.paths[2].color[3], 0.25f);
+  d = page("<path d='M0 0h9v9' stroke='red' opacity='.5'/><g opacity='.5'><g opacity='.5'><path d='M0 0h9v9'/></g></g>")
+          .drawing;
+  ASSERT_EQ(d.groups.size(), 1u); // fill and stroke
+  EXPECT_EQ(d.paths[0].group, 1u);
+  EXPECT_EQ(d.paths[1].group, 1u);
+  EXPECT_EQ(d.paths[2].color[3], 0.25f);
+  EXPECT_EQ(d.paths[2].group, 0u);
+  EXPECT_TRUE(page("<g opacity='0'>" + two + "</g>").drawing.paths.empty());
+
+  // One path in a clip in a group that fades: the path fades.
+  d = page("<clipPath id='c'><path d='M0 0h9v9'/></clipPath>"
+           "<g opacity='.5'><path d='M0 0h9v9' clip-path='url(#c)'/></g>")
+          .drawing;
+  ASSERT_EQ(d.groups.size(), 2u);
+  EXPECT_EQ(d.groups[0].opacity, 1);
+  EXPECT_TRUE(d.groups[1].clipped);
+  EXPECT_EQ(d.paths[0].group, 2u);
+  EXPECT_EQ(d.paths[0].color[3], 0.5f);
+}
+
+TEST(SvgImport, ClipPaths) {
+  const std::string two = "<path d='M0 0h9v9'/><path d='M0 0h9v9'/>";
+  Import imported = page("<g clip-rule='evenodd'><clipPath id='c' transform='translate(1 2)'><path d='M0 0h9v9'/>"
+                         "<path d='M0 0h9v9' clip-rule='nonzero' opacity='0' fill='none' stroke='red'/><line x2='9'/>"
+                         "<path d='M0 0h9v9' display='none'/><path d='M0 0h9v9' visibility='hidden'/></clipPath></g>"
+                         "<g transform='scale(2)' clip-path=\"url('#c')\">" +
+                         two + "</g>");
+  EXPECT_EQ(imported.messages, Texts{});
+  Imported d = std::move(imported.drawing);
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_TRUE(d.groups[0].clipped);
+  EXPECT_EQ(d.groups[0].opacity, 1);
+  ASSERT_EQ(d.groups[0].clip.size(), 2u);
+  EXPECT_EQ(d.groups[0].clip[0].rule, GPGP_FILL_EVEN_ODD);
+  EXPECT_EQ(d.groups[0].clip[0].points, (Floats{2, 4, 20, 4, 20, 22}));
+  EXPECT_EQ(d.groups[0].clip[1].rule, GPGP_FILL_NON_ZERO);
+  ASSERT_EQ(d.paths.size(), 2u);
+  EXPECT_EQ(d.paths[0].group, 1u);
+  EXPECT_EQ(d.paths[1].group, 1u);
+
+  // A clipPath that is clipped: both clip, in the coordinates and by the box of what refers to them.
+  d = page("<clipPath id='c' clipPathUnits='objectBoundingBox'><rect width='.5' height='.5'/></clipPath>"
+           "<clipPath id='d' clipPathUnits='objectBoundingBox' transform='translate(3)' clip-path='url(#c)'>"
+           "<rect width='1' height='.25'/></clipPath>"
+           "<rect x='10' y='20' width='40' height='8' clip-path='url(#d)' opacity='.5'/>")
+          .drawing;
+  ASSERT_EQ(d.groups.size(), 2u);
+  EXPECT_EQ(d.groups[1].parent, 1u);
+  ASSERT_EQ(d.paths.size(), 1u);
+  EXPECT_EQ(d.paths[0].group, 2u);
+  EXPECT_EQ(d.paths[0].color[3], 0.5f);
+  ASSERT_EQ(d.groups[0].clip.size(), 1u);
+  EXPECT_EQ(d.groups[0].clip[0].points, (Floats{13, 20, 53, 20, 53, 22, 13, 22}));
+  ASSERT_EQ(d.groups[1].clip.size(), 1u);
+  EXPECT_EQ(d.groups[1].clip[0].points, (Floats{10, 20, 30, 20, 30, 24, 10, 24}));
+
+  // The box of a group is that of all shapes inside, without strokes, in the group's own coordinates.
+  const std::string unit = "<clipPath id='c' clipPathUnits='objectBoundingBox'><rect width='1' height='1'/></clipPath>";
+  imported =
+      page(unit + "<g transform='translate(5) scale(2)' clip-path='url(#c)'>"
+                  "<rect width='4' height='6' stroke='red' opacity='.5'/>"
+                  "<g transform='translate(10)'><rect y='-1' width='5' height='2' visibility='hidden'/></g></g>");
+  EXPECT_EQ(imported.messages, Texts{});
+  ASSERT_GE(imported.drawing.groups.size(), 1u);
+  ASSERT_EQ(imported.drawing.groups[0].clip.size(), 1u);
+  EXPECT_EQ(imported.drawing.groups[0].clip[0].points, (Floats{5, -2, 35, -2, 35, 12, 5, 12}));
+
+  // The coordinates of <use> begin at its x and y.
+  d = page("<defs><rect id='r' x='1' width='4' height='4'/></defs>" + unit +
+           "<clipPath id='d'><rect x='1' width='2' height='4'/></clipPath>"
+           "<use href='#r' x='20' y='10' clip-path='url(#c)'/><use href='#r' x='20' y='10' clip-path='url(#d)'/>")
+          .drawing;
+  ASSERT_EQ(d.groups.size(), 2u);
+  ASSERT_EQ(d.groups[0].clip.size(), 1u);
+  EXPECT_EQ(d.groups[0].clip[0].points, (Floats{21, 10, 25, 10, 25, 14, 21, 14}));
+  ASSERT_EQ(d.groups[1].clip.size(), 1u);
+  EXPECT_EQ(d.groups[1].clip[0].points, (Floats{21, 10, 23, 10, 23, 14, 21, 14}));
+
+  // Neighbours share a clip while it is the same, and what draws nothing leaves none behind.
+  d = page("<clipPath id='c'><path d='M0 0h9v9'/></clipPath><path d='M0 0' clip-path='url(#c)'/>"
+           "<path d='M0 0h9v9' clip-path='url(#c)'/><path d='M0 0h9v9' clip-path='url(#c)'/>"
+           "<path d='M0 0h9v9' clip-path='url(#c)' transform='scale(2)'/>")
+          .drawing;
+  ASSERT_EQ(d.paths.size(), 3u);
+  ASSERT_EQ(d.groups.size(), 2u);
+  EXPECT_EQ(d.paths[0].group, 1u);
+  EXPECT_EQ(d.paths[1].group, 1u);
+  EXPECT_EQ(d.paths[2].group, 2u);
+  EXPECT_EQ(d.groups[1].clip.at(0).points[2], 18);
+
+  // A viewport clips what reaches beyond it, unless it says otherwise.
+  const std::string circle = "<circle cx='10' cy='10' r='9'/>";
+  d = page("<svg x='5' width='15' height='20'>" + circle + "</svg>").drawing;
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_TRUE(d.groups[0].clipped);
+  ASSERT_EQ(d.groups[0].clip.size(), 1u);
+  EXPECT_EQ(d.groups[0].clip[0].points, (Floats{5, 0, 20, 0, 20, 20, 5, 20}));
+  for (const char* open : {"<svg x='5' width='20' height='20'>", "<svg width='15' height='20' overflow='visible'>"})
+    for (const auto& group : page(open + circle + "</svg>").drawing.groups) EXPECT_FALSE(group.clipped);
+
+  const vector::svg::Imported empty; // views of nothing
+  EXPECT_TRUE(vector::svg::ImportedViews(empty).groups.empty());
+  d = page("<clipPath id='c'/><path d='M0 0h9v9' clip-path='url(#c)'/>").drawing; // a clip without shapes shows nothing
+  ASSERT_EQ(d.groups.size(), 1u);
+  EXPECT_TRUE(d.groups[0].clipped);
+  EXPECT_TRUE(d.groups[0].clip.empty());
+}
+
 TEST(SvgImport, MessagesNameElementAndLine) {
   const struct {
     const char* text;
@@ -272,7 +391,7 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<text x='1'>a</text>", "W line 2: <text> is not supported"},
       {"\n<image href='a.png'/>", "W line 3: <image> is not supported"},
       {"<rect width='9' height='9' clip-path='url(#c)'/>",
-       "W line 2: clip-path is not supported: <rect> is drawn without it"},
+       "W line 2: clip-path 'url(#c)' is no clipPath of this file: <rect> is drawn without it"},
       {"<rect width='9' height='9' filter='url(#c)'/>",
        "W line 2: filter is not supported: <rect> is drawn without it"},
       {"<linearGradient id='g'/>\n<rect width='9' height='9' fill='url(#g)'/>",
@@ -281,8 +400,23 @@ TEST(SvgImport, MessagesNameElementAndLine) {
        "E line 2: <linearGradient> has x1 'a', which is no length"},
       {"<pattern id='p'/><rect width='9' height='9' fill='url(#p) red'/>",
        "W line 2: <rect> fill refers to a <pattern>, which is not supported; its fallback is used"},
-      {"<g opacity='.5'><rect width='9' height='9'/><rect width='9' height='9'/></g>",
-       "W line 2: opacity of <g> is applied to each of its paths, not to the whole"},
+      {"<clipPath id='c' clip-path='url(#c)'/><rect width='9' height='9' clip-path='url(#c)'/>",
+       "W line 2: clip-path 'url(#c)' contains itself: <clipPath> is drawn without it"},
+      {"<clipPath id='c'>\n<g><path d='M0 0h9v9'/></g></clipPath><rect width='9' height='9' clip-path='url(#c)'/>",
+       "W line 3: <g> shows nothing inside a <clipPath>"},
+      {"<clipPath id='d'><path d='M0 0h9v9'/></clipPath><clipPath id='c'>\n<path d='M0 0h9v9' clip-path='url(#d)'/>"
+       "</clipPath><rect width='9' height='9' clip-path='url(#c)'/>",
+       "W line 3: clip-path inside a clipPath is not supported: <path> is drawn without it"},
+      {"<rect width='9' height='9' clip-path='circle(4)'/>",
+       "W line 2: clip-path 'circle(4)' is no clipPath of this file: <rect> is drawn without it"},
+      {"<svg width='2e7' height='9'><rect width='9' height='1e6'/></svg>",
+       "W line 2: <svg> is not clipped to its viewport; its content reaches beyond"},
+      {"<clipPath id='c'><text>a</text></clipPath><rect width='9' height='9' clip-path='url(#c)'/>",
+       "W line 2: <text> is not supported"},
+      {"<g opacity='.5'><g opacity='.5'><g opacity='.5'><g opacity='.5'><g opacity='.5'><path d='M0 0h9v9'/>"
+       "<path d='M0 0h9v9'/></g><path d='M0 0h9v9'/></g><path d='M0 0h9v9'/></g><path d='M0 0h9v9'/></g>"
+       "<path d='M0 0h9v9'/></g>",
+       "W line 2: opacity of <g>, inside too many that fade, is applied to each of its paths"},
       {"<g id='a'><use href='#a'/></g>", "E line 2: <use> of '#a' contains itself; not drawn"},
       {"<use href='#no'/>", "E line 2: <use> refers to '#no', which is not there"},
       {"<circle r='-1'/>", "E line 2: <circle> has a negative r"},

@@ -13,6 +13,7 @@ namespace gpgp::vector {
 struct Affine {
   double a = 1, b = 0, c = 0, d = 1, e = 0, f = 0;
 
+  bool operator==(const Affine&) const = default;
   Point operator()(Point p) const { return {a * p.x + c * p.y + e, b * p.x + d * p.y + f}; }
   /// How much longer a vector can become, at most (the larger singular value).
   double scale() const;

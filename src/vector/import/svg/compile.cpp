@@ -23,11 +23,10 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
       vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter);
   if (!imported) return fail(imported.error().code, imported.error().text);
   std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
-  std::vector<GpgpPath> paths;
-  paths.reserve(imported->paths.size());
-  for (const auto& path : imported->paths) paths.push_back(path.view());
+  const vector::svg::ImportedViews views(*imported);
+  const std::vector<GpgpPath>& paths = views.paths;
   const auto parsed = Clock::now();
-  auto drawing = vector::makeDrawing(paths, memory, source.jobSystem);
+  auto drawing = vector::makeDrawing(paths, views.groups, memory, source.jobSystem);
   const auto converted = Clock::now();
   if (!drawing) return fail(drawing.error().code, drawing.error().text);
   if (imported->width > vector::kMaxCoordinate || imported->height > vector::kMaxCoordinate)

@@ -5,16 +5,13 @@
 #include <cmath>
 
 namespace gpgp::vector::svg {
-namespace {
+void Box::add(Point p) {
+  left = std::min(left, p.x);
+  right = std::max(right, p.x);
+  top = std::min(top, p.y);
+  bottom = std::max(bottom, p.y);
+}
 
-/// The smallest box around a shape's curves.
-struct Box {
-  double left = 1e300, top = 1e300, right = -1e300, bottom = -1e300;
-  void add(Point p) {
-    left = std::min(left, p.x), right = std::max(right, p.x);
-    top = std::min(top, p.y), bottom = std::max(bottom, p.y);
-  }
-};
 Box boxOf(const Shape& shape) {
   Box box;
   const Point* p = shape.points.data();
@@ -38,8 +35,6 @@ Box boxOf(const Shape& shape) {
     }
   return box;
 }
-
-} // namespace
 
 /// The first along the references that has the attribute.
 pugi::xml_attribute Importer::gradientAttribute(pugi::xml_node gradient, const char* name) const {

@@ -2,8 +2,9 @@
 //
 // Supported: path, rect, circle, ellipse, line, polyline, polygon, g, a, svg (nested too), use, symbol, switch;
 // transforms; fill, stroke with joins, caps and dashes (made into fills), opacities, colours, style sheets with simple
-// selectors; linear and radial gradients. What is not supported is named with its line while the rest is drawn. Any
-// bytes are safe: depth, copies, points and messages are limited, and a limit that is met is said.
+// selectors; linear and radial gradients; clip paths; opacity of groups. What is not supported is named with its line
+// while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and a limit that is met
+// is said.
 #pragma once
 #include "core/result.h"
 #include "vector/geometry/shape.h"
@@ -39,6 +40,7 @@ struct ImportedPath {
   float color[4] = {};                      ///< linear RGB, straight alpha
   std::shared_ptr<const Gradient> gradient; ///< instead of the colour, whose alpha still counts
   size_t line = 1;                          ///< of the element it comes from
+  uint32_t group = 0;                       ///< 1 + its index in Imported::groups
 
   GpgpPath view() const {
     return {verbs.data(),
@@ -47,14 +49,45 @@ struct ImportedPath {
             static_cast<uint32_t>(points.size() / 2),
             rule,
             {color[0], color[1], color[2], color[3]},
-            gradient ? &gradient->gradient : nullptr};
+            gradient ? &gradient->gradient : nullptr,
+            nullptr,
+            nullptr,
+            0,
+            group};
   }
+};
+
+/// Elements that are clipped or faded as one.
+struct ImportedGroup {
+  uint32_t parent = 0; ///< 1 + index
+  float opacity = 1;
+  bool clipped = false;
+  std::vector<ImportedPath> clip;
 };
 
 struct Imported {
   std::vector<ImportedPath> paths; ///< in painting order
-  double width = 0, height = 0;    ///< of the page in pixels; 0: the file does not say
-  double strokeMilliseconds = 0;   ///< of the time that importing took, on making strokes into fills
+  std::vector<ImportedGroup> groups;
+  double width = 0, height = 0;  ///< of the page in pixels; 0: the file does not say
+  double strokeMilliseconds = 0; ///< of the time that importing took, on making strokes into fills
+};
+
+/// What was imported as the API takes it. It refers to what was imported.
+struct ImportedViews {
+  explicit ImportedViews(const Imported& imported) {
+    for (const ImportedPath& path : imported.paths) paths.push_back(path.view());
+    size_t count = 0;
+    for (const ImportedGroup& group : imported.groups) count += group.clip.size();
+    clips.reserve(count + 1); // so that a clip without paths is one nevertheless
+    for (const ImportedGroup& group : imported.groups) {
+      groups.push_back({group.parent, group.opacity, group.clipped ? clips.data() + clips.size() : nullptr,
+                        static_cast<uint32_t>(group.clip.size())});
+      for (const ImportedPath& path : group.clip) clips.push_back(path.view());
+    }
+  }
+  ImportedViews(const ImportedViews&) = delete;
+  std::vector<GpgpPath> paths, clips;
+  std::vector<GpgpPathGroup> groups;
 };
 
 /// Errors where the bytes are no SVG at all; everything milder goes to the reporter.

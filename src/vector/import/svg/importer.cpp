@@ -101,7 +101,9 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
                     GPGP_ERROR_UNSUPPORTED);
     return;
   }
-  State state{parent.style.inherited(), parent.transform, parent.lengths, parent.opacity, parent.depth + 1};
+  State state = parent;
+  state.style = parent.style.inherited();
+  ++state.depth;
   cascade(node, name, parent.style, parent.lengths, state.style);
   if (!state.style.displayed) return;
   if (const pugi::xml_attribute transform = node.attribute("transform")) {
@@ -114,14 +116,50 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     reporter_.error(document_.line(node), element(node) + " has a transform beyond all numbers; not drawn");
     return;
   }
-  state.opacity *= state.style.opacity;
+  if (mode_ == Mode::Clip && !oneOf(name, kShapes) && name != "use" && name != "text") {
+    reporter_.warn(document_.line(node), element(node) + " shows nothing inside a <clipPath>");
+    return;
+  }
+  if (mode_ != Mode::Paint) return content(node, name, state, useSize);
+  const double opacity = state.style.opacity;
+  if (!(opacity > 0)) return;
+  const size_t before = result_.paths.size(), groupsBefore = result_.groups.size();
+  if (!state.style.clipPath.empty()) clip(node, name, state);
+  const bool fades = opacity < 1 && state.fading < shader::kMaxLayerDepth;
+  uint32_t faded = 0;
+  if (fades) {
+    result_.groups.push_back({state.group, static_cast<float>(opacity), false, {}});
+    state.group = faded = static_cast<uint32_t>(result_.groups.size());
+    ++state.fading;
+  } else {
+    state.opacity *= opacity;
+  }
+  content(node, name, state, useSize);
+  const size_t drawn = result_.paths.size() - before;
+  if (drawn == 0) {
+    if (result_.groups.size() > groupsBefore) madeClips_.clear();
+    result_.groups.resize(groupsBefore);
+  } else if (fades && drawn == 1) { // one path needs no group to fade
+    ImportedPath& path = result_.paths.back();
+    path.color[3] = static_cast<float>(static_cast<double>(path.color[3]) * opacity);
+    result_.groups[faded - 1].opacity = 1;
+    if (path.group == faded) {
+      path.group = result_.groups[faded - 1].parent;
+      result_.groups.resize(faded - 1);
+    }
+  } else if (opacity < 1 && !fades && drawn > 1) {
+    reporter_.warn(document_.line(node),
+                   "opacity of " + element(node) + ", inside too many that fade, is applied to each of its paths");
+  }
+}
+
+void Importer::content(pugi::xml_node node, std::string_view name, State& state, const double* useSize) {
   reportUnsupported(node, name, state.style);
-  const size_t before = result_.paths.size();
   if (oneOf(name, kShapes)) {
     draw(node, name, state);
   } else if (name == "g" || name == "a") {
     visitChildren(node, state);
-  } else if (name == "svg" || isSymbol) {
+  } else if (name == "svg" || name == "symbol") {
     visitViewport(node, state, useSize);
   } else if (name == "use") {
     visitUse(node, state);
@@ -130,9 +168,6 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   } else {
     reporter_.warn(document_.line(node), element(node) + " is not supported");
   }
-  if (state.style.opacity < 1 && result_.paths.size() > before + 1)
-    reporter_.warn(document_.line(node),
-                   "opacity of " + element(node) + " is applied to each of its paths, not to the whole");
 }
 
 void Importer::visitChildren(pugi::xml_node node, const State& state) {
@@ -183,7 +218,7 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
   used_.pop_back();
 }
 
-/// <svg> inside another, or <symbol>: its own coordinates, and nothing cut off at its edge.
+/// <svg> inside another, or <symbol>: its own coordinates, and a clip where something reaches beyond its edge.
 void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
   const size_t before = result_.paths.size();
   if (node == document_.root()) return visitChildren(node, state);
@@ -209,8 +244,22 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
                                                   "', which is not valid; ignored");
     }
   }
+  if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
+  Shape edge = rectangle(0, 0, w, h, 0, 0, 1);
+  for (Point& p : edge.points) p = frame(p);
+  const bool clips = state.clips < shader::kMaxClipDepth &&
+                     std::all_of(edge.points.begin(), edge.points.end(),
+                                 [](const Point& p) { return std::fabs(p.x) <= 1e7 && std::fabs(p.y) <= 1e7; });
+  if (clips) {
+    std::vector<ImportedPath> paths;
+    std::swap(paths, result_.paths);
+    emit(edge, {}, GPGP_FILL_NON_ZERO, {}, 1, node);
+    std::swap(paths, result_.paths);
+    result_.groups.push_back({state.group, 1, true, std::move(paths)});
+    state.group = static_cast<uint32_t>(result_.groups.size());
+    ++state.clips;
+  }
   visitChildren(node, state);
-  if (state.style.overflowVisible) return;
   const double slack = 1e-3 * std::max(w, h), area = frame.a * frame.d - frame.b * frame.c;
   for (size_t i = before; i < result_.paths.size(); ++i)
     for (size_t k = 0; k + 1 < result_.paths[i].points.size(); k += 2) {
@@ -218,17 +267,23 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
       const double u = (frame.d * px - frame.c * py) / area, v = (frame.a * py - frame.b * px) / area;
       if (++steps_ > 8 * limits_.points) return;
       if (u >= -slack && v >= -slack && u <= w + slack && v <= h + slack) continue;
-      reporter_.warn(document_.line(node),
-                     element(node) + " is not clipped to its viewport; its content reaches beyond");
+      if (!clips)
+        reporter_.warn(document_.line(node),
+                       element(node) + " is not clipped to its viewport; its content reaches beyond");
       return;
     }
+  if (clips) { // nothing reaches beyond
+    ImportedGroup& group = result_.groups[state.group - 1];
+    group.clipped = false;
+    group.clip.clear();
+  }
 }
 
 void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style) {
   const struct {
     bool is;
     const char* what;
-  } features[] = {{style.clipPath, "clip-path"},
+  } features[] = {{mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
                   {style.mask, "mask"},
                   {style.filter, "filter"},
                   {style.blendMode, "mix-blend-mode"},
@@ -244,9 +299,15 @@ void Importer::draw(pugi::xml_node node, std::string_view name, const State& sta
     if (const std::string_view inner = document_.name(child); !inner.empty() && !oneOf(inner, kSilent))
       reporter_.warn(document_.line(child), element(child) + " is not supported");
   const Style& style = state.style;
-  if (!style.visible) return;
+  if (!style.visible && mode_ != Mode::Measure) return;
   const Shape shape = shapeOf(node, name, state);
   if (shape.empty()) return;
+  if (mode_ == Mode::Measure) return measure(shape, toBox_ * state.transform);
+  group_ = state.group;
+  if (mode_ == Mode::Clip) {
+    if (shape.points.size() > 2) emit(shape, state.transform, style.clipRule, {}, 1, node);
+    return;
+  }
   const auto fill = [&] {
     if (shape.points.size() < 3) return;
     const std::optional<Ink> ink = resolve(style.fill, state, shape, node, "fill");
@@ -325,6 +386,7 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
   path.rule = rule;
   path.gradient = ink.gradient;
   path.line = document_.line(node);
+  path.group = group_;
   const double linear[4] = {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b), alpha};
   for (size_t i = 0; i < 4; ++i) path.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));
   result_.paths.push_back(std::move(path));

@@ -4,8 +4,10 @@
 #include "vector/import/svg/import.h"
 #include "vector/import/svg/style.h"
 #include "vector/import/svg/stylesheet.h"
+#include "vector/layout.h"
 
 #include <optional>
+#include <unordered_map>
 
 namespace gpgp::vector::svg {
 
@@ -15,6 +17,13 @@ struct ViewBox {
 };
 std::optional<ViewBox> parseViewBox(std::string_view text);
 Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio);
+
+/// The smallest box around a shape's curves.
+struct Box {
+  double left = 1e300, top = 1e300, right = -1e300, bottom = -1e300;
+  void add(Point p);
+};
+Box boxOf(const Shape& shape);
 
 class Importer {
 public:
@@ -28,8 +37,10 @@ private:
     Style style;
     Affine transform;
     LengthContext lengths; ///< of the nearest viewport
-    double opacity = 1;    ///< of all groups around
+    double opacity = 1;    ///< of groups around that could not be one
     size_t depth = 0;
+    uint32_t group = 0;             ///< 1 + index in the result
+    uint32_t fading = 0, clips = 0; ///< groups around that fade, and that clip
   };
 
   // importer.cpp
@@ -38,7 +49,17 @@ private:
   void visitUse(pugi::xml_node node, const State& state);
   void visitSwitch(pugi::xml_node node, const State& state);
   void visitViewport(pugi::xml_node node, State& state, const double* useSize);
+  /// What is inside of an element whose own properties are in the state.
+  void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
+
+  // clip.cpp
+  /// Puts what the element refers to around it; says so where that cannot be.
+  void clip(pugi::xml_node node, std::string_view name, State& state);
+  Style styleOf(pugi::xml_node clipPath, const LengthContext& lengths);
+  /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
+  Box boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space);
+  void measure(const Shape& shape, const Affine& transform);
   /// What a paint property comes to.
   struct Ink {
     Color color;
@@ -78,6 +99,23 @@ private:
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
   bool stopped_ = false;
+  enum class Mode {
+    Paint,
+    Clip,   // shapes alone count
+    Measure // so do their boxes
+  };
+  Mode mode_ = Mode::Paint;
+  Box box_; // of what was measured
+  Affine toBox_;
+  std::unordered_map<size_t, Style> clipStyles_;
+  struct MadeClip {
+    Affine transform;
+    double width = 0, height = 0; // of the viewport
+    uint32_t parent = 0, group = 0;
+    bool operator==(const MadeClip&) const = default;
+  };
+  std::unordered_map<size_t, MadeClip> madeClips_; // of each clipPath the last
+  uint32_t group_ = 0;                             // of what is emitted
 };
 
 } // namespace gpgp::vector::svg

@@ -182,7 +182,8 @@ const Property kProperties[] = {
                   (c.style.nonScalingStroke = c.value.find("non-scaling-stroke") == 0, true)),
     GPGP_PROPERTY("stop-color", stopColor, setStopColor(c)),
     GPGP_PROPERTY("stop-opacity", stopOpacity, parseOpacity(c.value, c.style.stopOpacity)),
-    GPGP_PROPERTY("clip-path", clipPath, setRefers(c, c.style.clipPath)),
+    GPGP_PROPERTY("clip-path", clipPath, (c.style.clipPath = c.value == "none" ? "" : c.value, true)),
+    GPGP_PROPERTY("clip-rule", clipRule, choose(c.value, kRules, c.style.clipRule)),
     GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
     GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
     GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = c.value != "normal", true)),
@@ -211,7 +212,8 @@ Style Style::inherited() const {
   s.stopColor = fresh.stopColor;
   s.stopIsCurrent = fresh.stopIsCurrent;
   s.stopOpacity = fresh.stopOpacity;
-  s.clipPath = s.mask = s.filter = s.blendMode = false;
+  s.clipPath.clear();
+  s.mask = s.filter = s.blendMode = false;
   return s;
 }
 

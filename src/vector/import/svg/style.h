@@ -27,7 +27,7 @@ struct Paint {
 struct Style {
   // inherited
   Paint fill{Paint::Kind::Solid, {}, {}, Paint::Kind::None, false}, stroke;
-  GpgpFillRule fillRule = GPGP_FILL_NON_ZERO;
+  GpgpFillRule fillRule = GPGP_FILL_NON_ZERO, clipRule = GPGP_FILL_NON_ZERO;
   double fillOpacity = 1, strokeOpacity = 1, strokeWidth = 1, miterLimit = 4, dashOffset = 0;
   Cap cap = Cap::Butt;
   Join join = Join::Miter;
@@ -42,8 +42,9 @@ struct Style {
   Color stopColor;
   bool stopIsCurrent = false;
   double stopOpacity = 1;
-  /// clip-path, mask and filter where they refer to something, mix-blend-mode where it is not normal.
-  bool clipPath = false, mask = false, filter = false, blendMode = false;
+  std::string clipPath; ///< what it says, unless none
+  /// mask and filter where they refer to something, mix-blend-mode where it is not normal.
+  bool mask = false, filter = false, blendMode = false;
 
   /// What a child begins with.
   Style inherited() const;

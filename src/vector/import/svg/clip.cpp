@@ -1,0 +1,126 @@
+// What clip-path refers to: the shapes of a clipPath as the clip of a group (CSS Masking 1, chapter 6).
+#include "vector/import/svg/importer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::vector::svg {
+namespace {
+/// "#id" of url(#id), with or without quotes; empty where it is something else.
+std::string referenceOf(std::string_view text) {
+  if (text.substr(0, 4) != "url(" || text.back() != ')') return {};
+  text = trim(text.substr(4, text.size() - 5));
+  if (text.size() > 1 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front())
+    text = text.substr(1, text.size() - 2);
+  return std::string(text.substr(0, 1) == "#" ? text : std::string_view());
+}
+
+/// Zeros where there is none.
+Affine inverseOf(const Affine& m) {
+  const double area = m.a * m.d - m.b * m.c;
+  if (!(std::fabs(area) > 0)) return {0, 0, 0, 0, 0, 0};
+  return {
+      m.d / area, -m.b / area, -m.c / area, m.a / area, (m.c * m.f - m.d * m.e) / area, (m.b * m.e - m.a * m.f) / area};
+}
+} // namespace
+
+void Importer::measure(const Shape& shape, const Affine& transform) {
+  Shape moved = shape;
+  for (Point& p : moved.points) p = transform(p);
+  if (moved.points.empty()) return;
+  const Box box = boxOf(moved);
+  box_.add({box.left, box.top});
+  box_.add({box.right, box.bottom});
+}
+
+Box Importer::boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space) {
+  box_ = {};
+  toBox_ = inverseOf(space);
+  mode_ = Mode::Measure;
+  content(node, name, state);
+  mode_ = Mode::Paint;
+  return box_;
+}
+
+Style Importer::styleOf(pugi::xml_node clipPath, const LengthContext& lengths) {
+  const auto [known, isNew] = clipStyles_.try_emplace(clipPath.hash_value());
+  if (!isNew) return known->second;
+  std::vector<pugi::xml_node> above; // the innermost first
+  for (pugi::xml_node up = clipPath; up.type() == pugi::node_element && above.size() < limits_.depth; up = up.parent())
+    above.push_back(up);
+  Style& style = known->second;
+  for (size_t i = above.size(); i-- > 0;) {
+    const Style parent = style;
+    style = parent.inherited();
+    cascade(above[i], document_.name(above[i]), parent, lengths, style);
+  }
+  return style;
+}
+
+void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
+  Affine space = state.transform;
+  if (name == "use") { // its x and y move its own coordinates
+    LengthContext lengths = state.lengths;
+    lengths.fontSize = state.style.fontSize;
+    space =
+        space *
+        Affine{1, 0, 0, 1, length(node, "x", lengths, LengthAxis::X, 0), length(node, "y", lengths, LengthAxis::Y, 0)};
+  }
+  std::optional<Box> box; // of the element, when first asked for
+  std::vector<pugi::xml_node> targets;
+  pugi::xml_node from = node;
+  std::string value = state.style.clipPath;
+  const auto without = [&](const std::string& why) {
+    reporter_.warn(document_.line(from),
+                   std::string("clip-path ") + why + ": " + element(from) + " is drawn without it");
+  };
+  // What the clipPath is clipped by clips as well.
+  for (; !value.empty(); from = targets.back()) {
+    const std::string shown = std::string("'") + value.substr(0, 60) + "'";
+    const std::string reference = referenceOf(value);
+    const pugi::xml_node target = reference.empty() ? pugi::xml_node() : document_.find(reference);
+    if (!target || document_.name(target) != "clipPath") return without(shown + " is no clipPath of this file");
+    if (std::find(targets.begin(), targets.end(), target) != targets.end()) return without(shown + " contains itself");
+    if (state.clips >= shader::kMaxClipDepth) return without("is inside too many others");
+    targets.push_back(target);
+    State inner;
+    inner.style = styleOf(target, state.lengths);
+    value = inner.style.clipPath;
+    inner.style = inner.style.inherited();
+    inner.transform = space;
+    inner.lengths = state.lengths;
+    inner.depth = state.depth;
+    if (const pugi::xml_attribute text = target.attribute("transform")) {
+      Affine own;
+      if (!parseTransform(text.value(), own))
+        reporter_.error(document_.line(text, 0), element(target) + " has an error in its transform, which is ignored");
+      inner.transform = inner.transform * own;
+    }
+    if (trim(target.attribute("clipPathUnits").value()) == "objectBoundingBox") {
+      if (!box) box = boxAround(node, name, state, space);
+      if (box->left <= box->right)
+        inner.transform =
+            inner.transform * Affine{box->right - box->left, 0, 0, box->bottom - box->top, box->left, box->top};
+    }
+    if (!inner.transform.finite()) return without(shown + " has a transform beyond all numbers");
+    ++state.clips;
+    MadeClip& made = madeClips_[target.hash_value()];
+    const MadeClip wanted{inner.transform, state.lengths.width, state.lengths.height, state.group, made.group};
+    if (made.group && made == wanted) { // neighbours often share one
+      state.group = made.group;
+      continue;
+    }
+    std::vector<ImportedPath> paths;
+    std::swap(paths, result_.paths);
+    mode_ = Mode::Clip;
+    visitChildren(target, inner);
+    mode_ = Mode::Paint;
+    std::swap(paths, result_.paths);
+    result_.groups.push_back({state.group, 1, true, std::move(paths)});
+    state.group = static_cast<uint32_t>(result_.groups.size());
+    made = wanted;
+    made.group = state.group;
+  }
+}
+
+} // namespace gpgp::vector::svg
