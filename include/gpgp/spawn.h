@@ -225,11 +225,11 @@ typedef struct GpgpSpawnInfo {
   const GpgpVertexOutput* vertices; /**< for spawners with GPGP_SPAWNER_VERTICES, instead of instances */
   /** Out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket; STORAGE usage. Fields that are not named
    * here are left as the engine set them. Instances: they are sorted by bucket; instanceCount and firstInstance are
-   * written. Without draws they lie in no stated order, unless by GPGP_SPAWNER_ORDERED. Vertices: they lie in no stated order; indexCount of the first
-   * command is written, which draws all buckets. GPGP_SPAWN_REGIONS: firstInstance is read and instanceCount written;
-   * or firstIndex is read, a multiple of 6, and indexCount and vertexOffset (firstIndex / 6 * 4) are written. Only
-   * counting: instanceCount and firstInstance, or indexCount, firstIndex and vertexOffset are written, regions that fit
-   * exactly for a later record with GPGP_SPAWN_REGIONS. */
+   * written. Without draws they lie in no stated order, unless by GPGP_SPAWNER_ORDERED. Vertices: they lie in no stated
+   * order; indexCount of the first command is written, which draws all buckets. GPGP_SPAWN_REGIONS: firstInstance is
+   * read and instanceCount written; or firstIndex is read, a multiple of 6, and indexCount and vertexOffset (firstIndex
+   * / 6 * 4) are written. Only counting: instanceCount and firstInstance, or indexCount, firstIndex and vertexOffset
+   * are written, regions that fit exactly for a later record with GPGP_SPAWN_REGIONS. */
   GpgpBuffer draws;
   GpgpBuffer needed; /**< out, optional: uint32_t[buckets], instances or indices that each bucket needs; only with
                           GPGP_SPAWN_REGIONS or where the record only counts; STORAGE usage */

@@ -105,7 +105,6 @@ using lanes4 = Lanes;
 #define lanes3 vec3
 #define lanes4 vec4
 
-
 #define GPGP_SHADER_BEGIN
 #define GPGP_SHADER_END
 #define GPGP_FN

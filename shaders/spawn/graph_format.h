@@ -94,9 +94,9 @@ GPGP_CONST uint kPartFixedBefore = 2u; // sums over the parts before it
 GPGP_CONST uint kPartShareBefore = 3u;
 GPGP_CONST uint kPartSize = 4u;
 
-// polygon: first vertex (offset), vertex count, first quad (offset), quad count or 0. Polygons come in pairs, 2 k + 1 is
-// 2 k seen from behind: (x, -y) in reverse order. The first six pairs are the regular ones with 3 to 8 corners. Without
-// quads it is convex: a fan. A quad is four corners as 16 bits each, and means the triangles 0 1 2 and 0 2 3.
+// polygon: first vertex (offset), vertex count, first quad (offset), quad count or 0. Polygons come in pairs, 2 k + 1
+// is 2 k seen from behind: (x, -y) in reverse order. The first six pairs are the regular ones with 3 to 8 corners.
+// Without quads it is convex: a fan. A quad is four corners as 16 bits each, and means the triangles 0 1 2 and 0 2 3.
 GPGP_CONST uint kPolygonSize = 4u;
 GPGP_CONST uint kQuadSize = 2u;
 GPGP_CONST uint kMaxCorners = 4096u; // of a polygon

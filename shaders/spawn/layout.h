@@ -82,9 +82,9 @@ GPGP_CONST uint kOrderStarts = 2u; // of bins
 GPGP_CONST uint kOrderFill = 3u;   // bins with records
 GPGP_CONST uint kOrderRank = 4u;   // records within their bin
 GPGP_CONST uint kOrderParts = 256u;
-GPGP_CONST uint kOrderWords = 4u; // for each record, and kOrderParts
-GPGP_CONST uint kInstanceWords4 = 6u;  // GpgpInstance as uvec4
-GPGP_CONST uint kDrawWords = 5u;       // VkDrawIndexedIndirectCommand
+GPGP_CONST uint kOrderWords = 4u;     // for each record, and kOrderParts
+GPGP_CONST uint kInstanceWords4 = 6u; // GpgpInstance as uvec4
+GPGP_CONST uint kDrawWords = 5u;      // VkDrawIndexedIndirectCommand
 
 GPGP_SHADER_END
 #endif

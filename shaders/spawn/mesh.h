@@ -3,9 +3,8 @@
 // Every shape is made of quads, four vertices and the two triangles 0 1 2 and 0 2 3, each flat and with vertices of its
 // own. So one number says how much room a shape takes among vertices and among indices, and indices are the same
 // pattern whatever the shape. A convex polygon is a fan of (corners - 1) / 2 quads, the last triangle of an odd one
-// without area, a concave one the quads that its grammar was compiled with; prisms have two such ends and a quad a side;
-// a sphere is rings of quads.
-// Triangles are counter-clockwise from outside.
+// without area, a concave one the quads that its grammar was compiled with; prisms have two such ends and a quad a
+// side; a sphere is rings of quads. Triangles are counter-clockwise from outside.
 #ifndef GPGP_SHADERS_SPAWN_MESH_H
 #define GPGP_SHADERS_SPAWN_MESH_H
 #include "core/math.h"

@@ -269,8 +269,10 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
       const float t = divide(missing, whole);
       GPGP_PRECISE float x = a.x + (b.x - a.x) * t;
       GPGP_PRECISE float y = a.y + (b.y - a.y) * t;
-      if (da < near) a = vec2(x, y);
-      else b = vec2(x, y);
+      if (da < near)
+        a = vec2(x, y);
+      else
+        b = vec2(x, y);
       if (closing) {
         chord.bottom = vec2(-1.0f, toPixel(item, x, y).y);
         chord.top = vec2(-1.0f, min(chord.bottom.y, -1.0f));
@@ -278,7 +280,8 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
         chord.side = 1.0f;
         return true;
       }
-    } else if (closing) return false;
+    } else if (closing)
+      return false;
   }
 #endif
   a = toPixel(item, a.x, a.y);

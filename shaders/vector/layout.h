@@ -184,7 +184,6 @@ static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::Pai
 static_assert(sizeof(gpgp::shader::ItemRecord) == 112 && sizeof(gpgp::shader::PlacedPath) == 48 &&
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 32 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 96 &&
-              sizeof(gpgp::shader::CanvasCounters) == 48);
+              sizeof(gpgp::shader::CanvasHeader) == 96 && sizeof(gpgp::shader::CanvasCounters) == 48);
 #endif
 #endif

@@ -75,7 +75,7 @@ void parseEpsilon(const std::string& text, VisibilityOptions& options) {
   float values[2];
   if (std::sscanf(text.c_str(), "%f,%f%c", &values[0], &values[1], &rest) != 2 || !(values[0] >= 0 && values[1] >= 0) ||
       !(values[0] < 1e30f && values[1] < 1e30f))
-    throw Usage("--epsilon: '" + text + "' is not ABS,DYN, two numbers from 0 on");
+    throw CLI::ValidationError("--epsilon", "'" + text + "' is not ABS,DYN, two numbers from 0 on");
   options.epsilonStatic = values[0];
   options.epsilonDynamic = values[1];
 }
@@ -92,7 +92,7 @@ uint32_t parseHeuristics(const std::string& text) {
     else if (name == "front")
       heuristics |= GPGP_HEURISTIC_DEPTH | GPGP_HEURISTIC_KEEP_FRONT;
     else if (name != "none")
-      throw Usage("--heuristics: '" + name + "' is none of in-circle, depth, front, none");
+      throw CLI::ValidationError("--heuristics", "'" + name + "' is none of in-circle, depth, front, none");
   }
   return heuristics;
 }

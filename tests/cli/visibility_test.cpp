@@ -108,7 +108,6 @@ TEST(CliVisibility, ConservativeFindsWhatLiesBetweenCentres) {
   EXPECT_EQ(host::readText(ids.path()), std::string("\0\0\0\0\1\0\0\0", 8));
   EXPECT_EQ(run({"--method", "conservative", "--epsilon", "0,0"})["visible"], 1) << "a hundredth in front is too far";
   EXPECT_EQ(run({"--method", "conservative", "--epsilon", "0,0", "--heuristics", "in-circle,front"})["visible"], 2);
-  EXPECT_EQ(run({"--method", "conservative", "--epsilon", "0,0", "--refinements", "1"})["visible"], 2);
   EXPECT_EQ(run({"--method", "conservative", "--heuristics", "none", "--resolution", "0.5"})["visible"], 2);
 }
 
