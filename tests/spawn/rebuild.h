@@ -40,25 +40,8 @@ public:
 
 private:
   static GpgpShape shape(const std::string& name) {
-    static const char* kNames[] = {"Triangle",
-                                   "Quad",
-                                   "Pentagon",
-                                   "Hexagon",
-                                   "Heptagon",
-                                   "Octagon",
-                                   "Prism3",
-                                   "Box",
-                                   "Prism5",
-                                   "Prism6",
-                                   "Prism7",
-                                   "Prism8",
-                                   "DynamicConvexPolygon",
-                                   "DynamicPolygon",
-                                   "DynamicConvexRightPrism",
-                                   "DynamicRightPrism",
-                                   "Sphere"};
-    for (GpgpShape s = 0; s < std::size(kNames); ++s)
-      if (name == kNames[s]) return s;
+    for (GpgpShape s = 0; s < shader::kShapeCount; ++s)
+      if (name == spawn::shapeName(s)) return s;
     throw std::runtime_error("no shape " + name);
   }
 
