@@ -150,7 +150,7 @@ typedef struct GpgpSpawnerCreateInfo {
   uint32_t maxShapes;    /**< shapes that wait for a round of derivation; 0: 131072. What does not fit is counted */
   uint32_t maxTerminals; /**< terminal shapes of one record; 0: 524288. What does not fit is counted */
   uint32_t maxDepth;     /**< how deep rules may nest in themselves; 0: 64. Deeper shapes are counted, not derived */
-  uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 8, or 32 on software devices. Few are
+  uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 4, or 32 on software devices. Few are
                          needed: workgroups derive by themselves, and rounds only share work out again. What is left is
                          counted */
   uint32_t maxColliders; /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and

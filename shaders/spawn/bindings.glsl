@@ -1,5 +1,6 @@
 // The spawner's one descriptor set: binding = resource number in src/spawn/schedule/spawner.cpp.
 layout(set = 0, binding = 0, std430) readonly buffer Graph { uint graphWords[]; };
+layout(set = 0, binding = 0, std430) readonly buffer GraphRows { uvec4 graphRows[]; }; // the same
 #include "spawn/layout.h"
 layout(set = 0, binding = 1, std430) readonly buffer Axioms { uvec4 axioms[]; };        // GpgpAxiom: six each
 layout(set = 0, binding = 2, std430) writeonly buffer Instances { uvec4 instances[]; }; // GpgpInstance: six each

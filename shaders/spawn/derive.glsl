@@ -29,7 +29,6 @@ layout(push_constant) uniform Push { uint round; };
 shared uvec4 parents[kShapePlanes * groupSize];
 shared uvec2 fans[groupSize];         // of the parents: successors, length
 shared uint childrenUpTo[groupSize];  // of the parents: inclusive sums
-shared uvec4 staged[kInstanceWords4 * groupSize];
 shared uint stackSize;
 shared uint taken;
 shared uint terminalBase;
@@ -168,57 +167,62 @@ void push(bool own, uint place, uint count, Shape s) {
 #include "spawn/context.glsl"
 #endif
 
+// Families are in a generated kernel's table, everything else that multiplies in the graph's words.
+Fan fanFor(Shape s) {
+#ifdef GPGP_TABLE
+  const uint family = familyOf(s.node);
+  if (family != 0) {
+    const uint count = tableAt(family).x;
+    return Fan(count, count, 0.0f);
+  }
+#endif
+  return fanOf(s);
+}
+/// Returns a kEnd value.
+uint toChildOf(inout Shape s, Fan fan, uint index) {
+#ifdef GPGP_TABLE
+  const uint family = familyOf(s.node);
+  if (family != 0) return toDescendant(s, family, index, record.maxDepth);
+#endif
+  toChild(s, fan, index);
+  return kEndGoesOn;
+}
+
 /// Terminals to records or instances. place: among count of them.
 void emit(bool own, uint place, uint count, Shape s) {
   if (count == 0) return;
   const uint lane = laneIndex();
   if (lane == 0) terminalBase = atomicAdd(state.terminals, count);
+  const uint bucket = own ? graphWords[s.node + kNodeArgument2] : 0;
   if (record.terminalsTo == kToCounts) {
-    if (own) atomicAdd(bucketCounts[graphWords[s.node + kNodeArgument2]], 1);
-    barrier();
+    if (own) atomicAdd(bucketCounts[bucket], 1);
     return;
   }
-  if (own) {
-    if (record.terminalsTo == kToRecords) {
-      for (uint plane = 0; plane < kShapePlanes; ++plane) staged[plane * groupSize + place] = packShape(s, plane);
-    } else {
-      const uint axiom = s.axiom * 6;
-      for (uint row = 0; row < 3; ++row)
-        staged[place * 6 + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
-      staged[place * 6 + 3] = uvec4(graphWords[s.node + kNodeArgument2], shapeType(s), axioms[axiom + 4].x,
-                                    graphWords[s.node + kNodeArgument]);
-      staged[place * 6 + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
-      uint target = 0;
-      if (record.regions != 0) {
-        const uint bucket = graphWords[s.node + kNodeArgument2];
-        const uint before = atomicAdd(bucketCounts[bucket], 1);
-        target = before < regionCapacity(bucket, false) ? regionStart(bucket, false) + before : 0xffffffffu;
-      }
-      staged[place * 6 + 5] = packPlane(s.size, target);
-    }
-  }
   barrier();
+  if (!own) return;
+  uint target = terminalBase + place;
   if (record.terminalsTo == kToRecords) {
-    const uint fitting = terminalBase < record.maxTerminals ? min(count, record.maxTerminals - terminalBase) : 0;
-    if (lane < fitting) {
-      for (uint plane = 0; plane < kShapePlanes; ++plane)
-        records[plane * record.maxTerminals + terminalBase + lane] = staged[plane * groupSize + lane];
-      atomicAdd(bucketCounts[graphWords[staged[4 * groupSize + lane].w + kNodeArgument2]], 1);
-    }
-  } else if (record.regions != 0) {
-    for (uint i = lane; i < count * 6; i += groupSize) {
-      const uint terminal = i / 6;
-      const uint row = i - terminal * 6;
-      const uint target = staged[terminal * 6 + 5].w;
-      if (target == 0xffffffffu) continue;
-      instances[target * 6 + row] = row == 5 ? uvec4(staged[i].xyz, 0) : staged[i];
-    }
-  } else {
-    const uint capacity = record.instanceCapacity;
-    const uint fitting = terminalBase < capacity ? min(count, capacity - terminalBase) : 0;
-    for (uint i = lane; i < fitting * 6; i += groupSize) instances[terminalBase * 6 + i] = staged[i];
+    if (target >= record.maxTerminals) return;
+    for (uint plane = 0; plane < kShapePlanes; ++plane)
+      records[plane * record.maxTerminals + target] = packShape(s, plane);
+    atomicAdd(bucketCounts[bucket], 1);
+    return;
   }
-  barrier();
+  uint capacity = record.instanceCapacity;
+  if (record.regions != 0) {
+    target = atomicAdd(bucketCounts[bucket], 1);
+    capacity = regionCapacity(bucket, false);
+  }
+  if (target >= capacity) return;
+  if (record.regions != 0) target += regionStart(bucket, false);
+  // Each by itself: staging them for whole lines costs more than it saves.
+  target *= kInstanceWords4;
+  const uint axiom = s.axiom * 6;
+  for (uint row = 0; row < 3; ++row)
+    instances[target + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
+  instances[target + 3] = uvec4(bucket, shapeType(s), axioms[axiom + 4].x, graphWords[s.node + kNodeArgument]);
+  instances[target + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
+  instances[target + 5] = packPlane(s.size, 0);
 }
 
 /// The shapes of a round that nobody took, once all workgroups have run out of steps: the last one leaves them to the
@@ -333,7 +337,7 @@ void main() {
         Fan fan;
         fan.count = 0;
         if (waits) {
-          fan = fanOf(s);
+          fan = fanFor(s);
           fan.count -= s.made;
           for (uint plane = 0; plane < kShapePlanes; ++plane) parents[plane * groupSize + lane] = packShape(s, plane);
           fans[lane] = uvec2(fan.successors, floatBitsToUint(fan.extent));
@@ -363,6 +367,7 @@ void main() {
     uint end = kEndDiscarded;
     if (lane < batch) {
       bool arrives = false;
+      end = kEndGoesOn;
       if (fetched) {
         s = axiomAt(first + lane);
       } else {
@@ -374,14 +379,15 @@ void main() {
         Fan fan;
         fan.successors = fans[parent].x;
         fan.extent = uintBitsToFloat(fans[parent].y);
-        toChild(s, fan, s.made + child - (parent > 0 ? childrenUpTo[parent - 1] : 0));
+        const uint index = s.made + child - (parent > 0 ? childrenUpTo[parent - 1] : 0);
         s.made = 0;
         arrives = fan.successors != 0;
+        end = toChildOf(s, fan, index);
       }
 #ifdef GPGP_COLLIDERS
-      end = runContext(s, arrives);
+      if (end == kEndGoesOn) end = runContext(s, arrives);
 #else
-      end = runChain(s, arrives, record.maxDepth);
+      if (end == kEndGoesOn) end = runChain(s, arrives, record.maxDepth);
 #endif
       depth = max(depth, s.depth);
       if (end == kEndUnfinished) unfinished += 1;

@@ -248,6 +248,7 @@ GPGP_CONST uint kEndWaits = 2u;      // the shape waits for shape.node
 GPGP_CONST uint kEndUnfinished = 3u; // deeper than allowed
 GPGP_CONST uint kEndContext = 4u;    // at a Collider or IfCollides, which needs more than the shape and the graph
 GPGP_CONST uint kEndLater = 5u;      // at an IfCollides of a later phase
+GPGP_CONST uint kEndGoesOn = 6u;     // it has not: another operator of the chain follows
 
 GPGP_SHADER_END
 #endif

@@ -6,6 +6,7 @@
 // terminal, none of it is written; what it leaves free is noted, so that what is written has no holes.
 
 shared uvec4 vertexWords[vertexStage * groupSize + 1]; // one more, as none is not allowed
+shared uvec4 staged[vertexStage > 0 ? 6 * groupSize : 1]; // terminals
 shared uvec2 quadPlaces[groupSize / 4]; // regions: of the quads in vertexWords, in the buffers and in their region
 shared uint fittingQuads;
 const uint kNoPlace = 0xffffffffu;

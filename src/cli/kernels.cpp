@@ -59,15 +59,15 @@ bool hasSubgroups(const host::HeadlessDevice& device) {
          (subgroups.supportedOperations & kWanted) == kWanted;
 }
 
-std::vector<Spirv> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules, bool subgroups,
-                                  bool matching) {
-  std::vector<Spirv> kernels(schedules.size());
+std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules,
+                                       bool subgroups, bool matching) {
+  std::vector<KernelCode> kernels(schedules.size());
   onAllProcessors(schedules.size(), [&](size_t i) {
     const spawn::Schedule& schedule = schedules[i];
-    auto spirv = spawn::compileKernel(
+    auto code = spawn::compileKernel(
         spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{}), subgroups);
-    if (!spirv) throw Failure(schedule.name + ": " + spirv.error().text);
-    kernels[i] = std::move(*spirv);
+    if (!code) throw Failure(schedule.name + ": " + code.error().text);
+    kernels[i] = std::move(*code);
   });
   return kernels;
 }
@@ -81,8 +81,8 @@ spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, bool subgroups) {
 }
 
 std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::KernelInfo& info,
-                                       std::span<const uint32_t> spirv) {
-  return spawn::serialize(info, spirv, grammar.words[shader::kHeaderChecksum], memory());
+                                       std::span<const uint32_t> code) {
+  return spawn::serialize(info, code, grammar.words[shader::kHeaderChecksum], memory());
 }
 
 bool isBaked(const std::filesystem::path& file) {
@@ -120,18 +120,18 @@ bool isTunedFor(const spawn::KernelInfo& info, const host::HeadlessDevice& devic
 }
 
 void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, const spawn::KernelInfo& info,
-                std::span<const uint32_t> spirv) {
+                std::span<const uint32_t> code) {
   std::pmr::vector<uint32_t> all(grammar.words);
-  const auto append = [&](const spawn::KernelInfo& i, std::span<const uint32_t> code) {
-    const auto words = kernelWords(grammar, i, code);
+  const auto append = [&](const spawn::KernelInfo& i, std::span<const uint32_t> kernel) {
+    const auto words = kernelWords(grammar, i, kernel);
     all.insert(all.end(), words.begin(), words.end());
   };
-  append(info, spirv);
+  append(info, code);
   if (std::filesystem::exists(file))
     for (const spawn::Kernel& other : kernelsIn(file, grammar))
       if (other.info.vendor != info.vendor || other.info.device != info.device ||
           std::bit_width(other.info.axioms) != std::bit_width(info.axioms))
-        append(other.info, other.spirv);
+        append(other.info, other.code);
   host::writeFile(file, {reinterpret_cast<const char*>(all.data()), all.size() * 4});
 }
 

@@ -28,17 +28,17 @@ std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std:
 /// Whether the library takes kernels that need subgroup operations on this device.
 bool hasSubgroups(const host::HeadlessDevice& device);
 
-using Spirv = std::vector<uint32_t>;
+using KernelCode = std::vector<uint32_t>; ///< as spawn::Kernel::code
 /// The kernel of each schedule, compiled on all processors. matching: execution groups that differ in parameters only
 /// share code.
-std::vector<Spirv> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules, bool subgroups,
-                                  bool matching);
+std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules,
+                                       bool subgroups, bool matching);
 
 /// What a kernel says of itself, for any device and number of axioms.
 spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, bool subgroups);
 /// As it stands in a file behind the graph.
 std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::KernelInfo& info,
-                                       std::span<const uint32_t> spirv);
+                                       std::span<const uint32_t> code);
 
 /// Whether a file begins as baked grammars do.
 bool isBaked(const std::filesystem::path& file);
@@ -52,7 +52,7 @@ bool isTunedFor(const spawn::KernelInfo& info, const host::HeadlessDevice& devic
 /// Writes the graph with this kernel; kernels already there stay, but for one for the same device and about as many
 /// axioms.
 void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, const spawn::KernelInfo& info,
-                std::span<const uint32_t> spirv);
+                std::span<const uint32_t> code);
 /// Where tuned kernels are kept unless a file is named: in $XDG_CACHE_HOME/gpgp, or else in ~/.cache/gpgp, by the
 /// grammar's name and the graph's checksum.
 std::filesystem::path tunedFile(const std::string& grammarFile, const BakedGraph& grammar);

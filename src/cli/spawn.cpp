@@ -70,7 +70,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
   const auto taken = [&](const spawn::Kernel& kernel, const std::filesystem::path& file) {
     spawn::KernelInfo info = kernel.info;
     info.vendor = info.device = 0; // it is the only one here
-    return Chosen{kernelWords(grammar, info, kernel.spirv), info.schedule, file, info.groups};
+    return Chosen{kernelWords(grammar, info, kernel.code), info.schedule, file, info.groups};
   };
   if (name == "interpreter")
     return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
@@ -84,9 +84,9 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     TuneSettings settings;
     settings.matching = options.matching == "on";
     const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
-    keepKernel(file, grammar, tuned.info, tuned.spirv);
+    keepKernel(file, grammar, tuned.info, tuned.code);
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
-    return taken({tuned.info, {tuned.spirv.begin(), tuned.spirv.end()}}, file);
+    return taken({tuned.info, {tuned.code.begin(), tuned.code.end()}}, file);
   }
   const bool subgroups = hasSubgroups(session.device());
   if (spawn::namedSchedule(grammar.graph, name) || !isBaked(name)) {
@@ -94,8 +94,8 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     if (!schedule)
       throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
                   name + "\"");
-    const auto spirv = compileKernels(grammar.graph, std::span(&*schedule, 1), subgroups, options.matching == "on");
-    return {kernelWords(grammar, kernelInfo(*schedule, subgroups), spirv[0]), schedule->name, {}, schedule->groups};
+    const auto code = compileKernels(grammar.graph, std::span(&*schedule, 1), subgroups, options.matching == "on");
+    return {kernelWords(grammar, kernelInfo(*schedule, subgroups), code[0]), schedule->name, {}, schedule->groups};
   }
   const auto kernel = kernelFor(kernelsIn(name, grammar), session.device(), count);
   if (!kernel) throw Failure(name + " holds no kernel that is for this device");
@@ -364,7 +364,8 @@ Work addSpawn(CLI::App& app) {
       ->add_option(
           "--schedule", options->schedule,
           "How the derivation runs. sgl: as few execution groups as possible; rw: one an operator; rules: one a "
-          "rule; heuristic: the thesis's H1 to H3; default: only operators that multiply wait; interpreter: no "
+          "rule; heuristic: the thesis's H1 to H3; default: few groups, but for a SubDiv behind another; interpreter: "
+          "no "
           "kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
           "many axioms, tuning first where it is not stored yet (in $XDG_CACHE_HOME/gpgp or ~/.cache/gpgp); "
           "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")

@@ -30,7 +30,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   Session session(common);
   const Tuned tuned =
       tuneGrammar(session, grammar, axiomGrid(options.axioms, 0, {options.size, settings.seed}), settings);
-  keepKernel(out, grammar, tuned.info, tuned.spirv);
+  keepKernel(out, grammar, tuned.info, tuned.code);
   session.checkValidation();
 
   const spawn::Schedule& schedule = tuned.schedule();

@@ -95,7 +95,7 @@ Tuned tuneGrammar(Session& session, const BakedGraph& grammar, const std::vector
     tuned.best = kept;
   else
     tuned.best.fit.rounds = 0;
-  tuned.spirv = kernels[tuned.best.schedule];
+  tuned.code = kernels[tuned.best.schedule];
   tuned.info = infoOf(tuned.best);
   tuned.info.vendor = session.device().properties().vendorID;
   tuned.info.device = session.device().properties().deviceID;

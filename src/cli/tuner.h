@@ -30,7 +30,7 @@ struct Tuned {
   std::vector<spawn::Schedule> schedules;
   std::vector<Candidate> measured; ///< of schedules alone, the fastest first
   Candidate best;
-  Spirv spirv;            ///< of the best
+  KernelCode code;        ///< of the best
   spawn::KernelInfo info; ///< of the best, as it is kept: for this device and number of axioms
   GpgpSpawnReport report{};
   double interpreter = 0; ///< milliseconds

@@ -133,9 +133,9 @@ public:
   std::vector<std::pmr::vector<uint32_t>> compile(size_t first = 0) const {
     std::vector<std::pmr::vector<uint32_t>> words;
     const auto part = std::span(schedules_).subspan(first);
-    const auto spirv = compileKernels(grammar_.graph, part, subgroups_, matching_);
-    for (size_t i = 0; i < spirv.size(); ++i)
-      words.push_back(kernelWords(grammar_, kernelInfo(part[i], subgroups_), spirv[i]));
+    const auto code = compileKernels(grammar_.graph, part, subgroups_, matching_);
+    for (size_t i = 0; i < code.size(); ++i)
+      words.push_back(kernelWords(grammar_, kernelInfo(part[i], subgroups_), code[i]));
     return words;
   }
 
@@ -422,8 +422,8 @@ void vertices(Session& session, const std::vector<Case>& cases, const Options& o
     Deriver deriver(session, grammar, axiomsOf(c, count), deriverOptions);
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
     const bool subgroups = hasSubgroups(session.device());
-    const auto spirv = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
-    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), spirv[0]));
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
+    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), code[0]));
     GpgpSpawnReport report = deriver.fit(prepared);
     while (report.verticesWritten < report.vertices && count > 1) { // fewer, where the device binds less
       count = static_cast<uint32_t>(0.95 * count * report.verticesWritten / report.vertices);
@@ -452,9 +452,9 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
     const BakedGraph grammar = grammarOf(c);
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
     const bool subgroups = hasSubgroups(session.device());
-    const auto spirv = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
     Deriver deriver(session, grammar, axiomsOf(c, 1), {});
-    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), spirv[0]));
+    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), code[0]));
     for (uint32_t count = 10; count <= (options.quick ? 100u : 1000000u); count *= 10) {
       if (uint64_t{count} * sizeof(GpgpAxiom) > session.device().properties().limits.maxStorageBufferRange) break;
       const auto axioms = axiomsOf(c, count);

@@ -19,7 +19,7 @@ void check(const std::vector<uint32_t>& words) {
   if (!kernels) return;
   std::vector<uint32_t> again;
   for (const Kernel& kernel : *kernels) {
-    const auto baked = serialize(kernel.info, kernel.spirv, kGraph, memory);
+    const auto baked = serialize(kernel.info, kernel.code, kGraph, memory);
     again.insert(again.end(), baked.begin(), baked.end());
     if (std::memchr(kernel.info.schedule, 0, sizeof kernel.info.schedule) == nullptr) std::abort();
   }
@@ -35,9 +35,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto memory = std::pmr::get_default_resource();
   (void)loadKernels(std::as_bytes(std::span(data, size)), kGraph, memory);
 
-  const uint32_t spirv[] = {0x07230203, 0x10500, 0, 1, 0};
+  const uint32_t code[] = {4, 1, 2, 3, 4, 0x07230203, 0x10500, 0, 1, 0}; // a table of four words, SPIR-V
   KernelInfo info{.fit = {64, 128, 1024, 0, 8}, .axioms = 5, .schedule = "tuned"};
-  const auto first = serialize(info, spirv, kGraph, memory), second = serialize({}, spirv, kGraph, memory);
+  const auto first = serialize(info, code, kGraph, memory), second = serialize({}, code, kGraph, memory);
   std::vector<uint32_t> good(first.begin(), first.end());
   good.insert(good.end(), second.begin(), second.end());
   if (!loadKernels(std::as_bytes(std::span(good)), kGraph, memory)) std::abort();

@@ -54,14 +54,15 @@ std::string kernelText(const std::string& functions, bool subgroups) {
                       "#extension GL_KHR_shader_subgroup_ballot : require\n"
                     : "") +
          "#include \"spawn/bindings.glsl\"\n"
-         "#include \"spawn/operators.h\"\n" +
+         "#include \"spawn/operators.h\"\n"
+         "#include \"spawn/table_format.h\"\n" +
          functions + "#include \"spawn/derive.glsl\"\n";
 }
 
-core::Result<std::vector<uint32_t>> compileKernel(const std::string& functions, bool subgroups) {
+core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, bool subgroups) {
   static const Process process;
   static const TBuiltInResource limits = resources();
-  const std::string text = kernelText(functions, subgroups);
+  const std::string text = kernelText(source.functions, subgroups);
   const char* const texts[] = {text.c_str()};
   glslang::TShader shader(EShLangCompute);
   shader.setStrings(texts, 1);
@@ -85,7 +86,10 @@ core::Result<std::vector<uint32_t>> compileKernel(const std::string& functions, 
   std::vector<uint32_t> optimized;
   if (!optimizer.Run(words.data(), words.size(), &optimized))
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the generated kernel could not be optimised");
-  return optimized;
+  std::vector<uint32_t> code{static_cast<uint32_t>(source.table.size())};
+  code.insert(code.end(), source.table.begin(), source.table.end());
+  code.insert(code.end(), optimized.begin(), optimized.end());
+  return code;
 }
 
 } // namespace gpgp::spawn

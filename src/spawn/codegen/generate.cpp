@@ -1,5 +1,6 @@
 #include "spawn/codegen/generate.h"
 
+#include "spawn/codegen/table.h"
 #include "spawn/graph/matching.h"
 #include "spawn/operators.h"
 
@@ -11,8 +12,6 @@
 namespace gpgp::spawn {
 namespace {
 using namespace shader;
-
-bool multiplies(const Node& node) { return node.op >= kOpCompSplit && !node.filter; }
 
 /// A float whose bits survive.
 std::string literal(float value) {
@@ -29,28 +28,30 @@ class Generator {
 public:
   Generator(const Graph& graph, const std::vector<bool>& waits, const Roots& roots)
       : graph_(graph), waits_(waits), peers_(graph.nodes.size()), row_(graph.nodes.size()),
-        group_(graph.nodes.size(), kNoGroup) {
+        group_(graph.nodes.size(), kNoGroup), table_(makeTable(graph, waits)) {
     for (uint32_t n = 0; n < graph.nodes.size(); ++n) peers_[n] = {n};
     if (!roots.empty()) match(roots);
   }
 
-  std::string run() {
+  KernelSource run() {
     if (graph_.phases) add("#define GPGP_COLLIDERS\n");
     writeParameters();
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
+      if (table_.family[indexOf(node)]) continue;
       if (!multiplies(node) && (node.op < kOpCompSplit || node.division != UINT32_MAX)) continue;
       operators |= 1u << node.op;
       if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= 1u << 30;
       if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= 1u << 31;
     }
     add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/fans.h\"\n");
+    writeTable();
     std::vector<uint8_t> written(graph_.nodes.size());
     const std::string before = std::move(out_);
     out_.clear();
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) writeChain(n, written);
     writeRunChain();
-    return before + tables() + out_;
+    return {before + tables() + out_, std::move(table_.words)};
   }
 
 private:
@@ -105,8 +106,8 @@ private:
     for (const uint32_t peer : peersOf(node)) words.push_back(value(graph_.nodes[peer]));
     if (std::all_of(words.begin(), words.end(), [&](uint32_t w) { return w == words[0]; }))
       return isFloat ? literal(uintBitsToFloat(words[0])) : number(words[0]);
-    const auto [at, isNew] = columns_.try_emplace(words, static_cast<uint32_t>(table_.size()));
-    if (isNew) table_.insert(table_.end(), words.begin(), words.end());
+    const auto [at, isNew] = columns_.try_emplace(words, static_cast<uint32_t>(matched_.size()));
+    if (isNew) matched_.insert(matched_.end(), words.begin(), words.end());
     const std::string text = "matchedWords[" + number(at->second) + " + row]";
     return isFloat ? "uintBitsToFloat(" + text + ")" : text;
   }
@@ -116,7 +117,7 @@ private:
       for (size_t i = 0; i < words.size(); ++i) text += (i % 16 ? ", " : i ? ",\n  " : "\n  ") + number(words[i]);
       return text + ");\n";
     };
-    return table_.empty() ? std::string() : list("matchedWords", table_) + list("matchedRows", row_);
+    return matched_.empty() ? std::string() : list("matchedWords", matched_) + list("matchedRows", row_);
   }
 
   /// As nodes appear in Shape::node: their offset among the baked words.
@@ -226,21 +227,31 @@ private:
     add("  default: return 0.0f;\n  }\n}\n");
   }
 
+  // ---------------------------------------------------------------- by table
+
+  void writeTable() {
+    add("#define GPGP_TABLE\nbool isStep(uint op, uint which) { return (" + number(table_.stepOperators) +
+        " & (1u << which)) != 0u && op == which; }\n#include \"spawn/table.glsl\"\n");
+  }
+
   // ---------------------------------------------------------------- chains
 
   /// A shape leaves along an edge: goes on, waits or ends. followed: depth has been counted.
   std::string take(const Node& node, uint32_t index, bool followed = false) {
     const Edge& edge = edgeOf(node, index);
-    if (edge.target == kNoNode) return "return kEndDiscarded;";
+    if (edge.target == kNoNode) return "end = kEndDiscarded;";
     std::string text =
         "s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(edgeOf(peer, index).target); }) + "; ";
     if (edge.recursive && !followed) text += "s.depth += 1u; ";
-    if (edge.recursive) text += "if (s.depth > maxDepth) return kEndUnfinished; ";
-    if (graph_.nodes[edge.target].op == kOpTerminal) return text + "return kEndTerminal;";
-    if (waits_[edge.target] || edge.recursive) return text + "return kEndWaits;";
-    if (isContext(graph_.nodes[edge.target].op)) return text + "return kEndContext;";
+    const Node& target = graph_.nodes[edge.target];
+    const char* end = target.op == kOpTerminal                                      ? "kEndTerminal"
+                      : waits_[edge.target] || edge.recursive || multiplies(target) ? "kEndWaits"
+                      : isContext(target.op)                                        ? "kEndContext"
+                                                                                    : nullptr;
+    if (end && edge.recursive) return text + "end = s.depth > maxDepth ? kEndUnfinished : " + end + ";";
+    if (end) return text + "end = " + end + ";";
     const bool inside = group_[edge.target] == group_[indexOf(node)] && group_[edge.target] != kNoGroup;
-    return text + "return " + chainOf(edge.target) + "(s, maxDepth, " + (inside ? "row" : number(row_[edge.target])) +
+    return text + "end = " + chainOf(edge.target) + "(s, maxDepth, " + (inside ? "row" : number(row_[edge.target])) +
            ");";
   }
 
@@ -265,9 +276,9 @@ private:
       }
       stack.pop_back();
       add("uint chain" + std::to_string(node) + "(inout Shape s, uint maxDepth, uint row) { // " + operatorName(n.op) +
-          "\n");
+          "\n  uint end = kEndDiscarded;\n");
       writeOperator(n);
-      add("}\n");
+      add("  return end;\n}\n");
     }
   }
 
@@ -320,7 +331,7 @@ private:
     add("  s.axisX = settleFinite3(c0);\n  s.axisY = settleFinite3(c1);\n  s.axisZ = settleFinite3(c2);\n");
   }
   void writeIf(const Node& node, const std::string& condition) {
-    add("  if (" + condition + ") { " + take(node, 0) + " }\n  " + take(node, 1) + "\n");
+    add("  if (" + condition + ") { " + take(node, 0) + " } else { " + take(node, 1) + " }\n");
   }
   void writeRandomRule(const Node& node) {
     const uint32_t count = node.edgeCount;
@@ -335,8 +346,8 @@ private:
       if (i + 1 < count) add("  sum = add(sum, " + at + ");\n");
     }
     add("  switch (chosen) {\n");
-    for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + "\n");
-    add("  default: " + take(node, count - 1) + "\n  }\n");
+    for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + " break;\n");
+    add("  default: " + take(node, count - 1) + " break;\n  }\n");
   }
   /// An operator that could multiply, but keeps one successor at most.
   void writeFilter(const Node& node) {
@@ -380,43 +391,39 @@ private:
 
   /// A shape comes from an operator that multiplies (arrives), or has waited for this one.
   void writeRunChain() {
-    add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n  if (s.node == 0u) return kEndDiscarded;\n"
-        "  if (s.depth > maxDepth) return kEndUnfinished;\n  switch (s.node) {\n");
+    add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n"
+        "  uint end = s.node == 0u ? kEndDiscarded : kEndUnfinished;\n"
+        "  if (s.node != 0u && s.depth <= maxDepth) switch (s.node) {\n");
     std::string terminals;
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       if (graph_.nodes[n].op == kOpTerminal) terminals += "  case " + number(offsetOf(n)) + ":\n";
       if (isContext(graph_.nodes[n].op))
-        add("  case " + number(offsetOf(n)) + ":" + (waits_[n] ? " if (arrives) return kEndWaits;" : "") +
-            " return kEndContext;\n");
+        add("  case " + number(offsetOf(n)) +
+            ": end = " + (waits_[n] ? "arrives ? kEndWaits : kEndContext" : "kEndContext") + "; break;\n");
       if (!isChain(n) || peers_[n][0] != n) continue;
       for (const uint32_t peer : peers_[n]) add("  case " + number(offsetOf(peer)) + ":");
       const std::string row =
-          table_.empty() ? "0u" : "matchedRows[(s.node - " + number(kHeaderSize) + ") / " + number(kNodeSize) + "]";
-      add(std::string(waits_[n] ? " if (arrives) return kEndWaits;" : "") + " return " + chainOf(n) + "(s, maxDepth, " +
-          (peers_[n].size() > 1 ? row : number(row_[n])) + ");\n");
+          matched_.empty() ? "0u" : "matchedRows[(s.node - " + number(kHeaderSize) + ") / " + number(kNodeSize) + "]";
+      add(std::string(waits_[n] ? " if (arrives) end = kEndWaits; else" : "") + " end = " + chainOf(n) +
+          "(s, maxDepth, " + (peers_[n].size() > 1 ? row : number(row_[n])) + "); break;\n");
     }
-    if (!terminals.empty()) add(terminals + "    return kEndTerminal;\n");
-    add("  default: return kEndWaits;\n  }\n}\n");
+    if (!terminals.empty()) add(terminals + "    end = kEndTerminal; break;\n");
+    add("  default: end = kEndWaits; break;\n  }\n  return end;\n}\n");
   }
 
   const Graph& graph_;
   const std::vector<bool>& waits_;
   std::vector<std::vector<uint32_t>> peers_; // by node: in its place in matching groups, by row
   std::vector<uint32_t> row_, group_;        // by node
-  std::vector<uint32_t> table_;
+  std::vector<uint32_t> matched_;
+  KernelTable table_;
   std::map<std::vector<uint32_t>, uint32_t> columns_; // to where they begin in the table
   std::string out_;
 };
 } // namespace
 
-std::string generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched) {
+KernelSource generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched) {
   return Generator(graph, waits, matched).run();
-}
-
-std::vector<bool> waitsAtFans(const Graph& graph) {
-  std::vector<bool> waits(graph.nodes.size());
-  for (size_t n = 0; n < graph.nodes.size(); ++n) waits[n] = multiplies(graph.nodes[n]);
-  return waits;
 }
 
 } // namespace gpgp::spawn

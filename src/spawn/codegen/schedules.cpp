@@ -1,6 +1,6 @@
 #include "spawn/codegen/schedules.h"
 
-#include "spawn/codegen/generate.h"
+#include "spawn/codegen/table.h"
 #include "spawn/graph/heuristics.h"
 
 #include <algorithm>
@@ -9,10 +9,56 @@ namespace gpgp::spawn {
 namespace {
 /// Partitions that an exhaustive search looks at; beyond, the space is not for it.
 constexpr uint64_t kMostPartitions = 1u << 20;
+
+/// Calls for each edge of a node that leads somewhere.
+template <class Call> void forEdges(const Graph& graph, uint32_t node, const Call& call) {
+  for (uint32_t e = 0; e < graph.nodes[node].edgeCount; ++e) {
+    const Edge& edge = graph.edges[graph.nodes[node].firstEdge + e];
+    if (edge.target != kNoNode) call(edge);
+  }
+}
+
+/// Marks the SubDivs that shapes come to from a SubDiv by what a family can hold.
+void markInner(const Graph& graph, uint32_t subDiv, std::vector<bool>& inner) {
+  std::vector<bool> seen(graph.nodes.size());
+  std::vector<uint32_t> open{subDiv};
+  while (!open.empty()) {
+    const uint32_t node = open.back();
+    open.pop_back();
+    forEdges(graph, node, [&](const Edge& edge) {
+      if (edge.recursive || seen[edge.target]) return;
+      seen[edge.target] = true;
+      const Node& target = graph.nodes[edge.target];
+      if (target.op == shader::kOpSubDiv && multiplies(target))
+        inner[edge.target] = true;
+      else if (target.op <= shader::kOpScale || multipliesByKnown(target))
+        open.push_back(edge.target);
+    });
+  }
+}
+
+/// Shapes wait where they must, and for a SubDiv behind another one on static edges: families make every child from the
+/// start, and the outer one's pieces again for each piece of the inner one.
+Schedule defaultSchedule(const Graph& graph, const Flow& flow) {
+  Schedule schedule{"default", 0, std::vector<bool>(graph.nodes.size()), {}};
+  std::vector<bool> comesBack(graph.nodes.size());
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n) {
+    if (graph.nodes[n].op == shader::kOpSubDiv && multiplies(graph.nodes[n])) markInner(graph, n, schedule.waits);
+    forEdges(graph, n, [&](const Edge& edge) {
+      if (edge.recursive) comesBack[edge.target] = true;
+    });
+  }
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n) { // a group for each node that shapes wait for, and for the start
+    const Node& node = graph.nodes[n];
+    const bool waits = multiplies(node) && (schedule.waits[n] || comesBack[n] || !multipliesByKnown(node));
+    schedule.groups += flow.rank[n] != kNoNode && (waits || n == graph.axiomNode);
+  }
+  return schedule;
+}
 } // namespace
 
 Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, std::string name) {
-  Schedule schedule{std::move(name), 0, waitsAtFans(graph), roots};
+  Schedule schedule{std::move(name), 0, std::vector<bool>(graph.nodes.size()), roots};
   for (size_t n = 0; n < roots.size(); ++n) {
     if (flow.rank[n] == kNoNode || roots[n] != n) continue;
     ++schedule.groups;
@@ -25,12 +71,7 @@ Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, st
 
 std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name) {
   const Flow flow = makeFlow(graph);
-  if (name == "default") { // a group for each node that shapes wait for, and for the start
-    Schedule schedule{name, 0, waitsAtFans(graph), {}};
-    for (uint32_t n = 0; n < graph.nodes.size(); ++n)
-      schedule.groups += flow.rank[n] != kNoNode && (schedule.waits[n] || n == graph.axiomNode);
-    return schedule;
-  }
+  if (name == "default") return defaultSchedule(graph, flow);
   if (name == "sgl") return scheduleOf(graph, flow, coarsestPartition(flow), name);
   if (name == "rw") return scheduleOf(graph, flow, singleGroups(flow), name);
   if (name == "rules") return scheduleOf(graph, flow, rulePartition(graph, flow), name);

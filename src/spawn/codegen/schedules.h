@@ -1,8 +1,7 @@
 // Schedules by name and by search, as generated kernels take them: which nodes shapes wait for (generate.h).
 //
-// A partition's roots wait. Operators that multiply always do: their children go through the workgroup's stack, which
-// measured better than to unroll them in one invocation (docs/spawn.md). So partitions that differ only in the edges
-// into those give the same kernel, and a search meets each kernel once.
+// A partition's roots wait, and so does what multiplies by a number that is not known before (table.h). Partitions that
+// differ only in edges into the latter give the same kernel, and a search meets each kernel once.
 #pragma once
 #include "spawn/graph/partition.h"
 
@@ -18,7 +17,7 @@ struct Schedule {
   Roots roots;             ///< of the partition; empty for "default", which is none
 };
 
-/// sgl, rw, rules, heuristic, or default (what multiplies waits, nothing else); nothing for other names.
+/// sgl, rw, rules, heuristic, or default (as few as are worth it, docs/spawn.md); nothing for other names.
 std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name);
 constexpr const char* kScheduleNames[] = {"default", "sgl", "rw", "rules", "heuristic"};
 

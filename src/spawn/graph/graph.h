@@ -95,6 +95,9 @@ core::Result<void> validate(const Graph& graph);
 /// Collider or IfCollides.
 inline bool isContext(uint32_t op) { return op == shader::kOpCollider || op == shader::kOpIfCollides; }
 
+/// Whether an operator makes several shapes of one, not only could.
+inline bool multiplies(const Node& node) { return node.op >= shader::kOpCompSplit && !node.filter; }
+
 const char* operatorName(uint32_t op);
 const char* shapeName(uint32_t shape);
 

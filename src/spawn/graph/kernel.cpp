@@ -9,9 +9,9 @@ namespace {
 using core::makeError;
 
 constexpr uint32_t kKernelMagic = 0x6b677067u; // "gpgk"
-constexpr uint32_t kKernelVersion = 3;
+constexpr uint32_t kKernelVersion = 4;
 constexpr uint32_t kSpirvMagic = 0x07230203u;
-/// Words before the SPIR-V: magic, version, words of everything, checksum of what follows it, graph, info.
+/// Words before the code: magic, version, words of everything, checksum of what follows it, graph, info.
 constexpr uint32_t kChecked = 4, kInfo = 5, kInfoWords = sizeof(KernelInfo) / 4, kHeader = kInfo + kInfoWords;
 static_assert(sizeof(KernelInfo) == 72);
 
@@ -25,15 +25,15 @@ bool isUsable(const KernelInfo& info) {
 }
 } // namespace
 
-std::pmr::vector<uint32_t> serialize(const KernelInfo& info, std::span<const uint32_t> spirv, uint32_t graphChecksum,
+std::pmr::vector<uint32_t> serialize(const KernelInfo& info, std::span<const uint32_t> code, uint32_t graphChecksum,
                                      std::pmr::memory_resource* memory) {
   std::pmr::vector<uint32_t> words(kHeader, 0u, memory);
   words[0] = kKernelMagic;
   words[1] = kKernelVersion;
-  words[2] = static_cast<uint32_t>(kHeader + spirv.size());
+  words[2] = static_cast<uint32_t>(kHeader + code.size());
   words[kChecked] = graphChecksum;
   std::memcpy(words.data() + kInfo, &info, sizeof info);
-  words.insert(words.end(), spirv.begin(), spirv.end());
+  words.insert(words.end(), code.begin(), code.end());
   words[3] = checksum(std::span(words).subspan(kChecked));
   return words;
 }
@@ -58,7 +58,9 @@ core::Result<std::pmr::vector<Kernel>> loadKernels(std::span<const std::byte> by
     Kernel kernel{{}, std::pmr::vector<uint32_t>(own.begin() + kHeader, own.end(), memory)};
     std::memcpy(static_cast<void*>(&kernel.info), own.data() + kInfo, sizeof kernel.info);
     if (!isUsable(kernel.info)) return bad(number, "its schedule has numbers that cannot run");
-    if (kernel.spirv[0] != kSpirvMagic) return bad(number, "it holds no SPIR-V");
+    const size_t words4 = kernel.code[0];
+    if (words4 % 4 || words4 + 2 > kernel.code.size()) return bad(number, "its table was cut");
+    if (kernel.spirv()[0] != kSpirvMagic) return bad(number, "it holds no SPIR-V");
     kernels.push_back(std::move(kernel));
     rest = rest.subspan(own.size());
   }

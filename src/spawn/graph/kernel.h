@@ -35,11 +35,14 @@ struct KernelInfo {
 
 struct Kernel {
   KernelInfo info;
-  std::pmr::vector<uint32_t> spirv;
+  std::pmr::vector<uint32_t> code; ///< words of the table, the table (shaders/spawn/table_format.h), SPIR-V
+
+  std::span<const uint32_t> table() const { return std::span(code).subspan(1, code[0]); }
+  std::span<const uint32_t> spirv() const { return std::span(code).subspan(1 + code[0]); }
 };
 
 /// Words to append to a graph's words.
-std::pmr::vector<uint32_t> serialize(const KernelInfo& info, std::span<const uint32_t> spirv, uint32_t graphChecksum,
+std::pmr::vector<uint32_t> serialize(const KernelInfo& info, std::span<const uint32_t> code, uint32_t graphChecksum,
                                      std::pmr::memory_resource* memory);
 
 /// The kernels behind a graph. Damaged ones, and ones for another graph, are an error.

@@ -63,15 +63,15 @@ GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlo
     auto words = spawn::serialize(graph, memory);
     if (source->flags & GPGP_COMPILE_KERNEL) {
       const spawn::Schedule schedule = *spawn::namedSchedule(graph, "default");
-      const std::string functions = spawn::generate(graph, schedule.waits);
+      const spawn::KernelSource kernelSource = spawn::generate(graph, schedule.waits);
       for (const bool subgroups : {true, false}) { // the first that a device can run is taken
-        const auto spirv = spawn::compileKernel(functions, subgroups);
-        if (!spirv) return fail(*source, spirv.error().code, spirv.error().text);
+        const auto code = spawn::compileKernel(kernelSource, subgroups);
+        if (!code) return fail(*source, code.error().code, code.error().text);
         spawn::KernelInfo info;
         info.subgroups = subgroups;
         info.groups = static_cast<uint32_t>(schedule.groups);
         schedule.name.copy(info.schedule, sizeof info.schedule - 1);
-        const auto kernel = spawn::serialize(info, *spirv, words[shader::kHeaderChecksum], memory);
+        const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], memory);
         words.insert(words.end(), kernel.begin(), kernel.end());
       }
     }

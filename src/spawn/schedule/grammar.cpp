@@ -15,8 +15,15 @@ core::Result<core::Unique<Grammar>> Grammar::create(core::Context& context, cons
   auto kernels = loadKernels(bytes.subspan(graphBytes), graphChecksum, &context.host());
   if (!kernels) return kernels.error();
   auto grammar = core::makeUnique<Grammar>(context.host(), context, label, std::move(*graph), std::move(*kernels));
+  // Kernels read their tables four words at a time.
   std::pmr::vector<std::byte> words(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(graphBytes),
                                     &context.host());
+  for (const Kernel& kernel : grammar->kernels) {
+    words.resize((words.size() + 15) / 16 * 16);
+    grammar->tables_.push_back(static_cast<uint32_t>(words.size() / 16));
+    const auto table = std::as_bytes(kernel.table());
+    words.insert(words.end(), table.begin(), table.end());
+  }
   if (auto ok = grammar->makeResident(GPGP_SERVICE_SPAWN, std::move(words)); !ok) return ok.error();
   return grammar;
 }

@@ -16,7 +16,8 @@ public:
   static core::Result<core::Unique<Grammar>> create(core::Context& context, const char* label,
                                                     std::span<const std::byte> bytes);
   Grammar(core::Context& owner, const char* name, Graph&& checked, std::pmr::vector<Kernel>&& baked)
-      : Resident(owner, core::Kind::grammar, name), graph(std::move(checked)), kernels(std::move(baked)) {}
+      : Resident(owner, core::Kind::grammar, name), graph(std::move(checked)), kernels(std::move(baked)),
+        tables_(&owner.host()) {}
   ~Grammar() override;
 
   /// A kernel that can run.
@@ -39,8 +40,11 @@ public:
 
   const Graph graph;
   const std::pmr::vector<Kernel> kernels;
+  /// Where a kernel's table begins in the uploaded words, in units of 16 bytes.
+  uint32_t tableOf(const Kernel& kernel) const { return tables_[static_cast<size_t>(&kernel - kernels.data())]; }
 
 private:
+  std::pmr::vector<uint32_t> tables_;
   std::array<Ready, kMaxReady> ready_{};
   std::atomic<uint32_t> readyCount_{0};
 };

@@ -50,9 +50,9 @@ static_assert(sizeof(GpgpInstance) == 96 && offsetof(GpgpInstance, bucket) == 48
 static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
 constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
-/// Shared memory of derive.glsl for each invocation: a parent with its fan, what is staged, a sum.
-constexpr uint32_t kSharedBytesEach = 16 * (shader::kShapePlanes + shader::kInstanceWords4) + 20;
-constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 8,
+/// Shared memory of derive.glsl for each invocation: a parent with its fan, a sum.
+constexpr uint32_t kSharedBytesEach = 16 * shader::kShapePlanes + 20;
+constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 4,
                    kSoftwareRounds = 32;
 
 /// The interpreter's fit to a kind of device, and what no schedule changes.
@@ -73,8 +73,8 @@ uint32_t cellsOf(uint32_t maxColliders) { return std::bit_ceil(2 * maxColliders)
 /// Shapes on the stacks of all workgroups.
 uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
 
-std::array<uint32_t, 4> specialization(const Fit& fit, uint32_t vertexStage) {
-  return {fit.groupSize, fit.stackShapes, vertexStage};
+std::array<uint32_t, 4> specialization(const Fit& fit, uint32_t vertexStage, uint32_t table = 0) {
+  return {fit.groupSize, fit.stackShapes, vertexStage, table};
 }
 
 /// The most quads that 16-bit indices reach, without 65535, which could restart a primitive.
@@ -325,8 +325,8 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
         info.fit.groupSize > device.maxComputeWorkGroupSize[0] ||
         info.fit.groupSize * (kSharedBytesEach + 16 * stage) + 64 > device.maxComputeSharedMemorySize)
       continue;
-    const auto pipeline =
-        createComputePipeline({kernel.info.schedule, kernel.spirv, specialization(info.fit, stage), 3});
+    const auto pipeline = createComputePipeline(
+        {kernel.info.schedule, kernel.spirv(), specialization(info.fit, stage, grammar.tableOf(kernel)), 4});
     if (!pipeline) return pipeline.error();
     grammar.add({info, *pipeline, vertices_});
   }

@@ -1,0 +1,72 @@
+// What a generated kernel does by its table (table_format.h). Results equal those of operators.h: settled values do not
+// change by adding zero or by a factor of one.
+layout(constant_id = 3) const uint tableStart = 0; // in graphRows
+
+/// 0: none.
+uint familyOf(uint node) { return graphWords[4u * tableStart + (node - kHeaderSize) / kNodeSize]; }
+uvec4 tableAt(uint offset) { return graphRows[tableStart + offset]; }
+
+float frameFactor(vec3 size, uint factor) {
+  return factor == kFrameNoFactor ? 1.0f : component(size, factor);
+}
+vec3 frameVector(uint row, vec3 v, vec3 size, float seed, uint flags, uint factors) {
+  if ((flags & kFrameDrawn) != 0u) {
+    const vec3 d = unpackVector(tableAt(row + 1u));
+    v = vec3(add(v.x, multiply(d.x, seed)), add(v.y, multiply(d.y, seed)), add(v.z, multiply(d.z, seed)));
+  }
+  if (factors != 0x3fu)
+    v = vec3(multiply(frameFactor(size, factors & 3u), v.x), multiply(frameFactor(size, (factors >> 2) & 3u), v.y),
+             multiply(frameFactor(size, factors >> 4), v.z));
+  if ((flags & kFrameAdded) != 0u) {
+    const vec3 c = unpackVector(tableAt(row + 2u));
+    v = vec3(add(v.x, c.x), add(v.y, c.y), add(v.z, c.z));
+  }
+  return v;
+}
+void transformBy(inout Shape s, uint frame) {
+  const uvec4 translation = tableAt(frame);
+  const uint flags = translation.w;
+  const float seed = unitFloat(s.seed);
+  const vec3 size = s.size;
+  if ((flags & kFrameTranslates) != 0u)
+    s.position = framePoint(s, frameVector(frame, unpackVector(translation), size, seed, flags, flags & 0x3fu));
+  if ((flags & kFrameScales) != 0u) {
+    const uint scale = frame + kFrameScale / 4u;
+    resize(s, frameVector(scale, unpackVector(tableAt(scale)), size, seed, flags, (flags >> 6) & 0x3fu));
+  }
+  if ((flags & kFrameRotates) != 0u) {
+    const uint rotation = frame + kFrameRotation / 4u;
+    Rotation r;
+    r.c0 = unpackVector(tableAt(rotation));
+    r.c1 = unpackVector(tableAt(rotation + 1u));
+    if ((flags & kFrameTurned) != 0u)
+      r = rotationOf(vec3(add(r.c0.x, multiply(r.c1.x, seed)), add(r.c0.y, multiply(r.c1.y, seed)),
+                          add(r.c0.z, multiply(r.c1.z, seed))));
+    else
+      r.c2 = unpackVector(tableAt(rotation + 2u));
+    rotate(s, r);
+  }
+}
+/// The shape becomes a child of its family. Returns a kEnd value.
+uint toDescendant(inout Shape s, uint family, uint index, uint maxDepth) {
+  const uvec4 child = tableAt(family + 1u + index);
+  for (uint i = 0; i < child.y; ++i) {
+    const uvec4 row = tableAt(child.x + kStepSize * i);
+    const uint op = row.x & kStepOperator;
+    if (isStep(op, kOpSubDiv)) {
+      const uint axis = (row.x >> kStepAxis) & 0xffu;
+      const float remainder = remainderOf(component(s.size, axis), uintBitsToFloat(row.z));
+      if ((row.x & kStepWeighted) != 0u && !(remainder > 0.0f)) return kEndDiscarded;
+      const vec4 part = uintBitsToFloat(tableAt(child.x + kStepSize * i + 1u));
+      toPart(s, axis, remainder, Part(part.x, part.y, part.z, part.w), row.y);
+    } else if (isStep(op, kOpCompSplit)) {
+      toBoxFace(s, row.y);
+    } else if (isStep(op, kOpReplicate)) {
+      toCopy(s, row.y);
+    }
+    if (row.w != 0u) transformBy(s, row.w);
+  }
+  s.node = child.z & ~kEdgeRecursive;
+  s.depth += child.z >> 31;
+  return s.depth > maxDepth ? kEndUnfinished : child.w;
+}

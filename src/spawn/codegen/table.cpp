@@ -1,0 +1,297 @@
+#include "spawn/codegen/table.h"
+
+#include "spawn/operators.h"
+#include "spawn/table_format.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace gpgp::spawn {
+namespace {
+using namespace shader;
+
+/// Children that a family on a static edge may add: more would fill workgroups with shapes of one kind, and tables.
+constexpr uint32_t kMostChildren = 64, kMostSteps = 12;
+
+/// A component: (a + d * seed) * f + c.
+struct Term {
+  float a = 0, d = 0, c = 0;
+  uint32_t factor = kFrameNoFactor;
+
+  bool isNumber() const { return isFactor() && d == 0; }
+  bool isSize() const { return a == 1 && d == 0 && c == 0 && factor != kFrameNoFactor; }
+  bool isFactor() const { return c == 0 && factor == kFrameNoFactor; }
+};
+using Terms = std::array<Term, 3>;
+Term sizeTerm(uint32_t code) { return {1, 0, 0, code - kCodeShapeSize}; }
+bool isSizeCode(uint32_t code) { return code >= kCodeShapeSize && code < kCodeShapeSize + 3; }
+
+/// a op b in the evaluator's arithmetic, where the form allows it.
+std::optional<Term> combine(uint32_t code, const Term& a, const Term& b) {
+  switch (code) {
+  case kCodeRandom:
+    if (a.isNumber() && b.isNumber()) return Term{a.a, subtract(b.a, a.a)};
+    break;
+  case kCodeMultiply:
+    if (a.isSize() && b.isFactor()) return Term{b.a, b.d, 0, a.factor};
+    if (b.isSize() && a.isFactor()) return Term{a.a, a.d, 0, b.factor};
+    break;
+  case kCodeAdd:
+    if (b.isNumber() && a.c == 0) return Term{a.a, a.d, b.a, a.factor};
+    if (a.isNumber() && b.c == 0) return Term{b.a, b.d, a.a, b.factor};
+    break;
+  case kCodeSubtract:
+    if (b.isNumber() && a.c == 0) return Term{a.a, a.d, -b.a, a.factor};
+    break;
+  default: break;
+  }
+  return std::nullopt;
+}
+
+class TableMaker {
+public:
+  TableMaker(const Graph& graph, const std::vector<bool>& waits)
+      : graph_(graph), waits_(waits), frames_(graph.nodes.size()), children_(graph.nodes.size()) {}
+
+  KernelTable run() {
+    const auto count = static_cast<uint32_t>(graph_.nodes.size());
+    table_.family.assign(count, false);
+    table_.words.assign((count + 3) / 4 * 4, 0);
+    for (uint32_t n = 0; n < count; ++n) makeFrame(n);
+    for (uint32_t n = 0; n < count; ++n)
+      if (multipliesByKnown(graph_.nodes[n])) makeFamily(n);
+    return std::move(table_);
+  }
+
+private:
+  /// A run of operators from a node on, and the edge behind it.
+  struct Frame {
+    uint32_t row = 0; ///< 0: none
+    const Edge* edge = nullptr;
+  };
+
+  const Edge& edgeOf(uint32_t node, uint32_t index) const { return graph_.edges[graph_.nodes[node].firstEdge + index]; }
+  uint32_t here() const { return static_cast<uint32_t>(table_.words.size() / 4); }
+  static uint32_t offsetOf(uint32_t node) { return node == kNoNode ? 0 : kHeaderSize + node * kNodeSize; }
+
+  // ---------------------------------------------------------------- frames
+
+  std::optional<Term> termOf(const Parameter& parameter) const {
+    if (parameter.kind == kParameterConstant) return Term{uintBitsToFloat(parameter.value)};
+    if (parameter.kind == kParameterAttribute)
+      return isSizeCode(parameter.value) ? std::optional(sizeTerm(parameter.value)) : std::nullopt;
+    std::vector<Term> stack;
+    for (uint32_t at = parameter.value; graph_.code[at] != kCodeEnd; ++at) {
+      const uint32_t code = graph_.code[at];
+      if (code == kCodeNumber) {
+        stack.push_back(Term{uintBitsToFloat(graph_.code[++at])});
+      } else if (isSizeCode(code)) {
+        stack.push_back(sizeTerm(code));
+      } else if (code >= kCodeAttributes) {
+        return std::nullopt;
+      } else {
+        const Term b = stack.back();
+        stack.pop_back();
+        const auto result = combine(code, stack.back(), b);
+        if (!result) return std::nullopt;
+        stack.back() = *result;
+      }
+    }
+    return stack.back();
+  }
+  std::optional<Terms> termsOf(uint32_t index) const {
+    const Node& node = graph_.nodes[index];
+    if (node.op < kOpTranslate || node.op > kOpScale) return std::nullopt;
+    Terms terms;
+    for (uint32_t i = 0; i < 3; ++i) {
+      const auto term = termOf(graph_.parameters[node.firstParameter + i]);
+      if (!term || (node.op == kOpRotate && !term->isFactor())) return std::nullopt;
+      terms[i] = *term;
+    }
+    return terms;
+  }
+  static void put(uint32_t* row, uint32_t at, float x, float y, float z) {
+    row[at] = floatBitsToUint(x);
+    row[at + 1] = floatBitsToUint(y);
+    row[at + 2] = floatBitsToUint(z);
+  }
+  static void putOperator(uint32_t* row, uint32_t op, const Terms& terms) {
+    uint32_t& flags = row[kFrameFlags];
+    const bool drawn = terms[0].d != 0 || terms[1].d != 0 || terms[2].d != 0;
+    if (op == kOpRotate) {
+      flags |= kFrameRotates;
+      if (drawn) {
+        flags |= kFrameTurned;
+        put(row, kFrameRotation, terms[0].a, terms[1].a, terms[2].a);
+        put(row, kFrameRotation + 4, terms[0].d, terms[1].d, terms[2].d);
+      } else {
+        const Rotation r = rotationOf(vec3(terms[0].a, terms[1].a, terms[2].a));
+        put(row, kFrameRotation, r.c0.x, r.c0.y, r.c0.z);
+        put(row, kFrameRotation + 4, r.c1.x, r.c1.y, r.c1.z);
+        put(row, kFrameRotation + 8, r.c2.x, r.c2.y, r.c2.z);
+      }
+      return;
+    }
+    const bool scale = op == kOpScale;
+    const uint32_t first = scale ? kFrameScale : kFrameTranslation;
+    flags |= scale ? kFrameScales : kFrameTranslates;
+    if (drawn) flags |= kFrameDrawn;
+    if (terms[0].c != 0 || terms[1].c != 0 || terms[2].c != 0) flags |= kFrameAdded;
+    put(row, first, terms[0].a, terms[1].a, terms[2].a);
+    put(row, first + 4, terms[0].d, terms[1].d, terms[2].d);
+    put(row, first + 8, terms[0].c, terms[1].c, terms[2].c);
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t shift = (scale ? 6 : 0) + 2 * i;
+      flags = (flags & ~(3u << shift)) | (terms[i].factor << shift);
+    }
+  }
+
+  void makeFrame(uint32_t first) {
+    auto terms = termsOf(first);
+    if (!terms) return;
+    frames_[first].row = here();
+    const size_t start = table_.words.size();
+    table_.words.resize(start + kFrameWords);
+    uint32_t* row = table_.words.data() + start;
+    row[kFrameFlags] = kFrameFactors;
+    for (uint32_t at = first;;) {
+      const uint32_t op = graph_.nodes[at].op;
+      putOperator(row, op, *terms);
+      const Edge& edge = edgeOf(at, 0);
+      if (edge.target != kNoNode && !edge.recursive && !waits_[edge.target] && graph_.nodes[edge.target].op > op &&
+          (terms = termsOf(edge.target))) {
+        at = edge.target;
+        continue;
+      }
+      frames_[first].edge = &edge;
+      return;
+    }
+  }
+  /// What becomes of a shape that takes an edge.
+  uint32_t endOf(const Edge& edge) const {
+    if (edge.target == kNoNode) return kEndDiscarded;
+    const Node& target = graph_.nodes[edge.target];
+    if (target.op == kOpTerminal) return kEndTerminal;
+    if (waits_[edge.target] || edge.recursive || multiplies(target)) return kEndWaits;
+    return kEndGoesOn;
+  }
+
+  // ---------------------------------------------------------------- families
+
+  /// Calls for each child of such an operator, with its edge and number.
+  template <class Call> void forChildren(uint32_t index, const Call& call) const {
+    const Node& node = graph_.nodes[index];
+    for (uint32_t e = 0; e < node.edgeCount; ++e) {
+      const Edge& edge = edgeOf(index, e);
+      if (edge.target == kNoNode) continue;
+      if (node.op == kOpCompSplit && e == 2)
+        for (uint32_t side = 2; side < 6; ++side) call(edge, side);
+      else
+        call(edge, e);
+    }
+  }
+  /// Children of a family, those of inner families included.
+  uint32_t childrenOf(uint32_t index) {
+    if (children_[index]) return children_[index];
+    uint32_t count = 0;
+    forChildren(index, [&](const Edge& first, uint32_t) {
+      const Edge* edge = &first;
+      while (endOf(*edge) == kEndGoesOn && frames_[edge->target].row) edge = frames_[edge->target].edge;
+      count += isInner(*edge) ? childrenOf(edge->target) : 1;
+    });
+    return children_[index] = std::clamp(count, 1u, 1u << 16); // times 32 successors fits
+  }
+  /// A static edge to an operator of this kind. The graph has no cycle of edges that are not recursive.
+  bool isInner(const Edge& edge) const {
+    return edge.target != kNoNode && !edge.recursive && !waits_[edge.target] &&
+           multipliesByKnown(graph_.nodes[edge.target]);
+  }
+
+  struct Step {
+    std::array<uint32_t, 4 * kStepSize> words{};
+  };
+  Step stepOf(uint32_t index, uint32_t number) {
+    const Node& node = graph_.nodes[index];
+    Step step;
+    step.words[0] = node.op;
+    step.words[1] = number;
+    if (node.op == kOpSubDiv) {
+      const uint32_t* division = graph_.divisions.data() + node.division;
+      step.words[0] |= node.argument << kStepAxis;
+      step.words[2] = division[0];
+      if ((division[kDivisionWeightedParts] >> number) & 1u) step.words[0] |= kStepWeighted;
+      for (uint32_t i = 0; i < kPartSize; ++i) step.words[4 + i] = division[kDivisionParts + number * kPartSize + i];
+    }
+    return step;
+  }
+  /// Whether a part is there at all.
+  bool isPart(uint32_t index, uint32_t number) const {
+    const Node& node = graph_.nodes[index];
+    if (node.op != kOpSubDiv) return true;
+    const uint32_t* division = graph_.divisions.data() + node.division;
+    return ((division[kDivisionFixedParts] | division[kDivisionWeightedParts]) >> number) & 1u;
+  }
+
+  struct Child {
+    std::vector<Step> steps;
+    uint32_t target = 0, end = 0;
+  };
+  void collect(uint32_t index, std::vector<Step>& path, std::vector<Child>& children, size_t limit) {
+    forChildren(index, [&](const Edge& first, uint32_t number) {
+      if (!isPart(index, number)) return;
+      path.push_back(stepOf(index, number));
+      const size_t depth = path.size();
+      const Edge* edge = &first;
+      while (endOf(*edge) == kEndGoesOn && frames_[edge->target].row) {
+        if (path.back().words[3]) path.push_back({});
+        path.back().words[3] = frames_[edge->target].row;
+        edge = frames_[edge->target].edge;
+      }
+      if (isInner(*edge) && childrenOf(edge->target) <= limit && path.size() < kMostSteps)
+        collect(edge->target, path, children, limit / 2);
+      else if (edge->target != kNoNode)
+        children.push_back({path, offsetOf(edge->target) | (edge->recursive ? kEdgeRecursive : 0), endOf(*edge)});
+      path.resize(depth - 1);
+    });
+  }
+  void makeFamily(uint32_t index) {
+    std::vector<Child> children;
+    std::vector<Step> path;
+    collect(index, path, children, kMostChildren / 2);
+    // One that unites nothing is quicker by the graph's words.
+    if (std::all_of(children.begin(), children.end(),
+                    [](const Child& c) { return c.steps.size() == 1 && c.steps[0].words[3] == 0; }))
+      return;
+    for (const Child& child : children)
+      for (const Step& step : child.steps) table_.stepOperators |= 1u << (step.words[0] & kStepOperator);
+    const uint32_t row = here();
+    table_.words[index] = row;
+    table_.family[index] = true;
+    const auto add = [&](std::initializer_list<uint32_t> words) { table_.words.insert(table_.words.end(), words); };
+    add({static_cast<uint32_t>(children.size()), 0, 0, 0});
+    auto step = static_cast<uint32_t>(row + 1 + children.size());
+    for (const Child& child : children) {
+      add({step, static_cast<uint32_t>(child.steps.size()), child.target, child.end});
+      step += kStepSize * static_cast<uint32_t>(child.steps.size());
+    }
+    for (const Child& child : children)
+      for (const Step& s : child.steps) table_.words.insert(table_.words.end(), s.words.begin(), s.words.end());
+  }
+
+  const Graph& graph_;
+  const std::vector<bool>& waits_;
+  KernelTable table_;
+  std::vector<Frame> frames_;
+  std::vector<uint32_t> children_; // by node, 0: not counted yet
+};
+} // namespace
+
+bool multipliesByKnown(const Node& node) {
+  return multiplies(node) && (node.op == kOpReplicate || (node.op == kOpSubDiv && node.division != UINT32_MAX) ||
+                              (node.op == kOpCompSplit && node.shapes == 1u << kShapeBox));
+}
+
+KernelTable makeTable(const Graph& graph, const std::vector<bool>& waits) { return TableMaker(graph, waits).run(); }
+
+} // namespace gpgp::spawn

@@ -1,0 +1,20 @@
+// A generated kernel's table (shaders/spawn/table_format.h): operators that differ in parameters only share their code,
+// and families unite operators that multiply with those behind them on static edges.
+#pragma once
+#include "spawn/graph/graph.h"
+
+namespace gpgp::spawn {
+
+struct KernelTable {
+  std::vector<uint32_t> words;
+  std::vector<bool> family;   ///< by node: its children are a family
+  uint32_t stepOperators = 0; ///< bits by kOp: of families' steps
+};
+
+/// Whether an operator multiplies every shape by the same number, but for parts without a length.
+bool multipliesByKnown(const Node& node);
+
+/// waits: by node, the schedule (generate.h). Shapes do not pass a node where they wait within a row.
+KernelTable makeTable(const Graph& graph, const std::vector<bool>& waits);
+
+} // namespace gpgp::spawn
