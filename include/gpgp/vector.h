@@ -5,7 +5,8 @@
  *   canvas view      keeps one rasterised canvas, to be drawn inside the engine's render pass
  *
  *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
- *   GpgpPath[] -> gpgpCreateDrawing                                made live
+ *   GpgpPath[] -> gpgpCreateDrawing                                made live, or
+ *   drawing + GpgpPathEdit[] -> gpgpCreateDrawing                  edited
  *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
  */
 #ifndef GPGP_VECTOR_H
@@ -128,18 +129,28 @@ typedef struct GpgpSvgReport {
 /** Receives a stage of the conversion as a picture for people: SVG text, not terminated. @lifetime call */
 typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const char* svg, size_t size);
 
+/** Receives an image that an <image> element holds in a data: URI, as it was before base64 (PNG, JPEG, ...). It gives
+ *  the size in pixels and returns VK_TRUE: the drawing then paints with its image number `index`
+ *  (GpgpImagePaint::image), and the engine hands a texture of it to records. VK_FALSE: it cannot decode that, and the
+ *  element is reported as unsupported. An image that elements share comes once. @lifetime call */
+typedef VkBool32(GPGP_CALL* GpgpSvgImageFn)(void* userData, uint32_t index, const void* data, size_t size,
+                                            uint32_t* width, uint32_t* height);
+
 typedef struct GpgpSvgSource {
   GpgpStructureType sType;
   const void* pNext;
   const char* name; /**< file name for messages */
   const void* data; /**< SVG or gzip-compressed SVG (.svgz) */
   size_t size;
-  GpgpMessageFn messageFn; /**< errors, and each unsupported element with its line (severity WARNING) */
+  GpgpMessageFn messageFn; /**< errors, and as warnings what is unsupported (code UNSUPPORTED) or not valid
+                                (INVALID_DATA), with element and line */
   void* messageUserData;
   const GpgpJobSystem* jobSystem; /**< optional: converts paths side by side */
   GpgpSvgReport* report;          /**< optional, written where the import succeeds */
   GpgpStageFn stageFn;            /**< optional: "paths", "pieces", "crossings", "patches", in that order */
   void* stageUserData;
+  GpgpSvgImageFn imageFn; /**< optional: takes embedded images, at most GPGP_MAX_IMAGES; NULL: they are unsupported */
+  void* imageUserData;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 
@@ -149,11 +160,17 @@ GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBl
 
 /* ---------------------------------------------------------------- drawing */
 
+/** A path in place of another. */
+typedef struct GpgpPathEdit {
+  uint32_t index; /**< of the path in its drawing, counted as the paths were when it was made */
+  GpgpPath path;  /**< belongs to the group that the other belonged to, whatever it says */
+} GpgpPathEdit;
+
 typedef struct GpgpDrawingCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  /* exactly one of the three: */
+  /* exactly one of data, filePath, paths and base: */
   const void* data; /**< a baked drawing */
   size_t size;
   const char* filePath;  /**< of a baked drawing, read through the file callbacks */
@@ -161,11 +178,19 @@ typedef struct GpgpDrawingCreateInfo {
   uint32_t pathCount;
   const GpgpPathGroup* groups; /**< that paths belong to; only with paths */
   uint32_t groupCount;
+  /** An editable drawing of the same context, which stays as it is and may be destroyed: the new one is like it but for
+   *  its edits, and only these are converted. The result equals that of making the drawing from all paths. */
+  GpgpAsset base;
+  const GpgpPathEdit* edits; /**< only with base; of two with the same index the later counts */
+  uint32_t editCount;
+  VkBool32 editable; /**< can be a base: keeps its tables in host memory, about twice its size on the device */
 } GpgpDrawingCreateInfo;
 #define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 
-/** Checks a baked drawing, or converts paths to CPatches, and queues the result for upload.
- *  Errors: INVALID_DATA, INVALID_ARGUMENT (path index in the message), IO, OUT_OF_..._MEMORY.
+/** Checks a baked drawing, or converts paths to CPatches, and queues the result for upload. For paths that change from
+ *  frame to frame, make each frame's drawing from the last one's, draw the last one until the new one is resident, and
+ *  destroy it then.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT (path index in the message), INVALID_HANDLE, IO, OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
                                                 GpgpAsset* drawing);

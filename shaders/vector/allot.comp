@@ -9,6 +9,9 @@
 layout(local_size_x = 64) in;
 #include "scan.glsl"
 layout(set = 0, binding = 15, std430) coherent buffer Entries { uvec4 entries[]; };
+#if !SOFTWARE
+#include "chords.glsl"
+#endif
 shared uint start;
 shared bool last;
 
@@ -36,6 +39,14 @@ void main() {
   barrier();
   if (!last) return;
   memoryBarrierBuffer();
+#if !SOFTWARE
+  if (lane == 0 && !listed(counters.rows)) { // all that mark had (canvas.cpp)
+    const uint groups = (header.segmentCount + header.groupSegments - 1) / header.groupSegments;
+    counters.fillX = min(groups, 32768);
+    counters.fillY = (groups + 32767) / 32768;
+    counters.fillZ = clamp(4096 / groups, 1, 16);
+  }
+#endif
   if (counters.entries <= header.entryLimit) return;
   const uint pathEnd = counters.cutPath;
   uint cut = pathEnd, used = 0;

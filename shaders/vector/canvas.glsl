@@ -53,4 +53,17 @@ SegmentRecord fetchSegment(uint slot, uint i) {
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
 Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }
+// The bits of a tile's bin begin there.
+uint binOf(uvec2 tile) {
+  return kFirstBin + ((tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift)) * header.pathWords;
+}
 int tileOf(int column) { return (column + int(kTileSize)) / int(kTileSize) - 1; } // of column -1: -1
+
+// What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
+uint coverageOf(PlacedPath p, uvec2 tile) {
+  if (tile.x < p.left || tile.x >= p.right || tile.y < p.top || tile.y >= p.bottom) return 0;
+  const uint bit = tile.x - p.left;
+  const TileWord w = words[p.firstWord + (tile.y - p.top) * wordsInRow(p) + bit / 32];
+  const uint inside = w.inside >> (bit & 31) & 1, mask = 1u << (bit & 31);
+  return (w.edges & mask) == 0 ? inside : (w.firstEntry + bitCount(w.edges & (mask - 1))) * 4 + 2 + inside;
+}

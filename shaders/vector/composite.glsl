@@ -120,15 +120,6 @@ void toLayer(uint index, ItemRecord item, uint layer) {
 bool pixelOpen() { return alive != 0 || gap > 0; }
 #endif
 
-// What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
-uint coverageOf(PlacedPath p, uvec2 tile) {
-  if (tile.x < p.left || tile.x >= p.right || tile.y < p.top || tile.y >= p.bottom) return 0;
-  const uint bit = tile.x - p.left;
-  const TileWord w = words[p.firstWord + (tile.y - p.top) * wordsInRow(p) + bit / 32];
-  const uint inside = w.inside >> (bit & 31) & 1, mask = 1u << (bit & 31);
-  return (w.edges & mask) == 0 ? inside : (w.firstEntry + bitCount(w.edges & (mask - 1))) * 4 + 2 + inside;
-}
-
 // Samples of pixel x of a tile's row that change sides at or left of it.
 uint foldRow(uvec4 row, uint x) {
   const uint lower = (x & 1) != 0 ? ~0u : 0xffffu; // of the pair that the pixel is in

@@ -135,17 +135,28 @@ struct CanvasHeader {
   uint pathsDropped, binsX, binCount, patchCount;
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
   uint premultiplied;            // images whose colours are, as bits
-  uint pad0;
+  uint binShift;                 // a bin is a square of 2^binShift tiles
+  uint rowLimit, pad0, pad1, pad2;
   vec4 background;
 };
 
-// Counters of a record, its report, and the arguments of the passes that only run when the entries did not fit.
+// Counters of a record and its report.
 struct CanvasCounters {
   uint words, entries;        // needed
   uint cutPath, pathsDropped; // paths from cutPath on are left out
   uint wordsGiven, entriesGiven;
   uint placed, allotted; // workgroups that are done
-  uint patches, pad0, pad1, pad2;
+  uint patches;
+  uint rows;                // needed: of the lists between mark and fill
+  uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
+  uint pad0, pad1, pad2;
+};
+
+// A chord between mark and fill.
+struct ChordRecord {
+  vec2 top, bottom;
+  float slope;
+  uint path; // and in the highest bit whether the region begins right of the chord
 };
 
 GPGP_CONST uint kPaintLinear = 0u;
@@ -161,18 +172,22 @@ GPGP_CONST uint kInterpolateSrgb = 1u;
 GPGP_CONST uint kMaxSlots = 8u;
 GPGP_CONST uint kWriteView = 1u;
 GPGP_CONST uint kEncodeSrgb = 2u;
-GPGP_CONST uint kExactArea = 4u; // of a pixel's first edge
-GPGP_CONST uint kBlendSrgb = 8u; // colours mix as sRGB encodes them
-GPGP_CONST uint kTileSize = 8u;  // pixels: what one entry holds of a path
-GPGP_CONST uint kBinSize = 128u; // pixels: the upper level of the hierarchy
+GPGP_CONST uint kExactArea = 4u;  // of a pixel's first edge
+GPGP_CONST uint kBlendSrgb = 8u;  // colours mix as sRGB encodes them
+GPGP_CONST uint kSplitRich = 16u; // what has groups or projective gradients is listed for the general shader
+GPGP_CONST uint kTileSize = 8u;   // pixels: what one entry holds of a path
+GPGP_CONST uint kMinBinShift = 2u, kMaxBinShift = 4u; // tiles: the upper level of the hierarchy
 // An entry: for each pair of pixels of a tile's row, whose samples change sides there (16 bits a pixel), then by how
 // much the pixel's area differs from its samples (16 signed bits a pixel, in 1/256 of a sample).
 GPGP_CONST uint kEntryWords = 64u;
-// At the beginning of the bins: for tiles painted from lists and for crowded ones, indirect arguments and how many.
+// At the beginning of the bins, indirect arguments and how many: for tiles painted from lists and for crowded ones, and
+// for those of either kind that take the general shader (squares of 16 pixels where the device has barriers).
 GPGP_CONST uint kPaintedArguments = 0u;
 GPGP_CONST uint kCrowdedArguments = 4u;
-GPGP_CONST uint kMostSegments = 32u; // of a workgroup, a power of two
-GPGP_CONST uint kFirstBin = 8u;
+GPGP_CONST uint kRichArguments = 8u;
+GPGP_CONST uint kRichCrowdedArguments = 12u;
+GPGP_CONST uint kMostSegments = 64u; // of a workgroup, a power of two
+GPGP_CONST uint kFirstBin = 16u;
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
 
 GPGP_SHADER_END
@@ -184,6 +199,7 @@ static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::Pai
 static_assert(sizeof(gpgp::shader::ItemRecord) == 112 && sizeof(gpgp::shader::PlacedPath) == 48 &&
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 32 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 96 && sizeof(gpgp::shader::CanvasCounters) == 48);
+              sizeof(gpgp::shader::CanvasHeader) == 112 && sizeof(gpgp::shader::CanvasCounters) == 64 &&
+              sizeof(gpgp::shader::ChordRecord) == 24);
 #endif
 #endif

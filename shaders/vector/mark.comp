@@ -4,9 +4,16 @@
 // A chord marks the tiles it meets, those into which it brings a change of sides across their left edge included, and
 // turns over "inside" for all tiles right of where it meets the first sample row of a row of tiles. As outlines are
 // closed and all comparisons are made on rows and columns that neighbours agree on, that is exact.
+//
+// Chords that are to be filled are listed, and so are their rows of pixels.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "segments.glsl"
+#if !SOFTWARE
+#include "chords.glsl"
+#include "rows.glsl"
+shared uint taken, firstRow; // rows of the 64 chords at hand: how many, where they lie in the list
+#endif
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
 
@@ -45,11 +52,28 @@ void main() { takeSegment(); }
 void main() {
   loadSegments();
   const Grid g = canvasGrid();
-  const uint total = chordTotal();
-  for (uint i = gl_LocalInvocationID.x; i < total; i += 64) {
-    const uint s = segmentOf(i);
+  const uint lane = gl_LocalInvocationID.x, total = chordTotal();
+  for (uint batch = 0; batch < total; batch += 64) {
+    if (lane == 0) taken = 0;
+    barrier();
     Chord c;
-    if (fetchChord(g, s, i, c)) takeChord(g, paths[segmentPath[s]], c);
+    uint path, rowCount = 0, own = 0;
+    bool found = false;
+    if (batch + lane < total) {
+      const uint s = segmentOf(batch + lane);
+      path = segmentPath[s];
+      found = fetchChord(g, s, batch + lane, c);
+      if (found) rowCount = rowsOf(g, c);
+      if (rowCount != 0) own = atomicAdd(taken, rowCount);
+    }
+    barrier();
+    if (lane == 0 && taken != 0) firstRow = atomicAdd(counters.rows, taken);
+    if (found) takeChord(g, paths[path], c);
+    barrier();
+    const uint first = firstRow + own;
+    if (rowCount == 0 || first + rowCount > header.rowLimit) continue;
+    chordList[first] = ChordRecord(c.top, c.bottom, c.slope, path | (c.side > 0 ? kRightSide : 0));
+    for (uint k = 0; k < rowCount; ++k) rows[first + k] = k;
   }
 }
 #endif

@@ -1,5 +1,6 @@
 #version 460
-// Where each path lies on the canvas, its colour, and room for the words of its tiles.
+// Where each path lies on the canvas, its colour, room for the words of its tiles, and its bit in the bins that it may
+// touch.
 //
 // Room is taken in any order. Where not all paths fit, the workgroup that finishes last deals it out again in painting
 // order, and from the first path that does not fit on all are left out.
@@ -10,6 +11,16 @@
 layout(local_size_x = 64) in;
 #include "scan.glsl"
 shared bool last;
+const uint kFewBins = 4; // more are dealt out to the workgroup
+shared uint wide[64], wideCount;
+shared uvec4 wideBins[64]; // left, top, right, bottom, exclusive
+
+// Every step-th bin of a row from x on, of every step-th row from y on.
+void setBins(uint path, uvec4 box, uint x, uint y, uint step) {
+  for (uint row = box.y + y; row < box.w; row += step)
+    for (uint column = box.x + x; column < box.z; column += step)
+      atomicOr(bins[kFirstBin + (row * header.binsX + column) * header.pathWords + path / 32], 1u << (path & 31));
+}
 
 uint wordsOf(PlacedPath p) {
   return p.left < p.right && p.top < p.bottom ? wordsInRow(p) * (p.bottom - p.top) : 0;
@@ -17,6 +28,8 @@ uint wordsOf(PlacedPath p) {
 
 void main() {
   const uint lane = gl_LocalInvocationID.x, i = groupIndex() * 64 + lane;
+  if (lane == 0) wideCount = 0;
+  barrier();
   if (i < header.pathCount) {
     uint low = 0, high = header.itemCount; // the item: the last one that begins at or before i
     while (low + 1 < high) {
@@ -76,7 +89,21 @@ void main() {
     const uint count = wordsOf(p);
     p.firstWord = count == 0 ? 0 : atomicAdd(counters.words, count);
     paths[i] = p;
+    if (count != 0 && p.color.a > 0) {
+      const uint shift = header.binShift;
+      const uvec4 box =
+        uvec4(p.left >> shift, p.top >> shift, ((p.right - 1) >> shift) + 1, ((p.bottom - 1) >> shift) + 1);
+      if ((box.z - box.x) * (box.w - box.y) <= kFewBins) {
+        setBins(i, box, 0, 0, 1);
+      } else {
+        const uint at = atomicAdd(wideCount, 1);
+        wide[at] = i;
+        wideBins[at] = box;
+      }
+    }
   }
+  barrier();
+  for (uint w = 0; w < wideCount; ++w) setBins(wide[w], wideBins[w], lane % 8, lane / 8, 8);
   memoryBarrierBuffer();
   barrier();
   if (lane == 0) last = atomicAdd(counters.placed, 1) + 1 == gl_NumWorkGroups.x * gl_NumWorkGroups.y;

@@ -2,10 +2,12 @@
 // The fine level: the paths of four tiles, front to back, over the samples of their pixels.
 //
 // A workgroup owns a square of 16 pixels, four tiles, a thread a pixel. The bin's paths are sifted, 256 at a time, for
-// those that touch the square; they wait in shared memory in painting order.
+// those that touch the square; they wait in shared memory in painting order. Squares that need
+// the general shader are left to it, in a list (kSplitRich).
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "composite.glsl"
+#include "lists.glsl"
 layout(local_size_x = 256) in;
 const uint kRoom = 256;
 shared uint counts[kRoom], groupCounts[16], candidates[kRoom];
@@ -20,15 +22,27 @@ shared uvec2 paints[kRoom]; // item, paint
 #endif
 shared uint touching[2][kRoom / 32]; // of the 256 paths at hand, in turn
 shared uint open[2];
+#define SPLIT (PAINTS && !RICH) // records that need the general shader as well take the one for gradients
+#if SPLIT
+shared bool rich; // this square is not for this shader
+#endif
 
 void main() {
   const uint lane = gl_LocalInvocationIndex, quarter = lane / 64;
   const uvec2 inTile = uvec2(lane % 8, lane / 8 % 8);
+#if RICH && !IMAGES
+  if (groupIndex() >= bins[kRichArguments + 3]) return;
+  const uint square = bins[richSquares() + groupIndex()];
+  const uint squaresX = (header.tilesX + 1) / 2;
+  const uvec2 firstTile = uvec2(square % squaresX, square / squaresX) * 2;
+#else
   const uvec2 firstTile = gl_WorkGroupID.xy * 2;
+#if SPLIT
+  if (lane == 0) rich = false;
+#endif
+#endif
   const uvec2 pixel = (firstTile + uvec2(quarter & 1, quarter >> 1)) * kTileSize + inTile;
-  const uint perBin = kBinSize / kTileSize;
-  const uint bin = kFirstBin + (firstTile.y / perBin * header.binsX + firstTile.x / perBin) * header.pathWords;
-  const uint cutPath = counters.cutPath;
+  const uint bin = binOf(firstTile), cutPath = counters.cutPath;
 
   beginPixel();
   if (lane < kRoom / 32) touching[0][lane] = 0;
@@ -69,11 +83,30 @@ void main() {
       if (path < cutPath) {
         p = paths[path];
         if (p.left < firstTile.x + 2 && p.right > firstTile.x && p.top < firstTile.y + 2 && p.bottom > firstTile.y)
-          for (uint q = 0; q < 4; ++q) own[q] = coverageOf(p, firstTile + uvec2(q & 1, q >> 1));
+          for (uint q = 0; q < 4; ++q) {
+            const uvec2 tile = firstTile + uvec2(q & 1, q >> 1);
+            own[q] = coverageOf(p, tile);
+#if SPLIT
+            if (own[q] == 0 || (p.group | p.paint) == 0 || (header.flags & kSplitRich) == 0) continue;
+            uint steps = 0;
+            const uint what = groupIn(p, tile, steps);
+            if (what == kHidden) own[q] = 0;
+            if (what == kRich) rich = true;
+#endif
+          }
       }
       const bool touches = (own.x | own.y | own.z | own.w) != 0;
       if (touches) atomicOr(touching[turn][lane / 32], 1u << (lane & 31));
+#if SPLIT
       barrier();
+      if (rich) {
+        if (lane == 0)
+          bins[richSquares() + another(kRichArguments)] = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+        return;
+      }
+#else
+      barrier();
+#endif
       uint count = 0, place = 0;
       for (uint k = 0; k < kRoom / 32; ++k) {
         if (k == lane / 32) place = count + bitCount(touching[turn][k] & ((1u << (lane & 31)) - 1));

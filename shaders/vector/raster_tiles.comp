@@ -29,12 +29,17 @@ void main() {
 void main() {
   const uint lane = gl_LocalInvocationIndex;
 #if TILES == 1
-  const uint end = bins[kPaintedArguments + 3], list = paintedTiles();
+  const uint arguments = kPaintedArguments, richArguments = kRichArguments, list = paintedTiles();
 #else
-  const uint end = bins[kCrowdedArguments + 3], list = crowdedTiles();
+  const uint arguments = kCrowdedArguments, richArguments = kRichCrowdedArguments, list = crowdedTiles();
 #endif
-  if (groupIndex() >= end) return;
+#if RICH && !IMAGES
+  if (groupIndex() >= bins[richArguments + 3]) return;
+  const uint tile = bins[richTile(list, groupIndex())];
+#else
+  if (groupIndex() >= bins[arguments + 3]) return;
   const uint tile = bins[list + groupIndex()];
+#endif
   const uvec2 at = uvec2(lane % 8, lane / 8), place = uvec2(tile % header.tilesX, tile / header.tilesX);
   const uvec2 pixel = place * kTileSize + at;
   beginPixel();
@@ -43,8 +48,7 @@ void main() {
   const uint count = bins[own];
   for (uint k = 0; k < count && pixelOpen(); ++k) paintPath(bins[own + 1 + k * 2], bins[own + 2 + k * 2], at, pixel);
 #else
-  const uint perBin = kBinSize / kTileSize, cutPath = bins[own];
-  const uint bin = kFirstBin + (place.y / perBin * header.binsX + place.x / perBin) * header.pathWords;
+  const uint bin = binOf(place), cutPath = bins[own];
   for (uint word = header.pathWords; word > 0 && pixelOpen(); --word)
     for (uint bits = bins[bin + word - 1]; bits != 0 && pixelOpen();) {
       const uint bit = findMSB(bits), path = (word - 1) * 32 + bit;

@@ -3,23 +3,19 @@
 //
 // An invocation owns a row of tiles of a bin. A tile's list ends at the first path that is opaque and covers all of it.
 // Tiles without edges, gradients, images and groups get their colour here; the others are listed for the passes that
-// paint pixels, and those whose list is full are crowded: they are painted from the bins.
+// paint pixels, and those whose list is full are crowded: they are painted from the bins. A clip counts only in tiles
+// where it has an edge.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
 #include "lists.glsl"
-const uint kMaxSteps = 30000; // so that an invocation stays below the 65 535 turns that lavapipe allows
+// An invocation stays below the 65 535 turns that lavapipe allows: one path takes at most 16 tiles x 16 clips x 65.
+const uint kMaxSteps = 30000;
 
-uint another(uint arguments) { // tile for the passes behind: rows of workgroups (canvas.glsl, groupIndex)
-  const uint place = atomicAdd(bins[arguments + 3], 1);
-  atomicMax(bins[arguments], min(place + 1, 32768));
-  atomicMax(bins[arguments + 1], place / 32768 + 1);
-  return place;
-}
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
 
 void main() {
-  const uint perBin = kBinSize / kTileSize;
+  const uint perBin = 1u << header.binShift; // at most 32
   const uint bin = gl_GlobalInvocationID.x / perBin, row = gl_GlobalInvocationID.x % perBin;
   if (bin >= header.binCount) return;
   const uint tileY = bin / header.binsX * perBin + row, left = bin % header.binsX * perBin;
@@ -27,7 +23,8 @@ void main() {
   const uint width = min(perBin, header.tilesX - left), firstTile = tileY * header.tilesX + left;
   for (uint t = 0; t < width; ++t) bins[listOf(firstTile + t)] = 0;
   const uint cutPath = counters.cutPath, room = listRoom();
-  uint open = (1u << width) - 1, full = 0, painted = 0, steps = 0;
+  const bool split = (header.flags & kSplitRich) != 0;
+  uint open = (1u << width) - 1, full = 0, painted = 0, rich = 0, steps = 0;
   for (uint word = header.pathWords; word > 0 && open != 0; --word) {
     ++steps;
     for (uint bits = bins[kFirstBin + bin * header.pathWords + word - 1]; bits != 0 && open != 0;) {
@@ -56,7 +53,20 @@ void main() {
       }
       edges &= box;
       inside &= box;
-      const bool uneven = (paths[path].paint | paths[path].group) != 0;
+      const bool painting = paths[path].paint != 0;
+      uint special = 0; // for the general shader
+      if (split && (painting || paths[path].group != 0)) {
+        for (uint touched = edges | inside; touched != 0; ++steps) {
+          const uint t = findLSB(touched), mask = 1u << t;
+          touched ^= mask;
+          const uint what = groupIn(paths[path], uvec2(left + t, tileY), steps);
+          if (what == kRich) special |= mask;
+          if (what == kHidden) {
+            edges &= ~mask;
+            inside &= ~mask;
+          }
+        }
+      }
       for (uint touched = edges | inside; touched != 0; ++steps) {
         const uint t = findLSB(touched), mask = 1u << t;
         touched ^= mask;
@@ -78,15 +88,20 @@ void main() {
           open &= ~mask;
         }
       }
-      painted |= uneven ? edges | inside : edges;
-      if (!uneven && paths[path].color.a >= 1.0) open &= ~(inside & ~edges);
+      painted |= painting ? edges | inside : edges;
+      rich |= special;
+      if (!painting && paths[path].color.a >= 1.0) open &= ~(inside & ~edges & ~special);
     }
   }
   for (uint t = 0; t < width; ++t) {
     const uint tile = firstTile + t, list = listOf(tile), mask = 1u << t;
     if ((full & mask) != 0) {
       bins[list] = cutPath;
-      bins[crowdedTiles() + another(kCrowdedArguments)] = tile;
+      // The paths that did not fit may be of any kind.
+      if (split) bins[richTile(crowdedTiles(), another(kRichCrowdedArguments))] = tile;
+      else bins[crowdedTiles() + another(kCrowdedArguments)] = tile;
+    } else if ((rich & mask) != 0) {
+      bins[richTile(paintedTiles(), another(kRichArguments))] = tile;
     } else if ((painted & mask) != 0) {
       bins[paintedTiles() + another(kPaintedArguments)] = tile;
     } else {

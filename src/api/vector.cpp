@@ -14,14 +14,25 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_DRAWING_CREATE_INFO, "info"); !ok) return ok;
     if (!drawing) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawing is NULL");
-    if ((info->data != nullptr) + (info->filePath != nullptr) + (info->paths != nullptr) != 1)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data, filePath and paths must be given");
+    if ((info->data != nullptr) + (info->filePath != nullptr) + (info->paths != nullptr) + (info->base != nullptr) != 1)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data, filePath, paths and base must be given");
+    if (info->editCount && (!info->edits || !info->base))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "editCount is %u without edits or without base", info->editCount);
     if (info->groupCount && (!info->groups || !info->paths))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "groupCount is %u without groups or without paths",
                        info->groupCount);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     std::pmr::memory_resource* memory = &(*context)->host();
+    const DrawingAsset* base = nullptr;
+    if (info->base) {
+      const auto resolved = resolve<DrawingAsset>(call, info->base, Kind::drawing, "base", *context);
+      if (!resolved) return resolved.error();
+      base = *resolved;
+      if (!base->kept()) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base was not made editable");
+    }
+    const std::span edits(info->edits, info->editCount);
     const auto make = [&]() -> Result<Drawing> {
+      if (base) return replacePaths(base->kept()->drawing, edits, memory);
       if (info->paths)
         return makeDrawing(std::span(info->paths, info->pathCount), std::span(info->groups, info->groupCount), memory,
                            &(*context)->jobSystem);
@@ -30,9 +41,10 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
       if (!bytes) return bytes.error();
       return loadBaked(*bytes, memory);
     };
-    const auto made = make();
+    auto made = make();
     if (!made) return made.error();
-    auto asset = DrawingAsset::create(**context, info->label, *made);
+    auto asset =
+        DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE, base, edits);
     if (!asset) return asset.error();
     *drawing = adopt<GpgpAsset>(**context, std::move(*asset));
     return {};

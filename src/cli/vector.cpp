@@ -1,29 +1,28 @@
 // `gpgp vector`: converts an SVG to a drawing, rasterises it on the GPU and writes a picture.
+#include "cli/patch_tiles.h"
 #include "cli/session.h"
+#include "cli/vector_images.h"
 #include "cli/vector_truth.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "vector/import/svg/import.h"
+#include "vector/import/svg/style.h"
 
 #include <gpgp/vector.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
 namespace gpgp::cli {
 namespace {
 
 struct VectorOptions {
-  std::string file, out, background, stages;
+  std::string file, out, background, stages, antialiasing = "16";
   Size size;
   bool allWarnings = false;
-  bool area = false;
   bool truth = false;
-  uint32_t samples = 16, repeat = 1, maxTileEntries = 0;
+  uint32_t repeat = 1, maxTileEntries = 0;
 };
 
 constexpr uint32_t kShownWarnings = 10;
@@ -31,46 +30,57 @@ constexpr uint32_t kShownWarnings = 10;
 struct Messages {
   std::string error;
   uint32_t warnings = 0;
-  Json list = Json::array(); // of what is not supported
+  Json unsupported = Json::array();
   bool showAll = false;
 };
 
+/// "line 3: <path> has a ..." as an object: what is named first is what it is about.
+Json unsupportedPart(const std::string& text) {
+  const size_t colon = text.find(": "), open = text.find('<'), close = text.find('>', open);
+  const bool hasLine = text.rfind("line ", 0) == 0 && colon != text.npos;
+  return {{"element", close != text.npos ? text.substr(open + 1, close - open - 1) : "style"},
+          {"line", hasLine ? Json(std::strtoul(text.c_str() + 5, nullptr, 10)) : Json()},
+          {"text", hasLine ? text.substr(colon + 2) : text}};
+}
+
 void GPGP_CALL onSvgMessage(void* userData, const GpgpMessage* message) {
   auto* messages = static_cast<Messages*>(userData);
-  if (message->severity == GPGP_SEVERITY_ERROR) {
-    if (messages->error.empty()) messages->error = message->text;
-    return;
-  }
-  if (message->severity == GPGP_SEVERITY_WARNING) messages->list.push_back(message->text);
-  if (message->severity == GPGP_SEVERITY_WARNING && ++messages->warnings > kShownWarnings && !messages->showAll) return;
+  if (message->code == GPGP_ERROR_UNSUPPORTED) messages->unsupported.push_back(unsupportedPart(message->text));
+  if (message->severity == GPGP_SEVERITY_ERROR && messages->error.empty()) messages->error = message->text;
+  if (++messages->warnings > kShownWarnings && !messages->showAll) return;
   std::fprintf(stderr, "%s: %s\n", message->label, message->text);
 }
 
+struct Stages {
+  std::string folder, failure;
+};
+
 void GPGP_CALL onStage(void* userData, const char* stage, const char* svg, size_t size) {
-  const std::string file = *static_cast<const std::string*>(userData) + "/" + stage + ".svg";
-  std::ofstream(file, std::ios::binary).write(svg, static_cast<std::streamsize>(size));
+  auto* stages = static_cast<Stages*>(userData);
+  try {
+    host::writeFile(stages->folder + "/" + stage + ".svg", {svg, size});
+  } catch (const std::exception& failed) { // the compiler, which calls this, throws nothing on
+    stages->failure = failed.what();
+  }
 }
 
-/// "rrggbb" as linear premultiplied colour; empty: nothing behind the drawing.
+/// A CSS colour as sRGB encodes it, premultiplied; empty: nothing behind the drawing.
 void parseBackground(const std::string& text, float (&colour)[4]) {
   if (text.empty()) return;
-  const std::string digits = text[0] == '#' ? text.substr(1) : text;
-  char* end = nullptr;
-  const unsigned long rgb = std::strtoul(digits.c_str(), &end, 16);
-  if (digits.size() != 6 || *end != 0) throw Usage("--background takes six hexadecimal digits, for example ffffff");
-  for (unsigned i = 0; i < 3; ++i)
-    colour[i] = host::linearFromSrgb(static_cast<float>(rgb >> (16 - 8 * i) & 255ul) / 255.0f);
-  colour[3] = 1.0f;
+  gpgp::vector::svg::Color c;
+  if (!gpgp::vector::svg::parseColor(text, c))
+    throw Usage("--background '" + text +
+                "' is no CSS colour; write for example white, '#fff' or 'rgb(255 0 0 / 50%)'");
+  const double parts[4] = {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
+  for (size_t i = 0; i < 4; ++i) colour[i] = static_cast<float>(parts[i]);
 }
 
-/// Fits the drawing's page into the picture, in the middle, undistorted.
-void fit(const GpgpDrawingInfo& drawing, const Size& size, float (&transform)[6]) {
-  const float width = drawing.viewport[2], height = drawing.viewport[3];
-  const float scale = std::min(static_cast<float>(size.width) / width, static_cast<float>(size.height) / height);
-  transform[0] = transform[3] = scale;
-  transform[1] = transform[2] = 0.0f;
-  transform[4] = (static_cast<float>(size.width) - width * scale) * 0.5f - drawing.viewport[0] * scale;
-  transform[5] = (static_cast<float>(size.height) - height * scale) * 0.5f - drawing.viewport[1] * scale;
+/// Fits the drawing into the picture as its preserveAspectRatio says.
+void fit(std::span<const uint8_t> bytes, const GpgpDrawingInfo& drawing, const Size& size, float (&transform)[6]) {
+  const auto fitted = gpgp::vector::svg::fitPage(std::as_bytes(bytes), drawing.viewport, size.width, size.height);
+  if (!fitted) throw Failure(fitted.error().text);
+  const double values[6] = {fitted->a, fitted->b, fitted->c, fitted->d, fitted->e, fitted->f};
+  for (size_t i = 0; i < 6; ++i) transform[i] = static_cast<float>(values[i]);
 }
 
 /// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
@@ -81,11 +91,10 @@ double compareWithTruth(std::span<const uint8_t> bytes, std::span<const uint8_t>
   if (!svg) throw Failure(svg.error().text);
   const gpgp::vector::svg::ImportedViews views(*svg);
   std::vector<float> pixels(painted.size());
-  for (size_t i = 0; i < painted.size(); ++i) {
-    const float alpha = static_cast<float>(painted[i | 3]) / 255.0f, value = static_cast<float>(painted[i]) / 255.0f;
-    pixels[i] = i % 4 == 3 ? alpha : alpha > 0.0f ? host::linearFromSrgb(std::min(1.0f, value / alpha)) * alpha : 0.0f;
-  }
-  return psnrOverWhite(pixels, vectorTruth(views.paths, views.groups, transform, background, size.width, size.height));
+  for (size_t i = 0; i < painted.size(); ++i) pixels[i] = static_cast<float>(painted[i]) / 255.0f;
+  return psnrOverWhite(
+      pixels, vectorTruth(views.paths, views.groups, transform, background, size.width, size.height, Blend::Srgb),
+      Blend::Srgb);
 }
 
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {
@@ -102,15 +111,18 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   source.messageUserData = &messages;
   GpgpSvgReport converted{};
   source.report = &converted;
+  VectorImages images;
+  images.attach(source);
+  Stages stages{options.stages, {}};
   if (!options.stages.empty()) {
-    std::error_code failed;
-    std::filesystem::create_directories(options.stages, failed);
-    if (failed) throw Failure(options.stages + ": " + failed.message());
     source.stageFn = onStage;
-    source.stageUserData = const_cast<std::string*>(&options.stages);
+    source.stageUserData = &stages;
   }
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(options.file + ": " + (messages.error.empty() ? blob.name() : messages.error));
+  if (options.truth && !images.pictures().empty())
+    throw Failure(options.file + ": the truth knows no images; draw it without --truth");
+  if (!stages.failure.empty()) throw Failure(stages.failure);
   if (!options.allWarnings && messages.warnings > kShownWarnings)
     std::fprintf(stderr, "%s: %u more; --all-warnings shows them\n", options.file.c_str(),
                  messages.warnings - kShownWarnings);
@@ -126,8 +138,9 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(options.file + ": the drawing has no extent");
   Size size = options.size;
   if (size.width == 0) {
-    size.width = static_cast<uint32_t>(std::clamp(std::ceil(facts.viewport[2]), 1.0f, 4096.0f));
-    size.height = static_cast<uint32_t>(std::clamp(std::ceil(facts.viewport[3]), 1.0f, 4096.0f));
+    const float shrink = std::min(1.0f, 4096.0f / std::max(facts.viewport[2], facts.viewport[3]));
+    size.width = static_cast<uint32_t>(std::max(std::ceil(facts.viewport[2] * shrink), 1.0f));
+    size.height = static_cast<uint32_t>(std::max(std::ceil(facts.viewport[3] * shrink), 1.0f));
   }
 
   GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
@@ -145,8 +158,14 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   GpgpCanvasItem item{};
   item.drawing = drawing;
   item.opacity = 1.0f;
-  fit(facts, size, item.transform);
+  fit(bytes, facts, size, item.transform);
+  const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
+                                             std::pmr::get_default_resource());
+  if (!table) throw Failure(table.error().text);
+  const VectorTextures textures(device, images.pictures(), *table, item.transform);
   const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+  const bool area = options.antialiasing == "area";
+  const uint32_t samples = area ? 16 : static_cast<uint32_t>(std::stoul(options.antialiasing));
   const auto [times, report] =
       session.measure(canvas, "rasterising", options.repeat,
                       [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
@@ -156,11 +175,13 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                         info.height = size.height;
                         info.items = &item;
                         info.itemCount = 1;
-                        info.samples = options.samples;
-                        info.exactArea = options.area ? VK_TRUE : VK_FALSE;
+                        info.images = textures.views().data();
+                        info.imageCount = static_cast<uint32_t>(textures.views().size());
+                        info.samples = samples;
+                        info.exactArea = area ? VK_TRUE : VK_FALSE;
                         std::copy(std::begin(background), std::end(background), info.background);
                         info.target = target.target({}, after);
-                        info.encodeSrgb = VK_TRUE;
+                        info.encodeSrgb = info.blendSrgb = VK_TRUE;
                         return canvas.recordPrepare(commands, frame, info);
                       });
   std::vector<uint8_t> pixels;
@@ -174,19 +195,19 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
 
   Json passes = Json::object();
   for (const auto& [name, time] : times.passes) passes[name] = time;
-  const auto ratio = [](uint32_t a, uint32_t b) { return b ? static_cast<double>(a) / static_cast<double>(b) : 0.0; };
+  const PatchTiles tiles = countPatchTiles(*table, item.transform, size.width, size.height);
   Outcome outcome;
   std::ostringstream text;
   text << options.file << ": " << facts.paths << " paths, " << facts.curves << " curves, " << facts.patches
        << " patches; parsed in " << milliseconds(converted.parseMilliseconds) << ", converted in "
        << milliseconds(converted.convertMilliseconds) << '\n'
-       << size.width << " x " << size.height << " pixels, " << options.samples << " samples each, "
-       << report.tileEntries << " tile entries; GPU " << milliseconds(times.median()) << " (median of "
-       << times.totals.size() << ") on " << device.name() << '\n';
+       << size.width << " x " << size.height << " pixels, " << samples
+       << (area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries << " tile entries; GPU "
+       << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on " << device.name() << '\n';
   if (report.pathsDropped)
     text << "budget exceeded: " << report.pathsDropped << " paths were left out; --max-tile-entries "
          << report.tileEntries << " would have held them\n";
-  if (messages.warnings) text << messages.warnings << " parts of the drawing are approximated or left out\n";
+  if (messages.warnings) text << messages.warnings << " parts of the drawing are approximated, left out or not valid\n";
   if (options.truth) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
@@ -195,21 +216,23 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"status", statusName(report.base.status)},
                   {"width", size.width},
                   {"height", size.height},
-                  {"samples", options.samples},
+                  {"aa", options.antialiasing},
+                  {"samples", samples},
                   {"paths", facts.paths},
                   {"curves", facts.curves},
                   {"patches", facts.patches},
                   {"tile_entries_given", report.tileEntriesGiven},
                   {"paths_dropped", report.pathsDropped},
                   {"warnings", messages.warnings},
-                  {"curves_per_patch", ratio(facts.curves, facts.patches)},
+                  {"curves_per_patch", tiles.curvesPerPatch},
                   {"tile_entries", report.tileEntries},
-                  {"patches_per_tile", ratio(report.tileEntries, ((size.width + 15) / 16) * ((size.height + 15) / 16))},
+                  {"patches_per_tile", tiles.patchesPerTile},
+                  {"curves_per_patch_tiled", tiles.curvesPerPatchTiled},
                   {"parse_ms", converted.parseMilliseconds},
                   {"convert_ms", converted.convertMilliseconds},
                   {"gpu_ms_median", times.median()},
                   {"passes", passes},
-                  {"unsupported", messages.list},
+                  {"unsupported", messages.unsupported},
                   {"image", options.out.empty() ? Json() : Json(options.out)}};
   if (options.truth) outcome.json["psnr_db"] = psnr;
   return outcome;
@@ -224,13 +247,14 @@ Work addVector(CLI::App& app) {
       ->required()
       ->check(CLI::ExistingFile);
   addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own)");
-  command->add_option("--samples", options->samples, "Samples per pixel")
-      ->check(CLI::IsMember({1u, 4u, 8u, 16u}))
+  command
+      ->add_option("--aa", options->antialiasing,
+                   "Samples per pixel, or area: 16, and a pixel's first edge counts by its exact area")
+      ->check(CLI::IsMember({"1", "4", "8", "16", "area"}))
       ->capture_default_str();
-  command->add_option("--background", options->background, "Colour behind the drawing (default: transparent)")
-      ->type_name("RRGGBB");
+  command->add_option("--background", options->background, "CSS colour behind the drawing (default: transparent)")
+      ->type_name("COLOUR");
   command->add_option("-o,--out,OUT", options->out, "Write the picture")->type_name("FILE.png");
-  command->add_flag("--area", options->area, "A pixel's first edge counts by its exact area");
   command->add_flag("--truth", options->truth,
                     "Compare with 256 samples a pixel, composited by winding numbers on the CPU (slow)");
   command->add_option("--stages", options->stages, "Write each stage of the conversion as SVG")->type_name("FOLDER");
@@ -239,12 +263,12 @@ Work addVector(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--all-warnings", options->allWarnings, "Name every part that is approximated or left out");
   command->add_option("--max-tile-entries", options->maxTileEntries,
-                      "Budget: patch references over all tiles (0: the library's default)");
+                      "Budget: tiles that paths' edges pass through (0: the library's default)");
   command->footer(R"(
 Examples:
   gpgp vector tiger.svg --out tiger.png
-  gpgp vector tiger.svgz --size 2048x2048 --background ffffff --out tiger.png
-  gpgp vector map.svg --samples 4 --repeat 100 --json | jq .gpu_ms_median
+  gpgp vector tiger.svgz --size 2048x2048 --background white --out tiger.png
+  gpgp vector map.svg --aa 4 --repeat 100 --json | jq .gpu_ms_median
 
 What is approximated or left out is named on standard error with its line, the first ten unless --all-warnings is given,
 and counted.)");

@@ -142,9 +142,13 @@ inline std::array<double, 4> truthOfGradient(const GpgpGradient& g, double x, do
   return color;
 }
 
-/// Premultiplied linear colour of each pixel, 4 floats. `t`, drawing to pixel, scales and shifts only.
+enum class Blend { Linear, Srgb };
+
+/// Premultiplied colour of each pixel, 4 floats: linear, or as sRGB encodes it where colours mix so; the background is
+/// the same kind of colour. `t`, drawing to pixel, scales and shifts only.
 inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
-                                      const float t[6], const float background[4], uint32_t width, uint32_t height) {
+                                      const float t[6], const float background[4], uint32_t width, uint32_t height,
+                                      Blend blend = Blend::Linear) {
   constexpr size_t kGrid = 16, kSamples = kGrid * kGrid;
   std::vector<WindingPath> windings(paths.begin(), paths.end());
   std::vector<std::vector<WindingPath>> clips(groups.size());
@@ -153,6 +157,10 @@ inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, std::span
   const size_t rowSamples = size_t(width) * kSamples;
   std::vector<float> pixels(size_t(width) * height * 4);
   std::vector<WindingPath::Crossing> row;
+  const auto mixed = [blend](double linear) {
+    const float value = static_cast<float>(linear);
+    return blend == Blend::Srgb ? host::srgbFromLinear(value) : value;
+  };
   const auto number = [t](int i) { return static_cast<double>(t[i]); };
   // Calls with each sample of a row of pixels that a path covers, and where it lies in the drawing.
   const auto forSamples = [&](const WindingPath& path, uint32_t y, const auto& call) {
@@ -215,15 +223,18 @@ inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, std::span
           if (fading.size() - k >= levels.size()) levels.push_back({fading[k], std::vector<float>(rowSamples * 4)});
         entered = true;
       };
+      const float* color = path.path().color;
+      const float plain[4] = {mixed(static_cast<double>(color[0])), mixed(static_cast<double>(color[1])),
+                              mixed(static_cast<double>(color[2])), color[3]};
       forSamples(path, y, [&](size_t sample, double dx, double dy) {
         for (const uint32_t g : clipping)
           if (!showing(g)[sample]) return;
         if (!entered) enter();
-        const float* color = path.path().color;
-        float own[4] = {color[0], color[1], color[2], color[3]};
+        float own[4] = {plain[0], plain[1], plain[2], plain[3]};
         if (path.path().gradient) {
-          const auto mixed = truthOfGradient(*path.path().gradient, dx, dy);
-          for (size_t c = 0; c < 4; ++c) own[c] = static_cast<float>(mixed[c]) * (c == 3 ? color[3] : 1);
+          const auto ramp = truthOfGradient(*path.path().gradient, dx, dy);
+          for (size_t c = 0; c < 3; ++c) own[c] = mixed(ramp[c]);
+          own[3] *= static_cast<float>(ramp[3]);
         }
         float* s = &levels.back().samples[sample * 4];
         for (size_t c = 0; c < 4; ++c) s[c] = (c == 3 ? 1 : own[c]) * own[3] + s[c] * (1 - own[3]);
@@ -241,13 +252,14 @@ inline std::vector<float> vectorTruth(std::span<const GpgpPath> paths, std::span
   return pixels;
 }
 
-/// Decibels between two pictures of premultiplied linear colour, both over white and sRGB-encoded.
-inline double psnrOverWhite(std::span<const float> a, std::span<const float> b) {
+/// Decibels between two pictures of premultiplied colour, both over white and sRGB-encoded.
+inline double psnrOverWhite(std::span<const float> a, std::span<const float> b, Blend blend = Blend::Linear) {
   double sum = 0;
   for (size_t i = 0; i < a.size(); i += 4)
     for (size_t c = 0; c < 3; ++c) {
       const auto encoded = [&](std::span<const float> p) {
-        return static_cast<double>(host::srgbFromLinear(std::clamp(p[i + c] + 1 - p[i + 3], 0.0f, 1.0f)));
+        const float value = std::clamp(p[i + c] + 1 - p[i + 3], 0.0f, 1.0f);
+        return static_cast<double>(blend == Blend::Srgb ? value : host::srgbFromLinear(value));
       };
       sum += (encoded(a) - encoded(b)) * (encoded(a) - encoded(b));
     }

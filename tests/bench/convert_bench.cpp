@@ -9,6 +9,7 @@
 #include "host/files.h"
 #include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
+#include "vector/raster/segments.h"
 
 #include <cairo.h>
 #include <ft2build.h>
@@ -110,6 +111,25 @@ void row(const char* name, int rounds, std::span<const GpgpPath> paths, double e
   const size_t in = curvesOf(paths);
   std::printf("%-16s %7zu %8zu %8zu %8zu %10.3f %9.1f %10.3f %7.2f\n", name, paths.size(), in, curves, patches, ours,
               ours * 1e6 / static_cast<double>(in), cairo, ours / cairo);
+}
+
+/// What it costs to convert one path again and to copy the rest, for each path in turn.
+void edited(int rounds, std::span<const GpgpPath> paths) {
+  std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
+  const auto whole = vector::makeDrawing(paths, memory);
+  if (!whole) std::exit(1);
+  const auto outlines = vector::makeOutlines(*whole, memory);
+  const double all = medianOf(rounds, [&] { vector::makeOutlines(*vector::makeDrawing(paths, memory), memory); });
+  std::vector<double> times;
+  for (uint32_t i = 0; i < paths.size(); ++i)
+    times.push_back(milliseconds([&] {
+      const GpgpPathEdit edit{i, paths[i]};
+      const auto drawing = vector::replacePaths(*whole, std::span(&edit, 1), memory);
+      vector::editOutlines(*drawing, outlines, std::span(&edit, 1), memory);
+    }));
+  std::sort(times.begin(), times.end());
+  std::printf("%-16s with its outlines %.3f ms; one path replaced: median %.3f, at most %.3f (ratio %.3f)\n", "", all,
+              times[times.size() / 2], times.back(), times[times.size() / 2] / all);
 }
 
 /// Curves of about the same length, each beginning where the one before ended, turning at random: a scribble that
@@ -249,6 +269,7 @@ int main(int argc, char** argv) {
     for (const auto& path : svg->paths) paths.push_back(path.view());
     row(name, rounds, paths, strokes, size);
     std::printf("%-16s strokes to fills: %.3f ms of that\n", "", strokes);
+    edited(rounds, paths);
   }
   for (const auto& [name, make] : {std::pair{"scribble", &scribble}, {"town", &town}, {"contours", &contours}})
     for (const size_t curves : {100, 1000, 10000, 100000}) {

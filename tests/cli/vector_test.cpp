@@ -15,8 +15,8 @@ constexpr const char* kHalves = R"(<svg xmlns="http://www.w3.org/2000/svg" width
 
 TEST(CliVector, DrawsWhatTheFileSays) {
   const TemporaryFile file("halves.svg", kHalves), picture("halves.png");
-  const json drawn = gpgpJson(
-      {"vector", file.path(), "--out", picture.path(), "--background", "0000ff", "--repeat", "2", "--validate"});
+  const json drawn =
+      gpgpJson({"vector", file.path(), "--out", picture.path(), "--background", "blue", "--repeat", "2", "--validate"});
   EXPECT_EQ(keys(drawn), (std::set<std::string>{"command",
                                                 "ok",
                                                 "file",
@@ -24,6 +24,7 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "status",
                                                 "width",
                                                 "height",
+                                                "aa",
                                                 "samples",
                                                 "paths",
                                                 "curves",
@@ -32,6 +33,7 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "tile_entries",
                                                 "tile_entries_given",
                                                 "patches_per_tile",
+                                                "curves_per_patch_tiled",
                                                 "paths_dropped",
                                                 "warnings",
                                                 "unsupported",
@@ -56,12 +58,116 @@ TEST(CliVector, DrawsWhatTheFileSays) {
   EXPECT_EQ(pixel(35, 10), (std::vector<int>{0, 0, 255, 255}));
 }
 
+using Pixel = std::vector<int>;
+Pixel pixelOf(const host::Picture& picture, uint32_t x, uint32_t y) {
+  const uint8_t* p = &picture.rgba[(size_t{y} * picture.width + x) * 4];
+  return {p[0], p[1], p[2], p[3]};
+}
+
+TEST(CliVector, BackgroundsAreCssColours) {
+  const TemporaryFile file("background.svg", kHalves), picture("background.png");
+  const struct {
+    const char* text;
+    Pixel pixel;
+  } cases[] = {
+      {"RebeccaPurple", {102, 51, 153, 255}},
+
+      {"#0f88", {0, 255, 136, 136}},
+      {"rgba(255, 255, 0, 0.2)", {255, 255, 0, 51}},
+      {"hsl(240, 100%, 50%)", {0, 0, 255, 255}},
+  };
+  for (const auto& c : cases) {
+    gpgpJson({"vector", file.path(), picture.path(), "--background", c.text});
+    const Pixel seen = pixelOf(host::readPng(picture.path()), 30, 10);
+    EXPECT_EQ(seen[3], c.pixel[3]) << c.text;
+    for (size_t k = 0; k < 3; ++k) // alpha times colour was rounded to bytes
+      EXPECT_NEAR(seen[k], c.pixel[k], c.pixel[3] == 255 ? 0 : 255 / (2 * c.pixel[3]) + 1) << c.text;
+  }
+}
+
+TEST(CliVector, AntialiasingOfAllKindsAgainstTheTruth) {
+  // An edge through pixels of column 20 at a quarter of their width; half-transparent colours mix as SVG says.
+  const TemporaryFile file("aa.svg", R"(<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20">
+<path d="M0 0 H20.25 V20 H0 Z"/><path d="M30 0 H40 V20 H30 Z" opacity="0.5"/></svg>
+)");
+  const TemporaryFile picture("aa.png");
+  for (const char* aa : {"1", "4", "8", "16", "area"}) {
+    const json drawn = gpgpJson({"vector", file.path(), picture.path(), "--background", "#fff", "--aa", aa, "--truth"});
+    EXPECT_EQ(drawn["aa"], aa);
+    EXPECT_EQ(drawn["samples"], std::string_view(aa) == "area" ? 16 : std::atoi(aa));
+    EXPECT_GE(drawn["psnr_db"], std::string_view(aa) == "1" ? 20 : 45) << aa;
+    const host::Picture seen = host::readPng(picture.path());
+    EXPECT_NEAR(pixelOf(seen, 20, 5)[0], std::string_view(aa) == "1" ? 255 : 191, 1) << aa;
+    EXPECT_NEAR(pixelOf(seen, 35, 5)[0], 128, 1) << "mixed as sRGB encodes";
+  }
+}
+
+TEST(CliVector, CountsPatchesByTile) {
+  const TemporaryFile file("tiles.svg", R"(<svg xmlns="http://www.w3.org/2000/svg" width="32" height="32">
+<path d="M0 0 H16 V16 H0 Z"/></svg>
+)");
+  const json drawn = gpgpJson({"vector", file.path()}); // one patch of four sides in the first four of 16 tiles
+  EXPECT_EQ(drawn["patches"], 1);
+  EXPECT_EQ(drawn["curves_per_patch"], 4);
+  // 3 x 2 tiles: the right side lies on the border of the third column, which counts as in it
+  EXPECT_EQ(drawn["patches_per_tile"], 6 / 16.0);
+  EXPECT_EQ(drawn["curves_per_patch_tiled"], (2 + 2 + 3 + 3) / 6.0);
+  EXPECT_FALSE(drawn.contains("psnr_db"));
+}
+
+TEST(CliVector, FitsAsPreserveAspectRatioSays) {
+  const TemporaryFile picture("aspect.png");
+  const auto draw = [&picture](const std::string& attributes) {
+    const TemporaryFile file("aspect.svg", "<svg xmlns='http://www.w3.org/2000/svg' " + attributes +
+                                               "><path d='M0 0 H40 V20 H0 Z' fill='red'/></svg>");
+    gpgpJson({"vector", file.path(), picture.path(), "--size", "40x40"});
+    const host::Picture seen = host::readPng(picture.path());
+    std::string rows;
+    for (const uint32_t y : {5u, 20u, 35u}) rows += pixelOf(seen, 20, y)[3] ? 'x' : '.';
+    return rows;
+  };
+  EXPECT_EQ(draw("viewBox='0 0 40 20' preserveAspectRatio='xMidYMax meet'"), ".xx");
+  EXPECT_EQ(draw("viewBox='0 0 40 20' preserveAspectRatio='xMidYMid slice'"), "xxx");
+  // The picture takes the place of the size that the file asks for.
+  EXPECT_EQ(draw("width='10' height='90' viewBox='0 0 40 20' preserveAspectRatio='xMidYMin'"), "x..");
+  EXPECT_EQ(draw("width='40' height='20' preserveAspectRatio='none'"), "xxx");
+}
+
 TEST(CliVector, FitsIntoASizeAndLeavesTheRestClear) {
   const TemporaryFile file("fit.svg", kHalves), picture("fit.png");
   gpgpJson({"vector", file.path(), "--out", picture.path(), "--size", "40x40"});
   const host::Picture seen = host::readPng(picture.path());
   EXPECT_EQ(seen.rgba[3], 0) << "above the drawing nothing is painted";
   EXPECT_EQ(seen.rgba[(20 * 40 + 5) * 4 + 3], 255) << "the drawing stands in the middle";
+}
+
+TEST(CliVector, EmbeddedImagesArePainted) {
+  // Two pixels, red and blue, in a place of 20 x 20: fitted into its width, in the middle.
+  const std::string png = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAA"
+                          "DUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg==";
+  const std::string image = "<image x='10' width='20' height='20' href='data:image/png;base64," + png + "'";
+  const TemporaryFile picture("image.png");
+  const auto draw = [&picture](const std::string& inside) {
+    const TemporaryFile file("image.svg",
+                             "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'>" + inside + "</svg>");
+    EXPECT_EQ(gpgpJson({"vector", file.path(), picture.path()})["unsupported"], json::array());
+    return host::readPng(picture.path());
+  };
+  host::Picture seen = draw(image + "/>");
+  EXPECT_EQ(pixelOf(seen, 11, 10), (Pixel{255, 0, 0, 255}));
+  EXPECT_EQ(pixelOf(seen, 28, 10), (Pixel{0, 0, 255, 255}));
+  EXPECT_EQ(pixelOf(seen, 11, 2)[3], 0) << "above the picture";
+  EXPECT_EQ(pixelOf(seen, 5, 10)[3], 0) << "beside its place";
+  seen = draw(image + " preserveAspectRatio='xMinYMid slice' opacity='0.5'/>");
+  EXPECT_NEAR(pixelOf(seen, 11, 2)[0], 255, 2);
+  EXPECT_EQ(pixelOf(seen, 11, 2)[3], 128);
+  EXPECT_GT(pixelOf(seen, 28, 10)[0], pixelOf(seen, 28, 10)[2]) << "the blue half is cut off";
+  EXPECT_EQ(pixelOf(seen, 31, 10)[3], 0) << "beside its place";
+  const TemporaryFile broken("broken.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'>\n"
+                                           "<image width='9' height='9' href='data:image/png;base64,AAAA'/></svg>");
+  const ProcessResult result = gpgp({"vector", broken.path(), "--json"});
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out, nullptr, false)["unsupported"][0]["element"], "image");
 }
 
 TEST(CliVector, StagesArePicturesThatItReadsItself) {
@@ -97,7 +203,8 @@ TEST(CliVector, WarningsAreCountedAndNotAFlood) {
   ASSERT_TRUE(counted.is_object()) << some.out;
   EXPECT_GE(counted["warnings"], 30);
   EXPECT_EQ(counted["unsupported"].size(), counted["warnings"]);
-  EXPECT_EQ(counted["unsupported"][0].get<std::string>().substr(0, 7), "line 2:");
+  EXPECT_EQ(counted["unsupported"][0],
+            json({{"element", "path"}, {"line", 2}, {"text", "filter is not supported: <path> is drawn without it"}}));
   EXPECT_EQ(lines(some.err), 11) << some.err;
   EXPECT_EQ(lines(all.err), counted["warnings"]) << all.err;
 }
@@ -107,12 +214,36 @@ TEST(CliVector, BadDrawingsAreNamed) {
   EXPECT_NE(gpgpFailure({"vector", file.path()}).find("no.svg"), std::string::npos);
 }
 
+TEST(CliVector, WhatIsNotValidIsNamedAndNotUnsupported) {
+  const TemporaryFile file("invalid.svg", R"(<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20">
+<path d="M0 0 H20 V20 Z" fill="blurple"/>
+<path d="M0 0 H20 V20 X"/></svg>
+)");
+  const ProcessResult result = gpgp({"vector", file.path(), "--json"});
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const json drawn = json::parse(result.out, nullptr, false);
+  EXPECT_EQ(drawn["unsupported"], json::array());
+  EXPECT_EQ(drawn["warnings"], 2);
+  EXPECT_NE(result.err.find("line 2: <path> has fill 'blurple'"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("line 3: <path> has an error in its path data"), std::string::npos) << result.err;
+}
+
+TEST(CliVector, StagesThatCannotBeWrittenAreAnError) {
+  const TemporaryFile file("blocked.svg", kHalves);
+  EXPECT_NE(gpgpFailure({"vector", file.path(), "--stages", file.path()}).find("blocked.svg"), std::string::npos);
+}
+
 TEST(CliVector, WrongUsage) {
   const TemporaryFile file("usage.svg", kHalves);
   expectWrongUsage({{"vector"},
                     {"vector", "no_such_file.svg"},
-                    {"vector", file.path(), "--samples", "3"},
-                    {"vector", file.path(), "--background", "red"},
+                    {"vector", file.path(), "--aa", "3"},
+                    {"vector", file.path(), "--aa", "exact"},
+                    {"vector", file.path(), "--background", "ffffff"},
+                    {"vector", file.path(), "--background", "reddish"},
+                    {"vector", file.path(), "--background", "rgb(1, 2)"},
+                    {"vector", file.path(), "--repeat", "0"},
+                    {"vector", file.path(), "--size", "0x40"},
                     {"vector", file.path(), "--size", "big"}});
 }
 

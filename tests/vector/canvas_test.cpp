@@ -384,6 +384,39 @@ TEST_F(CanvasTest, AbuttingPathsAndCutsInsidePathsLeaveNoSeams) {
       }
 }
 
+TEST_F(CanvasTest, NoSeamsAtAnyZoom) {
+  makeCanvas(64);
+  // A shared curve, and behind it a path that crosses itself all over: neither may show from 1/64 to 4096.
+  const float far = 20000;
+  TestPath left, right, web;
+  left.move(-far, -far).line(91.7f, -far).line(91.7f, -50).cubic(10.3f, 90, 190.1f, 130, 77.9f, 300).line(77.9f, far);
+  left.line(-far, far).close();
+  right.move(91.7f, -far).line(far, -far).line(far, far).line(77.9f, far).line(77.9f, 300);
+  right.cubic(190.1f, 130, 10.3f, 90, 91.7f, -50).close();
+  web.move(-far, -far).line(far, -far).line(far, far).line(-far, far).close();
+  for (int i = 0; i < 60; ++i) { // all run the same way round, so that the union is everything
+    const float a = static_cast<float>(i) * 0.7f, x = 90 + 30 * std::cos(a), y = 100 + 60 * std::sin(a);
+    web.move(x, y).cubic(x + 80, y - 40, x + 90, y + 70, x + 3, y + 50).close();
+  }
+  left.color = right.color = {0.25f, 0.5f, 1, 1};
+  web.color = {1, 0.5f, 1, 1};
+  const GpgpAsset shared = makeDrawing({left.view(), right.view()}), alone = makeDrawing({web.view()});
+  for (int zoom = -6; zoom <= 12; zoom += 2)
+    for (const float t : {0.21f, 0.5f, 0.83f}) {
+      const float scale = std::ldexp(1.0f, zoom), u = 1 - t;
+      const float x = u * u * u * 91.7f + 3 * u * u * t * 10.3f + 3 * u * t * t * 190.1f + t * t * t * 77.9f;
+      const float y = u * u * u * -50 + 3 * u * u * t * 90 + 3 * u * t * t * 130 + t * t * t * 300;
+      for (const GpgpAsset drawing : {shared, alone})
+        for (const uint32_t samples : {4u, 16u}) {
+          exactArea = samples == 16 && t == 0.5f;
+          const auto pixels = raster({place(drawing, scale, 32.3f - scale * x, 31.8f - scale * y)}, 64, 64, samples);
+          for (size_t i = 0; i < pixels.size(); ++i)
+            ASSERT_NEAR(pixels[i].a, 1.0f, exactArea ? 0.001f : 0.0f)
+                << "zoom " << scale << ", " << samples << " samples, pixel " << i % 64 << " " << i / 64;
+        }
+    }
+}
+
 TEST_F(CanvasTest, PaintsInOrderWithAlphaAndOpacity) {
   makeCanvas(64);
   TestPath below, above;
@@ -837,6 +870,69 @@ TEST_F(CanvasTest, GroupsThatCannotBeAreRefusedWithWords) {
   for (uint32_t i = 0; i < 17; ++i) deep.push_back({i, 1, &outside, 1});
   refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "groups[16]: more than 16");
   EXPECT_NE(makeDrawing({path, path, outside}, {{0, 0.5f, nullptr, 0}}), nullptr);
+}
+
+TEST_F(CanvasTest, EditedDrawingsLookAsIfMadeAnew) {
+  makeCanvas(128);
+  std::vector<TestPath> shapes;
+  for (uint32_t seed = 0; seed < 6; ++seed) {
+    shapes.push_back(randomShape(seed, 128));
+    shapes.back().color = {0.2f * static_cast<float>(seed), 0.5f, 1 - 0.2f * static_cast<float>(seed), 0.7f};
+  }
+  std::vector<GpgpPath> paths;
+  for (const TestPath& shape : shapes) paths.push_back(shape.view());
+  for (size_t i = 3; i < 5; ++i) paths[i].group = 1;
+  const TestPath clipShape = randomShape(77, 128);
+  const GpgpPath clipPath = clipShape.view();
+  const std::vector<GpgpPathGroup> groups = {{0, 0.5f, &clipPath, 1}};
+  GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+  info.paths = paths.data();
+  info.pathCount = static_cast<uint32_t>(paths.size());
+  info.groups = groups.data();
+  info.groupCount = 1;
+  info.editable = VK_TRUE;
+  GpgpAsset drawing = nullptr;
+  ASSERT_EQ(gpgpCreateDrawing(context, &info, &drawing), GPGP_SUCCESS) << lastMessage();
+  std::vector<TestPath> moving;
+  for (uint32_t frame = 0; frame < 4; ++frame) moving.push_back(randomShape(100 + frame, 128));
+  for (uint32_t frame = 0; frame < 4; ++frame) { // a path that changes every frame, each drawing made from the last one
+    const uint32_t index = frame == 3 ? 0 : 4;
+    const uint32_t group = paths[index].group;
+    paths[index] = moving[frame].view();
+    paths[index].group = group;
+    GpgpDrawingCreateInfo edited = GPGP_DRAWING_CREATE_INFO_INIT;
+    const GpgpPathEdit edit{index, paths[index]};
+    edited.base = drawing;
+    edited.edits = &edit;
+    edited.editCount = 1;
+    edited.editable = VK_TRUE;
+    GpgpAsset next = nullptr;
+    ASSERT_EQ(gpgpCreateDrawing(context, &edited, &next), GPGP_SUCCESS) << lastMessage();
+    gpgpDestroyAsset(drawing);
+    drawing = next;
+    const auto seen = raster({place(drawing)}, 128, 128, 16);
+    const auto anew = raster({place(makeDrawing(paths, groups))}, 128, 128, 16);
+    ASSERT_EQ(std::memcmp(seen.data(), anew.data(), seen.size() * sizeof(Rgba)), 0) << "frame " << frame;
+  }
+  const auto refused = [&](GpgpDrawingCreateInfo wrong, GpgpResult code, const char* words) {
+    GpgpAsset none = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &wrong, &none), code);
+    EXPECT_EQ(none, nullptr);
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  GpgpDrawingCreateInfo wrong = GPGP_DRAWING_CREATE_INFO_INIT;
+  const GpgpPathEdit beyond{6, paths[0]};
+  wrong.base = drawing;
+  wrong.edits = &beyond;
+  wrong.editCount = 1;
+  refused(wrong, GPGP_ERROR_INVALID_ARGUMENT, "edits[0].index is 6; the drawing has 6 paths");
+  wrong.paths = paths.data();
+  refused(wrong, GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data, filePath, paths and base");
+  wrong.base = nullptr;
+  refused(wrong, GPGP_ERROR_INVALID_ARGUMENT, "editCount is 1 without edits or without base");
+  wrong.paths = nullptr;
+  wrong.base = makeDrawing(paths, groups);
+  refused(wrong, GPGP_ERROR_INVALID_ARGUMENT, "base was not made editable");
 }
 
 TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {

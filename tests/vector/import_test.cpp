@@ -174,6 +174,11 @@ TEST(SvgImport, Colours) {
       {"fill='RebeccaPurple'", {0.4, 0.2, 0.6, 1}},
       {"fill='rgb(51, 102,153)'", {0.2, 0.4, 0.6, 1}},
       {"fill='rgba(20%,40%,60%,.5)' fill-opacity='.5'", {0.2, 0.4, 0.6, 0.25}},
+      {"fill='hsl(120 100% 25% / 50%)'", {0, 0.5, 0, 0.5}},
+      {"fill='hsla(0.5turn,100%,50%,.25)'", {0, 1, 1, 0.25}},
+      {"fill='hsl(200grad,100%,50%)'", {0, 1, 1, 1}},
+      {"fill='hwb(0 20% 40%)'", {0.6, 0.2, 0.2, 1}},
+      {"fill='hwb(90deg 60% 60%)'", {0.5, 0.5, 0.5, 1}},
       {"color='blue' fill='currentColor'", {0, 0, 1, 1}},
       {"fill='red' style='fill: lime'", {0, 1, 0, 1}},
       {"class='x y' fill='red'", {0, 0, 1, 1}},
@@ -429,6 +434,66 @@ TEST(SvgImport, MessagesNameElementAndLine) {
        "W line 2: <rect> has fill 'blurple', which is not valid; ignored"},
   };
   for (const auto& c : cases) EXPECT_EQ(page(c.text).messages, Texts{c.message});
+}
+
+TEST(SvgImport, EmbeddedImagesGoToWhoeverDecodes) {
+  struct Seen {
+    std::vector<std::string> bytes;
+    bool decodes = true;
+  } seen;
+  const auto decode = [](void* user, uint32_t index, const void* data, size_t size, uint32_t* width,
+                         uint32_t* height) -> VkBool32 {
+    auto& s = *static_cast<Seen*>(user);
+    EXPECT_EQ(index, s.bytes.size());
+    if (!s.decodes) return VK_FALSE;
+    s.bytes.emplace_back(static_cast<const char*>(data), size);
+    *width = 40, *height = 10;
+    return VK_TRUE;
+  };
+  const auto take = [&](const std::string& inside, Texts& messages) {
+    const std::string text = "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>\n" + inside + "</svg>";
+    vector::svg::Reporter reporter(
+        [](void* user, const GpgpMessage* m) { static_cast<Texts*>(user)->push_back(m->text); }, &messages, "");
+    auto svg = vector::svg::importSvg(std::as_bytes(std::span(text)), reporter, {}, {decode, &seen});
+    EXPECT_TRUE(svg);
+    return std::move(*svg);
+  };
+  Texts messages;
+  const std::string data = " href='data:image/png;base64,\n SGVs\nbG8='";
+  Imported d = take("<image x='10' y='20' width='20' height='20'" + data + "/><image" + data +
+                        " transform='rotate(90)' y='-40' preserveAspectRatio='none' height='40' opacity='.5'/>",
+                    messages);
+  EXPECT_EQ(messages, Texts{});
+  EXPECT_EQ(seen.bytes, Texts{"Hello"}) << "what two elements share comes once";
+  ASSERT_EQ(d.paths.size(), 2u);
+  ASSERT_TRUE(d.paths[0].image && d.paths[1].image);
+  const auto transform = [&d](size_t i) {
+    return std::vector<float>(d.paths[i].image->transform, d.paths[i].image->transform + 6);
+  };
+  EXPECT_EQ(transform(0), (Floats{20, 0, 0, 5, 10, 27.5f}));
+  EXPECT_EQ(std::vector<float>(d.paths[0].points.begin(), d.paths[0].points.begin() + 2), (Floats{10, 27.5f}));
+  const Floats turned = transform(1), expected = {0, 160, -40, 0, 40, 0}; // 160 x 40 as its height says
+  for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(turned[i], expected[i], 1e-4) << i;
+  EXPECT_EQ(d.paths[1].color[3], 0.5f);
+  seen.bytes.clear();
+  const auto refused = [&](const std::string& inside, const std::string& message) {
+    messages.clear();
+    EXPECT_TRUE(take(inside, messages).paths.empty()) << inside;
+    EXPECT_EQ(messages, Texts{message});
+  };
+  refused("<image href='a.png'/>", "line 2: <image> of another file, 'a.png', is not supported");
+  refused("<image href='data:image/png,abc'/>", "line 2: <image> holds nothing that can be decoded; not supported");
+  refused("<image href='data:image/png;base64,?'/>",
+          "line 2: <image> holds nothing that can be decoded; not supported");
+  seen.decodes = false;
+  refused("<image" + data + "/>", "line 2: <image> holds nothing that can be decoded; not supported");
+  seen.decodes = true;
+  std::string many;
+  for (char c = 'A'; c < 'A' + 9; ++c)
+    many += "<image width='9' height='9' href='data:;base64,AAA" + std::string(1, c) + "'/>\n";
+  messages.clear();
+  EXPECT_EQ(take(many, messages).paths.size(), 8u);
+  EXPECT_EQ(messages, Texts{"line 10: <image> is one more than the 8 that a drawing can have; not supported"});
 }
 
 TEST(SvgImport, ThePageIsWhatTheFileSays) {

@@ -402,27 +402,62 @@ TEST(Patches, JobsChangeNothing) {
   EXPECT_EQ(std::string(failed.error().text), "paths[41]: points is NULL");
 }
 
-TEST(Patches, AnEditedPathAloneIsConvertedAgain) {
-  // Drawings of single paths, one of them made anew, put together: the drawing of all of them.
+TEST(Patches, EditedPathsGiveTheDrawingOfAllPaths) {
+  // With clips in front, a group that fades, gradients and an image: every table has indices into others.
   std::vector<TestPath> shapes;
-  for (uint32_t seed = 0; seed < 8; ++seed) shapes.push_back(randomPath(seed, 20, 3, 0));
-  std::vector<Drawing> parts;
-  const auto convert = [&](size_t i) {
-    const GpgpPath view = shapes[i].view();
-    return *vector::makeDrawing(std::span(&view, 1), heap());
-  };
-  for (size_t i = 0; i < shapes.size(); ++i) parts.push_back(convert(i));
-  shapes[3] = randomPath(99, 30, 3, 0);
-  parts[3] = convert(3);
-  Drawing together(heap());
-  std::vector<GpgpPath> views;
-  for (size_t i = 0; i < shapes.size(); ++i) {
-    ASSERT_TRUE(vector::append(parts[i], together));
-    views.push_back(shapes[i].view());
+  for (uint32_t seed = 0; seed < 9; ++seed) shapes.push_back(randomPath(seed, 20, 3, 0));
+  const GpgpGradientStop stops[] = {{0, {1, 0, 0, 1}}, {0.5f, {0, 1, 0, 1}}, {1, {0, 0, 1, 0.5f}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = gradient.transform[3] = 1;
+  gradient.end[0] = 10;
+  gradient.stops = stops;
+  gradient.stopCount = 3;
+  GpgpImagePaint image{2, {10, 0, 0, 10, 0, 0}};
+  std::vector<GpgpPath> paths;
+  for (size_t i = 1; i < shapes.size(); ++i) {
+    paths.push_back(shapes[i].view());
+    if (i % 2) paths.back().gradient = &gradient;
+    if (i == 4) paths.back().image = &image;
   }
-  auto all = vector::makeDrawing(views, heap());
-  std::copy_n(all->viewport, 4, together.viewport);
-  EXPECT_EQ(vector::bake(*all, heap()), vector::bake(together, heap()));
+  for (size_t i = 3; i < 6; ++i) paths[i].group = 1;
+  const GpgpPath clip = shapes[0].view();
+  const std::vector<GpgpPathGroup> groups = {{0, 0.5f, &clip, 1}};
+  auto drawing = vector::makeDrawing(paths, groups, heap());
+  ASSERT_TRUE(drawing);
+  const auto edit = [&](const std::vector<uint32_t>& indices) {
+    std::vector<GpgpPathEdit> edits;
+    for (const uint32_t i : indices) edits.push_back({i, paths[i]});
+    drawing = vector::replacePaths(*drawing, edits, heap());
+    ASSERT_TRUE(drawing) << drawing.error().text;
+    EXPECT_EQ(vector::bake(*vector::makeDrawing(paths, groups, heap()), heap()), vector::bake(*drawing, heap()));
+  };
+  const TestPath other = randomPath(99, 40, 3, 0), nothing;
+  paths[4] = other.view();
+  paths[4].group = 1;
+  paths[4].gradient = &gradient; // in place of a plain colour
+  edit({4});
+  paths[0] = shapes[3].view(); // without the gradient that the other had
+  paths[7] = nothing.view();
+  edit({0, 7, 0});
+  paths[7] = other.view();
+  edit({7});
+  for (size_t i = 0; i < paths.size(); ++i) paths[i].points = shapes[8].view().points;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const GpgpPath all = shapes[8].view();
+    paths[i].verbs = all.verbs;
+    paths[i].verbCount = all.verbCount;
+    paths[i].pointCount = all.pointCount;
+  }
+  edit({0, 1, 2, 3, 4, 5, 6, 7});
+  const GpgpPathEdit beyond{8, paths[0]};
+  auto failed = vector::replacePaths(*drawing, std::span(&beyond, 1), heap());
+  ASSERT_FALSE(failed);
+  EXPECT_STREQ(failed.error().text, "edits[0].index is 8; the drawing has 8 paths");
+  GpgpPathEdit bad{5, paths[0]};
+  bad.path.fillRule = 7;
+  failed = vector::replacePaths(*drawing, std::span(&bad, 1), heap());
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(std::string(failed.error().text).substr(0, 14), "edits, path 5:") << failed.error().text;
 }
 
 TEST(Patches, PrintAsSvg) {

@@ -91,11 +91,12 @@ double parameterAt(const Point* p, double y) {
     const double f = ((c3 * t + c2) * t + c1) * t + c0;
     if (f == 0) break;
     (f < 0 ? low : high) = t;
-    double next = t - f / ((3 * c3 * t + 2 * c2) * t + c1);
+    const double slope = (3 * c3 * t + 2 * c2) * t + c1;
+    double next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2)); // Halley's step
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     const double step = std::abs(next - t);
     t = next;
-    if (step < 1e-8) break; // the step after it would be about its square
+    if (step < 2e-6) break; // the step after it would be about its cube
   }
   return t;
 }

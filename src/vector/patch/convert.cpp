@@ -59,16 +59,27 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
     }
     return places[piece];
   };
+  // A piece's slabs mostly follow each other, so where one ends is where the next begins.
+  struct Last {
+    float y;
+    double x;
+  };
+  std::pmr::vector<Last> lasts(pieces.size(), Last{std::numeric_limits<float>::quiet_NaN(), 0}, memory);
+  const auto range = [&](uint32_t piece, const Slab& slab) {
+    Last& last = lasts[piece];
+    const double top = last.y == slab.top ? last.x : pieces[piece].xAt(static_cast<double>(slab.top));
+    last = {slab.bottom, pieces[piece].xAt(static_cast<double>(slab.bottom))};
+    return std::pair(std::min(top, last.x), std::max(top, last.x));
+  };
   const uint32_t pathIndex = static_cast<uint32_t>(drawing.paths.size());
   for (const Slab& slab : slabs) {
-    const Monotone &l = pieces[slab.left], &r = pieces[slab.right];
     PatchRecord p{};
     p.left = place(slab.left);
     p.right = place(slab.right);
     p.top = slab.top;
     p.bottom = slab.bottom;
-    p.x0 = below(std::min(l.xAt(slab.top), l.xAt(slab.bottom)));
-    p.x1 = above(std::max(r.xAt(slab.top), r.xAt(slab.bottom)));
+    p.x0 = below(range(slab.left, slab).first);
+    p.x1 = above(range(slab.right, slab).second);
     p.path = pathIndex;
     drawing.patches.push_back(p);
     if (drawing.patches.size() == 1) {

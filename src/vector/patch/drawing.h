@@ -84,6 +84,15 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<con
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
                                   const GpgpJobSystem* jobs = nullptr);
 
+/// How many paths at the front are there for clips alone.
+uint32_t clipPaths(const Drawing& drawing);
+
+/// The drawing with some paths replaced, which alone are converted: the same tables as if all were converted anew. An
+/// index counts from the first path that is no clip's; of two edits of one path the later counts. Paths keep their clip
+/// and layer, and a page that is not just the ink stays. Errors name the edit or the path.
+core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPathEdit> edits,
+                                   std::pmr::memory_resource* memory);
+
 /// Baked form: little-endian, versioned, checksummed.
 std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory);
 /// Checks everything that a shader would trust: sizes, indices, finite numbers, order. Errors: INVALID_DATA.

@@ -2,8 +2,9 @@
 #include "vector/raster/canvas.h"
 
 #include "shaders/vector_allot.spv.h"
-#include "shaders/vector_bin.spv.h"
-#include "shaders/vector_copy.spv.h"
+#include "shaders/vector_allot_software.spv.h"
+#include "shaders/vector_begin.spv.h"
+#include "shaders/vector_begin_software.spv.h"
 #include "shaders/vector_crowded0.spv.h"
 #include "shaders/vector_crowded1.spv.h"
 #include "shaders/vector_crowded2.spv.h"
@@ -24,6 +25,7 @@
 #include "shaders/vector_fill.spv.h"
 #include "shaders/vector_fill_one.spv.h"
 #include "shaders/vector_fill_projective.spv.h"
+#include "shaders/vector_fill_rows.spv.h"
 #include "shaders/vector_fill_software.spv.h"
 #include "shaders/vector_fill_software_one.spv.h"
 #include "shaders/vector_fill_software_projective.spv.h"
@@ -74,6 +76,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -89,9 +92,9 @@ using shader::kMaxSlots;
 using shader::SlotRecord;
 
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
-constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
+constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18, kChordList = 26;
 // Workgroup counts and conditions of a record.
-enum Groups : uint32_t { kParams, kPaths, kSegments, kSlices, kBins, kWords, kRaster, kTiles, kSift };
+enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRows, kRaster, kTiles, kSift };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
   kPlain = 0,
@@ -104,6 +107,8 @@ enum Conditions : uint32_t {
   kDrawings,
   kProjective
 };
+
+constexpr uint32_t kSquare = 16; // pixels: a workgroup of raster.comp
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
@@ -134,11 +139,15 @@ uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would 
   return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 4, 63));
 }
 
+uint64_t Canvas::binWords() const { // enough for any record with the largest bins
+  constexpr uint32_t kLargest = shader::kTileSize << shader::kMaxBinShift;
+  return uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) * divide(maxPatches_, 32);
+}
+
 core::PassList Canvas::describe() const {
   using enum core::ResourceKind;
   using enum core::UseKind;
   core::PassList list(&context.host());
-  const VkDeviceSize bins = VkDeviceSize(divide(maxWidth_, shader::kBinSize)) * divide(maxHeight_, shader::kBinSize);
   static constexpr const char* kNames[kMaxSlots] = {"drawing 0", "drawing 1", "drawing 2", "drawing 3",
                                                     "drawing 4", "drawing 5", "drawing 6", "drawing 7"};
   for (const char* name : kNames) list.add({name, buffer, 0, true});
@@ -150,8 +159,9 @@ core::PassList Canvas::describe() const {
   const auto fromHost = list.add({"constants", core::ResourceKind::constants, paramBytes});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(maxPatches_) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
-  const VkDeviceSize lists = software_ ? tiles() * (listWords() + 2) : 0;
-  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + bins * divide(maxPatches_, 32) + lists) * 4});
+  const VkDeviceSize squares = VkDeviceSize(divide(maxWidth_, kSquare)) * divide(maxHeight_, kSquare);
+  const VkDeviceSize lists = software_ ? tiles() * (listWords() + 2) : squares;
+  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + lists) * 4});
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
@@ -163,13 +173,23 @@ core::PassList Canvas::describe() const {
     const auto added = list.add({kImageNames[i], texture, 0, true});
     if (i == 0) images = added;
   }
+  const auto chords =
+      list.add({"chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * sizeof(shader::ChordRecord)});
+  const auto rowList = list.add({"rows of chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * 4});
+  assert(images == kFirstImage && chords == kChordList);
   const auto useImages = [images](core::Pass& pass) {
     for (uint32_t i = 0; i < shader::kMaxImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
   };
 
-  list.fill("clear counters", counters, 0);
-  list.fill("clear words", words, 0);
-  list.dispatch("copy", list.add(core::ShaderDesc{"copy", vector_copy}), {{fromHost, read}, {params, write}}, kParams);
+  if (software_) {
+    list.fill("clear counters", counters, 0);
+    list.fill("clear words", words, 0);
+    list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin_software}),
+                  {{fromHost, read}, {params, write}, {masks, write}}, kBegin);
+  } else {
+    list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin}),
+                  {{fromHost, read}, {params, write}, {masks, write}, {words, write}, {counters, write}}, kBegin);
+  }
   const auto dispatch = [&](const char* name, const core::ShaderDesc& shader, std::initializer_list<core::Use> uses,
                             uint32_t groups) -> core::Pass& {
     core::Pass& pass = list.dispatch(name, list.add(shader), {{params, read}}, groups);
@@ -186,21 +206,37 @@ core::PassList Canvas::describe() const {
   };
   either({"place", "place, several drawings", "place, projective"},
          {vector_place_one, vector_place, vector_place_projective},
-         {{paths, readWrite}, {words, readWrite}, {counters, readWrite}}, kPaths);
-  // Before mark, which comes in several forms: a barrier for those left out would part them.
-  dispatch("bin", {"bin", vector_bin}, {{paths, read}, {counters, read}, {masks, write}}, kBins);
+         {{paths, readWrite}, {words, readWrite}, {masks, readWrite}, {counters, readWrite}}, kPaths);
   const std::array<Spirv, 3> mark =
       software_ ? std::array<Spirv, 3>{vector_mark_software_one, vector_mark_software, vector_mark_software_projective}
                 : std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective};
   const std::array<Spirv, 3> fill =
       software_ ? std::array<Spirv, 3>{vector_fill_software_one, vector_fill_software, vector_fill_software_projective}
                 : std::array<Spirv, 3>{vector_fill_one, vector_fill, vector_fill_projective};
+  const std::array<const char*, 3> fillNames =
+      software_ ? std::array<const char*, 3>{"fill", "fill, several drawings", "fill, projective"}
+                : std::array<const char*, 3>{"fill without lists", "fill without lists, several drawings",
+                                             "fill without lists, projective"};
   either({"mark", "mark, several drawings", "mark, projective"}, mark,
-         {{paths, read}, {words, readWrite}, {counters, read}}, kSegments);
-  dispatch("allot", {"allot", vector_allot},
+         {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}}, kSegments);
+  dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
            {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
-  either({"fill", "fill, several drawings", "fill, projective"}, fill,
-         {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSlices);
+  if (software_) {
+    either(fillNames, fill, {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments);
+  } else {
+    dispatch("fill", {"fill", vector_fill_rows},
+             {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}, {chords, read}, {rowList, read}},
+             kRows);
+    for (uint32_t k = 0; k < 3; ++k) { // where the lists did not suffice
+      core::Pass& pass =
+          list.dispatchIndirect(fillNames[k], list.add(core::ShaderDesc{fillNames[k], fill[k]}),
+                                {{params, read}, {paths, read}, {words, read}, {counters, read}, {entries, readWrite}},
+                                counters, offsetof(CanvasCounters, fillX));
+      pass.beside = true;
+      for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
+      pass.condition = kOneDrawing + k;
+    }
+  }
   // By target: the view alone, rgba8, rgba16f.
   const auto addTarget = [&](core::Pass& pass, uint32_t target, uint32_t condition) {
     if (target != kNoImage) pass.uses[pass.useCount++] = {target == kHasImage8 ? image8 : image16, write};
@@ -208,14 +244,15 @@ core::PassList Canvas::describe() const {
   };
   const auto raster = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition) {
     for (uint32_t t = 0; t < 3; ++t) {
-      core::Pass& pass = dispatch(
-          names[t], {names[t], spirv[t]},
-          {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}}, kRaster);
+      core::Pass& pass =
+          dispatch(names[t], {names[t], spirv[t]},
+                   {{paths, read}, {words, read}, {masks, readWrite}, {entries, read}, {counters, read}, {view, write}},
+                   kRaster);
       if (condition == kImages) useImages(pass);
       addTarget(pass, t, condition);
     }
   };
-  // On software devices: from lists, without barriers.
+  // From lists that passes before have written.
   const auto tilesOf = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition,
                            VkDeviceSize arguments) {
     for (uint32_t t = 0; t < 3; ++t) {
@@ -223,6 +260,7 @@ core::PassList Canvas::describe() const {
           names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
           {{params, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
           arguments * 4);
+      if (!software_) pass.uses[pass.useCount++] = {counters, read};
       const uint32_t drawings = condition == kPlain || condition == kPaintsOne ? 1 : kMaxSlots;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
       if (condition == kImages) useImages(pass);
@@ -254,9 +292,9 @@ core::PassList Canvas::describe() const {
             {vector_crowded_paints_one0, vector_crowded_paints_one1, vector_crowded_paints_one2}, kPaintsOne,
             shader::kCrowdedArguments);
     tilesOf({"raster all", "raster all rgba8", "raster all rgba16f"},
-            {vector_tiles_rich0, vector_tiles_rich1, vector_tiles_rich2}, kRich, shader::kPaintedArguments);
+            {vector_tiles_rich0, vector_tiles_rich1, vector_tiles_rich2}, kRich, shader::kRichArguments);
     tilesOf({"crowded all", "crowded all rgba8", "crowded all rgba16f"},
-            {vector_crowded_rich0, vector_crowded_rich1, vector_crowded_rich2}, kRich, shader::kCrowdedArguments);
+            {vector_crowded_rich0, vector_crowded_rich1, vector_crowded_rich2}, kRich, shader::kRichCrowdedArguments);
     tilesOf({"raster images", "raster images rgba8", "raster images rgba16f"},
             {vector_tiles_images0, vector_tiles_images1, vector_tiles_images2}, kImages, shader::kPaintedArguments);
     tilesOf({"crowded images", "crowded images rgba8", "crowded images rgba16f"},
@@ -269,8 +307,8 @@ core::PassList Canvas::describe() const {
            {vector_raster_paints0, vector_raster_paints1, vector_raster_paints2}, kPaints);
     raster({"raster gradients", "raster gradients rgba8", "raster gradients rgba16f"},
            {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
-    raster({"raster all", "raster all rgba8", "raster all rgba16f"},
-           {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich);
+    tilesOf({"raster all", "raster all rgba8", "raster all rgba16f"},
+            {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich, shader::kRichArguments);
     raster({"raster images", "raster images rgba8", "raster images rgba16f"},
            {vector_raster_images0, vector_raster_images1, vector_raster_images2}, kImages);
   }
@@ -396,20 +434,29 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.height = info.height;
   header.tilesX = divide(info.width, shader::kTileSize);
   header.tilesY = divide(info.height, shader::kTileSize);
-  header.binsX = divide(info.width, shader::kBinSize);
-  header.binCount = header.binsX * divide(info.height, shader::kBinSize);
   header.pathWords = divide(header.pathCount, 32);
+  // Small bins where there are many paths, if there is room for them.
+  constexpr uint32_t kPathsOfBin = 64;
+  for (uint32_t shift = shader::kMaxBinShift; shift >= shader::kMinBinShift; --shift) {
+    const uint32_t across = divide(info.width, shader::kTileSize << shift),
+                   count = across * divide(info.height, shader::kTileSize << shift);
+    if (shift != shader::kMaxBinShift && uint64_t(count) * header.pathWords > binWords()) break;
+    header.binShift = shift;
+    header.binsX = across;
+    header.binCount = count;
+    if (software_ || header.pathCount <= count * kPathsOfBin) break;
+  }
   header.wordLimit = maxWords_;
   header.entryLimit = maxEntries_;
+  header.rowLimit = maxRows();
   header.samples = info.samples ? info.samples : 16;
   header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
                  (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
+  // Only what is in a group or has a projective gradient takes the general shader, beside the others'.
+  const bool rich = !images && (groups || (gradients && projective));
+  if (rich) header.flags |= shader::kSplitRich;
   // Few segments are dealt out to many workgroups, which then each wait for less; many are better taken together.
-  const uint32_t perGroup = software_                      ? 64
-                            : header.segmentCount < 16384  ? 4
-                            : header.segmentCount < 131072 ? 8
-                            : header.segmentCount < 400000 ? 16
-                                                           : shader::kMostSegments;
+  const uint32_t perGroup = software_ ? 64 : header.segmentCount < 16384 ? 4 : shader::kMostSegments;
   header.groupSegments = perGroup;
   header.listWords = listWords();
   for (uint32_t i = 0; i < info.imageCount && images; ++i)
@@ -428,13 +475,13 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
   r.conditions[projective ? kProjective : slotCount > 1 ? kDrawings : kOneDrawing] = true;
   const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
-  const bool rich = groups || (gradients && projective);
-  r.conditions[(images          ? kImages
-                : rich          ? kRich
-                : !gradients    ? kPlain
-                : slotCount > 1 ? kPaints
-                                : kPaintsOne) +
+  r.conditions[(images ? kImages
+                // The plain shader fetches from one drawing only, and on hardware leaves no squares to the general one.
+                : !gradients && !(rich && (slotCount > 1 || !software_)) ? kPlain
+                : slotCount > 1                                          ? kPaints
+                                                                         : kPaintsOne) +
                image] = true;
+  if (rich) r.conditions[kRich + image] = true;
   r.conditions[kAny + image] = true;
   // Shaders name all images, so those that are not there are bound to the first one.
   for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
@@ -442,20 +489,15 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     r.bindings[kFirstImage + i].texture = {from.sampler, from.view, from.layout};
   }
   r.groups[kPaths] = rows(divide(header.pathCount, 64));
-  r.groups[kParams] = {divide(r.constants.size(), 64 * 16), 1, 1};
+  r.groups[kBegin] = {software_ ? divide(r.constants.size(), 64 * 16) : divide(maxWords_, 64 * 8), 1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
-  // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops; else,
-  // where there are few segments, more workgroups share each one's rows.
-  const uint32_t few = 4096 / std::max(divide(header.segmentCount, perGroup), 1u);
+  // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
-  r.groups[kSlices] = r.groups[kSegments];
-  if (!software_) r.groups[kSlices][2] = std::clamp(few, 1u, 16u);
-  r.groups[kBins] =
-      rows(divide(std::max(uint64_t(header.binCount) * header.pathWords, uint64_t(shader::kFirstBin)), 64));
-  r.groups[kWords] = {std::min(256u, divide(maxWords_, 64)), 1, 1};
+  r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
+  r.groups[kRows] = {std::min(4096u, divide(maxRows(), 64)), 1, 1};
   r.groups[kTiles] = rows(divide(uint64_t(header.tilesX) * header.tilesY, 8));
-  r.groups[kSift] = {divide(uint64_t(header.binCount) * (shader::kBinSize / shader::kTileSize), 64), 1, 1};
-  r.groups[kRaster] = {divide(info.width, 16), divide(info.height, 16), 1};
+  r.groups[kSift] = {divide(uint64_t(header.binCount) << header.binShift, 64), 1, 1};
+  r.groups[kRaster] = {divide(info.width, kSquare), divide(info.height, kSquare), 1};
   if (auto ok = check(r); !ok) return ok;
   if (auto ok = record(r); !ok) return ok;
   if (view) {

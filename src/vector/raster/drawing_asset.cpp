@@ -6,10 +6,13 @@
 namespace gpgp::vector {
 
 core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& context, const char* label,
-                                                              const Drawing& drawing) {
+                                                              Drawing&& drawing, bool editable,
+                                                              const DrawingAsset* base,
+                                                              std::span<const GpgpPathEdit> edits) {
   auto asset = core::makeUnique<DrawingAsset>(context.host(), context, label);
   asset->curves_ = static_cast<uint32_t>(drawing.curves.size());
-  const Outlines outlines = makeOutlines(drawing, &context.host());
+  Outlines outlines = base ? editOutlines(drawing, base->kept_->outlines, edits, &context.host())
+                           : makeOutlines(drawing, &context.host());
   asset->ends_.assign(drawing.paths.size(), Ends{});
   for (const PatchRecord& patch : drawing.patches) ++asset->ends_[patch.path].patches;
   for (size_t i = 0; i < asset->ends_.size(); ++i) {
@@ -39,6 +42,7 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
                            bytes.size(), context.device.limits.maxStorageBufferRange);
   if (auto ok = asset->makeResident(GPGP_SERVICE_VECTOR, std::move(bytes), 16); !ok) return ok.error();
+  if (editable) asset->kept_.emplace(Kept{std::move(drawing), std::move(outlines)});
   return asset;
 }
 

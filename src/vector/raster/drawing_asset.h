@@ -3,13 +3,22 @@
 #include "core/resident.h"
 #include "vector/raster/segments.h"
 
+#include <optional>
+
 namespace gpgp::vector {
 
 /// A drawing's tables in one buffer: segments, boxes of paths, paths, paints, stops, clips, layers.
 class DrawingAsset final : public core::Resident {
 public:
-  static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label,
-                                                         const Drawing& drawing);
+  /// What edited drawings are made from.
+  struct Kept {
+    Drawing drawing;
+    Outlines outlines;
+  };
+  /// `base` and `edits`: where the drawing comes from replacePaths, what its other outlines are taken from.
+  static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label, Drawing&& drawing,
+                                                         bool editable, const DrawingAsset* base = nullptr,
+                                                         std::span<const GpgpPathEdit> edits = {});
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), ends_(&owner.host()) {}
 
@@ -25,11 +34,13 @@ public:
   bool groups() const { return tables_.layers > tables_.clips || layers_; } ///< that clip or fade
   bool gradients() const { return tables_.stops > tables_.paints; }
   uint32_t images() const { return images_; } ///< how many of the record's images it needs
+  const Kept* kept() const { return kept_ ? &*kept_ : nullptr; }
   const float* bounds() const { return bounds_; }
   const float* viewport() const { return viewport_; }
 
 private:
   std::pmr::vector<Ends> ends_; // by path, running
+  std::optional<Kept> kept_;    // where it is editable
   uint32_t curves_ = 0, images_ = 0;
   bool layers_ = false;
   shader::SlotRecord tables_{};

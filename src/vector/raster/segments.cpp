@@ -154,7 +154,10 @@ private:
 
 } // namespace
 
-Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory) {
+namespace {
+/// `base`: outlines that are taken over for paths whose `edited` is 0; NULL: none.
+Outlines outlinesOf(const Drawing& drawing, const Outlines* base, std::span<const uint8_t> edited,
+                    std::pmr::memory_resource* memory) {
   Outlines outlines(memory);
   PathOutline outline(drawing, outlines);
   outlines.boxes.reserve(drawing.paths.size());
@@ -162,6 +165,15 @@ Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory)
   size_t patch = 0;
   for (uint32_t path = 0; path < drawing.paths.size(); ++path) {
     const size_t first = patch;
+    if (base && !edited[path]) {
+      while (patch < drawing.patches.size() && drawing.patches[patch].path == path) ++patch;
+      const auto segments = base->segments.begin();
+      outlines.segments.insert(outlines.segments.end(), segments + (path ? base->ends[path - 1] : 0),
+                               segments + base->ends[path]);
+      outlines.boxes.push_back(base->boxes[path]);
+      outlines.ends.push_back(static_cast<uint32_t>(outlines.segments.size()));
+      continue;
+    }
     vec4 box{3e38f, 3e38f, -3e38f, -3e38f};
     for (; patch < drawing.patches.size() && drawing.patches[patch].path == path; ++patch) {
       const PatchRecord& p = drawing.patches[patch];
@@ -172,6 +184,19 @@ Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory)
     outlines.ends.push_back(static_cast<uint32_t>(outlines.segments.size()));
   }
   return outlines;
+}
+} // namespace
+
+Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory) {
+  return outlinesOf(drawing, nullptr, {}, memory);
+}
+
+Outlines editOutlines(const Drawing& drawing, const Outlines& base, std::span<const GpgpPathEdit> edits,
+                      std::pmr::memory_resource* memory) {
+  std::pmr::vector<uint8_t> edited(drawing.paths.size(), 0, memory);
+  const uint32_t hidden = clipPaths(drawing);
+  for (const GpgpPathEdit& edit : edits) edited[hidden + edit.index] = 1;
+  return outlinesOf(drawing, &base, edited, memory);
 }
 
 } // namespace gpgp::vector

@@ -12,5 +12,8 @@ struct Outlines {
   std::pmr::vector<uint32_t> ends;      ///< of each path: one past its last segment
 };
 Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory);
+/// The same for a drawing that replacePaths has made: those of other paths are the base's.
+Outlines editOutlines(const Drawing& drawing, const Outlines& base, std::span<const GpgpPathEdit> edits,
+                      std::pmr::memory_resource* memory);
 
 } // namespace gpgp::vector

@@ -32,8 +32,9 @@ void Importer::cascade(pugi::xml_node node, std::string_view name, const Style& 
   lengths.fontSize = parent.fontSize;
   const auto apply = [&](const Setting& s) {
     if (applyProperty(style, parent, s.name, s.value, lengths) == Applied::Invalid)
-      reporter_.warn(document_.line(node), element(node) + " has " + std::string(s.name) + " '" +
-                                               std::string(s.value.substr(0, 60)) + "', which is not valid; ignored");
+      reporter_.ignored(document_.line(node), element(node) + " has " + std::string(s.name) + " '" +
+                                                  std::string(s.value.substr(0, 60)) +
+                                                  "', which is not valid; ignored");
   };
   for (const Setting& s : settings) // lengths in em need it
     if (s.name == "font-size") apply(s);
@@ -57,12 +58,12 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& 
   if (name == "linearGradient" || name == "radialGradient") {
     if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
       return Ink{{0, 0, 0, 1}, std::move(gradient)};
-    reporter_.warn(document_.line(node), who + " refers to a gradient without stops or extent; " + instead);
+    reporter_.ignored(document_.line(node), who + " refers to a gradient without stops or extent; " + instead);
     return plain(paint.fallback);
   }
   const std::string shown = std::string("'") + paint.reference.substr(0, 60) + "'";
   if (name.empty())
-    reporter_.warn(document_.line(node), who + " refers to " + shown + ", which is not there; " + instead);
+    reporter_.ignored(document_.line(node), who + " refers to " + shown + ", which is not there; " + instead);
   else
     reporter_.warn(document_.line(node),
                    who + " refers to a <" + std::string(name.substr(0, 40)) + ">, which is not supported; " + instead);

@@ -1,4 +1,4 @@
-// Colours (CSS Color 4, the part that SVG files use): names, #rgb[a], #rrggbb[aa], rgb(), rgba(), hsl().
+// Colours (CSS Color 4, sections 5 to 8): names, #rgb[a], #rrggbb[aa], rgb(), rgba(), hsl(), hsla(), hwb().
 #include "vector/import/svg/style.h"
 
 #include <algorithm>
@@ -187,35 +187,46 @@ double channelOfHue(double h, double s, double l, double n) {
   return l - a * std::max(-1.0, std::min({k - 3, 9 - k, 1.0}));
 }
 
-/// rgb(1, 2, 3), rgb(10% 20% 30% / 50%), hsl(120deg, 50%, 50%) and their forms with alpha.
+/// rgb(1, 2, 3), rgb(10% 20% 30% / 50%), hsl(120deg, 50%, 50%), hwb(0.5turn 10% 20%) and their forms with alpha.
 bool parseFunction(std::string_view text, Color& color) {
   Scanner s(text);
   const std::string_view name = s.name();
-  const bool hsl = name == "hsl" || name == "hsla";
-  if ((!hsl && name != "rgb" && name != "rgba") || !s.take("(")) return false;
+  const bool hsl = name == "hsl" || name == "hsla", hwb = name == "hwb", byHue = hsl || hwb;
+  if ((!byHue && name != "rgb" && name != "rgba") || !s.take("(")) return false;
   double v[4] = {0, 0, 0, 1};
   int count = 0;
   s.skipSpace();
   while (!s.done() && s.peek() != ')') {
-    if (count == 4 || !s.number(v[count])) return false;
+    if (count == 4 || (!s.take("none") && !s.number(v[count]))) return false;
     if (s.take("%"))
       v[count] /= 100;
-    else if (count < 3 && !hsl)
+    else if (count < 3 && !byHue)
       v[count] /= 255;
-    s.take("deg");
+    if (byHue && count == 0) {
+      if (s.take("grad")) v[0] *= 0.9;
+      if (s.take("rad")) v[0] *= 57.29577951308232;
+      if (s.take("turn")) v[0] *= 360;
+      s.take("deg");
+    }
     s.skipCommaSpace();
     if (s.take("/")) s.skipSpace();
     ++count;
   }
-  if (!s.take(")") || count < 3) return false;
-  if (hsl) {
+  if (!s.take(")") || !s.done() || count < 3) return false;
+  if (byHue) {
     const double h = std::fmod(std::fmod(v[0], 360.0) + 360, 360.0);
-    const double saturation = std::clamp(v[1], 0.0, 1.0), light = std::clamp(v[2], 0.0, 1.0);
-    v[0] = channelOfHue(h, saturation, light, 0);
-    v[1] = channelOfHue(h, saturation, light, 8);
-    v[2] = channelOfHue(h, saturation, light, 4);
+    const double b = std::clamp(v[1], 0.0, 1.0), c = std::clamp(v[2], 0.0, 1.0);
+    for (size_t i = 0; i < 3; ++i) {
+      const double offset = i == 0 ? 0 : i == 1 ? 8 : 4;
+      if (hsl)
+        v[i] = channelOfHue(h, b, c, offset);
+      else if (b + c >= 1) // a grey
+        v[i] = b / (b + c);
+      else
+        v[i] = channelOfHue(h, 1, 0.5, offset) * (1 - b - c) + b;
+    }
   }
-  for (double& c : v) c = std::clamp(c, 0.0, 1.0);
+  for (double& value : v) value = std::clamp(value, 0.0, 1.0);
   color = {v[0], v[1], v[2], v[3]};
   return true;
 }

@@ -20,7 +20,8 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   };
   const auto begin = Clock::now();
   const auto imported =
-      vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter);
+      vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
+                             {source.imageFn, source.imageUserData});
   if (!imported) return fail(imported.error().code, imported.error().text);
   std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
   const vector::svg::ImportedViews views(*imported);

@@ -2,9 +2,9 @@
 //
 // Supported: path, rect, circle, ellipse, line, polyline, polygon, g, a, svg (nested too), use, symbol, switch;
 // transforms; fill, stroke with joins, caps and dashes (made into fills), opacities, colours, style sheets with simple
-// selectors; linear and radial gradients; clip paths; opacity of groups. What is not supported is named with its line
-// while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and a limit that is met
-// is said.
+// selectors; linear and radial gradients; clip paths; opacity of groups; embedded images. What is not supported is
+// named with its line while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and
+// a limit that is met is said.
 #pragma once
 #include "core/result.h"
 #include "vector/geometry/shape.h"
@@ -33,14 +33,21 @@ struct Gradient {
   std::vector<GpgpGradientStop> stops;
 };
 
+/// Who decodes embedded images.
+struct ImageDecoder {
+  GpgpSvgImageFn fn = nullptr;
+  void* userData = nullptr;
+};
+
 struct ImportedPath {
   std::vector<GpgpPathVerb> verbs;
   std::vector<float> points; ///< x, y pairs in pixels of the page
   GpgpFillRule rule = GPGP_FILL_NON_ZERO;
-  float color[4] = {};                      ///< linear RGB, straight alpha
-  std::shared_ptr<const Gradient> gradient; ///< instead of the colour, whose alpha still counts
-  size_t line = 1;                          ///< of the element it comes from
-  uint32_t group = 0;                       ///< 1 + its index in Imported::groups
+  float color[4] = {};                         ///< linear RGB, straight alpha
+  std::shared_ptr<const Gradient> gradient;    ///< instead of the colour, whose alpha still counts
+  std::shared_ptr<const GpgpImagePaint> image; ///< likewise
+  size_t line = 1;                             ///< of the element it comes from
+  uint32_t group = 0;                          ///< 1 + its index in Imported::groups
 
   GpgpPath view() const {
     return {verbs.data(),
@@ -51,7 +58,7 @@ struct ImportedPath {
             {color[0], color[1], color[2], color[3]},
             gradient ? &gradient->gradient : nullptr,
             nullptr,
-            nullptr,
+            image.get(),
             0,
             group};
   }
@@ -90,7 +97,12 @@ struct ImportedViews {
   std::vector<GpgpPathGroup> groups;
 };
 
+/// The map from the page of an SVG (x, y, width, height) into a picture, as if the picture's size were what the
+/// outermost element asks for: the viewBox, or the page where there is none, fitted as preserveAspectRatio says.
+core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&page)[4], double width, double height);
+
 /// Errors where the bytes are no SVG at all; everything milder goes to the reporter.
-core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits = {});
+core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits = {},
+                                 const ImageDecoder& images = {});
 
 } // namespace gpgp::vector::svg

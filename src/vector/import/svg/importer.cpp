@@ -22,10 +22,11 @@ constexpr std::string_view kSilent[] = {
 
 } // namespace
 
-core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits) {
+core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits,
+                                 const ImageDecoder& images) {
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
-  return Importer(document, reporter, limits).run();
+  return Importer(document, reporter, limits, images).run();
 }
 
 std::string Importer::element(pugi::xml_node node) const {
@@ -54,9 +55,9 @@ Imported Importer::run() {
   const pugi::xml_attribute boxText = root.attribute("viewBox");
   const std::optional<ViewBox> box = parseViewBox(boxText.value());
   if (boxText && !box)
-    reporter_.warn(document_.line(boxText, 0), std::string("<svg> has viewBox '") +
-                                                   std::string(boxText.value()).substr(0, 60) +
-                                                   "', which is not valid; ignored");
+    reporter_.ignored(document_.line(boxText, 0), std::string("<svg> has viewBox '") +
+                                                      std::string(boxText.value()).substr(0, 60) +
+                                                      "', which is not valid; ignored");
   State state;
   // A page in percent has the size of its viewBox: there is nothing around it.
   state.lengths.width = box ? box->width : 100;
@@ -117,7 +118,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     return;
   }
   if (mode_ == Mode::Clip && !oneOf(name, kShapes) && name != "use" && name != "text") {
-    reporter_.warn(document_.line(node), element(node) + " shows nothing inside a <clipPath>");
+    reporter_.ignored(document_.line(node), element(node) + " shows nothing inside a <clipPath>");
     return;
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
@@ -163,6 +164,8 @@ void Importer::content(pugi::xml_node node, std::string_view name, State& state,
     visitViewport(node, state, useSize);
   } else if (name == "use") {
     visitUse(node, state);
+  } else if (name == "image") {
+    drawImage(node, state);
   } else if (name == "switch") {
     visitSwitch(node, state);
   } else {
@@ -239,9 +242,9 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
       state.lengths.width = box->width;
       state.lengths.height = box->height;
     } else {
-      reporter_.warn(document_.line(text, 0), element(node) + " has viewBox '" +
-                                                  std::string(text.value()).substr(0, 60) +
-                                                  "', which is not valid; ignored");
+      reporter_.ignored(document_.line(text, 0), element(node) + " has viewBox '" +
+                                                     std::string(text.value()).substr(0, 60) +
+                                                     "', which is not valid; ignored");
     }
   }
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
@@ -385,6 +388,7 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
   path.verbs.assign(shape.verbs.begin(), shape.verbs.end());
   path.rule = rule;
   path.gradient = ink.gradient;
+  path.image = ink.image;
   path.line = document_.line(node);
   path.group = group_;
   const double linear[4] = {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b), alpha};

@@ -27,8 +27,8 @@ Box boxOf(const Shape& shape);
 
 class Importer {
 public:
-  Importer(const Document& document, Reporter& reporter, const ImportLimits& limits)
-      : document_(document), reporter_(reporter), limits_(limits) {}
+  Importer(const Document& document, Reporter& reporter, const ImportLimits& limits, const ImageDecoder& images)
+      : document_(document), reporter_(reporter), limits_(limits), images_(images) {}
   Imported run();
 
 private:
@@ -64,6 +64,7 @@ private:
   struct Ink {
     Color color;
     std::shared_ptr<const Gradient> gradient;
+    std::shared_ptr<const GpgpImagePaint> image = nullptr;
   };
   void emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Ink& ink, double opacity,
             pugi::xml_node node);
@@ -71,6 +72,13 @@ private:
   void reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style);
   bool stopped(pugi::xml_node node);
   void stop(pugi::xml_node node, const std::string& why);
+
+  // image.cpp
+  struct Picture { // that was decoded; width 0: it could not be
+    uint32_t index = 0, width = 0, height = 0;
+  };
+  const Picture* pictureOf(pugi::xml_node node);
+  void drawImage(pugi::xml_node node, const State& state);
 
   // shapes.cpp
   Shape shapeOf(pugi::xml_node node, std::string_view name, const State& state);
@@ -94,6 +102,9 @@ private:
   const Document& document_;
   Reporter& reporter_;
   const ImportLimits& limits_;
+  const ImageDecoder& images_;
+  std::unordered_map<std::string_view, Picture> pictures_; // by href
+  uint32_t pictureCount_ = 0;
   StyleSheet sheet_;
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of

@@ -13,7 +13,12 @@ public:
       : function_(function), userData_(userData), name_(name ? name : "") {}
 
   /// "line 3: text". The same text for the same line is given once.
+  /// For what the importer cannot do.
   void warn(size_t line, const std::string& text) { say(GPGP_SEVERITY_WARNING, GPGP_ERROR_UNSUPPORTED, line, text); }
+  /// For what says nothing, or nothing valid, and is ignored as the standards ask.
+  void ignored(size_t line, const std::string& text) {
+    say(GPGP_SEVERITY_WARNING, GPGP_ERROR_INVALID_DATA, line, text);
+  }
   void error(size_t line, const std::string& text, GpgpResult code = GPGP_ERROR_INVALID_DATA) {
     say(GPGP_SEVERITY_ERROR, code, line, text);
   }

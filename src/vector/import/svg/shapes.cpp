@@ -84,6 +84,18 @@ std::optional<ViewBox> parseViewBox(std::string_view text) {
   return ViewBox{v[0], v[1], v[2], v[3]};
 }
 
+core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&page)[4], double width, double height) {
+  Document document;
+  if (auto ok = document.load(bytes); !ok) return ok.error();
+  const auto at = [&page](size_t i) { return static_cast<double>(page[i]); };
+  const std::string_view how = document.root().attribute("preserveAspectRatio").value();
+  const std::optional<ViewBox> box = parseViewBox(document.root().attribute("viewBox").value());
+  if (!box) return fitViewBox({at(0), at(1), at(2), at(3)}, width, height, how);
+  const Affine there = fitViewBox(*box, at(2), at(3), how), here = fitViewBox(*box, width, height, how);
+  const double x = here.a / there.a, y = here.d / there.d;
+  return Affine{x, 0, 0, y, here.e - x * (there.e + at(0)), here.f - y * (there.f + at(1))};
+}
+
 Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio) {
   double sx = width / box.width, sy = height / box.height, alignX = 0.5, alignY = 0.5;
   Scanner s(preserveAspectRatio);

@@ -1,0 +1,27 @@
+#version 460
+// As fill.comp, from the lists of chords and their rows of pixels that mark has written: a lane a row.
+#extension GL_GOOGLE_include_directive : require
+#include "canvas.glsl"
+layout(local_size_x = 64) in;
+#include "fill_row.glsl"
+#include "chords.glsl"
+
+void main() {
+  const uint total = counters.rows, cutPath = counters.cutPath;
+  if (!listed(total)) return;
+  const Grid g = canvasGrid();
+  for (uint i = gl_GlobalInvocationID.x; i < total; i += gl_NumWorkGroups.x * 64) {
+    const uint row = rows[i];
+    const ChordRecord r = chordList[i - row];
+    const uint path = r.path & ~kRightSide;
+    if (path >= cutPath) continue;
+    Chord c;
+    c.top = r.top;
+    c.bottom = r.bottom;
+    c.slope = r.slope;
+    c.first = rowOf(g, c.top.y);
+    c.last = rowOf(g, c.bottom.y);
+    c.side = (r.path & kRightSide) != 0 ? 1.0 : -1.0;
+    fillRow(g, paths[path], c, (c.first >> findMSB(g.samples)) + int(row));
+  }
+}

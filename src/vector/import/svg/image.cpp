@@ -1,0 +1,109 @@
+// <image> with a data: URI as a rectangle painted with the image (SVG 2, 12.4). Whoever compiles decodes PNG, JPEG and
+// the like, and keeps the texture; here base64 becomes bytes and the picture is fitted into its place.
+#include "vector/import/svg/importer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::vector::svg {
+namespace {
+
+/// The bytes behind "data:...;base64,"; empty where it is something else.
+std::vector<uint8_t> decodeDataUri(std::string_view uri) {
+  const size_t comma = uri.find(',');
+  if (uri.substr(0, 5) != "data:" || comma == uri.npos) return {};
+  const std::string_view head = uri.substr(0, comma);
+  if (head.size() < 7 || head.substr(head.size() - 7) != ";base64") return {};
+  std::vector<uint8_t> bytes;
+  bytes.reserve((uri.size() - comma) / 4 * 3);
+  uint32_t bits = 0, count = 0;
+  for (const char c : uri.substr(comma + 1)) {
+    const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '+'             ? 62
+                      : c == '/'             ? 63
+                                             : -1;
+    if (digit < 0) {
+      if (c == '=') break;
+      if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+      return {};
+    }
+    bits = bits << 6 | static_cast<uint32_t>(digit);
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<uint8_t>(bits >> count));
+    }
+  }
+  return bytes;
+}
+
+} // namespace
+
+const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
+  const std::string_view href = trim(hrefOf(node).value());
+  const auto [known, isNew] = pictures_.try_emplace(href);
+  Picture& picture = known->second;
+  if (!isNew) return picture.width ? &picture : nullptr;
+  picture.index = pictureCount_;
+  if (pictureCount_ < GPGP_MAX_IMAGES) {
+    const std::vector<uint8_t> bytes = decodeDataUri(href);
+    uint32_t width = 0, height = 0;
+    if (!bytes.empty() && images_.fn(images_.userData, picture.index, bytes.data(), bytes.size(), &width, &height) &&
+        width && height) {
+      picture.width = width;
+      picture.height = height;
+      ++pictureCount_;
+      return &picture;
+    }
+  }
+  return nullptr;
+}
+
+void Importer::drawImage(pugi::xml_node node, const State& state) {
+  const std::string_view href = trim(hrefOf(node).value());
+  const size_t line = document_.line(node);
+  if (!images_.fn) return reporter_.warn(line, "<image> is not supported");
+  if (href.substr(0, 5) != "data:")
+    return reporter_.warn(line, "<image> of another file, '" + std::string(href.substr(0, 60)) + "', is not supported");
+  const bool many = pictureCount_ >= GPGP_MAX_IMAGES && !pictures_.count(href);
+  const Picture* picture = pictureOf(node);
+  if (!picture)
+    return reporter_.warn(line, many ? "<image> is one more than the " + std::to_string(GPGP_MAX_IMAGES) +
+                                           " that a drawing can have; not supported"
+                                     : std::string("<image> holds nothing that can be decoded; not supported"));
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
+  bool hasWidth = false, hasHeight = false;
+  double w = length(node, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  double h = length(node, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  const double pw = picture->width, ph = picture->height;
+  if (!hasWidth) w = hasHeight ? h * pw / ph : pw;
+  if (!hasHeight) h = w * ph / pw;
+  if (!(w > 0 && h > 0)) return;
+  const double x = length(node, "x", lengths, LengthAxis::X, 0), y = length(node, "y", lengths, LengthAxis::Y, 0);
+  const Affine fitted =
+      Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, node.attribute("preserveAspectRatio").value());
+  // What of the picture is within its place.
+  const double left = std::max(x, fitted.e), top = std::max(y, fitted.f);
+  const double right = std::min(x + w, fitted.e + pw * fitted.a), bottom = std::min(y + h, fitted.f + ph * fitted.d);
+  if (!(right > left && bottom > top)) return;
+  const Shape shape = rectangle(left, top, right - left, bottom - top, 0, 0, 1);
+  if (mode_ == Mode::Measure) return measure(shape, toBox_ * state.transform);
+  if (mode_ == Mode::Clip || !state.style.visible) return;
+  const Affine map = state.transform * fitted * Affine{pw, 0, 0, ph, 0, 0};
+  const double to[6] = {map.a, map.b, map.c, map.d, map.e, map.f};
+  auto paint = std::make_shared<GpgpImagePaint>();
+  paint->image = picture->index;
+  for (size_t i = 0; i < 6; ++i) paint->transform[i] = static_cast<float>(to[i]);
+  const float* t = paint->transform;
+  const auto area =
+      static_cast<double>(t[0]) * static_cast<double>(t[3]) - static_cast<double>(t[1]) * static_cast<double>(t[2]);
+  for (const float v : paint->transform)
+    if (!(std::fabs(static_cast<double>(v) / area) < 1e20 && std::fabs(v) < 1e15f)) return; // seen from its edge
+  group_ = state.group;
+  emit(shape, state.transform, GPGP_FILL_NON_ZERO, {{0, 0, 0, 1}, nullptr, std::move(paint)}, state.opacity, node);
+}
+
+} // namespace gpgp::vector::svg
