@@ -38,7 +38,7 @@ typedef struct GpgpSamplerCreateInfo {
   const void* pNext;
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel and camera
-                                     (conservative: 44) */
+                                     (conservative: 56) */
   uint32_t maxCameras;          /**< of one record, at most 8; 0: 1 */
   uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 48 bytes each */
   uint32_t maxTriangles;        /**< of one record, all draws and cameras together; 0: 4194304. What is beyond is not
@@ -120,6 +120,31 @@ typedef struct GpgpCamera {
   VkBool32 reversedDepth;   /**< near is 1 */
 } GpgpCamera;
 
+/** A region that a viewer may be in until the next record: a camera in its middle and those around it. What the union
+ * of their records shows is what may be seen from there (6.3.5). */
+typedef struct GpgpViewCellInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpCamera camera;      /**< of the middle; perspective or parallel */
+  uint32_t columns, rows; /**< a grid of so many pixels, 1 to 64 each, with the middle in its centre (figure 6.13); 0:
+                             no grid */
+  uint32_t skip;          /**< every so many pixels' view point is taken; 0: 1 */
+  uint32_t height;        /**< of the viewport, in pixels */
+  float distance;      /**< of the grid: along the view, in clip space's w: by one of its pixels what lies there moves
+                            by one pixel */
+  const float* points; /**< more view points: 3 floats each, in world units along the camera's right, its up and
+                            back towards the viewer, from the middle. Finite */
+  uint32_t pointCount;
+} GpgpViewCellInfo;
+#define GPGP_VIEW_CELL_INFO_INIT GPGP_INIT(GpgpViewCellInfo, GPGP_STRUCTURE_VIEW_CELL_INFO)
+
+/** Makes the cameras of a view cell: the middle, the grid row by row, the points. For a record with several cameras,
+ *  or several records that accumulate. cameras may be NULL; *count is what it has room for, and then how many there are
+ *  (INCOMPLETE: more than the room; the first ones are written).
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32_t* count,
+                                                     GpgpCamera* cameras);
+
 /** Projected size of a triangle, of what lies between near and far plane and within three viewports to each side. */
 typedef struct GpgpTriangleSize {
   float area;          /**< pixels */
@@ -148,7 +173,8 @@ typedef struct GpgpSampleInfo {
                              distance along the view; for parallel ones, whose w is 1, of its z */
   float epsilonDynamic; /**< conservative: times 1 - |cosine| of the two triangles' normals */
   uint32_t refinements; /**< conservative: at most 4 further passes, each of which shows, in every pixel that visible
-                             triangles do not cover at 8 x 8 samples, the nearest one that covers such a sample */
+                             triangles do not cover at 8 x 8 samples, the nearest one in each quarter that covers such
+                             a sample */
   GpgpBuffer positions; /**< vertex positions; STORAGE usage; size a multiple of 4 for 16-bit formats */
   VkFormat positionFormat; /**< R32G32B32_SFLOAT, R16G16B16_SFLOAT or R16G16B16_SNORM, or the same with A; UNDEFINED:
                                 R32G32B32_SFLOAT. Only the first three numbers are read */
@@ -168,7 +194,8 @@ typedef struct GpgpSampleInfo {
                                    are; STORAGE usage */
   uint32_t triangleCount;     /**< of all draws: one past the last triangle number; at most 2^31 */
   GpgpBuffer visibleBits;     /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
-  GpgpBuffer pixelCounts;     /**< out, optional: uint32_t per triangle: samples that show it (exact: centres) */
+  GpgpBuffer pixelCounts;     /**< out, optional: uint32_t per triangle: samples that show it (exact: centres);
+                                   truth: at most 2^32 - 1 */
   GpgpBuffer visibleList;   /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
                                  budget */
   GpgpBuffer visibleCount;  /**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
@@ -196,6 +223,29 @@ typedef struct GpgpSampleInfo {
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker sampler, VkCommandBuffer commandBuffer,
                                                           const GpgpFrame* frame, const GpgpSampleInfo* info);
 
+typedef struct GpgpVisibilityMetricsInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpRecordInfo base;
+  uint32_t triangleCount;    /**< of all buffers; at most 2^31 */
+  GpgpBuffer visibleBits;    /**< what is measured: a record's, or several records' united; STORAGE usage, as all */
+  GpgpBuffer truthBits;      /**< of records of method truth: all slices, of all cameras that visibleBits unites */
+  GpgpBuffer truthCounts;    /**< optional: their pixelCounts; without it shares by area are 0 */
+  GpgpBuffer recheckBits;    /**< optional: bits of a finer truth (256 samples): a triangle that is visible and in
+                                  these is part of the truth, but one that is in these only is not */
+  GpgpBuffer falsePositives; /**< out, optional: bits: visible, not in the truth */
+  GpgpBuffer falseNegatives; /**< out, optional: bits: in the truth, not visible */
+} GpgpVisibilityMetricsInfo;
+#define GPGP_VISIBILITY_METRICS_INFO_INIT GPGP_INIT(GpgpVisibilityMetricsInfo, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO)
+
+/** Compares visible bits with a truth, triangle by triangle: coverage and overestimation (6.3). Their numbers are in
+ * this record's report. NOT_READY: sampler not prewarmed.
+ *  @threads handle @lifetime call; buffers: frame @pass outside
+ *  @state compute pipeline, compute descriptor set 0, push constants */
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpWorker sampler, VkCommandBuffer commandBuffer,
+                                                                 const GpgpFrame* frame,
+                                                                 const GpgpVisibilityMetricsInfo* info);
+
 typedef struct GpgpSampleReport {
   GpgpStructureType sType;
   void* pNext;
@@ -216,6 +266,13 @@ typedef struct GpgpSampleReport {
   uint32_t draws;               /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */
   uint32_t drawTriangles;       /**< of them written */
+  uint32_t truth;               /**< of metrics, as all that follows: triangles in the truth */
+  uint32_t falsePositives;      /**< visible, not in the truth */
+  uint32_t falseNegatives;      /**< in the truth, not visible */
+  float coverage;               /**< found ones, of the truth: 0 to 1; 0 without truth */
+  float overestimation;         /**< false positives, of the truth; may exceed 1 */
+  float coverageArea;           /**< the truth's samples that show found ones, of all that show a triangle */
+  float overestimationArea;     /**< false positives, which no sample shows, as one sample each, of the same */
 } GpgpSampleReport;
 #define GPGP_SAMPLE_REPORT_INIT GPGP_INIT(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT)
 

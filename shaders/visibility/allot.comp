@@ -1,5 +1,5 @@
 // Gives each pixel's list its place: a workgroup sums the lengths of its tile of 8 x 8 pixels and takes that much room,
-// and notes the pixels that have one.
+// and notes the pixels that have one: short lists from one end, long ones from the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -10,8 +10,8 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 layout(std430, set = 0, binding = kBindOpen) writeonly buffer OpenBuffer { uint open[]; };
 #include "visibility/lists.glsl"
 
-shared uvec2 sums[64]; // entries, pixels with lists
-shared uvec2 first;
+shared uvec3 sums[64]; // entries, pixels with short lists, with long ones
+shared uvec3 first;
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
@@ -22,24 +22,27 @@ void main() {
   }
   for (uint tile = gl_WorkGroupID.x; tile < tileCount(); tile += gl_NumWorkGroups.x) {
     uint slot = tile * 64u + lane;
-    uvec2 own = uvec2(slots[lengthAt(slot)], slots[lengthAt(slot)] != 0u ? 1u : 0u);
+    uint n = slots[lengthAt(slot)];
+    uvec3 own = uvec3(n, n != 0u && n <= kBatch ? 1u : 0u, n > kBatch ? 1u : 0u);
     sums[lane] = own;
     barrier();
     for (uint step = 1u; step < 64u; step *= 2u) {
-      uvec2 before = lane >= step ? sums[lane - step] : uvec2(0u);
+      uvec3 before = lane >= step ? sums[lane - step] : uvec3(0u);
       barrier();
       sums[lane] += before;
       barrier();
     }
-    if (lane == 0u && sums[63].y != 0u) {
-      first = uvec2(atomicAdd(counters.entryCount, sums[63].x), atomicAdd(counters.openCount, sums[63].y));
-      atomicMax(counters.openArgs[0], min(first.y + sums[63].y, kMaxGroups));
+    if (lane == 0u && sums[63].x != 0u) {
+      first = uvec3(atomicAdd(counters.entryCount, sums[63].x), atomicAdd(counters.openCount, sums[63].y),
+                    atomicAdd(counters.longCount, sums[63].z));
+      atomicMax(counters.openArgs[0], min((first.y + sums[63].y + 1u) / 2u, kMaxGroups));
+      atomicMax(counters.longArgs[0], min(first.z + sums[63].z, kMaxGroups));
     }
     barrier();
-    if (own.y != 0u) {
-      uvec2 place = first + sums[lane] - own;
+    if (n != 0u) {
+      uvec3 place = first + sums[lane] - own;
       slots[slot] = place.x;
-      open[place.y] = slot;
+      open[n <= kBatch ? place.y : params.pixelCapacity - 1u - place.z] = slot;
     }
     barrier();
   }

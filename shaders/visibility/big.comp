@@ -29,9 +29,9 @@ void main() {
   for (uint entry = gl_WorkGroupID.x; entry < count; entry += gl_NumWorkGroups.x) {
     uint index = slots[bigAt(entry)];
     uint place = slots[bigAt(entry) + 1u];
-    uint slice = place & 0xffu;
-    uint slices = (place >> 8u) & 0xffu;
-    Candidate c = candidates[index];
+    uint slice = place & 0xfffu;
+    uint slices = (place >> 12u) & 0xfffu;
+    Candidate c = readCandidate(index);
     if (gl_LocalInvocationIndex == 0u) groupSeen = isSeen(c.id); // one answer for all, should another pass' bit arrive
     barrier();
     bool seen = groupSeen;
@@ -39,7 +39,7 @@ void main() {
     if (seen != (kPhase == 1u)) continue;
     ScreenTriangle t = triangleOf(c);
     bool compact = isCompact(t);
-    ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(place >> 16u));
+    ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(place >> 24u));
     ivec2 inBlock = ivec2(int(gl_LocalInvocationIndex & 7u), int(gl_LocalInvocationIndex >> 3u));
     uint columns = uint(bounds.z - bounds.x + 7) / 8u;
     uint blocks = columns * (uint(bounds.w - bounds.y + 7) / 8u);
@@ -75,7 +75,7 @@ void main() {
         int bit = lowestBit(mask);
         if (bit < 32) mask.x &= mask.x - 1u;
         else mask.y &= mask.y - 1u;
-        if (pair < params.maxPairs) enter(c, compact, index, blockCorner[bit] + inBlock, pair);
+        if (pair < params.maxPairs) enter(index, blockCorner[bit] + inBlock, pair);
         else show(c.id);
         ++pair;
       }

@@ -2,7 +2,7 @@
 // comes there, and which of the pixel's 64 x 64 samples it covers, a row at a time.
 //
 // Guarantees: one result on every device. The rows' masks are made with floats and may be wrong by a sample at either
-// end; widened by kSeam, two triangles with a common edge leave no sample between them.
+// end, but two triangles with a common edge neither share a sample there nor leave one out.
 #ifndef GPGP_SHADERS_VISIBILITY_CANDIDATE_H
 #define GPGP_SHADERS_VISIBILITY_CANDIDATE_H
 #include "visibility/layout.h"
@@ -148,83 +148,102 @@ GPGP_FN bool touches(ScreenTriangle t, bool compact, ivec2 pixel) {
   return touchesWide(t, pixel);
 }
 
-GPGP_CONST float kSeam = 0.03125f; ///< units
+GPGP_FN int lowestBit(uvec2 m) { return m.x != 0u ? findLSB(m.x) : 32 + findLSB(m.y); }
 
-/// Bits a to b of 64, both clamped.
-GPGP_FN uvec2 bitRange(int a, int b) {
-  int first = max(a, 0);
-  int last = min(b, 63);
-  uvec2 m = uvec2(0u, 0u);
-  if (first > last) return m;
-  if (first < 32) m.x = 0xffffffffu << uint(first);
-  if (last < 31) m.x &= (2u << uint(last)) - 1u;
-  if (last >= 32) m.y = 0xffffffffu >> uint(63 - last);
-  if (first > 32) m.y &= 0xffffffffu << uint(first - 32);
-  return m;
+/// `count` bits from `first` on, together at most 32.
+GPGP_FN uint bitsFrom(int first, int count) {
+#ifdef __cplusplus
+  return count == 0 ? 0u : (0xffffffffu >> (32 - count)) << first;
+#else
+  return bitfieldInsert(0u, 0xffffffffu, first, count);
+#endif
 }
 
-/// A candidate's corners in units from a pixel's first, and its edges' slopes.
+/// Bits `first` to `end` - 1 of 64; both 0 to 64.
+GPGP_FN uvec2 bitRange(int first, int end) {
+  int first0 = min(first, 32);
+  int first1 = max(first, 32) - 32;
+  return uvec2(bitsFrom(first0, max(min(end, 32) - first0, 0)), bitsFrom(first1, max(max(end, 32) - 32 - first1, 0)));
+}
+
+/// A candidate within a pixel: in row r of 64 it covers the samples from the greater of start + r * step (x, y: its
+/// left edges) to before the lesser (z, w: its right ones), both rounded, in rows rowBegin to rowEnd - 1. A sample that
+/// an edge meets lies right of it.
 struct Outline {
-  ivec2 p0;
-  ivec2 p1;
-  ivec2 p2;
-  float slope0;
-  float slope1;
-  float slope2;
+  vec4 start;
+  vec4 step;
+  int rowBegin;
+  int rowEnd;
 };
 
-GPGP_FN Outline outlineOf(Candidate c, ivec2 first) {
+/// Adds an edge. Its line is computed from its upper corner, so that both triangles at an edge have the same one, and
+/// neither share a sample nor leave one out.
+GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2 first) {
+  if (u.y == v.y) return;
+  ivec2 top = (u.y < v.y ? u : v) - first;
+  GPGP_PRECISE float start = (float(top.x - 2) + float(2 - top.y) * slope) * 0.25f + 0.498046875f;
+  if (u.y > v.y) { // upwards: bounds from the left, as the triangle is clockwise as seen
+    o.start.y = o.start.x;
+    o.step.y = o.step.x;
+    o.start.x = start;
+    o.step.x = slope;
+  } else {
+    o.start.w = o.start.z;
+    o.step.w = o.step.z;
+    o.start.z = start;
+    o.step.z = slope;
+  }
+}
+
+GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
   Outline o;
-  o.p0 = c.p0 - first;
-  o.p1 = c.p1 - first;
-  o.p2 = c.p2 - first;
-  o.slope0 = c.slope0;
-  o.slope1 = c.slope1;
-  o.slope2 = c.slope2;
+  ivec2 first = pixel * 256;
+  o.start = vec4(0.0f, 0.0f, 64.0f, 64.0f);
+  o.step = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+  addEdge(o, c.p1, c.p2, c.slope0, first);
+  addEdge(o, c.p2, c.p0, c.slope1, first);
+  addEdge(o, c.p0, c.p1, c.slope2, first);
+  o.rowBegin = clamp((min(c.p0.y, min(c.p1.y, c.p2.y)) - first.y + 1) >> 2, 0, 64);
+  o.rowEnd = clamp((max(c.p0.y, max(c.p1.y, c.p2.y)) - first.y + 1) >> 2, 0, 64);
   return o;
 }
 
-GPGP_FN int lowestBit(uvec2 m) { return m.x != 0u ? findLSB(m.x) : 32 + findLSB(m.y); }
+/// From where to where an outline reaches in a row: x to before y, once rounded.
+GPGP_FN vec2 columnsOf(Outline o, float row) {
+  GPGP_PRECISE float left0 = o.start.x + row * o.step.x;
+  GPGP_PRECISE float left1 = o.start.y + row * o.step.y;
+  GPGP_PRECISE float right0 = o.start.z + row * o.step.z;
+  GPGP_PRECISE float right1 = o.start.w + row * o.step.w;
+  return vec2(clamp(max(left0, left1), 0.0f, 64.0f), clamp(min(right0, right1), 0.0f, 64.0f));
+}
 
-/// Where a pixel's row at unit y, which the outline must reach, enters and leaves it.
-GPGP_FN vec2 rowRange(Outline c, int y) {
-  GPGP_PRECISE float low = 0.0f;
-  GPGP_PRECISE float high = 256.0f;
-  GPGP_PRECISE float x0 = float(c.p1.x) + float(y - c.p1.y) * c.slope0;
-  GPGP_PRECISE float x1 = float(c.p2.x) + float(y - c.p2.y) * c.slope1;
-  GPGP_PRECISE float x2 = float(c.p0.x) + float(y - c.p0.y) * c.slope2;
-  // An edge that runs upwards bounds from the left; the triangle is clockwise as seen.
-  if (c.p1.y > c.p2.y) low = max(low, x0);
-  if (c.p2.y > c.p0.y) low = max(low, x1);
-  if (c.p0.y > c.p1.y) low = max(low, x2);
-  if (c.p1.y < c.p2.y) high = min(high, x0);
-  if (c.p2.y < c.p0.y) high = min(high, x1);
-  if (c.p0.y < c.p1.y) high = min(high, x2);
-  return vec2(low, high);
+/// The integer nearest to 0 to 64: a large number leaves its sum with v no other bits. Conversions are slow.
+GPGP_FN int roundedColumn(float v) {
+  GPGP_PRECISE float sum = v + 8388608.0f;
+  return int(floatBitsToUint(sum) - 0x4b000000u);
+}
+
+/// Which samples of a row an outline covers.
+GPGP_FN uvec2 samplesIn(Outline o, int row) {
+  vec2 columns = columnsOf(o, float(row));
+  int end = row >= o.rowBegin && row < o.rowEnd ? roundedColumn(columns.y) : 0;
+  return bitRange(roundedColumn(columns.x), end);
 }
 
 /// The depth of a candidate in a pixel, as a key: in the middle of the row that halves its box there.
-GPGP_FN uint middleKey(Candidate c, bool compact, ivec2 pixel, bool reversed) {
+GPGP_FN uint middleKey(Candidate c, Outline outline, ivec2 pixel, bool reversed) {
   ivec2 first = pixel * 256;
   ivec2 low = max(min(c.p0, min(c.p1, c.p2)), first);
   ivec2 high = min(max(c.p0, max(c.p1, c.p2)), first + 255);
   ivec2 middle = ivec2((low.x + high.x) >> 1, (low.y + high.y) >> 1);
-  vec2 range = rowRange(outlineOf(c, first), middle.y - first.y);
-  if (range.x < range.y) middle.x = first.x + int(floor((range.x + range.y) * 0.5f));
+  GPGP_PRECISE float row = float(middle.y - first.y - 2) * 0.25f;
+  vec2 columns = columnsOf(outline, row);
+  if (columns.x < columns.y) {
+    GPGP_PRECISE float x = (columns.x + columns.y) * 2.0f;
+    middle.x = first.x + int(floor(x));
+  }
   ScreenTriangle t = triangleOf(c);
-  return depthKey(withinDepths(t, planeDepth(t, compact, middle).x), reversed);
-}
-
-/// Which of a row's samples lie in a range.
-GPGP_FN uvec2 samplesIn(vec2 range, float widen) {
-  GPGP_PRECISE float from = (range.x - widen - 2.0f) * 0.25f;
-  GPGP_PRECISE float to = (range.y + widen - 2.0f) * 0.25f;
-  return bitRange(-int(floor(-from)), int(floor(to)));
-}
-
-/// Whether an outline reaches a row.
-GPGP_FN bool reachesRow(Outline c, int y) {
-  return y >= min(c.p0.y, min(c.p1.y, c.p2.y)) && y <= max(c.p0.y, max(c.p1.y, c.p2.y));
+  return depthKey(withinDepths(t, planeDepth(t, isCompact(t), middle).x), reversed);
 }
 
 GPGP_SHADER_END

@@ -200,5 +200,11 @@ GPGP_FN uvec2 coverageOf(ScreenTriangle t, ivec2 pixel) {
   return mask;
 }
 
+/// Whether samples are in a quarter of their pixel: left above, right above, left below, right below.
+GPGP_FN bool inQuarter(uvec2 samples, uint quarter) {
+  uint rows = quarter < 2u ? samples.x : samples.y;
+  return (rows & ((quarter & 1u) == 0u ? 0x0f0f0f0fu : 0xf0f0f0f0u)) != 0u;
+}
+
 GPGP_SHADER_END
 #endif

@@ -15,7 +15,13 @@ struct Listed {
 
 Listed listedOf(uint chunk) {
   Listed l;
-  l.entry = findChunk(chunk);
+  l.entry = 0u; // this list has no budget of items, so the chunk may not be in the table
+  uint high = params.entryCount - 1u;
+  while (l.entry < high) {
+    uint middle = l.entry + (high - l.entry + 1u) / 2u;
+    if (chunkStart(middle) <= chunk) l.entry = middle;
+    else high = middle - 1u;
+  }
   l.id = 0u;
   l.index = 0u;
   l.listed = false;

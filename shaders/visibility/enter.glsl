@@ -1,7 +1,7 @@
 // Candidates and pairs: what a triangle adds to the lists of pixels. Needs lists.glsl and `counters`.
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
-layout(std430, set = 0, binding = kBindCandidates) buffer CandidateBuffer { Candidate candidates[]; };
-layout(std430, set = 0, binding = kBindPairs) writeonly buffer PairBuffer { Pair pairs[]; };
+#include "visibility/candidates.glsl"
+layout(std430, set = 0, binding = kBindPairs) writeonly buffer PairBuffer { uvec2 pairs[]; };
 
 bool isSeen(uint id) { return (bits[id >> 5u] & (1u << (id & 31u))) != 0u; }
 
@@ -22,11 +22,8 @@ bool isWanted(ScreenTriangle t, bool compact, ivec2 pixel, bool seen) {
   return limit == kFarthest || nearestKey(t, compact, pixel, reversed) <= limit;
 }
 
-void enter(Candidate c, bool compact, uint candidate, ivec2 pixel, uint pair) {
-  Pair p;
-  p.slot = slotOf(pixel);
-  p.candidate = candidate;
-  p.key = middleKey(c, compact, pixel, params.reversedDepth != 0u);
-  p.place = atomicAdd(slots[lengthAt(p.slot)], 1u);
-  pairs[pair] = p;
+void enter(uint candidate, ivec2 pixel, uint pair) {
+  uint slot = slotOf(pixel);
+  atomicAdd(slots[lengthAt(slot)], 1u);
+  pairs[pair] = uvec2(slot, candidate);
 }

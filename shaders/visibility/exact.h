@@ -80,5 +80,24 @@ GPGP_FN bool isDivisor(float v) {
   return bits >= (27u << 23u) && bits < (227u << 23u);
 }
 
+/// 1 / v for what isDivisor() allows, correctly rounded: core/math.h's divide(1, v) in fewer steps.
+GPGP_FN float reciprocal(float v) {
+  uint bits = floatBitsToUint(v);
+  uint exponent = bits >> 23u;
+  if ((bits & 0x7fffffu) == 0u) return uintBitsToFloat((254u - exponent) << 23u);
+  uint digits = (bits & 0x7fffffu) | 0x800000u;
+  // floor(2^48 / digits), 25 bits. The estimate may be off by a few units; the remainder then fits 32 bits, so that it
+  // is exact although the product wraps. It is never zero, so the last bit alone decides how to round.
+  float inverse = 1.0f / float(digits);
+  uint quotient = uint(inverse * 281474976710656.0f);
+  int remainder = int(0u - quotient * digits);
+  int correction = int(floor(float(remainder) * inverse));
+  quotient += uint(correction);
+  remainder -= correction * int(digits);
+  if (remainder < 0) quotient -= 1u;
+  if (remainder >= int(digits)) quotient += 1u;
+  return uintBitsToFloat(((252u - exponent) << 23u) + ((quotient + 1u) >> 1u));
+}
+
 GPGP_SHADER_END
 #endif

@@ -10,7 +10,7 @@ layout(std430, set = 0, binding = kBindBits) readonly buffer BitBuffer { uint bi
 layout(std430, set = 0, binding = kBindExtents) buffer ExtentBuffer { uint extents[]; };
 
 void main() {
-  uint chunks = counters.chunks;
+  uint chunks = chunkCount();
   for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
     uint entry = findChunk(chunk);
     uvec2 start = startOf(entry);

@@ -124,6 +124,16 @@ uint classifyFetched(Fetched f, out ScreenTriangle triangle) {
   return classify(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, triangle);
 }
 
+/// Of a triangle's number among all chunks: each has room for kChunk.
+Fetched fetchNumber(uint number, out uint item) {
+  uint chunk = number / kChunk;
+  uint entry = table[chunkAt(chunk)];
+  uvec2 start = startOf(entry);
+  uint local = (chunk - start.y) * kChunk + number % kChunk;
+  item = start.x + local;
+  return fetchTriangle(entry, local);
+}
+
 Fetched fetchItem(uint item) {
   uint entry = findEntry(item);
   return fetchTriangle(entry, item - startOf(entry).x);

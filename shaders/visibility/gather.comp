@@ -16,7 +16,11 @@ shared uint groupCovered;
 void note(uint id, uint count, bool known) {
   if (id == kNoTriangle) return;
   if (!known) atomicOr(bits[id >> 5u], 1u << (id & 31u));
-  if (params.hasSizes != 0u) atomicAdd(sizes[id], count);
+  if (params.hasSizes == 0u) return;
+  if (params.method != kTruth)
+    atomicAdd(sizes[id], count);
+  else if (atomicAdd(sizes[id], count) > 0xffffffffu - count) // many samples a pixel: stays at the largest number
+    atomicMax(sizes[id], 0xffffffffu);
 }
 
 void main() {

@@ -20,7 +20,8 @@ void main() {
     ivec4 bounds = ivec4(0);
     uint entry = first + gl_LocalInvocationIndex;
     if (entry < count) {
-      Fetched f = fetchItem(queue[entry]);
+      uint item;
+      Fetched f = fetchNumber(queue[entry], item);
       id = f.id;
       if (classifyFetched(f, t) == kWhole) {
         bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));

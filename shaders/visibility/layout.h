@@ -15,10 +15,12 @@ GPGP_CONST uint kMaxCameras = 8u;          ///< of one record
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
-GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle at most
-GPGP_CONST uint kSliceBlocks = 256u;       ///< blocks of 8 x 8 pixels that one workgroup is given at least
+GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle that found no record
+GPGP_CONST uint kMaxSlices = 256u;         ///< records, a workgroup each, that share one large triangle at most
+GPGP_CONST uint kSliceBlocks = 64u;        ///< blocks of 8 x 8 pixels that one workgroup is given at least
 GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
 GPGP_CONST uint kExact = 1u;               ///< GPGP_SAMPLING_EXACT
+GPGP_CONST uint kTruth = 2u;               ///< GPGP_SAMPLING_TRUTH
 GPGP_CONST uint kConservative = 3u;        ///< GPGP_SAMPLING_CONSERVATIVE
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
 GPGP_CONST uint kSorted = 256u;            ///< entries of a pixel's list that are sorted together
@@ -54,12 +56,17 @@ GPGP_CONST int kBindDrawCommands = 19;
 GPGP_CONST int kBindDrawIndices = 20;
 GPGP_CONST int kBindDrawTriangles = 21;
 GPGP_CONST int kBindExtents = 22;
-GPGP_CONST int kBindPairs = 23;
+GPGP_CONST int kBindPairs = 23;                // a pixel and a candidate each, before the lists have their places
 GPGP_CONST int kBindOpen = kBindIds;           // exact, once ids are gathered: pixels with lists
 GPGP_CONST int kBindCandidates = kBindRecords; // exact, once ids are drawn
-GPGP_CONST int kBindEntries = kBindQueue;      // exact, once all pairs are there
+GPGP_CONST int kBindEntries = kBindQueue;      // exact, once all pairs are there: candidates in lists; long lists' keys
 GPGP_CONST int kBindSurfaces = kBindRecords;   // conservative, once ids are drawn
 GPGP_CONST int kBindGaps = kBindPairs;         // conservative: words per pixel
+GPGP_CONST int kBindTruth = kBindPositions;    // of records that measure, which have no geometry
+GPGP_CONST int kBindTruthCounts = kBindIndices;
+GPGP_CONST int kBindRecheck = kBindDraws;
+GPGP_CONST int kBindFalsePositives = kBindList;
+GPGP_CONST int kBindFalseNegatives = kBindCount;
 
 /// GpgpMesh
 struct Mesh {
@@ -78,7 +85,8 @@ struct Draw {
 };
 
 /// One draw of a camera. Lies in the draw table, whose regions hold, for each of `maxEntries`: first item and first
-/// chunk; this; of an indirect command the first entry, item and chunk; the visible triangles and their place.
+/// chunk; this; of an indirect command the first entry, item and chunk; the visible triangles and their place. Behind
+/// them the entry of each chunk.
 struct DrawEntry {
   uint draw; // in GpgpVisibilityDraw[]
   uint camera;
@@ -141,7 +149,12 @@ struct Params {
   uint heuristics;    // GPGP_HEURISTIC_...
   float epsilonStatic;
   float epsilonDynamic;
+  uint metricBuffers; // kHas... of a record that measures
 };
+GPGP_CONST uint kHasTruthCounts = 1u;
+GPGP_CONST uint kHasRecheck = 2u;
+GPGP_CONST uint kHasFalsePositives = 4u;
+GPGP_CONST uint kHasFalseNegatives = 8u;
 
 /// A triangle, or a piece of a clipped one, in a pixel's list.
 struct Candidate {
@@ -160,20 +173,6 @@ struct Candidate {
   uint id;
 };
 
-/// A candidate in a pixel, before the pixels' lists have their places.
-struct Pair {
-  uint slot;  // the pixel
-  uint place; // in its list
-  uint candidate;
-  uint key; // depthKey of its depth there
-};
-
-/// The same in its list.
-struct Entry {
-  uint candidate;
-  uint key;
-};
-
 /// What conservative sampling found at a pixel's centre.
 struct Surface {
   float nearest; // depths within the pixel
@@ -182,9 +181,11 @@ struct Surface {
   float normalY;
   float normalZ;
 };
-GPGP_CONST uint kGapWords = 3u; ///< of a pixel: its 64 samples that are covered; behind all of those, a depth
+GPGP_CONST uint kPairBytes = 8u;
+GPGP_CONST uint kQuarters = 4u;             ///< of a pixel, each of 4 x 4 samples
+GPGP_CONST uint kGapWords = 2u + kQuarters; ///< of a pixel: its covered samples; behind all, quarters' depths
 
-/// GPU counters; the words up to `hasList` inclusive are the report.
+/// GPU counters; the first kReportWords are the report.
 struct Counters {
   uint triangles;
   uint visible;
@@ -203,6 +204,11 @@ struct Counters {
   uint drawsGiven;
   uint drawTriangles; // visible ones of all draws: in the lists by draw, whatever their budget
   uint drawListed;
+  uint truth; // triangles; this and what follows: of records that measure
+  uint found; // of the truth, visible
+  uint falsePositives;
+  uint truthArea[2]; // samples: low word, high word
+  uint foundArea[2];
   uint drawChunks;  // of one camera's draws
   uint chunks;      // of all draws
   uint queueCount;  // triangles that one invocation should not draw alone
@@ -223,11 +229,17 @@ struct Counters {
   uint overlapCount; // conservative: triangles of more than 8 x 8 pixels, or clipped
   uint overlapArgs[3];
   uint entryCount; // in the lists that have their place
-  uint openCount;  // pixels with lists
+  uint openCount;  // pixels with lists of at most kBatch
   uint openArgs[3];
+  uint winnerCount; // small triangles that were nearest in a pixel when they were drawn
+  uint winnerArgs[3];
+  uint onScreenCount; // exact: triangles that face the viewer and reach over the viewport
+  uint onScreenArgs[3];
+  uint longCount; // pixels with lists of more than kBatch
+  uint longArgs[3];
 };
-GPGP_CONST uint kCounterWords = 61u;
-GPGP_CONST uint kReportWords = 17u;
+GPGP_CONST uint kCounterWords = 80u;
+GPGP_CONST uint kReportWords = 24u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
 GPGP_FN uvec3 listGroups(uint listed) {
@@ -237,9 +249,9 @@ GPGP_FN uvec3 listGroups(uint listed) {
 
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
-static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 512 + 45 * 4 &&
-              sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Pair) == 16 &&
-              sizeof(Entry) == 8 && sizeof(Surface) == 20 && sizeof(Counters) == 4 * kCounterWords);
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 512 + 46 * 4 &&
+              sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Surface) == 20 &&
+              sizeof(Counters) == 4 * kCounterWords);
 #endif
 
 GPGP_SHADER_END

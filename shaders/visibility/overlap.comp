@@ -9,7 +9,7 @@ layout(local_size_x = 64) in; // kChunk
 layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
 
 void main() {
-  uint chunks = counters.chunks;
+  uint chunks = chunkCount();
   for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
     uint entry = findChunk(chunk);
     uvec2 start = startOf(entry);

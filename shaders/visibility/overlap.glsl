@@ -4,8 +4,9 @@
 layout(constant_id = 0) const uint kPhase = 0u;
 const uint kAccept = 0u;  // what the heuristics accept becomes visible
 const uint kCover = 1u;   // visible triangles cover samples
-const uint kNearest = 2u; // how near those that are not visible come where they cover samples that nothing covers
-const uint kTake = 3u;    // the nearest of them becomes visible
+const uint kNearest = 2u; // how near those that are not visible come where they cover samples that nothing covers, in
+                          // each quarter of a pixel
+const uint kTake = 3u;    // the nearest of them in a quarter becomes visible
 
 layout(std430, set = 0, binding = kBindIds) readonly buffer IdBuffer { uint ids[]; };
 layout(std430, set = 0, binding = kBindSurfaces) readonly buffer SurfaceBuffer { Surface surfaces[]; };
@@ -48,7 +49,6 @@ void visit(Visitor v, ScreenTriangle t, bool compact, vec3 depths, ivec2 pixel) 
     show(v.id);
     return;
   }
-  uint place = params.pixelCapacity * 2u + at;
   uvec2 open = ~uvec2(gaps[at * 2u], gaps[at * 2u + 1u]);
   if ((open.x | open.y) == 0u) return;
   uvec2 own = coverageOf(t, pixel) & open;
@@ -59,6 +59,10 @@ void visit(Visitor v, ScreenTriangle t, bool compact, vec3 depths, ivec2 pixel) 
     return;
   }
   if (!depthsInPixel(t, depths, pixel, v.perspective, reversed, nearest, farthest)) return;
-  if (kPhase == kNearest) atomicMin(gaps[place], floatBitsToUint(nearest));
-  else if (gaps[place] == floatBitsToUint(nearest)) show(v.id);
+  uint first = params.pixelCapacity * 2u + at * kQuarters;
+  for (uint quarter = 0u; quarter < kQuarters; ++quarter) {
+    if (!inQuarter(own, quarter)) continue;
+    if (kPhase == kNearest) atomicMin(gaps[first + quarter], floatBitsToUint(nearest));
+    else if (gaps[first + quarter] == floatBitsToUint(nearest)) show(v.id);
+  }
 }

@@ -1,16 +1,16 @@
-// One invocation a triangle: enters those that are not seen at any pixel's centre, in the pixels in which they may be
-// seen. Those that are seen are queued for hide.comp; in the same buffer, from its end, those that are clipped or reach
-// over more than 8 x 8 pixels.
+// One invocation a triangle on the screen: enters those that are not seen at any pixel's centre, in the pixels in which
+// they may be seen. Those that are seen are queued for hide.comp; in the same buffer, from its end, those that are
+// clipped or reach over more than 8 x 8 pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
 #include "visibility/lists.glsl"
-#include "visibility/chunks.glsl"
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/enter.glsl"
 #include "visibility/small_pairs.glsl"
-layout(local_size_x = 64) in; // kChunk
+layout(local_size_x = 64) in;
 
-layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
+layout(std430, set = 0, binding = kBindQueue) buffer QueueBuffer { uint queue[]; };
 
 shared uint groupSeen;
 shared uint groupBig;
@@ -18,18 +18,14 @@ shared uint firstSeen;
 shared uint firstBig;
 
 void main() {
-  uint chunks = counters.chunks;
-  for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
-    uint drawIndex = findChunk(chunk);
-    uvec2 start = startOf(drawIndex);
-    if (start.x >= params.maxItems) break; // and so does all that follows
+  uint count = counters.onScreenCount;
+  for (uint first = gl_WorkGroupID.x * 64u; first < count; first += gl_NumWorkGroups.x * 64u) {
     if (gl_LocalInvocationIndex == 0u) {
       groupSeen = 0u;
       groupBig = 0u;
     }
     barrier();
-    uint end = min(entryOf(drawIndex).indexCount / 3u, params.maxItems - start.x);
-    uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
+    uint number = 0u;
     const uint kNone = 0xffffffffu;
     uint big = kNone;
     uint seen = kNone;
@@ -37,8 +33,10 @@ void main() {
     ScreenTriangle t;
     uint id = 0u;
     ivec4 bounds = ivec4(0);
-    if (local < end) {
-      Fetched f = fetchTriangle(drawIndex, local);
+    if (first + gl_LocalInvocationIndex < count) {
+      number = queue[params.maxItems + first + gl_LocalInvocationIndex];
+      uint item;
+      Fetched f = fetchNumber(number, item);
       id = f.id;
       uint fate = classifyFetched(f, t);
       if (fate == kClipped) big = atomicAdd(groupBig, 1u);
@@ -63,8 +61,8 @@ void main() {
       }
     }
     barrier();
-    if (seen != kNone) queue[firstSeen + seen] = start.x + local;
-    if (big != kNone) queue[params.maxItems - 1u - firstBig - big] = start.x + local;
+    if (seen != kNone) queue[firstSeen + seen] = number;
+    if (big != kNone) queue[params.maxItems - 1u - firstBig - big] = number;
     enterSmall(t, id, bounds.xy, mask);
   }
 }

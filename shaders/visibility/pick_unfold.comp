@@ -8,22 +8,22 @@ layout(local_size_x = 64) in;
 layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
-layout(std430, set = 0, binding = kBindCandidates) writeonly buffer CandidateBuffer { Candidate candidates[]; };
+#include "visibility/candidates.glsl"
 
 void add(ScreenTriangle t, uint id, uint camera) {
   ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(camera));
   if (bounds.x >= bounds.z || bounds.y >= bounds.w) return;
   uint place = atomicAdd(counters.candidates, 1u);
   if (place < params.maxCandidates) {
-    candidates[place] = makeCandidate(t, id);
+    writeCandidate(place, makeCandidate(t, id));
     uint blocks = uint(bounds.z - bounds.x + 7) / 8u * (uint(bounds.w - bounds.y + 7) / 8u);
-    uint slices = clamp(blocks / 64u, 1u, kLargeSplit);
+    uint slices = clamp(blocks / kSliceBlocks, 1u, kMaxSlices);
     uint first = atomicAdd(counters.bigCount, slices);
     // What is counted below the capacity is written, so that no entry lies unwritten among the others.
     uint end = min(first + slices, params.maxBig);
     for (uint i = first; i < end; ++i) {
       slots[bigAt(i)] = place;
-      slots[bigAt(i) + 1u] = (i - first) | (slices << 8u) | (camera << 16u);
+      slots[bigAt(i) + 1u] = (i - first) | (slices << 12u) | (camera << 24u);
     }
     if (first < end) atomicMax(counters.bigArgs[0], min(end, kMaxGroups));
     if (first + slices <= params.maxBig) return;
@@ -35,7 +35,8 @@ void add(ScreenTriangle t, uint id, uint camera) {
 void main() {
   uint count = counters.bigQueueCount;
   for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
-    Fetched f = fetchItem(queue[params.maxItems - 1u - entry]);
+    uint item;
+    Fetched f = fetchNumber(queue[params.maxItems - 1u - entry], item);
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
     if (fate == kWhole) add(t, f.id, f.camera);

@@ -11,15 +11,19 @@ layout(constant_id = 0) const uint kPhase = 0u; // 0: depth, 1: ids
 layout(std430, set = 0, binding = kBindDepth) buffer DepthBuffer { uint depths[]; };
 layout(std430, set = 0, binding = kBindIds) buffer IdBuffer { uint ids[]; };
 
-void coverPixel(ScreenTriangle t, ivec2 pixel, float z, uint id) {
+/// True where it is the nearest so far, or is seen.
+bool coverPixel(ScreenTriangle t, ivec2 pixel, float z, uint id) {
   uint at = uint(pixel.y) * (params.width << (8u - params.gridShift)) + uint(pixel.x);
   bool reversed = params.reversedDepth != 0u;
   uint key = depthKey(z, reversed);
   if (kPhase == 0u) {
-    atomicMin(depths[at], key);
-  } else if (depths[at] == key) {
-    atomicMin(ids[at], id);
-    if (params.method == kExact && fillsPixel(t, pixel, grid()))
-      atomicMin(slots[slotOf(pixel)], fillKey(t, z, reversed));
+    // Depths only come nearer: what was read before others wrote is not nearer than what is there.
+    if (depths[at] < key) return false;
+    return atomicMin(depths[at], key) >= key;
   }
+  if (depths[at] != key) return false;
+  atomicMin(ids[at], id);
+  if (params.method == kExact && fillsPixel(t, pixel, grid()))
+    atomicMin(slots[slotOf(pixel)], fillKey(t, z, reversed));
+  return true;
 }

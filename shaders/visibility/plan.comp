@@ -1,7 +1,7 @@
 // Numbers the work: each draw's first item (triangle) and first chunk are the sums over the draws before it. A chunk
-// holds triangles of one draw only, so that a workgroup reads one transform. One workgroup: each invocation sums a run
-// of draws of all cameras (or of indirect commands, whose instances expand.comp writes), the sums are scanned, and the
-// runs are written.
+// holds triangles of one draw only, so that a workgroup reads one transform. One workgroup goes through the draws of
+// all cameras (or the indirect commands, whose instances expand.comp writes): each invocation sums a run, the sums are
+// scanned, and the runs are written.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -16,6 +16,8 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 layout(std430, set = 0, binding = kBindTable) writeonly buffer TableBuffer { uint table[]; };
 #include "visibility/table_write.glsl"
 
+const uint kRun = 4u; // units of an invocation at a time
+
 shared uvec4 sums[256]; // entries, items, chunks; draws that are skipped
 
 /// Draws of one camera.
@@ -26,74 +28,88 @@ uint unitsGiven() {
   return params.hasDrawCount != 0u ? min(commandCount, params.commandCount) : params.commandCount;
 }
 
-/// Entries, triangles and chunks of a unit, and what it skips: a draw (none where there is no such mesh) or a command.
-uvec4 sizeOf(uint unit, uint givenDraws) {
+/// What a unit is: a draw or a command.
+struct Unit {
+  uvec4 size; // entries, triangles, chunks, and what it skips: a draw (none where there is no such mesh), or instances
+  DrawEntry entry;
+};
+
+Unit unitOf(uint unit, uint givenDraws) {
+  Unit u;
+  u.entry.draw = 0u;
+  u.entry.camera = 0u;
+  u.entry.firstIndex = 0u;
+  u.entry.indexCount = 0u;
+  u.entry.vertexOffset = 0u;
   if (params.hasCommands != 0u) {
     uint at = unit * params.commandWords;
     uint first = commands[at + 4u];
     uint instances = min(commands[at + 1u], params.drawCount - min(first, params.drawCount));
     uint triangles = commands[at] / 3u;
-    return uvec4(instances, saturatedProduct(instances, triangles), saturatedProduct(instances, chunksOf(triangles)),
-                 commands[at + 1u] - instances);
+    u.size = uvec4(instances, saturatedProduct(instances, triangles), saturatedProduct(instances, chunksOf(triangles)),
+                   commands[at + 1u] - instances);
+    return u;
   }
-  uint mesh = draws[unit % givenDraws].mesh;
-  if (mesh >= params.meshCount) return uvec4(1u, 0u, 0u, 1u);
-  uint triangles = meshes[mesh].indexCount / 3u;
-  return uvec4(1u, triangles, chunksOf(triangles), 0u);
+  u.entry.draw = unit % givenDraws;
+  u.entry.camera = unit / givenDraws;
+  uint mesh = draws[u.entry.draw].mesh;
+  u.size = uvec4(1u, 0u, 0u, 1u);
+  if (mesh >= params.meshCount) return u;
+  u.entry.firstIndex = meshes[mesh].firstIndex;
+  u.entry.indexCount = meshes[mesh].indexCount;
+  u.entry.vertexOffset = meshes[mesh].vertexOffset;
+  uint triangles = u.entry.indexCount / 3u;
+  u.size = uvec4(1u, triangles, chunksOf(triangles), 0u);
+  return u;
 }
 
 uvec4 sumOf(uvec4 a, uvec4 b) {
   return uvec4(saturatedSum(a.x, b.x), saturatedSum(a.y, b.y), saturatedSum(a.z, b.z), saturatedSum(a.w, b.w));
 }
 
-void write(uint unit, uint givenDraws, uvec4 start) {
-  if (params.hasCommands != 0u) {
-    uint at = params.maxEntries * kTableCommands + unit * 3u;
-    table[at] = start.x;
-    table[at + 1u] = start.y;
-    table[at + 2u] = start.z;
+void write(uint unit, Unit u, uvec4 start) {
+  if (params.hasCommands == 0u) {
+    writeEntry(unit, start.y, start.z, u.entry);
     return;
   }
-  DrawEntry e;
-  e.draw = unit % givenDraws;
-  e.camera = unit / givenDraws;
-  Mesh mesh;
-  mesh.firstIndex = 0u;
-  mesh.indexCount = 0u;
-  mesh.vertexOffset = 0u;
-  if (draws[e.draw].mesh < params.meshCount) mesh = meshes[draws[e.draw].mesh];
-  e.firstIndex = mesh.firstIndex;
-  e.indexCount = mesh.indexCount;
-  e.vertexOffset = mesh.vertexOffset;
-  writeEntry(unit, start.y, start.z, e);
+  uint at = params.maxEntries * kTableCommands + unit * 3u;
+  table[at] = start.x;
+  table[at + 1u] = start.y;
+  table[at + 2u] = start.z;
 }
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
   uint givenDraws = drawsGiven();
   uint units = unitsGiven();
-  uint run = (units + 255u) / 256u;
-  uint first = min(lane * run, units);
-  uint end = min(first + run, units);
-  uvec4 own = uvec4(0u);
-  for (uint i = first; i < end; ++i) own = sumOf(own, sizeOf(i, givenDraws));
-  sums[lane] = own;
-  barrier();
-  for (uint step = 1u; step < 256u; step *= 2u) {
-    uvec4 before = lane >= step ? sums[lane - step] : uvec4(0u);
+  uvec4 before = uvec4(0u);
+  for (uint base = 0u; base < units; base += 256u * kRun) {
+    uint first = base + lane * kRun;
+    Unit run[kRun]; // read together: a unit's reads depend on each other
+    for (uint k = 0u; k < kRun; ++k) run[k] = unitOf(min(first + k, units - 1u), givenDraws);
+    uvec4 own = uvec4(0u);
+    for (uint k = 0u; k < kRun; ++k)
+      if (first + k < units) own = sumOf(own, run[k].size);
+    sums[lane] = own;
     barrier();
-    sums[lane] = sumOf(sums[lane], before);
+    for (uint step = 1u; step < 256u; step *= 2u) {
+      uvec4 left = lane >= step ? sums[lane - step] : uvec4(0u);
+      barrier();
+      sums[lane] = sumOf(sums[lane], left);
+      barrier();
+    }
+    uvec4 start = lane == 0u ? before : sumOf(before, sums[lane - 1u]);
+    for (uint k = 0u; k < kRun; ++k) {
+      if (first + k < units) write(first + k, run[k], start);
+      start = sumOf(start, run[k].size);
+    }
+    before = sumOf(before, sums[255]);
     barrier();
-  }
-  uvec4 start = lane == 0u ? uvec4(0u) : sums[lane - 1u];
-  for (uint i = first; i < end; ++i) {
-    write(i, givenDraws, start);
-    start = sumOf(start, sizeOf(i, givenDraws));
   }
   if (params.hasCommands == 0u)
     for (uint i = units + lane; i < params.entryCount; i += 256u) writeNone(i);
   if (lane == 255u) {
-    uvec4 all_ = sums[255];
+    uvec4 all_ = before;
     if (params.hasCommands != 0u) {
       counters.draws = all_.x;
       counters.drawsGiven = min(all_.x, params.entryCount / params.cameraCount);
@@ -128,6 +144,12 @@ void main() {
     counters.seenArgs[2] = 1u;
     counters.openArgs[1] = 1u;
     counters.openArgs[2] = 1u;
+    counters.longArgs[1] = 1u;
+    counters.longArgs[2] = 1u;
+    counters.winnerArgs[1] = 1u;
+    counters.winnerArgs[2] = 1u;
+    counters.onScreenArgs[1] = 1u;
+    counters.onScreenArgs[2] = 1u;
     counters.overlapArgs[1] = kLargeSplit;
     counters.overlapArgs[2] = 1u;
     counters.leftArgs[1] = kLargeSplit;

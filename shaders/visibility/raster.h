@@ -98,7 +98,22 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
   t.z0 = za;
   t.dz1 = dz1;
   t.dz2 = dz2;
-  t.inverseArea = divide(1.0f, wideToFloat(twiceArea(a, b, c)));
+  t.inverseArea = reciprocal(wideToFloat(twiceArea(a, b, c)));
+  return t;
+}
+
+GPGP_FN ScreenTriangle noTriangle() {
+  ScreenTriangle t;
+  t.bounds = ivec4(0, 0, 0, 0);
+  t.p0 = ivec2(0, 0);
+  t.p1 = ivec2(0, 0);
+  t.p2 = ivec2(0, 0);
+  t.z0 = 0.0f;
+  t.dz1 = 0.0f;
+  t.dz2 = 0.0f;
+  t.zMin = 0.0f;
+  t.zMax = 0.0f;
+  t.inverseArea = 0.0f;
   return t;
 }
 

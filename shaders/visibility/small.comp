@@ -1,56 +1,85 @@
-// One invocation a triangle: rejects, draws small ones at once and, in the depth phase, queues the others. Each item
-// takes one place at most, so the queue never overflows.
+// Depth, one invocation a triangle: rejects, draws small ones at once and queues the others. Small ones that were the
+// nearest in a pixel when they were drawn are queued for ids.comp from the queue's other end: each item takes one place
+// at most, so they never meet. Exact sampling also wants a list of all that are on the screen; it follows the queue.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
 #include "visibility/chunks.glsl"
 #include "visibility/pixels.glsl"
+#include "visibility/draw_small.glsl"
 layout(local_size_x = 64) in; // kChunk
 
 layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
 
 shared uint groupTriangles;
 shared uint groupSkipped;
-
-void drawSmall(ScreenTriangle t, uint id) {
-  for (int y = t.bounds.y; y < t.bounds.w; ++y)
-    for (int x = t.bounds.x; x < t.bounds.z; ++x) {
-      float z;
-      if (coversCompact(t, samplePoint(ivec2(x, y), grid()), z)) coverPixel(t, ivec2(x, y), z, id);
-    }
-}
+shared uint groupWinners;
+shared uint groupOnScreen;
+shared uint firstWinner;
+shared uint firstOnScreen;
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) {
     groupTriangles = 0u;
     groupSkipped = 0u;
   }
-  barrier();
-  uint chunks = counters.chunks;
+  uint chunks = chunkCount();
   uint triangles = 0u;
   uint skipped = 0u;
   for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
     uint drawIndex = findChunk(chunk);
     uvec2 start = startOf(drawIndex);
     if (start.x >= params.maxItems) break; // and so does all that follows
+    if (gl_LocalInvocationIndex == 0u) {
+      groupWinners = 0u;
+      groupOnScreen = 0u;
+    }
+    barrier();
     uint end = min(entryOf(drawIndex).indexCount / 3u, params.maxItems - start.x);
     uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
-    if (local >= end) continue;
-    Fetched f = fetchTriangle(drawIndex, local);
-    ScreenTriangle t;
-    uint fate = classifyFetched(f, t);
-    if (fate == kSkipped) ++skipped;
-    if (fate == kWhole) ++triangles;
-    if (fate == kWhole && isEmpty(t)) continue;
-    if (fate == kWhole && isSmall(t)) {
-      drawSmall(t, drawnId(f.id, start.x + local));
-    } else if (kPhase == 0u && (fate == kWhole || fate == kClipped)) {
-      uint entry = atomicAdd(counters.queueCount, 1u);
-      queue[entry] = start.x + local;
-      atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
+    const uint kNone = 0xffffffffu;
+    uint winner = kNone;
+    uint onScreen = kNone;
+    if (local < end) {
+      Fetched f = fetchTriangle(drawIndex, local);
+      ScreenTriangle t;
+      uint fate = classifyFetched(f, t);
+      if (fate == kSkipped) ++skipped;
+      if (fate == kWhole) ++triangles;
+      bool empty = fate == kWhole && isEmpty(t);
+      if (fate == kWhole && !empty && isSmall(t)) {
+        if (drawSmall(t, f.id)) winner = atomicAdd(groupWinners, 1u);
+      } else if (fate == kClipped || (fate == kWhole && !empty)) {
+        uint entry = atomicAdd(counters.queueCount, 1u);
+        queue[entry] = start.x + local;
+        atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
+      }
+      if (params.method == kExact) {
+        bool reaches = fate == kClipped;
+        if (fate == kWhole) {
+          ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
+          reaches = bounds.x < bounds.z && bounds.y < bounds.w;
+        }
+        if (reaches) onScreen = atomicAdd(groupOnScreen, 1u);
+      }
     }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) {
+      if (groupWinners != 0u) {
+        firstWinner = atomicAdd(counters.winnerCount, groupWinners);
+        atomicMax(counters.winnerArgs[0], min((firstWinner + groupWinners + 63u) / 64u, kMaxGroups));
+      }
+      if (groupOnScreen != 0u) {
+        firstOnScreen = atomicAdd(counters.onScreenCount, groupOnScreen);
+        atomicMax(counters.onScreenArgs[0], min((firstOnScreen + groupOnScreen + 63u) / 64u, kMaxGroups));
+      }
+    }
+    barrier();
+    uint number = chunk * kChunk + gl_LocalInvocationIndex;
+    if (winner != kNone) queue[params.maxItems - 1u - firstWinner - winner] = number;
+    if (onScreen != kNone) queue[params.maxItems + firstOnScreen + onScreen] = number;
   }
-  if (kPhase != 0u) return;
+  barrier();
   if (triangles != 0u) atomicAdd(groupTriangles, triangles);
   if (skipped != 0u) atomicAdd(groupSkipped, skipped);
   barrier();

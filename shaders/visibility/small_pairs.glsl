@@ -41,13 +41,12 @@ void enterSmall(ScreenTriangle t, uint id, ivec2 corner, uvec2 mask) {
     candidate += firstCandidate;
     pair += firstPair;
     if (candidate < params.maxCandidates && pair <= params.maxPairs && wanted <= params.maxPairs - pair) {
-      Candidate c = makeCandidate(t, id);
-      candidates[candidate] = c;
+      writeCandidate(candidate, makeCandidate(t, id));
       while ((mask.x | mask.y) != 0u) {
         int bit = lowestBit(mask);
         if (bit < 32) mask.x &= mask.x - 1u;
         else mask.y &= mask.y - 1u;
-        enter(c, true, candidate, corner + ivec2(bit & 7, bit >> 3), pair++);
+        enter(candidate, corner + ivec2(bit & 7, bit >> 3), pair++);
       }
     } else {
       show(id);

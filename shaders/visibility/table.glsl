@@ -5,6 +5,10 @@ layout(std430, set = 0, binding = kBindTable) TABLE_ACCESS buffer TableBuffer { 
 uvec2 startOf(uint entry) { return uvec2(table[entry * 2u], table[entry * 2u + 1u]); }
 uint chunkStart(uint entry) { return table[entry * 2u + 1u]; }
 
+/// Where a chunk's entry is, and for how many there is room: more are beyond the budget of items.
+uint chunkAt(uint chunk) { return params.maxEntries * kTableWords + chunk; }
+uint chunkCapacity() { return params.maxItems / kChunk + params.maxEntries + 1u; }
+
 DrawEntry entryOf(uint entry) {
   uint at = params.maxEntries * kTableEntries + entry * kEntryWords;
   DrawEntry e;

@@ -140,7 +140,7 @@ GPGP_FN bool project(vec4 c, Grid grid, GPGP_OUT(ivec2) p, GPGP_OUT(float) z) {
   p = ivec2(0, 0);
   z = 0.0f;
   if (!isDivisor(c.w)) return false;
-  GPGP_PRECISE float inverse = divide(1.0f, c.w);
+  GPGP_PRECISE float inverse = reciprocal(c.w);
   GPGP_PRECISE float x = c.x * inverse;
   GPGP_PRECISE float y = c.y * inverse;
   GPGP_PRECISE float depth = c.z * inverse;
@@ -152,7 +152,7 @@ GPGP_FN bool project(vec4 c, Grid grid, GPGP_OUT(ivec2) p, GPGP_OUT(float) z) {
 /// Sorts a triangle's clip coordinates into one of the cases above; for kWhole makes it, unless it is turned away.
 GPGP_FN uint classify(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool twoSided,
                       GPGP_OUT(ScreenTriangle) triangle) {
-  triangle = makeTriangle(ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), 0.0f, 0.0f, 0.0f, grid);
+  triangle = noTriangle();
   if (!isModerateVector(a) || !isModerateVector(b) || !isModerateVector(c)) return kSkipped;
   if ((outCode(a) & outCode(b) & outCode(c)) != 0u) return kOutside;
   if (needsClip(a) || needsClip(b) || needsClip(c)) return kClipped;
@@ -194,7 +194,7 @@ GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool
     if (!project(polygon.v[i], grid, p, z)) return kSkipped;
     screen.p[i] = p;
     screen.z[i] = z;
-    screen.q[i] = divide(1.0f, polygon.v[i].w);
+    screen.q[i] = reciprocal(polygon.v[i].w);
   }
   screen.count = polygon.count;
   Wide area;
@@ -216,7 +216,7 @@ GPGP_FN bool fanPiece(ScreenPolygon screen, int k, Grid grid, GPGP_OUT(ScreenTri
   if (positive)
     triangle = makeTriangle(screen.p[0], screen.p[i], screen.p[j], screen.z[0], screen.z[i], screen.z[j], grid);
   else
-    triangle = makeTriangle(ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), 0.0f, 0.0f, 0.0f, grid);
+    triangle = noTriangle();
   return positive;
 }
 

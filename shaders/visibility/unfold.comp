@@ -19,7 +19,7 @@ bool addMedium(ScreenTriangle t, uint id) {
 }
 
 bool addLarge(ScreenTriangle t, uint id) {
-  uint slices = clamp(blocksOf(t) / kSliceBlocks, 1u, kLargeSplit);
+  uint slices = clamp(blocksOf(t) / kSliceBlocks, 1u, kMaxSlices);
   uint place = atomicAdd(counters.largeCount, slices);
   // What is counted below the capacity is written, so that no record lies unwritten among the others.
   uint end = min(place + slices, params.largeRecords);

@@ -1,6 +1,7 @@
 // The C functions of visibility.h.
 #include "api/check.h"
 #include "visibility/sampling/sampler.h"
+#include "visibility/view_cell.h"
 
 #include <algorithm>
 #include <iterator>
@@ -85,6 +86,21 @@ GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext handle, const GpgpCameraVi
   });
 }
 
+GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32_t* count, GpgpCamera* cameras) {
+  return guarded("gpgpGetViewCellCameras", [&](Call&) -> Result<void> {
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_VIEW_CELL_INFO, "info"); !ok) return ok;
+    if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
+    if (!allFinite(info->camera.viewProjection))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
+    const uint32_t room = cameras ? *count : 0;
+    const auto made = viewCellCameras(*info, room, cameras);
+    if (!made) return made.error();
+    *count = *made;
+    if (cameras && *made > room) return makeError(GPGP_INCOMPLETE, "cameras is too small");
+    return {};
+  });
+}
+
 GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker handle, VkCommandBuffer commandBuffer,
                                                  const GpgpFrame* frame, const GpgpSampleInfo* info) {
   return guarded("gpgpRecordPrepareVisibility", [&](Call& call) -> Result<void> {
@@ -113,6 +129,17 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker handle, VkCommandBuf
     if (!(*geometry)->resident()) return makeError(GPGP_NOT_READY, "geometrySet is not resident");
     if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
     return (*sampler)->prepare(commandBuffer, *info, **geometry, view);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpWorker handle, VkCommandBuffer commandBuffer,
+                                                        const GpgpFrame* frame, const GpgpVisibilityMetricsInfo* info) {
+  return guarded("gpgpRecordPrepareVisibilityMetrics", [&](Call& call) -> Result<void> {
+    const auto sampler = resolve<Sampler>(call, handle, Kind::sampler, "sampler");
+    if (!sampler) return sampler.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO, "info"); !ok) return ok;
+    if (auto ok = checkRecord(**sampler, frame); !ok) return ok;
+    return (*sampler)->measure(commandBuffer, *info);
   });
 }
 

@@ -97,34 +97,36 @@ uint32_t parseHeuristics(const std::string& text) {
   return heuristics;
 }
 
-/// World-space viewpoints' offsets of a cell, the middle first; in units of the camera's right, up and back.
-std::vector<glm::vec3> cellOffsets(const std::string& spec) {
-  std::vector<glm::vec3> offsets{glm::vec3(0)};
-  uint32_t columns = 0, rows = 0, skip = 1, points = 0;
-  float radius = 0;
-  char rest = 0;
-  if (std::sscanf(spec.c_str(), "%ux%u/%u%c", &columns, &rows, &skip, &rest) == 3 ||
-      (skip = 1, std::sscanf(spec.c_str(), "%ux%u%c", &columns, &rows, &rest) == 2)) {
-    if (columns < 1 || rows < 1 || columns > 64 || rows > 64 || skip < 1)
-      throw Usage("--cell: 1x1 to 64x64, and a skip of at least 1");
-    for (uint32_t y = 0; y < rows; y += skip)
-      for (uint32_t x = 0; x < columns; x += skip)
-        offsets.emplace_back(static_cast<float>(x) - static_cast<float>(columns - 1) / 2,
-                             static_cast<float>(y) - static_cast<float>(rows - 1) / 2, 0);
-  } else if (std::sscanf(spec.c_str(), "%f:%u%c", &radius, &points, &rest) == 2 && radius > 0 && points > 0 &&
-             points <= 4096) {
-    // Corners of a square round the middle, then of its inside: a grid as square as the number allows.
-    const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<float>(points))));
-    for (uint32_t i = 0; i < points && side > 1; ++i) {
-      const float x = static_cast<float>(i % side) / static_cast<float>(side - 1) * 2 - 1;
-      const float y = static_cast<float>(i / side) / static_cast<float>(side - 1) * 2 - 1;
-      if (x != 0 || y != 0) offsets.emplace_back(x * radius, y * radius, 0);
+/// A view cell, but for its camera: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units.
+struct Cell {
+  GpgpViewCellInfo info = GPGP_VIEW_CELL_INFO_INIT;
+  std::vector<float> points;
+
+  explicit Cell(const std::string& spec) {
+    uint32_t columns = 0, rows = 0, skip = 1, count = 0;
+    float radius = 0;
+    char rest = 0;
+    if (std::sscanf(spec.c_str(), "%ux%u/%u%c", &columns, &rows, &skip, &rest) == 3 ||
+        (skip = 1, std::sscanf(spec.c_str(), "%ux%u%c", &columns, &rows, &rest) == 2)) {
+      if (columns < 1 || rows < 1 || columns > 64 || rows > 64 || skip < 1)
+        throw Usage("--cell: 1x1 to 64x64, and a skip of at least 1");
+      info.columns = columns;
+      info.rows = rows;
+      info.skip = skip;
+    } else if (std::sscanf(spec.c_str(), "%f:%u%c", &radius, &count, &rest) == 2 && radius > 0 && count > 0 &&
+               count <= 4096) {
+      // Corners of a square round the middle, then of its inside: a grid as square as the number allows.
+      const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<float>(count))));
+      for (uint32_t i = 0; i < count && side > 1; ++i) {
+        const float x = static_cast<float>(i % side) / static_cast<float>(side - 1) * 2 - 1;
+        const float y = static_cast<float>(i / side) / static_cast<float>(side - 1) * 2 - 1;
+        if (x != 0 || y != 0) points.insert(points.end(), {x * radius, y * radius, 0});
+      }
+    } else if (!spec.empty()) {
+      throw Usage("--cell: '" + spec + "' is neither COLUMNSxROWS[/SKIP] in pixels nor RADIUS:POINTS in world units");
     }
-  } else {
-    throw Usage("--cell: '" + spec + "' is neither COLUMNSxROWS[/SKIP] in pixels nor RADIUS:POINTS in world units");
   }
-  return offsets;
-}
+};
 
 /// 16 numbers, column-major, world to clip; a 17th that is not 0: near is 1.
 View readCamera(const std::string& file) {
@@ -136,6 +138,26 @@ View readCamera(const std::string& file) {
   float reversed = 0;
   if (text >> reversed) view.reversed = reversed != 0;
   return view;
+}
+
+/// The views of a cell; one of its pixels is one of the picture's where `centre` lies.
+std::vector<View> viewsOf(const Cell& cell, const View& view, const glm::vec3& centre, uint32_t height) {
+  GpgpViewCellInfo info = cell.info;
+  std::copy_n(glm::value_ptr(view.camera), 16, info.camera.viewProjection);
+  info.camera.reversedDepth = view.reversed;
+  info.height = height;
+  const glm::mat4& m = view.camera;
+  info.distance = m[0][3] * centre.x + m[1][3] * centre.y + m[2][3] * centre.z + m[3][3];
+  info.points = cell.points.data();
+  info.pointCount = static_cast<uint32_t>(cell.points.size() / 3);
+  uint32_t count = 0;
+  GpgpResult result = gpgpGetViewCellCameras(&info, &count, nullptr);
+  std::vector<GpgpCamera> cameras(count);
+  if (result == GPGP_SUCCESS) result = gpgpGetViewCellCameras(&info, &count, cameras.data());
+  if (result != GPGP_SUCCESS) throw Failure("no view cell can be made of this camera: it looks away from the scene");
+  std::vector<View> views;
+  for (const GpgpCamera& camera : cameras) views.push_back({glm::make_mat4(camera.viewProjection), view.reversed});
+  return views;
 }
 
 /// World-space corners of each triangle in its number's order.
@@ -272,6 +294,28 @@ public:
   std::vector<uint32_t> bits() { return host::download<uint32_t>(session_.device(), bits_, words_); }
   std::vector<uint32_t> sizes() { return host::download<uint32_t>(session_.device(), sizes_, model_.triangleCount); }
 
+  /// How far what was found agrees with a truth; recheck may be empty.
+  auto measure(Sampler& sampler, const std::vector<uint32_t>& found, const std::vector<uint32_t>& truth,
+               const std::vector<uint32_t>& areas, const std::vector<uint32_t>& recheck) {
+    host::HeadlessDevice& device = session_.device();
+    const auto copy = [&](const std::vector<uint32_t>& words, const char* name) {
+      return words.empty() ? host::Buffer() : host::makeBuffer(device, words, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, name);
+    };
+    const host::Buffer foundBits = copy(found, "found"), truthBits = copy(truth, "truth");
+    const host::Buffer truthCounts = copy(areas, "truth's counts"), recheckBits = copy(recheck, "recheck");
+    return session_.measure(sampler, "metrics", 1,
+                            [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                              GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
+                              info.base = base;
+                              info.triangleCount = model_.triangleCount;
+                              info.visibleBits = foundBits.range();
+                              info.truthBits = truthBits.range();
+                              info.truthCounts = truthCounts.range();
+                              if (!recheck.empty()) info.recheckBits = recheckBits.range();
+                              return sampler.recordPrepareMetrics(commands, frame, info);
+                            });
+  }
+
   /// The truth with samples x samples a pixel and the centre, for the union of views; sizes() has its areas afterwards.
   std::vector<uint32_t> truth(const std::vector<View>& views, uint32_t samples) {
     uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
@@ -328,14 +372,11 @@ void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>
 }
 
 Outcome visibility(const VisibilityOptions& options, const CommonOptions& common) {
-  const bool isCell = options.method == "cell" || !options.cell.empty();
   if (options.method == "cell" && options.cell.empty()) throw Usage("--method cell needs --cell SPEC");
   const GpgpSamplingMethod method = options.method == "standard"       ? GPGP_SAMPLING_STANDARD
                                     : options.method == "conservative" ? GPGP_SAMPLING_CONSERVATIVE
                                                                        : GPGP_SAMPLING_EXACT;
-  std::vector<glm::vec3> offsets{glm::vec3(0)};
-  if (isCell) offsets = cellOffsets(options.cell);
-  const bool inPixels = options.cell.find('x') != std::string::npos;
+  const Cell cell(options.cell);
 
   Model model = loadModel(options.model);
   if (options.twoSided)
@@ -359,7 +400,7 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
   double truthCount = 0, visible = 0, coverage = 0, overestimation = 0, coverageArea = 0, overestimationArea = 0;
   std::vector<double> totals;
   std::vector<std::pair<std::string, double>> passes;
-  GpgpSampleReport report{};
+  GpgpSampleReport report{}, metrics{};
   GpuTimes times;
   std::vector<uint32_t> found;
   View view;
@@ -372,16 +413,7 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
     else
       view = {viewAll(bounds, options.yaw, options.pitch, options.size.width, options.size.height), false};
 
-    // A cell's views: the camera moved along its right and up vectors, in world units or pixels' extents at the centre.
-    std::vector<View> views;
-    const glm::mat4& m = view.camera;
-    const glm::vec3 rows[4] = {
-        {m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {0, 0, 0}, {m[0][3], m[1][3], m[2][3]}};
-    const glm::vec3 right = glm::normalize(rows[0]), up = -glm::normalize(rows[1]);
-    const float w = glm::dot(rows[3], bounds.centre()) + m[3][3];
-    const float unit = inPixels ? 2 * w / (static_cast<float>(options.size.height) * glm::length(rows[1])) : 1.0f;
-    for (const glm::vec3& offset : offsets)
-      views.push_back({glm::translate(m, -(right * offset.x + up * offset.y) * unit), view.reversed});
+    const std::vector<View> views = viewsOf(cell, view, bounds.centre(), options.size.height);
 
     double total = 0;
     for (size_t v = 0; v < views.size(); ++v) {
@@ -416,35 +448,15 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
     if (options.truth) {
       truth = scene.truth(views, options.truth);
       const std::vector<uint32_t> areas = scene.sizes();
-      uint32_t hits = 0, extra = 0;
-      double area = 0, hitArea = 0;
-      for (size_t i = 0; i < truth.size(); ++i) {
-        hits += static_cast<uint32_t>(std::popcount(found[i] & truth[i]));
-        extra += static_cast<uint32_t>(std::popcount(found[i] & ~truth[i]));
-      }
-      double extraArea = 0;
-      if (extra && options.recheck > options.truth) {
-        // What is claimed too much is sampled again, finer; what shows then was no false positive.
-        const std::vector<uint32_t> fine = scene.truth(views, options.recheck);
-        extra = hits = 0;
-        for (size_t i = 0; i < truth.size(); ++i) {
-          truth[i] |= fine[i] & found[i];
-          hits += static_cast<uint32_t>(std::popcount(found[i] & truth[i]));
-          extra += static_cast<uint32_t>(std::popcount(found[i] & ~truth[i]));
-        }
-      }
-      for (size_t i = 0; i < areas.size(); ++i) {
-        area += areas[i];
-        if (isSet(found, i)) hitArea += areas[i];
-        // A triangle that no sample shows has no area in the picture: it counts as one sample.
-        if (isSet(found, i) && !isSet(truth, i)) extraArea += 1;
-      }
-      const double all = std::max<double>(countOf(truth), 1);
-      truthCount += countOf(truth) / static_cast<double>(cameras);
-      coverage += hits / all / cameras;
-      overestimation += extra / all / cameras;
-      coverageArea += hitArea / std::max(area, 1.0) / cameras;
-      overestimationArea += extraArea / std::max(area, 1.0) / cameras;
+      metrics = scene.measure(sampler, found, truth, areas, {}).report;
+      if (metrics.falsePositives && options.recheck > options.truth)
+        metrics = scene.measure(sampler, found, truth, areas, scene.truth(views, options.recheck)).report;
+      truthCount += metrics.truth / static_cast<double>(cameras);
+      // A camera that could see nothing has missed nothing.
+      coverage += (metrics.truth ? static_cast<double>(metrics.coverage) : 1.0) / cameras;
+      overestimation += static_cast<double>(metrics.overestimation) / cameras;
+      coverageArea += (metrics.truth ? static_cast<double>(metrics.coverageArea) : 1.0) / cameras;
+      overestimationArea += static_cast<double>(metrics.overestimationArea) / cameras;
     }
     if (!options.overlay.empty() && k == 0) paintOverlay(options, corners, view.camera, found, standard, truth);
   }

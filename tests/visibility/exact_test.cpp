@@ -1,4 +1,5 @@
 // 64-bit integers in two words, saturation, and which floats are told apart, against the processor's own.
+#include "core/math.h"
 #include "visibility/exact.h"
 
 #include <algorithm>
@@ -47,6 +48,19 @@ TEST(Exact, ToldApartByBits) {
   EXPECT_FALSE(isDivisor(0.0f));
   EXPECT_FALSE(isDivisor(-1.0f));
   EXPECT_FALSE(isDivisor(uintBitsToFloat(0x7fc00000u)));
+}
+
+TEST(Exact, ReciprocalsAreCorrectlyRounded) {
+  for (uint digits = 0; digits < 0x800000u; digits += digits < 4096 || digits > 0x7ff000u ? 1 : 13) {
+    const float v = uintBitsToFloat((127u << 23) | digits);
+    ASSERT_EQ(floatBitsToUint(reciprocal(v)), floatBitsToUint(static_cast<float>(1.0 / v))) << digits;
+  }
+  for (uint exponent = 27; exponent < 227; ++exponent)
+    for (const uint digits : {0u, 1u, 0x123456u, 0x7fffffu}) {
+      const float v = uintBitsToFloat((exponent << 23) | digits);
+      ASSERT_TRUE(isDivisor(v));
+      ASSERT_EQ(floatBitsToUint(reciprocal(v)), floatBitsToUint(divide(1.0f, v))) << v;
+    }
 }
 
 TEST(Exact, TinyNumbersBecomeZero) {

@@ -41,7 +41,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 46u);
+    EXPECT_EQ(offsets.size(), 47u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -61,7 +61,7 @@ TEST(Layout, ParamsAgree) {
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 39u);
+    EXPECT_EQ(offsets.size(), 50u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);
@@ -73,8 +73,11 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, largeArgs);
     EXPECT_OFFSET(offsets, Counters, leftArgs);
     EXPECT_OFFSET(offsets, Counters, overlapArgs);
+    EXPECT_OFFSET(offsets, Counters, winnerArgs);
+    EXPECT_OFFSET(offsets, Counters, onScreenArgs);
+    EXPECT_OFFSET(offsets, Counters, longArgs);
   }
-  EXPECT_EQ(offsetof(shader::Counters, drawListed) + 4, shader::kReportWords * 4);
+  EXPECT_EQ(offsetof(shader::Counters, foundArea) + 8, shader::kReportWords * 4);
 }
 
 TEST(Layout, TheEnginesStructsAreTheShaders) {

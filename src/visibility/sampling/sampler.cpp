@@ -3,6 +3,7 @@
 
 #include "shaders/visibility_allot.spv.h"
 #include "shaders/visibility_big.spv.h"
+#include "shaders/visibility_chunks.spv.h"
 #include "shaders/visibility_clear.spv.h"
 #include "shaders/visibility_draw_count.spv.h"
 #include "shaders/visibility_draw_list.spv.h"
@@ -12,9 +13,11 @@
 #include "shaders/visibility_finish.spv.h"
 #include "shaders/visibility_gather.spv.h"
 #include "shaders/visibility_hide.spv.h"
+#include "shaders/visibility_ids.spv.h"
 #include "shaders/visibility_large.spv.h"
 #include "shaders/visibility_left.spv.h"
 #include "shaders/visibility_list.spv.h"
+#include "shaders/visibility_measure.spv.h"
 #include "shaders/visibility_medium.spv.h"
 #include "shaders/visibility_overlap.spv.h"
 #include "shaders/visibility_overlap_big.spv.h"
@@ -23,6 +26,7 @@
 #include "shaders/visibility_place.spv.h"
 #include "shaders/visibility_plan.spv.h"
 #include "shaders/visibility_resolve.spv.h"
+#include "shaders/visibility_resolve_long.spv.h"
 #include "shaders/visibility_small.spv.h"
 #include "shaders/visibility_surfaces.spv.h"
 #include "shaders/visibility_unfold.spv.h"
@@ -56,9 +60,10 @@ constexpr VkDeviceSize kRecordBytes = 80; // TriangleRecord of records.glsl
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3, kTileGroups = 4,
-                   kEntryGroups = 5, kEachPixelGroups = 6;
+                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7;
 // Condition of a record.
-constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4;
+constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
+                   kIfMeasuring = 6;
 
 constexpr uint32_t kMaxBig = 1 << 20; // entries for candidates of more than 8 x 8 pixels
 constexpr uint32_t kTruthSamples = 64;
@@ -117,9 +122,10 @@ Sampler::Sampler(core::Context& owner, const GpgpSamplerCreateInfo& info)
 uint32_t Sampler::defaultPairs() const {
   const uint64_t wanted = (uint64_t(maxWidth_) * maxHeight_ * maxCameras_ + maxCandidates_) * 4;
   return static_cast<uint32_t>(
-      std::min<uint64_t>(wanted, context.device.limits.maxStorageBufferRange / sizeof(shader::Pair)));
+      std::min<uint64_t>(wanted, context.device.limits.maxStorageBufferRange / shader::kPairBytes));
 }
 
+uint64_t Sampler::chunkCapacity() const { return uint64_t(maxTriangles_) / shader::kChunk + maxDraws_ + 1; }
 uint64_t Sampler::slotCapacity() const { return slotsOf(maxWidth_, maxHeight_ * maxCameras_); }
 uint32_t Sampler::mediumRecords() const { return std::clamp(maxTriangles_ / 4, 1u, kMediumRecords); }
 uint32_t Sampler::largeRecords() const { return std::clamp(maxTriangles_ / 4, 1u, kLargeRecords); }
@@ -143,11 +149,13 @@ core::PassList Sampler::describe() const {
   const auto positions = list.add({"positions", buffer, 0, true});
   const auto indices = list.add({"indices", buffer, 0, true});
   const auto draws = list.add({"draws", buffer, 0, true});
-  const auto meshes = list.add({"geometrySet", buffer});
-  const auto table = list.add({"draw table", scratch, VkDeviceSize(maxDraws_) * shader::kTableWords * 4});
+  const auto meshes = list.add({"geometrySet", buffer, 0, true});
+  const auto table =
+      list.add({"draw table", scratch, VkDeviceSize(maxDraws_) * shader::kTableWords * 4 + chunkCapacity() * 4});
   const auto queue =
       list.add({"queue", scratch,
-                largest(VkDeviceSize(maxTriangles_) * 4, exact, VkDeviceSize(maxPairs_) * sizeof(shader::Entry))});
+                largest(VkDeviceSize(maxTriangles_) * 4, exact,
+                        std::max(VkDeviceSize(maxTriangles_) * 8, VkDeviceSize(maxPairs_) * shader::kPairBytes))});
   const auto depth = list.add({"depth", scratch, pixelBytes});
   const auto ids = list.add({"ids", scratch, pixelBytes});
   const auto counters = list.add({"counters", scratch, sizeof(Counters)});
@@ -168,7 +176,7 @@ core::PassList Sampler::describe() const {
   list.add({"drawTriangles", buffer, 0, true});
   const auto extents = list.add({"triangleSizes", buffer, 0, true});
   list.add({"pairs", scratch,
-            largest(exact ? VkDeviceSize(maxPairs_) * sizeof(shader::Pair) : 4, conservative,
+            largest(exact ? VkDeviceSize(maxPairs_) * shader::kPairBytes : 4, conservative,
                     pixels * shader::kGapWords * 4)});
 
   const auto shader = [&](const char* name, std::span<const uint32_t> spirv, uint32_t phase = 0) {
@@ -201,21 +209,24 @@ core::PassList Sampler::describe() const {
                 {{params, read}, {commands, read}, {commandCount, read}, {table, readWrite}, {counters, read}},
                 kEntryGroups)
       .condition = kIfCommands;
+  list.dispatch("chunks", shader("chunks", visibility_chunks), {{params, read}, {table, readWrite}, {counters, read}},
+                kChunkGroups);
   const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
                                    {"ids small", "ids medium", "ids large", "ids left"}};
   for (uint32_t phase = 0; phase < 2; ++phase) {
-    list.dispatchIndirect(names[phase][0], shader("small", visibility_small, phase),
+    list.dispatchIndirect(names[phase][0],
+                          phase ? shader("ids", visibility_ids, phase) : shader("small", visibility_small, phase),
                           {{params, read},
                            {positions, read},
                            {indices, read},
                            {draws, read},
                            {table, read},
-                           {queue, write},
+                           {queue, phase ? read : write},
                            {depth, readWrite},
                            {ids, readWrite},
                            {slots, readWrite},
                            {counters, readWrite}},
-                          counters, offsetof(Counters, smallArgs));
+                          counters, phase ? offsetof(Counters, winnerArgs) : offsetof(Counters, smallArgs));
     if (phase == 0)
       list.dispatchIndirect("unfold", shader("unfold", visibility_unfold),
                             {{params, read},
@@ -270,6 +281,9 @@ core::PassList Sampler::describe() const {
                 kWordGroups);
   list.dispatch("finish", shader("finish", visibility_finish), {{params, read}, {counters, readWrite}, {count, write}},
                 kOneGroup);
+  for (core::Pass& pass : list.passes)
+    if (pass.condition == UINT32_MAX) pass.condition = kIfSampling;
+  describeMetrics(list);
   list.report = counters;
   list.reportBytes = shader::kReportWords * 4;
   return list;
@@ -301,13 +315,13 @@ void Sampler::describeExact(core::PassList& list) const {
                          {indices, read},
                          {draws, read},
                          {table, read},
-                         {queue, write},
+                         {queue, readWrite},
                          {slots, readWrite},
                          {counters, readWrite},
                          {bits, readWrite},
                          {candidates, readWrite},
                          {pairs, write}},
-                        counters, offsetof(Counters, smallArgs));
+                        counters, offsetof(Counters, onScreenArgs));
   list.dispatchIndirect("pick unfold", shader("pick unfold", visibility_pick_unfold),
                         {{params, read},
                          {positions, read},
@@ -348,17 +362,21 @@ void Sampler::describeExact(core::PassList& list) const {
   list.dispatch("allot", shader("allot", visibility_allot),
                 {{params, read}, {counters, readWrite}, {slots, readWrite}, {open, write}}, kTileGroups);
   list.dispatchIndirect("place", shader("place", visibility_place),
-                        {{params, read}, {counters, read}, {slots, read}, {pairs, read}, {entries, write}}, counters,
-                        offsetof(Counters, placeArgs));
-  list.dispatchIndirect("resolve", shader("resolve", visibility_resolve),
-                        {{params, read},
-                         {slots, readWrite},
-                         {counters, readWrite},
-                         {bits, readWrite},
-                         {open, read},
-                         {candidates, read},
-                         {entries, read}},
-                        counters, offsetof(Counters, openArgs));
+                        {{params, read}, {counters, read}, {slots, readWrite}, {pairs, read}, {entries, write}},
+                        counters, offsetof(Counters, placeArgs));
+  const auto addResolve = [&](const char* name, std::span<const uint32_t> spirv, size_t arguments) {
+    list.dispatchIndirect(name, shader(name, spirv),
+                          {{params, read},
+                           {slots, readWrite},
+                           {counters, readWrite},
+                           {bits, readWrite},
+                           {open, read},
+                           {candidates, read},
+                           {entries, readWrite}},
+                          counters, arguments);
+  };
+  addResolve("resolve", visibility_resolve, offsetof(Counters, openArgs));
+  addResolve("resolve long", visibility_resolve_long, offsetof(Counters, longArgs));
   for (size_t i = first; i < list.passes.size(); ++i) list.passes[i].condition = kIfExact;
 }
 
@@ -401,7 +419,7 @@ void Sampler::describeConservative(core::PassList& list) const {
   const VkDeviceSize pixels = VkDeviceSize(maxWidth_) * maxHeight_ * maxCameras_;
   for (level = 1; level <= kMaxRefinements; ++level) {
     if (level == 1) addFill("clear gaps", gaps, 0, 0, pixels * 8);
-    addFill("clear nearest", gaps, shader::kFarthest, pixels * 8, pixels * 4);
+    addFill("clear nearest", gaps, shader::kFarthest, pixels * 8, pixels * shader::kQuarters * 4);
     addSweep(cover);
     addSweep(nearest);
     addSweep(take);
@@ -455,6 +473,66 @@ void Sampler::describeDraws(core::PassList& list) const {
                          {bound(shader::kBindDrawTriangles), write}},
                         counters, offsetof(Counters, smallArgs))
       .condition = kIfDraws;
+}
+
+/// Records that measure have these passes only.
+void Sampler::describeMetrics(core::PassList& list) const {
+  using enum core::UseKind;
+  using core::ResourceIndex;
+  constexpr auto bound = [](int binding) { return static_cast<ResourceIndex>(binding); };
+  list.fill("clear metrics", bound(shader::kBindCounters), 0).condition = kIfMeasuring;
+  list.dispatch("measure", list.add({"measure", visibility_measure}),
+                {{bound(shader::kBindParams), read},
+                 {bound(shader::kBindBits), read},
+                 {bound(shader::kBindTruth), read},
+                 {bound(shader::kBindTruthCounts), read},
+                 {bound(shader::kBindRecheck), read},
+                 {bound(shader::kBindFalsePositives), write},
+                 {bound(shader::kBindFalseNegatives), write},
+                 {bound(shader::kBindCounters), readWrite}},
+                kWordGroups)
+      .condition = kIfMeasuring;
+}
+
+Result<void> Sampler::measure(VkCommandBuffer commandBuffer, const GpgpVisibilityMetricsInfo& info) {
+  if (info.triangleCount > 1u << 31)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; at most 2147483648", info.triangleCount);
+  const uint64_t words = (uint64_t(info.triangleCount) + 31) / 32;
+  Params params{};
+  params.triangleCount = info.triangleCount;
+  core::Record record;
+  const auto bind = [&](int binding, const char* name, const GpgpBuffer& buffer, uint32_t flag,
+                        uint64_t bytes) -> Result<void> {
+    if (!info.triangleCount || (flag && !buffer.buffer)) return {};
+    if (auto ok = checkSize(name, buffer, bytes, "triangleCount"); !ok) return ok;
+    record.bindings[static_cast<size_t>(binding)].engineBuffer = &buffer;
+    record.bindings[static_cast<size_t>(binding)].name = name;
+    params.metricBuffers |= flag;
+    return {};
+  };
+  if (auto ok = bind(shader::kBindBits, "visibleBits", info.visibleBits, 0, words * 4); !ok) return ok;
+  if (auto ok = bind(shader::kBindTruth, "truthBits", info.truthBits, 0, words * 4); !ok) return ok;
+  if (auto ok = bind(shader::kBindTruthCounts, "truthCounts", info.truthCounts, shader::kHasTruthCounts,
+                     uint64_t(info.triangleCount) * 4);
+      !ok)
+    return ok;
+  if (auto ok = bind(shader::kBindRecheck, "recheckBits", info.recheckBits, shader::kHasRecheck, words * 4); !ok)
+    return ok;
+  if (auto ok = bind(shader::kBindFalsePositives, "falsePositives", info.falsePositives, shader::kHasFalsePositives,
+                     words * 4);
+      !ok)
+    return ok;
+  if (auto ok = bind(shader::kBindFalseNegatives, "falseNegatives", info.falseNegatives, shader::kHasFalseNegatives,
+                     words * 4);
+      !ok)
+    return ok;
+  record.commandBuffer = commandBuffer;
+  record.info = &info.base;
+  record.groups[kWordGroups] = {std::max(groupsOf256(words), 1u), 1, 1};
+  record.conditions[kIfMeasuring] = true;
+  record.constants = std::as_bytes(std::span(&params, 1));
+  if (auto ok = check(record); !ok) return ok;
+  return Worker::record(record);
 }
 
 Result<void> Sampler::checkInfo(const GpgpSampleInfo& info, const CameraView* view) const {
@@ -709,8 +787,10 @@ Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInf
   record.groups[kWordGroups] = {groupsOf256(std::max<uint64_t>(words, params.viewWords)), 1, 1};
   record.groups[kTileGroups] = {static_cast<uint32_t>(std::min<uint64_t>(slots / 64, shader::kMaxGroups)), 1, 1};
   record.groups[kEntryGroups] = {groupsOf256(params.entryCount), 1, 1};
+  record.groups[kChunkGroups] = {groupsOf256(chunkCapacity()), 1, 1};
   record.groups[kEachPixelGroups] = {groupsOf256(uint64_t(params.width) * rows), 1, 1};
   record.levels = info.refinements + 1;
+  record.conditions[kIfSampling] = true;
   record.conditions[kIfConservative] = conservative;
   record.conditions[kIfExact] = exact;
   record.conditions[kIfCommands] = params.hasCommands != 0;
@@ -743,6 +823,15 @@ bool Sampler::takeSampleReport(GpgpSampleReport& report) {
   report.draws = counters.drawsGiven;
   report.neededDrawTriangles = counters.drawTriangles;
   report.drawTriangles = counters.drawListed;
+  report.truth = counters.truth;
+  report.falsePositives = counters.falsePositives;
+  report.falseNegatives = counters.truth - counters.found;
+  const auto share = [](double part, double whole) { return whole > 0 ? static_cast<float>(part / whole) : 0.0f; };
+  const auto wide = [](const uint32_t* words) { return static_cast<double>(uint64_t(words[1]) << 32 | words[0]); };
+  report.coverage = share(counters.found, counters.truth);
+  report.overestimation = share(counters.falsePositives, counters.truth);
+  report.coverageArea = share(wide(counters.foundArea), wide(counters.truthArea));
+  report.overestimationArea = share(counters.falsePositives, wide(counters.truthArea));
   const bool tooMany = counters.items > maxTriangles_ || counters.unresolved ||
                        (counters.hasList && counters.listed < counters.visible) ||
                        counters.drawsGiven < counters.draws || counters.drawListed < counters.drawTriangles;

@@ -17,6 +17,8 @@ public:
   /// Checks what depends on the budgets and the buffers' sizes, then records. view may be null.
   core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpSampleInfo& info, const GeometrySet& geometry,
                              const CameraView* view);
+  /// Compares two sets of triangles.
+  core::Result<void> measure(VkCommandBuffer commandBuffer, const GpgpVisibilityMetricsInfo& info);
   /// False: none is there.
   bool takeSampleReport(GpgpSampleReport& report);
 
@@ -25,10 +27,12 @@ private:
   void describeExact(core::PassList& list) const;
   void describeConservative(core::PassList& list) const;
   void describeDraws(core::PassList& list) const;
+  void describeMetrics(core::PassList& list) const;
   static uint32_t samplesOf(const GpgpSampleInfo& info);
   void setGrid(const GpgpSampleInfo& info, shader::Params& params) const;
   core::Result<void> checkInfo(const GpgpSampleInfo& info, const CameraView* view) const;
 
+  uint64_t chunkCapacity() const;
   uint64_t slotCapacity() const;
   uint32_t mediumRecords() const;
   uint32_t largeRecords() const;

@@ -114,19 +114,23 @@ struct Sampling {
           const uvec2 own = coverageOf(p.made.pieces[piece], pixel);
           mask = uvec2(mask.x | own.x, mask.y | own.y);
         });
-    std::vector<uint32_t> nearestOf(covered.size(), kFarthest);
+    std::vector<uint32_t> nearestOf(covered.size() * kQuarters, kFarthest);
     for (const bool take : {false, true})
       for (const Placed& p : triangles) {
         if (isSeen(p)) continue;
         forEachPixel(p, [&](size_t piece, ivec2 pixel) {
-          const uvec2 mask = covered[at(pixel)], own = coverageOf(p.made.pieces[piece], pixel);
+          const uvec2 mask = covered[at(pixel)], all = coverageOf(p.made.pieces[piece], pixel);
+          const uvec2 own(all.x & ~mask.x, all.y & ~mask.y);
           float nearest = 0, farthest = 0;
-          if (!((own.x & ~mask.x) | (own.y & ~mask.y)) || !depths(p, piece, pixel, nearest, farthest)) return;
-          uint32_t& least = nearestOf[at(pixel)];
-          if (!take)
-            least = std::min(least, floatBitsToUint(nearest));
-          else if (least == floatBitsToUint(nearest))
-            out.bits[p.id / 32] |= 1u << (p.id % 32);
+          if (!(own.x | own.y) || !depths(p, piece, pixel, nearest, farthest)) return;
+          for (uint32_t quarter = 0; quarter < kQuarters; ++quarter) {
+            if (!inQuarter(own, quarter)) continue;
+            uint32_t& least = nearestOf[at(pixel) * kQuarters + quarter];
+            if (!take)
+              least = std::min(least, floatBitsToUint(nearest));
+            else if (least == floatBitsToUint(nearest))
+              out.bits[p.id / 32] |= 1u << (p.id % 32);
+          }
         });
       }
   }

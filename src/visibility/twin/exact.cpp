@@ -12,6 +12,9 @@ namespace {
 using namespace shader;
 
 /// A pixel's list: candidates and the keys of their depths there.
+struct Entry {
+  uint32_t candidate, key;
+};
 using List = std::vector<Entry>;
 
 /// Takes back what finish() made.
@@ -30,16 +33,13 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, s
   std::array<uvec2, 64> covered{};
   for (const Entry& entry : list) {
     const Candidate& c = candidates[entry.candidate];
-    const Outline outline = outlineOf(c, pixel * 256);
+    const Outline outline = outlineOf(c, pixel);
     bool seen = false;
     for (int row = 0; row < 64; ++row) {
-      const int y = row * 4 + 2;
-      if (!reachesRow(outline, y)) continue;
       uvec2& mask = covered[static_cast<size_t>(row)];
-      const vec2 range = rowRange(outline, y);
-      const uvec2 own = samplesIn(range, 0.0f), wide = samplesIn(range, kSeam);
+      const uvec2 own = samplesIn(outline, row);
       seen = seen || ((own.x & ~mask.x) | (own.y & ~mask.y));
-      mask = uvec2(mask.x | wide.x, mask.y | wide.y);
+      mask |= own;
     }
     if (seen) bits[c.id / 32] |= 1u << (c.id % 32);
   }
@@ -106,7 +106,7 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
           if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, isCompact(t), pixel)) continue;
           if (nearestKey(t, isCompact(t), pixel, reversed) > limit) continue;
           any = true;
-          lists[at(pixel)].push_back({index, middleKey(candidate, isCompact(t), pixel, reversed)});
+          lists[at(pixel)].push_back({index, middleKey(candidate, outlineOf(candidate, pixel), pixel, reversed)});
           ++out.counters.pairs;
         }
       if (any || piece.shared) candidates.push_back(candidate);

@@ -1,0 +1,77 @@
+// Moves a camera across its own view: its axes come from the matrix' rows, so that any projection will do.
+#include "visibility/view_cell.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::visibility {
+namespace {
+using core::makeError;
+constexpr uint32_t kMaxSide = 64;
+
+glm::vec3 rowOf(const GpgpCamera& camera, int row) {
+  const float* m = camera.viewProjection + row;
+  return {m[0], m[4], m[8]};
+}
+
+/// The camera at another place, looking the same way.
+GpgpCamera moved(const GpgpCamera& camera, const glm::vec3& by) {
+  GpgpCamera result = camera;
+  for (int row = 0; row < 4; ++row) result.viewProjection[12 + row] -= glm::dot(rowOf(camera, row), by);
+  return result;
+}
+} // namespace
+
+core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t room, GpgpCamera* cameras) {
+  const uint32_t skip = std::max(info.skip, 1u);
+  if (info.columns > kMaxSide || info.rows > kMaxSide || !info.columns != !info.rows)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "columns x rows is %u x %u; expected 1 x 1 to %u x %u, or none",
+                     info.columns, info.rows, kMaxSide, kMaxSide);
+  if (info.columns && (!info.height || !(info.distance > 0 && info.distance < 1e30f)))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "height, distance are %u, %g; a grid needs them above 0", info.height,
+                     static_cast<double>(info.distance));
+  if (info.pointCount && !info.points)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points is NULL, but pointCount is %u", info.pointCount);
+  const glm::vec3 w = rowOf(info.camera, 3), depth = rowOf(info.camera, 2);
+  const bool perspective = glm::dot(w, w) > 0;
+  const glm::vec3 forward = perspective ? w : info.camera.reversedDepth ? -depth : depth;
+  const glm::vec3 back = -glm::normalize(forward);
+  // What an off-centre projection adds along the view is no part of the axes.
+  const auto across = [&](int row) {
+    const glm::vec3 axis = rowOf(info.camera, row);
+    return axis - back * glm::dot(axis, back);
+  };
+  const glm::vec3 x = across(0), y = across(1);
+  const glm::vec3 right = glm::normalize(x), up = -glm::normalize(y);
+  if (!std::isfinite(glm::dot(right, up) + back.x))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection has no direction across or along the view");
+
+  uint32_t count = 0;
+  const auto add = [&](const glm::vec3& offset) {
+    if (cameras && count < room)
+      cameras[count] = moved(info.camera, right * offset.x + up * offset.y + back * offset.z);
+    ++count;
+  };
+  add(glm::vec3(0));
+  const uint32_t columns = (info.columns + skip - 1) / skip, rows = (info.rows + skip - 1) / skip;
+  const float pixel =
+      columns ? 2 * (perspective ? info.distance : 1.0f) / (static_cast<float>(info.height) * glm::length(y)) : 0.0f;
+  for (uint32_t j = 0; j < rows; ++j)
+    for (uint32_t i = 0; i < columns; ++i) {
+      const glm::vec3 at(static_cast<float>(2 * i) - static_cast<float>(columns - 1),
+                         static_cast<float>(2 * j) - static_cast<float>(rows - 1), 0);
+      if (at.x != 0 || at.y != 0) add(at * (0.5f * static_cast<float>(skip) * pixel));
+    }
+  for (uint32_t i = 0; i < info.pointCount; ++i) {
+    const glm::vec3 at(info.points[i * 3], info.points[i * 3 + 1], info.points[i * 3 + 2]);
+    if (!std::isfinite(at.x + at.y + at.z))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points[%u] is not finite", i);
+    add(at);
+  }
+  return count;
+}
+
+} // namespace gpgp::visibility

@@ -1,0 +1,27 @@
+// The figures of chapter 6 as numbers, a line each, and as pictures of such lines.
+#pragma once
+#include "visibility_runner.h"
+
+#include <string>
+
+namespace gpgp::test {
+
+struct FigureOptions {
+  uint32_t repeat = 3;
+  uint32_t largestGrid = 256; ///< samples a pixel in each direction, figure 6.9's reference
+  uint32_t largestCell = 32;  ///< pixels of figure 6.14's largest cell
+};
+
+/// Prints lines of figure, scene, series, label, x and y, separated by commas:
+///   6.9   label N: share of the triangles that N x N + 1 samples find, of those of the largest grid
+///   6.10  label factor of resolution: milliseconds, ratio to standard sampling (figure 6.10 and table 6.1)
+///   6.11  label factor of resolution: coverage, overestimation
+///   6.12  label static/dynamic epsilon: overestimation, coverage
+///   6.14  label pixels and skip of the view cell: overestimation, coverage, against the truth of its middle
+///   cell  label view points: overestimation, coverage of a walking viewer's cell; and the ratio of its cost
+void printFigures(Runner& runner, const std::string& scene, uint32_t height, const FigureOptions& options);
+
+/// Reads files of such lines (others are skipped) and writes one SVG per figure and scene. False: nothing was written.
+bool plotFigures(const std::vector<std::string>& files, const std::string& folder);
+
+} // namespace gpgp::test

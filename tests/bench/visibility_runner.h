@@ -1,0 +1,253 @@
+// One scene on a device: records of any method, view cells, truths in slices, metrics; GPU times by timestamps.
+#pragma once
+#include "../visibility/measured_scenes.h"
+#include "host/busy_work.h"
+#include "host/frames.h"
+#include "host/memory.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <gpgp/gpgp.hpp>
+
+namespace gpgp::test {
+
+inline void expect(GpgpResult result, const char* what) {
+  if (result == GPGP_SUCCESS) return;
+  std::fprintf(stderr, "%s: %s\n", what, gpgpResultString(result));
+  std::exit(1);
+}
+inline double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// What a record asks for, the scene apart.
+struct Sampling {
+  GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;
+  uint32_t samples = 0, slice = 0;
+  bool accumulate = false;
+  float resolution = 0;
+  uint32_t heuristics = 0, refinements = 0; ///< of the conservative method
+  float epsilonStatic = 0, epsilonDynamic = 0;
+};
+
+class Runner {
+public:
+  Runner(host::HeadlessDevice& device, Context& context, Scene& scene)
+      : device_(device), context_(context), scene_(scene), frames_(device, 2), busy_(device) {
+    const auto input = scene.input();
+    const auto copy = [&](const auto& span, const char* what) {
+      return host::makeBuffer(device, std::vector(span.begin(), span.end()), kStorage, what);
+    };
+    positions_ = copy(input.positions, "positions");
+    indices_ = copy(input.indices, "indices");
+    draws_ = copy(input.draws, "draws");
+    bits_ = makeBits();
+    GpgpGeometrySetCreateInfo info = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
+    info.meshes = reinterpret_cast<const GpgpMesh*>(scene.meshes.data());
+    info.meshCount = static_cast<uint32_t>(scene.meshes.size());
+    auto set = GeometrySet::create(context.get(), info);
+    expect(set.code(), "geometry set");
+    geometry_ = std::move(*set);
+    VkDeviceSize pending = 1;
+    while (pending)
+      submit([&](VkCommandBuffer cmd) {
+        expect(gpgpRecordUpload(context_.get(), cmd, &frames_.frame(), 0, &pending), "upload");
+      });
+    std::copy_n(scene.params.viewProjection, 16, camera_.viewProjection);
+    camera_.reversedDepth = scene.params.reversedDepth;
+  }
+
+  uint32_t triangles() const { return scene_.params.triangleCount; }
+  const GpgpCamera& camera() const { return camera_; }
+  host::Buffer makeBits() { return {device_, VkDeviceSize(std::max((triangles() + 31) / 32, 1u)) * 4, kStorage}; }
+  host::Buffer makeCounts() { return {device_, VkDeviceSize(triangles()) * 4, kStorage}; }
+  const host::Buffer& bits() const { return bits_; }
+
+  Sampler sampler(uint32_t methods, uint32_t maxSamples, uint32_t maxCameras = 1) {
+    GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+    info.base.label = "bench";
+    info.base.queueFamily = device_.graphics().family;
+    info.base.queueFlags = device_.graphics().flags;
+    info.maxWidth = scene_.params.width;
+    info.maxHeight = scene_.params.height;
+    info.maxCameras = maxCameras;
+    info.maxDraws = static_cast<uint32_t>(scene_.draws.size()) * maxCameras;
+    info.maxTriangles = std::max(triangles() * maxCameras, 1u);
+    info.methods = methods;
+    info.maxSamples = maxSamples;
+    const uint64_t range = device_.properties().limits.maxStorageBufferRange;
+    const uint64_t pixels = uint64_t(info.maxWidth) * info.maxHeight * maxCameras;
+    info.maxCandidates =
+        static_cast<uint32_t>(std::min<uint64_t>({std::max(info.maxTriangles, 65536u), 1u << 24, range / 80}));
+    info.maxPairs = static_cast<uint32_t>(std::min<uint64_t>(pixels * 24 + (1u << 20), range / 20));
+    auto made = Sampler::create(context_.get(), info);
+    expect(made.code(), "sampler");
+    expect(made->prewarm(), "prewarm");
+    return std::move(*made);
+  }
+
+  struct Run {
+    double milliseconds = 0;
+    std::vector<std::pair<std::string, double>> passes;
+    GpgpSampleReport report{};
+  };
+
+  /// Repeats one record into bits(), each timed.
+  Run measure(Sampler& sampler, const Sampling& sampling, uint32_t repeat, std::span<const GpgpCamera> cameras = {}) {
+    uint32_t passes = 0;
+    expect(gpgpGetPasses(sampler.get(), &passes, nullptr), "passes");
+    std::vector<const char*> names(passes);
+    expect(gpgpGetPasses(sampler.get(), &passes, names.data()), "passes");
+    const VolkDeviceTable& vk = device_.vk();
+    const VkQueryPoolCreateInfo queryInfo{
+        VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, nullptr, 0, VK_QUERY_TYPE_TIMESTAMP, passes + 1, 0};
+    VkQueryPool queries = VK_NULL_HANDLE;
+    host::check(vk.vkCreateQueryPool(device_.device(), &queryInfo, nullptr, &queries), "vkCreateQueryPool");
+    const double period = double(device_.properties().limits.timestampPeriod) * 1e-6;
+    Run result;
+    std::vector<double> totals;
+    std::vector<std::vector<double>> each(passes);
+    busy_.warmUp();
+    for (uint32_t i = 0; i < repeat; ++i) {
+      submit([&](VkCommandBuffer cmd) {
+        vk.vkCmdResetQueryPool(cmd, queries, 0, passes + 1);
+        busy_.record(cmd);
+        host::fullBarrier(device_, cmd);
+        GpgpSampleInfo info = infoOf(sampling, cameras, bits_, nullptr);
+        info.base.timestamps = {queries, 0, passes + 1};
+        expect(sampler.recordPrepare(cmd, frames_.frame(), info), "record");
+      });
+      std::vector<uint64_t> stamps(passes + 1);
+      host::check(vk.vkGetQueryPoolResults(device_.device(), queries, 0, passes + 1, stamps.size() * 8, stamps.data(),
+                                           8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+                  "vkGetQueryPoolResults");
+      totals.push_back(static_cast<double>(stamps.back() - stamps.front()) * period);
+      for (uint32_t p = 0; p < passes; ++p) each[p].push_back(static_cast<double>(stamps[p + 1] - stamps[p]) * period);
+      collect(sampler, result.report);
+    }
+    submit([](VkCommandBuffer) {});
+    collect(sampler, result.report);
+    vk.vkDestroyQueryPool(device_.device(), queries, nullptr);
+    result.milliseconds = median(totals);
+    for (uint32_t p = 0; p < passes; ++p) result.passes.emplace_back(names[p], median(each[p]));
+    return result;
+  }
+
+  /// One record, not timed.
+  GpgpSampleReport record(Sampler& sampler, const Sampling& sampling, std::span<const GpgpCamera> cameras,
+                          const host::Buffer& bits, const host::Buffer* counts = nullptr) {
+    GpgpSampleReport report{};
+    submit([&](VkCommandBuffer cmd) {
+      const GpgpSampleInfo info = infoOf(sampling, cameras, bits, counts);
+      expect(sampler.recordPrepare(cmd, frames_.frame(), info), "record");
+    });
+    submit([](VkCommandBuffer) {});
+    collect(sampler, report);
+    return report;
+  }
+
+  /// The truth of all the cameras with samples x samples a pixel and the centre; counts may be null.
+  void truth(uint32_t samples, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
+             const host::Buffer* counts = nullptr) {
+    uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
+    while (perRecord > 1 && uint64_t(scene_.params.width) * scene_.params.height * perRecord * perRecord * 4 >
+                                device_.properties().limits.maxStorageBufferRange)
+      perRecord /= 2;
+    Sampler worker = sampler(GPGP_SAMPLING_TRUTH_BIT, perRecord);
+    const uint32_t slices = samples / perRecord * (samples / perRecord) + 1;
+    Sampling step;
+    step.method = GPGP_SAMPLING_TRUTH;
+    step.samples = samples;
+    constexpr uint32_t kTogether = 12; // records of one submission: a GPU that waits for each lowers its clocks
+    for (const GpgpCamera& camera : cameras)
+      for (uint32_t slice = 0; slice < slices;) {
+        const uint32_t end = std::min(slice + kTogether, slices);
+        submit([&](VkCommandBuffer cmd) {
+          for (; slice < end; ++slice) {
+            step.slice = slice;
+            expect(worker.recordPrepare(cmd, frames_.frame(), infoOf(step, {&camera, 1}, bits, counts)), "record");
+            step.accumulate = true;
+          }
+        });
+        GpgpSampleReport report{};
+        collect(worker, report);
+      }
+  }
+
+  /// counts and recheck may be null.
+  GpgpSampleReport metrics(Sampler& sampler, const host::Buffer& bits, const host::Buffer& truth,
+                           const host::Buffer* counts, const host::Buffer* recheck) {
+    GpgpSampleReport report{};
+    submit([&](VkCommandBuffer cmd) {
+      GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
+      info.triangleCount = triangles();
+      info.visibleBits = bits.range({}, kRead);
+      info.truthBits = truth.range({}, kRead);
+      if (counts) info.truthCounts = counts->range({}, kRead);
+      if (recheck) info.recheckBits = recheck->range({}, kRead);
+      expect(sampler.recordPrepareMetrics(cmd, frames_.frame(), info), "metrics");
+    });
+    submit([](VkCommandBuffer) {});
+    collect(sampler, report);
+    return report;
+  }
+
+private:
+  static constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  static constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, {}};
+
+  GpgpSampleInfo infoOf(const Sampling& sampling, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
+                        const host::Buffer* counts) const {
+    GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+    info.geometrySet = geometry_.get();
+    info.method = sampling.method;
+    info.camera = cameras.empty() ? camera_ : cameras[0];
+    if (cameras.size() > 1) {
+      info.moreCameras = cameras.data() + 1;
+      info.moreCameraCount = static_cast<uint32_t>(cameras.size() - 1);
+    }
+    info.width = scene_.params.width;
+    info.height = scene_.params.height;
+    info.samples = sampling.samples;
+    info.slice = sampling.slice;
+    info.accumulate = sampling.accumulate;
+    if (sampling.method == GPGP_SAMPLING_CONSERVATIVE) {
+      info.resolution = sampling.resolution;
+      info.heuristics = sampling.heuristics;
+      info.epsilonStatic = sampling.epsilonStatic;
+      info.epsilonDynamic = sampling.epsilonDynamic;
+      info.refinements = sampling.refinements;
+    }
+    info.positions = positions_.range();
+    info.indices = indices_.range();
+    info.indexType = VK_INDEX_TYPE_UINT32;
+    info.draws = draws_.range();
+    info.drawCount = static_cast<uint32_t>(scene_.draws.size());
+    info.triangleCount = triangles();
+    info.visibleBits = bits.range({}, kRead);
+    if (counts) info.pixelCounts = counts->range({}, kRead);
+    return info;
+  }
+  static void collect(Sampler& sampler, GpgpSampleReport& report) {
+    for (auto next = sampler.report(); next; next = sampler.report()) report = *next;
+  }
+  template <class Record> void submit(const Record& record) {
+    VkCommandBuffer cmd = frames_.begin();
+    expect(gpgpAdvance(context_.get(), &frames_.frame()), "advance");
+    record(cmd);
+    frames_.submit();
+    frames_.waitAll();
+  }
+  host::HeadlessDevice& device_;
+  Context& context_;
+  Scene& scene_;
+  GpgpCamera camera_{};
+  host::FrameRing frames_;
+  host::BusyWork busy_;
+  host::Buffer positions_, indices_, draws_, bits_;
+  GeometrySet geometry_;
+};
+
+} // namespace gpgp::test
