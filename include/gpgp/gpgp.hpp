@@ -72,6 +72,8 @@ GPGP_STRUCTURE_OF(GpgpGeometrySetCreateInfo, GPGP_STRUCTURE_GEOMETRY_SET_CREATE_
 GPGP_STRUCTURE_OF(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO);
 GPGP_STRUCTURE_OF(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT);
+GPGP_STRUCTURE_OF(GpgpVisibilityMetricsInfo, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO);
+GPGP_STRUCTURE_OF(GpgpViewCellInfo, GPGP_STRUCTURE_VIEW_CELL_INFO);
 GPGP_STRUCTURE_OF(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO);
 #undef GPGP_STRUCTURE_OF
 
@@ -303,6 +305,10 @@ public:
   [[nodiscard]] GpgpResult recordPrepare(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
                                          const GpgpSampleInfo& info) noexcept {
     return gpgpRecordPrepareVisibility(get(), commandBuffer, &frame, &info);
+  }
+  [[nodiscard]] GpgpResult recordPrepareMetrics(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
+                                                const GpgpVisibilityMetricsInfo& info) noexcept {
+    return gpgpRecordPrepareVisibilityMetrics(get(), commandBuffer, &frame, &info);
   }
   /// The oldest report not yet taken; GPGP_NOT_READY: none.
   Result<GpgpSampleReport> report() noexcept { return detail::report(gpgpGetSampleReport, get()); }

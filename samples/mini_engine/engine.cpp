@@ -29,7 +29,9 @@ Engine::Engine(Device& device, Target& target, const EngineOptions& options)
       city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga", options.watch),
       hud_(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
            options.dataFolder + "/fetched/svg/tiger.svgz"),
-      sight_(device, gpgp_, forward_, loadModel(options.dataFolder)) {
+      sight_(device, gpgp_, forward_, loadModel(options.dataFolder)), farther_(options.decoupled.farther) {
+  if (options.decoupled.on)
+    decoupled_ = std::make_unique<Decoupled>(device, gpgp_, forward_, loadModel(options.dataFolder), options.decoupled);
   for (Slot& slot : slots_) {
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     pool.queueFamilyIndex = device.family;
@@ -63,15 +65,20 @@ void Engine::resize() {
 Camera Engine::orbit(float angle, float distance, float height, float fieldOfView) const {
   const VkExtent2D size = target_.extent();
   const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  angle += 0.24f + 0.01f * static_cast<float>(frame_.current);
+  angle += 0.24f + 0.01f * static_cast<float>(frame_.current - pathBegin_);
   return lookAt(glm::vec3(std::sin(angle) * distance, height, std::cos(angle) * distance), glm::vec3(0, 12, 0),
                 fieldOfView, aspect, 1.0f, 900.0f);
 }
 
 void Engine::run(uint32_t frames) {
   for (uint32_t i = 0; (frames == 0 || i < frames) && target_.pollEvents(); ++i) {
+    for (const char key : target_.takeKeys())
+      if (decoupled_) decoupled_->key(key);
     frame();
-    if (i % 30 == 29) {
+    if (i % 30 == 29 && decoupled_) {
+      target_.setTitle("gpgp mini engine: " + std::to_string(decoupled_->shadingReport().visible) +
+                       " triangles shaded (F freezes, M method, 1 shaded, 2 overlay, 3 density)");
+    } else if (i % 30 == 29) {
       target_.setTitle("gpgp mini engine: " + std::to_string(city_.report().terminals) + " spawned, " +
                        std::to_string(hud_.report().patches) + " patches, " + std::to_string(sight_.report().visible) +
                        " triangles visible");
@@ -120,7 +127,45 @@ void Engine::frame() {
   target_.present(*acquired);
 }
 
+void Engine::printTimes() {
+  const Decoupled::Times& times = decoupled_->times();
+  const double shadings = std::max(times.shadings, 1u), displays = std::max(times.displays, 1u);
+  std::printf("GPU times   visibility %.3f ms, shading %.3f ms, display %.3f ms\n", times.visibility / shadings,
+              times.shading / shadings, times.display / displays);
+}
+
+void Engine::comparePaths(uint32_t frames) {
+  for (const auto& [name, method] : {std::pair("standard", GPGP_SAMPLING_STANDARD), {"exact", GPGP_SAMPLING_EXACT}}) {
+    decoupled_->restart(method);
+    pathBegin_ = frame_.current;
+    run(frames);
+    const Decoupled::Misses& misses = decoupled_->misses();
+    const double displays = std::max(misses.displays, 1u);
+    std::printf("path        %-8s %u displays, %u triangles shaded last: without shading %.3f %% of the model's pixels "
+                "(at most %.3f %%), %.0f triangles a display\n",
+                name, misses.displays, decoupled_->shadingReport().visible, 100 * misses.pixels / displays,
+                100 * misses.worst, misses.triangles / displays);
+    printTimes();
+  }
+}
+
+/// Shading from one pose, display from another.
+void Engine::recordDecoupled(VkCommandBuffer commands, const Acquired& acquired) {
+  const Camera display = orbit(0.0f, 84.0f, 36.0f, 0.80f);
+  const Camera shading = orbit(0.0f, 84.0f * farther_, 36.0f * farther_, 0.80f);
+  gpgp_.check(gpgp_.context.recordUpload(commands, frame_).code(), "gpgpRecordUpload");
+  decoupled_->prepare(commands, frame_, shading, display, target_.extent());
+  forward_.begin(commands, acquired.framebuffer);
+  forward_.drawBackdrop(commands, display);
+  decoupled_->draw(commands, display);
+  vkCmdEndRenderPass(commands);
+}
+
 void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
+  if (decoupled_) {
+    recordDecoupled(commands, acquired);
+    return;
+  }
   const Camera camera = orbit(0.0f, 84.0f, 36.0f, 0.80f);
   const Camera side = orbit(2.5f, 74.0f, 26.0f, 0.56f); // what the camera cannot see lies here
   gpgp_.check(gpgp_.context.recordUpload(commands, frame_).code(), "gpgpRecordUpload");
@@ -154,12 +199,17 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
 }
 
 void Engine::collect() {
+  if (decoupled_) {
+    decoupled_->collect();
+    return;
+  }
   city_.collect();
   hud_.collect();
   sight_.collect();
 }
 
 bool Engine::allWell() const {
+  if (decoupled_) return decoupled_->allWell();
   return city_.report().base.status == GPGP_SUCCESS && city_.reports() > 0 &&
          hud_.report().base.status == GPGP_SUCCESS && hud_.reports() > 0 &&
          sight_.report().base.status == GPGP_SUCCESS && sight_.reports() > 0;
@@ -174,6 +224,18 @@ void Engine::printSummary() const {
                 static_cast<unsigned long long>(base.frame));
   };
   std::printf("device      %s\n", device_.properties.deviceName);
+  if (decoupled_) {
+    const GpgpSampleReport& shading = decoupled_->shadingReport();
+    const Decoupled::Misses& misses = decoupled_->misses();
+    std::printf("shading     %s: %u of %u triangles\n", gpgpResultString(shading.base.status), shading.visible,
+                sight_.model().triangleCount);
+    std::printf("display     %u displays, %.3f %% of the model's pixels without shading, at most %.3f %%\n",
+                misses.displays, 100 * misses.pixels / std::max(misses.displays, 1u), 100 * misses.worst);
+    if (const auto& truth = decoupled_->truthReport())
+      std::printf("truth       %u triangles: coverage %.2f %%, overestimation %.2f %%\n", truth->truth,
+                  100 * static_cast<double>(truth->coverage), 100 * static_cast<double>(truth->overestimation));
+    return;
+  }
   line("spawn", spawn.base);
   std::printf("%u buildings became %u instances in %u rounds, key hash %08x%08x\n", city_.buildings(),
               spawn.instancesWritten, spawn.rounds, spawn.keyHash[1], spawn.keyHash[0]);

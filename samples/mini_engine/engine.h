@@ -1,6 +1,7 @@
 // The frame loop: two frames in flight; what gpgp records goes into the engine's own command buffer.
 #pragma once
 #include "city.h"
+#include "decoupled.h"
 #include "hud.h"
 #include "sight.h"
 #include "target.h"
@@ -10,6 +11,7 @@ namespace mini {
 struct EngineOptions {
   std::string dataFolder; // tests/data
   bool watch = false;     // grammars follow their files
+  DecoupledOptions decoupled;
 };
 
 class Engine {
@@ -22,6 +24,8 @@ public:
 
   /// Renders frame after frame until `frames` are done (0: until the window closes), then waits.
   void run(uint32_t frames);
+  /// Decoupled shading: walks the same path with standard and with exact sampling and prints what displays missed.
+  void comparePaths(uint32_t frames);
   void printSummary() const;
   /// Whether every record of every frame was executed and nothing exceeded its budget.
   bool allWell() const;
@@ -36,6 +40,8 @@ private:
   void record(VkCommandBuffer commands, const Acquired& acquired);
   void resize();
   void collect();
+  void printTimes();
+  void recordDecoupled(VkCommandBuffer commands, const Acquired& acquired);
   Camera orbit(float angle, float distance, float height, float fieldOfView) const;
 
   Device& device_;
@@ -45,6 +51,9 @@ private:
   City city_;
   Hud hud_;
   Sight sight_;
+  std::unique_ptr<Decoupled> decoupled_; // instead of city, HUD and sight
+  float farther_ = 1;
+  uint64_t pathBegin_ = 0; // frame
   Slot slots_[kFramesInFlight];
   GpgpFrame frame_{};
 };

@@ -31,6 +31,20 @@ private:
   Device* device_ = nullptr;
 };
 
+class ComputePipeline {
+public:
+  ComputePipeline(Device& device, const std::vector<uint32_t>& code, VkDescriptorSetLayout setLayout,
+                  uint32_t pushBytes);
+  ~ComputePipeline();
+  ComputePipeline(const ComputePipeline&) = delete;
+  ComputePipeline& operator=(const ComputePipeline&) = delete;
+  VkPipeline handle = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+
+private:
+  Device& device_;
+};
+
 class Forward {
 public:
   /// Colour is resolved into images of this format, left in this layout.

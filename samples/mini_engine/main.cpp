@@ -16,6 +16,17 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --window         open a window instead; Escape closes it (with --frames: after N frames)
   --device NAME    GPU: part of its name, or an index (default: $GPGP_DEVICE, else the software device)
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
+  --decoupled      object-space shading of the model alone: what gpgp finds visible is shaded in compute, into a
+                   record a triangle, and displayed from other poses; shaded.png is the last display
+  --method NAME    of decoupled shading: standard, conservative or exact (default); M changes it in a window
+  --rate N         decoupled: frames displayed for one of shading (default 4)
+  --freeze N       decoupled: no shading after N frames; F does it in a window
+  --farther F      decoupled: the shading's camera is F times as far away (default 1)
+  --show WHAT      decoupled: shaded (magenta: nothing was shaded); overlay (green: standard sampling finds it, too,
+                   grey: the method alone, red: not in the truth, blue: missed); density (red: a pixel and less,
+                   blue: 64). 1, 2, 3 in a window
+  --truth N        decoupled overlay: N x N samples a pixel (default 16), a few slices a frame
+  --path           decoupled: the same path with standard and exact sampling; prints what displays missed
   --data FOLDER    test data (default: the source tree's)
   --validate       run under the Khronos validation layer; any message of it is an error
 
@@ -26,8 +37,19 @@ struct Options {
   std::string out = "pictures", device, data = MINI_ENGINE_DATA;
   uint32_t frames = 0;
   VkExtent2D size{1280, 720};
-  bool window = false, validate = false, watch = false;
+  bool window = false, validate = false, watch = false, path = false;
+  mini::DecoupledOptions decoupled;
 };
+
+/// Its place among the names; -1: it is none of them.
+int indexOf(const char* name, std::initializer_list<const char*> names) {
+  int index = 0;
+  for (const char* known : names) {
+    if (std::strcmp(name, known) == 0) return index;
+    ++index;
+  }
+  return -1;
+}
 
 bool parse(int argc, char** argv, Options& options) {
   for (int i = 1; i < argc; ++i) {
@@ -44,15 +66,38 @@ bool parse(int argc, char** argv, Options& options) {
       options.validate = true;
       continue;
     }
+    if (name == "--decoupled" || name == "--path") {
+      options.decoupled.on = true;
+      options.path = options.path || name == "--path";
+      continue;
+    }
     if (i + 1 == argc) return false;
     const char* value = argv[++i];
     char rest = 0;
+    int chosen = -1;
     if (name == "--out")
       options.out = value;
     else if (name == "--device")
       options.device = value;
     else if (name == "--data")
       options.data = value;
+    else if (name == "--method" && (chosen = indexOf(value, {"standard", "exact", "truth", "conservative"})) >= 0 &&
+             chosen != GPGP_SAMPLING_TRUTH)
+      options.decoupled.method = chosen;
+    else if (name == "--show" && (chosen = indexOf(value, {"shaded", "overlay", "density"})) >= 0)
+      options.decoupled.show = static_cast<mini::DecoupledOptions::Show>(chosen);
+    else if (name == "--rate" && std::sscanf(value, "%u%c", &options.decoupled.rate, &rest) == 1 &&
+             options.decoupled.rate > 0)
+      continue;
+    else if (name == "--freeze" && std::sscanf(value, "%u%c", &options.decoupled.freezeAfter, &rest) == 1)
+      continue;
+    else if (name == "--truth" && std::sscanf(value, "%u%c", &options.decoupled.truth, &rest) == 1 &&
+             options.decoupled.truth >= 2 && options.decoupled.truth <= 256 &&
+             !(options.decoupled.truth & (options.decoupled.truth - 1)))
+      continue;
+    else if (name == "--farther" && std::sscanf(value, "%f%c", &options.decoupled.farther, &rest) == 1 &&
+             options.decoupled.farther >= 0.1f && options.decoupled.farther <= 8)
+      continue;
     else if (name == "--frames" && std::sscanf(value, "%u%c", &options.frames, &rest) == 1 && options.frames > 0)
       continue;
     else if (name == "--size" && std::sscanf(value, "%ux%u%c", &options.size.width, &options.size.height, &rest) == 2 &&
@@ -87,12 +132,21 @@ int run(const Options& options) {
 #endif
     if (!target) target = std::make_unique<mini::Offscreen>(device, options.size);
     {
-      mini::Engine engine(device, *target, {options.data, options.watch});
-      engine.run(options.frames ? options.frames : options.window ? 0 : 3);
+      mini::Engine engine(device, *target, {options.data, options.watch, options.decoupled});
+      if (options.path)
+        engine.comparePaths(options.frames ? options.frames : 40);
+      else
+        engine.run(options.frames ? options.frames : options.window ? 0 : 3);
       engine.printSummary();
       well = engine.allWell();
     }
     if (auto* offscreen = dynamic_cast<mini::Offscreen*>(target.get())) {
+      if (options.decoupled.on) {
+        offscreen->writePng(0, options.out + "/shaded.png");
+        std::printf("picture     %s/shaded.png\n", options.out.c_str());
+      }
+    }
+    if (auto* offscreen = dynamic_cast<mini::Offscreen*>(target.get()); offscreen && !options.decoupled.on) {
       offscreen->writePng(0, options.out + "/city.png");
       offscreen->writePng(1, options.out + "/side.png");
       std::printf("pictures    %s/city.png: the frame; %s/side.png: the model from the side\n", options.out.c_str(),

@@ -1,4 +1,4 @@
-// A graphics pipeline of the forward pass.
+// A graphics pipeline of the forward pass, and compute pipelines beside it.
 #include "forward.h"
 
 #include <utility>
@@ -93,6 +93,32 @@ Pipeline::~Pipeline() {
   if (!device_) return;
   vkDestroyPipeline(device_->device, handle, nullptr);
   vkDestroyPipelineLayout(device_->device, layout, nullptr);
+}
+
+ComputePipeline::ComputePipeline(Device& device, const std::vector<uint32_t>& code, VkDescriptorSetLayout setLayout,
+                                 uint32_t pushBytes)
+    : device_(device) {
+  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes};
+  VkPipelineLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+  layoutInfo.setLayoutCount = 1;
+  layoutInfo.pSetLayouts = &setLayout;
+  layoutInfo.pushConstantRangeCount = 1;
+  layoutInfo.pPushConstantRanges = &push;
+  check(vkCreatePipelineLayout(device.device, &layoutInfo, nullptr, &layout), "vkCreatePipelineLayout");
+  VkComputePipelineCreateInfo create{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+  create.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  create.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  create.stage.module = makeModule(device, code);
+  create.stage.pName = "main";
+  create.layout = layout;
+  const VkResult result = vkCreateComputePipelines(device.device, VK_NULL_HANDLE, 1, &create, nullptr, &handle);
+  vkDestroyShaderModule(device.device, create.stage.module, nullptr);
+  check(result, "vkCreateComputePipelines");
+}
+
+ComputePipeline::~ComputePipeline() {
+  vkDestroyPipeline(device_.device, handle, nullptr);
+  vkDestroyPipelineLayout(device_.device, layout, nullptr);
 }
 
 } // namespace mini

@@ -9,7 +9,6 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <utility>
 
@@ -43,52 +42,15 @@ Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model)
   viewInfo.maxTriangles = model_.triangleCount;
   view_ = gpgp.take(gpgp::CameraView::create(gpgp.context, viewInfo), "gpgpCreateCameraView");
 
-  bindBuffers();
+  set_ = std::make_unique<BufferSet>(
+      device, std::vector<const Buffer*>{&positions_, &normals_, &indices_, &draws_, &visibleBits_},
+      VK_SHADER_STAGE_VERTEX_BIT);
   PipelineInfo info;
   info.vertex.assign(std::begin(mini_model_vert), std::end(mini_model_vert));
   info.fragment.assign(std::begin(mini_model_frag), std::end(mini_model_frag));
-  info.setLayout = setLayout_;
+  info.setLayout = set_->layout;
   info.pushBytes = 96;
   pipeline_ = Pipeline(device, forward.renderPass(), Forward::kSamples, info);
-}
-
-Sight::~Sight() {
-  vkDestroyDescriptorPool(device_.device, pool_, nullptr);
-  vkDestroyDescriptorSetLayout(device_.device, setLayout_, nullptr);
-}
-
-void Sight::bindBuffers() {
-  const std::array<const Buffer*, 5> buffers = {&positions_, &normals_, &indices_, &draws_, &visibleBits_};
-  std::array<VkDescriptorSetLayoutBinding, 5> bindings{};
-  for (uint32_t i = 0; i < bindings.size(); ++i)
-    bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, nullptr};
-  VkDescriptorSetLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  layoutInfo.bindingCount = bindings.size();
-  layoutInfo.pBindings = bindings.data();
-  check(vkCreateDescriptorSetLayout(device_.device, &layoutInfo, nullptr, &setLayout_), "vkCreateDescriptorSetLayout");
-  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, bindings.size()};
-  VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-  poolInfo.maxSets = 1;
-  poolInfo.poolSizeCount = 1;
-  poolInfo.pPoolSizes = &size;
-  check(vkCreateDescriptorPool(device_.device, &poolInfo, nullptr, &pool_), "vkCreateDescriptorPool");
-  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-  allocate.descriptorPool = pool_;
-  allocate.descriptorSetCount = 1;
-  allocate.pSetLayouts = &setLayout_;
-  check(vkAllocateDescriptorSets(device_.device, &allocate, &set_), "vkAllocateDescriptorSets");
-  std::array<VkDescriptorBufferInfo, 5> infos{};
-  std::array<VkWriteDescriptorSet, 5> writes{};
-  for (uint32_t i = 0; i < writes.size(); ++i) {
-    infos[i] = {buffers[i]->handle, 0, VK_WHOLE_SIZE};
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstSet = set_;
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    writes[i].pBufferInfo = &infos[i];
-  }
-  vkUpdateDescriptorSets(device_.device, writes.size(), writes.data(), 0, nullptr);
 }
 
 void Sight::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Camera& camera, VkExtent2D extent) {
@@ -120,7 +82,7 @@ void Sight::draw(VkCommandBuffer commands, const Camera& camera) {
     uint32_t draw, firstIndex, vertexOffset, unused;
   } push{camera.viewProjection, glm::vec4(camera.eye, 1), 0, 0, 0, 0};
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle);
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout, 0, 1, &set_, 0, nullptr);
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout, 0, 1, &set_->handle, 0, nullptr);
   for (uint32_t i = 0; i < model_.draws.size(); ++i) {
     const GpgpMesh& mesh = model_.meshes[model_.draws[i].mesh];
     push.draw = i;

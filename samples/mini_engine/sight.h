@@ -1,15 +1,17 @@
 // The model and what of it is seen: gpgp visibility samples its triangles, the forward pass colours them.
 #pragma once
+#include "buffer_set.h"
 #include "forward.h"
 #include "gpgp_glue.h"
 #include "scene.h"
+
+#include <memory>
 
 namespace mini {
 
 class Sight {
 public:
   Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model);
-  ~Sight();
   Sight(const Sight&) = delete;
   Sight& operator=(const Sight&) = delete;
   /// Finds the triangles that this camera sees in a picture of this size.
@@ -22,7 +24,6 @@ public:
   const Model& model() const { return model_; }
 
 private:
-  void bindBuffers();
   Device& device_;
   Gpgp& gpgp_;
   Model model_;
@@ -30,9 +31,7 @@ private:
   gpgp::GeometrySet geometry_;
   gpgp::Sampler sampler_;
   gpgp::CameraView view_;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  std::unique_ptr<BufferSet> set_;
   Pipeline pipeline_;
   bool prepared_ = false;
   uint32_t reports_ = 0;

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace mini {
 
@@ -32,6 +33,11 @@ public:
   /// False: the person wants to end.
   virtual bool pollEvents() { return true; }
   virtual void setTitle(const std::string&) {}
+  /// Keys pressed since the last call, as characters.
+  std::string takeKeys() { return std::exchange(keys_, {}); }
+
+protected:
+  std::string keys_;
 };
 
 /// Two images: the picture, and the same scene from the side. After the frame is finished they can be written.

@@ -132,8 +132,11 @@ public:
 
   bool pollEvents() override {
     SDL_Event event;
-    while (SDL_PollEvent(&event))
+    while (SDL_PollEvent(&event)) {
       if (event.type == SDL_QUIT || (event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE)) return false;
+      if (event.type == SDL_KEYDOWN && event.key.keysym.sym > 0 && event.key.keysym.sym < 128)
+        keys_ += static_cast<char>(event.key.keysym.sym);
+    }
     return true;
   }
   void setTitle(const std::string& title) override { SDL_SetWindowTitle(sdl().window, title.c_str()); }

@@ -42,6 +42,7 @@ using uint = std::uint32_t;
 using glm::abs;
 using glm::all;
 using glm::any;
+using glm::ceil;
 using glm::clamp;
 using glm::cross;
 using glm::dot;

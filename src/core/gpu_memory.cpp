@@ -131,6 +131,7 @@ Result<Buffer> Buffer::create(const Device& device, GpuMemory& memory, GpgpServi
     request.preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   } else {
     request.required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    if (place == MemoryPlace::constants) request.preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
     if (place == MemoryPlace::readBack) request.preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   }
   Result<GpgpGpuAllocation> allocation = Error{};

@@ -70,7 +70,7 @@ void PassList::finish(VkDeviceSize alignment) {
   for (Pass& pass : passes) {
     for (uint32_t i = 0; i < pass.useCount; ++i) {
       const uint8_t before = touched[pass.uses[i].resource];
-      if ((before & 2) || (before && writes(pass.uses[i].kind))) pass.barrierBefore = true;
+      if (!pass.beside && ((before & 2) || (before && writes(pass.uses[i].kind)))) pass.barrierBefore = true;
     }
     if (pass.barrierBefore) std::fill(touched.begin(), touched.end(), uint8_t(0));
     for (uint32_t i = 0; i < pass.useCount; ++i)

@@ -63,6 +63,7 @@ struct Pass {
   uint32_t constantCount = 0;
   uint32_t condition = UINT32_MAX; ///< index in a record's list of flags: left out of the record when false
   uint32_t level = 0;              ///< left out of records that ask for as many levels or fewer
+  bool beside = false;             ///< needs no barrier after the pass before: what both write, they add to
   bool barrierBefore = false;      ///< worked out by finish()
 };
 
@@ -97,7 +98,7 @@ struct PassList {
              VkDeviceSize size = VK_WHOLE_SIZE);
 
   /// Lays out scratch (alignment: minStorageBufferOffsetAlignment) and decides barriers: a pass gets one before it
-  /// when it uses what a pass since the last barrier wrote, or writes what one used.
+  /// when it uses what a pass since the last barrier wrote, or writes what one used, unless it goes beside that.
   void finish(VkDeviceSize alignment);
 };
 

@@ -93,36 +93,37 @@ Result<void> Worker::check(const Record& record) const {
   for (size_t i = 0; i < passes_.resources.size(); ++i) {
     const Resource& resource = passes_.resources[i];
     const Binding& binding = record.bindings[i];
+    const char* name = binding.name ? binding.name : resource.name;
     if (resource.kind == ResourceKind::buffer) {
       if (binding.ownBuffer) continue;
       if (!binding.engineBuffer || !binding.engineBuffer->buffer) {
         if (resource.optional) continue;
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL", resource.name);
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL", name);
       }
       const GpgpBuffer& buffer = *binding.engineBuffer;
       if (buffer.size == 0 || buffer.size > limits.maxStorageBufferRange)
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.size is %llu; it must be 1 to %u (maxStorageBufferRange)",
-                         resource.name, static_cast<unsigned long long>(buffer.size), limits.maxStorageBufferRange);
+                         name, static_cast<unsigned long long>(buffer.size), limits.maxStorageBufferRange);
       if (buffer.offset > UINT64_MAX - buffer.size)
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.offset + size is beyond 64 bits", resource.name);
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.offset + size is beyond 64 bits", name);
       if (buffer.offset % limits.minStorageBufferOffsetAlignment)
         return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                         "%s.offset must be a multiple of %llu (minStorageBufferOffsetAlignment)", resource.name,
+                         "%s.offset must be a multiple of %llu (minStorageBufferOffsetAlignment)", name,
                          static_cast<unsigned long long>(limits.minStorageBufferOffsetAlignment));
       for (const auto& [edge, access] : {std::pair{"before", buffer.before}, {"after", buffer.after}})
-        if (auto ok = checkStages(resource.name, edge, access, queueFlags_); !ok) return ok;
+        if (auto ok = checkStages(name, edge, access, queueFlags_); !ok) return ok;
     } else if (resource.kind == ResourceKind::image) {
       if (!binding.image || !binding.image->view) {
         if (resource.optional) continue;
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.view is NULL", resource.name);
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.view is NULL", name);
       }
       if (binding.image->after.stages && binding.image->after.layout == VK_IMAGE_LAYOUT_UNDEFINED &&
           !(record.info->accessMode & GPGP_ACCESS_SYNCHRONISED))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.after.layout is UNDEFINED: nothing could be found there",
-                         resource.name);
-      if (!binding.image->image) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.image is NULL", resource.name);
+                         name);
+      if (!binding.image->image) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.image is NULL", name);
       for (const auto& [edge, access] : {std::pair{"before", binding.image->before}, {"after", binding.image->after}})
-        if (auto ok = checkStages(resource.name, edge, access, queueFlags_); !ok) return ok;
+        if (auto ok = checkStages(name, edge, access, queueFlags_); !ok) return ok;
     }
   }
   return {};

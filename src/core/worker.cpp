@@ -143,7 +143,7 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
   }
   auto constants = Buffer::create(device, context.gpu(), service_, "constants",
                                   std::max<VkDeviceSize>(passes_.constantsBytes, 16) * slotCount,
-                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryPlace::upload);
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryPlace::constants);
   if (!constants) return constants.error();
   constants_ = std::move(*constants);
   reportStride_ = (passes_.reportBytes + kStampBytes + 63) / 64 * 64;

@@ -22,6 +22,7 @@ struct Binding {
   VkDeviceSize ownOffset = 0, ownSize = VK_WHOLE_SIZE;
   const GpgpImage* image = nullptr;
   VkDescriptorImageInfo texture = {}; ///< imageView NULL: left out
+  const char* name = nullptr;         ///< what this record calls it in messages; null: the resource's name
 };
 
 struct Record {

@@ -3,20 +3,23 @@
 #pragma once
 #include "host/memory.h"
 
+#include <chrono>
+
 namespace gpgp::host {
 
 class BusyWork {
 public:
   /// Software devices get none.
   explicit BusyWork(HeadlessDevice& device);
-  /// A fifth of a second of work, waited for.
-  void warmUp() const;
+  /// A second of work, waited for, as clocks rise in steps; nothing where there was work a moment ago.
+  void warmUp();
   /// About a millisecond of work, for the front of a command buffer whose end is timed.
-  void record(VkCommandBuffer commands) const;
+  void record(VkCommandBuffer commands);
 
 private:
   HeadlessDevice& device_;
   Buffer target_;
+  std::chrono::steady_clock::time_point last_{}; // recorded
 };
 
 } // namespace gpgp::host

@@ -229,6 +229,20 @@ void fill(HeadlessDevice& device, const Buffer& buffer, uint32_t word) {
   });
 }
 
+void uploadImage(HeadlessDevice& device, const Image& image, std::span<const uint8_t> pixels, VkImageLayout layout) {
+  const Buffer staging(device, pixels.size(), 0, Memory::host);
+  std::memcpy(staging.mapped(), pixels.data(), pixels.size());
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    imageBarrier(device, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {image.aspect(), 0, 0, 1};
+    copy.imageExtent = {image.info().width, image.info().height, 1};
+    device.vk().vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                       1, &copy);
+    imageBarrier(device, commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout);
+  });
+}
+
 std::vector<uint8_t> downloadImage(HeadlessDevice& device, const Image& image, VkImageLayout layout) {
   const size_t size = size_t{image.info().width} * image.info().height * bytesPerPixel(image.info().format);
   const Buffer staging(device, size, 0, Memory::readback);

@@ -90,6 +90,8 @@ void uploadBytes(HeadlessDevice& device, const Buffer& buffer, const void* data,
 void downloadBytes(HeadlessDevice& device, const Buffer& buffer, void* data, size_t size, VkDeviceSize offset = 0);
 /// Fills the whole buffer with a word and waits: for poisoning and clearing.
 void fill(HeadlessDevice& device, const Buffer& buffer, uint32_t word);
+/// Writes all pixels, rows tightly packed, and waits; the image is in `layout` afterwards.
+void uploadImage(HeadlessDevice& device, const Image& image, std::span<const uint8_t> pixels, VkImageLayout layout);
 /// All pixels, rows tightly packed; the image is in `layout` before and after.
 std::vector<uint8_t> downloadImage(HeadlessDevice& device, const Image& image, VkImageLayout layout);
 

@@ -69,11 +69,8 @@ Picture fromPremultiplied(uint32_t width, uint32_t height, std::span<const uint8
   if (pixels.size() != size_t{width} * height * 4) throw std::runtime_error("wrong number of pixel values");
   for (size_t i = 0; i < pixels.size(); i += 4) {
     if (pixels[i + 3] == 0 || pixels[i + 3] == 255) continue;
-    const float alpha = static_cast<float>(pixels[i + 3]) / 255.0f;
-    for (size_t c = 0; c < 3; ++c) {
-      const float straight = linearFromSrgb(static_cast<float>(pixels[i + c]) / 255.0f) / alpha;
-      picture.rgba[i + c] = toByte(srgbFromLinear(std::min(straight, 1.0f)));
-    }
+    for (size_t c = 0; c < 3; ++c)
+      picture.rgba[i + c] = toByte(static_cast<float>(pixels[i + c]) / static_cast<float>(pixels[i + 3]));
   }
   return picture;
 }

@@ -16,9 +16,12 @@ struct Picture {
 void writePng(const std::filesystem::path& file, const Picture& picture);
 Picture readPng(const std::filesystem::path& file);
 
+/// From PNG or JPEG in memory; empty where it is neither, or damaged, or larger than 16384 pixels a side.
+Picture decodePicture(std::span<const uint8_t> bytes);
+
 /// From premultiplied linear floats (4 a pixel), as a canvas gives them, to straight sRGB bytes.
 Picture fromLinearPremultiplied(uint32_t width, uint32_t height, std::span<const float> pixels);
-/// The same from bytes that hold sRGB-encoded premultiplied colour, as a canvas writes with encodeSrgb.
+/// The same from bytes that hold sRGB-encoded colour times alpha, as a canvas writes with encodeSrgb.
 Picture fromPremultiplied(uint32_t width, uint32_t height, std::span<const uint8_t> pixels);
 
 float linearFromSrgb(float value); ///< 0 to 1, IEC 61966-2-1

@@ -44,5 +44,7 @@ GpgpStructureType useEveryStruct(void) {
   GPGP_USE(GpgpCameraViewCreateInfo, GPGP_CAMERA_VIEW_CREATE_INFO_INIT);
   GPGP_USE(GpgpSampleInfo, GPGP_SAMPLE_INFO_INIT);
   GPGP_USE(GpgpSampleReport, GPGP_SAMPLE_REPORT_INIT);
+  GPGP_USE(GpgpViewCellInfo, GPGP_VIEW_CELL_INFO_INIT);
+  GPGP_USE(GpgpVisibilityMetricsInfo, GPGP_VISIBILITY_METRICS_INFO_INIT);
   return sum;
 }

