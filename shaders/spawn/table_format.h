@@ -26,10 +26,9 @@ GPGP_CONST uint kFrameAdded = 1u << 16;  // some c is not
 GPGP_CONST uint kFrameTurned = 1u << 17; // rotation by angles
 
 // family, of an operator that multiplies by a known number, with all such operators on static edges behind it: words of
-// its first entry: the number of children, and no more. An entry of four words for each: offset of its first step, steps, target as
-// Shape::node and kEdgeRecursive, kEnd value.
-// step: from a shape to one of its children. Words: operator and flags, number of the child, length of SubDiv's fixed
-// parts, frame that follows or 0; SubDiv's part.
+// its first entry: the number of children, and no more. An entry of four words for each: offset of its first step,
+// steps, target as Shape::node and kEdgeRecursive, kEnd value. step: from a shape to one of its children. Words:
+// operator and flags, number of the child, length of SubDiv's fixed parts, frame that follows or 0; SubDiv's part.
 GPGP_CONST uint kStepSize = 2u;           // in four words
 GPGP_CONST uint kStepAxis = 8u;           // shift
 GPGP_CONST uint kStepWeighted = 1u << 16; // is there only where a length remains

@@ -64,8 +64,8 @@ std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<cons
   std::vector<KernelCode> kernels(schedules.size());
   onAllProcessors(schedules.size(), [&](size_t i) {
     const spawn::Schedule& schedule = schedules[i];
-    auto code = spawn::compileKernel(
-        spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{}), subgroups);
+    auto code = spawn::compileKernel(spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{}),
+                                     subgroups);
     if (!code) throw Failure(schedule.name + ": " + code.error().text);
     kernels[i] = std::move(*code);
   });

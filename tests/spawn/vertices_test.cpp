@@ -1,5 +1,6 @@
 // Terminals as vertices and indices, regions of buckets, and counting before writing: shapes against closed forms, the
 // GPU against the CPU evaluator, budgets, through the C API with validation.
+#include "../device_test.h"
 #include "grammars.h"
 #include "host/device.h"
 #include "host/memory.h"
@@ -300,40 +301,21 @@ struct Wanted {
   std::vector<VkDrawIndexedIndirectCommand> draws; // empty: poison
 };
 
-struct VerticesTest : testing::Test {
-  std::unique_ptr<host::HeadlessDevice> device =
-      std::make_unique<host::HeadlessDevice>(host::DeviceOptions{.validation = true});
-  GpgpContext context = nullptr;
+struct VerticesTest : DeviceTest {
   GpgpWorker spawners[2] = {}; // for instances, for vertices
-  std::vector<std::string> messages;
-  uint64_t frame = 0;
 
   void SetUp() override {
-    GpgpContextCreateInfo info = device->contextCreateInfo();
-    info.messageUserData = &messages;
-    info.messageFn = [](void* user, const GpgpMessage* m) {
-      static_cast<std::vector<std::string>*>(user)->push_back(m->text);
-    };
-    ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+    DeviceTest::SetUp();
     for (uint32_t i = 0; i < 2; ++i) {
       GpgpSpawnerCreateInfo spawner = GPGP_SPAWNER_CREATE_INFO_INIT;
-      spawner.base.queueFamily = device->graphics().family;
+      spawner.base.queueFamily = device.graphics().family;
       spawner.flags = i ? GPGP_SPAWNER_VERTICES : 0;
-      ASSERT_EQ(gpgpCreateSpawner(context, &spawner, &spawners[i]), GPGP_SUCCESS);
-      ASSERT_EQ(gpgpPrewarm(spawners[i], nullptr), GPGP_SUCCESS);
+      spawners[i] = worker(gpgpCreateSpawner, spawner);
     }
   }
   void TearDown() override {
-    device->waitIdle();
-    gpgpDestroyContext(context);
-    for (const std::string& message : device->validationMessages()) ADD_FAILURE() << message;
+    DeviceTest::TearDown();
     for (const std::string& message : messages) ADD_FAILURE() << message;
-  }
-  GpgpFrame advance() {
-    ++frame;
-    const GpgpFrame f{frame, frame - 1};
-    EXPECT_EQ(gpgpAdvance(context, &f), GPGP_SUCCESS);
-    return f;
   }
   GpgpAsset makeGrammar(const std::vector<uint32_t>& words, GpgpWorker spawner) {
     GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
@@ -351,10 +333,10 @@ struct VerticesTest : testing::Test {
     const GpgpWorker spawner = spawners[wanted.vertices ? 1 : 0];
     const GpgpAsset grammar = makeGrammar(words, spawner);
     const uint32_t buckets = words[kHeaderBuckets];
-    const auto axiomBuffer = host::makeBuffer(*device, axioms, kUsage);
+    const auto axiomBuffer = host::makeBuffer(device, axioms, kUsage);
     const auto poisoned = [&](VkDeviceSize bytes) {
-      host::Buffer buffer(*device, std::max<VkDeviceSize>(bytes, 16), kUsage);
-      host::fill(*device, buffer, kPoison);
+      host::Buffer buffer(device, std::max<VkDeviceSize>(bytes, 16), kUsage);
+      host::fill(device, buffer, kPoison);
       return buffer;
     };
     GpgpVertexOutput output = wanted.vertices ? *wanted.vertices : GpgpVertexOutput{};
@@ -365,7 +347,7 @@ struct VerticesTest : testing::Test {
     const auto indices = poisoned(VkDeviceSize(indexQuads) * 6 * indexBytes);
     auto given = wanted.draws;
     if (given.empty()) given.assign(buckets, {kPoison, kPoison, kPoison, 77, kPoison});
-    const auto draws = host::makeBuffer(*device, given, kUsage);
+    const auto draws = host::makeBuffer(device, given, kUsage);
     const auto needed = poisoned(4 * buckets), count = poisoned(4);
     GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
     info.grammar = grammar;
@@ -380,24 +362,24 @@ struct VerticesTest : testing::Test {
     if (wanted.withNeeded) info.needed = needed.range();
     info.count = count.range();
     const GpgpFrame f = advance();
-    device->submitAndWait([&](VkCommandBuffer cmd) {
+    device.submitAndWait([&](VkCommandBuffer cmd) {
       EXPECT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS);
       EXPECT_EQ(gpgpRecordPrepareSpawn(spawner, cmd, &f, &info), GPGP_SUCCESS);
     });
     advance();
     EXPECT_EQ(gpgpGetSpawnReport(spawner, &out.report), GPGP_SUCCESS);
-    out.count = host::download<uint32_t>(*device, count, 1)[0];
-    out.vertices = host::download<uint32_t>(*device, vertices, size_t(wanted.quads) * output.stride);
-    const auto raw = host::download<uint32_t>(*device, indices, size_t(indexQuads) * 6 * indexBytes / 4);
+    out.count = host::download<uint32_t>(device, count, 1)[0];
+    out.vertices = host::download<uint32_t>(device, vertices, size_t(wanted.quads) * output.stride);
+    const auto raw = host::download<uint32_t>(device, indices, size_t(indexQuads) * 6 * indexBytes / 4);
     for (const uint32_t word : raw) {
       if (indexBytes == 4)
         out.indices.push_back(word);
       else
         out.indices.insert(out.indices.end(), {word & 0xffff, word >> 16});
     }
-    out.instances = host::download<GpgpInstance>(*device, instances, wanted.instances);
-    out.draws = host::download<VkDrawIndexedIndirectCommand>(*device, draws, given.size());
-    out.needed = host::download<uint32_t>(*device, needed, buckets);
+    out.instances = host::download<GpgpInstance>(device, instances, wanted.instances);
+    out.draws = host::download<VkDrawIndexedIndirectCommand>(device, draws, given.size());
+    out.needed = host::download<uint32_t>(device, needed, buckets);
     gpgpDestroyAsset(grammar);
     return out;
   }
@@ -598,13 +580,11 @@ TEST_F(VerticesTest, GeneratedKernelsWriteTheSame) {
 }
 
 TEST_F(VerticesTest, WithCollidersToo) {
-  gpgpDestroyWorker(spawners[1]);
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
-  info.base.queueFamily = device->graphics().family;
+  info.base.queueFamily = device.graphics().family;
   info.flags = GPGP_SPAWNER_VERTICES;
   info.maxColliders = 1000;
-  ASSERT_EQ(gpgpCreateSpawner(context, &info, &spawners[1]), GPGP_SUCCESS);
-  ASSERT_EQ(gpgpPrewarm(spawners[1], nullptr), GPGP_SUCCESS);
+  spawners[1] = worker(gpgpCreateSpawner, info);
   const auto words = bake("axiom Box A; terminal T (1,0); terminal U (1,1);\n"
                           "A = Scale(60,1,3) Repeat(X,6,ADJUST_TO_FILL) Collider(1) Replicate() { T | Repeat(Y,0.25,"
                           "ADJUST_TO_FILL) Scale(-1.5,-1,-1) IfCollides(1) { U | T } };\n");
@@ -749,11 +729,9 @@ TEST_F(VerticesTest, InstancesBeyondTheirRegionAreCounted) {
 
 TEST_F(VerticesTest, OrderedInstancesFillTheirRegionsFromTheFront) {
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
-  info.base.queueFamily = device->graphics().family;
+  info.base.queueFamily = device.graphics().family;
   info.flags = GPGP_SPAWNER_ORDERED;
-  gpgpDestroyWorker(spawners[0]);
-  ASSERT_EQ(gpgpCreateSpawner(context, &info, &spawners[0]), GPGP_SUCCESS);
-  ASSERT_EQ(gpgpPrewarm(spawners[0], nullptr), GPGP_SUCCESS);
+  spawners[0] = worker(gpgpCreateSpawner, info);
   const auto words = bake("axiom Box A; terminal S (1,0); terminal T (1,1); terminal U (1,2);"
                           "A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { S | T | T | U };");
   const std::vector<GpgpAxiom> all{makeAxiom(300, 1, 1, 5)};
@@ -851,7 +829,7 @@ TEST_F(VerticesTest, VerticesBeyondTheirRegionAreCounted) {
 TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
   const auto words = bake(ownGrammar("building.pga"));
   const GpgpAsset grammar = makeGrammar(words, spawners[0]);
-  const host::Buffer buffer(*device, 65536, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const host::Buffer buffer(device, 65536, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   const GpgpFrame f = advance();
   const auto refused = [&](uint32_t spawner, auto change) {
     GpgpVertexOutput output = wideVertex();
@@ -863,10 +841,10 @@ TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
     else
       info.instances = buffer.range();
     change(info, output);
-    device->submitAndWait([&](VkCommandBuffer cmd) {
+    device.submitAndWait([&](VkCommandBuffer cmd) {
       EXPECT_EQ(gpgpRecordPrepareSpawn(spawners[spawner], cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT);
     });
-    const std::string text = messages.empty() ? "" : messages.back();
+    const std::string text = lastMessage().substr(lastMessage().find(": ") + 2);
     messages.clear();
     return text;
   };

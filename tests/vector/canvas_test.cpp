@@ -1,5 +1,6 @@
 // The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, the draw path, bad arguments, and
 // real drawings against a truth of 256 samples a pixel made from winding numbers.
+#include "../device_test.h"
 #include "cli/vector_truth.h"
 #include "host/files.h"
 #include "host/frames.h"
@@ -37,29 +38,10 @@ struct Rgba {
   float r = 0, g = 0, b = 0, a = 0;
 };
 
-struct CanvasTest : testing::Test {
-  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
-  GpgpContext context = nullptr;
+struct CanvasTest : DeviceTest {
   GpgpWorker canvas = nullptr;
-  std::vector<std::string> messages;
-  uint64_t number = 0;
   bool exactArea = false, blendSrgb = false;
   std::vector<GpgpCanvasImage> images;
-
-  void SetUp() override {
-    GpgpContextCreateInfo info = device.contextCreateInfo();
-    info.messageUserData = &messages;
-    info.messageFn = [](void* user, const GpgpMessage* m) {
-      static_cast<std::vector<std::string>*>(user)->push_back(m->text);
-    };
-    ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
-  }
-  void TearDown() override {
-    device.waitIdle();
-    gpgpDestroyContext(context);
-    for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
-  }
-  std::string lastMessage() const { return messages.empty() ? "" : messages.back(); }
 
   void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t patches = 0,
                   const GpgpTargetInfo* target = nullptr) {
@@ -68,11 +50,7 @@ struct CanvasTest : testing::Test {
     info.maxWidth = info.maxHeight = size;
     info.maxTileEntries = entries;
     info.maxPatches = patches ? patches : 65536;
-    ASSERT_EQ(gpgpCreateCanvas(context, &info, &canvas), GPGP_SUCCESS) << lastMessage();
-    GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
-    prewarm.targets = target;
-    prewarm.targetCount = target ? 1 : 0;
-    ASSERT_EQ(gpgpPrewarm(canvas, &prewarm), GPGP_SUCCESS) << lastMessage();
+    canvas = worker(gpgpCreateCanvas, info, target);
   }
   GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths) {
     GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
@@ -100,12 +78,6 @@ struct CanvasTest : testing::Test {
     GpgpView view = nullptr;
     EXPECT_EQ(gpgpCreateCanvasView(context, &info, &view), GPGP_SUCCESS) << lastMessage();
     return view;
-  }
-  GpgpFrame advance() {
-    ++number;
-    const GpgpFrame frame{number, number - 1};
-    EXPECT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS);
-    return frame;
   }
   static GpgpCanvasItem place(GpgpAsset drawing, float scale = 1, float x = 0, float y = 0) {
     return {drawing, {scale, 0, 0, scale, x, y}, 1};

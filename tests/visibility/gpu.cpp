@@ -45,29 +45,6 @@ SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
   if (scene.drawCount != UINT32_MAX) drawCount = copy(std::array{scene.drawCount}, "draw count");
 }
 
-void VisibilityGpuTest::SetUp() {
-  GpgpContextCreateInfo info = device.contextCreateInfo();
-  info.label = "visibility test";
-  info.messageUserData = &messages;
-  info.messageFn = [](void* user, const GpgpMessage* m) {
-    static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
-  };
-  ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
-}
-
-void VisibilityGpuTest::TearDown() {
-  device.waitIdle();
-  gpgpDestroyContext(context);
-  for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
-}
-
-GpgpFrame VisibilityGpuTest::advance(uint64_t inFlight) {
-  ++frame;
-  const GpgpFrame f{frame, frame > inFlight ? frame - inFlight : 0};
-  EXPECT_EQ(gpgpAdvance(context, &f), GPGP_SUCCESS);
-  return f;
-}
-
 GpgpWorker VisibilityGpuTest::createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles, bool engineScratch,
                                             uint32_t methods, uint32_t maxSamples, uint32_t maxCandidates,
                                             uint32_t maxPairs, uint32_t maxCameras, uint32_t maxDraws) {
@@ -84,10 +61,7 @@ GpgpWorker VisibilityGpuTest::createSampler(uint32_t width, uint32_t height, uin
   info.maxPairs = maxPairs;
   info.maxCameras = maxCameras;
   info.maxDraws = maxDraws;
-  GpgpWorker sampler = nullptr;
-  EXPECT_EQ(gpgpCreateSampler(context, &info, &sampler), GPGP_SUCCESS);
-  EXPECT_EQ(gpgpPrewarm(sampler, nullptr), GPGP_SUCCESS);
-  return sampler;
+  return worker(gpgpCreateSampler, info);
 }
 
 GpgpAsset VisibilityGpuTest::createGeometrySet(const Scene& scene) {
@@ -146,13 +120,13 @@ GpgpSampleInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuff
 }
 
 GpuResult VisibilityGpuTest::sample(Scene& scene, const GpuOptions& options, uint32_t maxTriangles) {
-  scene.input(); // fills in what depends on the scene
+  scene.input();                                                               // fills in what depends on the scene
+  const auto roundUp = [](uint32_t size) { return (size + 255) / 256 * 256; }; // few samplers for many scenes
   const GpgpWorker sampler =
-      createSampler(scene.params.width, scene.params.height, maxTriangles, true, 1u << options.method,
+      createSampler(roundUp(scene.params.width), roundUp(scene.params.height), maxTriangles, true, 1u << options.method,
                     std::min(options.samples, 4u), 0, 0, scene.params.cameraCount);
   const GpgpAsset set = createGeometrySet(scene);
   const GpuResult result = sample(scene, sampler, set, options);
-  gpgpDestroyWorker(sampler);
   gpgpDestroyAsset(set);
   return result;
 }

@@ -1,5 +1,6 @@
 // Runs a scene through the C API as an engine would, and brings back everything that can be compared with the twin.
 #pragma once
+#include "../device_test.h"
 #include "host/frames.h"
 #include "host/memory.h"
 #include "scenes.h"
@@ -39,15 +40,7 @@ struct SceneBuffers {
   host::Buffer positions, indices, draws, commands, drawCount;
 };
 
-struct VisibilityGpuTest : testing::Test {
-  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
-  GpgpContext context = nullptr;
-  std::vector<std::string> messages;
-  uint64_t frame = 0;
-
-  void SetUp() override;
-  void TearDown() override;
-  GpgpFrame advance(uint64_t inFlight = 1);
+struct VisibilityGpuTest : DeviceTest {
   const host::Queue& queue() const { return device.computeOnly() ? *device.computeOnly() : device.graphics(); }
 
   GpgpWorker createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false,

@@ -18,10 +18,10 @@ struct KernelSource {
   std::vector<uint32_t> table; ///< that they read (shaders/spawn/table_format.h)
 };
 
-/// The source of a valid graph's kernel. waits: by node, where shapes go through a queue. An operator that multiplies by a known
-/// number and does not wait joins the family of the one before it (table.h); others that multiply wait in any case.
-/// matched: the roots of a valid partition; chains of execution groups that differ in parameters only then share their
-/// code (thesis 4.2.3). Without it each node has code of its own.
+/// The source of a valid graph's kernel. waits: by node, where shapes go through a queue. An operator that multiplies
+/// by a known number and does not wait joins the family of the one before it (table.h); others that multiply wait in
+/// any case. matched: the roots of a valid partition; chains of execution groups that differ in parameters only then
+/// share their code (thesis 4.2.3). Without it each node has code of its own.
 KernelSource generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched = {});
 
 } // namespace gpgp::spawn

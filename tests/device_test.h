@@ -1,0 +1,81 @@
+// A device with validation and a context, which the tests of a suite share: on software devices it is making pipelines
+// that takes time, so a worker is made once for each create info. Any validation message fails the test.
+#pragma once
+#include "host/device.h"
+
+#include <gpgp/core.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gpgp::test {
+
+struct SharedDevice {
+  host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
+  GpgpContext context = nullptr;
+  std::vector<std::string> messages; ///< of the context: "function: text"
+  std::map<std::string, GpgpWorker> workers;
+  uint64_t frame = 0;
+
+  explicit SharedDevice(const char* label) {
+    GpgpContextCreateInfo info = device.contextCreateInfo();
+    info.label = label;
+    info.messageUserData = &messages;
+    info.messageFn = [](void* user, const GpgpMessage* m) {
+      static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
+    };
+    EXPECT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+  }
+  ~SharedDevice() {
+    device.waitIdle();
+    gpgpDestroyContext(context);
+    for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+  }
+};
+
+struct DeviceTest : testing::Test {
+  static void SetUpTestSuite() { suiteDevice = std::make_unique<SharedDevice>("test"); }
+  static void TearDownTestSuite() { suiteDevice.reset(); }
+
+  host::HeadlessDevice& device = suiteDevice->device;
+  const GpgpContext context = suiteDevice->context;
+  std::vector<std::string>& messages = suiteDevice->messages;
+
+  void SetUp() override { messages.clear(); }
+  void TearDown() override {
+    device.waitIdle();
+    for (const std::string& message : device.takeValidationMessages()) ADD_FAILURE() << message;
+  }
+  std::string lastMessage() const { return messages.empty() ? "" : messages.back(); }
+
+  GpgpFrame advance(uint64_t inFlight = 1) {
+    const uint64_t frame = ++suiteDevice->frame;
+    const GpgpFrame f{frame, frame > inFlight ? frame - inFlight : 0};
+    EXPECT_EQ(gpgpAdvance(context, &f), GPGP_SUCCESS);
+    return f;
+  }
+
+  /// The worker that `create` makes of such an info, prewarmed for the target; belongs to the suite.
+  template <class Info>
+  GpgpWorker worker(GpgpResult(GPGP_CALL* create)(GpgpContext, const Info*, GpgpWorker*), const Info& info,
+                    const GpgpTargetInfo* target = nullptr) {
+    std::string key(reinterpret_cast<const char*>(&info), sizeof info);
+    if (target) key.append(reinterpret_cast<const char*>(target), sizeof *target);
+    GpgpWorker& made = suiteDevice->workers[key];
+    if (made) return made;
+    EXPECT_EQ(create(context, &info, &made), GPGP_SUCCESS) << lastMessage();
+    GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
+    prewarm.targets = target;
+    prewarm.targetCount = target ? 1 : 0;
+    EXPECT_EQ(gpgpPrewarm(made, &prewarm), GPGP_SUCCESS) << lastMessage();
+    return made;
+  }
+
+private:
+  inline static std::unique_ptr<SharedDevice> suiteDevice;
+};
+
+} // namespace gpgp::test
