@@ -4,6 +4,7 @@
 #include <gpgp/core.h>
 #include <gpgp/spawn.h>
 #include <gpgp/spawn_builder.h>
+#include <gpgp/text.h>
 #include <gpgp/vector.h>
 #include <gpgp/visibility.h>
 #endif

@@ -75,6 +75,13 @@ GPGP_STRUCTURE_OF(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT);
 GPGP_STRUCTURE_OF(GpgpVisibilityMetricsInfo, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO);
 GPGP_STRUCTURE_OF(GpgpViewCellInfo, GPGP_STRUCTURE_VIEW_CELL_INFO);
 GPGP_STRUCTURE_OF(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpFontCreateInfo, GPGP_STRUCTURE_FONT_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpFontInfo, GPGP_STRUCTURE_FONT_INFO);
+GPGP_STRUCTURE_OF(GpgpGlyphOutlineInfo, GPGP_STRUCTURE_GLYPH_OUTLINE_INFO);
+GPGP_STRUCTURE_OF(GpgpShaperCreateInfo, GPGP_STRUCTURE_SHAPER_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpShaperReport, GPGP_STRUCTURE_SHAPER_REPORT);
+GPGP_STRUCTURE_OF(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO);
+GPGP_STRUCTURE_OF(GpgpLayoutInfo, GPGP_STRUCTURE_LAYOUT_INFO);
 #undef GPGP_STRUCTURE_OF
 
 /// A descriptor struct as its _INIT macro makes it.
@@ -92,6 +99,9 @@ inline void destroy(GpgpAsset handle) noexcept { gpgpDestroyAsset(handle); }
 inline void destroy(GpgpWorker handle) noexcept { gpgpDestroyWorker(handle); }
 inline void destroy(GpgpView handle) noexcept { gpgpDestroyView(handle); }
 inline void destroy(GpgpGrammarBuilder handle) noexcept { gpgpDestroyGrammarBuilder(handle); }
+inline void destroy(GpgpFont handle) noexcept { gpgpDestroyFont(handle); }
+inline void destroy(GpgpShaper handle) noexcept { gpgpDestroyShaper(handle); }
+inline void destroy(GpgpLayout handle) noexcept { gpgpDestroyLayout(handle); }
 } // namespace detail
 
 /// Owns one C handle. Converts to it, so that it can be put in the C structs.
@@ -542,6 +552,89 @@ inline Result<Blob> compileSvg(const GpgpSvgSource& source) noexcept {
   const GpgpResult code = gpgpCompileSvg(&source, &blob);
   return Result<Blob>(code, Blob(blob));
 }
+
+// ---------------------------------------------------------------- text (libgpgp_text)
+
+class Font : public Handle<GpgpFont> {
+public:
+  using Handle::Handle;
+  static Result<Font> create(const GpgpFontCreateInfo& info) noexcept {
+    GpgpFont raw = nullptr;
+    const GpgpResult code = gpgpCreateFont(&info, &raw);
+    return Result<Font>(code, Font(raw));
+  }
+  Result<GpgpFontInfo> info() const noexcept {
+    GpgpFontInfo value = init<GpgpFontInfo>();
+    const GpgpResult code = gpgpGetFontInfo(get(), &value);
+    return Result<GpgpFontInfo>(code, value);
+  }
+  Result<uint32_t> glyph(uint32_t character) const noexcept {
+    uint32_t value = 0;
+    const GpgpResult code = gpgpFindGlyph(get(), character, &value);
+    return Result<uint32_t>(code, value);
+  }
+  /// gpgpGetGlyphOutline. take: called once with a const GpgpGlyphOutline&.
+  template <class Take> GpgpResult outline(const GpgpGlyphOutlineInfo& info, Take&& take) const noexcept {
+    using Taker = std::remove_reference_t<Take>;
+    return gpgpGetGlyphOutline(
+        get(), &info, [](void* user, const GpgpGlyphOutline* glyph) { (*static_cast<Taker*>(user))(*glyph); }, &take);
+  }
+};
+
+/// A text laid out. Made by a Shaper, which it needs for each new text.
+class Layout : public Handle<GpgpLayout> {
+public:
+  using Handle::Handle;
+  /// gpgpSetLayoutText
+  GpgpResult set(const GpgpTextInfo& info) noexcept { return gpgpSetLayoutText(get(), &info); }
+  Result<GpgpLayoutInfo> info() const noexcept {
+    GpgpLayoutInfo value = init<GpgpLayoutInfo>();
+    const GpgpResult code = gpgpGetLayoutInfo(get(), &value);
+    return Result<GpgpLayoutInfo>(code, value);
+  }
+  /// gpgpGetSelection
+  GpgpResult selection(uint32_t begin, uint32_t end, uint32_t& count, GpgpTextRect* rects) const noexcept {
+    return gpgpGetSelection(get(), begin, end, &count, rects);
+  }
+  Result<GpgpCaret> caret(uint32_t offset) const noexcept {
+    GpgpCaret value = GpgpCaret();
+    const GpgpResult code = gpgpGetCaret(get(), offset, &value);
+    return Result<GpgpCaret>(code, value);
+  }
+  /// gpgpHitTestLayout
+  Result<GpgpTextHit> hitTest(float x, float y) const noexcept {
+    GpgpTextHit value = GpgpTextHit();
+    const GpgpResult code = gpgpHitTestLayout(get(), x, y, &value);
+    return Result<GpgpTextHit>(code, value);
+  }
+  /// gpgpMoveCaret
+  Result<uint32_t> moveCaret(uint32_t offset, GpgpCaretMove move) const noexcept {
+    uint32_t value = 0;
+    const GpgpResult code = gpgpMoveCaret(get(), offset, move, &value);
+    return Result<uint32_t>(code, value);
+  }
+};
+
+class Shaper : public Handle<GpgpShaper> {
+public:
+  using Handle::Handle;
+  static Result<Shaper> create(const GpgpShaperCreateInfo& info = init<GpgpShaperCreateInfo>()) noexcept {
+    GpgpShaper raw = nullptr;
+    const GpgpResult code = gpgpCreateShaper(&info, &raw);
+    return Result<Shaper>(code, Shaper(raw));
+  }
+  /// gpgpCreateLayout
+  Result<Layout> layout() const noexcept {
+    GpgpLayout raw = nullptr;
+    const GpgpResult code = gpgpCreateLayout(get(), &raw);
+    return Result<Layout>(code, Layout(raw));
+  }
+  Result<GpgpShaperReport> report() const noexcept {
+    GpgpShaperReport value = init<GpgpShaperReport>();
+    const GpgpResult code = gpgpGetShaperReport(get(), &value);
+    return Result<GpgpShaperReport>(code, value);
+  }
+};
 
 } // namespace gpgp
 

@@ -46,5 +46,12 @@ GpgpStructureType useEveryStruct(void) {
   GPGP_USE(GpgpSampleReport, GPGP_SAMPLE_REPORT_INIT);
   GPGP_USE(GpgpViewCellInfo, GPGP_VIEW_CELL_INFO_INIT);
   GPGP_USE(GpgpVisibilityMetricsInfo, GPGP_VISIBILITY_METRICS_INFO_INIT);
+  GPGP_USE(GpgpFontCreateInfo, GPGP_FONT_CREATE_INFO_INIT);
+  GPGP_USE(GpgpFontInfo, GPGP_FONT_INFO_INIT);
+  GPGP_USE(GpgpGlyphOutlineInfo, GPGP_GLYPH_OUTLINE_INFO_INIT);
+  GPGP_USE(GpgpShaperCreateInfo, GPGP_SHAPER_CREATE_INFO_INIT);
+  GPGP_USE(GpgpShaperReport, GPGP_SHAPER_REPORT_INIT);
+  GPGP_USE(GpgpTextInfo, GPGP_TEXT_INFO_INIT);
+  GPGP_USE(GpgpLayoutInfo, GPGP_LAYOUT_INFO_INIT);
   return sum;
 }

@@ -14,6 +14,7 @@ static_assert(isHandle<gpgp::Context>() && isHandle<gpgp::Grammar>() && isHandle
 static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::Canvas>() && isHandle<gpgp::CanvasView>());
 static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::Sampler>() && isHandle<gpgp::CameraView>());
 static_assert(isHandle<gpgp::GrammarBuilder>());
+static_assert(isHandle<gpgp::Font>() && isHandle<gpgp::Shaper>() && isHandle<gpgp::Layout>());
 static_assert(!std::is_copy_constructible_v<gpgp::Blob> && std::is_nothrow_move_constructible_v<gpgp::Blob>);
 static_assert(!std::is_convertible_v<gpgp::Grammar, gpgp::Drawing>);
 
@@ -98,6 +99,28 @@ GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffe
   return canvas->report().code();
 }
 
+GpgpResult useText() {
+  auto font = gpgp::Font::create(gpgp::init<GpgpFontCreateInfo>());
+  auto shaper = gpgp::Shaper::create();
+  if (!font || !shaper || !font->info() || !shaper->report()) return font.code();
+  auto layout = shaper->layout();
+  if (!layout) return layout.code();
+  const GpgpFont chain[] = {*font};
+  auto text = gpgp::init<GpgpTextInfo>();
+  text.style.fonts = chain;
+  if (const GpgpResult code = layout->set(text)) return code;
+  uint32_t count = 0;
+  if (const GpgpResult code = layout->selection(0, 1, count, nullptr)) return code;
+  const auto hit = layout->hitTest(0, 0);
+  if (!hit || !layout->caret(hit->insertion) || !layout->moveCaret(0, GPGP_CARET_NEXT)) return hit.code();
+  auto outline = gpgp::init<GpgpGlyphOutlineInfo>();
+  outline.glyph = *font->glyph('A');
+  uint32_t paths = 0;
+  if (const GpgpResult code = font->outline(outline, [&](const GpgpGlyphOutline& glyph) { paths += glyph.pathCount; }))
+    return code;
+  return paths ? layout->info().code() : GPGP_NOT_READY;
+}
+
 GpgpResult useVisibility(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
   auto set = gpgp::GeometrySet::create(context, gpgp::init<GpgpGeometrySetCreateInfo>());
   auto sampler = gpgp::Sampler::create(context, gpgp::init<GpgpSamplerCreateInfo>());
@@ -123,5 +146,6 @@ GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd)
   if (const GpgpResult code = useSpawn(*context, frame, cmd)) return code;
   if (const GpgpResult code = useGrammarBuilder()) return code;
   if (const GpgpResult code = useVector(*context, frame, cmd)) return code;
+  if (const GpgpResult code = useText()) return code;
   return useVisibility(*context, frame, cmd);
 }

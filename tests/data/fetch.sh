@@ -16,6 +16,8 @@ fonts       | fonts-dejavu-core      | usr/share/fonts/truetype/dejavu          
 fonts       | fonts-noto-core        | usr/share/fonts/truetype/noto                        | */*-Regular.ttf
 fonts       | fonts-noto-cjk         | usr/share/fonts/opentype/noto                        | */NotoSansCJK-Regular.ttc
 fonts       | fonts-noto-color-emoji | usr/share/fonts/truetype/noto                        | */NotoColorEmoji.ttf
+fonts       | fonts-inter-variable   | usr/share/fonts/truetype/inter-vf                    | */Inter-roman.var.ttf
+fonts       | fonts-cantarell        | usr/share/fonts/opentype/cantarell                   | */Cantarell-Regular.otf
 '
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

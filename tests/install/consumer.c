@@ -13,6 +13,12 @@ int main(void) {
   GpgpBlob blob = {NULL, 0};
   gpgpFreeBlob(&blob);
 #endif
+#ifdef CONSUMER_USES_TEXT
+  GpgpShaperCreateInfo text = GPGP_SHAPER_CREATE_INFO_INIT;
+  GpgpShaper shaper = NULL;
+  if (gpgpCreateShaper(&text, &shaper) != GPGP_SUCCESS) return 4;
+  gpgpDestroyShaper(shaper);
+#endif
   if (gpgpGetVersion() != GPGP_VERSION) return 1;
   if (result != GPGP_ERROR_INVALID_ARGUMENT || context) return 2;
   if (strcmp(gpgpResultString(result), "GPGP_ERROR_INVALID_ARGUMENT") != 0) return 3;

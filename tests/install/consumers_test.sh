@@ -73,7 +73,7 @@ pkg_config)
   export PKG_CONFIG_PATH=$directory
   mkdir -p "$scratch/pkg_config"
   ran=0
-  for package in gpgp gpgp_compiler; do
+  for package in gpgp gpgp_compiler gpgp_text; do
     pkg-config --exists "$package" || continue
     libraries=$(pkg-config --variable=libdir "$package")
     needs=(gpgp)
@@ -81,6 +81,9 @@ pkg_config)
     if [[ $package == gpgp_compiler ]]; then
       needs=(gpgp_compiler gpgp)
       define=(-DCONSUMER_USES_COMPILER)
+    elif [[ $package == gpgp_text ]]; then
+      needs=(gpgp_text gpgp)
+      define=(-DCONSUMER_USES_TEXT)
     fi
     if [[ -e $libraries/lib$package.so ]]; then
       # shellcheck disable=SC2046
@@ -90,8 +93,8 @@ pkg_config)
       ran=$((ran + 1))
     fi
     if [[ -e $libraries/lib$package.a ]]; then # --static names all that it needs; only gpgp itself is forced static
-      flags=$(pkg-config --static --libs "$package")
-      for name in gpgp_compiler gpgp; do flags=" $flags "; flags=${flags// -l$name / -l:lib$name.a }; done
+      flags=$(pkg-config --static --libs "${needs[@]}")
+      for name in gpgp_compiler gpgp_text gpgp; do flags=" $flags "; flags=${flags// -l$name / -l:lib$name.a }; done
       # shellcheck disable=SC2046,SC2086
       "$cc" -std=c99 "${define[@]}" $(pkg-config --cflags "$package") "$tests/consumer.c" $flags \
         -o "$scratch/pkg_config/static_$package"

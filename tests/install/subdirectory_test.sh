@@ -6,7 +6,7 @@
 set -euo pipefail
 source=$1 scratch=$2 tests=$3 cmake=$4 cc=$5 cxx=$6 nm=$7
 shift 7
-options=(-DGPGP_BUILD_SHARED=OFF)
+options=(-DGPGP_BUILD_SHARED=OFF -DGPGP_WITH_TEXT=OFF)
 if command -v ccache >/dev/null; then
   options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi

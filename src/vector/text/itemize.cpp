@@ -1,0 +1,176 @@
+// Scripts, fonts and runs. Characters of no script of their own take the script before them, closing brackets that of
+// their opening ones (UAX #24, section 5.1 and 5.2).
+#include "vector/text/itemize.h"
+
+#include <algorithm>
+
+#include <unicode/uchar.h>
+#include <unicode/unorm2.h>
+
+namespace gpgp::text {
+
+bool isIgnorable(char32_t c) {
+  return u_hasBinaryProperty(static_cast<UChar32>(c), UCHAR_DEFAULT_IGNORABLE_CODE_POINT) != 0;
+}
+bool isWhite(char32_t c) {
+  return c == ' ' || c == '\t' || isNewline(c) ||
+         (c >= 0x1680 && c != 0x202f && u_isUWhiteSpace(static_cast<UChar32>(c)) != 0);
+}
+bool isCursive(hb_script_t script) {
+  switch (script) {
+  case HB_SCRIPT_ARABIC:
+  case HB_SCRIPT_SYRIAC:
+  case HB_SCRIPT_NKO:
+  case HB_SCRIPT_MONGOLIAN:
+  case HB_SCRIPT_MANDAIC:
+  case HB_SCRIPT_PHAGS_PA:
+  case HB_SCRIPT_ADLAM:
+  case HB_SCRIPT_MANICHAEAN:
+  case HB_SCRIPT_PSALTER_PAHLAVI:
+  case HB_SCRIPT_HANIFI_ROHINGYA:
+  case HB_SCRIPT_SOGDIAN: return true;
+  default: return false;
+  }
+}
+
+namespace {
+
+hb_script_t toHarfBuzz(UScriptCode script) {
+  const char* name = uscript_getShortName(script);
+  return name ? hb_script_from_string(name, 4) : HB_SCRIPT_COMMON;
+}
+
+/// A script for each character of a paragraph.
+void resolveScripts(std::span<const char32_t> text, std::vector<UScriptCode>& scripts) {
+  struct Bracket {
+    UChar32 closing;
+    UScriptCode script;
+  };
+  Bracket open[32]; // deeper ones take the script before them
+  size_t depth = 0, unresolved = 0;
+  UScriptCode last = USCRIPT_COMMON;
+  scripts.resize(text.size());
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<UChar32>(text[i]);
+    UErrorCode error = U_ZERO_ERROR;
+    UScriptCode script = uscript_getScript(c, &error);
+    if (U_FAILURE(error) || script == USCRIPT_COMMON || script == USCRIPT_INHERITED || script == USCRIPT_UNKNOWN) {
+      script = last;
+      const int bracket = c < 0x28 ? U_BPT_NONE : u_getIntPropertyValue(c, UCHAR_BIDI_PAIRED_BRACKET_TYPE);
+      if (bracket == U_BPT_OPEN && depth < std::size(open)) {
+        open[depth++] = {u_getBidiPairedBracket(c), last};
+      } else if (bracket == U_BPT_CLOSE) {
+        size_t match = depth;
+        while (match > 0 && open[match - 1].closing != c) --match;
+        if (match > 0) {
+          depth = match - 1;
+          if (open[depth].script != USCRIPT_COMMON) script = open[depth].script;
+        }
+      }
+    } else if (last == USCRIPT_COMMON) {
+      std::fill(scripts.begin() + static_cast<std::ptrdiff_t>(unresolved),
+                scripts.begin() + static_cast<std::ptrdiff_t>(i), script);
+      for (size_t b = 0; b < depth; ++b) open[b].script = script;
+    }
+    if (last == USCRIPT_COMMON && script != USCRIPT_COMMON) unresolved = i;
+    scripts[i] = script;
+    last = script;
+  }
+}
+
+bool hasAll(const Font& font, std::span<const char32_t> characters) {
+  return std::all_of(characters.begin(), characters.end(), [&](char32_t c) { return font.has(c) || isIgnorable(c); });
+}
+
+/// As HarfBuzz can put characters together and take them apart: in another normal form.
+bool hasOtherForm(const Font& font, std::span<const char32_t> characters) {
+  char16_t text[64], other[128];
+  int32_t size = 0;
+  for (const char32_t c : characters) {
+    if (size + 2 > static_cast<int32_t>(std::size(text))) return false;
+    if (c > 0xffff) text[size++] = static_cast<char16_t>(0xd7c0 + (c >> 10));
+    text[size++] = static_cast<char16_t>(c > 0xffff ? 0xdc00 + (c & 0x3ff) : c);
+  }
+  UErrorCode error = U_ZERO_ERROR;
+  for (const UNormalizer2* form : {unorm2_getNFCInstance(&error), unorm2_getNFDInstance(&error)}) {
+    if (U_FAILURE(error)) return false;
+    const int32_t count = unorm2_normalize(form, text, size, other, static_cast<int32_t>(std::size(other)), &error);
+    if (U_FAILURE(error)) return false;
+    bool all = true;
+    for (int32_t i = 0; i < count && all;) {
+      char32_t c = other[i++];
+      if (c >= 0xd800 && c < 0xdc00 && i < count) c = ((c - 0xd7c0) << 10) + (other[i++] & 0x3ffu);
+      all = font.has(c) || isIgnorable(c);
+    }
+    if (all) return true;
+  }
+  return false;
+}
+
+bool wantsColor(std::span<const char32_t> grapheme) {
+  bool emoji = u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), UCHAR_EMOJI_PRESENTATION) != 0;
+  for (const char32_t c : grapheme) {
+    if (c == 0xfe0f) emoji = true;
+    if (c == 0xfe0e) return false;
+  }
+  return emoji;
+}
+
+bool sameShaping(const Style& a, const Style& b) {
+  if (&a == &b) return true;
+  const GpgpTextStyle &x = *a.source, &y = *b.source;
+  return x.size == y.size && a.language == b.language && (x.letterSpacing != 0) == (y.letterSpacing != 0) &&
+         x.featureCount == y.featureCount &&
+         std::equal(x.features, x.features + x.featureCount, y.features,
+                    [](auto& f, auto& g) { return f.tag == g.tag && f.value == g.value; });
+}
+
+} // namespace
+
+Font* Itemizer::fontOf(std::span<const char32_t> grapheme, const Style& style) {
+  const uint32_t count = style.source->fontCount;
+  if (grapheme[0] >= 0x2000 && wantsColor(grapheme))
+    for (uint32_t i = 0; i < count; ++i)
+      if (style.font(i)->info().colors && hasAll(*style.font(i), grapheme)) return style.font(i);
+  for (uint32_t i = 0; i < count; ++i)
+    if (hasAll(*style.font(i), grapheme) || (grapheme[0] >= 0x80 && hasOtherForm(*style.font(i), grapheme)) ||
+        (grapheme.size() > 1 && hasOtherForm(*style.font(i), grapheme)))
+      return style.font(i);
+  for (uint32_t i = 0; i < count; ++i)
+    if (style.font(i)->has(grapheme[0])) return style.font(i);
+  return style.font(0);
+}
+
+void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) const {
+  resolveScripts(std::span(text.characters).subspan(begin, end - begin), scripts);
+  const size_t first = runs.size();
+  UScriptCode lastScript = USCRIPT_COMMON;
+  for (uint32_t at = begin, next = 0; at < end; at = next) {
+    next = at + 1;
+    while (next < end && !(flags[next] & kGrapheme)) ++next;
+    const char32_t c = text.characters[at];
+    const uint32_t style = styleOf[at];
+    Run run{at, next, Run::Kind::text, levels[at], HB_SCRIPT_COMMON, nullptr, style};
+    run.kind = isNewline(c) ? Run::Kind::newline : c == '\t' ? Run::Kind::tab : Run::Kind::text;
+    Run* last = runs.size() > first ? &runs.back() : nullptr;
+    if (run.kind == Run::Kind::text) {
+      const auto grapheme = std::span(text.characters).subspan(at, next - at);
+      const bool stays = last && last->kind == Run::Kind::text && (isWhite(c) || isIgnorable(c)) &&
+                         styleOf[at - 1] == style && hasAll(*last->font, grapheme);
+      run.font = stays ? last->font : fontOf(grapheme, styles[style]);
+      const UScriptCode script = scripts[at - begin];
+      if (last && last->kind == Run::Kind::text && last->level == run.level && last->font == run.font &&
+          lastScript == script && sameShaping(styles[last->style], styles[style])) {
+        last->end = next;
+        continue;
+      }
+      run.script = toHarfBuzz(script);
+      lastScript = script;
+    } else {
+      run.font = styles[style].font(0);
+    }
+    runs.push_back(run);
+  }
+}
+
+} // namespace gpgp::text

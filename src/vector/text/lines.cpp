@@ -1,0 +1,249 @@
+// Lines: as many graphemes as fit, up to the last place where UAX #14 lets a line end, or within a word where there is
+// none. Where a run is cut at a place that changes its glyphs, its part is shaped again; if that made the line too
+// wide, an earlier place is taken.
+#include "vector/text/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::text {
+
+namespace {
+constexpr double kSlack = 0.01; // pixels: sums of floats may be off by less
+}
+
+uint32_t Layout::graphemeAt(uint32_t character) const {
+  character = std::min(character, text_.size());
+  while (character > 0 && !(flags_[character] & kGrapheme)) --character;
+  return character;
+}
+uint32_t Layout::nextGrapheme(uint32_t character) const {
+  const uint32_t size = text_.size();
+  if (character >= size) return size;
+  do ++character;
+  while (character < size && !(flags_[character] & kGrapheme));
+  return character;
+}
+
+float Layout::tabAdvance(const Run& run, double x) const {
+  double stop = static_cast<double>(info_->tabWidth);
+  if (!(stop > 0)) {
+    hb_codepoint_t space = 0;
+    hb_position_t advance = 0;
+    if (hb_font_get_nominal_glyph(run.font->shaping(), ' ', &space))
+      advance = hb_font_get_glyph_h_advance(run.font->shaping(), space);
+    const float size = styles_[run.style].source->size;
+    stop =
+        static_cast<double>(size) * 8 * static_cast<double>(static_cast<float>(advance) * run.font->emPerShapingUnit());
+    if (!(stop > 0)) stop = static_cast<double>(size) * 2;
+  }
+  return static_cast<float>((std::floor((x + kSlack) / stop) + 1) * stop - x);
+}
+
+uint32_t Layout::inkEndOf(uint32_t begin, uint32_t end) const {
+  while (end > begin && isWhite(text_.characters[end - 1])) --end;
+  return end;
+}
+
+/// Of characters from the beginning of a line on; gives tabs their width.
+double Layout::inkWidth(uint32_t begin, uint32_t end) {
+  double x = 0;
+  for (uint32_t c = begin; c < end; ++c) {
+    if (text_.characters[c] == '\t') width_[c] = tabAdvance(runs_[runAt(c)], x);
+    x += static_cast<double>(width_[c]);
+  }
+  return x;
+}
+
+Layout::Piece Layout::slice(uint32_t index, uint32_t begin, uint32_t end) {
+  const Run run = runs_[index]; // a copy
+  Piece piece{begin, end, run.level, index, 0, 0, 0, 0};
+  if (run.kind != Run::Kind::text) return piece;
+  piece.firstGlyph = run.firstGlyph;
+  piece.glyphCount = run.glyphCount;
+  if (begin == run.begin && end == run.end) return piece;
+  const bool whole = (begin == run.begin || (flags_[begin] & kSafe)) && (end == run.end || (flags_[end] & kSafe));
+  if (!whole) {
+    piece.firstGlyph = static_cast<uint32_t>(shaped_.size());
+    piece.glyphCount = addGlyphs(run, begin, end);
+    measure(run, begin, end, piece.firstGlyph, piece.glyphCount);
+    return piece;
+  }
+  // Clusters grow along the run, or shrink where it goes from right to left.
+  const auto from = shaped_.begin() + run.firstGlyph, to = from + run.glyphCount;
+  const auto below = [](const ShapedGlyph& glyph, uint32_t c) { return glyph.cluster < c; };
+  const auto atLeast = [](const ShapedGlyph& glyph, uint32_t c) { return glyph.cluster >= c; };
+  const bool backwards = run.level & 1;
+  const auto first = backwards ? std::lower_bound(from, to, end, atLeast) : std::lower_bound(from, to, begin, below);
+  const auto last = backwards ? std::lower_bound(from, to, begin, atLeast) : std::lower_bound(from, to, end, below);
+  piece.firstGlyph = static_cast<uint32_t>(first - shaped_.begin());
+  piece.glyphCount = static_cast<uint32_t>(last - first);
+  return piece;
+}
+
+/// Appends the run of an ellipsis or a hyphen at a character; `otherwise`: where no font of the style has the first.
+uint32_t Layout::insert(const char* text, const char* otherwise, uint32_t style, uint8_t level, uint32_t at) {
+  inserted_.assign(text);
+  const auto font = [&] { return Itemizer::fontOf(std::span(inserted_.characters).first(1), styles_[style]); };
+  if (otherwise && !font()->has(inserted_.characters[0])) inserted_.assign(otherwise);
+  Run run{at, at, Run::Kind::inserted, level, HB_SCRIPT_COMMON, font(), style};
+  run.firstGlyph = static_cast<uint32_t>(shaped_.size());
+  run.glyphCount = addGlyphs(run, at, at);
+  runs_.push_back(run);
+  return static_cast<uint32_t>(runs_.size()) - 1;
+}
+
+float Layout::insertedWidth(const Run& run) const {
+  float width = 0;
+  for (uint32_t i = 0; i < run.glyphCount; ++i)
+    width += shaped_[run.firstGlyph + i].advance * styles_[run.style].source->size;
+  return width;
+}
+
+/// A line's pieces in the order in which they are seen, and its widths. `inserted`: the index of an ellipsis' run.
+void Layout::build(Line& line, uint32_t inserted) {
+  line.inkEnd = inkEndOf(line.begin, line.end);
+  ordered_.clear();
+  for (uint32_t at = line.begin, index = at < line.end ? runAt(at) : 0; at < line.end; ++index) {
+    const uint32_t end = std::min(runs_[index].end, line.end);
+    // White space at a line's end has the paragraph's level (UAX #9, rule L1).
+    const bool parts = at < line.inkEnd && line.inkEnd < end && runs_[index].level != line.level;
+    ordered_.push_back(slice(index, at, parts ? line.inkEnd : end));
+    if (parts) ordered_.push_back(slice(index, line.inkEnd, end));
+    if (ordered_.back().begin >= line.inkEnd) ordered_.back().level = line.level;
+    at = end;
+  }
+  line.ink = inkWidth(line.begin, line.inkEnd);
+  line.hang = inkWidth(line.begin, line.end) - line.ink;
+  for (Piece& piece : ordered_)
+    for (uint32_t c = piece.begin; c < piece.end; ++c) piece.width += width_[c];
+  constexpr char32_t kSoftHyphen = 0xad;
+  if (inserted == ~0u && !line.hard && line.end > line.begin && text_.characters[line.end - 1] == kSoftHyphen)
+    inserted = insert("\xe2\x80\x90", "-", styleOf_[line.end - 1], ordered_.back().level, line.end - 1);
+  if (inserted != ~0u) {
+    const Run& run = runs_[inserted];
+    ordered_.push_back(
+        {line.end, line.end, run.level, inserted, run.firstGlyph, run.glyphCount, 0, insertedWidth(run)});
+    line.ink += static_cast<double>(ordered_.back().width);
+  }
+  pieceLevels_.clear();
+  for (const Piece& piece : ordered_) pieceLevels_.push_back(piece.level);
+  visualOrder(pieceLevels_, order_);
+  line.firstPiece = static_cast<uint32_t>(pieces_.size());
+  line.pieceCount = static_cast<uint32_t>(ordered_.size());
+  for (const uint32_t each : order_) pieces_.push_back(ordered_[each]);
+}
+
+Layout::Line Layout::breakLine(uint32_t begin, uint8_t level) {
+  const uint32_t size = text_.size();
+  const double limit = info_->width > 0 ? static_cast<double>(info_->width) + kSlack : HUGE_VAL;
+  Line line{begin, size, size, true, level};
+  double x = 0;
+  uint32_t soft = begin;
+  for (uint32_t c = begin; c < size; ++c) {
+    if (c > begin && (flags_[c] & kHardBreak)) {
+      line.end = c;
+      break;
+    }
+    if (flags_[c] & kSoftBreak) soft = c;
+    if (text_.characters[c] == '\t') width_[c] = tabAdvance(runs_[runAt(c)], x);
+    x += static_cast<double>(width_[c]);
+    if (x <= limit || isWhite(text_.characters[c])) continue;
+    line.hard = false;
+    line.end = soft > begin ? soft : std::max(graphemeAt(c), begin);
+    if (line.end == begin) line.end = nextGrapheme(begin);
+    break;
+  }
+  const uint32_t pieces = static_cast<uint32_t>(pieces_.size());
+  for (;;) {
+    pieces_.resize(pieces);
+    build(line);
+    if (line.ink <= limit) break;
+    uint32_t earlier = line.inkEnd > begin ? line.inkEnd - 1 : begin;
+    while (earlier > begin && !(flags_[earlier] & kSoftBreak)) --earlier;
+    if (earlier == begin) earlier = graphemeAt(line.inkEnd > begin ? line.inkEnd - 1 : begin);
+    if (earlier <= begin) break; // a single grapheme that is too wide
+    line.end = earlier;
+    line.hard = false;
+  }
+  if (line.end == size) line.hard = true;
+  return line;
+}
+
+void Layout::metrics(Line& line) const {
+  float gap = 0;
+  line.ascent = line.descent = 0;
+  bool first = true;
+  const auto use = [&](const Font& font, float size) {
+    const GpgpFontInfo& info = font.info();
+    line.ascent = first ? info.ascent * size : std::max(line.ascent, info.ascent * size);
+    line.descent = first ? info.descent * size : std::max(line.descent, info.descent * size);
+    gap = std::max(gap, info.lineGap * size);
+    first = false;
+  };
+  for (uint32_t i = 0; i < line.pieceCount; ++i) {
+    const Run& run = runs_[pieces_[line.firstPiece + i].run];
+    use(*run.font, styles_[run.style].source->size);
+  }
+  if (line.pieceCount == 0) {
+    const Style& style = styles_[text_.size() ? styleOf_[text_.size() - 1] : 0];
+    use(*style.font(0), style.source->size);
+  }
+  const float natural = line.ascent + line.descent + gap;
+  line.height = info_->lineHeight > 0    ? info_->lineHeight
+                : info_->lineSpacing > 0 ? natural * info_->lineSpacing
+                                         : natural;
+  line.above = (line.height - line.ascent - line.descent) / 2 + line.ascent;
+}
+
+void Layout::cutOff(Line& line) {
+  truncated_ = true;
+  const double limit = info_->width > 0 ? static_cast<double>(info_->width) + kSlack : HUGE_VAL;
+  const uint32_t begin = line.begin;
+  uint32_t end = inkEndOf(begin, line.end);
+  const uint32_t style = styleOf_[end > begin ? end - 1 : begin];
+  uint32_t index = ~0u;
+  double room = limit;
+  if (!info_->ellipsis || info_->ellipsis[0]) {
+    index = insert(info_->ellipsis ? info_->ellipsis : "\xe2\x80\xa6", info_->ellipsis ? nullptr : "...", style,
+                   line.level, end);
+    room -= static_cast<double>(insertedWidth(runs_[index]));
+  }
+  while (end > begin && inkWidth(begin, end) > room) end = inkEndOf(begin, graphemeAt(end - 1));
+  for (;;) {
+    pieces_.resize(line.firstPiece);
+    line.end = end;
+    build(line, index);
+    if (line.ink <= limit || end == begin) break;
+    end = inkEndOf(begin, graphemeAt(end - 1));
+  }
+  line.hard = true;
+  for (uint32_t i = 0; index != ~0u && i < runs_[index].glyphCount; ++i)
+    shaped_[runs_[index].firstGlyph + i].cluster = end;
+  metrics(line);
+}
+
+void Layout::breakLines() {
+  const uint32_t size = text_.size();
+  float top = 0;
+  size_t paragraph = 0;
+  uint32_t at = 0;
+  do {
+    while (paragraph + 1 < paragraphs_.size() && paragraphs_[paragraph].end <= at) ++paragraph;
+    if (info_->maxLines && cut_.size() == info_->maxLines) break;
+    Line line = breakLine(at, paragraphs_[paragraph].level);
+    metrics(line);
+    if (info_->height > 0 && !cut_.empty() &&
+        static_cast<double>(top + line.height) > static_cast<double>(info_->height) + kSlack) {
+      pieces_.resize(line.firstPiece);
+      break;
+    }
+    top += line.height;
+    cut_.push_back(line);
+    at = line.end;
+    if (at == size && (line.begin == size || !isNewline(text_.characters[size - 1]))) return;
+  } while (true);
+  if (at < size) cutOff(cut_.back());
+}
+
+} // namespace gpgp::text

@@ -1,0 +1,220 @@
+// Glyphs to paths: FreeType's unhinted outlines at a size where a font unit is a pixel (or half of one), so that
+// its 26.6 points keep what variations add to a unit (but for the places of a composite glyph's parts, which it rounds
+// to units); and bitmap glyphs to images with their box.
+#include "vector/text/glyph_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::text {
+
+Affine concat(const Affine& o, const Affine& i) {
+  return {o[0] * i[0] + o[2] * i[1], o[1] * i[0] + o[3] * i[1],        o[0] * i[2] + o[2] * i[3],
+          o[1] * i[2] + o[3] * i[3], o[0] * i[4] + o[2] * i[5] + o[4], o[1] * i[4] + o[3] * i[5] + o[5]};
+}
+
+void GlyphPaths::point(const FT_Vector* at) {
+  const float x = static_cast<float>(at->x) * scale_, y = static_cast<float>(at->y) * scale_;
+  const Affine& m = transform_;
+  points_.push_back(m[0] * x + m[2] * y + m[4]);
+  points_.push_back(-(m[1] * x + m[3] * y + m[5]));
+}
+
+bool GlyphPaths::addOutline(FT_Outline& outline, float scale, const Affine& transform) {
+  scale_ = scale;
+  transform_ = transform;
+  open_ = false;
+  const size_t begin = points_.size();
+  FT_Outline_Funcs functions{};
+  functions.move_to = [](const FT_Vector* to, void* user) {
+    auto& self = *static_cast<GlyphPaths*>(user);
+    if (self.open_) self.verbs_.push_back(GPGP_PATH_CLOSE);
+    self.open_ = true;
+    self.verbs_.push_back(GPGP_PATH_MOVE);
+    self.point(to);
+    return 0;
+  };
+  functions.line_to = [](const FT_Vector* to, void* user) {
+    auto& self = *static_cast<GlyphPaths*>(user);
+    self.verbs_.push_back(GPGP_PATH_LINE);
+    self.point(to);
+    return 0;
+  };
+  functions.conic_to = [](const FT_Vector* control, const FT_Vector* to, void* user) {
+    auto& self = *static_cast<GlyphPaths*>(user);
+    self.verbs_.push_back(GPGP_PATH_QUAD);
+    self.point(control);
+    self.point(to);
+    return 0;
+  };
+  functions.cubic_to = [](const FT_Vector* first, const FT_Vector* second, const FT_Vector* to, void* user) {
+    auto& self = *static_cast<GlyphPaths*>(user);
+    self.verbs_.push_back(GPGP_PATH_CUBIC);
+    self.point(first);
+    self.point(second);
+    self.point(to);
+    return 0;
+  };
+  const FT_Error error = FT_Outline_Decompose(&outline, &functions, this);
+  if (open_) verbs_.push_back(GPGP_PATH_CLOSE);
+  return !error && std::all_of(points_.begin() + static_cast<std::ptrdiff_t>(begin), points_.end(),
+                               [](float value) { return std::abs(value) <= 1e7f; });
+}
+
+GlyphPaths::Part* GlyphPaths::close() {
+  const uint32_t verbs = static_cast<uint32_t>(verbs_.size()), points = static_cast<uint32_t>(points_.size() / 2);
+  if ((parts_.empty() ? 0 : parts_.back().verbs) == verbs) return nullptr;
+  parts_.push_back({verbs, points, {}, nullptr, nullptr});
+  return &parts_.back();
+}
+
+void GlyphPaths::paint(const float (&color)[4], bool foreground, const GpgpStroke* stroke) {
+  Part* part = close();
+  if (!part) return;
+  std::copy_n(color, 4, part->color);
+  part->stroke = stroke;
+  foreground_.push_back(foreground);
+}
+
+void GlyphPaths::paint(const GpgpGradient& gradient, const float (&color)[4]) {
+  Part* part = close();
+  if (!part) return;
+  std::copy_n(color, 4, part->color);
+  const auto& stops = stops_.emplace_back(gradient.stops, gradient.stops + gradient.stopCount);
+  part->gradient = &gradients_.emplace_back(gradient);
+  gradients_.back().stops = stops.data();
+  foreground_.push_back(VK_FALSE);
+}
+
+GpgpGlyphOutline GlyphPaths::outline(uint32_t glyph) {
+  GpgpGlyphOutline result{};
+  result.glyph = glyph;
+  uint32_t verb = 0, at = 0;
+  for (const Part& part : parts_) {
+    GpgpPath path{};
+    path.verbs = verbs_.data() + verb;
+    path.verbCount = part.verbs - verb;
+    path.points = points_.data() + size_t(at) * 2;
+    path.pointCount = part.points - at;
+    path.fillRule = GPGP_FILL_NON_ZERO;
+    std::copy_n(part.color, 4, path.color);
+    path.gradient = part.gradient;
+    path.stroke = part.stroke;
+    paths_.push_back(path);
+    verb = part.verbs;
+    at = part.points;
+  }
+  result.paths = paths_.data();
+  result.pathCount = static_cast<uint32_t>(paths_.size());
+  result.foreground = foreground_.data();
+  for (size_t i = 0; i + 1 < size_t(at) * 2; i += 2) {
+    for (size_t axis = 0; axis < 2; ++axis) {
+      const float value = points_[i + axis];
+      result.box[axis] = i == 0 ? value : std::min(result.box[axis], value);
+      result.box[axis + 2] = i == 0 ? value : std::max(result.box[axis + 2], value);
+    }
+  }
+  return result;
+}
+
+Result<FT_Outline*> loadOutline(Font& font, uint32_t glyph) {
+  const FT_Face face = font.opened().outlines.get();
+  if (const FT_Error error = FT_Load_Glyph(face, glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP))
+    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u is broken (FreeType's error %d)", glyph, error);
+  if (face->glyph->format != FT_GLYPH_FORMAT_OUTLINE)
+    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u has no outline", glyph);
+  return &face->glyph->outline;
+}
+
+namespace {
+
+struct Picture {
+  std::vector<uint8_t> pixels;
+  GpgpGlyphImage image{};
+};
+
+/// The glyph's bitmap of the largest strike, nothing where it has none in colour. Leaves FreeType's size as it was.
+Picture loadPicture(Font& font, uint32_t glyph) {
+  Picture picture;
+  OpenFont& open = font.opened();
+  const FT_Face face = open.outlines.get();
+  int strike = 0;
+  for (int i = 1; i < face->num_fixed_sizes; ++i)
+    if (face->available_sizes[i].y_ppem > face->available_sizes[strike].y_ppem) strike = i;
+  if (face->num_fixed_sizes == 0 || FT_Select_Size(face, strike)) return picture;
+  const FT_Bitmap_Size size = face->available_sizes[strike];
+  const bool loaded = !FT_Load_Glyph(face, glyph, FT_LOAD_COLOR | FT_LOAD_NO_HINTING);
+  const FT_Bitmap& bitmap = face->glyph->bitmap;
+  if (loaded && face->glyph->format == FT_GLYPH_FORMAT_BITMAP && bitmap.pixel_mode == FT_PIXEL_MODE_BGRA &&
+      bitmap.width && bitmap.rows && size.x_ppem > 0 && size.y_ppem > 0) {
+    picture.pixels.resize(size_t(4) * bitmap.width * bitmap.rows);
+    uint8_t* to = picture.pixels.data();
+    for (unsigned row = 0; row < bitmap.rows; ++row) {
+      const uint8_t* from = bitmap.buffer + static_cast<std::ptrdiff_t>(row) * bitmap.pitch;
+      for (unsigned column = 0; column < bitmap.width; ++column, from += 4, to += 4) {
+        const unsigned alpha = from[3]; // premultiplied, blue first
+        for (int c = 0; c < 3; ++c)
+          to[c] = static_cast<uint8_t>(alpha ? std::min(255u, (from[2 - c] * 255u + alpha / 2) / alpha) : 0);
+        to[3] = static_cast<uint8_t>(alpha);
+      }
+    }
+    const float x = 64.f / static_cast<float>(size.x_ppem), y = 64.f / static_cast<float>(size.y_ppem);
+    const float left = static_cast<float>(face->glyph->bitmap_left) * x;
+    const float top = -static_cast<float>(face->glyph->bitmap_top) * y;
+    picture.image = {
+        picture.pixels.data(),
+        bitmap.width,
+        bitmap.rows,
+        {left, top, left + static_cast<float>(bitmap.width) * x, top + static_cast<float>(bitmap.rows) * y}};
+  }
+  if (open.emPerUnit > 0) FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(1 / open.emPerUnit)), 72, 72);
+  return picture;
+}
+
+} // namespace
+
+Result<void> deliverGlyph(Font& font, const GpgpGlyphOutlineInfo& info, GpgpGlyphFn glyphFn, void* userData) {
+  GlyphPaths paths;
+  Picture picture;
+  bool incomplete = false;
+  {
+    OpenFont& open = font.opened();
+    const std::lock_guard lock(open.lock);
+    bool done = false;
+    const bool plain = info.plain || info.stroke;
+    if (!plain && open.emPerUnit > 0 && (font.info().colors & (GPGP_FONT_COLOR_LAYERS | GPGP_FONT_COLOR_PAINTS))) {
+      const auto colored = addColors(font, info, paths, incomplete);
+      if (!colored) return colored.error();
+      done = *colored;
+    }
+    if (!done && !plain && (font.info().colors & GPGP_FONT_COLOR_BITMAPS)) {
+      picture = loadPicture(font, info.glyph);
+      done = !picture.pixels.empty();
+    }
+    if (!done && open.emPerUnit > 0) {
+      const auto outline = loadOutline(font, info.glyph);
+      if (!outline) return outline.error();
+      if (!paths.addOutline(**outline, open.emPerUnit, kIdentity))
+        return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u has a broken outline", info.glyph);
+      const float black[4] = {0, 0, 0, 1};
+      const bool unset = std::all_of(info.color, info.color + 4, [](float value) { return value == 0; });
+      if (unset)
+        paths.paint(black, true, info.stroke);
+      else
+        paths.paint(info.color, true, info.stroke);
+      if (!plain && (font.info().colors & GPGP_FONT_COLOR_SVG)) incomplete = true;
+    }
+  }
+  if (incomplete) {
+    const core::Error warning =
+        makeError(GPGP_ERROR_UNSUPPORTED, "glyph %u has paints that are not supported", info.glyph);
+    font.messages.send(GPGP_SEVERITY_WARNING, warning.code, "gpgpGetGlyphOutline", warning.text);
+  }
+  GpgpGlyphOutline outline = paths.outline(info.glyph);
+  if (!picture.pixels.empty()) outline.image = &picture.image;
+  outline.incomplete = incomplete;
+  glyphFn(userData, &outline);
+  return {};
+}
+
+} // namespace gpgp::text

@@ -1,0 +1,343 @@
+// Shaping against HarfBuzz used directly, the order of mixed directions against FriBidi, the choice of fonts, the
+// cache.
+#include "fonts.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <random>
+
+#include <fribidi.h>
+#include <hb.h>
+
+using namespace gpgp::test;
+
+namespace {
+size_t allocations = 0, allocatedBytes = 0;
+void* counted(size_t size) {
+  ++allocations;
+  allocatedBytes += size;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+} // namespace
+void* operator new(size_t size) { return counted(size); }
+void* operator new[](size_t size) { return counted(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, size_t) noexcept { std::free(memory); }
+
+namespace {
+
+struct Placed {
+  uint32_t glyph, cluster;
+  float x, y;
+};
+
+/// A text as one buffer, at a size in pixels.
+std::vector<Placed> shapeDirectly(const Sample& sample, float size, const std::vector<hb_feature_t>& features = {},
+                                  float* width = nullptr) {
+  hb_blob_t* blob = hb_blob_create_from_file(fontPath(sample.font).c_str());
+  hb_face_t* face = hb_face_create(blob, sample.face);
+  hb_font_t* font = hb_font_create(face);
+  const int scale = static_cast<int>(hb_face_get_upem(face)) * 64;
+  hb_font_set_scale(font, scale, scale);
+  hb_buffer_t* buffer = hb_buffer_create();
+  hb_buffer_add_utf8(buffer, sample.text, -1, 0, -1);
+  hb_buffer_guess_segment_properties(buffer);
+  hb_buffer_set_language(buffer, hb_language_from_string(sample.language, -1));
+  hb_shape(font, buffer, features.data(), static_cast<unsigned>(features.size()));
+  unsigned count = 0;
+  const hb_glyph_info_t* infos = hb_buffer_get_glyph_infos(buffer, &count);
+  const hb_glyph_position_t* places = hb_buffer_get_glyph_positions(buffer, &count);
+  std::vector<Placed> placed;
+  double pen = 0;
+  const double em = static_cast<double>(size) / scale;
+  for (unsigned i = 0; i < count; ++i) {
+    placed.push_back({infos[i].codepoint, infos[i].cluster, static_cast<float>((pen + places[i].x_offset) * em),
+                      static_cast<float>(-places[i].y_offset * em)});
+    pen += places[i].x_advance;
+  }
+  if (width) *width = static_cast<float>(pen * em);
+  hb_buffer_destroy(buffer);
+  hb_font_destroy(font);
+  hb_face_destroy(face);
+  hb_blob_destroy(blob);
+  return placed;
+}
+
+void expectSame(const Paper& paper, const std::vector<Placed>& expected) {
+  ASSERT_EQ(paper.info.glyphCount, expected.size());
+  const float baseline = paper.info.lines[0].baseline;
+  for (size_t i = 0; i < expected.size(); ++i) {
+    const GpgpTextGlyph& glyph = paper.info.glyphs[i];
+    ASSERT_EQ(glyph.glyph, expected[i].glyph) << "glyph " << i;
+    EXPECT_EQ(glyph.cluster, expected[i].cluster) << "glyph " << i;
+    EXPECT_NEAR(glyph.x, expected[i].x, 0.002f) << "glyph " << i;
+    EXPECT_NEAR(glyph.y - baseline, expected[i].y, 0.002f) << "glyph " << i;
+  }
+}
+
+std::string utf8(std::u32string_view text) {
+  std::string bytes;
+  for (const char32_t c : text) {
+    if (c < 0x80) {
+      bytes += static_cast<char>(c);
+    } else if (c < 0x800) {
+      bytes += static_cast<char>(0xc0 | c >> 6);
+      bytes += static_cast<char>(0x80 | (c & 63));
+    } else {
+      bytes += static_cast<char>(0xe0 | c >> 12);
+      bytes += static_cast<char>(0x80 | (c >> 6 & 63));
+      bytes += static_cast<char>(0x80 | (c & 63));
+    }
+  }
+  return bytes;
+}
+
+} // namespace
+
+TEST(TextShape, IsHarfBuzzsInEveryScript) {
+  GPGP_NEEDS_FONTS();
+  for (const Sample& sample : samples()) {
+    SCOPED_TRACE(sample.name);
+    const FontHandle font = openFont(sample.font, sample.face);
+    const std::vector<GpgpFont> fonts = {font.get()};
+    const std::string text = sample.text;
+    Paper paper;
+    for (const float size : {9.f, 16.f, 37.5f}) {
+      GpgpTextInfo info = textInfo(text, fonts, size);
+      info.style.language = sample.language;
+      ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+      float width = 0;
+      const auto expected = shapeDirectly(sample, size, {}, &width);
+      expectSame(paper, expected);
+      EXPECT_NEAR(paper.info.width, width, 0.01f);
+      const auto lost = std::count_if(expected.begin(), expected.end(), [](auto& glyph) { return glyph.glyph == 0; });
+      EXPECT_EQ(paper.info.missingCount, static_cast<uint32_t>(lost)); // the Hebrew font has no comma and no full stop
+      EXPECT_EQ(lost, sample.name == std::string("Hebrew") ? 2 : 0);
+      EXPECT_EQ(paper.info.lineCount, 1u);
+    }
+  }
+}
+
+TEST(TextShape, FeaturesAndLetterSpacing) {
+  GPGP_NEEDS_FONTS();
+  const Sample& latin = samples()[0];
+  const FontHandle font = openFont(latin.font);
+  const std::vector<GpgpFont> fonts = {font.get()};
+  const std::string text = latin.text;
+  Paper paper;
+  GpgpTextInfo info = textInfo(text, fonts, 20);
+  info.style.language = "en";
+  ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+  const uint32_t joined = paper.info.glyphCount;
+  EXPECT_LT(joined, text.size()); // ligatures
+  const GpgpFontFeature off[] = {{GPGP_TAG('l', 'i', 'g', 'a'), 0}, {GPGP_TAG('k', 'e', 'r', 'n'), 0}};
+  info.style.features = off;
+  info.style.featureCount = 2;
+  ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+  EXPECT_EQ(paper.info.glyphCount, text.size());
+  const hb_feature_t same[] = {{HB_TAG('l', 'i', 'g', 'a'), 0, 0, ~0u}, {HB_TAG('k', 'e', 'r', 'n'), 0, 0, ~0u}};
+  expectSame(paper, shapeDirectly(latin, 20, {same[0], same[1]}));
+  const float narrow = paper.info.width;
+  info.style.features = off + 1; // kerning off; ligatures are off because of the spacing
+  info.style.featureCount = 1;
+  info.style.letterSpacing = 1.5f;
+  ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+  EXPECT_EQ(paper.info.glyphCount, text.size());
+  EXPECT_NEAR(paper.info.width, narrow + 1.5f * float(text.size()), 0.02f);
+  for (uint32_t i = 0; i + 1 < paper.info.glyphCount; ++i)
+    EXPECT_LT(paper.info.glyphs[i].x, paper.info.glyphs[i + 1].x);
+
+  // Scripts that join are not spaced; others from right to left are, to the left of each.
+  const Sample &arabic = samples()[1], &hebrew = samples()[2];
+  for (const Sample* sample : {&arabic, &hebrew}) {
+    const FontHandle other = openFont(sample->font);
+    const std::vector<GpgpFont> chain = {other.get()};
+    const std::string words = sample->text;
+    GpgpTextInfo plain = textInfo(words, chain, 20);
+    ASSERT_EQ(paper.set(plain), GPGP_SUCCESS);
+    const float width = paper.info.width, first = paper.info.glyphs[paper.info.glyphCount - 1].x;
+    plain.style.letterSpacing = 2;
+    ASSERT_EQ(paper.set(plain), GPGP_SUCCESS);
+    if (sample == &arabic)
+      EXPECT_NEAR(paper.info.width, width, 0.01f);
+    else {
+      EXPECT_GT(paper.info.width, width + 60);
+      EXPECT_NEAR(paper.info.glyphs[paper.info.glyphCount - 1].x, first + paper.info.width - width, 0.01f);
+    }
+  }
+}
+
+TEST(TextShape, OrderIsFriBidis) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle latin = openFont("NotoSans-Regular.ttf"), hebrew = openFont("NotoSansHebrew-Regular.ttf");
+  const std::vector<GpgpFont> fonts = {latin.get(), hebrew.get()};
+  // One glyph a character, no pairs that would be moved or mirrored into another order.
+  const std::u32string letters = U"abcxyzאבגדהו0123456789  .,-+()[]/%:!";
+  std::mt19937 random(7);
+  Paper paper;
+  for (int run = 0; run < 400; ++run) {
+    std::u32string text;
+    const size_t length = 1 + random() % 30;
+    for (size_t i = 0; i < length; ++i) {
+      text += letters[random() % letters.size()];
+      if (random() % 12 == 0) text += U"\u202b\u202a\u202c\u2067\u2066\u2069"[random() % 6];
+    }
+    const std::string bytes = utf8(text);
+    for (const GpgpTextDirection direction : {GPGP_TEXT_AUTO, GPGP_TEXT_LEFT_TO_RIGHT, GPGP_TEXT_RIGHT_TO_LEFT}) {
+      GpgpTextInfo info = textInfo(bytes, fonts, 10);
+      info.direction = direction;
+      ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+      FriBidiParType base = direction == GPGP_TEXT_AUTO            ? FRIBIDI_PAR_ON
+                            : direction == GPGP_TEXT_LEFT_TO_RIGHT ? FRIBIDI_PAR_LTR
+                                                                   : FRIBIDI_PAR_RTL;
+      std::vector<FriBidiStrIndex> logical(text.size());
+      ASSERT_TRUE(fribidi_log2vis(reinterpret_cast<const FriBidiChar*>(text.data()), int(text.size()), &base, nullptr,
+                                  nullptr, logical.data(), nullptr));
+      EXPECT_EQ(paper.info.lines[0].rightToLeft != 0, FRIBIDI_IS_RTL(base) != 0);
+      std::vector<uint32_t> expected, order, offsets;
+      for (uint32_t i = 0, at = 0; i < text.size(); at += text[i] < 0x80 ? 1 : text[i] < 0x800 ? 2 : 3, ++i)
+        offsets.push_back(at);
+      const auto shown = [&](uint32_t c) { return text[c] < 0x2000; }; // not the marks of direction
+      for (const FriBidiStrIndex i : logical)
+        if (shown(uint32_t(i))) expected.push_back(offsets[size_t(i)]);
+      for (uint32_t i = 0; i < paper.info.glyphCount; ++i) {
+        const uint32_t cluster = paper.info.glyphs[i].cluster;
+        const size_t c = size_t(std::find(offsets.begin(), offsets.end(), cluster) - offsets.begin());
+        ASSERT_LT(c, offsets.size());
+        if (shown(uint32_t(c))) order.push_back(cluster);
+      }
+      // Spaces at the end lie at the paragraph's level side by side; which is which cannot be seen.
+      ASSERT_EQ(order.size(), expected.size());
+      for (size_t i = 0; i < order.size(); ++i) {
+        const bool blank = bytes[order[i]] == ' ' && bytes[expected[i]] == ' ';
+        ASSERT_TRUE(blank || order[i] == expected[i]) << bytes << " at " << i << ", direction " << direction;
+      }
+    }
+  }
+}
+
+TEST(TextShape, EachGraphemeTakesTheFirstFontThatHasIt) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle latin = openFont("NotoSans-Regular.ttf"), hebrew = openFont("NotoSansHebrew-Regular.ttf"),
+                   dejavu = openFont("DejaVuSans.ttf"), emoji = openFont("NotoColorEmoji.ttf");
+  const std::vector<GpgpFont> fonts = {latin.get(), hebrew.get(), dejavu.get(), emoji.get()};
+  // Latin, Hebrew, an arrow that DejaVu has, a heart as text and as emoji, a face, a family, and what none has.
+  const std::string text = "aא→♥♥️😀👨‍👩‍👧e\u0301\U00012345";
+  Paper paper;
+  ASSERT_EQ(paper.set(textInfo(text, fonts, 10)), GPGP_SUCCESS);
+  const auto fontAt = [&](size_t offset) -> GpgpFont {
+    for (uint32_t i = 0; i < paper.info.glyphCount; ++i)
+      if (paper.info.glyphs[i].cluster == offset) return paper.info.glyphs[i].font;
+    return nullptr;
+  };
+  size_t at = 0;
+  EXPECT_EQ(fontAt(at), latin.get());
+  EXPECT_EQ(fontAt(at += 1), hebrew.get());
+  EXPECT_EQ(fontAt(at += 2), dejavu.get());
+  EXPECT_EQ(fontAt(at += 3), dejavu.get());
+  EXPECT_EQ(fontAt(at += 3), emoji.get());
+  EXPECT_EQ(fontAt(at += 6), emoji.get());
+  EXPECT_EQ(fontAt(at += 4), emoji.get());
+  EXPECT_EQ(fontAt(at += std::string("👨‍👩‍👧").size()), latin.get());
+  ASSERT_EQ(paper.info.missingCount, 1u);
+  EXPECT_EQ(paper.info.missing[0].character, 0x12345u);
+  EXPECT_EQ(paper.info.missing[0].offset, text.size() - 4);
+  EXPECT_EQ(paper.info.glyphs[paper.info.glyphCount - 1].glyph, 0u);
+  // The family is one glyph.
+  uint32_t family = 0;
+  for (uint32_t i = 0; i < paper.info.glyphCount; ++i) family += paper.info.glyphs[i].cluster == at - 18;
+  EXPECT_EQ(family, 1u);
+
+  // A character that the first font has only put together, and one that it has only taken apart.
+  const std::string forms = "e\u0301 \u1eaf";
+  const std::vector<GpgpFont> one = {latin.get()};
+  ASSERT_EQ(paper.set(textInfo(forms, one, 10)), GPGP_SUCCESS);
+  EXPECT_EQ(paper.info.missingCount, 0u);
+}
+
+TEST(TextShape, BytesThatAreNoTextAreReplacedAndReported) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  const std::vector<GpgpFont> fonts = {font.get()};
+  // A byte alone, a character cut short, one too long, a surrogate, and the end within a character.
+  const std::string text = "a\xff"
+                           "b\xe2\x82"
+                           "c\xc0\xaf"
+                           "d\xed\xa0\x80"
+                           "e\xf0\x9f";
+  Paper paper;
+  ASSERT_EQ(paper.set(textInfo(text, fonts, 10)), GPGP_SUCCESS);
+  const std::vector<uint32_t> invalid(paper.info.invalid, paper.info.invalid + paper.info.invalidCount);
+  EXPECT_EQ(invalid, (std::vector<uint32_t>{1, 3, 6, 7, 9, 10, 11, 13}));
+  uint32_t replacement = 0;
+  ASSERT_EQ(gpgpFindGlyph(font.get(), 0xfffd, &replacement), GPGP_SUCCESS);
+  ASSERT_EQ(paper.info.glyphCount, 5u + 8u);
+  for (uint32_t i = 0; i < paper.info.glyphCount; ++i) {
+    const GpgpTextGlyph& glyph = paper.info.glyphs[i];
+    const bool bad = std::find(invalid.begin(), invalid.end(), glyph.cluster) != invalid.end();
+    EXPECT_EQ(glyph.glyph == replacement, bad) << "byte " << glyph.cluster;
+  }
+}
+
+TEST(TextShape, RunsAreKeptWithinTheBudget) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  const std::vector<GpgpFont> fonts = {font.get()};
+  const size_t budget = 32768;
+  Paper paper(budget);
+  GpgpShaperReport report = GPGP_SHAPER_REPORT_INIT;
+  const auto look = [&] { EXPECT_EQ(gpgpGetShaperReport(paper.shaper.get(), &report), GPGP_SUCCESS); };
+  const std::string text = "one line of the score: 12345";
+  ASSERT_EQ(paper.set(textInfo(text, fonts, 12)), GPGP_SUCCESS);
+  look();
+  EXPECT_EQ(report.misses, 1u);
+  EXPECT_EQ(report.runs, 1u);
+  const std::vector<GpgpTextGlyph> first(paper.info.glyphs, paper.info.glyphs + paper.info.glyphCount);
+  ASSERT_EQ(paper.set(textInfo(text, fonts, 24)), GPGP_SUCCESS); // a run serves every size
+  look();
+  EXPECT_EQ(report.misses, 1u);
+  EXPECT_EQ(report.hits, 1u);
+  for (size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(paper.info.glyphs[i].x, 2 * first[i].x, 0.01f);
+  for (int i = 0; i < 200; ++i) {
+    const std::string next = text + std::to_string(i);
+    ASSERT_EQ(paper.set(textInfo(next, fonts, 12)), GPGP_SUCCESS);
+    ASSERT_EQ(paper.set(textInfo(text, fonts, 12)), GPGP_SUCCESS); // used all the time: stays
+    look();
+    EXPECT_LE(report.bytes, budget);
+  }
+  EXPECT_EQ(report.misses, 201u);
+  EXPECT_EQ(report.evictions + report.runs, 201u);
+  EXPECT_GT(report.evictions, 100u);
+  EXPECT_EQ(report.cacheBytes, budget);
+
+  // A run larger than the budget is shaped each time, and evicts nothing.
+  const std::string large(5000, 'x');
+  const size_t runs = report.runs;
+  ASSERT_EQ(paper.set(textInfo(large, fonts, 12)), GPGP_SUCCESS);
+  EXPECT_EQ(paper.info.glyphCount, large.size());
+  look();
+  EXPECT_EQ(report.runs, runs);
+}
+
+TEST(TextShape, ATextThatIsKnownCostsNoMemory) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf"), arabic = openFont("NotoNaskhArabic-Regular.ttf");
+  const std::vector<GpgpFont> fonts = {font.get(), arabic.get()};
+  std::string text;
+  for (int i = 0; i < 40; ++i) text += "The office staff found five fluffy waffles. ";
+  Paper paper;
+  const auto lay = [&](const std::string& bytes) {
+    GpgpTextInfo info = textInfo(bytes, fonts, 12, 300);
+    const size_t before = allocations;
+    EXPECT_EQ(gpgpSetLayoutText(paper.layout.get(), &info), GPGP_SUCCESS);
+    return allocations - before;
+  };
+  lay(text);
+  EXPECT_GT(allocatedBytes, 100000u); // the counter counts
+  EXPECT_EQ(lay(text), 0u);
+  EXPECT_EQ(lay(text), 0u);
+}

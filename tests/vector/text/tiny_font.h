@@ -1,0 +1,22 @@
+// A font made here, byte by byte: three shapes, colour layers of COLR versions 0 and 1, two palettes. For what no font
+// of Debian has, and for fuzzing.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace gpgp::test {
+
+namespace tiny {
+constexpr uint32_t kSquare = 1; // 'A': (0, 0) to (500, 500)
+constexpr uint32_t kCorner = 2; // 'B': a triangle (0, 0), (400, 0), (0, 800)
+constexpr uint32_t kLayers = 3; // 'C', version 0: square in entry 0, corner in the text's colour
+constexpr uint32_t kPaints = 4; // 'D', version 1: see paints() in tiny_font.cpp
+constexpr uint32_t kSweep = 5;  // 'E', version 1: a sweep gradient
+constexpr uint32_t kCircle = 6; // 'F', version 1: paints itself
+constexpr uint32_t kGlyphs = 7;
+constexpr float kUnits = 1000;
+} // namespace tiny
+
+std::vector<char> tinyFont();
+
+} // namespace gpgp::test
