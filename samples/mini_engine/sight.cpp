@@ -14,8 +14,7 @@
 
 namespace mini {
 
-Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model)
-    : device_(device), gpgp_(gpgp), model_(std::move(model)) {
+Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model) : gpgp_(gpgp), model_(std::move(model)) {
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   positions_ = makeBuffer(device, model_.positions, kStorage);
   normals_ = makeBuffer(device, model_.normals, kStorage);
