@@ -1,6 +1,8 @@
 // Axioms on a grid of blocks, one indirect draw per bucket, one unit box for every shape.
 #include "city.h"
 
+#include "level.h"
+
 #include "shaders/mini_city_frag.spv.h"
 #include "shaders/mini_city_vert.spv.h"
 
@@ -16,37 +18,6 @@ namespace {
 
 constexpr uint32_t kMaxInstances = 400000;
 constexpr uint32_t kMaxBuckets = 1024; // as many as a grammar can have: the next one may have more than the first
-constexpr float kBlock = 26.0f;        // metres from block to block; backdrop.frag draws the streets
-constexpr int kBlocks = 6;             // to each side of the square in the middle
-
-/// One building per block, low around the square in the middle, which
-/// stays free like the avenue, and taller towards the edge of town.
-std::vector<GpgpAxiom> layOut() {
-  std::vector<GpgpAxiom> axioms;
-  for (int z = -kBlocks; z <= kBlocks; ++z)
-    for (int x = -kBlocks; x <= kBlocks; ++x) {
-      if (std::abs(x) <= 1 && std::abs(z) <= 1) continue; // the square
-      if ((x == 0 || x == 1) && z > 1) continue;          // an avenue, through which the camera looks
-      GpgpAxiom axiom{};
-      axiom.id = static_cast<uint32_t>((z + kBlocks) * (2 * kBlocks + 1) + x + kBlocks);
-      axiom.seed = 7919u * (axiom.id + 1u);
-      const uint32_t random = (axiom.seed * 2654435761u) >> 16;
-      const float fromMiddle = std::sqrt(static_cast<float>(x * x + z * z)); // in blocks
-      const float floors = std::round(2.0f + 1.6f * fromMiddle + static_cast<float>(random % 4u));
-      axiom.size[0] = 12.0f + static_cast<float>(random / 4u % 3u) * 2.0f;
-      axiom.size[1] = floors * 3.0f + 1.0f;
-      axiom.size[2] = 12.0f + static_cast<float>(random / 12u % 3u) * 2.0f;
-      axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1.0f;
-      axiom.transform[3] = static_cast<float>(x) * kBlock;
-      axiom.transform[7] =
-          axiom.size[1] * 0.5f; // shapes have their origin in the middle; buildings stand on the ground
-      axiom.transform[11] = static_cast<float>(z) * kBlock;
-      axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
-      axiom.attribute = std::nanf("");
-      axioms.push_back(axiom);
-    }
-  return axioms;
-}
 
 /// What a terminal is made of, by its name; names that are not known get a colour each.
 glm::vec4 materialOf(const std::string& name, uint32_t index) {
@@ -111,7 +82,7 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
 
   // The engine's buffers. gpgp fills instances, and in each draw the count and the first instance; the rest is set
   // here.
-  const std::vector<GpgpAxiom> axioms = layOut();
+  const std::vector<GpgpAxiom> axioms = levelAxioms();
   axiomCount_ = static_cast<uint32_t>(axioms.size());
   axioms_ = makeBuffer(device, axioms, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   instances_ = Buffer(device, VkDeviceSize{kMaxInstances} * sizeof(GpgpInstance),

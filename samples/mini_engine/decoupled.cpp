@@ -57,11 +57,7 @@ Decoupled::Decoupled(Device& device, Gpgp& gpgp, const Forward& forward, Model m
                    &sizes_},
                   VK_SHADER_STAGE_VERTEX_BIT),
       shadePipeline_(device, {std::begin(mini_shade_comp), std::end(mini_shade_comp)}, shadeSet_.layout, 24) {
-  auto geometryInfo = gpgp::init<GpgpGeometrySetCreateInfo>();
-  geometryInfo.label = "shaded model";
-  geometryInfo.meshes = model_.meshes.data();
-  geometryInfo.meshCount = static_cast<uint32_t>(model_.meshes.size());
-  geometry_ = gpgp.take(gpgp::GeometrySet::create(gpgp.context, geometryInfo), "gpgpCreateGeometrySet");
+  geometry_ = gpgp.geometrySet("shaded model", model_.meshes);
   auto samplerInfo = gpgp::init<GpgpSamplerCreateInfo>();
   samplerInfo.base = gpgp.worker("shading sampler");
   samplerInfo.maxWidth = kMaxExtent.width;

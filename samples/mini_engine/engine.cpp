@@ -1,37 +1,22 @@
 // One frame: advance, upload, prepare three services, draw everything in one pass.
 #include "engine.h"
 
+#include "level.h"
+
 #include <cmath>
 #include <cstdio>
 
 namespace mini {
-namespace {
-
-Model loadModel(const std::string& dataFolder) {
-  const std::string file = dataFolder + "/fetched/models/2CylinderEngine.glb";
-  Model model;
-  if (fileExists(file)) {
-    model = loadGltf(file);
-  } else {
-    std::fprintf(stderr, "mini_engine: %s is not there (tests/data/fetch.sh fetches it); using a model made here\n",
-                 file.c_str());
-    model = makeFallbackModel();
-  }
-  model.place(54.0f, 0.2f); // metres
-  return model;
-}
-
-} // namespace
-
 Engine::Engine(Device& device, Target& target, const EngineOptions& options)
     : device_(device), target_(target), forward_(device, target.format(), target.finalLayout()),
       gpgp_(device, kFramesInFlight),
       city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga", options.watch),
       hud_(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
            options.dataFolder + "/fetched/svg/tiger.svgz"),
-      sight_(device, gpgp_, forward_, loadModel(options.dataFolder)), farther_(options.decoupled.farther) {
+      sight_(device, gpgp_, forward_, levelModel(options.dataFolder)), farther_(options.decoupled.farther) {
   if (options.decoupled.on)
-    decoupled_ = std::make_unique<Decoupled>(device, gpgp_, forward_, loadModel(options.dataFolder), options.decoupled);
+    decoupled_ =
+        std::make_unique<Decoupled>(device, gpgp_, forward_, levelModel(options.dataFolder), options.decoupled);
   for (Slot& slot : slots_) {
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     pool.queueFamilyIndex = device.family;

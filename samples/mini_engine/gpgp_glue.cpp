@@ -77,6 +77,14 @@ GpgpWorkerCreateInfo Gpgp::worker(const char* label) const {
   return info;
 }
 
+gpgp::GeometrySet Gpgp::geometrySet(const char* label, const std::vector<GpgpMesh>& meshes) {
+  auto info = gpgp::init<GpgpGeometrySetCreateInfo>();
+  info.label = label;
+  info.meshes = meshes.data();
+  info.meshCount = static_cast<uint32_t>(meshes.size());
+  return take(gpgp::GeometrySet::create(context, info), "gpgpCreateGeometrySet");
+}
+
 std::vector<char> readFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error("cannot read " + path);

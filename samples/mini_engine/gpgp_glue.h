@@ -37,6 +37,7 @@ public:
     return std::move(*result);
   }
   GpgpWorkerCreateInfo worker(const char* label) const;
+  gpgp::GeometrySet geometrySet(const char* label, const std::vector<GpgpMesh>& meshes);
 
   EngineMemory memory;
   gpgp::Context context;

@@ -14,8 +14,7 @@
 
 namespace mini {
 
-Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model)
-    : device_(device), gpgp_(gpgp), model_(std::move(model)) {
+Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model) : gpgp_(gpgp), model_(std::move(model)) {
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   positions_ = makeBuffer(device, model_.positions, kStorage);
   normals_ = makeBuffer(device, model_.normals, kStorage);
@@ -24,11 +23,7 @@ Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model)
   const std::vector<uint32_t> none((model_.triangleCount + 31) / 32);
   visibleBits_ = makeBuffer(device, none, kStorage);
 
-  auto geometryInfo = gpgp::init<GpgpGeometrySetCreateInfo>();
-  geometryInfo.label = "model";
-  geometryInfo.meshes = model_.meshes.data();
-  geometryInfo.meshCount = static_cast<uint32_t>(model_.meshes.size());
-  geometry_ = gpgp.take(gpgp::GeometrySet::create(gpgp.context, geometryInfo), "gpgpCreateGeometrySet");
+  geometry_ = gpgp.geometrySet("model", model_.meshes);
   auto samplerInfo = gpgp::init<GpgpSamplerCreateInfo>();
   samplerInfo.base = gpgp.worker("model sampler");
   samplerInfo.maxWidth = kMaxExtent.width;

@@ -24,7 +24,6 @@ public:
   const Model& model() const { return model_; }
 
 private:
-  Device& device_;
   Gpgp& gpgp_;
   Model model_;
   Buffer positions_, normals_, indices_, draws_, visibleBits_;

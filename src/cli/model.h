@@ -2,6 +2,8 @@
 #pragma once
 #include <gpgp/visibility.h>
 
+#include <glm/vec3.hpp>
+
 #include <filesystem>
 #include <vector>
 
@@ -18,5 +20,11 @@ struct Model {
 
 /// Throws std::runtime_error with the file's name, and the line for .obj.
 Model loadModel(const std::filesystem::path& file);
+
+/// Copies side by side, a tenth of the model's size apart, numbered one after the other.
+void repeatInGrid(Model& model, uint32_t columns, uint32_t rows, const glm::vec3& size);
+
+/// World-space corners of each triangle in its number's order.
+std::vector<glm::vec3> worldCorners(const Model& model);
 
 } // namespace gpgp::cli

@@ -7,6 +7,7 @@
 // same paths into a picture of 1024 x 1024 pixels, which flattens and tessellates them each time. Prints medians and
 // ratios; asserts nothing about time.
 #include "host/files.h"
+#include "measuring.h"
 #include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
 #include "vector/raster/segments.h"
@@ -17,7 +18,6 @@
 #include FT_OUTLINE_H
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -26,18 +26,16 @@
 
 namespace {
 using namespace gpgp;
-using Clock = std::chrono::steady_clock;
+using bench::Clock;
 
-template <class Work> double milliseconds(Work&& work) {
-  const auto start = Clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 template <class Work> double medianOf(int rounds, Work&& work) {
   std::vector<double> times;
-  for (int i = 0; i < rounds; ++i) times.push_back(milliseconds(work));
-  std::nth_element(times.begin(), times.begin() + rounds / 2, times.end());
-  return times[static_cast<size_t>(rounds / 2)];
+  for (int i = 0; i < rounds; ++i) {
+    const auto start = Clock::now();
+    work();
+    times.push_back(bench::milliseconds(Clock::now() - start));
+  }
+  return bench::median(std::move(times));
 }
 
 struct Path {
@@ -122,7 +120,7 @@ void edited(int rounds, std::span<const GpgpPath> paths) {
   const double all = medianOf(rounds, [&] { vector::makeOutlines(*vector::makeDrawing(paths, memory), memory); });
   std::vector<double> times;
   for (uint32_t i = 0; i < paths.size(); ++i)
-    times.push_back(milliseconds([&] {
+    times.push_back(medianOf(1, [&] {
       const GpgpPathEdit edit{i, paths[i]};
       const auto drawing = vector::replacePaths(*whole, std::span(&edit, 1), memory);
       vector::editOutlines(*drawing, outlines, std::span(&edit, 1), memory);

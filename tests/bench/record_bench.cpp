@@ -6,27 +6,18 @@
 // into the same command buffer. Prints medians and ratios; asserts nothing about time, but fails where a record fails.
 #include "../api/scenarios.h"
 #include "host/frames.h"
+#include "measuring.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
 namespace {
 using namespace gpgp;
 using namespace gpgp::test;
-using Clock = std::chrono::steady_clock;
+using namespace gpgp::bench;
 
-double microseconds(Clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); }
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-void expect(GpgpResult result, const char* what) {
-  if (result == GPGP_SUCCESS) return;
-  std::fprintf(stderr, "%s: %s\n", what, gpgpResultString(result));
-  std::exit(1);
-}
+double microseconds(Clock::duration d) { return milliseconds(d) * 1000; }
 } // namespace
 
 int main(int argc, char** argv) {

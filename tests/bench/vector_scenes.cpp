@@ -3,12 +3,12 @@
 
 #include "host/files.h"
 #include "host/picture.h"
+#include "measuring.h"
 #include "vector/import/svg/document.h"
 #include "vector/import/svg/import.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -19,14 +19,6 @@
 
 namespace gpgp::bench {
 namespace {
-using Clock = std::chrono::steady_clock;
-
-double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 void paint(Shape& shape, std::mt19937& random, float alpha = 1) {
   std::uniform_real_distribution<float> light(0.05f, 0.9f);

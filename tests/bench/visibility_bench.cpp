@@ -4,12 +4,15 @@
 //   visibility_bench [--size WxH] [--repeat N] [--truth N] [--recheck N] [--passes] [SCENE...]
 //   visibility_bench --figures [--grid N] [--cell N] [--tables] [...]
 //                                       the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)
+//   visibility_bench --views [...]      what a record of several view points of a cell costs against a record for each
 //   visibility_bench --plot FILE... --out FOLDER
 //                                       what runs with --figures printed, as SVG pictures
 //
-// Scenes: bunnies colonnade foliage city street bigcity bigstreet, small-colonnade small-foliage small-city, or a .glb,
-// .gltf or .obj file. As a test it runs on small ones. Asserts nothing about time, but fails where exact sampling shows
-// over 1.5 % that the truth does not hold, or a budget is exceeded.
+// Scenes: bunnies colonnade foliage city street bigcity bigstreet, small-colonnade small-foliage small-city, what gpgp
+// spawn derives where it is built in: spawned-city[:LOTS] (200 lots; 50 000 are 10 million triangles) and mini-engine;
+// or a .glb, .gltf or .obj file. As a test it runs on small ones. Asserts nothing about time, but fails where exact
+// sampling shows over 1.5 % that the truth does not hold, or a budget is exceeded.
+#include "spawned_scenes.h"
 #include "visibility_figures.h"
 
 #include "cli/model.h"
@@ -25,7 +28,7 @@ using namespace gpgp::test;
 
 struct Options {
   uint32_t width = 160, height = 90, truth = 64, recheck = 0;
-  bool passes = false, figures = false, tables = false;
+  bool passes = false, figures = false, tables = false, views = false;
   FigureOptions figure;
   std::string out = ".";
   std::vector<std::string> scenes, plots;
@@ -79,6 +82,14 @@ Scene makeScene(const std::string& name, uint32_t width, uint32_t height) {
   } else if (name == "small-city") {
     scene = city(6);
     setWalkingCamera(scene, {30, 1.7f, 30}, {60, 5, 60}, width, height, true);
+#ifdef GPGP_BENCH_SPAWNED
+  } else if (name == "spawned-city" || name.rfind("spawned-city:", 0) == 0) {
+    const int lots = name.size() > 13 ? std::atoi(&name[13]) : 200;
+    scene = bench::spawnedCity(static_cast<uint32_t>(std::max(1, lots)));
+    setOrbitCamera(scene, 1, 8, 1.0f, width, height, true);
+  } else if (name == "mini-engine") {
+    scene = bench::miniEngineLevel(width, height);
+#endif
   } else if (std::filesystem::is_regular_file(name)) {
     return loadScene(name, width, height);
   } else {
@@ -138,6 +149,32 @@ bool benchScene(Runner& runner, const std::string& name, const Options& options)
            .epsilonDynamic = epsilon});
   return good;
 }
+
+/// 1, 2, 4 and 8 view points up to half a metre from the camera, in one record and in one each.
+void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
+  std::vector<float> points;
+  for (uint32_t i = 1; i < shader::kMaxCameras; ++i)
+    points.insert(points.end(), {i & 1 ? 0.5f : 0.0f, i & 2 ? 0.5f : 0.0f, i & 4 ? 0.5f : 0.0f});
+  GpgpViewCellInfo info = GPGP_VIEW_CELL_INFO_INIT;
+  info.camera = runner.camera();
+  info.points = points.data();
+  info.pointCount = shader::kMaxCameras - 1;
+  std::vector<GpgpCamera> cameras(shader::kMaxCameras);
+  uint32_t count = shader::kMaxCameras;
+  expect(gpgpGetViewCellCameras(&info, &count, cameras.data()), "view cell");
+  std::printf("%s: %u triangles\n  %-10s %5s %10s %12s %7s\n", name.c_str(), runner.triangles(), "method", "views",
+              "one record", "a record each", "ratio");
+  for (const auto& [method, what] : {std::pair(GPGP_SAMPLING_STANDARD, "standard"), {GPGP_SAMPLING_EXACT, "exact"}}) {
+    Sampler united = runner.sampler(1u << method, 1, shader::kMaxCameras), single = runner.sampler(1u << method, 1);
+    double each = 0;
+    for (uint32_t n = 1, views = 0; n <= shader::kMaxCameras; n *= 2) {
+      for (; views < n; ++views)
+        each += runner.measure(single, {.method = method}, repeat, {&cameras[views], 1}).milliseconds;
+      const double one = runner.measure(united, {.method = method}, repeat, std::span(cameras).first(n)).milliseconds;
+      std::printf("  %-10s %5u %10.3f %12.3f %7.2f\n", what, n, one, each, one / each);
+    }
+  }
+}
 } // namespace
 
 int main(int argc, char** argv) {
@@ -165,6 +202,8 @@ int main(int argc, char** argv) {
       options.passes = true;
     } else if (arg == "--figures") {
       options.figures = true;
+    } else if (arg == "--views") {
+      options.views = true;
     } else if (arg == "--tables") {
       options.tables = true;
     } else if (arg == "--plot") {
@@ -191,6 +230,10 @@ int main(int argc, char** argv) {
     Scene scene = makeScene(name, options.width, options.height);
     Runner runner(device, *context, scene);
     const std::string title = std::filesystem::path(name).stem().string();
+    if (options.views) {
+      benchViews(runner, title, options.figure.repeat);
+      continue;
+    }
     if (!options.figures || options.tables) good = benchScene(runner, title, options) && good;
     if (options.figures) printFigures(runner, title, options.height, options.figure);
     std::fflush(stdout);

@@ -4,6 +4,7 @@
 #include "host/busy_work.h"
 #include "host/frames.h"
 #include "host/memory.h"
+#include "measuring.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,15 +13,8 @@
 
 namespace gpgp::test {
 
-inline void expect(GpgpResult result, const char* what) {
-  if (result == GPGP_SUCCESS) return;
-  std::fprintf(stderr, "%s: %s\n", what, gpgpResultString(result));
-  std::exit(1);
-}
-inline double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
+using bench::expect;
+using bench::median;
 
 /// What a record asks for, the scene apart.
 struct Sampling {

@@ -1,10 +1,11 @@
 // Stage 3: a sweep from top to bottom that turns pieces into slabs.
 //
-// The status is the list of edges (pieces between two cuts) that the sweep line meets, ordered by x. Between cuts no
-// two edges change sides, so two edges are ordered by comparing them in the middle of the rows they share, which is
-// safe where they touch at an end; nothing is ever compared on the sweep line itself. At each height all edges that
-// end leave, all that begin enter, and only around those places windings and slabs are worked out again. A slab stays
-// open while the pair of pieces that bounds it stays the same, whatever happens outside or inside of it.
+// The status is the list of edges (pieces between two cuts) that the sweep line meets, ordered by x: linked slots for
+// walking, and a tree over them that finds the place of an edge that begins. Between cuts no two edges change sides, so
+// two edges are ordered by comparing them in the middle of the rows they share, which is safe where they touch at an
+// end; nothing is ever compared on the sweep line itself. At each height all edges that end leave, all that begin
+// enter, and only around those places windings and slabs are worked out again. A slab stays open while the pair of
+// pieces that bounds it stays the same, whatever happens outside or inside of it.
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -25,13 +26,17 @@ class Sweep {
 public:
   Sweep(std::span<const Monotone> pieces, GpgpFillRule rule, std::pmr::vector<Slab>& slabs)
       : pieces_(pieces), rule_(rule), slabs_(slabs), memory_(slabs.get_allocator().resource()), edges_(memory_),
-        status_(Order{this}, memory_), places_(memory_), edgeOf_(memory_), windings_(memory_), dirty_(memory_),
-        visited_(memory_), known_(memory_), open_(memory_), touched_(memory_), runs_(memory_), starts_(memory_) {}
+        status_(Order{this}, memory_), nodes_(memory_), links_(memory_), places_(memory_), edgeOf_(memory_),
+        windings_(memory_), dirty_(memory_), visited_(memory_), known_(memory_), open_(memory_), touched_(memory_),
+        runs_(memory_), starts_(memory_) {}
 
   void run(std::span<const Cut> cuts) {
     makeEdges(cuts);
     const uint32_t count = static_cast<uint32_t>(edges_.size());
-    places_.assign(count, status_.end());
+    nodes_.assign(count, status_.end());
+    links_.assign(count + 1, Link{count, count});
+    end_ = count;
+    places_.assign(count, kNone);
     edgeOf_.resize(count);
     for (uint32_t i = 0; i < count; ++i) edgeOf_[i] = i;
     windings_.assign(count, 0);
@@ -69,7 +74,10 @@ private:
     bool operator()(uint32_t a, uint32_t b) const { return sweep->leftOf(sweep->edgeOf_[a], sweep->edgeOf_[b]); }
   };
   using Status = std::pmr::multiset<uint32_t, Order>; // of slots; edgeOf_ says which edge a slot holds
-  struct Open {                                       // the slab whose left side is a piece
+  struct Link {                                       // a slot's neighbours; end_ beyond both ends
+    uint32_t before, after;
+  };
+  struct Open { // the slab whose left side is a piece
     uint32_t right = 0, stamp = 0;
     float top = 0;
     bool active = false;
@@ -89,11 +97,11 @@ private:
       for (Event& end : ends)
         for (Event& begin : begins)
           if (begin.edge != kNone && goesOn(edges_[end.edge], edges_[begin.edge])) {
-            const auto place = places_[end.edge];
+            const uint32_t slot = places_[end.edge];
             touched_.push_back(edges_[end.edge].piece);
-            places_[end.edge] = status_.end();
-            places_[begin.edge] = place;
-            edgeOf_[*place] = begin.edge;
+            places_[end.edge] = kNone;
+            places_[begin.edge] = slot;
+            edgeOf_[slot] = begin.edge;
             markDirty(begin.edge);
             end.edge = begin.edge = kNone;
             break;
@@ -140,9 +148,9 @@ private:
   }
 
   bool inside(int winding) const { return rule_ == GPGP_FILL_EVEN_ODD ? (winding & 1) != 0 : winding != 0; }
-  int windingBefore(Status::iterator it) const {
-    return it == status_.begin() ? 0 : windings_[edgeOf_[*std::prev(it)]];
-  }
+  uint32_t before(uint32_t slot) const { return links_[slot].before; }
+  uint32_t after(uint32_t slot) const { return links_[slot].after; }
+  int windingBefore(uint32_t slot) const { return before(slot) == end_ ? 0 : windings_[edgeOf_[before(slot)]]; }
 
   void markDirty(uint32_t edge) {
     if (dirty_[edge] == batch_) return;
@@ -150,21 +158,32 @@ private:
     starts_.push_back(edge);
   }
 
+  void markNeighbours(uint32_t slot) {
+    if (before(slot) != end_) markDirty(edgeOf_[before(slot)]);
+    if (after(slot) != end_) markDirty(edgeOf_[after(slot)]);
+  }
+
   void remove(uint32_t edge) {
-    const auto it = places_[edge];
-    if (it != status_.begin()) markDirty(edgeOf_[*std::prev(it)]);
-    if (const auto next = std::next(it); next != status_.end()) markDirty(edgeOf_[*next]);
+    const uint32_t slot = places_[edge];
+    markNeighbours(slot);
     touched_.push_back(edges_[edge].piece);
-    status_.erase(it);
-    places_[edge] = status_.end();
+    status_.erase(nodes_[slot]);
+    links_[before(slot)].after = after(slot);
+    links_[after(slot)].before = before(slot);
+    places_[edge] = kNone;
   }
 
   void insert(uint32_t edge) {
-    const auto it = places_[edge] = status_.insert(edge);
+    const uint32_t slot = places_[edge] = edge; // no other edge has had this one's
+    const auto node = nodes_[slot] = status_.insert(slot);
+    const auto next = std::next(node);
+    const uint32_t right = next == status_.end() ? end_ : *next, left = before(right);
+    links_[slot] = {left, right};
+    links_[left].after = links_[right].before = slot;
     markDirty(edge);
     // Its neighbours were asked on the way down.
-    if (it != status_.begin()) known_[edgeOf_[*std::prev(it)]] = edge;
-    if (const auto next = std::next(it); next != status_.end()) known_[edge] = edgeOf_[*next];
+    if (left != end_) known_[edgeOf_[left]] = edge;
+    if (right != end_) known_[edge] = edgeOf_[right];
   }
 
   /// Edges that are compared over rows no taller than noise may have been put in the wrong place, and others beside
@@ -172,14 +191,12 @@ private:
   void repair() {
     size_t swaps = 64 + 8 * starts_.size();
     for (size_t i = 0; i < starts_.size() && swaps; ++i) {
-      const auto it = places_[starts_[i]];
-      if (it == status_.end()) continue;
-      auto at = it;
-      for (; at != status_.begin() && swaps && wrong(edgeOf_[*std::prev(at)], edgeOf_[*at]); --at, --swaps)
-        swap(at, std::prev(at));
-      for (auto next = std::next(at); next != status_.end() && swaps && wrong(edgeOf_[*at], edgeOf_[*next]);
-           ++next, ++at, --swaps)
-        swap(at, next);
+      uint32_t at = places_[starts_[i]];
+      if (at == kNone) continue;
+      for (; before(at) != end_ && swaps && wrong(edgeOf_[before(at)], edgeOf_[at]); at = before(at), --swaps)
+        swap(at, before(at));
+      for (; after(at) != end_ && swaps && wrong(edgeOf_[at], edgeOf_[after(at)]); at = after(at), --swaps)
+        swap(at, after(at));
     }
   }
 
@@ -191,38 +208,34 @@ private:
     return false;
   }
 
-  void swap(Status::iterator a, Status::iterator b) {
-    uint32_t &ea = edgeOf_[*a], &eb = edgeOf_[*b];
+  void swap(uint32_t a, uint32_t b) {
+    uint32_t &ea = edgeOf_[a], &eb = edgeOf_[b];
     std::swap(ea, eb);
     places_[ea] = a;
     places_[eb] = b;
     markDirty(ea);
     markDirty(eb);
-    for (const auto it : {a, b}) {
-      if (it != status_.begin()) markDirty(edgeOf_[*std::prev(it)]);
-      if (const auto next = std::next(it); next != status_.end()) markDirty(edgeOf_[*next]);
-    }
+    markNeighbours(a);
+    markNeighbours(b);
   }
 
   /// Windings from each changed place on until they agree with what was there, then the slabs around those places.
   void update() {
     runs_.clear();
     for (const uint32_t edge : starts_) {
-      const auto first = places_[edge];
-      if (first == status_.end() || visited_[edge] == batch_) continue; // left in this batch, or done
-      if (first != status_.begin() && dirty_[edgeOf_[*std::prev(first)]] == batch_) continue; // reached from there
-      auto it = first;
-      int winding = windingBefore(it);
+      const uint32_t first = places_[edge];
+      if (first == kNone || visited_[edge] == batch_) continue;                        // left in this batch, or done
+      if (before(first) != end_ && dirty_[edgeOf_[before(first)]] == batch_) continue; // reached from there
+      int winding = windingBefore(first);
       uint32_t last = edge;
-      while (it != status_.end()) {
-        const uint32_t e = edgeOf_[*it];
-        const int after = winding + pieces_[edges_[e].piece].winding;
-        if (dirty_[e] != batch_ && windings_[e] == after) break;
-        windings_[e] = after;
+      for (uint32_t slot = first; slot != end_; slot = after(slot)) {
+        const uint32_t e = edgeOf_[slot];
+        const int right = winding + pieces_[edges_[e].piece].winding;
+        if (dirty_[e] != batch_ && windings_[e] == right) break;
+        windings_[e] = right;
         visited_[e] = batch_;
         last = e;
-        winding = after;
-        ++it;
+        winding = right;
       }
       runs_.push_back({edge, last});
     }
@@ -234,21 +247,20 @@ private:
   }
 
   /// Opens and closes slabs from the outside left of `first` to the outside right of `last`.
-  void cover(Status::iterator first, Status::iterator last) {
-    while (first != status_.begin() && inside(windingBefore(first))) --first;
-    while (std::next(last) != status_.end() && inside(windings_[edgeOf_[*last]])) ++last;
-    const auto end = std::next(last);
-    int before = windingBefore(first);
+  void cover(uint32_t first, uint32_t last) {
+    while (inside(windingBefore(first))) first = before(first);
+    while (after(last) != end_ && inside(windings_[edgeOf_[last]])) last = after(last);
+    int outer = windingBefore(first);
     uint32_t left = 0;
-    for (auto it = first; it != end; ++it) {
-      const uint32_t edge = edgeOf_[*it], piece = edges_[edge].piece;
-      const int after = windings_[edge];
+    for (uint32_t slot = first, end = after(last); slot != end; slot = after(slot)) {
+      const uint32_t edge = edgeOf_[slot], piece = edges_[edge].piece;
+      const int inner = windings_[edge];
       touched_.push_back(piece);
-      if (!inside(before) && inside(after))
+      if (!inside(outer) && inside(inner))
         left = piece;
-      else if (inside(before) && !inside(after))
+      else if (inside(outer) && !inside(inner))
         bound(left, piece);
-      before = after;
+      outer = inner;
     }
   }
 
@@ -273,7 +285,10 @@ private:
   std::pmr::memory_resource* memory_;
   std::pmr::vector<Edge> edges_;
   Status status_;
-  std::pmr::vector<Status::iterator> places_;
+  std::pmr::vector<Status::iterator> nodes_;   // by slot
+  std::pmr::vector<Link> links_;               // by slot, and of end_
+  uint32_t end_ = 0;                           // the slot that is none
+  std::pmr::vector<uint32_t> places_;          // slot by edge
   std::pmr::vector<uint32_t> edgeOf_;          // by slot
   std::pmr::vector<int> windings_;             // right of each edge
   std::pmr::vector<uint32_t> dirty_, visited_; // batch numbers

@@ -4,7 +4,7 @@
 #pragma once
 #include "core/worker.h"
 #include "visibility/geometry_set.h"
-#include "visibility/layout.h"
+#include "visibility/sampling/passes.h"
 
 namespace gpgp::visibility {
 
@@ -23,24 +23,7 @@ public:
   bool takeSampleReport(GpgpSampleReport& report);
 
 private:
-  core::PassList describe() const;
-  void describeExact(core::PassList& list) const;
-  void describeConservative(core::PassList& list) const;
-  void describeDraws(core::PassList& list) const;
-  void describeMetrics(core::PassList& list) const;
-  static uint32_t samplesOf(const GpgpSampleInfo& info);
-  void setGrid(const GpgpSampleInfo& info, shader::Params& params) const;
-  core::Result<void> checkInfo(const GpgpSampleInfo& info, const CameraView* view) const;
-
-  uint64_t chunkCapacity() const;
-  uint64_t slotCapacity() const;
-  uint32_t mediumRecords() const;
-  uint32_t largeRecords() const;
-
-  uint32_t defaultPairs() const;
-
-  const uint32_t maxWidth_, maxHeight_, maxCameras_, maxDraws_, maxTriangles_, maxSamples_, methods_, maxCandidates_,
-      maxPairs_;
+  const Budgets budgets_;
 };
 
 } // namespace gpgp::visibility

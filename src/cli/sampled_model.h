@@ -1,0 +1,44 @@
+// A model on the device, and what samples it.
+#pragma once
+#include "cli/model.h"
+#include "cli/session.h"
+#include "cli/views.h"
+#include "cli/visibility_options.h"
+
+namespace gpgp::cli {
+
+class SampledModel {
+public:
+  /// The options and the model must outlive it.
+  SampledModel(Session& session, const VisibilityOptions& options, const Model& model);
+
+  Sampler sampler(GpgpSamplingMethod method, uint32_t maxSamples);
+
+  struct Step {
+    GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;
+    View view;
+    uint32_t samples = 0, slice = 0, repeat = 1;
+    bool accumulate = false, sizes = false;
+    const char* label = "sampling";
+  };
+  Measured<GpgpSampleReport> sample(Sampler& sampler, const Step& step);
+  std::vector<uint32_t> bits() { return host::download<uint32_t>(session_.device(), bits_, words_); }
+  std::vector<uint32_t> sizes() { return host::download<uint32_t>(session_.device(), sizes_, model_.triangleCount); }
+
+  /// How far what was found agrees with a truth; recheck may be empty.
+  GpgpSampleReport compare(Sampler& sampler, const std::vector<uint32_t>& found, const std::vector<uint32_t>& truth,
+                           const std::vector<uint32_t>& areas, const std::vector<uint32_t>& recheck);
+
+  /// The truth with samples x samples a pixel and the centre, for the union of views; sizes() has its areas afterwards.
+  std::vector<uint32_t> truth(const std::vector<View>& views, uint32_t samples);
+
+private:
+  Session& session_;
+  const VisibilityOptions& options_;
+  const Model& model_;
+  uint32_t words_;
+  GeometrySet geometry_;
+  host::Buffer positions_, indices_, draws_, bits_, sizes_, list_, count_;
+};
+
+} // namespace gpgp::cli

@@ -1,0 +1,83 @@
+#include "cli/views.h"
+
+#include "host/files.h"
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace gpgp::cli {
+
+View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Size size) {
+  const float turn = glm::radians(360.0f) * static_cast<float>(k) / static_cast<float>(n), rise = glm::radians(20.0f);
+  const float radius = std::max(glm::length(bounds.high - bounds.low) * 0.5f, 1e-6f);
+  const glm::vec3 back(std::cos(rise) * std::sin(turn), std::sin(rise), std::cos(rise) * std::cos(turn));
+  const glm::mat4 view = glm::lookAtRH(bounds.centre() + back * (distance * radius), bounds.centre(), {0, 1, 0});
+  glm::mat4 projection =
+      glm::perspectiveRH_ZO(glm::radians(60.0f), static_cast<float>(size.width) / static_cast<float>(size.height),
+                            std::max(distance - 1.2f, 0.01f) * radius, (distance + 1.2f) * radius);
+  projection[1][1] *= -1;
+  return {projection * view, false};
+}
+
+View readView(const std::string& file) {
+  std::istringstream text(host::readText(file));
+  View view;
+  for (int i = 0; i < 16; ++i)
+    if (!(text >> view.camera[i / 4][i % 4]))
+      throw Failure(file + ": number " + std::to_string(i + 1) + " of 16 is missing");
+  float reversed = 0;
+  if (text >> reversed) view.reversed = reversed != 0;
+  return view;
+}
+
+Cell::Cell(const std::string& spec) {
+  uint32_t columns = 0, rows = 0, skip = 1, count = 0;
+  float radius = 0;
+  char rest = 0;
+  if (std::sscanf(spec.c_str(), "%ux%u/%u%c", &columns, &rows, &skip, &rest) == 3 ||
+      (skip = 1, std::sscanf(spec.c_str(), "%ux%u%c", &columns, &rows, &rest) == 2)) {
+    if (columns < 1 || rows < 1 || columns > 64 || rows > 64 || skip < 1)
+      throw Usage("--cell: 1x1 to 64x64, and a skip of at least 1");
+    info.columns = columns;
+    info.rows = rows;
+    info.skip = skip;
+  } else if (std::sscanf(spec.c_str(), "%f:%u%c", &radius, &count, &rest) == 2 && radius > 0 && count > 0 &&
+             count <= 4096) {
+    // Corners of a square round the middle, then of its inside: a grid as square as the number allows.
+    const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<float>(count))));
+    for (uint32_t i = 0; i < count && side > 1; ++i) {
+      const float x = static_cast<float>(i % side) / static_cast<float>(side - 1) * 2 - 1;
+      const float y = static_cast<float>(i / side) / static_cast<float>(side - 1) * 2 - 1;
+      if (x != 0 || y != 0) points.insert(points.end(), {x * radius, y * radius, 0});
+    }
+  } else if (!spec.empty()) {
+    throw Usage("--cell: '" + spec + "' is neither COLUMNSxROWS[/SKIP] in pixels nor RADIUS:POINTS in world units");
+  }
+}
+
+std::vector<View> viewsOf(const Cell& cell, const View& view, const glm::vec3& centre, uint32_t height) {
+  GpgpViewCellInfo info = cell.info;
+  std::copy_n(glm::value_ptr(view.camera), 16, info.camera.viewProjection);
+  info.camera.reversedDepth = view.reversed;
+  info.height = height;
+  const glm::mat4& m = view.camera;
+  info.distance = m[0][3] * centre.x + m[1][3] * centre.y + m[2][3] * centre.z + m[3][3];
+  info.points = cell.points.data();
+  info.pointCount = static_cast<uint32_t>(cell.points.size() / 3);
+  uint32_t count = 0;
+  GpgpResult result = gpgpGetViewCellCameras(&info, &count, nullptr);
+  std::vector<GpgpCamera> cameras(count);
+  if (result == GPGP_SUCCESS) result = gpgpGetViewCellCameras(&info, &count, cameras.data());
+  if (result != GPGP_SUCCESS) throw Failure("no view cell can be made of this camera: it looks away from the scene");
+  std::vector<View> views;
+  for (const GpgpCamera& camera : cameras) views.push_back({glm::make_mat4(camera.viewProjection), view.reversed});
+  return views;
+}
+
+} // namespace gpgp::cli

@@ -1,0 +1,116 @@
+#include "cli/visibility_options.h"
+
+#include <cstdio>
+#include <sstream>
+
+namespace gpgp::cli {
+namespace {
+
+/// "ABS,DYN"
+void parseEpsilon(const std::string& text, VisibilityOptions& options) {
+  char rest = 0;
+  float values[2];
+  if (std::sscanf(text.c_str(), "%f,%f%c", &values[0], &values[1], &rest) != 2 || !(values[0] >= 0 && values[1] >= 0) ||
+      !(values[0] < 1e30f && values[1] < 1e30f))
+    throw CLI::ValidationError("--epsilon", "'" + text + "' is not ABS,DYN, two numbers from 0 on");
+  options.epsilonStatic = values[0];
+  options.epsilonDynamic = values[1];
+}
+
+/// Names of heuristics, or "none".
+uint32_t parseHeuristics(const std::string& text) {
+  uint32_t heuristics = 0;
+  std::istringstream names(text);
+  for (std::string name; std::getline(names, name, ',');) {
+    if (name == "in-circle")
+      heuristics |= GPGP_HEURISTIC_IN_CIRCLE;
+    else if (name == "depth")
+      heuristics |= GPGP_HEURISTIC_DEPTH;
+    else if (name == "front")
+      heuristics |= GPGP_HEURISTIC_DEPTH | GPGP_HEURISTIC_KEEP_FRONT;
+    else if (name != "none")
+      throw CLI::ValidationError("--heuristics", "'" + name + "' is none of in-circle, depth, front, none");
+  }
+  return heuristics;
+}
+} // namespace
+
+GpgpSamplingMethod VisibilityOptions::sampling() const {
+  return method == "standard"       ? GPGP_SAMPLING_STANDARD
+         : method == "conservative" ? GPGP_SAMPLING_CONSERVATIVE
+                                    : GPGP_SAMPLING_EXACT;
+}
+
+void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
+  command.add_option("MODEL", options.model, "glTF 2 (.glb, .gltf) or Wavefront (.obj)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  addSize(command, "--size", options.size, "Viewport in pixels (default 1280x720)");
+  command.add_option("--yaw", options.yaw, "Degrees around the model")->capture_default_str();
+  command.add_option("--pitch", options.pitch, "Degrees above the horizon")
+      ->check(CLI::Range(-89.0f, 89.0f))
+      ->capture_default_str();
+  command.add_flag("--two-sided", options.twoSided, "Back faces count as well");
+  command
+      .add_option_function<std::string>(
+          "--grid", [&options](const std::string& text) { options.grid = parseSize(text); },
+          "NxM copies of the model side by side")
+      ->type_name("NxM");
+  command
+      .add_option("--orbit", options.orbit, "N cameras on a circle 20 degrees above the horizon; results are averages")
+      ->check(CLI::Range(1u, 4096u));
+  command.add_option("--distance", options.distance, "Of the orbit's cameras, in radii of the bounding sphere")
+      ->check(CLI::Range(0.01f, 1e6f))
+      ->capture_default_str();
+  command.add_option("--camera", options.camera, "16 numbers, world to clip, column-major; a 17th not 0: near is 1")
+      ->check(CLI::ExistingFile);
+  command.add_option("--method", options.method, "standard, conservative, exact or cell (exact over a view cell)")
+      ->check(CLI::IsMember({"standard", "conservative", "exact", "cell"}))
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--epsilon", [&options](const std::string& text) { parseEpsilon(text, options); },
+          "Conservative: static and dynamic epsilon, in units along the view (default 0.05,0.05)")
+      ->type_name("ABS,DYN");
+  command
+      .add_option_function<std::string>(
+          "--heuristics", [&options](const std::string& text) { options.heuristics = parseHeuristics(text); },
+          "Conservative: of in-circle, depth, front (depth, but what lies in front is kept), none (default "
+          "in-circle,depth)")
+      ->type_name("LIST");
+  command.add_option("--resolution", options.resolution, "Conservative: factor of the viewport's size")
+      ->check(CLI::Range(0.25f, 1.0f))
+      ->capture_default_str();
+  command.add_option("--refinements", options.refinements, "Conservative: at most N passes that close gaps")
+      ->check(CLI::Range(0u, 4u))
+      ->capture_default_str();
+  command.add_option("--samples", options.samples, "Standard: N x N samples a pixel")
+      ->check(CLI::IsMember({1u, 2u, 4u, 8u}))
+      ->capture_default_str();
+  command.add_option("--cell", options.cell,
+                     "View cell: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units");
+  command.add_option("--truth", options.truth, "Measure against N x N + 1 samples a pixel")
+      ->check(CLI::IsMember({1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 256u}));
+  command.add_option("--recheck", options.recheck, "Sample claimed false positives again at N x N; 0: do not")
+      ->check(CLI::IsMember({0u, 64u, 128u, 256u}))
+      ->capture_default_str();
+  command
+      .add_option("--overlay", options.overlay, "Green standard, grey added by the method, red too much, blue missed")
+      ->type_name("FILE.png");
+  command.add_option("--export-ids", options.exportIds, "Visible triangles as little-endian uint32")->type_name("FILE");
+  command.add_option("--repeat", options.repeat, "Sample N times and report the median time")
+      ->check(CLI::Range(1u, 100000u))
+      ->capture_default_str();
+  command.add_option("--image", options.image, "Write a picture: the camera's view, and the same from the side")
+      ->type_name("FILE.png");
+  command.footer(R"(
+Examples:
+  gpgp visibility engine.glb
+  gpgp visibility bunny.obj --yaw 90 --image seen.png
+  gpgp visibility engine.glb --size 1920x1080 --repeat 100 --json | jq .visible
+  gpgp visibility engine.glb --method exact --orbit 8 --truth 64 --overlay seen.png
+
+The camera looks at the middle of the model from far enough to see all of it.)");
+}
+
+} // namespace gpgp::cli

@@ -1,0 +1,26 @@
+// The arguments of `gpgp visibility`.
+#pragma once
+#include "cli/command.h"
+
+#include <gpgp/visibility.h>
+
+namespace gpgp::cli {
+
+struct VisibilityOptions {
+  std::string model, image, overlay, exportIds, camera, method = "standard", cell;
+  Size size{1280, 720}, grid{1, 1};
+  float yaw = 35, pitch = 20, distance = 2;
+  uint32_t repeat = 1, orbit = 0, samples = 1, truth = 0, recheck = 256, refinements = 0;
+  uint32_t heuristics = GPGP_HEURISTICS_THESIS;
+  float epsilonStatic = 0.05f, epsilonDynamic = 0.05f, resolution = 1;
+  bool twoSided = false;
+
+  /// How each view is sampled; "cell" is exact over several.
+  GpgpSamplingMethod sampling() const;
+  uint32_t cameras() const { return orbit ? orbit : 1; }
+};
+
+/// Adds all of them; the options must stay where they are.
+void addVisibilityOptions(CLI::App& command, VisibilityOptions& options);
+
+} // namespace gpgp::cli

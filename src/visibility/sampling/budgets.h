@@ -1,0 +1,25 @@
+// What a sampler was made for, and the room that follows from it.
+#pragma once
+#include <gpgp/visibility.h>
+
+namespace gpgp::visibility {
+
+struct Budgets {
+  uint32_t maxWidth, maxHeight, maxCameras, maxDraws, maxTriangles, maxSamples;
+  uint32_t methods; // GPGP_SAMPLING_..._BIT
+  uint32_t maxCandidates, maxPairs;
+
+  /// Zeros mean the defaults of gpgp/visibility.h.
+  Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits& limits);
+
+  uint64_t pixels() const { return uint64_t(maxWidth) * maxHeight * maxCameras; }
+  uint64_t chunks() const;        ///< of shader::kChunk triangles
+  uint64_t slots() const;         ///< pixels in whole tiles of 8 x 8
+  uint32_t mediumRecords() const; ///< triangles that are made once for both phases; more are made again by each
+  uint32_t largeRecords() const;  ///< workgroup that draws them
+};
+
+/// Pixels in whole tiles of 8 x 8.
+uint64_t slotsOf(uint32_t width, uint32_t height);
+
+} // namespace gpgp::visibility

@@ -1,0 +1,164 @@
+#include "visibility/sampling/checks.h"
+
+#include "visibility/sampling/parameters.h"
+#include "visibility/sampling/passes.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace gpgp::visibility {
+using core::makeError;
+using core::Result;
+namespace {
+
+/// The viewport, the method and its settings, cameras, counts.
+Result<void> checkSampling(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view) {
+  if (info.width == 0 || info.height == 0 || info.width > budgets.maxWidth || info.height > budgets.maxHeight)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the viewport is %u x %u; the sampler was made for 1 x 1 to %u x %u",
+                     info.width, info.height, budgets.maxWidth, budgets.maxHeight);
+  const uint32_t method = info.method < 0 || info.method > 31 ? 0 : 1u << info.method;
+  if (!(budgets.methods & method))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d; the sampler was made for methods 0x%x", info.method,
+                     budgets.methods);
+  const uint32_t samples = samplesOf(info), perSide = samples / std::min(samples, budgets.maxSamples);
+  if (!std::has_single_bit(samples) || samples > 256)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "samples is %u; expected a power of two up to 256", samples);
+  if (info.method == GPGP_SAMPLING_STANDARD && samples > budgets.maxSamples)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "samples is %u; the sampler was made for %u", samples,
+                     budgets.maxSamples);
+  if (info.method == GPGP_SAMPLING_TRUTH && info.slice > perSide * perSide)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "slice is %u; %u samples are taken in slices 0 to %u", info.slice,
+                     samples, perSide * perSide);
+  const uint32_t cameras = info.moreCameraCount < budgets.maxCameras ? info.moreCameraCount + 1 : 0;
+  if (!cameras)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameraCount is %u; the sampler was made for %u cameras in all",
+                     info.moreCameraCount, budgets.maxCameras);
+  for (uint32_t i = 0; i < info.moreCameraCount; ++i)
+    if (!info.moreCameras[i].reversedDepth != !info.camera.reversedDepth)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameras[%u].reversedDepth is not the first camera's", i);
+  const bool commands = info.commands.buffer && info.commandCount;
+  if (!commands && uint64_t(info.drawCount) * cameras > budgets.maxDraws)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawCount is %u for %u cameras; the sampler was made for %u",
+                     info.drawCount, cameras, budgets.maxDraws);
+  if (commands && info.commandCount > budgets.maxDraws)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandCount is %u; the sampler was made for %u", info.commandCount,
+                     budgets.maxDraws);
+  if (commands && cameras > budgets.maxDraws)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "there are %u cameras; the sampler was made for %u draws of all",
+                     cameras, budgets.maxDraws);
+  if (info.method == GPGP_SAMPLING_CONSERVATIVE) {
+    if (info.resolution != 0 && !(info.resolution >= 0.25f && info.resolution <= 1))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "resolution is %g; expected 0.25 to 1",
+                       static_cast<double>(info.resolution));
+    if (info.heuristics & ~(GPGP_HEURISTICS_THESIS | GPGP_HEURISTIC_KEEP_FRONT))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "heuristics is 0x%x; it has unknown bits", info.heuristics);
+    if (!(info.epsilonStatic >= 0 && info.epsilonStatic < 1e30f && info.epsilonDynamic >= 0 &&
+          info.epsilonDynamic < 1e30f))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "epsilonStatic, epsilonDynamic are %g, %g; expected 0 to 1e30",
+                       static_cast<double>(info.epsilonStatic), static_cast<double>(info.epsilonDynamic));
+    if (info.refinements > kMaxRefinements)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "refinements is %u; at most %u", info.refinements, kMaxRefinements);
+  }
+  if (info.triangleCount > 1u << 31)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; at most 2147483648", info.triangleCount);
+  if (view && info.triangleCount > view->maxTriangles())
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; the view was made for %u", info.triangleCount,
+                     view->maxTriangles());
+  return {};
+}
+
+/// Geometry and draws.
+Result<void> checkInput(const GpgpSampleInfo& info) {
+  if (info.indexType != VK_INDEX_TYPE_UINT16 && info.indexType != VK_INDEX_TYPE_UINT32)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indexType is %d; expected UINT16 or UINT32", info.indexType);
+  const uint32_t number = positionFormatOf(info.positionFormat).bytes;
+  if (!number)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positionFormat is %d; expected three floats, halves or snorm16",
+                     info.positionFormat);
+  if (info.positionStride % number || (info.positionStride && info.positionStride < number * 3))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positionStride is %u; expected a multiple of %u from %u on",
+                     info.positionStride, number, number * 3);
+  if (info.positionOffset % number)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positionOffset is %u; expected a multiple of %u",
+                     info.positionOffset, number);
+  if (info.drawCount) {
+    if (auto ok = checkSize("draws", info.draws, uint64_t(info.drawCount) * sizeof(GpgpVisibilityDraw), "drawCount");
+        !ok)
+      return ok;
+    if (auto ok = checkSize("positions", info.positions, 4, "a vertex"); !ok) return ok;
+    if (auto ok = checkSize("indices", info.indices, 4, "an index"); !ok) return ok;
+    if (number == 2 && info.positions.size % 4)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positions.size is %llu; expected a multiple of 4",
+                       static_cast<unsigned long long>(info.positions.size));
+    if (info.indices.size % 4)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indices.size is %llu; expected a multiple of 4",
+                       static_cast<unsigned long long>(info.indices.size));
+  }
+  if (info.commands.buffer) {
+    const uint32_t stride = info.commandStride ? info.commandStride : kCommandBytes;
+    if (stride % 4 || stride < kCommandBytes)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandStride is %u; expected a multiple of 4 from 20 on",
+                       info.commandStride);
+    if (info.commandCount)
+      if (auto ok = checkSize("commands", info.commands, uint64_t(info.commandCount - 1) * stride + kCommandBytes,
+                              "commandCount");
+          !ok)
+        return ok;
+  }
+  if (info.drawCountBuffer.buffer)
+    if (auto ok = checkSize("drawCountBuffer", info.drawCountBuffer, 4, "the number of draws"); !ok) return ok;
+  return {};
+}
+
+/// Bits, lists and commands.
+Result<void> checkOutput(const GpgpSampleInfo& info) {
+  if (info.drawCommands.buffer) {
+    const bool counted = info.commands.buffer || info.drawCountBuffer.buffer;
+    const uint64_t needed = counted ? 1 : std::max(info.drawCount, 1u);
+    if (auto ok = checkSize("drawCommands", info.drawCommands, needed * kCommandBytes, "drawCount"); !ok) return ok;
+  }
+  if (info.drawIndices.buffer)
+    if (auto ok = checkSize("drawIndices", info.drawIndices, 12, "one triangle"); !ok) return ok;
+  if (info.drawTriangles.buffer)
+    if (auto ok = checkSize("drawTriangles", info.drawTriangles, 4, "one triangle"); !ok) return ok;
+  if (info.triangleSizes.buffer)
+    if (auto ok = checkSize("triangleSizes", info.triangleSizes,
+                            std::max(info.triangleCount, 1u) * uint64_t(sizeof(GpgpTriangleSize)), "triangleCount");
+        !ok)
+      return ok;
+  if (info.triangleCount)
+    if (auto ok =
+            checkSize("visibleBits", info.visibleBits, (uint64_t(info.triangleCount) + 31) / 32 * 4, "triangleCount");
+        !ok)
+      return ok;
+  if (info.pixelCounts.buffer)
+    if (auto ok = checkSize("pixelCounts", info.pixelCounts, std::max<uint64_t>(uint64_t(info.triangleCount) * 4, 4),
+                            "triangleCount");
+        !ok)
+      return ok;
+  if (info.visibleList.buffer)
+    if (auto ok = checkSize("visibleList", info.visibleList, 4, "one triangle"); !ok) return ok;
+  if (info.visibleCount.buffer)
+    if (auto ok = checkSize("visibleCount", info.visibleCount, info.drawCommands.buffer ? 20 : 16,
+                            "the count and the arguments");
+        !ok)
+      return ok;
+  return {};
+}
+} // namespace
+
+Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t needed, const char* why) {
+  if (!buffer.buffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL", name);
+  if (buffer.size < needed)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.size is %llu; %s needs %llu", name,
+                     static_cast<unsigned long long>(buffer.size), why, static_cast<unsigned long long>(needed));
+  return {};
+}
+
+Result<void> checkSampleInfo(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view) {
+  if (auto ok = checkSampling(info, budgets, view); !ok) return ok;
+  if (auto ok = checkInput(info); !ok) return ok;
+  return checkOutput(info);
+}
+
+} // namespace gpgp::visibility

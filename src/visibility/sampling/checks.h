@@ -1,0 +1,14 @@
+// The checks of a record that depend on what the sampler was made for, and on the sizes of the engine's buffers.
+#pragma once
+#include "core/result.h"
+#include "visibility/geometry_set.h"
+#include "visibility/sampling/budgets.h"
+
+namespace gpgp::visibility {
+
+core::Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t needed, const char* why);
+
+/// view may be null.
+core::Result<void> checkSampleInfo(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view);
+
+} // namespace gpgp::visibility

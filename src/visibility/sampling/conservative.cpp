@@ -1,0 +1,56 @@
+// Conservative sampling: what follows standard sampling. Each sweep over the triangles is two passes.
+#include "visibility/sampling/passes.h"
+
+#include "shaders/visibility_overlap.spv.h"
+#include "shaders/visibility_overlap_big.spv.h"
+
+#include <cstddef>
+
+namespace gpgp::visibility {
+
+void addConservative(core::PassList& list, const Budgets& budgets) {
+  using namespace shader;
+  using enum core::UseKind;
+  struct Sweep {
+    uint32_t small, big; // shaders
+    const char *smallName, *bigName;
+  };
+  const auto makeSweep = [&](uint32_t phase, const char* smallName, const char* bigName) {
+    const uint32_t small = addShader(list, smallName, visibility_overlap, phase);
+    return Sweep{small, addShader(list, bigName, visibility_overlap_big, phase), smallName, bigName};
+  };
+  const size_t first = list.passes.size();
+  uint32_t level = 0;
+  const auto addFill = [&](const char* name, core::ResourceIndex target, uint32_t value, VkDeviceSize offset,
+                           VkDeviceSize size) { list.fill(name, target, value, offset, size).level = level; };
+  const auto addSweep = [&](const Sweep& sweep) {
+    const auto addPass = [&](const char* name, uint32_t shader, size_t arguments) {
+      fetchesTriangles(list.dispatchIndirect(name, shader,
+                                             {{kBindCounters, readWrite},
+                                              {kBindQueue, readWrite},
+                                              {kBindIds, read},
+                                              {kBindSurfaces, read},
+                                              {kBindGaps, readWrite},
+                                              {kBindBits, readWrite}},
+                                             kBindCounters, arguments))
+          .level = level;
+    };
+    addFill("clear overlap", kBindCounters, 0, offsetof(Counters, overlapCount), 8);
+    addPass(sweep.smallName, sweep.small, offsetof(Counters, smallArgs));
+    addPass(sweep.bigName, sweep.big, offsetof(Counters, overlapArgs));
+  };
+  addSweep(makeSweep(0, "overlap", "overlap big"));
+  const Sweep cover = makeSweep(1, "cover", "cover big"), nearest = makeSweep(2, "nearest", "nearest big"),
+              take = makeSweep(3, "take", "take big");
+  const VkDeviceSize pixels = budgets.pixels();
+  for (level = 1; level <= kMaxRefinements; ++level) {
+    if (level == 1) addFill("clear gaps", kBindGaps, 0, 0, pixels * 8);
+    addFill("clear nearest", kBindGaps, kFarthest, pixels * 8, pixels * kQuarters * 4);
+    addSweep(cover);
+    addSweep(nearest);
+    addSweep(take);
+  }
+  for (size_t i = first; i < list.passes.size(); ++i) list.passes[i].condition = kIfConservative;
+}
+
+} // namespace gpgp::visibility

@@ -1,0 +1,131 @@
+#include "visibility/sampling/parameters.h"
+
+#include "visibility/conservative.h"
+#include "visibility/sampling/passes.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+
+namespace gpgp::visibility {
+using shader::Params;
+
+static_assert(sizeof(GpgpMesh) == sizeof(shader::Mesh) && sizeof(GpgpVisibilityDraw) == sizeof(shader::Draw));
+static_assert(offsetof(GpgpVisibilityDraw, flags) == offsetof(shader::Draw, flags));
+static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided && GPGP_DRAW_CLOCKWISE == shader::kClockwise);
+static_assert(GPGP_SAMPLING_EXACT == shader::kExact && GPGP_SAMPLING_CONSERVATIVE == shader::kConservative);
+static_assert(GPGP_HEURISTIC_IN_CIRCLE == shader::kInCircle && GPGP_HEURISTIC_DEPTH == shader::kDepths &&
+              GPGP_HEURISTIC_KEEP_FRONT == shader::kKeepFront);
+
+namespace {
+constexpr uint32_t kTruthSamples = 64;
+
+/// Vertices that a range holds, the last one without its padding.
+uint32_t verticesIn(VkDeviceSize bytes, uint32_t offset, uint32_t position, uint32_t stride) {
+  const uint64_t first = uint64_t(offset) + position;
+  return bytes < first ? 0 : static_cast<uint32_t>(std::min<VkDeviceSize>((bytes - first) / stride + 1, UINT32_MAX));
+}
+
+/// Where the record's samples lie in a pixel.
+void setGrid(const GpgpSampleInfo& info, const Budgets& budgets, Params& params) {
+  const uint32_t samples = samplesOf(info), perRecord = std::min(samples, budgets.maxSamples),
+                 perSide = samples / perRecord;
+  const bool centre = info.method == GPGP_SAMPLING_TRUTH && info.slice == perSide * perSide;
+  const uint32_t spacing = 256 / (centre ? 1 : perRecord), part = centre ? 256 : 256 / samples;
+  params.gridShift = static_cast<uint32_t>(std::countr_zero(spacing));
+  params.gridX = (centre ? 0 : info.slice % perSide) * part + part / 2;
+  params.gridY = (centre ? 0 : info.slice / perSide) * part + part / 2;
+  if (info.method != GPGP_SAMPLING_TRUTH) params.gridX = params.gridY = spacing / 2;
+}
+} // namespace
+
+PositionFormat positionFormatOf(VkFormat format) {
+  switch (format) {
+  case VK_FORMAT_UNDEFINED:
+  case VK_FORMAT_R32G32B32_SFLOAT:
+  case VK_FORMAT_R32G32B32A32_SFLOAT: return {shader::kFloats, 4};
+  case VK_FORMAT_R16G16B16_SFLOAT:
+  case VK_FORMAT_R16G16B16A16_SFLOAT: return {shader::kHalves, 2};
+  case VK_FORMAT_R16G16B16_SNORM:
+  case VK_FORMAT_R16G16B16A16_SNORM: return {shader::kSnorms, 2};
+  default: return {};
+  }
+}
+
+uint32_t samplesOf(const GpgpSampleInfo& info) {
+  if (info.method == GPGP_SAMPLING_EXACT || info.method == GPGP_SAMPLING_CONSERVATIVE) return 1;
+  return info.samples ? info.samples : info.method == GPGP_SAMPLING_TRUTH ? kTruthSamples : 1;
+}
+
+Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const GeometrySet& geometry,
+                    const CameraView* view) {
+  Params params{};
+  const uint32_t cameras = info.moreCameraCount + 1;
+  for (uint32_t i = 0; i < cameras; ++i)
+    std::copy_n((i ? info.moreCameras[i - 1] : info.camera).viewProjection, 16, params.viewProjection + size_t(i) * 16);
+  params.cameraCount = cameras;
+  params.width = info.width;
+  params.height = info.height;
+  if (info.method == GPGP_SAMPLING_CONSERVATIVE) {
+    const auto part = [&](uint32_t pixels) {
+      const float scaled = static_cast<float>(pixels) * (info.resolution != 0 ? info.resolution : 1.0f);
+      return std::max(static_cast<uint32_t>(scaled + 0.5f), 1u);
+    };
+    params.width = part(info.width);
+    params.height = part(info.height);
+    params.heuristics = info.heuristics;
+    params.epsilonStatic = info.epsilonStatic;
+    params.epsilonDynamic = info.epsilonDynamic;
+  }
+  params.pixelCapacity = budgets.maxWidth * budgets.maxHeight * budgets.maxCameras;
+  params.reversedDepth = info.camera.reversedDepth ? 1 : 0;
+  params.drawCount = info.drawCount;
+  params.meshCount = geometry.meshCount();
+  params.triangleCount = info.triangleCount;
+  params.maxItems = budgets.maxTriangles;
+  params.maxEntries = budgets.maxDraws;
+  params.hasCommands = info.commands.buffer && info.drawCount ? 1 : 0;
+  params.hasDrawCount = info.drawCountBuffer.buffer ? 1 : 0;
+  params.entryCount = info.drawCount * cameras;
+  if (params.hasCommands) {
+    params.commandCount = info.commandCount;
+    params.commandWords = (info.commandStride ? info.commandStride : kCommandBytes) / 4;
+    params.entryCount = budgets.maxDraws / cameras * cameras;
+  }
+  if (info.drawCount) {
+    const PositionFormat format = positionFormatOf(info.positionFormat);
+    const uint32_t stride = info.positionStride ? info.positionStride : format.bytes * 3;
+    params.shortIndices = info.indexType == VK_INDEX_TYPE_UINT16 ? 1 : 0;
+    params.indexCount = static_cast<uint32_t>(info.indices.size / (params.shortIndices ? 2 : 4));
+    params.vertexCount = verticesIn(info.positions.size, info.positionOffset, format.bytes * 3, stride);
+    params.positionFormat = format.kind;
+    params.positionOffset = info.positionOffset;
+    params.positionStride = stride;
+  }
+  params.hasList = info.visibleList.buffer ? 1 : 0;
+  params.listCapacity =
+      params.hasList ? static_cast<uint32_t>(std::min<VkDeviceSize>(info.visibleList.size / 4, UINT32_MAX)) : 0;
+  params.writeCount = !info.visibleCount.buffer ? 0 : info.drawCommands.buffer ? 2 : 1;
+  const auto room = [](const GpgpBuffer& buffer, uint32_t bytes) {
+    return buffer.buffer ? static_cast<uint32_t>(std::min<VkDeviceSize>(buffer.size / bytes, UINT32_MAX)) : UINT32_MAX;
+  };
+  params.drawCommandCapacity = room(info.drawCommands, kCommandBytes);
+  params.drawListCapacity = std::min(room(info.drawIndices, 12), room(info.drawTriangles, 4));
+  params.hasDrawIndices = info.drawIndices.buffer ? 1 : 0;
+  params.hasDrawTriangles = info.drawTriangles.buffer ? 1 : 0;
+  params.hasExtents = info.triangleSizes.buffer ? 1 : 0;
+  params.slotCapacity = static_cast<uint32_t>(budgets.slots());
+  params.viewWords = view ? view->words() : 0;
+  params.mediumRecords = budgets.mediumRecords();
+  params.largeRecords = budgets.largeRecords();
+  setGrid(info, budgets, params);
+  params.accumulate = info.accumulate ? 1 : 0;
+  params.hasSizes = info.pixelCounts.buffer ? 1 : 0;
+  params.method = static_cast<uint32_t>(info.method);
+  params.maxCandidates = budgets.maxCandidates;
+  params.maxBig = kMaxBig;
+  params.maxPairs = budgets.maxPairs;
+  return params;
+}
+
+} // namespace gpgp::visibility

@@ -1,0 +1,24 @@
+// What the shaders read of one record, worked out from what the engine gave. The record has been checked.
+#pragma once
+#include "visibility/geometry_set.h"
+#include "visibility/layout.h"
+#include "visibility/sampling/budgets.h"
+
+namespace gpgp::visibility {
+
+constexpr uint32_t kCommandBytes = sizeof(VkDrawIndexedIndirectCommand);
+
+/// What lies in a vertex: shader::kFloats and so on, and a number's bytes; 0 for formats that are not read.
+struct PositionFormat {
+  uint32_t kind = shader::kFloats, bytes = 0;
+};
+PositionFormat positionFormatOf(VkFormat format);
+
+/// A pixel's samples, per side.
+uint32_t samplesOf(const GpgpSampleInfo& info);
+
+/// view may be null.
+shader::Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const GeometrySet& geometry,
+                            const CameraView* view);
+
+} // namespace gpgp::visibility

@@ -1,0 +1,92 @@
+// The resources that the passes share, and the parts in their order.
+#include "visibility/sampling/passes.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace gpgp::visibility {
+namespace {
+using core::Resource;
+using core::ResourceKind;
+
+constexpr VkDeviceSize kRecordBytes = 80; // TriangleRecord of records.glsl
+
+/// In the order of shader::kBind...
+void addResources(core::PassList& list, const Budgets& budgets) {
+  using enum ResourceKind;
+  const bool exact = budgets.methods & GPGP_SAMPLING_EXACT_BIT;
+  const bool conservative = budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT;
+  const VkDeviceSize pixelBytes = budgets.pixels() * budgets.maxSamples * budgets.maxSamples * 4;
+  const VkDeviceSize pairBytes = VkDeviceSize(budgets.maxPairs) * shader::kPairBytes;
+  const VkDeviceSize queueBytes = VkDeviceSize(budgets.maxTriangles) * 4;
+  VkDeviceSize recordBytes = (budgets.mediumRecords() + budgets.largeRecords()) * kRecordBytes;
+  if (exact) recordBytes = std::max(recordBytes, VkDeviceSize(budgets.maxCandidates) * sizeof(shader::Candidate));
+  if (conservative) recordBytes = std::max(recordBytes, budgets.pixels() * sizeof(shader::Surface));
+  const auto engine = [&](const char* name) { list.add({name, buffer, 0, true}); };
+  const auto own = [&](const char* name, VkDeviceSize bytes) { list.add({name, scratch, bytes}); };
+
+  list.add({"camera", constants, sizeof(shader::Params)});
+  engine("positions");
+  engine("indices");
+  engine("draws");
+  engine("geometrySet");
+  own("draw table", VkDeviceSize(budgets.maxDraws) * shader::kTableWords * 4 + budgets.chunks() * 4);
+  own("queue", exact ? std::max(queueBytes * 2, pairBytes) : queueBytes);
+  own("depth", pixelBytes);
+  own("ids", pixelBytes);
+  own("counters", sizeof(shader::Counters));
+  engine("visibleBits");
+  engine("visibleList");
+  engine("visibleCount");
+  engine("view");
+  own("records", recordBytes);
+  engine("pixelCounts");
+  own("limits", exact ? (budgets.slots() + kMaxBig) * 8 : 4);
+  engine("commands");
+  engine("drawCountBuffer");
+  engine("drawCommands");
+  engine("drawIndices");
+  engine("drawTriangles");
+  engine("triangleSizes");
+  own("pairs",
+      std::max(exact ? pairBytes : 4, conservative ? budgets.pixels() * shader::kGapWords * 4 : VkDeviceSize(0)));
+  assert(list.resources.size() == shader::kBindPairs + 1);
+}
+} // namespace
+
+uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv, uint32_t phase) {
+  core::ShaderDesc desc{name, spirv};
+  desc.specialization[0] = phase;
+  desc.specializationCount = 1;
+  return list.add(desc);
+}
+
+core::Pass& fetchesTriangles(core::Pass& pass) {
+  for (const int binding :
+       {shader::kBindParams, shader::kBindPositions, shader::kBindIndices, shader::kBindDraws, shader::kBindTable}) {
+    const auto resource = static_cast<core::ResourceIndex>(binding);
+    const auto end = pass.uses.begin() + pass.useCount;
+    if (std::any_of(pass.uses.begin(), end, [&](const core::Use& use) { return use.resource == resource; })) continue;
+    assert(pass.useCount < core::kMaxUses);
+    pass.uses[pass.useCount++] = {resource, core::UseKind::read};
+  }
+  return pass;
+}
+
+core::PassList describePasses(const Budgets& budgets, std::pmr::memory_resource* memory) {
+  const bool conservative = budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT;
+  core::PassList list(memory);
+  addResources(list, budgets);
+  addStandard(list, conservative);
+  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, budgets);
+  if (conservative) addConservative(list, budgets);
+  addOutputs(list);
+  for (core::Pass& pass : list.passes)
+    if (pass.condition == UINT32_MAX) pass.condition = kIfSampling;
+  addMetrics(list);
+  list.report = shader::kBindCounters;
+  list.reportBytes = shader::kReportWords * 4;
+  return list;
+}
+
+} // namespace gpgp::visibility

@@ -1,0 +1,42 @@
+// The passes of a sampler: which there are, in which order, and which of a record's numbers they ask for.
+//
+// One list serves all records of a sampler; a record leaves out what its conditions say. docs/visibility.md has the
+// flow. Each part of the list has a file.
+#pragma once
+#include "core/passes.h"
+#include "visibility/layout.h"
+#include "visibility/sampling/budgets.h"
+
+#include <algorithm>
+
+namespace gpgp::visibility {
+
+// Workgroup counts of a record.
+constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3, kTileGroups = 4,
+                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7;
+// Conditions of a record.
+constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
+                   kIfMeasuring = 6;
+
+constexpr uint32_t kMaxBig = 1 << 20; ///< entries for candidates of more than 8 x 8 pixels
+constexpr uint32_t kMaxRefinements = 4;
+
+/// Workgroups of 256 for a number of items; shaders stride beyond the limit.
+inline uint32_t groupsOf256(uint64_t items) {
+  return static_cast<uint32_t>(std::min<uint64_t>((items + 255) / 256, shader::kMaxGroups));
+}
+
+core::PassList describePasses(const Budgets& budgets, std::pmr::memory_resource* memory);
+
+// The parts of it.
+void addStandard(core::PassList& list, bool conservative); ///< bits of what is seen at the pixels' samples
+void addExact(core::PassList& list, const Budgets& budgets);
+void addConservative(core::PassList& list, const Budgets& budgets);
+void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes
+void addMetrics(core::PassList& list); ///< records that measure have these passes only
+
+uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv, uint32_t phase = 0);
+/// Adds to a pass' uses those of a shader that makes triangles from the draws' items.
+core::Pass& fetchesTriangles(core::Pass& pass);
+
+} // namespace gpgp::visibility

@@ -1,0 +1,47 @@
+// What the GPU counted, as the engine reads it.
+#include "visibility/sampling/sampler.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gpgp::visibility {
+
+bool Sampler::takeSampleReport(GpgpSampleReport& report) {
+  core::RawReport raw;
+  if (!takeReport(raw)) return false;
+  shader::Counters counters{};
+  std::memcpy(&counters, raw.words.data(), std::min(raw.words.size_bytes(), sizeof counters));
+  report.base = raw.header;
+  report.triangles = counters.triangles;
+  report.visible = counters.visible;
+  report.listed = counters.listed;
+  report.coveredPixels = counters.coveredPixels;
+  report.appeared = counters.appeared;
+  report.disappeared = counters.disappeared;
+  report.neededTriangles = counters.items;
+  report.skippedTriangles = counters.skippedTriangles;
+  report.skippedDraws = counters.skippedDraws;
+  report.neededCandidates = counters.candidates;
+  report.neededPairs = counters.pairs;
+  report.unresolved = counters.unresolved;
+  report.neededDraws = counters.draws;
+  report.draws = counters.drawsGiven;
+  report.neededDrawTriangles = counters.drawTriangles;
+  report.drawTriangles = counters.drawListed;
+  report.truth = counters.truth;
+  report.falsePositives = counters.falsePositives;
+  report.falseNegatives = counters.truth - counters.found;
+  const auto share = [](double part, double whole) { return whole > 0 ? static_cast<float>(part / whole) : 0.0f; };
+  const auto wide = [](const uint32_t* words) { return static_cast<double>(uint64_t(words[1]) << 32 | words[0]); };
+  report.coverage = share(counters.found, counters.truth);
+  report.overestimation = share(counters.falsePositives, counters.truth);
+  report.coverageArea = share(wide(counters.foundArea), wide(counters.truthArea));
+  report.overestimationArea = share(counters.falsePositives, wide(counters.truthArea));
+  const bool tooMany = counters.items > budgets_.maxTriangles || counters.unresolved ||
+                       (counters.hasList && counters.listed < counters.visible) ||
+                       counters.drawsGiven < counters.draws || counters.drawListed < counters.drawTriangles;
+  if (report.base.status == GPGP_SUCCESS && tooMany) report.base.status = GPGP_BUDGET_EXCEEDED;
+  return true;
+}
+
+} // namespace gpgp::visibility

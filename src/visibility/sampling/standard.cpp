@@ -1,0 +1,103 @@
+// Chapter 6, method "standard" (6.1.1), in compute: two phases draw depth, then ids, and a pass gathers the bits.
+#include "visibility/sampling/passes.h"
+
+#include "shaders/visibility_chunks.spv.h"
+#include "shaders/visibility_clear.spv.h"
+#include "shaders/visibility_expand.spv.h"
+#include "shaders/visibility_gather.spv.h"
+#include "shaders/visibility_ids.spv.h"
+#include "shaders/visibility_large.spv.h"
+#include "shaders/visibility_left.spv.h"
+#include "shaders/visibility_medium.spv.h"
+#include "shaders/visibility_plan.spv.h"
+#include "shaders/visibility_small.spv.h"
+#include "shaders/visibility_surfaces.spv.h"
+#include "shaders/visibility_unfold.spv.h"
+
+#include <cstddef>
+
+namespace gpgp::visibility {
+
+void addStandard(core::PassList& list, bool conservative) {
+  using namespace shader;
+  using enum core::UseKind;
+  list.dispatch("clear", addShader(list, "clear", visibility_clear),
+                {{kBindParams, read},
+                 {kBindDepth, write},
+                 {kBindIds, write},
+                 {kBindCounters, write},
+                 {kBindBits, write},
+                 {kBindSizes, write},
+                 {kBindSlots, readWrite},
+                 {kBindExtents, write}},
+                kClearGroups);
+  list.dispatch("plan", addShader(list, "plan", visibility_plan),
+                {{kBindParams, read},
+                 {kBindDraws, read},
+                 {kBindMeshes, read},
+                 {kBindCommands, read},
+                 {kBindCommandCount, read},
+                 {kBindTable, write},
+                 {kBindCounters, readWrite}},
+                kOneGroup);
+  list.dispatch("expand", addShader(list, "expand", visibility_expand),
+                {{kBindParams, read},
+                 {kBindCommands, read},
+                 {kBindCommandCount, read},
+                 {kBindTable, readWrite},
+                 {kBindCounters, read}},
+                kEntryGroups)
+      .condition = kIfCommands;
+  list.dispatch("chunks", addShader(list, "chunks", visibility_chunks),
+                {{kBindParams, read}, {kBindTable, readWrite}, {kBindCounters, read}}, kChunkGroups);
+
+  const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
+                                   {"ids small", "ids medium", "ids large", "ids left"}};
+  for (uint32_t phase = 0; phase < 2; ++phase) {
+    // Draws triangles that it makes itself, or those that have a record.
+    const auto addMaking = [&](const char* name, uint32_t shader, core::UseKind queue, size_t arguments) {
+      fetchesTriangles(list.dispatchIndirect(name, shader,
+                                             {{kBindQueue, queue},
+                                              {kBindDepth, readWrite},
+                                              {kBindIds, readWrite},
+                                              {kBindSlots, readWrite},
+                                              {kBindCounters, readWrite}},
+                                             kBindCounters, arguments));
+    };
+    const auto addRecorded = [&](const char* name, uint32_t shader, size_t arguments) {
+      list.dispatchIndirect(name, shader,
+                            {{kBindParams, read},
+                             {kBindRecords, read},
+                             {kBindDepth, readWrite},
+                             {kBindIds, readWrite},
+                             {kBindSlots, readWrite},
+                             {kBindCounters, read}},
+                            kBindCounters, arguments);
+    };
+    if (phase == 0) {
+      addMaking(names[0][0], addShader(list, "small", visibility_small), write, offsetof(Counters, smallArgs));
+      fetchesTriangles(
+          list.dispatchIndirect("unfold", addShader(list, "unfold", visibility_unfold),
+                                {{kBindQueue, readWrite}, {kBindRecords, write}, {kBindCounters, readWrite}},
+                                kBindCounters, offsetof(Counters, unfoldArgs)));
+    } else {
+      addMaking(names[1][0], addShader(list, "ids", visibility_ids, 1), read, offsetof(Counters, winnerArgs));
+    }
+    addRecorded(names[phase][1], addShader(list, "medium", visibility_medium, phase), offsetof(Counters, mediumArgs));
+    addRecorded(names[phase][2], addShader(list, "large", visibility_large, phase), offsetof(Counters, largeArgs));
+    addMaking(names[phase][3], addShader(list, "left", visibility_left, phase), read, offsetof(Counters, leftArgs));
+  }
+  if (conservative)
+    fetchesTriangles(list.dispatch("surfaces", addShader(list, "surfaces", visibility_surfaces),
+                                   {{kBindIds, readWrite}, {kBindRecords, write}}, kEachPixelGroups))
+        .condition = kIfConservative;
+  list.dispatch("gather", addShader(list, "gather", visibility_gather),
+                {{kBindParams, read},
+                 {kBindIds, read},
+                 {kBindCounters, readWrite},
+                 {kBindBits, readWrite},
+                 {kBindSizes, readWrite}},
+                kPixelGroups);
+}
+
+} // namespace gpgp::visibility

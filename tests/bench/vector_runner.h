@@ -1,0 +1,51 @@
+// Draws drawings on a device and times it: whole records and passes by timestamps, recording on the CPU.
+#pragma once
+#include "host/busy_work.h"
+#include "host/device.h"
+#include "measuring.h"
+#include "vector_scenes.h"
+
+namespace gpgp::bench {
+
+struct VectorDrawn {
+  double milliseconds = 0;                            ///< GPU, of whole records
+  double microseconds = 0;                            ///< CPU, of recording
+  std::vector<std::pair<std::string, double>> passes; ///< milliseconds of each, in order
+  uint32_t entries = 0;                               ///< in tile lists
+  std::vector<uint8_t> pixels;                        ///< RGBA, sRGB over white
+};
+
+/// Ends the program where a call fails, or a record drops paths.
+class VectorRunner {
+public:
+  explicit VectorRunner(host::HeadlessDevice& device);
+  ~VectorRunner();
+  VectorRunner(const VectorRunner&) = delete;
+  VectorRunner& operator=(const VectorRunner&) = delete;
+
+  /// The drawing of a scene; milliseconds of converting it. Destroy it with gpgpDestroyAsset.
+  GpgpAsset make(const Scene& scene, double* milliseconds = nullptr);
+  /// For pictures of at most `largest` pixels a side; takes the place of the one before.
+  void openCanvas(uint32_t largest, uint32_t maxPatches);
+
+  struct Settings {
+    uint32_t samples = 16;
+    bool exactArea = true, blendSrgb = true;
+  };
+  /// The scene fitted into the picture, at its top left. Medians of `repeat` records; passes are timed in records of
+  /// their own, as timestamps between them take time.
+  VectorDrawn draw(GpgpAsset drawing, const Scene& scene, uint32_t width, uint32_t height, const Settings& settings,
+                   int repeat);
+
+private:
+  void closeCanvas();
+  host::HeadlessDevice& device_;
+  host::BusyWork busy_;
+  GpgpContext context_ = nullptr;
+  GpgpWorker canvas_ = nullptr;
+  std::vector<const char*> names_; // of the canvas' passes
+  VkQueryPool queries_ = VK_NULL_HANDLE;
+  uint64_t frame_ = 0;
+};
+
+} // namespace gpgp::bench
