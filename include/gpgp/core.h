@@ -140,6 +140,9 @@ enum {
   GPGP_STRUCTURE_CANVAS_DRAW_INFO = 205,
   GPGP_STRUCTURE_CANVAS_REPORT = 206,
   GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO = 207,
+  GPGP_STRUCTURE_GLYPH_SOURCE = 208,
+  GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO = 209,
+  GPGP_STRUCTURE_GLYPH_SET_INFO = 210,
   /* visibility */
   GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO = 300,
   GPGP_STRUCTURE_SAMPLER_CREATE_INFO = 301,
@@ -179,7 +182,7 @@ extern "C" {
 /* ---------------------------------------------------------------- handles */
 
 typedef struct GpgpContext_T* GpgpContext;
-typedef struct GpgpAsset_T* GpgpAsset;   /**< grammar, drawing, font or geometry set */
+typedef struct GpgpAsset_T* GpgpAsset;   /**< grammar, drawing, glyph set or geometry set */
 typedef struct GpgpWorker_T* GpgpWorker; /**< spawner, canvas or sampler */
 typedef struct GpgpView_T* GpgpView;     /**< history of one camera, canvas or tile */
 

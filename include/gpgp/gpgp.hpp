@@ -63,6 +63,9 @@ GPGP_STRUCTURE_OF(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT);
 GPGP_STRUCTURE_OF(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE);
 GPGP_STRUCTURE_OF(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO);
+GPGP_STRUCTURE_OF(GpgpGlyphSource, GPGP_STRUCTURE_GLYPH_SOURCE);
+GPGP_STRUCTURE_OF(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpGlyphSetInfo, GPGP_STRUCTURE_GLYPH_SET_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO);
@@ -259,6 +262,27 @@ public:
     GpgpDrawingInfo value = init<GpgpDrawingInfo>();
     const GpgpResult code = gpgpGetDrawingInfo(get(), &value);
     return Result<GpgpDrawingInfo>(code, value);
+  }
+};
+
+class GlyphSet : public Asset {
+public:
+  using Asset::Asset;
+  static Result<GlyphSet> create(GpgpContext context, const GpgpGlyphSetCreateInfo& info) noexcept {
+    return detail::create<GlyphSet>(gpgpCreateGlyphSet, context, info);
+  }
+  /// GPGP_BUDGET_EXCEEDED: not all found room.
+  [[nodiscard]] GpgpResult add(const GpgpGlyph* glyphs, uint32_t count, uint32_t* indices) noexcept {
+    return gpgpAddGlyphs(get(), glyphs, count, indices);
+  }
+  /// GPGP_INCOMPLETE: not all are there.
+  [[nodiscard]] GpgpResult find(const uint64_t* keys, uint32_t count, uint32_t* indices) noexcept {
+    return gpgpFindGlyphs(get(), keys, count, indices);
+  }
+  Result<GpgpGlyphSetInfo> info() const noexcept {
+    GpgpGlyphSetInfo value = init<GpgpGlyphSetInfo>();
+    const GpgpResult code = gpgpGetGlyphSetInfo(get(), &value);
+    return Result<GpgpGlyphSetInfo>(code, value);
   }
 };
 
@@ -570,7 +594,7 @@ public:
   }
   Result<uint32_t> glyph(uint32_t character) const noexcept {
     uint32_t value = 0;
-    const GpgpResult code = gpgpFindGlyph(get(), character, &value);
+    const GpgpResult code = gpgpGetNominalGlyph(get(), character, &value);
     return Result<uint32_t>(code, value);
   }
   /// gpgpGetGlyphOutline. take: called once with a const GpgpGlyphOutline&.

@@ -104,7 +104,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetFontInfo(GpgpFont font, GpgpFontInfo* info)
 
 /** The glyph that a font has for a character (a code point), before any shaping; 0 where it has none.
  *  @threads any */
-GPGP_API GpgpResult GPGP_CALL gpgpFindGlyph(GpgpFont font, uint32_t character, uint32_t* glyph);
+GPGP_API GpgpResult GPGP_CALL gpgpGetNominalGlyph(GpgpFont font, uint32_t character, uint32_t* glyph);
 
 /* ---------------------------------------------------------------- glyphs */
 

@@ -1,12 +1,15 @@
 /* gpgp vector: paths, SVG and fonts, rasterised on the GPU from curved patches.
  *
- *   drawing (asset)  paths converted to CPatches: regions bounded by implicit curves, resolution-independent
- *   canvas (worker)  rasterises drawings; sized by budgets
- *   canvas view      keeps one rasterised canvas, to be drawn inside the engine's render pass
+ *   drawing (asset)    paths converted to CPatches: regions bounded by implicit curves, resolution-independent
+ *   glyph set (asset)  many small drawings under the engine's keys, to which more are added; what text is drawn with
+ *   canvas (worker)    rasterises drawings and text; sized by budgets
+ *   canvas view        keeps one rasterised canvas, to be drawn inside the engine's render pass
  *
  *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
  *   GpgpPath[] -> gpgpCreateDrawing                                made live, or
  *   drawing + GpgpPathEdit[] -> gpgpCreateDrawing                  edited
+ *   gpgpCreateGlyphSet, GpgpGlyph[] -> gpgpAddGlyphs                  or gpgpCompileGlyphs -> blob ->
+ * gpgpCreateGlyphSet
  *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
  */
 #ifndef GPGP_VECTOR_H
@@ -158,6 +161,32 @@ typedef struct GpgpSvgSource {
  *  Errors: INVALID_DATA (not SVG), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBlob* blob);
 
+/** A small drawing under a key. */
+typedef struct GpgpGlyph {
+  uint64_t key;               /**< the engine's: font, glyph, stroke, ... */
+  const GpgpPath* paths;      /**< in em units, +Y down, 0, 0 on the baseline where the glyph begins; painted in order;
+                                 filled      or stroked, in plain colours: without gradients, images and groups */
+  uint32_t pathCount;         /**< 0: a blank */
+  const VkBool32* foreground; /**< of each path: takes the text's colour instead of its own; NULL: all do */
+} GpgpGlyph;
+
+typedef struct GpgpGlyphSource {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* name; /**< for messages */
+  const GpgpGlyph* glyphs;
+  uint32_t glyphCount; /**< no key twice */
+  GpgpMessageFn messageFn;
+  void* messageUserData;
+  const GpgpJobSystem* jobSystem; /**< optional: converts paths side by side */
+} GpgpGlyphSource;
+#define GPGP_GLYPH_SOURCE_INIT GPGP_INIT(GpgpGlyphSource, GPGP_STRUCTURE_GLYPH_SOURCE)
+
+/** Converts glyphs to their baked form (.gpgpf), from which glyph sets are made. In libgpgp_compiler; free the blob
+ * with gpgpFreeBlob. Errors: INVALID_ARGUMENT (glyph and path in the message), INVALID_STRUCT, UNSUPPORTED,
+ *  OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCompileGlyphs(const GpgpGlyphSource* source, GpgpBlob* blob);
+
 /* ---------------------------------------------------------------- drawing */
 
 /** A path in place of another. */
@@ -207,6 +236,62 @@ typedef struct GpgpDrawingInfo {
 /** Sizes and counts of a drawing, before and after it is resident. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset drawing, GpgpDrawingInfo* info);
 
+/* ---------------------------------------------------------------- glyph set */
+
+typedef struct GpgpGlyphSetCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* label;
+  const void* data; /**< optional: baked glyphs that are there from the beginning; or */
+  size_t size;
+  const char* filePath;  /**< of baked glyphs, read through the file callbacks */
+  uint32_t maxGlyphs;    /**< at a time, at most 262144; 0: as many as are baked, or 4096 */
+  VkDeviceSize maxBytes; /**< of their outlines, on the device and once more on the host: 64 a segment, of which a curve
+                              is two or three, and 48 a path; 0: as many as baked ones take, or 8 MiB */
+} GpgpGlyphSetCreateInfo;
+#define GPGP_GLYPH_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO)
+
+/** Makes a set of glyphs, empty or with baked ones, in one device buffer of the budget's size. Glyphs are there once,
+ * not once a size: canvases draw them at any size, turned and in perspective. Errors: INVALID_DATA, INVALID_ARGUMENT (a
+ * budget that the baked glyphs exceed: the message says what they need), INVALID_STRUCT, UNSUPPORTED (a budget beyond
+ * what the device binds), IO, OUT_OF_..._MEMORY.
+ *  @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext context, const GpgpGlyphSetCreateInfo* info,
+                                                 GpgpAsset* glyphSet);
+
+enum { GPGP_GLYPH_NONE = 0 }; /**< the index of no glyph: drawn as nothing */
+
+/** Converts glyphs whose keys are new and queues them for upload; only they are uploaded. Glyphs that have been used
+ *  longest ago make room for them: used is what a record drew, and what was added or found. What an unfinished frame
+ *  uses stays. BUDGET_EXCEEDED: some did not find room, their indices are GPGP_GLYPH_NONE; gpgpGetGlyphSetInfo says
+ * what all would have needed. Errors, after which nothing is added: INVALID_ARGUMENT (glyph and path in the message),
+ *  UNSUPPORTED, OUT_OF_HOST_MEMORY. Not beside records that draw the set.
+ *  @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpAddGlyphs(GpgpAsset glyphSet, const GpgpGlyph* glyphs, uint32_t count,
+                                            uint32_t* indices);
+
+/** The indices of glyphs by their keys, GPGP_GLYPH_NONE where there is none. What is found stays at least until the
+ *  frame is safe; as long as GpgpGlyphSetInfo::evicted does not change, all indices stay as they are.
+ *  INCOMPLETE: not all are there. @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpFindGlyphs(GpgpAsset glyphSet, const uint64_t* keys, uint32_t count,
+                                             uint32_t* indices);
+
+typedef struct GpgpGlyphSetInfo {
+  GpgpStructureType sType;
+  void* pNext;
+  uint32_t glyphs, maxGlyphs;
+  VkDeviceSize bytes, maxBytes;
+  uint64_t evicted; /**< glyphs so far, and with them their indices */
+  /** For all that the last gpgpAddGlyphs was given beside what unfinished frames use. Bytes lie in a row for each
+   * glyph, so that somewhat more may be needed. */
+  uint32_t glyphsNeeded;
+  VkDeviceSize bytesNeeded;
+} GpgpGlyphSetInfo;
+#define GPGP_GLYPH_SET_INFO_INIT GPGP_INIT(GpgpGlyphSetInfo, GPGP_STRUCTURE_GLYPH_SET_INFO)
+
+/** What is in the set and what its budgets are. @threads context */
+GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphSetInfo(GpgpAsset glyphSet, GpgpGlyphSetInfo* info);
+
 /* ---------------------------------------------------------------- canvas */
 
 typedef struct GpgpCanvasCreateInfo {
@@ -217,8 +302,10 @@ typedef struct GpgpCanvasCreateInfo {
   uint32_t maxPatches;          /**< CPatches in one record, all drawings and their instances; 0: 262144 */
   uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
                                 each; 0: 131072 */
-  uint32_t maxDrawings;    /**< items (a drawing with a transform) in one record; 0: 64. They may show at most 8
-                                different drawings */
+  uint32_t maxDrawings;    /**< items (a drawing or a text with a transform) in one record; 0: 64. They may show at most
+                                8 different drawings and glyph sets */
+  uint32_t maxGlyphs;      /**< of all texts in one record, blanks not counted; 176 bytes each, 48 of them once more for
+                                every record in flight; 0: 1024, at most 1048576 */
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
@@ -242,8 +329,17 @@ typedef struct GpgpCanvasViewCreateInfo {
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext context, const GpgpCanvasViewCreateInfo* info,
                                                    GpgpView* view);
 
+/** A glyph in a text. */
+typedef struct GpgpGlyphInstance {
+  uint32_t glyph; /**< its index in the glyph set */
+  float x, y;     /**< where its 0, 0 lies, units of the text, within +-1e7 */
+  float size;     /**< units of the text per em, 0 to 1e7 */
+  float color[4]; /**< linear RGB, straight alpha, 0 to 1, of the paths that take the text's colour; alpha multiplies
+                       every path's */
+} GpgpGlyphInstance;
+
 typedef struct GpgpCanvasItem {
-  GpgpAsset drawing;
+  GpgpAsset drawing;  /**< NULL: a text, of the glyphs below */
   float transform[6]; /**< drawing to pixel: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
   float opacity;      /**< 0 to 1, multiplies each path's alpha */
   /** The third row of a projective map: w = p0 x + p1 y + p2, and the pixel is (x', y') / w. All 0: affine, w = 1.
@@ -253,6 +349,9 @@ typedef struct GpgpCanvasItem {
    *  H (u'.y + u'.w) / 2, the same of v', the same of o') and p = (u'.w, v'.w, o'.w) for a canvas of W x H pixels. */
   float perspective[3];
   uint32_t firstImage; /**< where in GpgpCanvasInfo::images those of the drawing begin */
+  GpgpAsset glyphSet;  /**< of a text; what is `drawing` above is the text then, whose units the instances have */
+  const GpgpGlyphInstance* glyphs; /**< in painting order, the first at the bottom */
+  uint32_t glyphCount;
 } GpgpCanvasItem;
 
 enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
@@ -287,7 +386,7 @@ typedef struct GpgpCanvasInfo {
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
 /** Rasterises the items into the view, the target, or both with the same pixels.
- *  NOT_READY: a drawing is not resident or the canvas not prewarmed.
+ *  NOT_READY: a drawing or a glyph that is drawn is not resident, or the canvas not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
@@ -318,7 +417,9 @@ typedef struct GpgpCanvasReport {
   uint32_t patches;          /**< transformed and binned */
   uint32_t tileEntries;      /**< needed */
   uint32_t tileEntriesGiven; /**< maxTileEntries */
-  uint32_t pathsDropped;     /**< whole paths left out where the budget did not suffice */
+  uint32_t pathsDropped;     /**< whole paths, and of texts whole glyphs, left out where the budget did not suffice */
+  uint32_t glyphs;           /**< needed */
+  uint32_t glyphsGiven;      /**< maxGlyphs */
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 

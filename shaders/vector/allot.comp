@@ -73,6 +73,7 @@ void main() {
   }
   clearEntries(lane, 0, header.entryLimit);
   if (lane == 0) {
+    cut = wholeItems(cut);
     counters.cutPath = cut;
     counters.pathsDropped = header.pathsDropped + header.pathCount - cut;
   }

@@ -1,17 +1,64 @@
 #version 460
-// A record's constants to the device, as the passes would else wait for host memory at every read, and what they begin
-// with: no path in any bin, nothing counted, no tile marked. Software devices clear the latter two faster by transfers.
+// A record's constants to the device, as the passes would else wait for host memory at every read, with its items
+// placed; and what they begin with: no path in any bin, nothing counted, no tile marked. Software devices clear the
+// latter two faster by transfers.
 #extension GL_GOOGLE_include_directive : require
-#include "layout.h"
-// In vec4: slots[] take 2 each, items[] 7.
+#include "placement.h"
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 11, std430) readonly buffer From { CanvasHeader header; uvec4 from[]; };
-layout(set = 0, binding = 17, std430) writeonly buffer To { CanvasHeader copied; uvec4 to[]; };
+// from[]: sources, 8 vec4 each, then placements, 3 each.
+layout(set = 0, binding = 11, std430) readonly buffer From {
+  CanvasHeader header;
+  SlotRecord slots[kMaxSlots];
+  vec4 from[];
+};
+layout(set = 0, binding = 17, std430) writeonly buffer To {
+  CanvasHeader copied;
+  SlotRecord copiedSlots[kMaxSlots];
+  ItemRecord items[];
+};
 layout(set = 0, binding = 14, std430) writeonly buffer Bins { uint bins[]; };
 #if !SOFTWARE
 layout(set = 0, binding = 13, std430) writeonly buffer Words { uvec4 words[]; };
 layout(set = 0, binding = 16, std430) writeonly buffer Counters { uvec4 counters[]; };
 #endif
+
+ItemRecord sourceOf(uint i) {
+  const uint at = i * 8;
+  ItemRecord item;
+  item.inverse = from[at];
+  item.transform = from[at + 1];
+  item.offsets = from[at + 2];
+  item.perspective = from[at + 3];
+  item.eye = from[at + 4];
+  item.color = from[at + 5];
+  const uvec4 first = floatBitsToUint(from[at + 6]), second = floatBitsToUint(from[at + 7]);
+  item.side = uintBitsToFloat(first.x);
+  item.slot = first.y;
+  item.firstSegment = first.z;
+  item.firstPath = first.w;
+  item.segments = second.x;
+  item.paths = second.y;
+  item.firstImage = second.z;
+  item.whole = second.w;
+  return item;
+}
+
+PlacementRecord placementOf(uint i) {
+  const uint at = header.sourceCount * 8 + i * 3;
+  const vec4 place = from[at];
+  const uvec4 tables = floatBitsToUint(from[at + 2]);
+  PlacementRecord p;
+  p.x = place.x;
+  p.y = place.y;
+  p.size = place.z;
+  p.source = floatBitsToUint(place.w);
+  p.color = from[at + 1];
+  p.firstSegment = tables.x;
+  p.firstPath = tables.y;
+  p.segments = tables.z;
+  p.paths = tables.w;
+  return p;
+}
 
 void main() {
   const uint lane = gl_GlobalInvocationID.x, lanes = gl_NumWorkGroups.x * 64;
@@ -20,8 +67,11 @@ void main() {
   if (lane < counters.length()) counters[lane] = uvec4(0);
 #endif
   if (lane == 0) copied = header;
-  const uint constants = kMaxSlots * 2 + header.itemCount * 7;
-  for (uint i = lane; i < constants; i += lanes) to[i] = from[i];
+  if (lane < kMaxSlots) copiedSlots[lane] = slots[lane];
+  for (uint i = lane; i < header.itemCount; i += lanes) {
+    const PlacementRecord p = placementOf(i);
+    items[i] = placed(sourceOf(p.source), p);
+  }
   const uint binWords = kFirstBin + header.binCount * header.pathWords;
   for (uint i = lane; i < binWords; i += lanes) bins[i] = i < kFirstBin && i % 4 == 2 ? 1 : 0;
 }

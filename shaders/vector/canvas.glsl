@@ -37,17 +37,36 @@ vec4 fetch(uint slot, uint i) {
 }
 #endif
 
-SegmentRecord fetchSegment(uint slot, uint i) {
+// Segment i of the record, which is one of the item's.
+SegmentRecord fetchSegment(ItemRecord item, uint i) {
+  const uint at = item.segments + (i - item.firstSegment) * 4;
   SegmentRecord s;
-  s.first = fetch(slot, i * 4);
-  s.second = fetch(slot, i * 4 + 1);
-  s.ends = fetch(slot, i * 4 + 2);
-  const vec4 rest = fetch(slot, i * 4 + 3);
+  s.first = fetch(item.slot, at);
+  s.second = fetch(item.slot, at + 1);
+  s.ends = fetch(item.slot, at + 2);
+  const vec4 rest = fetch(item.slot, at + 3);
   s.path = floatBitsToUint(rest.x);
   s.side = rest.y;
   s.line = floatBitsToUint(rest.z);
   s.pad0 = 0;
   return s;
+}
+
+// The item that path i of the record belongs to: the last one that begins at or before it.
+uint itemOfPath(uint i) {
+  uint low = 0, high = header.itemCount;
+  while (low + 1 < high) {
+    const uint middle = (low + high) / 2;
+    if (items[middle].firstPath <= i) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+// Where paths from `cut` on are left out, that or the begin of the item which must not be cut.
+uint wholeItems(uint cut) {
+  if (cut >= header.pathCount) return cut;
+  const uint item = itemOfPath(cut);
+  return items[item].whole != 0 ? items[item].firstPath : cut;
 }
 
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }

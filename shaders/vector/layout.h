@@ -33,7 +33,13 @@ struct PathRecord {
   uint paint; // 1 + index of the gradient or image; 0: none
   uint clip;  // 1 + index of its ClipRecord; 0: none
   uint layer; // 1 + index of its LayerRecord; 0: none
-  uint pad0;
+  uint flags; // kForeground
+};
+
+// A path in the device's buffer, beside the box that it lies in: left, top, right, bottom; turned over without ink.
+struct BoxedPath {
+  vec4 box;
+  PathRecord path;
 };
 
 // Paths of the drawing outside of whose union nothing is shown. They lie before all others, and paint nothing.
@@ -85,7 +91,7 @@ struct SegmentRecord {
   uint pad0;
 };
 
-// A drawing placed on the canvas.
+// A drawing, or a glyph of a text, placed on the canvas.
 struct ItemRecord {
   vec4 inverse;   // pixel to drawing: x = inverse.x px + inverse.z py + offsets.x, y = inverse.y px + inverse.w py +
                   // offsets.y
@@ -95,20 +101,28 @@ struct ItemRecord {
   // perspective.z of the drawing's point, 1 / w = eye.x px + eye.y py + eye.z of the pixel. Only what lies at w >=
   // perspective.w is drawn; that line lies beyond the canvas. perspective.w is 0 for affine items.
   vec4 perspective;
-  vec4 eye;   // w: 1 where the line at w = perspective.w passes left of the canvas
-  float side; // -1 where the transform mirrors, else 1
-  float opacity;
-  uint slot;         // the drawing's binding
-  uint firstSegment; // of the item's segments in the record; they end where the next item's begin
-  uint firstPath;    // of the item's paths in the record
-  uint firstImage;   // of the record
-  uint pad0, pad1;
+  vec4 eye;             // w: 1 where the line at w = perspective.w passes left of the canvas
+  vec4 color;           // straight: what kForeground paths take; alpha is the opacity of all its paths
+  float side;           // -1 where the transform mirrors, else 1
+  uint slot;            // the buffer's binding
+  uint firstSegment;    // of the item's segments in the record; they end where the next item's begin
+  uint firstPath;       // of the item's paths in the record
+  uint segments, paths; // where they begin in the slot's buffer, in vec4: SegmentRecord, BoxedPath
+  uint firstImage;      // of the record
+  uint whole;           // 1: all of its paths are drawn or none
+};
+
+// What the host writes for each item: where the one that it names is placed, in the units of that one.
+struct PlacementRecord {
+  float x, y, size;
+  uint source;                                   // of the record's sources: ItemRecords without a place of their own
+  vec4 color;                                    // straight; alpha multiplies
+  uint firstSegment, firstPath, segments, paths; // as an item's
 };
 
 // A drawing that a record uses: where its tables begin in its buffer, in vec4.
 struct SlotRecord {
-  uint boxes, paths, paints, stops; // segments begin at 0
-  uint clips, layers, pad0, pad1;
+  uint paints, stops, clips, layers;
 };
 
 // A path on the canvas.
@@ -136,7 +150,9 @@ struct CanvasHeader {
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
   uint premultiplied;            // images whose colours are, as bits
   uint binShift;                 // a bin is a square of 2^binShift tiles
-  uint rowLimit, pad0, pad1, pad2;
+  uint rowLimit;
+  uint sourceCount; // placements lie behind as many
+  uint glyphs, glyphLimit;
   vec4 background;
 };
 
@@ -149,7 +165,8 @@ struct CanvasCounters {
   uint patches;
   uint rows;                // needed: of the lists between mark and fill
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
-  uint pad0, pad1, pad2;
+  uint glyphs, glyphsGiven; // needed; room for as many
+  uint pad0;
 };
 
 // A chord between mark and fill.
@@ -169,6 +186,7 @@ GPGP_CONST uint kSpreadPad = 0u;
 GPGP_CONST uint kSpreadRepeat = 1u;
 GPGP_CONST uint kSpreadReflect = 2u;
 GPGP_CONST uint kInterpolateSrgb = 1u;
+GPGP_CONST uint kForeground = 1u; // takes the colour of the item
 GPGP_CONST uint kMaxSlots = 8u;
 GPGP_CONST uint kWriteView = 1u;
 GPGP_CONST uint kEncodeSrgb = 2u;
@@ -196,9 +214,10 @@ GPGP_SHADER_END
 static_assert(sizeof(gpgp::shader::CurveRecord) == 48 && sizeof(gpgp::shader::PatchRecord) == 32);
 static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::PaintRecord) == 64 &&
               sizeof(gpgp::shader::StopRecord) == 32 && sizeof(gpgp::shader::SegmentRecord) == 64);
-static_assert(sizeof(gpgp::shader::ItemRecord) == 112 && sizeof(gpgp::shader::PlacedPath) == 48 &&
+static_assert(sizeof(gpgp::shader::ItemRecord) == 128 && sizeof(gpgp::shader::PlacedPath) == 48 &&
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
-              sizeof(gpgp::shader::SlotRecord) == 32 && sizeof(gpgp::shader::TileWord) == 16 &&
+              sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
+              sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
               sizeof(gpgp::shader::CanvasHeader) == 112 && sizeof(gpgp::shader::CanvasCounters) == 64 &&
               sizeof(gpgp::shader::ChordRecord) == 24);
 #endif

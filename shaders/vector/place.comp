@@ -31,18 +31,13 @@ void main() {
   if (lane == 0) wideCount = 0;
   barrier();
   if (i < header.pathCount) {
-    uint low = 0, high = header.itemCount; // the item: the last one that begins at or before i
-    while (low + 1 < high) {
-      const uint middle = (low + high) / 2;
-      if (items[middle].firstPath <= i) low = middle;
-      else high = middle;
-    }
-    const ItemRecord item = items[low];
-    const uint path = i - item.firstPath;
-    const SlotRecord slot = slots[item.slot];
-    const vec4 box = fetch(item.slot, slot.boxes + path);
-    const vec4 color = fetch(item.slot, slot.paths + path * 2);
-    const uvec4 rest = floatBitsToUint(fetch(item.slot, slot.paths + path * 2 + 1));
+    const uint itemIndex = itemOfPath(i);
+    const ItemRecord item = items[itemIndex];
+    const uint path = item.paths + (i - item.firstPath) * 3;
+    const vec4 box = fetch(item.slot, path);
+    vec4 color = fetch(item.slot, path + 1);
+    const uvec4 rest = floatBitsToUint(fetch(item.slot, path + 2));
+    if ((rest.w & kForeground) != 0) color.rgb = item.color.rgb;
     const uint paint = rest.x;
     PlacedPath p;
     p.left = p.top = p.right = p.bottom = 0;
@@ -80,10 +75,10 @@ void main() {
         p.bottom = uint(to.y);
       }
     }
-    const float alpha = color.a * item.opacity;
-    p.item = low;
-    p.paint = paint == 0 ? 0 : slot.paints + (paint - 1) * 4 + 1;
-    p.group = (rest.y | rest.z) == 0 ? 0 : slot.paths + path * 2 + 2;
+    const float alpha = color.a * item.color.a;
+    p.item = itemIndex;
+    p.paint = paint == 0 ? 0 : slots[item.slot].paints + (paint - 1) * 4 + 1;
+    p.group = (rest.y | rest.z) == 0 ? 0 : path + 2 + 1;
     p.color = vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color.rgb) : color.rgb) * alpha, alpha);
     if (p.paint != 0) p.color = vec4(alpha);
     const uint count = wordsOf(p);
@@ -131,7 +126,10 @@ void main() {
     }
   }
   if (lane == 0) {
+    cut = wholeItems(cut);
     counters.patches = header.patchCount;
+    counters.glyphs = header.glyphs;
+    counters.glyphsGiven = header.glyphLimit;
     counters.wordsGiven = header.wordLimit;
     counters.entriesGiven = header.entryLimit;
     counters.cutPath = cut;

@@ -19,7 +19,7 @@ void takeSegment() {
   const uint i = groupIndex() * 64 + gl_LocalInvocationID.x;
   if (i >= header.segmentCount) return;
   const ItemRecord item = items[itemOf(i)];
-  const SegmentRecord s = fetchSegment(item.slot, i - item.firstSegment);
+  const SegmentRecord s = fetchSegment(item, i);
   const uint path = item.firstPath + s.path;
   const Grid g = canvasGrid();
   if (!matters(g, path, item, s)) return;
@@ -61,7 +61,7 @@ void loadSegments() {
     if (i < header.segmentCount) {
       const uint low = itemOf(i);
       const ItemRecord item = items[low];
-      const SegmentRecord s = fetchSegment(item.slot, i - item.firstSegment);
+      const SegmentRecord s = fetchSegment(item, i);
       const uint path = item.firstPath + s.path;
       segment[lane] = s;
       segmentItem[lane] = low;

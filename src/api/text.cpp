@@ -110,9 +110,9 @@ GpgpResult GPGP_CALL gpgpGetFontInfo(GpgpFont handle, GpgpFontInfo* info) {
   });
 }
 
-GpgpResult GPGP_CALL gpgpFindGlyph(GpgpFont handle, uint32_t character, uint32_t* glyph) {
+GpgpResult GPGP_CALL gpgpGetNominalGlyph(GpgpFont handle, uint32_t character, uint32_t* glyph) {
   const Font* font = toFont(handle);
-  return guarded("gpgpFindGlyph", font ? &font->messages : nullptr, [&]() -> Result<void> {
+  return guarded("gpgpGetNominalGlyph", font ? &font->messages : nullptr, [&]() -> Result<void> {
     if (!font) return notA("font", "font");
     if (!glyph) return invalid("glyph is NULL");
     hb_codepoint_t found = 0;

@@ -3,6 +3,7 @@
 #include "vector/raster/canvas.h"
 
 #include <algorithm>
+#include <optional>
 
 using namespace gpgp;
 using namespace gpgp::api;
@@ -65,6 +66,83 @@ GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset handle, GpgpDrawingInfo* info)
   });
 }
 
+GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext handle, const GpgpGlyphSetCreateInfo* info, GpgpAsset* glyphSet) {
+  return guarded("gpgpCreateGlyphSet", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO, "info"); !ok) return ok;
+    if (!glyphSet) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyphSet is NULL");
+    if (info->data && info->filePath) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "both data and filePath are given");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
+    std::pmr::memory_resource* memory = &(*context)->host();
+    std::optional<Glyphs> baked;
+    if (info->data || info->filePath) {
+      std::pmr::vector<std::byte> file(memory);
+      std::span bytes(static_cast<const std::byte*>(info->data), info->data ? info->size : 0);
+      if (info->filePath) {
+        auto read = (*context)->readFile(info->filePath);
+        if (!read) return read.error();
+        file = std::move(*read);
+        bytes = file;
+      }
+      auto loaded = loadBakedGlyphs(bytes, memory);
+      if (!loaded) return loaded.error();
+      baked.emplace(std::move(*loaded));
+    }
+    auto made = GlyphSet::create(**context, *info, baked ? &*baked : nullptr);
+    if (!made) return made.error();
+    *glyphSet = adopt<GpgpAsset>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpAddGlyphs(GpgpAsset handle, const GpgpGlyph* glyphs, uint32_t count, uint32_t* indices) {
+  return guarded("gpgpAddGlyphs", [&](Call& call) -> Result<void> {
+    const auto set = resolve<GlyphSet>(call, handle, Kind::glyphSet, "glyphSet");
+    if (!set) return set.error();
+    if (count && (!glyphs || !indices))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyphs or indices is NULL, but count is %u", count);
+    core::Context& context = (*set)->context;
+    if (auto ok = context.checkAlive(); !ok) return ok;
+    // Converted before anything changes; those that are there already stay, as they are used now.
+    std::pmr::vector<GpgpGlyph> wanted(&context.host());
+    for (uint32_t i = 0; i < count; ++i)
+      if ((*set)->indexOf(glyphs[i].key) == GPGP_GLYPH_NONE) wanted.push_back(glyphs[i]);
+    const auto made = makeGlyphs(wanted, &context.host(), &context.jobSystem);
+    if (!made) return made.error();
+    const bool all = (*set)->add(*made, context.current());
+    for (uint32_t i = 0; i < count; ++i) indices[i] = (*set)->indexOf(glyphs[i].key);
+    if (!all) return makeError(GPGP_BUDGET_EXCEEDED, "not all glyphs found room");
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpFindGlyphs(GpgpAsset handle, const uint64_t* keys, uint32_t count, uint32_t* indices) {
+  return guarded("gpgpFindGlyphs", [&](Call& call) -> Result<void> {
+    const auto set = resolve<GlyphSet>(call, handle, Kind::glyphSet, "glyphSet");
+    if (!set) return set.error();
+    if (count && (!keys || !indices))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "keys or indices is NULL, but count is %u", count);
+    bool all = true;
+    for (uint32_t i = 0; i < count; ++i) {
+      indices[i] = (*set)->indexOf(keys[i]);
+      all = all && indices[i] != GPGP_GLYPH_NONE;
+    }
+    if (!all) return makeError(GPGP_INCOMPLETE, "not all glyphs are in the set");
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetGlyphSetInfo(GpgpAsset handle, GpgpGlyphSetInfo* info) {
+  return guarded("gpgpGetGlyphSetInfo", [&](Call& call) -> Result<void> {
+    const auto set = resolve<GlyphSet>(call, handle, Kind::glyphSet, "glyphSet");
+    if (!set) return set.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_GLYPH_SET_INFO, "info"); !ok) return ok;
+    (*set)->getInfo(*info);
+    return {};
+  });
+}
+
 GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreateInfo* info, GpgpWorker* canvas) {
   return guarded("gpgpCreateCanvas", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
@@ -81,6 +159,8 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTileEntries is %u; at most 268435456", info->maxTileEntries);
     if (info->maxDrawings > 65536)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDrawings is %u; at most 65536", info->maxDrawings);
+    if (info->maxGlyphs > 1u << 20)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxGlyphs is %u; at most 1048576", info->maxGlyphs);
     auto made = Canvas::create(**context, *info);
     if (!made) return made.error();
     *canvas = adopt<GpgpWorker>(**context, std::move(*made));
@@ -128,18 +208,27 @@ GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker handle, VkCommandBuffer 
       if (!resolved) return resolved.error();
       view = *resolved;
     }
-    const std::span<DrawingAsset*> drawings = (*canvas)->drawings(info->itemCount);
+    const std::span<ItemAsset> assets = (*canvas)->assets(info->itemCount);
     for (uint32_t i = 0; i < info->itemCount; ++i) {
-      const auto drawing =
-          resolve<DrawingAsset>(call, info->items[i].drawing, Kind::drawing, "items[].drawing", &context);
-      if (!drawing) return drawing.error();
-      drawings[i] = *drawing;
+      const GpgpCanvasItem& item = info->items[i];
+      assets[i] = {};
+      if (item.drawing && item.glyphSet)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u]: both drawing and glyphSet are given", i);
+      if (item.glyphSet) {
+        const auto set = resolve<GlyphSet>(call, item.glyphSet, Kind::glyphSet, "items[].glyphSet", &context);
+        if (!set) return set.error();
+        assets[i].glyphSet = *set;
+      } else {
+        const auto drawing = resolve<DrawingAsset>(call, item.drawing, Kind::drawing, "items[].drawing", &context);
+        if (!drawing) return drawing.error();
+        assets[i].drawing = *drawing;
+      }
     }
     if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
-    for (const DrawingAsset* drawing : drawings)
-      if (!drawing->resident()) return makeError(GPGP_NOT_READY, "a drawing is not resident");
+    for (const ItemAsset& asset : assets)
+      if (asset.drawing && !asset.drawing->resident()) return makeError(GPGP_NOT_READY, "a drawing is not resident");
     if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
-    return (*canvas)->prepare(commandBuffer, *info, drawings, view);
+    return (*canvas)->prepare(commandBuffer, *info, assets, view);
   });
 }
 

@@ -21,6 +21,7 @@ const char* kindName(Kind kind) {
   case Kind::none: return "destroyed object";
   case Kind::grammar: return "grammar";
   case Kind::drawing: return "drawing";
+  case Kind::glyphSet: return "glyph set";
   case Kind::geometrySet: return "geometry set";
   case Kind::spawner: return "spawner";
   case Kind::canvas: return "canvas";

@@ -9,7 +9,18 @@ namespace gpgp::core {
 
 class Context;
 
-enum class Kind : uint32_t { none, grammar, drawing, geometrySet, spawner, canvas, sampler, canvasView, cameraView };
+enum class Kind : uint32_t {
+  none,
+  grammar,
+  drawing,
+  glyphSet,
+  geometrySet,
+  spawner,
+  canvas,
+  sampler,
+  canvasView,
+  cameraView
+};
 const char* kindName(Kind kind);
 
 class Object;

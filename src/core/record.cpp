@@ -262,8 +262,11 @@ Result<void> Worker::record(const Record& record) {
   const VkDeviceSize scratchOffset = engineScratch_ ? record.info->scratch.offset : 0;
   char* report = reports_.mapped() + slot * reportStride_;
   std::memset(report + passes_.reportBytes, 0, 4);
-  if (!record.constants.empty())
-    std::memcpy(constants_.mapped() + slot * passes_.constantsBytes, record.constants.data(), record.constants.size());
+  char* constants = constants_.mapped() + slot * passes_.constantsBytes;
+  for (const std::span<const std::byte> part : record.constants) {
+    if (!part.empty()) std::memcpy(constants, part.data(), part.size());
+    constants += part.size();
+  }
   writeDescriptors(slot, record.bindings, scratch, scratchOffset);
 
   // Where a buffer resource lies, for transfers and indirect arguments.

@@ -10,6 +10,15 @@ constexpr VkDeviceSize kAlignment = 16; // of pieces and sizes: covers every cop
 
 Resident::~Resident() { unlink(); }
 
+void Resident::link() { // oldest first: append
+  if (linked_) return;
+  previous_ = context.lastResident;
+  next_ = nullptr;
+  (previous_ ? previous_->next_ : context.residents) = this;
+  context.lastResident = this;
+  linked_ = true;
+}
+
 void Resident::unlink() {
   if (!linked_) return;
   linked_ = false;
@@ -22,22 +31,47 @@ void Resident::retire() {
   buffer_.markPending();
 }
 
-Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize) {
-  const VkDeviceSize wanted = std::max<VkDeviceSize>(bytes.empty() ? clearSize : bytes.size(), 1);
-  size_ = (wanted + kAlignment - 1) / kAlignment * kAlignment;
-  if (!bytes.empty()) bytes.resize(size_);
+Result<void> Resident::allocate(GpgpService service, VkDeviceSize size) {
+  size_ = (std::max<VkDeviceSize>(size, 1) + kAlignment - 1) / kAlignment * kAlignment;
   auto buffer =
       Buffer::create(context.device, context.gpu(), service, label.text, size_,
                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::device);
   if (!buffer) return buffer.error();
   buffer_ = std::move(*buffer);
-  bytes_ = std::move(bytes);
-  // oldest first: append
-  previous_ = context.lastResident;
-  (previous_ ? previous_->next_ : context.residents) = this;
-  context.lastResident = this;
-  linked_ = true;
   return {};
+}
+
+Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize) {
+  if (auto ok = allocate(service, bytes.empty() ? clearSize : bytes.size()); !ok) return ok;
+  if (!bytes.empty()) bytes.resize(size_);
+  bytes_ = std::move(bytes);
+  queue(0, size_);
+  return {};
+}
+
+Result<void> Resident::makeGrowing(GpgpService service, VkDeviceSize size) {
+  if (auto ok = allocate(service, size); !ok) return ok;
+  bytes_.resize(size_);
+  grows_ = true;
+  return {};
+}
+
+uint64_t Resident::queue(VkDeviceSize offset, VkDeviceSize size) {
+  ranges_.push_back({offset, size, 0, 0, 0, false});
+  link();
+  return queued_.fetch_add(1, std::memory_order_acq_rel) + 1;
+}
+
+VkDeviceSize Resident::pending() const {
+  VkDeviceSize bytes = 0;
+  for (const Range& range : ranges_) bytes += range.size - range.done;
+  return bytes;
+}
+
+void Resident::updateArrived() {
+  size_t i = 0;
+  while (i < ranges_.size() && ranges_[i].done == ranges_[i].size) ++i;
+  arrived_.store(firstNumber_ + i - 1, std::memory_order_release);
 }
 
 Result<Unique<UploadRing>> UploadRing::create(Context& context, VkDeviceSize bytes) {
@@ -62,7 +96,7 @@ uint32_t* UploadRing::stamp(size_t record) const {
 
 Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceSize byteBudget) {
   VkDeviceSize pending = 0;
-  for (const Resident* r = context_.residents; r; r = r->next_) pending += r->size_ - r->uploaded_.load();
+  for (const Resident* r = context_.residents; r; r = r->next_) pending += r->pending();
   if (pending == 0) return VkDeviceSize(0);
   const auto free = std::find_if(records_.begin(), records_.end(), [](const Record& r) { return r.number == 0; });
   if (free == records_.end())
@@ -74,33 +108,35 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
   const uint64_t number = nextNumber_;
   VkDeviceSize budget = byteBudget ? std::max(byteBudget, kAlignment) : VK_WHOLE_SIZE;
   const VkDeviceSize ringSize = ring_.size();
-  bool any = false;
-  for (Resident* r = context_.residents; r && budget >= kAlignment; r = r->next_) {
-    VkDeviceSize done = r->uploaded_.load();
-    if (done == r->size_) continue;
-    if (r->bytes_.empty()) { // a clear costs no ring
-      vk.CmdFillBuffer(commandBuffer, r->buffer_.handle(), 0, r->size_, 0);
-      done = r->size_;
+  bool any = false, full = false;
+  for (Resident* r = context_.residents; r && budget >= kAlignment && !full; r = r->next_) {
+    for (Resident::Range& range : r->ranges_) {
+      const VkDeviceSize before = range.done;
+      if (before == range.size) continue;
+      if (r->bytes_.empty()) { // a clear costs no ring
+        vk.CmdFillBuffer(commandBuffer, r->buffer_.handle(), range.offset, range.size, 0);
+        range.done = range.size;
+      }
+      while (range.done < range.size && budget >= kAlignment) {
+        const VkDeviceSize at = head_ % ringSize, to = range.offset + range.done;
+        VkDeviceSize piece = std::min({range.size - range.done, ringSize - at, ringSize - (head_ - tail_), budget});
+        piece = piece / kAlignment * kAlignment;
+        if (piece == 0) break;
+        std::memcpy(ring_.mapped() + at, r->bytes_.data() + to, piece);
+        const VkBufferCopy region{at, to, piece};
+        vk.CmdCopyBuffer(commandBuffer, ring_.handle(), r->buffer_.handle(), 1, &region);
+        head_ += piece, range.done += piece, budget -= piece;
+      }
+      full = range.done == before; // the ring, or the budget: keep the order
+      if (full) break;
       any = true;
+      if (range.first == 0) range.first = number;
+      range.last = number;
     }
-    while (done < r->size_ && budget >= kAlignment) {
-      const VkDeviceSize at = head_ % ringSize;
-      VkDeviceSize piece = std::min({r->size_ - done, ringSize - at, ringSize - (head_ - tail_), budget});
-      piece = piece / kAlignment * kAlignment;
-      if (piece == 0) break;
-      std::memcpy(ring_.mapped() + at, r->bytes_.data() + done, piece);
-      const VkBufferCopy region{at, done, piece};
-      vk.CmdCopyBuffer(commandBuffer, ring_.handle(), r->buffer_.handle(), 1, &region);
-      head_ += piece, done += piece, budget -= piece;
-      any = true;
-    }
-    if (done == r->uploaded_.load()) break; // the ring is full: keep the order
-    if (r->firstUpload_ == 0) r->firstUpload_ = number;
-    r->lastUpload_ = number;
-    r->uploaded_.store(done, std::memory_order_release);
+    r->updateArrived();
   }
   pending = 0;
-  for (const Resident* r = context_.residents; r; r = r->next_) pending += r->size_ - r->uploaded_.load();
+  for (const Resident* r = context_.residents; r; r = r->next_) pending += r->pending();
   if (!any) return pending;
 
   const size_t index = static_cast<size_t>(free - records_.begin());
@@ -128,15 +164,27 @@ void UploadRing::advance() {
     const bool ran = *static_cast<volatile uint32_t*>(stamp(index)) == static_cast<uint32_t>(oldest->number);
     for (Resident *r = context_.residents, *next = nullptr; r; r = next) {
       next = r->next_;
-      if (r->firstUpload_ == 0 || oldest->number < r->firstUpload_ || oldest->number > r->lastUpload_) continue;
-      if (!ran) {
-        r->uploaded_.store(0, std::memory_order_release);
-        r->firstUpload_ = r->lastUpload_ = 0;
+      bool lost = false;
+      for (Resident::Range& range : r->ranges_) {
+        if (range.first == 0 || oldest->number < range.first || oldest->number > range.last) continue;
+        if (!ran) {
+          range.done = range.first = range.last = 0;
+          lost = true;
+        } else {
+          range.settled = range.last == oldest->number && range.done == range.size;
+        }
+      }
+      if (lost) {
+        r->updateArrived();
         context_.message(GPGP_SEVERITY_WARNING, GPGP_NOT_EXECUTED, "gpgpAdvance", r->label.text,
                          "a recorded upload was never executed; it is pending again");
-      } else if (r->lastUpload_ == oldest->number && r->resident()) {
-        r->firstUpload_ = r->lastUpload_ = 0;
-        r->bytes_ = std::pmr::vector<std::byte>(&context_.host());
+      }
+      const auto open = std::find_if(r->ranges_.begin(), r->ranges_.end(),
+                                     [](const Resident::Range& range) { return !range.settled; });
+      r->firstNumber_ += static_cast<uint64_t>(open - r->ranges_.begin());
+      r->ranges_.erase(r->ranges_.begin(), open);
+      if (r->ranges_.empty()) {
+        if (!r->grows_) r->bytes_ = std::pmr::vector<std::byte>(&context_.host());
         r->unlink();
       }
     }

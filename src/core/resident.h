@@ -1,11 +1,13 @@
-// Assets and views: objects with one device buffer whose first contents arrive through gpgpRecordUpload.
+// Assets and views: objects with one device buffer whose contents arrive through gpgpRecordUpload.
 //
 // An asset's buffer receives bytes, a view's is cleared to zero. An object is resident from the record that copied
-// its last byte on; if that command buffer turns out never to have run, it is pending again.
+// its last byte on; if that command buffer turns out never to have run, it is pending again. What is added later goes
+// the same way, range by range, in the order in which ranges were queued.
 #pragma once
 #include "core/context.h"
 
 #include <atomic>
+#include <span>
 
 namespace gpgp::core {
 
@@ -14,27 +16,51 @@ public:
   ~Resident() override;
   void retire() override;
 
-  bool resident() const { return uploaded_.load(std::memory_order_acquire) == size_; }
+  bool resident() const { return hasArrived(queued_.load(std::memory_order_acquire)); }
   VkBuffer buffer() const { return buffer_.handle(); }
   VkDeviceSize size() const { return size_; }
 
 protected:
   /// Bytes to copy; the object keeps them until the copy is known to have run.
   Resident(Context& owner, Kind objectKind, const char* name)
-      : Object(owner, objectKind, name), bytes_(&owner.host()) {}
+      : Object(owner, objectKind, name), bytes_(&owner.host()), ranges_(&owner.host()) {}
   /// Allocates the buffer. Either bytes (an asset), or an empty vector and a size to clear (a view). Sizes are
   /// rounded up to 16 bytes. Call once, at the end of the derived object's creation.
   Result<void> makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize = 0);
+  /// The same for contents that come in ranges: all bytes stay on the host, and nothing is queued.
+  Result<void> makeGrowing(GpgpService service, VkDeviceSize size);
+  /// The bytes of one that grows. A range may change once no upload of it is under way (hasSettled).
+  std::span<std::byte> bytes() { return bytes_; }
+  /// Lets queue succeed as many times.
+  void reserveRanges(size_t count) { ranges_.reserve(ranges_.size() + count); }
+  /// Queues a range, of whole 16 bytes; returns its number, from 1 on.
+  uint64_t queue(VkDeviceSize offset, VkDeviceSize size);
+  /// Whether the copies of the range and of all before it are recorded.
+  bool hasArrived(uint64_t number) const { return number <= arrived_.load(std::memory_order_acquire); }
+  /// Whether they are known to have run. (context)
+  bool hasSettled(uint64_t number) const { return number < firstNumber_; }
 
 private:
   friend class UploadRing;
   friend class Context;
+  struct Range {
+    VkDeviceSize offset, size, done;
+    uint64_t first, last; // numbers of the upload records that hold its pieces; 0: none
+    bool settled;
+  };
+  Result<void> allocate(GpgpService service, VkDeviceSize size);
+  VkDeviceSize pending() const;
+  void updateArrived();
+
   Buffer buffer_;
   std::pmr::vector<std::byte> bytes_;
   VkDeviceSize size_ = 0;
-  std::atomic<VkDeviceSize> uploaded_{0};
-  uint64_t firstUpload_ = 0, lastUpload_ = 0; // numbers of the upload records that hold its pieces; 0: none
-  // Linked in the context's list from creation until the upload is known to have run, or the handle is destroyed.
+  bool grows_ = false;
+  std::pmr::vector<Range> ranges_; // queued and not known to have run, oldest first
+  uint64_t firstNumber_ = 1;       // the oldest one's
+  std::atomic<uint64_t> queued_{0}, arrived_{0};
+  // Linked in the context's list while there are such ranges, until the handle is destroyed.
+  void link();
   void unlink();
   Resident *previous_ = nullptr, *next_ = nullptr;
   bool linked_ = false;

@@ -11,7 +11,8 @@ template <class T> constexpr bool isHandle() {
          sizeof(T) == sizeof(void*);
 }
 static_assert(isHandle<gpgp::Context>() && isHandle<gpgp::Grammar>() && isHandle<gpgp::Spawner>());
-static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::Canvas>() && isHandle<gpgp::CanvasView>());
+static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::GlyphSet>() && isHandle<gpgp::Canvas>() &&
+              isHandle<gpgp::CanvasView>());
 static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::Sampler>() && isHandle<gpgp::CameraView>());
 static_assert(isHandle<gpgp::GrammarBuilder>());
 static_assert(isHandle<gpgp::Font>() && isHandle<gpgp::Shaper>() && isHandle<gpgp::Layout>());

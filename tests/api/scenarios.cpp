@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <stdexcept>
 
 namespace gpgp::test {
@@ -13,8 +14,9 @@ namespace gpgp::test {
 void Scenario::destroy() {
   gpgpDestroyView(view);
   gpgpDestroyWorker(worker);
+  gpgpDestroyAsset(secondAsset);
   gpgpDestroyAsset(asset);
-  view = nullptr, worker = nullptr, asset = nullptr;
+  view = nullptr, worker = nullptr, asset = secondAsset = nullptr;
 }
 
 GpgpContextCreateInfo scenarioContextInfo(host::HeadlessDevice& device, std::vector<std::string>* messages) {
@@ -147,7 +149,21 @@ public:
     info.label = "loop";
     info.paths = paths;
     info.pathCount = 2;
-    return gpgpCreateDrawing(context, &info, &asset);
+    secondAsset = nullptr;
+    if (const GpgpResult result = gpgpCreateDrawing(context, &info, &asset); result != GPGP_SUCCESS) return result;
+    // A text over it, of the triangle as a glyph.
+    GpgpGlyphSetCreateInfo setInfo = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+    setInfo.label = "glyphs";
+    setInfo.maxGlyphs = 8;
+    setInfo.maxBytes = 4096;
+    if (const GpgpResult result = gpgpCreateGlyphSet(context, &setInfo, &secondAsset); result != GPGP_SUCCESS)
+      return result;
+    const GpgpGlyph glyph{17, paths, 1, nullptr};
+    uint32_t index = 0;
+    const GpgpResult result = gpgpAddGlyphs(secondAsset, &glyph, 1, &index);
+    for (size_t i = 0; i < std::size(glyphs_); ++i)
+      glyphs_[i] = {index, 10 * static_cast<float>(i), 4, 0.25f, {0, 1, 0, 1}};
+    return result;
   }
   GpgpResult createWorker(GpgpContext context, const GpgpWorkerCreateInfo& base) override {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
@@ -156,6 +172,7 @@ public:
     info.maxPatches = 256;
     info.maxTileEntries = 4096;
     info.maxDrawings = 2;
+    info.maxGlyphs = 8;
     return gpgpCreateCanvas(context, &info, &worker);
   }
   GpgpResult createView(GpgpContext context) override {
@@ -165,12 +182,15 @@ public:
     return gpgpCreateCanvasView(context, &info, &view);
   }
   GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordInfo& base) override {
-    const GpgpCanvasItem item{asset, {1, 0, 0, 1, 0, 0}, 1};
+    GpgpCanvasItem items[2] = {{asset, {1, 0, 0, 1, 0, 0}, 1}, {nullptr, {1, 0, 0, 1, 0, 0}, 1}};
+    items[1].glyphSet = secondAsset;
+    items[1].glyphs = glyphs_;
+    items[1].glyphCount = static_cast<uint32_t>(std::size(glyphs_));
     GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
     info.base = base;
     info.width = info.height = kSize;
-    info.items = &item;
-    info.itemCount = 1;
+    info.items = items;
+    info.itemCount = 2;
     info.view = view;
     info.target =
         image_.target({VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED},
@@ -195,12 +215,14 @@ public:
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
     const GpgpResult result = gpgpGetCanvasReport(worker, &report);
     header = report.base;
-    meaningful = report.patches > 0 && report.tileEntries > 0 && report.pathsDropped == 0;
+    meaningful =
+        report.patches > 0 && report.tileEntries > 0 && report.pathsDropped == 0 && report.glyphs == std::size(glyphs_);
     return result;
   }
 
 private:
   host::Image image_;
+  GpgpGlyphInstance glyphs_[5] = {};
 };
 #endif
 

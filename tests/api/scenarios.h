@@ -38,7 +38,7 @@ public:
   static constexpr GpgpAccess kAfter{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, {}};
 
   host::HeadlessDevice& device;
-  GpgpAsset asset = nullptr;
+  GpgpAsset asset = nullptr, secondAsset = nullptr; ///< the second: where the job needs two
   GpgpWorker worker = nullptr;
   GpgpView view = nullptr;
 };

@@ -1,9 +1,9 @@
 // What drawings cost: conversion on one thread, GPU time by pass, and cairo's time in the same process.
 //
-//   vector_bench [--repeat N] [--size PIXELS] [--out FOLDER] [map | contours | page | ... | FILE.svg]...
+//   vector_bench [--repeat N] [--size PIXELS] [--out FOLDER] [--shapes] [map | contours | page | ... | FILE.svg]...
 //
-// The generated drawings are in vector_scenes.h. Prints medians and ratios; asserts nothing about time, but fails where
-// a record fails or drops paths.
+// --shapes draws pages as one drawing instead of a text. The generated drawings are in vector_scenes.h. Prints medians
+// and ratios; asserts nothing about time, but fails where a record fails or drops paths.
 #include "host/picture.h"
 #include "vector_runner.h"
 
@@ -18,21 +18,19 @@ using namespace gpgp;
 using namespace gpgp::bench;
 
 void run(VectorRunner& runner, const Scene& scene, uint32_t size, VectorRunner::Settings settings, int repeat,
-         const std::string& out) {
-  double convert = 0;
-  const GpgpAsset drawing = runner.make(scene, &convert);
-  GpgpDrawingInfo facts = GPGP_DRAWING_INFO_INIT;
-  expect(gpgpGetDrawingInfo(drawing, &facts), "gpgpGetDrawingInfo");
-  runner.openCanvas(size, std::max(facts.patches, 1024u));
-  const VectorDrawn drawn = runner.draw(drawing, scene, size, size, settings, repeat);
-  gpgpDestroyAsset(drawing);
+         const std::string& out, bool shapes) {
+  VectorMade made = scene.glyphs.empty() || shapes ? runner.makeDrawing(scene) : runner.makeText(scene);
+  const GpgpDrawingInfo& facts = made.facts;
+  runner.openCanvas(size, std::max(facts.patches, 1024u), made.item.glyphCount);
+  const VectorDrawn drawn = runner.draw(made, scene, size, size, settings, repeat);
   std::vector<uint8_t> cairoPixels;
   const double scale = std::min(size / scene.width, size / scene.height);
   const double cairo = cairoTime(scene, size, size, std::min(repeat, 5), scale, &cairoPixels);
   std::printf(
       "%-16s %4u px %2u samples: %6u paths %7u curves %6u entries; made in %.1f ms, recorded in %.1f us, GPU %.4f ms",
-      scene.name.c_str(), size, settings.samples, facts.paths, facts.curves, drawn.entries, convert, drawn.microseconds,
-      drawn.milliseconds);
+      scene.name.c_str(), size, settings.samples, facts.paths, facts.curves, drawn.entries, made.milliseconds,
+      drawn.microseconds, drawn.milliseconds);
+  if (made.item.glyphCount) std::printf(", %.1f ns a glyph", drawn.microseconds * 1000 / made.item.glyphCount);
   if (cairo > 0) std::printf(", cairo %.2f ms (ratio %.3f)", cairo, drawn.milliseconds / cairo);
   std::printf(" |");
   for (const auto& [name, time] : drawn.passes)
@@ -50,6 +48,7 @@ void run(VectorRunner& runner, const Scene& scene, uint32_t size, VectorRunner::
 int main(int argc, char** argv) {
   int repeat = 20;
   uint32_t size = 1024, samples = 16;
+  bool shapes = false;
   std::string out;
   std::vector<Scene> scenes;
   for (int i = 1; i < argc; ++i) {
@@ -63,13 +62,16 @@ int main(int argc, char** argv) {
       samples = static_cast<uint32_t>(std::atoi(value()));
     else if (word == "--out")
       out = value();
+    else if (word == "--shapes")
+      shapes = true;
     else
       scenes.push_back(sceneOf(word));
   }
-  if (scenes.empty()) scenes = {streetMap(), contourMap(), page()};
+  if (scenes.empty()) scenes = {streetMap(), contourMap(), page(), livePage()};
   host::HeadlessDevice device;
   std::printf("device %s, %d records, medians\n", device.name().c_str(), repeat);
   VectorRunner runner(device);
-  for (const Scene& scene : scenes) run(runner, scene, size, {.samples = samples, .blendSrgb = false}, repeat, out);
+  for (const Scene& scene : scenes)
+    run(runner, scene, size, {.samples = samples, .blendSrgb = false}, repeat, out, shapes);
   return 0;
 }

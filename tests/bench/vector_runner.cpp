@@ -24,7 +24,8 @@ void VectorRunner::closeCanvas() {
   canvas_ = nullptr;
 }
 
-GpgpAsset VectorRunner::make(const Scene& scene, double* time) {
+VectorMade VectorRunner::makeDrawing(const Scene& scene) {
+  VectorMade made;
   std::vector<GpgpPath> paths;
   for (const Shape& s : scene.shapes) paths.push_back(s.view());
   GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
@@ -32,19 +33,45 @@ GpgpAsset VectorRunner::make(const Scene& scene, double* time) {
   info.pathCount = static_cast<uint32_t>(paths.size());
   info.groups = scene.groups.data();
   info.groupCount = static_cast<uint32_t>(scene.groups.size());
-  GpgpAsset drawing = nullptr;
   const auto begin = Clock::now();
-  expect(gpgpCreateDrawing(context_, &info, &drawing), "gpgpCreateDrawing");
-  if (time) *time = milliseconds(Clock::now() - begin);
-  return drawing;
+  expect(gpgpCreateDrawing(context_, &info, &made.item.drawing), "gpgpCreateDrawing");
+  made.milliseconds = milliseconds(Clock::now() - begin);
+  made.asset.reset(made.item.drawing);
+  expect(gpgpGetDrawingInfo(made.item.drawing, &made.facts), "gpgpGetDrawingInfo");
+  return made;
 }
 
-void VectorRunner::openCanvas(uint32_t largest, uint32_t maxPatches) {
+VectorMade VectorRunner::makeText(const Scene& scene) {
+  VectorMade made;
+  std::vector<GpgpPath> paths;
+  std::vector<GpgpGlyph> glyphs;
+  for (const Shape& s : scene.glyphs) paths.push_back(s.view());
+  for (const GpgpPath& path : paths) glyphs.push_back({glyphs.size(), &path, 1, nullptr});
+  const GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  expect(gpgpCreateGlyphSet(context_, &info, &made.item.glyphSet), "gpgpCreateGlyphSet");
+  made.asset.reset(made.item.glyphSet);
+  made.glyphs.resize(glyphs.size());
+  const auto begin = Clock::now();
+  expect(gpgpAddGlyphs(made.item.glyphSet, glyphs.data(), static_cast<uint32_t>(glyphs.size()), made.glyphs.data()),
+         "gpgpAddGlyphs");
+  made.milliseconds = milliseconds(Clock::now() - begin);
+  made.text = scene.text;
+  for (GpgpGlyphInstance& g : made.text) g.glyph = made.glyphs[g.glyph - 1];
+  made.item.glyphs = made.text.data();
+  made.item.glyphCount = static_cast<uint32_t>(made.text.size());
+  made.facts.paths = made.item.glyphCount;
+  made.facts.curves = static_cast<uint32_t>(curvesOf(scene));
+  made.facts.patches = made.facts.curves; // enough
+  return made;
+}
+
+void VectorRunner::openCanvas(uint32_t largest, uint32_t maxPatches, uint32_t maxGlyphs) {
   closeCanvas();
   GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
   info.base = {"bench", device_.graphics().family, 0, VK_FALSE};
   info.maxWidth = info.maxHeight = largest;
   info.maxPatches = maxPatches;
+  info.maxGlyphs = maxGlyphs;
   info.maxTileEntries = 1 << 19;
   expect(gpgpCreateCanvas(context_, &info, &canvas_), "gpgpCreateCanvas");
   const GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
@@ -58,12 +85,11 @@ void VectorRunner::openCanvas(uint32_t largest, uint32_t maxPatches) {
   host::check(device_.vk().vkCreateQueryPool(device_.device(), &query, nullptr, &queries_), "vkCreateQueryPool");
 }
 
-VectorDrawn VectorRunner::draw(GpgpAsset drawing, const Scene& scene, uint32_t width, uint32_t height,
+VectorDrawn VectorRunner::draw(VectorMade& made, const Scene& scene, uint32_t width, uint32_t height,
                                const Settings& settings, int repeat) {
   const host::Image target(device_, {.width = width, .height = height}, "picture");
   const uint32_t passes = static_cast<uint32_t>(names_.size());
-  GpgpCanvasItem item{};
-  item.drawing = drawing;
+  GpgpCanvasItem& item = made.item;
   item.transform[0] = item.transform[3] = static_cast<float>(std::min(width / scene.width, height / scene.height));
   item.opacity = 1;
   const VolkDeviceTable& vk = device_.vk();
@@ -74,6 +100,8 @@ VectorDrawn VectorRunner::draw(GpgpAsset drawing, const Scene& scene, uint32_t w
   busy_.warmUp();                            // converting may have taken seconds
   for (int i = 0; i < 2 * repeat + 2; ++i) { // records timed as a whole and by pass, in turn; the first of each are not
     const bool split = i % 2 == 0;
+    for (size_t k = 0; scene.changes && k < made.text.size(); ++k) // another string of the same glyphs
+      made.text[k].glyph = made.glyphs[(k * 7 + k / 11 + static_cast<size_t>(i)) % made.glyphs.size()];
     frame_ += 2;
     const GpgpFrame frame{frame_ - 1, frame_ - 2}, done{frame_, frame_ - 1};
     expect(gpgpAdvance(context_, &frame), "gpgpAdvance");

@@ -1,11 +1,26 @@
-// Draws drawings on a device and times it: whole records and passes by timestamps, recording on the CPU.
+// Draws drawings and texts on a device and times it: whole records and passes by timestamps, recording on the CPU.
 #pragma once
 #include "host/busy_work.h"
 #include "host/device.h"
 #include "measuring.h"
 #include "vector_scenes.h"
 
+#include <memory>
+
 namespace gpgp::bench {
+
+/// What a scene became, and the item that shows it.
+struct VectorMade {
+  struct Destroy {
+    void operator()(GpgpAsset asset) const { gpgpDestroyAsset(asset); }
+  };
+  std::unique_ptr<GpgpAsset_T, Destroy> asset; ///< drawing or glyph set
+  GpgpDrawingInfo facts = GPGP_DRAWING_INFO_INIT;
+  double milliseconds = 0; ///< of converting
+  GpgpCanvasItem item{};
+  std::vector<uint32_t> glyphs; ///< of a text: indices of all that are in the set
+  std::vector<GpgpGlyphInstance> text;
+};
 
 struct VectorDrawn {
   double milliseconds = 0;                            ///< GPU, of whole records
@@ -23,10 +38,11 @@ public:
   VectorRunner(const VectorRunner&) = delete;
   VectorRunner& operator=(const VectorRunner&) = delete;
 
-  /// The drawing of a scene; milliseconds of converting it. Destroy it with gpgpDestroyAsset.
-  GpgpAsset make(const Scene& scene, double* milliseconds = nullptr);
+  /// The drawing of a scene; or its text, where it is one.
+  VectorMade makeDrawing(const Scene& scene);
+  VectorMade makeText(const Scene& scene);
   /// For pictures of at most `largest` pixels a side; takes the place of the one before.
-  void openCanvas(uint32_t largest, uint32_t maxPatches);
+  void openCanvas(uint32_t largest, uint32_t maxPatches, uint32_t maxGlyphs = 0);
 
   struct Settings {
     uint32_t samples = 16;
@@ -34,7 +50,7 @@ public:
   };
   /// The scene fitted into the picture, at its top left. Medians of `repeat` records; passes are timed in records of
   /// their own, as timestamps between them take time.
-  VectorDrawn draw(GpgpAsset drawing, const Scene& scene, uint32_t width, uint32_t height, const Settings& settings,
+  VectorDrawn draw(VectorMade& made, const Scene& scene, uint32_t width, uint32_t height, const Settings& settings,
                    int repeat);
 
 private:

@@ -162,27 +162,53 @@ Scene contourMap() {
   return scene;
 }
 
+namespace {
+/// A bowl and a stem of height h on the baseline at x, y; an em has `em` units.
+Shape letter(double x, double y, double h, double em) {
+  Shape s;
+  const double w = 4.5, k = 0.55;
+  const auto add = [&](GpgpPathVerb verb, std::initializer_list<double> values) {
+    s.verbs.push_back(verb);
+    bool isX = true;
+    for (const double v : values) {
+      s.points.push_back(static_cast<float>((isX ? x : y) + v * em / 8));
+      isX = !isX;
+    }
+  };
+  const auto ring = [&](double a, double b, double f) {
+    const double cx = w / 2, cy = -3;
+    add(GPGP_PATH_MOVE, {cx + a, cy});
+    add(GPGP_PATH_CUBIC, {cx + a, cy + f * k * b, cx + k * a, cy + f * b, cx, cy + f * b});
+    add(GPGP_PATH_CUBIC, {cx - k * a, cy + f * b, cx - a, cy + f * k * b, cx - a, cy});
+    add(GPGP_PATH_CUBIC, {cx - a, cy - f * k * b, cx - k * a, cy - f * b, cx, cy - f * b});
+    add(GPGP_PATH_CUBIC, {cx + k * a, cy - f * b, cx + a, cy - f * k * b, cx + a, cy});
+  };
+  ring(w / 2, 2.5, 1);
+  ring(w / 3.5, 1.8, -1);
+  add(GPGP_PATH_MOVE, {0, -h}), add(GPGP_PATH_LINE, {0.8, -h});
+  add(GPGP_PATH_LINE, {0.8, 0}), add(GPGP_PATH_LINE, {0, 0}), add(GPGP_PATH_CLOSE, {});
+  return s;
+}
+} // namespace
+
 Scene page() {
   Scene scene{"page", {}};
   std::mt19937 random(3);
-  for (int i = 0; i < 12000; ++i) { // a bowl and a stem, one way or another
-    Shape s;
-    const double x = 10 + (i % 150) * 6.5, y = 10 + (i / 150) * 12.2, w = 4.5,
-                 h = 3 + 2.5 * static_cast<double>(random() % 3), k = 0.55;
-    const auto ring = [&](double cx, double cy, double a, double b, bool inner) {
-      const double f = inner ? -1 : 1;
-      s.add(GPGP_PATH_MOVE, {cx + a, cy});
-      s.add(GPGP_PATH_CUBIC, {cx + a, cy + f * k * b, cx + k * a, cy + f * b, cx, cy + f * b});
-      s.add(GPGP_PATH_CUBIC, {cx - k * a, cy + f * b, cx - a, cy + f * k * b, cx - a, cy});
-      s.add(GPGP_PATH_CUBIC, {cx - a, cy - f * k * b, cx - k * a, cy - f * b, cx, cy - f * b});
-      s.add(GPGP_PATH_CUBIC, {cx + k * a, cy - f * b, cx + a, cy - f * k * b, cx + a, cy});
-    };
-    ring(x + w / 2, y + 5, w / 2, 2.5, false);
-    ring(x + w / 2, y + 5, w / 3.5, 1.8, true);
-    s.add(GPGP_PATH_MOVE, {x, y + 8 - h}), s.add(GPGP_PATH_LINE, {x + 0.8, y + 8 - h});
-    s.add(GPGP_PATH_LINE, {x + 0.8, y + 8}), s.add(GPGP_PATH_LINE, {x, y + 8}), s.add(GPGP_PATH_CLOSE, {});
-    scene.shapes.push_back(s);
+  constexpr double kHeights[] = {3, 5.5, 8};
+  for (const double h : kHeights) scene.glyphs.push_back(letter(0, 0, h, 1));
+  for (int i = 0; i < 12000; ++i) {
+    const double x = 10 + (i % 150) * 6.5, y = 18 + (i / 150) * 12.2;
+    const auto which = static_cast<uint32_t>(random() % 3);
+    scene.shapes.push_back(letter(x, y, kHeights[which], 8));
+    scene.text.push_back({1 + which, static_cast<float>(x), static_cast<float>(y), 8, {0, 0, 0, 1}});
   }
+  return scene;
+}
+
+Scene livePage() {
+  Scene scene = page();
+  scene.name = "live page";
+  scene.changes = true;
   return scene;
 }
 
@@ -382,9 +408,9 @@ Scene sceneOf(const std::string& word) {
   const struct {
     const char* word;
     Scene (*make)();
-  } made[] = {{"map", streetMap},       {"contours", contourMap}, {"page", page},
-              {"drops", drops},         {"embrace", embrace},     {"clipart", clipArt},
-              {"botanical", botanical}, {"plan", townPlan},       {"feather", feather}};
+  } made[] = {{"map", streetMap}, {"contours", contourMap}, {"page", page},       {"live", livePage},
+              {"drops", drops},   {"embrace", embrace},     {"clipart", clipArt}, {"botanical", botanical},
+              {"plan", townPlan}, {"feather", feather}};
   for (const auto& m : made)
     if (word == m.word) return m.make();
   return fromSvg(word);

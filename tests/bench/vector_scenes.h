@@ -37,11 +37,15 @@ struct Scene {
   double width = 1000, height = 1000;
   std::shared_ptr<void> source; // what shapes and groups refer to
   std::span<const GpgpPathGroup> groups = {};
+  std::vector<Shape> glyphs = {};           // in em units; where there are any, the shapes can be drawn as the text
+  std::vector<GpgpGlyphInstance> text = {}; // glyph: 1 + its place among these
+  bool changes = false;                     // another string every record
 };
 
 Scene streetMap();  ///< 45 000 paths, 545 000 curves (paris-70k)
 Scene contourMap(); ///< 53 000 paths, 188 000 curves (contour)
-Scene page();       ///< 12 000 glyph-like shapes
+Scene page();       ///< a text of 12 000 glyph-like shapes
+Scene livePage();   ///< the same, with another string every record
 Scene drops();      ///< 204 paths of five curves (drops)
 Scene embrace();    ///< 225 paths, 5 000 curves: smooth bands over each other (embrace)
 Scene clipArt();    ///< a sheet of 691 paths, 7 000 curves (sample_v2)
@@ -50,8 +54,8 @@ Scene townPlan();   ///< 1 922 paths, 28 000 curves: blocks, lots and roads (bos
 Scene feather();    ///< 180 barbs, each thinner than a pixel at 12 x 14 pixels
 /// Random shapes that together cover about half of the page, each of `curves` cubics.
 Scene blobs(int paths, int curves);
-/// One of these (map, contours, page, drops, embrace, clipart, botanical, plan, feather), or a file. Ends the program
-/// where that is no SVG.
+/// One of these (map, contours, page, live, drops, embrace, clipart, botanical, plan, feather), or a file. Ends the
+/// program where that is no SVG.
 Scene sceneOf(const std::string& word);
 
 /// Of the paths as they come: neither moves nor closing lines count.

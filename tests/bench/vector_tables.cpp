@@ -58,7 +58,7 @@ void times(VectorRunner& runner, const std::vector<Scene>& scenes, const std::ve
               "|---|---|---|---|---|---|---|\n");
   std::string shares = "\n| drawing | pixels | samples | share of each pass, % |\n|---|---|---|---|\n";
   for (const Scene& scene : scenes) {
-    const GpgpAsset drawing = runner.make(scene);
+    VectorMade drawing = runner.makeDrawing(scene);
     for (const uint32_t size : sizes) {
       double milliseconds[3];
       size_t column = 0;
@@ -96,7 +96,6 @@ void times(VectorRunner& runner, const std::vector<Scene>& scenes, const std::ve
         std::printf(" | |\n");
       std::fflush(stdout);
     }
-    gpgpDestroyAsset(drawing);
   }
   std::printf("%s", shares.c_str());
 }
@@ -113,7 +112,7 @@ void quality(VectorRunner& runner) {
     for (size_t i = 0; i < bytes.size(); ++i) values[i] = i % 4 == 3 ? 1 : static_cast<float>(bytes[i]) / 255;
     return cli::psnrOverWhite(values, truth, cli::Blend::Srgb);
   };
-  const GpgpAsset drawing = runner.make(scene);
+  VectorMade drawing = runner.makeDrawing(scene);
   std::printf("\n| samples | dB against 256 samples |\n|---|---|\n");
   for (const uint32_t samples : {1u, 4u, 8u, 16u, kArea}) {
     const double value = decibels(runner.draw(drawing, scene, width, height, settingsOf(samples), 1).pixels);
@@ -124,7 +123,6 @@ void quality(VectorRunner& runner) {
   }
   std::vector<uint8_t> cairo;
   if (cairoTime(scene, width, height, 1, 1, &cairo) > 0) std::printf("| cairo | %.1f |\n", decibels(cairo));
-  gpgpDestroyAsset(drawing);
 }
 
 void curves(VectorRunner& runner, int repeat, uint32_t largest) {
@@ -133,22 +131,20 @@ void curves(VectorRunner& runner, int repeat, uint32_t largest) {
                            {100, 4}, {100, 64}, {100, 256}, {100, 1024}};
   for (const auto& [n, m] : counts) {
     const Scene scene = blobs(n, m);
-    double made = 0;
-    const GpgpAsset drawing = runner.make(scene, &made);
+    VectorMade drawing = runner.makeDrawing(scene);
     const double all = static_cast<double>(n) * m,
                  gpu = runner.draw(drawing, scene, 1024, 1024, {}, repeat).milliseconds;
-    std::printf("| %d x %d | %.2f | %.2f | %.3f | %.1f |\n", n, m, made, made * 1e3 / all, gpu, gpu * 1e6 / all);
+    std::printf("| %d x %d | %.2f | %.2f | %.3f | %.1f |\n", n, m, drawing.milliseconds,
+                drawing.milliseconds * 1e3 / all, gpu, gpu * 1e6 / all);
     std::fflush(stdout);
-    gpgpDestroyAsset(drawing);
   }
   std::printf("\n| pixels a side | GPU ms | ns a pixel |\n|---|---|---|\n");
   const Scene scene = clipArt();
-  const GpgpAsset drawing = runner.make(scene);
+  VectorMade drawing = runner.makeDrawing(scene);
   for (uint32_t size = 128; size <= largest; size *= 2) {
     const double gpu = runner.draw(drawing, scene, size, size, {}, repeat).milliseconds;
     std::printf("| %u | %.3f | %.2f |\n", size, gpu, gpu * 1e6 / (static_cast<double>(size) * size));
   }
-  gpgpDestroyAsset(drawing);
 }
 
 } // namespace

@@ -62,7 +62,7 @@ public:
     r.bindings[0].ownSize = input.size();
     r.bindings[1].engineBuffer = &output;
     r.groups[0] = {(count + 63) / 64, 1, 1};
-    r.constants = std::as_bytes(std::span(&constants, 1));
+    r.constants[0] = std::as_bytes(std::span(&constants, 1));
     if (auto ok = check(r); !ok) return ok;
     return record(r);
   }

@@ -294,7 +294,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
   record.levels = rounds;
-  record.constants = std::as_bytes(std::span(&constants, 1));
+  record.constants[0] = std::as_bytes(std::span(&constants, 1));
   if (kernel) {
     record.replacedShader = derive_;
     record.replacement = kernel->pipeline;

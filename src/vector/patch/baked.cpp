@@ -25,18 +25,6 @@ constexpr char kMagic[4] = {'G', 'P', 'V', 'D'};
 constexpr uint32_t kVersion = 3;
 constexpr size_t kSummedFrom = 16;
 
-/// FNV-1a over 8-byte words: every input bit reaches the result.
-uint64_t checksum(std::span<const std::byte> bytes) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (size_t i = 0; i < bytes.size(); i += 8) {
-    uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, bytes.size() - i));
-    hash = (hash ^ word) * 0x100000001b3u;
-    hash ^= hash >> 29;
-  }
-  return hash ^ bytes.size();
-}
-
 bool sane(float v) { return std::abs(v) <= 4 * kMaxCoordinate; } // false for NaN
 bool sane(const shader::vec4& v) { return sane(v.x) && sane(v.y) && sane(v.z) && sane(v.w); }
 
@@ -64,7 +52,8 @@ core::Result<void> checkContents(const Drawing& d) {
       if (!(d.paths[i].color[k] >= 0 && d.paths[i].color[k] <= 1))
         return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the colour of path %zu is out of range", i);
   for (size_t i = 0; i < d.paths.size(); ++i)
-    if (d.paths[i].paint > d.paints.size() || d.paths[i].clip > d.clips.size() || d.paths[i].layer > d.layers.size())
+    if (d.paths[i].paint > d.paints.size() || d.paths[i].clip > d.clips.size() || d.paths[i].layer > d.layers.size() ||
+        d.paths[i].flags > shader::kForeground)
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: path %zu refers to what is not there", i);
   for (size_t i = 0; i < d.paints.size(); ++i) {
     const PaintRecord& p = d.paints[i];
@@ -109,6 +98,17 @@ core::Result<void> checkContents(const Drawing& d) {
   return {};
 }
 } // namespace
+
+uint64_t checksum(std::span<const std::byte> bytes) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (size_t i = 0; i < bytes.size(); i += 8) {
+    uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, bytes.size() - i));
+    hash = (hash ^ word) * 0x100000001b3u;
+    hash ^= hash >> 29;
+  }
+  return hash ^ bytes.size();
+}
 
 std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory) {
   Header header{};

@@ -93,6 +93,8 @@ uint32_t clipPaths(const Drawing& drawing);
 core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPathEdit> edits,
                                    std::pmr::memory_resource* memory);
 
+/// FNV-1a over 8-byte words: every input bit reaches the result.
+uint64_t checksum(std::span<const std::byte> bytes);
 /// Baked form: little-endian, versioned, checksummed.
 std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory);
 /// Checks everything that a shader would trust: sizes, indices, finite numbers, order. Errors: INVALID_DATA.

@@ -89,10 +89,12 @@ using shader::CanvasCounters;
 using shader::CanvasHeader;
 using shader::ItemRecord;
 using shader::kMaxSlots;
+using shader::PlacementRecord;
 using shader::SlotRecord;
 
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
-constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18, kChordList = 26;
+constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
+[[maybe_unused]] constexpr core::ResourceIndex kChordList = 26;
 // Workgroup counts and conditions of a record.
 enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRows, kRaster, kTiles, kSift };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
@@ -120,15 +122,16 @@ Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
       maxPatches_(info.maxPatches ? info.maxPatches : 262144),
       maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072), maxWords_(std::max(maxEntries_, 65536u)),
-      maxDrawings_(info.maxDrawings ? info.maxDrawings : 64), software_(owner.device.software),
-      constants_(&owner.host()), drawings_(&owner.host()) {}
+      maxDrawings_(info.maxDrawings ? info.maxDrawings : 64), maxGlyphs_(info.maxGlyphs ? info.maxGlyphs : 1024),
+      software_(owner.device.software), assets_(&owner.host()), sources_(&owner.host()), placements_(&owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
   const core::ShaderDesc vertex{"draw.vert", vector_draw_vert}, fragment{"draw.frag", vector_draw_frag};
   if (auto ok = canvas->init(canvas->describe(), &vertex, &fragment); !ok) return ok.error();
-  canvas->constants_.resize(canvas->passes().constantsBytes);
-  canvas->drawings_.resize(canvas->maxDrawings_);
+  canvas->assets_.resize(canvas->maxDrawings_);
+  canvas->sources_.resize(canvas->maxDrawings_);
+  canvas->placements_.resize(size_t(canvas->maxDrawings_) + canvas->maxGlyphs_);
   return canvas;
 }
 
@@ -154,9 +157,10 @@ core::PassList Canvas::describe() const {
   const auto view = list.add({"view", buffer, 0, true});
   const auto image8 = list.add({"target", image, 0, true});
   const auto image16 = list.add({"target", image, 0, true});
-  const VkDeviceSize paramBytes =
-      sizeof(CanvasHeader) + kMaxSlots * sizeof(SlotRecord) + VkDeviceSize(maxDrawings_) * sizeof(ItemRecord);
-  const auto fromHost = list.add({"constants", core::ResourceKind::constants, paramBytes});
+  const VkDeviceSize heads = sizeof(CanvasHeader) + kMaxSlots * sizeof(SlotRecord),
+                     placed = VkDeviceSize(maxDrawings_) + maxGlyphs_;
+  const auto fromHost = list.add({"constants", core::ResourceKind::constants,
+                                  heads + maxDrawings_ * sizeof(ItemRecord) + placed * sizeof(PlacementRecord)});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(maxPatches_) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
   const VkDeviceSize squares = VkDeviceSize(divide(maxWidth_, kSquare)) * divide(maxHeight_, kSquare);
@@ -165,7 +169,7 @@ core::PassList Canvas::describe() const {
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
-  const auto params = list.add({"items", scratch, paramBytes});
+  const auto params = list.add({"items", scratch, heads + placed * sizeof(ItemRecord)});
   core::ResourceIndex images = 0; // the first
   static constexpr const char* kImageNames[shader::kMaxImages] = {"images[0]", "images[1]", "images[2]", "images[3]",
                                                                   "images[4]", "images[5]", "images[6]", "images[7]"};
@@ -360,42 +364,118 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
     if (!(info.items[i].opacity >= 0 && info.items[i].opacity <= 1))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].opacity is %g; it must be 0 to 1", i,
                        static_cast<double>(info.items[i].opacity));
+    if (info.items[i].glyphCount && !info.items[i].glyphs)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].glyphs is NULL, but glyphCount is %u", i,
+                       info.items[i].glyphCount);
+  }
+  return {};
+}
+
+struct Canvas::Budget {
+  uint64_t patches = 0;
+  bool full = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
+};
+
+/// A placement for each glyph of a text that has paths, as long as there is room. This loop is what changing text
+/// costs.
+Result<void> Canvas::placeGlyphs(const GpgpCanvasItem& item, uint32_t index, const GlyphSet& set, Budget& budget,
+                                 CanvasHeader& header) {
+  const uint64_t frame = context.current();
+  const auto wrong = [index](uint32_t i, const char* what) {
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].glyphs[%u]%s", index, i, what);
+  };
+  constexpr float kMost = kMaxCoordinate;
+  for (uint32_t i = 0; i < item.glyphCount; ++i) {
+    const GpgpGlyphInstance& from = item.glyphs[i];
+    if (from.glyph == GPGP_GLYPH_NONE) continue;
+    const GlyphSet::Glyph* glyph = set.glyph(from.glyph);
+    if (!glyph) return wrong(i, ".glyph is not, or no longer, in the set: it was evicted");
+    if (!(std::abs(from.x) <= kMost && std::abs(from.y) <= kMost && from.size >= 0 && from.size <= kMost))
+      return wrong(i, ": x, y or size is out of range");
+    const float* c = from.color;
+    if (!(c[0] >= 0 && c[0] <= 1 && c[1] >= 0 && c[1] <= 1 && c[2] >= 0 && c[2] <= 1 && c[3] >= 0 && c[3] <= 1))
+      return wrong(i, ".color is out of range");
+    if (!set.hasArrived(glyph->upload)) return makeError(GPGP_NOT_READY, "a glyph is not resident");
+    glyph->use(frame);
+    if (glyph->paths == 0) continue;
+    budget.full = budget.full || header.glyphs >= maxGlyphs_ || glyph->paths > maxPatches_ - header.pathCount ||
+                  glyph->patches > maxPatches_ - budget.patches;
+    ++header.glyphs;
+    if (budget.full) {
+      header.pathsDropped += glyph->paths;
+      continue;
+    }
+    PlacementRecord& to = placements_[header.itemCount++];
+    to.x = from.x;
+    to.y = from.y;
+    to.size = from.size;
+    to.source = index;
+    to.color = {c[0], c[1], c[2], c[3]};
+    to.firstSegment = header.segmentCount;
+    to.firstPath = header.pathCount;
+    to.segments = glyph->first;
+    to.paths = glyph->first + glyph->segments * static_cast<uint32_t>(sizeof(shader::SegmentRecord) / 16);
+    header.segmentCount += glyph->segments;
+    header.pathCount += glyph->paths;
+    budget.patches += glyph->patches;
   }
   return {};
 }
 
 Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo& info,
-                             std::span<DrawingAsset* const> drawings, CanvasView* view) {
+                             std::span<const ItemAsset> assets, CanvasView* view) {
   if (auto ok = checkInfo(info, view); !ok) return ok;
   core::Record r;
   r.commandBuffer = commandBuffer;
   r.info = &info.base;
   CanvasHeader header{};
   SlotRecord slots[kMaxSlots] = {};
-  std::byte* itemBytes = constants_.data() + sizeof header + sizeof slots;
-  const DrawingAsset* bound[kMaxSlots] = {};
-  uint64_t patchCount = 0;
+  const core::Resident* bound[kMaxSlots] = {};
+  Budget budget;
   bool gradients = false, projective = false, images = false, groups = false;
   uint32_t slotCount = 0;
 
-  // Items in painting order, each with as many of its first paths as there is room for; after one that did not fit
-  // whole, nothing more is drawn, so that what is there is what lies below.
-  bool full = false;
+  const auto bind = [&](const core::Resident& asset) { // to a slot, if one is left
+    uint32_t slot = 0;
+    while (slot < slotCount && bound[slot] != &asset) ++slot;
+    if (slot == slotCount && slot < kMaxSlots) {
+      bound[slotCount++] = &asset;
+      r.bindings[slot].ownBuffer = asset.buffer();
+      r.bindings[slot].ownSize = asset.size();
+    }
+    return slot;
+  };
+
+  // Items in painting order, a drawing with as many of its first paths as there is room for.
   for (uint32_t i = 0; i < info.itemCount; ++i) {
-    const DrawingAsset& drawing = *drawings[i];
-    ItemRecord item{};
-    const uint32_t firstImage = info.items[i].firstImage;
-    if (drawing.images() && (firstImage > info.imageCount || drawing.images() > info.imageCount - firstImage))
+    ItemRecord& item = sources_[i];
+    item = {};
+    const bool placeable = placeItem(info.items[i], info.width, info.height, item);
+    item.color.w = info.items[i].opacity;
+    item.firstImage = info.items[i].firstImage;
+    const auto tooMany = [i] {
+      return makeError(GPGP_ERROR_UNSUPPORTED, "items[%u]: a record draws at most %u different drawings and glyph sets",
+                       i, kMaxSlots);
+    };
+    if (const GlyphSet* set = assets[i].glyphSet) {
+      item.whole = 1;
+      if (!placeable || !placesGlyphs(item)) continue; // covers nothing
+      const uint32_t before = header.itemCount;
+      if (auto ok = placeGlyphs(info.items[i], i, *set, budget, header); !ok) return ok;
+      if (header.itemCount == before) continue;
+      item.slot = bind(*set);
+      if (item.slot == kMaxSlots) return tooMany();
+      projective = projective || item.perspective.w > 0;
+      continue;
+    }
+    const DrawingAsset& drawing = *assets[i].drawing;
+    if (drawing.images() && (item.firstImage > info.imageCount || drawing.images() > info.imageCount - item.firstImage))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                        "items[%u]: its drawing needs %u images from images[%u] on; imageCount is %u", i,
-                       drawing.images(), firstImage, info.imageCount);
-    if (!placeItem(info.items[i], info.width, info.height, item)) continue; // covers nothing
-    uint32_t slot = 0;
-    while (slot < slotCount && bound[slot] != &drawing) ++slot;
-    if (slot == kMaxSlots)
-      return makeError(GPGP_ERROR_UNSUPPORTED, "items[%u]: a record draws at most %u different drawings", i, kMaxSlots);
-    const uint32_t room = maxPatches_ - static_cast<uint32_t>(patchCount), pathRoom = maxPatches_ - header.pathCount;
-    uint32_t paths = full ? 0 : std::min(drawing.paths(), pathRoom);
+                       drawing.images(), item.firstImage, info.imageCount);
+    if (!placeable) continue; // covers nothing
+    const uint32_t room = maxPatches_ - static_cast<uint32_t>(budget.patches);
+    uint32_t paths = budget.full ? 0 : std::min(drawing.paths(), maxPatches_ - header.pathCount);
     if (drawing.first(paths).patches > room) { // the largest number of first paths that fits
       uint32_t low = 0, high = paths;
       while (low + 1 < high) {
@@ -405,31 +485,25 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
       paths = low;
     }
     header.pathsDropped += drawing.paths() - paths;
-    full = full || paths < drawing.paths();
+    budget.full = budget.full || paths < drawing.paths();
     if (paths == 0) continue;
-    if (slot == slotCount) {
-      bound[slotCount++] = &drawing;
-      r.bindings[slot].ownBuffer = drawing.buffer();
-      r.bindings[slot].ownSize = drawing.size();
-      slots[slot] = drawing.tables();
-      gradients = gradients || drawing.gradients();
-    }
+    item.slot = bind(drawing);
+    if (item.slot == kMaxSlots) return tooMany();
+    slots[item.slot] = drawing.tables();
+    gradients = gradients || drawing.gradients();
     projective = projective || item.perspective.w > 0;
     images = images || drawing.images();
     groups = groups || drawing.groups();
-    item.firstImage = firstImage;
-    item.opacity = info.items[i].opacity;
-    item.slot = slot;
-    item.firstSegment = header.segmentCount;
-    item.firstPath = header.pathCount;
+    placements_[header.itemCount++] = {
+        0, 0, 1, i, {0, 0, 0, 1}, header.segmentCount, header.pathCount, 0, drawing.pathTable()};
     header.segmentCount += drawing.first(paths).segments;
-    patchCount += drawing.first(paths).patches;
     header.pathCount += paths;
-    std::memcpy(itemBytes + header.itemCount * sizeof item, &item, sizeof item);
-    ++header.itemCount;
+    budget.patches += drawing.first(paths).patches;
   }
 
-  header.patchCount = static_cast<uint32_t>(patchCount);
+  header.sourceCount = info.itemCount;
+  header.glyphLimit = maxGlyphs_;
+  header.patchCount = static_cast<uint32_t>(budget.patches);
   header.width = info.width;
   header.height = info.height;
   header.tilesX = divide(info.width, shader::kTileSize);
@@ -462,10 +536,9 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t i = 0; i < info.imageCount && images; ++i)
     header.premultiplied |= info.images[i].premultiplied ? 1u << i : 0;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
-  std::memcpy(constants_.data(), &header, sizeof header);
-  std::memcpy(constants_.data() + sizeof header, slots, sizeof slots);
-  r.constants = std::span<const std::byte>(constants_)
-                    .first(sizeof header + sizeof slots + header.itemCount * sizeof(ItemRecord));
+  r.constants = {std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(slots)),
+                 std::as_bytes(std::span(sources_).first(header.sourceCount)),
+                 std::as_bytes(std::span(placements_).first(header.itemCount))};
 
   if (view) {
     r.bindings[kView].ownBuffer = view->buffer();
@@ -488,8 +561,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     const GpgpCanvasImage& from = info.images[i < info.imageCount ? i : 0];
     r.bindings[kFirstImage + i].texture = {from.sampler, from.view, from.layout};
   }
-  r.groups[kPaths] = rows(divide(header.pathCount, 64));
-  r.groups[kBegin] = {software_ ? divide(r.constants.size(), 64 * 16) : divide(maxWords_, 64 * 8), 1, 1};
+  r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
+  const uint64_t bins = uint64_t(header.binCount) * header.pathWords;
+  r.groups[kBegin] = {
+      software_ ? divide(std::max<uint64_t>({header.itemCount, bins / 16, 1}), 64) : divide(maxWords_, 64 * 8), 1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
@@ -540,6 +615,8 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.tileEntries = counters.entries;
   report.tileEntriesGiven = counters.entriesGiven;
   report.pathsDropped = counters.pathsDropped;
+  report.glyphs = counters.glyphs;
+  report.glyphsGiven = counters.glyphsGiven;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   return true;
 }

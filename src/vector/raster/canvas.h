@@ -1,5 +1,6 @@
-// The canvas: drawings to pixels in one record.
+// The canvas: drawings and texts to pixels in one record.
 //
+// begin (every item gets its place, each glyph of a text as one) ->
 // place (paths' boxes) -> mark (which tiles each path's boundary meets, which lie inside) and bin (which paths may
 // touch a square of 128 pixels) -> allot (room for the tiles with edges) -> fill (what boundaries do to their pixels)
 // -> raster (front to back). Lists need no sorting: paths are bits in painting order. Where room does not suffice, the
@@ -7,22 +8,30 @@
 #pragma once
 #include "core/worker.h"
 #include "vector/raster/drawing_asset.h"
+#include "vector/raster/glyph_set.h"
 
 namespace gpgp::vector {
+
+/// What an item shows: one of both.
+struct ItemAsset {
+  const DrawingAsset* drawing = nullptr;
+  const GlyphSet* glyphSet = nullptr;
+};
 
 class Canvas final : public core::Worker {
 public:
   static core::Result<core::Unique<Canvas>> create(core::Context& context, const GpgpCanvasCreateInfo& info);
   Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info);
 
-  /// Drawings of `info.items` in order, resolved; the view may be null. Arguments are checked here.
+  /// Assets of `info.items` in order, resolved; the view may be null. Arguments are checked here. NOT_READY where a
+  /// glyph is not resident.
   core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo& info,
-                             std::span<DrawingAsset* const> drawings, CanvasView* view);
+                             std::span<const ItemAsset> assets, CanvasView* view);
   core::Result<void> draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasView& view);
   bool takeCanvasReport(GpgpCanvasReport& report);
   uint32_t maxDrawings() const { return maxDrawings_; }
-  /// Room for the drawings of a record, so that recording does not allocate.
-  std::span<DrawingAsset*> drawings(uint32_t count) { return std::span(drawings_).first(count); }
+  /// Room for the assets of a record, so that recording does not allocate.
+  std::span<ItemAsset> assets(uint32_t count) { return std::span(assets_).first(count); }
 
 private:
   core::PassList describe() const;
@@ -31,11 +40,16 @@ private:
   uint64_t binWords() const;
   uint32_t maxRows() const { return maxEntries_ * 8; } ///< of the lists between mark and fill
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const;
+  struct Budget; ///< what a record's items have used of the budgets
+  core::Result<void> placeGlyphs(const GpgpCanvasItem& item, uint32_t index, const GlyphSet& set, Budget& budget,
+                                 shader::CanvasHeader& header);
 
-  const uint32_t maxWidth_, maxHeight_, maxPatches_, maxEntries_, maxWords_, maxDrawings_;
-  const bool software_;                   ///< the device has shaders without barriers
-  std::pmr::vector<std::byte> constants_; // room for one record's
-  std::pmr::vector<DrawingAsset*> drawings_;
+  const uint32_t maxWidth_, maxHeight_, maxPatches_, maxEntries_, maxWords_, maxDrawings_, maxGlyphs_;
+  const bool software_; ///< the device has shaders without barriers
+  // Room for one record's.
+  std::pmr::vector<ItemAsset> assets_;
+  std::pmr::vector<shader::ItemRecord> sources_;
+  std::pmr::vector<shader::PlacementRecord> placements_;
 };
 
 } // namespace gpgp::vector

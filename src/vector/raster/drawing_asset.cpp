@@ -32,8 +32,9 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     return static_cast<uint32_t>(at);
   };
   add(outlines.segments);
-  asset->tables_.boxes = add(outlines.boxes);
-  asset->tables_.paths = add(drawing.paths);
+  std::pmr::vector<shader::BoxedPath> paths(&context.host());
+  for (size_t i = 0; i < drawing.paths.size(); ++i) paths.push_back({outlines.boxes[i], drawing.paths[i]});
+  asset->pathTable_ = add(paths);
   asset->tables_.paints = add(drawing.paints);
   asset->tables_.stops = add(drawing.stops);
   asset->tables_.clips = add(drawing.clips);

@@ -7,7 +7,7 @@
 
 namespace gpgp::vector {
 
-/// A drawing's tables in one buffer: segments, boxes of paths, paths, paints, stops, clips, layers.
+/// A drawing's tables in one buffer: segments, paths with their boxes, paints, stops, clips, layers.
 class DrawingAsset final : public core::Resident {
 public:
   /// What edited drawings are made from.
@@ -30,6 +30,7 @@ public:
   uint32_t paths() const { return static_cast<uint32_t>(ends_.size()); }
   uint32_t curves() const { return curves_; }
   uint32_t patches() const { return first(paths()).patches; }
+  uint32_t pathTable() const { return pathTable_; } ///< where BoxedPaths begin, in vec4
   const shader::SlotRecord& tables() const { return tables_; }
   bool groups() const { return tables_.layers > tables_.clips || layers_; } ///< that clip or fade
   bool gradients() const { return tables_.stops > tables_.paints; }
@@ -41,7 +42,7 @@ public:
 private:
   std::pmr::vector<Ends> ends_; // by path, running
   std::optional<Kept> kept_;    // where it is editable
-  uint32_t curves_ = 0, images_ = 0;
+  uint32_t curves_ = 0, images_ = 0, pathTable_ = 0;
   bool layers_ = false;
   shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};

@@ -57,4 +57,12 @@ inline bool placeItem(const GpgpCanvasItem& from, uint32_t width, uint32_t heigh
   return true;
 }
 
+/// Whether glyphs placed by it stay finite, whatever their place and size.
+inline bool placesGlyphs(const shader::ItemRecord& item) {
+  bool good = std::abs(item.offsets.z) < 1e20f && std::abs(item.offsets.w) < 1e20f;
+  for (int i = 0; i < 4; ++i)
+    good = good && std::abs(item.transform[i]) < 1e20f && std::abs(item.perspective[i]) < 1e20f;
+  return good;
+}
+
 } // namespace gpgp::vector

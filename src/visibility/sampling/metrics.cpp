@@ -61,7 +61,7 @@ Result<void> Sampler::measure(VkCommandBuffer commandBuffer, const GpgpVisibilit
   record.info = &info.base;
   record.groups[kWordGroups] = {std::max(groupsOf256(words), 1u), 1, 1};
   record.conditions[kIfMeasuring] = true;
-  record.constants = std::as_bytes(std::span(&params, 1));
+  record.constants[0] = std::as_bytes(std::span(&params, 1));
   if (auto ok = check(record); !ok) return ok;
   return Worker::record(record);
 }

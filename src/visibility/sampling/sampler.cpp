@@ -82,7 +82,7 @@ Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInf
   record.conditions[kIfCommands] = params.hasCommands != 0;
   record.conditions[kIfDraws] = info.drawCommands.buffer || params.hasDrawIndices || params.hasDrawTriangles;
   record.conditions[kIfExtents] = params.hasExtents != 0;
-  record.constants = std::as_bytes(std::span(&params, 1));
+  record.constants[0] = std::as_bytes(std::span(&params, 1));
   if (auto ok = check(record); !ok) return ok;
   return Worker::record(record);
 }

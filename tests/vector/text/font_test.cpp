@@ -265,7 +265,7 @@ TEST(TextFont, SaysWhatFreeTypeSays) {
     EXPECT_NEAR(info.strikeThickness, os2->yStrikeoutSize * em, em);
     for (const uint32_t character : {U'A', U'é', U'क', U'ا', U'道', U'😀'}) {
       uint32_t glyph = ~0u;
-      EXPECT_EQ(gpgpFindGlyph(font.get(), character, &glyph), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpGetNominalGlyph(font.get(), character, &glyph), GPGP_SUCCESS);
       EXPECT_EQ(glyph, FT_Get_Char_Index(face, character));
     }
     FT_Done_Face(face);
@@ -313,7 +313,7 @@ TEST(TextFont, StrokesAreHandedOn) {
   GpgpStroke stroke{};
   stroke.width = 0.05f;
   GpgpGlyphOutlineInfo info = GPGP_GLYPH_OUTLINE_INFO_INIT;
-  ASSERT_EQ(gpgpFindGlyph(font.get(), 'A', &info.glyph), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetNominalGlyph(font.get(), 'A', &info.glyph), GPGP_SUCCESS);
   info.stroke = &stroke;
   info.color[0] = 0.25f;
   info.color[3] = 0.5f;
@@ -331,7 +331,7 @@ TEST(TextFont, BitmapGlyphsAreImages) {
   const FontHandle font = openFont("NotoColorEmoji.ttf");
   EXPECT_EQ(infoOf(font.get()).colors, GPGP_FONT_COLOR_BITMAPS);
   uint32_t id = 0;
-  ASSERT_EQ(gpgpFindGlyph(font.get(), 0x1f600, &id), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetNominalGlyph(font.get(), 0x1f600, &id), GPGP_SUCCESS);
   const Glyph glyph = glyphOf(font.get(), id);
   ASSERT_EQ(glyph.image.width, 136u);
   ASSERT_EQ(glyph.image.height, 128u);

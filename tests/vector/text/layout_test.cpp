@@ -91,7 +91,7 @@ TEST_F(TextMono, ClosedCasesOfLines) {
   EXPECT_NEAR(paper_.info.lines[0].width, 4 * cell_, 0.01f);
   EXPECT_EQ(paper_.info.lines[0].glyphCount, 5u); // one of them the soft hyphen's, without ink
   uint32_t hyphen = 0;
-  ASSERT_EQ(gpgpFindGlyph(font_.get(), 0x2010, &hyphen), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetNominalGlyph(font_.get(), 0x2010, &hyphen), GPGP_SUCCESS);
   EXPECT_EQ(paper_.info.glyphs[4].glyph, hyphen);
   GpgpTextInfo justified = GPGP_TEXT_INFO_INIT;
   justified.align = GPGP_TEXT_ALIGN_JUSTIFY;

@@ -274,7 +274,7 @@ TEST(TextShape, BytesThatAreNoTextAreReplacedAndReported) {
   const std::vector<uint32_t> invalid(paper.info.invalid, paper.info.invalid + paper.info.invalidCount);
   EXPECT_EQ(invalid, (std::vector<uint32_t>{1, 3, 6, 7, 9, 10, 11, 13}));
   uint32_t replacement = 0;
-  ASSERT_EQ(gpgpFindGlyph(font.get(), 0xfffd, &replacement), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetNominalGlyph(font.get(), 0xfffd, &replacement), GPGP_SUCCESS);
   ASSERT_EQ(paper.info.glyphCount, 5u + 8u);
   for (uint32_t i = 0; i < paper.info.glyphCount; ++i) {
     const GpgpTextGlyph& glyph = paper.info.glyphs[i];

@@ -1,0 +1,37 @@
+// How an item gets its place: a source's map after a move and a scale of its own.
+//
+// A glyph is placed in the units of its text, whose transform and perspective then apply; a drawing at 0, 0 in its own
+// size, which changes no bit of its map.
+#ifndef GPGP_SHADERS_VECTOR_PLACEMENT_H
+#define GPGP_SHADERS_VECTOR_PLACEMENT_H
+#include "layout.h"
+
+GPGP_SHADER_BEGIN
+
+// `inverse`, with offsets.x and offsets.y, stays the source's: gradients and images ask for it, glyphs have neither.
+GPGP_FN ItemRecord placed(ItemRecord source, PlacementRecord p) {
+  ItemRecord item = source;
+  const vec4 t = source.transform;
+  GPGP_PRECISE float a = t.x * p.size;
+  GPGP_PRECISE float b = t.y * p.size;
+  GPGP_PRECISE float c = t.z * p.size;
+  GPGP_PRECISE float d = t.w * p.size;
+  GPGP_PRECISE float e = source.offsets.z + (t.x * p.x + t.z * p.y);
+  GPGP_PRECISE float f = source.offsets.w + (t.y * p.x + t.w * p.y);
+  item.transform = vec4(a, b, c, d);
+  item.offsets = vec4(source.offsets.x, source.offsets.y, e, f);
+  const vec4 w = source.perspective;
+  GPGP_PRECISE float wx = w.x * p.size;
+  GPGP_PRECISE float wy = w.y * p.size;
+  GPGP_PRECISE float wz = w.z + (w.x * p.x + w.y * p.y);
+  item.perspective = vec4(wx, wy, wz, w.w);
+  item.color = vec4(p.color.x, p.color.y, p.color.z, p.color.w * source.color.w);
+  item.firstSegment = p.firstSegment;
+  item.firstPath = p.firstPath;
+  item.segments = p.segments;
+  item.paths = p.paths;
+  return item;
+}
+
+GPGP_SHADER_END
+#endif

@@ -1,0 +1,247 @@
+#include "vector/raster/glyph_set.h"
+
+#include "vector/raster/segments.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace gpgp::vector {
+namespace {
+using shader::BoxedPath;
+using shader::SegmentRecord;
+constexpr uint32_t kSegmentSize = sizeof(SegmentRecord) / 16, kPathSize = sizeof(BoxedPath) / 16; // vec4
+constexpr uint32_t kDefaultGlyphs = 4096;
+constexpr VkDeviceSize kDefaultBytes = VkDeviceSize(8) << 20;
+constexpr uint32_t kGenerations = 1u << (32 - GlyphSet::kPlaceBits);
+
+/// The outlines of glyphs in a row, and how many segments and patches there are up to the end of each path.
+struct Tables {
+  Outlines outlines;
+  std::pmr::vector<uint32_t> patches;
+
+  Tables(const Drawing& drawing, std::pmr::memory_resource* memory)
+      : outlines(makeOutlines(drawing, memory)), patches(drawing.paths.size(), 0, memory) {
+    for (const PatchRecord& patch : drawing.patches) ++patches[patch.path];
+    for (size_t i = 1; i < patches.size(); ++i) patches[i] += patches[i - 1];
+  }
+  uint32_t segmentsBefore(size_t path) const { return path ? outlines.ends[path - 1] : 0; }
+  uint32_t patchesBefore(size_t path) const { return path ? patches[path - 1] : 0; }
+  uint32_t sizeOf(size_t path, uint32_t paths) const { // vec4
+    return (segmentsBefore(path + paths) - segmentsBefore(path)) * kSegmentSize + paths * kPathSize;
+  }
+};
+} // namespace
+
+GlyphSet::GlyphSet(core::Context& owner, const char* name)
+    : Resident(owner, core::Kind::glyphSet, name), glyphs_(&owner.host()), places_(&owner.host()),
+      cells_(&owner.host()), freeBlocks_(&owner.host()) {}
+
+core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, const GpgpGlyphSetCreateInfo& info,
+                                                      const Glyphs* baked) {
+  const size_t bakedGlyphs = baked ? baked->entries.size() : 0;
+  VkDeviceSize bakedBytes = 0;
+  if (baked) {
+    const Tables tables(baked->drawing, &context.host());
+    bakedBytes = VkDeviceSize(tables.sizeOf(0, static_cast<uint32_t>(baked->drawing.paths.size()))) * 16;
+  }
+  const size_t maxGlyphs = info.maxGlyphs ? info.maxGlyphs : baked ? std::max<size_t>(bakedGlyphs, 1) : kDefaultGlyphs;
+  const VkDeviceSize maxBytes = info.maxBytes ? info.maxBytes : baked ? bakedBytes : kDefaultBytes;
+  if (maxGlyphs > kMaxGlyphs || maxBytes > context.device.limits.maxStorageBufferRange)
+    return core::makeError(GPGP_ERROR_UNSUPPORTED,
+                           "%zu glyphs of %llu bytes; a set has at most %u, and this device binds at most %u bytes",
+                           maxGlyphs, static_cast<unsigned long long>(maxBytes), kMaxGlyphs,
+                           context.device.limits.maxStorageBufferRange);
+  if (bakedGlyphs > maxGlyphs || bakedBytes > maxBytes / 16 * 16)
+    return core::makeError(
+        GPGP_ERROR_INVALID_ARGUMENT, "the baked glyphs need maxGlyphs %zu and maxBytes %llu; they are %zu and %llu",
+        bakedGlyphs, static_cast<unsigned long long>(bakedBytes), maxGlyphs, static_cast<unsigned long long>(maxBytes));
+  auto set = core::makeUnique<GlyphSet>(context.host(), context, info.label);
+  set->glyphs_ = std::pmr::vector<Glyph>(maxGlyphs, &context.host());
+  for (size_t i = maxGlyphs; i > 0; --i) {
+    set->glyphs_[i - 1].generation = 1;
+    set->places_.push_back(static_cast<uint32_t>(i - 1));
+  }
+  set->cells_.resize(std::bit_ceil(2 * maxGlyphs), kNone);
+  set->capacity_ = static_cast<uint32_t>(maxBytes / 16);
+  set->freeBlocks_.reserve(maxGlyphs + 2);
+  set->freeBlocks_.push_back({0, set->capacity_});
+  if (auto ok = set->makeGrowing(GPGP_SERVICE_VECTOR, maxBytes); !ok) return ok.error();
+  if (baked) set->add(*baked, 0);
+  return set;
+}
+
+bool GlyphSet::evictable(const Glyph& glyph) const {
+  return glyph.living && glyph.lastUsed <= context.safe() && hasSettled(glyph.upload);
+}
+
+bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
+  std::pmr::memory_resource* memory = &context.host();
+  const Tables tables(glyphs.drawing, memory);
+  std::pmr::vector<uint32_t> added(memory);
+  added.reserve(glyphs.entries.size());
+  reserveRanges(glyphs.entries.size());
+  struct Candidate {
+    uint64_t lastUsed;
+    uint32_t place;
+  };
+  std::pmr::vector<Candidate> candidates(memory); // for eviction, in that order; gathered where room is wanted
+  size_t taken = 0;
+  bool gathered = false;
+  uint64_t room = capacity_ - used_; // free, and what could be
+  const auto gather = [&] {
+    gathered = true;
+    for (uint32_t i = 0; i < glyphs_.size(); ++i)
+      if (evictable(glyphs_[i])) {
+        candidates.push_back({glyphs_[i].lastUsed, i});
+        room += glyphs_[i].size;
+      }
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      return a.lastUsed != b.lastUsed ? a.lastUsed < b.lastUsed : a.place < b.place;
+    });
+  };
+
+  uint64_t missing = 0, missingSize = 0;
+  size_t path = 0;
+  for (const Glyphs::Entry& entry : glyphs.entries) {
+    const size_t firstPath = path;
+    path += entry.paths;
+    if (cells_[cellOf(entry.key)] != kNone) continue;
+    const uint32_t size = tables.sizeOf(firstPath, entry.paths);
+    uint32_t block = kNone;
+    while (places_.empty() || (block = takeBlock(size)) == kNone) {
+      if (!gathered) gather();
+      if (taken == candidates.size() || room < size) break;
+      remove(candidates[taken++].place);
+      ++evicted_;
+    }
+    if (block == kNone) {
+      ++missing;
+      missingSize += size;
+      continue;
+    }
+    room -= size;
+    const uint32_t place = places_.back();
+    places_.pop_back();
+    cells_[cellOf(entry.key)] = place;
+    Glyph& glyph = glyphs_[place];
+    glyph.first = block;
+    glyph.size = size;
+    const uint32_t firstSegment = tables.segmentsBefore(firstPath);
+    glyph.segments = tables.segmentsBefore(path) - firstSegment;
+    glyph.paths = entry.paths;
+    glyph.patches = tables.patchesBefore(path) - tables.patchesBefore(firstPath);
+    glyph.living = true;
+    glyph.use(frame);
+    glyph.upload = 0;
+    glyph.key = entry.key;
+    std::byte* to = bytes().data() + size_t(block) * 16;
+    for (uint32_t i = 0; i < glyph.segments; ++i, to += sizeof(SegmentRecord)) {
+      SegmentRecord segment = tables.outlines.segments[firstSegment + i];
+      segment.path -= static_cast<uint32_t>(firstPath);
+      std::memcpy(to, &segment, sizeof segment);
+    }
+    for (size_t i = firstPath; i < path; ++i, to += sizeof(BoxedPath)) {
+      const BoxedPath boxed{tables.outlines.boxes[i], glyphs.drawing.paths[i]};
+      std::memcpy(to, &boxed, sizeof boxed);
+    }
+    if (size) added.push_back(place);
+  }
+  queueBlocks(added);
+  neededGlyphs_ = missing, needed_ = missingSize;
+  for (const Glyph& glyph : glyphs_)
+    if (glyph.living && !(missing && evictable(glyph))) {
+      ++neededGlyphs_;
+      needed_ += glyph.size;
+    }
+  return missing == 0;
+}
+
+void GlyphSet::queueBlocks(std::span<const uint32_t> places) {
+  for (size_t i = 0; i < places.size();) { // those that lie in a row go as one
+    const uint32_t first = glyphs_[places[i]].first;
+    uint32_t end = first;
+    size_t last = i;
+    for (; last < places.size() && glyphs_[places[last]].first == end; ++last) end += glyphs_[places[last]].size;
+    const uint64_t number = queue(VkDeviceSize(first) * 16, VkDeviceSize(end - first) * 16);
+    for (; i < last; ++i) glyphs_[places[i]].upload = number;
+  }
+}
+
+uint32_t GlyphSet::indexOf(uint64_t key) {
+  const uint32_t place = cells_[cellOf(key)];
+  if (place == kNone) return GPGP_GLYPH_NONE;
+  glyphs_[place].use(context.current());
+  return place | glyphs_[place].generation << kPlaceBits;
+}
+
+void GlyphSet::getInfo(GpgpGlyphSetInfo& info) const {
+  info.maxGlyphs = static_cast<uint32_t>(glyphs_.size());
+  info.glyphs = static_cast<uint32_t>(glyphs_.size() - places_.size());
+  info.bytes = VkDeviceSize(used_) * 16;
+  info.maxBytes = VkDeviceSize(capacity_) * 16;
+  info.evicted = evicted_;
+  info.glyphsNeeded = static_cast<uint32_t>(neededGlyphs_);
+  info.bytesNeeded = needed_ * 16;
+}
+
+namespace {
+size_t homeOf(uint64_t key, size_t cells) { // the upper bits of the product depend on all of the key's
+  return static_cast<size_t>(key * 0x9e3779b97f4a7c15u >> 32) & (cells - 1);
+}
+} // namespace
+
+size_t GlyphSet::cellOf(uint64_t key) const {
+  size_t cell = homeOf(key, cells_.size());
+  while (cells_[cell] != kNone && glyphs_[cells_[cell]].key != key) cell = (cell + 1) & (cells_.size() - 1);
+  return cell;
+}
+
+void GlyphSet::remove(uint32_t place) {
+  Glyph& glyph = glyphs_[place];
+  const size_t mask = cells_.size() - 1;
+  size_t hole = cellOf(glyph.key);
+  cells_[hole] = kNone;
+  for (size_t cell = (hole + 1) & mask; cells_[cell] != kNone; cell = (cell + 1) & mask) {
+    const size_t home = homeOf(glyphs_[cells_[cell]].key, cells_.size());
+    if (((cell - home) & mask) < ((cell - hole) & mask)) continue; // it would lie before its home
+    cells_[hole] = cells_[cell];
+    cells_[cell] = kNone;
+    hole = cell;
+  }
+  freeBlock({glyph.first, glyph.size});
+  glyph.living = false;
+  glyph.generation = glyph.generation + 1 == kGenerations ? 1 : glyph.generation + 1;
+  places_.push_back(place);
+}
+
+uint32_t GlyphSet::takeBlock(uint32_t size) {
+  if (size == 0) return 0;
+  for (Block& block : freeBlocks_) {
+    if (block.size < size) continue;
+    const uint32_t first = block.first;
+    block.first += size;
+    block.size -= size;
+    if (block.size == 0) freeBlocks_.erase(freeBlocks_.begin() + (&block - freeBlocks_.data()));
+    used_ += size;
+    return first;
+  }
+  return kNone;
+}
+
+void GlyphSet::freeBlock(Block block) {
+  if (block.size == 0) return;
+  used_ -= block.size;
+  auto after = std::lower_bound(freeBlocks_.begin(), freeBlocks_.end(), block,
+                                [](const Block& a, const Block& b) { return a.first < b.first; });
+  if (after != freeBlocks_.end() && block.first + block.size == after->first) {
+    block.size += after->size;
+    after = freeBlocks_.erase(after);
+  }
+  if (after != freeBlocks_.begin() && (after - 1)->first + (after - 1)->size == block.first)
+    (after - 1)->size += block.size;
+  else
+    freeBlocks_.insert(after, block);
+}
+
+} // namespace gpgp::vector

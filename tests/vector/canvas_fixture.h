@@ -1,0 +1,182 @@
+// A canvas that tests raster with: pixels read back, validation messages as failures, and the CPU twin.
+#pragma once
+#include "../device_test.h"
+#include "host/frames.h"
+#include "host/memory.h"
+#include "host/picture.h"
+#include "oracle.h"
+#include "vector/edge.h"
+#include "vector/patch/drawing.h"
+#include "vector/raster/place.h"
+#include "vector/raster/segments.h"
+
+#include <gpgp/vector.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace gpgp::test {
+
+inline float fromHalf(uint16_t h) {
+  const int exponent = (h >> 10) & 31;
+  const float mantissa = static_cast<float>(h & 1023);
+  const float value = exponent ? std::ldexp(1024 + mantissa, exponent - 25) : std::ldexp(mantissa, -24);
+  return h >> 15 ? -value : value;
+}
+
+struct Rgba {
+  float r = 0, g = 0, b = 0, a = 0;
+};
+
+struct CanvasTest : DeviceTest {
+  GpgpWorker canvas = nullptr;
+  bool exactArea = false, blendSrgb = false;
+  std::vector<GpgpCanvasImage> images;
+
+  void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t patches = 0,
+                  const GpgpTargetInfo* target = nullptr) {
+    GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+    info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+    info.maxWidth = info.maxHeight = size;
+    info.maxTileEntries = entries;
+    info.maxPatches = patches ? patches : 65536;
+    canvas = worker(gpgpCreateCanvas, info, target);
+  }
+  GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths) {
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = paths.data();
+    info.pathCount = static_cast<uint32_t>(paths.size());
+    GpgpAsset drawing = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), GPGP_SUCCESS) << lastMessage();
+    return drawing;
+  }
+  GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths, const std::vector<GpgpPathGroup>& groups,
+                        GpgpResult expected = GPGP_SUCCESS) {
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = paths.data();
+    info.pathCount = static_cast<uint32_t>(paths.size());
+    info.groups = groups.data();
+    info.groupCount = static_cast<uint32_t>(groups.size());
+    GpgpAsset drawing = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), expected) << lastMessage();
+    return drawing;
+  }
+  GpgpView makeView(uint32_t width, uint32_t height) {
+    GpgpCanvasViewCreateInfo info = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
+    info.width = width;
+    info.height = height;
+    GpgpView view = nullptr;
+    EXPECT_EQ(gpgpCreateCanvasView(context, &info, &view), GPGP_SUCCESS) << lastMessage();
+    return view;
+  }
+  static GpgpCanvasItem place(GpgpAsset drawing, float scale = 1, float x = 0, float y = 0) {
+    return {drawing, {scale, 0, 0, scale, x, y}, 1};
+  }
+
+  /// Rasterises into a half-float image and reads it back.
+  std::vector<Rgba> raster(const std::vector<GpgpCanvasItem>& items, uint32_t width, uint32_t height, uint32_t samples,
+                           GpgpCanvasReport* report = nullptr) {
+    const host::Image image(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = width, .height = height});
+    const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+    const GpgpFrame frame = advance();
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+      GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+      info.width = width;
+      info.height = height;
+      info.items = items.data();
+      info.itemCount = static_cast<uint32_t>(items.size());
+      info.samples = samples;
+      info.exactArea = exactArea;
+      info.blendSrgb = blendSrgb;
+      info.images = images.data();
+      info.imageCount = static_cast<uint32_t>(images.size());
+      info.target = image.target({}, after);
+      EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
+    });
+    advance();
+    GpgpCanvasReport taken = GPGP_CANVAS_REPORT_INIT;
+    EXPECT_EQ(gpgpGetCanvasReport(canvas, &taken), GPGP_SUCCESS);
+    if (report) *report = taken;
+    const std::vector<uint8_t> bytes = host::downloadImage(device, image, VK_IMAGE_LAYOUT_GENERAL);
+    std::vector<Rgba> pixels(size_t(width) * height);
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      uint16_t h[4];
+      std::memcpy(h, bytes.data() + i * 8, 8);
+      pixels[i] = {fromHalf(h[0]), fromHalf(h[1]), fromHalf(h[2]), fromHalf(h[3])};
+    }
+    return pixels;
+  }
+};
+
+inline TestPath randomShape(uint32_t seed, float size) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> at(-0.1f * size, 1.1f * size);
+  TestPath path;
+  path.move(at(random), at(random));
+  for (int i = 0; i < 8; ++i) {
+    const float a = at(random), b = at(random), c = at(random), d = at(random), e = at(random), f = at(random);
+    if (i % 3 == 0) path.line(a, b);
+    if (i % 3 == 1) path.quad(a, b, c, d);
+    if (i % 3 == 2) path.cubic(a, b, c, d, e, f);
+  }
+  path.close();
+  path.color = {1, 1, 1, 1};
+  return path;
+}
+
+/// The CPU twin: the samples that each path of a drawing covers, pixel by pixel, and by how much each pixel's area
+/// differs from them (1/256 of a sample). No tiles: every chord turns over all samples right of it in its rows.
+struct Twin {
+  struct Pixel {
+    uint32_t mask = 0;
+    int difference = 0;
+  };
+  Twin(const vector::Drawing& drawing, const shader::ItemRecord& item, uint32_t w, uint32_t h, uint32_t n)
+      : width(w), height(h), paths(drawing.paths.size(), std::vector<Pixel>(size_t(w) * h)) {
+    const vector::Outlines outlines = vector::makeOutlines(drawing, std::pmr::get_default_resource());
+    const shader::Grid grid{n, static_cast<int>(h * n), static_cast<int>(w)};
+    for (const shader::SegmentRecord& segment : outlines.segments) {
+      const uint32_t chords = shader::chordCount(grid, item, segment);
+      const float step = shader::chordStep(chords);
+      for (uint32_t i = 0; i < chords; ++i) {
+        shader::Chord chord;
+        if (!shader::chordOf(grid, item, segment, i, chords, step, chord)) continue;
+        for (int row = chord.first; row < chord.last; ++row) turn(paths[segment.path], grid, chord, row);
+      }
+    }
+    for (auto& path : paths)
+      for (uint32_t y = 0; y < h; ++y)
+        for (uint32_t x = 1; x < w; ++x) path[y * w + x].mask ^= path[y * w + x - 1].mask;
+  }
+  const Pixel& at(size_t path, uint32_t x, uint32_t y) const { return paths[path][y * width + x]; }
+
+  uint32_t width, height;
+  std::vector<std::vector<Pixel>> paths;
+
+private:
+  void turn(std::vector<Pixel>& path, const shader::Grid& grid, const shader::Chord& chord, int row) const {
+    const float x = shader::crossingOf(grid, chord, row);
+    const int column = shader::columnOf(grid, x);
+    if (column >= grid.columns) return;
+    const uint32_t bit = static_cast<uint32_t>(row) % grid.samples;
+    Pixel* pixel = &path[static_cast<uint32_t>(row) / grid.samples * width];
+    if (column < 0) {
+      pixel->mask ^= 1u << bit;
+      return;
+    }
+    const float part = x - static_cast<float>(column);
+    const int filled = static_cast<int>(part * 256);
+    const bool covered =
+        part <= (static_cast<float>(shader::sampleColumn(bit, grid.samples)) + 0.5f) * shader::sampleStep(grid.samples);
+    pixel[column].difference += (chord.side > 0 ? 1 : -1) * (covered ? -filled : 256 - filled);
+    if (covered)
+      pixel[column].mask ^= 1u << bit;
+    else if (column + 1 < grid.columns)
+      pixel[column + 1].mask ^= 1u << bit;
+  }
+};
+
+} // namespace gpgp::test
