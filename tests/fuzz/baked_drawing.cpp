@@ -3,23 +3,8 @@
 #include "vector/patch/drawing.h"
 #include "vector/raster/segments.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <cstring>
-
-namespace {
-/// As src/vector/patch/baked.cpp sums.
-uint64_t checksum(std::span<const std::byte> bytes) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (size_t i = 0; i < bytes.size(); i += 8) {
-    uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, bytes.size() - i));
-    hash = (hash ^ word) * 0x100000001b3u;
-    hash ^= hash >> 29;
-  }
-  return hash ^ bytes.size();
-}
-} // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace gpgp::vector;
