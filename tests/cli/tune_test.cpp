@@ -18,7 +18,7 @@ Floor = IfSizeLess(X, 2) { Roof | SubDiv(X) { -1: Scale(-0.5, -1, -1) Floor | -1
 TEST(CliTune, FindsAScheduleAndBakesIt) {
   const TemporaryFile grammar("tune.pga", kTower), baked("tune.gpgpg");
   const std::vector<std::string> arguments = {
-      "tune", grammar.path(),     "--axioms",     "3",     "--samples", "2",         "--repeat",
+      "tune", grammar.path(),     "--axioms",     "3",     "--samples", "5",         "--repeat",
       "3",    "--schedules-only", "--axiom-size", "8,4,1", "-o",        baked.path()};
   const json first = gpgpJson(arguments);
   EXPECT_EQ(first["terminals"], 3 * 4 * 3); // 8 becomes 2 and a wall, 2 becomes 0.5 and a wall, 0.5 is a roof
@@ -44,7 +44,7 @@ TEST(CliTune, TunedSchedulesAreKept) {
   const std::string old = before ? before : "";
   setenv("XDG_CACHE_HOME", cache.c_str(), 1);
   const json tuned =
-      gpgpJson({"tune", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--samples", "2", "--repeat", "3",
+      gpgpJson({"tune", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--samples", "5", "--repeat", "3",
                 "--schedules-only", "--matching", "on", "--search", "random", "--set", "floors=1"});
   EXPECT_EQ(tuned["matching"], true);
   EXPECT_EQ(std::filesystem::path(tuned["out"].get<std::string>()).parent_path(), cache / "gpgp");
