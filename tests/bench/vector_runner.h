@@ -12,7 +12,7 @@ namespace gpgp::bench {
 /// What a scene became, and the item that shows it.
 struct VectorMade {
   struct Destroy {
-    void operator()(GpgpAsset asset) const { gpgpDestroyAsset(asset); }
+    void operator()(GpgpAsset made) const { gpgpDestroyAsset(made); }
   };
   std::unique_ptr<GpgpAsset_T, Destroy> asset; ///< drawing or glyph set
   GpgpDrawingInfo facts = GPGP_DRAWING_INFO_INIT;
