@@ -12,7 +12,8 @@
  * size), x right, y down, origin on the baseline: a point of a glyph lies at (x, y) + size * point of the layout.
  * Places in a text are byte offsets into the UTF-8 that was given. Text is horizontal.
  *
- * Memory: the C++ heap; the libraries behind use theirs.
+ * Memory: the C++ heap; the libraries behind use theirs. A destroyed handle must not be used: there is no context that
+ * could tell.
  */
 #ifndef GPGP_TEXT_H
 #define GPGP_TEXT_H
@@ -172,7 +173,8 @@ typedef struct GpgpShaperCreateInfo {
  *  Errors: INVALID_STRUCT, OUT_OF_HOST_MEMORY, UNSUPPORTED (ICU finds no data). @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateShaper(const GpgpShaperCreateInfo* info, GpgpShaper* shaper);
 
-/** Destroys a shaper; its layouts keep what they have but take no new text. NULL is ignored. @threads handle */
+/** Destroys a shaper; its layouts keep what they have but take no new text and know no words. NULL is ignored. @threads
+ * handle */
 GPGP_API void GPGP_CALL gpgpDestroyShaper(GpgpShaper shaper);
 
 /** Since the shaper was made; runs and bytes: now. */
@@ -201,7 +203,7 @@ typedef struct GpgpTextStyle {
   const GpgpFont* fonts;
   uint32_t fontCount;
   float size;           /**< pixels an em; more than 0 */
-  float color[4];       /**< handed on to glyphs and decorations */
+  float color[4];       /**< linear RGB, straight alpha, 0 to 1, of glyphs and decorations; all 0: opaque black */
   float letterSpacing;  /**< pixels after each grapheme; other than 0, optional ligatures are off. Not in scripts that
                              join their letters */
   const char* language; /**< BCP 47, e.g. "ja" or "tr"; chooses forms of glyphs and, of a paragraph's first character,
@@ -253,7 +255,8 @@ typedef struct GpgpTextInfo {
   float lineSpacing;    /**< times the fonts' own distance of lines; 0: 1 */
   float lineHeight;     /**< pixels between lines instead; 0: the fonts' */
   float tabWidth;       /**< pixels between tab stops; 0: eight spaces */
-  const char* ellipsis; /**< terminated; ends a text that was cut off; NULL: "…" ("..." where no font has it) */
+  const char* ellipsis; /**< terminated; ends a text that was cut off, in one font and direction, whole also where it
+                             is wider than the width; NULL: "…" ("..." where no font has it) */
 } GpgpTextInfo;
 #define GPGP_TEXT_INFO_INIT GPGP_INIT(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO)
 

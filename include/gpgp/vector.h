@@ -8,8 +8,8 @@
  *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
  *   GpgpPath[] -> gpgpCreateDrawing                                made live, or
  *   drawing + GpgpPathEdit[] -> gpgpCreateDrawing                  edited
- *   gpgpCreateGlyphSet, GpgpGlyph[] -> gpgpAddGlyphs                  or gpgpCompileGlyphs -> blob ->
- * gpgpCreateGlyphSet
+ *   gpgpCreateGlyphSet, GpgpGlyph[] -> gpgpAddGlyphs               text, live, or
+ *   gpgpCompileGlyphs (libgpgp_compiler) -> blob -> gpgpCreateGlyphSet     text, baked
  *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
  */
 #ifndef GPGP_VECTOR_H
@@ -29,7 +29,7 @@ enum {
   GPGP_PATH_CUBIC = 3, /**< 3 points: control, control, end */
   GPGP_PATH_CLOSE = 4, /**< 0 points */
   GPGP_PATH_ARC = 5    /**< 3 points: radii (x, y); turn of the x axis in degrees, GPGP_ARC_... flags; end. SVG's
-                          elliptical    arc: radii that are too small grow, a radius of 0 makes it a line */
+                          elliptical arc: radii that are too small grow, a radius of 0 makes it a line */
 };
 enum {
   GPGP_ARC_LARGE = 1, /**< the longer of the two ways round */
@@ -165,7 +165,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBl
 typedef struct GpgpGlyph {
   uint64_t key;               /**< the engine's: font, glyph, stroke, ... */
   const GpgpPath* paths;      /**< in em units, +Y down, 0, 0 on the baseline where the glyph begins; painted in order;
-                                 filled      or stroked, in plain colours: without gradients, images and groups */
+                                 filled or stroked, in plain colours: without gradients, images and groups */
   uint32_t pathCount;         /**< 0: a blank */
   const VkBool32* foreground; /**< of each path: takes the text's colour instead of its own; NULL: all do */
 } GpgpGlyph;
@@ -183,7 +183,7 @@ typedef struct GpgpGlyphSource {
 #define GPGP_GLYPH_SOURCE_INIT GPGP_INIT(GpgpGlyphSource, GPGP_STRUCTURE_GLYPH_SOURCE)
 
 /** Converts glyphs to their baked form (.gpgpf), from which glyph sets are made. In libgpgp_compiler; free the blob
- * with gpgpFreeBlob. Errors: INVALID_ARGUMENT (glyph and path in the message), INVALID_STRUCT, UNSUPPORTED,
+ *  with gpgpFreeBlob. Errors: INVALID_ARGUMENT (glyph and path in the message), INVALID_STRUCT, UNSUPPORTED,
  *  OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGlyphs(const GpgpGlyphSource* source, GpgpBlob* blob);
 
@@ -252,9 +252,9 @@ typedef struct GpgpGlyphSetCreateInfo {
 #define GPGP_GLYPH_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO)
 
 /** Makes a set of glyphs, empty or with baked ones, in one device buffer of the budget's size. Glyphs are there once,
- * not once a size: canvases draw them at any size, turned and in perspective. Errors: INVALID_DATA, INVALID_ARGUMENT (a
- * budget that the baked glyphs exceed: the message says what they need), INVALID_STRUCT, UNSUPPORTED (a budget beyond
- * what the device binds), IO, OUT_OF_..._MEMORY.
+ *  not once a size: canvases draw them at any size, turned and in perspective.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT (a budget that the baked glyphs exceed: the message says what they need),
+ *  INVALID_STRUCT, UNSUPPORTED (a budget beyond what the device binds), IO, OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext context, const GpgpGlyphSetCreateInfo* info,
                                                  GpgpAsset* glyphSet);
@@ -264,7 +264,7 @@ enum { GPGP_GLYPH_NONE = 0 }; /**< the index of no glyph: drawn as nothing */
 /** Converts glyphs whose keys are new and queues them for upload; only they are uploaded. Glyphs that have been used
  *  longest ago make room for them: used is what a record drew, and what was added or found. What an unfinished frame
  *  uses stays. BUDGET_EXCEEDED: some did not find room, their indices are GPGP_GLYPH_NONE; gpgpGetGlyphSetInfo says
- * what all would have needed. Errors, after which nothing is added: INVALID_ARGUMENT (glyph and path in the message),
+ *  what all would have needed. Errors, after which nothing is added: INVALID_ARGUMENT (glyph and path in the message),
  *  UNSUPPORTED, OUT_OF_HOST_MEMORY. Not beside records that draw the set.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddGlyphs(GpgpAsset glyphSet, const GpgpGlyph* glyphs, uint32_t count,
@@ -283,7 +283,7 @@ typedef struct GpgpGlyphSetInfo {
   VkDeviceSize bytes, maxBytes;
   uint64_t evicted; /**< glyphs so far, and with them their indices */
   /** For all that the last gpgpAddGlyphs was given beside what unfinished frames use. Bytes lie in a row for each
-   * glyph, so that somewhat more may be needed. */
+   *  glyph, so that somewhat more may be needed. */
   uint32_t glyphsNeeded;
   VkDeviceSize bytesNeeded;
 } GpgpGlyphSetInfo;

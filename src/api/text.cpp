@@ -69,6 +69,8 @@ Result<void> checkStyle(const GpgpTextStyle& style, const char* name) {
   if (!(std::abs(style.letterSpacing) <= 1e5f))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.letterSpacing is %g; expected at most 100000", name,
                      static_cast<double>(style.letterSpacing));
+  for (const float value : style.color)
+    if (!(value >= 0 && value <= 1)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.color is out of range", name);
   if (style.featureCount && !style.features)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.featureCount is %u without features", name, style.featureCount);
   return {};
@@ -79,7 +81,10 @@ Result<void> checkStyle(const GpgpTextStyle& style, const char* name) {
 GpgpResult GPGP_CALL gpgpCreateFont(const GpgpFontCreateInfo* info, GpgpFont* font) {
   const bool typed = info && info->sType == GPGP_STRUCTURE_FONT_CREATE_INFO;
   const Messages messages{typed ? info->messageFn : nullptr, typed ? info->messageUserData : nullptr,
-                          typed && info->label ? info->label : ""};
+                          !typed           ? ""
+                          : info->label    ? info->label
+                          : info->filePath ? info->filePath
+                                           : ""};
   return guarded("gpgpCreateFont", &messages, [&]() -> Result<void> {
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_FONT_CREATE_INFO, "info"); !ok) return ok;
     if (!font) return invalid("font is NULL");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_set>
 
 using namespace gpgp;
 using namespace gpgp::api;
@@ -106,8 +107,10 @@ GpgpResult GPGP_CALL gpgpAddGlyphs(GpgpAsset handle, const GpgpGlyph* glyphs, ui
     if (auto ok = context.checkAlive(); !ok) return ok;
     // Converted before anything changes; those that are there already stay, as they are used now.
     std::pmr::vector<GpgpGlyph> wanted(&context.host());
+    std::pmr::unordered_set<uint64_t> keys(&context.host());
     for (uint32_t i = 0; i < count; ++i)
-      if ((*set)->indexOf(glyphs[i].key) == GPGP_GLYPH_NONE) wanted.push_back(glyphs[i]);
+      if ((*set)->indexOf(glyphs[i].key) == GPGP_GLYPH_NONE && keys.insert(glyphs[i].key).second)
+        wanted.push_back(glyphs[i]);
     const auto made = makeGlyphs(wanted, &context.host(), &context.jobSystem);
     if (!made) return made.error();
     const bool all = (*set)->add(*made, context.current());

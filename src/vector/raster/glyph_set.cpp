@@ -86,6 +86,7 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     uint32_t place;
   };
   std::pmr::vector<Candidate> candidates(memory); // for eviction, in that order; gathered where room is wanted
+  candidates.reserve(glyphs.entries.empty() ? 0 : glyphs_.size()); // below, nothing may fail
   size_t taken = 0;
   bool gathered = false;
   uint64_t room = capacity_ - used_; // free, and what could be
@@ -150,7 +151,7 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
   queueBlocks(added);
   neededGlyphs_ = missing, needed_ = missingSize;
   for (const Glyph& glyph : glyphs_)
-    if (glyph.living && !(missing && evictable(glyph))) {
+    if (glyph.living && !evictable(glyph)) {
       ++neededGlyphs_;
       needed_ += glyph.size;
     }

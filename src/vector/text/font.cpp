@@ -25,9 +25,9 @@ struct TagText {
 };
 
 Result<std::vector<char>> readFile(const char* path, const GpgpFileSystem* fileSystem) {
-  if (fileSystem) {
+  if (fileSystem && fileSystem->read) {
     size_t size = 0;
-    if (const GpgpResult code = fileSystem->read(fileSystem->userData, path, nullptr, 0, &size); code < 0)
+    if (const GpgpResult code = fileSystem->read(fileSystem->userData, path, nullptr, 0, &size); code != GPGP_SUCCESS)
       return makeError(GPGP_ERROR_IO, "cannot read %s: the file callback returned %d", path, code);
     std::vector<char> bytes(size);
     if (const GpgpResult code = fileSystem->read(fileSystem->userData, path, bytes.data(), bytes.size(), &size);

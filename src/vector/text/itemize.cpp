@@ -127,11 +127,21 @@ bool sameShaping(const Style& a, const Style& b) {
 
 } // namespace
 
+hb_script_t Itemizer::scriptOf(std::span<const char32_t> characters) {
+  for (const char32_t c : characters) {
+    UErrorCode error = U_ZERO_ERROR;
+    const UScriptCode script = uscript_getScript(static_cast<UChar32>(c), &error);
+    if (U_SUCCESS(error) && script != USCRIPT_COMMON && script != USCRIPT_INHERITED) return toHarfBuzz(script);
+  }
+  return HB_SCRIPT_COMMON;
+}
+
 Font* Itemizer::fontOf(std::span<const char32_t> grapheme, const Style& style) {
   const uint32_t count = style.source->fontCount;
   if (grapheme[0] >= 0x2000 && wantsColor(grapheme))
     for (uint32_t i = 0; i < count; ++i)
-      if (style.font(i)->info().colors && hasAll(*style.font(i), grapheme)) return style.font(i);
+      if ((style.font(i)->info().colors & ~uint32_t(GPGP_FONT_COLOR_SVG)) && hasAll(*style.font(i), grapheme))
+        return style.font(i);
   for (uint32_t i = 0; i < count; ++i)
     if (hasAll(*style.font(i), grapheme) || (grapheme[0] >= 0x80 && hasOtherForm(*style.font(i), grapheme)) ||
         (grapheme.size() > 1 && hasOtherForm(*style.font(i), grapheme)))

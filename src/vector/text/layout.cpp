@@ -140,7 +140,7 @@ void Layout::measure(const Run& run, uint32_t begin, uint32_t end, uint32_t firs
   }
   if (isCursive(run.script)) return;
   for (uint32_t c = begin; c < end; ++c) {
-    if (!(flags_[c] & kGrapheme)) continue;
+    if (!(flags_[c] & kGrapheme) || isIgnorable(text_.characters[c])) continue;
     extra_[c] = styles_[styleOf_[c]].source->letterSpacing;
     width_[c] += extra_[c];
   }

@@ -15,7 +15,12 @@ namespace gpgp::text {
 class Layout {
 public:
   static constexpr uint32_t kMagic = 0x6c61796f; // "layo"
-  explicit Layout(std::weak_ptr<Shaper> shaper, Messages to) : messages(std::move(to)), shaper_(std::move(shaper)) {}
+  uint32_t magic = kMagic;
+  const Messages messages;
+
+  explicit Layout(std::weak_ptr<Shaper> shaper, Messages to) : messages(std::move(to)), shaper_(std::move(shaper)) {
+    clear();
+  }
   Result<void> set(const GpgpTextInfo& info);
   void clear();
 
@@ -24,9 +29,6 @@ public:
   GpgpCaret caret(uint32_t offset) const;
   GpgpTextHit hit(float x, float y) const;
   Result<uint32_t> move(uint32_t offset, GpgpCaretMove move);
-
-  const Messages messages;
-  uint32_t magic = kMagic;
 
 private:
   struct Paragraph {

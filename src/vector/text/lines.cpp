@@ -81,12 +81,13 @@ Layout::Piece Layout::slice(uint32_t index, uint32_t begin, uint32_t end) {
   return piece;
 }
 
-/// Appends the run of an ellipsis or a hyphen at a character; `otherwise`: where no font of the style has the first.
+/// Appends the run of an ellipsis or a hyphen at a character, in one font; `otherwise`: where no font of the style has
+/// the first of it.
 uint32_t Layout::insert(const char* text, const char* otherwise, uint32_t style, uint8_t level, uint32_t at) {
   inserted_.assign(text);
-  const auto font = [&] { return Itemizer::fontOf(std::span(inserted_.characters).first(1), styles_[style]); };
+  const auto font = [&] { return Itemizer::fontOf(inserted_.characters, styles_[style]); };
   if (otherwise && !font()->has(inserted_.characters[0])) inserted_.assign(otherwise);
-  Run run{at, at, Run::Kind::inserted, level, HB_SCRIPT_COMMON, font(), style};
+  Run run{at, at, Run::Kind::inserted, level, Itemizer::scriptOf(inserted_.characters), font(), style};
   run.firstGlyph = static_cast<uint32_t>(shaped_.size());
   run.glyphCount = addGlyphs(run, at, at);
   runs_.push_back(run);
@@ -209,13 +210,14 @@ void Layout::cutOff(Line& line) {
                    line.level, end);
     room -= static_cast<double>(insertedWidth(runs_[index]));
   }
-  while (end > begin && inkWidth(begin, end) > room) end = inkEndOf(begin, graphemeAt(end - 1));
+  const auto shorter = [&] { return inkEndOf(begin, std::max(begin, graphemeAt(end - 1))); };
+  while (end > begin && inkWidth(begin, end) > room) end = shorter();
   for (;;) {
     pieces_.resize(line.firstPiece);
     line.end = end;
     build(line, index);
     if (line.ink <= limit || end == begin) break;
-    end = inkEndOf(begin, graphemeAt(end - 1));
+    end = shorter();
   }
   line.hard = true;
   for (uint32_t i = 0; index != ~0u && i < runs_[index].glyphCount; ++i)

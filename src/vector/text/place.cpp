@@ -11,6 +11,11 @@ bool isIdeographic(char32_t c) {
   return (c >= 0x2e80 && c <= 0xa4cf && c != 0x3000) || (c >= 0xf900 && c <= 0xfaff) || (c >= 0xff01 && c <= 0xff9f) ||
          (c >= 0x20000 && c <= 0x3ffff);
 }
+/// All 0: opaque black.
+void setColor(const GpgpTextStyle& style, float color[4]) {
+  std::copy_n(style.color, 4, color);
+  if (std::all_of(color, color + 4, [](float v) { return v == 0; })) color[3] = 1;
+}
 } // namespace
 
 /// Shares `room` among the gaps of a line, behind its last tab.
@@ -67,7 +72,7 @@ void Layout::emit(const Line& line, const Piece& piece, float baseline) {
                          text_.byteOf[glyph.cluster],
                          lineIndex,
                          style};
-    std::copy_n(styles_[style].source->color, 4, placed.color);
+    setColor(*styles_[style].source, placed.color);
     glyphs_.push_back(placed);
     pen += static_cast<double>(glyph.advance * size);
   }
@@ -95,7 +100,7 @@ void Layout::decorate(const Line& line, float baseline) {
                                     static_cast<uint32_t>(&line - cut_.data()),
                                     index,
                                     strike};
-      std::copy_n(style.color, 4, decoration.color);
+      setColor(style, decoration.color);
       decorations_.push_back(decoration);
     };
     for (uint32_t i = 0; i < line.pieceCount; ++i) {

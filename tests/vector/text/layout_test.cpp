@@ -396,6 +396,57 @@ TEST(TextLayout, SpansHaveTheirStyle) {
   }
 }
 
+TEST(TextLayout, WithoutATextThereIsNothingToAskFor) {
+  Paper paper;
+  EXPECT_EQ(paper.move(3, GPGP_CARET_NEXT), 0u);
+  EXPECT_TRUE(paper.selection(0, 9).empty());
+  EXPECT_EQ(paper.hit(1, 1).offset, 0u);
+  EXPECT_EQ(paper.caret(5).line, 0u);
+}
+
+TEST(TextLayout, LinesDoNotCutGraphemes) { // though UAX #14 allows breaks before skin tones, and marks behind spaces
+  GPGP_NEEDS_FONTS();
+  const FontHandle latin = openFont("DejaVuSans.ttf"), emoji = openFont("NotoColorEmoji.ttf");
+  const std::vector<GpgpFont> fonts = {latin.get(), emoji.get()};
+  const std::string tones = "\xf0\x9f\x98\x80\xf0\x9f\x8f\xbb";
+  for (const std::string& text : {tones + tones + tones, std::string("ab \xcc\x81"
+                                                                     "cd ef \xe2\x80\x8d"
+                                                                     "gh")})
+    for (const float width : {1.0f, 15.0f, 25.0f})
+      for (const uint32_t lines : {0u, 1u, 2u}) {
+        Paper paper;
+        GpgpTextInfo info = textInfo(text, fonts, 16, width);
+        info.maxLines = lines;
+        ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+        for (uint32_t i = 0; i < paper.info.lineCount; ++i) {
+          const uint32_t begin = paper.info.lines[i].begin;
+          EXPECT_EQ(begin % (text.size() == 24 ? 8 : 1), 0u);
+          EXPECT_EQ(paper.caret(begin).line, i) << begin;
+        }
+      }
+}
+
+TEST(TextLayout, ColoursAndInvisibleCharacters) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  const std::vector<GpgpFont> fonts = {font.get()};
+  Paper paper;
+  GpgpTextInfo info = textInfo("ab", fonts, 16);
+  std::fill_n(info.style.color, 4, 0.0f);
+  info.style.letterSpacing = 5;
+  ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+  EXPECT_EQ(paper.info.glyphs[0].color[3], 1.0f); // as where nothing is said
+  const float second = paper.info.glyphs[1].x;
+  const std::string joined = "a\xe2\x81\xa0"
+                             "b"; // U+2060
+  info.text = joined.data();
+  info.size = joined.size();
+  ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+  EXPECT_FLOAT_EQ(paper.info.glyphs[paper.info.glyphCount - 1].x, second);
+  info.style.color[1] = 2;
+  EXPECT_EQ(paper.set(info), GPGP_ERROR_INVALID_ARGUMENT);
+}
+
 TEST(TextLayout, RefusesWhatMakesNoSense) {
   GPGP_NEEDS_FONTS();
   FontHandle font = openFont("DejaVuSans.ttf");
