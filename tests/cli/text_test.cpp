@@ -40,12 +40,22 @@ size_t inked(const host::Picture& picture) {
   return count;
 }
 
+/// The first column with some.
+uint32_t firstInk(const host::Picture& picture) {
+  uint32_t first = picture.width;
+  for (uint32_t i = 0; i < picture.width * picture.height; ++i)
+    if (picture.rgba[size_t{i} * 4 + 3]) first = std::min(first, i % picture.width);
+  return first;
+}
+
+// A run takes more than a second on lavapipe, most of it for shaders; so each looks at several things.
+
 TEST_F(CliText, OneObjectAndAPicture) {
-  const json drawn = draw("Hello", {"--size", "20", "--repeat", "3", "--validate"});
+  const json drawn = draw("Hello fi", {"--size", "20", "--repeat", "3", "--validate"});
   EXPECT_EQ(keys(drawn), (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width",
                                                 "height", "shape_ms", "gpu_ms_median", "missing", "image"}));
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
-  EXPECT_EQ(drawn["glyphs"], 5);
+  EXPECT_EQ(drawn["glyphs"], 7) << "fi is a ligature";
   EXPECT_EQ(drawn["lines"], 1);
   EXPECT_EQ(drawn["missing"], json::array());
   EXPECT_GT(drawn["shape_ms"], 0);
@@ -53,109 +63,92 @@ TEST_F(CliText, OneObjectAndAPicture) {
   const host::Picture shown = seen();
   EXPECT_EQ(drawn["width"], shown.width);
   EXPECT_EQ(drawn["height"], shown.height);
-  // Advances of the font, in 2048 an em: H 1540, e 1260, l 569 twice, o 1253; a margin of 3 pixels on each side.
-  EXPECT_NEAR(drawn["width"].get<double>(), 6 + 20 * 5191 / 2048., 1.001);
+  // Advances of the font, in 2048 an em: H 1540, e 1260, l 569 twice, o 1253, space 651, fi 1290; margins of 3 pixels.
+  EXPECT_NEAR(drawn["width"].get<double>(), 6 + 20 * 7132 / 2048., 1.001);
   const size_t ink = inked(shown);
   EXPECT_GT(ink, shown.rgba.size() / 4 / 20);
   EXPECT_LT(ink, shown.rgba.size() / 4 / 2);
   for (uint32_t x = 0; x < shown.width; ++x) EXPECT_EQ(shown.rgba[x * 4 + 3], 0) << "the margin is clear";
 }
 
-TEST_F(CliText, FeaturesChooseGlyphs) {
-  EXPECT_EQ(draw("fi")["glyphs"], 1);
-  EXPECT_EQ(draw("fi", {"--features", "liga=0"})["glyphs"], 2);
-  EXPECT_EQ(draw("fi", {"--features", "kern,liga=0"})["glyphs"], 2);
-}
-
-TEST_F(CliText, LinesBreakToFit) {
-  EXPECT_EQ(draw("one two three", {"--size", "20"})["lines"], 1);
-  EXPECT_EQ(draw("one\ntwo\nthree", {"--size", "20"})["lines"], 3);
-  const json narrow = draw("one two three", {"--size", "20", "--width", "60"});
-  EXPECT_EQ(narrow["lines"], 3);
-  EXPECT_EQ(narrow["width"], 66);
-  const auto firstInk = [this] {
-    const host::Picture shown = seen();
-    uint32_t first = shown.width;
-    for (uint32_t i = 0; i < shown.width * shown.height; ++i)
-      if (shown.rgba[size_t{i} * 4 + 3]) first = std::min(first, i % shown.width);
-    return first;
+TEST_F(CliText, FeaturesWidthAndAlignment) {
+  const json drawn =
+      draw("fi fi fi\nfi", {"--size", "20", "--width", "36", "--align", "right", "--features", "kern,liga=0"});
+  EXPECT_EQ(drawn["glyphs"], 10) << "no ligatures";
+  EXPECT_EQ(drawn["lines"], 3) << "two by two, and where the text says";
+  EXPECT_EQ(drawn["width"], 42) << "as wide as lines may be";
+  // The last line ends where the first ends, of twice its width.
+  const host::Picture shown = seen();
+  const auto ends = [&shown](uint32_t from, uint32_t to) {
+    uint32_t last = 0;
+    for (uint32_t y = from; y < to; ++y)
+      for (uint32_t x = 0; x < shown.width; ++x)
+        if (shown.rgba[(size_t{y} * shown.width + x) * 4 + 3]) last = std::max(last, x);
+    return last;
   };
-  draw("i", {"--width", "200"});
-  EXPECT_LT(firstInk(), 12u);
-  draw("i", {"--width", "200", "--align", "right"});
-  EXPECT_GT(firstInk(), 190u);
-  draw("i", {"--width", "200", "--direction", "rtl"});
-  EXPECT_GT(firstInk(), 190u);
-  draw("i", {"--width", "200", "--align", "center"});
-  EXPECT_NEAR(firstInk(), 103, 4);
+  EXPECT_NEAR(ends(0, shown.height / 3), ends(shown.height * 2 / 3, shown.height), 1);
+  EXPECT_GT(ends(shown.height * 2 / 3, shown.height), 35u);
 }
 
 TEST_F(CliText, WhatNoFontHasIsNamedOnce) {
-  const ProcessResult result = gpgp({"text", sans, "a\u0915b\u0915\U0001F98A", picture.path(), "--json"});
+  const ProcessResult result = gpgp(
+      {"text", sans, "a\u0915\xff\u0915\U0001F98A", picture.path(), "--direction", "rtl", "--width", "500", "--json"});
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(json::parse(result.out, nullptr, false)["missing"], json({"U+0915", "U+1F98A"}));
   EXPECT_NE(result.err.find("U+0915, U+1F98A"), std::string::npos) << result.err;
-  EXPECT_EQ(draw("a\u0915b", {"--fallback", font("NotoSansDevanagari-Regular.ttf")})["missing"], json::array());
+  EXPECT_NE(result.err.find("the first at byte 4"), std::string::npos) << result.err;
+  EXPECT_GT(firstInk(seen()), 250u) << "a line from right to left begins at the right";
 }
 
 TEST_F(CliText, SevenScriptsWithFontsThatFallBack) {
-  const struct {
-    const char *text, *fallback;
-    uint32_t glyphs; ///< at least; 0: none of what is special
-  } scripts[] = {{"The office, ffi", nullptr, 12},
-                 {"الأبواب مفتوحة في الصباح", "NotoNaskhArabic-Regular.ttf", 18},
-                 {"החלון פתוח בבוקר", "NotoSansHebrew-Regular.ttf", 16},
-                 {"सुबह खिड़की क्षत्रिय श्रृंखला", "NotoSansDevanagari-Regular.ttf", 16},
-                 {"ตอนเช้าหน้าต่างเปิดอยู่น้ำ", "NotoSansThai-Regular.ttf", 20},
-                 {"朝、窓は「カタカナ」も少し。", "NotoSansCJK-Regular.ttc", 14},
-                 {"Το πρωί το παράθυρο", nullptr, 19}};
-  for (const auto& script : scripts) {
-    std::vector<std::string> more = {"--size", "24"};
-    if (script.fallback) more.insert(more.end(), {"--fallback", font(script.fallback)});
-    const json drawn = draw(script.text, more);
-    EXPECT_EQ(drawn["missing"], json::array()) << script.text;
-    EXPECT_GE(drawn["glyphs"], script.glyphs) << script.text;
-    EXPECT_GT(inked(seen()), drawn["glyphs"].get<size_t>() * 20) << script.text;
+  const json drawn =
+      draw("The office\n"
+           "الأبواب مفتوحة في الصباح\n"
+           "החלון פתוח בבוקר\n"
+           "सुबह खिड़की क्षत्रिय श्रृंखला\n"
+           "ตอนเช้าหน้าต่างเปิดอยู่น้ำ\n"
+           "朝、窓は「カタカナ」も少し。\n"
+           "Το πρωί το παράθυρο",
+           {"--size", "24", "--language", "ja", "--fallback", font("NotoNaskhArabic-Regular.ttf"), "--fallback",
+            font("NotoSansHebrew-Regular.ttf"), "--fallback", font("NotoSansDevanagari-Regular.ttf"), "--fallback",
+            font("NotoSansThai-Regular.ttf"), "--fallback", font("NotoSansCJK-Regular.ttc")});
+  EXPECT_EQ(drawn["missing"], json::array());
+  EXPECT_EQ(drawn["lines"], 7);
+  EXPECT_GT(drawn["glyphs"], 100);
+  const host::Picture shown = seen(); // each line has ink
+  for (uint32_t line = 0; line < 7; ++line) {
+    size_t ink = 0;
+    for (uint32_t y = shown.height * line / 7; y < shown.height * (line + 1) / 7; ++y)
+      for (uint32_t x = 0; x < shown.width; ++x) ink += shown.rgba[(size_t{y} * shown.width + x) * 4 + 3] > 127;
+    EXPECT_GT(ink, 200u) << "line " << line;
   }
-  const json all = draw("office الأبواب हिन्दी", {"--fallback", font("NotoNaskhArabic-Regular.ttf"), "--fallback",
-                                                 font("NotoSansDevanagari-Regular.ttf")});
-  EXPECT_EQ(all["missing"], json::array());
 }
 
-TEST_F(CliText, BitmapGlyphsArePainted) {
-  // A red heart, a green one and a blue one, 40 pixels an em: colours come from the font's pictures.
+TEST_F(CliText, BitmapGlyphsColoursAndLines) {
+  // A red heart, a green one and a blue one, whose colours come from the font's pictures; an underline in the text's.
   const json drawn = gpgpJson({"text", font("NotoColorEmoji.ttf"), "\u2764\uFE0F\U0001F49A\U0001F499", picture.path(),
-                               "--size", "40", "--background", "white", "--validate"});
+                               "--size", "64", "--color", "#ff8000", "--background", "#ff00ff", "--strike"});
   EXPECT_EQ(drawn["glyphs"], 3);
   const host::Picture shown = seen();
+  const auto pixel = [&shown](uint32_t x, uint32_t y) { return &shown.rgba[(size_t{y} * shown.width + x) * 4]; };
   for (uint32_t k = 0; k < 3; ++k) {
-    const uint32_t x = static_cast<uint32_t>((2.0 * k + 1) / 6 * shown.width);
-    const uint8_t* p = &shown.rgba[(size_t{shown.height / 2} * shown.width + x) * 4];
-    const uint32_t strongest = static_cast<uint32_t>(std::max_element(p, p + 3) - p);
-    EXPECT_EQ(strongest, k) << int(p[0]) << ' ' << int(p[1]) << ' ' << int(p[2]);
+    const uint8_t* p = pixel((2 * k + 1) * shown.width / 6, shown.height * 2 / 3); // below the strike
+    const auto strongest = static_cast<uint32_t>(std::max_element(p, p + 3) - p);
+    EXPECT_EQ(strongest, k) << int{p[0]} << ' ' << int{p[1]} << ' ' << int{p[2]};
     EXPECT_LT(*std::min_element(p, p + 3), 100);
   }
-}
-
-TEST_F(CliText, ColoursAndLines) {
-  // An underlined space: a rectangle in the text's colour, on a background.
-  draw("\u00A0\u00A0", {"--size", "64", "--underline", "--color", "#ff8000", "--background", "#0000ff"});
-  const host::Picture shown = seen();
-  size_t line = 0, behind = 0;
+  size_t line = 0;
   for (size_t i = 0; i < shown.rgba.size(); i += 4) {
     const uint8_t* p = &shown.rgba[i];
     line += p[0] == 255 && p[1] == 128 && p[2] == 0 && p[3] == 255;
-    behind += p[0] == 0 && p[1] == 0 && p[2] == 255 && p[3] == 255;
   }
-  // Two spaces of 651 / 2048 em; 90 / 2048 em thick, whole rows of it.
-  EXPECT_NEAR(double(line), 2 * 64 * 651 / 2048. * (64 * 90 / 2048. - 1), 50);
-  EXPECT_GT(behind, shown.rgba.size() / 4 * 9 / 10);
-  draw("\u00A0\u00A0", {"--size", "64"});
-  EXPECT_EQ(inked(seen()), 0u);
+  EXPECT_GT(line, shown.width - 20) << "a row at least, over the hearts";
+  EXPECT_LT(line, shown.width * 8);
+  EXPECT_EQ((std::vector<int>{pixel(0, 0)[0], pixel(0, 0)[1], pixel(0, 0)[2]}), (std::vector<int>{255, 0, 255}));
 }
 
 TEST_F(CliText, AnEmptyTextIsAPictureToo) {
-  const json drawn = draw("", {"--validate"});
+  const json drawn = draw("");
   EXPECT_EQ(drawn["glyphs"], 0);
   EXPECT_EQ(drawn["lines"], 1);
   EXPECT_EQ(inked(seen()), 0u);
@@ -231,22 +224,18 @@ host::Picture byCairo(const std::string& file, const std::string& text, double s
 
 TEST_F(CliText, IsThePictureThatCairoMakesOfFreeTypesOutlines) {
   const std::string text = "Quick brown waffles, 0123 & more (jumpy)";
-  for (const double size : {12.0, 37.5}) {
-    draw(text, {"--size", std::to_string(size), "--features", "kern=0,liga=0,clig=0", "--background", "white"});
-    const host::Picture ours = seen();
-    // The margin, and the font's ascent of 1901 / 2048 em above the baseline.
-    const double margin = std::ceil(std::max(2.0, size / 8));
-    const host::Picture theirs =
-        byCairo(sans, text, size, margin, margin + size * 1901 / 2048, ours.width, ours.height);
-    const host::PictureDifference off = host::compare(ours, theirs);
-    double ink = 0;
-    for (const uint8_t value : theirs.rgba) ink += 255 - value;
-    // Of 255: 16 samples where several edges meet are off by up to a quarter; all in all a few parts in a thousand.
-    EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), 10);
-    EXPECT_LE(off.mean, 1.0) << size;
-    EXPECT_LE(off.largest, 64u) << size;
-    std::printf("%g pixels an em: mean %.3f of 255, at most %u\n", size, off.mean, off.largest);
-  }
+  const double size = 14.5;
+  draw(text, {"--size", "14.5", "--features", "kern=0,liga=0,clig=0", "--background", "white"});
+  const host::Picture ours = seen();
+  // A margin of 2 pixels, and the font's ascent of 1901 / 2048 em above the baseline.
+  const host::Picture theirs = byCairo(sans, text, size, 2, 2 + size * 1901 / 2048, ours.width, ours.height);
+  const host::PictureDifference off = host::compare(ours, theirs);
+  double ink = 0;
+  for (const uint8_t value : theirs.rgba) ink += 255 - value;
+  // Of 255: where several edges meet in a pixel 16 samples are off by up to an eighth; nearly all else is exact.
+  EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), 10);
+  EXPECT_LE(off.mean, 0.6);
+  EXPECT_LE(off.largest, 32u);
 }
 #endif
 
@@ -261,15 +250,6 @@ TEST_F(CliText, WhatDoesNotFitAPictureIsAnError) {
   const std::string error = gpgpFailure({"text", sans, std::string(500, 'm'), picture.path(), "--size", "100"});
   EXPECT_NE(error.find("16384"), std::string::npos) << error;
   EXPECT_FALSE(std::filesystem::exists(picture.path()));
-}
-
-TEST_F(CliText, BytesThatAreNotUtf8AreSaid) {
-  const ProcessResult result = gpgp({"text", sans,
-                                     "a\xff"
-                                     "b",
-                                     picture.path(), "--json"});
-  EXPECT_EQ(result.exitCode, 0) << result.err;
-  EXPECT_NE(result.err.find("the first at byte 1"), std::string::npos) << result.err;
 }
 
 TEST_F(CliText, WrongUsage) {
