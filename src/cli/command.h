@@ -56,6 +56,7 @@ Work addSpawn(CLI::App& app);
 Work addGraph(CLI::App& app);
 Work addTune(CLI::App& app);
 Work addVector(CLI::App& app);
+Work addText(CLI::App& app);
 Work addBake(CLI::App& app);
 Work addVisibility(CLI::App& app);
 

@@ -17,6 +17,7 @@ Examples:
   gpgp spawn city.pga --axioms 64 --spacing 40 --image city.png
   gpgp graph city.pga --schedule rules --format svg -o city.svg
   gpgp vector tiger.svg --size 800x800 --out tiger.png
+  gpgp text DejaVuSans.ttf "Hello, world" hello.png --size 48
   gpgp visibility engine.glb --size 1280x720 --image seen.png
   gpgp spawn city.pga --json | jq .terminals  one object on standard output, nothing else there
 
@@ -50,6 +51,9 @@ int run(int argc, char** argv) {
 #endif
 #ifdef GPGP_CLI_VECTOR
   add(addVector);
+#endif
+#ifdef GPGP_CLI_TEXT
+  add(addText);
 #endif
 #if defined GPGP_CLI_SPAWN || defined GPGP_CLI_VECTOR
   add(addBake);

@@ -1,12 +1,13 @@
 // `gpgp vector`: converts an SVG to a drawing, rasterises it on the GPU and writes a picture.
+#include "cli/css_color.h"
 #include "cli/patch_tiles.h"
 #include "cli/session.h"
+#include "cli/textures.h"
 #include "cli/vector_images.h"
 #include "cli/vector_truth.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "vector/import/svg/import.h"
-#include "vector/import/svg/style.h"
 
 #include <gpgp/vector.h>
 
@@ -64,17 +65,6 @@ void GPGP_CALL onStage(void* userData, const char* stage, const char* svg, size_
   }
 }
 
-/// A CSS colour as sRGB encodes it, premultiplied; empty: nothing behind the drawing.
-void parseBackground(const std::string& text, float (&colour)[4]) {
-  if (text.empty()) return;
-  gpgp::vector::svg::Color c;
-  if (!gpgp::vector::svg::parseColor(text, c))
-    throw Usage("--background '" + text +
-                "' is no CSS colour; write for example white, '#fff' or 'rgb(255 0 0 / 50%)'");
-  const double parts[4] = {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
-  for (size_t i = 0; i < 4; ++i) colour[i] = static_cast<float>(parts[i]);
-}
-
 /// Fits the drawing into the picture as its preserveAspectRatio says.
 void fit(std::span<const uint8_t> bytes, const GpgpDrawingInfo& drawing, const Size& size, float (&transform)[6]) {
   const auto fitted = gpgp::vector::svg::fitPage(std::as_bytes(bytes), drawing.viewport, size.width, size.height);
@@ -85,7 +75,7 @@ void fit(std::span<const uint8_t> bytes, const GpgpDrawingInfo& drawing, const S
 
 /// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
 double compareWithTruth(std::span<const uint8_t> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
-                        const float (&background)[4], const Size& size) {
+                        const std::array<float, 4>& background, const Size& size) {
   gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
   const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet);
   if (!svg) throw Failure(svg.error().text);
@@ -93,13 +83,13 @@ double compareWithTruth(std::span<const uint8_t> bytes, std::span<const uint8_t>
   std::vector<float> pixels(painted.size());
   for (size_t i = 0; i < painted.size(); ++i) pixels[i] = static_cast<float>(painted[i]) / 255.0f;
   return psnrOverWhite(
-      pixels, vectorTruth(views.paths, views.groups, transform, background, size.width, size.height, Blend::Srgb),
+      pixels,
+      vectorTruth(views.paths, views.groups, transform, background.data(), size.width, size.height, Blend::Srgb),
       Blend::Srgb);
 }
 
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {
-  float background[4] = {};
-  parseBackground(options.background, background);
+  const std::array<float, 4> background = parseBackground(options.background);
   const std::vector<uint8_t> bytes = host::readFile(options.file);
   Messages messages;
   messages.showAll = options.allWarnings;
@@ -162,7 +152,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);
-  const VectorTextures textures(device, images.pictures(), *table, item.transform);
+  const Textures textures(device, shrunkToShown(images.pictures(), *table, item.transform));
   const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
   const bool area = options.antialiasing == "area";
   const uint32_t samples = area ? 16 : static_cast<uint32_t>(std::stoul(options.antialiasing));

@@ -1,34 +1,12 @@
 #include "cli/vector_images.h"
 
+#include "cli/textures.h"
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace gpgp::cli {
-namespace {
-
-/// Half as wide, or half as tall; straight alpha.
-host::Picture halved(const host::Picture& from, bool wide) {
-  host::Picture to{wide ? (from.width + 1) / 2 : from.width, wide ? from.height : (from.height + 1) / 2, {}};
-  to.rgba.resize(size_t{to.width} * to.height * 4);
-  for (uint32_t y = 0; y < to.height; ++y)
-    for (uint32_t x = 0; x < to.width; ++x) {
-      const uint32_t x0 = wide ? 2 * x : x, y0 = wide ? y : 2 * y;
-      const uint32_t x1 = wide ? std::min(x0 + 1, from.width - 1) : x0,
-                     y1 = wide ? y0 : std::min(y0 + 1, from.height - 1);
-      const uint8_t* a = &from.rgba[(size_t{y0} * from.width + x0) * 4];
-      const uint8_t* b = &from.rgba[(size_t{y1} * from.width + x1) * 4];
-      uint8_t* out = &to.rgba[(size_t{y} * to.width + x) * 4];
-      const int alpha = a[3] + b[3];
-      for (size_t c = 0; c < 3; ++c)
-        out[c] = static_cast<uint8_t>(alpha ? (a[c] * a[3] + b[c] * b[3] + alpha / 2) / alpha : 0);
-      out[3] = static_cast<uint8_t>((alpha + 1) / 2);
-    }
-  return to;
-}
-
-} // namespace
 
 void VectorImages::attach(GpgpSvgSource& source) {
   source.imageFn = decode;
@@ -51,17 +29,10 @@ VkBool32 GPGP_CALL VectorImages::decode(void* userData, uint32_t index, const vo
   }
 }
 
-VectorTextures::VectorTextures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures,
-                               const vector::Drawing& drawing, const float (&transform)[6])
-    : device_(device) {
-  if (pictures.empty()) return;
+std::vector<host::Picture> shrunkToShown(std::vector<host::Picture> pictures, const vector::Drawing& drawing,
+                                         const float (&transform)[6]) {
   const double scale = std::sqrt(std::abs(static_cast<double>(transform[0]) * static_cast<double>(transform[3])));
-  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
-  info.addressModeU = info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  host::check(device.vk().vkCreateSampler(device.device(), &info, nullptr, &sampler_), "vkCreateSampler");
   for (uint32_t i = 0; i < pictures.size(); ++i) {
-    host::Picture picture = pictures[i];
     double across = 0, down = 0; // of the texture, along a pixel, where it is shown largest
     for (const vector::PaintRecord& paint : drawing.paints) {
       if (paint.kind != shader::kPaintImage || paint.firstStop != i) continue;
@@ -70,20 +41,10 @@ VectorTextures::VectorTextures(host::HeadlessDevice& device, const std::vector<h
       across = across > 0 ? std::min(across, u) : u;
       down = down > 0 ? std::min(down, v) : v;
     }
-    while (across * picture.width >= 1.5 && picture.width > 1) picture = halved(picture, true);
-    while (down * picture.height >= 1.5 && picture.height > 1) picture = halved(picture, false);
-    textures_.emplace_back(device, host::ImageInfo{.format = VK_FORMAT_R8G8B8A8_SRGB,
-                                                   .width = picture.width,
-                                                   .height = picture.height,
-                                                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
-    const host::Image& image = textures_.back();
-    host::uploadImage(device, image, picture.rgba, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    views_.push_back({image.view(), sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_FALSE});
+    const double width = pictures[i].width, height = pictures[i].height;
+    pictures[i] = shrunk(std::move(pictures[i]), across * width, down * height);
   }
-}
-
-VectorTextures::~VectorTextures() {
-  if (sampler_) device_.vk().vkDestroySampler(device_.device(), sampler_, nullptr);
+  return pictures;
 }
 
 } // namespace gpgp::cli

@@ -1,7 +1,5 @@
-// The images inside an SVG as textures: decoded while it is compiled, uploaded when it is known how large they are
-// shown.
+// The images inside an SVG: decoded while it is compiled, shrunk when it is known how large they are shown.
 #pragma once
-#include "host/memory.h"
 #include "host/picture.h"
 
 #include <gpgp/vector.h>
@@ -29,22 +27,8 @@ private:
   std::vector<host::Picture> pictures_;
 };
 
-/// Textures of all of them, halved until they have about as many texels as the picture has pixels there: what mip
-/// levels do. The transform: drawing to pixel.
-class VectorTextures {
-public:
-  VectorTextures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures,
-                 const vector::Drawing& drawing, const float (&transform)[6]);
-  ~VectorTextures();
-  VectorTextures(const VectorTextures&) = delete;
-  VectorTextures& operator=(const VectorTextures&) = delete;
-  const std::vector<GpgpCanvasImage>& views() const { return views_; }
-
-private:
-  host::HeadlessDevice& device_;
-  VkSampler sampler_ = VK_NULL_HANDLE;
-  std::vector<host::Image> textures_;
-  std::vector<GpgpCanvasImage> views_;
-};
+/// Halved until they have about as many texels as the picture has pixels there. The transform: drawing to pixel.
+std::vector<host::Picture> shrunkToShown(std::vector<host::Picture> pictures, const vector::Drawing& drawing,
+                                         const float (&transform)[6]);
 
 } // namespace gpgp::cli

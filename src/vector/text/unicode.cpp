@@ -112,7 +112,8 @@ void Breaks::lines(const Text& text, uint32_t begin, uint32_t end, const std::st
   for (int32_t at = ubrk_next(iterator); at != UBRK_DONE; at = ubrk_next(iterator)) {
     const uint32_t index = text.indexOf[first + static_cast<size_t>(at)];
     if (index >= end || !(flags[index] & kGrapheme)) continue; // UAX #14 allows some that would cut a grapheme
-    flags[index] |= ubrk_getRuleStatus(iterator) >= UBRK_LINE_HARD ? kHardBreak : kSoftBreak;
+    // Not by ICU's rule status: of boundaries from a dictionary (Thai) that is the rule at the end of their stretch.
+    flags[index] |= isNewline(text.characters[index - 1]) ? kHardBreak : kSoftBreak;
   }
 }
 

@@ -1,0 +1,99 @@
+#include "cli/text_glyphs.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace gpgp::cli {
+
+PlacedPath::PlacedPath(const GpgpPath& path, float x, float y, float size)
+    : verbs_(path.verbs, path.verbs + path.verbCount), points_(path.points, path.points + size_t{path.pointCount} * 2),
+      path_(path) {
+  const auto placed = [&](float(&t)[6]) {
+    for (float& value : t) value *= size;
+    t[4] += x;
+    t[5] += y;
+  };
+  for (size_t i = 0; i < points_.size(); i += 2) {
+    points_[i] = points_[i] * size + x;
+    points_[i + 1] = points_[i + 1] * size + y;
+  }
+  if (path.gradient) {
+    gradient_ = *path.gradient;
+    stops_.assign(gradient_->stops, gradient_->stops + gradient_->stopCount);
+    gradient_->stops = stops_.data();
+    placed(gradient_->transform);
+  }
+  if (path.image) {
+    image_ = *path.image;
+    placed(image_->transform);
+  }
+}
+
+GpgpPath PlacedPath::view() const {
+  GpgpPath path = path_;
+  path.verbs = verbs_.data();
+  path.points = points_.data();
+  path.gradient = gradient_ ? &*gradient_ : nullptr;
+  path.image = image_ ? &*image_ : nullptr;
+  return path;
+}
+
+PageGlyphs collectGlyphs(TextPage& page) {
+  PageGlyphs all;
+  std::unordered_map<uint64_t, uint32_t> known;
+  const GpgpLayoutInfo& layout = page.layout();
+  for (uint32_t i = 0; i < layout.glyphCount; ++i) {
+    const GpgpTextGlyph& placed = layout.glyphs[i];
+    const uint64_t key = uint64_t{page.fontNumber(placed.font)} << 32 | placed.glyph;
+    const auto [at, isNew] = known.emplace(key, static_cast<uint32_t>(all.glyphs.size()));
+    all.which.push_back(at->second);
+    if (!isNew) continue;
+    PageGlyph& glyph = all.glyphs.emplace_back();
+    glyph.key = key;
+    page.outline(placed, [&glyph](const GpgpGlyphOutline& outline) {
+      for (uint32_t p = 0; p < outline.pathCount; ++p) {
+        glyph.paths.emplace_back(outline.paths[p]);
+        glyph.foreground.push_back(outline.foreground[p]);
+        glyph.verbs += outline.paths[p].verbCount;
+        glyph.plain = glyph.plain && !outline.paths[p].gradient;
+      }
+      std::copy(std::begin(outline.box), std::end(outline.box), glyph.box);
+      if (const GpgpGlyphImage* image = outline.image) {
+        glyph.plain = false;
+        glyph.picture = {
+            image->width, image->height, {image->pixels, image->pixels + size_t{image->width} * image->height * 4}};
+        std::copy(std::begin(image->box), std::end(image->box), glyph.box);
+      }
+    });
+  }
+  return all;
+}
+
+std::pair<GlyphSet, std::vector<uint32_t>> makeGlyphSet(Session& session, const PageGlyphs& all) {
+  std::vector<std::vector<GpgpPath>> paths(all.glyphs.size());
+  std::vector<GpgpGlyph> glyphs(all.glyphs.size());
+  for (size_t i = 0; i < glyphs.size(); ++i) {
+    const PageGlyph& glyph = all.glyphs[i];
+    glyphs[i].key = glyph.key;
+    if (!glyph.plain) continue; // a blank
+    for (const PlacedPath& path : glyph.paths) paths[i].push_back(path.view());
+    glyphs[i].paths = paths[i].data();
+    glyphs[i].pathCount = static_cast<uint32_t>(paths[i].size());
+    glyphs[i].foreground = glyph.foreground.data();
+  }
+  const auto count = static_cast<uint32_t>(glyphs.size());
+  std::vector<uint32_t> indices(count);
+  GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  info.label = "glyphs";
+  info.maxGlyphs = std::max(count, 1u);
+  for (;;) {
+    GlyphSet set = session.take(GlyphSet::create(session.context(), info), "gpgpCreateGlyphSet");
+    if (count == 0) return {std::move(set), indices};
+    const GpgpResult added = session.check(set.add(glyphs.data(), count, indices.data()), "gpgpAddGlyphs");
+    if (added != GPGP_BUDGET_EXCEEDED) return {std::move(set), indices};
+    const GpgpGlyphSetInfo needs = session.take(set.info(), "gpgpGetGlyphSetInfo");
+    info.maxBytes = std::max(needs.bytesNeeded, needs.maxBytes) * 5 / 4; // each glyph lies in a row
+  }
+}
+
+} // namespace gpgp::cli

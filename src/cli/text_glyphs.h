@@ -1,0 +1,46 @@
+// The glyphs of a page, each once, as a glyph set takes them.
+#pragma once
+#include "cli/session.h"
+#include "cli/text_page.h"
+#include "host/picture.h"
+
+namespace gpgp::cli {
+
+/// A copy of a path, turned into pixels: moved by (x, y) after it was scaled.
+class PlacedPath {
+public:
+  explicit PlacedPath(const GpgpPath& path, float x = 0, float y = 0, float size = 1);
+  PlacedPath(PlacedPath&&) = default; // stops stay where they are
+  PlacedPath& operator=(PlacedPath&&) = default;
+  /// Valid as long as this lies where it lies.
+  GpgpPath view() const;
+
+private:
+  std::vector<GpgpPathVerb> verbs_;
+  std::vector<float> points_;
+  std::vector<GpgpGradientStop> stops_;
+  std::optional<GpgpGradient> gradient_;
+  std::optional<GpgpImagePaint> image_;
+  GpgpPath path_;
+};
+
+struct PageGlyph {
+  uint64_t key = 0;              ///< number of the font, and glyph
+  std::vector<PlacedPath> paths; ///< in em
+  std::vector<VkBool32> foreground;
+  uint32_t verbs = 0;
+  host::Picture picture; ///< of a bitmap glyph; 0 x 0: none
+  float box[4] = {};     ///< em: left, top, right, bottom
+  bool plain = true;     ///< a glyph set takes it: it has no picture and no gradient
+};
+
+struct PageGlyphs {
+  std::vector<PageGlyph> glyphs;
+  std::vector<uint32_t> which; ///< of these, for each glyph of the page
+};
+PageGlyphs collectGlyphs(TextPage& page);
+
+/// A glyph set of the plain ones, as large as they need, and their indices; GPGP_GLYPH_NONE for the others.
+std::pair<GlyphSet, std::vector<uint32_t>> makeGlyphSet(Session& session, const PageGlyphs& glyphs);
+
+} // namespace gpgp::cli

@@ -1,0 +1,83 @@
+#include "cli/text_page.h"
+
+#include "cli/command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+namespace gpgp::cli {
+
+void GPGP_CALL TextPage::onMessage(void* userData, const GpgpMessage* message) {
+  const std::string text = (message->label[0] ? std::string(message->label) + ": " : std::string()) + message->text;
+  if (message->severity == GPGP_SEVERITY_ERROR)
+    static_cast<TextPage*>(userData)->error_ = text; // thrown, and so printed, by check
+  else
+    std::fprintf(stderr, "gpgp text: warning: %s\n", text.c_str());
+}
+
+void TextPage::check(GpgpResult result, const char* what) {
+  if (result < 0) throw Failure(error_.empty() ? std::string(what) + ": " + gpgpResultString(result) : error_);
+}
+
+TextPage::TextPage(const PageOptions& options) {
+  std::vector<GpgpFont> chain;
+  for (const std::string& file : options.fonts) {
+    GpgpFontCreateInfo info = GPGP_FONT_CREATE_INFO_INIT;
+    info.filePath = file.c_str();
+    info.messageFn = onMessage;
+    info.messageUserData = this;
+    Result<Font> font = Font::create(info);
+    if (!font) throw Failure(file + ": " + (error_.empty() ? font.name() : error_));
+    chain.push_back(fonts_.emplace_back(std::move(*font)));
+  }
+  GpgpShaperCreateInfo shaperInfo = GPGP_SHAPER_CREATE_INFO_INIT;
+  shaperInfo.messageFn = onMessage;
+  shaperInfo.messageUserData = this;
+  Result<Shaper> shaper = Shaper::create(shaperInfo);
+  check(shaper.code(), "gpgpCreateShaper");
+  shaper_ = std::move(*shaper);
+  Result<Layout> layout = shaper_.layout();
+  check(layout.code(), "gpgpCreateLayout");
+  layout_ = std::move(*layout);
+
+  GpgpTextInfo text = GPGP_TEXT_INFO_INIT;
+  text.text = options.text.data();
+  text.size = options.text.size();
+  text.style.fonts = chain.data();
+  text.style.fontCount = static_cast<uint32_t>(chain.size());
+  text.style.size = options.size;
+  std::copy(std::begin(options.color), std::end(options.color), text.style.color);
+  text.style.language = options.language.empty() ? nullptr : options.language.c_str();
+  text.style.features = options.features.data();
+  text.style.featureCount = static_cast<uint32_t>(options.features.size());
+  text.style.underline = options.underline ? VK_TRUE : VK_FALSE;
+  text.style.strike = options.strike ? VK_TRUE : VK_FALSE;
+  text.direction = options.direction;
+  text.align = options.align;
+  text.width = options.width;
+  const auto start = std::chrono::steady_clock::now();
+  check(layout_.set(text), "gpgpSetLayoutText");
+  shapeMilliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  check(gpgpGetLayoutInfo(layout_, &layoutInfo_), "gpgpGetLayoutInfo");
+
+  std::string list;
+  for (uint32_t i = 0; i < layoutInfo_.missingCount; ++i) {
+    char name[16];
+    std::snprintf(name, sizeof name, "U+%04X", layoutInfo_.missing[i].character);
+    if (std::find(missing_.begin(), missing_.end(), name) != missing_.end()) continue;
+    list += (missing_.empty() ? "" : ", ") + std::string(name);
+    missing_.emplace_back(name);
+  }
+  if (!missing_.empty()) std::fprintf(stderr, "gpgp text: warning: no font has %s\n", list.c_str());
+  if (layoutInfo_.invalidCount > 0)
+    std::fprintf(stderr, "gpgp text: warning: the text is not UTF-8 in %u places, the first at byte %u\n",
+                 layoutInfo_.invalidCount, layoutInfo_.invalid[0]);
+}
+
+uint32_t TextPage::fontNumber(GpgpFont font) const {
+  return static_cast<uint32_t>(
+      std::find_if(fonts_.begin(), fonts_.end(), [font](const Font& f) { return f.get() == font; }) - fonts_.begin());
+}
+
+} // namespace gpgp::cli

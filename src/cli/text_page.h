@@ -1,0 +1,54 @@
+// A string laid out in fonts: what `gpgp text` draws.
+#pragma once
+#include <gpgp/gpgp.hpp>
+
+#include <string>
+#include <vector>
+
+namespace gpgp::cli {
+
+struct PageOptions {
+  std::vector<std::string> fonts; ///< files; the first is the font, the others what falls back
+  std::string text, language;
+  float size = 32, width = 0; ///< pixels; width 0: lines end only where the text says
+  GpgpTextAlign align = GPGP_TEXT_ALIGN_START;
+  GpgpTextDirection direction = GPGP_TEXT_AUTO;
+  std::vector<GpgpFontFeature> features;
+  float color[4] = {0, 0, 0, 1}; ///< linear, straight alpha
+  bool underline = false, strike = false;
+};
+
+class TextPage {
+public:
+  /// Throws Failure, which names the file, where one is no font. Says on standard error which characters no font has,
+  /// and which bytes are not UTF-8.
+  explicit TextPage(const PageOptions& options);
+  TextPage(const TextPage&) = delete; // fonts and shaper refer to its messages
+  TextPage& operator=(const TextPage&) = delete;
+
+  const GpgpLayoutInfo& layout() const { return layoutInfo_; }
+  double shapeMilliseconds() const { return shapeMilliseconds_; } ///< of the layout, with an empty cache
+  /// Characters that no font has, each once, as "U+0041".
+  const std::vector<std::string>& missing() const { return missing_; }
+  uint32_t fontNumber(GpgpFont font) const;
+  /// gpgpGetGlyphOutline in the text's colour.
+  template <class Take> void outline(const GpgpTextGlyph& glyph, Take&& take) {
+    GpgpGlyphOutlineInfo info = init<GpgpGlyphOutlineInfo>();
+    info.glyph = glyph.glyph;
+    for (size_t i = 0; i < 4; ++i) info.color[i] = glyph.color[i];
+    check(fonts_[fontNumber(glyph.font)].outline(info, take), "gpgpGetGlyphOutline");
+  }
+
+private:
+  static void GPGP_CALL onMessage(void* userData, const GpgpMessage* message);
+  void check(GpgpResult result, const char* what);
+  std::string error_;
+  std::vector<Font> fonts_;
+  Shaper shaper_;
+  Layout layout_;
+  GpgpLayoutInfo layoutInfo_ = GPGP_LAYOUT_INFO_INIT;
+  double shapeMilliseconds_ = 0;
+  std::vector<std::string> missing_;
+};
+
+} // namespace gpgp::cli

@@ -1,0 +1,276 @@
+// `gpgp text`: counts that the fonts fix, seven scripts with what falls back, a picture beside the same outlines drawn
+// as paths by cairo, pixels of emoji and lines, and what is said about bad input.
+#include "files.h"
+#include "host/picture.h"
+#include "run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#ifdef GPGP_TEST_CAIRO
+#include <cairo.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include FT_OUTLINE_H
+#endif
+
+namespace gpgp::test {
+namespace {
+
+std::string font(const std::string& name) { return std::string(GPGP_TEST_DATA) + "/fetched/fonts/" + name; }
+
+struct CliText : testing::Test {
+  void SetUp() override {
+    if (!std::filesystem::exists(font("NotoColorEmoji.ttf")))
+      GTEST_SKIP() << "needs fonts: tests/data/fetch.sh --only fonts";
+  }
+  const std::string sans = font("DejaVuSans.ttf");
+  const TemporaryFile picture{std::string("text.png")};
+  json draw(const std::string& text, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"text", sans, text, picture.path()});
+    return gpgpJson(more);
+  }
+  host::Picture seen() const { return host::readPng(picture.path()); }
+};
+
+/// Pixels with some ink, on a clear background.
+size_t inked(const host::Picture& picture) {
+  size_t count = 0;
+  for (size_t i = 3; i < picture.rgba.size(); i += 4) count += picture.rgba[i] > 0;
+  return count;
+}
+
+/// The first column with some.
+uint32_t firstInk(const host::Picture& picture) {
+  uint32_t first = picture.width;
+  for (uint32_t i = 0; i < picture.width * picture.height; ++i)
+    if (picture.rgba[size_t{i} * 4 + 3]) first = std::min(first, i % picture.width);
+  return first;
+}
+
+// A run takes more than a second on lavapipe, most of it for shaders; so each looks at several things.
+
+TEST_F(CliText, OneObjectAndAPicture) {
+  const json drawn = draw("Hello fi", {"--size", "20", "--repeat", "3", "--validate"});
+  EXPECT_EQ(keys(drawn), (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width",
+                                                "height", "shape_ms", "gpu_ms_median", "missing", "image"}));
+  EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
+  EXPECT_EQ(drawn["glyphs"], 7) << "fi is a ligature";
+  EXPECT_EQ(drawn["lines"], 1);
+  EXPECT_EQ(drawn["missing"], json::array());
+  EXPECT_GT(drawn["shape_ms"], 0);
+  EXPECT_GT(drawn["gpu_ms_median"], 0);
+  const host::Picture shown = seen();
+  EXPECT_EQ(drawn["width"], shown.width);
+  EXPECT_EQ(drawn["height"], shown.height);
+  // Advances of the font, in 2048 an em: H 1540, e 1260, l 569 twice, o 1253, space 651, fi 1290; margins of 3 pixels.
+  EXPECT_NEAR(drawn["width"].get<double>(), 6 + 20 * 7132 / 2048., 1.001);
+  const size_t ink = inked(shown);
+  EXPECT_GT(ink, shown.rgba.size() / 4 / 20);
+  EXPECT_LT(ink, shown.rgba.size() / 4 / 2);
+  for (uint32_t x = 0; x < shown.width; ++x) EXPECT_EQ(shown.rgba[x * 4 + 3], 0) << "the margin is clear";
+}
+
+TEST_F(CliText, FeaturesWidthAndAlignment) {
+  const json drawn =
+      draw("fi fi fi\nfi", {"--size", "20", "--width", "36", "--align", "right", "--features", "kern,liga=0"});
+  EXPECT_EQ(drawn["glyphs"], 10) << "no ligatures";
+  EXPECT_EQ(drawn["lines"], 3) << "two by two, and where the text says";
+  EXPECT_EQ(drawn["width"], 42) << "as wide as lines may be";
+  // The last line ends where the first ends, of twice its width.
+  const host::Picture shown = seen();
+  const auto ends = [&shown](uint32_t from, uint32_t to) {
+    uint32_t last = 0;
+    for (uint32_t y = from; y < to; ++y)
+      for (uint32_t x = 0; x < shown.width; ++x)
+        if (shown.rgba[(size_t{y} * shown.width + x) * 4 + 3]) last = std::max(last, x);
+    return last;
+  };
+  EXPECT_NEAR(ends(0, shown.height / 3), ends(shown.height * 2 / 3, shown.height), 1);
+  EXPECT_GT(ends(shown.height * 2 / 3, shown.height), 35u);
+}
+
+TEST_F(CliText, WhatNoFontHasIsNamedOnce) {
+  const ProcessResult result = gpgp(
+      {"text", sans, "a\u0915\xff\u0915\U0001F98A", picture.path(), "--direction", "rtl", "--width", "500", "--json"});
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out, nullptr, false)["missing"], json({"U+0915", "U+1F98A"}));
+  EXPECT_NE(result.err.find("U+0915, U+1F98A"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("the first at byte 4"), std::string::npos) << result.err;
+  EXPECT_GT(firstInk(seen()), 250u) << "a line from right to left begins at the right";
+}
+
+TEST_F(CliText, SevenScriptsWithFontsThatFallBack) {
+  const json drawn =
+      draw("The office\n"
+           "الأبواب مفتوحة في الصباح\n"
+           "החלון פתוח בבוקר\n"
+           "सुबह खिड़की क्षत्रिय श्रृंखला\n"
+           "ตอนเช้าหน้าต่างเปิดอยู่น้ำ\n"
+           "朝、窓は「カタカナ」も少し。\n"
+           "Το πρωί το παράθυρο",
+           {"--size", "24", "--language", "ja", "--fallback", font("NotoNaskhArabic-Regular.ttf"), "--fallback",
+            font("NotoSansHebrew-Regular.ttf"), "--fallback", font("NotoSansDevanagari-Regular.ttf"), "--fallback",
+            font("NotoSansThai-Regular.ttf"), "--fallback", font("NotoSansCJK-Regular.ttc")});
+  EXPECT_EQ(drawn["missing"], json::array());
+  EXPECT_EQ(drawn["lines"], 7);
+  EXPECT_GT(drawn["glyphs"], 100);
+  const host::Picture shown = seen(); // each line has ink
+  for (uint32_t line = 0; line < 7; ++line) {
+    size_t ink = 0;
+    for (uint32_t y = shown.height * line / 7; y < shown.height * (line + 1) / 7; ++y)
+      for (uint32_t x = 0; x < shown.width; ++x) ink += shown.rgba[(size_t{y} * shown.width + x) * 4 + 3] > 127;
+    EXPECT_GT(ink, 200u) << "line " << line;
+  }
+}
+
+TEST_F(CliText, BitmapGlyphsColoursAndLines) {
+  // A red heart, a green one and a blue one, whose colours come from the font's pictures; an underline in the text's.
+  const json drawn = gpgpJson({"text", font("NotoColorEmoji.ttf"), "\u2764\uFE0F\U0001F49A\U0001F499", picture.path(),
+                               "--size", "64", "--color", "#ff8000", "--background", "#ff00ff", "--strike"});
+  EXPECT_EQ(drawn["glyphs"], 3);
+  const host::Picture shown = seen();
+  const auto pixel = [&shown](uint32_t x, uint32_t y) { return &shown.rgba[(size_t{y} * shown.width + x) * 4]; };
+  for (uint32_t k = 0; k < 3; ++k) {
+    const uint8_t* p = pixel((2 * k + 1) * shown.width / 6, shown.height * 2 / 3); // below the strike
+    const auto strongest = static_cast<uint32_t>(std::max_element(p, p + 3) - p);
+    EXPECT_EQ(strongest, k) << int{p[0]} << ' ' << int{p[1]} << ' ' << int{p[2]};
+    EXPECT_LT(*std::min_element(p, p + 3), 100);
+  }
+  size_t line = 0;
+  for (size_t i = 0; i < shown.rgba.size(); i += 4) {
+    const uint8_t* p = &shown.rgba[i];
+    line += p[0] == 255 && p[1] == 128 && p[2] == 0 && p[3] == 255;
+  }
+  EXPECT_GT(line, shown.width - 20) << "a row at least, over the hearts";
+  EXPECT_LT(line, shown.width * 8);
+  EXPECT_EQ((std::vector<int>{pixel(0, 0)[0], pixel(0, 0)[1], pixel(0, 0)[2]}), (std::vector<int>{255, 0, 255}));
+}
+
+TEST_F(CliText, AnEmptyTextIsAPictureToo) {
+  const json drawn = draw("");
+  EXPECT_EQ(drawn["glyphs"], 0);
+  EXPECT_EQ(drawn["lines"], 1);
+  EXPECT_EQ(inked(seen()), 0u);
+}
+
+#ifdef GPGP_TEST_CAIRO
+/// Letters side by side by the font's own advances, their outlines filled by cairo, black on white.
+host::Picture byCairo(const std::string& file, const std::string& text, double size, double x, double y, uint32_t width,
+                      uint32_t height) {
+  FT_Library library = nullptr;
+  FT_Face face = nullptr;
+  EXPECT_EQ(FT_Init_FreeType(&library), 0);
+  EXPECT_EQ(FT_New_Face(library, file.c_str(), 0, &face), 0);
+  cairo_surface_t* surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height));
+  cairo_t* cairo = cairo_create(surface);
+  cairo_set_source_rgb(cairo, 1, 1, 1);
+  cairo_paint(cairo);
+  cairo_set_source_rgb(cairo, 0, 0, 0);
+  cairo_set_tolerance(cairo, 0.01);
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_BEST);
+  for (const char c : text) {
+    EXPECT_EQ(FT_Load_Char(face, static_cast<FT_ULong>(c), FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING), 0);
+    struct Pen {
+      cairo_t* cairo;
+      double x, y, scale;
+      void point(const FT_Vector* v, double& px, double& py) const {
+        px = x + static_cast<double>(v->x) * scale;
+        py = y - static_cast<double>(v->y) * scale;
+      }
+    } pen{cairo, x, y, size / face->units_per_EM};
+    FT_Outline_Funcs functions{};
+    functions.move_to = [](const FT_Vector* to, void* user) {
+      double px = 0, py = 0;
+      static_cast<Pen*>(user)->point(to, px, py);
+      cairo_move_to(static_cast<Pen*>(user)->cairo, px, py);
+      return 0;
+    };
+    functions.line_to = [](const FT_Vector* to, void* user) {
+      double px = 0, py = 0;
+      static_cast<Pen*>(user)->point(to, px, py);
+      cairo_line_to(static_cast<Pen*>(user)->cairo, px, py);
+      return 0;
+    };
+    functions.conic_to = [](const FT_Vector* control, const FT_Vector* to, void* user) {
+      const Pen& p = *static_cast<Pen*>(user);
+      double x0 = 0, y0 = 0, x1 = 0, y1 = 0, x2 = 0, y2 = 0;
+      cairo_get_current_point(p.cairo, &x0, &y0);
+      p.point(control, x1, y1);
+      p.point(to, x2, y2);
+      cairo_curve_to(p.cairo, x0 + (x1 - x0) * 2 / 3, y0 + (y1 - y0) * 2 / 3, x2 + (x1 - x2) * 2 / 3,
+                     y2 + (y1 - y2) * 2 / 3, x2, y2);
+      return 0;
+    };
+    EXPECT_EQ(FT_Outline_Decompose(&face->glyph->outline, &functions, &pen), 0);
+    cairo_fill(cairo);
+    x += static_cast<double>(face->glyph->advance.x) * pen.scale;
+  }
+  cairo_surface_flush(surface);
+  host::Picture picture{width, height, std::vector<uint8_t>(size_t{width} * height * 4, 255)};
+  const int stride = cairo_image_surface_get_stride(surface);
+  for (uint32_t row = 0; row < height; ++row)
+    for (uint32_t column = 0; column < width; ++column)
+      for (size_t k = 0; k < 3; ++k)
+        picture.rgba[(size_t{row} * width + column) * 4 + k] =
+            cairo_image_surface_get_data(surface)[row * static_cast<uint32_t>(stride) + column * 4];
+  cairo_destroy(cairo);
+  cairo_surface_destroy(surface);
+  FT_Done_Face(face);
+  FT_Done_FreeType(library);
+  return picture;
+}
+
+TEST_F(CliText, IsThePictureThatCairoMakesOfFreeTypesOutlines) {
+  const std::string text = "Quick brown waffles, 0123 & more (jumpy)";
+  const double size = 14.5;
+  draw(text, {"--size", "14.5", "--features", "kern=0,liga=0,clig=0", "--background", "white"});
+  const host::Picture ours = seen();
+  // A margin of 2 pixels, and the font's ascent of 1901 / 2048 em above the baseline.
+  const host::Picture theirs = byCairo(sans, text, size, 2, 2 + size * 1901 / 2048, ours.width, ours.height);
+  const host::PictureDifference off = host::compare(ours, theirs);
+  double ink = 0;
+  for (const uint8_t value : theirs.rgba) ink += 255 - value;
+  // Of 255: where several edges meet in a pixel 16 samples are off by up to an eighth; nearly all else is exact.
+  EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), 10);
+  EXPECT_LE(off.mean, 0.6);
+  EXPECT_LE(off.largest, 32u);
+}
+#endif
+
+TEST_F(CliText, WhatIsNoFontIsNamed) {
+  const TemporaryFile file("no.ttf", "this is no font");
+  EXPECT_NE(gpgpFailure({"text", file.path(), "a", picture.path()}).find("no.ttf"), std::string::npos);
+  EXPECT_NE(gpgpFailure({"text", sans, "a", picture.path(), "--fallback", file.path()}).find("no.ttf"),
+            std::string::npos);
+}
+
+TEST_F(CliText, WhatDoesNotFitAPictureIsAnError) {
+  const std::string error = gpgpFailure({"text", sans, std::string(500, 'm'), picture.path(), "--size", "100"});
+  EXPECT_NE(error.find("16384"), std::string::npos) << error;
+  EXPECT_FALSE(std::filesystem::exists(picture.path()));
+}
+
+TEST_F(CliText, WrongUsage) {
+  const std::string out = picture.path();
+  expectWrongUsage({{"text"},
+                    {"text", sans},
+                    {"text", sans, "a"},
+                    {"text", "no_such_font.ttf", "a", out},
+                    {"text", sans, "a", out, "--fallback", "no_such_font.ttf"},
+                    {"text", sans, "a", out, "--size", "0"},
+                    {"text", sans, "a", out, "--size", "big"},
+                    {"text", sans, "a", out, "--width", "-5"},
+                    {"text", sans, "a", out, "--align", "middle"},
+                    {"text", sans, "a", out, "--direction", "up"},
+                    {"text", sans, "a", out, "--color", "reddish"},
+                    {"text", sans, "a", out, "--background", "ffffff"},
+                    {"text", sans, "a", out, "--features", "lig"},
+                    {"text", sans, "a", out, "--features", "liga=on"},
+                    {"text", sans, "a", out, "--features", "liga="},
+                    {"text", sans, "a", out, "--repeat", "0"}});
+}
+
+} // namespace
+} // namespace gpgp::test
