@@ -13,6 +13,7 @@
 // not there.
 #include "../cli/process.h"
 #include "cli/session.h"
+#include "cli/textures.h"
 #include "cli/vector_images.h"
 #include "cli/vector_truth.h"
 #include "host/files.h"
@@ -109,7 +110,7 @@ public:
     std::copy_n(transform, 6, item.transform);
     const auto table = vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                          std::pmr::get_default_resource());
-    const cli::VectorTextures textures(session_.device(), images.pictures(), *table, transform);
+    const cli::Textures textures(session_.device(), cli::shrunkToShown(images.pictures(), *table, transform));
     compared.images = !images.pictures().empty();
     const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     const auto measured = session_.measure(
