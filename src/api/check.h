@@ -1,6 +1,7 @@
 // What every C function does around its call into a service: resolve handles, check struct types, translate errors
 // and exceptions into a result and one message.
 #pragma once
+#include "api/check_struct.h"
 #include "core/context.h"
 #include "core/resident.h"
 #include "core/worker.h"
@@ -80,16 +81,6 @@ Result<T*> resolve(Call& call, Handle handle, Kind kind, const char* name, const
   if (context && &object->context != context)
     return makeError(GPGP_ERROR_INVALID_HANDLE, "%s belongs to another context", name);
   return static_cast<T*>(object);
-}
-
-/// A descriptor struct: not NULL, the right sType, an empty pNext chain.
-template <class T> Result<void> checkStruct(const T* info, GpgpStructureType type, const char* name) {
-  if (!info) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s is NULL", name);
-  if (info->sType != type)
-    return makeError(GPGP_ERROR_INVALID_STRUCT, "%s->sType is %d; expected %d", name, info->sType, type);
-  if (info->pNext)
-    return makeError(GPGP_ERROR_INVALID_STRUCT, "%s->pNext must be NULL: no extension struct is known here", name);
-  return {};
 }
 
 /// The common beginning of every record function, after the worker was resolved.

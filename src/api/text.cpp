@@ -1,4 +1,5 @@
 // The C functions of text.h, in libgpgp_text, which has no context: messages go to those who made the object.
+#include "api/check_struct.h"
 #include "vector/text/layout.h"
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 
 using namespace gpgp;
 using namespace gpgp::text;
+using api::checkStruct;
 
 namespace {
 
@@ -43,15 +45,6 @@ Layout* toLayout(GpgpLayout handle) {
   return layout && layout->magic == Layout::kMagic ? layout : nullptr;
 }
 
-template <class T> Result<void> checkStruct(const T* info, GpgpStructureType type, const char* name) {
-  if (!info) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s is NULL", name);
-  if (info->sType != type)
-    return makeError(GPGP_ERROR_INVALID_STRUCT, "%s->sType is %d; expected %d", name, info->sType, type);
-  if (info->pNext)
-    return makeError(GPGP_ERROR_INVALID_STRUCT, "%s->pNext must be NULL: no extension struct is known here", name);
-  return {};
-}
-
 core::Error invalid(const char* what) { return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s", what); }
 core::Error notA(const char* name, const char* kind) {
   return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is NULL or destroyed; expected a %s", name, kind);
@@ -80,11 +73,7 @@ Result<void> checkStyle(const GpgpTextStyle& style, const char* name) {
 
 GpgpResult GPGP_CALL gpgpCreateFont(const GpgpFontCreateInfo* info, GpgpFont* font) {
   const bool typed = info && info->sType == GPGP_STRUCTURE_FONT_CREATE_INFO;
-  const Messages messages{typed ? info->messageFn : nullptr, typed ? info->messageUserData : nullptr,
-                          !typed           ? ""
-                          : info->label    ? info->label
-                          : info->filePath ? info->filePath
-                                           : ""};
+  const Messages messages = typed ? messagesOf(*info) : Messages{};
   return guarded("gpgpCreateFont", &messages, [&]() -> Result<void> {
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_FONT_CREATE_INFO, "info"); !ok) return ok;
     if (!font) return invalid("font is NULL");

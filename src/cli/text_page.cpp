@@ -28,7 +28,7 @@ TextPage::TextPage(const PageOptions& options) {
     info.messageFn = onMessage;
     info.messageUserData = this;
     Result<Font> font = Font::create(info);
-    if (!font) throw Failure(file + ": " + (error_.empty() ? font.name() : error_));
+    check(font.code(), "gpgpCreateFont"); // the message names the file
     chain.push_back(fonts_.emplace_back(std::move(*font)));
   }
   GpgpShaperCreateInfo shaperInfo = GPGP_SHAPER_CREATE_INFO_INIT;

@@ -209,7 +209,7 @@ void Font::readMetrics() {
 
 Result<Font*> Font::create(const GpgpFontCreateInfo& info) {
   FontReference font(new Font);
-  font->messages = {info.messageFn, info.messageUserData, info.label ? info.label : info.filePath ? info.filePath : ""};
+  font->messages = messagesOf(info);
   font->open_ = std::make_unique<OpenFont>();
   if (auto ok = font->openBoth(info); !ok) return ok.error();
   font->readNames();

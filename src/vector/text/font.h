@@ -45,6 +45,11 @@ struct Messages {
   }
 };
 
+/// Where a font's messages go, also before there is one.
+inline Messages messagesOf(const GpgpFontCreateInfo& info) {
+  return {info.messageFn, info.messageUserData, info.label ? info.label : info.filePath ? info.filePath : ""};
+}
+
 /// What a font has open.
 struct OpenFont {
   std::vector<char> bytes; // empty where the engine keeps them
