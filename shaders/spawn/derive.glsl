@@ -14,7 +14,6 @@
 // it.
 layout(constant_id = 0) const uint groupSize = 64;
 layout(constant_id = 1) const uint stackShapes = 1024;
-layout(constant_id = 2) const uint vertexStage = 0; // not 0: vertices are written, staged in 16 bytes an invocation
 layout(local_size_x_id = 0) in;
 #ifdef GPGP_COLLIDERS
 layout(push_constant) uniform Push {
@@ -37,58 +36,7 @@ shared uint hashX;
 shared uint hashY;
 shared uint deepest;
 
-#ifdef GPGP_SUBGROUPS
-shared uint subgroupSums[groupSize];
-uint laneIndex() { return gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
-/// Sums of value over the invocations before this one, and over all. A barrier for shared memory.
-uint sumBefore(uint value, out uint total) {
-  const uint own = subgroupExclusiveAdd(value);
-  if (gl_NumSubgroups == 1) {
-    total = subgroupAdd(value);
-    barrier();
-    return own;
-  }
-  if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) subgroupSums[gl_SubgroupID] = own + value;
-  barrier();
-  uint before = 0;
-  total = 0;
-  for (uint i = 0; i < gl_NumSubgroups; ++i) {
-    if (i == gl_SubgroupID) before = total;
-    total += subgroupSums[i];
-  }
-  barrier();
-  return before + own;
-}
-/// How many invocations before this one have a, in the low half, and b, in the high half; counts: of all. No invocation
-/// has both. A barrier for shared memory.
-uint ranksOf(bool a, bool b, out uint counts) {
-  if (gl_NumSubgroups > 1) return sumBefore((a ? 1 : 0) | (b ? 0x10000u : 0), counts);
-  const uvec4 as = subgroupBallot(a);
-  const uvec4 bs = subgroupBallot(b);
-  counts = subgroupBallotBitCount(as) | (subgroupBallotBitCount(bs) << 16);
-  barrier();
-  return subgroupBallotExclusiveBitCount(as) | (subgroupBallotExclusiveBitCount(bs) << 16);
-}
-#else
-shared uint sums[groupSize];
-uint laneIndex() { return gl_LocalInvocationIndex; }
-uint sumBefore(uint value, out uint total) {
-  const uint lane = laneIndex();
-  uint sum = value;
-  for (uint stride = 1; stride < groupSize; stride *= 2) {
-    sums[lane] = sum;
-    barrier();
-    if (lane >= stride) sum += sums[lane - stride];
-    barrier();
-  }
-  sums[lane] = sum;
-  barrier();
-  total = sums[groupSize - 1];
-  barrier();
-  return sum - value;
-}
-uint ranksOf(bool a, bool b, out uint counts) { return sumBefore((a ? 1 : 0) | (b ? 0x10000u : 0), counts); }
-#endif
+#include "spawn/lanes.glsl"
 
 /// A barrier for the workgroup's stack as well. It stands before the stack is read, when what was written has long
 /// arrived, not after it is written, where everybody would wait.
@@ -161,8 +109,6 @@ void push(bool own, uint place, uint count, Shape s) {
 
 #include "spawn/regions.glsl"
 
-#include "spawn/vertices.glsl"
-
 #ifdef GPGP_COLLIDERS
 #include "spawn/context.glsl"
 #endif
@@ -188,24 +134,28 @@ uint toChildOf(inout Shape s, Fan fan, uint index) {
   return kEndGoesOn;
 }
 
-/// Terminals to records or instances. place: among count of them.
+/// Terminals to records or instances, or counted. place: among count of them.
 void emit(bool own, uint place, uint count, Shape s) {
   if (count == 0) return;
   const uint lane = laneIndex();
   if (lane == 0) terminalBase = atomicAdd(state.terminals, count);
   const uint bucket = own ? graphWords[s.node + kNodeArgument2] : 0;
+  const bool quads = record.strideWords != 0; // vertices make themselves room when records become them
   if (record.terminalsTo == kToCounts) {
-    if (own) atomicAdd(bucketCounts[bucket], 1);
+    if (own) atomicAdd(bucketCounts[bucket], quads ? meshQuads(s.geometry) : 1);
     return;
   }
   barrier();
   if (!own) return;
   uint target = terminalBase + place;
   if (record.terminalsTo == kToRecords) {
-    if (target >= record.maxTerminals) return;
-    for (uint plane = 0; plane < kShapePlanes; ++plane)
-      records[plane * record.maxTerminals + target] = packShape(s, plane);
-    atomicAdd(bucketCounts[bucket], 1);
+    if (target < record.maxTerminals) {
+      for (uint plane = 0; plane < kShapePlanes; ++plane)
+        records[plane * record.maxTerminals + target] = packShape(s, plane);
+      if (!quads) atomicAdd(bucketCounts[bucket], 1);
+    } else if (quads) {
+      atomicAdd(bucketCounts[kBucketLost + (record.regions != 0 ? bucket : 0)], meshQuads(s.geometry));
+    }
     return;
   }
   uint capacity = record.instanceCapacity;
@@ -279,7 +229,6 @@ void main() {
     mostSpent = 0;
 #endif
   }
-  if (vertexStage > 0) clearVertexWords();
   barrier();
   uvec2 hash = uvec2(0);
   uint depth = 0;
@@ -399,10 +348,7 @@ void main() {
 #endif
     uint leaving;
     const uint places = ranksOf(end == kEndTerminal, end == kEndWaits, leaving);
-    if (vertexStage > 0)
-      step += emitVertices(end == kEndTerminal, leaving & 0xffffu, s);
-    else
-      emit(end == kEndTerminal, places & 0xffffu, leaving & 0xffffu, s);
+    emit(end == kEndTerminal, places & 0xffffu, leaving & 0xffffu, s);
     if (made < total) {
       push(end == kEndWaits, places >> 16, leaving >> 16, s);
     } else {

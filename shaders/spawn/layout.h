@@ -55,7 +55,7 @@ struct SpawnConstants {
   uint quadCapacity;     // that vertices and indices hold
   uint regionQuads;      // that indices of one draw can reach
   uint indexWords;       // of a quad: 6, 3, or 0 without indices
-  uint strideWords;      // of a vertex
+  uint strideWords;      // of a vertex; 0: instances
   uint attributeCount;
   uint attributes[8]; // kMaxVertexAttributes
   uint phaseRounds;   // rounds that were recorded of each phase
@@ -64,12 +64,13 @@ struct SpawnConstants {
 };
 
 // What becomes of terminals.
-GPGP_CONST uint kToInstances = 0u; // at once, to instances; or, by a kernel for them, to vertices
-GPGP_CONST uint kToRecords = 1u;   // to records, which emit sorts
+GPGP_CONST uint kToInstances = 0u; // at once, to instances
+GPGP_CONST uint kToRecords = 1u;   // to records, which emit sorts, or expand makes vertices of
 GPGP_CONST uint kToCounts = 2u;    // they are counted by bucket
 
 /// Words by bucket: what it needs, where it begins, and what the shape that fits only in part left free.
 GPGP_CONST uint kBucketPlaces = kMaxBuckets;
+GPGP_CONST uint kBucketLost = kMaxBuckets; // the same words for vertices: quads of terminals without a record
 GPGP_CONST uint kBucketGaps = 2u * kMaxBuckets;
 GPGP_CONST uint kBucketWords = 3u * kMaxBuckets;
 

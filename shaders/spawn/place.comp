@@ -28,15 +28,17 @@ void main() {
   const uint lane = gl_LocalInvocationIndex;
   const bool regions = record.regions != 0;
   const bool counted = record.terminalsTo == kToCounts;
-  const bool sorted = record.terminalsTo == kToRecords;
+  const bool sorted = !quads && record.terminalsTo == kToRecords;
   const uint kept = sorted ? min(state.terminals, record.maxTerminals) : state.terminals;
+  const bool lost = quads && !counted; // some may be, whose quads nobody made room for
   const uint fitting = min(kept, record.instanceCapacity);
   const uint buckets = graphWords[kHeaderBuckets];
   if (lane == 0) allWritten = 0;
   uint needed = 0;
   if (sorted || regions || counted) {
     const uint each = kMaxBuckets / kSpawnGroupSize;
-    for (uint i = 0; i < each; ++i) needed += bucketCounts[lane * each + i];
+    for (uint i = 0; i < each; ++i)
+      needed += bucketCounts[lane * each + i] + (lost ? bucketCounts[kBucketLost + lane * each + i] : 0);
     sums[lane] = needed;
     barrier();
     for (uint step = 1; step < kSpawnGroupSize; step *= 2) {
@@ -51,13 +53,14 @@ void main() {
     for (uint i = 0; i < each; ++i) {
       const uint bucket = lane * each + i;
       if (bucket >= buckets) break;
-      const uint count = bucketCounts[bucket];
+      const uint placed = bucketCounts[bucket];
+      const uint count = placed + (lost ? bucketCounts[kBucketLost + bucket] : 0);
       uint begin = start;
-      uint got = count;
+      uint got = placed;
       if (sorted) bucketCounts[kBucketPlaces + bucket] = start;
       if (regions) {
         begin = regionStart(bucket, quads);
-        got = min(count, regionCapacity(bucket, quads)) - bucketCounts[kBucketGaps + bucket];
+        got = min(placed, regionCapacity(bucket, quads)) - bucketCounts[kBucketGaps + bucket];
       } else if (sorted) {
         begin = min(start, fitting);
         got = min(start + count, fitting) - begin;
@@ -70,8 +73,8 @@ void main() {
     atomicAdd(allWritten, written);
     barrier();
   } else if (lane == 0) {
-    needed = quads ? bucketCounts[0] : state.terminals;
-    allWritten = quads ? min(needed, record.quadCapacity) - bucketCounts[kBucketGaps] : fitting;
+    needed = quads ? bucketCounts[0] + bucketCounts[kBucketLost] : state.terminals;
+    allWritten = quads ? min(bucketCounts[0], record.quadCapacity) - bucketCounts[kBucketGaps] : fitting;
     if (record.drawCapacity > 0 && buckets > 0) {
       if (quads)
         draws[0] = allWritten * 6;

@@ -1,6 +1,6 @@
 // What a generated kernel does by its table (table_format.h). Results equal those of operators.h: settled values do not
 // change by adding zero or by a factor of one.
-layout(constant_id = 3) const uint tableStart = 0; // in graphRows
+layout(constant_id = 2) const uint tableStart = 0; // in graphRows
 
 /// 0: none.
 uint familyOf(uint node) { return graphWords[4u * tableStart + (node - kHeaderSize) / kNodeSize]; }

@@ -15,6 +15,7 @@ constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEM
 // The library's defaults, and what it takes at most.
 constexpr uint32_t kDefaultShapes = 131072, kDefaultRounds = 4, kSoftwareRounds = 32, kMostRounds = 256,
                    kMostShapes = 1u << 24;
+constexpr uint32_t kDefaultTerminals = 524288, kMostTerminals = 1u << 24;
 constexpr uint32_t kMostColliders = 1u << 24, kMostSoftwareColliders = 8192;
 constexpr uint64_t kShapeBytes = 96, kStackFactor = 4; // of a spawner's largest buffer: stacks for 4 * maxShapes
 
@@ -40,6 +41,7 @@ Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<
     : session_(session), grammar_(grammar), options_(options),
       maxShapes_(options.maxShapes ? options.maxShapes : kDefaultShapes),
       maxRounds_(session.device().isSoftware() ? kSoftwareRounds : kDefaultRounds),
+      maxTerminals_(options.vertices ? kDefaultTerminals : 1), // instances that are not sorted make no records
       maxColliders_(options.maxColliders   ? options.maxColliders
                     : grammar.graph.phases ? kMostSoftwareColliders
                                            : 0) {
@@ -64,8 +66,8 @@ void Deriver::makeSpawner() {
   info.base = session_.workerInfo("spawner");
   info.flags = options_.vertices ? GPGP_SPAWNER_VERTICES : 0;
   info.maxShapes = maxShapes_;
-  info.maxTerminals = maxTerminals_ = options_.sorted ? static_cast<uint32_t>(std::min<uint64_t>(elements_, 1u << 24))
-                                                      : 1; // only sorting keeps records of terminals
+  if (options_.sorted) maxTerminals_ = static_cast<uint32_t>(std::min<uint64_t>(elements_, kMostTerminals));
+  info.maxTerminals = maxTerminals_;
   info.maxDepth = options_.maxDepth;
   info.maxRounds = maxRounds_;
   info.maxColliders = maxColliders_;
@@ -167,6 +169,11 @@ GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
       makeOutput(wanted);
       again = true;
       another = another || options_.sorted;
+    }
+    const uint64_t mostTerminals = std::min<uint64_t>(range / kShapeBytes, kMostTerminals);
+    if (options_.vertices && report.terminals > maxTerminals_ && maxTerminals_ < mostTerminals) {
+      maxTerminals_ = static_cast<uint32_t>(std::min<uint64_t>(report.terminals, mostTerminals));
+      another = true;
     }
     if (!again && !another) return report;
     if (another) makeSpawner();

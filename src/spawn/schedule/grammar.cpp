@@ -33,7 +33,7 @@ Grammar::~Grammar() {
   for (const Ready& ready : ready_) device.vk.DestroyPipeline(device.device, ready.pipeline, nullptr);
 }
 
-const Grammar::Ready* Grammar::kernelFor(uint32_t axioms, bool vertices) const {
+const Grammar::Ready* Grammar::kernelFor(uint32_t axioms) const {
   const auto distance = [axioms](const Ready& ready) { // in powers of two; a kernel for any number is the last choice
     return ready.info.axioms ? std::abs(static_cast<int>(std::bit_width(ready.info.axioms)) -
                                         static_cast<int>(std::bit_width(axioms)))
@@ -41,7 +41,7 @@ const Grammar::Ready* Grammar::kernelFor(uint32_t axioms, bool vertices) const {
   };
   const Ready* best = nullptr;
   for (uint32_t i = 0; i < readyCount(); ++i)
-    if (ready_[i].vertices == vertices && (!best || distance(ready_[i]) < distance(*best))) best = &ready_[i];
+    if (!best || distance(ready_[i]) < distance(*best)) best = &ready_[i];
   return best;
 }
 

@@ -24,13 +24,12 @@ public:
   struct Ready {
     KernelInfo info;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    bool vertices = false; // it writes vertices, not instances
   };
   /// The best one for a number of axioms: tuned for the nearest number, or for any. Null: the interpreter.
-  const Ready* kernelFor(uint32_t axioms, bool vertices) const;
-  bool isReady(const KernelInfo& info, bool vertices) const {
+  const Ready* kernelFor(uint32_t axioms) const;
+  bool isReady(const KernelInfo& info) const {
     for (uint32_t i = 0; i < readyCount(); ++i)
-      if (ready_[i].vertices == vertices && std::memcmp(&ready_[i].info, &info, sizeof info) == 0) return true;
+      if (std::memcmp(&ready_[i].info, &info, sizeof info) == 0) return true;
     return false;
   }
   /// Adds one. Calls for the same grammar come one after the other.

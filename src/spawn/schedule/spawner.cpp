@@ -5,6 +5,8 @@
 #include "shaders/spawn_derive_colliders_subgroups.spv.h"
 #include "shaders/spawn_derive_subgroups.spv.h"
 #include "shaders/spawn_emit.spv.h"
+#include "shaders/spawn_expand.spv.h"
+#include "shaders/spawn_expand_subgroups.spv.h"
 #include "shaders/spawn_link.spv.h"
 #include "shaders/spawn_order.spv.h"
 #include "shaders/spawn_place.spv.h"
@@ -40,9 +42,9 @@ enum : core::ResourceIndex {
 };
 
 // Workgroup counts of a record.
-constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kLinkGroups = 2, kPartGroups = 3;
+constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kLinkGroups = 2, kPartGroups = 3, kExpandGroups = 4;
 // Conditions of a record; kPhases and on: there are more phases than 1, 2 ...
-constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2, kColliding = 3, kPhases = 4;
+constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2, kColliding = 3, kExpanded = 4, kPhases = 5;
 
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
@@ -58,11 +60,11 @@ constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefault
 /// The interpreter's fit to a kind of device, and what no schedule changes.
 struct Limits {
   Fit fit;
-  uint32_t steps;       // of a workgroup in a round
-  uint32_t vertexStage; // 16 bytes an invocation of shared memory for vertices
+  uint32_t steps;        // of a workgroup in a round
+  uint32_t expandGroups; // workgroups at most
 };
 /// Software devices end a shader's loops silently after 65 535 iterations in all, so workgroups give up early there.
-constexpr Limits kHardware{{32, 2048, 256, 4096}, 16384, 3}, kSoftware{{64, 16, 1024, 512}, 256, 2};
+constexpr Limits kHardware{{32, 2048, 256, 4096}, 16384, 2048}, kSoftware{{64, 16, 1024, 512}, 256, 64};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
 
 /// Queries of an invocation that look at every collider stay below that many iterations.
@@ -73,8 +75,18 @@ uint32_t cellsOf(uint32_t maxColliders) { return std::bit_ceil(2 * maxColliders)
 /// Shapes on the stacks of all workgroups.
 uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
 
-std::array<uint32_t, 4> specialization(const Fit& fit, uint32_t vertexStage, uint32_t table = 0) {
-  return {fit.groupSize, fit.stackShapes, vertexStage, table};
+std::array<uint32_t, 4> specialization(const Fit& fit, uint32_t table = 0) {
+  return {fit.groupSize, fit.stackShapes, table};
+}
+
+/// Invocations of shaders/spawn/expand.comp and words of its stage: quads of 32 bytes a vertex for each invocation. All
+/// its shared memory is below 16 KiB, or 32 KiB.
+struct ExpandFit {
+  uint32_t groupSize, stageWords;
+};
+ExpandFit expandFit(const core::Device& device) {
+  const uint32_t size = !device.software && device.limits.maxComputeSharedMemorySize >= 32768 ? 128 : 64;
+  return {size, 8 * (4 * (size + 8) + 1)};
 }
 
 /// The most quads that 16-bit indices reach, without 65535, which could restart a primitive.
@@ -110,7 +122,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"count", buffer, 0, true});
   list.add({"queues", scratch, (maxColliders ? 3 : 2) * kShapeBytes * maxShapes});
   list.add({"stacks", scratch, kShapeBytes * stackShapesOf(maxShapes)});
-  list.add({"records", scratch, kShapeBytes * (vertices ? 1 : maxTerminals)});
+  list.add({"records", scratch, kShapeBytes * maxTerminals});
   const auto roundAt = [](uint32_t round) { return sizeof(shader::SpawnState) + sizeof(shader::SpawnRound) * round; };
   // Of each phase its rounds and what the last one left; emission.
   const uint32_t phases = maxColliders ? shader::kMaxPhases : 1;
@@ -130,10 +142,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                                                     ? std::span<const uint32_t>(spawn_derive_subgroups)
                                                     : std::span<const uint32_t>(spawn_derive);
   const uint32_t derive = spawner->derive_ = list.add(
-      core::ShaderDesc{"derive", interpreter, specialization(limits.fit, vertices ? limits.vertexStage : 0), 3});
+      core::ShaderDesc{"derive", interpreter, specialization(limits.fit), 2});
   const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
-  const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, {ordered}, 1});
-
   const bool subgroups = context.device.subgroupArithmetic;
   const auto colliding = subgroups ? std::span<const uint32_t>(spawn_derive_colliders_subgroups)
                                    : std::span<const uint32_t>(spawn_derive_colliders);
@@ -151,8 +161,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
   const auto uses = {core::Use{kGraph, read}, {kAxioms, read},       {kInstances, write}, {kDraws, read},
                      {kQueues, readWrite},    {kStacks, readWrite},  {kRecords, write},   {kCounters, readWrite},
-                     {kBuckets, readWrite},   {kConstants, read},    {kVertices, write},  {kIndices, write},
-                     {kColliders, readWrite}, {kColliderCells, read}};
+                     {kBuckets, readWrite},   {kConstants, read},    {kColliders, readWrite}, {kColliderCells, read}};
   for (uint32_t phase = 0; phase < phases; ++phase) {
     const uint32_t first = phase * spawner->phaseStride();
     if (phase == 0)
@@ -172,6 +181,24 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
       pass.level = round;
       if (phase) pass.condition = kPhases + phase - 1;
     }
+  }
+  if (vertices) {
+    const ExpandFit fit = expandFit(context.device);
+    const auto spirv = subgroups ? std::span<const uint32_t>(spawn_expand_subgroups)
+                                 : std::span<const uint32_t>(spawn_expand);
+    const uint32_t expand = list.add(core::ShaderDesc{"expand", spirv, {fit.groupSize, fit.stageWords}, 2});
+    list.dispatch("expand", expand,
+                  {{kGraph, read},
+                   {kAxioms, read},
+                   {kDraws, read},
+                   {kRecords, read},
+                   {kCounters, read},
+                   {kBuckets, readWrite},
+                   {kConstants, read},
+                   {kVertices, write},
+                   {kIndices, write}},
+                  kExpandGroups)
+        .condition = kExpanded;
   }
   list.dispatch("place", place,
                 {{kGraph, read},
@@ -200,18 +227,21 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
     stage("fill bins", shader::kOrderFill);
     stage("rank", shader::kOrderRank);
   }
-  list.dispatchIndirect("emit", emit,
-                        {{kGraph, read},
-                         {kAxioms, read},
-                         {kRecords, read},
-                         {kInstances, write},
-                         {kDraws, read},
-                         {kCounters, read},
-                         {kBuckets, readWrite},
-                         {kConstants, read},
-                         {kOrder, read}},
-                        kCounters, perRecord)
-      .condition = kSorted;
+  if (!vertices) {
+    const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, {ordered}, 1});
+    list.dispatchIndirect("emit", emit,
+                          {{kGraph, read},
+                           {kAxioms, read},
+                           {kRecords, read},
+                           {kInstances, write},
+                           {kDraws, read},
+                           {kCounters, read},
+                           {kBuckets, readWrite},
+                           {kConstants, read},
+                           {kOrder, read}},
+                          kCounters, perRecord)
+        .condition = kSorted;
+  }
   list.report = kCounters;
   list.reportBytes = 4 * shader::kSpawnReportWords;
   if (auto ok = spawner->init(std::move(list)); !ok) return ok.error();
@@ -225,7 +255,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   if (grammar.graph.phases && !maxColliders_)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "grammar has Collider or IfCollides, and maxColliders of the "
                                                         "spawner is 0");
-  const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount, vertices_);
+  const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount);
   const Fit& fit = kernel ? kernel->info.fit : limits.fit;
   // Rounds were counted for a number of axioms; for more of them, or far fewer, nothing is known.
   const bool counted = fit.rounds && (!kernel || kernel->info.axioms == 0 ||
@@ -253,9 +283,12 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.steps = limits.steps;
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
-  constants.terminalsTo = counts ? shader::kToCounts : sorted ? shader::kToRecords : shader::kToInstances;
+  constants.terminalsTo = counts                ? shader::kToCounts
+                          : sorted || vertices_ ? shader::kToRecords
+                                                : shader::kToInstances;
   constants.regions = regions;
   constants.writeNeeded = info.needed.buffer ? 1 : 0;
+  if (vertices_) constants.strideWords = counts ? 1 : layout.strideWords;
   if (vertices_ && !counts) {
     const GpgpVertexOutput& output = *info.vertices;
     const bool shortIndices = output.indexType == VK_INDEX_TYPE_UINT16;
@@ -266,7 +299,6 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
     constants.quadCapacity = static_cast<uint32_t>(quads);
     if (!regions) constants.quadCapacity = std::min(constants.quadCapacity, constants.regionQuads);
     constants.indexWords = output.indices.buffer ? 6 * indexBytes / 4 : 0;
-    constants.strideWords = layout.strideWords;
     constants.attributeCount = layout.attributeCount;
     std::copy(layout.attributes.begin(), layout.attributes.end(), constants.attributes);
   }
@@ -288,7 +320,10 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kPartGroups] = {shader::kOrderParts, 1, 1};
   record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
   record.groups[kLinkGroups] = {std::clamp(maxColliders_ / (4 * shader::kSpawnGroupSize), 1u, 256u), 1, 1};
+  record.groups[kExpandGroups] = {
+      std::min((maxTerminals_ - 1) / expandFit(context.device).groupSize + 1, limits.expandGroups), 1, 1};
   record.conditions[kSorted] = sorted;
+  record.conditions[kExpanded] = vertices_ && !counts;
   record.conditions[kOrdered] = sorted && ordered_;
   record.conditions[kBucketed] = sorted || regions || counts || vertices_;
   record.conditions[kColliding] = grammar.graph.phases > 1;
@@ -308,7 +343,6 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
 
 core::Result<void> Spawner::prewarm(Grammar& grammar) const {
   const VkPhysicalDeviceLimits& device = context.device.limits;
-  const uint32_t stage = vertices_ ? limitsOf(context.device).vertexStage : 0;
   for (const Kernel& kernel : grammar.kernels) {
     KernelInfo info = kernel.info;
     if (!info.fit.groupSize) {
@@ -318,17 +352,17 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
     if (grammar.readyCount() == Grammar::kMaxReady) break;
     if (info.subgroups && !context.device.subgroupArithmetic) continue;
     info.subgroups = 0; // of two that differ only here, the first is made
-    if (grammar.isReady(info, vertices_) || info.fit.stackShapes > stackShapesOf(maxShapes_)) continue;
+    if (grammar.isReady(info) || info.fit.stackShapes > stackShapesOf(maxShapes_)) continue;
     if ((info.vendor && info.vendor != context.device.vendor) || (info.device && info.device != context.device.model))
       continue; // tuned for another device
     if (info.fit.groupSize > device.maxComputeWorkGroupInvocations ||
         info.fit.groupSize > device.maxComputeWorkGroupSize[0] ||
-        info.fit.groupSize * (kSharedBytesEach + 16 * stage) + 64 > device.maxComputeSharedMemorySize)
+        info.fit.groupSize * kSharedBytesEach + 64 > device.maxComputeSharedMemorySize)
       continue;
     const auto pipeline = createComputePipeline(
-        {kernel.info.schedule, kernel.spirv(), specialization(info.fit, stage, grammar.tableOf(kernel)), 4});
+        {kernel.info.schedule, kernel.spirv(), specialization(info.fit, grammar.tableOf(kernel)), 3});
     if (!pipeline) return pipeline.error();
-    grammar.add({info, *pipeline, vertices_});
+    grammar.add({info, *pipeline});
   }
   return {};
 }
