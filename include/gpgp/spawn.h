@@ -133,22 +133,52 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset grammar, uint32_
 
 /* ---------------------------------------------------------------- spawner */
 
+typedef uint32_t GpgpVertexSemantic;
+enum {
+  GPGP_VERTEX_POSITION = 0, /**< world space; w is 1 where the format has it */
+  GPGP_VERTEX_NORMAL = 1,   /**< of the face, unit length, world space; UNORM holds n / 2 + 1 / 2 */
+  GPGP_VERTEX_UV = 2,       /**< on the face, [0, 1] to the right and upwards */
+  GPGP_VERTEX_BUCKET = 3,   /**< GpgpGrammarTerminal::bucket of the terminal */
+  GPGP_VERTEX_AXIOM_ID = 4, /**< GpgpAxiom::id */
+  GPGP_VERTEX_TERMINAL = 5, /**< index as in gpgpGetGrammarTerminals */
+  GPGP_VERTEX_SEED = 6      /**< of the shape */
+};
+
+typedef struct GpgpVertexAttribute {
+  GpgpVertexSemantic semantic;
+  VkFormat format; /**< R32G32B32_SFLOAT, R32G32_SFLOAT, R16G16B16A16_SFLOAT, R8G8B8A8_SNORM or R8G8B8A8_UNORM for
+                        positions, normals and uvs; R32_UINT for the others */
+  uint32_t offset; /**< bytes in the vertex, a multiple of 4 */
+} GpgpVertexAttribute;
+
+#define GPGP_MAX_VERTEX_ATTRIBUTES 8
+
+/** How terminals look as triangles. Every one becomes quads of four vertices and the six indices v + {0, 1, 2, 0, 2,
+ *  3}, flat-shaded, counter-clockwise from outside also where an axiom mirrors: a box is six quads, a convex polygon of
+ *  n corners (n - 1) / 2, a concave one at most n - 2, a prism two polygons and n quads, a sphere 96. */
+typedef struct GpgpVertexLayout {
+  uint32_t stride;         /**< bytes of a vertex, a multiple of 4, at most 64; multiples of 16 are written fastest */
+  uint32_t attributeCount; /**< bytes that no attribute covers become 0 */
+  GpgpVertexAttribute attributes[GPGP_MAX_VERTEX_ATTRIBUTES];
+} GpgpVertexLayout;
+
 typedef uint64_t GpgpSpawnerFlags;
-/** Terminals become vertices and indices, not instances: records give GpgpSpawnInfo::vertices. */
-#define GPGP_SPAWNER_VERTICES ((GpgpSpawnerFlags)1)
 /** Instances lie in order of their bucket, then of their path key, and those that do not fit a buffer or region are its
  *  last ones: which survive does not depend on execution, as long as maxTerminals holds all and no shape is dropped.
- *  Not together with GPGP_SPAWNER_VERTICES. Axioms should differ in seed or id: equal keys come in the order of the
+ *  Not for vertices. Axioms should differ in seed or id: equal keys come in the order of the
  *  axioms, thousands of them in no stated order. */
-#define GPGP_SPAWNER_ORDERED ((GpgpSpawnerFlags)2)
+#define GPGP_SPAWNER_ORDERED ((GpgpSpawnerFlags)1)
 
 typedef struct GpgpSpawnerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpWorkerCreateInfo base;
   GpgpSpawnerFlags flags;
+  const GpgpVertexLayout* vertices; /**< optional: terminals become vertices and indices, not instances; records give
+                                         GpgpSpawnInfo::vertices. @lifetime call */
   uint32_t maxShapes;    /**< shapes that wait for a round of derivation; 0: 131072. What does not fit is counted */
-  uint32_t maxTerminals; /**< terminal shapes of one record; 0: 524288. What does not fit is counted */
+  uint32_t maxTerminals; /**< terminal shapes of one record, where they become vertices, or instances that are sorted
+                              or ordered; 96 bytes each; 0: 524288. What does not fit is counted */
   uint32_t maxDepth;     /**< how deep rules may nest in themselves; 0: 64. Deeper shapes are counted, not derived */
   uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 4, or 32 on software devices. Few are
                          needed: workgroups derive by themselves, and rounds only share work out again. What is left is
@@ -172,39 +202,13 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpS
  *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY. @threads handle: one call for a grammar at a time */
 GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker spawner, GpgpAsset grammar);
 
-typedef uint32_t GpgpVertexSemantic;
-enum {
-  GPGP_VERTEX_POSITION = 0, /**< world space; w is 1 where the format has it */
-  GPGP_VERTEX_NORMAL = 1,   /**< of the face, unit length, world space; UNORM holds n / 2 + 1 / 2 */
-  GPGP_VERTEX_UV = 2,       /**< on the face, [0, 1] to the right and upwards */
-  GPGP_VERTEX_BUCKET = 3,   /**< GpgpGrammarTerminal::bucket of the terminal */
-  GPGP_VERTEX_AXIOM_ID = 4, /**< GpgpAxiom::id */
-  GPGP_VERTEX_TERMINAL = 5, /**< index as in gpgpGetGrammarTerminals */
-  GPGP_VERTEX_SEED = 6      /**< of the shape */
-};
-
-typedef struct GpgpVertexAttribute {
-  GpgpVertexSemantic semantic;
-  VkFormat format; /**< R32G32B32_SFLOAT, R32G32_SFLOAT, R16G16B16A16_SFLOAT, R8G8B8A8_SNORM or R8G8B8A8_UNORM for
-                        positions, normals and uvs; R32_UINT for the others */
-  uint32_t offset; /**< bytes in the vertex, a multiple of 4 */
-} GpgpVertexAttribute;
-
-#define GPGP_MAX_VERTEX_ATTRIBUTES 8
-
-/** Where terminals go as triangles, and how a vertex looks. Every terminal becomes quads of four vertices and the six
- *  indices v + {0, 1, 2, 0, 2, 3}, flat-shaded, counter-clockwise from outside also where an axiom mirrors: a box is
- *  six quads, a convex polygon of n corners (n - 1) / 2, a concave one at most n - 2, a prism two polygons and n quads,
- *  a sphere 96. A terminal that fits only in part is left out whole. */
+/** Where terminals go as triangles. A terminal that fits only in part is left out whole. */
 typedef struct GpgpVertexOutput {
-  GpgpBuffer vertices;   /**< out; its size is the budget; STORAGE usage. Whole vertices are written: bytes that no
-                              attribute covers become 0. NULL: the record only counts, see GpgpSpawnInfo::draws */
+  GpgpBuffer vertices;   /**< out; its size is the budget; STORAGE usage. NULL: the record only counts, see
+                              GpgpSpawnInfo::draws */
   GpgpBuffer indices;    /**< out; its size is the budget; STORAGE usage. NULL: none are written; they are the same
                               pattern in every record */
   VkIndexType indexType; /**< UINT16 or UINT32. 16 bits reach 65532 vertices of a draw */
-  uint32_t stride;       /**< bytes of a vertex, a multiple of 4, at most 64 */
-  uint32_t attributeCount;
-  GpgpVertexAttribute attributes[GPGP_MAX_VERTEX_ATTRIBUTES];
 } GpgpVertexOutput;
 
 typedef uint64_t GpgpSpawnFlags;
@@ -222,7 +226,7 @@ typedef struct GpgpSpawnInfo {
   GpgpSpawnFlags flags;
   GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage. NULL with draws: the record
                            only counts */
-  const GpgpVertexOutput* vertices; /**< for spawners with GPGP_SPAWNER_VERTICES, instead of instances */
+  const GpgpVertexOutput* vertices; /**< for spawners made for vertices, instead of instances */
   /** Out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket; STORAGE usage. Fields that are not named
    * here are left as the engine set them. Instances: they are sorted by bucket; instanceCount and firstInstance are
    * written. Without draws they lie in no stated order, unless by GPGP_SPAWNER_ORDERED. Vertices: they lie in no stated

@@ -140,7 +140,7 @@ void emit(bool own, uint place, uint count, Shape s) {
   const uint lane = laneIndex();
   if (lane == 0) terminalBase = atomicAdd(state.terminals, count);
   const uint bucket = own ? graphWords[s.node + kNodeArgument2] : 0;
-  const bool quads = record.strideWords != 0; // vertices make themselves room when records become them
+  const bool quads = record.quads != 0; // vertices make themselves room when records become them
   if (record.terminalsTo == kToCounts) {
     if (own) atomicAdd(bucketCounts[bucket], quads ? meshQuads(s.geometry) : 1);
     return;

@@ -7,36 +7,48 @@
 // Terminal records to vertices and indices, as many records at a time as a workgroup has invocations.
 //
 // A prefix sum places the records' quads, one atomic addition takes room for all of them among vertices and indices
-// alike. Then each invocation makes the four vertices of a quad, whoever's record it is of, in shared memory, and the
-// workgroup copies them out, 16 bytes an invocation side by side. Where the room ends within a record, none of it is
-// written; what it leaves free is noted, so that what is written has no holes.
+// alike. Then vertex after vertex is made, one an invocation whoever's record it is of. Where the room ends within a
+// record, none of it is written; what it leaves free is noted, so that what is written has no holes.
+//
+// How a vertex looks is in specialization constants: its words are known when the pipeline is made, and lie in
+// registers. Vertices of whole 16 bytes are stored by who made them; others are staged, and copied out word after word.
 #include "spawn/bindings.glsl"
+layout(set = 0, binding = 11, std430) writeonly buffer VertexWords { uint vertexWords[]; }; // the same as vertices
 
 #include "spawn/mesh.h"
 #include "spawn/shape.h"
 
 #include "spawn/regions.glsl"
-layout(constant_id = 0) const uint groupSize = 64;
-layout(constant_id = 1) const uint stageWords = 2048; // for vertices: kExpandWordsEach an invocation
-layout(local_size_x_id = 0) in;
+const uint groupSize = 64; // kSpawnGroupSize
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint stride = 4; // words of a vertex
+// vertexAttribute(), or kNoAttribute.
+layout(constant_id = 1) const uint attribute0 = 0;
+layout(constant_id = 2) const uint attribute1 = kNoAttribute;
+layout(constant_id = 3) const uint attribute2 = kNoAttribute;
+layout(constant_id = 4) const uint attribute3 = kNoAttribute;
+layout(constant_id = 5) const uint attribute4 = kNoAttribute;
+layout(constant_id = 6) const uint attribute5 = kNoAttribute;
+layout(constant_id = 7) const uint attribute6 = kNoAttribute;
+layout(constant_id = 8) const uint attribute7 = kNoAttribute;
 
 #include "spawn/lanes.glsl"
 
 const uint kNoPlace = 0xffffffffu;
+const uint kMirrored = 1u << 31;
 // Records: rows of unit shape to world; numbers of attributes; geometry, and whether the axiom mirrors.
 shared vec4 rows[3 * groupSize];
 shared uvec4 numbers[groupSize];
 shared uint geometries[groupSize];
-shared uint quadsUpTo[groupSize]; // inclusive sums over the records
-shared uvec2 recordPlaces[groupSize]; // regions: of the record's first quad in the buffers, and in its region
-shared uvec2 quadPlaces[groupSize];   // the same of the quads in stage
+shared uint quadsUpTo[groupSize];     // inclusive sums over the records
+shared uvec2 recordPlaces[groupSize]; // of the record's first quad: in the buffers, or kNoPlace; in its region
 shared uint quadBase;
 shared uint fittingQuads;
-// Vertices word by word: that of corner c of quad q lies at word * wordStride + c * cornerStride + q, so that neither
-// those who make vertices nor those who copy them out meet in a bank.
-shared uint stage[stageWords];
-
-const uint kMirrored = 1u << 31;
+// Vertices that are staged, with an odd number of words from one to the next, and the first word of each in the buffer.
+const bool kStaged = stride % 4 != 0;
+const uint kStagedStride = stride | 1u;
+shared uint staged[kStaged ? groupSize * kStagedStride : 1];
+shared uint stagedPlaces[kStaged ? groupSize : 1];
 
 /// One word of a quad's indices; words: of a quad.
 uint indexWord(uint words, uint quad, uint word) {
@@ -45,45 +57,7 @@ uint indexWord(uint words, uint quad, uint word) {
   return (vertex + quadIndex(2 * word)) | ((vertex + quadIndex(2 * word + 1)) << 16);
 }
 
-void stageValue(uint described, vec4 value, uint number, uint at, uint wordStride) {
-  const uint format = attributeFormat(described);
-  if (format == kVertexUnorm4 && attributeSemantic(described) == kVertexNormal) value = withoutSign(value);
-  const uvec4 words = attributeValue(format, value, number);
-  const uint count = attributeWords(format);
-  at += attributeOffset(described) * wordStride;
-  stage[at] = words.x;
-  if (count > 1) stage[at + wordStride] = words.y;
-  if (count > 2) stage[at + 2 * wordStride] = words.z;
-}
-
-/// The four vertices of a record's quad.
-void stageQuad(uint owner, uint quad, uint place, uint cornerStride) {
-  const uint geometry = geometries[owner] & ~kMirrored;
-  const bool mirrored = (geometries[owner] & kMirrored) != 0;
-  const vec4 row0 = rows[3 * owner];
-  const vec4 row1 = rows[3 * owner + 1];
-  const vec4 row2 = rows[3 * owner + 2];
-  vec3 normal = vec3(0.0f);
-  const uint wordStride = 4 * cornerStride + 1;
-  for (uint corner = 0; corner < 4; ++corner) {
-    const MeshVertex v = meshVertex(geometry, quad, mirrored ? mirroredCorner(corner) : corner);
-    if (corner == 0) normal = meshNormal(row0, row1, row2, v, mirrored); // of the whole quad
-    const vec3 position = meshPosition(row0, row1, row2, v.position);
-    const uint at = place + corner * cornerStride;
-    for (uint i = 0; i < record.attributeCount; ++i) {
-      const uint described = record.attributes[i];
-      const uint semantic = attributeSemantic(described);
-      vec4 value = vec4(v.uv, 0.0f, 0.0f);
-      uint number = 0;
-      if (semantic == kVertexPosition) value = vec4(position, 1.0f);
-      if (semantic == kVertexNormal) value = vec4(normal, 0.0f);
-      if (semantic >= kVertexBucket) number = numbers[owner][(semantic - kVertexBucket) & 3];
-      stageValue(described, value, number, at, wordStride);
-    }
-  }
-}
-
-/// Places the records' quads, and stages the records. Returns how many quads all have.
+/// Places the records' quads, and stages the records. Returns how many quads all have, those without room included.
 uint stageRecords(uint i, bool own, uint lane) {
   const bool regions = record.regions != 0;
   Shape s;
@@ -133,81 +107,103 @@ uint stageRecords(uint i, bool own, uint lane) {
   return regions ? total : fittingQuads;
 }
 
+/// The record that a quad of the batch is of. own: the quad's number in it.
+uint ownerOf(uint quad, out uint own) {
+  uint owner = 0; // the first whose sum lies above quad
+  for (uint step = groupSize / 2; step > 0; step /= 2)
+    if (quadsUpTo[owner + step - 1] <= quad) owner += step;
+  own = quad - (owner > 0 ? quadsUpTo[owner - 1] : 0);
+  return owner;
+}
+
+uint words[kMaxVertexWords]; // of the invocation's vertex
+
+void putAttribute(uint described, vec3 position, vec3 normal, vec2 uv, uvec4 ofRecord) {
+  if (described == kNoAttribute) return;
+  const uint semantic = attributeSemantic(described);
+  const uint format = attributeFormat(described);
+  vec4 value = vec4(uv, 0.0f, 0.0f);
+  uint number = 0;
+  if (semantic == kVertexPosition) value = vec4(position, 1.0f);
+  if (semantic == kVertexNormal) value = vec4(normal, 0.0f);
+  if (semantic == kVertexNormal && format == kVertexUnorm4) value = withoutSign(value);
+  if (semantic == kVertexBucket) number = ofRecord.x;
+  if (semantic == kVertexBucket + 1) number = ofRecord.y;
+  if (semantic == kVertexBucket + 2) number = ofRecord.z;
+  if (semantic == kVertexBucket + 3) number = ofRecord.w;
+  const uvec4 all = attributeValue(format, value, number);
+  const uint at = attributeOffset(described);
+  words[at] = all.x;
+  if (attributeWords(format) > 1) words[at + 1] = all.y;
+  if (attributeWords(format) > 2) words[at + 2] = all.z;
+}
+
+void makeVertex(uint owner, uint quad, uint corner) {
+  const uint geometry = geometries[owner] & ~kMirrored;
+  const bool mirrored = (geometries[owner] & kMirrored) != 0;
+  const vec4 row0 = rows[3 * owner];
+  const vec4 row1 = rows[3 * owner + 1];
+  const vec4 row2 = rows[3 * owner + 2];
+  const uvec4 ofRecord = numbers[owner];
+  const MeshVertex v = meshVertex(geometry, quad, mirrored ? mirroredCorner(corner) : corner);
+  const vec3 position = meshPosition(row0, row1, row2, v.position);
+  const vec3 normal = meshNormal(row0, row1, row2, v, mirrored);
+  for (uint i = 0; i < kMaxVertexWords; ++i) words[i] = 0; // what no attribute covers
+  putAttribute(attribute0, position, normal, v.uv, ofRecord);
+  putAttribute(attribute1, position, normal, v.uv, ofRecord);
+  putAttribute(attribute2, position, normal, v.uv, ofRecord);
+  putAttribute(attribute3, position, normal, v.uv, ofRecord);
+  putAttribute(attribute4, position, normal, v.uv, ofRecord);
+  putAttribute(attribute5, position, normal, v.uv, ofRecord);
+  putAttribute(attribute6, position, normal, v.uv, ofRecord);
+  putAttribute(attribute7, position, normal, v.uv, ofRecord);
+}
+
 void main() {
   const uint lane = laneIndex();
-  const bool regions = record.regions != 0;
   const uint kept = min(state.terminals, record.maxTerminals);
-  const uint stride = record.strideWords;
-  // Quads of a block: as many as there are invocations, or as find room in stage.
-  const uint together = min(groupSize, ((stageWords / stride - 1) / 4) - 8);
-  const uint cornerStride = together + 8;
-  const uint wordStride = 4 * cornerStride + 1;
-  for (uint i = lane; i < stride * wordStride; i += groupSize) stage[i] = 0; // what no attribute covers
+  const uint indexWords = record.indexWords;
   for (uint batch = gl_WorkGroupID.x * groupSize; batch < kept; batch += gl_NumWorkGroups.x * groupSize) {
-    barrier();
+    barrier(); // the last ones have been read
     const uint all = stageRecords(batch + lane, batch + lane < kept, lane);
-    for (uint block = 0; block < all; block += together) {
-      const uint count = min(together, all - block);
-      if (lane < count) {
-        const uint quad = block + lane;
-        uint owner = 0; // the first whose sum lies above quad
-        for (uint step = groupSize / 2; step > 0; step /= 2)
-          if (quadsUpTo[owner + step - 1] <= quad) owner += step;
-        const uint own = quad - (owner > 0 ? quadsUpTo[owner - 1] : 0);
-        stageQuad(owner, own, lane, cornerStride);
-        if (regions) {
-          const uvec2 place = recordPlaces[owner];
-          quadPlaces[lane] = uvec2(place.x == kNoPlace ? kNoPlace : place.x + own, place.y + own);
+    for (uint block = 0; block < 4 * all; block += groupSize) {
+      const uint vertex = block + lane;
+      uint place = kNoPlace; // of the vertex, in the buffer
+      if (vertex < 4 * all) {
+        uint quad;
+        const uint owner = ownerOf(vertex >> 2, quad);
+        const uint first = recordPlaces[owner].x;
+        makeVertex(owner, quad, vertex & 3);
+        if (first != kNoPlace) place = 4 * (first + quad) + (vertex & 3);
+      }
+      if (!kStaged) {
+        if (place != kNoPlace)
+          for (uint i = 0; i < kMaxVertexWords / 4; ++i)
+            if (4 * i < stride)
+              vertices[place * (stride / 4) + i] =
+                  uvec4(words[4 * i], words[4 * i + 1], words[4 * i + 2], words[4 * i + 3]);
+      } else {
+        barrier();
+        for (uint i = 0; i < kMaxVertexWords; ++i)
+          if (i < stride) staged[lane * kStagedStride + i] = words[i];
+        stagedPlaces[lane] = place;
+        barrier();
+        for (uint i = lane; i < groupSize * stride; i += groupSize) {
+          const uint from = i / stride;
+          if (stagedPlaces[from] != kNoPlace)
+            vertexWords[stagedPlaces[from] * stride + i - from * stride] =
+                staged[from * kStagedStride + i - from * stride];
         }
       }
-      barrier();
-      const uint target = (quadBase + block) * stride;
-      // 16 bytes each: word and vertex of the first four, from one turn to the next without a division.
-      uint vertex = 4 * lane / stride;
-      uint word = 4 * lane - vertex * stride;
-      const uint vertexStep = 4 * groupSize / stride;
-      const uint wordStep = 4 * groupSize - vertexStep * stride;
-      for (uint i = lane; i < count * stride; i += groupSize) {
-        uvec4 words;
-        uint w = word;
-        uint v = vertex;
-        for (uint c = 0; c < 4; ++c) {
-          words[c] = stage[w * wordStride + (v & 3) * cornerStride + (v >> 2)];
-          w += 1;
-          if (w == stride) {
-            w = 0;
-            v += 1;
-          }
-        }
-        if (!regions) {
-          vertices[target + i] = words;
-        } else {
-          const uint quad = vertex >> 2;
-          const uint place = quadPlaces[quad].x;
-          if (place != kNoPlace) vertices[place * stride + i - quad * stride] = words;
-        }
-        word += wordStep;
-        vertex += vertexStep;
-        if (word >= stride) {
-          word -= stride;
-          vertex += 1;
-        }
-      }
-      if (regions)
-        for (uint i = lane; i < count * record.indexWords; i += groupSize) {
-          const uint quad = record.indexWords == 6 ? i / 6 : i / 3;
-          const uint word = i - quad * record.indexWords;
-          const uvec2 place = quadPlaces[quad];
-          if (place.x != kNoPlace)
-            indices[place.x * record.indexWords + word] = indexWord(record.indexWords, place.y, word);
-        }
-      barrier();
     }
-    if (!regions)
-      for (uint i = lane; i < all * record.indexWords; i += groupSize) {
-        const uint quad = record.indexWords == 6 ? i / 6 : i / 3;
-        indices[quadBase * record.indexWords + i] =
-            indexWord(record.indexWords, quadBase + quad, i - quad * record.indexWords);
-      }
+    for (uint i = lane; i < all * indexWords; i += groupSize) {
+      const uint quad = indexWords == 6 ? i / 6 : i / 3;
+      uint own;
+      const uint owner = ownerOf(quad, own);
+      const uvec2 places = recordPlaces[owner];
+      if (places.x != kNoPlace)
+        indices[(places.x + own) * indexWords + i - quad * indexWords] =
+            indexWord(indexWords, places.y + own, i - quad * indexWords);
+    }
   }
 }

@@ -55,9 +55,7 @@ struct SpawnConstants {
   uint quadCapacity;     // that vertices and indices hold
   uint regionQuads;      // that indices of one draw can reach
   uint indexWords;       // of a quad: 6, 3, or 0 without indices
-  uint strideWords;      // of a vertex; 0: instances
-  uint attributeCount;
-  uint attributes[8]; // kMaxVertexAttributes
+  uint quads;            // 1: terminals become quads of vertices, not instances
   uint phaseRounds;   // rounds that were recorded of each phase
   uint maxColliders;  // that are held
   uint cellMask;      // cells that colliders are linked in, a power of two, less 1

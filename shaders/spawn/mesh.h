@@ -205,6 +205,7 @@ GPGP_CONST uint kMaxVertexWords = 16u; // of a vertex
 GPGP_FN uint vertexAttribute(uint wordOffset, uint semantic, uint format) {
   return wordOffset | (semantic << 8) | (format << 16);
 }
+GPGP_CONST uint kNoAttribute = 0xffffffffu;
 GPGP_FN uint attributeOffset(uint word) { return word & 0xffu; }
 GPGP_FN uint attributeSemantic(uint word) { return (word >> 8) & 0xffu; }
 GPGP_FN uint attributeFormat(uint word) { return word >> 16; }

@@ -59,9 +59,9 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_SPAWNER_CREATE_INFO, "info"); !ok) return ok;
     if (!spawner) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "spawner is NULL");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
-    if (info->flags & ~(GPGP_SPAWNER_VERTICES | GPGP_SPAWNER_ORDERED))
+    if (info->flags & ~GPGP_SPAWNER_ORDERED)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
-    if (info->flags == (GPGP_SPAWNER_VERTICES | GPGP_SPAWNER_ORDERED))
+    if (info->vertices && (info->flags & GPGP_SPAWNER_ORDERED))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWNER_ORDERED is for instances, not for vertices");
     if (info->maxShapes > (1u << 24) || info->maxTerminals > (1u << 24))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes and maxTerminals are at most 16777216");
@@ -87,32 +87,25 @@ GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker handle, GpgpAsset grammarHand
 
 namespace {
 /// Where terminals go, and what is read and written for that.
-Result<spawn::VertexLayout> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& info, uint32_t buckets) {
-  spawn::VertexLayout layout;
+Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& info, uint32_t buckets) {
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
   bool counts = !info.instances.buffer;
   if (info.flags & ~GPGP_SPAWN_REGIONS) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
   if (spawner.vertices()) {
     if (!info.vertices)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices is NULL; the spawner was made with "
-                                                    "GPGP_SPAWNER_VERTICES");
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices is NULL; the spawner was made for vertices");
     if (info.instances.buffer)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.buffer is set; the spawner was made with "
-                                                    "GPGP_SPAWNER_VERTICES");
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.buffer is set; the spawner was made for vertices");
     const GpgpVertexOutput& output = *info.vertices;
     counts = !output.vertices.buffer;
     if (!counts) {
-      auto made = spawn::layoutOf(output);
-      if (!made) return made.error();
-      layout = *made;
       if (output.indexType != VK_INDEX_TYPE_UINT16 && output.indexType != VK_INDEX_TYPE_UINT32)
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices->indexType is neither UINT16 nor UINT32");
     } else if (output.indices.buffer) {
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices->vertices.buffer is NULL, indices.buffer is not");
     }
   } else if (info.vertices) {
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "vertices is set; the spawner was made without GPGP_SPAWNER_VERTICES");
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices is set; the spawner was made for instances");
   }
   if (info.instances.buffer && info.instances.size < sizeof(GpgpInstance))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.size is below one GpgpInstance (%zu bytes)",
@@ -137,7 +130,7 @@ Result<spawn::VertexLayout> checkOutput(const spawn::Spawner& spawner, const Gpg
                      static_cast<unsigned long long>(info.needed.size), buckets, 4ull * buckets);
   if (info.count.buffer && info.count.size < 4)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count.size is below 4 bytes");
-  return layout;
+  return {};
 }
 } // namespace
 
@@ -156,11 +149,10 @@ GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer c
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
                        static_cast<unsigned long long>(info->axioms.size), info->axiomCount,
                        static_cast<unsigned long long>(info->axiomCount) * sizeof(GpgpAxiom));
-    const auto layout = checkOutput(**spawner, *info, (*grammar)->graph.buckets);
-    if (!layout) return layout.error();
+    if (auto ok = checkOutput(**spawner, *info, (*grammar)->graph.buckets); !ok) return ok;
     if (auto ok = checkRecord(**spawner, frame); !ok) return ok;
     if (!(*grammar)->resident()) return makeError(GPGP_NOT_READY, "the grammar is not resident");
-    return (*spawner)->prepare(commandBuffer, *info, **grammar, *layout);
+    return (*spawner)->prepare(commandBuffer, *info, **grammar);
   });
 }
 

@@ -21,19 +21,18 @@ constexpr uint64_t kShapeBytes = 96, kStackFactor = 4; // of a spawner's largest
 
 } // namespace
 
-GpgpVertexOutput Deriver::layout() {
-  GpgpVertexOutput output{};
-  output.indexType = VK_INDEX_TYPE_UINT32;
-  output.stride = sizeof(SpawnedVertex);
+GpgpVertexLayout Deriver::layout() {
+  GpgpVertexLayout layout{};
+  layout.stride = sizeof(SpawnedVertex);
   const auto add = [&](GpgpVertexSemantic semantic, VkFormat format, size_t offset) {
-    output.attributes[output.attributeCount++] = {semantic, format, static_cast<uint32_t>(offset)};
+    layout.attributes[layout.attributeCount++] = {semantic, format, static_cast<uint32_t>(offset)};
   };
   add(GPGP_VERTEX_POSITION, VK_FORMAT_R32G32B32_SFLOAT, offsetof(SpawnedVertex, position));
   add(GPGP_VERTEX_NORMAL, VK_FORMAT_R8G8B8A8_SNORM, offsetof(SpawnedVertex, normal));
   add(GPGP_VERTEX_UV, VK_FORMAT_R32G32_SFLOAT, offsetof(SpawnedVertex, uv));
   add(GPGP_VERTEX_TERMINAL, VK_FORMAT_R32_UINT, offsetof(SpawnedVertex, terminal));
   add(GPGP_VERTEX_AXIOM_ID, VK_FORMAT_R32_UINT, offsetof(SpawnedVertex, axiom));
-  return output;
+  return layout;
 }
 
 Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
@@ -64,7 +63,8 @@ void Deriver::setAxioms(const std::vector<GpgpAxiom>& axioms) {
 void Deriver::makeSpawner() {
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
   info.base = session_.workerInfo("spawner");
-  info.flags = options_.vertices ? GPGP_SPAWNER_VERTICES : 0;
+  const GpgpVertexLayout vertices = layout();
+  if (options_.vertices) info.vertices = &vertices;
   info.maxShapes = maxShapes_;
   if (options_.sorted) maxTerminals_ = static_cast<uint32_t>(std::min<uint64_t>(elements_, kMostTerminals));
   info.maxTerminals = maxTerminals_;
@@ -121,7 +121,8 @@ Grammar Deriver::prepare(const std::pmr::vector<uint32_t>& kernel) {
 }
 
 Measured<GpgpSpawnReport> Deriver::derive(const Grammar& grammar, uint32_t repeat) {
-  GpgpVertexOutput output = layout();
+  GpgpVertexOutput output{};
+  output.indexType = VK_INDEX_TYPE_UINT32;
   if (options_.vertices) {
     output.vertices = vertices_.range({}, kRead);
     output.indices = indices_.range({}, kRead);

@@ -27,8 +27,8 @@ static_assert(sizeof(SpawnedVertex) == 32);
 
 class Deriver {
 public:
-  /// How SpawnedVertex is told to the library; without buffers.
-  static GpgpVertexOutput layout();
+  /// How SpawnedVertex is told to the library.
+  static GpgpVertexLayout layout();
   Deriver(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
           const DeriverOptions& options);
   void setAxioms(const std::vector<GpgpAxiom>& axioms);

@@ -38,10 +38,11 @@ struct Use {
   UseKind kind;
 };
 
+constexpr uint32_t kMaxSpecialization = 9;
 struct ShaderDesc {
   const char* name;
   std::span<const uint32_t> spirv;
-  std::array<uint32_t, 4> specialization = {}; ///< constant_id 0 to 3
+  std::array<uint32_t, kMaxSpecialization> specialization = {}; ///< by constant_id
   uint32_t specializationCount = 0;
 };
 

@@ -180,8 +180,8 @@ Result<VkPipeline> Worker::createComputePipeline(const ShaderDesc& shader) const
   const Device& device = context.device;
   const auto module = createModule(shader);
   if (!module) return module.error();
-  std::array<VkSpecializationMapEntry, 4> entries{};
-  for (uint32_t i = 0; i < 4; ++i) entries[i] = {i, i * 4, 4};
+  std::array<VkSpecializationMapEntry, kMaxSpecialization> entries{};
+  for (uint32_t i = 0; i < kMaxSpecialization; ++i) entries[i] = {i, i * 4, 4};
   const VkSpecializationInfo specialization{shader.specializationCount, entries.data(), shader.specializationCount * 4,
                                             shader.specialization.data()};
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};

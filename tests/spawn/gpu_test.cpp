@@ -512,7 +512,9 @@ TEST_F(SpawnTest, ManyOrderedInstancesAndEqualKeys) {
 TEST_F(SpawnTest, OrderedVerticesAreRefused) {
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
   info.base.queueFamily = device.graphics().family;
-  info.flags = GPGP_SPAWNER_ORDERED | GPGP_SPAWNER_VERTICES;
+  const GpgpVertexLayout layout{12, 1, {{GPGP_VERTEX_POSITION, VK_FORMAT_R32G32B32_SFLOAT, 0}}};
+  info.flags = GPGP_SPAWNER_ORDERED;
+  info.vertices = &layout;
   GpgpWorker refused = nullptr;
   EXPECT_EQ(gpgpCreateSpawner(context, &info, &refused), GPGP_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(refused, nullptr);

@@ -13,6 +13,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <list>
 #include <map>
 #include <numeric>
 #include <random>
@@ -237,9 +238,20 @@ TEST(Mesh, BoxFacesAreThoseOfCompSplit) {
 
 // ---------------------------------------------------------------- the GPU
 
+/// How vertices look, and the type of their indices.
+struct VertexFormat : GpgpVertexLayout {
+  VkIndexType indexType;
+};
+/// One that stays where it is: workers are found again by their create info.
+const GpgpVertexLayout* stable(const GpgpVertexLayout& layout) {
+  static std::list<GpgpVertexLayout> all;
+  for (const GpgpVertexLayout& known : all)
+    if (std::memcmp(&known, &layout, sizeof layout) == 0) return &known;
+  return &all.emplace_back(layout);
+}
 /// 48 bytes with all semantics, or parts of it in small formats.
-GpgpVertexOutput wideVertex() {
-  GpgpVertexOutput v{};
+VertexFormat wideVertex() {
+  VertexFormat v{};
   v.indexType = VK_INDEX_TYPE_UINT32;
   v.stride = 48;
   v.attributeCount = 7;
@@ -253,8 +265,8 @@ GpgpVertexOutput wideVertex() {
   return v;
 }
 /// 28 bytes, four of which no attribute covers.
-GpgpVertexOutput narrowVertex() {
-  GpgpVertexOutput v{};
+VertexFormat narrowVertex() {
+  VertexFormat v{};
   v.indexType = VK_INDEX_TYPE_UINT16;
   v.stride = 28;
   v.attributeCount = 4;
@@ -265,8 +277,8 @@ GpgpVertexOutput narrowVertex() {
   return v;
 }
 /// 16 bytes, for many.
-GpgpVertexOutput smallVertex() {
-  GpgpVertexOutput v{};
+VertexFormat smallVertex() {
+  VertexFormat v{};
   v.indexType = VK_INDEX_TYPE_UINT32;
   v.stride = 16;
   v.attributeCount = 2;
@@ -274,7 +286,7 @@ GpgpVertexOutput smallVertex() {
   v.attributes[1] = {GPGP_VERTEX_SEED, VK_FORMAT_R32_UINT, 12};
   return v;
 }
-uint32_t offsetOf(const GpgpVertexOutput& v, GpgpVertexSemantic semantic) {
+uint32_t offsetOf(const VertexFormat& v, GpgpVertexSemantic semantic) {
   for (uint32_t i = 0; i < v.attributeCount; ++i)
     if (v.attributes[i].semantic == semantic) return v.attributes[i].offset / 4;
   return UINT32_MAX;
@@ -294,7 +306,7 @@ struct Output {
 /// What to give a record.
 struct Wanted {
   GpgpSpawnFlags flags = 0;
-  const GpgpVertexOutput* vertices = nullptr;
+  const VertexFormat* vertices = nullptr;
   uint32_t instances = 0, quads = 0; // capacities
   uint32_t indexQuads = UINT32_MAX;  // of indices, where not quads
   bool withDraws = true, withNeeded = false;
@@ -302,17 +314,20 @@ struct Wanted {
 };
 
 struct VerticesTest : DeviceTest {
-  GpgpWorker spawners[2] = {}; // for instances, for vertices
+  GpgpSpawnerFlags flags = 0;
+  uint32_t maxColliders = 0, maxTerminals = 0;
 
-  void SetUp() override {
-    DeviceTest::SetUp();
-    for (uint32_t i = 0; i < 2; ++i) {
-      GpgpSpawnerCreateInfo spawner = GPGP_SPAWNER_CREATE_INFO_INIT;
-      spawner.base.queueFamily = device.graphics().family;
-      spawner.flags = i ? GPGP_SPAWNER_VERTICES : 0;
-      spawners[i] = worker(gpgpCreateSpawner, spawner);
-    }
+  /// For vertices, or, without a layout, for instances.
+  GpgpSpawnerCreateInfo spawnerInfo(const GpgpVertexLayout* layout) const {
+    GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
+    info.base.queueFamily = device.graphics().family;
+    info.flags = flags;
+    info.vertices = layout ? stable(*layout) : nullptr;
+    info.maxTerminals = maxTerminals;
+    info.maxColliders = maxColliders;
+    return info;
   }
+  GpgpWorker spawnerFor(const GpgpVertexLayout* layout) { return worker(gpgpCreateSpawner, spawnerInfo(layout)); }
   void TearDown() override {
     DeviceTest::TearDown();
     for (const std::string& message : messages) ADD_FAILURE() << message;
@@ -330,7 +345,7 @@ struct VerticesTest : DeviceTest {
   Output run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, const Wanted& wanted) {
     Output out;
     constexpr auto kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    const GpgpWorker spawner = spawners[wanted.vertices ? 1 : 0];
+    const GpgpWorker spawner = spawnerFor(wanted.vertices);
     const GpgpAsset grammar = makeGrammar(words, spawner);
     const uint32_t buckets = words[kHeaderBuckets];
     const auto axiomBuffer = host::makeBuffer(device, axioms, kUsage);
@@ -339,11 +354,13 @@ struct VerticesTest : DeviceTest {
       host::fill(device, buffer, kPoison);
       return buffer;
     };
-    GpgpVertexOutput output = wanted.vertices ? *wanted.vertices : GpgpVertexOutput{};
+    const VertexFormat format = wanted.vertices ? *wanted.vertices : VertexFormat{};
+    GpgpVertexOutput output{};
+    output.indexType = format.indexType;
     const uint32_t indexBytes = output.indexType == VK_INDEX_TYPE_UINT16 ? 2 : 4;
     const uint32_t indexQuads = wanted.indexQuads == UINT32_MAX ? wanted.quads : wanted.indexQuads;
     const auto instances = poisoned(VkDeviceSize(wanted.instances) * sizeof(GpgpInstance));
-    const auto vertices = poisoned(VkDeviceSize(wanted.quads) * 4 * output.stride);
+    const auto vertices = poisoned(VkDeviceSize(wanted.quads) * 4 * format.stride);
     const auto indices = poisoned(VkDeviceSize(indexQuads) * 6 * indexBytes);
     auto given = wanted.draws;
     if (given.empty()) given.assign(buckets, {kPoison, kPoison, kPoison, 77, kPoison});
@@ -369,7 +386,7 @@ struct VerticesTest : DeviceTest {
     advance();
     EXPECT_EQ(gpgpGetSpawnReport(spawner, &out.report), GPGP_SUCCESS);
     out.count = host::download<uint32_t>(device, count, 1)[0];
-    out.vertices = host::download<uint32_t>(device, vertices, size_t(wanted.quads) * output.stride);
+    out.vertices = host::download<uint32_t>(device, vertices, size_t(wanted.quads) * format.stride);
     const auto raw = host::download<uint32_t>(device, indices, size_t(indexQuads) * 6 * indexBytes / 4);
     for (const uint32_t word : raw) {
       if (indexBytes == 4)
@@ -397,7 +414,7 @@ Quads quadsOf(const std::vector<uint32_t>& words, size_t first, size_t count, ui
   }
   return quads;
 }
-void sortQuads(Quads& quads, const GpgpVertexOutput& layout) {
+void sortQuads(Quads& quads, const VertexFormat& layout) {
   const uint32_t seed = offsetOf(layout, GPGP_VERTEX_SEED), position = offsetOf(layout, GPGP_VERTEX_POSITION);
   const uint32_t axiom = offsetOf(layout, GPGP_VERTEX_AXIOM_ID), stride = layout.stride / 4;
   std::sort(quads.begin(), quads.end(), [&](const auto& a, const auto& b) {
@@ -412,7 +429,7 @@ void sortQuads(Quads& quads, const GpgpVertexOutput& layout) {
   });
 }
 /// The same vertices: floats within 1e-4 of the largest coordinate, small formats within one step, the rest equal.
-void expectEqual(Quads expected, Quads found, const GpgpVertexOutput& layout, const std::string& what) {
+void expectEqual(Quads expected, Quads found, const VertexFormat& layout, const std::string& what) {
   ASSERT_EQ(expected.size(), found.size()) << what;
   sortQuads(expected, layout);
   sortQuads(found, layout);
@@ -457,7 +474,7 @@ void expectIndices(const Output& out, size_t first, size_t count, bool relative)
   }
 }
 /// Nothing from quad `first` on was touched, up to `end`.
-void expectUntouched(const Output& out, size_t first, size_t end, const GpgpVertexOutput& layout) {
+void expectUntouched(const Output& out, size_t first, size_t end, const VertexFormat& layout) {
   for (size_t i = first * layout.stride; i < end * layout.stride; ++i) ASSERT_EQ(out.vertices[i], kPoison) << i;
   const uint32_t poison = layout.indexType == VK_INDEX_TYPE_UINT16 ? 0 : kPoison;
   for (size_t i = 6 * first; i < 6 * end; ++i)
@@ -481,7 +498,7 @@ std::vector<GpgpAxiom> axioms(uint32_t count, float x, float y, float z) {
 }
 
 spawn::Derivation evaluate(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& all,
-                           const GpgpVertexOutput& output) {
+                           const VertexFormat& output) {
   const auto layout = spawn::layoutOf(output);
   EXPECT_TRUE(layout);
   spawn::DeriveOptions options;
@@ -491,7 +508,7 @@ spawn::Derivation evaluate(const std::vector<uint32_t>& words, const std::vector
 uint32_t sum(const std::vector<uint32_t>& values) { return std::accumulate(values.begin(), values.end(), 0u); }
 
 void checkAll(VerticesTest& test, const std::string& what, const std::vector<uint32_t>& words,
-              const std::vector<GpgpAxiom>& all, const GpgpVertexOutput& layout) {
+              const std::vector<GpgpAxiom>& all, const VertexFormat& layout) {
   const spawn::Derivation cpu = evaluate(words, all, layout);
   const uint32_t quads = sum(cpu.quads);
   Wanted wanted;
@@ -527,14 +544,14 @@ TEST_F(VerticesTest, ShapesOfAllKindsInOtherFormats) {
                           "P = Replicate() { T | CompSplit() T };\n");
   checkAll(*this, "narrow", words, axioms(40, 3, 4, 0), narrowVertex());
   checkAll(*this, "small", words, axioms(40, 3, 4, 0), smallVertex());
-  GpgpVertexOutput half = wideVertex();
+  VertexFormat half = wideVertex();
   half.indexType = VK_INDEX_TYPE_UINT16;
   checkAll(*this, "wide, 16 bits", words, axioms(40, 3, 4, 0), half);
   checkAll(*this, "concave ones", shapesGrammar(), axioms(40, 3, 4, 2), wideVertex());
 }
 
 TEST_F(VerticesTest, HalfPrecisionPositionsAndUnsignedNormals) {
-  GpgpVertexOutput layout{};
+  VertexFormat layout{};
   layout.indexType = VK_INDEX_TYPE_UINT32;
   layout.stride = 12;
   layout.attributeCount = 2;
@@ -580,11 +597,7 @@ TEST_F(VerticesTest, GeneratedKernelsWriteTheSame) {
 }
 
 TEST_F(VerticesTest, WithCollidersToo) {
-  GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
-  info.base.queueFamily = device.graphics().family;
-  info.flags = GPGP_SPAWNER_VERTICES;
-  info.maxColliders = 1000;
-  spawners[1] = worker(gpgpCreateSpawner, info);
+  maxColliders = 1000;
   const auto words = bake("axiom Box A; terminal T (1,0); terminal U (1,1);\n"
                           "A = Scale(60,1,3) Repeat(X,6,ADJUST_TO_FILL) Collider(1) Replicate() { T | Repeat(Y,0.25,"
                           "ADJUST_TO_FILL) Scale(-1.5,-1,-1) IfCollides(1) { U | T } };\n");
@@ -599,7 +612,7 @@ TEST_F(VerticesTest, WhatDoesNotFitIsCountedAndNeverTorn) {
       bake("axiom Box A; terminal T (0,0); A = Repeat(X,0.1,ADJUST_TO_FILL) Repeat(Y,0.1,ADJUST_TO_FILL) B;"
            "B = RandomRule(ShapeSeed()) { 0.5: T | 0.5: CompSplit() { T | T | Discard() } };");
   const auto all = axioms(3, 3, 2, 1);
-  GpgpVertexOutput layout = wideVertex();
+  VertexFormat layout = wideVertex();
   const auto cpu = evaluate(words, all, layout);
   const uint32_t quads = sum(cpu.quads);
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> whole; // axiom and seed: quads
@@ -633,7 +646,7 @@ TEST_F(VerticesTest, WhatDoesNotFitIsCountedAndNeverTorn) {
 
 TEST_F(VerticesTest, SixteenBitIndicesEndWhereTheyReach) {
   const auto words = bake("axiom Box A; terminal T (0,0); A = Repeat(X,1,ADJUST_TO_FILL) T;");
-  GpgpVertexOutput layout = smallVertex();
+  VertexFormat layout = smallVertex();
   layout.indexType = VK_INDEX_TYPE_UINT16;
   Wanted wanted;
   wanted.vertices = &layout;
@@ -646,7 +659,7 @@ TEST_F(VerticesTest, SixteenBitIndicesEndWhereTheyReach) {
 }
 
 TEST_F(VerticesTest, NoVerticesWithoutAxioms) {
-  const GpgpVertexOutput layout = wideVertex();
+  const VertexFormat layout = wideVertex();
   Wanted wanted;
   wanted.vertices = &layout;
   wanted.quads = 10;
@@ -728,10 +741,7 @@ TEST_F(VerticesTest, InstancesBeyondTheirRegionAreCounted) {
 }
 
 TEST_F(VerticesTest, OrderedInstancesFillTheirRegionsFromTheFront) {
-  GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
-  info.base.queueFamily = device.graphics().family;
-  info.flags = GPGP_SPAWNER_ORDERED;
-  spawners[0] = worker(gpgpCreateSpawner, info);
+  flags = GPGP_SPAWNER_ORDERED;
   const auto words = bake("axiom Box A; terminal S (1,0); terminal T (1,1); terminal U (1,2);"
                           "A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { S | T | T | U };");
   const std::vector<GpgpAxiom> all{makeAxiom(300, 1, 1, 5)};
@@ -760,7 +770,7 @@ TEST_F(VerticesTest, OrderedInstancesFillTheirRegionsFromTheFront) {
 }
 
 TEST_F(VerticesTest, CountThenEmitGivesEachBucketItsVertices) {
-  for (const GpgpVertexOutput& layout : {wideVertex(), narrowVertex()}) {
+  for (const VertexFormat& layout : {wideVertex(), narrowVertex()}) {
     const auto words = bake(ownGrammar("building.pga"));
     const auto all = axioms(2, 12, 16, 10);
     const auto cpu = evaluate(words, all, layout);
@@ -802,7 +812,7 @@ TEST_F(VerticesTest, CountThenEmitGivesEachBucketItsVertices) {
 TEST_F(VerticesTest, VerticesBeyondTheirRegionAreCounted) {
   const auto words = bake("axiom Box A; terminal S (0,0); terminal T (0,1);"
                           "A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { S | CompSplit() T | T };");
-  const GpgpVertexOutput layout = wideVertex();
+  const VertexFormat layout = wideVertex();
   Wanted wanted;
   wanted.vertices = &layout;
   wanted.flags = GPGP_SPAWN_REGIONS;
@@ -828,12 +838,13 @@ TEST_F(VerticesTest, VerticesBeyondTheirRegionAreCounted) {
 
 TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
   const auto words = bake(ownGrammar("building.pga"));
+  const VertexFormat format = wideVertex();
+  const GpgpWorker spawners[2] = {spawnerFor(nullptr), spawnerFor(&format)};
   const GpgpAsset grammar = makeGrammar(words, spawners[0]);
   const host::Buffer buffer(device, 65536, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   const GpgpFrame f = advance();
   const auto refused = [&](uint32_t spawner, auto change) {
-    GpgpVertexOutput output = wideVertex();
-    output.vertices = output.indices = buffer.range();
+    GpgpVertexOutput output{buffer.range(), buffer.range(), VK_INDEX_TYPE_UINT32};
     GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
     info.grammar = grammar;
     if (spawner)
@@ -849,29 +860,78 @@ TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
     return text;
   };
   EXPECT_EQ(refused(1, [](auto& i, auto&) { i.vertices = nullptr; }),
-            "vertices is NULL; the spawner was made with GPGP_SPAWNER_VERTICES");
+            "vertices is NULL; the spawner was made for vertices");
   EXPECT_EQ(refused(0, [](auto& i, auto& v) { i.vertices = &v; }),
-            "vertices is set; the spawner was made without GPGP_SPAWNER_VERTICES");
+            "vertices is set; the spawner was made for instances");
   EXPECT_EQ(refused(0, [](auto& i, auto&) { i.instances = {}; }),
             "instances.buffer is NULL, and draws.buffer, where a record could count");
   EXPECT_EQ(refused(0, [](auto& i, auto&) { i.flags = GPGP_SPAWN_REGIONS; }),
             "GPGP_SPAWN_REGIONS is set, draws.buffer is NULL");
   EXPECT_EQ(refused(0, [&](auto& i, auto&) { i.needed = buffer.range(); }),
             "needed.buffer is set, but there are no regions to fill");
-  EXPECT_EQ(refused(1, [](auto&, auto& v) { v.stride = 46; }),
-            "vertices->stride is 46; it must be a multiple of 4, at most 64");
-  EXPECT_EQ(refused(1, [](auto&, auto& v) { v.attributeCount = 9; }),
-            "vertices->attributeCount is 9; it must be 1 to 8");
-  EXPECT_EQ(refused(1, [](auto&, auto& v) { v.attributes[1].semantic = 7; }),
-            "vertices->attributes[1].semantic is unknown (7)");
-  EXPECT_EQ(refused(1, [](auto&, auto& v) { v.attributes[3].format = VK_FORMAT_R32G32_SFLOAT; }),
-            "vertices->attributes[3].format (103) is not one for its semantic");
-  EXPECT_EQ(
-      refused(1, [](auto&, auto& v) { v.attributes[0].offset = 40; }),
-      "vertices->attributes[0].offset is 40; it must be a multiple of 4, and the attribute must lie in the vertex");
   EXPECT_EQ(refused(1, [](auto&, auto& v) { v.indexType = VK_INDEX_TYPE_NONE_KHR; }),
             "vertices->indexType is neither UINT16 nor UINT32");
   gpgpDestroyAsset(grammar);
+}
+
+TEST_F(VerticesTest, BadLayoutsAreRefusedWithAReason) {
+  const auto refusedLayout = [&](auto change) {
+    VertexFormat layout = wideVertex();
+    change(layout);
+    GpgpSpawnerCreateInfo info = spawnerInfo(nullptr);
+    info.vertices = &layout;
+    GpgpWorker spawner = nullptr;
+    EXPECT_EQ(gpgpCreateSpawner(context, &info, &spawner), GPGP_ERROR_INVALID_ARGUMENT);
+    const std::string text = lastMessage().substr(lastMessage().find(": ") + 2);
+    messages.clear();
+    return text;
+  };
+  EXPECT_EQ(refusedLayout([](auto& v) { v.stride = 46; }),
+            "vertices->stride is 46; it must be a multiple of 4, at most 64");
+  EXPECT_EQ(refusedLayout([](auto& v) { v.attributeCount = 9; }),
+            "vertices->attributeCount is 9; it must be 1 to 8");
+  EXPECT_EQ(refusedLayout([](auto& v) { v.attributes[1].semantic = 7; }),
+            "vertices->attributes[1].semantic is unknown (7)");
+  EXPECT_EQ(refusedLayout([](auto& v) { v.attributes[3].format = VK_FORMAT_R32G32_SFLOAT; }),
+            "vertices->attributes[3].format (103) is not one for its semantic");
+  EXPECT_EQ(
+      refusedLayout([](auto& v) { v.attributes[0].offset = 40; }),
+      "vertices->attributes[0].offset is 40; it must be a multiple of 4, and the attribute must lie in the vertex");
+}
+
+TEST_F(VerticesTest, TerminalsBeyondTheRecordsAreCounted) {
+  const auto words = bake("axiom Box A; terminal T (0,0); terminal U (0,1);"
+                          "A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { T | CompSplit() { U | U | Discard() } };");
+  const auto all = axioms(4, 100, 1, 1); // 400 boxes, 800 quads
+  const VertexFormat layout = wideVertex();
+  maxTerminals = 500;
+  Wanted wanted;
+  wanted.vertices = &layout;
+  wanted.quads = 4000;
+  const Output out = run(words, all, wanted);
+  const uint32_t written = out.report.verticesWritten / 4;
+  EXPECT_EQ(out.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(out.report.terminals, 1200u);
+  EXPECT_EQ(out.report.vertices, 4u * (400 * 6 + 800));
+  EXPECT_GE(written, 500u);
+  EXPECT_LE(written, 100u + 6 * 400);
+  EXPECT_EQ(out.draws[0].indexCount, 6 * written);
+  expectIndices(out, 0, written, false);
+  expectUntouched(out, written, 4000, layout);
+  // Counting needs no records, and regions are told what they would have needed.
+  wanted.quads = 0;
+  wanted.withNeeded = true;
+  const Output counted = run(words, all, wanted);
+  EXPECT_EQ(counted.report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(counted.needed, (std::vector<uint32_t>{6 * 2400, 6 * 800}));
+  wanted.quads = 3200;
+  wanted.flags = GPGP_SPAWN_REGIONS;
+  wanted.draws = counted.draws;
+  const Output regions = run(words, all, wanted);
+  EXPECT_EQ(regions.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(regions.needed, counted.needed);
+  EXPECT_EQ(regions.draws[0].indexCount + regions.draws[1].indexCount, regions.report.verticesWritten / 4 * 6);
+  EXPECT_EQ(regions.draws[0].indexCount / 36 + regions.draws[1].indexCount / 6, 500u);
 }
 
 } // namespace

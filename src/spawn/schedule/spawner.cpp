@@ -75,19 +75,19 @@ uint32_t cellsOf(uint32_t maxColliders) { return std::bit_ceil(2 * maxColliders)
 /// Shapes on the stacks of all workgroups.
 uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
 
-std::array<uint32_t, 4> specialization(const Fit& fit, uint32_t table = 0) {
+std::array<uint32_t, core::kMaxSpecialization> specialization(const Fit& fit, uint32_t table = 0) {
   return {fit.groupSize, fit.stackShapes, table};
 }
 
-/// Invocations of shaders/spawn/expand.comp and words of its stage: quads of 32 bytes a vertex for each invocation. All
-/// its shared memory is below 16 KiB, or 32 KiB.
-struct ExpandFit {
-  uint32_t groupSize, stageWords;
-};
-ExpandFit expandFit(const core::Device& device) {
-  const uint32_t size = !device.software && device.limits.maxComputeSharedMemorySize >= 32768 ? 128 : 64;
-  return {size, 8 * (4 * (size + 8) + 1)};
+/// Of shaders/spawn/expand.comp: the stride, and all attributes.
+std::array<uint32_t, core::kMaxSpecialization> specialization(const VertexLayout& layout) {
+  std::array<uint32_t, core::kMaxSpecialization> all;
+  all.fill(shader::kNoAttribute);
+  all[0] = layout.strideWords;
+  std::copy_n(layout.attributes.begin(), layout.attributeCount, all.begin() + 1);
+  return all;
 }
+static_assert(core::kMaxSpecialization == 1 + shader::kMaxVertexAttributes);
 
 /// The most quads that 16-bit indices reach, without 65535, which could restart a primitive.
 constexpr uint32_t kShortQuads = 65535 / 4;
@@ -99,11 +99,18 @@ template <class Element> uint32_t elementsIn(const GpgpBuffer& buffer) {
 } // namespace
 
 core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, const GpgpSpawnerCreateInfo& info) {
+  VertexLayout layout;
+  if (info.vertices) {
+    auto checked = layoutOf(*info.vertices);
+    if (!checked) return checked.error();
+    layout = *checked;
+  }
   auto spawner = core::makeUnique<Spawner>(context.host(), context, info.base);
   const uint32_t maxShapes = spawner->maxShapes_ = info.maxShapes ? info.maxShapes : kDefaultShapes;
   const uint32_t maxTerminals = spawner->maxTerminals_ = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
   const uint32_t maxColliders = spawner->maxColliders_ = info.maxColliders;
-  const bool vertices = spawner->vertices_ = info.flags & GPGP_SPAWNER_VERTICES;
+  const bool vertices = spawner->vertices_ = info.vertices;
+  spawner->stride_ = 4 * layout.strideWords;
   const bool ordered = spawner->ordered_ = info.flags & GPGP_SPAWNER_ORDERED;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
   spawner->rounds_ = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
@@ -183,10 +190,9 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
     }
   }
   if (vertices) {
-    const ExpandFit fit = expandFit(context.device);
     const auto spirv = subgroups ? std::span<const uint32_t>(spawn_expand_subgroups)
                                  : std::span<const uint32_t>(spawn_expand);
-    const uint32_t expand = list.add(core::ShaderDesc{"expand", spirv, {fit.groupSize, fit.stageWords}, 2});
+    const uint32_t expand = list.add(core::ShaderDesc{"expand", spirv, specialization(layout), core::kMaxSpecialization});
     list.dispatch("expand", expand,
                   {{kGraph, read},
                    {kAxioms, read},
@@ -248,8 +254,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   return spawner;
 }
 
-core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar,
-                                    const VertexLayout& layout) {
+core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
   const Limits& limits = limitsOf(context.device);
   const uint32_t phases = std::max(grammar.graph.phases, 1u);
   if (grammar.graph.phases && !maxColliders_)
@@ -288,19 +293,17 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
                                                 : shader::kToInstances;
   constants.regions = regions;
   constants.writeNeeded = info.needed.buffer ? 1 : 0;
-  if (vertices_) constants.strideWords = counts ? 1 : layout.strideWords;
+  constants.quads = vertices_ ? 1 : 0;
   if (vertices_ && !counts) {
     const GpgpVertexOutput& output = *info.vertices;
     const bool shortIndices = output.indexType == VK_INDEX_TYPE_UINT16;
     const uint32_t indexBytes = shortIndices ? 2 : 4;
-    VkDeviceSize quads = output.vertices.size / (4 * output.stride);
+    VkDeviceSize quads = output.vertices.size / (4 * stride_);
     if (output.indices.buffer) quads = std::min(quads, output.indices.size / (6 * indexBytes));
     constants.regionQuads = shortIndices ? kShortQuads : UINT32_MAX;
     constants.quadCapacity = static_cast<uint32_t>(quads);
     if (!regions) constants.quadCapacity = std::min(constants.quadCapacity, constants.regionQuads);
     constants.indexWords = output.indices.buffer ? 6 * indexBytes / 4 : 0;
-    constants.attributeCount = layout.attributeCount;
-    std::copy(layout.attributes.begin(), layout.attributes.end(), constants.attributes);
   }
   core::Record record;
   record.commandBuffer = commandBuffer;
@@ -321,7 +324,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
   record.groups[kLinkGroups] = {std::clamp(maxColliders_ / (4 * shader::kSpawnGroupSize), 1u, 256u), 1, 1};
   record.groups[kExpandGroups] = {
-      std::min((maxTerminals_ - 1) / expandFit(context.device).groupSize + 1, limits.expandGroups), 1, 1};
+      std::min((maxTerminals_ - 1) / shader::kSpawnGroupSize + 1, limits.expandGroups), 1, 1};
   record.conditions[kSorted] = sorted;
   record.conditions[kExpanded] = vertices_ && !counts;
   record.conditions[kOrdered] = sorted && ordered_;

@@ -23,9 +23,8 @@ public:
   Spawner(core::Context& owner, const GpgpWorkerCreateInfo& base)
       : Worker(owner, core::Kind::spawner, base, GPGP_SERVICE_SPAWN) {}
 
-  /// Sizes of buffers are the caller's to check; the rest is checked here. layout: of info.vertices.
-  core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar,
-                             const VertexLayout& layout);
+  /// Sizes of buffers are the caller's to check; the rest is checked here.
+  core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar);
   /// Makes pipelines of the grammar's kernels that are for this device and fit it.
   core::Result<void> prewarm(Grammar& grammar) const;
   using Worker::prewarm;
@@ -39,6 +38,7 @@ private:
 
   uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0, maxColliders_ = 0;
   uint32_t derive_ = 0, deriveColliding_ = 0; // shaders
+  uint32_t stride_ = 0;                       // of a vertex
   bool vertices_ = false, ordered_ = false;
 };
 

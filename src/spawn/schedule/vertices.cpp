@@ -22,19 +22,19 @@ uint32_t formatOf(VkFormat format) {
 }
 } // namespace
 
-core::Result<VertexLayout> layoutOf(const GpgpVertexOutput& output) {
+core::Result<VertexLayout> layoutOf(const GpgpVertexLayout& wanted) {
   VertexLayout layout;
-  if (output.stride == 0 || output.stride % 4 || output.stride > 4 * kMaxVertexWords)
+  if (wanted.stride == 0 || wanted.stride % 4 || wanted.stride > 4 * kMaxVertexWords)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                           "vertices->stride is %u; it must be a multiple of 4, at most %u", output.stride,
+                           "vertices->stride is %u; it must be a multiple of 4, at most %u", wanted.stride,
                            4 * kMaxVertexWords);
-  if (output.attributeCount == 0 || output.attributeCount > GPGP_MAX_VERTEX_ATTRIBUTES)
+  if (wanted.attributeCount == 0 || wanted.attributeCount > GPGP_MAX_VERTEX_ATTRIBUTES)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices->attributeCount is %u; it must be 1 to %u",
-                           output.attributeCount, GPGP_MAX_VERTEX_ATTRIBUTES);
-  layout.strideWords = output.stride / 4;
-  layout.attributeCount = output.attributeCount;
-  for (uint32_t i = 0; i < output.attributeCount; ++i) {
-    const GpgpVertexAttribute& attribute = output.attributes[i];
+                           wanted.attributeCount, GPGP_MAX_VERTEX_ATTRIBUTES);
+  layout.strideWords = wanted.stride / 4;
+  layout.attributeCount = wanted.attributeCount;
+  for (uint32_t i = 0; i < wanted.attributeCount; ++i) {
+    const GpgpVertexAttribute& attribute = wanted.attributes[i];
     const uint32_t format = formatOf(attribute.format);
     if (attribute.semantic >= kVertexSemantics)
       return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices->attributes[%u].semantic is unknown (%u)", i,
@@ -43,8 +43,8 @@ core::Result<VertexLayout> layoutOf(const GpgpVertexOutput& output) {
       return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
                              "vertices->attributes[%u].format (%d) is not one for its semantic", i,
                              static_cast<int>(attribute.format));
-    if (attribute.offset % 4 || attribute.offset >= output.stride ||
-        attribute.offset + 4 * attributeWords(format) > output.stride)
+    if (attribute.offset % 4 || attribute.offset >= wanted.stride ||
+        attribute.offset + 4 * attributeWords(format) > wanted.stride)
       return core::makeError(
           GPGP_ERROR_INVALID_ARGUMENT,
           "vertices->attributes[%u].offset is %u; it must be a multiple of 4, and the attribute must "

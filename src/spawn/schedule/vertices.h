@@ -1,4 +1,4 @@
-// What a record says of vertices, checked and in the words that shaders and the evaluator read.
+// How a spawner's vertices look, checked and in the words that shaders and the evaluator read.
 #pragma once
 #include "core/result.h"
 #include "spawn/mesh.h"
@@ -16,6 +16,6 @@ struct VertexLayout {
 };
 
 /// Fails where an attribute is not one that can be written, or lies outside the vertex.
-core::Result<VertexLayout> layoutOf(const GpgpVertexOutput& output);
+core::Result<VertexLayout> layoutOf(const GpgpVertexLayout& wanted);
 
 } // namespace gpgp::spawn
