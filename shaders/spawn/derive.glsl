@@ -150,7 +150,7 @@ void emit(bool own, uint place, uint count, Shape s) {
   uint target = terminalBase + place;
   if (record.terminalsTo == kToRecords) {
     if (target < record.maxTerminals) {
-      for (uint plane = 0; plane < kShapePlanes; ++plane)
+      for (uint plane = 0; plane < (quads ? kShapePlanes - 1 : kShapePlanes); ++plane) // the last one has the key
         records[plane * record.maxTerminals + target] = packShape(s, plane);
       if (!quads) atomicAdd(bucketCounts[bucket], 1);
     } else if (quads) {

@@ -198,12 +198,15 @@ void main() {
     }
     for (uint i = lane; i < all * indexWords; i += groupSize) {
       const uint quad = indexWords == 6 ? i / 6 : i / 3;
-      uint own;
-      const uint owner = ownerOf(quad, own);
-      const uvec2 places = recordPlaces[owner];
-      if (places.x != kNoPlace)
-        indices[(places.x + own) * indexWords + i - quad * indexWords] =
-            indexWord(indexWords, places.y + own, i - quad * indexWords);
+      uvec2 places = uvec2(quadBase + quad); // all lie side by side
+      if (record.regions != 0) {
+        uint own;
+        places = recordPlaces[ownerOf(quad, own)];
+        if (places.x == kNoPlace) continue;
+        places += own;
+      }
+      indices[places.x * indexWords + i - quad * indexWords] =
+          indexWord(indexWords, places.y, i - quad * indexWords);
     }
   }
 }
