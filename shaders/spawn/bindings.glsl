@@ -15,7 +15,7 @@ layout(set = 0, binding = 8, std430) buffer Counters {
   SpawnRound rounds[];
 };
 layout(set = 0, binding = 9, std430) buffer Buckets { uint bucketCounts[]; }; // kBucketWords
-layout(set = 0, binding = 10, std430) readonly buffer Constants { SpawnConstants record; };
+layout(set = 0, binding = 10, std140) uniform Constants { SpawnConstants record; };
 layout(set = 0, binding = 11, std430) writeonly buffer Vertices { uvec4 vertices[]; }; // a quad: as many as its words
 layout(set = 0, binding = 12, std430) writeonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 13, std430) writeonly buffer Needed { uint neededCounts[]; };

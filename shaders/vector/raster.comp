@@ -49,23 +49,27 @@ void main() {
   if (lane == kRoom / 32) open[0] = 0;
   bool done = false;
   uint turn = 0;
-  for (uint wordEnd = header.pathWords; wordEnd > 0 && !done; wordEnd -= min(wordEnd, 256)) {
-    // Each lane has one word of the bin, the foremost paths first, and learns how many paths lie before its own.
-    const uint word = wordEnd - 1 - min(lane, wordEnd - 1);
-    const uint found = lane < wordEnd ? bins[bin + word] : 0;
-    counts[lane] = bitCount(found);
-    barrier();
-    if (lane < 16) {
-      uint group = 0;
-      for (uint k = 0; k < 16; ++k) group += counts[lane * 16 + k];
-      groupCounts[lane] = group;
-    }
-    uint before = 0, total = 0;
-    for (uint k = lane & ~15u; k < lane; ++k) before += counts[k];
-    barrier();
-    for (uint k = 0; k < 16; ++k) {
-      if (k < lane / 16) before += groupCounts[k];
-      total += groupCounts[k];
+  const uint listed = bins[bin - 1]; // 1 + paths
+  for (uint wordEnd = listed != 0 ? 1 : header.pathWords; wordEnd > 0 && !done; wordEnd -= min(wordEnd, 256)) {
+    uint word = 0, found = 0, before = 0, total = listed - 1;
+    if (listed == 0) {
+      // Each lane has one word of the bin, the foremost paths first, and learns how many paths lie before its own.
+      word = wordEnd - 1 - min(lane, wordEnd - 1);
+      found = lane < wordEnd ? bins[bin + word] : 0;
+      counts[lane] = bitCount(found);
+      barrier();
+      if (lane < 16) {
+        uint group = 0;
+        for (uint k = 0; k < 16; ++k) group += counts[lane * 16 + k];
+        groupCounts[lane] = group;
+      }
+      for (uint k = lane & ~15u; k < lane; ++k) before += counts[k];
+      barrier();
+      total = 0;
+      for (uint k = 0; k < 16; ++k) {
+        if (k < lane / 16) before += groupCounts[k];
+        total += groupCounts[k];
+      }
     }
     for (uint base = 0; base < total && !done; base += kRoom) {
       if (before < base + kRoom && before + bitCount(found) > base) {
@@ -77,7 +81,8 @@ void main() {
         }
       }
       barrier();
-      const uint path = lane < total - base ? candidates[lane] : ~0u;
+      uint path = ~0u;
+      if (lane < total - base) path = listed != 0 ? bins[bin + header.pathWords - 1 - base - lane] : candidates[lane];
       uvec4 own = uvec4(0);
       PlacedPath p;
       if (path < cutPath) {

@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kPhase = 0u;
 
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/lists.glsl"
 #include "visibility/grid.glsl"

@@ -4,7 +4,7 @@
 #include "visibility/layout.h"
 layout(local_size_x = 256) in;
 
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 #define TABLE_ACCESS
 #include "visibility/table.glsl"
 #include "visibility/chunks.glsl"

@@ -4,7 +4,7 @@
 #include "visibility/layout.h"
 layout(local_size_x = 256) in;
 
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindDepth) writeonly buffer DepthBuffer { uint depths[]; };
 layout(std430, set = 0, binding = kBindIds) writeonly buffer IdBuffer { uint ids[]; };
 layout(std430, set = 0, binding = kBindCounters) writeonly buffer CounterBuffer { uint counters[]; };

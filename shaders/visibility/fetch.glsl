@@ -5,7 +5,7 @@
 #include "visibility/position.h"
 #include "visibility/triangle.h"
 
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 #include "visibility/grid.glsl"
 
 layout(std430, set = 0, binding = kBindPositions) readonly buffer PositionBuffer { uint positions[]; };
@@ -84,11 +84,8 @@ bool fetchVertex(DrawEntry e, uint index, out vec3 position) {
 }
 
 mat4 viewProjection(uint camera) {
-  mat4 m;
-  for (uint i = 0u; i < 4u; ++i)
-    m[i] = vec4(params.viewProjection[camera * 16u + i * 4u], params.viewProjection[camera * 16u + i * 4u + 1u],
-                params.viewProjection[camera * 16u + i * 4u + 2u], params.viewProjection[camera * 16u + i * 4u + 3u]);
-  return m;
+  return mat4(params.viewProjection[camera * 4u], params.viewProjection[camera * 4u + 1u],
+              params.viewProjection[camera * 4u + 2u], params.viewProjection[camera * 4u + 3u]);
 }
 
 Fetched fetchTriangle(uint entry, uint local) {

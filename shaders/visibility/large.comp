@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/triangle.h"
 
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 #include "visibility/pixels.glsl"
 #include "visibility/records.glsl"
 layout(local_size_x = 64) in;

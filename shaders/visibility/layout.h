@@ -103,7 +103,11 @@ GPGP_CONST uint kTablePlaces = 11u;
 
 /// Of one record.
 struct Params {
+#ifdef __cplusplus
   float viewProjection[128]; // of each camera, column-major
+#else
+  vec4 viewProjection[32]; // the columns
+#endif
   uint cameraCount;
   uint width;
   uint height; // of each camera; they lie one below the other in the buffers of depth and ids

@@ -5,7 +5,7 @@
 #include "visibility/metrics.h"
 layout(local_size_x = 256) in;
 
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) readonly buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindTruth) readonly buffer TruthBuffer { uint truthBits[]; };

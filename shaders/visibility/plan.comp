@@ -7,7 +7,7 @@
 #include "visibility/layout.h"
 layout(local_size_x = 256) in;
 
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindDraws) readonly buffer DrawBuffer { Draw draws[]; };
 layout(std430, set = 0, binding = kBindMeshes) readonly buffer MeshBuffer { Mesh meshes[]; };
 layout(std430, set = 0, binding = kBindCommands) readonly buffer CommandBuffer { uint commands[]; };

@@ -1,7 +1,7 @@
 // Decides a part of a pixel's list, front to back: a team of 32 invocations holds two of the pixel's 64 rows of 64
 // samples each. A triangle with a sample that nothing before it covers is visible. Needs kRanked: how many entries are
 // sorted together; kTeams: how many a workgroup has.
-layout(std430, set = 0, binding = kBindParams) readonly buffer ParamsBuffer { Params params; };
+layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/lists.glsl"
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };

@@ -61,7 +61,7 @@ void PassList::finish(VkDeviceSize alignment) {
     if (resources[i].kind == ResourceKind::scratch) {
       scratchOffsets[i] = scratchBytes;
       scratchBytes += size;
-    } else if (resources[i].kind == ResourceKind::constants) {
+    } else if (resources[i].kind == ResourceKind::constants || resources[i].kind == ResourceKind::uniforms) {
       scratchOffsets[i] = constantsBytes;
       constantsBytes += size;
     }

@@ -23,12 +23,13 @@ enum class ResourceKind : uint8_t {
              ///< descriptor set 1, which records without them leave unbound
   scratch,   ///< part of the scratch buffer, contents undefined between records
   constants, ///< written by the CPU with each record, read by shaders
+  uniforms,  ///< the same as a uniform block, for what is small and every invocation reads
 };
 
 struct Resource {
   const char* name;
   ResourceKind kind;
-  VkDeviceSize bytes = 0; ///< scratch and constants
+  VkDeviceSize bytes = 0; ///< scratch, constants and uniforms
   bool optional = false;  ///< buffer, image, texture: a record may leave it out; an unused range is bound instead
 };
 

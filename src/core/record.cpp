@@ -161,6 +161,7 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
     const Binding& binding = bindings[i];
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i,      0, 1,
                                VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,      nullptr, &buffers[i], nullptr};
+    if (resource.kind == ResourceKind::uniforms) write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     // What a record leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
     buffers[i] = {constants_.handle(), 0, VK_WHOLE_SIZE};
     if (resource.kind == ResourceKind::image) {
@@ -180,7 +181,7 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
     } else if (resource.kind == ResourceKind::scratch) {
       if (scratch)
         buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[i], std::max<VkDeviceSize>(resource.bytes, 4)};
-    } else if (resource.kind == ResourceKind::constants) {
+    } else if (resource.kind == ResourceKind::constants || resource.kind == ResourceKind::uniforms) {
       buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i], resource.bytes};
     } else if (binding.ownBuffer) {
       buffers[i] = {binding.ownBuffer, binding.ownOffset, binding.ownSize};

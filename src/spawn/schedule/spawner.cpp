@@ -136,7 +136,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const uint32_t rounds = phases * spawner->phaseStride() + 1;
   list.add({"counters", scratch, roundAt(rounds)});
   list.add({"buckets", scratch, sizeof(uint32_t) * shader::kBucketWords});
-  list.add({"constants", constants, sizeof(shader::SpawnConstants)});
+  list.add({"constants", uniforms, sizeof(shader::SpawnConstants)});
   list.add({"vertices", buffer, 0, true});
   list.add({"indices", buffer, 0, true});
   list.add({"needed", buffer, 0, true});

@@ -35,6 +35,7 @@
 #include "shaders/vector_mark_software.spv.h"
 #include "shaders/vector_mark_software_one.spv.h"
 #include "shaders/vector_mark_software_projective.spv.h"
+#include "shaders/vector_pack.spv.h"
 #include "shaders/vector_place.spv.h"
 #include "shaders/vector_place_one.spv.h"
 #include "shaders/vector_place_projective.spv.h"
@@ -96,7 +97,7 @@ using shader::SlotRecord;
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
 [[maybe_unused]] constexpr core::ResourceIndex kChordList = 26;
 // Workgroup counts and conditions of a record.
-enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRows, kRaster, kTiles, kSift };
+enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRows, kRaster, kTiles, kSift, kBins };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
   kPlain = 0,
@@ -107,9 +108,11 @@ enum Conditions : uint32_t {
   kAny = 15,
   kOneDrawing = 18,
   kDrawings,
-  kProjective
+  kProjective,
+  kManyPaths
 };
 
+constexpr uint32_t kPackedWords = 32; // bins of as many words become lists
 constexpr uint32_t kSquare = 16; // pixels: a workgroup of raster.comp
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
@@ -144,7 +147,7 @@ uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would 
 
 uint64_t Canvas::binWords() const { // enough for any record with the largest bins
   constexpr uint32_t kLargest = shader::kTileSize << shader::kMaxBinShift;
-  return uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) * divide(maxPatches_, 32);
+  return uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) * (divide(maxPatches_, 32) + 1);
 }
 
 core::PassList Canvas::describe() const {
@@ -223,6 +226,12 @@ core::PassList Canvas::describe() const {
                                              "fill without lists, projective"};
   either({"mark", "mark, several drawings", "mark, projective"}, mark,
          {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}}, kSegments);
+  if (!software_) {
+    core::Pass& pack = list.dispatch("pack", list.add(core::ShaderDesc{"pack", vector_pack}),
+                                     {{params, read}, {masks, readWrite}}, kBins);
+    pack.condition = kManyPaths;
+    pack.beside = true;
+  }
   dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
            {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
   if (software_) {
@@ -514,7 +523,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t shift = shader::kMaxBinShift; shift >= shader::kMinBinShift; --shift) {
     const uint32_t across = divide(info.width, shader::kTileSize << shift),
                    count = across * divide(info.height, shader::kTileSize << shift);
-    if (shift != shader::kMaxBinShift && uint64_t(count) * header.pathWords > binWords()) break;
+    if (shift != shader::kMaxBinShift && uint64_t(count) * (header.pathWords + 1) > binWords()) break;
     header.binShift = shift;
     header.binsX = across;
     header.binCount = count;
@@ -562,7 +571,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     r.bindings[kFirstImage + i].texture = {from.sampler, from.view, from.layout};
   }
   r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
-  const uint64_t bins = uint64_t(header.binCount) * header.pathWords;
+  const uint64_t bins = uint64_t(header.binCount) * (header.pathWords + 1);
   r.groups[kBegin] = {
       software_ ? divide(std::max<uint64_t>({header.itemCount, bins / 16, 1}), 64) : divide(maxWords_, 64 * 8), 1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
@@ -571,6 +580,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
   r.groups[kRows] = {std::min(4096u, divide(maxRows(), 64)), 1, 1};
   r.groups[kTiles] = rows(divide(uint64_t(header.tilesX) * header.tilesY, 8));
+  r.groups[kBins] = rows(header.binCount);
+  r.conditions[kManyPaths] = header.pathWords >= kPackedWords;
   r.groups[kSift] = {divide(uint64_t(header.binCount) << header.binShift, 64), 1, 1};
   r.groups[kRaster] = {divide(info.width, kSquare), divide(info.height, kSquare), 1};
   if (auto ok = check(r); !ok) return ok;

@@ -25,7 +25,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   const auto engine = [&](const char* name) { list.add({name, buffer, 0, true}); };
   const auto own = [&](const char* name, VkDeviceSize bytes) { list.add({name, scratch, bytes}); };
 
-  list.add({"camera", constants, sizeof(shader::Params)});
+  list.add({"camera", uniforms, sizeof(shader::Params)});
   engine("positions");
   engine("indices");
   engine("draws");
