@@ -72,6 +72,6 @@ void main() {
     const PlacementRecord p = placementOf(i);
     items[i] = placed(sourceOf(p.source), p);
   }
-  const uint binWords = kFirstBin + header.binCount * (header.pathWords + 1); // binStride()
+  const uint binWords = kFirstBin + header.binCount * header.binWords;
   for (uint i = lane; i < binWords; i += lanes) bins[i] = i < kFirstBin && i % 4 == 2 ? 1 : 0;
 }

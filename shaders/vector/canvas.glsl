@@ -72,11 +72,9 @@ uint wholeItems(uint cut) {
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
 Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }
-// A bin's words: 0, or 1 + how many paths it has as a list (pack.comp); a bit for each path.
-uint binStride() { return header.pathWords + 1; }
 // The bits of a tile's bin begin there.
 uint binOf(uvec2 tile) {
-  return kFirstBin + ((tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift)) * binStride() + 1;
+  return kFirstBin + ((tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift)) * header.binWords + 1;
 }
 int tileOf(int column) { return (column + int(kTileSize)) / int(kTileSize) - 1; } // of column -1: -1
 

@@ -136,13 +136,23 @@ int differenceAt(uvec4 row, uint x) {
   return (x & 1) != 0 ? (int(pair) - low) >> 16 : low;
 }
 
-// What a path does to pixel `at` of the tile: samples, and by how much its area differs from them.
-uint maskAt(uint code, uvec2 at, bool area, out int difference) {
+// A row of pixels of an entry: samples that change sides, and areas.
+struct Edge {
+  uvec4 samples, areas;
+};
+Edge fetchEdge(uint code, uint y, bool area) {
+  Edge edge = Edge(uvec4(0), uvec4(0));
+  const uint row = (code >> 2) * (kEntryWords / 4) + y;
+  if (code > 1) edge.samples = entries[row];
+  if (code > 1 && area) edge.areas = entries[row + kEntryWords / 8];
+  return edge;
+}
+// What a path does to pixel x of the row: samples, and by how much its area differs from them.
+uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
   difference = 0;
   if (code == 1) return all;
-  const uint row = (code >> 2) * (kEntryWords / 4) + at.y;
-  if (area) difference = differenceAt(entries[row + kEntryWords / 8], at.x);
-  return foldRow(entries[row], at.x) ^ ((code & 1) != 0 ? all : 0);
+  if (area) difference = differenceAt(edge.areas, x);
+  return foldRow(edge.samples, x) ^ ((code & 1) != 0 ? all : 0);
 }
 
 #if RICH
@@ -171,7 +181,7 @@ void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout u
       const uint code = coverageOf(paths[item.firstPath + record.x + k], tile);
       if (code == 0) continue;
       int otherDifference;
-      const uint other = maskAt(code, at, area, otherDifference);
+      const uint other = maskOf(code, fetchEdge(code, at.y, area), at.x, area, otherDifference);
       combine(shown, shownDifference, other, otherDifference, true);
     }
     combine(mask, difference, shown, shownDifference, false);
@@ -180,11 +190,20 @@ void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout u
 }
 #endif
 
-// A path over pixel `at` of the tile and `pixel` of the canvas; `paint` is its item, its paint and its group.
-void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec3 paint) {
-  const bool area = first || gap > 0;
+// Whether what is painted next counts by its area, and whether what comes behind it may.
+bool countsArea() { return first || gap > 0; }
+#if RICH
+bool mayCountArea() { return (header.flags & kExactArea) != 0; } // leaving a group may open a gap
+#else
+bool mayCountArea() { return countsArea(); }
+#endif
+
+// A path over pixel `at` of the tile and `pixel` of the canvas; `edge` is its row there, with areas where countsArea();
+// `paint` is its item, its paint and its group.
+void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec3 paint) {
+  const bool area = countsArea();
   int difference;
-  uint mask = maskAt(code, at, area, difference);
+  uint mask = maskOf(code, edge, at.x, area, difference);
 #if RICH
   uvec4 group = uvec4(0);
   const ItemRecord own = items[paint.x];

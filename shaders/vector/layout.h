@@ -153,6 +153,8 @@ struct CanvasHeader {
   uint rowLimit;
   uint sourceCount; // placements lie behind as many
   uint glyphs, glyphLimit;
+  uint binWords; // of a bin: 0, or 1 + how many paths it has as a list (pack.comp); a bit for each path; room for lists
+  uint pad0, pad1, pad2;
   vec4 background;
 };
 
@@ -218,7 +220,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 128 && sizeof(gpgp::shader::Pl
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 112 && sizeof(gpgp::shader::CanvasCounters) == 64 &&
+              sizeof(gpgp::shader::CanvasHeader) == 128 && sizeof(gpgp::shader::CanvasCounters) == 64 &&
               sizeof(gpgp::shader::ChordRecord) == 24);
 #endif
 #endif

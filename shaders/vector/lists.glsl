@@ -2,12 +2,12 @@
 // to the tile and which one it is; or else the tile's colour. With barriers there are no lists of paths, only that of
 // the squares that take the general shader.
 uint listRoom() { return (header.listWords - 1) / 2; }
-uint listOf(uint tile) { return kFirstBin + header.binCount * binStride() + tile * header.listWords; }
+uint listOf(uint tile) { return kFirstBin + header.binCount * header.binWords + tile * header.listWords; }
 uint paintedTiles() { return listOf(header.tilesX * header.tilesY); }
 // Those that take the general shader are listed from the other end.
 uint crowdedTiles() { return paintedTiles() + header.tilesX * header.tilesY; }
 uint richTile(uint list, uint i) { return list + header.tilesX * header.tilesY - 1 - i; }
-uint richSquares() { return kFirstBin + header.binCount * binStride(); }
+uint richSquares() { return kFirstBin + header.binCount * header.binWords; }
 
 uint another(uint arguments) { // workgroup for the passes behind: in rows (canvas.glsl, groupIndex)
   const uint place = atomicAdd(bins[arguments + 3], 1);

@@ -12,7 +12,7 @@
 #if !SOFTWARE
 #include "chords.glsl"
 #include "rows.glsl"
-shared uint taken, firstRow; // rows of the 64 chords at hand: how many, where they lie in the list
+shared uint taken, firstRow; // rows of the chords at hand: how many, where they lie in the list
 #endif
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
@@ -53,7 +53,7 @@ void main() {
   loadSegments();
   const Grid g = canvasGrid();
   const uint lane = gl_LocalInvocationID.x, total = chordTotal();
-  for (uint batch = 0; batch < total; batch += 64) {
+  for (uint batch = 0; batch < total; batch += LANES) {
     if (lane == 0) taken = 0;
     barrier();
     Chord c;

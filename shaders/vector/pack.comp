@@ -1,9 +1,9 @@
 #version 460
-// Bins of many paths as lists: which paths they hold, the last one in painting order first.
+// Bins as lists: which paths they hold, the last one in painting order first.
 //
-// Squares of 16 pixels read their bin again and again; a bit for each of tens of thousands of paths is much to read for
-// the few that are set. A workgroup has a bin. Its list takes the place of its bits, from the end backwards, where at
-// no time more paths have been found than words been read; otherwise the bits stay.
+// Squares of 16 pixels read their bin again and again; bits must be counted there, and a bit for each of tens of
+// thousands of paths is much to read for the few that are set. A workgroup has a bin. Its list is written from the end
+// of the bin's words backwards, over bits that have been read; where it would reach those that have not, the bits stay.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 layout(local_size_x = 256) in;
@@ -11,9 +11,7 @@ shared uint counts[256];
 shared uint found; // by the words so far
 shared bool fits;
 
-uint wordAt(uint bin, uint word) { return bins[bin + word]; }
-
-/// Words read before this one, of 256 from `end` backwards; the sums over lanes end in counts[255].
+/// Sums over the lanes up to each, in counts.
 void sumUp(uint count) {
   const uint lane = gl_LocalInvocationIndex;
   counts[lane] = count;
@@ -29,19 +27,19 @@ void sumUp(uint count) {
 void main() {
   const uint lane = gl_LocalInvocationIndex, all = header.pathWords;
   if (groupIndex() >= header.binCount) return;
-  const uint flag = kFirstBin + groupIndex() * binStride(), bin = flag + 1;
+  const uint flag = kFirstBin + groupIndex() * header.binWords, bin = flag + 1, room = header.binWords - 1;
   if (lane == 0) {
     found = 0;
     fits = true;
   }
   for (uint pass = 0; pass < 2; ++pass) { // whether it fits, then the list
     for (uint end = all; end > 0; end -= min(end, 256)) {
-      const uint bits = lane < end ? wordAt(bin, end - 1 - lane) : 0;
+      const uint bits = lane < end ? bins[bin + end - 1 - lane] : 0;
       sumUp(bitCount(bits)); // all have read theirs
       const uint before = found;
       const uint after = before + counts[255];
       if (pass == 1) {
-        uint place = bin + all - 1 - before - (counts[lane] - bitCount(bits));
+        uint place = bin + room - 1 - before - (counts[lane] - bitCount(bits));
         for (uint rest = bits; rest != 0; --place) {
           const uint bit = findMSB(rest);
           rest ^= 1u << bit;
@@ -51,7 +49,7 @@ void main() {
       barrier();
       if (lane == 0) {
         found = after;
-        if (after > all - (end - min(end, 256))) fits = false;
+        if (after > room - (end - min(end, 256))) fits = false;
       }
       barrier();
     }

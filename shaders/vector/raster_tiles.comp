@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 
 void paintPath(uint code, uint path, uvec2 at, uvec2 pixel) {
   const PlacedPath p = paths[path];
-  paintOver(code, at, pixel, p.color, uvec3(p.item, p.paint, p.group));
+  paintOver(code, fetchEdge(code, at.y, countsArea()), at, pixel, p.color, uvec3(p.item, p.paint, p.group));
 }
 
 #if TILES == 0

@@ -1,6 +1,9 @@
 // What the passes over segments share: a workgroup takes header.groupSegments of them and deals their chords out
 // evenly. SOFTWARE: without barriers; an invocation takes a segment, or a share of its chords.
-layout(local_size_x = 64) in;
+#ifndef LANES
+#define LANES 64
+#endif
+layout(local_size_x = LANES) in;
 uint itemOf(uint segment) { // the last one that begins at or before it
   uint low = 0, high = header.itemCount;
   while (low + 1 < high) {

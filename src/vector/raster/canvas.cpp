@@ -108,11 +108,10 @@ enum Conditions : uint32_t {
   kAny = 15,
   kOneDrawing = 18,
   kDrawings,
-  kProjective,
-  kManyPaths
+  kProjective
 };
 
-constexpr uint32_t kPackedWords = 32; // bins of as many words become lists
+constexpr uint32_t kListedPaths = 1024; // up to as many, bins have room for lists
 constexpr uint32_t kSquare = 16; // pixels: a workgroup of raster.comp
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
@@ -229,7 +228,6 @@ core::PassList Canvas::describe() const {
   if (!software_) {
     core::Pass& pack = list.dispatch("pack", list.add(core::ShaderDesc{"pack", vector_pack}),
                                      {{params, read}, {masks, readWrite}}, kBins);
-    pack.condition = kManyPaths;
     pack.beside = true;
   }
   dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
@@ -529,6 +527,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     header.binCount = count;
     if (software_ || header.pathCount <= count * kPathsOfBin) break;
   }
+  header.binWords = header.pathWords + 1;
+  const uint64_t listed = header.binWords + uint64_t(header.pathCount); // few paths have lists of their own
+  if (header.pathCount <= kListedPaths && header.binCount * listed <= binWords())
+    header.binWords = static_cast<uint32_t>(listed);
   header.wordLimit = maxWords_;
   header.entryLimit = maxEntries_;
   header.rowLimit = maxRows();
@@ -571,7 +573,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     r.bindings[kFirstImage + i].texture = {from.sampler, from.view, from.layout};
   }
   r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
-  const uint64_t bins = uint64_t(header.binCount) * (header.pathWords + 1);
+  const uint64_t bins = uint64_t(header.binCount) * header.binWords;
   r.groups[kBegin] = {
       software_ ? divide(std::max<uint64_t>({header.itemCount, bins / 16, 1}), 64) : divide(maxWords_, 64 * 8), 1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
@@ -581,7 +583,6 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kRows] = {std::min(4096u, divide(maxRows(), 64)), 1, 1};
   r.groups[kTiles] = rows(divide(uint64_t(header.tilesX) * header.tilesY, 8));
   r.groups[kBins] = rows(header.binCount);
-  r.conditions[kManyPaths] = header.pathWords >= kPackedWords;
   r.groups[kSift] = {divide(uint64_t(header.binCount) << header.binShift, 64), 1, 1};
   r.groups[kRaster] = {divide(info.width, kSquare), divide(info.height, kSquare), 1};
   if (auto ok = check(r); !ok) return ok;
