@@ -36,8 +36,8 @@ GpgpResult fetch(const FontGlyph& glyph, bool plain, Outline& outline) {
   info.glyph = glyph.glyph;
   info.plain = plain ? VK_TRUE : VK_FALSE;
   return gpgpGetGlyphOutline(
-      glyph.font, &info,
-      [](void* user, const GpgpGlyphOutline* given) { static_cast<Outline*>(user)->take(*given); }, &outline);
+      glyph.font, &info, [](void* user, const GpgpGlyphOutline* given) { static_cast<Outline*>(user)->take(*given); },
+      &outline);
 }
 
 } // namespace
@@ -90,8 +90,8 @@ GpgpResult GlyphCache::add(std::span<const FontGlyph> glyphs, std::span<const ui
       result = fetch(glyphs[i], true, *outline);
     }
     if (result < 0) return result;
-    made.push_back({keys[i], outline->paths.data(), static_cast<uint32_t>(outline->paths.size()),
-                    outline->foreground.data()});
+    made.push_back(
+        {keys[i], outline->paths.data(), static_cast<uint32_t>(outline->paths.size()), outline->foreground.data()});
   }
   std::vector<uint32_t> indices(made.size());
   return set_.add(made.data(), static_cast<uint32_t>(made.size()), indices.data());

@@ -15,7 +15,7 @@ struct FontBuilder : ImFontBuilderIO {
   FontBuilder(const FontBuilder&) = delete;
   FontBuilder& operator=(const FontBuilder&) = delete;
 
-  std::vector<AtlasGlyph> glyphs; ///< by their number in texture coordinates
+  std::vector<AtlasGlyph> glyphs;        ///< by their number in texture coordinates
   std::function<void(GpgpFont)> onClose; ///< fonts of an atlas that is built anew
 
 private:

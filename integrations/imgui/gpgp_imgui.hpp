@@ -11,8 +11,8 @@
 //
 // How it works: prepare takes the glyphs out of ImGui's draw lists, rasterises them together with the widgets into one
 // canvas, at the size and the place that they have on the screen, and leaves a draw callback at the place in the list
-// where each belongs. What overlaps on the screen lies in different layers of the canvas. So windows cover each other as
-// ImGui has it, clip rectangles count, and text is sharp at every scale: FontGlobalScale, window scales,
+// where each belongs. What overlaps on the screen lies in different layers of the canvas. So windows cover each other
+// as ImGui has it, clip rectangles count, and text is sharp at every scale: FontGlobalScale, window scales,
 // DisplayFramebufferScale, AddText with a size of its own.
 //
 // Made for Dear ImGui 1.86. One thread: ImGui's.
@@ -33,7 +33,7 @@ struct RendererInfo {
   VkRenderPass renderPass = VK_NULL_HANDLE;
   uint32_t subpass = 0;
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-  bool srgbTarget = false; ///< the colour attachment's format encodes sRGB. ImGui's colours are then linear, as ImGui has it
+  bool srgbTarget = false; ///< the colour attachment encodes sRGB: ImGui's colours are then taken as linear
   uint32_t maxWidth = 1920, maxHeight = 1080; ///< of the framebuffer, pixels
   uint32_t maxLayers = 4;                     ///< how often text and widgets may lie over each other
   uint32_t maxGlyphs = 8192;                  ///< of one frame
@@ -70,7 +70,8 @@ public:
   void drawing(GpgpAsset drawing, const ImVec2& size);
   /// A widget: a text as it is laid out, pixels of the layout as units of ImGui. The layout's glyphs are read now.
   void text(GpgpLayout layout);
-  /// The same at a place of one's own, in screen coordinates, e.g. for buttons. Clipped as the list clips at this point.
+  /// The same at a place of one's own, in screen coordinates, e.g. for buttons. Clipped as the list clips at this
+  /// point.
   void addDrawing(ImDrawList& list, GpgpAsset drawing, const ImVec2& min, const ImVec2& max);
   void addText(ImDrawList& list, GpgpLayout layout, const ImVec2& position);
 

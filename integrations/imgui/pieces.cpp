@@ -32,9 +32,8 @@ float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v 
 class Collector {
 public:
   Collector(ImDrawData& data, const PiecesInfo& info, Pieces& pieces)
-      : data_(data), info_(info), pieces_(pieces),
-        screen_(pixels(0, 0, data.DisplaySize.x * data.FramebufferScale.x,
-                       data.DisplaySize.y * data.FramebufferScale.y)) {}
+      : data_(data), info_(info), pieces_(pieces), screen_(pixels(0, 0, data.DisplaySize.x * data.FramebufferScale.x,
+                                                                  data.DisplaySize.y * data.FramebufferScale.y)) {}
 
   void list(ImDrawList& list) {
     ImVector<ImDrawCmd> commands;
@@ -172,7 +171,8 @@ private:
   }
 
   void glyph(uint32_t number, const ImDrawVert& low, const ImDrawVert& high) {
-    const Rect shown = intersect(clip_, pixels(screenX(low.pos.x), screenY(low.pos.y), screenX(high.pos.x), screenY(high.pos.y)));
+    const Rect shown =
+        intersect(clip_, pixels(screenX(low.pos.x), screenY(low.pos.y), screenX(high.pos.x), screenY(high.pos.y)));
     if (shown.empty()) return;
     if (pieces_.glyphs.size() == info_.maxGlyphs) {
       ++pieces_.dropped;
@@ -198,8 +198,8 @@ private:
     }
     if (runs_.empty()) firstGlyph_ = pieces_.glyphs.size();
     pieces_.glyphs.push_back(glyph);
-    const Rect ink = pixels(glyph.x + known.box[0] * size, glyph.y + known.box[1] * size,
-                            glyph.x + known.box[2] * size, glyph.y + known.box[3] * size);
+    const Rect ink = pixels(glyph.x + known.box[0] * size, glyph.y + known.box[1] * size, glyph.x + known.box[2] * size,
+                            glyph.y + known.box[3] * size);
     // Onto the end of the line before, if it is the same line.
     if (!runs_.empty()) {
       Piece::Part& last = runs_.back();

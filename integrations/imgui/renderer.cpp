@@ -58,9 +58,9 @@ struct Renderer::Impl {
   Pieces pieces;
   FrameReport report;
   std::map<std::pair<GpgpFont, uint32_t>, std::array<float, 4>> boxes; // of glyphs in layouts
-  int frameCount = -1;    // ImGui's frame that pieces belong to
-  bool collected = false; // they have been taken out of its draw data
-  bool ready = false;     // the canvas shows them
+  int frameCount = -1;                                                 // ImGui's frame that pieces belong to
+  bool collected = false;                                              // they have been taken out of its draw data
+  bool ready = false;                                                  // the canvas shows them
   VkCommandBuffer target = VK_NULL_HANDLE;
   VkExtent2D screen{};
   std::vector<integration::FontGlyph> wantedGlyphs;
@@ -110,9 +110,7 @@ Renderer::Impl::Impl(const RendererInfo& wanted) : info(wanted) {
     destroy();
     throw;
   }
-  builder.onClose = [this](GpgpFont font) {
-    cache.forget(font);
-  };
+  builder.onClose = [this](GpgpFont font) { cache.forget(font); };
 }
 
 Renderer::Impl::~Impl() {
@@ -212,8 +210,7 @@ void Renderer::Impl::makePipeline() {
     stages[i].pName = "main";
     return result;
   };
-  VkResult result =
-      stage(0, VK_SHADER_STAGE_VERTEX_BIT, gpgp_imgui_piece_vert, sizeof gpgp_imgui_piece_vert);
+  VkResult result = stage(0, VK_SHADER_STAGE_VERTEX_BIT, gpgp_imgui_piece_vert, sizeof gpgp_imgui_piece_vert);
   if (result == VK_SUCCESS)
     result = stage(1, VK_SHADER_STAGE_FRAGMENT_BIT, gpgp_imgui_piece_frag, sizeof gpgp_imgui_piece_frag);
   VkPipelineVertexInputStateCreateInfo vertexInput{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
@@ -328,7 +325,9 @@ void Renderer::addText(ImDrawList& list, GpgpLayout layout, const ImVec2& positi
     const GpgpTextDecoration& line = info.decorations[i];
     const auto encoded = [&](int c) {
       const float v = line.color[c];
-      return c == 3 || impl_->info.srgbTarget ? v : v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+      return c == 3 || impl_->info.srgbTarget ? v
+             : v <= 0.0031308f                ? 12.92f * v
+                                              : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
     };
     list.AddRectFilled({position.x + line.rect.x, position.y + line.rect.y},
                        {position.x + line.rect.x + line.rect.width, position.y + line.rect.y + line.rect.height},

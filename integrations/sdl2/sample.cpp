@@ -141,7 +141,7 @@ struct Line {
 class Sample {
 public:
   Sample(sdl2::Device& device, sdl2::Swapchain& swapchain, const Options& options)
-      : device_(device), swapchain_(swapchain), pass_(device, swapchain), frames_(device), options_(options) {
+      : swapchain_(swapchain), pass_(device, swapchain), frames_(device) {
     GpgpContextCreateInfo info = device.contextCreateInfo();
     info.label = "sample";
     info.maxFramesInFlight = frames_.inFlight();
@@ -246,11 +246,9 @@ private:
     return item;
   }
 
-  sdl2::Device& device_;
   sdl2::Swapchain& swapchain_;
   sdl2::ColorPass pass_;
   sdl2::Frames frames_; // waits for its frames before what they use goes
-  const Options& options_;
   Context context_;
   Drawing drawing_;
   GpgpDrawingInfo drawingInfo_ = GPGP_DRAWING_INFO_INIT;

@@ -63,9 +63,8 @@ Swapchain::Swapchain(Device& device, const Window& window, const SwapchainInfo& 
   check(vkGetPhysicalDeviceSurfaceFormatsKHR(device.physical, surface_, &count, formats.data()), "surface formats");
   const VkFormat bgra = info.srgb ? VK_FORMAT_B8G8R8A8_SRGB : VK_FORMAT_B8G8R8A8_UNORM;
   const VkFormat rgba = info.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-  const auto wanted = std::find_if(formats.begin(), formats.end(), [&](const VkSurfaceFormatKHR& f) {
-    return f.format == bgra || f.format == rgba;
-  });
+  const auto wanted = std::find_if(formats.begin(), formats.end(),
+                                   [&](const VkSurfaceFormatKHR& f) { return f.format == bgra || f.format == rgba; });
   if (wanted == formats.end())
     throw std::runtime_error(info.srgb ? "the window offers no sRGB format" : "the window offers no 8-bit format");
   format_ = *wanted;
@@ -226,8 +225,8 @@ void ColorPass::begin(VkCommandBuffer commands, uint32_t image, const float (&cl
   info.clearValueCount = 1;
   info.pClearValues = &value;
   vkCmdBeginRenderPass(commands, &info, VK_SUBPASS_CONTENTS_INLINE);
-  const VkViewport viewport{0, 0, static_cast<float>(swapchain_.extent().width),
-                            static_cast<float>(swapchain_.extent().height), 0, 1};
+  const VkViewport viewport{
+      0, 0, static_cast<float>(swapchain_.extent().width), static_cast<float>(swapchain_.extent().height), 0, 1};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &info.renderArea);
 }
@@ -243,9 +242,9 @@ Screenshot::Screenshot(Device& device, const Swapchain& swapchain)
   vkGetBufferMemoryRequirements(device.device, buffer_, &needs);
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   allocate.allocationSize = needs.size;
-  allocate.memoryTypeIndex =
-      device.memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
-                        VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+  allocate.memoryTypeIndex = device.memoryType(
+      needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+      VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
   check(vkAllocateMemory(device.device, &allocate, nullptr, &memory_), "vkAllocateMemory");
   check(vkBindBufferMemory(device.device, buffer_, memory_, 0), "vkBindBufferMemory");
   check(vkMapMemory(device.device, memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
@@ -286,7 +285,8 @@ void Screenshot::record(VkCommandBuffer commands, uint32_t image) {
 void Screenshot::save(const std::string& file) const {
   const bool bgra = swapchain_.format() == VK_FORMAT_B8G8R8A8_SRGB || swapchain_.format() == VK_FORMAT_B8G8R8A8_UNORM;
   SDL_Surface* surface = SDL_CreateRGBSurfaceWithFormatFrom(
-      mapped_, static_cast<int>(extent_.width), static_cast<int>(extent_.height), 32, static_cast<int>(extent_.width * 4),
+      mapped_, static_cast<int>(extent_.width), static_cast<int>(extent_.height), 32,
+      static_cast<int>(extent_.width * 4),
       bgra ? SDL_PIXELFORMAT_XRGB8888 : SDL_PIXELFORMAT_XBGR8888); // a window is opaque, whatever alpha says
   const bool saved = surface && SDL_SaveBMP(surface, file.c_str()) == 0;
   SDL_FreeSurface(surface);

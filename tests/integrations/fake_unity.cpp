@@ -92,7 +92,8 @@ struct FakeUnity::Interfaces {
       host->violate("asks for the recording state outside of an event");
       return false;
     }
-    if (access != kUnityVulkanGraphicsQueueAccess_DontCare) host->violate("asks for queue access that it did not configure");
+    if (access != kUnityVulkanGraphicsQueueAccess_DontCare)
+      host->violate("asks for queue access that it did not configure");
     *state = {};
     state->commandBuffer = host->commands_;
     state->commandBufferLevel = VK_COMMAND_BUFFER_LEVEL_PRIMARY;

@@ -1,5 +1,5 @@
-// gpgp::imgui, drawn into an image by ImGui's own Vulkan renderer under the validation layer: beside ImGui's look, under
-// other windows, clipped, at scales, within budgets. GPGP_IMGUI_PICTURES=FOLDER writes what is compared.
+// gpgp::imgui, drawn into an image by ImGui's own Vulkan renderer under the validation layer: beside ImGui's look,
+// under other windows, clipped, at scales, within budgets. GPGP_IMGUI_PICTURES=FOLDER writes what is compared.
 #include "gpgp_imgui.hpp"
 #include "gpgp_sdl2.hpp"
 #include "host/picture.h"
@@ -17,10 +17,10 @@ namespace {
 
 using namespace gpgp;
 constexpr uint32_t kWidth = 640, kHeight = 480;
-constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
 
 /// A device, an image to draw into, and a context: shared by all tests.
 struct Stage {
+  const VkFormat format;
   sdl2::Device device;
   sdl2::Frames frames{device, 2};
   Context context;
@@ -39,7 +39,7 @@ struct Stage {
     info.validate = true;
     return info;
   }
-  Stage() : device(wanted()) {
+  explicit Stage(VkFormat f = VK_FORMAT_R8G8B8A8_UNORM) : format(f), device(wanted()) {
     GpgpContextCreateInfo info = device.contextCreateInfo();
     info.label = "imgui test";
     info.maxFramesInFlight = 2;
@@ -72,7 +72,7 @@ struct Stage {
   }
   void makePass() {
     VkAttachmentDescription attachment{};
-    attachment.format = kFormat;
+    attachment.format = format;
     attachment.samples = VK_SAMPLE_COUNT_1_BIT;
     attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
@@ -106,7 +106,7 @@ struct Stage {
   void makeImage() {
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = kFormat;
+    info.format = format;
     info.extent = {kWidth, kHeight, 1};
     info.mipLevels = info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
@@ -119,7 +119,7 @@ struct Stage {
     VkImageViewCreateInfo viewInfo{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
     viewInfo.image = image;
     viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    viewInfo.format = kFormat;
+    viewInfo.format = format;
     viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     sdl2::check(vkCreateImageView(device.device, &viewInfo, nullptr, &view), "view");
     VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
@@ -168,6 +168,7 @@ struct Screen {
       info.maxWidth = kWidth;
       info.maxHeight = kHeight;
       info.maxLayers = maxLayers;
+      info.srgbTarget = stage->format == VK_FORMAT_R8G8B8A8_SRGB;
       renderer = std::make_unique<imgui::Renderer>(info);
       renderer->useFonts(*io.Fonts);
     }
@@ -399,7 +400,8 @@ TEST_F(ImGuiTest, ADrawingKeepsItsBoxAndColoursAndIsClipped) {
 /// One font size in the atlas, drawn six times as large.
 TEST_F(ImGuiTest, TextIsSharpAtEveryScale) {
   const auto large = [] {
-    ImGui::GetForegroundDrawList()->AddText(ImGui::GetFont(), 78, {20, 100}, IM_COL32(255, 255, 255, 255), "Sharp & go");
+    ImGui::GetForegroundDrawList()->AddText(ImGui::GetFont(), 78, {20, 100}, IM_COL32(255, 255, 255, 255),
+                                            "Sharp & go");
   };
   const host::Picture ours = screen.render(large);
   Screen small(false), exact(false, 78);
@@ -480,6 +482,32 @@ TEST_F(ImGuiTest, WhatFindsNoLayerIsCountedAndTheRestIsDrawn) {
   screen.render(twice);
   EXPECT_EQ(screen.renderer->report().layers, 2u);
   EXPECT_EQ(screen.renderer->report().glyphs, 19u);
+}
+
+/// ImGui's colours are linear then, and the image encodes all of them; a drawing has its own colours.
+TEST_F(ImGuiTest, ImagesThatEncodeSrgb) {
+  auto srgb = std::make_unique<Stage>(VK_FORMAT_R8G8B8A8_SRGB);
+  std::swap(stage, srgb);
+  {
+    Screen byGpgp(true), own(false);
+    Drawing drawing = makeDrawing();
+    const auto ui = [&](bool both) {
+      ImGui::SetNextWindowPos({10, 10});
+      ImGui::SetNextWindowSize({400, 300});
+      ImGui::Begin("window", nullptr, ImGuiWindowFlags_NoDecoration);
+      for (int i = 0; i < 5; ++i) ImGui::TextColored({0.9f, 0.5f, 0.2f, 1}, "text in a colour of its own");
+      if (both) byGpgp.renderer->addDrawing(*ImGui::GetWindowDrawList(), drawing, {200, 200}, {300, 300});
+      ImGui::End();
+    };
+    const host::Picture theirs = own.render([&] { ui(false); }), ours = byGpgp.render([&] { ui(false); });
+    EXPECT_LT(host::compare(ours, theirs).mean, 0.5);
+    EXPECT_LT(different(ours, theirs, 0, 0, kWidth, kHeight, 100), 20u);
+    EXPECT_GT(different(ours, theirs, 0, 0, kWidth, kHeight), 50u);
+    const host::Picture with = byGpgp.render([&] { ui(true); });
+    EXPECT_EQ(at(with, 202, 202), (Color{0x20, 0x40, 0xa0}));
+    EXPECT_EQ(at(with, 250, 250), (Color{0xc0, 0x30, 0x20}));
+  }
+  std::swap(stage, srgb);
 }
 
 /// Frames that draw no gpgp, frames that are not drawn, the same draw data twice.

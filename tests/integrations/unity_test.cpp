@@ -28,7 +28,8 @@ static_assert(offsetof(UnityVulkanImage, samples) == 116 && offsetof(UnityVulkan
 static_assert(sizeof(UnityVulkanRecordingState) == 88 && offsetof(UnityVulkanRecordingState, subPassIndex) == 32);
 static_assert(offsetof(UnityVulkanRecordingState, safeFrameNumber) == 48);
 static_assert(sizeof(UnityVulkanPluginEventConfig) == 12);
-static_assert(sizeof(IUnityGraphicsVulkan) == 14 * sizeof(void*) && sizeof(IUnityGraphicsVulkanV2) == 16 * sizeof(void*));
+static_assert(sizeof(IUnityGraphicsVulkan) == 14 * sizeof(void*) &&
+              sizeof(IUnityGraphicsVulkanV2) == 16 * sizeof(void*));
 
 // As the scripts' structs are laid out (scripts_test.sh).
 static_assert(sizeof(GpgpUnityBudgets) == 20 && sizeof(GpgpUnityText) == 48 && sizeof(GpgpUnityItem) == 32 &&
@@ -169,7 +170,14 @@ std::vector<uint8_t> drawDirectly(FakeUnity& unity, uint32_t width, uint32_t hei
   record.height = height;
   record.items = items;
   record.itemCount = 2;
-  record.target = {texture.image, view, texture.format, 0, 0, width, height, {},
+  record.target = {texture.image,
+                   view,
+                   texture.format,
+                   0,
+                   0,
+                   width,
+                   height,
+                   {},
                    {VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_GENERAL}};
   unity.submit([&](VkCommandBuffer commands) {
     EXPECT_TRUE(context.recordUpload(commands, frame));

@@ -43,12 +43,8 @@ UNITY_INTERFACE_EXPORT void UNITY_INTERFACE_API UnityPluginLoad(IUnityInterfaces
 
 UNITY_INTERFACE_EXPORT void UNITY_INTERFACE_API UnityPluginUnload() { plugin.reset(); }
 
-int32_t gpgpUnityGetState(void) {
-  return plugin ? plugin->state() : GPGP_UNITY_OFF;
-}
-int32_t gpgpUnityTakeMessage(char* text, int32_t capacity) {
-  return plugin ? plugin->takeMessage(text, capacity) : 0;
-}
+int32_t gpgpUnityGetState(void) { return plugin ? plugin->state() : GPGP_UNITY_OFF; }
+int32_t gpgpUnityTakeMessage(char* text, int32_t capacity) { return plugin ? plugin->takeMessage(text, capacity) : 0; }
 void* gpgpUnityGetEvent(void) { return reinterpret_cast<void*>(onRenderEvent); }
 int32_t gpgpUnityGetEventId(void) { return plugin ? plugin->eventId() : 0; }
 
@@ -57,7 +53,8 @@ int32_t gpgpUnitySetBudgets(const GpgpUnityBudgets* budgets) {
 }
 int32_t gpgpUnityCreateDrawing(const void* data, int32_t size, int32_t baked) {
   return guarded([&](auto& p) {
-    return data && size > 0 ? p.createDrawing(data, static_cast<size_t>(size), baked != 0) : GPGP_ERROR_INVALID_ARGUMENT;
+    return data && size > 0 ? p.createDrawing(data, static_cast<size_t>(size), baked != 0)
+                            : GPGP_ERROR_INVALID_ARGUMENT;
   });
 }
 int32_t gpgpUnityGetBox(int32_t object, float* box) {

@@ -32,8 +32,8 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityTakeMessage(char* text, int32_t 
 GPGP_UNITY_API void* GPGP_UNITY_CALL gpgpUnityGetEvent(void);
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetEventId(void);
 
-/** What a frame may take, for all canvases together; 0: as it is (2048 x 2048 pixels a canvas, and GpgpCanvasCreateInfo's
- *  own). Makes pipelines: while a level loads, not in a frame. */
+/** What a frame may take, for all canvases together; 0: as it is (2048 x 2048 pixels a canvas, and
+ * GpgpCanvasCreateInfo's own). Makes pipelines: while a level loads, not in a frame. */
 typedef struct GpgpUnityBudgets {
   uint32_t maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs;
 } GpgpUnityBudgets;
@@ -60,7 +60,7 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityCreateText(const GpgpUnityText* 
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnitySetText(int32_t object, const GpgpUnityText* text);
 
 typedef struct GpgpUnityItem {
-  int32_t object; /* a drawing or a text */
+  int32_t object;     /* a drawing or a text */
   float transform[6]; /* its units to pixels, y down: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
   float opacity;
 } GpgpUnityItem;

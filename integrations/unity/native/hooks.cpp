@@ -56,8 +56,8 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physicalDevice, con
   hooked.features = 0;
   const auto* theirs = find<VkPhysicalDeviceSynchronization2Features>(
       info->pNext, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES);
-  const auto* core = find<VkPhysicalDeviceVulkan13Features>(info->pNext,
-                                                            VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+  const auto* core =
+      find<VkPhysicalDeviceVulkan13Features>(info->pNext, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   const bool enabled = (theirs && theirs->synchronization2) || (core && core->synchronization2);
 
   GpgpRequirementsInfo query = GPGP_REQUIREMENTS_INFO_INIT;
@@ -65,7 +65,8 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physicalDevice, con
   query.physicalDevice = physicalDevice;
   query.getInstanceProcAddr = hooked.loader;
   GpgpRequirements requirements = GPGP_REQUIREMENTS_INIT;
-  const bool fits = hooked.apiVersion >= VK_API_VERSION_1_2 && gpgpGetRequirements(&query, &requirements) == GPGP_SUCCESS;
+  const bool fits =
+      hooked.apiVersion >= VK_API_VERSION_1_2 && gpgpGetRequirements(&query, &requirements) == GPGP_SUCCESS;
   // Unity's own structs are Unity's: where it names the feature, that is how it is.
   if (fits && !theirs && !core && (requirements.optionalFeatures & GPGP_FEATURE_SYNCHRONIZATION_2)) {
     VkPhysicalDeviceSynchronization2Features feature{};

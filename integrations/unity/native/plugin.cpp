@@ -175,13 +175,14 @@ void Plugin::onRenderEvent(int eventId, int32_t number) {
     return complain(surface, "a canvas's texture needs enableRandomWrite, before it is created");
   if (image.samples != VK_SAMPLE_COUNT_1_BIT) return complain(surface, "a canvas's texture has one sample a pixel");
   // Unity knows from here on what state the texture is in, and brings it into the next one by itself.
-  if (!vulkan_->AccessTexture(surface.texture, UnityVulkanWholeImage, VK_IMAGE_LAYOUT_GENERAL,
-                              VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
-                              kUnityVulkanResourceAccess_PipelineBarrier, &image))
+  if (!vulkan_->AccessTexture(
+          surface.texture, UnityVulkanWholeImage, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, kUnityVulkanResourceAccess_PipelineBarrier, &image))
     return complain(surface, "the canvas's texture cannot be written");
   UnityVulkanRecordingState state{}; // asked for last: accesses may go on in another command buffer
   if (!vulkan_->CommandRecordingState(&state, kUnityVulkanGraphicsQueueAccess_DontCare)) return;
-  if (state.subPassIndex >= 0) return complain(surface, "the event was issued where Unity cannot leave its render pass");
+  if (state.subPassIndex >= 0)
+    return complain(surface, "the event was issued where Unity cannot leave its render pass");
   if (advance(surface, state)) record(surface, state, image);
 }
 

@@ -1,8 +1,9 @@
 // What of Unity's native plugin interface this plugin uses.
 //
-// Unity's own headers (PluginAPI in an editor's installation) are taken where CMake was given UNITY_PLUGIN_API. Otherwise
-// the declarations here stand in for them: names, order and layout are those of the documented binary interface, on which
-// compiled plugins depend, so they do not change. tests/integrations/unity_test.cpp checks sizes and offsets.
+// Unity's own headers (PluginAPI in an editor's installation) are taken where CMake was given UNITY_PLUGIN_API.
+// Otherwise the declarations here stand in for them: names, order and layout are those of the documented binary
+// interface, on which compiled plugins depend, so they do not change. tests/integrations/unity_test.cpp checks sizes
+// and offsets.
 #pragma once
 #ifdef GPGP_UNITY_HEADERS
 #define VK_NO_PROTOTYPES
@@ -117,9 +118,9 @@ struct UnityVulkanRecordingState {
   VkCommandBufferLevel commandBufferLevel;
   VkRenderPass renderPass;
   VkFramebuffer framebuffer;
-  int subPassIndex;                                  // -1 outside of a render pass
-  unsigned long long currentFrameNumber;             // of what is recorded now
-  unsigned long long safeFrameNumber;                // up to here everything has finished
+  int subPassIndex;                      // -1 outside of a render pass
+  unsigned long long currentFrameNumber; // of what is recorded now
+  unsigned long long safeFrameNumber;    // up to here everything has finished
   void* reserved[4];
 };
 
@@ -128,10 +129,7 @@ enum UnityVulkanEventRenderPassPreCondition {
   kUnityVulkanRenderPass_EnsureInside,
   kUnityVulkanRenderPass_EnsureOutside
 };
-enum UnityVulkanGraphicsQueueAccess {
-  kUnityVulkanGraphicsQueueAccess_DontCare,
-  kUnityVulkanGraphicsQueueAccess_Allow
-};
+enum UnityVulkanGraphicsQueueAccess { kUnityVulkanGraphicsQueueAccess_DontCare, kUnityVulkanGraphicsQueueAccess_Allow };
 enum UnityVulkanEventConfigFlagBits {
   kUnityVulkanEventConfigFlag_EnsurePreviousFrameSubmission = 1 << 0,
   kUnityVulkanEventConfigFlag_FlushCommandBuffers = 1 << 1,
