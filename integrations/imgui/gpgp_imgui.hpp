@@ -55,15 +55,15 @@ public:
   /// Makes the canvas, its pipelines and a glyph set; device memory of 4 bytes (srgbTarget: 8) for each pixel of each
   /// layer beside. Throws std::runtime_error with what failed.
   explicit Renderer(const RendererInfo& info);
-  /// The device must be idle as far as frames that were prepared are concerned. Not before ImGui has drawn for the last
-  /// time, and before the context is destroyed.
+  /// The device must be idle as far as frames that were prepared are concerned. Before the context is destroyed, before
+  /// or after ImGui's; in the first case its atlas must not be built any more.
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
   /// The atlas's fonts, as they were or will be added to it (sizes, ranges, merging, offsets), become gpgp's when it is
-  /// built. Its texture keeps lines and mouse cursors, and has no glyphs. The renderer lives as long as the atlas is
-  /// built anew; ImFontConfig's oversampling, RasterizerMultiply and FontBuilderFlags have no meaning.
+  /// built. Its texture keeps lines and mouse cursors, and has no glyphs; ImFontConfig's oversampling,
+  /// RasterizerMultiply and FontBuilderFlags have no meaning.
   void useFonts(ImFontAtlas& atlas);
 
   /// A widget: the drawing's page, undistorted, in the middle of a box of this size.

@@ -113,10 +113,7 @@ Renderer::Impl::Impl(const RendererInfo& wanted) : info(wanted) {
   builder.onClose = [this](GpgpFont font) { cache.forget(font); };
 }
 
-Renderer::Impl::~Impl() {
-  if (atlas && atlas->FontBuilderIO == &builder) atlas->FontBuilderIO = nullptr;
-  destroy();
-}
+Renderer::Impl::~Impl() { destroy(); } // ImGui's context, and the atlas with it, may be gone
 
 void Renderer::Impl::destroy() noexcept {
   vkDestroyPipeline(info.device, pipeline, nullptr);
