@@ -48,8 +48,9 @@ GpgpResult GlyphCache::create(GpgpContext context, const char* label, uint32_t m
   info.maxGlyphs = maxGlyphs;
   info.maxBytes = maxBytes;
   Result<GlyphSet> made = GlyphSet::create(context, info);
+  const GpgpResult code = made.code();
   if (made) set_ = *std::move(made);
-  return made.code();
+  return code;
 }
 
 uint64_t GlyphCache::key(const FontGlyph& glyph) {

@@ -58,13 +58,12 @@ bool parse(int argc, char** argv, Options& options) {
       options.device = value;
     else if (name == "--picture")
       options.picture = value;
-    else if (name == "--frames" && std::sscanf(value, "%u%c", &options.frames, &rest) == 1 && options.frames > 0)
-      continue;
-    else if (name == "--size" && std::sscanf(value, "%ux%u%c", &options.width, &options.height, &rest) == 2 &&
-             options.width > 0 && options.height > 0 && options.width <= 4096 && options.height <= 4096)
-      continue;
-    else
+    else if (name == "--frames") {
+      if (std::sscanf(value, "%u%c", &options.frames, &rest) != 1 || options.frames == 0) return false;
+    } else if (name != "--size" || std::sscanf(value, "%ux%u%c", &options.width, &options.height, &rest) != 2 ||
+               options.width == 0 || options.height == 0 || options.width > 4096 || options.height > 4096) {
       return false;
+    }
   }
   return true;
 }
