@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The code of docs/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17 file.
-# The links of README.md and of all pages beside that one lead to files, and docs/README.md lists each page.
+# The links of README.md, of all pages beside that one and of the integrations' pages lead to files; docs/README.md lists
+# each page, and docs/integrations.md each integration's, which has the sections that they all have.
 #
 #   pages_test.sh INCLUDE_DIRS PAGE CC CXX     INCLUDE_DIRS: separated by colons
 set -euo pipefail
@@ -17,7 +18,7 @@ code c | "$cc" -std=c99 "${flags[@]}" -x c -
 code cpp | "$cxx" -std=c++17 "${flags[@]}" -x c++ -
 failed=no
 docs=$(dirname "$page")
-for from in "$docs/../README.md" "$docs"/*.md; do
+for from in "$docs/../README.md" "$docs"/*.md "$docs"/../integrations/*/README.md; do
   while read -r link; do
     target=$(dirname "$from")/${link%%#*}
     [[ -e $target ]] || { echo "FAILED: $from links to $link, which is not there" >&2; failed=yes; }
@@ -25,6 +26,15 @@ for from in "$docs/../README.md" "$docs"/*.md; do
   name=$(basename "$from")
   grep -q "($name)" "$docs/README.md" || [[ $name == README.md ]] ||
     { echo "FAILED: docs/README.md does not list $name" >&2; failed=yes; }
+done
+for from in "$docs"/../integrations/*/README.md; do
+  name=$(basename "$(dirname "$from")")
+  grep -q "(../integrations/$name/README.md)" "$docs/integrations.md" ||
+    { echo "FAILED: docs/integrations.md does not list $name" >&2; failed=yes; }
+  for section in "Ten minutes" "Where in the frame to record" "Which barriers" "What is trashed" "Known limits"; do
+    grep -q "^## $section$" "$from" || { echo "FAILED: $from has no section $section" >&2; failed=yes; }
+  done
+  grep -q '^\*\*Support: ' "$from" || { echo "FAILED: $from does not say its support level" >&2; failed=yes; }
 done
 [[ $failed == no ]]
 echo "$(code c | grep -c .) lines of C, $(code cpp | grep -c .) lines of C++"

@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 clang_format=${CLANG_FORMAT:-$(command -v clang-format-14 || command -v clang-format)}
-folders=(include src shaders samples tests)
+folders=(include src shaders samples integrations tests)
 failed=no
 
 # list EXTENSION...: the files below the folders.

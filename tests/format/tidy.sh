@@ -3,14 +3,14 @@
 # analyser: seconds, so that it can be a test. Needs a build directory with compile_commands.json and the shader headers.
 #
 #   tests/format/tidy.sh BUILD_DIR          src/core and src/api
-#   tests/format/tidy.sh BUILD_DIR --all    every source of src/, samples/ and tests/, static analyser included: minutes
+#   tests/format/tidy.sh BUILD_DIR --all    every source of src/, samples/, integrations/ and tests/, static analyser included: minutes
 set -euo pipefail
 build=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 clang_tidy=${CLANG_TIDY:-$(command -v clang-tidy-14 || command -v clang-tidy)}
 options=(-p "$build" --quiet)
 if [[ ${2:-} == --all ]]; then
-  mapfile -t sources < <(find src samples tests -name '*.cpp' | LC_ALL=C sort)
+  mapfile -t sources < <(find src samples integrations tests -name '*.cpp' | LC_ALL=C sort)
 else
   mapfile -t sources < <(find src/core src/api -name '*.cpp' | LC_ALL=C sort)
   options+=(--checks=-clang-analyzer-*)
