@@ -332,7 +332,7 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
         chord.bottom = vec2(-1.0f, toPixel(item, x, y).y);
         chord.top = vec2(-1.0f, min(chord.bottom.y, -1.0f));
         chord.last = rowOf(g, chord.bottom.y);
-        chord.side = 1.0f;
+        chord.side = s.side * item.side * (da < near ? 1.0f : -1.0f); // down where the outline comes back
 #if SCISSORS
         return cutChord(g, item.scissor, chord);
 #else
