@@ -106,6 +106,24 @@ GPGP_API GpgpResult GPGP_CALL gpgpAddText(GpgpList list, GpgpAsset glyphSet, con
  *  gpgpAddText's glyph set */
 GPGP_API GpgpResult GPGP_CALL gpgpAddDrawing(GpgpList list, GpgpAsset drawing, uint32_t firstImage, uint64_t id);
 
+/* ---------------------------------------------------------------- panels in the world */
+
+/** A plane in the world that a drawing, text or list lies on. */
+typedef struct GpgpPanel {
+  float corner[3];       /**< where its 0, 0 lies, world space */
+  float across[3];       /**< from there to its 1, 0: how long and which way a unit along x is */
+  float down[3];         /**< likewise along y */
+} GpgpPanel;
+
+/** How a camera sees a panel. Writes transform, perspective and scissor of the item, so that it shows in the viewport (x,
+ *  y, width, height: the part of the canvas that is this camera's), and, where clip is not NULL, a matrix for
+ *  GpgpCanvasDrawInfo::clip, or secondClip: the viewport goes over the whole target, each pixel at the panel's depth, so
+ *  that a depth test puts the panel behind and before the scene as it should be. viewProjection: world to clip space,
+ *  column-major; any depth range.
+ *  Errors: INVALID_ARGUMENT (NULL, no size, a number that is not finite). @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpPlacePanel(const GpgpPanel* panel, const float* viewProjection,
+                                             const uint32_t* viewport, GpgpCanvasItem* item, float* clip);
+
 /* ---------------------------------------------------------------- hit test */
 
 typedef struct GpgpHitTestInfo {

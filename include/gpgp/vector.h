@@ -362,7 +362,8 @@ typedef struct GpgpCanvasItem {
   GpgpAsset glyphSet;  /**< of a text; what is `drawing` above is the text then, whose units the instances have */
   const GpgpGlyphInstance* glyphs; /**< in painting order, the first at the bottom */
   uint32_t glyphCount;
-  GpgpList list; /**< instead of drawing and glyphSet: all that is in it, with its own transforms before this one */
+  float scissor[4]; /**< left, top, right, bottom in canvas pixels: nothing shows outside; all 0: none */
+  GpgpList list;    /**< instead of drawing and glyphSet: all that is in it, with its own transforms before this one */
 } GpgpCanvasItem;
 
 enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
@@ -410,12 +411,17 @@ typedef struct GpgpCanvasDrawInfo {
   const GpgpTargetInfo* target; /**< equal to one of those given to gpgpPrewarm */
   float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
   uint32_t width, height;       /**< of the part of the canvas that is drawn, pixels */
+  const float* secondClip;      /**< multiview, for view 1: 16 numbers as clip; NULL: the same */
+  uint32_t secondX;             /**< multiview: view 1 shows the part that begins at this column of the canvas; to both
+                                     matrices a part's own left column is 0 */
 } GpgpCanvasDrawInfo;
 #define GPGP_CANVAS_DRAW_INFO_INIT GPGP_INIT(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO)
 
 /** Draws what the last gpgpRecordPrepareCanvas into this view left, as a rectangle blended premultiplied
  *  (ONE, ONE_MINUS_SRC_ALPHA), without filtering at one canvas pixel per pixel. The engine has set viewport and
- *  scissor. Any number of times per prepare. NOT_READY: nothing was prepared, or the target was not prewarmed.
+ *  scissor. Any number of times per prepare. Views 0 and 1 of a multiview target (GpgpTargetInfo::viewMask, GPGP_FEATURE_MULTIVIEW) may
+ *  show different parts, so that one record holds both eyes. NOT_READY: nothing was prepared, or the target was not
+ *  prewarmed.
  *  @threads handle @lifetime call @pass inside
  *  @state graphics pipeline, graphics descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,

@@ -1,6 +1,7 @@
 // The C functions of ui.h.
 #include "api/items.h"
 #include "vector/ui/hit.h"
+#include "vector/ui/panel.h"
 
 using namespace gpgp;
 using namespace gpgp::api;
@@ -93,6 +94,16 @@ GpgpResult GPGP_CALL gpgpAddDrawing(GpgpList handle, GpgpAsset asset, uint32_t f
   });
 }
 
+GpgpResult GPGP_CALL gpgpPlacePanel(const GpgpPanel* panel, const float* viewProjection, const uint32_t* viewport,
+                                    GpgpCanvasItem* item, float* clip) {
+  if (!panel || !viewProjection || !viewport || !item || viewport[2] == 0 || viewport[3] == 0 ||
+      !allFinite(panel->corner) || !allFinite(panel->across) || !allFinite(panel->down) ||
+      !allFinite(std::span(viewProjection, 16)))
+    return GPGP_ERROR_INVALID_ARGUMENT;
+  placePanel(*panel, viewProjection, viewport, *item, clip);
+  return GPGP_SUCCESS;
+}
+
 GpgpResult GPGP_CALL gpgpHitTest(GpgpContext handle, const GpgpHitTestInfo* info, GpgpHit* hit) {
   return guarded("gpgpHitTest", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
@@ -113,6 +124,8 @@ GpgpResult GPGP_CALL gpgpHitTest(GpgpContext handle, const GpgpHitTestInfo* info
       if (item.glyphCount && !item.glyphs)
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].glyphs is NULL, but glyphCount is %u", i - 1,
                          item.glyphCount);
+      if (!allFinite(item.scissor))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].scissor holds a number that is not finite", i - 1);
       const auto hits =
           hitItem(item, *asset, static_cast<double>(info->x), static_cast<double>(info->y), found);
       if (!hits) return makeError(hits.error().code, "items[%u]%s", i - 1, hits.error().text);

@@ -21,7 +21,9 @@
 #include "shaders/vector_crowded_rich1.spv.h"
 #include "shaders/vector_crowded_rich2.spv.h"
 #include "shaders/vector_draw_frag.spv.h"
+#include "shaders/vector_draw_frag_multiview.spv.h"
 #include "shaders/vector_draw_vert.spv.h"
+#include "shaders/vector_draw_vert_multiview.spv.h"
 #include "shaders/vector_fill.spv.h"
 #include "shaders/vector_fill_one.spv.h"
 #include "shaders/vector_fill_projective.spv.h"
@@ -126,8 +128,11 @@ Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
-  const core::ShaderDesc vertex{"draw.vert", vector_draw_vert}, fragment{"draw.frag", vector_draw_frag};
-  if (auto ok = canvas->init(canvas->describe(), &vertex, &fragment); !ok) return ok.error();
+  const DrawShaders draw{{"draw.vert", vector_draw_vert},
+                         {"draw.frag", vector_draw_frag},
+                         {"draw.vert, multiview", vector_draw_vert_multiview},
+                         {"draw.frag, multiview", vector_draw_frag_multiview}};
+  if (auto ok = canvas->init(canvas->describe(), &draw); !ok) return ok.error();
   return canvas;
 }
 
@@ -368,6 +373,9 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
     for (const float v : info.items[i].perspective)
       if (!std::isfinite(v))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].perspective holds a number that is not finite", i);
+    for (const float v : info.items[i].scissor)
+      if (!std::isfinite(v))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].scissor holds a number that is not finite", i);
     if (!(info.items[i].opacity >= 0 && info.items[i].opacity <= 1))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].opacity is %g; it must be 0 to 1", i,
                        static_cast<double>(info.items[i].opacity));
@@ -482,17 +490,24 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
 
 Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasView& view) {
   if (view.preparedWidth == 0) return makeError(GPGP_NOT_READY, "nothing was prepared into the view");
-  if (info.width == 0 || info.height == 0 || info.width > view.preparedWidth || info.height > view.preparedHeight)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%u x %u pixels are to be drawn; the view holds %u x %u", info.width,
-                     info.height, view.preparedWidth, view.preparedHeight);
+  const uint32_t second = info.target->viewMask ? info.secondX : 0;
+  if (info.width == 0 || info.height == 0 || second > view.preparedWidth || info.width > view.preparedWidth - second ||
+      info.height > view.preparedHeight)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%u x %u pixels from column %u on are to be drawn; the view holds %u x %u",
+                     info.width, info.height, second, view.preparedWidth, view.preparedHeight);
   struct {
-    float clip[16];
+    float columns[2][12];
     uint32_t size[4];
   } constants{};
-  std::copy_n(info.clip, 16, constants.clip);
+  for (int k = 0; k < 2; ++k) {
+    const float* clip = k && info.secondClip ? info.secondClip : info.clip;
+    std::copy_n(clip, 8, constants.columns[k]);
+    std::copy_n(clip + 12, 4, constants.columns[k] + 8);
+  }
   constants.size[0] = info.width;
   constants.size[1] = info.height;
   constants.size[2] = view.preparedWidth;
+  constants.size[3] = second;
   core::DrawRecord r;
   r.commandBuffer = commandBuffer;
   r.bindings[kView].ownBuffer = view.buffer();

@@ -39,20 +39,18 @@ Result<uint32_t> Gather::bind(const core::Resident& asset) { // to a slot, if on
 }
 
 /// Its index; kNone where it covers nothing or finds no room.
-uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, const Chain* clip) {
+uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip) {
   ItemRecord item{};
-  if ((clip && clip->hidden) || !placeItem(map, info_.width, info_.height, item)) return kNone;
+  if (clip.hidden || !placeItem(map, info_.width, info_.height, item)) return kNone;
   full_ = full_ || sources == budgets_.items;
   ++sourcesNeeded_;
   if (full_) return kNone;
   item.color.w = opacity;
   item.firstImage = firstImage;
-  if (clip) {
-    item.scissor = clip->scissor;
-    item.clip = clip->chain;
-    groups = groups || item.clip;
-    lists = lists || item.clip || shader::hasScissor(item);
-  }
+  item.scissor = clip.scissor;
+  item.clip = clip.chain;
+  groups = groups || item.clip;
+  lists = lists || item.clip || shader::hasScissor(item);
   projective = projective || item.perspective.w > 0;
   tables_.sources[sources] = item;
   return sources++;
@@ -62,16 +60,21 @@ Result<void> Gather::add(uint32_t index, const ItemAsset& asset) {
   index_ = index;
   entry_ = kNone;
   const GpgpCanvasItem& item = info_.items[index];
-  if (asset.list) return addList(*asset.list, item);
+  const float* s = item.scissor;
+  const bool cut = s[0] != 0 || s[1] != 0 || s[2] != 0 || s[3] != 0;
+  constexpr float kFar = shader::kUnbounded;
+  const Chain own{cut ? shader::vec4(s[0], s[1], s[2], s[3]) : shader::vec4(-kFar, -kFar, kFar, kFar), 0,
+                  cut && !(s[0] < s[2] && s[1] < s[3])};
+  if (asset.list) return addList(*asset.list, item, own);
   const Map map = toMap(item.transform, item.perspective);
-  if (asset.drawing) return addDrawing(*asset.drawing, map, item.opacity, item.firstImage, nullptr);
-  const uint32_t source = addSource(map, item.opacity, 0, nullptr);
+  if (asset.drawing) return addDrawing(*asset.drawing, map, item.opacity, item.firstImage, own);
+  const uint32_t source = addSource(map, item.opacity, 0, own);
   return addGlyphs(*asset.glyphSet, {item.glyphs, item.glyphCount}, source);
 }
 
 /// A drawing with as many of its first paths as there is room for.
 Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
-                                const Chain* clip) {
+                                const Chain& clip) {
   if (drawing.images() && (firstImage > info_.imageCount || drawing.images() > info_.imageCount - firstImage))
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing needs %u images from images[%u] on; imageCount is %u",
                  drawing.images(), firstImage, info_.imageCount);
@@ -203,17 +206,16 @@ void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint
 }
 
 /// What each clip of a list leaves: a scissor where it is parallel to the canvas, otherwise a path that paints nothing.
-Result<void> Gather::resolveClips(const List& list, const Map& map) {
+Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain& own) {
   if (list.clips().size() > budgets_.items) {
     sourcesNeeded_ += static_cast<uint32_t>(list.clips().size());
     full_ = true;
     return {};
   }
-  constexpr float kFar = shader::kUnbounded;
   for (size_t i = 0; i < list.clips().size(); ++i) {
     const List::Clip& clip = list.clips()[i];
     Chain& state = tables_.clipStates[i];
-    state = clip.parent ? tables_.clipStates[clip.parent - 1] : Chain{{-kFar, -kFar, kFar, kFar}, 0, false};
+    state = clip.parent ? tables_.clipStates[clip.parent - 1] : own;
     const Map placed = compose(map, list.bases()[clip.base]);
     ItemRecord item{};
     state.hidden = state.hidden || clip.shape.box.x == clip.shape.box.z || clip.shape.box.y == clip.shape.box.w ||
@@ -229,7 +231,7 @@ Result<void> Gather::resolveClips(const List& list, const Map& map) {
       state.hidden = !(state.scissor.x < state.scissor.z && state.scissor.y < state.scissor.w);
       continue;
     }
-    const uint32_t source = addSource(placed, 0, 0, &state);
+    const uint32_t source = addSource(placed, 0, 0, state);
     if (source == kNone) continue;
     if (PlacementRecord* to = addShape(clip.shape, source)) {
       to->color = {};
@@ -240,20 +242,20 @@ Result<void> Gather::resolveClips(const List& list, const Map& map) {
   return {};
 }
 
-Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item) {
+Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const Chain& own) {
   if (list.depth())
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list: %u of its pushes are not popped", list.depth());
   if (list.images() && (item.firstImage > info_.imageCount || list.images() > info_.imageCount - item.firstImage))
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list needs %u images from images[%u] on; imageCount is %u",
                  list.images(), item.firstImage, info_.imageCount);
   const Map map = toMap(item.transform, item.perspective);
-  if (auto ok = resolveClips(list, map); !ok) return ok;
+  if (auto ok = resolveClips(list, map, own); !ok) return ok;
   // Shapes and texts that follow each other in the same space share a source.
   uint32_t source = kNone, base = kNone, clip = kNone;
   for (const List::Command& command : list.commands()) {
     entry_ = command.firstEntry;
     const List::Space& space = command.space;
-    const Chain* state = space.clip && !full_ ? &tables_.clipStates[space.clip - 1] : nullptr;
+    const Chain& state = space.clip && !full_ ? tables_.clipStates[space.clip - 1] : own;
     if (command.kind == List::Kind::drawing) {
       const core::Object* asset = command.asset();
       if (!asset) return wrong(GPGP_ERROR_INVALID_HANDLE, ": its drawing was destroyed");

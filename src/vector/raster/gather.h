@@ -58,13 +58,13 @@ public:
 private:
   using Chain = ItemTables::ClipState;
   core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
-                                const Chain* clip);
+                                const Chain& clip);
   core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
-  core::Result<void> addList(const List& list, const GpgpCanvasItem& item);
-  core::Result<void> resolveClips(const List& list, const Map& map);
+  core::Result<void> addList(const List& list, const GpgpCanvasItem& item, const Chain& own);
+  core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own);
   void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
   shader::PlacementRecord* addShape(const shader::ShapeRecord& shape, uint32_t source);
-  uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain* clip);
+  uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
   core::Result<uint32_t> bind(const core::Resident& asset);
   core::Error wrong(GpgpResult code, const char* format, ...) const __attribute__((format(printf, 3, 4)));
 

@@ -197,6 +197,9 @@ Result<bool> hitItem(const GpgpCanvasItem& item, const ItemAsset& asset, double 
   const Map map = toMap(item.transform, item.perspective);
   hit.entry = hit.glyph = hit.path = 0;
   hit.id = 0;
+  const float* s = item.scissor;
+  const bool cut = s[0] != 0 || s[1] != 0 || s[2] != 0 || s[3] != 0;
+  if (cut && !(x >= number(s[0]) && x < number(s[2]) && y >= number(s[1]) && y < number(s[3]))) return false;
   if (asset.list) return hitList(*asset.list, map, x, y, hit);
   Point p{};
   const bool mapped = unmap(map, x, y, p);
