@@ -411,9 +411,9 @@ typedef struct GpgpCanvasDrawInfo {
   const GpgpTargetInfo* target; /**< equal to one of those given to gpgpPrewarm */
   float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
   uint32_t width, height;       /**< of the part of the canvas that is drawn, pixels */
-  const float* secondClip;      /**< multiview, for view 1: 16 numbers as clip; NULL: the same */
-  uint32_t secondX;             /**< multiview: view 1 shows the part that begins at this column of the canvas; to both
-                                     matrices a part's own left column is 0 */
+  uint32_t x;                   /**< column of the canvas at which the part begins; to clip it is 0 */
+  uint32_t secondX;             /**< of a multiview target: the same for view 1 */
+  const float* secondClip;      /**< of a multiview target: 16 numbers for view 1, as clip; NULL: the same */
 } GpgpCanvasDrawInfo;
 #define GPGP_CANVAS_DRAW_INFO_INIT GPGP_INIT(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO)
 

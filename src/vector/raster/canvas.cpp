@@ -490,14 +490,15 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
 
 Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasView& view) {
   if (view.preparedWidth == 0) return makeError(GPGP_NOT_READY, "nothing was prepared into the view");
-  const uint32_t second = info.target->viewMask ? info.secondX : 0;
-  if (info.width == 0 || info.height == 0 || second > view.preparedWidth || info.width > view.preparedWidth - second ||
+  const uint32_t last = std::max(info.x, info.target->viewMask ? info.secondX : 0);
+  if (info.width == 0 || info.height == 0 || last > view.preparedWidth || info.width > view.preparedWidth - last ||
       info.height > view.preparedHeight)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%u x %u pixels from column %u on are to be drawn; the view holds %u x %u",
-                     info.width, info.height, second, view.preparedWidth, view.preparedHeight);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "%u x %u pixels from column %u on are to be drawn; the view holds %u x %u", info.width,
+                     info.height, last, view.preparedWidth, view.preparedHeight);
   struct {
     float columns[2][12];
-    uint32_t size[4];
+    uint32_t size[4], begins[2];
   } constants{};
   for (int k = 0; k < 2; ++k) {
     const float* clip = k && info.secondClip ? info.secondClip : info.clip;
@@ -507,7 +508,8 @@ Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInf
   constants.size[0] = info.width;
   constants.size[1] = info.height;
   constants.size[2] = view.preparedWidth;
-  constants.size[3] = second;
+  constants.begins[0] = info.x;
+  constants.begins[1] = info.secondX;
   core::DrawRecord r;
   r.commandBuffer = commandBuffer;
   r.bindings[kView].ownBuffer = view.buffer();
