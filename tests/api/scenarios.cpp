@@ -179,9 +179,10 @@ public:
     shape.color[1] = shape.color[3] = 0.5f;
     constexpr float kTurn[] = {0.8f, 0.6f, -0.6f, 0.8f, 20, 0}, kBox[] = {4, 4, 50, 50};
     for (const GpgpResult result :
-         {gpgpPushClip(shownList, kBox, nullptr), gpgpPushTransform(shownList, kTurn, nullptr), gpgpPushClip(shownList, kBox, nullptr),
-          gpgpAddShapes(shownList, &shape, 1), gpgpAddText(shownList, secondAsset, glyphs_, 5, 0), gpgpPopState(shownList),
-          gpgpPopState(shownList), gpgpPopState(shownList)})
+         {gpgpPushClip(shownList, kBox, nullptr), gpgpPushTransform(shownList, kTurn, nullptr),
+          gpgpPushClip(shownList, kBox, nullptr), gpgpAddShapes(shownList, &shape, 1),
+          gpgpAddText(shownList, secondAsset, glyphs_, 5, 0), gpgpPopState(shownList), gpgpPopState(shownList),
+          gpgpPopState(shownList)})
       if (result != GPGP_SUCCESS) return result;
     return GPGP_SUCCESS;
   }

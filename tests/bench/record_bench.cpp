@@ -23,8 +23,8 @@ using namespace gpgp::bench;
 double microseconds(Clock::duration d) { return milliseconds(d) * 1000; }
 
 #if defined(GPGP_WITH_VECTOR)
-/// What a shape of a list costs the CPU: to add it, one call each, to record it, and to ask for it at a point. Baseline:
-/// copying the 112 bytes that recording writes for it.
+/// What a shape of a list costs the CPU: to add it, one call each, to record it, and to ask for it at a point.
+/// Baseline: copying the 112 bytes that recording writes for it.
 void measureList(host::HeadlessDevice& device, int records) {
   constexpr uint32_t kShapes = 10000;
   GpgpContextCreateInfo info = scenarioContextInfo(device, nullptr);
@@ -86,9 +86,10 @@ void measureList(host::HeadlessDevice& device, int records) {
     asking.push_back(microseconds(middle - before));
   }
   const auto each = [](const std::vector<double>& times) { return median(times) * 1000 / kShapes; };
-  std::printf("list of %u shapes, ns a shape: add %.1f, record %.1f, hit test %.1f, copy 112 bytes %.1f; ratios %.1f, %.1f\n",
-              kShapes, each(adding), each(recording), each(asking), each(copying), each(adding) / each(copying),
-              each(recording) / each(copying));
+  std::printf(
+      "list of %u shapes, ns a shape: add %.1f, record %.1f, hit test %.1f, copy 112 bytes %.1f; ratios %.1f, %.1f\n",
+      kShapes, each(adding), each(recording), each(asking), each(copying), each(adding) / each(copying),
+      each(recording) / each(copying));
   gpgpDestroyContext(context);
 }
 #endif

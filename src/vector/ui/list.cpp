@@ -217,7 +217,7 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
   return static_cast<uint32_t>(paints_.paints.size());
 }
 
-/// 1 + the index of the shape's paint; 0: none.
+/// 1 + the index of the shape's gradient or image.
 Result<uint32_t> List::addPaint(const GpgpListShape& shape) {
   const Space& space = state_.space;
   if (shape.gradient && shape.image) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "both gradient and image are given");
@@ -231,7 +231,6 @@ Result<uint32_t> List::addPaint(const GpgpListShape& shape) {
     if (!index) return index.error();
     return *index + 1;
   }
-  if (!shape.image) return 0u;
   if (shape.kind == GPGP_LIST_LINE) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "a line cannot show an image");
   const auto added = addImagePaint(*shape.image, shapes_.back().record.box);
   if (added) images_ = std::max(images_, shape.image->image + 1);
@@ -273,9 +272,11 @@ Result<void> List::addShape(const GpgpListShape& from) {
     const float side = std::min(box.z - box.x, box.w - box.y);
     shape.record.border = 2 * width < side ? width : 0;
   }
-  const auto paint = addPaint(from);
-  if (!paint) return paint.error();
-  shape.record.paint = *paint;
+  if (from.gradient || from.image) {
+    const auto paint = addPaint(from);
+    if (!paint) return paint.error();
+    shape.record.paint = *paint;
+  }
   shape.color = {from.color[0], from.color[1], from.color[2], from.color[3] * state_.opacity};
   shape.id = from.id;
   return {};
