@@ -5,6 +5,7 @@
 #include <gpgp/spawn.h>
 #include <gpgp/spawn_builder.h>
 #include <gpgp/text.h>
+#include <gpgp/ui.h>
 #include <gpgp/vector.h>
 #include <gpgp/visibility.h>
 #endif

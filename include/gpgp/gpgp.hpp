@@ -66,6 +66,8 @@ GPGP_STRUCTURE_OF(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO);
 GPGP_STRUCTURE_OF(GpgpGlyphSource, GPGP_STRUCTURE_GLYPH_SOURCE);
 GPGP_STRUCTURE_OF(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpGlyphSetInfo, GPGP_STRUCTURE_GLYPH_SET_INFO);
+GPGP_STRUCTURE_OF(GpgpListCreateInfo, GPGP_STRUCTURE_LIST_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpHitTestInfo, GPGP_STRUCTURE_HIT_TEST_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO);
@@ -101,6 +103,7 @@ inline void destroy(GpgpContext handle) noexcept { gpgpDestroyContext(handle); }
 inline void destroy(GpgpAsset handle) noexcept { gpgpDestroyAsset(handle); }
 inline void destroy(GpgpWorker handle) noexcept { gpgpDestroyWorker(handle); }
 inline void destroy(GpgpView handle) noexcept { gpgpDestroyView(handle); }
+inline void destroy(GpgpList handle) noexcept { gpgpDestroyList(handle); }
 inline void destroy(GpgpGrammarBuilder handle) noexcept { gpgpDestroyGrammarBuilder(handle); }
 inline void destroy(GpgpFont handle) noexcept { gpgpDestroyFont(handle); }
 inline void destroy(GpgpShaper handle) noexcept { gpgpDestroyShaper(handle); }
@@ -285,6 +288,48 @@ public:
     return Result<GpgpGlyphSetInfo>(code, value);
   }
 };
+
+/// What a user interface adds every frame (ui.h).
+///
+///   list.reset();
+///   list.pushTransform(map);
+///   list.add(shape);
+///   list.pop();
+class List : public Handle<GpgpList> {
+public:
+  using Handle::Handle;
+  static Result<List> create(GpgpContext context,
+                             const GpgpListCreateInfo& info = init<GpgpListCreateInfo>()) noexcept {
+    return detail::create<List>(gpgpCreateList, context, info);
+  }
+  GpgpResult reset() noexcept { return gpgpResetList(get()); }
+  /// transform: 6 numbers; perspective: 3, or nullptr.
+  GpgpResult pushTransform(const float* transform, const float* perspective = nullptr) noexcept {
+    return gpgpPushTransform(get(), transform, perspective);
+  }
+  /// box: left, top, right, bottom; radii: 4, or nullptr.
+  GpgpResult pushClip(const float* box, const float* radii = nullptr) noexcept {
+    return gpgpPushClip(get(), box, radii);
+  }
+  GpgpResult pushOpacity(float opacity) noexcept { return gpgpPushOpacity(get(), opacity); }
+  /// gpgpPopState
+  GpgpResult pop() noexcept { return gpgpPopState(get()); }
+  GpgpResult add(const GpgpListShape& shape) noexcept { return gpgpAddShapes(get(), &shape, 1); }
+  GpgpResult add(const GpgpListShape* shapes, uint32_t count) noexcept { return gpgpAddShapes(get(), shapes, count); }
+  GpgpResult add(const GlyphSet& set, const GpgpGlyphInstance* glyphs, uint32_t count, uint64_t id = 0) noexcept {
+    return gpgpAddText(get(), set.get(), glyphs, count, id);
+  }
+  GpgpResult add(const Drawing& drawing, uint32_t firstImage = 0, uint64_t id = 0) noexcept {
+    return gpgpAddDrawing(get(), drawing.get(), firstImage, id);
+  }
+};
+
+/// gpgpHitTest; item is GPGP_HIT_NONE where nothing is hit.
+inline Result<GpgpHit> hitTest(GpgpContext context, const GpgpHitTestInfo& info) noexcept {
+  GpgpHit value = GpgpHit();
+  const GpgpResult code = gpgpHitTest(context, &info, &value);
+  return Result<GpgpHit>(code, value);
+}
 
 class CanvasView : public View {
 public:

@@ -4,6 +4,7 @@
  *   glyph set (asset)  many small drawings under the engine's keys, to which more are added; what text is drawn with
  *   canvas (worker)    rasterises drawings and text; sized by budgets
  *   canvas view        keeps one rasterised canvas, to be drawn inside the engine's render pass
+ *   list               shapes, images, text and drawings that the engine adds every frame (ui.h)
  *
  *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
  *   GpgpPath[] -> gpgpCreateDrawing                                made live, or
@@ -213,6 +214,8 @@ typedef struct GpgpDrawingCreateInfo {
   const GpgpPathEdit* edits; /**< only with base; of two with the same index the later counts */
   uint32_t editCount;
   VkBool32 editable; /**< can be a base: keeps its tables in host memory, about twice its size on the device */
+  VkBool32 hitTestable; /**< gpgpHitTest finds its paths: keeps its outlines in host memory, about its size on the device;
+                             editable ones have them */
 } GpgpDrawingCreateInfo;
 #define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 
@@ -302,10 +305,14 @@ typedef struct GpgpCanvasCreateInfo {
   uint32_t maxPatches;          /**< CPatches in one record, all drawings and their instances; 0: 262144 */
   uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
                                 each; 0: 131072 */
-  uint32_t maxDrawings;    /**< items (a drawing or a text with a transform) in one record; 0: 64. They may show at most
-                                8 different drawings and glyph sets */
+  uint32_t maxDrawings;    /**< items in one record, and what lists have of drawings, clips, and changes of transform and
+                                clip (ui.h); 0: 64, at most 65536. They may show at most 8 different drawings and glyph
+                                sets */
   uint32_t maxGlyphs;      /**< of all texts in one record, blanks not counted; 176 bytes each, 48 of them once more for
                                 every record in flight; 0: 1024, at most 1048576 */
+  uint32_t maxShapes;      /**< of all lists in one record, as many of them with an image or gradient, and twice as many
+                                stops; 592 bytes each, 240 of them once more for every record in flight; 0: 1024, at
+                                most 1048576 */
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
@@ -338,8 +345,11 @@ typedef struct GpgpGlyphInstance {
                        every path's */
 } GpgpGlyphInstance;
 
+/** Shapes, images, text and drawings in painting order (ui.h). */
+typedef struct GpgpList_T* GpgpList;
+
 typedef struct GpgpCanvasItem {
-  GpgpAsset drawing;  /**< NULL: a text, of the glyphs below */
+  GpgpAsset drawing;  /**< NULL: a text, of the glyphs below, or a list */
   float transform[6]; /**< drawing to pixel: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
   float opacity;      /**< 0 to 1, multiplies each path's alpha */
   /** The third row of a projective map: w = p0 x + p1 y + p2, and the pixel is (x', y') / w. All 0: affine, w = 1.
@@ -352,6 +362,8 @@ typedef struct GpgpCanvasItem {
   GpgpAsset glyphSet;  /**< of a text; what is `drawing` above is the text then, whose units the instances have */
   const GpgpGlyphInstance* glyphs; /**< in painting order, the first at the bottom */
   uint32_t glyphCount;
+  float scissor[4]; /**< left, top, right, bottom in canvas pixels: nothing shows outside; all 0: none */
+  GpgpList list;    /**< instead of drawing and glyphSet: all that is in it, with its own transforms before this one */
 } GpgpCanvasItem;
 
 enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
@@ -399,12 +411,17 @@ typedef struct GpgpCanvasDrawInfo {
   const GpgpTargetInfo* target; /**< equal to one of those given to gpgpPrewarm */
   float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
   uint32_t width, height;       /**< of the part of the canvas that is drawn, pixels */
+  const float* secondClip;      /**< multiview, for view 1: 16 numbers as clip; NULL: the same */
+  uint32_t secondX;             /**< multiview: view 1 shows the part that begins at this column of the canvas; to both
+                                     matrices a part's own left column is 0 */
 } GpgpCanvasDrawInfo;
 #define GPGP_CANVAS_DRAW_INFO_INIT GPGP_INIT(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO)
 
 /** Draws what the last gpgpRecordPrepareCanvas into this view left, as a rectangle blended premultiplied
  *  (ONE, ONE_MINUS_SRC_ALPHA), without filtering at one canvas pixel per pixel. The engine has set viewport and
- *  scissor. Any number of times per prepare. NOT_READY: nothing was prepared, or the target was not prewarmed.
+ *  scissor. Any number of times per prepare. Views 0 and 1 of a multiview target (GpgpTargetInfo::viewMask, GPGP_FEATURE_MULTIVIEW) may
+ *  show different parts, so that one record holds both eyes. NOT_READY: nothing was prepared, or the target was not
+ *  prewarmed.
  *  @threads handle @lifetime call @pass inside
  *  @state graphics pipeline, graphics descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
@@ -420,6 +437,10 @@ typedef struct GpgpCanvasReport {
   uint32_t pathsDropped;     /**< whole paths, and of texts whole glyphs, left out where the budget did not suffice */
   uint32_t glyphs;           /**< needed */
   uint32_t glyphsGiven;      /**< maxGlyphs */
+  uint32_t shapes;           /**< needed */
+  uint32_t shapesGiven;      /**< maxShapes */
+  uint32_t items;            /**< needed */
+  uint32_t itemsGiven;       /**< maxDrawings */
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 

@@ -5,25 +5,26 @@
 #extension GL_GOOGLE_include_directive : require
 #include "placement.h"
 layout(local_size_x = 64) in;
-// from[]: sources, 8 vec4 each, then placements, 3 each.
+// from[]: sources, 10 vec4 each, then placements, 3 each, then the tables of shapes.
 layout(set = 0, binding = 11, std430) readonly buffer From {
   CanvasHeader header;
-  SlotRecord slots[kMaxSlots];
+  SlotRecord slots[kSlots];
   vec4 from[];
 };
 layout(set = 0, binding = 17, std430) writeonly buffer To {
   CanvasHeader copied;
-  SlotRecord copiedSlots[kMaxSlots];
+  SlotRecord copiedSlots[kSlots];
   ItemRecord items[];
 };
 layout(set = 0, binding = 14, std430) writeonly buffer Bins { uint bins[]; };
+layout(set = 0, binding = 28, std430) writeonly buffer Shapes { vec4 shapes[]; };
 #if !SOFTWARE
 layout(set = 0, binding = 13, std430) writeonly buffer Words { uvec4 words[]; };
 layout(set = 0, binding = 16, std430) writeonly buffer Counters { uvec4 counters[]; };
 #endif
 
 ItemRecord sourceOf(uint i) {
-  const uint at = i * 8;
+  const uint at = i * 10;
   ItemRecord item;
   item.inverse = from[at];
   item.transform = from[at + 1];
@@ -31,7 +32,8 @@ ItemRecord sourceOf(uint i) {
   item.perspective = from[at + 3];
   item.eye = from[at + 4];
   item.color = from[at + 5];
-  const uvec4 first = floatBitsToUint(from[at + 6]), second = floatBitsToUint(from[at + 7]);
+  item.scissor = from[at + 6];
+  const uvec4 first = floatBitsToUint(from[at + 7]), second = floatBitsToUint(from[at + 8]);
   item.side = uintBitsToFloat(first.x);
   item.slot = first.y;
   item.firstSegment = first.z;
@@ -40,11 +42,13 @@ ItemRecord sourceOf(uint i) {
   item.paths = second.y;
   item.firstImage = second.z;
   item.whole = second.w;
+  item.clip = floatBitsToUint(from[at + 9]).x;
+  item.pad0 = item.pad1 = item.pad2 = 0;
   return item;
 }
 
 PlacementRecord placementOf(uint i) {
-  const uint at = header.sourceCount * 8 + i * 3;
+  const uint at = header.sourceCount * 10 + i * 3;
   const vec4 place = from[at];
   const uvec4 tables = floatBitsToUint(from[at + 2]);
   PlacementRecord p;
@@ -67,11 +71,13 @@ void main() {
   if (lane < counters.length()) counters[lane] = uvec4(0);
 #endif
   if (lane == 0) copied = header;
-  if (lane < kMaxSlots) copiedSlots[lane] = slots[lane];
+  if (lane < kSlots) copiedSlots[lane] = slots[lane];
   for (uint i = lane; i < header.itemCount; i += lanes) {
     const PlacementRecord p = placementOf(i);
-    items[i] = placed(sourceOf(p.source), p);
+    items[i] = placed(sourceOf(p.source & ((1u << kSlotBit) - 1)), p);
   }
+  const uint tables = header.sourceCount * 10 + header.itemCount * 3;
+  for (uint i = lane; i < header.shapeTables; i += lanes) shapes[i] = from[tables + i];
   const uint binWords = kFirstBin + header.binCount * header.pathWords;
   for (uint i = lane; i < binWords; i += lanes) bins[i] = i < kFirstBin && i % 4 == 2 ? 1 : 0;
 }

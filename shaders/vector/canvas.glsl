@@ -1,5 +1,13 @@
 // The canvas's bindings, in the order of its resources (src/vector/raster/canvas.cpp), and what passes share.
+#ifndef SCISSORS // only records of several drawings have any
+#if ONE_DRAWING
+#define SCISSORS 0
+#else
+#define SCISSORS 1
+#endif
+#endif
 #include "edge.h"
+#include "shape.h"
 
 #ifndef SHARING // coherent, in passes whose last workgroup reads what the others wrote
 #define SHARING
@@ -9,10 +17,11 @@
 DRAWING(0)
 #else
 DRAWING(0) DRAWING(1) DRAWING(2) DRAWING(3) DRAWING(4) DRAWING(5) DRAWING(6) DRAWING(7)
+layout(set = 0, binding = 28, std430) readonly buffer Shapes { vec4 shapes[]; };
 #endif
 layout(set = 0, binding = 17, std430) readonly buffer Constants {
   CanvasHeader header;
-  SlotRecord slots[kMaxSlots];
+  SlotRecord slots[kSlots];
   ItemRecord items[];
 };
 layout(set = 0, binding = 12, std430) SHARING buffer Paths { PlacedPath paths[]; };
@@ -32,13 +41,32 @@ vec4 fetch(uint slot, uint i) {
   case 4: return drawing4[i];
   case 5: return drawing5[i];
   case 6: return drawing6[i];
-  default: return drawing7[i];
+  case 7: return drawing7[i];
+  default: return shapes[i];
   }
+}
+#endif
+
+#if !ONE_DRAWING
+ShapeRecord shapeOf(ItemRecord item) {
+  ShapeRecord s;
+  s.box = shapes[item.paths];
+  s.radii = shapes[item.paths + 1];
+  s.frame = shapes[item.paths + 2];
+  const vec4 rest = shapes[item.paths + 3];
+  s.border = rest.x;
+  s.ratio = rest.y;
+  s.paint = floatBitsToUint(rest.z);
+  s.kind = floatBitsToUint(rest.w);
+  return s;
 }
 #endif
 
 // Segment i of the record, which is one of the item's.
 SegmentRecord fetchSegment(ItemRecord item, uint i) {
+#if !ONE_DRAWING
+  if (item.slot == kShapeSlot) return shapeSegment(shapeOf(item), i - item.firstSegment);
+#endif
   const uint at = item.segments + (i - item.firstSegment) * 4;
   SegmentRecord s;
   s.first = fetch(item.slot, at);
@@ -76,6 +104,7 @@ Grid canvasGrid() { return Grid(header.samples, int(header.height * header.sampl
 uint binOf(uvec2 tile) {
   return kFirstBin + ((tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift)) * header.pathWords;
 }
+uint clipRecord(uint clip) { return slots[kShapeSlot].clips + clip - 1; } // its vec4
 int tileOf(int column) { return (column + int(kTileSize)) / int(kTileSize) - 1; } // of column -1: -1
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.

@@ -3,5 +3,7 @@
 layout(set = 0, binding = 26, std430) buffer Chords { ChordRecord chordList[]; };
 layout(set = 0, binding = 27, std430) buffer Rows { uint rows[]; }; // by how much it comes after its chord's first one
 const uint kRightSide = 0x80000000u;
+const uint kCut = 0x40000000u; // its item has a scissor
+const vec4 kNoScissor = vec4(-kUnbounded, -kUnbounded, kUnbounded, kUnbounded);
 
 bool listed(uint rowCount) { return rowCount <= header.rowLimit; }

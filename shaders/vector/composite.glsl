@@ -178,6 +178,18 @@ void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout u
     clip = record.z;
   }
 }
+
+// The clips of an item.
+void clipItem(uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout int difference) {
+  while (clip != 0 && (mask != 0 || difference != 0)) {
+    const uvec2 record = floatBitsToUint(fetch(kShapeSlot, clipRecord(clip)).xy);
+    const uint code = coverageOf(paths[record.x], tile);
+    int otherDifference = 0;
+    const uint other = code == 0 ? 0 : maskAt(code, at, area, otherDifference);
+    combine(mask, difference, other, otherDifference, false);
+    clip = record.y;
+  }
+}
 #endif
 
 // A path over pixel `at` of the tile and `pixel` of the canvas; `paint` is its item, its paint and its group.
@@ -188,10 +200,11 @@ void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec3 paint) {
 #if RICH
   uvec4 group = uvec4(0);
   const ItemRecord own = items[paint.x];
-  if (paint.z != 0) group = floatBitsToUint(fetch(own.slot, paint.z - 1));
+  if ((paint.z & ~kItemClipped) != 0) group = floatBitsToUint(fetch(own.slot, (paint.z & ~kItemClipped) - 1));
   toLayer(paint.x, own, group.z);
   if (alive == 0 && gap <= 0) return; // the group is hidden, not what lies behind it
   if (group.y != 0) clipBy(own, group.y, pixel / kTileSize, at, area, mask, difference);
+  if ((paint.z & kItemClipped) != 0) clipItem(own.clip, pixel / kTileSize, at, area, mask, difference);
 #endif
   if (mask == 0 && (first ? difference == 0 : gap * float(difference) <= 0)) return;
 #if PAINTS
@@ -207,7 +220,7 @@ void paintOver(uint code, uvec2 at, uvec2 pixel, vec4 source, uvec3 paint) {
     }
 #endif
 #if IMAGES
-    if (floatBitsToUint(fetch(item.slot, paint.y + 1)).y == kPaintImage) {
+    if (floatBitsToUint(fetch(item.slot, paint.y + 1)).y >= kPaintImage) {
       vec2 dx = item.inverse.xy, dy = item.inverse.zw;
       if (projects(item)) {
         dx -= at * item.eye.x;

@@ -1,15 +1,13 @@
 #version 460
 // The canvas pixel under the fragment, premultiplied.
+#extension GL_GOOGLE_include_directive : require
 layout(set = 0, binding = 8, std430) readonly buffer View { uvec2 view[]; };
-layout(push_constant) uniform Draw {
-  mat4 clip;
-  uvec4 size;
-};
+#include "draw.glsl"
 layout(location = 0) in vec2 at;
 layout(location = 0) out vec4 color;
 
 void main() {
   const uvec2 pixel = min(uvec2(max(at, vec2(0))), size.xy - 1);
-  const uvec2 packed = view[pixel.y * size.z + pixel.x];
+  const uvec2 packed = view[pixel.y * size.z + pixel.x + DRAWN_VIEW * size.w];
   color = vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
 }

@@ -11,6 +11,9 @@
 // the canvas, and the outlines are closed along it where it passes left of the canvas: all that then counts are the
 // rows that each cut turns over (placeItem in src/vector/raster/place.h chooses the line).
 //
+// A scissor moves what lies outside of it to its edge: outlines stay closed, and inside it nothing changes. Crossings go
+// to its nearer side, and ends of chords above or below it to its left corners.
+//
 // Rows are sample rows: n of them in a pixel, one sample in each. Columns are pixels; -1 stands for all left of the
 // canvas. Only + - * on precise floats and division by core/math.h: CPU and GPU agree on every bit.
 #ifndef GPGP_SHADERS_VECTOR_EDGE_H
@@ -23,6 +26,11 @@
 #define PROJECTIVE 1
 #elif !defined(PROJECTIVE) // whether items may be projective
 #define PROJECTIVE 0
+#endif
+#ifdef __cplusplus
+#define SCISSORS 1
+#elif !defined(SCISSORS) // whether items may have scissors
+#define SCISSORS 0
 #endif
 
 GPGP_SHADER_BEGIN
@@ -173,7 +181,12 @@ GPGP_FN bool mayMatter(Grid g, ItemRecord item, SegmentRecord s) {
   const vec2 b = toPixel(item, s.first.z, s.first.w);
   const vec2 c = toPixel(item, s.second.x, s.second.y);
   const vec2 d = toPixel(item, s.second.z, s.second.w);
-  return min(min(a.x, b.x), min(c.x, d.x)) <= float(g.columns) + 1.0f && max(max(a.y, b.y), max(c.y, d.y)) >= -1.0f &&
+#if SCISSORS
+  const bool left = min(min(a.x, b.x), min(c.x, d.x)) <= float(g.columns) + 1.0f || item.scissor.z < float(g.columns);
+#else
+  const bool left = min(min(a.x, b.x), min(c.x, d.x)) <= float(g.columns) + 1.0f;
+#endif
+  return left && max(max(a.y, b.y), max(c.y, d.y)) >= -1.0f &&
          min(min(a.y, b.y), min(c.y, d.y)) * float(g.samples) <= float(g.rows) + 1.0f;
 }
 
@@ -208,7 +221,25 @@ struct Chord {
   float slope;     // x per y
   int first, last; // sample rows from first to last - 1 meet it
   float side;      // 1: the region begins right of it, -1: it ends there
+#if SCISSORS
+  float left, right;     // crossings lie between them
+  float topEnd, lastEnd; // x of its ends, moved to the scissor
+#endif
 };
+GPGP_FN float topEnd(Chord c) {
+#if SCISSORS
+  return c.topEnd;
+#else
+  return c.top.x;
+#endif
+}
+GPGP_FN float lastEnd(Chord c) {
+#if SCISSORS
+  return c.lastEnd;
+#else
+  return c.bottom.x;
+#endif
+}
 
 // The first sample row at or below y.
 GPGP_FN int rowOf(Grid g, float y) {
@@ -217,7 +248,25 @@ GPGP_FN int rowOf(Grid g, float y) {
 }
 GPGP_FN int columnOf(Grid g, float x) { return int(clamp(floor(x), -1.0f, float(g.columns))); }
 
-// Chord i of n of a segment, clipped to it. False where nothing of it is left.
+#if SCISSORS
+GPGP_FN bool hasScissor(ItemRecord item) {
+  return max(item.scissor.x, item.scissor.y) > -kUnbounded || min(item.scissor.z, item.scissor.w) < kUnbounded;
+}
+// Moves a chord to the scissor. False where nothing of it is left.
+GPGP_FN bool cutChord(Grid g, vec4 scissor, GPGP_INOUT(Chord) chord) {
+  const int begin = rowOf(g, scissor.y), end = max(rowOf(g, scissor.w), begin);
+  chord.left = scissor.x;
+  chord.right = max(scissor.z, scissor.x);
+  if (chord.last < begin || chord.first > end) return false;
+  chord.topEnd = chord.first < begin ? chord.left : clamp(chord.top.x, chord.left, chord.right);
+  chord.lastEnd = chord.last > end ? chord.left : clamp(chord.bottom.x, chord.left, chord.right);
+  chord.first = max(chord.first, begin);
+  chord.last = min(chord.last, end);
+  return true;
+}
+#endif
+
+// Chord i of n of a segment, clipped to it and to the scissor. False where nothing of it is left.
 GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, float step, GPGP_OUT(Chord) chord) {
   chord.first = 0;
   chord.last = 0;
@@ -225,6 +274,12 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
   chord.slope = 0.0f;
   chord.top = vec2(0.0f, 0.0f);
   chord.bottom = chord.top;
+#if SCISSORS
+  chord.left = 0.0f;
+  chord.right = 0.0f;
+  chord.topEnd = 0.0f;
+  chord.lastEnd = 0.0f;
+#endif
 #if PROJECTIVE
   // Of a segment that passes behind the eye, the second half of the chords are the outline along the cut: where chord
   // i - n / 2 is cut, down to there from above the canvas.
@@ -277,8 +332,12 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
         chord.bottom = vec2(-1.0f, toPixel(item, x, y).y);
         chord.top = vec2(-1.0f, min(chord.bottom.y, -1.0f));
         chord.last = rowOf(g, chord.bottom.y);
-        chord.side = 1.0f;
+        chord.side = s.side * item.side * (da < near ? 1.0f : -1.0f); // down where the outline comes back
+#if SCISSORS
+        return cutChord(g, item.scissor, chord);
+#else
         return true;
+#endif
       }
     } else if (closing)
       return false;
@@ -300,14 +359,23 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
   GPGP_PRECISE float width = chord.bottom.x - chord.top.x;
   GPGP_PRECISE float height = chord.bottom.y - chord.top.y;
   chord.slope = chord.first < chord.last ? divide(width, height) : 0.0f;
+#if SCISSORS
+  return cutChord(g, item.scissor, chord);
+#else
   return true;
+#endif
 }
 
 // Where a chord meets a sample row; never turns from row to row and never leaves the chord's ends.
 GPGP_FN float crossingOf(Grid g, Chord c, int row) {
   GPGP_PRECISE float y = (float(row) + 0.5f) * sampleStep(g.samples);
   GPGP_PRECISE float x = c.top.x + (y - c.top.y) * c.slope;
-  return clamp(x, min(c.top.x, c.bottom.x), max(c.top.x, c.bottom.x));
+  const float within = clamp(x, min(c.top.x, c.bottom.x), max(c.top.x, c.bottom.x));
+#if SCISSORS
+  return clamp(within, c.left, c.right);
+#else
+  return within;
+#endif
 }
 
 GPGP_SHADER_END

@@ -15,7 +15,7 @@
 void takeChord(Grid g, PlacedPath p, Chord c) {
   const int tileRows = int(kTileSize * g.samples);
   const bool area = (header.flags & kExactArea) != 0;
-  int tile = tileOf(columnOf(g, c.top.x)), row = c.first;
+  int tile = tileOf(columnOf(g, topEnd(c))), row = c.first;
   while (row < c.last) {
     const int tileRow = row / tileRows, end = min(c.last, (tileRow + 1) * tileRows);
     float x = crossingOf(g, c, row);
@@ -50,7 +50,7 @@ void takeChord(Grid g, PlacedPath p, Chord c) {
     } while (row < end && tileOf(column) == tile);
   }
   if (c.last % tileRows != 0) {
-    const int t = tileOf(columnOf(g, c.bottom.x));
+    const int t = tileOf(columnOf(g, lastEnd(c)));
     if (t != tile) changeTile(g, p, c.last, tile, t);
   }
 }

@@ -31,7 +31,7 @@ void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
   const int begin = max(c.first, pixel << shift), end = min(c.last, (pixel << shift) + n);
   const int tileRow = pixel / int(kTileSize);
   const bool area = (header.flags & kExactArea) != 0;
-  int tile = tileOf(columnOf(g, begin == c.first ? c.top.x : crossingOf(g, c, begin - 1)));
+  int tile = tileOf(columnOf(g, begin == c.first ? topEnd(c) : crossingOf(g, c, begin - 1)));
   uint entry = entryOf(p, tile, tileRow);
   int row = begin;
   while (row < end) { // runs of sample rows that meet the same pixel: one, rarely more
@@ -63,7 +63,7 @@ void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
     if (area) atomicAdd(entries[word + kEntryWords / 2], uint(c.side > 0 ? difference : -difference) << shifted);
   }
   if (end == c.last && (end & inTileRow) != 0) {
-    const int t = tileOf(columnOf(g, c.bottom.x));
+    const int t = tileOf(columnOf(g, lastEnd(c)));
     if (t != tile) changeTile(g, p, end, tile, t);
   }
 }

@@ -13,7 +13,7 @@ void main() {
   for (uint i = gl_GlobalInvocationID.x; i < total; i += gl_NumWorkGroups.x * 64) {
     const uint row = rows[i];
     const ChordRecord r = chordList[i - row];
-    const uint path = r.path & ~kRightSide;
+    const uint path = r.path & ~(kRightSide | kCut);
     if (path >= cutPath) continue;
     Chord c;
     c.top = r.top;
@@ -22,6 +22,8 @@ void main() {
     c.first = rowOf(g, c.top.y);
     c.last = rowOf(g, c.bottom.y);
     c.side = (r.path & kRightSide) != 0 ? 1.0 : -1.0;
-    fillRow(g, paths[path], c, (c.first >> findMSB(g.samples)) + int(row));
+    const PlacedPath p = paths[path];
+    if (!cutChord(g, (r.path & kCut) != 0 ? items[p.item].scissor : kNoScissor, c)) continue;
+    fillRow(g, p, c, (c.first >> findMSB(g.samples)) + int(row));
   }
 }

@@ -61,7 +61,9 @@ struct LayerRecord {
 // dx + matrix.w dy + origin.y), where the ramp's place t is, for kPaintLinear, x itself; for kPaintRadial, the largest
 // t with radius(t) >= 0 at which the point lies on the circle that moves from the focus (t = 0) to the unit circle
 // around 0 (t = 1). Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture
-// coordinates, and firstStop is the image, from the item's first one on; stopCount is 0.
+// coordinates, and firstStop is the image, from the item's first one on; stopCount is 0. For kPaintSlices they lead to
+// the destination (place p along x, say), and `slices` is the first of two stops: between two places p and q the texture
+// coordinate is that of p plus (p - place) times a slope, before p and after q with slopes of their own.
 struct PaintRecord {
   vec4 matrix;
   vec4 origin;               // x, y; focus x, y
@@ -70,7 +72,7 @@ struct PaintRecord {
   uint spread;               // kSpread...
   uint flags;                // kInterpolateSrgb
   uint firstStop, stopCount; // at least one for gradients
-  uint pad0, pad1;
+  uint slices, pad1;
 };
 
 // Where a ramp has which colour; offsets never fall from one stop to the next.
@@ -103,6 +105,7 @@ struct ItemRecord {
   vec4 perspective;
   vec4 eye;             // w: 1 where the line at w = perspective.w passes left of the canvas
   vec4 color;           // straight: what kForeground paths take; alpha is the opacity of all its paths
+  vec4 scissor;         // pixels: what lies outside is not drawn; left, top, right, bottom
   float side;           // -1 where the transform mirrors, else 1
   uint slot;            // the buffer's binding
   uint firstSegment;    // of the item's segments in the record; they end where the next item's begin
@@ -110,14 +113,36 @@ struct ItemRecord {
   uint segments, paths; // where they begin in the slot's buffer, in vec4: SegmentRecord, BoxedPath
   uint firstImage;      // of the record
   uint whole;           // 1: all of its paths are drawn or none
+  uint clip;            // 1 + index of its ItemClipRecord; 0: none
+  uint pad0, pad1, pad2;
 };
 
 // What the host writes for each item: where the one that it names is placed, in the units of that one.
 struct PlacementRecord {
   float x, y, size;
-  uint source;                                   // of the record's sources: ItemRecords without a place of their own
+  uint source;                                   // of the record's sources: ItemRecords without a place of their own;
+                                                 // in its bits from kSlotBit on, the slot
   vec4 color;                                    // straight; alpha multiplies
   uint firstSegment, firstPath, segments, paths; // as an item's
+};
+
+// A rectangle with round corners, or what lies between two of them, in a frame of its own: the point (x, y) of the frame
+// lies at origin + x axis + y (-axis.y, axis.x). Radii are of the corners top left, top right, bottom right, bottom left.
+struct ShapeRecord {
+  vec4 box;     // left, top, right, bottom
+  vec4 radii;   // along x
+  vec4 frame;   // origin, axis (of length 1)
+  float border; // width of what is painted inside the edge; 0: everything
+  float ratio;  // of radii along y to those along x
+  uint paint;   // 1 + index of the gradient or image; 0: none
+  uint kind;    // kShapeRound
+};
+
+// A clip of items: a path of the record that paints nothing.
+struct ItemClipRecord {
+  uint path;
+  uint parent; // 1 + index of another that applies as well; 0: none
+  uint pad0, pad1;
 };
 
 // A drawing that a record uses: where its tables begin in its buffer, in vec4.
@@ -130,7 +155,8 @@ struct PlacedPath {
   uint left, top, right, bottom; // the box of its tiles, right and bottom exclusive
   uint firstWord;                // of its tile words; one row of tiles has wordsOf(left, right) of them
   uint item, paint;              // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
-  uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither
+  uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither; and
+                                 // kItemClipped where its item has a clip
   vec4 color;                    // premultiplied, times the item's opacity
 };
 
@@ -153,6 +179,10 @@ struct CanvasHeader {
   uint rowLimit;
   uint sourceCount; // placements lie behind as many
   uint glyphs, glyphLimit;
+  uint shapes, shapeLimit; // needed; room for as many
+  uint sources, sourceLimit;
+  uint shapeTables; // vec4: ShapeRecords, their paints, stops and clips, which lie behind placements
+  uint pad0, pad1, pad2;
   vec4 background;
 };
 
@@ -166,6 +196,7 @@ struct CanvasCounters {
   uint rows;                // needed: of the lists between mark and fill
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
   uint glyphs, glyphsGiven; // needed; room for as many
+  uint shapes, shapesGiven, items, itemsGiven;
   uint pad0;
 };
 
@@ -173,12 +204,13 @@ struct CanvasCounters {
 struct ChordRecord {
   vec2 top, bottom;
   float slope;
-  uint path; // and in the highest bit whether the region begins right of the chord
+  uint path; // and in the highest bits whether the region begins right of the chord, and whether there is a scissor
 };
 
 GPGP_CONST uint kPaintLinear = 0u;
 GPGP_CONST uint kPaintRadial = 1u;
 GPGP_CONST uint kPaintImage = 2u;
+GPGP_CONST uint kPaintSlices = 3u; // an image whose middle is stretched more than its borders
 GPGP_CONST uint kMaxImages = 8u;
 GPGP_CONST uint kMaxClipDepth = 16u;
 GPGP_CONST uint kMaxLayerDepth = 4u;
@@ -188,6 +220,12 @@ GPGP_CONST uint kSpreadReflect = 2u;
 GPGP_CONST uint kInterpolateSrgb = 1u;
 GPGP_CONST uint kForeground = 1u; // takes the colour of the item
 GPGP_CONST uint kMaxSlots = 8u;
+GPGP_CONST uint kShapeSlot = 8u; // the buffer of the record's own shapes
+GPGP_CONST uint kSlots = 9u;
+GPGP_CONST uint kSlotBit = 24u;
+GPGP_CONST uint kShapeRound = 1u;
+GPGP_CONST float kUnbounded = 1e30f; // sides of a scissor that is none
+GPGP_CONST uint kItemClipped = 0x80000000u;
 GPGP_CONST uint kWriteView = 1u;
 GPGP_CONST uint kEncodeSrgb = 2u;
 GPGP_CONST uint kExactArea = 4u;  // of a pixel's first edge
@@ -214,11 +252,12 @@ GPGP_SHADER_END
 static_assert(sizeof(gpgp::shader::CurveRecord) == 48 && sizeof(gpgp::shader::PatchRecord) == 32);
 static_assert(sizeof(gpgp::shader::PathRecord) == 32 && sizeof(gpgp::shader::PaintRecord) == 64 &&
               sizeof(gpgp::shader::StopRecord) == 32 && sizeof(gpgp::shader::SegmentRecord) == 64);
-static_assert(sizeof(gpgp::shader::ItemRecord) == 128 && sizeof(gpgp::shader::PlacedPath) == 48 &&
+static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::ShapeRecord) == 64 &&
+              sizeof(gpgp::shader::ItemClipRecord) == 16 && sizeof(gpgp::shader::PlacedPath) == 48 &&
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 112 && sizeof(gpgp::shader::CanvasCounters) == 64 &&
+              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 80 &&
               sizeof(gpgp::shader::ChordRecord) == 24);
 #endif
 #endif

@@ -24,9 +24,19 @@ uint groupIn(PlacedPath p, uvec2 tile, inout uint steps) {
   if (p.paint != 0 && items[p.item].perspective.w > 0) return kRich;
   if (p.group == 0) return kEven;
   const uint slot = items[p.item].slot;
-  const uvec4 group = floatBitsToUint(fetch(slot, p.group - 1));
-  if (group.z != 0) return kRich;
   uint found = kEven;
+  if ((p.group & kItemClipped) != 0) {
+    for (uint clip = items[p.item].clip; clip != 0; ++steps) {
+      const uvec2 record = floatBitsToUint(fetch(kShapeSlot, clipRecord(clip)).xy);
+      const uint code = coverageOf(paths[record.x], tile);
+      if (code == 0) return kHidden;
+      if (code != 1) found = kRich;
+      clip = record.y;
+    }
+    if ((p.group & ~kItemClipped) == 0) return found;
+  }
+  const uvec4 group = floatBitsToUint(fetch(slot, (p.group & ~kItemClipped) - 1));
+  if (group.z != 0) return kRich;
   for (uint clip = group.y; clip != 0;) {
     const uvec4 record = floatBitsToUint(fetch(slot, slots[slot].clips + clip - 1));
     if (record.y > kManyClipPaths) return kRich;

@@ -37,8 +37,8 @@ void takeChord(Grid g, PlacedPath p, Chord c) {
     if (meets && first == begin)
       for (int word = max(from + 1 - int(p.left), 0) / 32; word < inRow; ++word)
         atomicXor(words[firstWord + word].inside, bitsFrom(from + 1 - int(p.left) - word * 32));
-    if (c.first > begin) from = tileOf(columnOf(g, c.top.x));
-    if (c.last < end) to = tileOf(columnOf(g, c.bottom.x));
+    if (c.first > begin) from = tileOf(columnOf(g, topEnd(c)));
+    if (c.last < end) to = tileOf(columnOf(g, lastEnd(c)));
     low = clamp(min(low, min(from, to) + 1) - int(p.left), 0, int(p.right - p.left));
     high = min(max(high, max(from, to)), int(p.right) - 1) - int(p.left);
     for (int word = low / 32; word <= high / 32 && low <= high; ++word)
@@ -58,11 +58,14 @@ void main() {
     barrier();
     Chord c;
     uint path, rowCount = 0, own = 0;
-    bool found = false;
+    bool found = false, cut = false;
     if (batch + lane < total) {
       const uint s = segmentOf(batch + lane);
       path = segmentPath[s];
       found = fetchChord(g, s, batch + lane, c);
+#if SCISSORS
+      cut = hasScissor(items[segmentItem[s]]);
+#endif
       if (found) rowCount = rowsOf(g, c);
       if (rowCount != 0) own = atomicAdd(taken, rowCount);
     }
@@ -72,7 +75,7 @@ void main() {
     barrier();
     const uint first = firstRow + own;
     if (rowCount == 0 || first + rowCount > header.rowLimit) continue;
-    chordList[first] = ChordRecord(c.top, c.bottom, c.slope, path | (c.side > 0 ? kRightSide : 0));
+    chordList[first] = ChordRecord(c.top, c.bottom, c.slope, path | (c.side > 0 ? kRightSide : 0) | (cut ? kCut : 0));
     for (uint k = 0; k < rowCount; ++k) rows[first + k] = k;
   }
 }

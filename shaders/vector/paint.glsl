@@ -66,8 +66,20 @@ vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
   const vec4 matrix = fetch(item.slot, paint);
   const vec2 origin = fetch(item.slot, paint + 1).xy;
   const uint image = item.firstImage + floatBitsToUint(fetch(item.slot, paint + 3)).x;
-  vec4 color = sampleImage(image, matrix.xy * at.x + matrix.zw * at.y + origin, matrix.xy * dx.x + matrix.zw * dx.y,
-                           matrix.xy * dy.x + matrix.zw * dy.y);
+  vec2 u = matrix.xy * at.x + matrix.zw * at.y + origin;
+  vec2 ux = matrix.xy * dx.x + matrix.zw * dx.y, uy = matrix.xy * dy.x + matrix.zw * dy.y;
+  if (floatBitsToUint(fetch(item.slot, paint + 2)).y == kPaintSlices) {
+    const uint slices = slots[item.slot].stops + floatBitsToUint(fetch(item.slot, paint + 3)).z * 2;
+    const vec4 places = fetch(item.slot, slices), there = fetch(item.slot, slices + 1);
+    const vec3 across = fetch(item.slot, slices + 2).xyz, down = fetch(item.slot, slices + 3).xyz;
+    const vec2 slope = vec2(u.x < places.x ? across.x : u.x < places.y ? across.y : across.z,
+                            u.y < places.z ? down.x : u.y < places.w ? down.y : down.z);
+    u = vec2(u.x < places.y ? there.x + (u.x - places.x) * slope.x : there.y + (u.x - places.y) * slope.x,
+             u.y < places.w ? there.z + (u.y - places.z) * slope.y : there.w + (u.y - places.w) * slope.y);
+    ux *= slope;
+    uy *= slope;
+  }
+  vec4 color = sampleImage(image, u, ux, uy);
   if ((header.premultiplied >> image & 1) == 0) color.rgb *= color.a;
   return (header.flags & kBlendSrgb) != 0 ? convert(color, true) : color;
 }

@@ -22,6 +22,11 @@ void setBins(uint path, uvec4 box, uint x, uint y, uint step) {
       atomicOr(bins[kFirstBin + (row * header.binsX + column) * header.pathWords + path / 32], 1u << (path & 31));
 }
 
+vec2 cornerOf(vec4 box, vec4 frame, uint corner) { // of the box, which lies in a frame
+  const vec2 at = vec2((corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
+  return frame.xy + at.x * frame.zw + at.y * vec2(-frame.w, frame.z);
+}
+
 uint wordsOf(PlacedPath p) {
   return p.left < p.right && p.top < p.bottom ? wordsInRow(p) * (p.bottom - p.top) : 0;
 }
@@ -34,21 +39,38 @@ void main() {
     const uint itemIndex = itemOfPath(i);
     const ItemRecord item = items[itemIndex];
     const uint path = item.paths + (i - item.firstPath) * 3;
-    const vec4 box = fetch(item.slot, path);
-    vec4 color = fetch(item.slot, path + 1);
-    const uvec4 rest = floatBitsToUint(fetch(item.slot, path + 2));
-    if ((rest.w & kForeground) != 0) color.rgb = item.color.rgb;
+#if !ONE_DRAWING
+    const bool shaped = item.slot == kShapeSlot;
+#else
+    const bool shaped = false;
+#endif
+    vec4 box, frame = vec4(0, 0, 1, 0), color;
+    uvec4 rest = uvec4(0);
+    if (shaped) {
+#if !ONE_DRAWING
+      const ShapeRecord shape = shapeOf(item);
+      box = shape.box;
+      frame = shape.frame;
+      color = vec4(item.color.rgb, 1);
+      rest.x = shape.paint;
+#endif
+    } else {
+      box = fetch(item.slot, path);
+      color = fetch(item.slot, path + 1);
+      rest = floatBitsToUint(fetch(item.slot, path + 2));
+      if ((rest.w & kForeground) != 0) color.rgb = item.color.rgb;
+    }
     const uint paint = rest.x;
     PlacedPath p;
     p.left = p.top = p.right = p.bottom = 0;
     if (box.x <= box.z) {
       vec2 a = vec2(3e38), b = vec2(-3e38);
       for (uint corner = 0; corner < 4; ++corner) {
-        const vec2 here = vec2((corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
+        const vec2 here = cornerOf(box, frame, corner);
 #if PROJECTIVE
         if (projects(item)) { // where a side of the box passes behind the eye, the cut takes the corner's place
           const uint next = (0x8du >> corner * 2) & 3; // around the box
-          const vec2 there = vec2((next & 1) != 0 ? box.z : box.x, (next & 2) != 0 ? box.w : box.y);
+          const vec2 there = cornerOf(box, frame, next);
           const float near = item.perspective.w;
           const float dh = depthOf(item, here.x, here.y), dt = depthOf(item, there.x, there.y);
           if ((dh < near) != (dt < near)) {
@@ -65,6 +87,10 @@ void main() {
         b = max(b, at);
       }
       const vec2 margin = 1.0 + 1e-5 * max(abs(a), abs(b)); // far more than rounding
+#if SCISSORS
+      a = max(a, item.scissor.xy);
+      b = min(b, item.scissor.zw);
+#endif
       const vec2 tiles = vec2(header.tilesX, header.tilesY);
       const vec2 from = clamp(floor((a - margin) / float(kTileSize)), vec2(0), tiles);
       const vec2 to = clamp(ceil((b + margin) / float(kTileSize)), vec2(0), tiles);
@@ -78,9 +104,9 @@ void main() {
     const float alpha = color.a * item.color.a;
     p.item = itemIndex;
     p.paint = paint == 0 ? 0 : slots[item.slot].paints + (paint - 1) * 4 + 1;
-    p.group = (rest.y | rest.z) == 0 ? 0 : path + 2 + 1;
+    p.group = ((rest.y | rest.z) == 0 ? 0 : path + 2 + 1) | (item.clip == 0 ? 0 : kItemClipped);
     p.color = vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color.rgb) : color.rgb) * alpha, alpha);
-    if (p.paint != 0) p.color = vec4(alpha);
+    if (p.paint != 0 && !shaped) p.color = vec4(alpha);
     const uint count = wordsOf(p);
     p.firstWord = count == 0 ? 0 : atomicAdd(counters.words, count);
     paths[i] = p;
@@ -130,6 +156,10 @@ void main() {
     counters.patches = header.patchCount;
     counters.glyphs = header.glyphs;
     counters.glyphsGiven = header.glyphLimit;
+    counters.shapes = header.shapes;
+    counters.shapesGiven = header.shapeLimit;
+    counters.items = header.sources;
+    counters.itemsGiven = header.sourceLimit;
     counters.wordsGiven = header.wordLimit;
     counters.entriesGiven = header.entryLimit;
     counters.cutPath = cut;

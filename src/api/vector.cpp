@@ -1,5 +1,5 @@
 // The C functions of vector.h that belong to the run-time library.
-#include "api/check.h"
+#include "api/items.h"
 #include "vector/raster/canvas.h"
 
 #include <algorithm>
@@ -46,7 +46,8 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     auto made = make();
     if (!made) return made.error();
     auto asset =
-        DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE, base, edits);
+        DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE,
+                             info->hitTestable != VK_FALSE, base, edits);
     if (!asset) return asset.error();
     *drawing = adopt<GpgpAsset>(**context, std::move(*asset));
     return {};
@@ -164,6 +165,8 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDrawings is %u; at most 65536", info->maxDrawings);
     if (info->maxGlyphs > 1u << 20)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxGlyphs is %u; at most 1048576", info->maxGlyphs);
+    if (info->maxShapes > 1u << 20)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes is %u; at most 1048576", info->maxShapes);
     auto made = Canvas::create(**context, *info);
     if (!made) return made.error();
     *canvas = adopt<GpgpWorker>(**context, std::move(*made));
@@ -213,19 +216,9 @@ GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker handle, VkCommandBuffer 
     }
     const std::span<ItemAsset> assets = (*canvas)->assets(info->itemCount);
     for (uint32_t i = 0; i < info->itemCount; ++i) {
-      const GpgpCanvasItem& item = info->items[i];
-      assets[i] = {};
-      if (item.drawing && item.glyphSet)
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u]: both drawing and glyphSet are given", i);
-      if (item.glyphSet) {
-        const auto set = resolve<GlyphSet>(call, item.glyphSet, Kind::glyphSet, "items[].glyphSet", &context);
-        if (!set) return set.error();
-        assets[i].glyphSet = *set;
-      } else {
-        const auto drawing = resolve<DrawingAsset>(call, item.drawing, Kind::drawing, "items[].drawing", &context);
-        if (!drawing) return drawing.error();
-        assets[i].drawing = *drawing;
-      }
+      const auto asset = resolveItem(call, info->items[i], i, context);
+      if (!asset) return asset.error();
+      assets[i] = *asset;
     }
     if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
     for (const ItemAsset& asset : assets)

@@ -22,6 +22,7 @@ const char* kindName(Kind kind) {
   case Kind::grammar: return "grammar";
   case Kind::drawing: return "drawing";
   case Kind::glyphSet: return "glyph set";
+  case Kind::list: return "list";
   case Kind::geometrySet: return "geometry set";
   case Kind::spawner: return "spawner";
   case Kind::canvas: return "canvas";

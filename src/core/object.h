@@ -19,7 +19,8 @@ enum class Kind : uint32_t {
   canvas,
   sampler,
   canvasView,
-  cameraView
+  cameraView,
+  list
 };
 const char* kindName(Kind kind);
 

@@ -47,7 +47,7 @@ struct ShaderDesc {
 };
 
 enum class PassKind : uint8_t { dispatch, dispatchIndirect, fill };
-constexpr uint32_t kMaxUses = 24;
+constexpr uint32_t kMaxUses = 32;
 constexpr uint32_t kMaxPassConstants = 8;
 
 struct Pass {

@@ -31,6 +31,7 @@ protected:
   Result<void> makeGrowing(GpgpService service, VkDeviceSize size);
   /// The bytes of one that grows. A range may change once no upload of it is under way (hasSettled).
   std::span<std::byte> bytes() { return bytes_; }
+  std::span<const std::byte> bytes() const { return bytes_; }
   /// Lets queue succeed as many times.
   void reserveRanges(size_t count) { ranges_.reserve(ranges_.size() + count); }
   /// Queues a range, of whole 16 bytes; returns its number, from 1 on.

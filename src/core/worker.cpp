@@ -48,7 +48,7 @@ void Worker::retire() {
 
 VkDeviceSize Worker::scratchAlignment() const { return context.device.limits.minStorageBufferOffsetAlignment; }
 
-Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const ShaderDesc* fragment) {
+Result<void> Worker::init(PassList passes, const DrawShaders* draw) {
   const Device& device = context.device;
   uint32_t familyCount = 0;
   device.vki.GetPhysicalDeviceQueueFamilyProperties(device.physicalDevice, &familyCount, nullptr);
@@ -64,8 +64,8 @@ Result<void> Worker::init(PassList passes, const ShaderDesc* vertex, const Shade
 
   passes_ = std::move(passes);
   passes_.finish(std::max<VkDeviceSize>(device.limits.minStorageBufferOffsetAlignment, 16));
-  draws_ = vertex && fragment && (queueFlags_ & VK_QUEUE_GRAPHICS_BIT);
-  if (vertex && fragment) vertex_ = *vertex, fragment_ = *fragment;
+  draws_ = draw && (queueFlags_ & VK_QUEUE_GRAPHICS_BIT);
+  if (draw) draw_ = *draw;
   for (const Resource& resource : passes_.resources)
     if (resource.kind == ResourceKind::scratch && resource.bytes > device.limits.maxStorageBufferRange)
       return makeError(
@@ -200,9 +200,9 @@ Result<VkPipeline> Worker::createComputePipeline(const ShaderDesc& shader) const
 
 Result<VkPipeline> Worker::createDrawPipeline(const GpgpTargetInfo& target) const {
   const Device& device = context.device;
-  const auto vertex = createModule(vertex_);
+  const auto vertex = createModule(target.viewMask ? draw_.multiviewVertex : draw_.vertex);
   if (!vertex) return vertex.error();
-  const auto fragment = createModule(fragment_);
+  const auto fragment = createModule(target.viewMask ? draw_.multiviewFragment : draw_.fragment);
   if (!fragment) {
     device.vk.DestroyShaderModule(device.device, *vertex, nullptr);
     return fragment.error();
@@ -273,7 +273,7 @@ Result<void> Worker::prewarm(const GpgpPrewarmInfo* info) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets is NULL, targetCount is %u", wanted);
   if (wanted && !draws_)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     vertex_.spirv.empty() ? "a %s does not draw: targetCount must be 0"
+                     draw_.vertex.spirv.empty() ? "a %s does not draw: targetCount must be 0"
                                            : "this %s is on a queue family without "
                                              "graphics: targetCount must be 0",
                      kindName(kind));
@@ -291,6 +291,12 @@ Result<void> Worker::prewarm(const GpgpPrewarmInfo* info) {
                        i);
     if (!target.renderPass && target.colorFormat == VK_FORMAT_UNDEFINED)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets[%u] has neither renderPass nor colorFormat", i);
+    if (target.viewMask > 3)
+      return makeError(GPGP_ERROR_UNSUPPORTED, "targets[%u].viewMask is 0x%x: at most views 0 and 1 are drawn", i,
+                       target.viewMask);
+    if (target.viewMask && !context.device.has(GPGP_FEATURE_MULTIVIEW))
+      return makeError(GPGP_ERROR_MISSING_FEATURE,
+                       "targets[%u] has a viewMask, but GPGP_FEATURE_MULTIVIEW is not declared", i);
   }
 
   struct Job {

@@ -32,7 +32,7 @@ struct Record {
   std::array<std::array<uint32_t, 3>, kMaxGroupCounts> groups = {};
   std::array<bool, kMaxConditions> conditions = {};
   uint32_t levels = UINT32_MAX;                             ///< passes of this level and above are left out
-  std::array<std::span<const std::byte>, 4> constants = {}; ///< for the first constants resource, in a row
+  std::array<std::span<const std::byte>, 8> constants = {}; ///< for the first constants resource, in a row
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
   VkPipeline replacement = VK_NULL_HANDLE;
 };
@@ -88,8 +88,11 @@ public:
 protected:
   Worker(Context& context, Kind kind, const GpgpWorkerCreateInfo& info, GpgpService service);
   /// Takes the finished description and makes what recording needs. Call once at the end of creation.
-  /// Draw shaders (vertex, fragment) may be empty.
-  Result<void> init(PassList passes, const ShaderDesc* vertex = nullptr, const ShaderDesc* fragment = nullptr);
+  struct DrawShaders {
+    ShaderDesc vertex, fragment;
+    ShaderDesc multiviewVertex, multiviewFragment; ///< for targets with a view mask, of views 0 and 1
+  };
+  Result<void> init(PassList passes, const DrawShaders* draw = nullptr);
   /// A pipeline with this worker's layout; all workers of a class have layouts that are compatible.
   Result<VkPipeline> createComputePipeline(const ShaderDesc& shader) const;
   /// Of a shader of the pass list, once prewarmed.
@@ -122,7 +125,7 @@ private:
   VkQueueFlags queueFlags_;
   const bool engineScratch_;
   PassList passes_;
-  ShaderDesc vertex_{}, fragment_{};
+  DrawShaders draw_{};
   bool draws_ = false;
   VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE, textureLayout_ = VK_NULL_HANDLE;
   uint32_t firstTexture_ = 0; // textures lie in a row

@@ -84,7 +84,7 @@ Image::Image(HeadlessDevice& device, const ImageInfo& info, const std::string& n
   create.format = info.format;
   create.extent = {info.width, info.height, 1};
   create.mipLevels = 1;
-  create.arrayLayers = 1;
+  create.arrayLayers = info.layers;
   create.samples = info.samples;
   create.usage = info.usage;
   if (info.samples == VK_SAMPLE_COUNT_1_BIT)
@@ -97,9 +97,9 @@ Image::Image(HeadlessDevice& device, const ImageInfo& info, const std::string& n
     check(vk.vkBindImageMemory(device.device(), handle_, memory_, 0), "vkBindImageMemory");
     VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
     view.image = handle_;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view.viewType = info.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = info.format;
-    view.subresourceRange = {aspect(), 0, 1, 0, 1};
+    view.subresourceRange = {aspect(), 0, 1, 0, info.layers};
     check(vk.vkCreateImageView(device.device(), &view, nullptr, &view_), "vkCreateImageView");
   } catch (...) {
     destroy();
@@ -186,7 +186,7 @@ void imageBarrier(const HeadlessDevice& device, VkCommandBuffer commands, const 
   barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image.handle();
-  barrier.subresourceRange = {image.aspect(), 0, 1, 0, 1};
+  barrier.subresourceRange = {image.aspect(), 0, 1, 0, image.info().layers};
   device.vk().vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
                                    0, nullptr, 0, nullptr, 1, &barrier);
 }
@@ -244,13 +244,14 @@ void uploadImage(HeadlessDevice& device, const Image& image, std::span<const uin
 }
 
 std::vector<uint8_t> downloadImage(HeadlessDevice& device, const Image& image, VkImageLayout layout) {
-  const size_t size = size_t{image.info().width} * image.info().height * bytesPerPixel(image.info().format);
+  const ImageInfo& info = image.info();
+  const size_t size = size_t{info.width} * info.height * info.layers * bytesPerPixel(info.format);
   const Buffer staging(device, size, 0, Memory::readback);
   device.submitAndWait([&](VkCommandBuffer commands) {
     imageBarrier(device, commands, image, layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     VkBufferImageCopy copy{};
-    copy.imageSubresource = {image.aspect(), 0, 0, 1};
-    copy.imageExtent = {image.info().width, image.info().height, 1};
+    copy.imageSubresource = {image.aspect(), 0, 0, info.layers};
+    copy.imageExtent = {info.width, info.height, 1};
     device.vk().vkCmdCopyImageToBuffer(commands, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.handle(),
                                        1, &copy);
     const VkImageLayout back = layout == VK_IMAGE_LAYOUT_UNDEFINED ? VK_IMAGE_LAYOUT_GENERAL : layout;

@@ -49,9 +49,10 @@ struct ImageInfo {
   uint32_t width = 1, height = 1;
   VkImageUsageFlags usage = VK_IMAGE_USAGE_STORAGE_BIT; ///< both transfer usages are added
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+  uint32_t layers = 1; ///< more: the view is one of an array
 };
 
-/// A 2D image with one level and one layer, and a view of all of it. Layout UNDEFINED at first.
+/// A 2D image with one level, and a view of all of it. Layout UNDEFINED at first.
 class Image {
 public:
   Image() = default;
@@ -92,7 +93,7 @@ void downloadBytes(HeadlessDevice& device, const Buffer& buffer, void* data, siz
 void fill(HeadlessDevice& device, const Buffer& buffer, uint32_t word);
 /// Writes all pixels, rows tightly packed, and waits; the image is in `layout` afterwards.
 void uploadImage(HeadlessDevice& device, const Image& image, std::span<const uint8_t> pixels, VkImageLayout layout);
-/// All pixels, rows tightly packed; the image is in `layout` before and after.
+/// All pixels, layer by layer, rows tightly packed; the image is in `layout` before and after.
 std::vector<uint8_t> downloadImage(HeadlessDevice& device, const Image& image, VkImageLayout layout);
 
 template <class T>

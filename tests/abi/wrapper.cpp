@@ -12,7 +12,7 @@ template <class T> constexpr bool isHandle() {
 }
 static_assert(isHandle<gpgp::Context>() && isHandle<gpgp::Grammar>() && isHandle<gpgp::Spawner>());
 static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::GlyphSet>() && isHandle<gpgp::Canvas>() &&
-              isHandle<gpgp::CanvasView>());
+              isHandle<gpgp::CanvasView>() && isHandle<gpgp::List>());
 static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::Sampler>() && isHandle<gpgp::CameraView>());
 static_assert(isHandle<gpgp::GrammarBuilder>());
 static_assert(isHandle<gpgp::Font>() && isHandle<gpgp::Shaper>() && isHandle<gpgp::Layout>());
@@ -98,6 +98,24 @@ GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffe
   draw.view = *view;
   if (const GpgpResult code = canvas->recordDraw(cmd, frame, draw)) return code;
   return canvas->report().code();
+}
+
+GpgpResult useUi(GpgpContext context, const gpgp::GlyphSet& set, const gpgp::Drawing& drawing) {
+  auto list = gpgp::List::create(context);
+  if (!list) return list.code();
+  const float map[6] = {1, 0, 0, 1, 0, 0}, box[4] = {0, 0, 8, 8};
+  GpgpListShape shape = GpgpListShape();
+  const GpgpGlyphInstance glyph = {1, 0, 0, 12, {0, 0, 0, 1}};
+  const GpgpResult codes[] = {list->reset(),       list->pushTransform(map), list->pushClip(box), list->pushOpacity(1),
+                              list->add(shape),    list->add(&shape, 1),     list->add(drawing),  list->pop(),
+                              list->add(set, &glyph, 1)};
+  for (const GpgpResult code : codes)
+    if (code) return code;
+  GpgpCanvasItem item = GpgpCanvasItem();
+  item.list = *list;
+  auto info = gpgp::init<GpgpHitTestInfo>();
+  info.items = &item;
+  return gpgp::hitTest(context, info).code();
 }
 
 GpgpResult useText() {

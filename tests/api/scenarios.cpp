@@ -16,6 +16,10 @@ void Scenario::destroy() {
   gpgpDestroyWorker(worker);
   gpgpDestroyAsset(secondAsset);
   gpgpDestroyAsset(asset);
+#if defined(GPGP_WITH_VECTOR)
+  gpgpDestroyList(list);
+  list = nullptr;
+#endif
   view = nullptr, worker = nullptr, asset = secondAsset = nullptr;
 }
 
@@ -160,10 +164,26 @@ public:
       return result;
     const GpgpGlyph glyph{17, paths, 1, nullptr};
     uint32_t index = 0;
-    const GpgpResult result = gpgpAddGlyphs(secondAsset, &glyph, 1, &index);
+    if (const GpgpResult result = gpgpAddGlyphs(secondAsset, &glyph, 1, &index); result != GPGP_SUCCESS) return result;
     for (size_t i = 0; i < std::size(glyphs_); ++i)
       glyphs_[i] = {index, 10 * static_cast<float>(i), 4, 0.25f, {0, 1, 0, 1}};
-    return result;
+    return createList(context);
+  }
+  /// A shape and the text within a clip that is turned, and within a scissor.
+  GpgpResult createList(GpgpContext context) {
+    const GpgpListCreateInfo info = GPGP_LIST_CREATE_INFO_INIT;
+    if (const GpgpResult result = gpgpCreateList(context, &info, &list); result != GPGP_SUCCESS) return result;
+    GpgpListShape shape{};
+    shape.kind = GPGP_LIST_ELLIPSE;
+    shape.box[2] = shape.box[3] = 40;
+    shape.color[1] = shape.color[3] = 0.5f;
+    constexpr float kTurn[] = {0.8f, 0.6f, -0.6f, 0.8f, 20, 0}, kBox[] = {4, 4, 50, 50};
+    for (const GpgpResult result :
+         {gpgpPushClip(list, kBox, nullptr), gpgpPushTransform(list, kTurn, nullptr), gpgpPushClip(list, kBox, nullptr),
+          gpgpAddShapes(list, &shape, 1), gpgpAddText(list, secondAsset, glyphs_, 5, 0), gpgpPopState(list),
+          gpgpPopState(list), gpgpPopState(list)})
+      if (result != GPGP_SUCCESS) return result;
+    return GPGP_SUCCESS;
   }
   GpgpResult createWorker(GpgpContext context, const GpgpWorkerCreateInfo& base) override {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
@@ -171,8 +191,9 @@ public:
     info.maxWidth = info.maxHeight = kSize;
     info.maxPatches = 256;
     info.maxTileEntries = 4096;
-    info.maxDrawings = 2;
-    info.maxGlyphs = 8;
+    info.maxDrawings = 5;
+    info.maxGlyphs = 10;
+    info.maxShapes = 2;
     return gpgpCreateCanvas(context, &info, &worker);
   }
   GpgpResult createView(GpgpContext context) override {
@@ -182,15 +203,17 @@ public:
     return gpgpCreateCanvasView(context, &info, &view);
   }
   GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordInfo& base) override {
-    GpgpCanvasItem items[2] = {{asset, {1, 0, 0, 1, 0, 0}, 1}, {nullptr, {1, 0, 0, 1, 0, 0}, 1}};
+    GpgpCanvasItem items[3] = {
+        {asset, {1, 0, 0, 1, 0, 0}, 1}, {nullptr, {1, 0, 0, 1, 0, 0}, 1}, {nullptr, {1, 0, 0, 1, 0, 0}, 1}};
     items[1].glyphSet = secondAsset;
     items[1].glyphs = glyphs_;
     items[1].glyphCount = static_cast<uint32_t>(std::size(glyphs_));
+    items[2].list = list;
     GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
     info.base = base;
     info.width = info.height = kSize;
     info.items = items;
-    info.itemCount = 2;
+    info.itemCount = 3;
     info.view = view;
     info.target =
         image_.target({VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED},
@@ -215,8 +238,8 @@ public:
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
     const GpgpResult result = gpgpGetCanvasReport(worker, &report);
     header = report.base;
-    meaningful =
-        report.patches > 0 && report.tileEntries > 0 && report.pathsDropped == 0 && report.glyphs == std::size(glyphs_);
+    meaningful = report.patches > 0 && report.tileEntries > 0 && report.pathsDropped == 0 &&
+                 report.glyphs == 2 * std::size(glyphs_) && report.shapes == 2 && report.items == 4;
     return result;
   }
 

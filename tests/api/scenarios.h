@@ -6,6 +6,8 @@
 #include "host/device.h"
 #include "host/memory.h"
 
+#include <gpgp/ui.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +43,7 @@ public:
   GpgpAsset asset = nullptr, secondAsset = nullptr; ///< the second: where the job needs two
   GpgpWorker worker = nullptr;
   GpgpView view = nullptr;
+  GpgpList list = nullptr;
 };
 
 /// One device with validation for all tests of a process: drivers allow only so many instances, and they take time.

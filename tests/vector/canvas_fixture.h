@@ -127,6 +127,54 @@ inline TestPath randomShape(uint32_t seed, float size) {
   return path;
 }
 
+/// An image with one level that canvases can paint with, made of 8-bit RGBA.
+struct Texture {
+  host::HeadlessDevice& device;
+  host::Image image;
+  VkSampler sampler = VK_NULL_HANDLE;
+
+  Texture(host::HeadlessDevice& owner, uint32_t width, uint32_t height, std::span<const uint32_t> texels,
+          VkFilter filter, VkSamplerAddressMode mode)
+      : device(owner), image(owner, {.format = VK_FORMAT_R8G8B8A8_UNORM,
+                                     .width = width,
+                                     .height = height,
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT}) {
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.magFilter = info.minFilter = filter;
+    info.addressModeU = info.addressModeV = mode;
+    EXPECT_EQ(device.vk().vkCreateSampler(device.device(), &info, nullptr, &sampler), VK_SUCCESS);
+    const host::Buffer staging(device, texels.size_bytes(), 0, host::Memory::host);
+    std::memcpy(staging.mapped(), texels.data(), texels.size_bytes());
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+      barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+      barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+      barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+      barrier.image = image.handle();
+      barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      const auto place = [&](VkPipelineStageFlags from, VkPipelineStageFlags to) {
+        device.vk().vkCmdPipelineBarrier(commands, from, to, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+      };
+      place(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
+      VkBufferImageCopy copy{};
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      copy.imageExtent = {width, height, 1};
+      device.vk().vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(),
+                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+      barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+      barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+      barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+      barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+      place(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+    });
+  }
+  ~Texture() { device.vk().vkDestroySampler(device.device(), sampler, nullptr); }
+  Texture(const Texture&) = delete;
+  GpgpCanvasImage view(bool premultiplied = false) const {
+    return {image.view(), sampler, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, premultiplied};
+  }
+};
+
 /// The CPU twin: the samples that each path of a drawing covers, pixel by pixel, and by how much each pixel's area
 /// differs from them (1/256 of a sample). No tiles: every chord turns over all samples right of it in its rows.
 struct Twin {

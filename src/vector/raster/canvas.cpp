@@ -21,7 +21,9 @@
 #include "shaders/vector_crowded_rich1.spv.h"
 #include "shaders/vector_crowded_rich2.spv.h"
 #include "shaders/vector_draw_frag.spv.h"
+#include "shaders/vector_draw_frag_multiview.spv.h"
 #include "shaders/vector_draw_vert.spv.h"
+#include "shaders/vector_draw_vert_multiview.spv.h"
 #include "shaders/vector_fill.spv.h"
 #include "shaders/vector_fill_one.spv.h"
 #include "shaders/vector_fill_projective.spv.h"
@@ -72,7 +74,6 @@
 #include "shaders/vector_tiles_solid0.spv.h"
 #include "shaders/vector_tiles_solid1.spv.h"
 #include "shaders/vector_tiles_solid2.spv.h"
-#include "vector/raster/place.h"
 
 #include <algorithm>
 #include <array>
@@ -94,7 +95,7 @@ using shader::SlotRecord;
 
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
-[[maybe_unused]] constexpr core::ResourceIndex kChordList = 26;
+[[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28;
 // Workgroup counts and conditions of a record.
 enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRows, kRaster, kTiles, kSift };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
@@ -120,18 +121,18 @@ std::array<uint32_t, 3> rows(uint32_t groups) { return {std::min(groups, 32768u)
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Worker(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
-      maxPatches_(info.maxPatches ? info.maxPatches : 262144),
       maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072), maxWords_(std::max(maxEntries_, 65536u)),
-      maxDrawings_(info.maxDrawings ? info.maxDrawings : 64), maxGlyphs_(info.maxGlyphs ? info.maxGlyphs : 1024),
-      software_(owner.device.software), assets_(&owner.host()), sources_(&owner.host()), placements_(&owner.host()) {}
+      budgets_{info.maxDrawings ? info.maxDrawings : 64, info.maxGlyphs ? info.maxGlyphs : 1024,
+               info.maxShapes ? info.maxShapes : 1024, info.maxPatches ? info.maxPatches : 262144},
+      software_(owner.device.software), assets_(budgets_.items, &owner.host()), tables_(budgets_, &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
-  const core::ShaderDesc vertex{"draw.vert", vector_draw_vert}, fragment{"draw.frag", vector_draw_frag};
-  if (auto ok = canvas->init(canvas->describe(), &vertex, &fragment); !ok) return ok.error();
-  canvas->assets_.resize(canvas->maxDrawings_);
-  canvas->sources_.resize(canvas->maxDrawings_);
-  canvas->placements_.resize(size_t(canvas->maxDrawings_) + canvas->maxGlyphs_);
+  const DrawShaders draw{{"draw.vert", vector_draw_vert},
+                         {"draw.frag", vector_draw_frag},
+                         {"draw.vert, multiview", vector_draw_vert_multiview},
+                         {"draw.frag, multiview", vector_draw_frag_multiview}};
+  if (auto ok = canvas->init(canvas->describe(), &draw); !ok) return ok.error();
   return canvas;
 }
 
@@ -144,7 +145,7 @@ uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would 
 
 uint64_t Canvas::binWords() const { // enough for any record with the largest bins
   constexpr uint32_t kLargest = shader::kTileSize << shader::kMaxBinShift;
-  return uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) * divide(maxPatches_, 32);
+  return uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) * divide(budgets_.patches, 32);
 }
 
 core::PassList Canvas::describe() const {
@@ -157,11 +158,15 @@ core::PassList Canvas::describe() const {
   const auto view = list.add({"view", buffer, 0, true});
   const auto image8 = list.add({"target", image, 0, true});
   const auto image16 = list.add({"target", image, 0, true});
-  const VkDeviceSize heads = sizeof(CanvasHeader) + kMaxSlots * sizeof(SlotRecord),
-                     placed = VkDeviceSize(maxDrawings_) + maxGlyphs_;
-  const auto fromHost = list.add({"constants", core::ResourceKind::constants,
-                                  heads + maxDrawings_ * sizeof(ItemRecord) + placed * sizeof(PlacementRecord)});
-  const auto paths = list.add({"paths", scratch, VkDeviceSize(maxPatches_) * sizeof(shader::PlacedPath)});
+  const VkDeviceSize heads = sizeof(CanvasHeader) + shader::kSlots * sizeof(SlotRecord),
+                     placed = VkDeviceSize(budgets_.items) + budgets_.glyphs + budgets_.shapes,
+                     shapeBytes = budgets_.shapes * VkDeviceSize(sizeof(shader::ShapeRecord) + sizeof(PaintRecord) +
+                                                                 2 * sizeof(StopRecord)) +
+                                  budgets_.items * VkDeviceSize(sizeof(shader::ItemClipRecord));
+  const auto fromHost = list.add(
+      {"constants", core::ResourceKind::constants,
+       heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
+  const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
   const VkDeviceSize squares = VkDeviceSize(divide(maxWidth_, kSquare)) * divide(maxHeight_, kSquare);
   const VkDeviceSize lists = software_ ? tiles() * (listWords() + 2) : squares;
@@ -180,7 +185,8 @@ core::PassList Canvas::describe() const {
   const auto chords =
       list.add({"chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * sizeof(shader::ChordRecord)});
   const auto rowList = list.add({"rows of chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * 4});
-  assert(images == kFirstImage && chords == kChordList);
+  const auto shapes = list.add({"shapes", scratch, shapeBytes});
+  assert(images == kFirstImage && chords == kChordList && shapes == kShapes);
   const auto useImages = [images](core::Pass& pass) {
     for (uint32_t i = 0; i < shader::kMaxImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
   };
@@ -189,14 +195,15 @@ core::PassList Canvas::describe() const {
     list.fill("clear counters", counters, 0);
     list.fill("clear words", words, 0);
     list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin_software}),
-                  {{fromHost, read}, {params, write}, {masks, write}}, kBegin);
+                  {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}}, kBegin);
   } else {
     list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin}),
-                  {{fromHost, read}, {params, write}, {masks, write}, {words, write}, {counters, write}}, kBegin);
+                  {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}, {words, write}, {counters, write}},
+                  kBegin);
   }
   const auto dispatch = [&](const char* name, const core::ShaderDesc& shader, std::initializer_list<core::Use> uses,
                             uint32_t groups) -> core::Pass& {
-    core::Pass& pass = list.dispatch(name, list.add(shader), {{params, read}}, groups);
+    core::Pass& pass = list.dispatch(name, list.add(shader), {{params, read}, {shapes, read}}, groups);
     for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
     for (const core::Use& use : uses) pass.uses[pass.useCount++] = use;
     return pass;
@@ -234,7 +241,12 @@ core::PassList Canvas::describe() const {
     for (uint32_t k = 0; k < 3; ++k) { // where the lists did not suffice
       core::Pass& pass =
           list.dispatchIndirect(fillNames[k], list.add(core::ShaderDesc{fillNames[k], fill[k]}),
-                                {{params, read}, {paths, read}, {words, read}, {counters, read}, {entries, readWrite}},
+                                {{params, read},
+                                 {shapes, read},
+                                 {paths, read},
+                                 {words, read},
+                                 {counters, read},
+                                 {entries, readWrite}},
                                 counters, offsetof(CanvasCounters, fillX));
       pass.beside = true;
       for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
@@ -262,7 +274,7 @@ core::PassList Canvas::describe() const {
     for (uint32_t t = 0; t < 3; ++t) {
       core::Pass& pass = list.dispatchIndirect(
           names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
-          {{params, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
+          {{params, read}, {shapes, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
           arguments * 4);
       if (!software_) pass.uses[pass.useCount++] = {counters, read};
       const uint32_t drawings = condition == kPlain || condition == kPaintsOne ? 1 : kMaxSlots;
@@ -361,6 +373,9 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
     for (const float v : info.items[i].perspective)
       if (!std::isfinite(v))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].perspective holds a number that is not finite", i);
+    for (const float v : info.items[i].scissor)
+      if (!std::isfinite(v))
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].scissor holds a number that is not finite", i);
     if (!(info.items[i].opacity >= 0 && info.items[i].opacity <= 1))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].opacity is %g; it must be 0 to 1", i,
                        static_cast<double>(info.items[i].opacity));
@@ -371,139 +386,24 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
   return {};
 }
 
-struct Canvas::Budget {
-  uint64_t patches = 0;
-  bool full = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
-};
-
-/// A placement for each glyph of a text that has paths, as long as there is room. This loop is what changing text
-/// costs.
-Result<void> Canvas::placeGlyphs(const GpgpCanvasItem& item, uint32_t index, const GlyphSet& set, Budget& budget,
-                                 CanvasHeader& header) {
-  const uint64_t frame = context.current();
-  const auto wrong = [index](uint32_t i, const char* what) {
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].glyphs[%u]%s", index, i, what);
-  };
-  constexpr float kMost = kMaxCoordinate;
-  for (uint32_t i = 0; i < item.glyphCount; ++i) {
-    const GpgpGlyphInstance& from = item.glyphs[i];
-    if (from.glyph == GPGP_GLYPH_NONE) continue;
-    const GlyphSet::Glyph* glyph = set.glyph(from.glyph);
-    if (!glyph) return wrong(i, ".glyph is not, or no longer, in the set: it was evicted");
-    if (!(std::abs(from.x) <= kMost && std::abs(from.y) <= kMost && from.size >= 0 && from.size <= kMost))
-      return wrong(i, ": x, y or size is out of range");
-    const float* c = from.color;
-    if (!(c[0] >= 0 && c[0] <= 1 && c[1] >= 0 && c[1] <= 1 && c[2] >= 0 && c[2] <= 1 && c[3] >= 0 && c[3] <= 1))
-      return wrong(i, ".color is out of range");
-    if (!set.hasArrived(glyph->upload)) return makeError(GPGP_NOT_READY, "a glyph is not resident");
-    glyph->use(frame);
-    if (glyph->paths == 0) continue;
-    budget.full = budget.full || header.glyphs >= maxGlyphs_ || glyph->paths > maxPatches_ - header.pathCount ||
-                  glyph->patches > maxPatches_ - budget.patches;
-    ++header.glyphs;
-    if (budget.full) {
-      header.pathsDropped += glyph->paths;
-      continue;
-    }
-    PlacementRecord& to = placements_[header.itemCount++];
-    to.x = from.x;
-    to.y = from.y;
-    to.size = from.size;
-    to.source = index;
-    to.color = {c[0], c[1], c[2], c[3]};
-    to.firstSegment = header.segmentCount;
-    to.firstPath = header.pathCount;
-    to.segments = glyph->first;
-    to.paths = glyph->first + glyph->segments * static_cast<uint32_t>(sizeof(shader::SegmentRecord) / 16);
-    header.segmentCount += glyph->segments;
-    header.pathCount += glyph->paths;
-    budget.patches += glyph->patches;
-  }
-  return {};
-}
-
 Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo& info,
                              std::span<const ItemAsset> assets, CanvasView* view) {
   if (auto ok = checkInfo(info, view); !ok) return ok;
   core::Record r;
   r.commandBuffer = commandBuffer;
   r.info = &info.base;
+  Gather gather(context, budgets_, tables_, info);
+  for (uint32_t i = 0; i < info.itemCount; ++i)
+    if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
-  SlotRecord slots[kMaxSlots] = {};
-  const core::Resident* bound[kMaxSlots] = {};
-  Budget budget;
-  bool gradients = false, projective = false, images = false, groups = false;
-  uint32_t slotCount = 0;
-
-  const auto bind = [&](const core::Resident& asset) { // to a slot, if one is left
-    uint32_t slot = 0;
-    while (slot < slotCount && bound[slot] != &asset) ++slot;
-    if (slot == slotCount && slot < kMaxSlots) {
-      bound[slotCount++] = &asset;
-      r.bindings[slot].ownBuffer = asset.buffer();
-      r.bindings[slot].ownSize = asset.size();
-    }
-    return slot;
-  };
-
-  // Items in painting order, a drawing with as many of its first paths as there is room for.
-  for (uint32_t i = 0; i < info.itemCount; ++i) {
-    ItemRecord& item = sources_[i];
-    item = {};
-    const bool placeable = placeItem(info.items[i], info.width, info.height, item);
-    item.color.w = info.items[i].opacity;
-    item.firstImage = info.items[i].firstImage;
-    const auto tooMany = [i] {
-      return makeError(GPGP_ERROR_UNSUPPORTED, "items[%u]: a record draws at most %u different drawings and glyph sets",
-                       i, kMaxSlots);
-    };
-    if (const GlyphSet* set = assets[i].glyphSet) {
-      item.whole = 1;
-      if (!placeable || !placesGlyphs(item)) continue; // covers nothing
-      const uint32_t before = header.itemCount;
-      if (auto ok = placeGlyphs(info.items[i], i, *set, budget, header); !ok) return ok;
-      if (header.itemCount == before) continue;
-      item.slot = bind(*set);
-      if (item.slot == kMaxSlots) return tooMany();
-      projective = projective || item.perspective.w > 0;
-      continue;
-    }
-    const DrawingAsset& drawing = *assets[i].drawing;
-    if (drawing.images() && (item.firstImage > info.imageCount || drawing.images() > info.imageCount - item.firstImage))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                       "items[%u]: its drawing needs %u images from images[%u] on; imageCount is %u", i,
-                       drawing.images(), item.firstImage, info.imageCount);
-    if (!placeable) continue; // covers nothing
-    const uint32_t room = maxPatches_ - static_cast<uint32_t>(budget.patches);
-    uint32_t paths = budget.full ? 0 : std::min(drawing.paths(), maxPatches_ - header.pathCount);
-    if (drawing.first(paths).patches > room) { // the largest number of first paths that fits
-      uint32_t low = 0, high = paths;
-      while (low + 1 < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        (drawing.first(middle).patches <= room ? low : high) = middle;
-      }
-      paths = low;
-    }
-    header.pathsDropped += drawing.paths() - paths;
-    budget.full = budget.full || paths < drawing.paths();
-    if (paths == 0) continue;
-    item.slot = bind(drawing);
-    if (item.slot == kMaxSlots) return tooMany();
-    slots[item.slot] = drawing.tables();
-    gradients = gradients || drawing.gradients();
-    projective = projective || item.perspective.w > 0;
-    images = images || drawing.images();
-    groups = groups || drawing.groups();
-    placements_[header.itemCount++] = {
-        0, 0, 1, i, {0, 0, 0, 1}, header.segmentCount, header.pathCount, 0, drawing.pathTable()};
-    header.segmentCount += drawing.first(paths).segments;
-    header.pathCount += paths;
-    budget.patches += drawing.first(paths).patches;
+  gather.finish(header);
+  for (uint32_t slot = 0; slot < gather.slotCount; ++slot) {
+    r.bindings[slot].ownBuffer = gather.bound[slot]->buffer();
+    r.bindings[slot].ownSize = gather.bound[slot]->size();
   }
+  const bool gradients = gather.gradients, projective = gather.projective, images = gather.images;
+  const bool several = gather.slotCount > 1 || gather.lists;
 
-  header.sourceCount = info.itemCount;
-  header.glyphLimit = maxGlyphs_;
-  header.patchCount = static_cast<uint32_t>(budget.patches);
   header.width = info.width;
   header.height = info.height;
   header.tilesX = divide(info.width, shader::kTileSize);
@@ -527,7 +427,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
                  (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
   // Only what is in a group or has a projective gradient takes the general shader, beside the others'.
-  const bool rich = !images && (groups || (gradients && projective));
+  const bool rich = !images && (gather.groups || (gradients && projective));
   if (rich) header.flags |= shader::kSplitRich;
   // Few segments are dealt out to many workgroups, which then each wait for less; many are better taken together.
   const uint32_t perGroup = software_ ? 64 : header.segmentCount < 16384 ? 4 : shader::kMostSegments;
@@ -536,9 +436,15 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t i = 0; i < info.imageCount && images; ++i)
     header.premultiplied |= info.images[i].premultiplied ? 1u << i : 0;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
-  r.constants = {std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(slots)),
-                 std::as_bytes(std::span(sources_).first(header.sourceCount)),
-                 std::as_bytes(std::span(placements_).first(header.itemCount))};
+  const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
+  r.constants = {bytes(std::span(&header, 1), 1),
+                 bytes(gather.slots, shader::kSlots),
+                 bytes(tables_.sources, gather.sources),
+                 bytes(tables_.placements, gather.placements),
+                 bytes(tables_.shapes, gather.shapes),
+                 bytes(tables_.paints, gather.paints),
+                 bytes(tables_.stops, gather.stops),
+                 bytes(tables_.clips, gather.clips)};
 
   if (view) {
     r.bindings[kView].ownBuffer = view->buffer();
@@ -546,13 +452,13 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   const bool wide = info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT;
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
-  r.conditions[projective ? kProjective : slotCount > 1 ? kDrawings : kOneDrawing] = true;
+  r.conditions[projective ? kProjective : several ? kDrawings : kOneDrawing] = true;
   const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
   r.conditions[(images ? kImages
                 // The plain shader fetches from one drawing only, and on hardware leaves no squares to the general one.
-                : !gradients && !(rich && (slotCount > 1 || !software_)) ? kPlain
-                : slotCount > 1                                          ? kPaints
-                                                                         : kPaintsOne) +
+                : !gradients && !(rich && (several || !software_)) ? kPlain
+                : several                                          ? kPaints
+                                                                   : kPaintsOne) +
                image] = true;
   if (rich) r.conditions[kRich + image] = true;
   r.conditions[kAny + image] = true;
@@ -564,7 +470,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
   const uint64_t bins = uint64_t(header.binCount) * header.pathWords;
   r.groups[kBegin] = {
-      software_ ? divide(std::max<uint64_t>({header.itemCount, bins / 16, 1}), 64) : divide(maxWords_, 64 * 8), 1, 1};
+      software_ ? divide(std::max<uint64_t>({header.itemCount, header.shapeTables / 16, bins / 16, 1}), 64) : divide(maxWords_, 64 * 8), 1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
@@ -584,17 +490,24 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
 
 Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasView& view) {
   if (view.preparedWidth == 0) return makeError(GPGP_NOT_READY, "nothing was prepared into the view");
-  if (info.width == 0 || info.height == 0 || info.width > view.preparedWidth || info.height > view.preparedHeight)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%u x %u pixels are to be drawn; the view holds %u x %u", info.width,
-                     info.height, view.preparedWidth, view.preparedHeight);
+  const uint32_t second = info.target->viewMask ? info.secondX : 0;
+  if (info.width == 0 || info.height == 0 || second > view.preparedWidth || info.width > view.preparedWidth - second ||
+      info.height > view.preparedHeight)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%u x %u pixels from column %u on are to be drawn; the view holds %u x %u",
+                     info.width, info.height, second, view.preparedWidth, view.preparedHeight);
   struct {
-    float clip[16];
+    float columns[2][12];
     uint32_t size[4];
   } constants{};
-  std::copy_n(info.clip, 16, constants.clip);
+  for (int k = 0; k < 2; ++k) {
+    const float* clip = k && info.secondClip ? info.secondClip : info.clip;
+    std::copy_n(clip, 8, constants.columns[k]);
+    std::copy_n(clip + 12, 4, constants.columns[k] + 8);
+  }
   constants.size[0] = info.width;
   constants.size[1] = info.height;
   constants.size[2] = view.preparedWidth;
+  constants.size[3] = second;
   core::DrawRecord r;
   r.commandBuffer = commandBuffer;
   r.bindings[kView].ownBuffer = view.buffer();
@@ -617,6 +530,10 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.pathsDropped = counters.pathsDropped;
   report.glyphs = counters.glyphs;
   report.glyphsGiven = counters.glyphsGiven;
+  report.shapes = counters.shapes;
+  report.shapesGiven = counters.shapesGiven;
+  report.items = counters.items;
+  report.itemsGiven = counters.itemsGiven;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   return true;
 }

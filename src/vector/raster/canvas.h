@@ -1,22 +1,15 @@
 // The canvas: drawings and texts to pixels in one record.
 //
-// begin (every item gets its place, each glyph of a text as one) ->
+// begin (every item gets its place, each glyph of a text and shape of a list as one) ->
 // place (paths' boxes) -> mark (which tiles each path's boundary meets, which lie inside) and bin (which paths may
 // touch a square of 128 pixels) -> allot (room for the tiles with edges) -> fill (what boundaries do to their pixels)
 // -> raster (front to back). Lists need no sorting: paths are bits in painting order. Where room does not suffice, the
 // last paths are left out whole, on the GPU.
 #pragma once
 #include "core/worker.h"
-#include "vector/raster/drawing_asset.h"
-#include "vector/raster/glyph_set.h"
+#include "vector/raster/gather.h"
 
 namespace gpgp::vector {
-
-/// What an item shows: one of both.
-struct ItemAsset {
-  const DrawingAsset* drawing = nullptr;
-  const GlyphSet* glyphSet = nullptr;
-};
 
 class Canvas final : public core::Worker {
 public:
@@ -29,7 +22,7 @@ public:
                              std::span<const ItemAsset> assets, CanvasView* view);
   core::Result<void> draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasView& view);
   bool takeCanvasReport(GpgpCanvasReport& report);
-  uint32_t maxDrawings() const { return maxDrawings_; }
+  uint32_t maxDrawings() const { return budgets_.items; }
   /// Room for the assets of a record, so that recording does not allocate.
   std::span<ItemAsset> assets(uint32_t count) { return std::span(assets_).first(count); }
 
@@ -40,16 +33,13 @@ private:
   uint64_t binWords() const;
   uint32_t maxRows() const { return maxEntries_ * 8; } ///< of the lists between mark and fill
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const;
-  struct Budget; ///< what a record's items have used of the budgets
-  core::Result<void> placeGlyphs(const GpgpCanvasItem& item, uint32_t index, const GlyphSet& set, Budget& budget,
-                                 shader::CanvasHeader& header);
 
-  const uint32_t maxWidth_, maxHeight_, maxPatches_, maxEntries_, maxWords_, maxDrawings_, maxGlyphs_;
+  const uint32_t maxWidth_, maxHeight_, maxEntries_, maxWords_;
+  const ItemBudgets budgets_;
   const bool software_; ///< the device has shaders without barriers
   // Room for one record's.
   std::pmr::vector<ItemAsset> assets_;
-  std::pmr::vector<shader::ItemRecord> sources_;
-  std::pmr::vector<shader::PlacementRecord> placements_;
+  ItemTables tables_;
 };
 
 } // namespace gpgp::vector

@@ -6,7 +6,7 @@
 namespace gpgp::vector {
 
 core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& context, const char* label,
-                                                              Drawing&& drawing, bool editable,
+                                                              Drawing&& drawing, bool editable, bool hitTestable,
                                                               const DrawingAsset* base,
                                                               std::span<const GpgpPathEdit> edits) {
   auto asset = core::makeUnique<DrawingAsset>(context.host(), context, label);
@@ -43,6 +43,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
                            bytes.size(), context.device.limits.maxStorageBufferRange);
   if (auto ok = asset->makeResident(GPGP_SERVICE_VECTOR, std::move(bytes), 16); !ok) return ok.error();
+  if (!editable && hitTestable)
+    asset->hit_.emplace(Hit{std::move(outlines), std::move(drawing.paths), std::move(drawing.clips)});
   if (editable) asset->kept_.emplace(Kept{std::move(drawing), std::move(outlines)});
   return asset;
 }

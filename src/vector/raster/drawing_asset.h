@@ -15,9 +15,16 @@ public:
     Drawing drawing;
     Outlines outlines;
   };
+  /// What hit tests ask.
+  struct Shown {
+    const Outlines& outlines;
+    std::span<const PathRecord> paths;
+    std::span<const ClipRecord> clips;
+  };
   /// `base` and `edits`: where the drawing comes from replacePaths, what its other outlines are taken from.
   static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label, Drawing&& drawing,
-                                                         bool editable, const DrawingAsset* base = nullptr,
+                                                         bool editable, bool hitTestable,
+                                                         const DrawingAsset* base = nullptr,
                                                          std::span<const GpgpPathEdit> edits = {});
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), ends_(&owner.host()) {}
@@ -36,12 +43,24 @@ public:
   bool gradients() const { return tables_.stops > tables_.paints; }
   uint32_t images() const { return images_; } ///< how many of the record's images it needs
   const Kept* kept() const { return kept_ ? &*kept_ : nullptr; }
+  /// Where it is hit-testable.
+  std::optional<Shown> shown() const {
+    if (kept_) return Shown{kept_->outlines, kept_->drawing.paths, kept_->drawing.clips};
+    if (hit_) return Shown{hit_->outlines, hit_->paths, hit_->clips};
+    return std::nullopt;
+  }
   const float* bounds() const { return bounds_; }
   const float* viewport() const { return viewport_; }
 
 private:
   std::pmr::vector<Ends> ends_; // by path, running
   std::optional<Kept> kept_;    // where it is editable
+  struct Hit {
+    Outlines outlines;
+    std::pmr::vector<PathRecord> paths;
+    std::pmr::vector<ClipRecord> clips;
+  };
+  std::optional<Hit> hit_; // where it is hit-testable, but not editable
   uint32_t curves_ = 0, images_ = 0, pathTable_ = 0;
   bool layers_ = false;
   shader::SlotRecord tables_{};

@@ -42,6 +42,10 @@ public:
     return found.living && found.generation == index >> kPlaceBits ? &found : nullptr;
   }
   using Resident::hasArrived;
+  /// Its segments, then its BoxedPaths.
+  std::span<const std::byte> block(const Glyph& glyph) const {
+    return Resident::bytes().subspan(size_t(glyph.first) * 16, size_t(glyph.size) * 16);
+  }
 
   static constexpr uint32_t kPlaceBits = 18, kMaxGlyphs = 1u << kPlaceBits;
 

@@ -9,17 +9,44 @@
 
 namespace gpgp::vector {
 
-/// Fills in transform, inverse, offsets, side and, for projective items, perspective and eye. False where nothing is to
-/// be seen on a canvas of that size: the map has no inverse that float can hold, or all lies behind the eye.
-inline bool placeItem(const GpgpCanvasItem& from, uint32_t width, uint32_t height, shader::ItemRecord& item) {
+/// A map of the plane: x' = a x + c y + e, y' = b x + d y + f, both over w = p x + q y + r.
+struct Map {
+  double a = 1, b = 0, c = 0, d = 1, e = 0, f = 0, p = 0, q = 0, r = 1;
+  bool operator==(const Map&) const = default;
+  bool projective() const { return p != 0 || q != 0; }
+};
+/// As the API gives it; `perspective` null or all 0: affine.
+inline Map toMap(const float* t, const float* perspective) {
   const auto number = [](float v) { return static_cast<double>(v); };
+  Map m{number(t[0]), number(t[1]), number(t[2]), number(t[3]), number(t[4]), number(t[5])};
+  if (perspective && (perspective[0] != 0 || perspective[1] != 0 || perspective[2] != 0))
+    m.p = number(perspective[0]), m.q = number(perspective[1]), m.r = number(perspective[2]);
+  return m;
+}
+/// First `inner`, then `outer`.
+inline Map compose(const Map& outer, const Map& inner) {
+  const auto row = [&](double x, double y, double w, double& u, double& v, double& t) {
+    u = x * inner.a + y * inner.b + w * inner.p;
+    v = x * inner.c + y * inner.d + w * inner.q;
+    t = x * inner.e + y * inner.f + w * inner.r;
+  };
+  Map m;
+  row(outer.a, outer.c, outer.e, m.a, m.c, m.e);
+  row(outer.b, outer.d, outer.f, m.b, m.d, m.f);
+  row(outer.p, outer.q, outer.r, m.p, m.q, m.r);
+  return m;
+}
+
+/// Fills in transform, inverse, offsets, side, no scissor and, for projective maps, perspective and eye. False where
+/// nothing is to be seen on a canvas of that size: the map has no inverse that float can hold, or all lies behind the
+/// eye.
+inline bool placeItem(const Map& map, uint32_t width, uint32_t height, shader::ItemRecord& item) {
   const auto narrow = [](double v) { return static_cast<float>(v); };
-  const float* t = from.transform;
-  double a = number(t[0]), b = number(t[1]), c = number(t[2]), d = number(t[3]), e = number(t[4]), f = number(t[5]);
-  const double p = number(from.perspective[0]), q = number(from.perspective[1]), r = number(from.perspective[2]);
-  const bool projective = p != 0 || q != 0;
-  if (!projective && r != 0) { // all at one distance: affine
-    if (r < 0) return false;
+  auto [a, b, c, d, e, f, p, q, r] = map;
+  const bool projective = map.projective();
+  item.scissor = {-shader::kUnbounded, -shader::kUnbounded, shader::kUnbounded, shader::kUnbounded};
+  if (!projective) { // all at one distance: affine
+    if (!(r > 0)) return false;
     a /= r, b /= r, c /= r, d /= r, e /= r, f /= r;
   }
   item.transform = {narrow(a), narrow(b), narrow(c), narrow(d)};
@@ -45,7 +72,7 @@ inline bool placeItem(const GpgpCanvasItem& from, uint32_t width, uint32_t heigh
     const double nearest =
         std::max(-kMargin * x, (width + kMargin) * x) + std::max(-kMargin * y, (height + kMargin) * y) + z;
     if (!(nearest > 0)) return false;
-    item.perspective = {from.perspective[0], from.perspective[1], from.perspective[2], narrow(0.5 / nearest)};
+    item.perspective = {narrow(p), narrow(q), narrow(r), narrow(0.5 / nearest)};
     item.eye = {narrow(x), narrow(y), narrow(z), x < 0 ? 1.0f : 0.0f};
     item.side = determinant < 0 ? -1.0f : 1.0f;
     if (!(item.perspective.w > 1e-30f)) return false;
@@ -55,6 +82,10 @@ inline bool placeItem(const GpgpCanvasItem& from, uint32_t width, uint32_t heigh
         !std::isfinite(item.perspective[i]) || !std::isfinite(item.eye[i]))
       return false;
   return true;
+}
+
+inline bool placeItem(const GpgpCanvasItem& from, uint32_t width, uint32_t height, shader::ItemRecord& item) {
+  return placeItem(toMap(from.transform, from.perspective), width, height, item);
 }
 
 /// Whether glyphs placed by it stay finite, whatever their place and size.

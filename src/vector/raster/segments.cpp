@@ -36,15 +36,7 @@ float xAt(const CurveRecord& c, float y) {
   if (c.bend >= 0) {
     const double y1 = static_cast<double>(c.controls.y), y2 = static_cast<double>(c.controls.w);
     const double x1 = static_cast<double>(c.controls.x), x2 = static_cast<double>(c.controls.z);
-    double low = 0, high = 1;
-    for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
-      const double u = 1 - t, f = 3 * u * u * t * y1 + 3 * u * t * t * y2 + t * t * t * height - wanted;
-      if (f == 0) break;
-      (f < 0 ? low : high) = t;
-      const double slope = 3 * (u * u * y1 + 2 * u * t * (y2 - y1) + t * t * (height - y2));
-      const double next = t - f / slope;
-      t = next > low && next < high ? next : 0.5 * (low + high);
-    }
+    t = parameterAt(y1, y2, height, wanted);
     const double u = 1 - t;
     x = 3 * u * u * t * x1 + 3 * u * t * t * x2 + t * t * t * width;
   }
@@ -186,6 +178,20 @@ Outlines outlinesOf(const Drawing& drawing, const Outlines* base, std::span<cons
   return outlines;
 }
 } // namespace
+
+double parameterAt(double y1, double y2, double height, double wanted) {
+  double t = wanted / height;
+  double low = 0, high = 1;
+  for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
+    const double u = 1 - t, f = 3 * u * u * t * y1 + 3 * u * t * t * y2 + t * t * t * height - wanted;
+    if (f == 0) break;
+    (f < 0 ? low : high) = t;
+    const double slope = 3 * (u * u * y1 + 2 * u * t * (y2 - y1) + t * t * (height - y2));
+    const double next = t - f / slope;
+    t = next > low && next < high ? next : 0.5 * (low + high);
+  }
+  return t;
+}
 
 Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory) {
   return outlinesOf(drawing, nullptr, {}, memory);

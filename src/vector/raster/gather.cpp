@@ -1,0 +1,311 @@
+#include "vector/raster/gather.h"
+
+#include "vector/edge.h"
+#include "vector/shape.h"
+
+#include <algorithm>
+#include <cstdarg>
+
+namespace gpgp::vector {
+using core::Result;
+using shader::ItemRecord;
+using shader::kShapeSlot;
+using shader::PlacementRecord;
+
+ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
+    : sources(budgets.items, memory),
+      placements(size_t(budgets.items) + budgets.glyphs + budgets.shapes, memory), shapes(budgets.shapes, memory),
+      paints(budgets.shapes, memory), stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory),
+      clipStates(budgets.items, memory) {}
+
+core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
+  char text[256];
+  std::va_list args;
+  va_start(args, format);
+  std::vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  if (entry_ == kNone) return core::makeError(code, "items[%u]%s", index_, text);
+  return core::makeError(code, "items[%u].list, entry %u%s", index_, entry_, text);
+}
+
+Result<uint32_t> Gather::bind(const core::Resident& asset) { // to a slot, if one is left
+  uint32_t slot = 0;
+  while (slot < slotCount && bound[slot] != &asset) ++slot;
+  if (slot == shader::kMaxSlots)
+    return wrong(GPGP_ERROR_UNSUPPORTED, ": a record draws at most %u different drawings and glyph sets",
+                 shader::kMaxSlots);
+  if (slot == slotCount) bound[slotCount++] = &asset;
+  return slot;
+}
+
+/// Its index; kNone where it covers nothing or finds no room.
+uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip) {
+  ItemRecord item{};
+  if (clip.hidden || !placeItem(map, info_.width, info_.height, item)) return kNone;
+  full_ = full_ || sources == budgets_.items;
+  ++sourcesNeeded_;
+  if (full_) return kNone;
+  item.color.w = opacity;
+  item.firstImage = firstImage;
+  item.scissor = clip.scissor;
+  item.clip = clip.chain;
+  groups = groups || item.clip;
+  lists = lists || item.clip || shader::hasScissor(item);
+  projective = projective || item.perspective.w > 0;
+  tables_.sources[sources] = item;
+  return sources++;
+}
+
+Result<void> Gather::add(uint32_t index, const ItemAsset& asset) {
+  index_ = index;
+  entry_ = kNone;
+  const GpgpCanvasItem& item = info_.items[index];
+  const float* s = item.scissor;
+  const bool cut = s[0] != 0 || s[1] != 0 || s[2] != 0 || s[3] != 0;
+  constexpr float kFar = shader::kUnbounded;
+  const Chain own{cut ? shader::vec4(s[0], s[1], s[2], s[3]) : shader::vec4(-kFar, -kFar, kFar, kFar), 0,
+                  cut && !(s[0] < s[2] && s[1] < s[3])};
+  if (asset.list) return addList(*asset.list, item, own);
+  const Map map = toMap(item.transform, item.perspective);
+  if (asset.drawing) return addDrawing(*asset.drawing, map, item.opacity, item.firstImage, own);
+  const uint32_t source = addSource(map, item.opacity, 0, own);
+  return addGlyphs(*asset.glyphSet, {item.glyphs, item.glyphCount}, source);
+}
+
+/// A drawing with as many of its first paths as there is room for.
+Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
+                                const Chain& clip) {
+  if (drawing.images() && (firstImage > info_.imageCount || drawing.images() > info_.imageCount - firstImage))
+    return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing needs %u images from images[%u] on; imageCount is %u",
+                 drawing.images(), firstImage, info_.imageCount);
+  const uint32_t source = addSource(map, opacity, firstImage, clip);
+  if (source == kNone && !full_) return {}; // covers nothing
+  const uint32_t room = budgets_.patches - static_cast<uint32_t>(patches_);
+  uint32_t paths = full_ ? 0 : std::min(drawing.paths(), budgets_.patches - paths_);
+  if (drawing.first(paths).patches > room) { // the largest number of first paths that fits
+    uint32_t low = 0, high = paths;
+    while (low + 1 < high) {
+      const uint32_t middle = low + (high - low) / 2;
+      (drawing.first(middle).patches <= room ? low : high) = middle;
+    }
+    paths = low;
+  }
+  pathsDropped_ += drawing.paths() - paths;
+  full_ = full_ || paths < drawing.paths();
+  if (paths == 0) return {};
+  const auto slot = bind(drawing);
+  if (!slot) return slot.error();
+  slots[*slot] = drawing.tables();
+  gradients = gradients || drawing.gradients();
+  images = images || drawing.images();
+  groups = groups || drawing.groups();
+  tables_.placements[placements++] = {0,      0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, segments_,
+                                      paths_, 0, drawing.pathTable()};
+  segments_ += drawing.first(paths).segments;
+  paths_ += paths;
+  patches_ += drawing.first(paths).patches;
+  return {};
+}
+
+/// A placement for each glyph that has paths, as long as there is room. This loop is what changing text costs.
+Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source) {
+  const uint64_t frame = context_.current();
+  constexpr float kMost = kMaxCoordinate;
+  const bool hidden = source == kNone && !full_;
+  if (source != kNone) {
+    ItemRecord& item = tables_.sources[source];
+    item.whole = 1;
+    if (!placesGlyphs(item)) return {}; // covers nothing
+    const auto slot = bind(set);
+    if (!slot) return slot.error();
+    source |= *slot << shader::kSlotBit;
+  }
+  for (size_t i = 0; i < glyphs.size(); ++i) {
+    const GpgpGlyphInstance& from = glyphs[i];
+    if (from.glyph == GPGP_GLYPH_NONE) continue;
+    const GlyphSet::Glyph* glyph = set.glyph(from.glyph);
+    if (!glyph)
+      return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu].glyph is not, or no longer, in the set: it was evicted",
+                   i);
+    if (!(std::abs(from.x) <= kMost && std::abs(from.y) <= kMost && from.size >= 0 && from.size <= kMost))
+      return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu]: x, y or size is out of range", i);
+    const float* c = from.color;
+    if (!(c[0] >= 0 && c[0] <= 1 && c[1] >= 0 && c[1] <= 1 && c[2] >= 0 && c[2] <= 1 && c[3] >= 0 && c[3] <= 1))
+      return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu].color is out of range", i);
+    if (!set.hasArrived(glyph->upload)) return core::makeError(GPGP_NOT_READY, "a glyph is not resident");
+    glyph->use(frame);
+    if (glyph->paths == 0 || hidden) continue;
+    full_ = full_ || glyphsNeeded_ >= budgets_.glyphs || glyph->paths > budgets_.patches - paths_ ||
+            glyph->patches > budgets_.patches - patches_;
+    ++glyphsNeeded_;
+    if (full_) {
+      pathsDropped_ += glyph->paths;
+      continue;
+    }
+    PlacementRecord& to = tables_.placements[placements++];
+    to.x = from.x;
+    to.y = from.y;
+    to.size = from.size;
+    to.source = source;
+    to.color = {c[0], c[1], c[2], c[3]};
+    to.firstSegment = segments_;
+    to.firstPath = paths_;
+    to.segments = glyph->first;
+    to.paths = glyph->first + glyph->segments * static_cast<uint32_t>(sizeof(shader::SegmentRecord) / 16);
+    segments_ += glyph->segments;
+    paths_ += glyph->paths;
+    patches_ += glyph->patches;
+  }
+  return {};
+}
+
+/// Its placement, whose colour the caller sets; null where there is no room. Its tables lie before all others.
+PlacementRecord* Gather::addShape(const shader::ShapeRecord& shape, uint32_t source) {
+  full_ = full_ || shapes == budgets_.shapes || paths_ == budgets_.patches || patches_ == budgets_.patches;
+  ++shapesNeeded_;
+  if (full_) return nullptr;
+  tables_.shapes[shapes] = shape;
+  PlacementRecord& to = tables_.placements[placements++];
+  to.x = to.y = 0;
+  to.size = 1;
+  to.source = source | kShapeSlot << shader::kSlotBit;
+  to.firstSegment = segments_;
+  to.firstPath = paths_;
+  to.segments = 0;
+  to.paths = shapes++ * static_cast<uint32_t>(sizeof shape / 16);
+  segments_ += shader::shapeSegments(shape);
+  ++paths_;
+  ++patches_;
+  return &to;
+}
+
+void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint32_t source) {
+  for (const List::Shape& shape : from) {
+    shader::ShapeRecord record = shape.record;
+    if (record.paint) {
+      shader::PaintRecord paint = list.paints().paints[record.paint - 1];
+      const uint32_t first = paint.kind == shader::kPaintSlices ? paint.slices : paint.firstStop;
+      full_ = full_ || paints == budgets_.shapes || paint.stopCount > 2 * size_t(budgets_.shapes) - stops;
+      ++paintsNeeded_;
+      stopsNeeded_ += paint.stopCount;
+      if (!full_) {
+        std::copy_n(list.paints().stops.begin() + first, paint.stopCount, tables_.stops.begin() + stops);
+        if (paint.stopCount) (paint.kind == shader::kPaintSlices ? paint.slices : paint.firstStop) = stops;
+        const bool image = paint.kind >= shader::kPaintImage;
+        (image ? images : gradients) = true;
+        tables_.paints[paints++] = paint;
+        stops += paint.stopCount;
+        record.paint = paints;
+      }
+    }
+    if (PlacementRecord* to = addShape(record, source))
+      to->color = shape.color;
+    else
+      ++pathsDropped_;
+  }
+}
+
+/// What each clip of a list leaves: a scissor where it is parallel to the canvas, otherwise a path that paints nothing.
+Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain& own) {
+  if (list.clips().size() > budgets_.items) {
+    sourcesNeeded_ += static_cast<uint32_t>(list.clips().size());
+    full_ = true;
+    return {};
+  }
+  for (size_t i = 0; i < list.clips().size(); ++i) {
+    const List::Clip& clip = list.clips()[i];
+    Chain& state = tables_.clipStates[i];
+    state = clip.parent ? tables_.clipStates[clip.parent - 1] : own;
+    const Map placed = compose(map, list.bases()[clip.base]);
+    ItemRecord item{};
+    state.hidden = state.hidden || clip.shape.box.x == clip.shape.box.z || clip.shape.box.y == clip.shape.box.w ||
+                   !placeItem(placed, info_.width, info_.height, item);
+    if (state.hidden) continue;
+    const bool parallel = (placed.b == 0 && placed.c == 0) || (placed.a == 0 && placed.d == 0);
+    if (parallel && !placed.projective() && !clip.shape.kind) {
+      const shader::vec2 a = shader::toPixel(item, clip.shape.box.x, clip.shape.box.y);
+      const shader::vec2 b = shader::toPixel(item, clip.shape.box.z, clip.shape.box.w);
+      const shader::vec4 outer = state.scissor;
+      state.scissor = {std::max(outer.x, std::min(a.x, b.x)), std::max(outer.y, std::min(a.y, b.y)),
+                       std::min(outer.z, std::max(a.x, b.x)), std::min(outer.w, std::max(a.y, b.y))};
+      state.hidden = !(state.scissor.x < state.scissor.z && state.scissor.y < state.scissor.w);
+      continue;
+    }
+    const uint32_t source = addSource(placed, 0, 0, state);
+    if (source == kNone) continue;
+    if (PlacementRecord* to = addShape(clip.shape, source)) {
+      to->color = {};
+      tables_.clips[clips++] = {to->firstPath, state.chain};
+      state.chain = clips;
+    }
+  }
+  return {};
+}
+
+Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const Chain& own) {
+  if (list.depth())
+    return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list: %u of its pushes are not popped", list.depth());
+  if (list.images() && (item.firstImage > info_.imageCount || list.images() > info_.imageCount - item.firstImage))
+    return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list needs %u images from images[%u] on; imageCount is %u",
+                 list.images(), item.firstImage, info_.imageCount);
+  const Map map = toMap(item.transform, item.perspective);
+  if (auto ok = resolveClips(list, map, own); !ok) return ok;
+  // Shapes and texts that follow each other in the same space share a source.
+  uint32_t source = kNone, base = kNone, clip = kNone;
+  for (const List::Command& command : list.commands()) {
+    entry_ = command.firstEntry;
+    const List::Space& space = command.space;
+    const Chain& state = space.clip && !full_ ? tables_.clipStates[space.clip - 1] : own;
+    if (command.kind == List::Kind::drawing) {
+      const core::Object* asset = command.asset();
+      if (!asset) return wrong(GPGP_ERROR_INVALID_HANDLE, ": its drawing was destroyed");
+      const auto& drawing = static_cast<const DrawingAsset&>(*asset);
+      if (!drawing.resident()) return core::makeError(GPGP_NOT_READY, "a drawing is not resident");
+      const Map whole = compose(compose(map, list.bases()[space.base]), space.map());
+      if (command.firstImage > UINT32_MAX - item.firstImage)
+        return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": firstImage is %u", command.firstImage);
+      if (auto ok = addDrawing(drawing, whole, item.opacity * command.opacity, item.firstImage + command.firstImage,
+                               state);
+          !ok)
+        return ok;
+      continue;
+    }
+    const core::Object* asset = nullptr;
+    if (command.kind == List::Kind::text && !(asset = command.asset()))
+      return wrong(GPGP_ERROR_INVALID_HANDLE, ": its glyph set was destroyed");
+    if (space.base != base || space.clip != clip) {
+      base = space.base, clip = space.clip;
+      source = addSource(compose(map, list.bases()[base]), item.opacity, item.firstImage, state);
+    }
+    if (command.kind == List::Kind::text) {
+      const auto glyphs = list.glyphs().subspan(command.first, command.count);
+      if (auto ok = addGlyphs(static_cast<const GlyphSet&>(*asset), glyphs, source); !ok) return ok;
+    } else if (source != kNone || full_) {
+      addShapes(list, list.shapes().subspan(command.first, command.count), source);
+    }
+  }
+  return {};
+}
+
+void Gather::finish(shader::CanvasHeader& header) {
+  lists = lists || shapes;
+  header.sourceCount = sources;
+  header.itemCount = placements;
+  header.segmentCount = segments_;
+  header.pathCount = paths_;
+  header.patchCount = static_cast<uint32_t>(patches_);
+  header.pathsDropped = pathsDropped_;
+  header.glyphs = glyphsNeeded_;
+  header.glyphLimit = budgets_.glyphs;
+  header.shapes = std::max({shapesNeeded_, paintsNeeded_, (stopsNeeded_ + 1) / 2});
+  header.shapeLimit = budgets_.shapes;
+  header.sources = sourcesNeeded_;
+  header.sourceLimit = budgets_.items;
+  shader::SlotRecord& own = slots[kShapeSlot];
+  own.paints = shapes * 4;
+  own.stops = own.paints + paints * 4;
+  own.clips = own.stops + stops * 2;
+  header.shapeTables = own.clips + clips;
+}
+
+} // namespace gpgp::vector

@@ -1,0 +1,84 @@
+// A record's items as the GPU takes them: sources (maps), placements (what is drawn by which of them), tables of shapes.
+//
+// Items come in painting order. Where a budget ends, everything from there on is left out, and counted, so that the
+// report can say what all would have needed.
+#pragma once
+#include "core/worker.h"
+#include "vector/raster/drawing_asset.h"
+#include "vector/raster/glyph_set.h"
+#include "vector/ui/list.h"
+
+namespace gpgp::vector {
+
+/// What an item shows: one of them.
+struct ItemAsset {
+  const DrawingAsset* drawing = nullptr;
+  const GlyphSet* glyphSet = nullptr;
+  const List* list = nullptr;
+};
+
+struct ItemBudgets {
+  uint32_t items, glyphs, shapes, patches;
+};
+
+/// Room for what one record has, made once.
+struct ItemTables {
+  ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory);
+  struct ClipState {
+    shader::vec4 scissor;
+    uint32_t chain; ///< 1 + index of the last of its clips that is no scissor; 0: none
+    bool hidden;    ///< nothing shows
+  };
+  std::pmr::vector<shader::ItemRecord> sources;
+  std::pmr::vector<shader::PlacementRecord> placements;
+  std::pmr::vector<shader::ShapeRecord> shapes;
+  std::pmr::vector<shader::PaintRecord> paints;
+  std::pmr::vector<shader::StopRecord> stops;
+  std::pmr::vector<shader::ItemClipRecord> clips;
+  std::pmr::vector<ClipState> clipStates; ///< of the list at hand
+};
+
+class Gather {
+public:
+  Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, const GpgpCanvasInfo& info)
+      : context_(context), budgets_(budgets), tables_(tables), info_(info) {}
+
+  /// NOT_READY where a glyph or a list's drawing is not resident.
+  core::Result<void> add(uint32_t index, const ItemAsset& asset);
+  /// Counts into the header, and where the tables of shapes will lie.
+  void finish(shader::CanvasHeader& header);
+
+  shader::SlotRecord slots[shader::kSlots] = {};
+  const core::Resident* bound[shader::kMaxSlots] = {};
+  uint32_t slotCount = 0;
+  bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
+  bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
+  uint32_t sources = 0, placements = 0, shapes = 0, paints = 0, stops = 0, clips = 0; ///< used
+
+private:
+  using Chain = ItemTables::ClipState;
+  core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
+                                const Chain& clip);
+  core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
+  core::Result<void> addList(const List& list, const GpgpCanvasItem& item, const Chain& own);
+  core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own);
+  void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
+  shader::PlacementRecord* addShape(const shader::ShapeRecord& shape, uint32_t source);
+  uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
+  core::Result<uint32_t> bind(const core::Resident& asset);
+  core::Error wrong(GpgpResult code, const char* format, ...) const __attribute__((format(printf, 3, 4)));
+
+  static constexpr uint32_t kNone = UINT32_MAX;
+  core::Context& context_;
+  const ItemBudgets budgets_;
+  ItemTables& tables_;
+  const GpgpCanvasInfo& info_;
+  uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
+  uint64_t patches_ = 0;
+  uint32_t paths_ = 0, segments_ = 0;
+  uint32_t sourcesNeeded_ = 0, glyphsNeeded_ = 0, shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
+  uint32_t pathsDropped_ = 0;
+  bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
+};
+
+} // namespace gpgp::vector

@@ -1,0 +1,89 @@
+// A list: what the engine adds to a user interface in a frame, as it will be placed.
+//
+// Moves and even scales are applied to shapes and glyphs as they come, so that what differs by them alone shares a base:
+// the map that leads from their coordinates to the list's space. Everything else of the state is in the command.
+#pragma once
+#include "core/context.h"
+#include "vector/patch/drawing.h"
+#include "vector/raster/place.h"
+
+#include <gpgp/ui.h>
+
+namespace gpgp::vector {
+
+class List final : public core::Object {
+public:
+  static core::Result<core::Unique<List>> create(core::Context& context, const GpgpListCreateInfo& info);
+  List(core::Context& owner, const char* name);
+
+  void reset();
+  core::Result<void> pushTransform(const float* transform, const float* perspective);
+  core::Result<void> pushClip(const float* box, const float* radii);
+  core::Result<void> pushOpacity(float opacity);
+  core::Result<void> pop();
+  core::Result<void> addShapes(std::span<const GpgpListShape> shapes);
+  core::Result<void> addText(const core::Object& glyphSet, std::span<const GpgpGlyphInstance> glyphs, uint64_t id);
+  void addDrawing(const core::Object& drawing, uint32_t firstImage, uint64_t id);
+
+  /// The space in which something was added: scale and move lead to the base's, whose map leads to the list's.
+  struct Space {
+    uint32_t base = 0, clip = 0; ///< clip: 1 + its index; 0: none
+    double scale = 1, x = 0, y = 0;
+    bool operator==(const Space&) const = default;
+    Map map() const { return {scale, 0, 0, scale, x, y}; }
+  };
+  struct Clip {
+    shader::ShapeRecord shape; ///< in the base's space
+    uint32_t base, parent, depth;
+  };
+  struct Shape {
+    shader::ShapeRecord record; ///< in the base's space; paint: of paints()
+    shader::vec4 color;
+    uint64_t id;
+  };
+  enum class Kind : uint32_t { shapes, text, drawing };
+  struct Command {
+    Kind kind;
+    uint32_t first = 0, count = 0; ///< of shapes() or glyphs()
+    uint32_t firstEntry = 0;       ///< as GpgpHit::entry counts
+    Space space;
+    float opacity = 1;       ///< of a drawing; the others have it in their colours
+    uint32_t firstImage = 0; ///< of a drawing
+    const core::Slot* slot = nullptr;
+    uint32_t generation = 0;
+    uint64_t id = 0; ///< of a text or drawing
+    /// The glyph set or drawing; null where it was destroyed.
+    const core::Object* asset() const { return slot->generation == generation ? slot->object : nullptr; }
+  };
+  uint32_t depth() const { return static_cast<uint32_t>(stack_.size()); } ///< pushes that are not popped
+  std::span<const Map> bases() const { return bases_; }
+  std::span<const Clip> clips() const { return clips_; }
+  std::span<const Command> commands() const { return commands_; }
+  std::span<const Shape> shapes() const { return shapes_; }
+  std::span<const GpgpGlyphInstance> glyphs() const { return glyphs_; }
+  const Drawing& paints() const { return paints_; } ///< paints and stops alone
+  uint32_t images() const { return images_; }       ///< that shapes need, from the item's first one on
+
+private:
+  struct State {
+    Space space;
+    float opacity = 1;
+  };
+  core::Result<void> checkDepth() const;
+  core::Result<void> addShape(const GpgpListShape& shape);
+  core::Result<uint32_t> addPaint(const GpgpListShape& shape);
+  core::Result<uint32_t> addImagePaint(const GpgpListImage& image, const shader::vec4& box);
+  Command& addCommand(Kind what);
+
+  State state_;
+  std::pmr::vector<State> stack_;
+  std::pmr::vector<Map> bases_;
+  std::pmr::vector<Clip> clips_;
+  std::pmr::vector<Command> commands_;
+  std::pmr::vector<Shape> shapes_;
+  std::pmr::vector<GpgpGlyphInstance> glyphs_;
+  Drawing paints_;
+  uint32_t images_ = 0, entries_ = 0;
+};
+
+} // namespace gpgp::vector

@@ -1,0 +1,299 @@
+// Lists: shapes against closed forms and against the same as paths, scissors and clips sample by sample, stacks, images
+// and nine-slices.
+#include "ui_fixture.h"
+
+#include <bit>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+
+TEST_F(CanvasTest, ShapesCoverWhatTheirClosedFormsSay) {
+  makeCanvas(128);
+  const GpgpListShape box = rectangle(13.3f, 9.7f, 84.1f, 61.2f);
+  const GpgpListShape shapes[] = {rounded(box, 20, 5, 0, 12),
+                                  rounded(box, 20, 5, 0, 12, 6),
+                                  rounded(box, 0, 0, 0, 0, 3.5f),
+                                  rounded(box, 100, 100, 100, 100), // shrink to a capsule
+                                  ellipse(box),
+                                  ellipse(box, 7),
+                                  line(20, 15, 80, 55, 9, GPGP_CAP_BUTT),
+                                  line(80, 15, 20, 40, 14, GPGP_CAP_ROUND),
+                                  line(20, 50, 75, 50, 5, GPGP_CAP_SQUARE)};
+  TestList list(context);
+  for (const auto& map : kMaps) {
+    GpgpCanvasItem item = list.item();
+    std::copy_n(map.data(), 6, item.transform);
+    std::copy_n(map.data() + 6, 3, item.perspective);
+    const vector::Map m = vector::toMap(item.transform, item.perspective);
+    for (const GpgpListShape& from : shapes) {
+      list.reset().add(from);
+      GpgpListShape shape = from;
+      if (shape.radii[0] == 100) std::fill_n(shape.radii, 4, 0.5f * (shape.box[3] - shape.box[1]));
+      for (const bool area : {false, true}) {
+        exactArea = area;
+        const auto pixels = raster({item}, 100, 90, 16);
+        double worst = 0, sum = 0;
+        for (uint32_t y = 0; y < 90; ++y)
+          for (uint32_t x = 0; x < 100; ++x) {
+            int covered = 0;
+            for (int k = 0; k < 256; ++k) { // through the inverse, by Cramer's rule
+              const double px = x + (k % 16 + 0.5) / 16, py = y + (k / 16 + 0.5) / 16;
+              const double a = m.a - m.p * px, c = m.c - m.q * px, e = m.r * px - m.e;
+              const double b = m.b - m.p * py, d = m.d - m.q * py, f = m.r * py - m.f;
+              const double u = (e * d - c * f) / (a * d - c * b), v = (a * f - e * b) / (a * d - c * b);
+              if (m.p * u + m.q * v + m.r > 0) covered += inShape(shape, u, v);
+            }
+            const double difference = std::abs(static_cast<double>(pixels[y * 100 + x].a) - covered / 256.0);
+            worst = std::max(worst, difference);
+            sum += difference;
+          }
+        EXPECT_LE(worst, area ? 0.14 : 0.28) << &map - kMaps << ", shape " << &from - shapes;
+        EXPECT_LE(sum / 9000, area ? 0.002 : 0.008) << &map - kMaps << ", shape " << &from - shapes;
+      }
+    }
+  }
+}
+
+TEST_F(CanvasTest, RectanglesEqualPathsAndAbutWithoutSeams) {
+  makeCanvas(128);
+  TestList list(context);
+  for (const auto& map : kMaps) {
+    const TestPath path = rectanglePath(13.25f, 9.75f, 84.125f, 61.5f);
+    GpgpCanvasItem drawing = place(makeDrawing({path.view()}));
+    std::copy_n(map.data(), 6, drawing.transform);
+    std::copy_n(map.data() + 6, 3, drawing.perspective);
+    list.reset().push(map).add(rectangle(13.25f, 9.75f, 84.125f, 61.5f)).pop();
+    for (const bool area : {false, true}) {
+      exactArea = area;
+      EXPECT_TRUE(same(raster({list.item()}, 100, 90, 16), raster({drawing}, 100, 90, 16))) << &map - kMaps;
+    }
+  }
+  // A chequered floor of one colour, turned: nothing of the background may show.
+  for (const bool area : {false, true}) {
+    exactArea = area;
+    list.reset().push(turned(31, 1.37f, 64.2f, 33.3f));
+    for (int i = -16; i < 16; ++i)
+      for (int k = -16; k < 16; ++k) {
+        const float x = static_cast<float>(i) * 5.3f, y = static_cast<float>(k) * 4.7f;
+        list.add(rectangle(x, y, static_cast<float>(i + 1) * 5.3f, static_cast<float>(k + 1) * 4.7f));
+      }
+    const auto pixels = raster({list.pop().item()}, 96, 96, 16);
+    for (size_t i = 0; i < pixels.size(); ++i) ASSERT_NEAR(pixels[i].a, 1, area ? 0.004 : 0) << i;
+  }
+}
+
+TEST_F(CanvasTest, ScissorsCutSampleBySample) {
+  makeCanvas(128);
+  TestList list(context);
+  const std::array<float, 4> boxes[] = {{17.3f, 11.6f, 71.8f, 60.4f},
+                                        {-20, 8, 50.5f, 64},   // down to the edge of a tile
+                                        {31.9f, -5, 200, 32.2f},
+                                        {40.1f, 33.3f, 40.6f, 33.9f}}; // less than a pixel
+  for (uint32_t seed = 0; seed < 3; ++seed) {
+    const TestPath path = randomShape(seed + 20, 90);
+    const GpgpPath view = path.view();
+    const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+    const GpgpAsset drawing = makeDrawing({view});
+    for (const auto& map : kMaps)
+      for (const auto& box : boxes)
+        for (const uint32_t samples : {4u, 16u}) {
+          list.reset().clip(box).push(map).add(drawing).pop(2);
+          const TestPath clipPath = rectanglePath(box[0], box[1], box[2], box[3]);
+          const GpgpPath clip = clipPath.view();
+          const auto clipTwin = vector::makeDrawing(std::span(&clip, 1), std::pmr::get_default_resource());
+          shader::ItemRecord record{}, identity{};
+          ASSERT_TRUE(vector::placeItem(vector::toMap(map.data(), map.data() + 6), 100, 90, record));
+          ASSERT_TRUE(vector::placeItem(vector::Map{}, 100, 90, identity));
+          const Twin covers(*twin, record, 100, 90, samples), shows(*clipTwin, identity, 100, 90, samples);
+          record.scissor = {box[0], box[1], box[2], box[3]};
+          const Twin cut(*twin, record, 100, 90, samples);
+          for (const bool area : {false, true}) {
+            exactArea = area;
+            const auto pixels = raster({list.item()}, 100, 90, samples);
+            for (uint32_t y = 0; y < 90; ++y)
+              for (uint32_t x = 0; x < 100; ++x) {
+                const uint32_t mask = covers.at(0, x, y).mask & shows.at(0, x, y).mask;
+                ASSERT_EQ(cut.at(0, x, y).mask, mask) << x << " " << y;
+                float expected = static_cast<float>(std::popcount(mask)) / static_cast<float>(samples);
+                if (area)
+                  expected = std::clamp(expected + static_cast<float>(cut.at(0, x, y).difference) /
+                                                       static_cast<float>(256 * samples),
+                                        0.0f, 1.0f);
+                ASSERT_NEAR(pixels[y * 100 + x].a, expected, area ? 0.002f : 0)
+                    << x << " " << y << ", map " << &map - kMaps << ", box " << &box - boxes << ", seed " << seed;
+              }
+          }
+        }
+  }
+}
+
+TEST_F(CanvasTest, TurnedAndRoundClipsEqualClipsOfDrawings) {
+  makeCanvas(128);
+  TestList list(context);
+  const TestPath shape = randomShape(7, 90);
+  const TestPath box = rectanglePath(17.25f, 11.5f, 71.75f, 60.5f);
+  GpgpPath path = shape.view();
+  const GpgpPath clip = box.view();
+  const GpgpAsset plain = makeDrawing({path});
+  path.group = 1;
+  const GpgpAsset clipped = makeDrawing({path}, {{0, 1, &clip, 1}});
+  for (const auto& map : {kMaps[1], kMaps[4], kMaps[5], kMaps[6]}) {
+    GpgpCanvasItem item = place(clipped);
+    std::copy_n(map.data(), 6, item.transform);
+    std::copy_n(map.data() + 6, 3, item.perspective);
+    list.reset().push(map).clip({17.25f, 11.5f, 71.75f, 60.5f}).add(plain).pop(2);
+    for (const bool area : {false, true}) {
+      exactArea = area;
+      EXPECT_TRUE(same(raster({list.item()}, 100, 90, 16), raster({item}, 100, 90, 16)));
+    }
+  }
+  // Round, within another, within a scissor: what is left of a rectangle is the product of all.
+  exactArea = false;
+  const GpgpListShape round = rounded(rectangle(10, 10, 80, 80), 30, 10, 30, 0);
+  const GpgpListShape turnedBox = rectangle(-30, -30, 30, 30);
+  list.reset().add(round);
+  const auto first = raster({list.item()}, 100, 90, 16);
+  list.reset().push(turned(40, 1, 50, 45)).add(turnedBox).pop();
+  const auto second = raster({list.item()}, 100, 90, 16);
+  list.reset().clip({20, 0, 100, 70}).clip({10, 10, 80, 80}, {30, 10, 30, 0}).push(turned(40, 1, 50, 45));
+  list.clip({-30, -30, 30, 30}).add(rectangle(-100, -100, 100, 100)).pop(2).add(rectangle(0, 0, 22, 90, {1, 0, 0, 1}));
+  const auto all = raster({list.pop(2).item()}, 100, 90, 16);
+  for (uint32_t i = 0; i < 9000; ++i) {
+    const uint32_t x = i % 100, y = i / 100;
+    const bool outside = x < 20 || y >= 70 || first[i].a == 0 || (second[i].a == 0 && x >= 22);
+    const bool inside = !outside && first[i].a == 1 && (second[i].a == 1 || x < 22);
+    if (outside || inside) {
+      ASSERT_EQ(all[i].a, inside ? 1.0f : 0.0f) << x << " " << y;
+    }
+  }
+  show("clips", all, 100, 90);
+}
+
+TEST_F(CanvasTest, ListsComposeTransformsAndOpacityAndGoWithOtherItems) {
+  makeCanvas(128);
+  GpgpGlyphSetCreateInfo setInfo = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  GpgpAsset set = nullptr;
+  ASSERT_EQ(gpgpCreateGlyphSet(context, &setInfo, &set), GPGP_SUCCESS);
+  const TestPath outline = randomShape(3, 1);
+  const GpgpPath outlineView = outline.view();
+  const GpgpGlyph glyph{1, &outlineView, 1, nullptr};
+  uint32_t index = 0;
+  ASSERT_EQ(gpgpAddGlyphs(set, &glyph, 1, &index), GPGP_SUCCESS);
+  TestPath triangle;
+  triangle.move(0, 0).line(50, 10).line(20, 60).close();
+  triangle.color = {0.5f, 0.25f, 1, 0.75f};
+  const GpgpAsset drawing = makeDrawing({triangle.view()});
+  const TestPath square = rectanglePath(4, 4, 24, 24);
+  const GpgpAsset box = makeDrawing({square.view()});
+
+  TestList list(context);
+  list.push({2, 0, 0, 2, 8, 4}).push({1, 0, 0, 1, 3, 5}); // moves and scales
+  list.fade(0.5f).add(rectangle(4, 4, 24, 24));
+  list.add(set, {{index, 1, 2, 20, {1, 0, 0, 1}}}).pop();
+  list.push({0.5f, 0.5f, -0.5f, 0.5f, 20, 0}).add(drawing).pop(3);
+  list.add(set, {{index, 60, 70, 30, {0, 1, 0, 0.5f}}});
+  GpgpCanvasItem item = list.item();
+  std::copy_n(std::array{0.5f, 0.0f, 0.0f, 0.75f, 6.0f, 10.0f}.data(), 6, item.transform);
+  item.opacity = 0.5f;
+
+  GpgpCanvasItem first = place(box), second, third = place(drawing), fourth;
+  std::copy_n(std::array{1.0f, 0.0f, 0.0f, 1.5f, 13.0f, 20.5f}.data(), 6, first.transform);
+  first.opacity = 0.25f;
+  const std::vector<GpgpGlyphInstance> red{{index, 1, 2, 20, {1, 0, 0, 1}}}, green{{index, 60, 70, 30, {0, 1, 0, 0.5f}}};
+  second = first;
+  second.drawing = nullptr;
+  second.glyphSet = set;
+  second.glyphs = red.data();
+  second.glyphCount = 1;
+  fourth = second;
+  fourth.glyphs = green.data();
+  std::copy_n(item.transform, 6, fourth.transform);
+  fourth.opacity = 0.5f;
+  std::copy_n(std::array{0.5f, 0.75f, -0.5f, 0.75f, 33.0f, 20.5f}.data(), 6, third.transform);
+  third.opacity = 0.5f;
+  const auto listed = raster({place(drawing, 1, 30, 20), item, place(box, 1, 50, 60)}, 128, 128, 16);
+  const auto items =
+      raster({place(drawing, 1, 30, 20), first, second, third, fourth, place(box, 1, 50, 60)}, 128, 128, 16);
+  for (size_t i = 0; i < listed.size(); ++i) {
+    ASSERT_NEAR(listed[i].r, items[i].r, 0.001f) << i;
+    ASSERT_NEAR(listed[i].a, items[i].a, 0.001f) << i;
+  }
+  show("composed", listed, 128, 128);
+}
+
+TEST_F(CanvasTest, ImagesAndNineSlicesKeepTheirCorners) {
+  makeCanvas(128);
+  // 8 x 8 texels: corners of 2 red, sides green, the middle blue; the left half of an atlas.
+  std::vector<uint32_t> texels(16 * 8, 0xff888888);
+  for (uint32_t y = 0; y < 8; ++y)
+    for (uint32_t x = 0; x < 8; ++x) {
+      const bool across = x < 2 || x >= 6, down = y < 2 || y >= 6;
+      texels[y * 16 + x] = across && down ? 0xff0000ff : across || down ? 0xff00ff00 : 0xffff0000;
+    }
+  const Texture atlas(device, 16, 8, texels, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  images = {atlas.view(), atlas.view()};
+  GpgpListImage image{1, {0, 0, 0.5f, 1}, {0.125f, 0.25f, 0.125f, 0.25f}, {12, 10, 6, 8}};
+  GpgpListShape shape = rectangle(8, 16, 88, 80);
+  shape.image = &image;
+  TestList list(context);
+  list.add(shape);
+  const auto expectAt = [&](const std::vector<Rgba>& pixels, float x0, float x1, float y0, float y1) {
+    for (uint32_t y = 0; y < 96; ++y)
+      for (uint32_t x = 0; x < 96; ++x) {
+        const Rgba& p = pixels[y * 96 + x];
+        const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
+        if (px < 8 || px > 88 || py < 16 || py > 80) {
+          ASSERT_EQ(p.a, 0);
+          continue;
+        }
+        const bool across = px < x0 || px > x1, down = py < y0 || py > y1;
+        ASSERT_EQ(p.r, across && down ? 1.0f : 0.0f) << x << " " << y;
+        ASSERT_EQ(p.g, across != down ? 1.0f : 0.0f) << x << " " << y;
+        ASSERT_EQ(p.b, across || down ? 0.0f : 1.0f) << x << " " << y;
+      }
+  };
+  const auto sliced = raster({list.item()}, 96, 96, 16);
+  expectAt(sliced, 20, 82, 26, 72);
+  show("slices", sliced, 96, 96);
+  std::fill_n(image.borders, 4, 0.0f); // evenly: an eighth of the box a texel
+  std::fill_n(image.sourceBorders, 4, 0.0f);
+  list.reset().push({2, 0, 0, 2, -8, -16});
+  for (float& v : shape.box) v = 0.5f * v; // 4, 8, 44, 40
+  shape.box[0] += 4, shape.box[2] += 4, shape.box[1] += 8, shape.box[3] += 8;
+  list.add(shape).pop();
+  expectAt(raster({list.item()}, 96, 96, 16), 28, 68, 32, 64);
+  // A tint multiplies, and edges are smooth.
+  std::copy_n(std::array{0.5f, 0.25f, 0.5f, 0.5f}.data(), 4, shape.color);
+  list.reset().add(rounded(shape, 9, 9, 9, 9));
+  const auto tinted = raster({list.item()}, 96, 96, 16);
+  EXPECT_NEAR(tinted[28 * 96 + 12].g, 0.125f, 0.001f);
+  EXPECT_NEAR(tinted[28 * 96 + 12].a, 0.5f, 0.001f);
+  show("tinted", tinted, 96, 96);
+  // Borders that do not find room shrink; a gradient goes with the transform.
+  image = {0, {0, 0, 0.5f, 1}, {0.125f, 0.25f, 0.125f, 0.25f}, {120, 0, 40, 0}};
+  shape = rectangle(8, 16, 88, 80);
+  shape.image = &image;
+  list.reset().add(shape);
+  const auto shrunk = raster({list.item()}, 96, 96, 16);
+  EXPECT_EQ(shrunk[40 * 96 + 60].b, 0.0f);
+  images.pop_back();
+  images.pop_back();
+  const GpgpGradientStop stops[] = {{0, {0, 0, 0, 1}}, {1, {1, 1, 1, 1}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = gradient.transform[3] = 1;
+  gradient.end[0] = 10;
+  gradient.stops = stops;
+  gradient.stopCount = 2;
+  shape = rectangle(0, 0, 10, 10);
+  shape.gradient = &gradient;
+  list.reset().push({4, 0, 0, 4, 20, 10}).add(shape).pop().push({0, 4, -4, 0, 60, 50}).add(shape).pop();
+  const auto ramps = raster({list.item()}, 96, 96, 16);
+  for (uint32_t i = 0; i < 40; ++i) {
+    const float expected = (static_cast<float>(i) + 0.5f) / 40;
+    ASSERT_NEAR(ramps[20 * 96 + 20 + i].r, expected, 0.002f) << i;
+    ASSERT_NEAR(ramps[(50 + i) * 96 + 40].r, expected, 0.002f) << i;
+  }
+  show("ramps", ramps, 96, 96);
+}
+} // namespace
