@@ -1,11 +1,9 @@
-// The engine's Vulkan device: instance, GPU, one queue, and its memory. It links libvulkan; gpgp finds its own
-// functions through vkGetInstanceProcAddr. What gpgp can use is asked with gpgpGetRequirements before the device is
-// made.
+// The engine's Vulkan device and its memory. Instance, GPU and queue are those of gpgp::sdl2, which asks
+// gpgpGetRequirements what gpgp could use before the device is made.
 #pragma once
 #include <gpgp/gpgp.h>
-#include <vulkan/vulkan.h>
+#include <gpgp_sdl2.hpp>
 
-#include <atomic>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -13,8 +11,7 @@
 
 namespace mini {
 
-/// Throws std::runtime_error with the call's name where result is an error.
-void check(VkResult result, const char* what);
+using gpgp::sdl2::check;
 
 struct DeviceOptions {
   std::string name; // part of a name or an index; empty: $GPGP_DEVICE, else software, else 0
@@ -23,37 +20,11 @@ struct DeviceOptions {
   bool swapchain = false;
 };
 
-class Device {
+class Device : public gpgp::sdl2::Device {
 public:
   explicit Device(const DeviceOptions& options);
-  ~Device();
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
-
-  VkInstance instance = VK_NULL_HANDLE;
-  VkPhysicalDevice physical = VK_NULL_HANDLE;
-  VkDevice device = VK_NULL_HANDLE;
-  VkQueue queue = VK_NULL_HANDLE;
-  uint32_t family = 0;
-  VkQueueFlags queueFlags = 0;
-  VkPhysicalDeviceProperties properties{};
-  GpgpFeatures gpgpFeatures = 0; // what was enabled, to be declared to gpgp
-
-  uint32_t validationMessages() const { return validationMessages_; }
-  uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred = 0) const;
   /// For loading: records, submits, waits.
   void runOnce(const std::function<void(VkCommandBuffer)>& record);
-
-private:
-  void createInstance(const DeviceOptions& options);
-  void choosePhysical(std::string name);
-  void createDevice(const DeviceOptions& options);
-  static VKAPI_ATTR VkBool32 VKAPI_CALL onValidation(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-                                                     VkDebugUtilsMessageTypeFlagsEXT types,
-                                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
-  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-  VkPhysicalDeviceMemoryProperties memory_{};
-  std::atomic<uint32_t> validationMessages_{0};
 };
 
 /// The engine's buffer with memory of its own.

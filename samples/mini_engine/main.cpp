@@ -114,9 +114,11 @@ int run(const Options& options) {
   mini::DeviceOptions deviceOptions;
   deviceOptions.name = options.device;
   deviceOptions.validate = options.validate;
-#ifdef MINI_ENGINE_WINDOW
+#ifdef GPGP_SDL2_WINDOW
+  std::optional<gpgp::sdl2::Window> window; // made before the device, ended after it
   if (options.window) {
-    deviceOptions.instanceExtensions = mini::windowExtensions();
+    window.emplace(gpgp::sdl2::WindowInfo{"gpgp mini engine", options.size.width, options.size.height});
+    deviceOptions.instanceExtensions = window->instanceExtensions();
     deviceOptions.swapchain = true;
   }
 #else
@@ -127,8 +129,8 @@ int run(const Options& options) {
   {
     mini::Device device(deviceOptions);
     std::unique_ptr<mini::Target> target;
-#ifdef MINI_ENGINE_WINDOW
-    if (options.window) target = mini::makeWindow(device, options.size);
+#ifdef GPGP_SDL2_WINDOW
+    if (window) target = mini::makeWindow(device, *window);
 #endif
     if (!target) target = std::make_unique<mini::Offscreen>(device, options.size);
     {

@@ -63,10 +63,9 @@ private:
   VkFramebuffer framebuffers_[2] = {};
 };
 
-#ifdef MINI_ENGINE_WINDOW
-/// What SDL needs of the instance. Throws where no window system is there.
-std::vector<const char*> windowExtensions();
-std::unique_ptr<Target> makeWindow(Device& device, VkExtent2D extent);
+#ifdef GPGP_SDL2_WINDOW
+/// Pictures go to the window, which outlives the target.
+std::unique_ptr<Target> makeWindow(Device& device, gpgp::sdl2::Window& window);
 #endif
 
 } // namespace mini

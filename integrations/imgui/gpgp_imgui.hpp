@@ -1,0 +1,96 @@
+// gpgp::imgui: drawings and text by gpgp in Dear ImGui, and all of ImGui's own text by gpgp.
+//
+//   Renderer renderer(info);
+//   renderer.useFonts(*io.Fonts);                    before the atlas is built: every font of it is gpgp's from then on
+//
+//   each frame:
+//   ImGui::NewFrame(); ... renderer.drawing(asset, size); renderer.text(layout); ... ImGui::Render();
+//   renderer.prepare(*ImGui::GetDrawData(), commands, frame);      outside render passes
+//   renderer.use(commands);                                        inside: before ImGui's own renderer draws
+//   ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
+//
+// How it works: prepare takes the glyphs out of ImGui's draw lists, rasterises them together with the widgets into one
+// canvas, at the size and the place that they have on the screen, and leaves a draw callback at the place in the list
+// where each belongs. What overlaps on the screen lies in different layers of the canvas. So windows cover each other as
+// ImGui has it, clip rectangles count, and text is sharp at every scale: FontGlobalScale, window scales,
+// DisplayFramebufferScale, AddText with a size of its own.
+//
+// Made for Dear ImGui 1.86. One thread: ImGui's.
+#pragma once
+#include <gpgp/gpgp.hpp>
+#include <imgui.h>
+#include <vulkan/vulkan.h>
+
+#include <memory>
+
+namespace gpgp::imgui {
+
+struct RendererInfo {
+  GpgpContext context = nullptr;
+  VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE; ///< the context's
+  uint32_t queueFamily = 0;         ///< with graphics and compute
+  VkRenderPass renderPass = VK_NULL_HANDLE;
+  uint32_t subpass = 0;
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+  bool srgbTarget = false; ///< the colour attachment's format encodes sRGB. ImGui's colours are then linear, as ImGui has it
+  uint32_t maxWidth = 1920, maxHeight = 1080; ///< of the framebuffer, pixels
+  uint32_t maxLayers = 4;                     ///< how often text and widgets may lie over each other
+  uint32_t maxGlyphs = 8192;                  ///< of one frame
+  uint32_t maxDrawings = 64;                  ///< widgets of one frame; at most 7 different drawings
+  uint32_t glyphSetGlyphs = 0;                ///< kept, of all fonts (GpgpGlyphSetCreateInfo::maxGlyphs)
+  VkDeviceSize glyphSetBytes = 0;
+};
+
+/// What the last prepare did. What did not fit a budget was not drawn, and is counted here.
+struct FrameReport {
+  uint32_t glyphs = 0;  ///< drawn
+  uint32_t pieces = 0;  ///< draw callbacks
+  uint32_t layers = 0;  ///< of the canvas
+  uint32_t dropped = 0; ///< glyphs and widgets beyond maxGlyphs, maxDrawings, maxLayers or the glyph set
+};
+
+class Renderer {
+public:
+  /// Makes the canvas, its pipelines and a glyph set; device memory of 4 bytes (srgbTarget: 8) for each pixel of each
+  /// layer beside. Throws std::runtime_error with what failed.
+  explicit Renderer(const RendererInfo& info);
+  /// The device must be idle as far as frames that were prepared are concerned. Not before ImGui has drawn for the last
+  /// time, and before the context is destroyed.
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// The atlas's fonts, as they were or will be added to it (sizes, ranges, merging, offsets), become gpgp's when it is
+  /// built. Its texture keeps lines and mouse cursors, and has no glyphs. The renderer lives as long as the atlas is
+  /// built anew; ImFontConfig's oversampling, RasterizerMultiply and FontBuilderFlags have no meaning.
+  void useFonts(ImFontAtlas& atlas);
+
+  /// A widget: the drawing's page, undistorted, in the middle of a box of this size.
+  void drawing(GpgpAsset drawing, const ImVec2& size);
+  /// A widget: a text as it is laid out, pixels of the layout as units of ImGui. The layout's glyphs are read now.
+  void text(GpgpLayout layout);
+  /// The same at a place of one's own, in screen coordinates, e.g. for buttons. Clipped as the list clips at this point.
+  void addDrawing(ImDrawList& list, GpgpAsset drawing, const ImVec2& min, const ImVec2& max);
+  void addText(ImDrawList& list, GpgpLayout layout, const ImVec2& position);
+
+  /// After ImGui::Render, with its draw data, which is changed. Records an upload of all that the context has
+  /// pending, and the canvas. NOT_READY: what is needed was not uploaded in one go: nothing of gpgp's is drawn in this
+  /// frame. An error: the same; the context's message says why. @pass outside
+  /// @state as gpgpRecordPrepareCanvas
+  GpgpResult prepare(ImDrawData& data, VkCommandBuffer commands, const GpgpFrame& frame);
+  /// The command buffer that ImGui's renderer draws into next. The callbacks leave its state to ImGui's reset.
+  void use(VkCommandBuffer commands);
+
+  const FrameReport& report() const;
+  /// Canvas reports, to see exceeded budgets of the GPU: gpgpGetCanvasReport.
+  GpgpWorker canvas() const;
+  /// Before a font is destroyed whose layouts were drawn.
+  void forget(GpgpFont font);
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace gpgp::imgui

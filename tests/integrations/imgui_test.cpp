@@ -1,0 +1,521 @@
+// gpgp::imgui, drawn into an image by ImGui's own Vulkan renderer under the validation layer: beside ImGui's look, under
+// other windows, clipped, at scales, within budgets. GPGP_IMGUI_PICTURES=FOLDER writes what is compared.
+#include "gpgp_imgui.hpp"
+#include "gpgp_sdl2.hpp"
+#include "host/picture.h"
+
+#include <gtest/gtest.h>
+#include <imgui/backends/imgui_impl_vulkan.h>
+#include <imgui_internal.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+
+namespace {
+
+using namespace gpgp;
+constexpr uint32_t kWidth = 640, kHeight = 480;
+constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
+
+/// A device, an image to draw into, and a context: shared by all tests.
+struct Stage {
+  sdl2::Device device;
+  sdl2::Frames frames{device, 2};
+  Context context;
+  VkRenderPass pass = VK_NULL_HANDLE;
+  VkImage image = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE, bufferMemory = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  void* mapped = nullptr;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  std::vector<std::string> messages;
+
+  static sdl2::DeviceInfo wanted() {
+    sdl2::DeviceInfo info;
+    info.validate = true;
+    return info;
+  }
+  Stage() : device(wanted()) {
+    GpgpContextCreateInfo info = device.contextCreateInfo();
+    info.label = "imgui test";
+    info.maxFramesInFlight = 2;
+    info.messageUserData = &messages;
+    info.messageFn = [](void* user, const GpgpMessage* m) {
+      static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
+    };
+    context = *Context::create(info);
+    makePass();
+    makeImage();
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
+    VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+    poolInfo.maxSets = 8;
+    poolInfo.poolSizeCount = 1;
+    poolInfo.pPoolSizes = &size;
+    sdl2::check(vkCreateDescriptorPool(device.device, &poolInfo, nullptr, &pool), "pool");
+  }
+  ~Stage() {
+    vkDeviceWaitIdle(device.device);
+    context.reset();
+    vkDestroyDescriptorPool(device.device, pool, nullptr);
+    vkDestroyBuffer(device.device, buffer, nullptr);
+    vkDestroyFramebuffer(device.device, framebuffer, nullptr);
+    vkDestroyImageView(device.device, view, nullptr);
+    vkDestroyImage(device.device, image, nullptr);
+    vkFreeMemory(device.device, memory, nullptr);
+    vkFreeMemory(device.device, bufferMemory, nullptr);
+    vkDestroyRenderPass(device.device, pass, nullptr);
+    EXPECT_EQ(device.validationMessages(), 0u);
+  }
+  void makePass() {
+    VkAttachmentDescription attachment{};
+    attachment.format = kFormat;
+    attachment.samples = VK_SAMPLE_COUNT_1_BIT;
+    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    attachment.finalLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &reference;
+    VkSubpassDependency dependencies[2]{};
+    dependencies[0].srcSubpass = dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
+    dependencies[0].srcStageMask = dependencies[1].dstStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    dependencies[0].dstStageMask = dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    dependencies[0].dstAccessMask = dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    dependencies[1].dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+    VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+    info.attachmentCount = info.subpassCount = 1;
+    info.pAttachments = &attachment;
+    info.pSubpasses = &subpass;
+    info.dependencyCount = 2;
+    info.pDependencies = dependencies;
+    sdl2::check(vkCreateRenderPass(device.device, &info, nullptr, &pass), "render pass");
+  }
+  VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) {
+    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+    info.allocationSize = needs.size;
+    info.memoryTypeIndex = device.memoryType(needs.memoryTypeBits, flags);
+    VkDeviceMemory made = VK_NULL_HANDLE;
+    sdl2::check(vkAllocateMemory(device.device, &info, nullptr, &made), "memory");
+    return made;
+  }
+  void makeImage() {
+    VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = kFormat;
+    info.extent = {kWidth, kHeight, 1};
+    info.mipLevels = info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    sdl2::check(vkCreateImage(device.device, &info, nullptr, &image), "image");
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(device.device, image, &needs);
+    memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    vkBindImageMemory(device.device, image, memory, 0);
+    VkImageViewCreateInfo viewInfo{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+    viewInfo.image = image;
+    viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    viewInfo.format = kFormat;
+    viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    sdl2::check(vkCreateImageView(device.device, &viewInfo, nullptr, &view), "view");
+    VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+    framebufferInfo.renderPass = pass;
+    framebufferInfo.attachmentCount = 1;
+    framebufferInfo.pAttachments = &view;
+    framebufferInfo.width = kWidth;
+    framebufferInfo.height = kHeight;
+    framebufferInfo.layers = 1;
+    sdl2::check(vkCreateFramebuffer(device.device, &framebufferInfo, nullptr, &framebuffer), "framebuffer");
+    VkBufferCreateInfo bufferInfo{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    bufferInfo.size = VkDeviceSize{kWidth} * kHeight * 4;
+    bufferInfo.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    sdl2::check(vkCreateBuffer(device.device, &bufferInfo, nullptr, &buffer), "buffer");
+    vkGetBufferMemoryRequirements(device.device, buffer, &needs);
+    bufferMemory = allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    vkBindBufferMemory(device.device, buffer, bufferMemory, 0);
+    sdl2::check(vkMapMemory(device.device, bufferMemory, 0, VK_WHOLE_SIZE, 0, &mapped), "map");
+  }
+};
+
+std::unique_ptr<Stage> stage;
+
+/// An ImGui context with its Vulkan renderer, and with gpgp's where `byGpgp` is set.
+struct Screen {
+  ImGuiContext* context = ImGui::CreateContext();
+  std::unique_ptr<imgui::Renderer> renderer;
+  GpgpResult prepared = GPGP_SUCCESS;
+
+  explicit Screen(bool byGpgp, float fontSize = 13, uint32_t maxLayers = 4) {
+    ImGui::SetCurrentContext(context);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = {kWidth, kHeight};
+    ImFontConfig config;
+    config.SizePixels = fontSize;
+    config.OversampleH = 3;
+    io.Fonts->AddFontFromFileTTF(GPGP_TEST_DATA "/fetched/fonts/DejaVuSans.ttf", fontSize, &config);
+    if (byGpgp) {
+      imgui::RendererInfo info;
+      info.context = stage->context;
+      info.physicalDevice = stage->device.physical;
+      info.device = stage->device.device;
+      info.queueFamily = stage->device.family;
+      info.renderPass = stage->pass;
+      info.maxWidth = kWidth;
+      info.maxHeight = kHeight;
+      info.maxLayers = maxLayers;
+      renderer = std::make_unique<imgui::Renderer>(info);
+      renderer->useFonts(*io.Fonts);
+    }
+    ImGui_ImplVulkan_InitInfo info{};
+    info.Instance = stage->device.instance;
+    info.PhysicalDevice = stage->device.physical;
+    info.Device = stage->device.device;
+    info.QueueFamily = stage->device.family;
+    info.Queue = stage->device.queue;
+    info.DescriptorPool = stage->pool;
+    info.MinImageCount = info.ImageCount = 2;
+    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+    ImGui_ImplVulkan_Init(&info, stage->pass);
+    VkCommandBuffer commands = stage->frames.begin();
+    ImGui_ImplVulkan_CreateFontsTexture(commands);
+    EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
+    stage->frames.submit();
+    vkDeviceWaitIdle(stage->device.device);
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+  }
+  ~Screen() {
+    vkDeviceWaitIdle(stage->device.device);
+    ImGui::SetCurrentContext(context);
+    ImGui_ImplVulkan_Shutdown();
+    ImGui::DestroyContext(context);
+  }
+
+  /// ImGui takes a frame to size its windows: the picture is the second's.
+  host::Picture render(const std::function<void()>& ui, int frames = 2) {
+    ImGui::SetCurrentContext(context);
+    for (int i = 0; i < frames; ++i) frame(ui);
+    host::Picture picture{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 4)};
+    vkDeviceWaitIdle(stage->device.device);
+    std::memcpy(picture.rgba.data(), stage->mapped, picture.rgba.size());
+    for (size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+    return picture;
+  }
+  void frame(const std::function<void()>& ui) {
+    ImGui_ImplVulkan_NewFrame();
+    ImGui::GetIO().DeltaTime = 1.0f / 60;
+    ImGui::NewFrame();
+    ui();
+    ImGui::Render();
+    VkCommandBuffer commands = stage->frames.begin();
+    EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
+    if (renderer) {
+      prepared = renderer->prepare(*ImGui::GetDrawData(), commands, stage->frames.number());
+      renderer->use(commands);
+    }
+    VkClearValue clear{};
+    clear.color = {{0.45f, 0.55f, 0.60f, 1}};
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = stage->pass;
+    begin.framebuffer = stage->framebuffer;
+    begin.renderArea.extent = {kWidth, kHeight};
+    begin.clearValueCount = 1;
+    begin.pClearValues = &clear;
+    vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
+    vkCmdEndRenderPass(commands);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {kWidth, kHeight, 1};
+    vkCmdCopyImageToBuffer(commands, stage->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, stage->buffer, 1, &copy);
+    VkMemoryBarrier toHost{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+    toHost.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &toHost, 0, nullptr, 0,
+                         nullptr);
+    stage->frames.submit();
+  }
+};
+
+/// A page of 100 x 100 with a red disc of radius 50 on a blue square.
+Drawing makeDrawing() {
+  static const char svg[] = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>"
+                            "<rect width='100' height='100' fill='#2040a0'/><circle cx='50' cy='50' r='50' "
+                            "fill='#c03020'/></svg>";
+  auto source = init<GpgpSvgSource>();
+  source.name = "disc";
+  source.data = svg;
+  source.size = sizeof svg - 1;
+  const Result<Blob> blob = compileSvg(source);
+  auto info = init<GpgpDrawingCreateInfo>();
+  info.data = blob->data();
+  info.size = blob->size();
+  return *Drawing::create(stage->context, info);
+}
+
+using Color = std::array<int, 3>;
+Color at(const host::Picture& picture, uint32_t x, uint32_t y) {
+  const uint8_t* p = &picture.rgba[(size_t{y} * picture.width + x) * 4];
+  return {p[0], p[1], p[2]};
+}
+/// The pixels of a rectangle that differ by more than `tolerance` in a channel.
+uint32_t different(const host::Picture& a, const host::Picture& b, uint32_t left, uint32_t top, uint32_t right,
+                   uint32_t bottom, int tolerance = 0) {
+  uint32_t count = 0;
+  for (uint32_t y = top; y < bottom; ++y)
+    for (uint32_t x = left; x < right; ++x)
+      for (size_t c = 0; c < 3; ++c)
+        if (std::abs(at(a, x, y)[c] - at(b, x, y)[c]) > tolerance) {
+          ++count;
+          break;
+        }
+  return count;
+}
+void keep(const host::Picture& picture, const char* name) {
+  if (const char* folder = std::getenv("GPGP_IMGUI_PICTURES"))
+    host::writePng(std::string(folder) + "/" + name + ".png", picture);
+}
+
+struct ImGuiTest : testing::Test {
+  static void SetUpTestSuite() {
+    stage = std::make_unique<Stage>();
+    gpgpScreen = std::make_unique<Screen>(true);
+  }
+  static void TearDownTestSuite() {
+    gpgpScreen.reset();
+    stage.reset();
+  }
+  void TearDown() override {
+    EXPECT_EQ(stage->device.validationMessages(), 0u);
+    for (const std::string& message : stage->messages) ADD_FAILURE() << message;
+    stage->messages.clear();
+  }
+  inline static std::unique_ptr<Screen> gpgpScreen;
+  Screen& screen = *gpgpScreen;
+};
+
+void demo(bool widgets) {
+  const char* name = "Dear ImGui Demo";
+  ImGui::ShowDemoWindow();
+  ImGui::SetWindowPos(name, {10, 10});
+  ImGui::SetWindowSize(name, {620, 460});
+  ImGuiWindow* window = ImGui::FindWindowByName(name);
+  for (const char* header : {"Widgets", "Basic", "Color/Picker Widgets"})
+    window->StateStorage.SetInt(window->GetID(header), widgets ? 1 : 0);
+  window->StateStorage.SetInt(window->GetID("Help"), widgets ? 0 : 1);
+  ImGui::SetScrollY(window, widgets ? 110.0f : 0.0f);
+}
+
+/// ImGui's own window of everything: laid out to the pixel as with ImGui's glyphs, nothing of which is drawn.
+TEST_F(ImGuiTest, DemoWindowLooksAsImGuisOwn) {
+  Screen own(false);
+  for (const bool widgets : {false, true}) { // its help, and widgets of all kinds
+    const std::string name = widgets ? "demo_widgets" : "demo";
+    const auto ui = [&] { demo(widgets); };
+    const host::Picture theirs = own.render(ui, 4), ours = screen.render(ui, 4);
+    EXPECT_EQ(screen.prepared, GPGP_SUCCESS);
+    EXPECT_EQ(screen.renderer->report().dropped, 0u);
+    EXPECT_GT(screen.renderer->report().glyphs, 300u);
+    EXPECT_LE(screen.renderer->report().layers, 2u);
+    uint32_t left = 0;
+    const ImDrawData& data = *ImGui::GetDrawData();
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+      const ImDrawList& list = *data.CmdLists[i];
+      for (const ImDrawCmd& command : list.CmdBuffer)
+        for (unsigned k = 0; k < command.ElemCount; ++k) {
+          const auto index = list.IdxBuffer[static_cast<int>(command.IdxOffset + k)];
+          left += list.VtxBuffer[static_cast<int>(command.VtxOffset + index)].uv.x > 1 ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(left, 0u) << "glyphs that ImGui would draw";
+    keep(ours, (name + "_gpgp").c_str());
+    keep(theirs, (name + "_imgui").c_str());
+    const host::PictureDifference difference = host::compare(ours, theirs);
+    EXPECT_GT(difference.pixelsDifferent, 100u) << "is the text gpgp's at all?";
+    EXPECT_LT(difference.mean, 1.0);
+    EXPECT_LT(different(ours, theirs, 0, 0, kWidth, kHeight, 100), 60u); // pixels that are quite another colour
+  }
+}
+
+TEST_F(ImGuiTest, WindowsCoverTextAndWidgetsBelow) {
+  Drawing drawing = makeDrawing();
+  const auto above = [] {
+    ImGui::SetNextWindowPos({150, 100});
+    ImGui::SetNextWindowSize({250, 200});
+    ImGui::SetNextWindowBgAlpha(1);
+    ImGui::Begin("above");
+    ImGui::Text("text of the window above\nand a second line");
+    ImGui::End();
+  };
+  const auto both = [&] {
+    ImGui::SetNextWindowPos({50, 50});
+    ImGui::SetNextWindowSize({300, 250});
+    ImGui::Begin("below");
+    for (int i = 0; i < 4; ++i) ImGui::Text("text of the window below, long enough");
+    screen.renderer->drawing(drawing, {150, 100});
+    ImGui::End();
+    above();
+    ImGui::SetWindowFocus("above");
+  };
+  const host::Picture alone = screen.render(above), together = screen.render(both, 3);
+  keep(together, "covered");
+  EXPECT_EQ(screen.renderer->report().dropped, 0u);
+  EXPECT_EQ(screen.renderer->report().layers, 2u);
+  EXPECT_EQ(different(alone, together, 151, 119, 399, 299), 0u); // below the title bar, whose colour tells the focus
+  EXPECT_GT(different(alone, together, 50, 50, 149, 299), 1000u);
+}
+
+TEST_F(ImGuiTest, ADrawingKeepsItsBoxAndColoursAndIsClipped) {
+  Drawing drawing = makeDrawing();
+  const auto window = [&](bool withDrawing) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({400, 400});
+    ImGui::Begin("window", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::SetCursorPos({20, 20});
+    ImGui::BeginChild("child", {100, 100}, false, ImGuiWindowFlags_NoScrollbar);
+    ImGui::SetCursorPos({50, 50}); // half of it lies outside of the child
+    if (withDrawing) screen.renderer->drawing(drawing, {100, 100});
+    ImGui::EndChild();
+    ImGui::GetWindowDrawList()->AddRectFilled({200, 200}, {300, 300}, IM_COL32(10, 200, 30, 255));
+    ImGui::End();
+  };
+  const host::Picture without = screen.render([&] { window(false); });
+  const host::Picture with = screen.render([&] { window(true); });
+  keep(with, "clipped");
+  EXPECT_EQ(at(with, 72, 72), (Color{0x20, 0x40, 0xa0}));
+  EXPECT_EQ(at(with, 112, 112), (Color{0xc0, 0x30, 0x20}));
+  EXPECT_EQ(at(with, 250, 250), (Color{10, 200, 30})) << "ImGui draws on after the callback";
+  EXPECT_EQ(different(without, with, 0, 0, kWidth, 70), 0u);
+  EXPECT_EQ(different(without, with, 120, 0, kWidth, kHeight), 0u);
+  EXPECT_EQ(different(without, with, 0, 120, kWidth, kHeight), 0u);
+  EXPECT_EQ(different(without, with, 70, 70, 120, 120), 2500u);
+}
+
+/// One font size in the atlas, drawn six times as large.
+TEST_F(ImGuiTest, TextIsSharpAtEveryScale) {
+  const auto large = [] {
+    ImGui::GetForegroundDrawList()->AddText(ImGui::GetFont(), 78, {20, 100}, IM_COL32(255, 255, 255, 255), "Sharp & go");
+  };
+  const host::Picture ours = screen.render(large);
+  Screen small(false), exact(false, 78);
+  const host::Picture stretched = small.render(large), wanted = exact.render(large);
+  keep(ours, "large_gpgp");
+  keep(stretched, "large_imgui");
+  // Pixels that are neither ground nor text: a seam along the edges.
+  const auto seam = [](const host::Picture& picture) {
+    uint32_t count = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+      for (uint32_t x = 0; x < kWidth; ++x) {
+        const int red = at(picture, x, y)[0];
+        count += red > 0x73 + 8 && red < 247 ? 1 : 0;
+      }
+    return count;
+  };
+  EXPECT_GT(seam(ours), 300u);
+  EXPECT_LT(seam(ours), seam(wanted) * 13 / 10);
+  EXPECT_GT(seam(stretched), seam(ours) * 2);
+}
+
+TEST_F(ImGuiTest, LayoutsAreWidgets) {
+  auto fontInfo = init<GpgpFontCreateInfo>();
+  fontInfo.filePath = GPGP_TEST_DATA "/fetched/fonts/DejaVuSerif.ttf";
+  Font font = *Font::create(fontInfo);
+  Shaper shaper = *Shaper::create();
+  Layout layout = *shaper.layout();
+  const GpgpFont fonts[] = {font};
+  auto text = init<GpgpTextInfo>();
+  const std::string words = "A paragraph that gpgp lays out: finds ligatures, kerns AV To, wraps.";
+  text.text = words.data();
+  text.size = words.size();
+  text.style.fonts = fonts;
+  text.style.fontCount = 1;
+  text.style.size = 24;
+  text.style.underline = VK_TRUE;
+  for (float& value : text.style.color) value = 1;
+  text.width = 250;
+  ASSERT_EQ(layout.set(text), GPGP_SUCCESS);
+  float below = 0;
+  const host::Picture picture = screen.render([&] {
+    ImGui::SetNextWindowPos({10, 10});
+    ImGui::SetNextWindowSize({300, 300});
+    ImGui::Begin("window", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::Text("above");
+    screen.renderer->text(layout);
+    below = ImGui::GetCursorScreenPos().y;
+    ImGui::Text("below");
+    ImGui::End();
+  });
+  keep(picture, "layout");
+  const GpgpLayoutInfo info = *layout.info();
+  EXPECT_GE(info.lineCount, 3u);
+  EXPECT_GT(below, info.height + 20);
+  EXPECT_EQ(screen.renderer->report().layers, 1u);
+  uint32_t white = 0;
+  for (uint32_t y = 30; y < 30 + static_cast<uint32_t>(info.height); ++y)
+    for (uint32_t x = 10; x < 300; ++x) white += at(picture, x, y) == Color{255, 255, 255} ? 1 : 0;
+  EXPECT_GT(white, 500u);
+  screen.renderer->forget(font);
+}
+
+TEST_F(ImGuiTest, WhatFindsNoLayerIsCountedAndTheRestIsDrawn) {
+  Screen one(true, 13, 1);
+  const auto twice = [] {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddText({20, 20}, IM_COL32(255, 255, 255, 255), "below");
+    list.AddRectFilled({10, 10}, {100, 40}, IM_COL32(0, 0, 0, 255));
+    list.AddText({20, 20}, IM_COL32(255, 255, 255, 255), "above");
+    list.AddText({200, 200}, IM_COL32(255, 255, 255, 255), "elsewhere");
+  };
+  one.render(twice);
+  EXPECT_EQ(one.prepared, GPGP_SUCCESS);
+  EXPECT_EQ(one.renderer->report().layers, 1u);
+  EXPECT_EQ(one.renderer->report().dropped, 14u); // the second piece has both words
+  EXPECT_EQ(one.renderer->report().glyphs, 5u);
+  ImGui::SetCurrentContext(screen.context);
+  screen.render(twice);
+  EXPECT_EQ(screen.renderer->report().layers, 2u);
+  EXPECT_EQ(screen.renderer->report().glyphs, 19u);
+}
+
+/// Frames that draw no gpgp, frames that are not drawn, the same draw data twice.
+TEST_F(ImGuiTest, FramesMayBeEmptySkippedOrRepeated) {
+  screen.render([] {});
+  EXPECT_EQ(screen.prepared, GPGP_SUCCESS);
+  EXPECT_EQ(screen.renderer->report().glyphs, 0u);
+  Drawing drawing = makeDrawing();
+  const auto ui = [&] {
+    ImGui::GetForegroundDrawList()->AddText({20, 20}, IM_COL32(255, 255, 255, 255), "text");
+    screen.renderer->addDrawing(*ImGui::GetForegroundDrawList(), drawing, {100, 100}, {200, 200});
+  };
+  for (int i = 0; i < 3; ++i) { // never drawn
+    ImGui::NewFrame();
+    ui();
+    ImGui::Render();
+  }
+  const host::Picture once = screen.render(ui);
+  EXPECT_EQ(screen.renderer->report().pieces, 2u);
+  VkCommandBuffer commands = stage->frames.begin();
+  EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
+  EXPECT_EQ(screen.renderer->prepare(*ImGui::GetDrawData(), commands, stage->frames.number()), GPGP_SUCCESS);
+  EXPECT_EQ(screen.renderer->report().pieces, 2u);
+  EXPECT_EQ(screen.renderer->report().glyphs, 4u);
+  stage->frames.submit();
+  EXPECT_EQ(at(once, 150, 150), (Color{0xc0, 0x30, 0x20}));
+  ImGui::GetIO().DisplaySize = {kWidth * 2, kHeight}; // beyond maxWidth
+  ImGui::NewFrame();
+  ui();
+  ImGui::Render();
+  commands = stage->frames.begin();
+  EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
+  EXPECT_EQ(screen.renderer->prepare(*ImGui::GetDrawData(), commands, stage->frames.number()),
+            GPGP_ERROR_INVALID_ARGUMENT);
+  stage->frames.submit();
+  ImGui::GetIO().DisplaySize = {kWidth, kHeight};
+}
+
+} // namespace

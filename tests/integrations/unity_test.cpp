@@ -1,0 +1,328 @@
+// The Unity plugin in a host that behaves as Unity documents: hooks, device events, events while it records, its frame
+// numbers, its barriers; the picture in the render texture is that of the same drawing drawn directly.
+#include "fake_unity.h"
+#include "gpgp_glyph_cache.hpp"
+#include "gpgp_unity.h"
+#include "host/picture.h"
+
+#include <gpgp/gpgp.hpp>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace {
+
+using namespace gpgp;
+using test::FakeTexture;
+using test::FakeUnity;
+
+// The binary interface, as compiled plugins have it on 64-bit machines.
+static_assert(sizeof(UnityVulkanInstance) == 120 && offsetof(UnityVulkanInstance, queueFamilyIndex) == 48);
+static_assert(sizeof(UnityVulkanMemory) == 72 && offsetof(UnityVulkanMemory, memoryTypeIndex) == 36);
+static_assert(sizeof(UnityVulkanImage) == 160 && offsetof(UnityVulkanImage, extent) == 96);
+static_assert(offsetof(UnityVulkanImage, samples) == 116 && offsetof(UnityVulkanImage, mipCount) == 124);
+static_assert(sizeof(UnityVulkanRecordingState) == 88 && offsetof(UnityVulkanRecordingState, subPassIndex) == 32);
+static_assert(offsetof(UnityVulkanRecordingState, safeFrameNumber) == 48);
+static_assert(sizeof(UnityVulkanPluginEventConfig) == 12);
+static_assert(sizeof(IUnityGraphicsVulkan) == 14 * sizeof(void*) && sizeof(IUnityGraphicsVulkanV2) == 16 * sizeof(void*));
+
+// As the scripts' structs are laid out (scripts_test.sh).
+static_assert(sizeof(GpgpUnityBudgets) == 20 && sizeof(GpgpUnityText) == 48 && sizeof(GpgpUnityItem) == 32 &&
+              sizeof(GpgpUnityCanvas) == 48);
+
+constexpr char kSvg[] = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>"
+                        "<rect width='100' height='50' fill='#2040a0'/><circle cx='50' cy='50' r='40' "
+                        "fill='#c03020' fill-opacity='0.5'/></svg>";
+
+std::vector<char> fontBytes() {
+  std::ifstream stream(GPGP_TEST_DATA "/fetched/fonts/DejaVuSans.ttf", std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The plugin's functions, as a script has them.
+struct Script {
+  explicit Script(FakeUnity& unity)
+      : getState(unity.symbol<decltype(&gpgpUnityGetState)>("gpgpUnityGetState")),
+        takeMessage(unity.symbol<decltype(&gpgpUnityTakeMessage)>("gpgpUnityTakeMessage")),
+        getEvent(unity.symbol<decltype(&gpgpUnityGetEvent)>("gpgpUnityGetEvent")),
+        getEventId(unity.symbol<decltype(&gpgpUnityGetEventId)>("gpgpUnityGetEventId")),
+        setBudgets(unity.symbol<decltype(&gpgpUnitySetBudgets)>("gpgpUnitySetBudgets")),
+        createDrawing(unity.symbol<decltype(&gpgpUnityCreateDrawing)>("gpgpUnityCreateDrawing")),
+        getBox(unity.symbol<decltype(&gpgpUnityGetBox)>("gpgpUnityGetBox")),
+        createFont(unity.symbol<decltype(&gpgpUnityCreateFont)>("gpgpUnityCreateFont")),
+        createText(unity.symbol<decltype(&gpgpUnityCreateText)>("gpgpUnityCreateText")),
+        setText(unity.symbol<decltype(&gpgpUnitySetText)>("gpgpUnitySetText")),
+        createCanvas(unity.symbol<decltype(&gpgpUnityCreateCanvas)>("gpgpUnityCreateCanvas")),
+        setCanvas(unity.symbol<decltype(&gpgpUnitySetCanvas)>("gpgpUnitySetCanvas")),
+        destroy(unity.symbol<decltype(&gpgpUnityDestroy)>("gpgpUnityDestroy")) {}
+  decltype(&gpgpUnityGetState) getState;
+  decltype(&gpgpUnityTakeMessage) takeMessage;
+  decltype(&gpgpUnityGetEvent) getEvent;
+  decltype(&gpgpUnityGetEventId) getEventId;
+  decltype(&gpgpUnitySetBudgets) setBudgets;
+  decltype(&gpgpUnityCreateDrawing) createDrawing;
+  decltype(&gpgpUnityGetBox) getBox;
+  decltype(&gpgpUnityCreateFont) createFont;
+  decltype(&gpgpUnityCreateText) createText;
+  decltype(&gpgpUnitySetText) setText;
+  decltype(&gpgpUnityCreateCanvas) createCanvas;
+  decltype(&gpgpUnitySetCanvas) setCanvas;
+  decltype(&gpgpUnityDestroy) destroy;
+
+  std::vector<std::string> messages() const {
+    std::vector<std::string> all;
+    char text[512];
+    while (takeMessage(text, sizeof text) > 0) all.emplace_back(text);
+    return all;
+  }
+};
+
+struct UnityTest : testing::Test {
+  std::unique_ptr<FakeUnity> unity;
+  std::unique_ptr<Script> script;
+
+  void start(const test::FakeUnityOptions& options = {}) {
+    FakeUnity::validation().clear();
+    unity = std::make_unique<FakeUnity>(GPGP_UNITY_PLUGIN, options);
+    script = std::make_unique<Script>(*unity);
+  }
+  void frame(int32_t canvas) {
+    unity->frame(reinterpret_cast<UnityRenderingEventAndData>(script->getEvent()),
+                 {{script->getEventId(), reinterpret_cast<void*>(static_cast<intptr_t>(canvas))}});
+  }
+  void TearDown() override {
+    if (!unity) return;
+    for (const std::string& message : script->messages()) ADD_FAILURE() << message;
+    const std::vector<std::string> violations = unity->violations();
+    unity.reset(); // what was not destroyed is a validation message now
+    for (const std::string& violation : violations) ADD_FAILURE() << "the plugin " << violation;
+    for (const std::string& message : FakeUnity::validation()) ADD_FAILURE() << message;
+  }
+  static void expectMessage(const std::vector<std::string>& messages, const char* part) {
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].find(part), std::string::npos) << messages[0];
+  }
+};
+
+GpgpUnityItem item(int32_t object, float scale, float x, float y) { return {object, {scale, 0, 0, scale, x, y}, 1}; }
+
+/// The same with gpgp alone: a drawing, and a text below it.
+std::vector<uint8_t> drawDirectly(FakeUnity& unity, uint32_t width, uint32_t height, const GpgpUnityText& words) {
+  auto info = init<GpgpContextCreateInfo>();
+  info.instance = unity.instance();
+  info.physicalDevice = unity.physicalDevice();
+  info.device = unity.device();
+  info.getInstanceProcAddr = vkGetInstanceProcAddr;
+  Context context = *Context::create(info);
+  auto source = init<GpgpSvgSource>();
+  source.name = "svg";
+  source.data = kSvg;
+  source.size = sizeof kSvg - 1;
+  const Blob blob = *compileSvg(source);
+  auto drawingInfo = init<GpgpDrawingCreateInfo>();
+  drawingInfo.data = blob.data();
+  drawingInfo.size = blob.size();
+  Drawing drawing = *Drawing::create(context, drawingInfo);
+  const std::vector<char> bytes = fontBytes();
+  auto fontInfo = init<GpgpFontCreateInfo>();
+  fontInfo.data = bytes.data();
+  fontInfo.size = bytes.size();
+  Font font = *Font::create(fontInfo);
+  Shaper shaper = *Shaper::create();
+  Layout layout = *shaper.layout();
+  const GpgpFont fonts[] = {font};
+  auto text = init<GpgpTextInfo>();
+  text.text = words.text;
+  text.size = static_cast<size_t>(words.size);
+  text.style.fonts = fonts;
+  text.style.fontCount = 1;
+  text.style.size = words.pixels;
+  std::copy_n(words.color, 4, text.style.color);
+  EXPECT_EQ(layout.set(text), GPGP_SUCCESS);
+  integration::GlyphCache glyphs;
+  EXPECT_EQ(glyphs.create(context, "direct"), GPGP_SUCCESS);
+  std::vector<GpgpGlyphInstance> instances;
+  EXPECT_EQ(glyphs.place(*layout.info(), 0, 0, 1, instances), GPGP_SUCCESS);
+  auto canvasInfo = init<GpgpCanvasCreateInfo>();
+  canvasInfo.base.queueFamily = unity.family();
+  Canvas canvas = *Canvas::create(context, canvasInfo);
+  EXPECT_EQ(canvas.prewarm(), GPGP_SUCCESS);
+  FakeTexture& texture = *unity.makeTexture(width, height);
+  VkImageViewCreateInfo viewInfo{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+  viewInfo.image = texture.image;
+  viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  viewInfo.format = texture.format;
+  viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  VkImageView view = VK_NULL_HANDLE;
+  EXPECT_EQ(vkCreateImageView(unity.device(), &viewInfo, nullptr, &view), VK_SUCCESS);
+  const GpgpFrame frame{1, 0};
+  EXPECT_EQ(context.advance(frame), GPGP_SUCCESS);
+  GpgpCanvasItem items[2] = {{drawing, {1, 0, 0, 1, 10, 10}, 1}, glyphs.item(instances)};
+  items[1].transform[4] = 10;
+  items[1].transform[5] = 110;
+  auto record = init<GpgpCanvasInfo>();
+  record.width = width;
+  record.height = height;
+  record.items = items;
+  record.itemCount = 2;
+  record.target = {texture.image, view, texture.format, 0, 0, width, height, {},
+                   {VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_GENERAL}};
+  unity.submit([&](VkCommandBuffer commands) {
+    EXPECT_TRUE(context.recordUpload(commands, frame));
+    EXPECT_EQ(canvas.recordPrepare(commands, frame, record), GPGP_SUCCESS);
+  });
+  texture.layout = VK_IMAGE_LAYOUT_GENERAL;
+  texture.stages = VK_PIPELINE_STAGE_TRANSFER_BIT;
+  std::vector<uint8_t> pixels = unity.read(texture);
+  vkDestroyImageView(unity.device(), view, nullptr);
+  return pixels;
+}
+
+TEST_F(UnityTest, CanvasesInARenderTexture) {
+  start();
+  EXPECT_EQ(unity->hooksTaken(), 1u);
+  EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
+  EXPECT_TRUE(unity->synchronization2()) << "the hook enables it";
+  const UnityVulkanPluginEventConfig* config = unity->config(script->getEventId());
+  ASSERT_TRUE(config);
+  EXPECT_EQ(config->renderPassPrecondition, kUnityVulkanRenderPass_EnsureOutside);
+  EXPECT_EQ(config->graphicsQueueAccess, kUnityVulkanGraphicsQueueAccess_DontCare);
+  EXPECT_TRUE(config->flags & kUnityVulkanEventConfigFlag_ModifiesCommandBuffersState);
+
+  const int32_t drawing = script->createDrawing(kSvg, sizeof kSvg - 1, 0);
+  ASSERT_GT(drawing, 0);
+  float box[4] = {};
+  EXPECT_EQ(script->getBox(drawing, box), GPGP_SUCCESS);
+  EXPECT_EQ(box[2], 100);
+  const std::vector<char> bytes = fontBytes();
+  const int32_t font = script->createFont(bytes.data(), static_cast<int32_t>(bytes.size()));
+  ASSERT_GT(font, 0);
+  const GpgpUnityText words{"gpgp", 4, font, 30, {1, 1, 1, 1}, 0, 0};
+  const int32_t text = script->createText(&words);
+  ASSERT_GT(text, 0);
+  EXPECT_EQ(script->getBox(text, box), GPGP_SUCCESS);
+  EXPECT_GT(box[2], 60);
+  const int32_t canvas = script->createCanvas();
+  FakeTexture& texture = *unity->makeTexture(120, 160);
+  const GpgpUnityItem items[] = {item(drawing, 1, 10, 10), item(text, 1, 10, 110)};
+  GpgpUnityCanvas info{&texture, 0, {}, items, 2};
+  EXPECT_EQ(script->setCanvas(canvas, &info), GPGP_SUCCESS);
+  for (int i = 0; i < 8; ++i) frame(canvas); // numbers far from 1, three in flight
+  const std::vector<uint8_t> pixels = unity->read(texture);
+  if (const char* folder = std::getenv("GPGP_UNITY_PICTURES"))
+    host::writePng(std::string(folder) + "/unity.png", {120, 160, pixels});
+  EXPECT_EQ(pixels, drawDirectly(*unity, 120, 160, words));
+
+  // Flipped: the same, the first row last.
+  info.flags = GPGP_UNITY_FLIP;
+  EXPECT_EQ(script->setCanvas(canvas, &info), GPGP_SUCCESS);
+  frame(canvas);
+  const std::vector<uint8_t> flipped = unity->read(texture);
+  uint64_t difference = 0;
+  for (uint32_t y = 0; y < 160; ++y)
+    for (uint32_t x = 0; x < 480; ++x)
+      difference += static_cast<uint64_t>(std::abs(flipped[(159 - y) * 480 + x] - pixels[y * 480 + x]));
+  EXPECT_LT(difference, 160u * 480 / 4);
+  EXPECT_NE(flipped, pixels);
+
+  // Another text, another texture, and the objects go while frames are in flight.
+  const GpgpUnityText other{"x", 1, font, 30, {1, 0, 0, 1}, 0, 0};
+  EXPECT_EQ(script->setText(text, &other), GPGP_SUCCESS);
+  FakeTexture& wide = *unity->makeTexture(64, 64, VK_FORMAT_R16G16B16A16_SFLOAT);
+  const GpgpUnityItem one = item(text, 1, 0, 0);
+  info = {&wide, GPGP_UNITY_ENCODE_SRGB, {0, 0, 0.5f, 1}, &one, 1};
+  EXPECT_EQ(script->setCanvas(canvas, &info), GPGP_SUCCESS);
+  frame(canvas);
+  const std::vector<uint8_t> halves = unity->read(wide);
+  uint16_t blue = 0;
+  std::memcpy(&blue, &halves[(63 * 64 + 63) * 8 + 4], 2);
+  EXPECT_EQ(blue, 0x3800u); // 0.5
+  script->destroy(drawing);
+  script->destroy(text);
+  script->destroy(font);
+  frame(canvas);
+  script->destroy(canvas);
+  frame(canvas);
+}
+
+TEST_F(UnityTest, WhatCannotBeDrawnIsSaidOnceAndNothingIsRecorded) {
+  start({.v2 = false, .begin = false}); // the older interface's hook
+  EXPECT_EQ(unity->hooksTaken(), 1u);
+  const GpgpUnityBudgets budgets{64, 64, 1024, 1024, 64};
+  EXPECT_EQ(script->setBudgets(&budgets), GPGP_SUCCESS);
+  EXPECT_EQ(script->getState(), GPGP_UNITY_OFF);
+  unity->initialize();
+  ASSERT_EQ(script->getState(), GPGP_UNITY_READY);
+  const int32_t canvas = script->createCanvas();
+  const auto show = [&](void* texture) {
+    const GpgpUnityCanvas info{texture, 0, {1, 1, 1, 1}, nullptr, 0};
+    EXPECT_EQ(script->setCanvas(canvas, &info), GPGP_SUCCESS);
+    frame(canvas);
+    frame(canvas);
+  };
+  show(unity->makeTexture(16, 16, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT));
+  expectMessage(script->messages(), "enableRandomWrite");
+  show(unity->makeTexture(16, 16, VK_FORMAT_R32_SFLOAT));
+  expectMessage(script->messages(), "R8G8B8A8_UNorm");
+  int stranger = 0;
+  show(&stranger);
+  expectMessage(script->messages(), "none of Unity's");
+  show(nullptr);
+  EXPECT_TRUE(script->messages().empty());
+  show(unity->makeTexture(128, 16)); // beyond the budgets: gpgp says it, each time
+  EXPECT_EQ(script->messages().size(), 2u);
+
+  FakeTexture& texture = *unity->makeTexture(16, 16);
+  show(&texture);
+  EXPECT_EQ(unity->read(texture)[0], 255);
+  // Frames pass and none is safe: canvases wait, and go on when they may.
+  unity->holdSafe(true);
+  const GpgpUnityCanvas black{&texture, 0, {0, 0, 0, 1}, nullptr, 0};
+  for (int i = 0; i < 3; ++i) frame(0);
+  EXPECT_EQ(script->setCanvas(canvas, &black), GPGP_SUCCESS);
+  frame(canvas);
+  frame(canvas);
+  expectMessage(script->messages(), "frames behind");
+  EXPECT_EQ(unity->read(texture)[0], 255);
+  unity->holdSafe(false);
+  frame(canvas);
+  EXPECT_EQ(unity->read(texture)[0], 0);
+
+  EXPECT_LT(script->createDrawing("no SVG", 6, 0), 0);
+  EXPECT_LT(script->createDrawing("no drawing", 10, 1), 0);
+  EXPECT_LT(script->createDrawing(nullptr, 10, 1), 0);
+  EXPECT_LT(script->createFont("no font", 7), 0);
+  const GpgpUnityText words{"text", 4, 99, 30, {}, 0, 0};
+  EXPECT_LT(script->createText(&words), 0);
+  EXPECT_EQ(script->messages().size(), 4u);
+  EXPECT_LT(script->setCanvas(12345, &black), 0);
+  script->destroy(12345);
+
+  // The renderer goes and comes back: objects are gone, the plugin works on.
+  unity->shutdown();
+  EXPECT_EQ(script->getState(), GPGP_UNITY_OFF);
+  frame(canvas);
+  unity->initialize();
+  EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
+  EXPECT_LT(script->setCanvas(canvas, &black), 0);
+  EXPECT_GT(script->createCanvas(), canvas);
+}
+
+TEST_F(UnityTest, LoadedTooLateOrWithoutVulkanItStaysOff) {
+  start({.preload = false});
+  EXPECT_EQ(script->getState(), GPGP_ERROR_MISSING_FEATURE);
+  expectMessage(script->messages(), "on startup");
+  const int32_t canvas = script->createCanvas();
+  frame(canvas);
+  TearDown();
+  start({.renderer = kUnityGfxRendererOpenGLCore});
+  EXPECT_EQ(script->getState(), GPGP_UNITY_OFF);
+  EXPECT_LT(script->createDrawing(kSvg, sizeof kSvg - 1, 0), 0);
+  frame(script->createCanvas());
+}
+
+} // namespace
