@@ -28,7 +28,8 @@ typedef struct GpgpListCreateInfo {
 } GpgpListCreateInfo;
 #define GPGP_LIST_CREATE_INFO_INIT GPGP_INIT(GpgpListCreateInfo, GPGP_STRUCTURE_LIST_CREATE_INFO)
 
-/** Makes an empty list. Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_HOST_MEMORY. @threads context @lifetime call */
+/** Makes an empty list. Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_HOST_MEMORY.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateList(GpgpContext context, const GpgpListCreateInfo* info, GpgpList* list);
 
 /** NULL is ignored. Records that show it are not affected. @threads context */
@@ -40,16 +41,16 @@ GPGP_API GpgpResult GPGP_CALL gpgpResetList(GpgpList list);
 enum { GPGP_MAX_LIST_DEPTH = 64 }; /**< pushes in each other; of these, GPGP_MAX_CLIP_DEPTH clips */
 
 /** What is added from here on lies in a space of its own, which this map takes to the space so far: x' = t0 x + t2 y +
- *  t4, y' = t1 x + t3 y + t5, and, where perspective (3 numbers) is not NULL, both divided by w = p0 x + p1 y + p2 as in
- *  GpgpCanvasItem. Moves and even scales cost nothing; each other change of transform counts for maxDrawings.
+ *  t4, y' = t1 x + t3 y + t5, and, where perspective (3 numbers) is not NULL, both divided by w = p0 x + p1 y + p2 as
+ *  in GpgpCanvasItem. Moves and even scales cost nothing; each other change of transform counts for maxDrawings.
  *  Errors: INVALID_ARGUMENT (a number is not finite; too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushTransform(GpgpList list, const float* transform, const float* perspective);
 
-/** What is added from here on shows only inside of the box (left, top, right, bottom, in the current space), and of those
- *  around it. Round corners, if radii is not NULL: as GpgpListShape's. Where box and canvas are parallel and corners are not
- *  round, a scissor that costs next to nothing; else the clip counts as a shape and costs the pixels on its edge more.
- *  Either way edges are smooth, sample by sample, as those of any path. Errors: INVALID_ARGUMENT (not a number, right
- *  below left; too deep). @threads handle @lifetime call */
+/** What is added from here on shows only inside of the box (left, top, right, bottom, in the current space), and of
+ *  those around it. Round corners, if radii is not NULL: as GpgpListShape's. Where box and canvas are parallel and
+ *  corners are not round, a scissor that costs next to nothing; else the clip counts as a shape and costs the pixels
+ *  on its edge more. Either way edges are smooth, sample by sample, as those of any path. Errors: INVALID_ARGUMENT
+ *  (not a number, right below left; too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, const float* radii);
 
 /** Multiplies the alpha of each thing that is added from here on, one by one: what overlaps shows through.
@@ -87,7 +88,7 @@ typedef struct GpgpListShape {
   GpgpCap cap;    /**< a line's ends */
   float color[4]; /**< linear RGB, straight alpha, 0 to 1; multiplies image and gradient */
   const GpgpGradient* gradient; /**< NULL: none */
-  const GpgpListImage* image;  /**< NULL: none; not for lines, without a gradient */
+  const GpgpListImage* image;   /**< NULL: none; not for lines, without a gradient */
   uint64_t id;                  /**< the engine's, for gpgpHitTest */
 } GpgpListShape;
 
@@ -110,16 +111,16 @@ GPGP_API GpgpResult GPGP_CALL gpgpAddDrawing(GpgpList list, GpgpAsset drawing, u
 
 /** A plane in the world that a drawing, text or list lies on. */
 typedef struct GpgpPanel {
-  float corner[3];       /**< where its 0, 0 lies, world space */
-  float across[3];       /**< from there to its 1, 0: how long and which way a unit along x is */
-  float down[3];         /**< likewise along y */
+  float corner[3]; /**< where its 0, 0 lies, world space */
+  float across[3]; /**< from there to its 1, 0: how long and which way a unit along x is */
+  float down[3];   /**< likewise along y */
 } GpgpPanel;
 
-/** How a camera sees a panel. Writes transform, perspective and scissor of the item, so that it shows in the viewport (x,
- *  y, width, height: the part of the canvas that is this camera's), and, where clip is not NULL, a matrix for
- *  GpgpCanvasDrawInfo::clip, or secondClip: the viewport goes over the whole target, each pixel at the panel's depth, so
- *  that a depth test puts the panel behind and before the scene as it should be. viewProjection: world to clip space,
- *  column-major; any depth range.
+/** How a camera sees a panel. Writes transform, perspective and scissor of the item, so that it shows in the viewport
+ *  (x, y, width, height: the part of the canvas that is this camera's), and, where clip is not NULL, a matrix for
+ *  GpgpCanvasDrawInfo::clip, or secondClip: the viewport goes over the whole target, each pixel at the panel's depth,
+ *  so that a depth test puts the panel behind and before the scene as it should be. viewProjection: world to clip
+ *  space, column-major; any depth range.
  *  Errors: INVALID_ARGUMENT (NULL, no size, a number that is not finite). @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPlacePanel(const GpgpPanel* panel, const float* viewProjection,
                                              const uint32_t* viewport, GpgpCanvasItem* item, float* clip);
@@ -148,8 +149,8 @@ typedef struct GpgpHit {
 } GpgpHit;
 
 /** The topmost path or shape whose inside holds the point, under the transforms of items and lists, within their clips.
- *  Colours, gradients, opacity and what an image shows do not count: what is painted with alpha 0 is hit as well. Drawings
- *  and glyphs are asked by the curves that are drawn, without chords and samples.
+ *  Colours, gradients, opacity and what an image shows do not count: what is painted with alpha 0 is hit as well.
+ *  Drawings and glyphs are asked by the curves that are drawn, without chords and samples.
  *  Errors: INVALID_ARGUMENT (a drawing that is neither hitTestable nor editable, a glyph that was evicted, a list with
  *  pushes that are not popped), INVALID_HANDLE. Not beside gpgpAddGlyphs of a set, or changes of a list, that is shown.
  *  @threads any @lifetime call */

@@ -213,9 +213,9 @@ typedef struct GpgpDrawingCreateInfo {
   GpgpAsset base;
   const GpgpPathEdit* edits; /**< only with base; of two with the same index the later counts */
   uint32_t editCount;
-  VkBool32 editable; /**< can be a base: keeps its tables in host memory, about twice its size on the device */
-  VkBool32 hitTestable; /**< gpgpHitTest finds its paths: keeps its outlines in host memory, about its size on the device;
-                             editable ones have them */
+  VkBool32 editable;    /**< can be a base: keeps its tables in host memory, about twice its size on the device */
+  VkBool32 hitTestable; /**< gpgpHitTest finds its paths: keeps its outlines in host memory, about its size on the
+                             device; editable ones have them */
 } GpgpDrawingCreateInfo;
 #define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 
@@ -305,9 +305,9 @@ typedef struct GpgpCanvasCreateInfo {
   uint32_t maxPatches;          /**< CPatches in one record, all drawings and their instances; 0: 262144 */
   uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
                                 each; 0: 131072 */
-  uint32_t maxDrawings;    /**< items in one record, and what lists have of drawings, clips, and changes of transform and
-                                clip (ui.h); 0: 64, at most 65536. They may show at most 8 different drawings and glyph
-                                sets */
+  uint32_t maxDrawings;    /**< items in one record, and what lists have of drawings, clips, and changes of transform
+                                and clip (ui.h); 0: 64, at most 65536. They may show at most 8 different drawings and
+                                glyph sets */
   uint32_t maxGlyphs;      /**< of all texts in one record, blanks not counted; 176 bytes each, 48 of them once more for
                                 every record in flight; 0: 1024, at most 1048576 */
   uint32_t maxShapes;      /**< of all lists in one record, as many of them with an image or gradient, and twice as many
@@ -411,17 +411,17 @@ typedef struct GpgpCanvasDrawInfo {
   const GpgpTargetInfo* target; /**< equal to one of those given to gpgpPrewarm */
   float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
   uint32_t width, height;       /**< of the part of the canvas that is drawn, pixels */
-  const float* secondClip;      /**< multiview, for view 1: 16 numbers as clip; NULL: the same */
-  uint32_t secondX;             /**< multiview: view 1 shows the part that begins at this column of the canvas; to both
-                                     matrices a part's own left column is 0 */
+  uint32_t x;                   /**< column of the canvas at which the part begins; to clip it is 0 */
+  uint32_t secondX;             /**< of a multiview target: the same for view 1 */
+  const float* secondClip;      /**< of a multiview target: 16 numbers for view 1, as clip; NULL: the same */
 } GpgpCanvasDrawInfo;
 #define GPGP_CANVAS_DRAW_INFO_INIT GPGP_INIT(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO)
 
 /** Draws what the last gpgpRecordPrepareCanvas into this view left, as a rectangle blended premultiplied
  *  (ONE, ONE_MINUS_SRC_ALPHA), without filtering at one canvas pixel per pixel. The engine has set viewport and
- *  scissor. Any number of times per prepare. Views 0 and 1 of a multiview target (GpgpTargetInfo::viewMask, GPGP_FEATURE_MULTIVIEW) may
- *  show different parts, so that one record holds both eyes. NOT_READY: nothing was prepared, or the target was not
- *  prewarmed.
+ *  scissor. Any number of times per prepare. Views 0 and 1 of a multiview target (GpgpTargetInfo::viewMask,
+ *  GPGP_FEATURE_MULTIVIEW) may show different parts, so that one record holds both eyes. NOT_READY: nothing was
+ *  prepared, or the target was not prewarmed.
  *  @threads handle @lifetime call @pass inside
  *  @state graphics pipeline, graphics descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,

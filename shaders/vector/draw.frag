@@ -8,6 +8,6 @@ layout(location = 0) out vec4 color;
 
 void main() {
   const uvec2 pixel = min(uvec2(max(at, vec2(0))), size.xy - 1);
-  const uvec2 packed = view[pixel.y * size.z + pixel.x + DRAWN_VIEW * size.w];
+  const uvec2 packed = view[pixel.y * size.z + pixel.x + begins[DRAWN_VIEW]];
   color = vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
 }

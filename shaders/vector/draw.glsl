@@ -7,5 +7,6 @@
 #endif
 layout(push_constant) uniform Draw {
   vec4 columns[6]; // three for each view
-  uvec4 size;      // width, height, row stride, where the second view's part begins
+  uvec4 size;      // width, height, row stride
+  uvec2 begins;    // of each view: the column at which its part begins
 };

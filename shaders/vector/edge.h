@@ -11,8 +11,8 @@
 // the canvas, and the outlines are closed along it where it passes left of the canvas: all that then counts are the
 // rows that each cut turns over (placeItem in src/vector/raster/place.h chooses the line).
 //
-// A scissor moves what lies outside of it to its edge: outlines stay closed, and inside it nothing changes. Crossings go
-// to its nearer side, and ends of chords above or below it to its left corners.
+// A scissor moves what lies outside of it to its edge: outlines stay closed, and inside it nothing changes. Crossings
+// go to its nearer side, and ends of chords above or below it to its left corners.
 //
 // Rows are sample rows: n of them in a pixel, one sample in each. Columns are pixels; -1 stands for all left of the
 // canvas. Only + - * on precise floats and division by core/math.h: CPU and GPU agree on every bit.

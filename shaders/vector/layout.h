@@ -62,8 +62,8 @@ struct LayerRecord {
 // t with radius(t) >= 0 at which the point lies on the circle that moves from the focus (t = 0) to the unit circle
 // around 0 (t = 1). Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture
 // coordinates, and firstStop is the image, from the item's first one on; stopCount is 0. For kPaintSlices they lead to
-// the destination (place p along x, say), and `slices` is the first of two stops: between two places p and q the texture
-// coordinate is that of p plus (p - place) times a slope, before p and after q with slopes of their own.
+// the destination (place p along x, say), and `slices` is the first of two stops: between two places p and q the
+// texture coordinate is that of p plus (p - place) times a slope, before p and after q with slopes of their own.
 struct PaintRecord {
   vec4 matrix;
   vec4 origin;               // x, y; focus x, y
@@ -126,8 +126,9 @@ struct PlacementRecord {
   uint firstSegment, firstPath, segments, paths; // as an item's
 };
 
-// A rectangle with round corners, or what lies between two of them, in a frame of its own: the point (x, y) of the frame
-// lies at origin + x axis + y (-axis.y, axis.x). Radii are of the corners top left, top right, bottom right, bottom left.
+// A rectangle with round corners, or what lies between two of them, in a frame of its own: the point (x, y) of the
+// frame lies at origin + x axis + y (-axis.y, axis.x). Radii are of the corners top left, top right, bottom right,
+// bottom left.
 struct ShapeRecord {
   vec4 box;     // left, top, right, bottom
   vec4 radii;   // along x
@@ -155,8 +156,8 @@ struct PlacedPath {
   uint left, top, right, bottom; // the box of its tiles, right and bottom exclusive
   uint firstWord;                // of its tile words; one row of tiles has wordsOf(left, right) of them
   uint item, paint;              // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
-  uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither; and
-                                 // kItemClipped where its item has a clip
+  uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither;
+                                 // and kItemClipped where its item has a clip
   vec4 color;                    // premultiplied, times the item's opacity
 };
 

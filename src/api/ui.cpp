@@ -126,8 +126,7 @@ GpgpResult GPGP_CALL gpgpHitTest(GpgpContext handle, const GpgpHitTestInfo* info
                          item.glyphCount);
       if (!allFinite(item.scissor))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].scissor holds a number that is not finite", i - 1);
-      const auto hits =
-          hitItem(item, *asset, static_cast<double>(info->x), static_cast<double>(info->y), found);
+      const auto hits = hitItem(item, *asset, static_cast<double>(info->x), static_cast<double>(info->y), found);
       if (!hits) return makeError(hits.error().code, "items[%u]%s", i - 1, hits.error().text);
       if (!*hits) continue;
       found.item = i - 1;

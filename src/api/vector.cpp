@@ -45,9 +45,8 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     };
     auto made = make();
     if (!made) return made.error();
-    auto asset =
-        DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE,
-                             info->hitTestable != VK_FALSE, base, edits);
+    auto asset = DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE,
+                                      info->hitTestable != VK_FALSE, base, edits);
     if (!asset) return asset.error();
     *drawing = adopt<GpgpAsset>(**context, std::move(*asset));
     return {};

@@ -274,8 +274,8 @@ Result<void> Worker::prewarm(const GpgpPrewarmInfo* info) {
   if (wanted && !draws_)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      draw_.vertex.spirv.empty() ? "a %s does not draw: targetCount must be 0"
-                                           : "this %s is on a queue family without "
-                                             "graphics: targetCount must be 0",
+                                                : "this %s is on a queue family without "
+                                                  "graphics: targetCount must be 0",
                      kindName(kind));
   for (uint32_t i = 0; i < wanted; ++i) {
     const GpgpTargetInfo& target = info->targets[i];

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The code of docs/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17 file.
+# The code of docs/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17 file;
+# and so does the C of docs/ui.md.
 # The links of README.md and of all pages beside that one lead to files, and docs/README.md lists each page.
 #
 #   pages_test.sh INCLUDE_DIRS PAGE CC CXX     INCLUDE_DIRS: separated by colons
@@ -17,6 +18,8 @@ code c | "$cc" -std=c99 "${flags[@]}" -x c -
 code cpp | "$cxx" -std=c++17 "${flags[@]}" -x c++ -
 failed=no
 docs=$(dirname "$page")
+[[ $(page=$docs/ui.md code c | grep -c .) -gt 15 ]] || { echo "no code in $docs/ui.md" >&2; exit 1; }
+page=$docs/ui.md code c | "$cc" -std=c99 "${flags[@]}" -x c -
 for from in "$docs/../README.md" "$docs"/*.md; do
   while read -r link; do
     target=$(dirname "$from")/${link%%#*}

@@ -106,9 +106,9 @@ GpgpResult useUi(GpgpContext context, const gpgp::GlyphSet& set, const gpgp::Dra
   const float map[6] = {1, 0, 0, 1, 0, 0}, box[4] = {0, 0, 8, 8};
   GpgpListShape shape = GpgpListShape();
   const GpgpGlyphInstance glyph = {1, 0, 0, 12, {0, 0, 0, 1}};
-  const GpgpResult codes[] = {list->reset(),       list->pushTransform(map), list->pushClip(box), list->pushOpacity(1),
-                              list->add(shape),    list->add(&shape, 1),     list->add(drawing),  list->pop(),
-                              list->add(set, &glyph, 1)};
+  const GpgpResult codes[] = {
+      list->reset(),        list->pushTransform(map), list->pushClip(box), list->pushOpacity(1),     list->add(shape),
+      list->add(&shape, 1), list->add(drawing),       list->pop(),         list->add(set, &glyph, 1)};
   for (const GpgpResult code : codes)
     if (code) return code;
   GpgpCanvasItem item = GpgpCanvasItem();

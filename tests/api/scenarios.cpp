@@ -17,8 +17,8 @@ void Scenario::destroy() {
   gpgpDestroyAsset(secondAsset);
   gpgpDestroyAsset(asset);
 #if defined(GPGP_WITH_VECTOR)
-  gpgpDestroyList(list);
-  list = nullptr;
+  gpgpDestroyList(shownList);
+  shownList = nullptr;
 #endif
   view = nullptr, worker = nullptr, asset = secondAsset = nullptr;
 }
@@ -172,16 +172,17 @@ public:
   /// A shape and the text within a clip that is turned, and within a scissor.
   GpgpResult createList(GpgpContext context) {
     const GpgpListCreateInfo info = GPGP_LIST_CREATE_INFO_INIT;
-    if (const GpgpResult result = gpgpCreateList(context, &info, &list); result != GPGP_SUCCESS) return result;
+    if (const GpgpResult result = gpgpCreateList(context, &info, &shownList); result != GPGP_SUCCESS) return result;
     GpgpListShape shape{};
     shape.kind = GPGP_LIST_ELLIPSE;
     shape.box[2] = shape.box[3] = 40;
     shape.color[1] = shape.color[3] = 0.5f;
     constexpr float kTurn[] = {0.8f, 0.6f, -0.6f, 0.8f, 20, 0}, kBox[] = {4, 4, 50, 50};
     for (const GpgpResult result :
-         {gpgpPushClip(list, kBox, nullptr), gpgpPushTransform(list, kTurn, nullptr), gpgpPushClip(list, kBox, nullptr),
-          gpgpAddShapes(list, &shape, 1), gpgpAddText(list, secondAsset, glyphs_, 5, 0), gpgpPopState(list),
-          gpgpPopState(list), gpgpPopState(list)})
+         {gpgpPushClip(shownList, kBox, nullptr), gpgpPushTransform(shownList, kTurn, nullptr),
+          gpgpPushClip(shownList, kBox, nullptr), gpgpAddShapes(shownList, &shape, 1),
+          gpgpAddText(shownList, secondAsset, glyphs_, 5, 0), gpgpPopState(shownList), gpgpPopState(shownList),
+          gpgpPopState(shownList)})
       if (result != GPGP_SUCCESS) return result;
     return GPGP_SUCCESS;
   }
@@ -208,7 +209,7 @@ public:
     items[1].glyphSet = secondAsset;
     items[1].glyphs = glyphs_;
     items[1].glyphCount = static_cast<uint32_t>(std::size(glyphs_));
-    items[2].list = list;
+    items[2].list = shownList;
     GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
     info.base = base;
     info.width = info.height = kSize;

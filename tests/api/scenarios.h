@@ -43,7 +43,7 @@ public:
   GpgpAsset asset = nullptr, secondAsset = nullptr; ///< the second: where the job needs two
   GpgpWorker worker = nullptr;
   GpgpView view = nullptr;
-  GpgpList list = nullptr;
+  GpgpList shownList = nullptr;
 };
 
 /// One device with validation for all tests of a process: drivers allow only so many instances, and they take time.

@@ -8,7 +8,10 @@
 #include "host/frames.h"
 #include "measuring.h"
 
+#include <gpgp/ui.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 
@@ -18,6 +21,78 @@ using namespace gpgp::test;
 using namespace gpgp::bench;
 
 double microseconds(Clock::duration d) { return milliseconds(d) * 1000; }
+
+#if defined(GPGP_WITH_VECTOR)
+/// What a shape of a list costs the CPU: to add it, one call each, to record it, and to ask for it at a point.
+/// Baseline: copying the 112 bytes that recording writes for it.
+void measureList(host::HeadlessDevice& device, int records) {
+  constexpr uint32_t kShapes = 10000;
+  GpgpContextCreateInfo info = scenarioContextInfo(device, nullptr);
+  GpgpContext context = nullptr;
+  expect(gpgpCreateContext(&info, &context), "gpgpCreateContext");
+  GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
+  canvasInfo.base = {"bench", device.graphics().family, 0, VK_FALSE};
+  canvasInfo.maxWidth = canvasInfo.maxHeight = 64;
+  canvasInfo.maxShapes = canvasInfo.maxPatches = kShapes;
+  GpgpWorker canvas = nullptr;
+  expect(gpgpCreateCanvas(context, &canvasInfo, &canvas), "gpgpCreateCanvas");
+  expect(gpgpPrewarm(canvas, nullptr), "gpgpPrewarm");
+  GpgpCanvasViewCreateInfo viewInfo = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
+  viewInfo.width = viewInfo.height = 64;
+  GpgpView view = nullptr;
+  expect(gpgpCreateCanvasView(context, &viewInfo, &view), "gpgpCreateCanvasView");
+  const GpgpListCreateInfo listInfo = GPGP_LIST_CREATE_INFO_INIT;
+  GpgpCanvasItem item{nullptr, {1, 0, 0, 1, 0, 0}, 1};
+  expect(gpgpCreateList(context, &listInfo, &item.list), "gpgpCreateList");
+  GpgpListShape shape{};
+  shape.box[2] = shape.box[3] = 1;
+  shape.radii[0] = 0.25f;
+  shape.color[3] = 1;
+  std::vector<std::array<char, 112>> from(kShapes), to(kShapes);
+  std::vector<double> adding, recording, asking, copying;
+  for (int i = 0; i < std::min(records, 50); ++i) {
+    const GpgpFrame frame{static_cast<uint64_t>(i) + 1, static_cast<uint64_t>(i)};
+    expect(gpgpAdvance(context, &frame), "gpgpAdvance");
+    const auto start = Clock::now();
+    gpgpResetList(item.list);
+    for (uint32_t k = 0; k < kShapes; ++k) {
+      shape.box[0] = static_cast<float>(k % 100), shape.box[1] = static_cast<float>(k / 100 % 100);
+      shape.box[2] = shape.box[0] + 1, shape.box[3] = shape.box[1] + 1;
+      expect(gpgpAddShapes(item.list, &shape, 1), "gpgpAddShapes");
+    }
+    adding.push_back(microseconds(Clock::now() - start));
+    device.submitAndWait([&](VkCommandBuffer cmd) {
+      expect(gpgpRecordUpload(context, cmd, &frame, 0, nullptr), "gpgpRecordUpload");
+      GpgpCanvasInfo canvasRecord = GPGP_CANVAS_INFO_INIT;
+      canvasRecord.width = canvasRecord.height = 64;
+      canvasRecord.items = &item;
+      canvasRecord.itemCount = 1;
+      canvasRecord.view = view;
+      const auto before = Clock::now();
+      expect(gpgpRecordPrepareCanvas(canvas, cmd, &frame, &canvasRecord), "gpgpRecordPrepareCanvas");
+      recording.push_back(microseconds(Clock::now() - before));
+    });
+    GpgpHitTestInfo hitInfo = GPGP_HIT_TEST_INFO_INIT;
+    hitInfo.items = &item;
+    hitInfo.itemCount = 1;
+    hitInfo.x = hitInfo.y = 0.5f; // the one at the bottom
+    GpgpHit hit{};
+    const auto before = Clock::now();
+    expect(gpgpHitTest(context, &hitInfo, &hit), "gpgpHitTest");
+    const auto middle = Clock::now();
+    for (uint32_t k = 0; k < kShapes; ++k) to[k] = from[k];
+    from[0][0] = to[kShapes - 1][1];
+    copying.push_back(microseconds(Clock::now() - middle));
+    asking.push_back(microseconds(middle - before));
+  }
+  const auto each = [](const std::vector<double>& times) { return median(times) * 1000 / kShapes; };
+  std::printf(
+      "list of %u shapes, ns a shape: add %.1f, record %.1f, hit test %.1f, copy 112 bytes %.1f; ratios %.1f, %.1f\n",
+      kShapes, each(adding), each(recording), each(asking), each(copying), each(adding) / each(copying),
+      each(recording) / each(copying));
+  gpgpDestroyContext(context);
+}
+#endif
 } // namespace
 
 int main(int argc, char** argv) {
@@ -84,5 +159,8 @@ int main(int argc, char** argv) {
     vk.vkDestroyQueryPool(device.device(), queries, nullptr);
     gpgpDestroyContext(context);
   }
+#if defined(GPGP_WITH_VECTOR)
+  measureList(device, records);
+#endif
   return 0;
 }

@@ -214,7 +214,8 @@ TEST_F(CanvasTest, ListsBeyondBudgetsLeaveOutTheLastAndSayHowMany) {
   for (uint32_t x = 0; x < 64; ++x) ASSERT_EQ(pixels[x].a, x < 40 ? 1.0f : 0.0f);
   // Changes of transform, and clips that are no scissors, are items.
   list.reset();
-  for (int i = 0; i < 5; ++i) list.push(turned(90, 1, static_cast<float>(i) * 10 + 10, 0)).add(rectangle(0, 0, 64, 8)).pop();
+  for (int i = 0; i < 5; ++i)
+    list.push(turned(90, 1, static_cast<float>(i) * 10 + 10, 0)).add(rectangle(0, 0, 64, 8)).pop();
   const auto turns = raster({list.item()}, 64, 64, 4, &report);
   EXPECT_EQ(report.items, 5u);
   EXPECT_EQ(report.itemsGiven, 3u);

@@ -54,7 +54,7 @@ bool panelAt(const GpgpPanel& panel, const glm::mat4& viewProjection, double px,
   return distance > 0;
 }
 
-struct Targets { // colour and depth, a layer an eye
+struct Targets { // colour and depth, a layer a view
   host::Image color, depth;
   VkRenderingAttachmentInfo colorAttachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO},
       depthAttachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
@@ -79,133 +79,151 @@ struct Targets { // colour and depth, a layer an eye
   }
 };
 const VkRect2D kBlock{{24, 12}, {20, 30}}; // the scene: a grey block that faces the camera
-constexpr float kBlockDepth = 0.885f;
+constexpr float kBlockDepth = 0.9f;
+
+/// A picture of the scene and the panel, against the depth of each.
+void expectPanel(const GpgpPanel& panel, const glm::mat4& viewProjection, const uint8_t* pixels) {
+  uint32_t before = 0, behind = 0;
+  for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    const uint32_t x = i % kWidth, y = i / kWidth;
+    const uint8_t* pixel = pixels + size_t(i) * 4;
+    bool inside = true, outside = true; // all of the pixel within the window's border, or beyond it
+    double depth = 0;
+    for (int k = 0; k < 5; ++k) {
+      double u = 0, v = 0;
+      const double px = x + (k == 4 ? 0.5 : k % 2), py = y + (k == 4 ? 0.5 : k / 2);
+      const bool seen = panelAt(panel, viewProjection, px, py, u, v, depth);
+      inside = inside && seen && u > 15 && u < 385 && v > 15 && v < 285;
+      outside = outside && (!seen || u < 0 || u > 400 || v < 0 || v > 300);
+    }
+    const bool block = x >= 24 && x < 44 && y >= 12 && y < 42;
+    const bool grey = pixel[0] == 137 && pixel[1] == 137 && pixel[2] == 137;
+    if (outside) {
+      ASSERT_EQ(block, grey) << x << " " << y;
+      ASSERT_EQ(pixel[3], block ? 255 : 0) << x << " " << y;
+    }
+    if (inside && !block) {
+      ASSERT_EQ(pixel[3], 255) << x << " " << y;
+    }
+    if (!inside || !block || std::abs(depth - static_cast<double>(kBlockDepth)) < 1e-5) continue;
+    const bool hidden = depth > static_cast<double>(kBlockDepth);
+    ASSERT_EQ(hidden, grey) << x << " " << y << ", depth " << depth;
+    ++(hidden ? behind : before);
+  }
+  EXPECT_GT(before, 50u);
+  EXPECT_GT(behind, 50u);
+}
 
 TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
   const GpgpFeatures features = device.contextCreateInfo().features;
   if (!(features & GPGP_FEATURE_DYNAMIC_RENDERING) || !(features & GPGP_FEATURE_MULTIVIEW))
     GTEST_SKIP() << "the device has no dynamic rendering or no multiview";
+  // lavapipe of Mesa 22.3 leaves view 1 of a multiview pass as it was cleared; there, the eyes' own passes are judged.
+  const bool judgesMultiview = device.properties().deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
   makeCanvas(128);
   TestList list(context);
   fillWindow(list);
   const GpgpPanel panel = tilted();
-  for (const uint32_t eyes : {1u, 2u}) {
+  const glm::mat4 cameras[] = {camera(-0.1f), camera(0.1f)};
+  std::vector<GpgpCanvasItem> items(2, list.item()); // side by side on one canvas
+  float clips[2][16];
+  for (uint32_t eye = 0; eye < 2; ++eye) {
+    const uint32_t viewport[] = {eye * kWidth, 0, kWidth, kHeight};
+    ASSERT_EQ(gpgpPlacePanel(&panel, glm::value_ptr(cameras[eye]), viewport, &items[eye], clips[eye]), GPGP_SUCCESS);
+  }
+  const GpgpView view = makeView(2 * kWidth, kHeight);
+  for (const bool multiview : {false, true}) {
     GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
     target.colorFormat = VK_FORMAT_R8G8B8A8_SRGB;
     target.depthFormat = VK_FORMAT_D32_SFLOAT;
-    target.viewMask = eyes == 2 ? 3 : 0;
+    target.viewMask = multiview ? 3 : 0;
     target.depthTest = VK_TRUE;
     target.depthCompare = VK_COMPARE_OP_LESS;
     GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
     prewarm.targets = &target;
     prewarm.targetCount = 1;
     ASSERT_EQ(gpgpPrewarm(canvas, &prewarm), GPGP_SUCCESS) << lastMessage();
-    const glm::mat4 cameras[] = {camera(eyes == 2 ? -0.1f : 0.0f), camera(0.1f)};
-    std::vector<GpgpCanvasItem> items;
-    float clips[2][16];
-    for (uint32_t eye = 0; eye < eyes; ++eye) { // side by side on one canvas
-      items.push_back(list.item());
-      const uint32_t viewport[] = {eye * kWidth, 0, kWidth, kHeight};
-      ASSERT_EQ(gpgpPlacePanel(&panel, glm::value_ptr(cameras[eye]), viewport, &items.back(), clips[eye]),
-                GPGP_SUCCESS);
-    }
-    const GpgpView view = makeView(eyes * kWidth, kHeight);
-    Targets targets(device, eyes);
+    const uint32_t passes = multiview ? 1 : 2;
+    std::vector<Targets> targets;
+    targets.reserve(2);
+    for (uint32_t pass = 0; pass < passes; ++pass) targets.emplace_back(device, multiview ? 2 : 1);
     const GpgpFrame frame = advance();
     device.submitAndWait([&](VkCommandBuffer commands) {
       ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
       GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-      info.width = eyes * kWidth;
+      info.width = 2 * kWidth;
       info.height = kHeight;
       info.items = items.data();
-      info.itemCount = eyes;
+      info.itemCount = 2;
       info.view = view;
       ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
-      for (const host::Image* image : {&targets.color, &targets.depth})
-        host::imageBarrier(device, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-      VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-      rendering.renderArea.extent = {kWidth, kHeight};
-      rendering.layerCount = 1;
-      rendering.viewMask = target.viewMask;
-      rendering.colorAttachmentCount = 1;
-      rendering.pColorAttachments = &targets.colorAttachment;
-      rendering.pDepthAttachment = &targets.depthAttachment;
-      const auto& vk = device.vk();
-      vk.vkCmdBeginRenderingKHR(commands, &rendering);
-      VkClearAttachment scene[2] = {};
-      scene[0].aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
-      for (float& channel : scene[0].clearValue.color.float32) channel = 0.25f;
-      scene[0].clearValue.color.float32[3] = 1;
-      scene[1].aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
-      scene[1].clearValue.depthStencil.depth = kBlockDepth;
-      const VkClearRect rect{kBlock, 0, 1};
-      vk.vkCmdClearAttachments(commands, 2, scene, 1, &rect);
-      const VkViewport viewport{0, 0, kWidth, kHeight, 0, 1};
-      const VkRect2D scissor{{0, 0}, {kWidth, kHeight}};
-      vk.vkCmdSetViewport(commands, 0, 1, &viewport);
-      vk.vkCmdSetScissor(commands, 0, 1, &scissor);
-      GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
-      draw.view = view;
-      draw.target = &target;
-      draw.width = kWidth;
-      draw.height = kHeight;
-      std::copy_n(clips[0], 16, draw.clip);
-      draw.secondClip = clips[1];
-      draw.secondX = kWidth;
-      EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
-      vk.vkCmdEndRenderingKHR(commands);
+      for (uint32_t pass = 0; pass < passes; ++pass) {
+        for (const host::Image* image : {&targets[pass].color, &targets[pass].depth})
+          host::imageBarrier(device, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+        VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+        rendering.renderArea.extent = {kWidth, kHeight};
+        rendering.layerCount = 1;
+        rendering.viewMask = target.viewMask;
+        rendering.colorAttachmentCount = 1;
+        rendering.pColorAttachments = &targets[pass].colorAttachment;
+        rendering.pDepthAttachment = &targets[pass].depthAttachment;
+        const auto& vk = device.vk();
+        vk.vkCmdBeginRenderingKHR(commands, &rendering);
+        VkClearAttachment scene[2] = {};
+        scene[0].aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+        for (float& channel : scene[0].clearValue.color.float32) channel = 0.25f;
+        scene[0].clearValue.color.float32[3] = 1;
+        scene[1].aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
+        scene[1].clearValue.depthStencil.depth = kBlockDepth;
+        const VkClearRect rect{kBlock, 0, 1};
+        vk.vkCmdClearAttachments(commands, 2, scene, 1, &rect);
+        const VkViewport viewport{0, 0, kWidth, kHeight, 0, 1};
+        const VkRect2D scissor{{0, 0}, {kWidth, kHeight}};
+        vk.vkCmdSetViewport(commands, 0, 1, &viewport);
+        vk.vkCmdSetScissor(commands, 0, 1, &scissor);
+        GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
+        draw.view = view;
+        draw.target = &target;
+        draw.width = kWidth;
+        draw.height = kHeight;
+        std::copy_n(clips[pass], 16, draw.clip);
+        draw.x = pass * kWidth;
+        draw.secondX = kWidth;
+        draw.secondClip = clips[1];
+        EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
+        draw.x = kWidth + 1;
+        EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_ERROR_INVALID_ARGUMENT);
+        vk.vkCmdEndRenderingKHR(commands);
+      }
     });
-    const auto bytes = host::downloadImage(device, targets.color, VK_IMAGE_LAYOUT_GENERAL);
-    ASSERT_EQ(bytes.size(), size_t(4) * kWidth * kHeight * eyes);
-    uint32_t before = 0, behind = 0;
-    for (uint32_t eye = 0; eye < eyes; ++eye) {
-      if (const char* folder = std::getenv("GPGP_TEST_PICTURES")) {
-        const auto layer = bytes.begin() + eye * 4 * kWidth * kHeight;
-        host::writePng(std::string(folder) + "/panel" + std::to_string(eyes) + std::to_string(eye) + ".png",
-                       {kWidth, kHeight, {layer, layer + 4 * kWidth * kHeight}});
-      }
-      for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
-        const uint32_t x = i % kWidth, y = i / kWidth;
-        const uint8_t* pixel = &bytes[(size_t(eye) * kWidth * kHeight + i) * 4];
-        // All of the pixel within the frame's border or the dark ground, or all of it outside.
-        bool inside = true, outside = true;
-        double depth = 0;
-        for (int k = 0; k < 5; ++k) {
-          double u = 0, v = 0;
-          const double px = x + (k == 4 ? 0.5 : k % 2), py = y + (k == 4 ? 0.5 : k / 2);
-          const bool seen = panelAt(panel, cameras[eye], px, py, u, v, depth);
-          inside = inside && seen && u > 15 && u < 385 && v > 15 && v < 285;
-          outside = outside && (!seen || u < 0 || u > 400 || v < 0 || v > 300);
-        }
-        const bool block = x >= 24 && x < 44 && y >= 12 && y < 42;
-        const bool grey = pixel[0] == 137 && pixel[1] == 137 && pixel[2] == 137, empty = pixel[3] == 0;
-        if (outside) {
-          ASSERT_EQ(block, grey) << x << " " << y << ", eye " << eye;
-          ASSERT_EQ(!block, empty) << x << " " << y << ", eye " << eye;
-        }
-        if (!inside || !block || std::abs(depth - static_cast<double>(kBlockDepth)) < 1e-5) continue;
-        const bool hidden = depth > static_cast<double>(kBlockDepth);
-        ASSERT_EQ(hidden, grey) << x << " " << y << ", eye " << eye << ", depth " << depth;
-        ++(hidden ? behind : before);
-      }
+    std::vector<uint8_t> bytes;
+    for (const Targets& t : targets) {
+      const auto pixels = host::downloadImage(device, t.color, VK_IMAGE_LAYOUT_GENERAL);
+      bytes.insert(bytes.end(), pixels.begin(), pixels.end());
     }
-    EXPECT_GT(before, 50 * eyes);
-    EXPECT_GT(behind, 50 * eyes);
-    // A point on the panel, seen by the last camera, is hit where it was drawn.
-    double u = 0, v = 0, depth = 0;
-    ASSERT_TRUE(panelAt(panel, cameras[eyes - 1], 20.5, 20.5, u, v, depth));
-    GpgpHitTestInfo hitInfo = GPGP_HIT_TEST_INFO_INIT;
-    hitInfo.items = items.data();
-    hitInfo.itemCount = eyes;
-    hitInfo.x = 20.5f + static_cast<float>((eyes - 1) * kWidth);
-    hitInfo.y = 20.5f;
-    GpgpHit hit{};
-    ASSERT_EQ(gpgpHitTest(context, &hitInfo, &hit), GPGP_SUCCESS);
-    EXPECT_EQ(hit.item, eyes - 1);
-    EXPECT_NEAR(hit.x, u, 0.01);
-    EXPECT_NEAR(hit.y, v, 0.01);
-    gpgpDestroyView(view);
+    ASSERT_EQ(bytes.size(), size_t(8) * kWidth * kHeight);
+    for (uint32_t eye = 0; eye < (multiview && !judgesMultiview ? 1u : 2u); ++eye) {
+      const uint8_t* layer = &bytes[size_t(eye) * 4 * kWidth * kHeight];
+      if (const char* folder = std::getenv("GPGP_TEST_PICTURES"))
+        host::writePng(std::string(folder) + "/panel" + (multiview ? "m" : "") + std::to_string(eye) + ".png",
+                       {kWidth, kHeight, {layer, layer + size_t(4) * kWidth * kHeight}});
+      expectPanel(panel, cameras[eye], layer);
+    }
   }
+  // What lies under a pixel of the right eye.
+  double u = 0, v = 0, depth = 0;
+  ASSERT_TRUE(panelAt(panel, cameras[1], 20.5, 20.5, u, v, depth));
+  GpgpHitTestInfo hitInfo = GPGP_HIT_TEST_INFO_INIT;
+  hitInfo.items = items.data();
+  hitInfo.itemCount = 2;
+  hitInfo.x = 20.5f + static_cast<float>(kWidth);
+  hitInfo.y = 20.5f;
+  GpgpHit hit{};
+  ASSERT_EQ(gpgpHitTest(context, &hitInfo, &hit), GPGP_SUCCESS);
+  EXPECT_EQ(hit.item, 1u);
+  EXPECT_NEAR(hit.x, u, 0.01);
+  EXPECT_NEAR(hit.y, v, 0.01);
+  gpgpDestroyView(view);
   GpgpTargetInfo many = GPGP_TARGET_INFO_INIT;
   many.colorFormat = VK_FORMAT_R8G8B8A8_SRGB;
   many.viewMask = 4;

@@ -48,7 +48,8 @@ private:
   }
 };
 
-inline GpgpListShape rectangle(float left, float top, float right, float bottom, std::array<float, 4> color = {1, 1, 1, 1}) {
+inline GpgpListShape rectangle(float left, float top, float right, float bottom,
+                               std::array<float, 4> color = {1, 1, 1, 1}) {
   GpgpListShape shape{};
   shape.kind = GPGP_LIST_RECTANGLE;
   std::copy_n(std::array{left, top, right, bottom}.data(), 4, shape.box);
@@ -108,12 +109,12 @@ inline std::array<float, 9> turned(float degrees, float scale, float x, float y)
   return {c, s, -s, c, x, y, 0, 0, 0};
 }
 inline const std::array<float, 9> kMaps[] = {{1, 0, 0, 1, 0, 0},
-                                      {0.8f, 0.6f, -0.6f, 0.8f, 30, -10},
-                                      {-0.7f, 0, 0, 1.3f, 80, -20},
-                                      {0, 1.1f, 0.9f, 0, 3, 1}, // mirrored along the diagonal
-                                      {1, 0, 0, 1, 0, 0, 0.004f, 0.002f, 0.8f},
-                                      {0.9f, 0, 0, 1, -20, 0, 0.01f, 0, -0.2f}, // behind the eye left of x = 20
-                                      {0.5f, 0.3f, 0.2f, 0.6f, -10, -30, 0.01f, 0.011f, -1}};
+                                             {0.8f, 0.6f, -0.6f, 0.8f, 30, -10},
+                                             {-0.7f, 0, 0, 1.3f, 80, -20},
+                                             {0, 1.1f, 0.9f, 0, 3, 1}, // mirrored along the diagonal
+                                             {1, 0, 0, 1, 0, 0, 0.004f, 0.002f, 0.8f},
+                                             {0.9f, 0, 0, 1, -20, 0, 0.01f, 0, -0.2f}, // behind the eye left of x = 20
+                                             {0.5f, 0.3f, 0.2f, 0.6f, -10, -30, 0.01f, 0.011f, -1}};
 
 inline void show(const char* name, const std::vector<Rgba>& pixels, uint32_t width, uint32_t height) {
   if (const char* folder = std::getenv("GPGP_TEST_PICTURES"))

@@ -87,7 +87,7 @@ TEST_F(CanvasTest, ScissorsCutSampleBySample) {
   makeCanvas(128);
   TestList list(context);
   const std::array<float, 4> boxes[] = {{17.3f, 11.6f, 71.8f, 60.4f},
-                                        {-20, 8, 50.5f, 64},   // down to the edge of a tile
+                                        {-20, 8, 50.5f, 64}, // down to the edge of a tile
                                         {31.9f, -5, 200, 32.2f},
                                         {40.1f, 33.3f, 40.6f, 33.9f}}; // less than a pixel
   for (uint32_t seed = 0; seed < 3; ++seed) {
@@ -200,7 +200,8 @@ TEST_F(CanvasTest, ListsComposeTransformsAndOpacityAndGoWithOtherItems) {
   GpgpCanvasItem first = place(box), second, third = place(drawing), fourth;
   std::copy_n(std::array{1.0f, 0.0f, 0.0f, 1.5f, 13.0f, 20.5f}.data(), 6, first.transform);
   first.opacity = 0.25f;
-  const std::vector<GpgpGlyphInstance> red{{index, 1, 2, 20, {1, 0, 0, 1}}}, green{{index, 60, 70, 30, {0, 1, 0, 0.5f}}};
+  const std::vector<GpgpGlyphInstance> red{{index, 1, 2, 20, {1, 0, 0, 1}}},
+      green{{index, 60, 70, 30, {0, 1, 0, 0.5f}}};
   second = first;
   second.drawing = nullptr;
   second.glyphSet = set;

@@ -121,9 +121,11 @@ std::array<uint32_t, 3> rows(uint32_t groups) { return {std::min(groups, 32768u)
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Worker(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
-      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072), maxWords_(std::max(maxEntries_, 65536u)),
-      budgets_{info.maxDrawings ? info.maxDrawings : 64, info.maxGlyphs ? info.maxGlyphs : 1024,
-               info.maxShapes ? info.maxShapes : 1024, info.maxPatches ? info.maxPatches : 262144},
+      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072),
+      maxWords_(std::max(maxEntries_, 65536u)), budgets_{info.maxDrawings ? info.maxDrawings : 64,
+                                                         info.maxGlyphs ? info.maxGlyphs : 1024,
+                                                         info.maxShapes ? info.maxShapes : 1024,
+                                                         info.maxPatches ? info.maxPatches : 262144},
       software_(owner.device.software), assets_(budgets_.items, &owner.host()), tables_(budgets_, &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
@@ -163,9 +165,9 @@ core::PassList Canvas::describe() const {
                      shapeBytes = budgets_.shapes * VkDeviceSize(sizeof(shader::ShapeRecord) + sizeof(PaintRecord) +
                                                                  2 * sizeof(StopRecord)) +
                                   budgets_.items * VkDeviceSize(sizeof(shader::ItemClipRecord));
-  const auto fromHost = list.add(
-      {"constants", core::ResourceKind::constants,
-       heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
+  const auto fromHost =
+      list.add({"constants", core::ResourceKind::constants,
+                heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
   const VkDeviceSize squares = VkDeviceSize(divide(maxWidth_, kSquare)) * divide(maxHeight_, kSquare);
@@ -197,9 +199,10 @@ core::PassList Canvas::describe() const {
     list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin_software}),
                   {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}}, kBegin);
   } else {
-    list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin}),
-                  {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}, {words, write}, {counters, write}},
-                  kBegin);
+    list.dispatch(
+        "begin", list.add(core::ShaderDesc{"begin", vector_begin}),
+        {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}, {words, write}, {counters, write}},
+        kBegin);
   }
   const auto dispatch = [&](const char* name, const core::ShaderDesc& shader, std::initializer_list<core::Use> uses,
                             uint32_t groups) -> core::Pass& {
@@ -239,15 +242,10 @@ core::PassList Canvas::describe() const {
              {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}, {chords, read}, {rowList, read}},
              kRows);
     for (uint32_t k = 0; k < 3; ++k) { // where the lists did not suffice
-      core::Pass& pass =
-          list.dispatchIndirect(fillNames[k], list.add(core::ShaderDesc{fillNames[k], fill[k]}),
-                                {{params, read},
-                                 {shapes, read},
-                                 {paths, read},
-                                 {words, read},
-                                 {counters, read},
-                                 {entries, readWrite}},
-                                counters, offsetof(CanvasCounters, fillX));
+      core::Pass& pass = list.dispatchIndirect(
+          fillNames[k], list.add(core::ShaderDesc{fillNames[k], fill[k]}),
+          {{params, read}, {shapes, read}, {paths, read}, {words, read}, {counters, read}, {entries, readWrite}},
+          counters, offsetof(CanvasCounters, fillX));
       pass.beside = true;
       for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
       pass.condition = kOneDrawing + k;
@@ -274,8 +272,8 @@ core::PassList Canvas::describe() const {
     for (uint32_t t = 0; t < 3; ++t) {
       core::Pass& pass = list.dispatchIndirect(
           names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
-          {{params, read}, {shapes, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}}, masks,
-          arguments * 4);
+          {{params, read}, {shapes, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}},
+          masks, arguments * 4);
       if (!software_) pass.uses[pass.useCount++] = {counters, read};
       const uint32_t drawings = condition == kPlain || condition == kPaintsOne ? 1 : kMaxSlots;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
@@ -437,14 +435,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     header.premultiplied |= info.images[i].premultiplied ? 1u << i : 0;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
-  r.constants = {bytes(std::span(&header, 1), 1),
-                 bytes(gather.slots, shader::kSlots),
-                 bytes(tables_.sources, gather.sources),
-                 bytes(tables_.placements, gather.placements),
-                 bytes(tables_.shapes, gather.shapes),
-                 bytes(tables_.paints, gather.paints),
-                 bytes(tables_.stops, gather.stops),
-                 bytes(tables_.clips, gather.clips)};
+  r.constants = {bytes(std::span(&header, 1), 1),        bytes(gather.slots, shader::kSlots),
+                 bytes(tables_.sources, gather.sources), bytes(tables_.placements, gather.placements),
+                 bytes(tables_.shapes, gather.shapes),   bytes(tables_.paints, gather.paints),
+                 bytes(tables_.stops, gather.stops),     bytes(tables_.clips, gather.clips)};
 
   if (view) {
     r.bindings[kView].ownBuffer = view->buffer();
@@ -469,8 +463,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
   const uint64_t bins = uint64_t(header.binCount) * header.pathWords;
-  r.groups[kBegin] = {
-      software_ ? divide(std::max<uint64_t>({header.itemCount, header.shapeTables / 16, bins / 16, 1}), 64) : divide(maxWords_, 64 * 8), 1, 1};
+  r.groups[kBegin] = {software_
+                          ? divide(std::max<uint64_t>({header.itemCount, header.shapeTables / 16, bins / 16, 1}), 64)
+                          : divide(maxWords_, 64 * 8),
+                      1, 1};
   r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
@@ -490,14 +486,15 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
 
 Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasView& view) {
   if (view.preparedWidth == 0) return makeError(GPGP_NOT_READY, "nothing was prepared into the view");
-  const uint32_t second = info.target->viewMask ? info.secondX : 0;
-  if (info.width == 0 || info.height == 0 || second > view.preparedWidth || info.width > view.preparedWidth - second ||
+  const uint32_t last = std::max(info.x, info.target->viewMask ? info.secondX : 0);
+  if (info.width == 0 || info.height == 0 || last > view.preparedWidth || info.width > view.preparedWidth - last ||
       info.height > view.preparedHeight)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%u x %u pixels from column %u on are to be drawn; the view holds %u x %u",
-                     info.width, info.height, second, view.preparedWidth, view.preparedHeight);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "%u x %u pixels from column %u on are to be drawn; the view holds %u x %u", info.width,
+                     info.height, last, view.preparedWidth, view.preparedHeight);
   struct {
     float columns[2][12];
-    uint32_t size[4];
+    uint32_t size[4], begins[2];
   } constants{};
   for (int k = 0; k < 2; ++k) {
     const float* clip = k && info.secondClip ? info.secondClip : info.clip;
@@ -507,7 +504,8 @@ Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInf
   constants.size[0] = info.width;
   constants.size[1] = info.height;
   constants.size[2] = view.preparedWidth;
-  constants.size[3] = second;
+  constants.begins[0] = info.x;
+  constants.begins[1] = info.secondX;
   core::DrawRecord r;
   r.commandBuffer = commandBuffer;
   r.bindings[kView].ownBuffer = view.buffer();

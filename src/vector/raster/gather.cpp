@@ -13,10 +13,9 @@ using shader::kShapeSlot;
 using shader::PlacementRecord;
 
 ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
-    : sources(budgets.items, memory),
-      placements(size_t(budgets.items) + budgets.glyphs + budgets.shapes, memory), shapes(budgets.shapes, memory),
-      paints(budgets.shapes, memory), stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory),
-      clipStates(budgets.items, memory) {}
+    : sources(budgets.items, memory), placements(size_t(budgets.items) + budgets.glyphs + budgets.shapes, memory),
+      shapes(budgets.shapes, memory), paints(budgets.shapes, memory), stops(size_t(budgets.shapes) * 2, memory),
+      clips(budgets.items, memory), clipStates(budgets.items, memory) {}
 
 core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
   char text[256];
@@ -99,8 +98,8 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   gradients = gradients || drawing.gradients();
   images = images || drawing.images();
   groups = groups || drawing.groups();
-  tables_.placements[placements++] = {0,      0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, segments_,
-                                      paths_, 0, drawing.pathTable()};
+  tables_.placements[placements++] = {
+      0, 0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, segments_, paths_, 0, drawing.pathTable()};
   segments_ += drawing.first(paths).segments;
   paths_ += paths;
   patches_ += drawing.first(paths).patches;
@@ -243,8 +242,7 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
 }
 
 Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const Chain& own) {
-  if (list.depth())
-    return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list: %u of its pushes are not popped", list.depth());
+  if (list.depth()) return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list: %u of its pushes are not popped", list.depth());
   if (list.images() && (item.firstImage > info_.imageCount || list.images() > info_.imageCount - item.firstImage))
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list needs %u images from images[%u] on; imageCount is %u",
                  list.images(), item.firstImage, info_.imageCount);
@@ -264,8 +262,8 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
       const Map whole = compose(compose(map, list.bases()[space.base]), space.map());
       if (command.firstImage > UINT32_MAX - item.firstImage)
         return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": firstImage is %u", command.firstImage);
-      if (auto ok = addDrawing(drawing, whole, item.opacity * command.opacity, item.firstImage + command.firstImage,
-                               state);
+      if (auto ok =
+              addDrawing(drawing, whole, item.opacity * command.opacity, item.firstImage + command.firstImage, state);
           !ok)
         return ok;
       continue;

@@ -1,4 +1,5 @@
-// A record's items as the GPU takes them: sources (maps), placements (what is drawn by which of them), tables of shapes.
+// A record's items as the GPU takes them: sources (maps), placements (what is drawn by which of them), tables of
+// shapes.
 //
 // Items come in painting order. Where a budget ends, everything from there on is left out, and counted, so that the
 // report can say what all would have needed.

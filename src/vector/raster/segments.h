@@ -11,8 +11,8 @@ struct Outlines {
   std::pmr::vector<shader::vec4> boxes; ///< of each path: left, top, right, bottom; an empty one where it has no ink
   std::pmr::vector<uint32_t> ends;      ///< of each path: one past its last segment
 };
-/// The parameter at which a cubic that never turns in y is `wanted` below its begin: control points there at y1 and y2, its
-/// end at height.
+/// The parameter at which a cubic that never turns in y is `wanted` below its begin: control points there at y1 and
+/// y2, its end at height.
 double parameterAt(double y1, double y2, double height, double wanted);
 Outlines makeOutlines(const Drawing& drawing, std::pmr::memory_resource* memory);
 /// The same for a drawing that replacePaths has made: those of other paths are the base's.

@@ -171,8 +171,7 @@ Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpH
       if (command.kind == List::Kind::text) {
         const auto glyphs = list.glyphs().subspan(command.first, command.count);
         const auto hits = hitGlyphs(static_cast<const GlyphSet&>(*asset), glyphs, p, hit);
-        if (!hits)
-          return makeError(hits.error().code, ".list, entry %u%s", command.firstEntry, hits.error().text);
+        if (!hits) return makeError(hits.error().code, ".list, entry %u%s", command.firstEntry, hits.error().text);
         found = *hits;
       } else {
         const auto tables = static_cast<const DrawingAsset&>(*asset).shown();
@@ -210,8 +209,7 @@ Result<bool> hitItem(const GpgpCanvasItem& item, const ItemAsset& asset, double 
     return hitGlyphs(*asset.glyphSet, {item.glyphs, item.glyphCount}, p, hit);
   }
   const auto tables = asset.drawing->shown();
-  if (!tables)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing was made neither hitTestable nor editable");
+  if (!tables) return makeError(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing was made neither hitTestable nor editable");
   return mapped && hitDrawing(*tables, p, hit);
 }
 

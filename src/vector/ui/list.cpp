@@ -92,8 +92,7 @@ Result<void> List::checkDepth() const {
 Result<void> List::pushTransform(const float* transform, const float* perspective) {
   if (auto ok = checkDepth(); !ok) return ok;
   for (int i = 0; i < 6; ++i)
-    if (!std::isfinite(transform[i]))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "transform[%d] is not finite", i);
+    if (!std::isfinite(transform[i])) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "transform[%d] is not finite", i);
   for (int i = 0; i < 3 && perspective; ++i)
     if (!std::isfinite(perspective[i]))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "perspective[%d] is not finite", i);
@@ -116,9 +115,9 @@ Result<void> List::pushTransform(const float* transform, const float* perspectiv
 Result<void> List::pushClip(const float* box, const float* radii) {
   if (auto ok = checkDepth(); !ok) return ok;
   if (!within(box, 4, -kMaxCoordinate, kMaxCoordinate) || box[2] < box[0] || box[3] < box[1])
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "box is %g, %g, %g, %g; expected left, top, right, bottom within 1e7", static_cast<double>(box[0]),
-                     static_cast<double>(box[1]), static_cast<double>(box[2]), static_cast<double>(box[3]));
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "box is %g, %g, %g, %g; expected left, top, right, bottom within 1e7",
+                     static_cast<double>(box[0]), static_cast<double>(box[1]), static_cast<double>(box[2]),
+                     static_cast<double>(box[3]));
   if (radii && !within(radii, 4, 0, kMaxCoordinate))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "a radius is not a number from 0 to 1e7");
   const Space& space = state_.space;
@@ -204,7 +203,8 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
       const float first = s[k] + sign * from[k], last = s[k + 2] - sign * from[k + 2];
       parts[0][2 * k] = begin, parts[0][2 * k + 1] = end;
       parts[1][2 * k] = first, parts[1][2 * k + 1] = last;
-      parts[2 + k] = {sign * over(from[k], begin), over(last - first, end - begin), sign * over(from[k + 2], side - end), 0};
+      parts[2 + k] = {sign * over(from[k], begin), over(last - first, end - begin),
+                      sign * over(from[k + 2], side - end), 0};
     }
     for (int k = 0; k < 2; ++k) {
       StopRecord stop;
@@ -217,11 +217,10 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
   return static_cast<uint32_t>(paints_.paints.size());
 }
 
-/// 1 + the index of the shape's paint; 0: none.
+/// 1 + the index of the shape's gradient or image.
 Result<uint32_t> List::addPaint(const GpgpListShape& shape) {
   const Space& space = state_.space;
-  if (shape.gradient && shape.image)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "both gradient and image are given");
+  if (shape.gradient && shape.image) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "both gradient and image are given");
   if (shape.gradient) {
     GpgpGradient gradient = *shape.gradient;
     const float scale = static_cast<float>(space.scale);
@@ -232,7 +231,6 @@ Result<uint32_t> List::addPaint(const GpgpListShape& shape) {
     if (!index) return index.error();
     return *index + 1;
   }
-  if (!shape.image) return 0u;
   if (shape.kind == GPGP_LIST_LINE) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "a line cannot show an image");
   const auto added = addImagePaint(*shape.image, shapes_.back().record.box);
   if (added) images_ = std::max(images_, shape.image->image + 1);
@@ -274,9 +272,11 @@ Result<void> List::addShape(const GpgpListShape& from) {
     const float side = std::min(box.z - box.x, box.w - box.y);
     shape.record.border = 2 * width < side ? width : 0;
   }
-  const auto paint = addPaint(from);
-  if (!paint) return paint.error();
-  shape.record.paint = *paint;
+  if (from.gradient || from.image) {
+    const auto paint = addPaint(from);
+    if (!paint) return paint.error();
+    shape.record.paint = *paint;
+  }
   shape.color = {from.color[0], from.color[1], from.color[2], from.color[3] * state_.opacity};
   shape.id = from.id;
   return {};
@@ -301,8 +301,8 @@ Result<void> List::addShapes(std::span<const GpgpListShape> shapes) {
         undo();
         return makeError(ok.error().code, "shapes[%zu]%s%s", i, ok.error().text[0] == '.' ? "" : ": ", ok.error().text);
       }
-    const bool extends = !commands_.empty() && commands_.back().kind == Kind::shapes &&
-                         commands_.back().space == state_.space;
+    const bool extends =
+        !commands_.empty() && commands_.back().kind == Kind::shapes && commands_.back().space == state_.space;
     Command& command = extends ? commands_.back() : addCommand(Kind::shapes);
     if (!extends) command.first = static_cast<uint32_t>(before);
     command.count += static_cast<uint32_t>(shapes.size());

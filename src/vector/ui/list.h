@@ -1,7 +1,7 @@
 // A list: what the engine adds to a user interface in a frame, as it will be placed.
 //
-// Moves and even scales are applied to shapes and glyphs as they come, so that what differs by them alone shares a base:
-// the map that leads from their coordinates to the list's space. Everything else of the state is in the command.
+// Moves and even scales are applied to shapes and glyphs as they come, so that what differs by them alone shares a
+// base: the map that leads from their coordinates to the list's space. Everything else of the state is in the command.
 #pragma once
 #include "core/context.h"
 #include "vector/patch/drawing.h"
