@@ -67,16 +67,14 @@ void Engine::take(const std::vector<Input>& inputs, bool fromScript) {
     if (decoupled_ && input.kind == Input::key) decoupled_->key(input.character);
     if (!screen_) continue;
     const std::string happened = screen_->input(input);
-    if (fromScript)
-      std::printf("input       before frame %llu: %s\n", static_cast<unsigned long long>(frame_.current + 1),
-                  happened.c_str());
+    if (fromScript) std::printf("input       %s\n", happened.c_str());
   }
 }
 
 void Engine::run(uint32_t frames) {
   for (uint32_t i = 0; (frames == 0 || i < frames) && target_.pollEvents(); ++i) {
     take(target_.takeInputs(), false);
-    if (i > 0 && i <= script_.size()) take({script_[i - 1]}, true);
+    if (i == 1) take(script_, true);
     if (screen_ && screen_->game().quit) break;
     frame();
     if (i % 30 == 29 && decoupled_) {

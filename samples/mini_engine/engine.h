@@ -15,7 +15,7 @@ struct EngineOptions {
   DecoupledOptions decoupled;
   bool screen = false;       // a game's screen instead of the HUD
   uint32_t score = 0;        // on it at the beginning
-  std::vector<Input> inputs; // for it, one before each frame from the second on
+  std::vector<Input> inputs; // for it, before the second frame
 };
 
 class Engine {

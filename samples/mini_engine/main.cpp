@@ -19,8 +19,8 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --device NAME    GPU: part of its name, or an index (default: $GPGP_DEVICE, else the software device)
   --screen         a game's screen instead: crest, score, map, dialogue, menu, an inventory that hangs in the world;
                    screen.png. In a window: arrows and Enter, or the mouse
-  --input LIST     for the screen, one before each frame from the second on: up, down, enter, click, or XxY, where
-                   the mouse moves to: --input down,enter,134x350,click; prints what happened
+  --input LIST     for the screen, before the second frame: up, down, enter, click, or XxY, where the mouse moves to:
+                   --input down,enter,134x350,click; prints what happened
   --score N        on the screen at the beginning
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
   --decoupled      object-space shading of the model alone: what gpgp finds visible is shaded in compute, into a
@@ -147,6 +147,7 @@ bool parse(int argc, char** argv, Options& options) {
       return false;
   }
   if (options.screen && options.decoupled.on) return false;
+  if (options.frames == 1 && !options.inputs.empty()) return false;
   if (!options.screen && (!options.inputs.empty() || options.score)) return false;
   return true;
 }
@@ -181,9 +182,7 @@ int run(const Options& options) {
       if (options.path)
         engine.comparePaths(options.frames ? options.frames : 40);
       else
-        engine.run(options.frames   ? options.frames
-                   : options.window ? 0
-                                    : 3 + static_cast<uint32_t>(options.inputs.size()));
+        engine.run(options.frames ? options.frames : options.window ? 0 : 3);
       engine.printSummary();
       well = engine.allWell();
     }

@@ -94,7 +94,7 @@ void Painter::glyphs(const TextBlock& block, float x, float y, uint64_t id) {
   if (block.glyphs.empty()) return;
   const float move[6] = {1, 0, 0, 1, x, y};
   gpgp_.check(list_.pushTransform(move), "gpgpPushTransform");
-  gpgp_.check(list_.add(text_.glyphs(), block.glyphs.data(), static_cast<uint32_t>(block.glyphs.size()), id),
+  gpgp_.check(gpgpAddText(list_, text_.glyphs(), block.glyphs.data(), static_cast<uint32_t>(block.glyphs.size()), id),
               "gpgpAddText");
   end();
 }

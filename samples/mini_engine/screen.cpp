@@ -142,7 +142,7 @@ void Screen::update(const Camera& camera) {
   addDialogue(painter, game_, pictures_, width);
   addMenu(painter, game_);
   fillingNow_ = microsecondsSince(start);
-  const uint32_t glyphs = text_.info().glyphs;
+  const uint32_t glyphs = text_.glyphCount();
   if (glyphs != glyphsBefore_) lastConversion_ = frames_;
   glyphsBefore_ = glyphs;
   if (gpgp_.hostMemory.allocations() != allocations) lastAllocation_ = frames_;
@@ -233,7 +233,7 @@ void Screen::printSummary() const {
   std::printf(
       "text        %u glyphs in the set, the last converted in frame %u of %u; gpgp allocated host memory last in "
       "frame %u\n",
-      text_.info().glyphs, lastConversion_, frames_, lastAllocation_);
+      text_.glyphCount(), lastConversion_, frames_, lastAllocation_);
   std::printf("score       %u at %s\n", game_.score, at(scoreBox(width)).c_str());
   for (uint32_t item = 0; item < menuItems; ++item)
     std::printf("menu        %s at %s\n", game_.menuLabel(item), at(menuBox(item)).c_str());

@@ -1,5 +1,8 @@
-// A chain of fonts is shaped and laid out by libgpgp_text; each glyph that is new becomes curves in a glyph set.
+// A chain of fonts is shaped and laid out by libgpgp_text; each glyph that is new becomes curves in a
+// glyph set (integrations/common).
 #include "text.h"
+
+#include <gpgp_glyph_cache.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +22,8 @@ struct Text::Fonts {
   std::vector<GpgpFont> regular, bold; // chains: a character takes the first font that has it
   gpgp::Shaper shaper;
   gpgp::Layout layout;
-  float capHeight = 0.7f; // em, of the first font
+  gpgp::integration::GlyphCache cache; // layouts to glyphs of a set, which it converts when they are new
+  float capHeight = 0.7f;              // em, of the first font
 
   void open(Gpgp& gpgp, const std::string& file, std::initializer_list<std::vector<GpgpFont>*> chains,
             float weight = 0) {
@@ -55,11 +59,8 @@ Text::Text(Gpgp& gpgp, const std::string& folder) : gpgp_(gpgp), fonts_(std::mak
   f.shaper = gpgp.take(gpgp::Shaper::create(shaper), "gpgpCreateShaper");
   f.layout = gpgp.take(f.shaper.layout(), "gpgpCreateLayout");
   // Large enough for all that is ever shown: nothing is evicted, and indices stay as they are.
-  auto info = gpgp::init<GpgpGlyphSetCreateInfo>();
-  info.label = "screen glyphs";
-  info.maxGlyphs = 1024;
-  info.maxBytes = VkDeviceSize{4} << 20;
-  glyphs_ = gpgp.take(gpgp::GlyphSet::create(gpgp.context, info), "gpgpCreateGlyphSet");
+  gpgp_.check(f.cache.create(gpgp.context, "screen glyphs", 1024, VkDeviceSize{4} << 20), "gpgpCreateGlyphSet");
+  glyphs_ = f.cache.set();
 }
 
 Text::~Text() = default;
@@ -92,25 +93,8 @@ void Text::set(const Entry& entry, TextBlock& block) {
   block.width = layout.width;
   block.baseline = layout.lines[0].baseline;
   block.capHeight = fonts_->capHeight * style.size;
-  for (uint32_t i = 0; i < layout.glyphCount; ++i) {
-    const GpgpTextGlyph& glyph = layout.glyphs[i];
-    const auto font = std::find_if(fonts_->fonts.begin(), fonts_->fonts.end(),
-                                   [&](const gpgp::Font& candidate) { return candidate.get() == glyph.font; });
-    const uint64_t key = static_cast<uint64_t>(font - fonts_->fonts.begin()) << 32 | glyph.glyph;
-    GpgpGlyphInstance instance{GPGP_GLYPH_NONE, glyph.x, glyph.y, glyph.size, {}};
-    std::copy(std::begin(glyph.color), std::end(glyph.color), instance.color);
-    if (gpgp_.check(glyphs_.find(&key, 1, &instance.glyph), "gpgpFindGlyphs") == GPGP_INCOMPLETE) {
-      auto wanted = gpgp::init<GpgpGlyphOutlineInfo>();
-      wanted.glyph = glyph.glyph;
-      auto add = [&](const GpgpGlyphOutline& outline) {
-        const GpgpGlyph curves{key, outline.paths, outline.pathCount, outline.foreground};
-        if (gpgp_.check(glyphs_.add(&curves, 1, &instance.glyph), "gpgpAddGlyphs") == GPGP_BUDGET_EXCEEDED)
-          throw std::runtime_error("the set of glyphs is full");
-      };
-      gpgp_.check(font->outline(wanted, add), "gpgpGetGlyphOutline");
-    }
-    block.glyphs.push_back(instance);
-  }
+  if (gpgp_.check(fonts_->cache.place(layout, 0, 0, 1, block.glyphs), "gpgpAddGlyphs") != GPGP_SUCCESS)
+    throw std::runtime_error("the set of glyphs is full");
 }
 
 } // namespace mini

@@ -38,8 +38,12 @@ public:
   const TextBlock& layOut(std::string_view text, const TextStyle& style);
   /// Forgets the texts, as another picture size has others. Glyphs stay: they are there once for all sizes.
   void forget() { entries_.clear(); }
-  const gpgp::GlyphSet& glyphs() const { return glyphs_; }
-  GpgpGlyphSetInfo info() const { return glyphs_ ? *glyphs_.info() : GpgpGlyphSetInfo{}; }
+  GpgpAsset glyphs() const { return glyphs_; }
+  /// Glyphs that were converted and are in the set.
+  uint32_t glyphCount() const {
+    auto info = gpgp::init<GpgpGlyphSetInfo>();
+    return glyphs_ && gpgpGetGlyphSetInfo(glyphs_, &info) == GPGP_SUCCESS ? info.glyphs : 0;
+  }
 
 private:
   struct Fonts;
@@ -50,7 +54,7 @@ private:
   };
   void set(const Entry& entry, TextBlock& block);
   Gpgp& gpgp_;
-  gpgp::GlyphSet glyphs_;
+  GpgpAsset glyphs_ = nullptr;
   std::unique_ptr<Fonts> fonts_;
   std::deque<Entry> entries_; // as many as the screen has texts
 };
