@@ -119,7 +119,7 @@ void addMenu(Painter& painter, const Game& game) {
     else
       painter.fill(box, rgb(0x253a4d), 8, id);
     painter.text(game.menuLabel(item), {box.left + 16, box.top, box.right - 16, box.bottom},
-                 {17, on ? rgb(0x1a1206) : kText}, id);
+                 {17, on ? rgb(0x1a1206) : kText, true}, id);
   }
   painter.text("↑ ↓ choose   ↵ enter", {kMargin + 28, last.bottom + 8, kMargin + 208, last.bottom + 40}, {13, kMuted});
 }

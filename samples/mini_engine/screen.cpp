@@ -20,7 +20,6 @@ double microsecondsSince(Clock::time_point start) {
 }
 
 enum Tag : uint64_t { tagWorld, tagFront };
-constexpr uint32_t kFirstFrames = 1; // not timed: texts are laid out then, and lists make room
 
 } // namespace
 
@@ -166,7 +165,8 @@ void Screen::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   const Clock::time_point start = Clock::now();
   record(commands, frame, world_);
   record(commands, frame, front_);
-  if (frames_ > kFirstFrames) {
+  if (frames_ != lastConversion_ && frames_ > 1) { // in the others texts are laid out, and lists make room
+    ++settled_;
     filling_ += fillingNow_;
     recording_ += microsecondsSince(start);
   }
@@ -227,9 +227,11 @@ void Screen::printSummary() const {
                   static_cast<double>(box.bottom * scale));
     return std::string(text);
   };
-  const double counted = frames_ > kFirstFrames ? frames_ - kFirstFrames : 1;
-  std::printf("screen      %u shapes, %u glyphs; CPU a frame: %.0f us to fill lists, %.0f us to record\n",
-              report_.shapes, report_.glyphs, filling_ / counted, recording_ / counted);
+  std::printf("screen      %u shapes, %u glyphs", report_.shapes, report_.glyphs);
+  if (settled_ > 0)
+    std::printf("; CPU a settled frame: %.0f us to fill lists, %.0f us to record", filling_ / settled_,
+                recording_ / settled_);
+  std::printf("\n");
   std::printf(
       "text        %u glyphs in the set, the last converted in frame %u of %u; gpgp allocated host memory last in "
       "frame %u\n",

@@ -50,7 +50,7 @@ private:
   VkExtent2D extent_{};
   float pointer_[2] = {-1, -1};
   // What frames cost.
-  uint32_t frames_ = 0, lastConversion_ = 0, glyphsBefore_ = 0, reports_ = 0;
+  uint32_t frames_ = 0, settled_ = 0, lastConversion_ = 0, glyphsBefore_ = 0, reports_ = 0;
   uint64_t allocations_ = 0; // gpgp's, on the host, by lists and records
   uint32_t lastAllocation_ = 0;
   double filling_ = 0, recording_ = 0, fillingNow_ = 0; // microseconds
