@@ -154,6 +154,7 @@ public:
     info.paths = paths;
     info.pathCount = 2;
     secondAsset = nullptr;
+    shownList = nullptr;
     if (const GpgpResult result = gpgpCreateDrawing(context, &info, &asset); result != GPGP_SUCCESS) return result;
     // A text over it, of the triangle as a glyph.
     GpgpGlyphSetCreateInfo setInfo = GPGP_GLYPH_SET_CREATE_INFO_INIT;
@@ -178,13 +179,13 @@ public:
     shape.box[2] = shape.box[3] = 40;
     shape.color[1] = shape.color[3] = 0.5f;
     constexpr float kTurn[] = {0.8f, 0.6f, -0.6f, 0.8f, 20, 0}, kBox[] = {4, 4, 50, 50};
-    for (const GpgpResult result :
-         {gpgpPushClip(shownList, kBox, nullptr), gpgpPushTransform(shownList, kTurn, nullptr),
-          gpgpPushClip(shownList, kBox, nullptr), gpgpAddShapes(shownList, &shape, 1),
-          gpgpAddText(shownList, secondAsset, glyphs_, 5, 0), gpgpPopState(shownList), gpgpPopState(shownList),
-          gpgpPopState(shownList)})
-      if (result != GPGP_SUCCESS) return result;
-    return GPGP_SUCCESS;
+    GpgpResult result = gpgpPushClip(shownList, kBox, nullptr);
+    if (!result) result = gpgpPushTransform(shownList, kTurn, nullptr);
+    if (!result) result = gpgpPushClip(shownList, kBox, nullptr);
+    if (!result) result = gpgpAddShapes(shownList, &shape, 1);
+    if (!result) result = gpgpAddText(shownList, secondAsset, glyphs_, 5, 0);
+    for (int i = 0; i < 3 && !result; ++i) result = gpgpPopState(shownList);
+    return result;
   }
   GpgpResult createWorker(GpgpContext context, const GpgpWorkerCreateInfo& base) override {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
