@@ -150,14 +150,15 @@ void addInventory(Painter& painter, const Game& game) {
     const Box slot =
         Box::sized(24 + 100.0f * static_cast<float>(i % 4), 114 + 86.0f * static_cast<float>(i / 4), 92, 78);
     const bool on = i == game.slot;
-    painter.fill(slot, on ? rgb(0x3d5a6c) : rgb(0x1c2f3c), 10, kSlotId + i);
-    painter.border(slot, on ? kAmber : rgb(0x4a6577), 10, on ? 3.0f : 1.5f, kSlotId + i);
+    painter.fill(slot, on ? rgb(0x3d5a6c) : rgb(0x1c2f3c), 10);
+    painter.border(slot, on ? kAmber : rgb(0x4a6577), 10, on ? 3.0f : 1.5f);
     addIcon(painter, kThings[i].icon, Box::sized(slot.left + 20, slot.top + 13, 52, 52));
     if (kThings[i].count > 1) {
       const uint32_t digits = kThings[i].count > 9 ? 2 : 1;
       painter.number(kThings[i].count, digits, {slot.left, slot.bottom - 24, slot.right - 8, slot.bottom - 2},
                      {16, kText, true, GPGP_TEXT_ALIGN_RIGHT});
     }
+    painter.fill(slot, {0, 0, 0, 0}, 10, kSlotId + i); // unseen, on top of all: wherever the slot is hit, it says so
   }
   const Thing& thing = kThings[game.slot];
   painter.text(thing.name, {24, 54, 416, 80}, {19, kAmber, true});

@@ -1,6 +1,7 @@
-// The mini-engine's game screen, as its summary and pictures show it: hit tests find the menu's items and nothing
-// between them, a changed score changes no pixel outside of its box, nothing is converted or allocated in a settled
-// frame, and without fonts the screen is there without text. Every run is validated.
+// The mini-engine's game screen, as its summary and pictures show it: hit tests find the menu's items, nothing
+// between them, and the inventory's slots in perspective; a changed score changes no pixel outside of its box, nothing
+// is converted or allocated in a settled frame, and without fonts the screen is there without text. Every run is
+// validated.
 #include "host/picture.h"
 
 #include <gtest/gtest.h>
@@ -110,6 +111,7 @@ TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
   ASSERT_LT(boxes[1][3], boxes[2][1]);
   input(at((boxes[1][0] + boxes[1][2]) / 2, (boxes[1][3] + boxes[2][1]) / 2), "over nothing");
   input("click", "nothing");
+  input("268x60", "over slot 3");     // of the inventory, which hangs in the world
   input("down", "highlighted Pause"); // after Quit, which the mouse was over last
   input("down", "highlighted Night");
   input("enter", "chose Night");
