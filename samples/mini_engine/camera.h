@@ -7,6 +7,9 @@ namespace mini {
 struct Camera {
   glm::vec3 eye{0};
   glm::mat4 viewProjection{1};
+  float daylight = 1; // 0: night
+  /// As shaders have it.
+  glm::vec4 eyeAndLight() const { return glm::vec4(eye, daylight); }
 };
 
 /// fieldOfView: vertical, radians. near and far: distances along the view direction, metres.

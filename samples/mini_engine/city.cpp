@@ -148,7 +148,7 @@ void City::draw(VkCommandBuffer commands, const Camera& camera) {
   struct {
     glm::mat4 viewProjection;
     glm::vec4 eye, colour;
-  } push{camera.viewProjection, glm::vec4(camera.eye, 1), glm::vec4(1)};
+  } push{camera.viewProjection, camera.eyeAndLight(), glm::vec4(1)};
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle);
   const VkBuffer buffers[] = {corners_.handle, instances_.handle};
   const VkDeviceSize offsets[] = {0, 0};

@@ -11,12 +11,16 @@ Engine::Engine(Device& device, Target& target, const EngineOptions& options)
     : device_(device), target_(target), forward_(device, target.format(), target.finalLayout()),
       gpgp_(device, kFramesInFlight),
       city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga", options.watch),
-      hud_(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
-           options.dataFolder + "/fetched/svg/tiger.svgz"),
-      sight_(device, gpgp_, forward_, levelModel(options.dataFolder)), farther_(options.decoupled.farther) {
+      sight_(device, gpgp_, forward_, levelModel(options.dataFolder)), farther_(options.decoupled.farther),
+      script_(options.inputs) {
   if (options.decoupled.on)
     decoupled_ =
         std::make_unique<Decoupled>(device, gpgp_, forward_, levelModel(options.dataFolder), options.decoupled);
+  else if (options.screen)
+    screen_ = std::make_unique<Screen>(gpgp_, forward_, options.dataFolder, options.score);
+  else
+    hud_ = std::make_unique<Hud>(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
+                                 options.dataFolder + "/fetched/svg/tiger.svgz");
   for (Slot& slot : slots_) {
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     pool.queueFamilyIndex = device.family;
@@ -43,30 +47,43 @@ Engine::~Engine() {
 void Engine::resize() {
   check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
   target_.attach(forward_);
-  hud_.resize(target_.extent());
+  if (hud_) hud_->resize(target_.extent());
+  if (screen_) screen_->resize(target_.extent());
 }
 
 /// Around the square: angle in radians, distance and height of the eye in metres.
 Camera Engine::orbit(float angle, float distance, float height, float fieldOfView) const {
   const VkExtent2D size = target_.extent();
   const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  angle += 0.24f + 0.01f * static_cast<float>(frame_.current - pathBegin_);
-  return lookAt(glm::vec3(std::sin(angle) * distance, height, std::cos(angle) * distance), glm::vec3(0, 12, 0),
-                fieldOfView, aspect, 1.0f, 900.0f);
+  angle += 0.24f + 0.01f * static_cast<float>(step_);
+  Camera camera = lookAt(glm::vec3(std::sin(angle) * distance, height, std::cos(angle) * distance), glm::vec3(0, 12, 0),
+                         fieldOfView, aspect, 1.0f, 900.0f);
+  if (screen_ && screen_->game().night) camera.daylight = 0;
+  return camera;
+}
+
+void Engine::take(const std::vector<Input>& inputs, bool fromScript) {
+  for (const Input& input : inputs) {
+    if (decoupled_ && input.kind == Input::key) decoupled_->key(input.character);
+    if (!screen_) continue;
+    const std::string happened = screen_->input(input);
+    if (fromScript) std::printf("input       %s\n", happened.c_str());
+  }
 }
 
 void Engine::run(uint32_t frames) {
   for (uint32_t i = 0; (frames == 0 || i < frames) && target_.pollEvents(); ++i) {
-    for (const char key : target_.takeKeys())
-      if (decoupled_) decoupled_->key(key);
+    take(target_.takeInputs(), false);
+    if (i == 1) take(script_, true);
+    if (screen_ && screen_->game().quit) break;
     frame();
     if (i % 30 == 29 && decoupled_) {
       target_.setTitle("gpgp mini engine: " + std::to_string(decoupled_->shadingReport().visible) +
                        " triangles shaded (F freezes, M method, 1 shaded, 2 overlay, 3 density)");
     } else if (i % 30 == 29) {
       target_.setTitle("gpgp mini engine: " + std::to_string(city_.report().terminals) + " spawned, " +
-                       std::to_string(hud_.report().patches) + " patches, " + std::to_string(sight_.report().visible) +
-                       " triangles visible");
+                       std::to_string((screen_ ? screen_->report() : hud_->report()).patches) + " patches, " +
+                       std::to_string(sight_.report().visible) + " triangles visible");
     }
   }
   check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
@@ -79,6 +96,7 @@ void Engine::run(uint32_t frames) {
 void Engine::frame() {
   // The slot was used two frames ago: once its fence is signalled, everything up to that frame is safe.
   ++frame_.current;
+  if (!screen_ || !screen_->game().paused) ++step_;
   Slot& slot = slots_[frame_.current % kFramesInFlight];
   check(vkWaitForFences(device_.device, 1, &slot.finished, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   if (frame_.current > kFramesInFlight) frame_.safe = frame_.current - kFramesInFlight;
@@ -122,7 +140,7 @@ void Engine::printTimes() {
 void Engine::comparePaths(uint32_t frames) {
   for (const auto& [name, method] : {std::pair("standard", GPGP_SAMPLING_STANDARD), {"exact", GPGP_SAMPLING_EXACT}}) {
     decoupled_->restart(method);
-    pathBegin_ = frame_.current;
+    step_ = 0;
     run(frames);
     const Decoupled::Misses& misses = decoupled_->misses();
     const double displays = std::max(misses.displays, 1u);
@@ -153,15 +171,24 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   }
   const Camera camera = orbit(0.0f, 84.0f, 36.0f, 0.80f);
   const Camera side = orbit(2.5f, 74.0f, 26.0f, 0.56f); // what the camera cannot see lies here
+  if (screen_) screen_->update(camera);
   gpgp_.check(gpgp_.context.recordUpload(commands, frame_).code(), "gpgpRecordUpload");
   city_.prepare(commands, frame_);
   sight_.prepare(commands, frame_, camera, target_.extent());
-  hud_.prepare(commands, frame_);
+  if (screen_)
+    screen_->prepare(commands, frame_);
+  else
+    hud_->prepare(commands, frame_);
 
   forward_.begin(commands, acquired.framebuffer);
   forward_.drawBackdrop(commands, camera);
   city_.draw(commands, camera);
   sight_.draw(commands, camera);
+  if (screen_) {
+    screen_->draw(commands, frame_);
+    vkCmdEndRenderPass(commands);
+    return;
+  }
   // The same model from the side, in a corner: what the main camera cannot see stays dark.
   const VkExtent2D extent = forward_.extent();
   const VkExtent2D inset{extent.width * 3 / 10, extent.height * 3 / 10};
@@ -172,7 +199,7 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   forward_.drawBackdrop(commands, side);
   sight_.draw(commands, side);
   forward_.setArea(commands, {{0, 0}, extent});
-  hud_.draw(commands, frame_);
+  hud_->draw(commands, frame_);
   vkCmdEndRenderPass(commands);
 
   if (const auto* offscreen = dynamic_cast<const Offscreen*>(&target_)) {
@@ -189,20 +216,20 @@ void Engine::collect() {
     return;
   }
   city_.collect();
-  hud_.collect();
+  if (hud_) hud_->collect();
+  if (screen_) screen_->collect();
   sight_.collect();
 }
 
 bool Engine::allWell() const {
   if (decoupled_) return decoupled_->allWell();
   return city_.report().base.status == GPGP_SUCCESS && city_.reports() > 0 &&
-         hud_.report().base.status == GPGP_SUCCESS && hud_.reports() > 0 &&
+         (screen_ ? screen_->allWell() : hud_->report().base.status == GPGP_SUCCESS && hud_->reports() > 0) &&
          sight_.report().base.status == GPGP_SUCCESS && sight_.reports() > 0;
 }
 
 void Engine::printSummary() const {
   const GpgpSpawnReport& spawn = city_.report();
-  const GpgpCanvasReport& canvas = hud_.report();
   const GpgpSampleReport& sample = sight_.report();
   const auto line = [](const char* service, const GpgpReportHeader& base) {
     std::printf("%-11s %-20s frame %llu: ", service, gpgpResultString(base.status),
@@ -224,12 +251,15 @@ void Engine::printSummary() const {
   line("spawn", spawn.base);
   std::printf("%u buildings became %u instances in %u rounds, key hash %08x%08x\n", city_.buildings(),
               spawn.instancesWritten, spawn.rounds, spawn.keyHash[1], spawn.keyHash[0]);
+  const GpgpCanvasReport& canvas = screen_ ? screen_->report() : hud_->report();
   line("vector", canvas.base);
-  std::printf("%u paths, %u patches, %u tile entries\n", hud_.paths(), canvas.patches, canvas.tileEntries);
+  if (hud_) std::printf("%u paths, ", hud_->paths());
+  std::printf("%u patches, %u tile entries\n", canvas.patches, canvas.tileEntries);
   line("visibility", sample.base);
   std::printf("%u of %u triangles of %s visible, %u pixels covered, %u appeared, %u disappeared\n", sample.visible,
               sight_.model().triangleCount, sight_.model().name.c_str(), sample.coveredPixels, sample.appeared,
               sample.disappeared);
+  if (screen_) screen_->printSummary();
   std::printf("memory      gpgp holds %.1f MiB in %u allocations of the engine's\n",
               static_cast<double>(gpgp_.memory.bytes()) / 1048576.0, gpgp_.memory.allocations());
 }

@@ -3,6 +3,7 @@
 #include "city.h"
 #include "decoupled.h"
 #include "hud.h"
+#include "screen.h"
 #include "sight.h"
 #include "target.h"
 
@@ -12,6 +13,9 @@ struct EngineOptions {
   std::string dataFolder; // tests/data
   bool watch = false;     // grammars follow their files
   DecoupledOptions decoupled;
+  bool screen = false;       // a game's screen instead of the HUD
+  uint32_t score = 0;        // on it at the beginning
+  std::vector<Input> inputs; // for it, before the second frame
 };
 
 class Engine {
@@ -41,6 +45,7 @@ private:
   void resize();
   void collect();
   void printTimes();
+  void take(const std::vector<Input>& inputs, bool fromScript);
   void recordDecoupled(VkCommandBuffer commands, const Acquired& acquired);
   Camera orbit(float angle, float distance, float height, float fieldOfView) const;
 
@@ -49,11 +54,13 @@ private:
   Forward forward_;
   Gpgp gpgp_;
   City city_;
-  Hud hud_;
+  std::unique_ptr<Hud> hud_;
+  std::unique_ptr<Screen> screen_; // instead of the HUD
   Sight sight_;
   std::unique_ptr<Decoupled> decoupled_; // instead of city, HUD and sight
   float farther_ = 1;
-  uint64_t pathBegin_ = 0; // frame
+  uint64_t step_ = 0; // on the camera's path
+  std::vector<Input> script_;
   Slot slots_[kFramesInFlight];
   GpgpFrame frame_{};
 };

@@ -137,7 +137,7 @@ void Forward::drawBackdrop(VkCommandBuffer commands, const Camera& camera) {
   struct {
     glm::mat4 fromClip;
     glm::vec4 eye;
-  } const push{glm::inverse(camera.viewProjection), glm::vec4(camera.eye, 1)};
+  } const push{glm::inverse(camera.viewProjection), camera.eyeAndLight()};
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, backdrop_.handle);
   vkCmdPushConstants(commands, backdrop_.layout, Pipeline::kStages, 0, sizeof push, &push);
   vkCmdDraw(commands, 3, 1, 0, 0);

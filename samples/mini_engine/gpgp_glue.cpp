@@ -5,8 +5,16 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <new>
 
 namespace mini {
+namespace {
+
+void GPGP_CALL onSvgMessage(void*, const GpgpMessage* message) {
+  std::fprintf(stderr, "svg: %s: %s\n", message->label, message->text);
+}
+
+} // namespace
 
 GpgpGpuAllocator EngineMemory::callbacks() { return {this, allocate, free}; }
 
@@ -40,8 +48,20 @@ void EngineMemory::free(void* user, const GpgpGpuAllocation* allocation) {
   --self.allocations_;
 }
 
+GpgpHostAllocator HostMemory::callbacks() { return {this, allocate, free}; }
+
+void* HostMemory::allocate(void* user, size_t size, size_t alignment) {
+  ++static_cast<HostMemory*>(user)->allocations_;
+  return ::operator new (size, std::align_val_t{alignment}, std::nothrow);
+}
+
+void HostMemory::free(void*, void* memory, size_t, size_t alignment) {
+  ::operator delete (memory, std::align_val_t{alignment});
+}
+
 Gpgp::Gpgp(Device& device, uint32_t framesInFlight) : memory(device), device_(device) {
   const GpgpGpuAllocator allocator = memory.callbacks();
+  const GpgpHostAllocator hostAllocator = hostMemory.callbacks();
   auto info = gpgp::init<GpgpContextCreateInfo>();
   info.label = "mini engine";
   info.instance = device.instance;
@@ -52,6 +72,7 @@ Gpgp::Gpgp(Device& device, uint32_t framesInFlight) : memory(device), device_(de
   info.features = device.gpgpFeatures;
   info.maxFramesInFlight = framesInFlight;
   info.gpuAllocator = &allocator;
+  info.hostAllocator = &hostAllocator;
   info.messageFn = onMessage;
   info.messageUserData = this;
   context = take(gpgp::Context::create(info), "gpgpCreateContext");
@@ -75,6 +96,27 @@ GpgpWorkerCreateInfo Gpgp::worker(const char* label) const {
   info.queueFamily = device_.family;
   info.queueFlags = device_.queueFlags;
   return info;
+}
+
+gpgp::Drawing Gpgp::loadSvg(const std::string& file, const char* label) {
+  if (!fileExists(file)) {
+    std::fprintf(stderr, "mini_engine: %s is not there (tests/data/fetch.sh fetches drawings); going on without it\n",
+                 file.c_str());
+    return {};
+  }
+  const std::vector<char> bytes = readFile(file);
+  auto source = gpgp::init<GpgpSvgSource>();
+  source.name = file.c_str();
+  source.data = bytes.data();
+  source.size = bytes.size();
+  source.messageFn = onSvgMessage;
+  const gpgp::Blob baked = take(gpgp::compileSvg(source), "gpgpCompileSvg");
+  auto info = gpgp::init<GpgpDrawingCreateInfo>();
+  info.label = label;
+  info.data = baked.data();
+  info.size = baked.size();
+  info.hitTestable = VK_TRUE;
+  return take(gpgp::Drawing::create(context, info), "gpgpCreateDrawing");
 }
 
 gpgp::GeometrySet Gpgp::geometrySet(const char* label, const std::vector<GpgpMesh>& meshes) {

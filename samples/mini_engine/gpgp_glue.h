@@ -4,6 +4,7 @@
 
 #include <gpgp/gpgp.hpp>
 
+#include <atomic>
 #include <memory>
 
 namespace mini {
@@ -25,6 +26,18 @@ private:
   uint32_t allocations_ = 0;
 };
 
+/// All host memory that gpgp uses, counted.
+class HostMemory {
+public:
+  GpgpHostAllocator callbacks();
+  uint64_t allocations() const { return allocations_; } ///< so far
+
+private:
+  static void* GPGP_CALL allocate(void* user, size_t size, size_t alignment);
+  static void GPGP_CALL free(void* user, void* memory, size_t size, size_t alignment);
+  std::atomic<uint64_t> allocations_{0};
+};
+
 /// The context, made last and destroyed first.
 class Gpgp {
 public:
@@ -37,9 +50,12 @@ public:
     return std::move(*result);
   }
   GpgpWorkerCreateInfo worker(const char* label) const;
+  /// Compiles an SVG; where the file is not there, says so and gives nothing.
+  gpgp::Drawing loadSvg(const std::string& file, const char* label);
   gpgp::GeometrySet geometrySet(const char* label, const std::vector<GpgpMesh>& meshes);
 
   EngineMemory memory;
+  HostMemory hostMemory;
   gpgp::Context context;
 
 private:

@@ -4,14 +4,9 @@
 #include "target.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace mini {
 namespace {
-
-void GPGP_CALL onSvgMessage(void*, const GpgpMessage* message) {
-  std::fprintf(stderr, "svg: %s: %s\n", message->label, message->text);
-}
 
 struct Rectangle {
   float x, y, width, height;
@@ -47,24 +42,9 @@ Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFi
 }
 
 void Hud::load(const std::string& file, bool isFrame) {
-  if (!fileExists(file)) {
-    std::fprintf(stderr, "mini_engine: %s is not there (tests/data/fetch.sh fetches drawings); going on without it\n",
-                 file.c_str());
-    return;
-  }
-  const std::vector<char> bytes = readFile(file);
-  auto source = gpgp::init<GpgpSvgSource>();
-  source.name = file.c_str();
-  source.data = bytes.data();
-  source.size = bytes.size();
-  source.messageFn = onSvgMessage;
-  const gpgp::Blob baked = gpgp_.take(gpgp::compileSvg(source), "gpgpCompileSvg");
-  auto info = gpgp::init<GpgpDrawingCreateInfo>();
-  info.label = isFrame ? "hud frame" : "hud picture";
-  info.data = baked.data();
-  info.size = baked.size();
   Item item;
-  item.drawing = gpgp_.take(gpgp::Drawing::create(gpgp_.context, info), "gpgpCreateDrawing");
+  item.drawing = gpgp_.loadSvg(file, isFrame ? "hud frame" : "hud picture");
+  if (!item.drawing) return;
   item.info = gpgp_.take(item.drawing.info(), "gpgpGetDrawingInfo");
   item.isFrame = isFrame;
   items_.push_back(std::move(item));

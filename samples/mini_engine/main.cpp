@@ -2,6 +2,8 @@
 // drawings, and a model whose visible triangles are found and coloured.
 #include "engine.h"
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +17,11 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --size WxH       picture size (default 1280x720)
   --window         open a window instead; Escape closes it (with --frames: after N frames)
   --device NAME    GPU: part of its name, or an index (default: $GPGP_DEVICE, else the software device)
+  --screen         a game's screen instead: crest, score, map, dialogue, menu, an inventory that hangs in the world;
+                   screen.png. In a window: arrows and Enter, or the mouse
+  --input LIST     for the screen, before the second frame: up, down, enter, click, or XxY, where the mouse moves to:
+                   --input down,enter,134x350,click; prints what happened
+  --score N        on the screen at the beginning
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
   --decoupled      object-space shading of the model alone: what gpgp finds visible is shaded in compute, into a
                    record a triangle, and displayed from other poses; shaded.png is the last display
@@ -37,6 +44,9 @@ struct Options {
   std::string out = "pictures", device, data = MINI_ENGINE_DATA;
   uint32_t frames = 0;
   VkExtent2D size{1280, 720};
+  bool screen = false;
+  uint32_t score = 0;
+  std::vector<mini::Input> inputs;
   bool window = false, validate = false, watch = false, path = false;
   mini::DecoupledOptions decoupled;
 };
@@ -51,6 +61,27 @@ int indexOf(const char* name, std::initializer_list<const char*> names) {
   return -1;
 }
 
+/// "down,enter,640x360,click"
+bool parseInputs(const std::string& list, std::vector<mini::Input>& inputs) {
+  for (size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = list.find(',', begin);
+    const std::string token = list.substr(begin, end == std::string::npos ? end : end - begin);
+    mini::Input input;
+    char rest = 0;
+    const int named = indexOf(token.c_str(), {"up", "down", "enter", "click"});
+    if (named >= 0)
+      input.kind = std::array{mini::Input::up, mini::Input::down, mini::Input::enter,
+                              mini::Input::click}[static_cast<size_t>(named)];
+    else if (std::sscanf(token.c_str(), "%fx%f%c", &input.x, &input.y, &rest) == 2 && std::isfinite(input.x) &&
+             std::isfinite(input.y))
+      input.kind = mini::Input::move;
+    else
+      return false;
+    inputs.push_back(input);
+  }
+  return true;
+}
+
 bool parse(int argc, char** argv, Options& options) {
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
@@ -60,6 +91,10 @@ bool parse(int argc, char** argv, Options& options) {
     }
     if (name == "--watch") {
       options.watch = true;
+      continue;
+    }
+    if (name == "--screen") {
+      options.screen = true;
       continue;
     }
     if (name == "--validate") {
@@ -81,6 +116,10 @@ bool parse(int argc, char** argv, Options& options) {
       options.device = value;
     else if (name == "--data")
       options.data = value;
+    else if (name == "--input" && parseInputs(value, options.inputs))
+      continue;
+    else if (name == "--score" && std::sscanf(value, "%u%c", &options.score, &rest) == 1)
+      continue;
     else if (name == "--method" && (chosen = indexOf(value, {"standard", "exact", "truth", "conservative"})) >= 0 &&
              chosen != GPGP_SAMPLING_TRUTH)
       options.decoupled.method = chosen;
@@ -107,6 +146,9 @@ bool parse(int argc, char** argv, Options& options) {
     else
       return false;
   }
+  if (options.screen && options.decoupled.on) return false;
+  if (options.frames == 1 && !options.inputs.empty()) return false;
+  if (!options.screen && (!options.inputs.empty() || options.score)) return false;
   return true;
 }
 
@@ -134,7 +176,9 @@ int run(const Options& options) {
 #endif
     if (!target) target = std::make_unique<mini::Offscreen>(device, options.size);
     {
-      mini::Engine engine(device, *target, {options.data, options.watch, options.decoupled});
+      mini::Engine engine(
+          device, *target,
+          {options.data, options.watch, options.decoupled, options.screen, options.score, options.inputs});
       if (options.path)
         engine.comparePaths(options.frames ? options.frames : 40);
       else
@@ -143,16 +187,16 @@ int run(const Options& options) {
       well = engine.allWell();
     }
     if (auto* offscreen = dynamic_cast<mini::Offscreen*>(target.get())) {
-      if (options.decoupled.on) {
-        offscreen->writePng(0, options.out + "/shaded.png");
-        std::printf("picture     %s/shaded.png\n", options.out.c_str());
+      if (options.decoupled.on || options.screen) {
+        const std::string file = options.out + (options.screen ? "/screen.png" : "/shaded.png");
+        offscreen->writePng(0, file);
+        std::printf("picture     %s\n", file.c_str());
+      } else {
+        offscreen->writePng(0, options.out + "/city.png");
+        offscreen->writePng(1, options.out + "/side.png");
+        std::printf("pictures    %s/city.png: the frame; %s/side.png: the model from the side\n", options.out.c_str(),
+                    options.out.c_str());
       }
-    }
-    if (auto* offscreen = dynamic_cast<mini::Offscreen*>(target.get()); offscreen && !options.decoupled.on) {
-      offscreen->writePng(0, options.out + "/city.png");
-      offscreen->writePng(1, options.out + "/side.png");
-      std::printf("pictures    %s/city.png: the frame; %s/side.png: the model from the side\n", options.out.c_str(),
-                  options.out.c_str());
     }
     messages = device.validationMessages();
   }

@@ -75,7 +75,7 @@ void Sight::draw(VkCommandBuffer commands, const Camera& camera) {
     glm::mat4 viewProjection;
     glm::vec4 eye;
     uint32_t draw, firstIndex, vertexOffset, unused;
-  } push{camera.viewProjection, glm::vec4(camera.eye, 1), 0, 0, 0, 0};
+  } push{camera.viewProjection, camera.eyeAndLight(), 0, 0, 0, 0};
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle);
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout, 0, 1, &set_->handle, 0, nullptr);
   for (uint32_t i = 0; i < model_.draws.size(); ++i) {

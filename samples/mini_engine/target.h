@@ -19,6 +19,13 @@ struct Acquired {
   VkSemaphore rendered = VK_NULL_HANDLE;  // and signals it
 };
 
+/// What the person did.
+struct Input {
+  enum Kind { key, up, down, enter, move, click } kind = key;
+  char character = 0; // of a key
+  float x = 0, y = 0; // where the pointer moved to, pixels of the picture
+};
+
 class Target {
 public:
   virtual ~Target() = default;
@@ -33,11 +40,11 @@ public:
   /// False: the person wants to end.
   virtual bool pollEvents() { return true; }
   virtual void setTitle(const std::string&) {}
-  /// Keys pressed since the last call, as characters.
-  std::string takeKeys() { return std::exchange(keys_, {}); }
+  /// Since the last call.
+  std::vector<Input> takeInputs() { return std::exchange(inputs_, {}); }
 
 protected:
-  std::string keys_;
+  std::vector<Input> inputs_;
 };
 
 /// Two images: the picture, and the same scene from the side. After the frame is finished they can be written.

@@ -34,13 +34,36 @@ public:
 
   bool pollEvents() override {
     return window_.pollEvents([this](const SDL_Event& event) {
-      if (event.type == SDL_KEYDOWN && event.key.keysym.sym > 0 && event.key.keysym.sym < 128)
-        keys_ += static_cast<char>(event.key.keysym.sym);
+      if (event.type == SDL_KEYDOWN) pressed(event.key.keysym.sym);
+      if (event.type == SDL_MOUSEMOTION) moved(event.motion.x, event.motion.y);
+      if (event.type == SDL_MOUSEBUTTONDOWN && event.button.button == SDL_BUTTON_LEFT) {
+        moved(event.button.x, event.button.y);
+        inputs_.push_back({Input::click});
+      }
     });
   }
   void setTitle(const std::string& title) override { SDL_SetWindowTitle(window_.handle(), title.c_str()); }
 
 private:
+  void pressed(SDL_Keycode key) {
+    if (key == SDLK_UP)
+      inputs_.push_back({Input::up});
+    else if (key == SDLK_DOWN)
+      inputs_.push_back({Input::down});
+    else if (key == SDLK_RETURN || key == SDLK_KP_ENTER)
+      inputs_.push_back({Input::enter});
+    else if (key > 0 && key < 128)
+      inputs_.push_back({Input::key, static_cast<char>(key)});
+  }
+  /// The window's own coordinates may be coarser than pixels.
+  void moved(int x, int y) {
+    int width = 1, height = 1;
+    SDL_GetWindowSize(window_.handle(), &width, &height);
+    const VkExtent2D size = extent();
+    inputs_.push_back({Input::move, 0,
+                       (static_cast<float>(x) + 0.5f) * static_cast<float>(size.width) / static_cast<float>(width),
+                       (static_cast<float>(y) + 0.5f) * static_cast<float>(size.height) / static_cast<float>(height)});
+  }
   void destroyFramebuffers() {
     for (VkFramebuffer framebuffer : framebuffers_) vkDestroyFramebuffer(device_.device, framebuffer, nullptr);
     framebuffers_.clear();

@@ -5,7 +5,7 @@
 layout(location = 0) in vec3 direction;
 layout(push_constant) uniform Push {
   mat4 fromClip;
-  vec4 eye;
+  vec4 eye; // w: daylight
 } push;
 layout(location = 0) out vec4 result;
 
@@ -19,7 +19,7 @@ float stripes(float position, float period, float width, float footprint) {
 void main() {
   vec3 d = normalize(direction);
   if (d.y > -0.001) {
-    result = vec4(skyColour(d), 1.0);
+    result = vec4(byLight(skyColour(d), push.eye.w), 1.0);
     return;
   }
   float distance = -push.eye.y / d.y;
@@ -33,5 +33,5 @@ void main() {
   // Under the model, which stands across the square (54 m wide), it is dark.
   vec2 under = max(abs(ground) - vec2(17.0, 4.0), 0.0);
   colour *= 1.0 - 0.75 * exp(-dot(under, under) / 40.0);
-  result = vec4(haze(colour, push.eye.xyz, vec3(ground.x, 0.0, ground.y)), 1.0);
+  result = vec4(byLight(haze(colour, push.eye.xyz, vec3(ground.x, 0.0, ground.y)), push.eye.w), 1.0);
 }

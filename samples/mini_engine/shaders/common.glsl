@@ -14,6 +14,12 @@ vec3 haze(vec3 colour, vec3 eye, vec3 world) {
   return mix(colour, skyColour(vec3(0.0, 0.02, 0.0)), amount);
 }
 
+// What a person sees of a colour by day (1) or night (0).
+vec3 byLight(vec3 colour, float daylight) {
+  float grey = dot(colour, vec3(0.25, 0.60, 0.15));
+  return mix(mix(vec3(grey), colour, 0.6) * vec3(0.045, 0.07, 0.13), colour, daylight);
+}
+
 // A surface under one sun and the sky, seen from the eye from either side.
 vec3 lit(vec3 colour, vec3 world, vec3 normal, vec3 eye, float shine) {
   vec3 toEye = eye - world;

@@ -11,7 +11,7 @@ layout(location = 2) in vec3 colour;
 #endif
 layout(push_constant) uniform Push {
   mat4 viewProjection;
-  vec4 eye;
+  vec4 eye; // w: daylight
 } push;
 layout(location = 0) out vec4 result;
 
@@ -22,5 +22,5 @@ void main() {
 #else
   const float shine = 0.0;
 #endif
-  result = vec4(haze(lit(colour, world, n, push.eye.xyz, shine), push.eye.xyz, world), 1.0);
+  result = vec4(byLight(haze(lit(colour, world, n, push.eye.xyz, shine), push.eye.xyz, world), push.eye.w), 1.0);
 }

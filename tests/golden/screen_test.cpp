@@ -1,0 +1,139 @@
+// The mini-engine's game screen, as its summary and pictures show it: hit tests find the menu's items, nothing
+// between them, and the inventory's slots in perspective; a changed score changes no pixel outside of its box, nothing
+// is converted or allocated in a settled frame, and without fonts the screen is there without text. Every run is
+// validated.
+#include "host/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace {
+using gpgp::host::Picture;
+namespace fs = std::filesystem;
+
+const fs::path kOut = GPGP_GOLDEN_OUT "-screen";
+
+struct Shown {
+  std::string text;
+  Picture picture;
+};
+
+/// Runs the screen, with standard error in its text; the process is to succeed.
+Shown runScreen(const std::string& name, const std::string& arguments, const std::string& data = GPGP_TEST_DATA) {
+  const fs::path folder = kOut / name;
+  fs::remove_all(folder);
+  const std::string command = std::string("\"") + GPGP_MINI_ENGINE + "\" --screen --validate --data \"" + data +
+                              "\" --out \"" + folder.string() + "\" " + arguments + " 2>&1";
+  Shown run;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return run;
+  char part[256];
+  while (std::fgets(part, sizeof part, pipe)) run.text += part;
+  EXPECT_EQ(pclose(pipe), 0) << command << "\n" << run.text;
+  EXPECT_NE(run.text.find("validation  0 messages"), std::string::npos) << run.text;
+  EXPECT_TRUE(fs::exists(folder / "screen.png")) << run.text;
+  if (fs::exists(folder / "screen.png")) run.picture = gpgp::host::readPng(folder / "screen.png");
+  return run;
+}
+
+using Box = std::array<unsigned, 4>; // left, top, right, bottom
+
+/// What follows a label in the summary: "score       23 at 534,26 to 620,47".
+Box boxOf(const std::string& text, const std::string& label) {
+  Box box{};
+  const size_t line = text.find("\n" + label), at = line == std::string::npos ? line : text.find(" at ", line);
+  EXPECT_NE(at, std::string::npos) << label << " in\n" << text;
+  if (at != std::string::npos) {
+    EXPECT_EQ(std::sscanf(text.c_str() + at, " at %u,%u to %u,%u", &box[0], &box[1], &box[2], &box[3]), 4) << text;
+  }
+  return box;
+}
+
+const char* const kItems[] = {"Pause", "Night", "Hide inventory", "Next line", "Quit"};
+
+bool hasFonts() { return fs::exists(std::string(GPGP_TEST_DATA) + "/fetched/fonts/Inter-roman.var.ttf"); }
+
+TEST(Screen, ScoreChangesOnlyItsBoxAndASettledFrameConvertsNothing) {
+  if (!hasFonts()) GTEST_SKIP() << "no fonts in " << GPGP_TEST_DATA << ": run tests/data/fetch.sh";
+  const Shown before = runScreen("score", "--frames 2 --size 640x360");
+  if (before.text.find("without libgpgp_text") != std::string::npos) GTEST_SKIP() << "built without text";
+  const Shown after = runScreen("score-higher", "--frames 2 --size 640x360 --score 4700888");
+  EXPECT_NE(before.text.find("last converted in frame 1 of 2; gpgp allocated host memory last in frame 1"),
+            std::string::npos)
+      << before.text;
+  const Box box = boxOf(before.text, "score ");
+  ASSERT_EQ(before.picture.rgba.size(), after.picture.rgba.size());
+  size_t inside = 0, outside = 0;
+  for (unsigned y = 0; y < before.picture.height; ++y)
+    for (unsigned x = 0; x < before.picture.width; ++x) {
+      const size_t pixel = 4 * (size_t{y} * before.picture.width + x);
+      bool equal = true;
+      for (size_t c = 0; c < 4; ++c) equal = equal && before.picture.rgba[pixel + c] == after.picture.rgba[pixel + c];
+      if (equal) continue;
+      const bool in = x >= box[0] && x < box[2] && y >= box[1] && y < box[3];
+      ++(in ? inside : outside);
+    }
+  EXPECT_GT(inside, 100u);
+  EXPECT_EQ(outside, 0u);
+}
+
+TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
+  // A folder of test data in which nothing was fetched.
+  const fs::path data = kOut / "data";
+  fs::remove_all(data);
+  fs::create_directories(data);
+  for (const char* part : {"grammars", "svg"})
+    fs::copy(fs::path(GPGP_TEST_DATA) / part, data / part, fs::copy_options::recursive);
+  const Shown still = runScreen("still", "--frames 2 --size 320x180 --input up,enter", data.string());
+  EXPECT_NE(still.text.find("input       chose Quit\n"), std::string::npos) << still.text;
+  EXPECT_NE(still.text.find("in frame 0 of 1;"), std::string::npos) << still.text; // it quit, and nothing was converted
+  if (still.text.find("without libgpgp_text") == std::string::npos) {
+    EXPECT_NE(still.text.find("the screen goes without text"), std::string::npos) << still.text;
+    EXPECT_NE(still.text.find("Inter-roman.var.ttf is not there"), std::string::npos) << still.text;
+  }
+  std::string inputs, happened;
+  const auto input = [&](const std::string& what, const std::string& expected) {
+    inputs += (inputs.empty() ? "" : ",") + what;
+    happened += expected + "\n";
+  };
+  const auto at = [](unsigned x, unsigned y) { return std::to_string(x) + "x" + std::to_string(y); };
+  Box boxes[5];
+  for (size_t i = 0; i < 5; ++i) {
+    boxes[i] = boxOf(still.text, std::string("menu        ") + kItems[i]);
+    input(at((boxes[i][0] + boxes[i][2]) / 2, (boxes[i][1] + boxes[i][3]) / 2), std::string("over ") + kItems[i]);
+  }
+  ASSERT_LT(boxes[1][3], boxes[2][1]);
+  input(at((boxes[1][0] + boxes[1][2]) / 2, (boxes[1][3] + boxes[2][1]) / 2), "over nothing");
+  input("click", "nothing");
+  input("268x60", "over slot 3");     // of the inventory, which hangs in the world
+  input("down", "highlighted Pause"); // after Quit, which the mouse was over last
+  input("down", "highlighted Night");
+  input("enter", "chose Night");
+  input(at(boxes[0][0] + 8, boxes[0][1] + 4), "over Pause");
+  input("click", "chose Pause");
+  input("click", "chose Resume"); // it does what it says
+  const Shown run = runScreen("menu", "--frames 2 --size 320x180 --input " + inputs,
+                              hasFonts() ? std::string(GPGP_TEST_DATA) : data.string());
+  std::string said;
+  for (size_t line = run.text.find("input  "); line != std::string::npos; line = run.text.find("\ninput  ", line + 1)) {
+    const size_t begin = run.text.find("input", line) + 12;
+    said += run.text.substr(begin, run.text.find('\n', begin) - begin) + "\n";
+  }
+  EXPECT_EQ(said, happened) << run.text;
+  // By night it is darker: the mean of what lies between the panels.
+  const auto light = [](const Picture& picture) {
+    double sum = 0;
+    for (unsigned x = picture.width * 3 / 10; x < picture.width * 8 / 10; ++x)
+      sum += picture.rgba[4 * (size_t{picture.height / 40} * picture.width + x) + 1];
+    return sum;
+  };
+  EXPECT_LT(light(run.picture), 0.6 * light(still.picture));
+}
+
+} // namespace
