@@ -56,9 +56,9 @@ struct SpawnConstants {
   uint regionQuads;      // that indices of one draw can reach
   uint indexWords;       // of a quad: 6, 3, or 0 without indices
   uint quads;            // 1: terminals become quads of vertices, not instances
-  uint phaseRounds;   // rounds that were recorded of each phase
-  uint maxColliders;  // that are held
-  uint cellMask;      // cells that colliders are linked in, a power of two, less 1
+  uint phaseRounds;      // rounds that were recorded of each phase
+  uint maxColliders;     // that are held
+  uint cellMask;         // cells that colliders are linked in, a power of two, less 1
 };
 
 // What becomes of terminals.

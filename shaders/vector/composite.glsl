@@ -195,7 +195,8 @@ void clipItem(uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout
     const uvec2 record = floatBitsToUint(fetch(kShapeSlot, clipRecord(clip)).xy);
     const uint code = coverageOf(paths[record.x], tile);
     int otherDifference = 0;
-    const uint other = code == 0 ? 0 : maskAt(code, at, area, otherDifference);
+    const uint other =
+        code == 0 ? 0 : maskOf(code, fetchEdge(code, at.y, area), at.x, area, otherDifference);
     combine(mask, difference, other, otherDifference, false);
     clip = record.y;
   }

@@ -59,8 +59,7 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_SPAWNER_CREATE_INFO, "info"); !ok) return ok;
     if (!spawner) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "spawner is NULL");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
-    if (info->flags & ~GPGP_SPAWNER_ORDERED)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
+    if (info->flags & ~GPGP_SPAWNER_ORDERED) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
     if (info->vertices && (info->flags & GPGP_SPAWNER_ORDERED))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWNER_ORDERED is for instances, not for vertices");
     if (info->maxShapes > (1u << 24) || info->maxTerminals > (1u << 24))

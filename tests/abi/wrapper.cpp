@@ -84,22 +84,6 @@ GpgpResult useGrammarBuilder() {
   return g.compile().code();
 }
 
-GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
-  auto blob = gpgp::compileSvg(gpgp::init<GpgpSvgSource>());
-  if (!blob) return blob.code();
-  auto drawing = gpgp::Drawing::create(context, gpgp::init<GpgpDrawingCreateInfo>());
-  auto canvas = gpgp::Canvas::create(context, gpgp::init<GpgpCanvasCreateInfo>());
-  auto view = gpgp::CanvasView::create(context, gpgp::init<GpgpCanvasViewCreateInfo>());
-  if (!drawing || !canvas || !view || !drawing->info()) return drawing.code();
-  auto prepare = gpgp::init<GpgpCanvasInfo>();
-  prepare.view = *view;
-  if (const GpgpResult code = canvas->recordPrepare(cmd, frame, prepare)) return code;
-  auto draw = gpgp::init<GpgpCanvasDrawInfo>();
-  draw.view = *view;
-  if (const GpgpResult code = canvas->recordDraw(cmd, frame, draw)) return code;
-  return canvas->report().code();
-}
-
 GpgpResult useUi(GpgpContext context, const gpgp::GlyphSet& set, const gpgp::Drawing& drawing) {
   auto list = gpgp::List::create(context);
   if (!list) return list.code();
@@ -116,6 +100,25 @@ GpgpResult useUi(GpgpContext context, const gpgp::GlyphSet& set, const gpgp::Dra
   auto info = gpgp::init<GpgpHitTestInfo>();
   info.items = &item;
   return gpgp::hitTest(context, info).code();
+}
+
+GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  auto blob = gpgp::compileSvg(gpgp::init<GpgpSvgSource>());
+  if (!blob) return blob.code();
+  auto drawing = gpgp::Drawing::create(context, gpgp::init<GpgpDrawingCreateInfo>());
+  auto canvas = gpgp::Canvas::create(context, gpgp::init<GpgpCanvasCreateInfo>());
+  auto view = gpgp::CanvasView::create(context, gpgp::init<GpgpCanvasViewCreateInfo>());
+  if (!drawing || !canvas || !view || !drawing->info()) return drawing.code();
+  const auto glyphs = gpgp::GlyphSet::create(context, gpgp::init<GpgpGlyphSetCreateInfo>());
+  if (!glyphs) return glyphs.code();
+  if (const GpgpResult code = useUi(context, *glyphs, *drawing)) return code;
+  auto prepare = gpgp::init<GpgpCanvasInfo>();
+  prepare.view = *view;
+  if (const GpgpResult code = canvas->recordPrepare(cmd, frame, prepare)) return code;
+  auto draw = gpgp::init<GpgpCanvasDrawInfo>();
+  draw.view = *view;
+  if (const GpgpResult code = canvas->recordDraw(cmd, frame, draw)) return code;
+  return canvas->report().code();
 }
 
 GpgpResult useText() {

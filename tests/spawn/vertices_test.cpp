@@ -888,8 +888,7 @@ TEST_F(VerticesTest, BadLayoutsAreRefusedWithAReason) {
   };
   EXPECT_EQ(refusedLayout([](auto& v) { v.stride = 46; }),
             "vertices->stride is 46; it must be a multiple of 4, at most 64");
-  EXPECT_EQ(refusedLayout([](auto& v) { v.attributeCount = 9; }),
-            "vertices->attributeCount is 9; it must be 1 to 8");
+  EXPECT_EQ(refusedLayout([](auto& v) { v.attributeCount = 9; }), "vertices->attributeCount is 9; it must be 1 to 8");
   EXPECT_EQ(refusedLayout([](auto& v) { v.attributes[1].semantic = 7; }),
             "vertices->attributes[1].semantic is unknown (7)");
   EXPECT_EQ(refusedLayout([](auto& v) { v.attributes[3].format = VK_FORMAT_R32G32_SFLOAT; }),

@@ -148,8 +148,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const std::span<const uint32_t> interpreter = context.device.subgroupArithmetic
                                                     ? std::span<const uint32_t>(spawn_derive_subgroups)
                                                     : std::span<const uint32_t>(spawn_derive);
-  const uint32_t derive = spawner->derive_ = list.add(
-      core::ShaderDesc{"derive", interpreter, specialization(limits.fit), 2});
+  const uint32_t derive = spawner->derive_ =
+      list.add(core::ShaderDesc{"derive", interpreter, specialization(limits.fit), 2});
   const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
   const bool subgroups = context.device.subgroupArithmetic;
   const auto colliding = subgroups ? std::span<const uint32_t>(spawn_derive_colliders_subgroups)
@@ -166,9 +166,9 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.fill("clear counters", kCounters, 0);
   list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
   if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
-  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},       {kInstances, write}, {kDraws, read},
-                     {kQueues, readWrite},    {kStacks, readWrite},  {kRecords, write},   {kCounters, readWrite},
-                     {kBuckets, readWrite},   {kConstants, read},    {kColliders, readWrite}, {kColliderCells, read}};
+  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write},     {kDraws, read},
+                     {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},       {kCounters, readWrite},
+                     {kBuckets, readWrite},   {kConstants, read},   {kColliders, readWrite}, {kColliderCells, read}};
   for (uint32_t phase = 0; phase < phases; ++phase) {
     const uint32_t first = phase * spawner->phaseStride();
     if (phase == 0)
@@ -190,9 +190,10 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
     }
   }
   if (vertices) {
-    const auto spirv = subgroups ? std::span<const uint32_t>(spawn_expand_subgroups)
-                                 : std::span<const uint32_t>(spawn_expand);
-    const uint32_t expand = list.add(core::ShaderDesc{"expand", spirv, specialization(layout), core::kMaxSpecialization});
+    const auto spirv =
+        subgroups ? std::span<const uint32_t>(spawn_expand_subgroups) : std::span<const uint32_t>(spawn_expand);
+    const uint32_t expand =
+        list.add(core::ShaderDesc{"expand", spirv, specialization(layout), core::kMaxSpecialization});
     list.dispatch("expand", expand,
                   {{kGraph, read},
                    {kAxioms, read},
@@ -288,9 +289,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.steps = limits.steps;
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
-  constants.terminalsTo = counts                ? shader::kToCounts
-                          : sorted || vertices_ ? shader::kToRecords
-                                                : shader::kToInstances;
+  constants.terminalsTo = counts ? shader::kToCounts : sorted || vertices_ ? shader::kToRecords : shader::kToInstances;
   constants.regions = regions;
   constants.writeNeeded = info.needed.buffer ? 1 : 0;
   constants.quads = vertices_ ? 1 : 0;
@@ -323,8 +322,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kPartGroups] = {shader::kOrderParts, 1, 1};
   record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
   record.groups[kLinkGroups] = {std::clamp(maxColliders_ / (4 * shader::kSpawnGroupSize), 1u, 256u), 1, 1};
-  record.groups[kExpandGroups] = {
-      std::min((maxTerminals_ - 1) / shader::kSpawnGroupSize + 1, limits.expandGroups), 1, 1};
+  record.groups[kExpandGroups] = {std::min((maxTerminals_ - 1) / shader::kSpawnGroupSize + 1, limits.expandGroups), 1,
+                                  1};
   record.conditions[kSorted] = sorted;
   record.conditions[kExpanded] = vertices_ && !counts;
   record.conditions[kOrdered] = sorted && ordered_;

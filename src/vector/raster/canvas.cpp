@@ -113,7 +113,7 @@ enum Conditions : uint32_t {
 };
 
 constexpr uint32_t kListedPaths = 1024; // up to as many, bins have room for lists
-constexpr uint32_t kSquare = 16; // pixels: a workgroup of raster.comp
+constexpr uint32_t kSquare = 16;        // pixels: a workgroup of raster.comp
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
