@@ -61,6 +61,9 @@ GPGP_API GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList list, float opacity);
  *  Errors: INVALID_ARGUMENT (none is left). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPopState(GpgpList list);
 
+/** The id of what hit tests pass over, such as decoration on top of a button. Drawings need not be hitTestable then. */
+#define GPGP_ID_NOT_HIT UINT64_MAX
+
 typedef int32_t GpgpListShapeKind;
 enum {
   GPGP_LIST_RECTANGLE = 0,
@@ -89,7 +92,7 @@ typedef struct GpgpListShape {
   float color[4]; /**< linear RGB, straight alpha, 0 to 1; multiplies image and gradient */
   const GpgpGradient* gradient; /**< NULL: none */
   const GpgpListImage* image;   /**< NULL: none; not for lines, without a gradient */
-  uint64_t id;                  /**< the engine's, for gpgpHitTest */
+  uint64_t id;                  /**< the engine's, for gpgpHitTest; or GPGP_ID_NOT_HIT */
 } GpgpListShape;
 
 /** Paints shapes on top of what is in the list. A filled shape with a border is two. Errors, after which none is added:

@@ -203,13 +203,8 @@ void clipItem(uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout
 }
 #endif
 
-// Whether what is painted next counts by its area, and whether what comes behind it may.
+// Whether what is painted next counts by its area.
 bool countsArea() { return first || gap > 0; }
-#if RICH
-bool mayCountArea() { return (header.flags & kExactArea) != 0; } // leaving a group may open a gap
-#else
-bool mayCountArea() { return countsArea(); }
-#endif
 
 // A path over pixel `at` of the tile and `pixel` of the canvas; `edge` is its row there, with areas where countsArea();
 // `paint` is its item, its paint and its group.

@@ -23,7 +23,9 @@ void main() {
     c.last = rowOf(g, c.bottom.y);
     c.side = (r.path & kRightSide) != 0 ? 1.0 : -1.0;
     const PlacedPath p = paths[path];
+#if SCISSORS
     if (!cutChord(g, (r.path & kCut) != 0 ? items[p.item].scissor : kNoScissor, c)) continue;
+#endif
     fillRow(g, p, c, (c.first >> findMSB(g.samples)) + int(row));
   }
 }

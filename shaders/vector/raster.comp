@@ -27,12 +27,6 @@ shared uint open[2];
 shared bool rich; // this square is not for this shader
 #endif
 
-// The first of the paths at hand from `e` on that touches a tile.
-uint nextIn(uint e, uint count, uint quarter) {
-  while (e < count && coverage[e][quarter] == 0) ++e;
-  return e;
-}
-
 void main() {
   const uint lane = gl_LocalInvocationIndex, quarter = lane / 64;
   const uvec2 inTile = uvec2(lane % 8, lane / 8 % 8);
@@ -137,14 +131,10 @@ void main() {
       if (lane < kRoom / 32) touching[turn ^ 1][lane] = 0;
       if (lane == kRoom / 32) open[turn ^ 1] = 0;
       barrier();
-      // The next path's edge is on its way while a path is painted.
-      uint e = nextIn(0, count, quarter);
-      uint code = e < count ? coverage[e][quarter] : 0;
-      Edge edge = fetchEdge(code, inTile.y, mayCountArea());
-      while (e < count && pixelOpen()) {
-        const uint next = nextIn(e + 1, count, quarter);
-        const uint nextCode = next < count ? coverage[next][quarter] : 0;
-        const Edge nextEdge = fetchEdge(nextCode, inTile.y, mayCountArea());
+      for (uint e = 0; e < count && pixelOpen(); ++e) {
+        const uint code = coverage[e][quarter];
+        if (code == 0) continue;
+        const Edge edge = fetchEdge(code, inTile.y, countsArea());
 #if RICH
         paintOver(code, edge, inTile, pixel, colors[e], paints[e]);
 #elif PAINTS
@@ -152,9 +142,6 @@ void main() {
 #else
         paintOver(code, edge, inTile, pixel, colors[e], uvec3(0));
 #endif
-        e = next;
-        code = nextCode;
-        edge = nextEdge;
       }
       if (base + kRoom >= total && wordEnd <= 256) break;
       if (pixelOpen()) open[turn] = 1;

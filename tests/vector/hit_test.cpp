@@ -192,6 +192,17 @@ TEST_F(CanvasTest, HitTestsOfListsFindWhatIsSeen) {
   ASSERT_EQ(hit.item, 0u); // (0, 20) -> (15, 5) turned back -> (14 / 3, 3 / 3)
   EXPECT_NEAR(hit.x, 14.0f / 3, 1e-4f);
   EXPECT_NEAR(hit.y, 1, 1e-4f);
+  // Decoration is passed over, a drawing that hit tests cannot ask included.
+  info.hitTestable = VK_FALSE;
+  GpgpAsset decoration = nullptr;
+  ASSERT_EQ(gpgpCreateDrawing(context, &info, &decoration), GPGP_SUCCESS);
+  GpgpListShape button = rectangle(0, 0, 90, 90), frame = button;
+  button.id = 5;
+  frame.id = GPGP_ID_NOT_HIT;
+  list.reset().add(button).add(frame).add(decoration, GPGP_ID_NOT_HIT).add(set, {{index, 0, 40, 90, {}}},
+                                                                           GPGP_ID_NOT_HIT);
+  for (const float at : {8.0f, 20.0f, 45.0f}) EXPECT_EQ(hitAt(context, {list.item()}, at, at).id, 5u);
+  EXPECT_EQ(hitAt(context, {list.item()}, 95, 95).item, GPGP_HIT_NONE);
 }
 
 TEST_F(CanvasTest, ListsBeyondBudgetsLeaveOutTheLastAndSayHowMany) {

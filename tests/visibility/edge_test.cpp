@@ -181,16 +181,19 @@ TEST_F(EdgeTest, PositionsThatAreNoNumbersAreSkippedAndCounted) {
 }
 
 // As large as viewports get. Needs a device that binds 256 MiB.
-TEST_F(VisibilityGpuTest, AViewportOf8192SquaredSeesAllOfASheet) {
+TEST_F(VisibilityGpuTest, AViewportOf8192SquaredEqualsTheTwin) {
   if (device.properties().limits.maxStorageBufferRange < 8192u * 8192u * 4u)
     GTEST_SKIP() << device.name() << " binds too little for 8192 x 8192 pixels";
   Scene scene = sheet(1, 300, 0.3f); // 180 000 triangles of some hundred pixels
   scene.addDraw(0);
   scene.setCamera(perspective(1.0f, 1.0f, 0.05f, 10.0f) * lookAt({0.1f, 0.05f, 2.2f}, {0, 0, 0}), 8192, 8192);
-  scene.input();
+  TwinInput input = scene.input();
   const GpuResult gpu = sample(scene);
+  const TwinResult twin = sampleOnCpu(input);
   EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
-  EXPECT_EQ(gpu.report.visible, scene.params.triangleCount);
+  EXPECT_EQ(gpu.bits, twin.bits);
+  EXPECT_EQ(gpu.report.coveredPixels, twin.counters.coveredPixels);
+  EXPECT_GT(gpu.report.visible, scene.params.triangleCount - 100); // all but what the sheet's waves hide
   EXPECT_GT(gpu.report.coveredPixels, 8192u * 8192u / 3);
 }
 
@@ -220,12 +223,19 @@ TEST_F(VisibilityGpuTest, AHundredMillionTrianglesOfInstances) {
       createSampler(1024, 1024, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT}) {
     const GpuResult gpu = sample(scene, sampler, set, {.method = method, .byDraw = false});
-    EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
     EXPECT_EQ(gpu.report.neededTriangles, scene.params.triangleCount);
     EXPECT_EQ(gpu.report.coveredPixels, 1024u * 1024u);
     ASSERT_FALSE(gpu.list.empty());
-    EXPECT_LT(gpu.list.back(), 2 * kSide * kSide);            // of the first instance
     EXPECT_GT(gpu.report.visible, 2 * kSide * kSide * 3 / 4); // all but the border's
+    // In pixels that no triangle fills, each of the 10 000 sheets has a candidate: more pairs than there is room for.
+    // What has none is shown, and counted.
+    if (method == GPGP_SAMPLING_EXACT && gpu.report.base.status == GPGP_BUDGET_EXCEEDED) {
+      EXPECT_GT(gpu.report.unresolved, 0u);
+      EXPECT_GT(gpu.report.neededPairs, 10000u);
+      continue;
+    }
+    EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
+    EXPECT_LT(gpu.list.back(), 2 * kSide * kSide); // of the first instance
   }
 }
 

@@ -28,6 +28,7 @@
 #include "shaders/vector_fill_one.spv.h"
 #include "shaders/vector_fill_projective.spv.h"
 #include "shaders/vector_fill_rows.spv.h"
+#include "shaders/vector_fill_rows_one.spv.h"
 #include "shaders/vector_fill_software.spv.h"
 #include "shaders/vector_fill_software_one.spv.h"
 #include "shaders/vector_fill_software_projective.spv.h"
@@ -245,9 +246,10 @@ core::PassList Canvas::describe() const {
   if (software_) {
     either(fillNames, fill, {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments);
   } else {
-    dispatch("fill", {"fill", vector_fill_rows},
-             {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}, {chords, read}, {rowList, read}},
-             kRows);
+    either({"fill", "fill, several drawings", "fill, projective"},
+           {vector_fill_rows_one, vector_fill_rows, vector_fill_rows},
+           {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}, {chords, read}, {rowList, read}},
+           kRows);
     for (uint32_t k = 0; k < 3; ++k) { // where the lists did not suffice
       core::Pass& pass = list.dispatchIndirect(
           fillNames[k], list.add(core::ShaderDesc{fillNames[k], fill[k]}),

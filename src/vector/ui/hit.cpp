@@ -151,7 +151,7 @@ Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpH
     const List::Space& space = command.space;
     if (space.clip != clip) shown = clipsShow(list, clip = space.clip, map, x, y);
     if (space.base != base) mapped = unmap(compose(map, list.bases()[base = space.base]), x, y, p);
-    if (!shown || !mapped) continue;
+    if (!shown || !mapped || command.id == GPGP_ID_NOT_HIT) continue;
     hit.entry = command.firstEntry;
     hit.id = command.id;
     bool found = false;
@@ -159,7 +159,7 @@ Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpH
     if (command.kind == List::Kind::shapes) {
       const auto shapes = list.shapes().subspan(command.first, command.count);
       size_t k = shapes.size();
-      while (k > 0 && !inShape(shapes[k - 1].record, p)) --k;
+      while (k > 0 && (shapes[k - 1].id == GPGP_ID_NOT_HIT || !inShape(shapes[k - 1].record, p))) --k;
       if (!k) continue;
       found = true;
       hit.entry += static_cast<uint32_t>(k - 1);
