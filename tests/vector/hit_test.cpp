@@ -201,7 +201,7 @@ TEST_F(CanvasTest, HitTestsOfListsFindWhatIsSeen) {
   frame.id = GPGP_ID_NOT_HIT;
   list.reset().add(button).add(frame).add(decoration, GPGP_ID_NOT_HIT).add(set, {{index, 0, 40, 90, {}}},
                                                                            GPGP_ID_NOT_HIT);
-  for (const float at : {8.0f, 20.0f, 45.0f}) EXPECT_EQ(hitAt(context, {list.item()}, at, at).id, 5u);
+  for (const float p : {8.0f, 20.0f, 45.0f}) EXPECT_EQ(hitAt(context, {list.item()}, p, p).id, 5u);
   EXPECT_EQ(hitAt(context, {list.item()}, 95, 95).item, GPGP_HIT_NONE);
 }
 
