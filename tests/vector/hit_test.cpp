@@ -199,8 +199,11 @@ TEST_F(CanvasTest, HitTestsOfListsFindWhatIsSeen) {
   GpgpListShape button = rectangle(0, 0, 90, 90), frame = button;
   button.id = 5;
   frame.id = GPGP_ID_NOT_HIT;
-  list.reset().add(button).add(frame).add(decoration, GPGP_ID_NOT_HIT).add(set, {{index, 0, 40, 90, {}}},
-                                                                           GPGP_ID_NOT_HIT);
+  list.reset()
+      .add(button)
+      .add(frame)
+      .add(decoration, GPGP_ID_NOT_HIT)
+      .add(set, {{index, 0, 40, 90, {}}}, GPGP_ID_NOT_HIT);
   for (const float p : {8.0f, 20.0f, 45.0f}) EXPECT_EQ(hitAt(context, {list.item()}, p, p).id, 5u);
   EXPECT_EQ(hitAt(context, {list.item()}, 95, 95).item, GPGP_HIT_NONE);
 }
