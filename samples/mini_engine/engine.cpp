@@ -12,7 +12,7 @@ Engine::Engine(Device& device, Target& target, const EngineOptions& options)
       gpgp_(device, kFramesInFlight),
       city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga", options.watch),
       sight_(device, gpgp_, forward_, levelModel(options.dataFolder)), farther_(options.decoupled.farther),
-      script_(options.inputs) {
+      script_(options.inputs), frames_(device, kFramesInFlight) {
   if (options.decoupled.on)
     decoupled_ =
         std::make_unique<Decoupled>(device, gpgp_, forward_, levelModel(options.dataFolder), options.decoupled);
@@ -21,27 +21,7 @@ Engine::Engine(Device& device, Target& target, const EngineOptions& options)
   else
     hud_ = std::make_unique<Hud>(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
                                  options.dataFolder + "/fetched/svg/tiger.svgz");
-  for (Slot& slot : slots_) {
-    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    pool.queueFamilyIndex = device.family;
-    check(vkCreateCommandPool(device.device, &pool, nullptr, &slot.pool), "vkCreateCommandPool");
-    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    allocate.commandPool = slot.pool;
-    allocate.commandBufferCount = 1;
-    check(vkAllocateCommandBuffers(device.device, &allocate, &slot.commands), "vkAllocateCommandBuffers");
-    VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    fence.flags = VK_FENCE_CREATE_SIGNALED_BIT;
-    check(vkCreateFence(device.device, &fence, nullptr, &slot.finished), "vkCreateFence");
-  }
   resize();
-}
-
-Engine::~Engine() {
-  vkDeviceWaitIdle(device_.device);
-  for (const Slot& slot : slots_) {
-    vkDestroyFence(device_.device, slot.finished, nullptr);
-    vkDestroyCommandPool(device_.device, slot.pool, nullptr);
-  }
 }
 
 void Engine::resize() {
@@ -86,47 +66,24 @@ void Engine::run(uint32_t frames) {
                        std::to_string(sight_.report().visible) + " triangles visible");
     }
   }
-  check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
-  // Everything is finished: one more advance makes the last reports ready.
-  frame_ = {frame_.current + 1, frame_.current};
-  gpgp_.check(gpgp_.context.advance(frame_), "gpgpAdvance");
+  frames_.finish(); // one more advance makes the last reports ready
+  gpgp_.check(gpgp_.context.advance(frames_.number()), "gpgpAdvance");
   collect();
 }
 
 void Engine::frame() {
-  // The slot was used two frames ago: once its fence is signalled, everything up to that frame is safe.
-  ++frame_.current;
+  VkCommandBuffer commands = frames_.begin();
   if (!screen_ || !screen_->game().paused) ++step_;
-  Slot& slot = slots_[frame_.current % kFramesInFlight];
-  check(vkWaitForFences(device_.device, 1, &slot.finished, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-  if (frame_.current > kFramesInFlight) frame_.safe = frame_.current - kFramesInFlight;
-  std::optional<Acquired> acquired = target_.acquire(static_cast<uint32_t>(frame_.current));
+  const uint32_t number = static_cast<uint32_t>(frames_.number().current);
+  std::optional<Acquired> acquired = target_.acquire(number);
   while (!acquired) {
     resize();
-    acquired = target_.acquire(static_cast<uint32_t>(frame_.current));
+    acquired = target_.acquire(number);
   }
-  gpgp_.check(gpgp_.context.advance(frame_), "gpgpAdvance");
+  gpgp_.check(gpgp_.context.advance(frames_.number()), "gpgpAdvance");
   collect();
-
-  check(vkResetFences(device_.device, 1, &slot.finished), "vkResetFences");
-  check(vkResetCommandPool(device_.device, slot.pool, 0), "vkResetCommandPool");
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
-  record(slot.commands, *acquired);
-  check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
-
-  const VkPipelineStageFlags waitStage = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-  VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
-  if (acquired->available) {
-    submit.waitSemaphoreCount = submit.signalSemaphoreCount = 1;
-    submit.pWaitSemaphores = &acquired->available;
-    submit.pWaitDstStageMask = &waitStage;
-    submit.pSignalSemaphores = &acquired->rendered;
-  }
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &slot.commands;
-  check(vkQueueSubmit(device_.queue, 1, &submit, slot.finished), "vkQueueSubmit");
+  record(commands, *acquired);
+  frames_.submit(acquired->available, acquired->rendered);
   target_.present(*acquired);
 }
 
@@ -156,8 +113,8 @@ void Engine::comparePaths(uint32_t frames) {
 void Engine::recordDecoupled(VkCommandBuffer commands, const Acquired& acquired) {
   const Camera display = orbit(0.0f, 84.0f, 36.0f, 0.80f);
   const Camera shading = orbit(0.0f, 84.0f * farther_, 36.0f * farther_, 0.80f);
-  gpgp_.check(gpgp_.context.recordUpload(commands, frame_).code(), "gpgpRecordUpload");
-  decoupled_->prepare(commands, frame_, shading, display, target_.extent());
+  gpgp_.check(gpgp_.context.recordUpload(commands, frames_.number()).code(), "gpgpRecordUpload");
+  decoupled_->prepare(commands, frames_.number(), shading, display, target_.extent());
   forward_.begin(commands, acquired.framebuffer);
   forward_.drawBackdrop(commands, display);
   decoupled_->draw(commands, display);
@@ -172,20 +129,20 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   const Camera camera = orbit(0.0f, 84.0f, 36.0f, 0.80f);
   const Camera side = orbit(2.5f, 74.0f, 26.0f, 0.56f); // what the camera cannot see lies here
   if (screen_) screen_->update(camera);
-  gpgp_.check(gpgp_.context.recordUpload(commands, frame_).code(), "gpgpRecordUpload");
-  city_.prepare(commands, frame_);
-  sight_.prepare(commands, frame_, camera, target_.extent());
+  gpgp_.check(gpgp_.context.recordUpload(commands, frames_.number()).code(), "gpgpRecordUpload");
+  city_.prepare(commands, frames_.number());
+  sight_.prepare(commands, frames_.number(), camera, target_.extent());
   if (screen_)
-    screen_->prepare(commands, frame_);
+    screen_->prepare(commands, frames_.number());
   else
-    hud_->prepare(commands, frame_);
+    hud_->prepare(commands, frames_.number());
 
   forward_.begin(commands, acquired.framebuffer);
   forward_.drawBackdrop(commands, camera);
   city_.draw(commands, camera);
   sight_.draw(commands, camera);
   if (screen_) {
-    screen_->draw(commands, frame_);
+    screen_->draw(commands, frames_.number());
     vkCmdEndRenderPass(commands);
     return;
   }
@@ -199,7 +156,7 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   forward_.drawBackdrop(commands, side);
   sight_.draw(commands, side);
   forward_.setArea(commands, {{0, 0}, extent});
-  hud_->draw(commands, frame_);
+  hud_->draw(commands, frames_.number());
   vkCmdEndRenderPass(commands);
 
   if (const auto* offscreen = dynamic_cast<const Offscreen*>(&target_)) {

@@ -22,7 +22,6 @@ class Engine {
 public:
   static constexpr uint32_t kFramesInFlight = 2;
   Engine(Device& device, Target& target, const EngineOptions& options);
-  ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
@@ -35,11 +34,6 @@ public:
   bool allWell() const;
 
 private:
-  struct Slot {
-    VkCommandPool pool = VK_NULL_HANDLE;
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    VkFence finished = VK_NULL_HANDLE;
-  };
   void frame();
   void record(VkCommandBuffer commands, const Acquired& acquired);
   void resize();
@@ -61,8 +55,7 @@ private:
   float farther_ = 1;
   uint64_t step_ = 0; // on the camera's path
   std::vector<Input> script_;
-  Slot slots_[kFramesInFlight];
-  GpgpFrame frame_{};
+  gpgp::sdl2::Frames frames_; // waits for its frames before what they use goes
 };
 
 } // namespace mini

@@ -33,6 +33,15 @@ struct Resource {
   bool optional = false;  ///< buffer, image, texture: a record may leave it out; an unused range is bound instead
 };
 
+constexpr VkDescriptorType descriptorType(ResourceKind kind) {
+  switch (kind) {
+  case ResourceKind::image: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  case ResourceKind::texture: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  case ResourceKind::uniforms: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  default: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  }
+}
+
 enum class UseKind : uint8_t { read, write, readWrite, indirect };
 struct Use {
   ResourceIndex resource;
@@ -65,7 +74,8 @@ struct Pass {
   uint32_t constantCount = 0;
   uint32_t condition = UINT32_MAX; ///< index in a record's list of flags: left out of the record when false
   uint32_t level = 0;              ///< left out of records that ask for as many levels or fewer
-  bool beside = false;             ///< needs no barrier after the pass before: what both write, they add to
+  bool beside = false;             ///< needs no barrier after the pass before: what both write, they add to, or
+                                   ///< only one of them is recorded
   bool barrierBefore = false;      ///< worked out by finish()
 };
 

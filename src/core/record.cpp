@@ -160,14 +160,12 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
     const Resource& resource = passes_.resources[i];
     const Binding& binding = bindings[i];
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i,      0, 1,
-                               VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,      nullptr, &buffers[i], nullptr};
-    if (resource.kind == ResourceKind::uniforms) write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+                               descriptorType(resource.kind),          nullptr, &buffers[i], nullptr};
     // What a record leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
     buffers[i] = {constants_.handle(), 0, VK_WHOLE_SIZE};
     if (resource.kind == ResourceKind::image) {
       if (!binding.image || !binding.image->view) continue; // passes that use it are skipped
       images[i] = {VK_NULL_HANDLE, binding.image->view, VK_IMAGE_LAYOUT_GENERAL};
-      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
       write.pImageInfo = &images[i];
       write.pBufferInfo = nullptr;
     } else if (resource.kind == ResourceKind::texture) {
@@ -175,7 +173,6 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
       images[i] = binding.texture;
       write.dstSet = textureSets_[slot];
       write.dstBinding = i - firstTexture_;
-      write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
       write.pImageInfo = &images[i];
       write.pBufferInfo = nullptr;
     } else if (resource.kind == ResourceKind::scratch) {

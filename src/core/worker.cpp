@@ -78,20 +78,15 @@ Result<void> Worker::init(PassList passes, const DrawShaders* draw) {
   uint32_t images = 0, textures = 0, uniforms = 0;
   for (uint32_t i = 0; i < resourceCount; ++i) {
     const VkShaderStageFlags stages = shaderStages(draws_);
-    if (passes_.resources[i].kind == ResourceKind::texture) {
+    const ResourceKind ofResource = passes_.resources[i].kind;
+    if (ofResource == ResourceKind::texture) {
       if (textures == 0) firstTexture_ = i;
-      textureBindings[textures++] = {i - firstTexture_, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, stages, nullptr};
+      textureBindings[textures++] = {i - firstTexture_, descriptorType(ofResource), 1, stages, nullptr};
       continue;
     }
-    const bool image = passes_.resources[i].kind == ResourceKind::image,
-               uniform = passes_.resources[i].kind == ResourceKind::uniforms;
-    bindings[i - textures] = {i,
-                              image     ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-                              : uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                        : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                              1, stages, nullptr};
-    images += image;
-    uniforms += uniform;
+    bindings[i - textures] = {i, descriptorType(ofResource), 1, stages, nullptr};
+    images += ofResource == ResourceKind::image;
+    uniforms += ofResource == ResourceKind::uniforms;
   }
   VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   setInfo.bindingCount = resourceCount - textures;

@@ -109,8 +109,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const uint32_t maxShapes = spawner->maxShapes_ = info.maxShapes ? info.maxShapes : kDefaultShapes;
   const uint32_t maxTerminals = spawner->maxTerminals_ = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
   const uint32_t maxColliders = spawner->maxColliders_ = info.maxColliders;
-  const bool vertices = spawner->vertices_ = info.vertices;
   spawner->stride_ = 4 * layout.strideWords;
+  const bool vertices = spawner->vertices();
   const bool ordered = spawner->ordered_ = info.flags & GPGP_SPAWNER_ORDERED;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
   spawner->rounds_ = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
@@ -270,10 +270,10 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : rounds_;
   const uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
-  const bool counts = vertices_ ? !info.vertices->vertices.buffer : !info.instances.buffer;
+  const bool counts = vertices() ? !info.vertices->vertices.buffer : !info.instances.buffer;
   // One bucket is sorted as it is.
   const bool sorted =
-      !vertices_ && !counts && (ordered_ || (!regions && info.draws.buffer && grammar.graph.buckets > 1));
+      !vertices() && !counts && (ordered_ || (!regions && info.draws.buffer && grammar.graph.buckets > 1));
   shader::SpawnConstants constants{};
   constants.axiomCount = info.axiomCount;
   constants.instanceCapacity = elementsIn<GpgpInstance>(info.instances);
@@ -289,11 +289,11 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.steps = limits.steps;
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
-  constants.terminalsTo = counts ? shader::kToCounts : sorted || vertices_ ? shader::kToRecords : shader::kToInstances;
+  constants.terminalsTo = counts ? shader::kToCounts : sorted || vertices() ? shader::kToRecords : shader::kToInstances;
   constants.regions = regions;
   constants.writeNeeded = info.needed.buffer ? 1 : 0;
-  constants.quads = vertices_ ? 1 : 0;
-  if (vertices_ && !counts) {
+  constants.quads = vertices() ? 1 : 0;
+  if (vertices() && !counts) {
     const GpgpVertexOutput& output = *info.vertices;
     const bool shortIndices = output.indexType == VK_INDEX_TYPE_UINT16;
     const uint32_t indexBytes = shortIndices ? 2 : 4;
@@ -325,9 +325,9 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kExpandGroups] = {std::min((maxTerminals_ - 1) / shader::kSpawnGroupSize + 1, limits.expandGroups), 1,
                                   1};
   record.conditions[kSorted] = sorted;
-  record.conditions[kExpanded] = vertices_ && !counts;
+  record.conditions[kExpanded] = vertices() && !counts;
   record.conditions[kOrdered] = sorted && ordered_;
-  record.conditions[kBucketed] = sorted || regions || counts || vertices_;
+  record.conditions[kBucketed] = sorted || regions || counts || vertices();
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
   record.levels = rounds;

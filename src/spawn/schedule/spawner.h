@@ -30,7 +30,7 @@ public:
   using Worker::prewarm;
   bool takeReport(GpgpSpawnReport& report);
   /// It writes vertices, not instances.
-  bool vertices() const { return vertices_; }
+  bool vertices() const { return stride_ != 0; }
 
 private:
   /// Counters from the first round of a phase to the next phase's: its rounds, and what the last one left.
@@ -38,8 +38,8 @@ private:
 
   uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0, maxColliders_ = 0;
   uint32_t derive_ = 0, deriveColliding_ = 0; // shaders
-  uint32_t stride_ = 0;                       // of a vertex
-  bool vertices_ = false, ordered_ = false;
+  uint32_t stride_ = 0;                       // of a vertex; 0: it writes instances
+  bool ordered_ = false;
 };
 
 } // namespace gpgp::spawn
