@@ -40,7 +40,12 @@ void main() {
   if (!last) return;
   memoryBarrierBuffer();
 #if !SOFTWARE
-  if (lane == 0 && !listed(counters.rows)) { // all that mark had (canvas.cpp)
+  if (lane == 0 && listed(counters.rows)) {
+    const uint groups = (counters.rows + 63) / 64;
+    counters.rowsX = min(groups, 32768);
+    counters.rowsY = (groups + 32767) / 32768;
+    counters.rowsZ = 1;
+  } else if (lane == 0) { // all that mark had (canvas.cpp)
     const uint groups = (header.segmentCount + header.groupSegments - 1) / header.groupSegments;
     counters.fillX = min(groups, 32768);
     counters.fillY = (groups + 32767) / 32768;

@@ -100,10 +100,9 @@ uint wholeItems(uint cut) {
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
 Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }
-// The bits of a tile's bin begin there.
-uint binOf(uvec2 tile) {
-  return kFirstBin + ((tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift)) * header.binWords + 1;
-}
+// The bits of a bin begin there; and a tile's bin.
+uint bitsOf(uint bin) { return kFirstBin + bin * header.binWords + kBinHead; }
+uint binOf(uvec2 tile) { return (tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift); }
 uint clipRecord(uint clip) { return slots[kShapeSlot].clips + clip - 1; } // its vec4
 int tileOf(int column) { return (column + int(kTileSize)) / int(kTileSize) - 1; } // of column -1: -1
 

@@ -366,9 +366,13 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
 #endif
 }
 
-// Where a chord meets a sample row; never turns from row to row and never leaves the chord's ends.
-GPGP_FN float crossingOf(Grid g, Chord c, int row) {
+// Where a sample row lies; sums of rows and steps are exact.
+GPGP_FN float middleOf(Grid g, int row) {
   GPGP_PRECISE float y = (float(row) + 0.5f) * sampleStep(g.samples);
+  return y;
+}
+// Where a chord meets a sample row; never turns from row to row and never leaves the chord's ends.
+GPGP_FN float crossingAt(Chord c, float y) {
   GPGP_PRECISE float x = c.top.x + (y - c.top.y) * c.slope;
   const float within = clamp(x, min(c.top.x, c.bottom.x), max(c.top.x, c.bottom.x));
 #if SCISSORS
@@ -377,6 +381,7 @@ GPGP_FN float crossingOf(Grid g, Chord c, int row) {
   return within;
 #endif
 }
+GPGP_FN float crossingOf(Grid g, Chord c, int row) { return crossingAt(c, middleOf(g, row)); }
 
 GPGP_SHADER_END
 #endif

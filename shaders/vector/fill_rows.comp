@@ -7,25 +7,23 @@ layout(local_size_x = 64) in;
 #include "chords.glsl"
 
 void main() {
-  const uint total = counters.rows, cutPath = counters.cutPath;
-  if (!listed(total)) return;
+  const uint i = groupIndex() * 64 + gl_LocalInvocationID.x;
+  if (i >= counters.rows) return;
+  const uint row = rows[i];
+  const ChordRecord r = chordList[i - row];
+  const uint path = r.path & ~(kRightSide | kCut);
+  if (path >= counters.cutPath) return;
   const Grid g = canvasGrid();
-  for (uint i = gl_GlobalInvocationID.x; i < total; i += gl_NumWorkGroups.x * 64) {
-    const uint row = rows[i];
-    const ChordRecord r = chordList[i - row];
-    const uint path = r.path & ~(kRightSide | kCut);
-    if (path >= cutPath) continue;
-    Chord c;
-    c.top = r.top;
-    c.bottom = r.bottom;
-    c.slope = r.slope;
-    c.first = rowOf(g, c.top.y);
-    c.last = rowOf(g, c.bottom.y);
-    c.side = (r.path & kRightSide) != 0 ? 1.0 : -1.0;
-    const PlacedPath p = paths[path];
+  Chord c;
+  c.top = r.top;
+  c.bottom = r.bottom;
+  c.slope = r.slope;
+  c.first = rowOf(g, c.top.y);
+  c.last = rowOf(g, c.bottom.y);
+  c.side = (r.path & kRightSide) != 0 ? 1.0 : -1.0;
+  const PlacedPath p = paths[path];
 #if SCISSORS
-    if (!cutChord(g, (r.path & kCut) != 0 ? items[p.item].scissor : kNoScissor, c)) continue;
+  if (!cutChord(g, (r.path & kCut) != 0 ? items[p.item].scissor : kNoScissor, c)) return;
 #endif
-    fillRow(g, p, c, (c.first >> findMSB(g.samples)) + int(row));
-  }
+  fillRow(g, p, c, (c.first >> findMSB(g.samples)) + int(row));
 }

@@ -182,9 +182,10 @@ struct CanvasHeader {
   uint glyphs, glyphLimit;
   uint shapes, shapeLimit; // needed; room for as many
   uint sources, sourceLimit;
-  uint shapeTables; // vec4: ShapeRecords, their paints, stops and clips, which lie behind placements
-  uint binWords; // of a bin: 0, or 1 + how many paths it has as a list (pack.comp); a bit for each path; room for lists
-  uint pad0, pad1;
+  uint shapeTables;  // vec4: ShapeRecords, their paints, stops and clips, which lie behind placements
+  uint binWords;     // of a bin: kBinHead, then a bit for each path
+  uint binListLimit; // paths in all bins' lists
+  uint pad0;
   vec4 background;
 };
 
@@ -199,6 +200,8 @@ struct CanvasCounters {
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
   uint glyphs, glyphsGiven; // needed; room for as many
   uint shapes, shapesGiven, items, itemsGiven;
+  uint listed;              // paths in bins' lists
+  uint rowsX, rowsY, rowsZ; // workgroups of the pass that fills from lists
   uint pad0;
 };
 
@@ -239,13 +242,14 @@ GPGP_CONST uint kMinBinShift = 2u, kMaxBinShift = 4u; // tiles: the upper level 
 // much the pixel's area differs from its samples (16 signed bits a pixel, in 1/256 of a sample).
 GPGP_CONST uint kEntryWords = 64u;
 // At the beginning of the bins, indirect arguments and how many: for tiles painted from lists and for crowded ones, and
-// for those of either kind that take the general shader (squares of 16 pixels where the device has barriers).
+// for those of either kind that take the general shader.
 GPGP_CONST uint kPaintedArguments = 0u;
 GPGP_CONST uint kCrowdedArguments = 4u;
 GPGP_CONST uint kRichArguments = 8u;
 GPGP_CONST uint kRichCrowdedArguments = 12u;
 GPGP_CONST uint kMostSegments = 64u; // of a workgroup, a power of two
 GPGP_CONST uint kFirstBin = 16u;
+GPGP_CONST uint kBinHead = 2u; // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
 
 GPGP_SHADER_END
@@ -259,7 +263,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 80 &&
+              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 96 &&
               sizeof(gpgp::shader::ChordRecord) == 24);
 #endif
 #endif

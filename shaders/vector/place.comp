@@ -19,7 +19,7 @@ shared uvec4 wideBins[64]; // left, top, right, bottom, exclusive
 void setBins(uint path, uvec4 box, uint x, uint y, uint step) {
   for (uint row = box.y + y; row < box.w; row += step)
     for (uint column = box.x + x; column < box.z; column += step)
-      atomicOr(bins[kFirstBin + (row * header.binsX + column) * header.binWords + 1 + path / 32], 1u << (path & 31));
+      atomicOr(bins[bitsOf(row * header.binsX + column) + path / 32], 1u << (path & 31));
 }
 
 vec2 cornerOf(vec4 box, vec4 frame, uint corner) { // of the box, which lies in a frame

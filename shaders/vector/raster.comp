@@ -1,17 +1,17 @@
 #version 460
-// The fine level: the paths of four tiles, front to back, over the samples of their pixels.
+// The fine level: the paths of a tile, front to back, over the samples of its pixels.
 //
-// A workgroup owns a square of 16 pixels, four tiles, a thread a pixel. The bin's paths are sifted, 256 at a time, for
-// those that touch the square; they wait in shared memory in painting order. Squares that need
-// the general shader are left to it, in a list (kSplitRich).
+// A workgroup owns a tile, an invocation a pixel. The bin's paths are sifted, as many at a time, for those that touch
+// the tile; they wait in shared memory in painting order. Tiles that need the general shader are left to it, in a list
+// (kSplitRich).
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "composite.glsl"
 #include "lists.glsl"
-layout(local_size_x = 256) in;
-const uint kRoom = 256;
-shared uint counts[kRoom], groupCounts[16], candidates[kRoom];
-shared uvec4 coverage[kRoom]; // of each tile: 0 none, 1 all, 2: entry * 4 + 2 + inside
+const uint kRoom = kTileSize * kTileSize;
+layout(local_size_x = kRoom) in;
+shared uint counts[kRoom], groupCounts[kRoom / 16], candidates[kRoom];
+shared uint coverage[kRoom]; // 1 all, 2: entry * 4 + 2 + inside
 shared vec4 colors[kRoom];
 #if PAINTS
 #if RICH
@@ -20,45 +20,44 @@ shared uvec3 paints[kRoom]; // item, paint, group
 shared uvec2 paints[kRoom]; // item, paint
 #endif
 #endif
-shared uint touching[2][kRoom / 32]; // of the 256 paths at hand, in turn
+shared uint touching[2][kRoom / 32]; // of the paths at hand, in turn
 shared uint open[2];
 #define SPLIT (PAINTS && !RICH) // records that need the general shader as well take the one for gradients
 #if SPLIT
-shared bool rich; // this square is not for this shader
+shared bool rich; // this tile is not for this shader
 #endif
 
 void main() {
-  const uint lane = gl_LocalInvocationIndex, quarter = lane / 64;
-  const uvec2 inTile = uvec2(lane % 8, lane / 8 % 8);
+  const uint lane = gl_LocalInvocationIndex;
+  const uvec2 inTile = uvec2(lane % kTileSize, lane / kTileSize);
 #if RICH && !IMAGES
   if (groupIndex() >= bins[kRichArguments + 3]) return;
-  const uint square = bins[richSquares() + groupIndex()];
-  const uint squaresX = (header.tilesX + 1) / 2;
-  const uvec2 firstTile = uvec2(square % squaresX, square / squaresX) * 2;
+  const uint place = bins[richTiles() + groupIndex()];
+  const uvec2 tile = uvec2(place % header.tilesX, place / header.tilesX);
 #else
-  const uvec2 firstTile = gl_WorkGroupID.xy * 2;
+  const uvec2 tile = gl_WorkGroupID.xy;
 #if SPLIT
   if (lane == 0) rich = false;
 #endif
 #endif
-  const uvec2 pixel = (firstTile + uvec2(quarter & 1, quarter >> 1)) * kTileSize + inTile;
-  const uint bin = binOf(firstTile), cutPath = counters.cutPath;
+  const uvec2 pixel = tile * kTileSize + inTile;
+  const uint bits = bitsOf(binOf(tile)), cutPath = counters.cutPath;
 
   beginPixel();
   if (lane < kRoom / 32) touching[0][lane] = 0;
   if (lane == kRoom / 32) open[0] = 0;
   bool done = false;
   uint turn = 0;
-  const uint listed = bins[bin - 1]; // 1 + paths
-  for (uint wordEnd = listed != 0 ? 1 : header.pathWords; wordEnd > 0 && !done; wordEnd -= min(wordEnd, 256)) {
+  const uint listed = bins[bits - kBinHead], list = bins[bits - kBinHead + 1];
+  for (uint wordEnd = listed != 0 ? 1 : header.pathWords; wordEnd > 0 && !done; wordEnd -= min(wordEnd, kRoom)) {
     uint word = 0, found = 0, before = 0, total = listed - 1;
     if (listed == 0) {
       // Each lane has one word of the bin, the foremost paths first, and learns how many paths lie before its own.
       word = wordEnd - 1 - min(lane, wordEnd - 1);
-      found = lane < wordEnd ? bins[bin + word] : 0;
+      found = lane < wordEnd ? bins[bits + word] : 0;
       counts[lane] = bitCount(found);
       barrier();
-      if (lane < 16) {
+      if (lane < kRoom / 16) {
         uint group = 0;
         for (uint k = 0; k < 16; ++k) group += counts[lane * 16 + k];
         groupCounts[lane] = group;
@@ -66,7 +65,7 @@ void main() {
       for (uint k = lane & ~15u; k < lane; ++k) before += counts[k];
       barrier();
       total = 0;
-      for (uint k = 0; k < 16; ++k) {
+      for (uint k = 0; k < kRoom / 16; ++k) {
         if (k < lane / 16) before += groupCounts[k];
         total += groupCounts[k];
       }
@@ -74,50 +73,42 @@ void main() {
     for (uint base = 0; base < total && !done; base += kRoom) {
       if (before < base + kRoom && before + bitCount(found) > base) {
         uint place = before;
-        for (uint bits = found; bits != 0; ++place) {
-          const uint bit = findMSB(bits);
-          bits ^= 1u << bit;
+        for (uint rest = found; rest != 0; ++place) {
+          const uint bit = findMSB(rest);
+          rest ^= 1u << bit;
           if (place >= base && place < base + kRoom) candidates[place - base] = word * 32 + bit;
         }
       }
       barrier();
-      uint path = ~0u;
-      if (lane < total - base) path = listed != 0 ? bins[bin + header.binWords - 2 - base - lane] : candidates[lane];
-      uvec4 own = uvec4(0);
+      uint path = ~0u, own = 0;
+      if (lane < total - base) path = listed != 0 ? bins[list + base + lane] : candidates[lane];
       PlacedPath p;
       if (path < cutPath) {
         p = paths[path];
-        if (p.left < firstTile.x + 2 && p.right > firstTile.x && p.top < firstTile.y + 2 && p.bottom > firstTile.y)
-          for (uint q = 0; q < 4; ++q) {
-            const uvec2 tile = firstTile + uvec2(q & 1, q >> 1);
-            own[q] = coverageOf(p, tile);
+        own = coverageOf(p, tile);
 #if SPLIT
-            if (own[q] == 0 || (p.group | p.paint) == 0 || (header.flags & kSplitRich) == 0) continue;
-            uint steps = 0;
-            const uint what = groupIn(p, tile, steps);
-            if (what == kHidden) own[q] = 0;
-            if (what == kRich) rich = true;
+        if (own != 0 && (p.group | p.paint) != 0 && (header.flags & kSplitRich) != 0) {
+          uint steps = 0;
+          const uint what = groupIn(p, tile, steps);
+          if (what == kHidden) own = 0;
+          if (what == kRich) rich = true;
+        }
 #endif
-          }
       }
-      const bool touches = (own.x | own.y | own.z | own.w) != 0;
-      if (touches) atomicOr(touching[turn][lane / 32], 1u << (lane & 31));
-#if SPLIT
+      if (own != 0) atomicOr(touching[turn][lane / 32], 1u << (lane & 31));
       barrier();
+#if SPLIT
       if (rich) {
-        if (lane == 0)
-          bins[richSquares() + another(kRichArguments)] = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+        if (lane == 0) bins[richTiles() + another(kRichArguments)] = tile.y * header.tilesX + tile.x;
         return;
       }
-#else
-      barrier();
 #endif
       uint count = 0, place = 0;
       for (uint k = 0; k < kRoom / 32; ++k) {
         if (k == lane / 32) place = count + bitCount(touching[turn][k] & ((1u << (lane & 31)) - 1));
         count += bitCount(touching[turn][k]);
       }
-      if (touches) {
+      if (own != 0) {
         coverage[place] = own;
         colors[place] = p.color;
 #if PAINTS
@@ -132,8 +123,7 @@ void main() {
       if (lane == kRoom / 32) open[turn ^ 1] = 0;
       barrier();
       for (uint e = 0; e < count && pixelOpen(); ++e) {
-        const uint code = coverage[e][quarter];
-        if (code == 0) continue;
+        const uint code = coverage[e];
         const Edge edge = fetchEdge(code, inTile.y, countsArea());
 #if RICH
         paintOver(code, edge, inTile, pixel, colors[e], paints[e]);
@@ -143,7 +133,7 @@ void main() {
         paintOver(code, edge, inTile, pixel, colors[e], uvec3(0));
 #endif
       }
-      if (base + kRoom >= total && wordEnd <= 256) break;
+      if (base + kRoom >= total && wordEnd <= kRoom) break;
       if (pixelOpen()) open[turn] = 1;
       barrier();
       done = open[turn] == 0;

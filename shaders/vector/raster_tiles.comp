@@ -48,7 +48,7 @@ void main() {
   const uint count = bins[own];
   for (uint k = 0; k < count && pixelOpen(); ++k) paintPath(bins[own + 1 + k * 2], bins[own + 2 + k * 2], at, pixel);
 #else
-  const uint bin = binOf(place), cutPath = bins[own];
+  const uint bin = bitsOf(binOf(place)), cutPath = bins[own];
   for (uint word = header.pathWords; word > 0 && pixelOpen(); --word)
     for (uint bits = bins[bin + word - 1]; bits != 0 && pixelOpen();) {
       const uint bit = findMSB(bits), path = (word - 1) * 32 + bit;

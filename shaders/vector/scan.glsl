@@ -1,5 +1,8 @@
-// Sums over a workgroup of 64; all its invocations must call them together.
-shared uint sums[64];
+// Sums over a workgroup of SCAN_LANES; all its invocations must call them together.
+#ifndef SCAN_LANES
+#define SCAN_LANES 64
+#endif
+shared uint sums[SCAN_LANES];
 
 uint add(uint a, uint b) { // stays at the largest number instead of wrapping
   uint carry;
@@ -12,7 +15,7 @@ uint scan(uint lane, uint value) {
   barrier();
   sums[lane] = value;
   barrier();
-  for (uint step = 1; step < 64; step *= 2) {
+  for (uint step = 1; step < SCAN_LANES; step *= 2) {
     const uint other = lane >= step ? sums[lane - step] : 0;
     barrier();
     sums[lane] = add(sums[lane], other);
@@ -20,19 +23,19 @@ uint scan(uint lane, uint value) {
   }
   return sums[lane];
 }
-uint scanTotal() { return sums[63]; } // of the last scan
+uint scanTotal() { return sums[SCAN_LANES - 1]; } // of the last scan
 
 // In how many of the first lanes a condition holds that, once false, stays false.
 uint countLanes(uint lane, bool condition) {
-  const uint own = sums[lane], total = sums[63];
+  const uint own = sums[lane], total = sums[SCAN_LANES - 1];
   barrier();
   sums[lane] = condition ? 1 : 0;
   barrier();
   uint count = 0;
-  for (uint i = 0; i < 64; ++i) count += sums[i];
+  for (uint i = 0; i < SCAN_LANES; ++i) count += sums[i];
   barrier();
   sums[lane] = own;
-  if (lane == 63) sums[63] = total;
+  if (lane == SCAN_LANES - 1) sums[SCAN_LANES - 1] = total;
   barrier();
   return count;
 }

@@ -27,7 +27,7 @@ void main() {
   uint open = (1u << width) - 1, full = 0, painted = 0, rich = 0, steps = 0;
   for (uint word = header.pathWords; word > 0 && open != 0; --word) {
     ++steps;
-    for (uint bits = bins[kFirstBin + bin * header.binWords + word]; bits != 0 && open != 0;) {
+    for (uint bits = bins[bitsOf(bin) + word - 1]; bits != 0 && open != 0;) {
       if (++steps > kMaxSteps) {
         full |= open;
         open = 0;

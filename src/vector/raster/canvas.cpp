@@ -99,7 +99,7 @@ using shader::SlotRecord;
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
 [[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28;
 // Workgroup counts and conditions of a record.
-enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRows, kRaster, kTiles, kSift, kBins };
+enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRaster, kTiles, kSift, kBins };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
   kPlain = 0,
@@ -112,9 +112,6 @@ enum Conditions : uint32_t {
   kDrawings,
   kProjective
 };
-
-constexpr uint32_t kListedPaths = 1024; // up to as many, bins have room for lists
-constexpr uint32_t kSquare = 16;        // pixels: a workgroup of raster.comp
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
@@ -148,10 +145,14 @@ uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would 
   return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 4, 63));
 }
 
-uint64_t Canvas::binWords() const { // enough for any record with the largest bins
+uint64_t Canvas::binWords() const { // enough for any record with the largest bins, or for most with the smallest
   constexpr uint32_t kLargest = shader::kTileSize << shader::kMaxBinShift;
-  return uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) * (divide(budgets_.patches, 32) + 1);
+  const uint64_t least = uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) *
+                         (divide(budgets_.patches, 32) + shader::kBinHead);
+  return software_ ? least : std::max(least, std::min<uint64_t>(least * 6, 16 << 20));
 }
+// Paths in the lists of all bins: most paths are in one or two.
+uint32_t Canvas::binLists() const { return software_ ? 0 : 2 * budgets_.patches + 65536; }
 
 core::PassList Canvas::describe() const {
   using enum core::ResourceKind;
@@ -173,8 +174,7 @@ core::PassList Canvas::describe() const {
                 heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
-  const VkDeviceSize squares = VkDeviceSize(divide(maxWidth_, kSquare)) * divide(maxHeight_, kSquare);
-  const VkDeviceSize lists = software_ ? tiles() * (listWords() + 2) : squares;
+  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 2 : 1) + binLists();
   const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + lists) * 4});
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
@@ -219,7 +219,11 @@ core::PassList Canvas::describe() const {
   using Spirv = std::span<const uint32_t>;
   const auto either = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv,
                           std::initializer_list<core::Use> uses, uint32_t groups) {
-    for (uint32_t k = 0; k < 3; ++k) dispatch(names[k], {names[k], spirv[k]}, uses, groups).condition = kOneDrawing + k;
+    for (uint32_t k = 0; k < 3; ++k) {
+      core::Pass& pass = dispatch(names[k], {names[k], spirv[k]}, uses, groups);
+      pass.condition = kOneDrawing + k;
+      pass.beside = k > 0; // of the three one is recorded: the first one's barrier is all of theirs
+    }
   };
   either({"place", "place, several drawings", "place, projective"},
          {vector_place_one, vector_place, vector_place_projective},
@@ -238,7 +242,7 @@ core::PassList Canvas::describe() const {
          {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}}, kSegments);
   if (!software_) {
     core::Pass& pack = list.dispatch("pack", list.add(core::ShaderDesc{"pack", vector_pack}),
-                                     {{params, read}, {masks, readWrite}}, kBins);
+                                     {{params, read}, {masks, readWrite}, {counters, readWrite}}, kBins);
     pack.beside = true;
   }
   dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
@@ -246,10 +250,21 @@ core::PassList Canvas::describe() const {
   if (software_) {
     either(fillNames, fill, {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments);
   } else {
-    either({"fill", "fill, several drawings", "fill, projective"},
-           {vector_fill_rows_one, vector_fill_rows, vector_fill_rows},
-           {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}, {chords, read}, {rowList, read}},
-           kRows);
+    static constexpr const char* kFromLists[] = {"fill", "fill, several drawings", "fill, projective"};
+    const std::array<Spirv, 3> fillRows = {vector_fill_rows_one, vector_fill_rows, vector_fill_rows};
+    for (uint32_t k = 0; k < 3; ++k) {
+      core::Pass& pass = list.dispatchIndirect(kFromLists[k], list.add(core::ShaderDesc{kFromLists[k], fillRows[k]}),
+                                               {{params, read},
+                                                {paths, read},
+                                                {words, read},
+                                                {counters, read},
+                                                {entries, readWrite},
+                                                {chords, read},
+                                                {rowList, read}},
+                                               counters, offsetof(CanvasCounters, rowsX));
+      pass.condition = kOneDrawing + k;
+      pass.beside = k > 0;
+    }
     for (uint32_t k = 0; k < 3; ++k) { // where the lists did not suffice
       core::Pass& pass = list.dispatchIndirect(
           fillNames[k], list.add(core::ShaderDesc{fillNames[k], fill[k]}),
@@ -421,16 +436,14 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t shift = shader::kMaxBinShift; shift >= shader::kMinBinShift; --shift) {
     const uint32_t across = divide(info.width, shader::kTileSize << shift),
                    count = across * divide(info.height, shader::kTileSize << shift);
-    if (shift != shader::kMaxBinShift && uint64_t(count) * (header.pathWords + 1) > binWords()) break;
+    if (shift != shader::kMaxBinShift && uint64_t(count) * (header.pathWords + shader::kBinHead) > binWords()) break;
     header.binShift = shift;
     header.binsX = across;
     header.binCount = count;
     if (software_ || header.pathCount <= count * kPathsOfBin) break;
   }
-  header.binWords = header.pathWords + 1;
-  const uint64_t listed = header.binWords + uint64_t(header.pathCount); // few paths have lists of their own
-  if (header.pathCount <= kListedPaths && header.binCount * listed <= binWords())
-    header.binWords = static_cast<uint32_t>(listed);
+  header.binWords = header.pathWords + shader::kBinHead;
+  header.binListLimit = binLists();
   header.wordLimit = maxWords_;
   header.entryLimit = maxEntries_;
   header.rowLimit = maxRows();
@@ -484,11 +497,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
   r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
-  r.groups[kRows] = {std::min(4096u, divide(maxRows(), 64)), 1, 1};
   r.groups[kTiles] = rows(divide(uint64_t(header.tilesX) * header.tilesY, 8));
   r.groups[kBins] = rows(header.binCount);
   r.groups[kSift] = {divide(uint64_t(header.binCount) << header.binShift, 64), 1, 1};
-  r.groups[kRaster] = {divide(info.width, kSquare), divide(info.height, kSquare), 1};
+  r.groups[kRaster] = {header.tilesX, header.tilesY, 1};
   if (auto ok = check(r); !ok) return ok;
   if (auto ok = record(r); !ok) return ok;
   if (view) {

@@ -31,6 +31,7 @@ private:
   uint64_t tiles() const;
   uint32_t listWords() const; ///< of a tile's list on software devices
   uint64_t binWords() const;
+  uint32_t binLists() const;
   uint32_t maxRows() const { return maxEntries_ * 8; } ///< of the lists between mark and fill
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const;
 
