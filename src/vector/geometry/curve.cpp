@@ -78,27 +78,67 @@ int rootsInside(double a, double b, double c, double roots[2]) {
 }
 
 namespace {
-/// Where a monotone cubic, not a line, reaches a height strictly between its ends.
-double parameterAt(const Point* p, double y) {
-  const double c0 = p[0].y - y, c1 = 3 * (p[1].y - p[0].y), c2 = 3 * (p[2].y - 2 * p[1].y + p[0].y),
-               c3 = p[3].y - 3 * p[2].y + 3 * p[1].y - p[0].y;
-  double low = 0, high = 1;
+/// Two numbers that are worked on together: waiting for divisions and roots is most of what a height costs. Each gets
+/// the bits that it would get alone.
+using Two = double __attribute__((vector_size(2 * sizeof(double))));
+
+double root(double v) { return std::sqrt(v); }
+Two root(Two v) { return Two{std::sqrt(v[0]), std::sqrt(v[1])}; }
+bool any(bool mask) { return mask; }
+bool any(decltype(Two() < Two()) mask) { return (mask[0] | mask[1]) != 0; }
+
+/// Where a monotone cubic, not a line, reaches a height strictly between its ends. Number: double or Two.
+template <class Number> Number parameterAt(Number p0, Number p1, Number p2, Number p3, Number y) {
+  const Number zero{}, c0 = p0 - y, c1 = 3 * (p1 - p0), c2 = 3 * (p2 - 2 * p1 + p0), c3 = p3 - 3 * p2 + 3 * p1 - p0;
+  Number low = zero, high = zero + 1;
   // From where the parabola with the same ends reaches it (t^3 is about 3/2 t^2 - 1/2 t).
-  const double a = c2 + 1.5 * c3, b = c1 - 0.5 * c3;
-  double t = -2 * c0 / (b + std::sqrt(std::max(b * b - 4 * a * c0, 0.0)));
-  if (!(t > 0 && t < 1)) t = (y - p[0].y) / (p[3].y - p[0].y);
-  for (int i = 0; i < 60; ++i) {
-    const double f = ((c3 * t + c2) * t + c1) * t + c0;
-    if (f == 0) break;
-    (f < 0 ? low : high) = t;
-    const double slope = (3 * c3 * t + 2 * c2) * t + c1;
-    double next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2)); // Halley's step
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    const double step = std::abs(next - t);
-    t = next;
-    if (step < 2e-6) break; // the step after it would be about its cube
+  const Number a = c2 + 1.5 * c3, b = c1 - 0.5 * c3, square = b * b - 4 * a * c0;
+  Number t = -2 * c0 / (b + root(square < 0 ? zero : square));
+  t = (t > 0) & (t < 1) ? t : (y - p0) / (p3 - p0);
+  auto moves = t == t;
+  for (int i = 0; i < 60 && any(moves); ++i) {
+    const Number f = ((c3 * t + c2) * t + c1) * t + c0;
+    low = f < 0 ? t : low;
+    high = f < 0 ? high : t;
+    const Number slope = (3 * c3 * t + 2 * c2) * t + c1;
+    Number next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2)); // Halley's step
+    next = (next > low) & (next < high) ? next : 0.5 * (low + high);
+    moves = moves & (f != 0);
+    const Number step = moves ? next - t : zero;
+    t = moves ? next : t;
+    moves = (step >= 2e-6) | (step <= -2e-6); // the step after it would be about its cube
   }
   return t;
+}
+
+/// A coordinate of a cubic at a parameter.
+template <class Number> Number coordinateAt(Number p0, Number p1, Number p2, Number p3, Number t) {
+  const Number s = 1 - t;
+  return s * s * (s * p0 + 3 * t * p1) + t * t * (3 * s * p2 + t * p3);
+}
+/// A third of its derivative.
+template <class Number> Number tangentAt(Number p0, Number p1, Number p2, Number p3, Number t) {
+  const Number s = 1 - t;
+  return s * s * (p1 - p0) + 2 * s * t * (p2 - p1) + t * t * (p3 - p2);
+}
+
+/// One coordinate of control i of two cubics.
+Two both(const Point* p, const Point* q, int i, double Point::*axis) { return Two{p[i].*axis, q[i].*axis}; }
+#define GPGP_BOTH(p, q, axis) both(p, q, 0, axis), both(p, q, 1, axis), both(p, q, 2, axis), both(p, q, 3, axis)
+#define GPGP_EACH(p, axis) (p)[0].axis, (p)[1].axis, (p)[2].axis, (p)[3].axis
+
+/// Whether it takes a search to find where a piece reaches a height.
+bool searched(const Monotone& piece, double y) { return !piece.curve.line && y > piece.top() && y < piece.bottom(); }
+
+double clampX(const Point* p, double x) { return std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x)); }
+
+/// From the tangent, down and not turning. Rounded ends may turn a level tangent by a little; which way the piece leans
+/// is certain.
+double slopeOf(const Point* p, double alongX, double alongY) {
+  const bool right = p[3].x >= p[0].x;
+  const double along = right ? std::max(alongX, 0.0) : std::min(alongX, 0.0);
+  const double infinite = std::numeric_limits<double>::infinity();
+  return alongY > 0 ? along / alongY : right ? infinite : -infinite;
 }
 } // namespace
 
@@ -107,32 +147,39 @@ double Monotone::xAt(double y) const {
   if (!(y > p[0].y)) return p[0].x;
   if (!(y < p[3].y)) return p[3].x;
   if (curve.line) return mix(p[0].x, p[3].x, (y - p[0].y) / (p[3].y - p[0].y));
-  const double t = parameterAt(p, y), s = 1 - t;
-  const double x = s * s * (s * p[0].x + 3 * t * p[1].x) + t * t * (3 * s * p[2].x + t * p[3].x);
-  return std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x));
+  return clampX(p, coordinateAt(GPGP_EACH(p, x), parameterAt(GPGP_EACH(p, y), y)));
 }
 
 Monotone::Place Monotone::placeAt(double y) const {
   const Point* p = curve.p;
   if (curve.line) return {xAt(y), (p[3].x - p[0].x) / (p[3].y - p[0].y)};
-  const double t = y > p[0].y ? y < p[3].y ? parameterAt(p, y) : 1.0 : 0.0, s = 1 - t;
-  const double x = s * s * (s * p[0].x + 3 * t * p[1].x) + t * t * (3 * s * p[2].x + t * p[3].x);
-  Point d = s * s * (p[1] - p[0]) + 2 * s * t * (p[2] - p[1]) + t * t * (p[3] - p[2]);
-  if (d == Point{}) { // a control on its end: the tangent is towards the next
-    if (t == 0) d = p[2] == p[0] ? p[3] - p[0] : p[2] - p[0];
-    if (t == 1) d = p[1] == p[3] ? p[3] - p[0] : p[3] - p[1];
+  if (y > p[0].y && y < p[3].y) {
+    const double t = parameterAt(GPGP_EACH(p, y), y);
+    return {clampX(p, coordinateAt(GPGP_EACH(p, x), t)),
+            slopeOf(p, tangentAt(GPGP_EACH(p, x), t), tangentAt(GPGP_EACH(p, y), t))};
   }
-  // Rounded ends may turn a level tangent by a little; which way the piece leans is certain.
-  const bool right = p[3].x >= p[0].x;
-  const double along = right ? std::max(d.x, 0.0) : std::min(d.x, 0.0);
-  const double down = std::max(d.y, 0.0);
-  const double infinite = std::numeric_limits<double>::infinity();
-  return {t == 0   ? p[0].x
-          : t == 1 ? p[3].x
-                   : std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x)),
-          down > 0 ? along / down
-          : right  ? infinite
-                   : -infinite};
+  const bool end = y > p[0].y;
+  Point d = end ? p[3] - p[2] : p[1] - p[0];
+  if (d == Point{}) // a control on its end: the tangent is towards the next
+    d = p[end ? 1 : 2] == p[end ? 3 : 0] ? p[3] - p[0] : end ? p[3] - p[1] : p[2] - p[0];
+  return {p[end ? 3 : 0].x, slopeOf(p, d.x, d.y)};
+}
+
+std::array<double, 2> xsAt(const Monotone& a, const Monotone& b, double y) {
+  if (!searched(a, y) || !searched(b, y)) return {a.xAt(y), b.xAt(y)};
+  const Point *p = a.curve.p, *q = b.curve.p;
+  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{y, y});
+  const Two x = coordinateAt(GPGP_BOTH(p, q, &Point::x), t);
+  return {clampX(p, x[0]), clampX(q, x[1])};
+}
+
+std::array<Monotone::Place, 2> placesAt(const Monotone& a, const Monotone& b, double y) {
+  if (!searched(a, y) || !searched(b, y)) return {a.placeAt(y), b.placeAt(y)};
+  const Point *p = a.curve.p, *q = b.curve.p;
+  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{y, y});
+  const Two x = coordinateAt(GPGP_BOTH(p, q, &Point::x), t);
+  const Two dx = tangentAt(GPGP_BOTH(p, q, &Point::x), t), dy = tangentAt(GPGP_BOTH(p, q, &Point::y), t);
+  return {Monotone::Place{clampX(p, x[0]), slopeOf(p, dx[0], dy[0])}, {clampX(q, x[1]), slopeOf(q, dx[1], dy[1])}};
 }
 
 int Monotone::inflections(double heights[2]) const {

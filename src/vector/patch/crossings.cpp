@@ -63,7 +63,10 @@ private:
     double gap() const { return b.x - a.x; }
     bool left() const { return gap() >= 0; } // meeting counts as being left, so that a meeting is found once
   };
-  Row row(double y) const { return {y, a_.placeAt(y), b_.placeAt(y)}; }
+  Row row(double y) const {
+    const auto [a, b] = placesAt(a_, b_, y);
+    return {y, a, b};
+  }
   /// Whether boxes alone say that there is no change.
   static bool apart(const Row& from, const Row& to) {
     const double aMin = std::min(from.a.x, to.a.x), aMax = std::max(from.a.x, to.a.x),
