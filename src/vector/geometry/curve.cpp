@@ -85,28 +85,29 @@ using Two = double __attribute__((vector_size(2 * sizeof(double))));
 double root(double v) { return std::sqrt(v); }
 Two root(Two v) { return Two{std::sqrt(v[0]), std::sqrt(v[1])}; }
 bool any(bool mask) { return mask; }
-bool any(decltype(Two() < Two()) mask) { return (mask[0] | mask[1]) != 0; }
+bool any(decltype(Two{} < Two{}) mask) { return (mask[0] | mask[1]) != 0; }
 
 /// Where a monotone cubic, not a line, reaches a height strictly between its ends. Number: double or Two.
 template <class Number> Number parameterAt(Number p0, Number p1, Number p2, Number p3, Number y) {
   const Number zero{}, c0 = p0 - y, c1 = 3 * (p1 - p0), c2 = 3 * (p2 - 2 * p1 + p0), c3 = p3 - 3 * p2 + 3 * p1 - p0;
   Number low = zero, high = zero + 1;
-  // From where the parabola with the same ends reaches it (t^3 is about 3/2 t^2 - 1/2 t).
-  const Number a = c2 + 1.5 * c3, b = c1 - 0.5 * c3, square = b * b - 4 * a * c0;
-  Number t = -2 * c0 / (b + root(square < 0 ? zero : square));
-  t = (t > 0) & (t < 1) ? t : (y - p0) / (p3 - p0);
-  auto moves = t == t;
-  for (int i = 0; i < 60 && any(moves); ++i) {
+  // From where a quotient of two parabolas reaches it that has the same ends and the same slopes there.
+  const Number all = p3 - p0, square = c1 * all + c0 * (c1 + 3 * (p3 - p2) - 2 * all), twice = -2 * c0 * all;
+  const Number under = square * square + 2 * twice * (all * all - square);
+  Number t = twice / (square + root(under < 0 ? zero : under));
+  t = (t > 0) & (t < 1) ? t : -c0 / all;
+  // Each step leaves about the cube of the one before, measured by how far the end is (where it may be level).
+  Number step = high, small = zero;
+  for (int i = 0; i < 60 && any((step > small) | (step < -small)); ++i) {
     const Number f = ((c3 * t + c2) * t + c1) * t + c0;
     low = f < 0 ? t : low;
     high = f < 0 ? high : t;
     const Number slope = (3 * c3 * t + 2 * c2) * t + c1;
     Number next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2)); // Halley's step
     next = (next > low) & (next < high) ? next : 0.5 * (low + high);
-    moves = moves & (f != 0);
-    const Number step = moves ? next - t : zero;
-    t = moves ? next : t;
-    moves = (step >= 2e-6) | (step <= -2e-6); // the step after it would be about its cube
+    step = ((step > small) | (step < -small)) & (f != 0) ? next - t : zero;
+    t = step != 0 ? next : t;
+    small = 1e-4 * t * (1 - t);
   }
   return t;
 }
