@@ -198,15 +198,19 @@ namespace {
 struct Spread {
   double low, high;
 };
+Two leftOfChord(const Point* chord, const Point* of, int i, int k) {
+  const Point d = chord[3] - chord[0];
+  return d.x * (Two{of[i].y, of[k].y} - chord[0].y) - d.y * (Two{of[i].x, of[k].x} - chord[0].x);
+}
 Spread leftOfChord(const Monotone& chord, const Monotone& of) {
-  const Point* c = chord.curve.p;
-  const Point d = c[3] - c[0];
-  const auto at = [&](int i) { return d.x * (of.curve.p[i].y - c[0].y) - d.y * (of.curve.p[i].x - c[0].x); };
-  const double a = at(0), b = at(3);
-  Spread s{std::min(a, b), std::max(a, b)};
-  if (of.curve.line) return s;
-  const double e = at(1), f = at(2);
-  return {std::min({s.low, e, f}), std::max({s.high, e, f})};
+  const Two ends = leftOfChord(chord.curve.p, of.curve.p, 0, 3), inner = leftOfChord(chord.curve.p, of.curve.p, 1, 2);
+  const Two low = ends < inner ? ends : inner, high = ends < inner ? inner : ends;
+  return {std::min(low[0], low[1]), std::max(high[0], high[1])};
+}
+Spread leftOfOwnChord(const Monotone& piece) {
+  if (piece.curve.line) return {0, 0};
+  const Two inner = leftOfChord(piece.curve.p, piece.curve.p, 1, 2);
+  return {std::min({0.0, inner[0], inner[1]}), std::max({0.0, inner[0], inner[1]})};
 }
 } // namespace
 
@@ -214,10 +218,10 @@ int sideByHull(const Monotone& a, const Monotone& b) {
   const Point *p = a.curve.p, *q = b.curve.p;
   if (std::max(p[0].x, p[3].x) < std::min(q[0].x, q[3].x)) return -1;
   if (std::max(q[0].x, q[3].x) < std::min(p[0].x, p[3].x)) return 1;
-  const Spread ofA = leftOfChord(b, a), ofB = b.curve.line ? Spread{0, 0} : leftOfChord(b, b);
+  const Spread ofA = leftOfChord(b, a), ofB = leftOfOwnChord(b);
   if (ofA.low >= ofB.high && ofA.high > ofB.low) return -1;
   if (ofA.high <= ofB.low && ofA.low < ofB.high) return 1;
-  const Spread mineB = leftOfChord(a, b), mineA = a.curve.line ? Spread{0, 0} : leftOfChord(a, a);
+  const Spread mineB = leftOfChord(a, b), mineA = leftOfOwnChord(a);
   if (mineB.low >= mineA.high && mineB.high > mineA.low) return 1;
   if (mineB.high <= mineA.low && mineB.low < mineA.high) return -1;
   return 0;
