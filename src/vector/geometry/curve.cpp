@@ -1,4 +1,5 @@
 #include "vector/geometry/curve.h"
+#include "vector/geometry/order.h"
 
 #include <algorithm>
 #include <array>
@@ -274,25 +275,19 @@ void cutMonotone(const Cubic& source, std::pmr::vector<Monotone>& pieces) {
 }
 
 void mergeCoincident(std::pmr::vector<Monotone>& pieces) {
-  // Places are sorted, not pieces, which are large.
-  struct Place {
-    double y, x;
-    uint32_t piece;
-  };
-  std::pmr::vector<Place> order(pieces.get_allocator());
-  order.reserve(pieces.size());
-  for (uint32_t i = 0; i < pieces.size(); ++i) order.push_back({pieces[i].curve.p[0].y, pieces[i].curve.p[0].x, i});
-  std::sort(order.begin(), order.end(), [&pieces](const Place& a, const Place& b) {
-    if (a.y != b.y) return a.y < b.y;
-    if (a.x != b.x) return a.x < b.x;
-    return compare(pieces[a.piece].curve, pieces[b.piece].curve) < 0;
-  });
+  const auto order = orderBy(
+      static_cast<uint32_t>(pieces.size()), pieces.get_allocator().resource(),
+      [&pieces](uint32_t i) { return static_cast<float>(pieces[i].top()); },
+      [&pieces](uint32_t a, uint32_t b) {
+        const int side = compare(pieces[a].curve, pieces[b].curve);
+        return side != 0 ? side < 0 : a < b;
+      });
   std::pmr::vector<Monotone> kept(pieces.get_allocator());
   kept.reserve(pieces.size());
   for (size_t i = 0; i < order.size();) {
-    Monotone sum = pieces[order[i++].piece];
-    while (i < order.size() && compare(pieces[order[i].piece].curve, sum.curve) == 0)
-      sum.winding += pieces[order[i++].piece].winding;
+    Monotone sum = pieces[order[i++]];
+    while (i < order.size() && compare(pieces[order[i]].curve, sum.curve) == 0)
+      sum.winding += pieces[order[i++]].winding;
     if (sum.winding != 0) kept.push_back(sum);
   }
   pieces.swap(kept);

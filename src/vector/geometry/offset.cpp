@@ -263,13 +263,15 @@ private:
       while (i < 3 && along[i + 1] < u) ++i;
       double t = row[i]->t + (row[i + 1]->t - row[i]->t) * (u - along[i]) / (along[i + 1] - along[i]);
       Point r;
-      for (int k = 0; k < 2; ++k) { // to the foot of the perpendicular
+      for (int k = 0; k < 3; ++k) { // to the foot of the perpendicular
         r = p - c_.at(t);
-        if (k == 1) break;
+        if (k == 2) break;
         const Point d = c_.first(t);
         const double speed2 = dot(d, d), slope = std::max(speed2 - dot(r, c_.second(t)), 0.1 * speed2);
-        if (!(slope > 0)) break;
-        t = std::clamp(t + dot(r, d) / slope, std::max(0.0, from.t - 0.2 * range), std::min(1.0, to.t + 0.2 * range));
+        const double ahead = dot(r, d);
+        // A step makes r shorter by about half of ahead^2 / (slope |r|).
+        if (!(ahead * ahead > 0.002 * slope * tolerance * std::abs(s_))) break;
+        t = std::clamp(t + ahead / slope, std::max(0.0, from.t - 0.2 * range), std::min(1.0, to.t + 0.2 * range));
       }
       if (!(std::abs(length(r) - std::abs(s_)) < tolerance)) return false;
     }

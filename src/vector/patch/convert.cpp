@@ -1,4 +1,5 @@
 // The stages in a row, and the tables that the GPU reads.
+#include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -48,9 +49,12 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
   sweep(pieces, cuts, path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule, slabs);
   if (slabs.size() + drawing.patches.size() > shader::kEntryPatch) return tooManyPatches();
   // Neighbours in the list share boxes at the raster's upper level, so keep the order of the sweep.
-  std::sort(slabs.begin(), slabs.end(), [](const Slab& a, const Slab& b) {
-    return a.top != b.top ? a.top < b.top : a.left != b.left ? a.left < b.left : a.right < b.right;
-  });
+  const auto order = orderBy(
+      static_cast<uint32_t>(slabs.size()), memory, [&](uint32_t i) { return slabs[i].top; },
+      [&](uint32_t i, uint32_t k) {
+        const Slab &a = slabs[i], &b = slabs[k];
+        return a.left != b.left ? a.left < b.left : a.right < b.right;
+      });
   constexpr uint32_t kNone = UINT32_MAX;
   std::pmr::vector<uint32_t> places(pieces.size(), kNone, memory);
   const auto place = [&](uint32_t piece) {
@@ -84,7 +88,8 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
     return std::array{top, bottom};
   };
   const uint32_t pathIndex = static_cast<uint32_t>(drawing.paths.size());
-  for (const Slab& slab : slabs) {
+  for (const uint32_t index : order) {
+    const Slab& slab = slabs[index];
     PatchRecord p{};
     p.left = place(slab.left);
     p.right = place(slab.right);
