@@ -85,32 +85,46 @@ using Two = double __attribute__((vector_size(2 * sizeof(double))));
 
 double root(double v) { return std::sqrt(v); }
 Two root(Two v) { return Two{std::sqrt(v[0]), std::sqrt(v[1])}; }
-bool any(bool mask) { return mask; }
-bool any(decltype(Two{} < Two{}) mask) { return (mask[0] | mask[1]) != 0; }
+/// Halley's steps that stay between where the cubic is above and below the height, halving where they leave.
+double searchedParameter(double c0, double c1, double c2, double c3) {
+  double low = 0, high = 1, t = 0.5;
+  for (int i = 0; i < 60; ++i) {
+    const double f = ((c3 * t + c2) * t + c1) * t + c0;
+    if (f == 0) break;
+    (f < 0 ? low : high) = t;
+    const double slope = (3 * c3 * t + 2 * c2) * t + c1;
+    double next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2));
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const double step = std::abs(next - t);
+    t = next;
+    if (step < 1e-4 * t * (1 - t)) break;
+  }
+  return t;
+}
+double whereGood(bool good, double t, double c0, double c1, double c2, double c3) {
+  return good ? t : searchedParameter(c0, c1, c2, c3);
+}
+Two whereGood(decltype(Two{} < Two{}) good, Two t, Two c0, Two c1, Two c2, Two c3) {
+  if ((good[0] & good[1]) != 0) return t;
+  return Two{whereGood(good[0] != 0, t[0], c0[0], c1[0], c2[0], c3[0]),
+             whereGood(good[1] != 0, t[1], c0[1], c1[1], c2[1], c3[1])};
+}
 
 /// Where a monotone cubic, not a line, reaches a height strictly between its ends. Number: double or Two.
 template <class Number> Number parameterAt(Number p0, Number p1, Number p2, Number p3, Number y) {
   const Number zero{}, c0 = p0 - y, c1 = 3 * (p1 - p0), c2 = 3 * (p2 - 2 * p1 + p0), c3 = p3 - 3 * p2 + 3 * p1 - p0;
-  Number low = zero, high = zero + 1;
   // From where a quotient of two parabolas reaches it that has the same ends and the same slopes there.
   const Number all = p3 - p0, square = c1 * all + c0 * (c1 + 3 * (p3 - p2) - 2 * all), twice = -2 * c0 * all;
   const Number under = square * square + 2 * twice * (all * all - square);
-  Number t = twice / (square + root(under < 0 ? zero : under));
-  t = (t > 0) & (t < 1) ? t : -c0 / all;
-  // Each step leaves about the cube of the one before, measured by how far the end is (where it may be level).
-  Number step = high, small = zero;
-  for (int i = 0; i < 60 && any((step > small) | (step < -small)); ++i) {
-    const Number f = ((c3 * t + c2) * t + c1) * t + c0;
-    low = f < 0 ? t : low;
-    high = f < 0 ? high : t;
-    const Number slope = (3 * c3 * t + 2 * c2) * t + c1;
-    Number next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2)); // Halley's step
-    next = (next > low) & (next < high) ? next : 0.5 * (low + high);
-    step = ((step > small) | (step < -small)) & (f != 0) ? next - t : zero;
-    t = step != 0 ? next : t;
-    small = 1e-4 * t * (1 - t);
+  Number t = twice / (square + root(under < 0 ? zero : under)), step = zero;
+  for (int i = 0; i < 3; ++i) { // Halley's steps
+    const Number f = ((c3 * t + c2) * t + c1) * t + c0, slope = (3 * c3 * t + 2 * c2) * t + c1;
+    step = f * slope / (slope * slope - f * (3 * c3 * t + c2));
+    t = t - step;
   }
-  return t;
+  // What is left is about the cube of the last step, measured by how far the end is (where it may be level).
+  const Number small = 1e-4 * t * (1 - t);
+  return whereGood((step <= small) & (step >= -small), t, c0, c1, c2, c3);
 }
 
 /// A coordinate of a cubic at a parameter.
@@ -167,18 +181,18 @@ Monotone::Place Monotone::placeAt(double y) const {
   return {p[end ? 3 : 0].x, slopeOf(p, d.x, d.y)};
 }
 
-std::array<double, 2> xsAt(const Monotone& a, const Monotone& b, double y) {
-  if (!searched(a, y) || !searched(b, y)) return {a.xAt(y), b.xAt(y)};
+std::array<double, 2> xsAt(const Monotone& a, double ya, const Monotone& b, double yb) {
+  if (!searched(a, ya) || !searched(b, yb)) return {a.xAt(ya), b.xAt(yb)};
   const Point *p = a.curve.p, *q = b.curve.p;
-  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{y, y});
+  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{ya, yb});
   const Two x = coordinateAt(GPGP_BOTH(p, q, &Point::x), t);
   return {clampX(p, x[0]), clampX(q, x[1])};
 }
 
-std::array<Monotone::Place, 2> placesAt(const Monotone& a, const Monotone& b, double y) {
-  if (!searched(a, y) || !searched(b, y)) return {a.placeAt(y), b.placeAt(y)};
+std::array<Monotone::Place, 2> placesAt(const Monotone& a, double ya, const Monotone& b, double yb) {
+  if (!searched(a, ya) || !searched(b, yb)) return {a.placeAt(ya), b.placeAt(yb)};
   const Point *p = a.curve.p, *q = b.curve.p;
-  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{y, y});
+  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{ya, yb});
   const Two x = coordinateAt(GPGP_BOTH(p, q, &Point::x), t);
   const Two dx = tangentAt(GPGP_BOTH(p, q, &Point::x), t), dy = tangentAt(GPGP_BOTH(p, q, &Point::y), t);
   return {Monotone::Place{clampX(p, x[0]), slopeOf(p, dx[0], dy[0])}, {clampX(q, x[1]), slopeOf(q, dx[1], dy[1])}};

@@ -49,9 +49,9 @@ struct Monotone {
   int inflections(double heights[2]) const;
 };
 
-/// The x and the places of two pieces at a height: the same as one by one, in about the time of one.
-std::array<double, 2> xsAt(const Monotone& a, const Monotone& b, double y);
-std::array<Monotone::Place, 2> placesAt(const Monotone& a, const Monotone& b, double y);
+/// The x and the places of two pieces at a height each: the same bits as one by one, with fewer instructions.
+std::array<double, 2> xsAt(const Monotone& a, double ya, const Monotone& b, double yb);
+std::array<Monotone::Place, 2> placesAt(const Monotone& a, double ya, const Monotone& b, double yb);
 
 /// Below zero: all of `a` lies left of `b` in the rows they share, or touches it; above: right. 0: their hulls do not
 /// say. Cheap: no curve is evaluated.

@@ -77,12 +77,13 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
     std::array<double, 2> top{lasts[slab.left].x, lasts[slab.right].x};
     const double y = static_cast<double>(slab.top);
     if (!known(slab.left, slab.top) && !known(slab.right, slab.top))
-      top = xsAt(left, right, y);
+      top = xsAt(left, y, right, y);
     else if (!known(slab.left, slab.top))
       top[0] = left.xAt(y);
     else if (!known(slab.right, slab.top))
       top[1] = right.xAt(y);
-    const auto bottom = xsAt(left, right, static_cast<double>(slab.bottom));
+    const double bottomY = static_cast<double>(slab.bottom);
+    const auto bottom = xsAt(left, bottomY, right, bottomY);
     lasts[slab.left] = {slab.bottom, bottom[0]};
     lasts[slab.right] = {slab.bottom, bottom[1]};
     return std::array{top, bottom};

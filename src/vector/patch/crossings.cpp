@@ -64,7 +64,7 @@ private:
     bool left() const { return gap() >= 0; } // meeting counts as being left, so that a meeting is found once
   };
   Row row(double y) const {
-    const auto [a, b] = placesAt(a_, b_, y);
+    const auto [a, b] = placesAt(a_, y, b_, y);
     return {y, a, b};
   }
   /// Whether boxes alone say that there is no change.

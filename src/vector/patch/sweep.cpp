@@ -129,7 +129,7 @@ private:
     double widest = 0;
     for (const double at : {0.5, 0.25, 0.75}) {
       const double y = top + (bottom - top) * at;
-      const auto [lx, rx] = xsAt(lp, rp, y);
+      const auto [lx, rx] = xsAt(lp, y, rp, y);
       const double d = rx - lx;
       if (std::abs(d) > std::abs(widest)) widest = d;
       if (std::abs(widest) > (std::abs(lx) + std::abs(rx)) * 1e-7) break;
