@@ -79,12 +79,12 @@ int rootsInside(double a, double b, double c, double roots[2]) {
 }
 
 namespace {
-/// Two numbers that are worked on together: waiting for divisions and roots is most of what a height costs. Each gets
-/// the bits that it would get alone.
+/// Two numbers that are worked on together (a vector of GCC and Clang). Each gets the bits that it would get alone.
 using Two = double __attribute__((vector_size(2 * sizeof(double))));
 
 double root(double v) { return std::sqrt(v); }
 Two root(Two v) { return Two{std::sqrt(v[0]), std::sqrt(v[1])}; }
+
 /// Halley's steps that stay between where the cubic is above and below the height, halving where they leave.
 double searchedParameter(double c0, double c1, double c2, double c3) {
   double low = 0, high = 1, t = 0.5;
@@ -101,6 +101,7 @@ double searchedParameter(double c0, double c1, double c2, double c3) {
   }
   return t;
 }
+/// `t` where that is good, else the search.
 double whereGood(bool good, double t, double c0, double c1, double c2, double c3) {
   return good ? t : searchedParameter(c0, c1, c2, c3);
 }
@@ -110,8 +111,19 @@ Two whereGood(decltype(Two{} < Two{}) good, Two t, Two c0, Two c1, Two c2, Two c
              whereGood(good[1] != 0, t[1], c0[1], c1[1], c2[1], c3[1])};
 }
 
-/// Where a monotone cubic, not a line, reaches a height strictly between its ends. Number: double or Two.
-template <class Number> Number parameterAt(Number p0, Number p1, Number p2, Number p3, Number y) {
+/// One coordinate of a cubic's points, or of two cubics'. Number: double or Two.
+template <class Number> struct Controls { Number p0, p1, p2, p3; };
+Controls<double> axisOf(const Point* p, double Point::*axis) {
+  return {p[0].*axis, p[1].*axis, p[2].*axis, p[3].*axis};
+}
+Controls<Two> axisOf(const Point* p, const Point* q, double Point::*axis) {
+  const auto both = [=](int i) { return Two{p[i].*axis, q[i].*axis}; };
+  return {both(0), both(1), both(2), both(3)};
+}
+
+/// Where a monotone cubic, not a line, reaches a height strictly between its ends.
+template <class Number> Number parameterAt(const Controls<Number>& of, Number y) {
+  const auto [p0, p1, p2, p3] = of;
   const Number zero{}, c0 = p0 - y, c1 = 3 * (p1 - p0), c2 = 3 * (p2 - 2 * p1 + p0), c3 = p3 - 3 * p2 + 3 * p1 - p0;
   // From where a quotient of two parabolas reaches it that has the same ends and the same slopes there.
   const Number all = p3 - p0, square = c1 * all + c0 * (c1 + 3 * (p3 - p2) - 2 * all), twice = -2 * c0 * all;
@@ -124,24 +136,21 @@ template <class Number> Number parameterAt(Number p0, Number p1, Number p2, Numb
   }
   // What is left is about the cube of the last step, measured by how far the end is (where it may be level).
   const Number small = 1e-4 * t * (1 - t);
-  return whereGood((step <= small) & (step >= -small), t, c0, c1, c2, c3);
+  return whereGood((step < small) & (step > -small), t, c0, c1, c2, c3);
 }
 
 /// A coordinate of a cubic at a parameter.
-template <class Number> Number coordinateAt(Number p0, Number p1, Number p2, Number p3, Number t) {
+template <class Number> Number coordinateAt(const Controls<Number>& of, Number t) {
+  const auto [p0, p1, p2, p3] = of;
   const Number s = 1 - t;
   return s * s * (s * p0 + 3 * t * p1) + t * t * (3 * s * p2 + t * p3);
 }
 /// A third of its derivative.
-template <class Number> Number tangentAt(Number p0, Number p1, Number p2, Number p3, Number t) {
+template <class Number> Number tangentAt(const Controls<Number>& of, Number t) {
+  const auto [p0, p1, p2, p3] = of;
   const Number s = 1 - t;
   return s * s * (p1 - p0) + 2 * s * t * (p2 - p1) + t * t * (p3 - p2);
 }
-
-/// One coordinate of control i of two cubics.
-Two both(const Point* p, const Point* q, int i, double Point::*axis) { return Two{p[i].*axis, q[i].*axis}; }
-#define GPGP_BOTH(p, q, axis) both(p, q, 0, axis), both(p, q, 1, axis), both(p, q, 2, axis), both(p, q, 3, axis)
-#define GPGP_EACH(p, axis) (p)[0].axis, (p)[1].axis, (p)[2].axis, (p)[3].axis
 
 /// Whether it takes a search to find where a piece reaches a height.
 bool searched(const Monotone& piece, double y) { return !piece.curve.line && y > piece.top() && y < piece.bottom(); }
@@ -163,16 +172,16 @@ double Monotone::xAt(double y) const {
   if (!(y > p[0].y)) return p[0].x;
   if (!(y < p[3].y)) return p[3].x;
   if (curve.line) return mix(p[0].x, p[3].x, (y - p[0].y) / (p[3].y - p[0].y));
-  return clampX(p, coordinateAt(GPGP_EACH(p, x), parameterAt(GPGP_EACH(p, y), y)));
+  return clampX(p, coordinateAt(axisOf(p, &Point::x), parameterAt(axisOf(p, &Point::y), y)));
 }
 
 Monotone::Place Monotone::placeAt(double y) const {
   const Point* p = curve.p;
   if (curve.line) return {xAt(y), (p[3].x - p[0].x) / (p[3].y - p[0].y)};
   if (y > p[0].y && y < p[3].y) {
-    const double t = parameterAt(GPGP_EACH(p, y), y);
-    return {clampX(p, coordinateAt(GPGP_EACH(p, x), t)),
-            slopeOf(p, tangentAt(GPGP_EACH(p, x), t), tangentAt(GPGP_EACH(p, y), t))};
+    const double t = parameterAt(axisOf(p, &Point::y), y);
+    return {clampX(p, coordinateAt(axisOf(p, &Point::x), t)),
+            slopeOf(p, tangentAt(axisOf(p, &Point::x), t), tangentAt(axisOf(p, &Point::y), t))};
   }
   const bool end = y > p[0].y;
   Point d = end ? p[3] - p[2] : p[1] - p[0];
@@ -184,17 +193,17 @@ Monotone::Place Monotone::placeAt(double y) const {
 std::array<double, 2> xsAt(const Monotone& a, double ya, const Monotone& b, double yb) {
   if (!searched(a, ya) || !searched(b, yb)) return {a.xAt(ya), b.xAt(yb)};
   const Point *p = a.curve.p, *q = b.curve.p;
-  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{ya, yb});
-  const Two x = coordinateAt(GPGP_BOTH(p, q, &Point::x), t);
+  const Two t = parameterAt(axisOf(p, q, &Point::y), Two{ya, yb});
+  const Two x = coordinateAt(axisOf(p, q, &Point::x), t);
   return {clampX(p, x[0]), clampX(q, x[1])};
 }
 
 std::array<Monotone::Place, 2> placesAt(const Monotone& a, double ya, const Monotone& b, double yb) {
   if (!searched(a, ya) || !searched(b, yb)) return {a.placeAt(ya), b.placeAt(yb)};
   const Point *p = a.curve.p, *q = b.curve.p;
-  const Two t = parameterAt(GPGP_BOTH(p, q, &Point::y), Two{ya, yb});
-  const Two x = coordinateAt(GPGP_BOTH(p, q, &Point::x), t);
-  const Two dx = tangentAt(GPGP_BOTH(p, q, &Point::x), t), dy = tangentAt(GPGP_BOTH(p, q, &Point::y), t);
+  const Two t = parameterAt(axisOf(p, q, &Point::y), Two{ya, yb});
+  const Two x = coordinateAt(axisOf(p, q, &Point::x), t);
+  const Two dx = tangentAt(axisOf(p, q, &Point::x), t), dy = tangentAt(axisOf(p, q, &Point::y), t);
   return {Monotone::Place{clampX(p, x[0]), slopeOf(p, dx[0], dy[0])}, {clampX(q, x[1]), slopeOf(q, dx[1], dy[1])}};
 }
 

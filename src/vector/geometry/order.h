@@ -33,13 +33,22 @@ inline void sortKeys(std::pmr::vector<uint64_t>& keys) {
 /// The numbers below `count` by height(i), a finite float, then as they are.
 template <class Height>
 std::pmr::vector<uint32_t> orderBy(uint32_t count, std::pmr::memory_resource* memory, Height&& height) {
+  std::pmr::vector<uint32_t> order(count, 0, memory);
+  constexpr uint32_t kInserted = 12; // so few are put in one by one
+  if (count <= kInserted) {
+    for (uint32_t i = 0; i < count; ++i) {
+      uint32_t at = i;
+      for (const float y = height(i); at > 0 && height(order[at - 1]) > y; --at) order[at] = order[at - 1];
+      order[at] = i;
+    }
+    return order;
+  }
   std::pmr::vector<uint64_t> keys(count, 0, memory);
   for (uint32_t i = 0; i < count; ++i) {
     const uint32_t bits = std::bit_cast<uint32_t>(height(i) + 0.0f); // no -0
     keys[i] = uint64_t(bits >> 31 ? ~bits : bits | 0x80000000u) << 32 | i;
   }
   sortKeys(keys);
-  std::pmr::vector<uint32_t> order(count, 0, memory);
   for (uint32_t i = 0; i < count; ++i) order[i] = static_cast<uint32_t>(keys[i]);
   return order;
 }
@@ -51,7 +60,7 @@ std::pmr::vector<uint32_t> orderBy(uint32_t count, std::pmr::memory_resource* me
   for (uint32_t first = 0, end; first < count; first = end) {
     const float y = height(order[first]);
     for (end = first + 1; end < count && height(order[end]) == y;) ++end;
-    std::sort(order.begin() + first, order.begin() + end, less);
+    if (end > first + 1) std::sort(order.begin() + first, order.begin() + end, less);
   }
   return order;
 }
