@@ -21,26 +21,19 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <random>
 
 namespace {
 using namespace gpgp;
-
-/// Of this thread alone, whatever else the machine does.
-double threadMilliseconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
+using bench::Clock;
 
 template <class Work> double medianOf(int rounds, Work&& work) {
   std::vector<double> times;
   for (int i = 0; i < rounds; ++i) {
-    const double start = threadMilliseconds();
+    const auto start = Clock::now();
     work();
-    times.push_back(threadMilliseconds() - start);
+    times.push_back(bench::milliseconds(Clock::now() - start));
   }
   return bench::median(std::move(times));
 }
