@@ -1,4 +1,5 @@
 #include "vector/geometry/curve.h"
+#include "vector/geometry/order.h"
 
 #include <algorithm>
 #include <array>
@@ -78,27 +79,91 @@ int rootsInside(double a, double b, double c, double roots[2]) {
 }
 
 namespace {
-/// Where a monotone cubic, not a line, reaches a height strictly between its ends.
-double parameterAt(const Point* p, double y) {
-  const double c0 = p[0].y - y, c1 = 3 * (p[1].y - p[0].y), c2 = 3 * (p[2].y - 2 * p[1].y + p[0].y),
-               c3 = p[3].y - 3 * p[2].y + 3 * p[1].y - p[0].y;
-  double low = 0, high = 1;
-  // From where the parabola with the same ends reaches it (t^3 is about 3/2 t^2 - 1/2 t).
-  const double a = c2 + 1.5 * c3, b = c1 - 0.5 * c3;
-  double t = -2 * c0 / (b + std::sqrt(std::max(b * b - 4 * a * c0, 0.0)));
-  if (!(t > 0 && t < 1)) t = (y - p[0].y) / (p[3].y - p[0].y);
+/// Two numbers that are worked on together (a vector of GCC and Clang). Each gets the bits that it would get alone.
+using Two = double __attribute__((vector_size(2 * sizeof(double))));
+
+double root(double v) { return std::sqrt(v); }
+Two root(Two v) { return Two{std::sqrt(v[0]), std::sqrt(v[1])}; }
+
+/// Halley's steps that stay between where the cubic is above and below the height, halving where they leave.
+double searchedParameter(double c0, double c1, double c2, double c3) {
+  double low = 0, high = 1, t = 0.5;
   for (int i = 0; i < 60; ++i) {
     const double f = ((c3 * t + c2) * t + c1) * t + c0;
     if (f == 0) break;
     (f < 0 ? low : high) = t;
     const double slope = (3 * c3 * t + 2 * c2) * t + c1;
-    double next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2)); // Halley's step
+    double next = t - f * slope / (slope * slope - f * (3 * c3 * t + c2));
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     const double step = std::abs(next - t);
     t = next;
-    if (step < 2e-6) break; // the step after it would be about its cube
+    if (step < 1e-4 * t * (1 - t)) break;
   }
   return t;
+}
+/// `t` where that is good, else the search.
+double whereGood(bool good, double t, double c0, double c1, double c2, double c3) {
+  return good ? t : searchedParameter(c0, c1, c2, c3);
+}
+Two whereGood(decltype(Two{} < Two{}) good, Two t, Two c0, Two c1, Two c2, Two c3) {
+  if ((good[0] & good[1]) != 0) return t;
+  return Two{whereGood(good[0] != 0, t[0], c0[0], c1[0], c2[0], c3[0]),
+             whereGood(good[1] != 0, t[1], c0[1], c1[1], c2[1], c3[1])};
+}
+
+/// One coordinate of a cubic's points, or of two cubics'. Number: double or Two.
+template <class Number> struct Controls { Number p0, p1, p2, p3; };
+Controls<double> axisOf(const Point* p, double Point::*axis) {
+  return {p[0].*axis, p[1].*axis, p[2].*axis, p[3].*axis};
+}
+Controls<Two> axisOf(const Point* p, const Point* q, double Point::*axis) {
+  const auto both = [=](int i) { return Two{p[i].*axis, q[i].*axis}; };
+  return {both(0), both(1), both(2), both(3)};
+}
+
+/// Where a monotone cubic, not a line, reaches a height strictly between its ends.
+template <class Number> Number parameterAt(const Controls<Number>& of, Number y) {
+  const auto [p0, p1, p2, p3] = of;
+  const Number zero{}, c0 = p0 - y, c1 = 3 * (p1 - p0), c2 = 3 * (p2 - 2 * p1 + p0), c3 = p3 - 3 * p2 + 3 * p1 - p0;
+  // From where a quotient of two parabolas reaches it that has the same ends and the same slopes there.
+  const Number all = p3 - p0, square = c1 * all + c0 * (c1 + 3 * (p3 - p2) - 2 * all), twice = -2 * c0 * all;
+  const Number under = square * square + 2 * twice * (all * all - square);
+  Number t = twice / (square + root(under < 0 ? zero : under)), step = zero;
+  for (int i = 0; i < 3; ++i) { // Halley's steps
+    const Number f = ((c3 * t + c2) * t + c1) * t + c0, slope = (3 * c3 * t + 2 * c2) * t + c1;
+    step = f * slope / (slope * slope - f * (3 * c3 * t + c2));
+    t = t - step;
+  }
+  // What is left is about the cube of the last step, measured by how far the end is (where it may be level).
+  const Number small = 1e-4 * t * (1 - t);
+  return whereGood((step < small) & (step > -small), t, c0, c1, c2, c3);
+}
+
+/// A coordinate of a cubic at a parameter.
+template <class Number> Number coordinateAt(const Controls<Number>& of, Number t) {
+  const auto [p0, p1, p2, p3] = of;
+  const Number s = 1 - t;
+  return s * s * (s * p0 + 3 * t * p1) + t * t * (3 * s * p2 + t * p3);
+}
+/// A third of its derivative.
+template <class Number> Number tangentAt(const Controls<Number>& of, Number t) {
+  const auto [p0, p1, p2, p3] = of;
+  const Number s = 1 - t;
+  return s * s * (p1 - p0) + 2 * s * t * (p2 - p1) + t * t * (p3 - p2);
+}
+
+/// Whether it takes a search to find where a piece reaches a height.
+bool searched(const Monotone& piece, double y) { return !piece.curve.line && y > piece.top() && y < piece.bottom(); }
+
+double clampX(const Point* p, double x) { return std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x)); }
+
+/// From the tangent, down and not turning. Rounded ends may turn a level tangent by a little; which way the piece leans
+/// is certain.
+double slopeOf(const Point* p, double alongX, double alongY) {
+  const bool right = p[3].x >= p[0].x;
+  const double along = right ? std::max(alongX, 0.0) : std::min(alongX, 0.0);
+  const double infinite = std::numeric_limits<double>::infinity();
+  return alongY > 0 ? along / alongY : right ? infinite : -infinite;
 }
 } // namespace
 
@@ -107,32 +172,39 @@ double Monotone::xAt(double y) const {
   if (!(y > p[0].y)) return p[0].x;
   if (!(y < p[3].y)) return p[3].x;
   if (curve.line) return mix(p[0].x, p[3].x, (y - p[0].y) / (p[3].y - p[0].y));
-  const double t = parameterAt(p, y), s = 1 - t;
-  const double x = s * s * (s * p[0].x + 3 * t * p[1].x) + t * t * (3 * s * p[2].x + t * p[3].x);
-  return std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x));
+  return clampX(p, coordinateAt(axisOf(p, &Point::x), parameterAt(axisOf(p, &Point::y), y)));
 }
 
 Monotone::Place Monotone::placeAt(double y) const {
   const Point* p = curve.p;
   if (curve.line) return {xAt(y), (p[3].x - p[0].x) / (p[3].y - p[0].y)};
-  const double t = y > p[0].y ? y < p[3].y ? parameterAt(p, y) : 1.0 : 0.0, s = 1 - t;
-  const double x = s * s * (s * p[0].x + 3 * t * p[1].x) + t * t * (3 * s * p[2].x + t * p[3].x);
-  Point d = s * s * (p[1] - p[0]) + 2 * s * t * (p[2] - p[1]) + t * t * (p[3] - p[2]);
-  if (d == Point{}) { // a control on its end: the tangent is towards the next
-    if (t == 0) d = p[2] == p[0] ? p[3] - p[0] : p[2] - p[0];
-    if (t == 1) d = p[1] == p[3] ? p[3] - p[0] : p[3] - p[1];
+  if (y > p[0].y && y < p[3].y) {
+    const double t = parameterAt(axisOf(p, &Point::y), y);
+    return {clampX(p, coordinateAt(axisOf(p, &Point::x), t)),
+            slopeOf(p, tangentAt(axisOf(p, &Point::x), t), tangentAt(axisOf(p, &Point::y), t))};
   }
-  // Rounded ends may turn a level tangent by a little; which way the piece leans is certain.
-  const bool right = p[3].x >= p[0].x;
-  const double along = right ? std::max(d.x, 0.0) : std::min(d.x, 0.0);
-  const double down = std::max(d.y, 0.0);
-  const double infinite = std::numeric_limits<double>::infinity();
-  return {t == 0   ? p[0].x
-          : t == 1 ? p[3].x
-                   : std::clamp(x, std::min(p[0].x, p[3].x), std::max(p[0].x, p[3].x)),
-          down > 0 ? along / down
-          : right  ? infinite
-                   : -infinite};
+  const bool end = y > p[0].y;
+  Point d = end ? p[3] - p[2] : p[1] - p[0];
+  if (d == Point{}) // a control on its end: the tangent is towards the next
+    d = p[end ? 1 : 2] == p[end ? 3 : 0] ? p[3] - p[0] : end ? p[3] - p[1] : p[2] - p[0];
+  return {p[end ? 3 : 0].x, slopeOf(p, d.x, d.y)};
+}
+
+std::array<double, 2> xsAt(const Monotone& a, double ya, const Monotone& b, double yb) {
+  if (!searched(a, ya) || !searched(b, yb)) return {a.xAt(ya), b.xAt(yb)};
+  const Point *p = a.curve.p, *q = b.curve.p;
+  const Two t = parameterAt(axisOf(p, q, &Point::y), Two{ya, yb});
+  const Two x = coordinateAt(axisOf(p, q, &Point::x), t);
+  return {clampX(p, x[0]), clampX(q, x[1])};
+}
+
+std::array<Monotone::Place, 2> placesAt(const Monotone& a, double ya, const Monotone& b, double yb) {
+  if (!searched(a, ya) || !searched(b, yb)) return {a.placeAt(ya), b.placeAt(yb)};
+  const Point *p = a.curve.p, *q = b.curve.p;
+  const Two t = parameterAt(axisOf(p, q, &Point::y), Two{ya, yb});
+  const Two x = coordinateAt(axisOf(p, q, &Point::x), t);
+  const Two dx = tangentAt(axisOf(p, q, &Point::x), t), dy = tangentAt(axisOf(p, q, &Point::y), t);
+  return {Monotone::Place{clampX(p, x[0]), slopeOf(p, dx[0], dy[0])}, {clampX(q, x[1]), slopeOf(q, dx[1], dy[1])}};
 }
 
 int Monotone::inflections(double heights[2]) const {
@@ -150,15 +222,19 @@ namespace {
 struct Spread {
   double low, high;
 };
+Two leftOfChord(const Point* chord, const Point* of, int i, int k) {
+  const Point d = chord[3] - chord[0];
+  return d.x * (Two{of[i].y, of[k].y} - chord[0].y) - d.y * (Two{of[i].x, of[k].x} - chord[0].x);
+}
 Spread leftOfChord(const Monotone& chord, const Monotone& of) {
-  const Point* c = chord.curve.p;
-  const Point d = c[3] - c[0];
-  const auto at = [&](int i) { return d.x * (of.curve.p[i].y - c[0].y) - d.y * (of.curve.p[i].x - c[0].x); };
-  const double a = at(0), b = at(3);
-  Spread s{std::min(a, b), std::max(a, b)};
-  if (of.curve.line) return s;
-  const double e = at(1), f = at(2);
-  return {std::min({s.low, e, f}), std::max({s.high, e, f})};
+  const Two ends = leftOfChord(chord.curve.p, of.curve.p, 0, 3), inner = leftOfChord(chord.curve.p, of.curve.p, 1, 2);
+  const Two low = ends < inner ? ends : inner, high = ends < inner ? inner : ends;
+  return {std::min(low[0], low[1]), std::max(high[0], high[1])};
+}
+Spread leftOfOwnChord(const Monotone& piece) {
+  if (piece.curve.line) return {0, 0};
+  const Two inner = leftOfChord(piece.curve.p, piece.curve.p, 1, 2);
+  return {std::min({0.0, inner[0], inner[1]}), std::max({0.0, inner[0], inner[1]})};
 }
 } // namespace
 
@@ -166,10 +242,10 @@ int sideByHull(const Monotone& a, const Monotone& b) {
   const Point *p = a.curve.p, *q = b.curve.p;
   if (std::max(p[0].x, p[3].x) < std::min(q[0].x, q[3].x)) return -1;
   if (std::max(q[0].x, q[3].x) < std::min(p[0].x, p[3].x)) return 1;
-  const Spread ofA = leftOfChord(b, a), ofB = b.curve.line ? Spread{0, 0} : leftOfChord(b, b);
+  const Spread ofA = leftOfChord(b, a), ofB = leftOfOwnChord(b);
   if (ofA.low >= ofB.high && ofA.high > ofB.low) return -1;
   if (ofA.high <= ofB.low && ofA.low < ofB.high) return 1;
-  const Spread mineB = leftOfChord(a, b), mineA = a.curve.line ? Spread{0, 0} : leftOfChord(a, a);
+  const Spread mineB = leftOfChord(a, b), mineA = leftOfOwnChord(a);
   if (mineB.low >= mineA.high && mineB.high > mineA.low) return 1;
   if (mineB.high <= mineA.low && mineB.low < mineA.high) return -1;
   return 0;
@@ -222,25 +298,19 @@ void cutMonotone(const Cubic& source, std::pmr::vector<Monotone>& pieces) {
 }
 
 void mergeCoincident(std::pmr::vector<Monotone>& pieces) {
-  // Places are sorted, not pieces, which are large.
-  struct Place {
-    double y, x;
-    uint32_t piece;
-  };
-  std::pmr::vector<Place> order(pieces.get_allocator());
-  order.reserve(pieces.size());
-  for (uint32_t i = 0; i < pieces.size(); ++i) order.push_back({pieces[i].curve.p[0].y, pieces[i].curve.p[0].x, i});
-  std::sort(order.begin(), order.end(), [&pieces](const Place& a, const Place& b) {
-    if (a.y != b.y) return a.y < b.y;
-    if (a.x != b.x) return a.x < b.x;
-    return compare(pieces[a.piece].curve, pieces[b.piece].curve) < 0;
-  });
+  const auto order = orderBy(
+      static_cast<uint32_t>(pieces.size()), pieces.get_allocator().resource(),
+      [&pieces](uint32_t i) { return static_cast<float>(pieces[i].top()); },
+      [&pieces](uint32_t a, uint32_t b) {
+        const int side = compare(pieces[a].curve, pieces[b].curve);
+        return side != 0 ? side < 0 : a < b;
+      });
   std::pmr::vector<Monotone> kept(pieces.get_allocator());
   kept.reserve(pieces.size());
   for (size_t i = 0; i < order.size();) {
-    Monotone sum = pieces[order[i++].piece];
-    while (i < order.size() && compare(pieces[order[i].piece].curve, sum.curve) == 0)
-      sum.winding += pieces[order[i++].piece].winding;
+    Monotone sum = pieces[order[i++]];
+    while (i < order.size() && compare(pieces[order[i]].curve, sum.curve) == 0)
+      sum.winding += pieces[order[i++]].winding;
     if (sum.winding != 0) kept.push_back(sum);
   }
   pieces.swap(kept);

@@ -33,15 +33,25 @@ struct Polynomial {
 /// Parameters inside (0, 1) where the speed is least, at most two: sign changes of c' . c'' from below, found among
 /// eight steps, which a cubic polynomial in t that matters here does not outrun.
 int slowest(const Polynomial& c, double parameters[2]) {
-  const auto slope = [&c](double t) { return dot(c.first(t), c.second(t)); };
+  const double k3 = 18 * dot(c.a, c.a), k2 = 18 * dot(c.a, c.b), k1 = 4 * dot(c.b, c.b) + 6 * dot(c.a, c.c),
+               k0 = 2 * dot(c.b, c.c);
+  const auto slope = [=](double t) { return ((k3 * t + k2) * t + k1) * t + k0; };
   int count = 0;
-  double before = slope(0);
+  double before = k0;
   for (int i = 1; i <= 8 && count < 2; ++i) {
     const double after = slope(i / 8.0);
     if (before < 0 && after >= 0) {
-      double low = (i - 1) / 8.0, high = i / 8.0;
-      for (int k = 0; k < 40; ++k) (slope(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
-      parameters[count++] = 0.5 * (low + high);
+      double low = (i - 1) / 8.0, high = i / 8.0, t = low - 0.125 * before / (after - before);
+      for (int k = 0; k < 40; ++k) { // Newton's steps, halving where they leave the range
+        const double value = slope(t);
+        (value < 0 ? low : high) = t;
+        double next = t - value / ((3 * k3 * t + 2 * k2) * t + k1);
+        if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+        const double step = std::abs(next - t);
+        t = next;
+        if (step < 1e-12) break;
+      }
+      parameters[count++] = t;
     }
     before = after;
   }
@@ -258,8 +268,10 @@ private:
         if (k == 2) break;
         const Point d = c_.first(t);
         const double speed2 = dot(d, d), slope = std::max(speed2 - dot(r, c_.second(t)), 0.1 * speed2);
-        if (!(slope > 0)) break;
-        t = std::clamp(t + dot(r, d) / slope, std::max(0.0, from.t - 0.2 * range), std::min(1.0, to.t + 0.2 * range));
+        const double ahead = dot(r, d);
+        // A step makes r shorter by about half of ahead^2 / (slope |r|).
+        if (!(ahead * ahead > 0.002 * slope * tolerance * std::abs(s_))) break;
+        t = std::clamp(t + ahead / slope, std::max(0.0, from.t - 0.2 * range), std::min(1.0, to.t + 0.2 * range));
       }
       if (!(std::abs(length(r) - std::abs(s_)) < tolerance)) return false;
     }

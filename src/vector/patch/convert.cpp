@@ -1,7 +1,9 @@
 // The stages in a row, and the tables that the GPU reads.
+#include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -47,9 +49,12 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
   sweep(pieces, cuts, path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule, slabs);
   if (slabs.size() + drawing.patches.size() > shader::kEntryPatch) return tooManyPatches();
   // Neighbours in the list share boxes at the raster's upper level, so keep the order of the sweep.
-  std::sort(slabs.begin(), slabs.end(), [](const Slab& a, const Slab& b) {
-    return a.top != b.top ? a.top < b.top : a.left != b.left ? a.left < b.left : a.right < b.right;
-  });
+  const auto order = orderBy(
+      static_cast<uint32_t>(slabs.size()), memory, [&](uint32_t i) { return slabs[i].top; },
+      [&](uint32_t i, uint32_t k) {
+        const Slab &a = slabs[i], &b = slabs[k];
+        return a.left != b.left ? a.left < b.left : a.right < b.right;
+      });
   constexpr uint32_t kNone = UINT32_MAX;
   std::pmr::vector<uint32_t> places(pieces.size(), kNone, memory);
   const auto place = [&](uint32_t piece) {
@@ -65,21 +70,35 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
     double x;
   };
   std::pmr::vector<Last> lasts(pieces.size(), Last{std::numeric_limits<float>::quiet_NaN(), 0}, memory);
-  const auto range = [&](uint32_t piece, const Slab& slab) {
-    Last& last = lasts[piece];
-    const double top = last.y == slab.top ? last.x : pieces[piece].xAt(static_cast<double>(slab.top));
-    last = {slab.bottom, pieces[piece].xAt(static_cast<double>(slab.bottom))};
-    return std::pair(std::min(top, last.x), std::max(top, last.x));
+  const auto known = [&](uint32_t piece, float y) { return lasts[piece].y == y; };
+  /// Left's and right's x at the top and bottom of a slab, in this order.
+  const auto corners = [&](const Slab& slab) {
+    const Monotone &left = pieces[slab.left], &right = pieces[slab.right];
+    std::array<double, 2> top{lasts[slab.left].x, lasts[slab.right].x};
+    const double y = static_cast<double>(slab.top);
+    if (!known(slab.left, slab.top) && !known(slab.right, slab.top))
+      top = xsAt(left, y, right, y);
+    else if (!known(slab.left, slab.top))
+      top[0] = left.xAt(y);
+    else if (!known(slab.right, slab.top))
+      top[1] = right.xAt(y);
+    const double bottomY = static_cast<double>(slab.bottom);
+    const auto bottom = xsAt(left, bottomY, right, bottomY);
+    lasts[slab.left] = {slab.bottom, bottom[0]};
+    lasts[slab.right] = {slab.bottom, bottom[1]};
+    return std::array{top, bottom};
   };
   const uint32_t pathIndex = static_cast<uint32_t>(drawing.paths.size());
-  for (const Slab& slab : slabs) {
+  for (const uint32_t index : order) {
+    const Slab& slab = slabs[index];
     PatchRecord p{};
     p.left = place(slab.left);
     p.right = place(slab.right);
     p.top = slab.top;
     p.bottom = slab.bottom;
-    p.x0 = below(range(slab.left, slab).first);
-    p.x1 = above(range(slab.right, slab).second);
+    const auto [top, bottom] = corners(slab);
+    p.x0 = below(std::min(top[0], bottom[0]));
+    p.x1 = above(std::max(top[1], bottom[1]));
     p.path = pathIndex;
     drawing.patches.push_back(p);
     if (drawing.patches.size() == 1) {

@@ -14,7 +14,7 @@ namespace {
 
 /// A piece in a band: all of it where it is short, its part in the band's rows where it is long.
 struct BandEntry {
-  uint32_t piece;
+  uint32_t piece, firstBand;
   bool isLong;
   double top, bottom, xMin, xMax;
 };
@@ -63,7 +63,10 @@ private:
     double gap() const { return b.x - a.x; }
     bool left() const { return gap() >= 0; } // meeting counts as being left, so that a meeting is found once
   };
-  Row row(double y) const { return {y, a_.placeAt(y), b_.placeAt(y)}; }
+  Row row(double y) const {
+    const auto [a, b] = placesAt(a_, y, b_, y);
+    return {y, a, b};
+  }
   /// Whether boxes alone say that there is no change.
   static bool apart(const Row& from, const Row& to) {
     const double aMin = std::min(from.a.x, to.a.x), aMax = std::max(from.a.x, to.a.x),
@@ -155,14 +158,20 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
   const auto bandTop = [&](uint32_t band) { return band == 0 ? top : top + height * band; };
 
   // Counting sort of (band, piece).
+  struct Bands {
+    uint32_t first = 0, last = 0;
+  };
+  std::pmr::vector<Bands> bandsOf(pieces.size(), Bands{}, memory);
+  if (bands > 1)
+    for (size_t i = 0; i < pieces.size(); ++i) bandsOf[i] = {bandOf(pieces[i].top()), bandOf(pieces[i].bottom())};
   std::pmr::vector<uint32_t> first(bands + 1, 0, memory);
-  for (const Monotone& piece : pieces)
-    for (uint32_t b = bandOf(piece.top()), end = bandOf(piece.bottom()); b <= end; ++b) ++first[b + 1];
+  for (const Bands& of : bandsOf)
+    for (uint32_t b = of.first; b <= of.last; ++b) ++first[b + 1];
   for (uint32_t b = 0; b < bands; ++b) first[b + 1] += first[b];
   std::pmr::vector<uint32_t> place(first.begin(), first.end(), memory);
   std::pmr::vector<uint32_t> dealt(first[bands], 0, memory);
   for (uint32_t i = 0; i < pieces.size(); ++i)
-    for (uint32_t b = bandOf(pieces[i].top()), end = bandOf(pieces[i].bottom()); b <= end; ++b) dealt[place[b]++] = i;
+    for (uint32_t b = bandsOf[i].first; b <= bandsOf[i].last; ++b) dealt[place[b]++] = i;
 
   // Cuts lie on a grid as fine as float is at the path's largest coordinate: curves that meet in one point then have
   // one height in common there instead of several that differ by noise.
@@ -177,13 +186,16 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
     entries.clear();
     for (uint32_t i = first[b]; i < first[b + 1]; ++i) {
       const Monotone& piece = pieces[dealt[i]];
-      const bool isLong = bandOf(piece.bottom()) - bandOf(piece.top()) > kLong;
-      const double pieceTop = isLong ? std::max(y0, piece.top()) : piece.top(),
-                   pieceBottom = isLong ? std::min(y1, piece.bottom()) : piece.bottom();
-      if (pieceTop < pieceBottom) {
-        const double p = piece.xAt(pieceTop), q = piece.xAt(pieceBottom);
-        entries.push_back({dealt[i], isLong, pieceTop, pieceBottom, std::min(p, q), std::max(p, q)});
+      const Bands of = bandsOf[dealt[i]];
+      BandEntry entry{dealt[i], of.first, of.last - of.first > kLong, piece.top(), piece.bottom(), 0, 0};
+      double p = piece.curve.p[0].x, q = piece.curve.p[3].x;
+      if (entry.isLong) {
+        entry.top = std::max(y0, entry.top), entry.bottom = std::min(y1, entry.bottom);
+        if (!(entry.top < entry.bottom)) continue;
+        p = piece.xAt(entry.top), q = piece.xAt(entry.bottom);
       }
+      entry.xMin = std::min(p, q), entry.xMax = std::max(p, q);
+      entries.push_back(entry);
     }
     std::sort(entries.begin(), entries.end(), [](const BandEntry& l, const BandEntry& r) {
       return l.xMin != r.xMin ? l.xMin < r.xMin : l.piece < r.piece;
@@ -198,7 +210,7 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
         double from = std::max(l.top, r.top), to = std::min(l.bottom, r.bottom);
         if (l.isLong || r.isLong)
           from = std::max(from, y0), to = std::min(to, y1);
-        else if (bandOf(from) != b)
+        else if (std::max(l.firstBand, r.firstBand) != b)
           continue; // two short ones meet once, in the first band that they share
         if (!(from < to)) continue;
         const Monotone &lp = pieces[l.piece], &rp = pieces[r.piece];

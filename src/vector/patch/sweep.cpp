@@ -6,6 +6,7 @@
 // end; nothing is ever compared on the sweep line itself. At each height all edges that end leave, all that begin
 // enter, and only around those places windings and slabs are worked out again. A slab stays open while the pair of
 // pieces that bounds it stays the same, whatever happens outside or inside of it.
+#include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -44,23 +45,18 @@ public:
     visited_.assign(count, 0);
     known_.assign(count, kNone);
     open_.assign(pieces_.size(), Open{});
-    std::pmr::vector<Event> begins(count, Event{}, memory_), ends(count, Event{}, memory_);
-    for (uint32_t i = 0; i < count; ++i) {
-      begins[i] = {edges_[i].top, i};
-      ends[i] = {edges_[i].bottom, i};
-    }
-    std::sort(begins.begin(), begins.end());
-    std::sort(ends.begin(), ends.end());
+    auto begins = orderBy(count, memory_, [this](uint32_t i) { return edges_[i].top; });
+    auto ends = orderBy(count, memory_, [this](uint32_t i) { return edges_[i].bottom; });
     uint32_t begin = 0, end = 0;
     while (end < count) {
-      y_ = ends[end].y;
-      if (begin < count) y_ = std::min(y_, begins[begin].y);
+      y_ = edges_[ends[end]].bottom;
+      if (begin < count) y_ = std::min(y_, edges_[begins[begin]].top);
       ++batch_;
       starts_.clear();
       touched_.clear();
       const uint32_t firstEnd = end, firstBegin = begin;
-      while (end < count && ends[end].y == y_) ++end;
-      while (begin < count && begins[begin].y == y_) ++begin;
+      while (end < count && edges_[ends[end]].bottom == y_) ++end;
+      while (begin < count && edges_[begins[begin]].top == y_) ++begin;
       advance(std::span(ends).subspan(firstEnd, end - firstEnd),
               std::span(begins).subspan(firstBegin, begin - firstBegin));
       repair();
@@ -83,34 +79,28 @@ private:
     bool active = false;
   };
 
-  struct Event {
-    float y;
-    uint32_t edge;
-    bool operator<(const Event& o) const { return y != o.y ? y < o.y : edge < o.edge; }
-  };
-
   /// Edges that end leave, edges that begin enter. Most often one goes on where another ends; it then takes that one's
   /// place, and repair() sees to it that the place is right.
-  void advance(std::span<Event> ends, std::span<Event> begins) {
+  void advance(std::span<uint32_t> ends, std::span<uint32_t> begins) {
     constexpr size_t kFew = 8; // more are sorted in, which is cheaper than trying all pairs and swapping many
     if (ends.size() <= kFew && begins.size() <= kFew) {
-      for (Event& end : ends)
-        for (Event& begin : begins)
-          if (begin.edge != kNone && goesOn(edges_[end.edge], edges_[begin.edge])) {
-            const uint32_t slot = places_[end.edge];
-            touched_.push_back(edges_[end.edge].piece);
-            places_[end.edge] = kNone;
-            places_[begin.edge] = slot;
-            edgeOf_[slot] = begin.edge;
-            markDirty(begin.edge);
-            end.edge = begin.edge = kNone;
+      for (uint32_t& end : ends)
+        for (uint32_t& begin : begins)
+          if (begin != kNone && goesOn(edges_[end], edges_[begin])) {
+            const uint32_t slot = places_[end];
+            touched_.push_back(edges_[end].piece);
+            places_[end] = kNone;
+            places_[begin] = slot;
+            edgeOf_[slot] = begin;
+            markDirty(begin);
+            end = begin = kNone;
             break;
           }
     }
-    for (const Event& end : ends)
-      if (end.edge != kNone) remove(end.edge);
-    for (const Event& begin : begins)
-      if (begin.edge != kNone) insert(begin.edge);
+    for (const uint32_t end : ends)
+      if (end != kNone) remove(end);
+    for (const uint32_t begin : begins)
+      if (begin != kNone) insert(begin);
   }
   bool goesOn(const Edge& upper, const Edge& lower) const {
     if (upper.piece == lower.piece) return true;
@@ -139,7 +129,7 @@ private:
     double widest = 0;
     for (const double at : {0.5, 0.25, 0.75}) {
       const double y = top + (bottom - top) * at;
-      const double lx = lp.xAt(y), rx = rp.xAt(y);
+      const auto [lx, rx] = xsAt(lp, y, rp, y);
       const double d = rx - lx;
       if (std::abs(d) > std::abs(widest)) widest = d;
       if (std::abs(widest) > (std::abs(lx) + std::abs(rx)) * 1e-7) break;
