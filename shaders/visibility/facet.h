@@ -11,10 +11,10 @@ GPGP_SHADER_BEGIN
 /// The part of a candidate's plane that lies in its box in a pixel. Depths grow with distance, also where the record's
 /// are reversed.
 struct Facet {
-  vec3 plane;      ///< depth at the pixel's first sample, and how it changes from column to column and row to row
-  float nearest;   ///< of the triangle within the box, at least
+  vec3 plane;    ///< depth at the pixel's first sample, and how it changes from column to column and row to row
+  float nearest; ///< of the triangle within the box, at least
   float farthest;
-  ivec4 box;       ///< first and last unit within the pixel: x, y, z, w; 0 to 255
+  ivec4 box; ///< first and last unit within the pixel: x, y, z, w; 0 to 255
 };
 
 GPGP_FN Facet facetOf(Candidate c, ivec2 pixel, bool reversed) {

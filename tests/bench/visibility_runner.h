@@ -129,6 +129,23 @@ public:
     return result;
   }
 
+  /// Milliseconds of records that unite cameras into bits(), each with `perRecord` of them: a later record asks less,
+  /// as what is visible already needs no answer.
+  double measureUnion(Sampler& sampler, Sampling sampling, std::span<const GpgpCamera> cameras, uint32_t perRecord,
+                      uint32_t repeat) {
+    std::vector<double> totals;
+    for (uint32_t i = 0; i < repeat; ++i) {
+      double& total = totals.emplace_back(0);
+      sampling.accumulate = false;
+      for (size_t first = 0; first < cameras.size(); first += perRecord) {
+        const size_t n = std::min<size_t>(perRecord, cameras.size() - first);
+        total += measure(sampler, sampling, 1, cameras.subspan(first, n)).milliseconds;
+        sampling.accumulate = true;
+      }
+    }
+    return median(totals);
+  }
+
   /// One record, not timed.
   GpgpSampleReport record(Sampler& sampler, const Sampling& sampling, std::span<const GpgpCamera> cameras,
                           const host::Buffer& bits, const host::Buffer* counts = nullptr) {
