@@ -245,11 +245,11 @@ int main(int argc, char** argv) {
       continue;
     }
     if (options.walk) {
-      printWalkingCell(runner, title, options.height, options.figure);
+      printWalkingCell(runner, title, scene.params.height, options.figure);
       continue;
     }
     if (!options.figures || options.tables) good = benchScene(runner, title, options) && good;
-    if (options.figures) printFigures(runner, title, options.height, options.figure);
+    if (options.figures) printFigures(runner, title, scene.params.height, options.figure);
     std::fflush(stdout);
   }
   device.vk().vkDestroyPipelineCache(device.device(), cache, nullptr);

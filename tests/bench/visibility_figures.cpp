@@ -149,26 +149,35 @@ struct Figures {
     };
     host::Buffer whole = runner.makeBits(), again = runner.makeBits();
     runner.truth(16, take(square(options.largestCell >= 32 ? 17 : 5)), whole);
-    const std::vector<GpgpCamera> nine = take(square(3)); // middle; corner, side, corner; side, side; the same
+    std::vector<float> points = square(3);
+    points.insert(points.end(), {0.25f, -0.5f, 0, -0.5f, -0.25f, 0, 0.5f, 0.25f, 0, -0.25f, 0.5f, 0});
+    // Middle; corner, side, corner; side, side; the same; a turned square.
+    const std::vector<GpgpCamera> cell = take(points);
     const bool sampledAgain = options.largestGrid > 16;
-    if (sampledAgain) runner.truth(options.largestGrid, nine, again);
-    const double one = runner.measure(exact, {.method = GPGP_SAMPLING_EXACT}, options.repeat).milliseconds;
+    if (sampledAgain) runner.truth(options.largestGrid, cell, again);
+    const Runner::Run one = runner.measure(exact, {.method = GPGP_SAMPLING_EXACT}, options.repeat);
     Sampler together = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, shader::kMaxCameras);
     const auto run = [&](const char* series, Sampler& sampler, const Sampling& sampling, uint32_t perRecord,
                          const std::vector<size_t>& which) {
       std::vector<GpgpCamera> cameras;
-      for (const size_t i : which) cameras.push_back(nine[i]);
-      const double time = runner.measureUnion(sampler, sampling, cameras, perRecord, options.repeat);
+      for (const size_t i : which) cameras.push_back(cell[i]);
+      const Runner::Run all = runner.measureUnion(sampler, sampling, cameras, perRecord, options.repeat);
       const GpgpSampleReport m =
           runner.metrics(standard, runner.bits(), whole, nullptr, sampledAgain ? &again : nullptr);
-      const std::string label = std::to_string(cameras.size());
+      const std::string label = std::to_string(cameras.size()) + (which.back() == 12 ? " turned" : "");
       print("cell", scene, series, label, percent(m.overestimation), percent(m.coverage));
-      print("cellcost", scene, series, label, static_cast<double>(cameras.size()), time / one);
+      print("cellcost", scene, series, label, static_cast<double>(cameras.size()),
+            all.milliseconds / one.milliseconds);
+      if (sampling.method == GPGP_SAMPLING_EXACT)
+        print("cellpairs", scene, series, label, static_cast<double>(cameras.size()),
+              double(all.report.neededPairs) / one.report.neededPairs);
     };
     const Sampling exactly{.method = GPGP_SAMPLING_EXACT};
     for (const std::vector<size_t>& which : {std::vector<size_t>{0},
                                              {1, 3, 6, 8},
+                                             {9, 10, 11, 12},
                                              {0, 1, 3, 6, 8},
+                                             {0, 9, 10, 11, 12},
                                              {1, 8, 3, 6, 2, 7, 4, 5},
                                              {0, 1, 8, 3, 6, 2, 7, 4, 5}}) {
       run("exact", exact, exactly, 1, which);
