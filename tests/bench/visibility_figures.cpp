@@ -166,8 +166,7 @@ struct Figures {
           runner.metrics(standard, runner.bits(), whole, nullptr, sampledAgain ? &again : nullptr);
       const std::string label = std::to_string(cameras.size()) + (which.back() == 12 ? " turned" : "");
       print("cell", scene, series, label, percent(m.overestimation), percent(m.coverage));
-      print("cellcost", scene, series, label, static_cast<double>(cameras.size()),
-            all.milliseconds / one.milliseconds);
+      print("cellcost", scene, series, label, static_cast<double>(cameras.size()), all.milliseconds / one.milliseconds);
       if (sampling.method == GPGP_SAMPLING_EXACT)
         print("cellpairs", scene, series, label, static_cast<double>(cameras.size()),
               double(all.report.neededPairs) / one.report.neededPairs);
