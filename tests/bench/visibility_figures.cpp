@@ -180,7 +180,7 @@ struct Figures {
                                              {1, 8, 3, 6, 2, 7, 4, 5},
                                              {0, 1, 8, 3, 6, 2, 7, 4, 5}}) {
       run("exact", exact, exactly, 1, which);
-      if (which.size() > 1) run("exact, together", together, exactly, shader::kMaxCameras, which);
+      if (which.size() > 1) run("exact together", together, exactly, shader::kMaxCameras, which);
     }
     run("standard", standard, {}, 1, {0, 1, 3, 6, 8});
     run("conservative", conservative, thesis(0.05f, 0.05f), 1, {0, 1, 3, 6, 8});

@@ -130,7 +130,7 @@ public:
   }
 
   /// Records that unite cameras into bits(), each with `perRecord` of them: their milliseconds and pairs together. A
-  /// later record asks less, as what is visible already needs no answer.
+  /// later record asks a little less, as what is visible already needs no answer.
   Run measureUnion(Sampler& sampler, Sampling sampling, std::span<const GpgpCamera> cameras, uint32_t perRecord,
                    uint32_t repeat) {
     Run all;
