@@ -1,4 +1,5 @@
-// Two teams of a workgroup decide a pixel's list each, of at most kBatch.
+// Two teams of a workgroup decide a pixel's list each, of at most kBatch. What the order by one depth each may have
+// wrong is decided by planes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -7,28 +8,118 @@ layout(local_size_x = 64) in; // kTeams * kBatch
 const uint kRanked = kBatch;
 const uint kTeams = 2u;
 #include "visibility/resolve.glsl"
+#include "visibility/facet.h"
+
+shared vec4 planes[kTeams][kBatch]; // facets of the sorted entries: plane, nearest
+shared float farthest[kTeams][kBatch];
+shared uint boxes[kTeams][kBatch];
+shared uint sorted[kTeams][kBatch]; // their candidates
+shared uint doubtful[kTeams];       // bits: entries that the order may have wrong
+shared uint kept[kTeams];           // those of them that are seen
+
+void putFacet(uint place, Facet f, uint candidate) {
+  planes[team()][place] = vec4(f.plane, f.nearest);
+  farthest[team()][place] = f.farthest;
+  boxes[team()][place] = uint(f.box.x) | uint(f.box.y) << 8u | uint(f.box.z) << 16u | uint(f.box.w) << 24u;
+  sorted[team()][place] = candidate;
+}
+
+Facet facetAt(uint place) {
+  vec4 plane = planes[team()][place];
+  uint box = boxes[team()][place];
+  Facet f;
+  f.plane = plane.xyz;
+  f.nearest = plane.w;
+  f.farthest = farthest[team()][place];
+  f.box = ivec4(box & 255u, box >> 8u & 255u, box >> 16u & 255u, box >> 24u);
+  return f;
+}
+
+Outline outlineAt(uint place) {
+  Outline o;
+  o.start = starts[team()][place];
+  o.step = steps[team()][place];
+  o.rowBegin = rows[team()][place].x;
+  o.rowEnd = rows[team()][place].y;
+  return o;
+}
+
+/// Whether an entry that is not seen yet comes before one that covers it, or one behind it in the order before it.
+bool isDoubtful(uint place, uint n) {
+  uint id = ids[team()][place];
+  if ((bits[id >> 5u] & (1u << (id & 31u))) != 0u) return false;
+  bool claimed = (seen[team()] & (1u << place)) != 0u;
+  uint begin = claimed ? place + 1u : 0u;
+  uint end = claimed ? n : min(place, stops[team()]);
+  Facet own = facetAt(place);
+  for (uint j = begin; j < end; ++j) {
+    Facet other = facetAt(j);
+    if (claimed ? !isNearerSomewhere(other, own) : !isNearerSomewhere(own, other)) continue;
+    if (overlap(readCandidate(sorted[team()][place]), readCandidate(sorted[team()][j]))) return true;
+  }
+  return false;
+}
+
+/// Whether an entry has a sample, in this invocation's rows, at which none of the others is nearer.
+bool isAhead(uint place, uint n) {
+  int row = int(laneOf());
+  Outline o = outlineAt(place);
+  Facet own = facetAt(place);
+  uint id = ids[team()][place];
+  uvec4 rest = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
+  for (uint j = 0u; j < n && (rest.x | rest.y | rest.z | rest.w) != 0u; ++j) {
+    if (j == place || planes[team()][j].w > own.farthest) continue;
+    Crossing crossing = crossingOf(facetAt(j), own, ids[team()][j] < id);
+    Outline other = outlineAt(j);
+    rest &= ~uvec4(samplesAhead(other, crossing, row), samplesAhead(other, crossing, row + 32));
+  }
+  return (rest.x | rest.y | rest.z | rest.w) != 0u;
+}
+
+/// After the order has proposed which are seen: corrects that, and shows them.
+void settle(uint n) {
+  uint lane = laneOf();
+  if (lane < n && isDoubtful(lane, n)) atomicOr(doubtful[team()], 1u << lane);
+  barrier();
+  for (uint left = doubtful[team()]; left != 0u; left &= left - 1u) {
+    uint place = uint(findLSB(left));
+    if (isAhead(place, n)) atomicOr(kept[team()], 1u << place);
+  }
+  barrier();
+  if (((seen[team()] & ~doubtful[team()] | kept[team()]) & (1u << lane)) != 0u) show(ids[team()][lane]);
+}
 
 /// A list that is one batch.
 void resolveShort(uint begin, uint n, ivec2 pixel) {
   uint lane = laneOf();
   Outline o;
+  Facet f;
   uint id = 0u;
   uint place = 0u;
   clearRanks();
+  if (lane == 0u) {
+    doubtful[team()] = 0u;
+    kept[team()] = 0u;
+  }
   if (lane < n) {
     items[team()][lane] = entries[begin + lane];
     Candidate c = readCandidate(items[team()][lane]);
     o = outlineOf(c, pixel);
     id = c.id;
     keys[team()][lane >> 2u][lane & 3u] = middleKey(c, o, pixel, params.reversedDepth != 0u);
+    f = facetOf(c, pixel, params.reversedDepth != 0u);
   }
   barrier();
   if (lane < n) place = rankOf(lane, n);
   barrier();
   if (ties[team()] != 0u && lane < n) place += rankAmongSame(lane, n);
-  if (lane < n) put(place, o, id);
+  if (lane < n) {
+    put(place, o, id);
+    putFacet(place, f, items[team()][lane]);
+  }
   uvec4 covered = uvec4(0u);
-  resolveBatch(n, covered);
+  lookAtBatch(n, covered);
+  settle(n);
 }
 
 void main() {

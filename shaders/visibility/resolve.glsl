@@ -19,6 +19,7 @@ shared uint taken[kTeams][kRanked / 32u]; // bits: ranks that entries have
 shared uint ties[kTeams];                 // 1: two have the same
 shared uint seen[kTeams];  // a bit for each of a batch's
 shared uint holes[kTeams]; // 1: samples that nothing covers yet
+shared uint stops[kTeams]; // how many of a batch come before all samples are covered
 
 uint team() { return gl_LocalInvocationIndex / kBatch; }
 uint laneOf() { return gl_LocalInvocationIndex % kBatch; }
@@ -75,16 +76,18 @@ void put(uint place, Outline o, uint id) {
   ids[team()][place] = id;
 }
 
-/// Goes through a batch, whose outlines and ids are there; false once all samples are covered.
-bool resolveBatch(uint batch, inout uvec4 covered) {
+/// Goes through a batch, whose outlines and ids are there, and notes which are seen.
+void lookAtBatch(uint batch, inout uvec4 covered) {
   int row = int(laneOf());
   if (row == 0) {
     seen[team()] = 0u;
     holes[team()] = 0u;
+    stops[team()] = 0u;
   }
   barrier();
   uint found = 0u;
-  for (uint k = 0u; k < batch && (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu; ++k) {
+  uint k = 0u;
+  for (; k < batch && (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu; ++k) {
     Outline o;
     o.start = starts[team()][k];
     o.step = steps[team()][k];
@@ -95,9 +98,15 @@ bool resolveBatch(uint batch, inout uvec4 covered) {
     covered |= own;
   }
   if (found != 0u) atomicOr(seen[team()], found);
+  atomicMax(stops[team()], k);
   if ((covered.x & covered.y & covered.z & covered.w) != 0xffffffffu) holes[team()] = 1u;
   barrier();
-  if ((seen[team()] & (1u << row)) != 0u) show(ids[team()][row]);
+}
+
+/// The same, and shows them; false once all samples are covered.
+bool resolveBatch(uint batch, inout uvec4 covered) {
+  lookAtBatch(batch, covered);
+  if ((seen[team()] & (1u << laneOf())) != 0u) show(ids[team()][laneOf()]);
   bool more = holes[team()] != 0u;
   barrier();
   return more;

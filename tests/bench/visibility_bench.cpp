@@ -1,9 +1,12 @@
 // What each sampling method finds and costs, on the measured scenes: coverage and overestimation against the truth made
 // in the same run, GPU time by timestamps, and the ratio to standard sampling (the baseline).
 //
-//   visibility_bench [--size WxH] [--repeat N] [--truth N] [--recheck N] [--passes] [SCENE...]
+//   visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] [--passes] [SCENE...]
+//                                       --crop: a window of that picture, whose pixels are as small as the picture's
 //   visibility_bench --figures [--grid N] [--cell N] [--tables] [...]
 //                                       the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)
+//   visibility_bench --walk [--grid N] [--cell N] [...]
+//                                       the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points
 //   visibility_bench --views [...]      what a record of several view points of a cell costs against a record for each
 //   visibility_bench --plot FILE... --out FOLDER
 //                                       what runs with --figures printed, as SVG pictures
@@ -28,8 +31,9 @@ using namespace gpgp::test;
 
 struct Options {
   uint32_t width = 160, height = 90, truth = 64, recheck = 0;
-  bool passes = false, figures = false, tables = false, views = false;
+  bool passes = false, figures = false, tables = false, views = false, walk = false;
   FigureOptions figure;
+  uint32_t crop[4] = {}; ///< width, height, left, top
   std::string out = ".";
   std::vector<std::string> scenes, plots;
 };
@@ -186,6 +190,9 @@ int main(int argc, char** argv) {
     const auto number = [&] { return static_cast<uint32_t>(std::max(0, std::atoi(next()))); };
     if (arg == "--size") {
       if (std::sscanf(next(), "%ux%u", &options.width, &options.height) != 2) return 2;
+    } else if (arg == "--crop") {
+      uint32_t* c = options.crop;
+      if (std::sscanf(next(), "%ux%u+%u+%u", &c[0], &c[1], &c[2], &c[3]) != 4) return 2;
     } else if (arg == "--repeat") {
       options.figure.repeat = std::max(number(), 1u);
     } else if (arg == "--truth") {
@@ -204,6 +211,8 @@ int main(int argc, char** argv) {
       options.figures = true;
     } else if (arg == "--views") {
       options.views = true;
+    } else if (arg == "--walk") {
+      options.walk = true;
     } else if (arg == "--tables") {
       options.tables = true;
     } else if (arg == "--plot") {
@@ -228,14 +237,19 @@ int main(int argc, char** argv) {
     auto context = Context::create(info);
     expect(context.code(), "context");
     Scene scene = makeScene(name, options.width, options.height);
+    if (const uint32_t* c = options.crop; c[0]) scene = cropped(scene, c[2], c[3], c[0], c[1], 1.0f);
     Runner runner(device, *context, scene);
     const std::string title = std::filesystem::path(name).stem().string();
     if (options.views) {
       benchViews(runner, title, options.figure.repeat);
       continue;
     }
+    if (options.walk) {
+      printWalkingCell(runner, title, scene.params.height, options.figure);
+      continue;
+    }
     if (!options.figures || options.tables) good = benchScene(runner, title, options) && good;
-    if (options.figures) printFigures(runner, title, options.height, options.figure);
+    if (options.figures) printFigures(runner, title, scene.params.height, options.figure);
     std::fflush(stdout);
   }
   device.vk().vkDestroyPipelineCache(device.device(), cache, nullptr);

@@ -128,9 +128,10 @@ struct Figures {
   }
 
   /// A viewer who walks: half a metre to each side, and up and down. The truth: side x side view points, 16 x 16
-  /// samples.
+  /// samples; what a view point of a method claims beyond that counts as seen from the cell where the largest grid
+  /// shows it from one of them.
   void walkingCell() {
-    const auto square = [&](uint32_t side) {
+    const auto square = [&](uint32_t side) { // rows from below
       std::vector<float> points;
       for (uint32_t i = 0; i < side * side; ++i) {
         const float x = static_cast<float>(i % side) / static_cast<float>(side - 1) - 0.5f;
@@ -141,35 +142,48 @@ struct Figures {
     };
     GpgpViewCellInfo info = GPGP_VIEW_CELL_INFO_INIT;
     info.camera = runner.camera();
-    const auto take = [&](const std::vector<float>& points) {
+    const auto take = [&](const std::vector<float>& points) { // the middle first
       info.points = points.data();
       info.pointCount = static_cast<uint32_t>(points.size() / 3);
       return camerasOf(info);
     };
-    host::Buffer whole = runner.makeBits();
+    host::Buffer whole = runner.makeBits(), again = runner.makeBits();
     runner.truth(16, take(square(options.largestCell >= 32 ? 17 : 5)), whole);
-    const double one = runner.measure(exact, {.method = GPGP_SAMPLING_EXACT}, options.repeat).milliseconds;
-    const auto run = [&](const char* series, Sampler& sampler, Sampling sampling,
-                         const std::vector<GpgpCamera>& cameras) {
-      double time = 0;
-      // Bits are united by `accumulate`; each view is timed alone, and costs the same when it is united.
-      for (const GpgpCamera& camera : cameras)
-        time += runner.measure(sampler, sampling, options.repeat, {&camera, 1}).milliseconds;
-      unite(sampler, sampling, cameras);
-      const GpgpSampleReport m = runner.metrics(standard, runner.bits(), whole, nullptr, nullptr);
-      const std::string label = std::to_string(cameras.size());
+    std::vector<float> points = square(3);
+    points.insert(points.end(), {0.25f, -0.5f, 0, -0.5f, -0.25f, 0, 0.5f, 0.25f, 0, -0.25f, 0.5f, 0});
+    // Middle; corner, side, corner; side, side; the same; a turned square.
+    const std::vector<GpgpCamera> cell = take(points);
+    const bool sampledAgain = options.largestGrid > 16;
+    if (sampledAgain) runner.truth(options.largestGrid, cell, again);
+    const Runner::Run one = runner.measure(exact, {.method = GPGP_SAMPLING_EXACT}, options.repeat);
+    Sampler together = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, shader::kMaxCameras);
+    const auto run = [&](const char* series, Sampler& sampler, const Sampling& sampling, uint32_t perRecord,
+                         const std::vector<size_t>& which) {
+      std::vector<GpgpCamera> cameras;
+      for (const size_t i : which) cameras.push_back(cell[i]);
+      const Runner::Run all = runner.measureUnion(sampler, sampling, cameras, perRecord, options.repeat);
+      const GpgpSampleReport m =
+          runner.metrics(standard, runner.bits(), whole, nullptr, sampledAgain ? &again : nullptr);
+      const std::string label = std::to_string(cameras.size()) + (which.back() == 12 ? " turned" : "");
       print("cell", scene, series, label, percent(m.overestimation), percent(m.coverage));
-      print("cellcost", scene, series, label, static_cast<double>(cameras.size()), time / one);
+      print("cellcost", scene, series, label, static_cast<double>(cameras.size()), all.milliseconds / one.milliseconds);
+      if (sampling.method == GPGP_SAMPLING_EXACT)
+        print("cellpairs", scene, series, label, static_cast<double>(cameras.size()),
+              double(all.report.neededPairs) / one.report.neededPairs);
     };
-    const std::vector<float> corners = {-0.5f, -0.5f, 0, 0.5f, -0.5f, 0, -0.5f, 0.5f, 0, 0.5f, 0.5f, 0};
-    const std::vector<GpgpCamera> five = take(corners);
-    const std::vector<GpgpCamera> four(five.begin() + 1, five.end()), nine = take(square(3));
-    run("exact", exact, {.method = GPGP_SAMPLING_EXACT}, {runner.camera()});
-    run("exact", exact, {.method = GPGP_SAMPLING_EXACT}, four);
-    run("exact", exact, {.method = GPGP_SAMPLING_EXACT}, five);
-    run("exact", exact, {.method = GPGP_SAMPLING_EXACT}, nine);
-    run("standard", standard, {}, five);
-    run("conservative", conservative, thesis(0.05f, 0.05f), five);
+    const Sampling exactly{.method = GPGP_SAMPLING_EXACT};
+    for (const std::vector<size_t>& which : {std::vector<size_t>{0},
+                                             {1, 3, 6, 8},
+                                             {9, 10, 11, 12},
+                                             {0, 1, 3, 6, 8},
+                                             {0, 9, 10, 11, 12},
+                                             {1, 8, 3, 6, 2, 7, 4, 5},
+                                             {0, 1, 8, 3, 6, 2, 7, 4, 5}}) {
+      run("exact", exact, exactly, 1, which);
+      if (which.size() > 1) run("exact together", together, exactly, shader::kMaxCameras, which);
+    }
+    run("standard", standard, {}, 1, {0, 1, 3, 6, 8});
+    run("conservative", conservative, thesis(0.05f, 0.05f), 1, {0, 1, 3, 6, 8});
   }
 };
 } // namespace
@@ -181,6 +195,10 @@ void printFigures(Runner& runner, const std::string& scene, uint32_t height, con
   figures.epsilons();
   figures.pixelCells();
   if (options.largestCell > 1) figures.walkingCell();
+}
+
+void printWalkingCell(Runner& runner, const std::string& scene, uint32_t height, const FigureOptions& options) {
+  Figures(runner, scene, height, options).walkingCell();
 }
 
 } // namespace gpgp::test

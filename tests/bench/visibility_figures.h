@@ -18,8 +18,11 @@ struct FigureOptions {
 ///   6.11  label factor of resolution: coverage, overestimation
 ///   6.12  label static/dynamic epsilon: overestimation, coverage
 ///   6.14  label pixels and skip of the view cell: overestimation, coverage, against the truth of its middle
-///   cell  label view points: overestimation, coverage of a walking viewer's cell; and the ratio of its cost
+///   cell  label view points: overestimation, coverage of a walking viewer's cell
+///   cellcost  label view points: their number, and their cost in exact views; cellpairs: their pairs likewise
 void printFigures(Runner& runner, const std::string& scene, uint32_t height, const FigureOptions& options);
+/// The cell alone.
+void printWalkingCell(Runner& runner, const std::string& scene, uint32_t height, const FigureOptions& options);
 
 /// Reads files of such lines (others are skipped) and writes one SVG per figure and scene. False: nothing was written.
 bool plotFigures(const std::vector<std::string>& files, const std::string& folder);

@@ -129,6 +129,28 @@ public:
     return result;
   }
 
+  /// Records that unite cameras into bits(), each with `perRecord` of them: their milliseconds and pairs together. A
+  /// later record asks a little less, as what is visible already needs no answer.
+  Run measureUnion(Sampler& sampler, Sampling sampling, std::span<const GpgpCamera> cameras, uint32_t perRecord,
+                   uint32_t repeat) {
+    Run all;
+    std::vector<double> totals;
+    for (uint32_t i = 0; i < repeat; ++i) {
+      double& total = totals.emplace_back(0);
+      all.report = {};
+      sampling.accumulate = false;
+      for (size_t first = 0; first < cameras.size(); first += perRecord) {
+        const size_t n = std::min<size_t>(perRecord, cameras.size() - first);
+        const Run one = measure(sampler, sampling, 1, cameras.subspan(first, n));
+        total += one.milliseconds;
+        all.report.neededPairs += one.report.neededPairs;
+        sampling.accumulate = true;
+      }
+    }
+    all.milliseconds = median(totals);
+    return all;
+  }
+
   /// One record, not timed.
   GpgpSampleReport record(Sampler& sampler, const Sampling& sampling, std::span<const GpgpCamera> cameras,
                           const host::Buffer& bits, const host::Buffer* counts = nullptr) {

@@ -38,6 +38,9 @@ std::vector<std::pair<std::string, Scene>> smallScenes() {
   Scene houses = city(6);
   setOrbitCamera(houses, 1, 8, 1.2f, 96, 54, false);
   scenes.emplace_back("city", std::move(houses));
+  Scene fronts = houseFronts();
+  setWalkingCamera(fronts, {12, 26, 60}, {0, 8, -20}, 1920, 1080, true);
+  scenes.emplace_back("fronts", cropped(fronts, 900, 480, 96, 64));
   return scenes;
 }
 
@@ -48,9 +51,10 @@ TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
     const TwinResult exact = sampleExactOnCpu(scene.input());
     const Compared c = compare(exact.bits, truth.bits);
     EXPECT_GT(c.truth, 500u) << name;
-    EXPECT_GE(c.found, c.truth * 0.99) << name;
+    // With the order by one depth each alone the fronts have 99.46 % and 0.68 %.
+    EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : 0.99)) << name;
     // The colonnade's far columns are tens of slivers a pixel that interleave in depth.
-    EXPECT_LE(c.extra, c.truth * (name == "colonnade" ? 0.03 : 0.01)) << name;
+    EXPECT_LE(c.extra, c.truth * (name == "colonnade" ? 0.03 : name == "fronts" ? 0.004 : 0.01)) << name;
     const TwinResult standard = sampleOnCpu(scene.input());
     EXPECT_LT(compare(standard.bits, truth.bits).found, c.truth * 0.8) << name; // or the scene tests nothing
     uint32_t counted = 0;

@@ -238,4 +238,77 @@ Scene city(uint32_t blocks) {
   return scene;
 }
 
+Scene houseFronts() {
+  Scene scene;
+  Maker maker(scene);
+  const auto box = [&](glm::vec3 middle, glm::vec3 size) { maker.box(middle - size * 0.5f, middle + size * 0.5f); };
+  for (int house = 0; house < 6; ++house) {
+    const float z = -16.0f * static_cast<float>(house);
+    box({-6, 9, z}, {12, 18, 14});
+    box({-6, 17.85f, z}, {12.9f, 0.3f, 14.9f}); // its upper side in the plane of the walls' upper ends
+    for (int floor = 0; floor < 5; ++floor) {
+      const float y = 3.0f + 3.0f * static_cast<float>(floor);
+      box({0, y, z}, {0.24f, 0.18f, 13}); // a ledge, half in the wall
+      for (int window = 0; window < 4; ++window) {
+        const float at = z - 4.8f + 3.2f * static_cast<float>(window);
+        box({0, y + 1.4f, at}, {0.14f, 1.6f, 1.4f});
+        for (const float side : {-0.3f, 0.3f})
+          maker.quad({0.12f, y + 0.7f, at + side + 0.25f}, {0.12f, y + 0.7f, at + side - 0.25f},
+                     {0.12f, y + 2.1f, at + side - 0.25f}, {0.12f, y + 2.1f, at + side + 0.25f});
+        box({1.2f, y + 0.55f, at}, {0.07f, 0.07f, 2.6f}); // a rail, and posts with ends in the plane of its lower side
+        for (int post = -3; post <= 3; ++post)
+          box({1.2f, y + 0.77f, at + 0.4f * static_cast<float>(post)}, {0.05f, 0.51f, 0.05f});
+      }
+    }
+  }
+  scene.addDraw(maker.mesh());
+  return scene;
+}
+
+Scene cropped(const Scene& scene, uint32_t left, uint32_t top, uint32_t width, uint32_t height, float margin) {
+  Scene result;
+  result.positions = scene.positions;
+  result.params = scene.params;
+  result.params.triangleCount = 0;
+  result.params.width = width;
+  result.params.height = height;
+  float* matrix = result.params.viewProjection;
+  const auto fit = [&](int row, uint32_t whole, uint32_t first, uint32_t part) {
+    const float scale = static_cast<float>(whole) / static_cast<float>(part);
+    const float shift = scale - 1 - 2 * static_cast<float>(first) / static_cast<float>(part);
+    for (int column = 0; column < 4; ++column)
+      matrix[column * 4 + row] = scale * matrix[column * 4 + row] + shift * matrix[column * 4 + 3];
+  };
+  fit(0, scene.params.width, left, width);
+  fit(1, scene.params.height, top, height);
+
+  std::array<glm::vec4, 4> planes; // of the sides, in metres
+  for (int side = 0; side < 4; ++side) {
+    glm::vec4& plane = planes[static_cast<size_t>(side)];
+    for (int column = 0; column < 4; ++column)
+      plane[column] = matrix[column * 4 + 3] + (side % 2 ? 1.0f : -1.0f) * matrix[column * 4 + side / 2];
+    plane /= glm::length(glm::vec3(plane));
+  }
+  for (const shader::Draw& draw : scene.draws) {
+    const shader::Mesh& mesh = scene.meshes[draw.mesh];
+    const auto first = static_cast<uint32_t>(result.indices.size());
+    for (uint32_t i = 0; i + 2 < mesh.indexCount; i += 3) {
+      const uint32_t* corner = &scene.indices[mesh.firstIndex + i];
+      std::array<glm::vec4, 3> at;
+      for (size_t k = 0; k < 3; ++k)
+        at[k] = glm::vec4(transformed(draw, &scene.positions[size_t(mesh.vertexOffset + corner[k]) * 3]), 1);
+      const bool outside = std::any_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
+        return std::all_of(at.begin(), at.end(), [&](const glm::vec4& p) { return glm::dot(plane, p) < -margin; });
+      });
+      if (!outside) result.indices.insert(result.indices.end(), corner, corner + 3);
+    }
+    if (result.indices.size() == first) continue;
+    const uint32_t own = result.addMesh(first, mesh.vertexOffset);
+    shader::Draw& copy = result.addDraw(own);
+    std::copy_n(draw.transform, 12, copy.transform);
+    copy.flags = draw.flags;
+  }
+  return result;
+}
+
 } // namespace gpgp::test

@@ -19,8 +19,15 @@ Scene colonnadeWithWires(float detail);
 Scene foliage(uint32_t leaves);
 /// Houses of boxes with window frames, in blocks x blocks streets; 10 million triangles at 160.
 Scene city(uint32_t blocks);
+/// A row of house fronts in the plane x = 0 whose ledges, windows, rails and cornices cut the walls and each other or
+/// lie in one plane with them.
+Scene houseFronts();
 /// A camera in a street of the city or between the columns, at eye height.
 void setWalkingCamera(Scene& scene, glm::vec3 eye, glm::vec3 target, uint32_t width, uint32_t height,
                       bool reversed = false);
+
+/// A window of the scene's picture (pixels from its upper left corner), so that small pictures have the pixels of a
+/// large one. Without the triangles that lie outside it for the camera and for others up to `margin` away (metres).
+Scene cropped(const Scene& scene, uint32_t left, uint32_t top, uint32_t width, uint32_t height, float margin = 0);
 
 } // namespace gpgp::test

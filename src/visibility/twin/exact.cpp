@@ -1,5 +1,5 @@
 // Exact and truth sampling in plain loops.
-#include "visibility/candidate.h"
+#include "visibility/facet.h"
 #include "visibility/twin/twin.h"
 
 #include <algorithm>
@@ -23,25 +23,67 @@ void clearLists(TwinResult& out) {
   out.counters.appeared = out.counters.disappeared = 0;
 }
 
-/// Front to back: those with a sample that nothing before them covers become visible.
-void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, std::vector<uint32_t>& bits) {
+/// One of a short list's, in its order.
+struct Sorted {
+  const Candidate& candidate;
+  Outline outline;
+  Facet facet;
+};
+
+/// Whether an entry has a sample at which none of the others is nearer.
+bool isAhead(const std::vector<Sorted>& list, size_t place) {
+  const Sorted& own = list[place];
+  for (int row = 0; row < 64; ++row) {
+    uvec2 rest = samplesIn(own.outline, row);
+    for (size_t j = 0; j < list.size(); ++j) {
+      if (j == place || list[j].facet.nearest > own.facet.farthest) continue;
+      const bool wins = list[j].candidate.id < own.candidate.id;
+      const uvec2 ahead = samplesAhead(list[j].outline, crossingOf(list[j].facet, own.facet, wins), row);
+      rest.x &= ~ahead.x, rest.y &= ~ahead.y;
+    }
+    if (rest.x | rest.y) return true;
+  }
+  return false;
+}
+
+/// Front to back: those with a sample that nothing before them covers become visible. In a short list, what the order
+/// by one depth each may have wrong is decided by planes.
+void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed,
+             std::vector<uint32_t>& bits) {
   const auto rank = [&](const Entry& e) {
     const Candidate& c = candidates[e.candidate];
     return std::tuple(e.key, c.id, c.p1.x, c.p1.y);
   };
   std::sort(list.begin(), list.end(), [&](const Entry& a, const Entry& b) { return rank(a) < rank(b); });
-  std::array<uvec2, 64> covered{};
+  std::vector<Sorted> sorted;
   for (const Entry& entry : list) {
     const Candidate& c = candidates[entry.candidate];
-    const Outline outline = outlineOf(c, pixel);
-    bool seen = false;
+    sorted.push_back({c, outlineOf(c, pixel), facetOf(c, pixel, reversed)});
+  }
+  std::array<uvec2, 64> covered{};
+  std::vector<bool> seen(sorted.size());
+  size_t stop = 0; // how many come before all samples are covered
+  for (bool holes = true; holes && stop < sorted.size(); ++stop) {
+    holes = false;
     for (int row = 0; row < 64; ++row) {
       uvec2& mask = covered[static_cast<size_t>(row)];
-      const uvec2 own = samplesIn(outline, row);
-      seen = seen || ((own.x & ~mask.x) | (own.y & ~mask.y));
+      const uvec2 own = samplesIn(sorted[stop].outline, row);
+      if ((own.x & ~mask.x) | (own.y & ~mask.y)) seen[stop] = true;
       mask |= own;
+      holes = holes || (mask.x & mask.y) != ~0u;
     }
-    if (seen) bits[c.id / 32] |= 1u << (c.id % 32);
+  }
+  for (size_t i = 0; i < sorted.size(); ++i) {
+    const auto nearer = [&](const Sorted& a, const Sorted& b) {
+      return isNearerSomewhere(a.facet, b.facet) && overlap(a.candidate, b.candidate);
+    };
+    bool doubtful = false;
+    if (sorted.size() <= kBatch && seen[i])
+      for (size_t j = i + 1; j < sorted.size() && !doubtful; ++j) doubtful = nearer(sorted[j], sorted[i]);
+    else if (sorted.size() <= kBatch)
+      for (size_t j = 0; j < std::min(i, stop) && !doubtful; ++j) doubtful = nearer(sorted[i], sorted[j]);
+    const uint32_t id = sorted[i].candidate.id;
+    if (doubtful ? isAhead(sorted, i) : seen[i]) bits[id / 32] |= 1u << (id % 32);
   }
 }
 } // namespace
@@ -115,7 +157,7 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
   out.counters.candidates = static_cast<uint32_t>(candidates.size());
 
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), out.bits);
+    for (int x = 0; x < width; ++x) resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), reversed, out.bits);
   out.ids.clear();
   finish(in, out);
   return out;

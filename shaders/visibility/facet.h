@@ -1,0 +1,110 @@
+// Which of two triangles is nearer at each sample of a pixel. A list's order by one depth each says it for most pairs;
+// where surfaces cut each other, coincide, or turn away within the pixel, their planes have to.
+//
+// Guarantees: one result on every device. Of two triangles in exactly the same plane the lower number is nearer.
+#ifndef GPGP_SHADERS_VISIBILITY_FACET_H
+#define GPGP_SHADERS_VISIBILITY_FACET_H
+#include "visibility/candidate.h"
+
+GPGP_SHADER_BEGIN
+
+/// The part of a candidate's plane that lies in its box in a pixel. Depths grow with distance, also where the record's
+/// are reversed.
+struct Facet {
+  vec3 plane;    ///< depth at the pixel's first sample, and how it changes from column to column and row to row
+  float nearest; ///< of the triangle within the box, at least
+  float farthest;
+  ivec4 box; ///< first and last unit within the pixel: x, y, z, w; 0 to 255
+};
+
+GPGP_FN Facet facetOf(Candidate c, ivec2 pixel, bool reversed) {
+  ScreenTriangle t = triangleOf(c);
+  ivec2 first = pixel * 256;
+  ivec2 low = max(min(c.p0, min(c.p1, c.p2)), first);
+  ivec2 high = min(max(c.p0, max(c.p1, c.p2)), first + 255);
+  ivec2 middle = ivec2((low.x + high.x) >> 1, (low.y + high.y) >> 1);
+  vec2 depth = planeDepth(t, isCompact(t), middle);
+  vec2 slope = depthSlope(t);
+  GPGP_PRECISE float reach =
+      (abs(slope.x) * float(high.x - low.x + 1) + abs(slope.y) * float(high.y - low.y + 1)) * 0.5f + depth.y;
+  GPGP_PRECISE float least = max(depth.x - reach, t.zMin);
+  GPGP_PRECISE float most = min(depth.x + reach, t.zMax);
+  GPGP_PRECISE float atFirst =
+      depth.x + slope.x * float(first.x + 2 - middle.x) + slope.y * float(first.y + 2 - middle.y);
+  float side = reversed ? -1.0f : 1.0f;
+  Facet f;
+  f.plane = vec3(atFirst * side, slope.x * 4.0f * side, slope.y * 4.0f * side);
+  f.nearest = reversed ? -most : least;
+  f.farthest = reversed ? -least : most;
+  f.box = ivec4(low - first, high - first);
+  return f;
+}
+
+/// Whether `a` is nearer than `b` anywhere in the box that both are in.
+GPGP_FN bool isNearerSomewhere(Facet a, Facet b) {
+  if (a.nearest >= b.farthest) return false;
+  ivec2 low = max(ivec2(a.box.x, a.box.y), ivec2(b.box.x, b.box.y));
+  ivec2 high = min(ivec2(a.box.z, a.box.w), ivec2(b.box.z, b.box.w));
+  if (low.x > high.x || low.y > high.y) return false;
+  GPGP_PRECISE vec3 behind = b.plane - a.plane;
+  GPGP_PRECISE float column = (float(low.x + high.x) * 0.5f - 2.0f) * 0.25f;
+  GPGP_PRECISE float row = (float(low.y + high.y) * 0.5f - 2.0f) * 0.25f;
+  GPGP_PRECISE float atMiddle = behind.x + behind.y * column + behind.z * row;
+  GPGP_PRECISE float most = atMiddle + abs(behind.y) * float(high.x - low.x + 1) * 0.125f +
+                            abs(behind.z) * float(high.y - low.y + 1) * 0.125f;
+  return most > 0.0f;
+}
+
+/// Whether all of a triangle lies outside the edge from u to v.
+GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v) {
+  ivec2 slope = edgeSlope(u, v);
+  return wideSign(edgeWide(u, slope, c.p0)) <= 0 && wideSign(edgeWide(u, slope, c.p1)) <= 0 &&
+         wideSign(edgeWide(u, slope, c.p2)) <= 0;
+}
+
+/// Whether two triangles have area in common on the screen: no edge has all of the other outside.
+GPGP_FN bool overlap(Candidate a, Candidate b) {
+  return !(liesOutside(b, a.p0, a.p1) || liesOutside(b, a.p1, a.p2) || liesOutside(b, a.p2, a.p0) ||
+           liesOutside(a, b.p0, b.p1) || liesOutside(a, b.p1, b.p2) || liesOutside(a, b.p2, b.p0));
+}
+
+/// Where one facet is nearer than another: in row r, left (side -1) or right (side 1) of column start + r * step;
+/// side 0: in rows in which that is below 0.
+struct Crossing {
+  float start;
+  float step;
+  int side;
+};
+
+/// Where `a` is nearer than `b`; `wins`: also where they are equally far.
+GPGP_FN Crossing crossingOf(Facet a, Facet b, bool wins) {
+  GPGP_PRECISE vec3 ahead = a.plane - b.plane;
+  Crossing c;
+  if (isDivisor(abs(ahead.y))) {
+    GPGP_PRECISE float inverse = reciprocal(abs(ahead.y)) * (ahead.y > 0.0f ? -1.0f : 1.0f);
+    GPGP_PRECISE float start = ahead.x * inverse + 0.498046875f; // samples on the line lie right of it, as in addEdge
+    GPGP_PRECISE float step = ahead.z * inverse;
+    c.start = start;
+    c.step = step;
+    c.side = ahead.y > 0.0f ? -1 : 1;
+  } else {
+    c.start = ahead.x == 0.0f && ahead.z == 0.0f && wins ? -1.0f : ahead.x;
+    c.step = ahead.z;
+    c.side = 0;
+  }
+  return c;
+}
+
+/// Which samples of a row an outline covers on a crossing's side.
+GPGP_FN uvec2 samplesAhead(Outline o, Crossing c, int row) {
+  vec2 columns = columnsOf(o, float(row));
+  GPGP_PRECISE float at = c.start + float(row) * c.step;
+  bool any = row >= o.rowBegin && row < o.rowEnd && (c.side != 0 || at < 0.0f);
+  float held = clamp(at, 0.0f, 64.0f);
+  if (c.side < 0) columns.y = min(columns.y, held);
+  if (c.side > 0) columns.x = max(columns.x, held);
+  return bitRange(roundedColumn(columns.x), any ? roundedColumn(columns.y) : 0);
+}
+
+GPGP_SHADER_END
+#endif
