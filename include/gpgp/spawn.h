@@ -163,10 +163,10 @@ typedef struct GpgpVertexLayout {
 } GpgpVertexLayout;
 
 typedef uint64_t GpgpSpawnerFlags;
-/** Instances lie in order of their bucket, then of their path key, and those that do not fit a buffer or region are its
- *  last ones: which survive does not depend on execution, as long as maxTerminals holds all and no shape is dropped.
- *  Not for vertices. Axioms should differ in seed or id: equal keys come in the order of the
- *  axioms, thousands of them in no stated order. */
+/** Instances, or terminals as vertices and indices, lie in order of their bucket, then of their path key, and those
+ * that do not fit a buffer or region are its last ones, from the first on that has no room: which survive, and where
+ * each lies, does not depend on execution, as long as maxTerminals holds all and no shape is dropped. Axioms should
+ * differ in seed or id: equal keys come in the order of the axioms, thousands of them in no stated order. */
 #define GPGP_SPAWNER_ORDERED ((GpgpSpawnerFlags)1)
 
 typedef struct GpgpSpawnerCreateInfo {
@@ -230,10 +230,11 @@ typedef struct GpgpSpawnInfo {
   /** Out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket; STORAGE usage. Fields that are not named
    * here are left as the engine set them. Instances: they are sorted by bucket; instanceCount and firstInstance are
    * written. Without draws they lie in no stated order, unless by GPGP_SPAWNER_ORDERED. Vertices: they lie in no stated
-   * order; indexCount of the first command is written, which draws all buckets. GPGP_SPAWN_REGIONS: firstInstance is
-   * read and instanceCount written; or firstIndex is read, a multiple of 6, and indexCount and vertexOffset (firstIndex
-   * / 6 * 4) are written. Only counting: instanceCount and firstInstance, or indexCount, firstIndex and vertexOffset
-   * are written, regions that fit exactly for a later record with GPGP_SPAWN_REGIONS. */
+   * order, unless by GPGP_SPAWNER_ORDERED; indexCount of the first command is written, which draws all buckets.
+   * GPGP_SPAWN_REGIONS: firstInstance is read and instanceCount written; or firstIndex is read, a multiple of 6, and
+   * indexCount and vertexOffset (firstIndex / 6 * 4) are written. Only counting: instanceCount and firstInstance, or
+   * indexCount, firstIndex and vertexOffset are written, regions that fit exactly for a later record with
+   * GPGP_SPAWN_REGIONS. */
   GpgpBuffer draws;
   GpgpBuffer needed; /**< out, optional: uint32_t[buckets], instances or indices that each bucket needs; only with
                           GPGP_SPAWN_REGIONS or where the record only counts; STORAGE usage */

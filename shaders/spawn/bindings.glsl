@@ -22,3 +22,12 @@ layout(set = 0, binding = 13, std430) writeonly buffer Needed { uint neededCount
 layout(set = 0, binding = 16, std430) buffer Order { uint order[]; }; // see order.comp
 /// Where in order[] the record is that comes at a place.
 uint orderedAt(uint place) { return 3 * record.maxTerminals + place; }
+/// Where in order[] it says how many quads come before a place, up to that behind the last record.
+uint quadsBefore(uint place) { return record.maxTerminals + place; }
+/// Workgroups of the passes that take a record an invocation.
+void dispatchRecords(uint kept) {
+  const uint last = rounds.length() - 1;
+  rounds[last].groupsX = min((kept + kSpawnGroupSize - 1) / kSpawnGroupSize, record.maxGroups * 16);
+  rounds[last].groupsY = 1;
+  rounds[last].groupsZ = 1;
+}

@@ -148,11 +148,12 @@ void emit(bool own, uint place, uint count, Shape s) {
   barrier();
   if (!own) return;
   uint target = terminalBase + place;
-  if (record.terminalsTo == kToRecords) {
+  const bool keyed = record.terminalsTo == kToKeyedRecords;
+  if (keyed || record.terminalsTo == kToRecords) {
     if (target < record.maxTerminals) {
-      for (uint plane = 0; plane < (quads ? kShapePlanes - 1 : kShapePlanes); ++plane) // the last one has the key
+      for (uint plane = 0; plane < (keyed ? kShapePlanes : kShapePlanes - 1); ++plane) // the last one has the key
         records[plane * record.maxTerminals + target] = packShape(s, plane);
-      if (!quads) atomicAdd(bucketCounts[bucket], 1);
+      if (keyed) atomicAdd(bucketCounts[bucket], 1);
     } else if (quads) {
       atomicAdd(bucketCounts[kBucketLost + (record.regions != 0 ? bucket : 0)], meshQuads(s.geometry));
     }

@@ -7,8 +7,9 @@
 // Terminal records to vertices and indices, as many records at a time as a workgroup has invocations.
 //
 // A prefix sum places the records' quads, one atomic addition takes room for all of them among vertices and indices
-// alike. Then vertex after vertex is made, one an invocation whoever's record it is of. Where the room ends within a
-// record, none of it is written; what it leaves free is noted, so that what is written has no holes.
+// alike; where records are in order, order.comp has placed them instead. Then vertex after vertex is made, one an
+// invocation whoever's record it is of. Where the room ends within a record, none of it is written; what it leaves free
+// is noted, so that what is written has no holes.
 //
 // How a vertex looks is in specialization constants: its words are known when the pipeline is made, and lie in
 // registers. Vertices of whole 16 bytes are stored by who made them; others are staged, and copied out word after word.
@@ -57,12 +58,15 @@ uint indexWord(uint words, uint quad, uint word) {
   return (vertex + quadIndex(2 * word)) | ((vertex + quadIndex(2 * word + 1)) << 16);
 }
 
-/// Places the records' quads, and stages the records. Returns how many quads all have, those without room included.
-uint stageRecords(uint i, bool own, uint lane) {
+/// Places the records' quads, and stages the records. at: the place of the invocation's own. Returns how many quads all
+/// have, those without room included.
+uint stageRecords(uint at, bool own, uint lane) {
   const bool regions = record.regions != 0;
+  const bool ordered = record.terminalsTo == kToKeyedRecords;
   Shape s;
   uint quads = 0;
   if (own) {
+    const uint i = ordered ? order[orderedAt(at)] : at;
     s = unpackShape(records[i], records[i + record.maxTerminals], records[i + 2 * record.maxTerminals],
                     records[i + 3 * record.maxTerminals], records[i + 4 * record.maxTerminals], uvec4(0));
     quads = meshQuads(s.geometry);
@@ -70,7 +74,7 @@ uint stageRecords(uint i, bool own, uint lane) {
   uint total;
   const uint before = sumBefore(quads, total);
   if (lane == 0 && !regions) {
-    quadBase = atomicAdd(bucketCounts[0], total);
+    quadBase = ordered ? order[quadsBefore(at)] : atomicAdd(bucketCounts[0], total);
     fittingQuads = min(total, record.quadCapacity - min(quadBase, record.quadCapacity));
   }
   barrier();
@@ -82,7 +86,8 @@ uint stageRecords(uint i, bool own, uint lane) {
     uint capacity = record.quadCapacity;
     uint gap = kBucketGaps;
     if (regions) {
-      first = atomicAdd(bucketCounts[bucket], quads);
+      first = ordered ? order[quadsBefore(at)] - order[quadsBefore(bucketCounts[kBucketPlaces + bucket])]
+                      : atomicAdd(bucketCounts[bucket], quads);
       start = regionStart(bucket, true);
       capacity = regionCapacity(bucket, true);
       gap = kBucketGaps + bucket;

@@ -63,23 +63,29 @@ struct SpawnConstants {
 
 // What becomes of terminals.
 GPGP_CONST uint kToInstances = 0u; // at once, to instances
-GPGP_CONST uint kToRecords = 1u;   // to records, which emit sorts, or expand makes vertices of
+GPGP_CONST uint kToRecords = 1u;   // to records without keys, which expand makes vertices of as they come
 GPGP_CONST uint kToCounts = 2u;    // they are counted by bucket
+GPGP_CONST uint kToKeyedRecords =
+    3u; // to records with keys, counted by bucket, which lie in order before they are used
 
-/// Words by bucket: what it needs, where it begins, and what the shape that fits only in part left free.
-GPGP_CONST uint kBucketPlaces = kMaxBuckets;
-GPGP_CONST uint kBucketLost = kMaxBuckets; // the same words for vertices: quads of terminals without a record
+/// Words by bucket: what it got, in what is counted while deriving; quads of terminals without a record; what the
+/// shape that fits only in part left free; where its records begin.
+GPGP_CONST uint kBucketLost = kMaxBuckets;
 GPGP_CONST uint kBucketGaps = 2u * kMaxBuckets;
-GPGP_CONST uint kBucketWords = 3u * kMaxBuckets;
+GPGP_CONST uint kBucketPlaces = 3u * kMaxBuckets;
+GPGP_CONST uint kBucketWords = 4u * kMaxBuckets;
 
 GPGP_CONST uint kSpawnGroupSize = 64u; // of place, order and emit
 
 // Stages of shaders/spawn/order.comp.
-GPGP_CONST uint kOrderCount = 0u;  // records of each bin
-GPGP_CONST uint kOrderSum = 1u;    // of a part of the bins
-GPGP_CONST uint kOrderStarts = 2u; // of bins
-GPGP_CONST uint kOrderFill = 3u;   // bins with records
-GPGP_CONST uint kOrderRank = 4u;   // records within their bin
+GPGP_CONST uint kOrderBuckets = 0u;    // where each bucket's records begin
+GPGP_CONST uint kOrderCount = 1u;      // records of each bin
+GPGP_CONST uint kOrderSum = 2u;        // of a part of the bins
+GPGP_CONST uint kOrderStarts = 3u;     // of bins
+GPGP_CONST uint kOrderFill = 4u;       // bins with records
+GPGP_CONST uint kOrderRank = 5u;       // records within their bin
+GPGP_CONST uint kOrderQuadSum = 6u;    // of a part of the records
+GPGP_CONST uint kOrderQuadStarts = 7u; // of records among quads
 GPGP_CONST uint kOrderParts = 256u;
 GPGP_CONST uint kOrderWords = 4u;     // for each record, and kOrderParts
 GPGP_CONST uint kInstanceWords4 = 6u; // GpgpInstance as uvec4

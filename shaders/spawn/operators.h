@@ -19,10 +19,8 @@ GPGP_FN void translate(GPGP_INOUT(Shape) s, vec3 v) { s.position = framePoint(s,
 struct Rotation {
   vec3 c0, c1, c2;
 };
-GPGP_FN Rotation rotationOf(vec3 degrees) {
-  const vec2 x = sineCosineDegrees(degrees.x);
-  const vec2 y = sineCosineDegrees(degrees.y);
-  const vec2 z = sineCosineDegrees(degrees.z);
+/// Of (sine, cosine) of the three angles.
+GPGP_FN Rotation rotationOfAngles(vec2 x, vec2 y, vec2 z) {
   const float sxsy = multiply(x.x, y.x);
   const float cxsy = multiply(x.y, y.x);
   Rotation r;
@@ -32,6 +30,9 @@ GPGP_FN Rotation rotationOf(vec3 degrees) {
   r.c2 = vec3(add(multiply(z.y, cxsy), multiply(z.x, x.x)), subtract(multiply(z.x, cxsy), multiply(z.y, x.x)),
               multiply(y.y, x.y));
   return r;
+}
+GPGP_FN Rotation rotationOf(vec3 degrees) {
+  return rotationOfAngles(sineCosineDegrees(degrees.x), sineCosineDegrees(degrees.y), sineCosineDegrees(degrees.z));
 }
 /// From the right.
 GPGP_FN void rotate(GPGP_INOUT(Shape) s, Rotation rotation) {

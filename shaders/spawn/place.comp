@@ -24,11 +24,20 @@ void writeDraw(uint bucket, uint start, uint count, bool setStart) {
   }
 }
 
+/// Instances, or quads, that were made room for.
+uint placedIn(uint bucket) {
+  const uint count = bucketCounts[bucket];
+  if (!quads || record.terminalsTo != kToKeyedRecords) return count;
+  const uint first = bucketCounts[kBucketPlaces + bucket];
+  return order[quadsBefore(first + count)] - order[quadsBefore(first)];
+}
+
 void main() {
   const uint lane = gl_LocalInvocationIndex;
   const bool regions = record.regions != 0;
   const bool counted = record.terminalsTo == kToCounts;
-  const bool sorted = !quads && record.terminalsTo == kToRecords;
+  const bool keyed = record.terminalsTo == kToKeyedRecords;
+  const bool sorted = !quads && keyed;
   const uint kept = sorted ? min(state.terminals, record.maxTerminals) : state.terminals;
   const bool lost = quads && !counted; // some may be, whose quads nobody made room for
   const uint fitting = min(kept, record.instanceCapacity);
@@ -38,7 +47,7 @@ void main() {
   if (sorted || regions || counted) {
     const uint each = kMaxBuckets / kSpawnGroupSize;
     for (uint i = 0; i < each; ++i)
-      needed += bucketCounts[lane * each + i] + (lost ? bucketCounts[kBucketLost + lane * each + i] : 0);
+      needed += placedIn(lane * each + i) + (lost ? bucketCounts[kBucketLost + lane * each + i] : 0);
     sums[lane] = needed;
     barrier();
     for (uint step = 1; step < kSpawnGroupSize; step *= 2) {
@@ -53,7 +62,7 @@ void main() {
     for (uint i = 0; i < each; ++i) {
       const uint bucket = lane * each + i;
       if (bucket >= buckets) break;
-      const uint placed = bucketCounts[bucket];
+      const uint placed = placedIn(bucket);
       const uint count = placed + (lost ? bucketCounts[kBucketLost + bucket] : 0);
       uint begin = start;
       uint got = placed;
@@ -73,8 +82,9 @@ void main() {
     atomicAdd(allWritten, written);
     barrier();
   } else if (lane == 0) {
-    needed = quads ? bucketCounts[0] + bucketCounts[kBucketLost] : state.terminals;
-    allWritten = quads ? min(bucketCounts[0], record.quadCapacity) - bucketCounts[kBucketGaps] : fitting;
+    const uint placed = keyed ? order[quadsBefore(min(kept, record.maxTerminals))] : bucketCounts[0];
+    needed = quads ? placed + bucketCounts[kBucketLost] : state.terminals;
+    allWritten = quads ? min(placed, record.quadCapacity) - bucketCounts[kBucketGaps] : fitting;
     if (record.drawCapacity > 0 && buckets > 0) {
       if (quads)
         draws[0] = allWritten * 6;
@@ -94,9 +104,7 @@ void main() {
       if (sorted) needed = state.terminals;
     }
     state.exceeded = !counted && allWritten < needed ? 1 : 0;
-    rounds[rounds.length() - 1].groupsX = min((kept + kSpawnGroupSize - 1) / kSpawnGroupSize, record.maxGroups * 16);
-    rounds[rounds.length() - 1].groupsY = 1;
-    rounds[rounds.length() - 1].groupsZ = 1;
+    dispatchRecords(kept);
     if (record.writeCount != 0) instanceCount = quads ? allWritten * 6 : allWritten;
   }
 }

@@ -60,8 +60,6 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (!spawner) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "spawner is NULL");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (info->flags & ~GPGP_SPAWNER_ORDERED) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
-    if (info->vertices && (info->flags & GPGP_SPAWNER_ORDERED))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWNER_ORDERED is for instances, not for vertices");
     if (info->maxShapes > (1u << 24) || info->maxTerminals > (1u << 24))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes and maxTerminals are at most 16777216");
     if (info->maxDepth > 65535) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDepth is at most 65535");

@@ -43,7 +43,8 @@ Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<
       maxTerminals_(options.vertices ? kDefaultTerminals : 1), // instances that are not sorted make no records
       maxColliders_(options.maxColliders   ? options.maxColliders
                     : grammar.graph.phases ? kMostSoftwareColliders
-                                           : 0) {
+                                           : 0),
+      firstShapes_(maxShapes_), firstRounds_(maxRounds_) {
   const size_t buckets = std::max(grammar.graph.buckets, 1u);
   draws_ = host::makeBuffer(session.device(), std::vector<VkDrawIndexedIndirectCommand>(buckets),
                             kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "draws");
@@ -60,7 +61,7 @@ void Deriver::setAxioms(const std::vector<GpgpAxiom>& axioms) {
   axiomCount_ = static_cast<uint32_t>(axioms.size());
 }
 
-void Deriver::makeSpawner() {
+Spawner Deriver::newSpawner(uint32_t rounds) {
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
   info.base = session_.workerInfo("spawner");
   const GpgpVertexLayout vertices = layout();
@@ -69,11 +70,24 @@ void Deriver::makeSpawner() {
   if (options_.sorted) maxTerminals_ = static_cast<uint32_t>(std::min<uint64_t>(elements_, kMostTerminals));
   info.maxTerminals = maxTerminals_;
   info.maxDepth = options_.maxDepth;
-  info.maxRounds = maxRounds_;
+  info.maxRounds = rounds;
   info.maxColliders = maxColliders_;
-  spawner_.reset();
-  spawner_.emplace(session_.take(Spawner::create(session_.context(), info), "gpgpCreateSpawner"));
-  session_.check(spawner_->prewarm(), "gpgpPrewarm");
+  Spawner spawner = session_.take(Spawner::create(session_.context(), info), "gpgpCreateSpawner");
+  session_.check(spawner.prewarm(), "gpgpPrewarm");
+  return spawner;
+}
+
+void Deriver::makeSpawner() {
+  limited_.clear();
+  spawner_.reset(); // before: scratch may fill the device
+  spawner_.emplace(newSpawner(maxRounds_));
+}
+
+void Deriver::resetBudgets() {
+  if (maxShapes_ == firstShapes_ && maxRounds_ == firstRounds_) return;
+  maxShapes_ = firstShapes_;
+  maxRounds_ = firstRounds_;
+  makeSpawner();
 }
 
 uint64_t Deriver::mostElements() const {
@@ -120,14 +134,17 @@ Grammar Deriver::prepare(const std::pmr::vector<uint32_t>& kernel) {
   return std::move(prepare(std::span(&kernel, 1)).front());
 }
 
-Measured<GpgpSpawnReport> Deriver::derive(const Grammar& grammar, uint32_t repeat) {
+Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repeat, uint32_t rounds) {
+  const bool fewer = rounds && rounds < maxRounds_;
+  if (fewer && !limited_.contains(rounds)) limited_.emplace(rounds, newSpawner(rounds));
+  Spawner& spawner = fewer ? limited_.at(rounds) : *spawner_;
   GpgpVertexOutput output{};
   output.indexType = VK_INDEX_TYPE_UINT32;
   if (options_.vertices) {
     output.vertices = vertices_.range({}, kRead);
     output.indices = indices_.range({}, kRead);
   }
-  return session_.measure(*spawner_, "deriving", repeat,
+  return session_.measure(spawner, "deriving", repeat,
                           [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
                             GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
                             info.base = base;
@@ -140,7 +157,7 @@ Measured<GpgpSpawnReport> Deriver::derive(const Grammar& grammar, uint32_t repea
                             else
                               info.instances = instances_.range({}, kRead);
                             if (options_.sorted) info.draws = draws_.range({}, kRead);
-                            return spawner_->recordPrepare(commands, frame, info);
+                            return spawner.recordPrepare(commands, frame, info);
                           });
 }
 
@@ -149,7 +166,7 @@ GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
   const uint32_t mostShapes =
       static_cast<uint32_t>(std::min<uint64_t>(range / (kShapeBytes * kStackFactor), kMostShapes));
   for (;;) {
-    const GpgpSpawnReport report = derive(grammar, 1).report;
+    const GpgpSpawnReport report = measure(grammar, 1).report;
     bool again = false, another = false; // spawner
     if (report.droppedShapes && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes) {
       maxShapes_ = static_cast<uint32_t>(std::min<uint64_t>(

@@ -3,6 +3,8 @@
 #include "cli/kernels.h"
 #include "cli/session.h"
 
+#include <map>
+
 namespace gpgp::cli {
 
 struct DeriverOptions {
@@ -40,7 +42,10 @@ public:
   /// Derives once. Where the report says that shapes were dropped, or that buffers are too small, again with more of
   /// what was short, as far as the device and the options allow.
   GpgpSpawnReport fit(const Grammar& grammar);
-  Measured<GpgpSpawnReport> measure(const Grammar& grammar, uint32_t repeat) { return derive(grammar, repeat); }
+  /// Back to the budgets of the start: with higher ones all that is measured later would take longer.
+  void resetBudgets();
+  /// rounds: what is recorded at most; 0: what the budgets say.
+  Measured<GpgpSpawnReport> measure(const Grammar& grammar, uint32_t repeat, uint32_t rounds = 0);
 
   /// Instances or vertices that this device binds at once.
   uint64_t mostElements() const;
@@ -55,15 +60,17 @@ public:
   uint64_t bytesWritten();
 
 private:
+  Spawner newSpawner(uint32_t rounds);
   void makeSpawner();
   void makeOutput(uint64_t elements);
-  Measured<GpgpSpawnReport> derive(const Grammar& grammar, uint32_t repeat);
 
   Session& session_;
   const BakedGraph& grammar_;
   DeriverOptions options_;
   uint32_t axiomCount_ = 0, maxShapes_ = 0, maxRounds_ = 0, maxTerminals_ = 0, maxColliders_ = 0;
+  uint32_t firstShapes_ = 0, firstRounds_ = 0; // budgets of the start
   std::optional<Spawner> spawner_;
+  std::map<uint32_t, Spawner> limited_; // with fewer rounds
   host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_;
   uint64_t elements_ = 0; // instances or vertices that the buffers hold
 };

@@ -1,6 +1,7 @@
 // A context on a headless device; every subcommand's work is one record, repeated and measured.
 #include "cli/session.h"
 
+#include "cli/processors.h"
 #include "cli/progress.h"
 
 #include <algorithm>
@@ -68,6 +69,11 @@ Session::Session(const CommonOptions& options)
   info.label = "gpgp command";
   info.messageFn = onMessage;
   info.messageUserData = this;
+  GpgpJobSystem jobs{}; // drivers take seconds for large pipelines
+  jobs.parallelFor = [](void*, uint32_t count, GpgpJobFn job, void* argument) {
+    onAllProcessors(count, [&](size_t i) { job(argument, static_cast<uint32_t>(i)); });
+  };
+  info.jobSystem = &jobs;
   context_ = take(Context::create(info), "gpgpCreateContext");
 }
 

@@ -10,7 +10,7 @@ namespace gpgp::cli {
 namespace {
 
 struct TuneOptions {
-  std::string grammar, out, search = "heuristic", matching = "off";
+  std::string grammar, out, search = "auto", matching = "off";
   std::vector<std::string> set;
   uint32_t axioms = 256;
   std::array<float, 3> size{1, 1, 1};
@@ -21,9 +21,9 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   const BakedGraph grammar = bakeGraph(options.grammar, options.set);
   TuneSettings settings = options.settings;
   settings.matching = options.matching == "on";
-  settings.search = options.search == "exhaustive" ? spawn::Search::exhaustive
-                    : options.search == "random"   ? spawn::Search::random
-                                                   : spawn::Search::heuristic;
+  if (options.search == "exhaustive") settings.search = spawn::Search::exhaustive;
+  if (options.search == "random") settings.search = spawn::Search::random;
+  if (options.search == "heuristic") settings.search = spawn::Search::heuristic;
   const std::filesystem::path out =
       options.out.empty() ? tunedFile(options.grammar, grammar) : std::filesystem::path(options.out);
   if (std::filesystem::exists(out)) kernelsIn(out, grammar); // throws now rather than after the search
@@ -44,17 +44,17 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
     scheduleList.push_back({{"schedule", tuned.schedules[c.schedule].name},
                             {"execution_groups", tuned.schedules[c.schedule].groups},
                             {"gpu_ms_median", fits ? Json(c.milliseconds) : Json()},
-                            {"needs_larger_budgets", c.larger || !fits}});
-    text << "  " << (fits ? milliseconds(c.milliseconds) : "exceeds the device's budgets") << "  "
-         << tuned.schedules[c.schedule].name << (c.larger ? ", with larger budgets than the interpreter's" : "")
-         << '\n';
+                            {"needs_larger_budgets", !fits}});
+    text << "  " << (fits ? milliseconds(c.milliseconds) : "needs larger budgets") << "  "
+         << tuned.schedules[c.schedule].name << '\n';
   }
   text << "best: " << milliseconds(best.milliseconds) << " by " << schedule.name;
   if (best.fit.groupSize)
     text << ", " << best.fit.maxGroups << " workgroups of " << best.fit.groupSize << ", work is given away below "
          << best.fit.spread << " shapes";
-  text << "; " << tuned.candidates << " candidates in " << std::round(tuned.seconds * 10) / 10
-       << " s\nkept: " << out.string() << '\n';
+  text << "; " << tuned.candidates << " candidates in " << std::round(tuned.seconds * 10) / 10 << " s";
+  if (tuned.leftOut) text << "; " << tuned.leftOut << " were left out for lack of time";
+  text << "\nkept: " << out.string() << '\n';
   Outcome outcome;
   outcome.text = text.str();
   outcome.json = {{"grammar", options.grammar},
@@ -76,6 +76,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
                     {"spread", best.fit.spread},
                     {"rounds", best.rounds}}},
                   {"candidates", tuned.candidates},
+                  {"left_out", tuned.leftOut},
                   {"seconds", tuned.seconds},
                   {"out", out.string()}};
   return outcome;
@@ -106,8 +107,9 @@ Work addTune(CLI::App& app) {
   command
       ->add_option("--search", options->search,
                    "Which schedules are tried beside the named ones: every valid partition, random ones, or the "
-                   "heuristics' with coins for the edges that they leave open")
-      ->check(CLI::IsMember({"exhaustive", "random", "heuristic"}))
+                   "heuristics' with coins for the edges that they leave open. auto: every one where they are few, or "
+                   "else some of both, and then what is near the best")
+      ->check(CLI::IsMember({"auto", "exhaustive", "random", "heuristic"}))
       ->capture_default_str();
   command
       ->add_option("--matching", options->matching,
@@ -119,6 +121,11 @@ Work addTune(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--repeat", settings.repeat, "Derivations measured for each candidate")
       ->check(CLI::Range(3u, 1000u))
+      ->capture_default_str();
+  command
+      ->add_option("--seconds", settings.seconds,
+                   "Time budget: what would probably take longer is left out, and the best so far is kept; 0: none")
+      ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");
   command

@@ -1,107 +1,255 @@
 #include "cli/tuner.h"
 
+#include "cli/processors.h"
 #include "cli/progress.h"
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace gpgp::cli {
 namespace {
 
-/// The numbers that are worth a try. Stacks share what a spawner has by default.
+/// Sizes and counts of workgroups that are worth a try. Stacks share what a spawner has by default; no two of them have
+/// the same pipeline.
 std::vector<spawn::Fit> fits(bool software) {
+  const uint32_t spread = software ? 512 : 4096;
   std::vector<spawn::Fit> all;
   for (const uint32_t groupSize : software ? std::vector<uint32_t>{32, 64} : std::vector<uint32_t>{32, 64, 128})
-    for (const uint32_t groups : software ? std::vector<uint32_t>{16, 64} : std::vector<uint32_t>{1024, 2048, 4096})
-      for (const uint32_t spread :
-           software ? std::vector<uint32_t>{64, 512} : std::vector<uint32_t>{2048, 8192, 32768}) {
-        const uint32_t stack = std::min(524288 / groups, 1024u);
-        if (stack >= 2 * groupSize) all.push_back({groupSize, groups, stack, spread, 0});
-      }
+    for (const uint32_t groups : software ? std::vector<uint32_t>{16} : std::vector<uint32_t>{1024, 2048, 4096}) {
+      const uint32_t stack = std::min(524288 / groups, 1024u);
+      if (stack >= 2 * groupSize) all.push_back({groupSize, groups, stack, spread, 0});
+    }
   return all;
 }
+/// The same pipeline with other numbers.
+std::vector<spawn::Fit> variants(const spawn::Fit& fit, bool software) {
+  std::vector<spawn::Fit> all;
+  for (const uint32_t spread : software ? std::vector<uint32_t>{64} : std::vector<uint32_t>{256, 1024, 8192, 32768}) {
+    all.push_back(fit);
+    all.back().spread = spread;
+  }
+  return all;
+}
+
+/// Candidates that take this many times the fastest one's time after a few derivations are measured no further.
+constexpr double kHopeless = 1.3;
+constexpr uint32_t kFirstLook = 3;
+/// The share of the time that schedules may take, so that some is left for numbers.
+constexpr double kForSchedules = 0.6, kForSizes = 0.85;
+/// Candidates of the first part, which says how long a candidate takes.
+constexpr size_t kFirstPart = 4;
+/// That are measured once more at the end.
+constexpr size_t kFinalists = 3;
+
+class Tuner {
+public:
+  Tuner(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms, const TuneSettings& settings)
+      : session_(session), grammar_(grammar), settings_(settings), axioms_(static_cast<uint32_t>(axioms.size())),
+        software_(session.device().isSoftware()), subgroups_(hasSubgroups(session.device())) {
+    findSchedules();
+    deriver_.emplace(session, grammar, axioms, DeriverOptions{});
+  }
+
+  Tuned run() {
+    measureInterpreter();
+    std::vector<Candidate> all;
+    for (size_t i = 0; i < tuned_.schedules.size(); ++i) all.push_back({i});
+    all = measured(std::move(all), "schedules", kForSchedules);
+    while (!settings_.search && !tuned_.complete && measureNeighbours(all)) {
+    }
+    tuned_.complete = tuned_.complete && tuned_.leftOut == 0;
+    tuned_.measured = all;
+    if (!std::isfinite(all.front().milliseconds))
+      throw Failure("no schedule fits this device's budgets; use fewer axioms");
+    if (!settings_.schedulesOnly) {
+      // Two schedules are enough for the numbers: what is behind them now hardly wins by them.
+      std::vector<Candidate> sizes;
+      for (size_t i = 0; i < std::min<size_t>(2, all.size()); ++i)
+        for (const spawn::Fit& fit : fits(software_)) sizes.push_back({all[i].schedule, fit});
+      addAll(all, measured(std::move(sizes), "sizes", kForSizes));
+      if (const Candidate& best = all.front(); best.fit.groupSize) {
+        std::vector<Candidate> spreads;
+        for (const spawn::Fit& fit : variants(best.fit, software_)) spreads.push_back({best.schedule, fit});
+        addAll(all, measured(std::move(spreads), "numbers", 1));
+      }
+    }
+    choose(all);
+    tuned_.seconds = secondsPassed();
+    return std::move(tuned_);
+  }
+
+private:
+  double secondsPassed() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+  spawn::KernelInfo infoOf(const Candidate& candidate) const {
+    spawn::KernelInfo info = kernelInfo(tuned_.schedules[candidate.schedule], subgroups_);
+    info.fit = candidate.fit;
+    return info;
+  }
+  static void sort(std::vector<Candidate>& list) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.milliseconds < b.milliseconds; });
+  }
+  static void addAll(std::vector<Candidate>& list, const std::vector<Candidate>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+    sort(list);
+  }
+
+  void findSchedules() {
+    const auto search = [&](spawn::Search kind, size_t limit) {
+      return searchSchedules(grammar_.graph, kind, limit, settings_.seed, tuned_.complete);
+    };
+    tuned_.schedules = search(settings_.search.value_or(spawn::Search::exhaustive), settings_.samples);
+    if (settings_.search || tuned_.complete) return;
+    const size_t most = std::max<size_t>(settings_.samples / 2, std::size(spawn::kScheduleNames));
+    tuned_.schedules = search(spawn::Search::heuristic, most * 3 / 4); // coins leave few choices in some grammars
+    for (spawn::Schedule& schedule : search(spawn::Search::random, most))
+      if (tuned_.schedules.size() < most && isNew(schedule)) tuned_.schedules.push_back(std::move(schedule));
+  }
+  bool isNew(const spawn::Schedule& schedule) const {
+    return std::none_of(tuned_.schedules.begin(), tuned_.schedules.end(),
+                        [&](const spawn::Schedule& s) { return s.waits == schedule.waits; });
+  }
+
+  /// Whether one of those near the best is better.
+  bool measureNeighbours(std::vector<Candidate>& all) {
+    const size_t first = tuned_.schedules.size();
+    if (first >= settings_.samples) return false;
+    const size_t most = affordable(settings_.samples - first, kForSchedules);
+    std::vector<spawn::Schedule> near = neighbours(grammar_.graph, tuned_.schedules[all.front().schedule]);
+    std::shuffle(near.begin(), near.end(), std::mt19937(settings_.seed));
+    std::vector<Candidate> list;
+    for (spawn::Schedule& schedule : near)
+      if (list.size() < most && isNew(schedule)) {
+        list.push_back({tuned_.schedules.size()});
+        tuned_.schedules.push_back(std::move(schedule));
+      }
+    if (list.empty()) return false;
+    addAll(all, measured(std::move(list), "schedules near the best", kForSchedules));
+    return all.front().schedule >= first;
+  }
+
+  void measureInterpreter() {
+    const Grammar interpreted = deriver_->prepare(std::pmr::vector<uint32_t>());
+    const GpgpSpawnReport& wanted = tuned_.report = deriver_->fit(interpreted);
+    if (wanted.droppedShapes || wanted.unfinishedShapes)
+      throw Failure("the derivation exceeds the budgets; use fewer axioms");
+    if (!wanted.terminals) throw Failure("the grammar derives nothing from these axioms");
+    tuned_.interpreter = deriver_->measure(interpreted, settings_.repeat).times.median();
+  }
+
+  /// What a candidate takes, as it would be kept: with one round to spare. Empty ones cost time on a GPU as well.
+  void measure(Candidate& candidate, const Grammar& prepared, uint32_t repeat) {
+    const GpgpSpawnReport& wanted = tuned_.report;
+    const GpgpSpawnReport r = deriver_->measure(prepared, 1).report;
+    if (r.droppedShapes) return;
+    const std::string& name = tuned_.schedules[candidate.schedule].name;
+    if (r.terminals != wanted.terminals || r.keyHash[0] != wanted.keyHash[0] || r.keyHash[1] != wanted.keyHash[1])
+      throw Failure("schedule \"" + name + "\" derives something else than the interpreter: " +
+                    std::to_string(r.terminals) + " terminals instead of " + std::to_string(wanted.terminals));
+    candidate.rounds = r.rounds;
+    const uint32_t rounds = software_ ? 0 : r.rounds + 1;
+    const uint32_t look = std::min(kFirstLook, repeat);
+    candidate.milliseconds = deriver_->measure(prepared, look, rounds).times.median();
+    if (look < repeat && candidate.milliseconds < kHopeless * fastest_)
+      candidate.milliseconds = deriver_->measure(prepared, repeat, rounds).times.median();
+    fastest_ = std::min(fastest_, candidate.milliseconds);
+  }
+
+  /// Kernels of the candidates' schedules that have none yet.
+  void compile(std::span<const Candidate> candidates) {
+    kernels_.resize(tuned_.schedules.size());
+    std::vector<size_t> missing;
+    std::vector<spawn::Schedule> schedules;
+    for (const Candidate& c : candidates)
+      if (kernels_[c.schedule].empty() && std::find(missing.begin(), missing.end(), c.schedule) == missing.end()) {
+        missing.push_back(c.schedule);
+        schedules.push_back(tuned_.schedules[c.schedule]);
+      }
+    auto compiled = compileKernels(grammar_.graph, schedules, subgroups_, settings_.matching);
+    for (size_t i = 0; i < missing.size(); ++i) kernels_[missing[i]] = std::move(compiled[i]);
+  }
+  std::vector<std::pmr::vector<uint32_t>> wordsOf(std::span<const Candidate> candidates) const {
+    std::vector<std::pmr::vector<uint32_t>> words;
+    for (const Candidate& c : candidates) words.push_back(kernelWords(grammar_, infoOf(c), kernels_[c.schedule]));
+    return words;
+  }
+
+  static size_t atOnce() { return std::max(1u, std::thread::hardware_concurrency()); }
+  /// How many candidates of so many can be measured next.
+  size_t affordable(size_t wanted, double share) const {
+    if (each_ == 0) return std::min({wanted, atOnce(), kFirstPart});
+    double count = static_cast<double>(std::min(wanted, atOnce()));
+    if (settings_.seconds > 0) // as if a larger part took longer: drivers may compile one after the other
+      count = std::clamp((share * settings_.seconds - secondsPassed()) / each_, 0.0, count);
+    return static_cast<size_t>(count);
+  }
+  /// The fastest first, without those that there was no time for. share: of all time, that may have passed at the end.
+  std::vector<Candidate> measured(std::vector<Candidate> list, const char* label, double share) {
+    Progress progress(label, list.size());
+    size_t first = 0;
+    while (first < list.size()) {
+      const double begin = secondsPassed();
+      const size_t count = affordable(list.size() - first, share);
+      if (!count) break;
+      const auto part = std::span(list).subspan(first, count);
+      compile(part);
+      const std::vector<Grammar> grammars = deriver_->prepare(wordsOf(part));
+      for (size_t i = 0; i < part.size(); ++i, progress.advance()) measure(part[i], grammars[i], settings_.repeat);
+      each_ = (secondsPassed() - begin) / static_cast<double>(count);
+      first += count;
+    }
+    tuned_.candidates += first;
+    tuned_.leftOut += list.size() - first;
+    list.resize(first);
+    sort(list);
+    return list;
+  }
+
+  /// The best of the fastest few, measured as it is kept: whoever was first by luck is not so again.
+  void choose(const std::vector<Candidate>& all) {
+    std::vector<Candidate> finalists(all.begin(), all.begin() + std::ptrdiff_t(std::min(kFinalists, all.size())));
+    std::erase_if(finalists, [](const Candidate& c) { return !std::isfinite(c.milliseconds); });
+    for (Candidate& c : finalists) c.fit.rounds = c.rounds + 1;
+    const std::vector<Grammar> grammars = deriver_->prepare(wordsOf(finalists));
+    for (size_t i = 0; i < finalists.size(); ++i) {
+      const auto times = deriver_->measure(grammars[i], 2 * settings_.repeat);
+      finalists[i].milliseconds =
+          times.report.droppedShapes ? std::numeric_limits<double>::infinity() : times.times.median();
+    }
+    sort(finalists);
+    tuned_.best = finalists.front();
+    if (!std::isfinite(tuned_.best.milliseconds)) { // a round more was needed than the first time
+      tuned_.best = all.front();
+      tuned_.best.fit.rounds = 0;
+    }
+    tuned_.code = kernels_[tuned_.best.schedule];
+    tuned_.info = infoOf(tuned_.best);
+    tuned_.info.vendor = session_.device().properties().vendorID;
+    tuned_.info.device = session_.device().properties().deviceID;
+    tuned_.info.axioms = axioms_;
+  }
+
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Session& session_;
+  const BakedGraph& grammar_;
+  const TuneSettings& settings_;
+  const uint32_t axioms_;
+  const bool software_, subgroups_;
+  std::vector<KernelCode> kernels_; // by schedule; empty: not compiled yet
+  std::optional<Deriver> deriver_;
+  Tuned tuned_;
+  double fastest_ = std::numeric_limits<double>::infinity();
+  double each_ = 0; // seconds of a candidate in the last part that was measured
+};
 
 } // namespace
 
 Tuned tuneGrammar(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
                   const TuneSettings& settings) {
-  const auto begin = std::chrono::steady_clock::now();
-  Tuned tuned;
-  tuned.schedules = searchSchedules(grammar.graph, settings.search, settings.samples, settings.seed, tuned.complete);
-  const bool subgroups = hasSubgroups(session.device());
-  const auto kernels = compileKernels(grammar.graph, tuned.schedules, subgroups, settings.matching);
-
-  Deriver deriver(session, grammar, axioms, {});
-  const Grammar interpreted = deriver.prepare(std::pmr::vector<uint32_t>());
-  const GpgpSpawnReport wanted = tuned.report = deriver.fit(interpreted);
-  if (wanted.droppedShapes || wanted.unfinishedShapes)
-    throw Failure("the derivation exceeds the budgets; use fewer axioms");
-  if (!wanted.terminals) throw Failure("the grammar derives nothing from these axioms");
-  // A kernel that an engine's spawner has no room for would drop shapes there.
-  const uint32_t maxRounds = deriver.maxRounds(), maxShapes = deriver.maxShapes();
-  tuned.interpreter = deriver.measure(interpreted, settings.repeat).times.median();
-
-  const auto infoOf = [&](const Candidate& candidate) {
-    spawn::KernelInfo info = kernelInfo(tuned.schedules[candidate.schedule], subgroups);
-    info.fit = candidate.fit;
-    return info;
-  };
-  const auto measureAll = [&](std::vector<Candidate> list, const char* label) {
-    constexpr size_t kAtOnce = 32; // pipelines
-    Progress progress(label, list.size());
-    for (size_t first = 0; first < list.size(); first += kAtOnce) {
-      const auto part = std::span(list).subspan(first, std::min(kAtOnce, list.size() - first));
-      std::vector<std::pmr::vector<uint32_t>> words;
-      for (const Candidate& c : part) words.push_back(kernelWords(grammar, infoOf(c), kernels[c.schedule]));
-      const std::vector<Grammar> grammars = deriver.prepare(words);
-      for (size_t i = 0; i < part.size(); ++i, progress.advance()) {
-        const GpgpSpawnReport r = deriver.fit(grammars[i]);
-        if (r.droppedShapes) continue; // with this schedule the device's budgets are too small
-        const std::string& name = tuned.schedules[part[i].schedule].name;
-        if (r.terminals != wanted.terminals || r.keyHash[0] != wanted.keyHash[0] || r.keyHash[1] != wanted.keyHash[1])
-          throw Failure("schedule \"" + name + "\" derives something else than the interpreter: " +
-                        std::to_string(r.terminals) + " terminals instead of " + std::to_string(wanted.terminals));
-        part[i].milliseconds = deriver.measure(grammars[i], settings.repeat).times.median();
-        part[i].rounds = r.rounds;
-        part[i].larger = r.rounds > maxRounds || r.peakShapes > maxShapes;
-      }
-    }
-    std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
-      return std::pair(a.larger, a.milliseconds) < std::pair(b.larger, b.milliseconds);
-    });
-    return list;
-  };
-  std::vector<Candidate> list;
-  for (size_t i = 0; i < tuned.schedules.size(); ++i) list.push_back({i});
-  tuned.measured = measureAll(std::move(list), "schedules");
-  tuned.best = tuned.measured.front();
-  size_t numbers = 0;
-  if (!settings.schedulesOnly) {
-    // Two schedules are enough for the numbers: what is behind them now hardly wins by them.
-    list.clear();
-    for (size_t i = 0; i < std::min<size_t>(2, tuned.measured.size()); ++i)
-      for (const spawn::Fit& fit : fits(session.device().isSoftware()))
-        list.push_back({tuned.measured[i].schedule, fit});
-    numbers = list.size();
-    const Candidate other = measureAll(std::move(list), "numbers").front();
-    if (other.milliseconds < tuned.best.milliseconds) tuned.best = other;
-  }
-  if (!std::isfinite(tuned.best.milliseconds))
-    throw Failure("no schedule fits this device's budgets; use fewer axioms");
-  tuned.best.fit.rounds = tuned.best.rounds + 1; // one to spare: empty rounds cost time as well
-  tuned.candidates = tuned.schedules.size() + numbers;
-  const Candidate kept = measureAll({tuned.best}, "best").front();
-  if (std::isfinite(kept.milliseconds))
-    tuned.best = kept;
-  else
-    tuned.best.fit.rounds = 0;
-  tuned.code = kernels[tuned.best.schedule];
-  tuned.info = infoOf(tuned.best);
-  tuned.info.vendor = session.device().properties().vendorID;
-  tuned.info.device = session.device().properties().deviceID;
-  tuned.info.axioms = static_cast<uint32_t>(axioms.size());
-  tuned.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return tuned;
+  return Tuner(session, grammar, axioms, settings).run();
 }
 
 } // namespace gpgp::cli

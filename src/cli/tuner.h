@@ -1,7 +1,12 @@
 // Finds the fastest schedule of a grammar on a device by measuring.
 //
-// First schedules (which edges are static), each with the device's usual numbers; then, for the best two, the numbers
-// (size and count of workgroups, when work is spread). Every candidate must derive what the interpreter derives.
+// First schedules (which edges are static), each with the device's usual numbers, and those near the best of them,
+// until none of these is better; then, for the best two, the size and count of workgroups; then, for the best, when
+// work is spread; then the best few once more, as they would be kept. Every candidate must derive what the interpreter
+// derives, within the budgets that the interpreter needs.
+//
+// Nearly all of the time goes into the driver's compiler. Kernels are compiled on all processors, as many at a time as
+// there are, and no more of them than the time allows: the best is chosen from what was measured by then.
 #pragma once
 #include "cli/deriver.h"
 
@@ -10,20 +15,23 @@
 namespace gpgp::cli {
 
 struct TuneSettings {
-  spawn::Search search = spawn::Search::heuristic;
+  /// Nothing: every partition where there are no more than samples; else half of the samples as the heuristics and
+  /// coins say, and what is near the best of them.
+  std::optional<spawn::Search> search;
   bool matching = false;      ///< chains of groups that differ in parameters only share code
   bool schedulesOnly = false; ///< leave the numbers as the device suggests
-  uint32_t samples = 12;      ///< schedules at most, the named ones included
+  uint32_t samples = 32;      ///< schedules at most, the named ones included
   uint32_t repeat = 15, seed = 1;
+  double seconds = 50; ///< nothing is begun that would probably take longer; 0: no limit. A first part always runs
 };
 
 /// A schedule with numbers, and what it took.
 struct Candidate {
   size_t schedule = 0; ///< in Tuned::schedules
   spawn::Fit fit;
-  double milliseconds = std::numeric_limits<double>::infinity(); ///< it exceeds the device's budgets
+  /// Infinite where it would drop shapes in a spawner that has room for what the interpreter needs.
+  double milliseconds = std::numeric_limits<double>::infinity();
   uint32_t rounds = 0;
-  bool larger = false; ///< it needs more rounds or shapes than the interpreter does: measured, but never the best
 };
 
 struct Tuned {
@@ -35,7 +43,8 @@ struct Tuned {
   GpgpSpawnReport report{};
   double interpreter = 0; ///< milliseconds
   bool complete = false;  ///< all partitions were tried
-  size_t candidates = 0;
+  size_t candidates = 0;  ///< measured
+  size_t leftOut = 0;     ///< for lack of time
   double seconds = 0;
 
   const spawn::Schedule& schedule() const { return schedules[best.schedule]; }

@@ -1,23 +1,32 @@
 // What derivation costs by schedule: the tables of thesis chapter 4, a city, and curves over the number of axioms.
 //
-//   spawn_bench [--device D] [--repeat N] [--pairs N] [--samples N] [--share F] [--quick] [TABLE[:ROW]]...
+//   spawn_bench [--device D] [--seconds N] [--repeat N] [--pairs N] [--samples N] [--share F] [--quick]
+//               [TABLE[:ROW]]...
 //
 // TABLE is one of
-//   heuristics  table 4.1: pairs of schedules, a heuristic's edges as it says against inverted, all others random, with
-//   a
-//               paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published)
-//   schedules   table 4.2: every case of samples/grammars/cases.txt by interpreter, default, SGL, RW, DGN (rules), and
-//               the best that random and heuristic searches of --samples N schedules find, with and without matching.
-//               Rows: the cases' names
+//   schedules   table 4.2: every case of samples/grammars/cases.txt by the interpreter, the named schedules (DGN:
+//   rules)
+//               and what `gpgp tune` finds, in how many seconds; that against the best named schedule, and against the
+//               best of all partitions, where there are few, all with the device's usual numbers. Rows: the cases'
+//               names
+//   searches    its other columns: the best that random and heuristic searches of --samples N schedules find, with and
+//               without matching. Rows: the cases' names
 //   partitions  figure 4.7: every valid partition of the Menger sponge at 1, 16 and 256 axioms. Those that differ only
-//               in the edges into operators that multiply have the same kernel
+//               in the edges into operators that multiply have the same kernel, which is measured once
 //   vertices    cases as vertices of 32 bytes and 32-bit indices. Rows: the cases' names; `city` is figure 4.1
-//   curves      time and memory from 10 to 10^6 axioms, as far as the device binds the result. Rows: the cases' names
+//   curves      time and memory from 10 to 10^7 axioms; what the device does not bind at once is derived in parts, a
+//               record each. Rows: the cases' names
+//   heuristics  table 4.1: pairs of schedules, a heuristic's edges as it says against inverted, all others random, with
+//               a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published).
+//               Each pair's times go to standard error as they come
 // ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.
+// --exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,
+// simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out and
+// named below it.
 //
-// Prints tables in Markdown: medians of GPU timestamps of a warm device, and ratios. The baselines, in the same
-// process: the CPU evaluator on one thread, and the default schedule. Kernels and pipelines are made on all processors.
-// Asserts nothing about time, but fails where a derivation differs from the evaluator's.
+// Prints tables in Markdown, row by row: medians of GPU timestamps of a warm device, and ratios. The baselines, in the
+// same process: the CPU evaluator on one thread, and the default schedule. Kernels and pipelines are made on all
+// processors. Asserts nothing about time, but fails where a derivation differs from the evaluator's.
 #include "cli/axioms.h"
 #include "cli/processors.h"
 #include "cli/tuner.h"
@@ -30,6 +39,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <sstream>
 
 namespace {
@@ -39,7 +49,8 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   uint32_t repeat = 20, pairs = 384, samples = 40;
-  double share = 1;
+  uint32_t exhaustive = 64;
+  double share = 1, seconds = 0;
   bool quick = false;
   std::string device;
   std::vector<std::string> tables;
@@ -56,6 +67,30 @@ struct Options {
 };
 
 double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// A table's time, and what it has no time for.
+class Budget {
+public:
+  explicit Budget(double seconds) : seconds_(seconds > 0 ? seconds : std::numeric_limits<double>::infinity()) {}
+  double left() const { return seconds_ - secondsSince(begin_); }
+  bool allows(double seconds) const { return left() > seconds; }
+  /// Whether there is time for something that takes about that long; what: its name, for the list of what was left out.
+  bool allows(double seconds, const std::string& what) {
+    if (allows(seconds)) return true;
+    leftOut_ += (leftOut_.empty() ? "" : ", ") + what;
+    return false;
+  }
+  void print(const char* table) const {
+    std::printf("\n(%s: %.1f s", table, secondsSince(begin_));
+    if (!leftOut_.empty()) std::printf("; left out for lack of time: %s", leftOut_.c_str());
+    std::printf(")\n");
+  }
+
+private:
+  Clock::time_point begin_ = Clock::now();
+  double seconds_;
+  std::string leftOut_;
+};
 
 // ---------------------------------------------------------------- cases
 
@@ -129,10 +164,10 @@ public:
   }
   size_t size() const { return schedules_.size(); }
   const spawn::Schedule& schedule(size_t kernel) const { return schedules_[kernel]; }
-  /// Those from a number on, as words behind the graph.
-  std::vector<std::pmr::vector<uint32_t>> compile(size_t first = 0) const {
+  /// Some from a number on, as words behind the graph.
+  std::vector<std::pmr::vector<uint32_t>> compile(size_t first, size_t count) const {
     std::vector<std::pmr::vector<uint32_t>> words;
-    const auto part = std::span(schedules_).subspan(first);
+    const auto part = std::span(schedules_).subspan(first, count);
     const auto code = compileKernels(grammar_.graph, part, subgroups_, matching_);
     for (size_t i = 0; i < code.size(); ++i)
       words.push_back(kernelWords(grammar_, kernelInfo(part[i], subgroups_), code[i]));
@@ -149,17 +184,60 @@ private:
 /// Median milliseconds; infinity where the device's budgets are too small.
 double timeOf(Deriver& deriver, const Grammar& grammar, const spawn::Derivation& cpu, const std::string& what,
               uint32_t repeat) {
+  deriver.resetBudgets();
   const GpgpSpawnReport report = deriver.fit(grammar);
   compare(cpu, report, what);
   if (report.droppedShapes) return std::numeric_limits<double>::infinity();
   return deriver.measure(grammar, repeat).times.median();
 }
 std::string shown(double milliseconds) {
+  if (std::isnan(milliseconds)) return "–";
   if (!std::isfinite(milliseconds)) return "too large";
   char text[32];
   std::snprintf(text, sizeof text, milliseconds < 10 ? "%.3f" : "%.1f", milliseconds);
   return text;
 }
+
+/// Kernels that are compiled and measured at once, with no look at the time in between.
+size_t partSize() { return std::max(4u, std::thread::hardware_concurrency()); }
+
+/// Times of a grammar's kernels, in the order of their numbers, as far as there is time for them.
+class Times {
+public:
+  Times(Deriver& deriver, const Kernels& kernels, const spawn::Derivation& cpu, std::string what, uint32_t repeat)
+      : deriver_(deriver), kernels_(kernels), cpu_(cpu), what_(std::move(what)), repeat_(repeat) {}
+  /// Measures those that have been added. Whether there was time for all.
+  bool measureNew(const Budget& budget, double reserved = 0) {
+    while (times_.size() < kernels_.size()) {
+      const auto begin = Clock::now();
+      if (!budget.allows(perPart_ + reserved)) return false;
+      const auto words = kernels_.compile(times_.size(), std::min(partSize(), kernels_.size() - times_.size()));
+      for (const Grammar& prepared : deriver_.prepare(words)) {
+        const std::string name = what_ + " " + kernels_.schedule(times_.size()).name;
+        times_.push_back(timeOf(deriver_, prepared, cpu_, name, repeat_));
+      }
+      perPart_ = secondsSince(begin);
+    }
+    return true;
+  }
+  size_t size() const { return times_.size(); }
+  /// Not a number: there was no time.
+  double operator[](size_t kernel) const {
+    return kernel < times_.size() ? times_[kernel] : std::numeric_limits<double>::quiet_NaN();
+  }
+  double best() const {
+    return times_.empty() ? std::numeric_limits<double>::quiet_NaN() : *std::min_element(times_.begin(), times_.end());
+  }
+
+private:
+  Deriver& deriver_;
+  const Kernels& kernels_;
+  const spawn::Derivation& cpu_;
+  std::string what_;
+  uint32_t repeat_;
+  double perPart_ = 0;
+  std::vector<double> times_;
+};
 
 // ---------------------------------------------------------------- table 4.1
 
@@ -206,15 +284,18 @@ Decided decidedBy(const std::string& heuristic, const spawn::Graph& graph, const
   return decided;
 }
 
-void heuristics(Session& session, const std::vector<Case>& cases, const Options& options) {
-  std::printf("\n## Heuristics (table 4.1): ms with the heuristic (H) and inverted (not H), %u pairs\n\n",
-              options.pairs);
-  std::printf("| test, edges | kernels | axioms | t | p | H (deviation) | not H | H faster | not H / H |\n"
-              "|---|---|---|---|---|---|---|---|---|\n");
+void heuristics(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+  std::printf("\n## Heuristics (table 4.1): ms with the heuristic (H) and inverted (not H)\n\n");
+  std::printf(
+      "| test, edges | pairs | pairs that differ | axioms | t | p | H (deviation) | not H | H faster | not H / H |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n");
   const bool subgroups = hasSubgroups(session.device());
+  double tests = 0; // that share the time
+  for (const char* name : {"H1", "H2", "H3"}) tests += options.wants("heuristics", name);
   for (const auto& [name, grammarName] :
        {std::pair{"H1", "suburban_house"}, std::pair{"H2", "commercial"}, std::pair{"H3", "balcony"}}) {
     if (!options.wants("heuristics", name)) continue;
+    const Budget own(std::isfinite(budget.left()) ? std::max(budget.left() / tests--, 1e-3) : 0);
     const Case& c = caseOf(cases, grammarName);
     const BakedGraph grammar = grammarOf(c);
     const spawn::Flow flow = spawn::makeFlow(grammar.graph);
@@ -234,27 +315,40 @@ void heuristics(Session& session, const std::vector<Case>& cases, const Options&
       }
       pairs.push_back(pair);
     }
-    const auto words = kernels.compile();
     const std::vector<uint32_t> counts =
         options.quick ? std::vector<uint32_t>{1, 16} : std::vector<uint32_t>{1, 64, 128, 256};
-    Deriver deriver(session, grammar, axiomsOf(c, counts[0]), {});
+    std::vector<std::unique_ptr<Deriver>> derivers;
     std::vector<spawn::Derivation> references;
-    for (const uint32_t count : counts) references.push_back(evaluate(grammar, axiomsOf(c, count)).result);
-    std::vector<std::vector<double>> times(counts.size(), std::vector<double>(words.size()));
-    constexpr size_t kAtOnce = 64;
-    for (size_t first = 0; first < words.size(); first += kAtOnce) {
-      const auto part = std::span(words).subspan(first, std::min(kAtOnce, words.size() - first));
-      const std::vector<Grammar> grammars = deriver.prepare(part);
-      for (size_t n = 0; n < counts.size(); ++n) {
-        deriver.setAxioms(axiomsOf(c, counts[n]));
-        for (size_t i = 0; i < part.size(); ++i)
-          times[n][first + i] = timeOf(deriver, grammars[i], references[n], name, options.repeat);
-      }
+    for (const uint32_t count : counts) {
+      const auto axioms = axiomsOf(c, count);
+      references.push_back(evaluate(grammar, axioms).result);
+      derivers.push_back(std::make_unique<Deriver>(session, grammar, axioms, DeriverOptions{}));
     }
+    std::vector<std::vector<double>> times(counts.size());
+    size_t whole = 0; // pairs that were measured
+    double perPart = 0;
+    while (times[0].size() < kernels.size() && own.allows(perPart)) {
+      const auto begin = Clock::now();
+      const auto words = kernels.compile(times[0].size(), std::min(partSize(), kernels.size() - times[0].size()));
+      for (const Grammar& prepared : derivers[0]->prepare(words))
+        for (size_t n = 0; n < counts.size(); ++n)
+          times[n].push_back(timeOf(*derivers[n], prepared, references[n], name, options.repeat));
+      for (; whole < pairs.size() && std::max(pairs[whole][0], pairs[whole][1]) < times[0].size(); ++whole) {
+        std::fprintf(stderr, "%s pair %zu:", name, whole);
+        for (size_t n = 0; n < counts.size(); ++n)
+          std::fprintf(stderr, " %u axioms %s %s", counts[n], shown(times[n][pairs[whole][0]]).c_str(),
+                       shown(times[n][pairs[whole][1]]).c_str());
+        std::fprintf(stderr, "\n");
+      }
+      perPart = secondsSince(begin);
+    }
+    if (whole < pairs.size())
+      budget.allows(std::numeric_limits<double>::infinity(),
+                    std::to_string(pairs.size() - whole) + " pairs of " + name);
     for (size_t n = 0; n < counts.size(); ++n) {
       std::vector<double> on, off, difference;
       size_t faster = 0, distinct = 0;
-      for (const auto& [a, b] : pairs) {
+      for (const auto& [a, b] : std::span(pairs).first(whole)) {
         if (!std::isfinite(times[n][a]) || !std::isfinite(times[n][b])) continue;
         on.push_back(times[n][a]);
         off.push_back(times[n][b]);
@@ -264,110 +358,154 @@ void heuristics(Session& session, const std::vector<Case>& cases, const Options&
       }
       const Mean h = meanOf(on), notH = meanOf(off), d = meanOf(difference);
       const double t = d.deviation > 0 ? d.mean / (d.deviation / std::sqrt(double(difference.size()))) : 0;
-      std::printf(
-          "| %s %s, %zu of %zu | %zu, %zu pairs differ | %u | %.2f | %.4f | %s (%.3f) | %s (%.3f) | %.2f | %.2f |\n",
-          name, grammarName, decided.edges.size(), edges, kernels.size(), distinct, counts[n], t,
-          pOf(t, double(std::max<size_t>(difference.size(), 2) - 1)), shown(h.mean).c_str(), h.deviation,
-          shown(notH.mean).c_str(), notH.deviation, double(faster) / double(std::max<size_t>(distinct, 1)),
-          notH.mean / h.mean);
-      std::fflush(stdout);
+      std::printf("| %s %s, %zu of %zu | %zu | %zu | %u | %.2f | %.4f | %s (%.3f) | %s (%.3f) | %.2f | %.2f |\n", name,
+                  grammarName, decided.edges.size(), edges, difference.size(), distinct, counts[n], t,
+                  pOf(t, double(std::max<size_t>(difference.size(), 2) - 1)), shown(h.mean).c_str(), h.deviation,
+                  shown(notH.mean).c_str(), notH.deviation, double(faster) / double(std::max<size_t>(distinct, 1)),
+                  notH.mean / h.mean);
     }
   }
 }
 
 // ---------------------------------------------------------------- table 4.2
 
-void schedules(Session& session, const std::vector<Case>& cases, const Options& options) {
-  std::printf("\n## Schedules (table 4.2): ms; OPT: the best of %u sampled schedules, s: seconds to find it\n\n",
-              options.samples);
-  std::printf(
-      "| case | edges | axioms | terminals | CPU ms | interpreter | default | SGL (groups) | RW | DGN | OPTs (s) | "
-      "OPTs,M (s) | OPTH (s) | OPTH,M (s) | default / best | CPU / best | GB/s |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const bool subgroups = hasSubgroups(session.device());
-  for (const Case& c : cases) {
-    if (!options.wants("schedules", c.name)) continue;
-    const BakedGraph grammar = grammarOf(c);
-    const spawn::Flow flow = spawn::makeFlow(grammar.graph);
-    size_t edges = 0;
-    for (const auto& links : flow.out) edges += links.size();
-    const uint32_t count = shareOf(options, c.axioms);
-    const auto axioms = axiomsOf(c, count);
-    const Reference reference = evaluate(grammar, axioms);
+/// A case on the device, with what it should derive and its interpreter's time.
+struct OnDevice {
+  BakedGraph grammar;
+  uint32_t count;
+  size_t edges = 0;
+  Reference reference;
+  std::vector<GpgpAxiom> axioms;
+  std::optional<Deriver> deriver;
+  double interpreter = 0;
+  uint64_t bytes = 0; // written
+
+  OnDevice(Session& session, const Case& c, const Options& options)
+      : grammar(grammarOf(c)), count(shareOf(options, c.axioms)), axioms(axiomsOf(c, count)) {
+    for (const auto& links : spawn::makeFlow(grammar.graph).out) edges += links.size();
+    reference = evaluate(grammar, axioms);
     DeriverOptions deriverOptions;
     deriverOptions.expected = reference.result.terminals;
-    Deriver deriver(session, grammar, axioms, deriverOptions);
-    const Grammar interpreted = deriver.prepare(std::pmr::vector<uint32_t>());
-    const double interpreter = timeOf(deriver, interpreted, reference.result, c.name, options.repeat);
-    const uint64_t bytes = deriver.bytesWritten();
+    deriver.emplace(session, grammar, axioms, deriverOptions);
+    const Grammar interpreted = deriver->prepare(std::pmr::vector<uint32_t>());
+    interpreter = timeOf(*deriver, interpreted, reference.result, c.name, options.repeat);
+    bytes = deriver->bytesWritten();
     if (bytes < reference.result.terminals * sizeof(GpgpInstance))
-      std::printf("(%s: the device binds fewer instances, %.0f %% are written)\n", c.name.c_str(),
-                  100.0 * static_cast<double>(bytes) / static_cast<double>(reference.result.terminals) /
-                      sizeof(GpgpInstance));
+      std::fprintf(stderr, "%s: the device binds fewer instances, %.0f %% are written\n", c.name.c_str(),
+                   100.0 * static_cast<double>(bytes) / static_cast<double>(reference.result.terminals) /
+                       sizeof(GpgpInstance));
+  }
+};
 
-    // Named schedules are measured once for both searches, and each search's seconds hold them.
-    std::map<std::string, double> named;
-    double best = std::numeric_limits<double>::infinity();
-    std::map<spawn::Search, std::string> columns[2];
+/// "0.97 yes": a ratio, and whether it is at most so much, as it is printed.
+std::string judged(double ratio, double most) {
+  if (std::isnan(ratio)) return "–";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f %s", ratio, std::round(100 * ratio) <= std::round(100 * most) ? "yes" : "no");
+  return text;
+}
+
+void schedules(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+  std::printf(
+      "\n## Schedules (table 4.2): ms\n\n"
+      "| case | edges | axioms | terminals | CPU | interpreter | default | SGL (groups) | RW | DGN | heuristic | "
+      "tuned | found in s | tuned / best named ≤ 1 | all partitions' best (kernels) | tuned / that ≤ 1.05 | "
+      "CPU / tuned | GB/s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const bool subgroups = hasSubgroups(session.device());
+  double longest = 0; // row
+  for (const Case& c : cases) {
+    if (!options.wants("schedules", c.name) || !budget.allows(longest, c.name)) continue;
+    const auto begin = Clock::now();
+    OnDevice on(session, c, options);
+    const spawn::Graph& graph = on.grammar.graph;
+    Kernels kernels(on.grammar, subgroups);
+    std::map<std::string, size_t> named;
+    for (const char* name : spawn::kScheduleNames) named[name] = kernels.add(*spawn::namedSchedule(graph, name));
+    Times times(*on.deriver, kernels, on.reference.result, c.name, options.repeat);
+    times.measureNew(budget);
+    const double bestNamed = times.best();
+
+    TuneSettings settings;
+    if (options.quick) settings.samples = 6;
+    settings.repeat = std::min(settings.repeat, options.repeat);
+    double tuned = std::numeric_limits<double>::quiet_NaN(), tuningSeconds = tuned;
+    if (budget.allows(0)) {
+      settings.seconds = std::min(settings.seconds, budget.left());
+      const Tuned found = tuneGrammar(session, on.grammar, on.axioms, settings);
+      tuningSeconds = found.seconds;
+      const Grammar prepared = on.deriver->prepare(kernelWords(on.grammar, found.info, found.code));
+      tuned = timeOf(*on.deriver, prepared, on.reference.result, c.name + " tuned", options.repeat);
+    }
+    double exhaustive = std::numeric_limits<double>::quiet_NaN();
+    bool complete = false;
+    const auto all = searchSchedules(graph, spawn::Search::exhaustive, options.exhaustive + 1, 1, complete);
+    std::string searched = "more than " + std::to_string(options.exhaustive);
+    if (complete && all.size() <= options.exhaustive) {
+      for (const spawn::Schedule& schedule : all) kernels.add(schedule);
+      const bool inTime = times.measureNew(budget);
+      exhaustive = times.best();
+      searched = (inTime ? "" : std::to_string(times.size()) + " of ") + std::to_string(kernels.size());
+    }
+    std::printf(
+        "| %s | %zu | %u | %llu | %s | %s | %s | %s (%zu) | %s | %s | %s | %s | %.1f | %s | %s (%s) | %s | %.2f | "
+        "%.1f |\n",
+        c.name.c_str(), on.edges, on.count, static_cast<unsigned long long>(on.reference.result.terminals),
+        shown(on.reference.milliseconds).c_str(), shown(on.interpreter).c_str(), shown(times[named["default"]]).c_str(),
+        shown(times[named["sgl"]]).c_str(), spawn::namedSchedule(graph, "sgl")->groups,
+        shown(times[named["rw"]]).c_str(), shown(times[named["rules"]]).c_str(),
+        shown(times[named["heuristic"]]).c_str(), shown(tuned).c_str(), tuningSeconds,
+        judged(tuned / bestNamed, 1).c_str(), shown(exhaustive).c_str(), searched.c_str(),
+        judged(tuned / exhaustive, 1.05).c_str(), on.reference.milliseconds / tuned,
+        static_cast<double>(on.bytes) / tuned * 1e-6);
+    longest = std::max(longest, secondsSince(begin));
+  }
+}
+
+void searches(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+  std::printf("\n## Searches (table 4.2): ms of the best of %u schedules, s: seconds to find it; M: with matching\n\n"
+              "| case | edges | axioms | default | OPTs (s) | OPTH (s) | OPTs,M (s) | OPTH,M (s) | default / best |\n"
+              "|---|---|---|---|---|---|---|---|---|\n",
+              options.samples);
+  const bool subgroups = hasSubgroups(session.device());
+  double longest = 0; // row
+  for (const Case& c : cases) {
+    if (!options.wants("searches", c.name) || !budget.allows(longest, c.name)) continue;
+    const auto rowBegin = Clock::now();
+    OnDevice on(session, c, options);
+    double usual = std::numeric_limits<double>::quiet_NaN(), best = std::numeric_limits<double>::infinity();
+    std::string columns;
     for (const bool matching : {false, true}) {
-      Kernels kernels(grammar, subgroups, matching);
-      std::vector<double> times;
-      const auto measureNew = [&] { // those that were added last
-        const auto words = kernels.compile(times.size());
-        constexpr size_t kAtOnce = 64;
-        for (size_t first = 0; first < words.size(); first += kAtOnce) {
-          const auto grammars =
-              deriver.prepare(std::span(words).subspan(first, std::min(kAtOnce, words.size() - first)));
-          for (const Grammar& prepared : grammars) {
-            const std::string& name = kernels.schedule(times.size()).name;
-            times.push_back(timeOf(deriver, prepared, reference.result, c.name + " " + name, options.repeat));
-            if (!matching) named.try_emplace(name, times.back());
-          }
-        }
-      };
+      Kernels kernels(on.grammar, subgroups, matching);
+      Times times(*on.deriver, kernels, on.reference.result, c.name, options.repeat);
+      // Named schedules are measured once for both searches, and each search's seconds hold them.
       const auto begin = Clock::now();
-      for (const char* name : spawn::kScheduleNames) kernels.add(*spawn::namedSchedule(grammar.graph, name));
-      measureNew();
+      for (const char* name : spawn::kScheduleNames) kernels.add(*spawn::namedSchedule(on.grammar.graph, name));
+      bool inTime = times.measureNew(budget);
+      if (!matching) usual = times[0];
       const double namedSeconds = secondsSince(begin);
       for (const spawn::Search search : {spawn::Search::random, spawn::Search::heuristic}) {
         const auto searchBegin = Clock::now();
         bool complete = false;
         std::vector<size_t> met;
-        for (const spawn::Schedule& s : searchSchedules(grammar.graph, search, options.samples, 1, complete))
+        for (const spawn::Schedule& s : searchSchedules(on.grammar.graph, search, options.samples, 1, complete))
           met.push_back(kernels.add(s));
-        measureNew();
+        inTime = inTime && times.measureNew(budget);
         double fastest = std::numeric_limits<double>::infinity();
-        for (const size_t kernel : met) fastest = std::min(fastest, times[kernel]);
-        columns[matching][search] =
-            " " + shown(fastest) + " (" + shown(namedSeconds + secondsSince(searchBegin)) + ") |";
+        for (const size_t kernel : met) fastest = std::fmin(fastest, times[kernel]); // without those left out
+        columns += " " + shown(fastest) + " (" + shown(namedSeconds + secondsSince(searchBegin)) +
+                   (inTime ? ") |" : ", cut) |");
         best = std::min(best, fastest);
       }
     }
-    // A named schedule that waits where another one does has the same kernel.
-    const auto timeOfNamed = [&](const char* name) {
-      const auto wanted = *spawn::namedSchedule(grammar.graph, name);
-      for (const char* other : spawn::kScheduleNames)
-        if (named.contains(other) && spawn::namedSchedule(grammar.graph, other)->waits == wanted.waits)
-          return named[other];
-      return std::numeric_limits<double>::quiet_NaN();
-    };
-    const double usual = timeOfNamed("default");
-    std::printf("| %s | %zu | %u | %llu | %s | %s | %s | %s (%zu) | %s | %s |%s %.2f | %.1f | %.0f |\n", c.name.c_str(),
-                edges, count, static_cast<unsigned long long>(reference.result.terminals),
-                shown(reference.milliseconds).c_str(), shown(interpreter).c_str(), shown(usual).c_str(),
-                shown(timeOfNamed("sgl")).c_str(), spawn::namedSchedule(grammar.graph, "sgl")->groups,
-                shown(timeOfNamed("rw")).c_str(), shown(timeOfNamed("rules")).c_str(),
-                (columns[0][spawn::Search::random] + columns[1][spawn::Search::random] +
-                 columns[0][spawn::Search::heuristic] + columns[1][spawn::Search::heuristic])
-                    .c_str(),
-                usual / best, reference.milliseconds / best, static_cast<double>(bytes) / best * 1e-6);
-    std::fflush(stdout);
+    std::printf("| %s | %zu | %u | %s |%s %.2f |\n", c.name.c_str(), on.edges, on.count, shown(usual).c_str(),
+                columns.c_str(), usual / best);
+    longest = std::max(longest, secondsSince(rowBegin));
   }
 }
 
 // ---------------------------------------------------------------- figure 4.7
 
-void partitions(Session& session, const std::vector<Case>& cases, const Options& options) {
+void partitions(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
   const Case& c = caseOf(cases, "menger_sponge_3");
   const BakedGraph grammar = grammarOf(c);
   const spawn::Flow flow = spawn::makeFlow(grammar.graph);
@@ -375,46 +513,57 @@ void partitions(Session& session, const std::vector<Case>& cases, const Options&
       options.quick ? std::vector<uint32_t>{1} : std::vector<uint32_t>{1, shareOf(options, 16), shareOf(options, 256)};
   struct Row {
     size_t groups, kernel;
-    std::vector<double> times;
   };
   std::vector<Row> rows;
   Kernels kernels(grammar, hasSubgroups(session.device()));
   spawn::PartitionEnumerator enumerator(flow);
   do {
     const auto schedule = scheduleOf(grammar.graph, flow, enumerator.roots(), std::to_string(rows.size()));
-    rows.push_back({schedule.groups, kernels.add(schedule), {}});
+    rows.push_back({schedule.groups, kernels.add(schedule)});
   } while (enumerator.next());
   std::printf("\n## Partitions of the Menger sponge (figure 4.7): %zu valid ones, %zu kernels; ms\n\n| partition | "
               "execution groups | kernel |",
               rows.size(), kernels.size());
   for (const uint32_t count : counts) std::printf(" %u axioms |", count);
   std::printf("\n|---|---|---|%s\n", counts.size() == 1 ? "---|" : "---|---|---|");
-  const auto words = kernels.compile();
-  Deriver deriver(session, grammar, axiomsOf(c, 1), {});
-  const std::vector<Grammar> grammars = deriver.prepare(words);
+  std::vector<std::unique_ptr<Deriver>> derivers;
+  std::vector<spawn::Derivation> references;
   for (const uint32_t count : counts) {
     const auto axioms = axiomsOf(c, count);
-    const spawn::Derivation reference = evaluate(grammar, axioms).result;
-    deriver.setAxioms(axioms);
-    for (Row& row : rows)
-      row.times.push_back(timeOf(deriver, grammars[row.kernel], reference, "partition", options.repeat));
+    references.push_back(evaluate(grammar, axioms).result);
+    derivers.push_back(std::make_unique<Deriver>(session, grammar, axioms, DeriverOptions{}));
   }
+  std::vector<std::vector<double>> times; // by kernel; kernels have the order in which partitions come to them
+  double perPart = 0;
   for (size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].kernel == times.size()) {
+      if (!budget.allows(perPart, std::to_string(rows.size() - i) + " partitions")) break;
+      const auto begin = Clock::now();
+      const auto words = kernels.compile(times.size(), std::min(partSize(), kernels.size() - times.size()));
+      for (const Grammar& prepared : derivers[0]->prepare(words)) {
+        times.emplace_back();
+        for (size_t n = 0; n < counts.size(); ++n)
+          times.back().push_back(timeOf(*derivers[n], prepared, references[n], "partition", options.repeat));
+      }
+      perPart = secondsSince(begin);
+    }
     std::printf("| %zu | %zu | %zu |", i, rows[i].groups, rows[i].kernel);
-    for (const double time : rows[i].times) std::printf(" %s |", shown(time).c_str());
+    for (const double time : times[rows[i].kernel]) std::printf(" %s |", shown(time).c_str());
     std::printf("\n");
   }
 }
 
 // ---------------------------------------------------------------- vertices, and the city
 
-void vertices(Session& session, const std::vector<Case>& cases, const Options& options) {
+void vertices(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
   std::printf(
       "\n## Vertices of 32 bytes with 32-bit indices, default schedule (city: figure 4.1)\n\n"
       "| case | axioms | terminals | vertices | triangles | bytes | ms | GB/s | CPU evaluator ms | CPU / GPU |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n");
+  double longest = 0; // row
   for (const Case& c : cases) {
-    if (!options.wants("vertices", c.name)) continue;
+    if (!options.wants("vertices", c.name) || !budget.allows(longest, c.name)) continue;
+    const auto begin = Clock::now();
     const BakedGraph grammar = grammarOf(c);
     uint32_t count = shareOf(options, c.axioms);
     DeriverOptions deriverOptions;
@@ -433,19 +582,20 @@ void vertices(Session& session, const std::vector<Case>& cases, const Options& o
     const Reference reference = evaluate(grammar, axiomsOf(c, count), true);
     const double time = timeOf(deriver, prepared, reference.result, c.name, options.repeat);
     const double bytes = static_cast<double>(deriver.bytesWritten());
-    std::printf("| %s | %u | %u | %u | %u | %.0f | %s | %.0f | %s | %.1f |\n", c.name.c_str(), count, report.terminals,
+    std::printf("| %s | %u | %u | %u | %u | %.0f | %s | %.0f | %s | %.2f |\n", c.name.c_str(), count, report.terminals,
                 report.vertices, report.vertices / 2, bytes, shown(time).c_str(), bytes / time * 1e-6,
                 shown(reference.milliseconds).c_str(), reference.milliseconds / time);
-    std::fflush(stdout);
+    longest = std::max(longest, secondsSince(begin));
   }
 }
 
 // ---------------------------------------------------------------- curves
 
-void curves(Session& session, const std::vector<Case>& cases, const Options& options) {
-  std::printf("\n## Curves: default schedule, instances\n\n"
-              "| case | axioms | terminals | ms | ns a terminal | GB/s | scratch MB | output MB | CPU / GPU |\n"
-              "|---|---|---|---|---|---|---|---|---|\n");
+void curves(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+  std::printf(
+      "\n## Curves: default schedule, instances; records: that the axioms are shared out to\n\n"
+      "| case | axioms | records | terminals | ms | ns a terminal | GB/s | scratch MB | output MB | CPU / GPU |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& c : cases) {
     const bool usual = c.name == "mc_spaceship" || c.name == "city";
     if (!options.wants("curves", c.name) || (!usual && options.wants("curves", "mc_spaceship"))) continue;
@@ -455,31 +605,54 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
     const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
     Deriver deriver(session, grammar, axiomsOf(c, 1), {});
     const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), code[0]));
-    for (uint32_t count = 10; count <= (options.quick ? 100u : 1000000u); count *= 10) {
-      if (uint64_t{count} * sizeof(GpgpAxiom) > session.device().properties().limits.maxStorageBufferRange) break;
-      const auto axioms = axiomsOf(c, count);
-      deriver.setAxioms(axioms);
-      const GpgpSpawnReport report = deriver.fit(prepared);
-      if (report.instancesWritten < report.terminals) {
-        std::printf("| %s | %u | %u | the device binds fewer instances | | | | | |\n", c.name.c_str(), count,
-                    report.terminals);
-        break;
+    const VkDeviceSize range = session.device().properties().limits.maxStorageBufferRange;
+    uint32_t records = 1;
+    double before = 0, work = 0; // seconds of ten times fewer: all, and what grows with their number
+    for (uint32_t count = 10; count <= (options.quick ? 100u : 10000000u); count *= 10) {
+      if (!budget.allows(before + 10 * work, c.name + " from " + std::to_string(count) + " axioms on")) break;
+      const auto begin = Clock::now();
+      const auto all = axiomsOf(c, count);
+      const auto part = [&](uint32_t i) {
+        const size_t each = count / records;
+        return std::vector<GpgpAxiom>(all.begin() + std::ptrdiff_t(i * each),
+                                      all.begin() + std::ptrdiff_t((i + 1) * each));
+      };
+      const auto fits = [&] {
+        if (uint64_t{count} / records * sizeof(GpgpAxiom) > range) return false;
+        deriver.setAxioms(part(0));
+        const GpgpSpawnReport report = deriver.fit(prepared);
+        return report.instancesWritten == report.terminals;
+      };
+      while (!fits() && records < count)
+        records *= 10; // what fits one may be too much for the next: part(0) is typical
+      double time = 0, cpu = 0, bytes = 0;
+      uint64_t terminals = 0;
+      for (uint32_t i = 0; i < records; ++i) {
+        const auto axioms = part(i);
+        deriver.setAxioms(axioms);
+        const Reference reference = evaluate(grammar, axioms);
+        time += timeOf(deriver, prepared, reference.result, c.name, options.repeat);
+        cpu += reference.milliseconds;
+        terminals += reference.result.terminals;
+        bytes += static_cast<double>(deriver.bytesWritten());
       }
-      const Reference reference = evaluate(grammar, axioms);
-      const double time = timeOf(deriver, prepared, reference.result, c.name, options.repeat);
+      if (bytes < static_cast<double>(terminals * sizeof(GpgpInstance)))
+        std::fprintf(stderr, "%s: some records have more instances than the device binds\n", c.name.c_str());
       GpgpMemoryReport memory = GPGP_MEMORY_REPORT_INIT;
       session.check(gpgpGetMemoryReport(session.context(), &memory), "gpgpGetMemoryReport");
-      const double bytes = static_cast<double>(deriver.bytesWritten());
-      std::printf("| %s | %u | %u | %s | %.2f | %.1f | %.0f | %.1f | %.1f |\n", c.name.c_str(), count, report.terminals,
-                  shown(time).c_str(), time * 1e6 / report.terminals, bytes / time * 1e-6,
+      std::printf("| %s | %u | %u | %llu | %s | %.2f | %.1f | %.0f | %.1f | %.2f |\n", c.name.c_str(), count, records,
+                  static_cast<unsigned long long>(terminals), shown(time).c_str(),
+                  time * 1e6 / static_cast<double>(terminals), bytes / time * 1e-6,
                   static_cast<double>(memory.services[GPGP_SERVICE_SPAWN].deviceBytes) * 1e-6, bytes * 1e-6,
-                  reference.milliseconds / time);
-      std::fflush(stdout);
+                  cpu / time);
+      before = secondsSince(begin);
+      work = 1e-3 * (cpu + time * (options.repeat + 1));
     }
   }
 }
 
 int run(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16); // a run that is ended has printed every row that it had
   Options options;
   const auto number = [](const std::string& text) {
     return static_cast<uint32_t>(std::max(1, std::atoi(text.c_str())));
@@ -496,6 +669,10 @@ int run(int argc, char** argv) {
       options.samples = std::max(5u, number(next())), samples = true;
     else if (arg == "--share")
       options.share = std::clamp(std::atof(next().c_str()), 0.0, 1.0);
+    else if (arg == "--seconds")
+      options.seconds = std::max(0.0, std::atof(next().c_str()));
+    else if (arg == "--exhaustive")
+      options.exhaustive = number(next());
     else if (arg == "--device")
       options.device = next();
     else if (arg == "--quick")
@@ -503,7 +680,7 @@ int run(int argc, char** argv) {
     else
       options.tables.push_back(arg);
   }
-  const std::vector<std::string> known = {"schedules", "vertices", "partitions", "curves", "heuristics"};
+  const std::vector<std::string> known = {"schedules", "vertices", "partitions", "curves", "heuristics", "searches"};
   for (const std::string& table : options.tables)
     if (std::find(known.begin(), known.end(), table.substr(0, table.find(':'))) == known.end()) {
       std::fprintf(stderr, "there is no table \"%s\"\n", table.c_str());
@@ -521,17 +698,17 @@ int run(int argc, char** argv) {
   Session session(common);
   std::printf("Device %s, %u processors; medians of %u derivations by GPU timestamps.\n",
               session.device().name().c_str(), std::thread::hardware_concurrency(), options.repeat);
-  using Table = void (*)(Session&, const std::vector<Case>&, const Options&);
+  using Table = void (*)(Session&, const std::vector<Case>&, const Options&, Budget&);
   for (const auto& [name, table] : {std::pair<const char*, Table>{"schedules", schedules},
                                     {"vertices", vertices},
                                     {"partitions", partitions},
                                     {"curves", curves},
-                                    {"heuristics", heuristics}}) {
+                                    {"heuristics", heuristics},
+                                    {"searches", searches}}) {
     if (!options.wants(name)) continue;
-    const auto begin = Clock::now();
-    table(session, cases, options);
-    std::printf("\n(%s: %.1f s)\n", name, secondsSince(begin));
-    std::fflush(stdout);
+    Budget budget(options.seconds);
+    table(session, cases, options, budget);
+    budget.print(name);
   }
   return 0;
 }

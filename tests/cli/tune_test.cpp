@@ -34,6 +34,20 @@ TEST(CliTune, FindsAScheduleAndBakesIt) {
   EXPECT_EQ(derived["schedule_file"], baked.path());
 }
 
+TEST(CliTune, KeepsToItsTime) {
+  const TemporaryFile grammar("brief.pga", kTower), baked("brief.gpgpg");
+  const json tuned = gpgpJson({"tune", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--repeat", "3",
+                               "--seconds", "0.001", "-o", baked.path()});
+  EXPECT_GE(tuned["candidates"], 1); // the first part
+  EXPECT_LE(tuned["candidates"], 4);
+  EXPECT_GT(tuned["left_out"], 0); // sizes and counts of workgroups at least
+  EXPECT_FALSE(tuned["complete"]);
+  EXPECT_EQ(tuned["best"]["group_size"], 0); // as the device suggests
+  EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--schedule",
+                      baked.path()})["terminals"],
+            3 * 4 * 3);
+}
+
 TEST(CliTune, TunedSchedulesAreKept) {
   // In a cache of the test's own.
   const TemporaryFile grammar("kept.pga", kTower);
@@ -70,6 +84,7 @@ TEST(CliTune, WrongUsage) {
                     {"tune", grammar.path(), "--search", "lucky"},
                     {"tune", grammar.path(), "--matching", "perhaps"},
                     {"tune", grammar.path(), "--samples", "1"},
+                    {"tune", grammar.path(), "--seconds", "-1"},
                     {"tune", grammar.path(), "--set", "floors"}});
   EXPECT_NE(gpgpFailure({"tune", grammar.path(), "-o", other.path()}).find("is not a baking of this grammar"),
             std::string::npos);

@@ -4,6 +4,7 @@
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
 #include "spawn/codegen/schedules.h"
+#include "spawn/graph/kernel.h"
 
 #include <gtest/gtest.h>
 
@@ -75,6 +76,34 @@ TEST(Schedules, AnExhaustiveSearchMeetsEveryKernelOnce) {
   EXPECT_EQ(partitions.size(), 20u);
   partitions.insert(spawn::namedSchedule(graph, "default")->waits);
   EXPECT_EQ(kernels, partitions);
+}
+
+TEST(Schedules, NeighboursDifferInFewNodes) {
+  for (const std::string& name : ownGrammarNames()) {
+    const spawn::Graph graph = graphOf(ownGrammar(name));
+    const spawn::Flow flow = spawn::makeFlow(graph);
+    for (const char* of : spawn::kScheduleNames) {
+      const auto schedule = *spawn::namedSchedule(graph, of);
+      size_t others = 0;
+      for (const spawn::Schedule& near : spawn::neighbours(graph, schedule)) {
+        EXPECT_LT(near.name.size(), sizeof(spawn::KernelInfo::schedule)) << near.name;
+        const auto violated = spawn::violation(flow, spawn::makePartition(flow, near.roots).groupOf);
+        EXPECT_FALSE(violated) << name << ' ' << near.name << ": " << violated->text;
+        others += near.waits != schedule.waits;
+      }
+      EXPECT_GT(others, 0u) << name << ' ' << of;
+    }
+    // From the finest one, the first step of each node that may join.
+    const auto finest = *spawn::namedSchedule(graph, "rw");
+    size_t joined = 0;
+    for (const spawn::Schedule& near : spawn::neighbours(graph, finest)) {
+      size_t differences = 0;
+      for (size_t n = 0; n < graph.nodes.size(); ++n) differences += near.waits[n] != finest.waits[n];
+      EXPECT_LE(differences, 1u) << name << ' ' << near.name;
+      joined += differences;
+    }
+    EXPECT_GT(joined, 0u) << name;
+  }
 }
 
 TEST(Schedules, MatchingGroupsShareCode) {

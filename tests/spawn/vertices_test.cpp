@@ -428,11 +428,10 @@ void sortQuads(Quads& quads, const VertexFormat& layout) {
     return false;
   });
 }
-/// The same vertices: floats within 1e-4 of the largest coordinate, small formats within one step, the rest equal.
-void expectEqual(Quads expected, Quads found, const VertexFormat& layout, const std::string& what) {
+/// The same vertices in the same places: floats within 1e-4 of the largest coordinate, small formats within one step,
+/// the rest equal.
+void expectInOrder(const Quads& expected, const Quads& found, const VertexFormat& layout, const std::string& what) {
   ASSERT_EQ(expected.size(), found.size()) << what;
-  sortQuads(expected, layout);
-  sortQuads(found, layout);
   for (size_t q = 0; q < expected.size(); ++q)
     for (uint32_t corner = 0; corner < 4; ++corner) {
       std::vector<bool> covered(layout.stride / 4, false);
@@ -464,6 +463,12 @@ void expectEqual(Quads expected, Quads found, const VertexFormat& layout, const 
           ASSERT_EQ(found[q][corner * layout.stride / 4 + w], 0u) << what;
         }
     }
+}
+/// The same in any order.
+void expectEqual(Quads expected, Quads found, const VertexFormat& layout, const std::string& what) {
+  sortQuads(expected, layout);
+  sortQuads(found, layout);
+  expectInOrder(expected, found, layout, what);
 }
 /// The pattern in [first, first + count) quads; relative: to the first of them.
 void expectIndices(const Output& out, size_t first, size_t count, bool relative) {
@@ -581,19 +586,24 @@ TEST_F(VerticesTest, HundredThousandBoxesEqualTheEvaluator) {
   checkAll(*this, "100 000 boxes", words, all, smallVertex());
 }
 
-TEST_F(VerticesTest, GeneratedKernelsWriteTheSame) {
+/// One of the own grammars with a kernel for it.
+std::vector<uint32_t> bakeWithKernel(const std::string& name) {
   GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
-  const std::string text = ownGrammar("building.pga");
+  const std::string text = ownGrammar(name);
   source.text = text.data();
   source.size = text.size();
   source.flags = GPGP_COMPILE_KERNEL;
   GpgpBlob blob{};
-  ASSERT_EQ(gpgpCompileGrammar(&source, &blob), GPGP_SUCCESS);
+  EXPECT_EQ(gpgpCompileGrammar(&source, &blob), GPGP_SUCCESS);
   std::vector<uint32_t> words(blob.size / 4);
   std::memcpy(words.data(), blob.data, blob.size);
   gpgpFreeBlob(&blob);
-  ASSERT_GT(words.size(), words[kHeaderWords]);
-  checkAll(*this, "building", words, axioms(5, 12, 16, 10), wideVertex());
+  EXPECT_GT(words.size(), words[kHeaderWords]);
+  return words;
+}
+
+TEST_F(VerticesTest, GeneratedKernelsWriteTheSame) {
+  checkAll(*this, "building", bakeWithKernel("building.pga"), axioms(5, 12, 16, 10), wideVertex());
 }
 
 TEST_F(VerticesTest, WithCollidersToo) {
@@ -667,6 +677,212 @@ TEST_F(VerticesTest, NoVerticesWithoutAxioms) {
   EXPECT_EQ(out.report.base.status, GPGP_SUCCESS);
   EXPECT_EQ(out.draws[0].indexCount, 0u);
   expectUntouched(out, 0, 10, layout);
+}
+
+// ---------------------------------------------------------------- in order
+
+/// The evaluator's terminals in order of bucket and path key, and where each one's quads begin.
+struct InOrder {
+  Quads quads;
+  std::vector<uint32_t> starts, buckets; // a start more than buckets
+};
+InOrder inOrder(const spawn::Derivation& cpu, uint32_t strideWords) {
+  std::vector<size_t> order(cpu.instances.size()), firsts;
+  std::iota(order.begin(), order.end(), size_t{0});
+  size_t first = 0;
+  for (const uint32_t quads : cpu.quads) {
+    firsts.push_back(first);
+    first += quads;
+  }
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    const GpgpInstance &x = cpu.instances[a], &y = cpu.instances[b];
+    return std::tie(x.bucket, x.key[0], x.key[1]) < std::tie(y.bucket, y.key[0], y.key[1]);
+  });
+  InOrder result;
+  for (const size_t i : order) {
+    result.starts.push_back(static_cast<uint32_t>(result.quads.size()));
+    result.buckets.push_back(cpu.instances[i].bucket);
+    const Quads own = quadsOf(cpu.vertexWords, firsts[i], cpu.quads[i], strideWords);
+    result.quads.insert(result.quads.end(), own.begin(), own.end());
+  }
+  result.starts.push_back(static_cast<uint32_t>(result.quads.size()));
+  return result;
+}
+Quads firstOf(const Quads& quads, size_t begin, size_t end) {
+  return {quads.begin() + std::ptrdiff_t(begin), quads.begin() + std::ptrdiff_t(end)};
+}
+
+TEST_F(VerticesTest, OrderedVerticesLieInOrder) {
+  flags = GPGP_SPAWNER_ORDERED;
+  for (VertexFormat layout : {wideVertex(), narrowVertex()})
+    for (const std::string& name : ownGrammarNames()) {
+      SCOPED_TRACE(name);
+      const auto words = bake(ownGrammar(name));
+      auto all = axioms(3, 12, 16, 10);
+      const spawn::Derivation cpu = evaluate(words, all, layout);
+      const InOrder expected = inOrder(cpu, layout.stride / 4);
+      const uint32_t quads = sum(cpu.quads);
+      layout.indexType = VK_INDEX_TYPE_UINT32; // reaches all
+      Wanted wanted;
+      wanted.vertices = &layout;
+      wanted.quads = quads + 7;
+      const Output out = run(words, all, wanted);
+      EXPECT_EQ(out.report.base.status, GPGP_SUCCESS);
+      ASSERT_EQ(out.report.terminals, cpu.terminals);
+      ASSERT_EQ(out.report.keyHash[0], cpu.keyHash[0]);
+      ASSERT_EQ(out.report.vertices, 4 * quads);
+      ASSERT_EQ(out.report.verticesWritten, 4 * quads);
+      EXPECT_EQ(out.count, 6 * quads);
+      EXPECT_EQ(out.draws[0].indexCount, 6 * quads);
+      EXPECT_EQ(out.draws[0].vertexOffset, 77);
+      expectInOrder(expected.quads, quadsOf(out.vertices, 0, quads, layout.stride / 4), layout, name);
+      expectIndices(out, 0, quads, false);
+      expectUntouched(out, quads, quads + 7, layout);
+      std::reverse(all.begin(), all.end()); // does not matter
+      ASSERT_EQ(run(words, all, wanted).vertices, out.vertices);
+      if (HasFatalFailure()) return;
+    }
+}
+
+TEST_F(VerticesTest, OrderedVerticesDependOnNoSchedule) {
+  flags = GPGP_SPAWNER_ORDERED;
+  const VertexFormat layout = wideVertex();
+  const auto words = bake(ownGrammar("building.pga"));
+  const auto all = axioms(40, 12, 16, 10);
+  const InOrder expected = inOrder(evaluate(words, all, layout), layout.stride / 4);
+  const uint32_t quads = expected.starts.back();
+  Wanted wanted;
+  wanted.vertices = &layout;
+  wanted.quads = quads;
+  const Output out = run(words, all, wanted);
+  expectInOrder(expected.quads, quadsOf(out.vertices, 0, quads, layout.stride / 4), layout, "interpreter");
+  for (int again = 0; again < 3; ++again) {
+    const Output other = run(words, all, wanted);
+    ASSERT_EQ(other.vertices, out.vertices);
+    ASSERT_EQ(other.indices, out.indices);
+  }
+  auto shuffled = all; // other workgroups take other shapes
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
+  ASSERT_EQ(run(words, shuffled, wanted).vertices, out.vertices);
+  const Output kernel = run(bakeWithKernel("building.pga"), all, wanted); // equal but for rounding
+  expectInOrder(expected.quads, quadsOf(kernel.vertices, 0, quads, layout.stride / 4), layout, "a kernel");
+  ASSERT_EQ(kernel.indices, out.indices);
+}
+
+TEST_F(VerticesTest, OrderedVerticesSurviveFromTheFront) {
+  flags = GPGP_SPAWNER_ORDERED;
+  const auto words =
+      bake("axiom Box A; terminal T (0,0); A = Repeat(X,0.1,ADJUST_TO_FILL) Repeat(Y,0.1,ADJUST_TO_FILL) B;"
+           "B = RandomRule(ShapeSeed()) { 0.5: T | 0.5: CompSplit() { T | T | Discard() } };");
+  const auto all = axioms(3, 3, 2, 1);
+  const VertexFormat layout = wideVertex();
+  const InOrder expected = inOrder(evaluate(words, all, layout), 12);
+  const uint32_t quads = expected.starts.back();
+  for (const uint32_t capacity : {1001u, 1002u, 1003u, 1004u, 1005u, 1006u, 3u, 64u, quads - 1}) {
+    SCOPED_TRACE(capacity);
+    // The terminals up to the first one that does not fit.
+    const uint32_t written = *(std::upper_bound(expected.starts.begin(), expected.starts.end(), capacity) - 1);
+    for (const bool ofIndices : {false, true}) { // which buffer is short
+      Wanted wanted;
+      wanted.vertices = &layout;
+      wanted.quads = ofIndices ? quads : capacity;
+      wanted.indexQuads = ofIndices ? capacity : quads;
+      const Output out = run(words, all, wanted);
+      EXPECT_EQ(out.report.base.status, GPGP_BUDGET_EXCEEDED);
+      EXPECT_EQ(out.report.vertices, 4 * quads);
+      ASSERT_EQ(out.report.verticesWritten, 4 * written);
+      EXPECT_EQ(out.draws[0].indexCount, 6 * written);
+      expectInOrder(firstOf(expected.quads, 0, written), quadsOf(out.vertices, 0, written, 12), layout, "front");
+      expectIndices(out, 0, written, false);
+      for (size_t i = 6 * written; i < out.indices.size(); ++i) ASSERT_EQ(out.indices[i], kPoison);
+      for (size_t i = written * 48; i < out.vertices.size(); ++i) ASSERT_EQ(out.vertices[i], kPoison);
+    }
+  }
+}
+
+TEST_F(VerticesTest, OrderedVerticesFillTheirRegionsFromTheFront) {
+  flags = GPGP_SPAWNER_ORDERED;
+  const auto words = bake("axiom Box A; terminal S (0,0); terminal T (0,1); terminal U (0,2);"
+                          "A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { S | CompSplit() T | T };");
+  const std::vector<GpgpAxiom> all{makeAxiom(100, 1, 1, 5), makeAxiom(7, 1, 1, 6, 1)};
+  for (VertexFormat layout : {wideVertex(), narrowVertex()}) {
+    const uint32_t stride = layout.stride / 4;
+    const InOrder expected = inOrder(evaluate(words, all, layout), stride);
+    Wanted wanted;
+    wanted.vertices = &layout;
+    wanted.flags = GPGP_SPAWN_REGIONS;
+    wanted.withNeeded = true;
+    wanted.quads = 1000;
+    wanted.draws = {{1, 2, 6 * 4, 4, 5}, {1, 2, 6 * 303, 4, 5}, {1, 2, 6 * 990, 4, 5}};
+    const Output out = run(words, all, wanted);
+    EXPECT_EQ(out.report.base.status, GPGP_BUDGET_EXCEEDED);
+    EXPECT_EQ(out.needed, (std::vector<uint32_t>{107 * 36, 107 * 72, 0}));
+    const uint32_t starts[4] = {4, 303, 990, 1000};
+    uint32_t all3 = 0;
+    for (uint32_t bucket = 0; bucket < 3; ++bucket) {
+      SCOPED_TRACE(bucket);
+      const size_t first =
+          size_t(std::lower_bound(expected.buckets.begin(), expected.buckets.end(), bucket) - expected.buckets.begin());
+      size_t last = first;
+      const uint32_t capacity = starts[bucket + 1] - starts[bucket];
+      while (last < expected.buckets.size() && expected.buckets[last] == bucket &&
+             expected.starts[last + 1] - expected.starts[first] <= capacity)
+        ++last;
+      const uint32_t count = expected.starts[last] - expected.starts[first];
+      ASSERT_EQ(out.draws[bucket].indexCount, 6 * count);
+      EXPECT_EQ(out.draws[bucket].vertexOffset, int32_t(4 * starts[bucket]));
+      expectInOrder(firstOf(expected.quads, expected.starts[first], expected.starts[last]),
+                    quadsOf(out.vertices, starts[bucket], count, stride), layout, "region");
+      expectIndices(out, starts[bucket], count, true);
+      expectUntouched(out, starts[bucket] + count, starts[bucket + 1], layout);
+      all3 += count;
+    }
+    EXPECT_EQ(out.report.verticesWritten, 4 * all3);
+    EXPECT_EQ(out.count, 6 * all3);
+    EXPECT_EQ(run(words, all, wanted).vertices, out.vertices);
+  }
+}
+
+TEST_F(VerticesTest, ManyOrderedVerticesAndFewRecords) {
+  flags = GPGP_SPAWNER_ORDERED;
+  const VertexFormat layout = smallVertex();
+  const auto words = bake("axiom Box A; terminal S (1, 0); terminal T (1, 1);\n"
+                          "A = Repeat(X, 0.5, ADJUST_TO_FILL) SubDiv(Y) { -1: T | -1: CompSplit() { S | T | S } };\n");
+  const auto all = axioms(300, 50, 1, 1);
+  const InOrder expected = inOrder(evaluate(words, all, layout), 4);
+  const uint32_t quads = expected.starts.back();
+  Wanted wanted;
+  wanted.vertices = &layout;
+  wanted.quads = quads;
+  const Output out = run(words, all, wanted);
+  ASSERT_EQ(out.report.verticesWritten, 4 * quads);
+  expectInOrder(expected.quads, quadsOf(out.vertices, 0, quads, 4), layout, "many");
+  // Records for a part only: which ones is not said, but what is written has no holes and the rest is counted.
+  maxTerminals = 1000;
+  const Output few = run(words, all, wanted);
+  EXPECT_EQ(few.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(few.report.terminals, expected.buckets.size());
+  EXPECT_EQ(few.report.vertices, 4 * quads);
+  EXPECT_GE(few.report.verticesWritten, 4000u);
+  EXPECT_LE(few.report.verticesWritten, 24000u);
+  expectIndices(few, 0, few.report.verticesWritten / 4, false);
+  expectUntouched(few, few.report.verticesWritten / 4, quads, layout);
+  maxTerminals = 0;
+  EXPECT_EQ(run(words, {}, wanted).report.vertices, 0u);
+}
+
+TEST_F(VerticesTest, OrderedVerticesOfEqualKeysLieByAxiom) {
+  flags = GPGP_SPAWNER_ORDERED;
+  const VertexFormat layout = wideVertex();
+  const auto words = bake("axiom Box A; terminal T (1, 0); A = Repeat(X, 1, ADJUST_TO_FILL) T;\n");
+  std::vector<GpgpAxiom> alike(300, makeAxiom(3, 1, 1, 7, 7));
+  for (size_t i = 0; i < alike.size(); ++i) alike[i].transform[3] = static_cast<float>(i);
+  const InOrder expected = inOrder(evaluate(words, alike, layout), 12);
+  Wanted wanted;
+  wanted.vertices = &layout;
+  wanted.quads = expected.starts.back();
+  const Output out = run(words, alike, wanted);
+  expectInOrder(expected.quads, quadsOf(out.vertices, 0, wanted.quads, 12), layout, "alike");
 }
 
 // ---------------------------------------------------------------- regions, and counting first

@@ -113,4 +113,21 @@ std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t 
   return found;
 }
 
+std::vector<Schedule> neighbours(const Graph& graph, const Schedule& schedule) {
+  const Flow flow = makeFlow(graph);
+  std::vector<bool> isStatic(graph.edges.size());
+  for (const uint32_t n : flow.order)
+    for (const Link& link : flow.in[n]) isStatic[link.edge] = !schedule.waits[n];
+  std::vector<Schedule> found;
+  for (const uint32_t n : flow.order) {
+    if (flow.in[n].empty()) continue;
+    std::vector<bool> other = isStatic;
+    for (const Link& link : flow.in[n]) other[link.edge] = schedule.waits[n];
+    const size_t shown = std::min<size_t>(schedule.name.find(" but "), 16); // the first one's name: they fit a kernel's
+    found.push_back(scheduleOf(graph, flow, realise(flow, other),
+                               schedule.name.substr(0, shown) + " but node " + std::to_string(n)));
+  }
+  return found;
+}
+
 } // namespace gpgp::spawn

@@ -31,4 +31,8 @@ enum class Search {
 /// The named schedules, then what a search finds: at most `limit` in all, no kernel twice. complete: all there are.
 std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t limit, uint32_t seed, bool& complete);
 
+/// The schedules of partitions in which one node more, or one fewer, begins a group. Some may have the same kernel, or
+/// the schedule's own.
+std::vector<Schedule> neighbours(const Graph& graph, const Schedule& schedule);
+
 } // namespace gpgp::spawn

@@ -4,6 +4,7 @@
 #include "spawn/evaluator/program.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace gpgp::spawn {
@@ -44,6 +45,9 @@ struct Frame {
   Fan fan;
   uint32_t made; // of its children
   uint32_t left; // successors that still get one
+  // SubDiv whose parts are not constant: the sum of its weights; of parts before one, its number and their lengths.
+  float weights, fixedBefore, weightBefore;
+  uint32_t summed;
 };
 
 /// f(axis), with an axis that the compiler knows.
@@ -81,14 +85,12 @@ private:
     frame->step = program_.at(frame->shape.node);
     const uint64_t maxShapes = options_.maxShapes;
     uint64_t shapes = out_.shapes;
-    uint32_t depth = out_.depth;
     for (;;) {
       if (++shapes > maxShapes) {
         out_.complete = false;
         break;
       }
       const uint32_t result = runChain(*frame);
-      depth = std::max(depth, frame->shape.depth);
       if (result == kEndTerminal) emit(*frame);
       if (result == kEndUnfinished) ++out_.unfinishedShapes;
       if (result == kEndWaits && ++frame == end) {
@@ -98,35 +100,49 @@ private:
         frame = first + top;
         end = frame + top;
       }
-      while (frame != first && frame[-1].made == frame[-1].fan.count) --frame;
       if (frame == first) break;
-      frame->shape = frame[-1].shape;
-      frame->step = toChild(frame[-1], frame->shape);
+      Frame& parent = frame[-1];
+      if (parent.made + 1 == parent.fan.count)
+        --frame; // the last child takes its parent's place
+      else
+        frame->shape = parent.shape;
+      frame->step = toChild(parent, frame->shape);
     }
     out_.shapes = shapes;
-    out_.depth = depth;
   }
 
   /// One of the first three parameters.
   float value(const Step& step, const Shape& s, uint32_t i) const {
     if (!(step.variable >> i & 1)) return component(step.values, i);
-    if (!step.terms[i]) return evaluateWords(s, step.parameters + i * kParameterSize);
-    const Term* term = &program_.terms[step.terms[i]];
+    return expression(s, step.terms[i], step.parameters + i * kParameterSize);
+  }
+  float expression(const Shape& s, uint32_t terms, uint32_t words) const {
+    if (terms == kNoTerms) return evaluateWords(s, words);
+    const Term* term = &program_.terms[terms];
     float result = operand(*term, s);
     while ((++term)->code != kCodeEnd) result = combine(term->code, result, operand(*term, s), unitFloat(s.seed));
     return result;
   }
   static float operand(const Term& term, const Shape& s) {
-    return term.operand == kCodeNumber ? term.number : attributeOf(s, term.operand);
+    if (term.source == kNumber) return term.number;
+    if (term.source == kDrawn) return add(term.number, multiply(term.range, unitFloat(s.seed)));
+    if (term.source == kSeed) return unitFloat(s.seed);
+    float attribute;
+    std::memcpy(&attribute, reinterpret_cast<const char*>(&s) + term.source, sizeof attribute);
+    return attribute;
   }
   [[gnu::noinline]] float evaluateWords(const Shape& s, uint32_t at) const { return evaluate(words_, s, at); }
+  vec2 angle(const Step& step, const Shape& s, uint32_t i) const {
+    return step.variable >> i & 1 ? sineCosineDegrees(value(step, s, i)) : step.angles[i];
+  }
   vec3 values(const Step& step, const Shape& s) const {
     if (!step.variable) return step.values;
     return {value(step, s, 0), value(step, s, 1), value(step, s, 2)};
   }
-  static const Step* follow(Shape& s, const Way& way) {
-    s.depth += way.recursive;
-    return way.target;
+  const Step* follow(Shape& s, const Way& way) {
+    if (!way.recursive) return way.target;
+    out_.depth = std::max(out_.depth, ++s.depth);
+    return s.depth > maxDepth_ ? &unfinished_ : way.target;
   }
 
   /// Takes a shape from operator to operator while each passes on one shape, as runChain() of interpret.h.
@@ -134,15 +150,15 @@ private:
     Shape& s = frame.shape;
     for (uint32_t i = 0; i < kMaxChain; ++i) {
       const Step& step = *frame.step;
-      if (s.depth > maxDepth_) return kEndUnfinished;
       uint32_t way = 0;
       switch (step.op) {
+      case kUnfinished: return kEndUnfinished;
       case kDiscard: return kEndDiscarded;
       case kOpTerminal: return kEndTerminal;
       case kTranslateAlong: s.position = axisPoint(s, step.argument, value(step, s, step.argument)); break;
       case kOpTranslate: translate(s, values(step, s)); break;
       case kRotateBy: rotate(s, step.rotation); break;
-      case kOpRotate: rotate(s, rotationOf(values(step, s))); break;
+      case kOpRotate: rotate(s, rotationOfAngles(angle(step, s, 0), angle(step, s, 1), angle(step, s, 2))); break;
       case kOpScale: resize(s, values(step, s)); break;
       case kOpExtrude: extrude(s, value(step, s, 0)); break;
       case kOpSwapSize: swapSizes(s, step.argument); break;
@@ -169,31 +185,32 @@ private:
         break;
       }
       default:
-        wait(frame);
-        if (!step.filter) return kEndWaits;
-        if (frame.fan.count == 0) return kEndDiscarded;
+        if (const uint32_t end = wait(frame); !step.filter || end == kEndDiscarded) return end;
         frame.step = toChild(frame, s);
         continue;
       }
       frame.step = follow(s, step.ways[way]);
     }
-    wait(frame);
-    return kEndWaits;
+    return wait(frame);
   }
-  void wait(Frame& frame) const {
-    frame.fan = fanOf(*frame.step, frame.shape);
+  /// For its children to be made, if it has any.
+  uint32_t wait(Frame& frame) const {
+    frame.fan = fanOf(frame);
     frame.made = 0;
     frame.left = frame.fan.successors;
+    return frame.fan.count ? kEndWaits : kEndDiscarded;
   }
 
-  Fan fanOf(const Step& step, Shape& s) const {
-    Fan fan{1, step.successors, 0};
+  Fan fanOf(Frame& frame) const {
+    const Step& step = *frame.step;
+    const Shape& s = frame.shape;
+    Fan fan{step.count, step.successors, 0};
     switch (step.op) {
     case kDivide:
       fan.extent = remainderOf(component(s.size, step.argument), step.total);
-      if (fan.extent > 0) fan.successors |= step.weighted;
-      break;
-    case kOpSubDiv: s.node = step.node; return divisionOf(words_, s, 0).fan;
+      if (fan.extent > 0) return {step.allCount, step.successors | step.weighted, fan.extent};
+      return fan;
+    case kOpSubDiv: return divide(frame);
     case kOpRepeat:
       fan = repetitionOf(component(s.size, step.argument), step.argument2, value(step, s, 0));
       if (!step.successors) fan.count = 0;
@@ -202,15 +219,53 @@ private:
       const Faces faces = facesOf(words_, s.geometry, step.successors);
       return {faces.count, faces.successors, 0};
     }
-    case kOpReplicate: break;
-    default: return fan; // the shape itself, after kMaxChain operators
+    case kOpReplicate: return fan;
+    default: return {1, step.successors, 0}; // the shape itself, after kMaxChain operators
     }
+  }
+
+  /// A part's length, or negative weight.
+  float length(const Step& step, const Shape& s, uint32_t part) const {
+    const Way& way = step.ways[part];
+    return way.terms ? expression(s, way.terms, step.parameters + part * kParameterSize) : way.length;
+  }
+  /// The fan of divisionOf(), and what its parts need.
+  Fan divide(Frame& frame) const {
+    const Step& step = *frame.step;
+    float fixedLength = frame.weights = frame.fixedBefore = frame.weightBefore = 0;
+    frame.summed = 0;
+    Fan fan{0, 0, 0};
+    uint32_t weighted = 0;
+    for (uint32_t i = 0; i < step.wayCount; ++i) {
+      const float v = length(step, frame.shape, i);
+      addLength(v, fixedLength, frame.weights);
+      if (v > 0) fan.successors |= step.successors & (1u << i);
+      if (v < 0) weighted |= step.successors & (1u << i);
+    }
+    fan.extent = remainderOf(component(frame.shape.size, step.argument), fixedLength);
+    if (fan.extent > 0) fan.successors |= weighted;
     fan.count = uint(bitCount(fan.successors));
     return fan;
   }
+  static void addLength(float v, float& fixedLength, float& weights) {
+    if (v > 0) fixedLength = add(fixedLength, v);
+    if (v < 0) weights = subtract(weights, v);
+  }
+  /// Its parts in their order.
+  Part nextPart(Frame& frame, const Shape& s, uint32_t number) const {
+    for (; frame.summed < number; ++frame.summed)
+      addLength(length(*frame.step, s, frame.summed), frame.fixedBefore, frame.weightBefore);
+    const float own = length(*frame.step, s, number);
+    Part part;
+    part.fixedBefore = frame.fixedBefore;
+    part.fixedLength = max(0.0f, own);
+    part.share = own < 0 ? shader::divide(-own, frame.weights) : 0;
+    part.shareBefore = frame.weightBefore > 0 ? shader::divide(frame.weightBefore, frame.weights) : 0;
+    return part;
+  }
 
-  /// The next child of a frame's shape, of which s is a copy. Returns where it goes.
-  const Step* toChild(Frame& frame, Shape& s) const {
+  /// The next child of a frame's shape, of which s is a copy, or which it is. Returns where it goes.
+  const Step* toChild(Frame& frame, Shape& s) {
     const Step& step = *frame.step;
     const uint32_t index = frame.made++;
     uint32_t way = 0;
@@ -225,7 +280,7 @@ private:
       break;
     case kOpSubDiv:
       nextSuccessor();
-      toPart(s, step.argument, frame.fan.extent, divisionOf(words_, s, way).part, way);
+      toPart(s, step.argument, frame.fan.extent, nextPart(frame, s, way), way);
       break;
     case kOpRepeat:
       forAxis(step.argument,
@@ -254,10 +309,10 @@ private:
     out_.keyHash[0] += hash.x;
     out_.keyHash[1] += hash.y;
     ++out_.buckets[bucket];
-    const size_t number = out_.terminals++;
+    ++out_.terminals;
     if (!options_.keepInstances) return;
-    if (number == out_.instances.size()) out_.instances.resize(std::max<size_t>(64, 2 * number));
-    GpgpInstance& instance = out_.instances[number];
+    if (next_ == end_) makeRoom();
+    GpgpInstance& instance = *next_++;
     for (uint32_t r = 0; r < 3; ++r) {
       const float* t = axiom.transform + 4 * r;
       const vec4 row = instanceRow(shape, vec4(t[0], t[1], t[2], t[3]));
@@ -278,14 +333,23 @@ private:
     if (options_.vertices) emitVertices(out_, words_, shape, instance, *options_.vertices);
   }
 
+  [[gnu::noinline]] void makeRoom() {
+    const size_t used = out_.terminals - 1;
+    out_.instances.resize(std::max({out_.instances.size(), 2 * used, size_t{64}}));
+    next_ = out_.instances.data() + used;
+    end_ = out_.instances.data() + out_.instances.size();
+  }
+
   const uint32_t* const words_;
   const std::span<const GpgpAxiom> axioms_;
   const DeriveOptions& options_;
   const uint32_t maxDepth_;
   Derivation& out_;
   const Program program_;
+  const Step unfinished_{.op = kUnfinished};
   Context context_;
   std::vector<Frame> frames_;
+  GpgpInstance *next_ = nullptr, *end_ = nullptr; // room among out_.instances
 };
 } // namespace
 

@@ -1,22 +1,46 @@
 #include "spawn/evaluator/program.h"
 
+#include <cstddef>
+
 namespace gpgp::spawn {
 namespace {
 using namespace shader;
 
 bool isConstant(const uint32_t* words, uint32_t parameter) { return words[parameter] == kParameterConstant; }
 
-/// Terms of the parameter at a word. Returns where they are, or 0 where they do not go from left to right.
+/// Where a Shape has an attribute, as attributeOf() says.
+uint32_t sourceOf(uint32_t code) {
+  const auto within = [&](uint32_t first, uint32_t count) { return code >= first && code < first + count; };
+  if (within(kCodePosition, 3)) return uint32_t(offsetof(Shape, position)) + 4 * (code - kCodePosition);
+  if (within(kCodeShapeSize, 3)) return uint32_t(offsetof(Shape, size)) + 4 * (code - kCodeShapeSize);
+  if (within(kCodeNormal, 3)) return uint32_t(offsetof(Shape, axisZ)) + 4 * (code - kCodeNormal);
+  if (within(kCodeRotation, 9)) return uint32_t(offsetof(Shape, axisX)) + 4 * (code - kCodeRotation);
+  return code == kCodeSeed ? uint32_t(kSeed) : uint32_t(offsetof(Shape, custom));
+}
+static_assert(offsetof(Shape, axisY) == offsetof(Shape, axisX) + 12 &&
+              offsetof(Shape, axisZ) == offsetof(Shape, axisX) + 24);
+
+/// Terms of the parameter at a word. Returns where they are, or kNoTerms where they do not go from left to right.
 uint32_t addTerms(std::vector<Term>& terms, const uint32_t* words, uint32_t at) {
   const size_t first = terms.size();
   if (words[at] == kParameterAttribute) {
-    terms.push_back({kCodeEnd, words[at + 1], 0});
+    terms.push_back({kCodeEnd, sourceOf(words[at + 1]), 0, 0});
   } else {
     const uint32_t* code = words + words[at + 1];
     const auto operand = [&] {
       if (*code != kCodeNumber && *code < kCodeAttributes) return false;
-      terms.push_back({kCodeEnd, *code, *code == kCodeNumber ? uintBitsToFloat(code[1]) : 0});
-      code += *code == kCodeNumber ? 2 : 1;
+      if (*code != kCodeNumber) {
+        terms.push_back({kCodeEnd, sourceOf(*code++), 0, 0});
+        return true;
+      }
+      const float number = uintBitsToFloat(code[1]);
+      code += 2;
+      if (*code == kCodeNumber && code[2] == kCodeRandom) { // as combine() draws, with its difference worked out
+        terms.push_back({kCodeEnd, kDrawn, number, subtract(uintBitsToFloat(code[1]), number)});
+        code += 3;
+      } else {
+        terms.push_back({kCodeEnd, kNumber, number, 0});
+      }
       return true;
     };
     bool plain = operand();
@@ -26,15 +50,17 @@ uint32_t addTerms(std::vector<Term>& terms, const uint32_t* words, uint32_t at) 
     }
     if (!plain) {
       terms.resize(first);
-      return 0;
+      return kNoTerms;
     }
   }
-  terms.push_back({kCodeEnd, 0, 0});
+  terms.push_back({kCodeEnd, 0, 0, 0});
   return static_cast<uint32_t>(first);
 }
 
 /// Rotations by constants and translations along one axis.
 void simplify(Step& step) {
+  if (step.op == kOpRotate)
+    for (uint32_t i = 0; i < 3; ++i) step.angles[i] = sineCosineDegrees(component(step.values, i));
   if (step.op == kOpRotate && !step.variable) {
     step.op = kRotateBy;
     step.rotation = rotationOf(step.values);
@@ -65,6 +91,18 @@ void simplifyChoice(Program& program, Step& step, const uint32_t* words) {
   step.wayCount = kept;
 }
 
+/// SubDiv some of whose parts are not constant.
+void addLengths(Program& program, const Step& step, const uint32_t* words) {
+  Way* const ways = program.ways.data() + program.ways.size() - step.wayCount;
+  for (uint32_t i = 0; i < step.wayCount; ++i) {
+    const uint32_t at = step.parameters + i * kParameterSize;
+    if (isConstant(words, at))
+      ways[i].length = graphFloat(words, at + 1);
+    else
+      ways[i].terms = addTerms(program.terms, words, at);
+  }
+}
+
 /// SubDiv with constant parts.
 void simplifyDivision(Program& program, Step& step, const uint32_t* words) {
   const uint32_t division = step.argument2;
@@ -81,8 +119,8 @@ Program decode(const uint32_t* words) {
   Program program;
   const uint32_t nodes = words[kHeaderSections + 2 * kSectionNodes];
   program.steps.resize(1 + nodes);
-  program.terms.resize(1);
-  size_t ways = 0; // steps point at them, so they must not move; nodes of a file may share edges
+  program.terms.resize(1); // 0 is none
+  size_t ways = 0;         // steps point at them, so they must not move; nodes of a file may share edges
   for (uint32_t n = 0; n < nodes; ++n) ways += words[kHeaderSize + n * kNodeSize + kNodeEdgeCount];
   program.ways.reserve(ways);
   for (uint32_t n = 0; n < nodes; ++n) {
@@ -98,7 +136,7 @@ Program decode(const uint32_t* words) {
     step.ways = program.ways.data() + program.ways.size();
     for (uint32_t e = 0; e < step.wayCount; ++e) {
       const uint32_t target = edgeTarget(words, step.node, e);
-      program.ways.push_back({program.at(target & ~kEdgeRecursive), target >> 31, 0, {}});
+      program.ways.push_back({program.at(target & ~kEdgeRecursive), target >> 31, 0, {}, 0, 0});
       if (target) step.successors |= 1u << e;
     }
     for (uint32_t i = 0; i < min(node[kNodeParameterCount], 3u); ++i) {
@@ -112,7 +150,10 @@ Program decode(const uint32_t* words) {
     }
     simplify(step);
     if (step.op == kOpRandomRule) simplifyChoice(program, step, words);
+    if (step.op == kOpSubDiv && !step.argument2) addLengths(program, step, words);
     if (step.op == kOpSubDiv && step.argument2) simplifyDivision(program, step, words);
+    step.count = uint(bitCount(step.successors));
+    step.allCount = uint(bitCount(step.successors | step.weighted));
   }
   return program;
 }

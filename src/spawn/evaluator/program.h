@@ -7,7 +7,7 @@
 namespace gpgp::spawn {
 
 /// Beside the kOp values: what discards every shape, and cases whose constants save work.
-enum : uint32_t { kDiscard = shader::kOpCount, kTranslateAlong, kRotateBy, kChoose, kDivide };
+enum : uint32_t { kDiscard = shader::kOpCount, kUnfinished, kTranslateAlong, kRotateBy, kChoose, kDivide };
 
 struct Step;
 
@@ -16,14 +16,21 @@ struct Way { ///< along an edge
   uint32_t recursive; ///< 1: counts as depth
   float from;         ///< kChoose: it is taken from this value on, unless a later one is
   shader::Part part;  ///< kDivide
+  float length;       ///< SubDiv whose parts are not all constant: this one's, where terms is 0
+  uint32_t terms;     ///< else: as Step::terms
 };
+
+/// What a term is, beside offsets of a Shape's floats.
+enum : uint32_t { kNumber = 0xffffff00u, kSeed, kDrawn };
 
 /// Of an expression that goes from left to right: a number or an attribute, and how it joins what stands before it.
 struct Term {
-  uint32_t code;    ///< kCodeAdd to kCodeRandom; kCodeEnd behind the last term
-  uint32_t operand; ///< kCodeNumber, or an attribute's code
-  float number;
+  uint32_t code;   ///< kCodeAdd to kCodeRandom; kCodeEnd behind the last term
+  uint32_t source; ///< offset in Shape, or: kNumber; kSeed: the seed's fraction; kDrawn: number + range * that
+  float number, range;
 };
+/// Instead of a place in Program::terms: what does not go from left to right, which evaluate() does.
+constexpr uint32_t kNoTerms = UINT32_MAX;
 
 struct Step {
   uint32_t op = kDiscard;
@@ -34,11 +41,14 @@ struct Step {
   uint32_t wayCount = 0;
   uint32_t successors = 0;     ///< bits: ways that do not discard; kDivide: without what needs a remainder
   uint32_t weighted = 0;       ///< kDivide: those that do
+  uint32_t count = 0;          ///< of successors
+  uint32_t allCount = 0;       ///< and of weighted
   uint32_t parameters = 0;     ///< word offset
   uint32_t variable = 0;       ///< bits: of the first three parameters those that are not constant
-  uint32_t terms[3]{};         ///< of those: in Program::terms; 0: evaluate() does it
+  uint32_t terms[3]{};         ///< of those: in Program::terms, or kNoTerms
   shader::vec3 values{0};      ///< of the others
   shader::Rotation rotation{}; ///< kRotateBy
+  shader::vec2 angles[3]{};    ///< Rotate that is not: (sine, cosine) of what is constant
   float total = 0;             ///< kChoose: of all chances; kDivide: of fixed lengths
 };
 

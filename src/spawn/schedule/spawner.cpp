@@ -189,6 +189,32 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
       if (phase) pass.condition = kPhases + phase - 1;
     }
   }
+  const VkDeviceSize perRecord = roundAt(rounds - 1); // dispatch arguments
+  const auto order = [&](const char* name, uint32_t number) {
+    const uint32_t shader = list.add(core::ShaderDesc{name, spawn_order, {number}, 1});
+    const auto orderUses = {core::Use{kGraph, read}, {kRecords, read},   {kCounters, readWrite},
+                            {kBuckets, readWrite},   {kConstants, read}, {kOrder, readWrite}};
+    const bool perPart = number == shader::kOrderSum || number == shader::kOrderStarts ||
+                         number == shader::kOrderQuadSum || number == shader::kOrderQuadStarts;
+    core::Pass& pass = number == shader::kOrderBuckets ? list.dispatch(name, shader, orderUses, kOneGroup)
+                       : perPart                       ? list.dispatch(name, shader, orderUses, kPartGroups)
+                                 : list.dispatchIndirect(name, shader, orderUses, kCounters, perRecord);
+    pass.condition = kOrdered;
+  };
+  const auto orderRecords = [&] {
+    list.fill("clear bins", kOrder, 0, 0, sizeof(uint32_t) * maxTerminals).condition = kOrdered;
+    order("count bins", shader::kOrderCount);
+    order("sum bins", shader::kOrderSum);
+    order("place bins", shader::kOrderStarts);
+    order("fill bins", shader::kOrderFill);
+    order("rank", shader::kOrderRank);
+  };
+  if (vertices && ordered) {
+    order("place buckets", shader::kOrderBuckets);
+    orderRecords();
+    order("sum quads", shader::kOrderQuadSum);
+    order("place quads", shader::kOrderQuadStarts);
+  }
   if (vertices) {
     const auto spirv =
         subgroups ? std::span<const uint32_t>(spawn_expand_subgroups) : std::span<const uint32_t>(spawn_expand);
@@ -203,7 +229,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                    {kBuckets, readWrite},
                    {kConstants, read},
                    {kVertices, write},
-                   {kIndices, write}},
+                   {kIndices, write},
+                   {kOrder, read}},
                   kExpandGroups)
         .condition = kExpanded;
   }
@@ -214,27 +241,11 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                  {kCounters, readWrite},
                  {kBuckets, readWrite},
                  {kConstants, read},
-                 {kNeeded, write}},
+                 {kNeeded, write},
+                 {kOrder, read}},
                 kOneGroup);
-  const VkDeviceSize perRecord = roundAt(rounds - 1); // dispatch arguments
-  if (ordered) {
-    const auto orderUses = {core::Use{kGraph, read}, {kRecords, read},   {kCounters, read},
-                            {kBuckets, read},        {kConstants, read}, {kOrder, readWrite}};
-    const auto stage = [&](const char* name, uint32_t number) {
-      const uint32_t shader = list.add(core::ShaderDesc{name, spawn_order, {number}, 1});
-      const bool ofParts = number == shader::kOrderSum || number == shader::kOrderStarts;
-      core::Pass& pass = ofParts ? list.dispatch(name, shader, orderUses, kPartGroups)
-                                 : list.dispatchIndirect(name, shader, orderUses, kCounters, perRecord);
-      pass.condition = kOrdered;
-    };
-    list.fill("clear bins", kOrder, 0, 0, sizeof(uint32_t) * maxTerminals).condition = kOrdered;
-    stage("count bins", shader::kOrderCount);
-    stage("sum bins", shader::kOrderSum);
-    stage("place bins", shader::kOrderStarts);
-    stage("fill bins", shader::kOrderFill);
-    stage("rank", shader::kOrderRank);
-  }
   if (!vertices) {
+    if (ordered) orderRecords();
     const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, {ordered}, 1});
     list.dispatchIndirect("emit", emit,
                           {{kGraph, read},
@@ -271,9 +282,10 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
   const bool counts = vertices() ? !info.vertices->vertices.buffer : !info.instances.buffer;
+  const bool inOrder = ordered_ && !counts;
   // One bucket is sorted as it is.
   const bool sorted =
-      !vertices() && !counts && (ordered_ || (!regions && info.draws.buffer && grammar.graph.buckets > 1));
+      !vertices() && (inOrder || (!counts && !regions && info.draws.buffer && grammar.graph.buckets > 1));
   shader::SpawnConstants constants{};
   constants.axiomCount = info.axiomCount;
   constants.instanceCapacity = elementsIn<GpgpInstance>(info.instances);
@@ -289,7 +301,10 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.steps = limits.steps;
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
-  constants.terminalsTo = counts ? shader::kToCounts : sorted || vertices() ? shader::kToRecords : shader::kToInstances;
+  constants.terminalsTo = counts              ? shader::kToCounts
+                          : sorted || inOrder ? shader::kToKeyedRecords
+                          : vertices()         ? shader::kToRecords
+                                              : shader::kToInstances;
   constants.regions = regions;
   constants.writeNeeded = info.needed.buffer ? 1 : 0;
   constants.quads = vertices() ? 1 : 0;
@@ -326,7 +341,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
                                   1};
   record.conditions[kSorted] = sorted;
   record.conditions[kExpanded] = vertices() && !counts;
-  record.conditions[kOrdered] = sorted && ordered_;
+  record.conditions[kOrdered] = inOrder;
   record.conditions[kBucketed] = sorted || regions || counts || vertices();
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
