@@ -303,7 +303,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.maxTerminals = maxTerminals_;
   constants.terminalsTo = counts              ? shader::kToCounts
                           : sorted || inOrder ? shader::kToKeyedRecords
-                          : vertices()         ? shader::kToRecords
+                          : vertices()        ? shader::kToRecords
                                               : shader::kToInstances;
   constants.regions = regions;
   constants.writeNeeded = info.needed.buffer ? 1 : 0;
