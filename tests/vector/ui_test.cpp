@@ -531,4 +531,58 @@ TEST_F(CanvasTest, NineSlicesRepeat) {
       },
       "image.tileSize[0] is 0");
 }
+
+TEST_F(CanvasTest, ListsStandWhatNobodyWouldDesign) {
+  makeCanvas(64);
+  TestList list(context);
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto green = [&](const std::vector<Rgba>& pixels) { return pixels[10 * 32 + 10].g; };
+  // A million shapes: as many as fit, from the bottom, and a report of what they would need.
+  const std::vector<GpgpListShape> million(1000000, rectangle(0, 0, 20, 20, {0, 1, 0, 1}));
+  ASSERT_EQ(gpgpAddShapes(list.list, million.data(), 1000000), GPGP_SUCCESS);
+  EXPECT_EQ(green(raster({list.item()}, 32, 32, 4, &report)), 1);
+  EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(report.shapes, 1000000u);
+  EXPECT_EQ(report.shapesGiven, 1024u);
+  // More clips, transforms and groups than there is room for, one after another.
+  list.reset().add(million[0]);
+  for (int i = 0; i < 20000; ++i)
+    list.group(0.5f).push(turned(1, 1, 0, 0)).clip({0, 0, 9, 9}, {3, 3, 3, 3}).add(million[0]).pop(3);
+  raster({list.item()}, 32, 32, 4, &report);
+  EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_GE(report.items, 20000u);
+  // Nothing to be seen: no extent, no scale, what scales beyond numbers.
+  list.reset().add(million[0]);
+  for (const std::array<float, 4>& box : {std::array{5.0f, 5.0f, 5.0f, 5.0f},
+                                          {0.0f, 5.0f, 30.0f, 5.0f},
+                                          {1e7f, 1e7f, 1e7f, 1e7f},
+                                          {0, 0, 1e-38f, 1e-38f}}) {
+    const GpgpListShape shape = rectangle(box[0], box[1], box[2], box[3]);
+    list.add(shape).add(rounded(shape, 1, 2, 3, 4)).add(rounded(shape, 9, 9, 9, 9, 5)).add(ellipse(shape));
+    list.add(ellipse(shape, 1e7f)).clip(box, {1e7f, 0, 1e7f, 0}).add(million[0]).pop();
+  }
+  list.add(line(5, 5, 5, 5, 1e-38f, GPGP_CAP_ROUND)).push({0, 0, 0, 0, 0, 0}).add(million[0]).pop();
+  list.push({1e-38f, 0, 0, 1e-38f, 0, 0}).push({1e-38f, 0, 0, 1e-38f, 0, 0}).add(million[0]).clip({0, 0, 9, 9}).pop(3);
+  list.push({1e38f, 0, 0, -1e38f, 0, 0}).push({1e38f, 0, 0, -1e38f, 0, 0}).add(million[0]).pop(2);
+  list.push({1, 0, 0, 1, 0, 0, 0, 0, 1e-38f}).add(rectangle(0, 0, 1e-30f, 1e-30f)).pop();
+  EXPECT_EQ(green(raster({list.item()}, 32, 32, 16, &report)), 1);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  // What no number can hold is refused, with words, and changes nothing.
+  const auto refused = [&](GpgpResult result, const char* words) {
+    EXPECT_EQ(result, GPGP_ERROR_INVALID_ARGUMENT) << words;
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  const float box[4] = {0, 0, 9, 9}, bad[4] = {0, 0, NAN, 9}, radii[4] = {-1, 0, 0, 0};
+  list.reset();
+  for (int i = 0; i < 20; ++i) list.push({1e38f, 0, 0, 1e38f, 1, 0});
+  refused(gpgpAddShapes(list.list, million.data(), 1), "beyond 1e7");
+  refused(gpgpPushClip(list.list, box, nullptr), "beyond 1e7");
+  list.pop(20);
+  refused(gpgpPopState(list.list), "has been popped");
+  refused(gpgpPushClip(list.list, bad, nullptr), "box is 0, 0, nan, 9");
+  refused(gpgpPushClip(list.list, box, radii), "radius");
+  for (int i = 0; i < GPGP_MAX_LIST_DEPTH; ++i) list.fade(1);
+  refused(gpgpPushOpacity(list.list, 1), "GPGP_MAX_LIST_DEPTH");
+  EXPECT_EQ(green(raster({list.pop(GPGP_MAX_LIST_DEPTH).item()}, 32, 32, 4)), 0);
+}
 } // namespace

@@ -132,7 +132,10 @@ Result<void> List::pushClip(const float* box, const float* radii) {
   const auto y = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v) + space.y); };
   const auto size = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v)); };
   const vec4 corners = radii ? vec4(size(radii[0]), size(radii[1]), size(radii[2]), size(radii[3])) : vec4(0);
-  const ShapeRecord shape = roundBox({x(box[0]), y(box[1]), x(box[2]), y(box[3])}, corners, 1);
+  const vec4 placed{x(box[0]), y(box[1]), x(box[2]), y(box[3])};
+  if (!within(&placed.x, 4, -kMaxCoordinate, kMaxCoordinate) || !within(&corners.x, 4, 0, kMaxCoordinate))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "box or radii are beyond 1e7 under the transforms pushed");
+  const ShapeRecord shape = roundBox(placed, corners, 1);
   clips_.push_back({shape, space.base, space.clip, depth});
   stack_.push_back(state_);
   state_.space.clip = static_cast<uint32_t>(clips_.size());
