@@ -17,6 +17,7 @@
 #include <gpgp/gpgp.h>
 
 #include <initializer_list>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
