@@ -17,6 +17,7 @@
 #include <gpgp/gpgp.h>
 
 #include <initializer_list>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -312,15 +313,18 @@ public:
     return gpgpPushClip(get(), box, radii);
   }
   GpgpResult pushOpacity(float opacity) noexcept { return gpgpPushOpacity(get(), opacity); }
+  GpgpResult pushGroup(float opacity) noexcept { return gpgpPushGroup(get(), opacity); }
   /// gpgpPopState
   GpgpResult pop() noexcept { return gpgpPopState(get()); }
   GpgpResult add(const GpgpListShape& shape) noexcept { return gpgpAddShapes(get(), &shape, 1); }
   GpgpResult add(const GpgpListShape* shapes, uint32_t count) noexcept { return gpgpAddShapes(get(), shapes, count); }
-  GpgpResult add(const GlyphSet& set, const GpgpGlyphInstance* glyphs, uint32_t count, uint64_t id = 0) noexcept {
-    return gpgpAddText(get(), set.get(), glyphs, count, id);
+  /// gpgpAddText: a GlyphSet, or its C handle.
+  GpgpResult add(GpgpAsset glyphSet, const GpgpGlyphInstance* glyphs, uint32_t count, uint64_t id = 0) noexcept {
+    return gpgpAddText(get(), glyphSet, glyphs, count, id);
   }
-  GpgpResult add(const Drawing& drawing, uint32_t firstImage = 0, uint64_t id = 0) noexcept {
-    return gpgpAddDrawing(get(), drawing.get(), firstImage, id);
+  /// gpgpAddDrawing: a Drawing, or its C handle.
+  GpgpResult add(GpgpAsset drawing, uint32_t firstImage = 0, uint64_t id = 0) noexcept {
+    return gpgpAddDrawing(get(), drawing, firstImage, id);
   }
 };
 
@@ -644,9 +648,10 @@ public:
   }
   /// gpgpGetGlyphOutline. take: called once with a const GpgpGlyphOutline&.
   template <class Take> GpgpResult outline(const GpgpGlyphOutlineInfo& info, Take&& take) const noexcept {
-    using Taker = std::remove_reference_t<Take>;
+    auto* taker = std::addressof(take); // of anything that can be called, const ones and functions too
     return gpgpGetGlyphOutline(
-        get(), &info, [](void* user, const GpgpGlyphOutline* glyph) { (*static_cast<Taker*>(user))(*glyph); }, &take);
+        get(), &info,
+        [](void* user, const GpgpGlyphOutline* glyph) { (**static_cast<decltype(taker)*>(user))(*glyph); }, &taker);
   }
 };
 

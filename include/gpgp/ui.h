@@ -38,7 +38,9 @@ GPGP_API void GPGP_CALL gpgpDestroyList(GpgpList list);
 /** Empties the list and its stack. Not beside records and hit tests that show it. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpResetList(GpgpList list);
 
-enum { GPGP_MAX_LIST_DEPTH = 64 }; /**< pushes in each other; of these, GPGP_MAX_CLIP_DEPTH clips */
+/** Pushes in each other; of these, GPGP_MAX_CLIP_DEPTH clips and GPGP_MAX_OPACITY_DEPTH groups, with those of a drawing
+ *  that is added. */
+enum { GPGP_MAX_LIST_DEPTH = 64 };
 
 /** What is added from here on lies in a space of its own, which this map takes to the space so far: x' = t0 x + t2 y +
  *  t4, y' = t1 x + t3 y + t5, and, where perspective (3 numbers) is not NULL, both divided by w = p0 x + p1 y + p2 as
@@ -57,6 +59,12 @@ GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, cons
  *  Errors: INVALID_ARGUMENT (not 0 to 1; too deep). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList list, float opacity);
 
+/** What is added from here on is one thing: it fades as a whole, by this opacity times those pushed around it (and the
+ *  item's), and where parts of it overlap the lower ones do not shine through. Counts for maxDrawings; costs the pixels
+ *  that it covers more where it is neither opaque nor hidden. Errors: INVALID_ARGUMENT (not 0 to 1; too deep).
+ *  @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpPushGroup(GpgpList list, float opacity);
+
 /** Ends what the last gpgpPush... began that has not ended. A list that is shown has as many of these as of those.
  *  Errors: INVALID_ARGUMENT (none is left). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPopState(GpgpList list);
@@ -71,6 +79,13 @@ enum {
   GPGP_LIST_LINE = 2
 };
 
+typedef int32_t GpgpListTile;
+enum {
+  GPGP_TILE_STRETCH = 0, /**< once, stretched */
+  GPGP_TILE_REPEAT = 1,  /**< from left or top on, the last one cut off */
+  GPGP_TILE_ROUND = 2    /**< a whole number of times, at least once, stretched or shrunk so that they fit */
+};
+
 /** What of an image a shape shows, and where its edges go: all borders 0: evenly over the box, else nine-slice. */
 typedef struct GpgpListImage {
   uint32_t image;         /**< in GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES */
@@ -78,7 +93,10 @@ typedef struct GpgpListImage {
   float sourceBorders[4]; /**< left, top, right, bottom: how far from the source's sides its borders end, texture
                                coordinates, 0 to its extent */
   float borders[4];       /**< the same for the box; where two do not find room, both shrink. Corners keep this size,
-                               sides stretch along, the middle both ways */
+                               sides stretch or repeat along, the middle both ways */
+  GpgpListTile tiles[2];  /**< what lies between the borders, across and down */
+  float tileSize[2]; /**< how far one repetition reaches, units of the box; 0: as the borders are scaled, which then
+                          may not be 0. Not used where it is stretched */
 } GpgpListImage;
 
 /** A rectangle, ellipse or line. Coordinates within +-1e7, in the current space. */

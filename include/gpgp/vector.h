@@ -166,7 +166,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBl
 typedef struct GpgpGlyph {
   uint64_t key;               /**< the engine's: font, glyph, stroke, ... */
   const GpgpPath* paths;      /**< in em units, +Y down, 0, 0 on the baseline where the glyph begins; painted in order;
-                                 filled or stroked, in plain colours: without gradients, images and groups */
+                                 filled or stroked, in colours and gradients: without images and groups */
   uint32_t pathCount;         /**< 0: a blank */
   const VkBool32* foreground; /**< of each path: takes the text's colour instead of its own; NULL: all do */
 } GpgpGlyph;
@@ -250,7 +250,8 @@ typedef struct GpgpGlyphSetCreateInfo {
   const char* filePath;  /**< of baked glyphs, read through the file callbacks */
   uint32_t maxGlyphs;    /**< at a time, at most 262144; 0: as many as are baked, or 4096 */
   VkDeviceSize maxBytes; /**< of their outlines, on the device and once more on the host: 64 a segment, of which a curve
-                              is two or three, and 48 a path; 0: as many as baked ones take, or 8 MiB */
+                              is two or three, and 48 a path; for a gradient 64, and 32 a stop, and for a glyph that has
+                              any 48; 0: as many as baked ones take, or 8 MiB */
 } GpgpGlyphSetCreateInfo;
 #define GPGP_GLYPH_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO)
 
@@ -341,8 +342,8 @@ typedef struct GpgpGlyphInstance {
   uint32_t glyph; /**< its index in the glyph set */
   float x, y;     /**< where its 0, 0 lies, units of the text, within +-1e7 */
   float size;     /**< units of the text per em, 0 to 1e7 */
-  float color[4]; /**< linear RGB, straight alpha, 0 to 1, of the paths that take the text's colour; alpha multiplies
-                       every path's */
+  float color[4]; /**< linear RGB, straight alpha, 0 to 1, of the paths that take the text's colour, gradients aside;
+                       alpha multiplies every path's */
 } GpgpGlyphInstance;
 
 /** Shapes, images, text and drawings in painting order (ui.h). */

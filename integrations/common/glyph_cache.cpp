@@ -10,31 +10,36 @@ struct Outline {
   struct Path {
     std::vector<GpgpPathVerb> verbs;
     std::vector<float> points;
+    std::vector<GpgpGradientStop> stops;
+    GpgpGradient gradient{};
   };
   std::vector<Path> kept;
   std::vector<GpgpPath> paths;
   std::vector<VkBool32> foreground;
-  bool hasGradient = false;
 
   void take(const GpgpGlyphOutline& outline) {
     kept.resize(outline.pathCount); // not moved from here on: paths point into it
     for (uint32_t i = 0; i < outline.pathCount; ++i) {
       GpgpPath path = outline.paths[i];
-      hasGradient = hasGradient || path.gradient || path.image;
       kept[i].verbs.assign(path.verbs, path.verbs + path.verbCount);
       kept[i].points.assign(path.points, path.points + size_t{path.pointCount} * 2);
       path.verbs = kept[i].verbs.data();
       path.points = kept[i].points.data();
+      if (path.gradient) {
+        kept[i].gradient = *path.gradient;
+        kept[i].stops.assign(path.gradient->stops, path.gradient->stops + path.gradient->stopCount);
+        kept[i].gradient.stops = kept[i].stops.data();
+        path.gradient = &kept[i].gradient;
+      }
       paths.push_back(path);
       foreground.push_back(outline.foreground[i]);
     }
   }
 };
 
-GpgpResult fetch(const FontGlyph& glyph, bool plain, Outline& outline) {
+GpgpResult fetch(const FontGlyph& glyph, Outline& outline) {
   GpgpGlyphOutlineInfo info = GPGP_GLYPH_OUTLINE_INFO_INIT;
   info.glyph = glyph.glyph;
-  info.plain = plain ? VK_TRUE : VK_FALSE;
   return gpgpGetGlyphOutline(
       glyph.font, &info, [](void* user, const GpgpGlyphOutline* given) { static_cast<Outline*>(user)->take(*given); },
       &outline);
@@ -84,15 +89,11 @@ GpgpResult GlyphCache::add(std::span<const FontGlyph> glyphs, std::span<const ui
   std::deque<Outline> outlines;
   std::vector<GpgpGlyph> made;
   for (size_t i = 0; i < glyphs.size(); ++i) {
-    Outline* outline = &outlines.emplace_back();
-    GpgpResult result = fetch(glyphs[i], false, *outline);
-    if (result >= 0 && outline->hasGradient) { // glyph sets take plain colours
-      outline = &outlines.emplace_back();
-      result = fetch(glyphs[i], true, *outline);
-    }
+    Outline& outline = outlines.emplace_back();
+    const GpgpResult result = fetch(glyphs[i], outline);
     if (result < 0) return result;
     made.push_back(
-        {keys[i], outline->paths.data(), static_cast<uint32_t>(outline->paths.size()), outline->foreground.data()});
+        {keys[i], outline.paths.data(), static_cast<uint32_t>(outline.paths.size()), outline.foreground.data()});
   }
   std::vector<uint32_t> indices(made.size());
   return set_.add(made.data(), static_cast<uint32_t>(made.size()), indices.data());

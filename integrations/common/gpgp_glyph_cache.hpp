@@ -3,8 +3,8 @@
 //   cache.place(layoutInfo, x, y, 1, instances);    each frame, before gpgpRecordUpload
 //   cache.item(instances)                           for GpgpCanvasInfo::items
 //
-// A glyph in colour is shown as the font's plain outline where its colours are gradients, and not at all where it is a
-// picture. One context's; @threads context. Fonts that were given stay open until the cache goes, or are forgotten.
+// A glyph in colour is shown with its layers and gradients, but not at all where it is a picture. One context's;
+// @threads context. Fonts that were given stay open until the cache goes, or are forgotten.
 #pragma once
 #include <gpgp/gpgp.hpp>
 

@@ -12,12 +12,12 @@ Engine::Engine(Device& device, Target& target, const EngineOptions& options)
       gpgp_(device, kFramesInFlight),
       city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga", options.watch),
       sight_(device, gpgp_, forward_, levelModel(options.dataFolder)), farther_(options.decoupled.farther),
-      script_(options.inputs), frames_(device, kFramesInFlight) {
+      eyes_(options.stereo ? 2 : 1), script_(options.inputs), frames_(device, kFramesInFlight) {
   if (options.decoupled.on)
     decoupled_ =
         std::make_unique<Decoupled>(device, gpgp_, forward_, levelModel(options.dataFolder), options.decoupled);
   else if (options.screen)
-    screen_ = std::make_unique<Screen>(gpgp_, forward_, options.dataFolder, options.score);
+    screen_ = std::make_unique<Screen>(device, gpgp_, forward_, options.dataFolder, options.score, eyes_);
   else
     hud_ = std::make_unique<Hud>(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
                                  options.dataFolder + "/fetched/svg/tiger.svgz");
@@ -31,13 +31,14 @@ void Engine::resize() {
   if (screen_) screen_->resize(target_.extent());
 }
 
-/// Around the square: angle in radians, distance and height of the eye in metres.
-Camera Engine::orbit(float angle, float distance, float height, float fieldOfView) const {
+/// Around the square: angle in radians, distance and height of the eye in metres, and how far it is to the right.
+Camera Engine::orbit(float angle, float distance, float height, float fieldOfView, float aside) const {
   const VkExtent2D size = target_.extent();
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  const float aspect = static_cast<float>(size.width / eyes_) / static_cast<float>(size.height);
   angle += 0.24f + 0.01f * static_cast<float>(step_);
-  Camera camera = lookAt(glm::vec3(std::sin(angle) * distance, height, std::cos(angle) * distance), glm::vec3(0, 12, 0),
-                         fieldOfView, aspect, 1.0f, 900.0f);
+  const glm::vec3 right = aside * glm::vec3(std::cos(angle), 0, -std::sin(angle));
+  Camera camera = lookAt(glm::vec3(std::sin(angle) * distance, height, std::cos(angle) * distance) + right,
+                         glm::vec3(0, 12, 0) + right, fieldOfView, aspect, 1.0f, 900.0f);
   if (screen_ && screen_->game().night) camera.daylight = 0;
   return camera;
 }
@@ -128,7 +129,11 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   }
   const Camera camera = orbit(0.0f, 84.0f, 36.0f, 0.80f);
   const Camera side = orbit(2.5f, 74.0f, 26.0f, 0.56f); // what the camera cannot see lies here
-  if (screen_) screen_->update(camera);
+  constexpr float kEyes = 1.6f;                         // metres between them, as a giant's
+  Camera eyes[2];
+  for (uint32_t eye = 0; eye < eyes_; ++eye)
+    eyes[eye] = orbit(0.0f, 84.0f, 36.0f, 0.80f, eyes_ == 1 ? 0.0f : (static_cast<float>(eye) - 0.5f) * kEyes);
+  if (screen_) screen_->update(eyes);
   gpgp_.check(gpgp_.context.recordUpload(commands, frames_.number()).code(), "gpgpRecordUpload");
   city_.prepare(commands, frames_.number());
   sight_.prepare(commands, frames_.number(), camera, target_.extent());
@@ -138,11 +143,16 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
     hud_->prepare(commands, frames_.number());
 
   forward_.begin(commands, acquired.framebuffer);
-  forward_.drawBackdrop(commands, camera);
-  city_.draw(commands, camera);
-  sight_.draw(commands, camera);
+  const uint32_t eyeWidth = forward_.extent().width / eyes_;
+  for (uint32_t eye = 0; eye < eyes_; ++eye) {
+    if (eyes_ > 1)
+      forward_.setArea(commands, {{static_cast<int32_t>(eye * eyeWidth), 0}, {eyeWidth, forward_.extent().height}});
+    forward_.drawBackdrop(commands, eyes[eye]);
+    city_.draw(commands, eyes[eye]);
+    sight_.draw(commands, eyes[eye]);
+    if (screen_) screen_->draw(commands, frames_.number(), eye);
+  }
   if (screen_) {
-    screen_->draw(commands, frames_.number());
     vkCmdEndRenderPass(commands);
     return;
   }

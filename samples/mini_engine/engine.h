@@ -14,6 +14,7 @@ struct EngineOptions {
   bool watch = false;     // grammars follow their files
   DecoupledOptions decoupled;
   bool screen = false;       // a game's screen instead of the HUD
+  bool stereo = false;       // for two eyes, side by side
   uint32_t score = 0;        // on it at the beginning
   std::vector<Input> inputs; // for it, before the second frame
 };
@@ -41,7 +42,7 @@ private:
   void printTimes();
   void take(const std::vector<Input>& inputs, bool fromScript);
   void recordDecoupled(VkCommandBuffer commands, const Acquired& acquired);
-  Camera orbit(float angle, float distance, float height, float fieldOfView) const;
+  Camera orbit(float angle, float distance, float height, float fieldOfView, float aside = 0) const;
 
   Device& device_;
   Target& target_;
@@ -53,6 +54,7 @@ private:
   Sight sight_;
   std::unique_ptr<Decoupled> decoupled_; // instead of city, HUD and sight
   float farther_ = 1;
+  uint32_t eyes_ = 1; // each has its part of the picture, side by side
   uint64_t step_ = 0; // on the camera's path
   std::vector<Input> script_;
   gpgp::sdl2::Frames frames_; // waits for its frames before what they use goes

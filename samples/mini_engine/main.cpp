@@ -22,6 +22,7 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --input LIST     for the screen, before the second frame: up, down, enter, click, or XxY, where the mouse moves to:
                    --input down,enter,134x350,click; prints what happened
   --score N        on the screen at the beginning
+  --stereo         the screen for two eyes, side by side, each half of the picture
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
   --decoupled      object-space shading of the model alone: what gpgp finds visible is shaded in compute, into a
                    record a triangle, and displayed from other poses; shaded.png is the last display
@@ -44,7 +45,7 @@ struct Options {
   std::string out = "pictures", device, data = MINI_ENGINE_DATA;
   uint32_t frames = 0;
   VkExtent2D size{1280, 720};
-  bool screen = false;
+  bool screen = false, stereo = false;
   uint32_t score = 0;
   std::vector<mini::Input> inputs;
   bool window = false, validate = false, watch = false, path = false;
@@ -95,6 +96,10 @@ bool parse(int argc, char** argv, Options& options) {
     }
     if (name == "--screen") {
       options.screen = true;
+      continue;
+    }
+    if (name == "--stereo") {
+      options.stereo = true;
       continue;
     }
     if (name == "--validate") {
@@ -148,7 +153,7 @@ bool parse(int argc, char** argv, Options& options) {
   }
   if (options.screen && options.decoupled.on) return false;
   if (options.frames == 1 && !options.inputs.empty()) return false;
-  if (!options.screen && (!options.inputs.empty() || options.score)) return false;
+  if (!options.screen && (!options.inputs.empty() || options.score || options.stereo)) return false;
   return true;
 }
 
@@ -176,9 +181,9 @@ int run(const Options& options) {
 #endif
     if (!target) target = std::make_unique<mini::Offscreen>(device, options.size);
     {
-      mini::Engine engine(
-          device, *target,
-          {options.data, options.watch, options.decoupled, options.screen, options.score, options.inputs});
+      mini::Engine engine(device, *target,
+                          {options.data, options.watch, options.decoupled, options.screen, options.stereo,
+                           options.score, options.inputs});
       if (options.path)
         engine.comparePaths(options.frames ? options.frames : 40);
       else

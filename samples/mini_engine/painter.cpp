@@ -60,6 +60,15 @@ void Painter::fade(const Box& box, const Color& above, const Color& below, float
   add(faded);
 }
 
+void Painter::slices(const Box& box, const GpgpListImage& image) {
+  GpgpListImage scaled = image;
+  for (float& border : scaled.borders) border *= scale_;
+  scaled.tiles[0] = scaled.tiles[1] = GPGP_TILE_ROUND;
+  GpgpListShape sliced = shape(box, {1, 1, 1, 1}, 0, 0, 0);
+  sliced.image = &scaled;
+  add(sliced);
+}
+
 void Painter::ellipse(const Box& box, const Color& color, float border) {
   GpgpListShape round = shape(box, color, 0, border, 0);
   round.kind = GPGP_LIST_ELLIPSE;

@@ -39,6 +39,8 @@ public:
   /// From the one colour above to the other below.
   void fade(const Box& box, const Color& above, const Color& below, float radius = 0, uint64_t id = 0);
   void border(const Box& box, const Color& color, float radius = 0, float width = 1.5f, uint64_t id = 0);
+  /// The picture's borders keep their size; its sides and middle repeat, a whole number of times.
+  void slices(const Box& box, const GpgpListImage& image);
   void ellipse(const Box& box, const Color& color, float border = 0);
   void line(float x0, float y0, float x1, float y1, float width, const Color& color, GpgpCap cap = GPGP_CAP_ROUND);
   /// Cut off with an ellipsis where it does not fit.

@@ -1,5 +1,6 @@
 #include "panels.h"
 
+#include "frame.h"
 #include "icons.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace mini {
 namespace {
 
-const Color kText = rgb(0xf3f6f9), kMuted = rgb(0xa9bccb), kAmber = rgb(0xffb84d), kCyan = rgb(0x7fe3ff);
+const Color kText = rgb(0xf3f6f9), kMuted = rgb(0xa9bccb), kAmber = rgb(0xffb84d);
 const Color kRim = rgb(0x7fb6cf, 0.6f);
 constexpr float kMargin = 24, kHeight = 720;
 
@@ -142,8 +143,8 @@ void addInventory(Painter& painter, const Game& game) {
       {"", "An empty place.", 0, Icon::none},
   };
   const Box all{0, 0, kInventory[0], kInventory[1]};
-  painter.fade(all, rgb(0x17303f, 0.97f), rgb(0x081118, 0.97f), 18);
-  painter.border(all, kCyan, 18, 3);
+  constexpr float kBorder = static_cast<float>(FramePicture::kBorder) / static_cast<float>(FramePicture::kSide);
+  painter.slices(all, {0, {0, 0, 1, 1}, {kBorder, kBorder, kBorder, kBorder}, {15, 15, 15, 15}, {}, {}});
   painter.text("Inventory", {24, 12, 240, 52}, {24, kText, true});
   painter.text("108 of 120", {240, 12, 416, 52}, {17, kMuted, false, GPGP_TEXT_ALIGN_RIGHT});
   for (uint32_t i = 0; i < Game::kSlots; ++i) {

@@ -23,8 +23,10 @@ enum Tag : uint64_t { tagWorld, tagFront };
 
 } // namespace
 
-Screen::Screen(Gpgp& gpgp, const Forward& forward, const std::string& dataFolder, uint32_t score)
-    : gpgp_(gpgp), text_(gpgp, dataFolder + "/fetched/fonts"), houses_(levelAxioms()) {
+Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& dataFolder, uint32_t score,
+               uint32_t eyes)
+    : gpgp_(gpgp), text_(gpgp, dataFolder + "/fetched/fonts"), frame_(device), houses_(levelAxioms()), eyes_(eyes) {
+  world_.parts = eyes;
   game_.score = score;
   pictures_.crest = gpgp.loadSvg(dataFolder + "/svg/crest.svg", "crest");
   pictures_.portrait = gpgp.loadSvg(dataFolder + "/fetched/svg/tiger.svgz", "portrait");
@@ -45,9 +47,11 @@ Screen::Screen(Gpgp& gpgp, const Forward& forward, const std::string& dataFolder
     layer->target = gpgp::init<GpgpTargetInfo>();
     layer->target.renderPass = forward.renderPass();
     layer->target.samples = Forward::kSamples;
-    layer->item.list = layer->list;
-    layer->item.opacity = 1.0f;
-    layer->item.transform[0] = layer->item.transform[3] = 1.0f;
+    for (GpgpCanvasItem& item : layer->items) {
+      item.list = layer->list;
+      item.opacity = 1.0f;
+      item.transform[0] = item.transform[3] = 1.0f;
+    }
   }
   world_.target.depthTest = VK_TRUE;
   world_.target.depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL;
@@ -83,25 +87,26 @@ void Screen::makeArrow() {
 }
 
 void Screen::resize(VkExtent2D extent) {
-  extent_ = extent;
+  extent_ = {extent.width / eyes_, extent.height};
   text_.forget();
   for (Layer* layer : {&world_, &front_}) {
     auto info = gpgp::init<GpgpCanvasViewCreateInfo>();
     info.label = layer == &world_ ? "inventory" : "screen";
-    info.width = extent.width;
-    info.height = extent.height;
+    info.width = extent_.width * layer->parts;
+    info.height = extent_.height;
     layer->view = gpgp_.take(gpgp::CanvasView::create(gpgp_.context, info), "gpgpCreateCanvasView");
     layer->prepared = false;
   }
-  std::fill(std::begin(front_.clip), std::end(front_.clip), 0.0f);
-  front_.clip[0] = 2.0f / static_cast<float>(extent.width); // canvas pixels to clip space: both have +Y down
-  front_.clip[5] = 2.0f / static_cast<float>(extent.height);
-  front_.clip[10] = front_.clip[15] = 1.0f;
-  front_.clip[12] = front_.clip[13] = -1.0f;
+  float* clip = front_.clips[0];
+  std::fill_n(clip, 16, 0.0f);
+  clip[0] = 2.0f / static_cast<float>(extent_.width); // canvas pixels to clip space: both have +Y down
+  clip[5] = 2.0f / static_cast<float>(extent_.height);
+  clip[10] = clip[15] = 1.0f;
+  clip[12] = clip[13] = -1.0f;
 }
 
 /// The inventory in the world: metres.
-void Screen::hang(const Camera& camera) {
+void Screen::hang(const Camera* eyes) {
   constexpr float kWidth = 31.0f, kTurn = -0.35f, kTilt = 0.28f; // radians around the vertical, and back
   const float unit = kWidth / kInventory[0];
   const glm::vec3 across(std::cos(kTurn), 0, -std::sin(kTurn)), back(across.z, 0, -across.x), middle(30, 25.5f, -9);
@@ -113,10 +118,13 @@ void Screen::hang(const Camera& camera) {
     panel.across[axis] = across[axis] * unit;
     panel.down[axis] = down[axis] * unit;
   }
-  const uint32_t viewport[4] = {0, 0, extent_.width, extent_.height};
-  gpgp_.check(gpgpPlacePanel(&panel, glm::value_ptr(camera.viewProjection), viewport, &world_.item, world_.clip),
-              "gpgpPlacePanel");
-  const bool fromBehind = glm::dot(camera.eye - corner, glm::cross(down, across)) < 0;
+  for (uint32_t eye = 0; eye < eyes_; ++eye) {
+    const uint32_t viewport[4] = {eye * extent_.width, 0, extent_.width, extent_.height};
+    gpgp_.check(gpgpPlacePanel(&panel, glm::value_ptr(eyes[eye].viewProjection), viewport, &world_.items[eye],
+                               world_.clips[eye]),
+                "gpgpPlacePanel");
+  }
+  const bool fromBehind = glm::dot(eyes[0].eye - corner, glm::cross(down, across)) < 0;
   Painter painter(world_.list, text_, gpgp_, 1.0f);
   if (fromBehind)
     addInventoryBack(painter);
@@ -124,20 +132,20 @@ void Screen::hang(const Camera& camera) {
     addInventory(painter, game_);
 }
 
-void Screen::update(const Camera& camera) {
+void Screen::update(const Camera* eyes) {
   const uint64_t allocations = gpgp_.hostMemory.allocations();
   const Clock::time_point start = Clock::now();
   ++frames_;
   game_.tick();
   for (Layer* layer : {&world_, &front_}) gpgp_.check(layer->list.reset(), "gpgpResetList");
   world_.shown = game_.inventory;
-  if (world_.shown) hang(camera);
+  if (world_.shown) hang(eyes);
   front_.shown = true;
   const float scale = static_cast<float>(extent_.height) / 720.0f, width = static_cast<float>(extent_.width) / scale;
   Painter painter(front_.list, text_, gpgp_, scale);
   addStatus(painter, game_, pictures_);
   addScore(painter, game_, width);
-  addMap(painter, camera, houses_, pictures_, width);
+  addMap(painter, eyes[0], houses_, pictures_, width);
   addDialogue(painter, game_, pictures_, width);
   addMenu(painter, game_);
   fillingNow_ = microsecondsSince(start);
@@ -151,11 +159,16 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
   if (!layer.shown) return;
   auto info = gpgp::init<GpgpCanvasInfo>();
   info.base.tag = &layer == &world_ ? tagWorld : tagFront;
-  info.width = extent_.width;
+  info.width = extent_.width * layer.parts;
   info.height = extent_.height;
-  info.items = &layer.item;
-  info.itemCount = 1;
+  info.items = layer.items;
+  info.itemCount = layer.parts;
   info.view = layer.view;
+  const GpgpCanvasImage frameImage = frame_.image();
+  if (&layer == &world_) {
+    info.images = &frameImage;
+    info.imageCount = 1;
+  }
   if (gpgp_.check(canvas_.recordPrepare(commands, frame, info), "gpgpRecordPrepareCanvas") == GPGP_SUCCESS)
     layer.prepared = true;
 }
@@ -173,7 +186,7 @@ void Screen::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   if (gpgp_.hostMemory.allocations() != allocations) lastAllocation_ = frames_;
 }
 
-void Screen::draw(VkCommandBuffer commands, const GpgpFrame& frame) {
+void Screen::draw(VkCommandBuffer commands, const GpgpFrame& frame, uint32_t eye) {
   for (Layer* layer : {&world_, &front_}) {
     if (!layer->shown || !layer->prepared) continue;
     auto info = gpgp::init<GpgpCanvasDrawInfo>();
@@ -181,7 +194,9 @@ void Screen::draw(VkCommandBuffer commands, const GpgpFrame& frame) {
     info.target = &layer->target;
     info.width = extent_.width;
     info.height = extent_.height;
-    std::copy(std::begin(layer->clip), std::end(layer->clip), info.clip);
+    const uint32_t part = eye % layer->parts;
+    info.x = part * extent_.width;
+    std::copy(std::begin(layer->clips[part]), std::end(layer->clips[part]), info.clip);
     gpgp_.check(canvas_.recordDraw(commands, frame, info), "gpgpRecordDrawCanvas");
   }
 }
@@ -190,9 +205,10 @@ Under Screen::under(float x, float y) {
   GpgpCanvasItem items[2];
   auto info = gpgp::init<GpgpHitTestInfo>();
   for (const Layer* layer : {&world_, &front_})
-    if (layer->shown) items[info.itemCount++] = layer->item;
+    if (layer->shown) items[info.itemCount++] = layer->items[0];
   info.items = items;
-  info.x = x;
+  const float width = static_cast<float>(extent_.width); // a pointer over the other eye's part is over the same place
+  info.x = eyes_ > 1 && x >= width ? x - width : x;
   info.y = y;
   const GpgpHit hit = gpgp_.take(gpgp::hitTest(gpgp_.context, info), "gpgpHitTest");
   Under under;

@@ -42,8 +42,10 @@ ItemRecord sourceOf(uint i) {
   item.paths = second.y;
   item.firstImage = second.z;
   item.whole = second.w;
-  item.clip = floatBitsToUint(from[at + 9]).x;
-  item.pad0 = item.pad1 = item.pad2 = 0;
+  const uvec2 around = floatBitsToUint(from[at + 9].xy);
+  item.clip = around.x;
+  item.layer = around.y;
+  item.pad0 = item.pad1 = 0;
   return item;
 }
 

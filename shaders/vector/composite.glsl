@@ -37,7 +37,7 @@ vec4 sum;
 // A group less than opaque has light of its own: what reached it times its opacity. Behind its last path that is joined
 // again with what passed the group by.
 uint depth, chainItem;
-uint chain[kMaxLayerDepth]; // the groups that paths at hand belong to, the outermost first
+uvec2 chain[kMaxLayerDepth]; // the groups that paths at hand belong to, the outermost first: slot, and layer
 float opacities[kMaxLayerDepth], outerScale[kMaxLayerDepth], outerGap[kMaxLayerDepth];
 uint outerAlive[kMaxLayerDepth];
 float outer[kMaxLayerDepth * 16];
@@ -82,27 +82,28 @@ void leaveLayer() {
   gap = counted > 0 ? 0.0 : whole;
 }
 
-uvec4 fetchLayer(ItemRecord item, uint layer) {
-  return floatBitsToUint(fetch(item.slot, slots[item.slot].layers + layer - 1));
-}
-uint layerAt(ItemRecord item, uint layer, uint wanted) { // of the layers that hold it, the one at depth `wanted`
-  uvec4 record = fetchLayer(item, layer);
-  while (record.z > wanted) {
-    layer = record.y;
-    record = fetchLayer(item, layer);
-  }
-  return layer;
+uvec4 fetchLayer(uint slot, uint layer) { return floatBitsToUint(fetch(slot, slots[slot].layers + layer - 1)); }
+uint layerDepth(uint slot, uint layer) { return layer == 0 ? 0 : fetchLayer(slot, layer).z; }
+// Of the groups that hold a path, the one at a depth: those of its item, `outside` of them, hold those of its drawing.
+uvec2 layerAt(ItemRecord item, uint layer, uint outside, uint wanted) { // slot, and layer
+  const bool own = wanted > outside;
+  const uint slot = own ? item.slot : kShapeSlot;
+  uint found = own ? layer : item.layer;
+  const uint local = own ? wanted - outside : wanted;
+  for (uvec4 record = fetchLayer(slot, found); record.z > local; record = fetchLayer(slot, found)) found = record.y;
+  return uvec2(slot, found);
 }
 
-// From the groups of the last path to those of the next one. `layer`: 0 none.
+// From the groups of the last path to those of the next one. `layer`: of its drawing; 0 none.
 void toLayer(uint index, ItemRecord item, uint layer) {
-  const uint wanted = layer == 0 ? 0 : fetchLayer(item, layer).z;
-  while (depth > 0 && (chainItem != index || depth > wanted || layerAt(item, layer, depth) != chain[depth - 1]))
+  const uint outside = layerDepth(kShapeSlot, item.layer), wanted = outside + layerDepth(item.slot, layer);
+  while (depth > 0 && (depth > wanted || (depth > outside && chainItem != index) ||
+                       layerAt(item, layer, outside, depth) != chain[depth - 1]))
     leaveLayer();
   chainItem = index;
   while (depth < wanted) {
-    chain[depth] = layerAt(item, layer, depth + 1);
-    const float opacity = uintBitsToFloat(fetchLayer(item, chain[depth]).x);
+    chain[depth] = layerAt(item, layer, outside, depth + 1);
+    const float opacity = uintBitsToFloat(fetchLayer(chain[depth].x, chain[depth].y).x);
     opacities[depth] = opacity;
     outerScale[depth] = scale;
     outerGap[depth] = gap;
@@ -215,11 +216,11 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec3 p
 #if RICH
   uvec4 group = uvec4(0);
   const ItemRecord own = items[paint.x];
-  if ((paint.z & ~kItemClipped) != 0) group = floatBitsToUint(fetch(own.slot, (paint.z & ~kItemClipped) - 1));
+  if ((paint.z & ~kItemGrouped) != 0) group = floatBitsToUint(fetch(own.slot, (paint.z & ~kItemGrouped) - 1));
   toLayer(paint.x, own, group.z);
   if (alive == 0 && gap <= 0) return; // the group is hidden, not what lies behind it
   if (group.y != 0) clipBy(own, group.y, pixel / kTileSize, at, area, mask, difference);
-  if ((paint.z & kItemClipped) != 0) clipItem(own.clip, pixel / kTileSize, at, area, mask, difference);
+  if ((paint.z & kItemGrouped) != 0) clipItem(own.clip, pixel / kTileSize, at, area, mask, difference);
 #endif
   if (mask == 0 && (first ? difference == 0 : gap * float(difference) <= 0)) return;
 #if PAINTS

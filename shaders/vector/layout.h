@@ -49,7 +49,7 @@ struct ClipRecord {
   uint depth;  // 1 without a parent, else one more than the parent's
 };
 
-// Paths that are composited with each other before what is behind them.
+// Paths that are composited with each other before what is behind them: those of a drawing's group, or of items.
 struct LayerRecord {
   float opacity; // below 1
   uint parent;   // 1 + index of the earlier layer that holds it; 0: none
@@ -63,7 +63,8 @@ struct LayerRecord {
 // around 0 (t = 1). Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture
 // coordinates, and firstStop is the image, from the item's first one on; stopCount is 0. For kPaintSlices they lead to
 // the destination (place p along x, say), and `slices` is the first of two stops: between two places p and q the
-// texture coordinate is that of p plus (p - place) times a slope, before p and after q with slopes of their own.
+// texture coordinate is that of p plus (p - place) times a slope, before p and after q with slopes of their own; or it
+// begins anew at p after each period.
 struct PaintRecord {
   vec4 matrix;
   vec4 origin;               // x, y; focus x, y
@@ -114,7 +115,8 @@ struct ItemRecord {
   uint firstImage;      // of the record
   uint whole;           // 1: all of its paths are drawn or none
   uint clip;            // 1 + index of its ItemClipRecord; 0: none
-  uint pad0, pad1, pad2;
+  uint layer;           // 1 + index of the LayerRecord of the record's own that holds it; 0: none
+  uint pad0, pad1;
 };
 
 // What the host writes for each item: where the one that it names is placed, in the units of that one.
@@ -157,7 +159,7 @@ struct PlacedPath {
   uint firstWord;                // of its tile words; one row of tiles has wordsOf(left, right) of them
   uint item, paint;              // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
   uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither;
-                                 // and kItemClipped where its item has a clip
+                                 // and kItemGrouped where its item has a clip or a layer
   vec4 color;                    // premultiplied, times the item's opacity
 };
 
@@ -182,7 +184,7 @@ struct CanvasHeader {
   uint glyphs, glyphLimit;
   uint shapes, shapeLimit; // needed; room for as many
   uint sources, sourceLimit;
-  uint shapeTables;  // vec4: ShapeRecords, their paints, stops and clips, which lie behind placements
+  uint shapeTables;  // vec4: ShapeRecords, their paints, stops, clips and layers: behind placements
   uint binWords;     // of a bin: kBinHead, then a bit for each path
   uint binListLimit; // paths in all bins' lists
   uint pad0;
@@ -230,7 +232,7 @@ GPGP_CONST uint kSlots = 9u;
 GPGP_CONST uint kSlotBit = 24u;
 GPGP_CONST uint kShapeRound = 1u;
 GPGP_CONST float kUnbounded = 1e30f; // sides of a scissor that is none
-GPGP_CONST uint kItemClipped = 0x80000000u;
+GPGP_CONST uint kItemGrouped = 0x80000000u;
 GPGP_CONST uint kWriteView = 1u;
 GPGP_CONST uint kEncodeSrgb = 2u;
 GPGP_CONST uint kExactArea = 4u;  // of a pixel's first edge

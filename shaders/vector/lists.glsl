@@ -26,7 +26,8 @@ uint groupIn(PlacedPath p, uvec2 tile, inout uint steps) {
   if (p.group == 0) return kEven;
   const uint slot = items[p.item].slot;
   uint found = kEven;
-  if ((p.group & kItemClipped) != 0) {
+  if ((p.group & kItemGrouped) != 0) {
+    if (items[p.item].layer != 0) found = kRich;
     for (uint clip = items[p.item].clip; clip != 0; ++steps) {
       const uvec2 record = floatBitsToUint(fetch(kShapeSlot, clipRecord(clip)).xy);
       const uint code = coverageOf(paths[record.x], tile);
@@ -34,9 +35,9 @@ uint groupIn(PlacedPath p, uvec2 tile, inout uint steps) {
       if (code != 1) found = kRich;
       clip = record.y;
     }
-    if ((p.group & ~kItemClipped) == 0) return found;
+    if ((p.group & ~kItemGrouped) == 0) return found;
   }
-  const uvec4 group = floatBitsToUint(fetch(slot, (p.group & ~kItemClipped) - 1));
+  const uvec4 group = floatBitsToUint(fetch(slot, (p.group & ~kItemGrouped) - 1));
   if (group.z != 0) return kRich;
   for (uint clip = group.y; clip != 0;) {
     const uvec4 record = floatBitsToUint(fetch(slot, slots[slot].clips + clip - 1));

@@ -61,6 +61,31 @@ vec4 sampleImage(uint i, vec2 at, vec2 dx, vec2 dy) { // a sampler may only be c
   }
 }
 
+ivec2 sizeOfImage(uint i) {
+  switch (i) {
+  case 0: return textureSize(image0, 0);
+  case 1: return textureSize(image1, 0);
+  case 2: return textureSize(image2, 0);
+  case 3: return textureSize(image3, 0);
+  case 4: return textureSize(image4, 0);
+  case 5: return textureSize(image5, 0);
+  case 6: return textureSize(image6, 0);
+  default: return textureSize(image7, 0);
+  }
+}
+
+// Along an axis of a nine-slice: the texture coordinate at a place, and how fast it grows there. slopes: before, in and
+// after the middle; w: the period of a middle that repeats. Filters reach half a texel: no further than the middle.
+vec2 sliceAt(float place, vec2 places, vec2 there, vec4 slopes, float texels) {
+  if (place < places.x) return vec2(there.x + (place - places.x) * slopes.x, slopes.x);
+  if (place >= places.y) return vec2(there.y + (place - places.y) * slopes.z, slopes.z);
+  float along = place - places.x;
+  if (slopes.w == 0) return vec2(there.x + along * slopes.y, slopes.y);
+  along -= floor(along / slopes.w) * slopes.w;
+  const float middle = 0.5 * (there.x + there.y), reach = max(0.5 * abs(there.y - there.x) - 0.5 / texels, 0.0);
+  return vec2(clamp(there.x + along * slopes.y, middle - reach, middle + reach), slopes.y);
+}
+
 // An image's colour at a point of the drawing, premultiplied; dx and dy: how far the point moves from pixel to pixel.
 vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
   const vec4 matrix = fetch(item.slot, paint);
@@ -71,11 +96,12 @@ vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
   if (floatBitsToUint(fetch(item.slot, paint + 2)).y == kPaintSlices) {
     const uint slices = slots[item.slot].stops + floatBitsToUint(fetch(item.slot, paint + 3)).z * 2;
     const vec4 places = fetch(item.slot, slices), there = fetch(item.slot, slices + 1);
-    const vec3 across = fetch(item.slot, slices + 2).xyz, down = fetch(item.slot, slices + 3).xyz;
-    const vec2 slope = vec2(u.x < places.x ? across.x : u.x < places.y ? across.y : across.z,
-                            u.y < places.z ? down.x : u.y < places.w ? down.y : down.z);
-    u = vec2(u.x < places.y ? there.x + (u.x - places.x) * slope.x : there.y + (u.x - places.y) * slope.x,
-             u.y < places.w ? there.z + (u.y - places.z) * slope.y : there.w + (u.y - places.w) * slope.y);
+    const vec4 across = fetch(item.slot, slices + 2), down = fetch(item.slot, slices + 3);
+    const vec2 texels = across.w + down.w > 0 ? vec2(sizeOfImage(image)) : vec2(1);
+    const vec2 x = sliceAt(u.x, places.xy, there.xy, across, texels.x);
+    const vec2 y = sliceAt(u.y, places.zw, there.zw, down, texels.y);
+    u = vec2(x.x, y.x);
+    const vec2 slope = vec2(x.y, y.y);
     ux *= slope;
     uy *= slope;
   }

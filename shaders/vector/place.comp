@@ -104,7 +104,7 @@ void main() {
     const float alpha = color.a * item.color.a;
     p.item = itemIndex;
     p.paint = paint == 0 ? 0 : slots[item.slot].paints + (paint - 1) * 4 + 1;
-    p.group = ((rest.y | rest.z) == 0 ? 0 : path + 2 + 1) | (item.clip == 0 ? 0 : kItemClipped);
+    p.group = ((rest.y | rest.z) == 0 ? 0 : path + 2 + 1) | ((item.clip | item.layer) == 0 ? 0 : kItemGrouped);
     p.color = vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color.rgb) : color.rgb) * alpha, alpha);
     if (p.paint != 0 && !shaped) p.color = vec4(alpha);
     const uint count = wordsOf(p);

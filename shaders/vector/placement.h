@@ -1,14 +1,13 @@
 // How an item gets its place: a source's map after a move and a scale of its own.
 //
 // A glyph is placed in the units of its text, whose transform and perspective then apply; a drawing at 0, 0 in its own
-// size, which changes no bit of its map.
+// size, which changes no bit of its map and, but for the sign of 0, none of its inverse.
 #ifndef GPGP_SHADERS_VECTOR_PLACEMENT_H
 #define GPGP_SHADERS_VECTOR_PLACEMENT_H
 #include "layout.h"
 
 GPGP_SHADER_BEGIN
 
-// `inverse`, with offsets.x and offsets.y, stays the source's: gradients and images ask for it, glyphs have neither.
 GPGP_FN ItemRecord placed(ItemRecord source, PlacementRecord p) {
   ItemRecord item = source;
   const vec4 t = source.transform;
@@ -19,8 +18,11 @@ GPGP_FN ItemRecord placed(ItemRecord source, PlacementRecord p) {
   GPGP_PRECISE float e = source.offsets.z + (t.x * p.x + t.z * p.y);
   GPGP_PRECISE float f = source.offsets.w + (t.y * p.x + t.w * p.y);
   item.transform = vec4(a, b, c, d);
-  item.offsets = vec4(source.offsets.x, source.offsets.y, e, f);
-  const vec4 w = source.perspective;
+  const vec4 w = source.perspective, i = source.inverse, eye = source.eye;
+  const float nearest = w.w > 0.0f ? eye.z : 1.0f, unit = p.size > 0.0f ? 1.0f / p.size : 0.0f;
+  item.inverse = vec4((i.x - p.x * eye.x) * unit, (i.y - p.y * eye.x) * unit, (i.z - p.x * eye.y) * unit,
+                      (i.w - p.y * eye.y) * unit);
+  item.offsets = vec4((source.offsets.x - p.x * nearest) * unit, (source.offsets.y - p.y * nearest) * unit, e, f);
   GPGP_PRECISE float wx = w.x * p.size;
   GPGP_PRECISE float wy = w.y * p.size;
   GPGP_PRECISE float wz = w.z + (w.x * p.x + w.y * p.y);

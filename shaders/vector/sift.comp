@@ -53,7 +53,8 @@ void main() {
       }
       edges &= box;
       inside &= box;
-      const bool painting = paths[path].paint != 0;
+      // Pixel by pixel; in records that are not split, the one shader knows groups, too.
+      const bool painting = paths[path].paint != 0 || (!split && paths[path].group != 0);
       uint special = 0; // for the general shader
       if (split && (painting || paths[path].group != 0)) {
         for (uint touched = edges | inside; touched != 0; ++steps) {

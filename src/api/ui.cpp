@@ -64,6 +64,10 @@ GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList handle, float opacity) {
   return withList("gpgpPushOpacity", handle, [&](Call&, List& list) { return list.pushOpacity(opacity); });
 }
 
+GpgpResult GPGP_CALL gpgpPushGroup(GpgpList handle, float opacity) {
+  return withList("gpgpPushGroup", handle, [&](Call&, List& list) { return list.pushGroup(opacity); });
+}
+
 GpgpResult GPGP_CALL gpgpPopState(GpgpList handle) {
   return withList("gpgpPopState", handle, [](Call&, List& list) { return list.pop(); });
 }

@@ -95,7 +95,7 @@ Outcome text(TextOptions options, const CommonOptions& common) {
   for (uint32_t i = 0; i < layout.glyphCount; ++i) {
     const GpgpTextGlyph& at = layout.glyphs[i];
     const PageGlyph& glyph = glyphs.glyphs[glyphs.which[i]];
-    if (!glyph.plain || glyph.paths.empty()) continue;
+    if (glyph.isPicture() || glyph.paths.empty()) continue;
     instances.push_back({indices[glyphs.which[i]], at.x, at.y, at.size, {}});
     std::copy(std::begin(at.color), std::end(at.color), instances.back().color);
     patches += uint64_t{glyph.verbs} * 4; // a curve is two or three

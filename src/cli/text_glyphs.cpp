@@ -55,11 +55,9 @@ PageGlyphs collectGlyphs(TextPage& page) {
         glyph.paths.emplace_back(outline.paths[p]);
         glyph.foreground.push_back(outline.foreground[p]);
         glyph.verbs += outline.paths[p].verbCount;
-        glyph.plain = glyph.plain && !outline.paths[p].gradient;
       }
       std::copy(std::begin(outline.box), std::end(outline.box), glyph.box);
       if (const GpgpGlyphImage* image = outline.image) {
-        glyph.plain = false;
         glyph.picture = {
             image->width, image->height, {image->pixels, image->pixels + size_t{image->width} * image->height * 4}};
         std::copy(std::begin(image->box), std::end(image->box), glyph.box);
@@ -75,7 +73,7 @@ std::pair<GlyphSet, std::vector<uint32_t>> makeGlyphSet(Session& session, const 
   for (size_t i = 0; i < glyphs.size(); ++i) {
     const PageGlyph& glyph = all.glyphs[i];
     glyphs[i].key = glyph.key;
-    if (!glyph.plain) continue; // a blank
+    if (glyph.isPicture()) continue; // a blank
     for (const PlacedPath& path : glyph.paths) paths[i].push_back(path.view());
     glyphs[i].paths = paths[i].data();
     glyphs[i].pathCount = static_cast<uint32_t>(paths[i].size());

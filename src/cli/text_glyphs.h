@@ -29,9 +29,9 @@ struct PageGlyph {
   std::vector<PlacedPath> paths; ///< in em
   std::vector<VkBool32> foreground;
   uint32_t verbs = 0;
-  host::Picture picture; ///< of a bitmap glyph; 0 x 0: none
-  float box[4] = {};     ///< em: left, top, right, bottom
-  bool plain = true;     ///< a glyph set takes it: it has no picture and no gradient
+  host::Picture picture;                               ///< of a bitmap glyph; 0 x 0: none
+  float box[4] = {};                                   ///< em: left, top, right, bottom
+  bool isPicture() const { return picture.width > 0; } ///< a glyph set does not take it
 };
 
 struct PageGlyphs {
@@ -40,7 +40,7 @@ struct PageGlyphs {
 };
 PageGlyphs collectGlyphs(TextPage& page);
 
-/// A glyph set of the plain ones, as large as they need, and their indices; GPGP_GLYPH_NONE for the others.
+/// A glyph set of those that are no pictures, as large as they need, and the indices of all; pictures are blank.
 std::pair<GlyphSet, std::vector<uint32_t>> makeGlyphSet(Session& session, const PageGlyphs& glyphs);
 
 } // namespace gpgp::cli

@@ -84,12 +84,6 @@ TextOverlay makeOverlay(Session& session, const GpgpLayoutInfo& layout, const Pa
   for (uint32_t i = 0; i < layout.glyphCount; ++i) {
     const GpgpTextGlyph& at = layout.glyphs[i];
     const PageGlyph& glyph = all.glyphs[all.which[i]];
-    if (glyph.plain) continue;
-    for (size_t p = 0; p < glyph.paths.size(); ++p) {
-      GpgpPath path = glyph.paths[p].view();
-      if (!glyph.foreground[p]) path.color[3] *= at.color[3];
-      paths.emplace_back(path, at.x, at.y, at.size);
-    }
     if (const auto& paint = atlas.paints[all.which[i]])
       paths.push_back(rectangle(glyph.box, {0, 0, 0, at.color[3]}, &*paint, at.x, at.y, at.size));
   }

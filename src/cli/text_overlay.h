@@ -1,5 +1,5 @@
-// What of a page no glyph set takes: bitmap glyphs, glyphs with gradients, underlines and strikes. A drawing in pixels
-// of the page, to be painted over the other glyphs.
+// What of a page no glyph set takes: bitmap glyphs, underlines and strikes. A drawing in pixels of the page, to be
+// painted over the other glyphs.
 #pragma once
 #include "cli/text_glyphs.h"
 #include "cli/textures.h"

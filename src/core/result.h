@@ -12,7 +12,8 @@ namespace gpgp::core {
 /// A result code with the text a person reads. Text is cut at the buffer's size, never lost whole.
 struct Error {
   GpgpResult code = GPGP_SUCCESS;
-  char text[480] = {};
+  char text[480]; // up to its end: what succeeds does not pay for the rest
+  Error() { text[0] = 0; }
 };
 
 [[gnu::format(printf, 2, 3)]] inline Error makeError(GpgpResult code, const char* format, ...) {

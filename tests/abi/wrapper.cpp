@@ -90,9 +90,17 @@ GpgpResult useUi(GpgpContext context, const gpgp::GlyphSet& set, const gpgp::Dra
   const float map[6] = {1, 0, 0, 1, 0, 0}, box[4] = {0, 0, 8, 8};
   GpgpListShape shape = GpgpListShape();
   const GpgpGlyphInstance glyph = {1, 0, 0, 12, {0, 0, 0, 1}};
-  const GpgpResult codes[] = {
-      list->reset(),        list->pushTransform(map), list->pushClip(box), list->pushOpacity(1),     list->add(shape),
-      list->add(&shape, 1), list->add(drawing),       list->pop(),         list->add(set, &glyph, 1)};
+  const GpgpResult codes[] = {list->reset(),
+                              list->pushTransform(map),
+                              list->pushClip(box),
+                              list->pushOpacity(1),
+                              list->pushGroup(1),
+                              list->add(shape),
+                              list->add(&shape, 1),
+                              list->add(drawing),
+                              list->pop(),
+                              list->add(set, &glyph, 1),
+                              list->add(set.get(), &glyph, 1)};
   for (const GpgpResult code : codes)
     if (code) return code;
   GpgpCanvasItem item = GpgpCanvasItem();
@@ -138,8 +146,8 @@ GpgpResult useText() {
   auto outline = gpgp::init<GpgpGlyphOutlineInfo>();
   outline.glyph = *font->glyph('A');
   uint32_t paths = 0;
-  if (const GpgpResult code = font->outline(outline, [&](const GpgpGlyphOutline& glyph) { paths += glyph.pathCount; }))
-    return code;
+  const auto take = [&](const GpgpGlyphOutline& glyph) { paths += glyph.pathCount; };
+  if (const GpgpResult code = font->outline(outline, take)) return code;
   return paths ? layout->info().code() : GPGP_NOT_READY;
 }
 

@@ -1,11 +1,12 @@
 // The mini-engine's game screen, as its summary and pictures show it: hit tests find the menu's items, nothing
 // between them, and the inventory's slots in perspective; a changed score changes no pixel outside of its box, nothing
-// is converted or allocated in a settled frame, and without fonts the screen is there without text. Every run is
-// validated.
+// is converted or allocated in a settled frame, without fonts the screen is there without text, and both eyes see the
+// inventory in its frame. Every run is validated.
 #include "host/picture.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -134,6 +135,47 @@ TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
     return sum;
   };
   EXPECT_LT(light(run.picture), 0.6 * light(still.picture));
+}
+
+/// The brass of the inventory's frame, which nothing else has around its upper half: how many of its pixels lie there
+/// in an eye's part of the picture, and the leftmost column of them.
+struct Brass {
+  size_t pixels = 0;
+  unsigned left = ~0u;
+};
+Brass brassIn(const Picture& picture, unsigned begin, unsigned end) {
+  Brass found;
+  const unsigned width = end - begin;
+  for (unsigned y = picture.height * 14 / 100; y < picture.height * 34 / 100; ++y)
+    for (unsigned x = begin + width * 6 / 10; x < begin + width * 95 / 100; ++x) {
+      const uint8_t* p = &picture.rgba[4 * (size_t{y} * picture.width + x)];
+      if (p[0] < 120 || p[1] < p[0] / 2 || p[1] > p[0] * 9 / 10 || p[2] > p[1] * 7 / 10) continue;
+      ++found.pixels;
+      found.left = std::min(found.left, x - begin);
+    }
+  return found;
+}
+
+TEST(Screen, StereoHangsTheInventoryBeforeBothEyes) {
+  const Shown run = runScreen("stereo", "--frames 2 --size 960x270 --stereo --input 847x87");
+  EXPECT_NE(run.text.find("input       over slot"), std::string::npos) << run.text; // by the right eye's part, too
+  const unsigned width = run.picture.width / 2;
+  ASSERT_EQ(width, 480u);
+  const Brass left = brassIn(run.picture, 0, width), right = brassIn(run.picture, width, 2 * width);
+  EXPECT_GT(left.pixels, 150u);
+  EXPECT_GT(right.pixels, 150u);
+  // What the right eye sees lies further left, by no more than what is near would.
+  EXPECT_GT(left.left, right.left);
+  EXPECT_LT(left.left, right.left + 24);
+  // The panels in front are the same for both: where the menu's highlight is, nothing shines through.
+  const Box box = boxOf(run.text, "menu        Pause");
+  size_t different = 0;
+  for (unsigned y = box[1] + 2; y + 2 < box[3]; ++y)
+    for (unsigned x = box[0] + 2; x + 2 < box[2]; ++x)
+      for (size_t c = 0; c < 3; ++c)
+        different += run.picture.rgba[4 * (size_t{y} * run.picture.width + x) + c] !=
+                     run.picture.rgba[4 * (size_t{y} * run.picture.width + x + width) + c];
+  EXPECT_EQ(different, 0u);
 }
 
 } // namespace

@@ -154,6 +154,129 @@ TEST_F(GlyphTest, ATextEqualsItsGlyphsAsDrawings) {
     }
 }
 
+/// A glyph of three paths: in a linear gradient, in a radial one with a transform, in the text's colour.
+struct PaintedGlyph {
+  TestPath shapes[3] = {glyphShape(4), glyphShape(5), glyphShape(6)};
+  GpgpGradientStop stops[2][3] = {{{0, {1, 0, 0, 1}}, {0.5f, {0, 1, 0, 0.5f}}, {1, {0, 0, 1, 1}}},
+                                  {{0, {1, 1, 0, 1}}, {1, {0, 0.25f, 1, 0.25f}}, {}}};
+  GpgpGradient gradients[2] = {{GPGP_GRADIENT_LINEAR,
+                                GPGP_SPREAD_REFLECT,
+                                {1, 0, 0, 1, 0, 0},
+                                {0.1f, 0.2f},
+                                {0.6f, 0.5f},
+                                0,
+                                0,
+                                stops[0],
+                                3,
+                                VK_TRUE},
+                               {GPGP_GRADIENT_RADIAL,
+                                GPGP_SPREAD_PAD,
+                                {0.8f, 0.3f, -0.2f, 1, 0.1f, 0},
+                                {0.4f, 0.4f},
+                                {0.5f, 0.5f},
+                                0.05f,
+                                0.5f,
+                                stops[1],
+                                2,
+                                VK_FALSE}};
+  VkBool32 foreground[3] = {VK_FALSE, VK_FALSE, VK_TRUE};
+  std::vector<GpgpPath> paths;
+  PaintedGlyph() {
+    for (const TestPath& shape : shapes) paths.push_back(shape.view());
+    for (size_t k = 0; k < 2; ++k) paths[k].gradient = &gradients[k];
+    paths[1].color[3] = 0.75f;
+  }
+  PaintedGlyph(const PaintedGlyph&) = delete;
+  GpgpGlyph glyph(uint64_t key) const { return {key, paths.data(), 3, foreground}; }
+};
+
+TEST_F(GlyphTest, GradientsGoWithTheirGlyphs) {
+  makeCanvas(128);
+  const PaintedGlyph painted;
+  const Shapes plain(1, 5);
+  std::vector<GpgpGlyph> glyphs = plain.glyphs; // before it and behind, of any size
+  glyphs.insert(glyphs.begin() + 3, painted.glyph(77));
+  glyphs.push_back(painted.glyph(78));
+  const GpgpAsset set = makeSet();
+  const auto indices = add(set, glyphs);
+  uint64_t bytes = 0; // of what can be said without knowing outlines: 2 gradients, 5 stops, and what aligns them
+  {
+    const GpgpAsset one = makeSet(), none = makeSet();
+    add(one, {painted.glyph(1)});
+    PaintedGlyph flat;
+    for (GpgpPath& path : flat.paths) path.gradient = nullptr;
+    add(none, {flat.glyph(1)});
+    bytes = infoOf(one).bytes - infoOf(none).bytes;
+  }
+  EXPECT_EQ(bytes, 2u * 64 + 5 * 32 + 48);
+  GpgpGlyphSource source = GPGP_GLYPH_SOURCE_INIT;
+  source.glyphs = glyphs.data();
+  source.glyphCount = static_cast<uint32_t>(glyphs.size());
+  GpgpBlob blob{};
+  ASSERT_EQ(gpgpCompileGlyphs(&source, &blob), GPGP_SUCCESS);
+  GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  info.data = blob.data;
+  info.size = blob.size;
+  GpgpAsset baked = nullptr;
+  ASSERT_EQ(gpgpCreateGlyphSet(context, &info, &baked), GPGP_SUCCESS) << lastMessage();
+  gpgpFreeBlob(&blob);
+  const uint64_t keys[] = {77, 78};
+  uint32_t found[2] = {};
+  ASSERT_EQ(gpgpFindGlyphs(baked, keys, 2, found), GPGP_SUCCESS);
+
+  // As a drawing in the place of each: the third path in the text's colour, all at its alpha.
+  const float color[4] = {0.75f, 0.25f, 0.5f, 0.5f};
+  std::vector<GpgpPath> coloured = painted.paths;
+  std::copy_n(color, 4, coloured[2].color);
+  for (size_t k = 0; k < 2; ++k) coloured[k].color[3] *= color[3];
+  const GpgpAsset drawing = makeDrawing(coloured);
+  const float maps[][9] = {{1, 0, 0, 1, 0, 0},
+                           {0.83f, 0.61f, -0.57f, 0.8f, 30, -10},
+                           {1, 0, 0, 1, 0, 0, 0.004f, 0.002f, 0.8f},
+                           {0.9f, 0, 0, 1, -20, 0, 0.01f, 0, -0.2f}};
+  const std::array<float, 3> places[] = {{8, 12, 60}, {40.3f, 50.7f, 33.3f}, {70, 20, 500}};
+  for (const auto& t : maps)
+    for (const bool area : {false, true}) {
+      exactArea = area;
+      std::vector<GpgpGlyphInstance> instances, fromBaked;
+      std::vector<GpgpCanvasItem> apart;
+      for (size_t i = 0; i < 3; ++i) {
+        const auto [x, y, size] = places[i];
+        instances.push_back({indices[i % 2 ? 6 : 3], x, y, size, {color[0], color[1], color[2], color[3]}});
+        fromBaked.push_back(instances.back());
+        fromBaked.back().glyph = found[i % 2];
+        const vector::Map whole = vector::compose(vector::toMap(t, t + 6), {size, 0, 0, size, x, y});
+        GpgpCanvasItem item = place(drawing);
+        const double affine[] = {whole.a, whole.b, whole.c, whole.d, whole.e, whole.f};
+        std::copy_n(affine, 6, item.transform);
+        if (whole.projective())
+          item.perspective[0] = static_cast<float>(whole.p), item.perspective[1] = static_cast<float>(whole.q),
+          item.perspective[2] = static_cast<float>(whole.r);
+        apart.push_back(item);
+      }
+      const auto placed = [&](GpgpAsset glyphSet, const std::vector<GpgpGlyphInstance>& which) {
+        GpgpCanvasItem item = text(glyphSet, which);
+        std::copy_n(t, 6, item.transform);
+        std::copy_n(t + 6, 3, item.perspective);
+        return item;
+      };
+      const auto shown = raster({placed(set, instances)}, 128, 128, 16), expected = raster(apart, 128, 128, 16);
+      double sum = 0, ink = 0;
+      for (size_t i = 0; i < shown.size(); ++i) { // maps are rounded apart: an edge may pass a sample on its other side
+        const float a[] = {shown[i].r, shown[i].g, shown[i].b, shown[i].a};
+        const float b[] = {expected[i].r, expected[i].g, expected[i].b, expected[i].a};
+        for (int c = 0; c < 4; ++c) {
+          ASSERT_NEAR(a[c], b[c], 0.08f) << i << ", map " << &t - maps;
+          sum += std::abs(static_cast<double>(a[c]) - static_cast<double>(b[c]));
+        }
+        ink += static_cast<double>(b[3]);
+      }
+      EXPECT_LT(sum / static_cast<double>(shown.size()), 2e-4) << &t - maps;
+      EXPECT_GT(ink, 100);
+      EXPECT_TRUE(same(raster({placed(baked, fromBaked)}, 128, 128, 16), shown));
+    }
+}
+
 TEST_F(GlyphTest, CoverageEqualsTheTwinForAffineAndProjectiveText) {
   makeCanvas(128);
   const Shapes shapes(10, 3);
@@ -497,7 +620,7 @@ TEST_F(GlyphTest, BadArgumentsAreRefusedWithWords) {
   EXPECT_EQ(infoOf(set).glyphs, 0u) << "nothing is added";
   path = shapes.paths[1];
   path.group = 1;
-  refused(tryAdd(), GPGP_ERROR_UNSUPPORTED, "glyphs[1].paths[0] has a gradient, an image or a group");
+  refused(tryAdd(), GPGP_ERROR_UNSUPPORTED, "glyphs[1].paths[0] has an image or a group");
   glyphs[1].paths = nullptr;
   refused(tryAdd(), GPGP_ERROR_INVALID_ARGUMENT, "glyphs[1].paths is NULL");
   refused(gpgpAddGlyphs(set, nullptr, 2, indices), GPGP_ERROR_INVALID_ARGUMENT, "glyphs or indices is NULL");

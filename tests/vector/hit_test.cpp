@@ -386,7 +386,7 @@ TEST_F(CanvasTest, RandomCallsOfListsAreDrawnOrRefused) {
         break;
       }
       case 2:
-        result = gpgpPushOpacity(list.list, wild ? number() : 0.75f);
+        result = (random() % 2 ? gpgpPushOpacity : gpgpPushGroup)(list.list, wild ? number() : 0.75f);
         depth += result == GPGP_SUCCESS;
         break;
       case 3:

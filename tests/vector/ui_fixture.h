@@ -26,6 +26,7 @@ struct TestList {
     return done(gpgpPushClip(list, box.data(), radii.data()));
   }
   TestList& fade(float opacity) { return done(gpgpPushOpacity(list, opacity)); }
+  TestList& group(float opacity) { return done(gpgpPushGroup(list, opacity)); }
   TestList& pop(int count = 1) {
     for (; count; --count) done(gpgpPopState(list));
     return *this;

@@ -297,4 +297,292 @@ TEST_F(CanvasTest, ImagesAndNineSlicesKeepTheirCorners) {
   }
   show("ramps", ramps, 96, 96);
 }
+
+TEST_F(CanvasTest, GroupsFadeAsOne) {
+  makeCanvas(128);
+  TestList list(context);
+  // Two overlapping rectangles, and a group of two within: the same as paths of a drawing with groups.
+  const std::array<float, 4> boxes[] = {
+      {10, 12, 70, 60}, {30, 30, 90, 80}, {40, 8, 60, 70}, {50, 50, 85, 85}, {5, 40, 95, 48}};
+  const std::array<float, 4> colors[] = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 0.75f}, {1, 1, 0, 1}, {1, 1, 1, 0.5f}};
+  std::vector<TestPath> shapes;
+  for (size_t i = 0; i < 5; ++i) {
+    shapes.push_back(rectanglePath(boxes[i][0], boxes[i][1], boxes[i][2], boxes[i][3]));
+    shapes.back().color = colors[i];
+  }
+  std::vector<GpgpPath> paths;
+  for (const TestPath& shape : shapes) paths.push_back(shape.view());
+  for (size_t i = 0; i < 4; ++i) paths[i].group = i < 2 ? 1 : 2;
+  const GpgpAsset grouped = makeDrawing(paths, {{0, 0.5f, nullptr, 0}, {1, 0.25f, nullptr, 0}});
+  const auto add = [&](size_t i) {
+    list.add(rectangle(boxes[i][0], boxes[i][1], boxes[i][2], boxes[i][3], colors[i]));
+  };
+  const GpgpCanvasItem below = place(makeDrawing({shapes[4].view()}), 1, 3, 7);
+  for (const auto& map : kMaps)
+    for (const bool area : {false, true}) {
+      exactArea = area;
+      GpgpCanvasItem drawing = place(grouped);
+      std::copy_n(map.data(), 6, drawing.transform);
+      std::copy_n(map.data() + 6, 3, drawing.perspective);
+      list.reset().push(map).group(0.5f);
+      add(0);
+      add(1);
+      list.group(0.25f);
+      add(2);
+      add(3);
+      list.pop(2);
+      add(4);
+      list.pop();
+      EXPECT_TRUE(same(raster({below, list.item()}, 100, 90, 16), raster({below, drawing}, 100, 90, 16)))
+          << &map - kMaps << ", area " << area;
+    }
+  exactArea = false;
+  // Opacity around a group, and the item's, is the group's; within it, it is each thing's.
+  const auto pixel = [&](const GpgpCanvasItem& item) { return raster({item}, 100, 90, 16)[40 * 100 + 50]; };
+  const auto expect = [&](const Rgba& p, float r, float g, float b, float a) {
+    const float values[] = {p.r, p.g, p.b, p.a}, expected[] = {r, g, b, a};
+    for (int i = 0; i < 4; ++i) EXPECT_NEAR(values[i], expected[i], 0.001f) << i;
+  };
+  list.reset().fade(0.5f).group(1);
+  add(0);
+  add(1);
+  GpgpCanvasItem item = list.pop(2).item();
+  expect(pixel(item), 0, 0.5f, 0, 0.5f);
+  item.opacity = 0.5f;
+  expect(pixel(item), 0, 0.25f, 0, 0.25f);
+  list.reset().group(0.5f).fade(0.5f);
+  add(0);
+  add(1);
+  expect(pixel(list.pop(2).item()), 0.125f, 0.25f, 0, 0.375f); // each by half, then both
+  list.reset().group(0);
+  add(0);
+  expect(pixel(list.pop().item()), 0, 0, 0, 0);
+  // What is not faded equals what is in no group, sample by sample.
+  list.reset();
+  for (size_t i = 0; i < 5; ++i) add(i);
+  const auto plain = raster({list.item()}, 100, 90, 16);
+  list.reset().group(1);
+  add(0);
+  add(1);
+  list.group(1);
+  for (size_t i = 2; i < 5; ++i) add(i);
+  EXPECT_TRUE(same(raster({list.pop(2).item()}, 100, 90, 16), plain));
+
+  // A group of text, a drawing with groups of its own and a round clip, beside images, equals the group on its own
+  // canvas, faded.
+  GpgpGlyphSetCreateInfo setInfo = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  GpgpAsset set = nullptr;
+  ASSERT_EQ(gpgpCreateGlyphSet(context, &setInfo, &set), GPGP_SUCCESS);
+  const TestPath outline = randomShape(3, 1);
+  const GpgpPath outlineView = outline.view();
+  const GpgpGlyph glyph{1, &outlineView, 1, nullptr};
+  uint32_t index = 0;
+  ASSERT_EQ(gpgpAddGlyphs(set, &glyph, 1, &index), GPGP_SUCCESS);
+  const auto fill = [&](float opacity) {
+    list.reset().group(opacity).clip({8, 8, 92, 82}, {20, 20, 20, 20}).push(turned(10, 1, 10, 0));
+    list.add(rectangle(0, 0, 90, 80, {0.25f, 0.25f, 0.5f, 1})).add(grouped);
+    list.add(set, {{index, 5, 5, 60, {1, 1, 1, 1}}, {index, 20, 10, 60, {1, 0.5f, 0, 1}}}).pop(3);
+    return list.item();
+  };
+  for (const bool withImages : {false, true}) {
+    const std::vector<uint32_t> texel(4, 0xffffffff);
+    const Texture white(device, 2, 2, texel, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    TestList marked(context);
+    GpgpListShape mark = rectangle(95, 85, 100, 90);
+    const GpgpListImage image{};
+    mark.image = &image;
+    std::vector<GpgpCanvasItem> items(1, marked.add(mark).item());
+    if (withImages)
+      images = {white.view()};
+    else
+      items.clear();
+    items.push_back(fill(1));
+    const auto whole = raster(items, 100, 90, 16);
+    items.back() = fill(0.5f);
+    const auto faded = raster(items, 100, 90, 16);
+    for (size_t i = 0; i < 95 * 90; ++i) {
+      if (i % 100 >= 95 || i / 100 >= 85) continue;
+      ASSERT_NEAR(faded[i].r, 0.5f * whole[i].r, 0.001f) << i;
+      ASSERT_NEAR(faded[i].g, 0.5f * whole[i].g, 0.001f) << i;
+      ASSERT_NEAR(faded[i].a, 0.5f * whole[i].a, 0.001f) << i;
+    }
+    show(withImages ? "group_images" : "group", faded, 100, 90);
+    images.clear();
+  }
+
+  // Depth: four in each other, those of a drawing among them; budgets count them.
+  EXPECT_EQ(gpgpPushGroup(list.reset().list, 1.5f), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpPushGroup(list.list, NAN), GPGP_ERROR_INVALID_ARGUMENT);
+  for (int i = 0; i < GPGP_MAX_OPACITY_DEPTH; ++i) list.group(0.5f);
+  EXPECT_EQ(gpgpPushGroup(list.list, 0.5f), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(lastMessage().find("GPGP_MAX_OPACITY_DEPTH"), std::string::npos) << lastMessage();
+  list.add(rectangle(0, 0, 100, 90)).pop(GPGP_MAX_OPACITY_DEPTH);
+  EXPECT_NEAR(pixel(list.item()).a, 0.0625f, 0.001f);
+  const auto refused = [&](const GpgpCanvasItem& shown) {
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    const host::Image target(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = 8, .height = 8});
+    info.width = info.height = 8;
+    info.items = &shown;
+    info.itemCount = 1;
+    info.target = target.target({}, {});
+    const GpgpFrame frame = advance();
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_ERROR_UNSUPPORTED);
+    });
+  };
+  list.reset();
+  for (int i = 0; i < 3; ++i) list.group(0.5f);
+  list.add(grouped).pop(3);
+  refused(list.item());
+  EXPECT_NE(lastMessage().find("entry 0: with those of its drawing, more than 4 groups"), std::string::npos)
+      << lastMessage();
+  list.reset();
+  for (int i = 0; i < 70; ++i) list.group(0.5f).add(rectangle(0, 0, 4, 4)).pop();
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  raster({list.item()}, 32, 32, 16, &report);
+  EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(report.items, 70u);
+  EXPECT_EQ(report.itemsGiven, 64u);
+}
+
+TEST_F(CanvasTest, NineSlicesRepeat) {
+  makeCanvas(128);
+  // 8 x 8 texels of different colours within an atlas of 16 x 8; borders of 2, so that the middle is 4.
+  std::vector<uint32_t> texels(16 * 8, 0xffffffff);
+  for (uint32_t y = 0; y < 8; ++y)
+    for (uint32_t x = 0; x < 8; ++x) texels[y * 16 + x] = 0xff000000 | x * 30 | y * 30 << 8;
+  const Texture nearest(device, 16, 8, texels, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  images = {nearest.view()};
+  GpgpListImage image{0, {0, 0, 0.5f, 1}, {0.125f, 0.25f, 0.125f, 0.25f}, {12, 10, 6, 8}, {}, {}};
+  GpgpListShape shape = rectangle(8, 16, 88, 80);
+  shape.image = &image;
+  TestList list(context);
+  // Which texel is at a place of the box, along one axis: borders of `begin` and `end`, a middle of `tile` each time.
+  const auto texelAt = [](float place, float side, float begin, float end, float tile) {
+    if (place < begin) return static_cast<int>(place / begin * 2);
+    if (place >= side - end) return 6 + static_cast<int>((place - side + end) / end * 2);
+    return 2 + static_cast<int>(std::fmod(place - begin, tile) / tile * 4);
+  };
+  const auto check = [&](float across, float down, const char* name) {
+    const auto pixels = raster({list.reset().add(shape).item()}, 96, 96, 16);
+    show(name, pixels, 96, 96);
+    for (uint32_t y = 16; y < 80; ++y)
+      for (uint32_t x = 8; x < 88; ++x) {
+        const float px = static_cast<float>(x) - 8 + 0.5f, py = static_cast<float>(y) - 16 + 0.5f;
+        ASSERT_NEAR(pixels[y * 96 + x].r * 255 / 30,
+                    static_cast<float>(texelAt(px, 80, image.borders[0], image.borders[2], across)), 0.02f)
+            << x << " " << y << " " << name;
+        ASSERT_NEAR(pixels[y * 96 + x].g * 255 / 30,
+                    static_cast<float>(texelAt(py, 64, image.borders[1], image.borders[3], down)), 0.02f)
+            << x << " " << y << " " << name;
+      }
+  };
+  check(62, 46, "tile_stretch");
+  image.tiles[0] = GPGP_TILE_REPEAT; // 18 units for 4 texels of border: 18 for the middle's 4
+  check(18, 46, "tile_repeat_across");
+  image.tiles[1] = GPGP_TILE_ROUND; // 46 / 18: thrice
+  check(18, 46 / 3.0f, "tile_repeat_round");
+  image.tiles[0] = GPGP_TILE_ROUND;
+  image.tileSize[0] = 25; // 62 / 25: twice
+  image.tileSize[1] = 1000;
+  check(31, 46, "tile_round");
+  // Without borders: the image as a pattern, under a scale.
+  std::fill_n(image.borders, 4, 0.0f);
+  std::fill_n(image.sourceBorders, 4, 0.0f);
+  image.tiles[0] = image.tiles[1] = GPGP_TILE_REPEAT;
+  image.tileSize[0] = 8, image.tileSize[1] = 4;
+  shape = rectangle(0, 0, 40, 32);
+  shape.image = &image;
+  const auto pattern = raster({list.reset().push({2, 0, 0, 2, 8, 16}).add(shape).pop().item()}, 96, 96, 16);
+  for (uint32_t y = 16; y < 80; ++y)
+    for (uint32_t x = 8; x < 88; ++x) {
+      ASSERT_NEAR(pattern[y * 96 + x].r * 255 / 30, static_cast<float>((x - 8) % 16 / 2), 0.02f) << x << " " << y;
+      ASSERT_NEAR(pattern[y * 96 + x].g * 255 / 30, static_cast<float>((y - 16) % 8), 0.02f) << x << " " << y;
+    }
+  // Filtered, nothing of the borders' colours comes into the middle, and nothing of what is beside the source.
+  for (uint32_t y = 0; y < 8; ++y)
+    for (uint32_t x = 0; x < 8; ++x) texels[y * 16 + x] = x < 2 || x >= 6 || y < 2 || y >= 6 ? 0xff0000ff : 0xffff0000;
+  const Texture smooth(device, 16, 8, texels, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  images = {smooth.view()};
+  image = {0, {0, 0, 0.5f, 1}, {0.125f, 0.25f, 0.125f, 0.25f}, {12, 12, 12, 12}, {1, 1}, {7.3f, 11.1f}};
+  shape = rectangle(8, 16, 88, 80);
+  shape.image = &image;
+  const auto filtered = raster({list.reset().add(shape).item()}, 96, 96, 16);
+  for (uint32_t y = 29; y < 67; ++y)
+    for (uint32_t x = 21; x < 75; ++x) ASSERT_EQ(filtered[y * 96 + x].r, 0) << x << " " << y;
+  show("tile_filtered", filtered, 96, 96);
+
+  const auto refused = [&](auto change, const char* words) {
+    GpgpListImage bad = image;
+    change(bad);
+    GpgpListShape one = shape;
+    one.image = &bad;
+    EXPECT_EQ(gpgpAddShapes(list.list, &one, 1), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  refused([](GpgpListImage& i) { i.tiles[1] = 3; }, "image.tiles[1] is 3");
+  refused([](GpgpListImage& i) { i.tileSize[0] = -1; }, "image.tileSize");
+  refused([](GpgpListImage& i) { i.tileSize[0] = NAN; }, "image.tileSize");
+  refused(
+      [](GpgpListImage& i) {
+        i.tileSize[0] = 0;
+        i.borders[0] = i.borders[2] = 0;
+      },
+      "image.tileSize[0] is 0");
+}
+
+TEST_F(CanvasTest, ListsStandWhatNobodyWouldDesign) {
+  makeCanvas(80); // no other test's, which may have left a report
+  TestList list(context);
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto green = [&](const std::vector<Rgba>& pixels) { return pixels[10 * 32 + 10].g; };
+  // A million shapes: as many as fit, from the bottom, and a report of what they would need.
+  const std::vector<GpgpListShape> million(1000000, rectangle(0, 0, 20, 20, {0, 1, 0, 1}));
+  ASSERT_EQ(gpgpAddShapes(list.list, million.data(), 1000000), GPGP_SUCCESS);
+  EXPECT_EQ(green(raster({list.item()}, 32, 32, 4, &report)), 1);
+  EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(report.shapes, 1000000u);
+  EXPECT_EQ(report.shapesGiven, 1024u);
+  // More clips, transforms and groups than there is room for, one after another.
+  list.reset().add(million[0]);
+  for (int i = 0; i < 20000; ++i)
+    list.group(0.5f).push(turned(1, 1, 0, 0)).clip({0, 0, 9, 9}, {3, 3, 3, 3}).add(million[0]).pop(3);
+  raster({list.item()}, 32, 32, 4, &report);
+  EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_GE(report.items, 20000u);
+  // Nothing to be seen: no extent, no scale, what scales beyond numbers.
+  list.reset().add(million[0]);
+  for (const std::array<float, 4>& box : {std::array{5.0f, 5.0f, 5.0f, 5.0f},
+                                          {0.0f, 5.0f, 30.0f, 5.0f},
+                                          {1e7f, 1e7f, 1e7f, 1e7f},
+                                          {0, 0, 1e-38f, 1e-38f}}) {
+    const GpgpListShape shape = rectangle(box[0], box[1], box[2], box[3]);
+    list.add(shape).add(rounded(shape, 1, 2, 3, 4)).add(rounded(shape, 9, 9, 9, 9, 5)).add(ellipse(shape));
+    list.add(ellipse(shape, 1e7f)).clip(box, {1e7f, 0, 1e7f, 0}).add(million[0]).pop();
+  }
+  list.add(line(5, 5, 5, 5, 1e-38f, GPGP_CAP_ROUND)).push({0, 0, 0, 0, 0, 0}).add(million[0]).pop();
+  list.push({1e-38f, 0, 0, 1e-38f, 0, 0}).push({1e-38f, 0, 0, 1e-38f, 0, 0}).add(million[0]).clip({0, 0, 9, 9}).pop(3);
+  list.push({1e38f, 0, 0, -1e38f, 0, 0}).push({1e38f, 0, 0, -1e38f, 0, 0}).add(million[0]).pop(2);
+  list.push({1, 0, 0, 1, 0, 0, 0, 0, 1e-38f}).add(rectangle(0, 0, 1e-30f, 1e-30f)).pop();
+  EXPECT_EQ(green(raster({list.item()}, 32, 32, 16, &report)), 1);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  // What no number can hold is refused, with words, and changes nothing.
+  const auto refused = [&](GpgpResult result, const char* words) {
+    EXPECT_EQ(result, GPGP_ERROR_INVALID_ARGUMENT) << words;
+    EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
+  };
+  const float box[4] = {0, 0, 9, 9}, bad[4] = {0, 0, NAN, 9}, radii[4] = {-1, 0, 0, 0};
+  list.reset();
+  for (int i = 0; i < 20; ++i) list.push({1e38f, 0, 0, 1e38f, 1, 0});
+  refused(gpgpAddShapes(list.list, million.data(), 1), "beyond 1e7");
+  refused(gpgpPushClip(list.list, box, nullptr), "beyond 1e7");
+  list.pop(20);
+  refused(gpgpPopState(list.list), "has been popped");
+  refused(gpgpPushClip(list.list, bad, nullptr), "box is 0, 0, nan, 9");
+  refused(gpgpPushClip(list.list, box, radii), "radius");
+  for (int i = 0; i < GPGP_MAX_LIST_DEPTH; ++i) list.fade(1);
+  refused(gpgpPushOpacity(list.list, 1), "GPGP_MAX_LIST_DEPTH");
+  EXPECT_EQ(green(raster({list.pop(GPGP_MAX_LIST_DEPTH).item()}, 32, 32, 4)), 0);
+}
 } // namespace

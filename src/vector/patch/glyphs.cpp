@@ -26,9 +26,9 @@ core::Result<void> checkGlyph(const GpgpGlyph& glyph, size_t index) {
                      glyph.pathCount);
   for (uint32_t k = 0; k < glyph.pathCount; ++k) {
     const GpgpPath& path = glyph.paths[k];
-    if (path.gradient || path.image || path.group)
+    if (path.image || path.group)
       return makeError(GPGP_ERROR_UNSUPPORTED,
-                       "glyphs[%zu].paths[%u] has a gradient, an image or a group; glyphs are painted in plain colours",
+                       "glyphs[%zu].paths[%u] has an image or a group; glyphs are painted in colours and gradients",
                        index, k);
   }
   return {};
@@ -107,7 +107,9 @@ core::Result<Glyphs> loadBakedGlyphs(std::span<const std::byte> bytes, std::pmr:
   std::sort(keys.begin(), keys.end());
   if (std::adjacent_find(keys.begin(), keys.end()) != keys.end())
     return makeError(GPGP_ERROR_INVALID_DATA, "baked glyphs: a key is there twice");
-  if (paths != drawing->paths.size() || !drawing->clips.empty() || !drawing->layers.empty() || !drawing->paints.empty())
+  const bool images = std::any_of(drawing->paints.begin(), drawing->paints.end(),
+                                  [](const PaintRecord& paint) { return paint.kind >= shader::kPaintImage; });
+  if (paths != drawing->paths.size() || !drawing->clips.empty() || !drawing->layers.empty() || images)
     return makeError(GPGP_ERROR_INVALID_DATA, "baked glyphs: the drawing is not theirs");
   glyphs.drawing = std::move(*drawing);
   return glyphs;

@@ -12,7 +12,7 @@ struct Glyphs {
   };
   explicit Glyphs(std::pmr::memory_resource* memory) : entries(memory), drawing(memory) {}
   std::pmr::vector<Entry> entries;
-  Drawing drawing; ///< the paths of all, in em units, with colours only; kForeground tells which take the text's
+  Drawing drawing; ///< the paths of all, in em units, in colours and gradients; kForeground tells which take the text's
 };
 
 /// Checks and converts glyphs. Errors name the glyph and its path.

@@ -168,7 +168,7 @@ core::PassList Canvas::describe() const {
                      placed = VkDeviceSize(budgets_.items) + budgets_.glyphs + budgets_.shapes,
                      shapeBytes = budgets_.shapes * VkDeviceSize(sizeof(shader::ShapeRecord) + sizeof(PaintRecord) +
                                                                  2 * sizeof(StopRecord)) +
-                                  budgets_.items * VkDeviceSize(sizeof(shader::ItemClipRecord));
+                                  budgets_.items * VkDeviceSize(sizeof(shader::ItemClipRecord) + sizeof(LayerRecord));
   const auto fromHost =
       list.add({"constants", core::ResourceKind::constants,
                 heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
@@ -464,7 +464,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.constants = {bytes(std::span(&header, 1), 1),        bytes(gather.slots, shader::kSlots),
                  bytes(tables_.sources, gather.sources), bytes(tables_.placements, gather.placements),
                  bytes(tables_.shapes, gather.shapes),   bytes(tables_.paints, gather.paints),
-                 bytes(tables_.stops, gather.stops),     bytes(tables_.clips, gather.clips)};
+                 bytes(tables_.stops, gather.stops),     bytes(tables_.clips, gather.clips),
+                 bytes(tables_.layers, gather.layers)};
 
   if (view) {
     r.bindings[kView].ownBuffer = view->buffer();

@@ -21,7 +21,7 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   }
   for (const PaintRecord& paint : drawing.paints)
     if (paint.kind == shader::kPaintImage) asset->images_ = std::max(asset->images_, paint.firstStop + 1);
-  asset->layers_ = !drawing.layers.empty();
+  for (const LayerRecord& layer : drawing.layers) asset->layerDepth_ = std::max(asset->layerDepth_, layer.depth);
   std::copy_n(drawing.bounds, 4, asset->bounds_);
   std::copy_n(drawing.viewport, 4, asset->viewport_);
   std::pmr::vector<std::byte> bytes(&context.host());

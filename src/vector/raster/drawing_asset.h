@@ -39,7 +39,8 @@ public:
   uint32_t patches() const { return first(paths()).patches; }
   uint32_t pathTable() const { return pathTable_; } ///< where BoxedPaths begin, in vec4
   const shader::SlotRecord& tables() const { return tables_; }
-  bool groups() const { return tables_.layers > tables_.clips || layers_; } ///< that clip or fade
+  bool groups() const { return tables_.layers > tables_.clips || layerDepth_; } ///< that clip or fade
+  uint32_t layerDepth() const { return layerDepth_; }                           ///< groups that fade in each other
   bool gradients() const { return tables_.stops > tables_.paints; }
   uint32_t images() const { return images_; } ///< how many of the record's images it needs
   const Kept* kept() const { return kept_ ? &*kept_ : nullptr; }
@@ -61,8 +62,7 @@ private:
     std::pmr::vector<ClipRecord> clips;
   };
   std::optional<Hit> hit_; // where it is hit-testable, but not editable
-  uint32_t curves_ = 0, images_ = 0, pathTable_ = 0;
-  bool layers_ = false;
+  uint32_t curves_ = 0, images_ = 0, pathTable_ = 0, layerDepth_ = 0;
   shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};
 };

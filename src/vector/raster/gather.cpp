@@ -15,7 +15,8 @@ using shader::PlacementRecord;
 ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
     : sources(budgets.items, memory), placements(size_t(budgets.items) + budgets.glyphs + budgets.shapes, memory),
       shapes(budgets.shapes, memory), paints(budgets.shapes, memory), stops(size_t(budgets.shapes) * 2, memory),
-      clips(budgets.items, memory), clipStates(budgets.items, memory) {}
+      clips(budgets.items, memory), layers(budgets.items, memory), clipStates(budgets.items, memory),
+      groupStates(budgets.items, memory) {}
 
 core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
   char text[256];
@@ -48,7 +49,8 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   item.firstImage = firstImage;
   item.scissor = clip.scissor;
   item.clip = clip.chain;
-  groups = groups || item.clip;
+  item.layer = clip.layer;
+  groups = groups || item.clip || item.layer;
   lists = lists || item.clip || shader::hasScissor(item);
   projective = projective || item.perspective.w > 0;
   tables_.sources[sources] = item;
@@ -77,6 +79,9 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   if (drawing.images() && (firstImage > info_.imageCount || drawing.images() > info_.imageCount - firstImage))
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing needs %u images from images[%u] on; imageCount is %u",
                  drawing.images(), firstImage, info_.imageCount);
+  if (clip.layer && tables_.layers[clip.layer - 1].depth + drawing.layerDepth() > shader::kMaxLayerDepth)
+    return wrong(GPGP_ERROR_UNSUPPORTED, ": with those of its drawing, more than %u groups fade in each other",
+                 shader::kMaxLayerDepth);
   const uint32_t source = addSource(map, opacity, firstImage, clip);
   if (source == kNone && !full_) return {}; // covers nothing
   const uint32_t room = budgets_.patches - static_cast<uint32_t>(patches_);
@@ -134,6 +139,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     if (!set.hasArrived(glyph->upload)) return core::makeError(GPGP_NOT_READY, "a glyph is not resident");
     glyph->use(frame);
     if (glyph->paths == 0 || hidden) continue;
+    gradients = gradients || glyph->gradients;
     full_ = full_ || glyphsNeeded_ >= budgets_.glyphs || glyph->paths > budgets_.patches - paths_ ||
             glyph->patches > budgets_.patches - patches_;
     ++glyphsNeeded_;
@@ -241,6 +247,24 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
   return {};
 }
 
+/// A layer for each group that is neither opaque nor hidden whole; `opacity` is that of each thing in the list.
+void Gather::resolveGroups(const List& list, float opacity) {
+  layersNeeded_ += static_cast<uint32_t>(list.groups().size());
+  full_ = full_ || list.groups().size() > budgets_.items - layers;
+  for (size_t i = 0; i < list.groups().size() && !full_; ++i) {
+    const List::Group& group = list.groups()[i];
+    const ItemTables::GroupState outer =
+        group.parent ? tables_.groupStates[group.parent - 1] : ItemTables::GroupState{0, opacity};
+    ItemTables::GroupState& state = tables_.groupStates[i];
+    const float whole = group.opacity * outer.opacity;
+    state = {outer.layer, whole};
+    if (whole == 0 || whole == 1) continue;
+    const uint32_t depth = outer.layer ? tables_.layers[outer.layer - 1].depth + 1 : 1;
+    tables_.layers[layers++] = {whole, outer.layer, depth, 0};
+    state = {layers, 1};
+  }
+}
+
 Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const Chain& own) {
   if (list.depth()) return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list: %u of its pushes are not popped", list.depth());
   if (list.images() && (item.firstImage > info_.imageCount || list.images() > info_.imageCount - item.firstImage))
@@ -248,12 +272,18 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
                  list.images(), item.firstImage, info_.imageCount);
   const Map map = toMap(item.transform, item.perspective);
   if (auto ok = resolveClips(list, map, own); !ok) return ok;
+  resolveGroups(list, item.opacity);
   // Shapes and texts that follow each other in the same space share a source.
-  uint32_t source = kNone, base = kNone, clip = kNone;
+  uint32_t source = kNone, base = kNone, clip = kNone, group = kNone;
   for (const List::Command& command : list.commands()) {
     entry_ = command.firstEntry;
     const List::Space& space = command.space;
-    const Chain& state = space.clip && !full_ ? tables_.clipStates[space.clip - 1] : own;
+    Chain state = space.clip && !full_ ? tables_.clipStates[space.clip - 1] : own;
+    float opacity = item.opacity;
+    if (space.group && !full_) {
+      state.layer = tables_.groupStates[space.group - 1].layer;
+      opacity = tables_.groupStates[space.group - 1].opacity;
+    }
     if (command.kind == List::Kind::drawing) {
       const core::Object* asset = command.asset();
       if (!asset) return wrong(GPGP_ERROR_INVALID_HANDLE, ": its drawing was destroyed");
@@ -262,8 +292,7 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
       const Map whole = compose(compose(map, list.bases()[space.base]), space.map());
       if (command.firstImage > UINT32_MAX - item.firstImage)
         return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": firstImage is %u", command.firstImage);
-      if (auto ok =
-              addDrawing(drawing, whole, item.opacity * command.opacity, item.firstImage + command.firstImage, state);
+      if (auto ok = addDrawing(drawing, whole, opacity * command.opacity, item.firstImage + command.firstImage, state);
           !ok)
         return ok;
       continue;
@@ -271,9 +300,9 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
     const core::Object* asset = nullptr;
     if (command.kind == List::Kind::text && !(asset = command.asset()))
       return wrong(GPGP_ERROR_INVALID_HANDLE, ": its glyph set was destroyed");
-    if (space.base != base || space.clip != clip) {
-      base = space.base, clip = space.clip;
-      source = addSource(compose(map, list.bases()[base]), item.opacity, item.firstImage, state);
+    if (space.base != base || space.clip != clip || space.group != group) {
+      base = space.base, clip = space.clip, group = space.group;
+      source = addSource(compose(map, list.bases()[base]), opacity, item.firstImage, state);
     }
     if (command.kind == List::Kind::text) {
       const auto glyphs = list.glyphs().subspan(command.first, command.count);
@@ -297,13 +326,14 @@ void Gather::finish(shader::CanvasHeader& header) {
   header.glyphLimit = budgets_.glyphs;
   header.shapes = std::max({shapesNeeded_, paintsNeeded_, (stopsNeeded_ + 1) / 2});
   header.shapeLimit = budgets_.shapes;
-  header.sources = sourcesNeeded_;
+  header.sources = std::max(sourcesNeeded_, layersNeeded_);
   header.sourceLimit = budgets_.items;
   shader::SlotRecord& own = slots[kShapeSlot];
   own.paints = shapes * 4;
   own.stops = own.paints + paints * 4;
   own.clips = own.stops + stops * 2;
-  header.shapeTables = own.clips + clips;
+  own.layers = own.clips + clips;
+  header.shapeTables = own.layers + layers;
 }
 
 } // namespace gpgp::vector

@@ -25,10 +25,16 @@ struct ItemBudgets {
 /// Room for what one record has, made once.
 struct ItemTables {
   ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory);
+  /// What is around a thing.
   struct ClipState {
     shader::vec4 scissor;
-    uint32_t chain; ///< 1 + index of the last of its clips that is no scissor; 0: none
-    bool hidden;    ///< nothing shows
+    uint32_t chain;     ///< 1 + index of the last of its clips that is no scissor; 0: none
+    bool hidden;        ///< nothing shows
+    uint32_t layer = 0; ///< 1 + index of the innermost group that fades it; 0: none
+  };
+  struct GroupState {
+    uint32_t layer;
+    float opacity; ///< of each thing in it
   };
   std::pmr::vector<shader::ItemRecord> sources;
   std::pmr::vector<shader::PlacementRecord> placements;
@@ -36,7 +42,9 @@ struct ItemTables {
   std::pmr::vector<shader::PaintRecord> paints;
   std::pmr::vector<shader::StopRecord> stops;
   std::pmr::vector<shader::ItemClipRecord> clips;
-  std::pmr::vector<ClipState> clipStates; ///< of the list at hand
+  std::pmr::vector<shader::LayerRecord> layers;
+  std::pmr::vector<ClipState> clipStates; ///< of the list at hand, as are these
+  std::pmr::vector<GroupState> groupStates;
 };
 
 class Gather {
@@ -54,7 +62,7 @@ public:
   uint32_t slotCount = 0;
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
   bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
-  uint32_t sources = 0, placements = 0, shapes = 0, paints = 0, stops = 0, clips = 0; ///< used
+  uint32_t sources = 0, placements = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0; ///< used
 
 private:
   using Chain = ItemTables::ClipState;
@@ -63,6 +71,7 @@ private:
   core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
   core::Result<void> addList(const List& list, const GpgpCanvasItem& item, const Chain& own);
   core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own);
+  void resolveGroups(const List& list, float opacity);
   void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
   shader::PlacementRecord* addShape(const shader::ShapeRecord& shape, uint32_t source);
   uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
@@ -77,7 +86,8 @@ private:
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
   uint64_t patches_ = 0;
   uint32_t paths_ = 0, segments_ = 0;
-  uint32_t sourcesNeeded_ = 0, glyphsNeeded_ = 0, shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
+  uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
+  uint32_t glyphsNeeded_ = 0, shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
   uint32_t pathsDropped_ = 0;
   bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
 };

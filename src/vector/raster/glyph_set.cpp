@@ -11,26 +11,44 @@ namespace {
 using shader::BoxedPath;
 using shader::SegmentRecord;
 constexpr uint32_t kSegmentSize = sizeof(SegmentRecord) / 16, kPathSize = sizeof(BoxedPath) / 16; // vec4
+constexpr uint32_t kPaintSize = sizeof(PaintRecord) / 16, kStopSize = sizeof(StopRecord) / 16;
 constexpr uint32_t kDefaultGlyphs = 4096;
 constexpr VkDeviceSize kDefaultBytes = VkDeviceSize(8) << 20;
 constexpr uint32_t kGenerations = 1u << (32 - GlyphSet::kPlaceBits);
 
-/// The outlines of glyphs in a row, and how many segments and patches there are up to the end of each path.
+/// The outlines of glyphs in a row, and how many segments, patches and vec4 of gradients there are up to the end of
+/// each path.
 struct Tables {
   Outlines outlines;
   std::pmr::vector<uint32_t> patches;
+  std::pmr::vector<uint64_t> gradients;
 
   Tables(const Drawing& drawing, std::pmr::memory_resource* memory)
-      : outlines(makeOutlines(drawing, memory)), patches(drawing.paths.size(), 0, memory) {
+      : outlines(makeOutlines(drawing, memory)), patches(drawing.paths.size(), 0, memory),
+        gradients(drawing.paths.size(), 0, memory) {
     for (const PatchRecord& patch : drawing.patches) ++patches[patch.path];
-    for (size_t i = 1; i < patches.size(); ++i) patches[i] += patches[i - 1];
+    for (size_t i = 0; i < patches.size(); ++i) {
+      if (const uint32_t paint = drawing.paths[i].paint)
+        gradients[i] = kPaintSize + uint64_t(drawing.paints[paint - 1].stopCount) * kStopSize;
+      if (i) patches[i] += patches[i - 1], gradients[i] += gradients[i - 1];
+    }
   }
   uint32_t segmentsBefore(size_t path) const { return path ? outlines.ends[path - 1] : 0; }
   uint32_t patchesBefore(size_t path) const { return path ? patches[path - 1] : 0; }
-  uint32_t sizeOf(size_t path, uint32_t paths) const { // vec4
-    return (segmentsBefore(path + paths) - segmentsBefore(path)) * kSegmentSize + paths * kPathSize;
+  uint64_t gradientsOf(size_t path, uint32_t paths) const {
+    return paths ? gradients[path + paths - 1] - (path ? gradients[path - 1] : 0) : 0;
+  }
+  uint64_t sizeOf(size_t path, uint32_t paths) const { // vec4
+    const uint64_t painted = gradientsOf(path, paths), segments = segmentsBefore(path + paths) - segmentsBefore(path);
+    return segments * kSegmentSize + uint64_t(paths) * kPathSize + (painted ? painted + kPaintSize - 1 : 0);
   }
 };
+uint32_t countPaints(const Drawing& drawing, size_t firstPath, size_t end) {
+  uint32_t count = 0;
+  for (size_t i = firstPath; i < end; ++i) count += drawing.paths[i].paint != 0;
+  return count;
+}
+uint32_t divide(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 } // namespace
 
 GlyphSet::GlyphSet(core::Context& owner, const char* name)
@@ -43,7 +61,11 @@ core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, co
   VkDeviceSize bakedBytes = 0;
   if (baked) {
     const Tables tables(baked->drawing, &context.host());
-    bakedBytes = VkDeviceSize(tables.sizeOf(0, static_cast<uint32_t>(baked->drawing.paths.size()))) * 16;
+    size_t path = 0;
+    for (const Glyphs::Entry& entry : baked->entries) {
+      bakedBytes += tables.sizeOf(path, entry.paths) * 16;
+      path += entry.paths;
+    }
   }
   const size_t maxGlyphs = info.maxGlyphs ? info.maxGlyphs : baked ? std::max<size_t>(bakedGlyphs, 1) : kDefaultGlyphs;
   const VkDeviceSize maxBytes = info.maxBytes ? info.maxBytes : baked ? bakedBytes : kDefaultBytes;
@@ -108,7 +130,8 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     const size_t firstPath = path;
     path += entry.paths;
     if (cells_[cellOf(entry.key)] != kNone) continue;
-    const uint32_t size = tables.sizeOf(firstPath, entry.paths);
+    const uint64_t wanted = tables.sizeOf(firstPath, entry.paths);
+    const uint32_t size = static_cast<uint32_t>(std::min<uint64_t>(wanted, kNone)); // no block is as large as that
     uint32_t block = kNone;
     while (places_.empty() || (block = takeBlock(size)) == kNone) {
       if (!gathered) gather();
@@ -118,7 +141,7 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     }
     if (block == kNone) {
       ++missing;
-      missingSize += size;
+      missingSize += wanted;
       continue;
     }
     room -= size;
@@ -133,6 +156,7 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     glyph.paths = entry.paths;
     glyph.patches = tables.patchesBefore(path) - tables.patchesBefore(firstPath);
     glyph.living = true;
+    glyph.gradients = tables.gradientsOf(firstPath, entry.paths) > 0;
     glyph.use(frame);
     glyph.upload = 0;
     glyph.key = entry.key;
@@ -142,8 +166,20 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
       segment.path -= static_cast<uint32_t>(firstPath);
       std::memcpy(to, &segment, sizeof segment);
     }
+    // Gradients are counted from the buffer's beginning, as records of their size.
+    uint32_t paint = divide(block + glyph.segments * kSegmentSize + glyph.paths * kPathSize, kPaintSize);
+    uint32_t stop = (paint + countPaints(glyphs.drawing, firstPath, path)) * (kPaintSize / kStopSize);
     for (size_t i = firstPath; i < path; ++i, to += sizeof(BoxedPath)) {
-      const BoxedPath boxed{tables.outlines.boxes[i], glyphs.drawing.paths[i]};
+      BoxedPath boxed{tables.outlines.boxes[i], glyphs.drawing.paths[i]};
+      if (boxed.path.paint) {
+        PaintRecord record = glyphs.drawing.paints[boxed.path.paint - 1];
+        const auto stops = std::span(glyphs.drawing.stops).subspan(record.firstStop, record.stopCount);
+        record.firstStop = stop;
+        std::memcpy(bytes().data() + size_t(paint) * sizeof record, &record, sizeof record);
+        std::memcpy(bytes().data() + size_t(stop) * sizeof(StopRecord), stops.data(), stops.size_bytes());
+        stop += record.stopCount;
+        boxed.path.paint = ++paint;
+      }
       std::memcpy(to, &boxed, sizeof boxed);
     }
     if (size) added.push_back(place);

@@ -1,8 +1,9 @@
 // A glyph set as the engine holds it: outlines in one device buffer within budgets, found by key and drawn by index.
 //
-// A glyph is a block of the buffer: its segments, then its paths with their boxes. An index is a place in a table with
-// the generation of what lies there, so that an index of what was evicted is recognised. Evicted is what was used
-// longest ago, and nothing that a frame not yet safe may read. Recording reads the table and notes the frame, no more.
+// A glyph is a block of the buffer: its segments, its paths with their boxes, then their gradients. An index is a place
+// in a table with the generation of what lies there, so that an index of what was evicted is recognised. Evicted is
+// what was used longest ago, and nothing that a frame not yet safe may read. Recording reads the table and notes the
+// frame, no more.
 #pragma once
 #include "core/resident.h"
 #include "vector/patch/glyphs.h"
@@ -17,7 +18,7 @@ public:
     uint32_t first = 0, size = 0; ///< its block, in vec4
     uint32_t segments = 0, paths = 0, patches = 0;
     uint32_t generation = 0; ///< of the glyph; of the next one where there is none
-    bool living = false;
+    bool living = false, gradients = false;
     mutable uint64_t lastUsed = 0; ///< frame
     uint64_t upload = 0;           ///< its range's number; 0: nothing to upload
     uint64_t key = 0;
@@ -42,7 +43,7 @@ public:
     return found.living && found.generation == index >> kPlaceBits ? &found : nullptr;
   }
   using Resident::hasArrived;
-  /// Its segments, then its BoxedPaths.
+  /// Its segments, its BoxedPaths, and, at the next multiple of their size, its gradients' records and stops.
   std::span<const std::byte> block(const Glyph& glyph) const {
     return Resident::bytes().subspan(size_t(glyph.first) * 16, size_t(glyph.size) * 16);
   }

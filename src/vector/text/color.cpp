@@ -128,13 +128,7 @@ private:
     return result;
   }
 
-  Result<void> shape(uint32_t glyph, const Affine& transform) {
-    const auto outline = loadOutline(font_, glyph);
-    if (!outline) return outline.error();
-    if (!paths_.addOutline(**outline, font_.opened().emPerUnit, transform))
-      return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u: its layer %u has a broken outline", info_.glyph, glyph);
-    return {};
-  }
+  Result<void> shape(uint32_t glyph, const Affine& transform) { return paths_.addGlyph(font_, glyph, transform); }
 
   /// The record of a glyph among those that lie sorted at an offset.
   std::optional<size_t> find(size_t records, uint32_t count, size_t size, uint32_t glyph = ~0u) const {

@@ -148,6 +148,8 @@ Result<void> Font::openBoth(const GpgpFontCreateInfo& info) {
       return makeError(GPGP_ERROR_INVALID_DATA, "its tables of variations are broken");
   }
   hb_font_make_immutable(open.shaping.get());
+  const Owned<hb_blob_t> compact(hb_face_reference_table(open.face.get(), HB_TAG('C', 'F', 'F', '2')));
+  open.variesCompact = !axes_.empty() && hb_blob_get_length(compact.get()) > 0;
 
   if (FT_IS_SCALABLE(outlines)) {
     const uint32_t pixels = outlineSize(outlines);

@@ -28,6 +28,7 @@ struct Deleter {
   void operator()(hb_face_t* face) const { hb_face_destroy(face); }
   void operator()(hb_font_t* font) const { hb_font_destroy(font); }
   void operator()(hb_buffer_t* buffer) const { hb_buffer_destroy(buffer); }
+  void operator()(hb_draw_funcs_t* functions) const { hb_draw_funcs_destroy(functions); }
   void operator()(FT_Library library) const { FT_Done_FreeType(library); }
   void operator()(FT_Face face) const { FT_Done_Face(face); }
 };
@@ -58,7 +59,8 @@ struct OpenFont {
   std::mutex lock;          // of all below
   Owned<std::remove_pointer_t<FT_Library>> library;
   Owned<std::remove_pointer_t<FT_Face>> outlines;
-  float emPerUnit = 0; // of FreeType's 26.6 outlines, at the size that was set; 0: the font has bitmaps only
+  float emPerUnit = 0;        // of FreeType's 26.6 outlines, at the size that was set; 0: the font has bitmaps only
+  bool variesCompact = false; // CFF2 at axes, whose points FreeType cuts down to whole font units
 };
 
 /// HarfBuzz works in integers: parts of a font unit, so that variable fonts are not rounded.

@@ -17,9 +17,9 @@ Affine concat(const Affine& outer, const Affine& inner);
 
 class GlyphPaths {
 public:
-  /// Adds an outline of FreeType's: its points times `scale` are em, y up, and then mapped by `transform` (em, y up).
-  /// False where FreeType refuses it or a point leaves what a path may hold.
-  bool addOutline(FT_Outline& outline, float scale, const Affine& transform);
+  /// Adds a glyph's plain outline, mapped by `transform` (em, y up). INVALID_DATA where the font is broken there or a
+  /// point leaves what a path may hold. Under the font's lock.
+  Result<void> addGlyph(Font& font, uint32_t glyph, const Affine& transform);
   /// Paints what was added since the last call. Nothing where nothing was.
   void paint(const float (&color)[4], bool foreground, const GpgpStroke* stroke = nullptr);
   /// The same with a gradient, of which copies are kept; the color's alpha counts.
@@ -34,7 +34,10 @@ private:
     const GpgpGradient* gradient;
     const GpgpStroke* stroke;
   };
-  void point(const FT_Vector* at);
+  void begin(float x, float y);
+  void point(float x, float y);
+  bool decompose(FT_Outline& outline);
+  void draw(const Font& font, uint32_t glyph);
   Part* close();
 
   std::vector<GpgpPathVerb> verbs_;
@@ -51,7 +54,5 @@ private:
 
 /// The colour layers of a glyph, where the font has some: false if not. color.cpp
 Result<bool> addColors(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths, bool& incomplete);
-/// A glyph's outline at FreeType's size, kept in the face until the next.
-Result<FT_Outline*> loadOutline(Font& font, uint32_t glyph);
 
 } // namespace gpgp::text

@@ -156,8 +156,11 @@ void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) c
   const size_t first = runs.size();
   UScriptCode lastScript = USCRIPT_COMMON;
   for (uint32_t at = begin, next = 0; at < end; at = next) {
+    // A letter with thousands of marks is shaped in parts: HarfBuzz takes time by the square of their number.
+    constexpr uint32_t kMostTogether = 256;
     next = at + 1;
-    while (next < end && !(flags[next] & kGrapheme)) ++next;
+    while (next < end && !(flags[next] & kGrapheme) && next - at < kMostTogether) ++next;
+    const bool whole = at == begin || (flags[at] & kGrapheme);
     const char32_t c = text.characters[at];
     const uint32_t style = styleOf[at];
     Run run{at, next, Run::Kind::text, levels[at], HB_SCRIPT_COMMON, nullptr, style};
@@ -169,7 +172,7 @@ void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) c
                          styleOf[at - 1] == style && hasAll(*last->font, grapheme);
       run.font = stays ? last->font : fontOf(grapheme, styles[style]);
       const UScriptCode script = scripts[at - begin];
-      if (last && last->kind == Run::Kind::text && last->level == run.level && last->font == run.font &&
+      if (whole && last && last->kind == Run::Kind::text && last->level == run.level && last->font == run.font &&
           lastScript == script && sameShaping(styles[last->style], styles[style])) {
         last->end = next;
         continue;

@@ -2,6 +2,7 @@
 #include "vector/text/layout.h"
 
 #include <algorithm>
+#include <array>
 
 namespace gpgp::text {
 
@@ -117,25 +118,40 @@ uint32_t Layout::addGlyphs(const Run& run, uint32_t begin, uint32_t end) {
   return static_cast<uint32_t>(glyphs.size());
 }
 
+/// Gives each grapheme of a cluster its part of the cluster's width: up to the font's carets, or evenly.
+void Layout::share(const Run& run, std::span<const ShapedGlyph> glyphs, uint32_t begin, uint32_t end) {
+  uint32_t graphemes = 0;
+  for (uint32_t c = begin; c < end; ++c) graphemes += flags_[c] & kGrapheme;
+  if (graphemes < 2) return;
+  const float whole = width_[begin], part = whole / static_cast<float>(graphemes);
+  std::array<float, kMostCarets> carets;
+  const bool told = graphemes <= kMostCarets + 1 && ligatureCarets(*run.font, glyphs, styles_[run.style].source->size,
+                                                                   std::span(carets).first(graphemes - 1));
+  const auto edge = [&](uint32_t i) { return i == 0 ? 0 : i == graphemes ? whole : carets[i - 1]; }; // from the left
+  uint32_t i = 0;
+  for (uint32_t c = begin; c < end; ++c) {
+    if (!(flags_[c] & kGrapheme)) continue;
+    const uint32_t left = run.level & 1 ? graphemes - 1 - i : i;
+    width_[c] = told ? edge(left + 1) - edge(left) : part;
+    ++i;
+  }
+}
+
 void Layout::measure(const Run& run, uint32_t begin, uint32_t end, uint32_t firstGlyph, uint32_t glyphCount) {
   const auto glyphs = std::span(shaped_).subspan(firstGlyph, glyphCount);
   const float size = styles_[run.style].source->size;
   std::fill(width_.begin() + begin, width_.begin() + end, 0.f);
   std::fill(extra_.begin() + begin, extra_.begin() + end, 0.f);
   for (const ShapedGlyph& glyph : glyphs) width_[glyph.cluster] += glyph.advance * size;
-  // Clusters in the order of the text: where the next begins, this one ends.
+  // Clusters from the text's end on: where the next begins, this one ends.
+  const bool backwards = run.level & 1;
   uint32_t clusterEnd = end;
-  for (size_t i = 0; i < glyphs.size(); ++i) {
-    const ShapedGlyph& glyph = run.level & 1 ? glyphs[i] : glyphs[glyphs.size() - 1 - i];
-    const uint32_t cluster = glyph.cluster;
-    if (cluster == clusterEnd) continue;
-    uint32_t graphemes = 0;
-    for (uint32_t c = cluster; c < clusterEnd; ++c) graphemes += flags_[c] & kGrapheme;
-    if (graphemes > 1) {
-      const float part = width_[cluster] / static_cast<float>(graphemes);
-      for (uint32_t c = cluster; c < clusterEnd; ++c)
-        if (flags_[c] & kGrapheme) width_[c] = part;
-    }
+  for (size_t done = 0; done < glyphs.size();) {
+    const auto at = [&](size_t i) { return backwards ? i : glyphs.size() - 1 - i; };
+    const uint32_t cluster = glyphs[at(done)].cluster;
+    const size_t before = done;
+    while (done < glyphs.size() && glyphs[at(done)].cluster == cluster) ++done;
+    share(run, glyphs.subspan(std::min(at(before), at(done - 1)), done - before), cluster, clusterEnd);
     clusterEnd = cluster;
   }
   if (isCursive(run.script)) return;

@@ -6,7 +6,7 @@
 //   place       pieces of lines to places, glyphs, decorations        place.cpp
 //   carets, selections and hit tests ask the pieces                   query.cpp
 //
-// A character's width is its cluster's, shared evenly by the graphemes in it and held by the first character of each.
+// A character's width is its cluster's, shared by the graphemes in it and held by the first character of each.
 #pragma once
 #include "vector/text/itemize.h"
 
@@ -59,6 +59,7 @@ private:
   void place();
 
   uint32_t addGlyphs(const Run& run, uint32_t begin, uint32_t end); // how many
+  void share(const Run& run, std::span<const ShapedGlyph> glyphs, uint32_t begin, uint32_t end);
   void measure(const Run& run, uint32_t begin, uint32_t end, uint32_t firstGlyph, uint32_t glyphCount);
   Piece slice(uint32_t run, uint32_t begin, uint32_t end);
   float tabAdvance(const Run& run, double x) const;

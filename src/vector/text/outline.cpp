@@ -1,6 +1,6 @@
 // Glyphs to paths: FreeType's unhinted outlines at a size where a font unit is a pixel (or half of one), so that
 // its 26.6 points keep what variations add to a unit (but for the places of a composite glyph's parts, which it rounds
-// to units); and bitmap glyphs to images with their box.
+// to units), and HarfBuzz's of CFF2, whose parts of a unit FreeType drops; and bitmap glyphs to images with their box.
 #include "vector/text/glyph_paths.h"
 
 #include <algorithm>
@@ -13,52 +13,103 @@ Affine concat(const Affine& o, const Affine& i) {
           o[1] * i[2] + o[3] * i[3], o[0] * i[4] + o[2] * i[5] + o[4], o[1] * i[4] + o[3] * i[5] + o[5]};
 }
 
-void GlyphPaths::point(const FT_Vector* at) {
-  const float x = static_cast<float>(at->x) * scale_, y = static_cast<float>(at->y) * scale_;
+void GlyphPaths::begin(float x, float y) {
+  if (open_) verbs_.push_back(GPGP_PATH_CLOSE);
+  open_ = true;
+  verbs_.push_back(GPGP_PATH_MOVE);
+  point(x, y);
+}
+
+void GlyphPaths::point(float x, float y) {
+  x *= scale_;
+  y *= scale_;
   const Affine& m = transform_;
   points_.push_back(m[0] * x + m[2] * y + m[4]);
   points_.push_back(-(m[1] * x + m[3] * y + m[5]));
 }
 
-bool GlyphPaths::addOutline(FT_Outline& outline, float scale, const Affine& transform) {
-  scale_ = scale;
-  transform_ = transform;
-  open_ = false;
-  const size_t begin = points_.size();
+bool GlyphPaths::decompose(FT_Outline& outline) {
   FT_Outline_Funcs functions{};
   functions.move_to = [](const FT_Vector* to, void* user) {
-    auto& self = *static_cast<GlyphPaths*>(user);
-    if (self.open_) self.verbs_.push_back(GPGP_PATH_CLOSE);
-    self.open_ = true;
-    self.verbs_.push_back(GPGP_PATH_MOVE);
-    self.point(to);
+    static_cast<GlyphPaths*>(user)->begin(static_cast<float>(to->x), static_cast<float>(to->y));
     return 0;
   };
   functions.line_to = [](const FT_Vector* to, void* user) {
     auto& self = *static_cast<GlyphPaths*>(user);
     self.verbs_.push_back(GPGP_PATH_LINE);
-    self.point(to);
+    self.point(static_cast<float>(to->x), static_cast<float>(to->y));
     return 0;
   };
   functions.conic_to = [](const FT_Vector* control, const FT_Vector* to, void* user) {
     auto& self = *static_cast<GlyphPaths*>(user);
     self.verbs_.push_back(GPGP_PATH_QUAD);
-    self.point(control);
-    self.point(to);
+    for (const FT_Vector* at : {control, to}) self.point(static_cast<float>(at->x), static_cast<float>(at->y));
     return 0;
   };
   functions.cubic_to = [](const FT_Vector* first, const FT_Vector* second, const FT_Vector* to, void* user) {
     auto& self = *static_cast<GlyphPaths*>(user);
     self.verbs_.push_back(GPGP_PATH_CUBIC);
-    self.point(first);
-    self.point(second);
-    self.point(to);
+    for (const FT_Vector* at : {first, second, to}) self.point(static_cast<float>(at->x), static_cast<float>(at->y));
     return 0;
   };
-  const FT_Error error = FT_Outline_Decompose(&outline, &functions, this);
+  return FT_Outline_Decompose(&outline, &functions, this) == 0;
+}
+
+void GlyphPaths::draw(const Font& font, uint32_t glyph) { // CFF2 has lines and cubics
+  const Owned<hb_draw_funcs_t> functions(hb_draw_funcs_create());
+  hb_draw_funcs_set_move_to_func(
+      functions.get(),
+      [](hb_draw_funcs_t*, void* user, hb_draw_state_t*, float x, float y, void*) {
+        static_cast<GlyphPaths*>(user)->begin(x, y);
+      },
+      nullptr, nullptr);
+  hb_draw_funcs_set_line_to_func(
+      functions.get(),
+      [](hb_draw_funcs_t*, void* user, hb_draw_state_t*, float x, float y, void*) {
+        auto& self = *static_cast<GlyphPaths*>(user);
+        self.verbs_.push_back(GPGP_PATH_LINE);
+        self.point(x, y);
+      },
+      nullptr, nullptr);
+  hb_draw_funcs_set_cubic_to_func(
+      functions.get(),
+      [](hb_draw_funcs_t*, void* user, hb_draw_state_t*, float ax, float ay, float bx, float by, float x, float y,
+         void*) {
+        auto& self = *static_cast<GlyphPaths*>(user);
+        self.verbs_.push_back(GPGP_PATH_CUBIC);
+        self.point(ax, ay);
+        self.point(bx, by);
+        self.point(x, y);
+      },
+      nullptr, nullptr);
+#if HB_VERSION_ATLEAST(7, 0, 0)
+  hb_font_draw_glyph(font.shaping(), glyph, functions.get(), this);
+#else
+  hb_font_get_glyph_shape(font.shaping(), glyph, functions.get(), this);
+#endif
+}
+
+Result<void> GlyphPaths::addGlyph(Font& font, uint32_t glyph, const Affine& transform) {
+  const FT_Face face = font.opened().outlines.get(); // also where HarfBuzz draws, which does not say what is broken
+  if (const FT_Error error = FT_Load_Glyph(face, glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP))
+    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u is broken (FreeType's error %d)", glyph, error);
+  if (face->glyph->format != FT_GLYPH_FORMAT_OUTLINE)
+    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u has no outline", glyph);
+  const bool compact = font.opened().variesCompact;
+  scale_ = compact ? font.emPerShapingUnit() : font.opened().emPerUnit;
+  transform_ = transform;
+  open_ = false;
+  const auto before = static_cast<std::ptrdiff_t>(points_.size());
+  bool whole = true;
+  if (compact)
+    draw(font, glyph);
+  else
+    whole = decompose(face->glyph->outline);
   if (open_) verbs_.push_back(GPGP_PATH_CLOSE);
-  return !error && std::all_of(points_.begin() + static_cast<std::ptrdiff_t>(begin), points_.end(),
-                               [](float value) { return std::abs(value) <= 1e7f; });
+  if (!whole ||
+      !std::all_of(points_.begin() + before, points_.end(), [](float value) { return std::abs(value) <= 1e7f; }))
+    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u has a broken outline", glyph);
+  return {};
 }
 
 GlyphPaths::Part* GlyphPaths::close() {
@@ -115,15 +166,6 @@ GpgpGlyphOutline GlyphPaths::outline(uint32_t glyph) {
     }
   }
   return result;
-}
-
-Result<FT_Outline*> loadOutline(Font& font, uint32_t glyph) {
-  const FT_Face face = font.opened().outlines.get();
-  if (const FT_Error error = FT_Load_Glyph(face, glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP))
-    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u is broken (FreeType's error %d)", glyph, error);
-  if (face->glyph->format != FT_GLYPH_FORMAT_OUTLINE)
-    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u has no outline", glyph);
-  return &face->glyph->outline;
 }
 
 namespace {
@@ -192,10 +234,7 @@ Result<void> deliverGlyph(Font& font, const GpgpGlyphOutlineInfo& info, GpgpGlyp
       done = !picture.pixels.empty();
     }
     if (!done && open.emPerUnit > 0) {
-      const auto outline = loadOutline(font, info.glyph);
-      if (!outline) return outline.error();
-      if (!paths.addOutline(**outline, open.emPerUnit, kIdentity))
-        return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u has a broken outline", info.glyph);
+      if (auto ok = paths.addGlyph(font, info.glyph, kIdentity); !ok) return ok;
       const float black[4] = {0, 0, 0, 1};
       const bool unset = std::all_of(info.color, info.color + 4, [](float value) { return value == 0; });
       if (unset)

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <hb-ot.h>
+
 namespace gpgp::text {
 
 Result<std::shared_ptr<Shaper>> Shaper::create(const GpgpShaperCreateInfo& info) {
@@ -15,6 +17,29 @@ Result<std::shared_ptr<Shaper>> Shaper::create(const GpgpShaperCreateInfo& info)
     return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "HarfBuzz cannot get its memory");
   shaper->budget_ = info.cacheBytes ? info.cacheBytes : size_t(1) << 20;
   return shaper;
+}
+
+bool ligatureCarets(const Font& font, std::span<const ShapedGlyph> cluster, float size, std::span<float> carets) {
+  float pen = 0;
+  bool found = false;
+  for (const ShapedGlyph& glyph : cluster) {
+    hb_position_t places[kMostCarets];
+    unsigned count = static_cast<unsigned>(carets.size());
+    const unsigned all =
+        hb_ot_layout_get_ligature_carets(font.shaping(), HB_DIRECTION_LTR, glyph.glyph, 0, &count, places);
+    if (!found && all == carets.size()) { // the ligature; others are its marks
+      found = true;
+      for (unsigned i = 0; i < all; ++i)
+        carets[i] = (pen + glyph.x + static_cast<float>(places[i]) * font.emPerShapingUnit()) * size;
+    }
+    pen += glyph.advance;
+  }
+  float last = 0;
+  for (const float caret : carets) {
+    found = found && caret > last && caret < pen * size;
+    last = caret;
+  }
+  return found;
 }
 
 namespace {

@@ -17,6 +17,11 @@ struct ShapedGlyph {
   bool safe; // shaping may be cut before its cluster without changing what is on either side
 };
 
+/// Where the font (GDEF) says that carets stand within a cluster of glyphs, as many as there is room for, from the left
+/// in the units of `size`. False where it says nothing, another number, or what is not in order and within the advance.
+constexpr uint32_t kMostCarets = 15;
+bool ligatureCarets(const Font& font, std::span<const ShapedGlyph> cluster, float size, std::span<float> carets);
+
 /// Characters [begin, end) of a text that are shaped together. Characters around them count as far as the next white
 /// space, at most five on each side: they may join.
 struct RunRequest {

@@ -58,7 +58,8 @@ ShapeRecord lineBox(float x0, float y0, float x1, float y1, float width, GpgpCap
 
 List::List(core::Context& owner, const char* name)
     : Object(owner, core::Kind::list, name), stack_(&owner.host()), bases_(&owner.host()), clips_(&owner.host()),
-      commands_(&owner.host()), shapes_(&owner.host()), glyphs_(&owner.host()), paints_(&owner.host()) {}
+      groups_(&owner.host()), commands_(&owner.host()), shapes_(&owner.host()), glyphs_(&owner.host()),
+      paints_(&owner.host()) {}
 
 Result<core::Unique<List>> List::create(core::Context& context, const GpgpListCreateInfo& info) {
   auto list = core::makeUnique<List>(context.host(), context, info.label);
@@ -75,6 +76,7 @@ void List::reset() {
   stack_.clear();
   bases_.resize(1);
   clips_.clear();
+  groups_.clear();
   commands_.clear();
   shapes_.clear();
   glyphs_.clear();
@@ -105,7 +107,7 @@ Result<void> List::pushTransform(const float* transform, const float* perspectiv
   } else {
     makeRoom(bases_);
     bases_.push_back(compose(compose(bases_[inner.base], inner.map()), map));
-    inner = {static_cast<uint32_t>(bases_.size() - 1), inner.clip};
+    inner = {static_cast<uint32_t>(bases_.size() - 1), inner.clip, inner.group};
   }
   stack_.push_back(state_);
   state_.space = inner;
@@ -130,19 +132,40 @@ Result<void> List::pushClip(const float* box, const float* radii) {
   const auto y = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v) + space.y); };
   const auto size = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v)); };
   const vec4 corners = radii ? vec4(size(radii[0]), size(radii[1]), size(radii[2]), size(radii[3])) : vec4(0);
-  const ShapeRecord shape = roundBox({x(box[0]), y(box[1]), x(box[2]), y(box[3])}, corners, 1);
+  const vec4 placed{x(box[0]), y(box[1]), x(box[2]), y(box[3])};
+  if (!within(&placed.x, 4, -kMaxCoordinate, kMaxCoordinate) || !within(&corners.x, 4, 0, kMaxCoordinate))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "box or radii are beyond 1e7 under the transforms pushed");
+  const ShapeRecord shape = roundBox(placed, corners, 1);
   clips_.push_back({shape, space.base, space.clip, depth});
   stack_.push_back(state_);
   state_.space.clip = static_cast<uint32_t>(clips_.size());
   return {};
 }
 
+Result<void> List::checkOpacity(float opacity) const {
+  if (within(&opacity, 1, 0, 1)) return checkDepth();
+  return makeError(GPGP_ERROR_INVALID_ARGUMENT, "opacity is %g; it must be 0 to 1", static_cast<double>(opacity));
+}
+
 Result<void> List::pushOpacity(float opacity) {
-  if (auto ok = checkDepth(); !ok) return ok;
-  if (!within(&opacity, 1, 0, 1))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "opacity is %g; it must be 0 to 1", static_cast<double>(opacity));
+  if (auto ok = checkOpacity(opacity); !ok) return ok;
   stack_.push_back(state_);
   state_.opacity *= opacity;
+  return {};
+}
+
+/// The group takes the opacity that what is in it would have, thing by thing.
+Result<void> List::pushGroup(float opacity) {
+  if (auto ok = checkOpacity(opacity); !ok) return ok;
+  const uint32_t parent = state_.space.group, depth = parent ? groups_[parent - 1].depth + 1 : 1;
+  if (depth > shader::kMaxLayerDepth)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %u groups in each other (GPGP_MAX_OPACITY_DEPTH)",
+                     shader::kMaxLayerDepth);
+  makeRoom(groups_);
+  groups_.push_back({opacity * state_.opacity, parent, depth});
+  stack_.push_back(state_);
+  state_.space.group = static_cast<uint32_t>(groups_.size());
+  state_.opacity = 1;
   return {};
 }
 
@@ -176,6 +199,14 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
   for (int k = 0; k < 4; ++k) to[k] = image.borders[k] * static_cast<float>(state_.space.scale);
   if (!within(from, 4, 0, 1e6f) || !within(to, 4, 0, 1e30f))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image: a border is not a number from 0 on");
+  float tile[2];
+  for (int k = 0; k < 2; ++k) {
+    if (image.tiles[k] < GPGP_TILE_STRETCH || image.tiles[k] > GPGP_TILE_ROUND)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.tiles[%d] is %d", k, image.tiles[k]);
+    tile[k] = image.tileSize[k] * static_cast<float>(state_.space.scale);
+  }
+  if (!within(tile, 2, 0, 1e30f))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.tileSize holds what is no number from 0 on");
   const float extent[2] = {std::abs(s[2] - s[0]), std::abs(s[3] - s[1])};
   for (int k = 0; k < 2; ++k)
     if (from[k] + from[k + 2] > extent[k] * 1.000001f)
@@ -184,12 +215,12 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
   PaintRecord paint{};
   paint.firstStop = image.image;
   const auto over = [](float a, float b) { return b > 0 ? a / b : 0.0f; };
-  if (most == 0) {
+  if (most == 0 && !image.tiles[0] && !image.tiles[1]) {
     paint.kind = shader::kPaintImage;
     const float u = over(s[2] - s[0], width), v = over(s[3] - s[1], height);
     paint.matrix = {u, 0, 0, v};
     paint.origin = {s[0] - u * box.x, s[1] - v * box.y, 0, 0};
-  } else { // along each axis: three slopes between four places
+  } else { // along each axis: three slopes between four places, and a period where the middle repeats
     paint.kind = shader::kPaintSlices;
     paint.stopCount = 2;
     paint.matrix = {1, 0, 0, 1};
@@ -203,8 +234,21 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
       const float first = s[k] + sign * from[k], last = s[k + 2] - sign * from[k + 2];
       parts[0][2 * k] = begin, parts[0][2 * k + 1] = end;
       parts[1][2 * k] = first, parts[1][2 * k + 1] = last;
-      parts[2 + k] = {sign * over(from[k], begin), over(last - first, end - begin),
-                      sign * over(from[k + 2], side - end), 0};
+      const float middle = end - begin;
+      float period = 0;
+      if (image.tiles[k] && middle > 0) {
+        const float scaled = over(to[k] + to[k + 2], from[k] + from[k + 2]) * shrink * std::abs(last - first);
+        period = tile[k] > 0 ? tile[k] : scaled;
+        if (!(period > 0))
+          return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "image.tileSize[%d] is 0, and nothing along it says how large a tile is: it has no borders "
+                           "or no middle",
+                           k);
+        if (image.tiles[k] == GPGP_TILE_ROUND) period = middle / std::max(std::round(middle / period), 1.0f);
+        period = std::max(period, middle * 1e-6f); // finer than any pixel
+      }
+      parts[2 + k] = {sign * over(from[k], begin), over(last - first, period > 0 ? period : middle),
+                      sign * over(from[k + 2], side - end), period};
     }
     for (int k = 0; k < 2; ++k) {
       StopRecord stop;

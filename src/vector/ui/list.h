@@ -20,6 +20,7 @@ public:
   core::Result<void> pushTransform(const float* transform, const float* perspective);
   core::Result<void> pushClip(const float* box, const float* radii);
   core::Result<void> pushOpacity(float opacity);
+  core::Result<void> pushGroup(float opacity);
   core::Result<void> pop();
   core::Result<void> addShapes(std::span<const GpgpListShape> shapes);
   core::Result<void> addText(const core::Object& glyphSet, std::span<const GpgpGlyphInstance> glyphs, uint64_t id);
@@ -27,7 +28,7 @@ public:
 
   /// The space in which something was added: scale and move lead to the base's, whose map leads to the list's.
   struct Space {
-    uint32_t base = 0, clip = 0; ///< clip: 1 + its index; 0: none
+    uint32_t base = 0, clip = 0, group = 0; ///< clip, group: 1 + the index; 0: none
     double scale = 1, x = 0, y = 0;
     bool operator==(const Space&) const = default;
     Map map() const { return {scale, 0, 0, scale, x, y}; }
@@ -35,6 +36,10 @@ public:
   struct Clip {
     shader::ShapeRecord shape; ///< in the base's space
     uint32_t base, parent, depth;
+  };
+  struct Group {
+    float opacity; ///< times those pushed around it, up to the next group
+    uint32_t parent, depth;
   };
   struct Shape {
     shader::ShapeRecord record; ///< in the base's space; paint: of paints()
@@ -58,6 +63,7 @@ public:
   uint32_t depth() const { return static_cast<uint32_t>(stack_.size()); } ///< pushes that are not popped
   std::span<const Map> bases() const { return bases_; }
   std::span<const Clip> clips() const { return clips_; }
+  std::span<const Group> groups() const { return groups_; }
   std::span<const Command> commands() const { return commands_; }
   std::span<const Shape> shapes() const { return shapes_; }
   std::span<const GpgpGlyphInstance> glyphs() const { return glyphs_; }
@@ -67,9 +73,10 @@ public:
 private:
   struct State {
     Space space;
-    float opacity = 1;
+    float opacity = 1; ///< of each thing within the group
   };
   core::Result<void> checkDepth() const;
+  core::Result<void> checkOpacity(float opacity) const;
   core::Result<void> addShape(const GpgpListShape& shape);
   core::Result<uint32_t> addPaint(const GpgpListShape& shape);
   core::Result<uint32_t> addImagePaint(const GpgpListImage& image, const shader::vec4& box);
@@ -79,6 +86,7 @@ private:
   std::pmr::vector<State> stack_;
   std::pmr::vector<Map> bases_;
   std::pmr::vector<Clip> clips_;
+  std::pmr::vector<Group> groups_;
   std::pmr::vector<Command> commands_;
   std::pmr::vector<Shape> shapes_;
   std::pmr::vector<GpgpGlyphInstance> glyphs_;

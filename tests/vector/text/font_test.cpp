@@ -8,6 +8,7 @@
 
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#include FT_MULTIPLE_MASTERS_H
 #include FT_TRUETYPE_TABLES_H
 #include <hb-ot.h>
 
@@ -127,8 +128,9 @@ Glyph glyphOf(GpgpFont font, uint32_t id) {
 struct HarfBuzz {
   hb_font_t* font = nullptr;
   float units = 0;
-  HarfBuzz(const std::string& name, uint32_t index, const std::vector<GpgpFontAxisValue>& axes) {
-    hb_blob_t* blob = hb_blob_create_from_file(fontPath(name).c_str());
+  HarfBuzz(const std::string& name, uint32_t index, const std::vector<GpgpFontAxisValue>& axes)
+      : HarfBuzz(hb_blob_create_from_file(fontPath(name).c_str()), index, axes) {}
+  HarfBuzz(hb_blob_t* blob, uint32_t index, const std::vector<GpgpFontAxisValue>& axes) {
     hb_face_t* face = hb_face_create(blob, index);
     hb_blob_destroy(blob);
     font = hb_font_create(face);
@@ -235,6 +237,69 @@ TEST(TextFont, OutlinesAreThoseThatHarfBuzzReads) {
     }
     EXPECT_GT(curves, 1000u);
   }
+}
+
+TEST(TextFont, Cff2VariesAlongItsAxis) {
+  const std::vector<char> bytes = tinyVariableFont();
+  FT_Library library = nullptr;
+  ASSERT_EQ(FT_Init_FreeType(&library), 0);
+  for (const float weight : {100.f, 217.5f, 400.f, 550.f, 900.f}) {
+    SCOPED_TRACE(weight);
+    const std::vector<GpgpFontAxisValue> axes = {{GPGP_TAG('w', 'g', 'h', 't'), weight}};
+    GpgpFontCreateInfo info = GPGP_FONT_CREATE_INFO_INIT;
+    Log log;
+    info.data = bytes.data();
+    info.size = bytes.size();
+    info.axes = axes.data();
+    info.axisCount = 1;
+    info.messageFn = Log::take;
+    info.messageUserData = &log;
+    GpgpFont made = nullptr;
+    ASSERT_EQ(gpgpCreateFont(&info, &made), GPGP_SUCCESS) << log.text;
+    const FontHandle font(made);
+    EXPECT_EQ(infoOf(made).axes[0].value, weight);
+    const Glyph glyph = glyphOf(made, 1);
+    ASSERT_EQ(glyph.shapes.size(), 1u);
+    const Shape& ours = glyph.shapes[0];
+    EXPECT_EQ(ours.cubics, 1u);
+    // The closed form: what the ends of the axis add, in parts of 2^-14.
+    const double along = weight > 400 ? (weight - 400) / 500. : (weight - 400) / 300.;
+    const double wide = 100 + (along > 0 ? 200 : 60) * along, arch = 100 + (along > 0 ? 40 : 20) * along;
+    EXPECT_NEAR(ours.box[0] * 1000, 100, 0.05);
+    EXPECT_NEAR(ours.box[2] * 1000, 100 + wide, 0.05);
+    // Under the arch: the integral of 3 h t (1 - t) along 3/4 w (1 + 2 t (1 - t)), 21/40 of w h.
+    EXPECT_NEAR(std::abs(ours.area) * 1e6, wide * 700 + wide * arch * 0.525, 60);
+    // HarfBuzz and FreeType on the same bytes.
+    const HarfBuzz harfBuzz(
+        hb_blob_create(bytes.data(), static_cast<unsigned>(bytes.size()), HB_MEMORY_MODE_READONLY, nullptr, nullptr), 0,
+        axes);
+    const Shape theirs = harfBuzz.shape(1);
+    for (int i = 0; i < 4; ++i) EXPECT_NEAR(ours.box[i], theirs.box[i], 2e-5) << "side " << i;
+    EXPECT_NEAR(ours.area, theirs.area, 4e-5);
+    FT_Face face = nullptr;
+    ASSERT_EQ(FT_New_Memory_Face(library, reinterpret_cast<const FT_Byte*>(bytes.data()),
+                                 static_cast<FT_Long>(bytes.size()), 0, &face),
+              0);
+    FT_Fixed value = static_cast<FT_Fixed>(weight * 65536);
+    ASSERT_EQ(FT_Set_Var_Design_Coordinates(face, 1, &value), 0);
+    ASSERT_EQ(FT_Set_Char_Size(face, 0, 1000 * 64, 72, 72), 0);
+    ASSERT_EQ(FT_Load_Glyph(face, 1, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP), 0);
+    const FT_Outline& outline = face->glyph->outline;
+    ASSERT_GE(glyph.points.size() / 2, static_cast<size_t>(outline.n_points));
+    for (size_t i = 0; i < static_cast<size_t>(outline.n_points); ++i) { // FreeType drops parts of a unit
+      EXPECT_EQ(std::floor(glyph.points[2 * i] * 1000 + 0.01f), static_cast<float>(outline.points[i].x) / 64) << i;
+      EXPECT_EQ(std::floor(glyph.points[2 * i + 1] * -1000 + 0.01f), static_cast<float>(outline.points[i].y) / 64) << i;
+    }
+    FT_Done_Face(face);
+    // Advances, which another table varies.
+    Paper paper;
+    ASSERT_EQ(paper.set(textInfo("AA", {made}, 1000)), GPGP_SUCCESS);
+    ASSERT_EQ(paper.info.glyphCount, 2u);
+    const float advance = 300 + static_cast<float>((along > 0 ? 200 : 60) * along);
+    EXPECT_NEAR(paper.info.glyphs[1].x, advance, 0.51f); // HarfBuzz rounds what a table adds to whole units
+    EXPECT_NEAR(paper.info.glyphs[1].x, static_cast<float>(hb_font_get_glyph_h_advance(harfBuzz.font, 1)) / 64, 0.05f);
+  }
+  FT_Done_FreeType(library);
 }
 
 TEST(TextFont, SaysWhatFreeTypeSays) {

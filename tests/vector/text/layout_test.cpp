@@ -426,6 +426,22 @@ TEST(TextLayout, LinesDoNotCutGraphemes) { // though UAX #14 allows breaks befor
       }
 }
 
+TEST(TextLayout, ALetterWithMarksWithoutEndIsLaidOut) { // by the square of their number it takes most of an hour
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  constexpr uint32_t kMarks = 500000;
+  std::string text = "a";
+  for (uint32_t i = 0; i < kMarks; ++i) text += "\xcc\x81";
+  text += "b";
+  Paper paper;
+  ASSERT_EQ(paper.set(textInfo(text, {font.get()}, 20, 50)), GPGP_SUCCESS);
+  EXPECT_EQ(paper.info.missingCount, 0u);
+  EXPECT_GE(paper.info.glyphCount, kMarks);
+  EXPECT_EQ(paper.move(0, GPGP_CARET_NEXT), 1 + 2 * kMarks); // still one grapheme
+  EXPECT_EQ(paper.caret(1001).x, paper.caret(0).x);
+  EXPECT_GT(paper.caret(1 + 2 * kMarks).x, 0);
+}
+
 TEST(TextLayout, ColoursAndInvisibleCharacters) {
   GPGP_NEEDS_FONTS();
   const FontHandle font = openFont("DejaVuSans.ttf");

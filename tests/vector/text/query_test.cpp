@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include <hb-ot.h>
 #include <unicode/ubrk.h>
 #include <unicode/utext.h>
 
@@ -129,6 +130,54 @@ TEST_F(TextQuery, ALigatureHasCaretsWithin) {
   EXPECT_NEAR(paper_.caret(2).x, begin + (end - begin) / 3, 0.01f);
   EXPECT_NEAR(paper_.caret(3).x, begin + (end - begin) * 2 / 3, 0.01f);
   EXPECT_EQ(paper_.hit(begin + (end - begin) / 2, 1).offset, 2u);
+}
+
+TEST_F(TextQuery, CaretsWithinALigatureAreTheFonts) {
+  struct Case {
+    const char *font, *text; // one ligature
+    bool rightToLeft;
+  };
+  uint32_t uneven = 0;
+  for (const Case& each : {Case{"NotoSans-Regular.ttf", "ffi", false}, Case{"NotoSerif-Regular.ttf", "ffl", false},
+                           Case{"NotoSansArabic-Regular.ttf", "لا", true},
+                           Case{"NotoSansAvestan-Regular.ttf", "\U00010b31\U00010b00", true},
+                           Case{"NotoSansAvestan-Regular.ttf", "\U00010b00\U00010b35", true}}) {
+    SCOPED_TRACE(std::string(each.font) + ": " + each.text);
+    const FontHandle font = openFont(each.font);
+    const std::string text = each.text;
+    ASSERT_EQ(paper_.set(textInfo(text, {font.get()}, 100)), GPGP_SUCCESS);
+    ASSERT_EQ(paper_.info.glyphCount, 1u);
+    hb_blob_t* blob = hb_blob_create_from_file(fontPath(each.font).c_str());
+    hb_face_t* face = hb_face_create(blob, 0);
+    hb_font_t* theirs = hb_font_create(face);
+    hb_position_t places[8];
+    unsigned count = 8;
+    hb_ot_layout_get_ligature_carets(theirs, HB_DIRECTION_LTR, paper_.info.glyphs[0].glyph, 0, &count, places);
+    const float em = 100 / static_cast<float>(hb_face_get_upem(face));
+    hb_font_destroy(theirs);
+    hb_face_destroy(face);
+    hb_blob_destroy(blob);
+    const std::vector<uint32_t> graphemes = boundariesOf(text, UBRK_CHARACTER);
+    ASSERT_EQ(count + 2, graphemes.size());
+    const float width = paper_.info.lines[0].width, middle = paper_.info.height / 2;
+    for (unsigned k = 0; k < count; ++k) {
+      const uint32_t g = each.rightToLeft ? count - k : k + 1; // carets count from the left
+      const float expected = static_cast<float>(places[k]) * em;
+      const GpgpCaret caret = paper_.caret(graphemes[g]);
+      EXPECT_NEAR(caret.x, expected, 0.02f);
+      EXPECT_FALSE(caret.split);
+      uneven += std::abs(expected - width * static_cast<float>(k + 1) / static_cast<float>(count + 1)) > 0.5f;
+      // Selections end there, and a point on either side is on either grapheme.
+      const auto before = paper_.selection(0, graphemes[g]);
+      ASSERT_EQ(before.size(), 1u);
+      EXPECT_NEAR(each.rightToLeft ? before[0].x : before[0].x + before[0].width, expected, 0.02f);
+      const uint32_t left = each.rightToLeft ? graphemes[g] : graphemes[g - 1];
+      const uint32_t right = each.rightToLeft ? graphemes[g - 1] : graphemes[g];
+      EXPECT_EQ(paper_.hit(expected - 0.1f, middle).offset, left);
+      EXPECT_EQ(paper_.hit(expected + 0.1f, middle).offset, right);
+    }
+  }
+  EXPECT_GE(uneven, 2u); // else it might be by even parts as well
 }
 
 TEST_F(TextQuery, CaretsSplitWhereDirectionsMeet) {

@@ -1,10 +1,12 @@
-// Follows the OpenType specification, version 1.9: glyf, COLR, CPAL and what a font must have besides.
+// Follows the OpenType specification, version 1.9: glyf, COLR, CPAL, CFF2, fvar, HVAR and what a font must have
+// besides.
 #include "tiny_font.h"
 
 #include <hb.h>
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 namespace gpgp::test {
 namespace {
@@ -126,19 +128,48 @@ Bytes colr() {
       .add(list);
 }
 
-} // namespace
-
-std::vector<char> tinyFont() {
-  const Points square = {{0, 0}, {0, 500}, {500, 500}, {500, 0}}, corner = {{0, 0}, {0, 800}, {400, 0}};
-  const Points shapes[tiny::kGlyphs] = {square, square, corner, square, square, square, square};
-  Bytes glyf, loca, hmtx;
-  for (const Points& shape : shapes) {
-    loca.u32(glyf.size());
-    glyf.add(glyph(shape));
-    hmtx.u16(600).i16(0);
-  }
-  loca.u32(glyf.size());
-  // 'A' to 'F', a segment, and the end that format 4 wants
+Bytes head() {
+  return Bytes()
+      .u32(0x10000)
+      .u32(0x10000)
+      .u32(0)
+      .u32(0x5f0f3cf5)
+      .u16(0)
+      .u16(1000)
+      .u32(0)
+      .u32(0)
+      .u32(0)
+      .u32(0)
+      .i16(0)
+      .i16(0)
+      .i16(500)
+      .i16(800)
+      .u16(0)
+      .u16(8)
+      .i16(2)
+      .i16(1)
+      .i16(0);
+}
+Bytes hhea(uint32_t glyphs) {
+  return Bytes()
+      .u32(0x10000)
+      .i16(800)
+      .i16(-200)
+      .i16(90)
+      .u16(600)
+      .i16(0)
+      .i16(0)
+      .i16(500)
+      .i16(1)
+      .i16(0)
+      .i16(0)
+      .u32(0)
+      .u32(0)
+      .i16(0)
+      .u16(glyphs);
+}
+/// Characters in a row, for the glyphs from 1 on: a segment, and the end that format 4 wants.
+Bytes cmap(int first, int last) {
   const Bytes segments = Bytes()
                              .u16(4)
                              .u16(32)
@@ -147,88 +178,24 @@ std::vector<char> tinyFont() {
                              .u16(4)
                              .u16(1)
                              .u16(0)
-                             .u16('F')
+                             .i16(last)
                              .u16(0xffff)
                              .u16(0)
-                             .u16('A')
+                             .i16(first)
                              .u16(0xffff)
-                             .i16(1 - 'A')
+                             .i16(1 - first)
                              .i16(1)
                              .u16(0)
                              .u16(0);
-  const struct {
-    const char* tag;
-    Bytes bytes;
-  } tables[] = {{"head", Bytes()
-                             .u32(0x10000)
-                             .u32(0x10000)
-                             .u32(0)
-                             .u32(0x5f0f3cf5)
-                             .u16(0)
-                             .u16(1000)
-                             .u32(0)
-                             .u32(0)
-                             .u32(0)
-                             .u32(0)
-                             .i16(0)
-                             .i16(0)
-                             .i16(500)
-                             .i16(800)
-                             .u16(0)
-                             .u16(8)
-                             .i16(2)
-                             .i16(1)
-                             .i16(0)},
-                {"hhea", Bytes()
-                             .u32(0x10000)
-                             .i16(800)
-                             .i16(-200)
-                             .i16(90)
-                             .u16(600)
-                             .i16(0)
-                             .i16(0)
-                             .i16(500)
-                             .i16(1)
-                             .i16(0)
-                             .i16(0)
-                             .u32(0)
-                             .u32(0)
-                             .i16(0)
-                             .u16(tiny::kGlyphs)},
-                {"maxp", Bytes()
-                             .u32(0x10000)
-                             .u16(tiny::kGlyphs)
-                             .u16(4)
-                             .u16(1)
-                             .u16(0)
-                             .u16(0)
-                             .u16(1)
-                             .u16(0)
-                             .u16(0)
-                             .u16(0)
-                             .u16(0)
-                             .u16(0)
-                             .u16(0)
-                             .u16(0)
-                             .u16(0)},
-                {"hmtx", hmtx},
-                {"cmap", Bytes().u16(0).u16(1).u16(3).u16(1).u32(12).add(segments)},
-                {"loca", loca},
-                {"glyf", glyf},
-                {"COLR", colr()},
-                // two palettes of two entries, blue green red alpha
-                {"CPAL", Bytes()
-                             .u16(0)
-                             .u16(2)
-                             .u16(2)
-                             .u16(4)
-                             .u32(16)
-                             .u16(0)
-                             .u16(2)
-                             .u32(0x0000ffff)
-                             .u32(0xff0000ff)
-                             .u32(0x00ff0080)
-                             .u32(0x80808080)}};
+  return Bytes().u16(0).u16(1).u16(3).u16(1).u32(12).add(segments);
+}
+
+struct Table {
+  const char* tag;
+  Bytes bytes;
+};
+
+std::vector<char> assemble(std::span<const Table> tables) {
   hb_face_t* builder = hb_face_builder_create();
   for (const auto& [tag, bytes] : tables) {
     hb_blob_t* blob = hb_blob_create(bytes.bytes.data(), bytes.size(), HB_MEMORY_MODE_READONLY, nullptr, nullptr);
@@ -242,6 +209,153 @@ std::vector<char> tinyFont() {
   hb_blob_destroy(made);
   hb_face_destroy(builder);
   return font;
+}
+
+} // namespace
+
+std::vector<char> tinyFont() {
+  const Points square = {{0, 0}, {0, 500}, {500, 500}, {500, 0}}, corner = {{0, 0}, {0, 800}, {400, 0}};
+  const Points shapes[tiny::kGlyphs] = {square, square, corner, square, square, square, square};
+  Bytes glyf, loca, hmtx;
+  for (const Points& shape : shapes) {
+    loca.u32(glyf.size());
+    glyf.add(glyph(shape));
+    hmtx.u16(600).i16(0);
+  }
+  loca.u32(glyf.size());
+  const Table tables[] = {{"head", head()},
+                          {"hhea", hhea(tiny::kGlyphs)},
+                          {"maxp", Bytes()
+                                       .u32(0x10000)
+                                       .u16(tiny::kGlyphs)
+                                       .u16(4)
+                                       .u16(1)
+                                       .u16(0)
+                                       .u16(0)
+                                       .u16(1)
+                                       .u16(0)
+                                       .u16(0)
+                                       .u16(0)
+                                       .u16(0)
+                                       .u16(0)
+                                       .u16(0)
+                                       .u16(0)
+                                       .u16(0)},
+                          {"hmtx", hmtx},
+                          {"cmap", cmap('A', 'F')},
+                          {"loca", loca},
+                          {"glyf", glyf},
+                          {"COLR", colr()},
+                          // two palettes of two entries, blue green red alpha
+                          {"CPAL", Bytes()
+                                       .u16(0)
+                                       .u16(2)
+                                       .u16(2)
+                                       .u16(4)
+                                       .u32(16)
+                                       .u16(0)
+                                       .u16(2)
+                                       .u32(0x0000ffff)
+                                       .u32(0xff0000ff)
+                                       .u32(0x00ff0080)
+                                       .u32(0x80808080)}};
+  return assemble(tables);
+}
+
+namespace {
+
+/// A number of a charstring or DICT.
+Bytes number(int value) { return Bytes().u8(28).i16(value); }
+Bytes place(uint32_t offset) { return Bytes().u8(29).u32(offset); } // as long for each
+
+/// An INDEX of CFF2.
+Bytes indexOf(const std::vector<Bytes>& items) {
+  Bytes out = Bytes().u32(static_cast<uint32_t>(items.size())), data;
+  if (items.empty()) return out;
+  out.u8(2);
+  for (const Bytes& item : items) {
+    out.u16(data.size() + 1);
+    data.add(item);
+  }
+  return out.u16(data.size() + 1).add(data);
+}
+
+/// From the middle of the axis to its end, and to its beginning; items have a delta for each.
+Bytes variationStore(const std::vector<std::array<int, 2>>& items) {
+  Bytes out = Bytes().u16(1).u32(12).u16(1).u32(12 + 16);
+  out.u16(1).u16(2).f2dot14(0).f2dot14(1).f2dot14(1).f2dot14(-1).f2dot14(-1).f2dot14(0);
+  out.u16(static_cast<uint32_t>(items.size())).u16(items.empty() ? 0 : 2).u16(2).u16(0).u16(1);
+  for (const auto& [more, less] : items) out.i16(more).i16(less);
+  return out;
+}
+
+using Varied = std::array<int, 3>; // at the axis's middle, and what its end and its beginning add
+/// Numbers that vary, and an operator that takes them.
+Bytes varied(const std::vector<Varied>& values, uint32_t operation) {
+  Bytes out, deltas;
+  for (const auto& [value, more, less] : values) {
+    out.add(number(value));
+    deltas.add(number(more)).add(number(less));
+  }
+  return out.add(deltas).add(number(static_cast<int>(values.size()))).u8(16).u8(operation);
+}
+
+Bytes cff2() {
+  constexpr uint32_t kMove = 21, kLine = 5, kCurve = 8;
+  const Bytes pillar =
+      Bytes()
+          .add(varied({{100, 0, 0}, {0, 0, 0}}, kMove))
+          .add(varied({{100, 200, -60}, {0, 0, 0}}, kLine))
+          .add(varied({{0, 0, 0}, {700, 0, 0}}, kLine))
+          .add(varied({{-25, -50, 15}, {100, 40, -20}, {-50, -100, 30}, {0, 0, 0}, {-25, -50, 15}, {-100, -40, 20}},
+                      kCurve));
+  const Bytes charstrings = indexOf({Bytes(), pillar}), globals = indexOf({}), store = variationStore({});
+  const Bytes hints = number(80).u8(10); // a private DICT: the width of level stems
+  constexpr uint32_t kHeader = 5, kTop = 3 * 5 + 4, kDict = 2 * 5 + 1, kArray = 4 + 1 + 2 * 2 + kDict;
+  const uint32_t atStore = kHeader + kTop + globals.size(), atCharstrings = atStore + 2 + store.size(),
+                 atArray = atCharstrings + charstrings.size();
+  const Bytes top = place(atCharstrings).u8(17).add(place(atStore)).u8(24).add(place(atArray)).u8(12).u8(36);
+  const Bytes dict = place(hints.size()).add(place(atArray + kArray)).u8(18);
+  return Bytes()
+      .u8(2)
+      .u8(0)
+      .u8(kHeader)
+      .u16(top.size())
+      .add(top)
+      .add(globals)
+      .u16(store.size())
+      .add(store)
+      .add(charstrings)
+      .add(indexOf({dict}))
+      .add(hints);
+}
+
+} // namespace
+
+std::vector<char> tinyVariableFont() {
+  const Table tables[] = {
+      {"head", head()},
+      {"hhea", hhea(2)},
+      {"maxp", Bytes().u32(0x5000).u16(2)},
+      {"hmtx", Bytes().u16(600).i16(0).u16(300).i16(100)},
+      {"cmap", cmap('A', 'A')},
+      {"fvar", Bytes()
+                   .u32(0x10000)
+                   .u16(16)
+                   .u16(2)
+                   .u16(1)
+                   .u16(20)
+                   .u16(0)
+                   .u16(8)
+                   .u32(HB_TAG('w', 'g', 'h', 't'))
+                   .fixed(100)
+                   .fixed(400)
+                   .fixed(900)
+                   .u16(0)
+                   .u16(256)},
+      {"HVAR", Bytes().u32(0x10000).u32(20).u32(0).u32(0).u32(0).add(variationStore({{0, 0}, {200, -60}}))},
+      {"CFF2", cff2()}};
+  return assemble(tables);
 }
 
 } // namespace gpgp::test

@@ -1,5 +1,5 @@
-// A font made here, byte by byte: three shapes, colour layers of COLR versions 0 and 1, two palettes. For what no font
-// of Debian has, and for fuzzing.
+// Fonts made here, byte by byte: three shapes, colour layers of COLR versions 0 and 1, two palettes; and a shape that
+// varies. For what no font of Debian has, and for fuzzing.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,5 +18,9 @@ constexpr float kUnits = 1000;
 } // namespace tiny
 
 std::vector<char> tinyFont();
+
+/// CFF2, with an axis of weight from 100 over 400 to 900. Glyph 1, 'A', is a pillar from (100, 0), 100 wide and 700
+/// high under an arch; at the ends of the axis it is 40 and 300 wide, and 300 - 60 and 300 + 200 are what it takes.
+std::vector<char> tinyVariableFont();
 
 } // namespace gpgp::test
