@@ -142,7 +142,8 @@ typedef struct GpgpPanel {
  *  GpgpCanvasDrawInfo::clip, or secondClip: the viewport goes over the whole target, each pixel at the panel's depth,
  *  so that a depth test puts the panel behind and before the scene as it should be. viewProjection: world to clip
  *  space, column-major; any depth range.
- *  Errors: INVALID_ARGUMENT (NULL, no size, a number that is not finite). @threads any @lifetime call */
+ *  Errors: INVALID_ARGUMENT (NULL, no size, a number that is not finite, given or written). @threads any
+ *  @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPlacePanel(const GpgpPanel* panel, const float* viewProjection,
                                              const uint32_t* viewport, GpgpCanvasItem* item, float* clip);
 

@@ -3,7 +3,7 @@
 //
 // A workgroup owns a tile, an invocation a pixel. The bin's paths are sifted, as many at a time, for those that touch
 // the tile; they wait in shared memory in painting order. Tiles that need the general shader are left to it, in a list
-// (kSplitRich).
+// (kSplitRich). CROWDED: software devices' tiles whose own lists are full (sift.comp).
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "composite.glsl"
@@ -22,7 +22,7 @@ shared uvec2 paints[kRoom]; // item, paint
 #endif
 shared uint touching[2][kRoom / 32]; // of the paths at hand, in turn
 shared uint open[2];
-#define SPLIT (PAINTS && !RICH) // records that need the general shader as well take the one for gradients
+#define SPLIT (PAINTS && !RICH && !CROWDED) // records that need the general shader as well take the one for gradients
 #if SPLIT
 shared bool rich; // this tile is not for this shader
 #endif
@@ -30,7 +30,16 @@ shared bool rich; // this tile is not for this shader
 void main() {
   const uint lane = gl_LocalInvocationIndex;
   const uvec2 inTile = uvec2(lane % kTileSize, lane / kTileSize);
+#if CROWDED
 #if RICH && !IMAGES
+  if (groupIndex() >= bins[kRichCrowdedArguments + 3]) return;
+  const uint place = bins[richTile(crowdedTiles(), groupIndex())];
+#else
+  if (groupIndex() >= bins[kCrowdedArguments + 3]) return;
+  const uint place = bins[crowdedTiles() + groupIndex()];
+#endif
+  const uvec2 tile = uvec2(place % header.tilesX, place / header.tilesX);
+#elif RICH && !IMAGES
   if (groupIndex() >= bins[kRichArguments + 3]) return;
   const uint place = bins[richTiles() + groupIndex()];
   const uvec2 tile = uvec2(place % header.tilesX, place / header.tilesX);

@@ -2,7 +2,7 @@
 // The fine level for software devices: the pixels of tiles from their lists, without barriers.
 //
 // TILES: 0 every tile's colour, as if it had no edges, an invocation a row of eight pixels; 1 the tiles with edges or
-// gradients, a workgroup each; 2 the crowded ones, whose paths are looked up in their bin.
+// gradients, a workgroup each. The crowded ones, whose lists are full, take raster.comp.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "composite.glsl"
@@ -28,35 +28,19 @@ void main() {
 #else
 void main() {
   const uint lane = gl_LocalInvocationIndex;
-#if TILES == 1
-  const uint arguments = kPaintedArguments, richArguments = kRichArguments, list = paintedTiles();
-#else
-  const uint arguments = kCrowdedArguments, richArguments = kRichCrowdedArguments, list = crowdedTiles();
-#endif
 #if RICH && !IMAGES
-  if (groupIndex() >= bins[richArguments + 3]) return;
-  const uint tile = bins[richTile(list, groupIndex())];
+  if (groupIndex() >= bins[kRichArguments + 3]) return;
+  const uint tile = bins[richTile(paintedTiles(), groupIndex())];
 #else
-  if (groupIndex() >= bins[arguments + 3]) return;
-  const uint tile = bins[list + groupIndex()];
+  if (groupIndex() >= bins[kPaintedArguments + 3]) return;
+  const uint tile = bins[paintedTiles() + groupIndex()];
 #endif
   const uvec2 at = uvec2(lane % 8, lane / 8), place = uvec2(tile % header.tilesX, tile / header.tilesX);
   const uvec2 pixel = place * kTileSize + at;
   beginPixel();
   const uint own = listOf(tile);
-#if TILES == 1
   const uint count = bins[own];
   for (uint k = 0; k < count && pixelOpen(); ++k) paintPath(bins[own + 1 + k * 2], bins[own + 2 + k * 2], at, pixel);
-#else
-  const uint bin = bitsOf(binOf(place)), cutPath = bins[own];
-  for (uint word = header.pathWords; word > 0 && pixelOpen(); --word)
-    for (uint bits = bins[bin + word - 1]; bits != 0 && pixelOpen();) {
-      const uint bit = findMSB(bits), path = (word - 1) * 32 + bit;
-      bits ^= 1u << bit;
-      const uint code = path < cutPath ? coverageOf(paths[path], place) : 0;
-      if (code != 0) paintPath(code, path, at, pixel);
-    }
-#endif
   writePixel(pixel);
 }
 #endif

@@ -9,8 +9,9 @@
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
 #include "lists.glsl"
-// An invocation stays below the 65 535 turns that lavapipe allows: one path takes at most 16 tiles x 16 clips x 65.
-const uint kMaxSteps = 30000;
+// lavapipe ends all loops of a shader after 65 535 turns, of which invocations that run together (8) take as many as
+// all of them where they differ. Tiles of rows that would take more are crowded.
+const uint kMaxSteps = 6000;
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
 
@@ -97,7 +98,6 @@ void main() {
   for (uint t = 0; t < width; ++t) {
     const uint tile = firstTile + t, list = listOf(tile), mask = 1u << t;
     if ((full & mask) != 0) {
-      bins[list] = cutPath;
       // The paths that did not fit may be of any kind.
       if (split) bins[richTile(crowdedTiles(), another(kRichCrowdedArguments))] = tile;
       else bins[crowdedTiles() + another(kCrowdedArguments)] = tile;

@@ -104,8 +104,7 @@ GpgpResult GPGP_CALL gpgpPlacePanel(const GpgpPanel* panel, const float* viewPro
       !allFinite(panel->corner) || !allFinite(panel->across) || !allFinite(panel->down) ||
       !allFinite(std::span(viewProjection, 16)))
     return GPGP_ERROR_INVALID_ARGUMENT;
-  placePanel(*panel, viewProjection, viewport, *item, clip);
-  return GPGP_SUCCESS;
+  return placePanel(*panel, viewProjection, viewport, *item, clip) ? GPGP_SUCCESS : GPGP_ERROR_INVALID_ARGUMENT;
 }
 
 GpgpResult GPGP_CALL gpgpHitTest(GpgpContext handle, const GpgpHitTestInfo* info, GpgpHit* hit) {

@@ -146,8 +146,8 @@ Outcome text(TextOptions options, const CommonOptions& common) {
                            });
   };
   auto drawn = draw(0, options.repeat);
-  if (drawn.report.tileEntries > drawn.report.tileEntriesGiven)
-    drawn = draw(drawn.report.tileEntries, options.repeat); // now that it is known
+  while (drawn.report.pathsDropped && drawn.report.tileEntries > drawn.report.tileEntriesGiven)
+    drawn = draw(drawn.report.tileEntries, options.repeat); // now that it is known, or that it is more
   if (drawn.report.pathsDropped)
     throw Failure("the text is too much for one record: " + std::to_string(drawn.report.pathsDropped) +
                   " paths were left out");

@@ -162,7 +162,7 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i,      0, 1,
                                descriptorType(resource.kind),          nullptr, &buffers[i], nullptr};
     // What a record leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
-    buffers[i] = {constants_.handle(), 0, VK_WHOLE_SIZE};
+    buffers[i] = {constants_.handle(), 0, std::clamp<VkDeviceSize>(passes_.constantsBytes, 16, 256)};
     if (resource.kind == ResourceKind::image) {
       if (!binding.image || !binding.image->view) continue; // passes that use it are skipped
       images[i] = {VK_NULL_HANDLE, binding.image->view, VK_IMAGE_LAYOUT_GENERAL};

@@ -286,6 +286,8 @@ TEST_F(CanvasTest, TooFewTileWordsLeaveOutTheLastPaths) {
   const auto pixels = raster({place(makeDrawing(views))}, 512, 512, 4, &report);
   EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
   EXPECT_EQ(report.pathsDropped, 188u);
+  EXPECT_EQ(report.tileEntries, 700u * 128);
+  EXPECT_EQ(report.tileEntriesGiven, 65536u);
   const float expected = 1 - std::pow(1 - 1.0f / 1024, 512.0f);
   for (const Rgba& p : pixels) ASSERT_NEAR(p.a, expected, 0.002f);
 }

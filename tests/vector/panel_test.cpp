@@ -235,4 +235,26 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
   const uint32_t nothing[] = {0, 0, 0, 48};
   EXPECT_EQ(gpgpPlacePanel(&panel, glm::value_ptr(camera(0)), nothing, &item, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
 }
+TEST(Panel, NothingOfOneInTheEyesPlaneAndNoNumbersBeyondFloats) {
+  const float camera[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0}; // at 0, looking along -z
+  const uint32_t viewport[4] = {0, 0, 64, 64};
+  GpgpPanel panel{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  GpgpCanvasItem item{};
+  ASSERT_EQ(gpgpPlacePanel(&panel, camera, viewport, &item, nullptr), GPGP_SUCCESS);
+  // w of every point of the panel: below 0 is not drawn; 0, 0, 0 would be an affine item.
+  EXPECT_EQ(item.perspective[0], 0.0f);
+  EXPECT_EQ(item.perspective[1], 0.0f);
+  EXPECT_LT(item.perspective[2], 0.0f);
+
+  float large[16];
+  std::copy_n(camera, 16, large);
+  large[0] = 1e10f;
+  panel.across[0] = 3e38f;
+  item.transform[0] = 7;
+  float clip[16] = {7};
+  EXPECT_EQ(gpgpPlacePanel(&panel, large, viewport, &item, clip), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(item.transform[0], 7.0f) << "written in spite of the error";
+  EXPECT_EQ(clip[0], 7.0f);
+}
+
 } // namespace

@@ -55,6 +55,39 @@ TEST_F(CanvasTest, ShapesCoverWhatTheirClosedFormsSay) {
   }
 }
 
+// Tens of thousands of shapes in a small picture, of which dozens meet in each tile and thousands in one.
+TEST_F(CanvasTest, DenseRecordsLoseNothing) {
+  constexpr uint32_t kWidth = 256, kHeight = 192, kSquares = 40000, kDeep = 3000;
+  std::vector<float> last(kWidth * kHeight);
+  std::vector<GpgpListShape> shapes;
+  for (uint32_t i = 0; i < kSquares; ++i) {
+    const uint32_t x = i * 7 % 249, y = i * 13 % 189;
+    const float left = static_cast<float>(x), top = static_cast<float>(y), shade = static_cast<float>(i % 31 + 1) / 32;
+    shapes.push_back(rectangle(left, top, left + 3, top + 3, {shade, 0, 0, 1}));
+    for (uint32_t k = 0; k < 9; ++k) last[(y + k / 3) * kWidth + x + k % 3] = shade;
+  }
+  shapes.resize(kSquares + kDeep, rectangle(250, 190, 254, 192, {0, 0, 0, 1.0f / 4096}));
+  TestList list(context);
+  ASSERT_EQ(gpgpAddShapes(list.list, shapes.data(), kSquares + kDeep), GPGP_SUCCESS);
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+  info.maxWidth = info.maxHeight = 256;
+  info.maxShapes = kSquares + kDeep;
+  info.maxTileEntries = 200000;
+  ASSERT_EQ(gpgpCreateCanvas(context, &info, &canvas), GPGP_SUCCESS) << lastMessage();
+  ASSERT_EQ(gpgpPrewarm(canvas, nullptr), GPGP_SUCCESS);
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto pixels = raster({list.item()}, kWidth, kHeight, 4, &report);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(report.pathsDropped, 0u);
+  uint32_t wrong = 0;
+  for (uint32_t y = 0; y < kHeight; ++y)
+    for (uint32_t x = 0; x < kWidth; ++x)
+      if (x < 250 || y < 190) wrong += pixels[y * kWidth + x].r != last[y * kWidth + x];
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_NEAR(pixels[191 * kWidth + 252].a, 1 - std::pow(1 - 1.0 / 4096, kDeep), 2e-3);
+}
+
 TEST_F(CanvasTest, RectanglesEqualPathsAndAbutWithoutSeams) {
   makeCanvas(128);
   TestList list(context);

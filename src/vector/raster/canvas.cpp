@@ -294,11 +294,16 @@ core::PassList Canvas::describe() const {
   const auto tilesOf = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition,
                            VkDeviceSize arguments) {
     for (uint32_t t = 0; t < 3; ++t) {
-      core::Pass& pass = list.dispatchIndirect(
-          names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
-          {{params, read}, {shapes, read}, {paths, read}, {words, read}, {masks, read}, {entries, read}, {view, write}},
-          masks, arguments * 4);
-      if (!software_) pass.uses[pass.useCount++] = {counters, read};
+      core::Pass& pass = list.dispatchIndirect(names[t], list.add(core::ShaderDesc{names[t], spirv[t]}),
+                                               {{params, read},
+                                                {shapes, read},
+                                                {paths, read},
+                                                {words, read},
+                                                {masks, read},
+                                                {entries, read},
+                                                {counters, read},
+                                                {view, write}},
+                                               masks, arguments * 4);
       const uint32_t drawings = condition == kPlain || condition == kPaintsOne ? 1 : kMaxSlots;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
       if (condition == kImages) useImages(pass);
@@ -550,7 +555,8 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   if (raw.header.status == GPGP_SUCCESS) std::memcpy(&counters, raw.words.data(), sizeof counters);
   report.base = raw.header;
   report.patches = counters.patches;
-  report.tileEntries = counters.entries;
+  // Room for tile words is by maxTileEntries as well; entries were counted behind that.
+  report.tileEntries = std::max(counters.entries, counters.words > counters.wordsGiven ? counters.words : 0);
   report.tileEntriesGiven = counters.entriesGiven;
   report.pathsDropped = counters.pathsDropped;
   report.glyphs = counters.glyphs;

@@ -4,10 +4,15 @@
 
 #include "vector/raster/place.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace gpgp::vector {
 
-void placePanel(const GpgpPanel& panel, const float* viewProjection, const uint32_t* viewport, GpgpCanvasItem& item,
-                float* clip) {
+bool placePanel(const GpgpPanel& panel, const float* viewProjection, const uint32_t* viewport, GpgpCanvasItem& result,
+                float* resultClip) {
+  GpgpCanvasItem item = result;
+  float clip[16] = {};
   const auto number = [](auto v) { return static_cast<double>(v); };
   const auto narrow = [](double v) { return static_cast<float>(v); };
   double rows[4][3]; // clip coordinates of across, down, corner
@@ -30,11 +35,12 @@ void placePanel(const GpgpPanel& panel, const float* viewProjection, const uint3
     item.transform[2 * k + 1] = narrow(pixel[1][k]);
     item.perspective[k] = narrow(pixel[2][k]);
   }
+  // Without perspective an item would be affine; a panel in the plane of the eye is not seen.
+  if (std::none_of(item.perspective, item.perspective + 3, [](float v) { return v != 0; })) item.perspective[2] = -1;
   item.scissor[0] = narrow(left);
   item.scissor[1] = narrow(top);
   item.scissor[2] = narrow(left + width);
   item.scissor[3] = narrow(top + height);
-  if (!clip) return;
   const auto cross = [](const double* a, const double* b, int k) {
     return a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
   };
@@ -43,7 +49,6 @@ void placePanel(const GpgpPanel& panel, const float* viewProjection, const uint3
   for (int column = 0; column < 3 && determinant != 0; ++column)
     for (int k = 0; k < 3; ++k)
       depth[column] += rows[2][k] * cross(pixel[(column + 1) % 3], pixel[(column + 2) % 3], k) / determinant;
-  for (int k = 0; k < 16; ++k) clip[k] = 0;
   clip[0] = narrow(2 / width);
   clip[5] = narrow(2 / height);
   clip[12] = clip[13] = -1;
@@ -51,6 +56,15 @@ void placePanel(const GpgpPanel& panel, const float* viewProjection, const uint3
   clip[2] = narrow(depth[0]);
   clip[6] = narrow(depth[1]);
   clip[14] = narrow(depth[2] + depth[0] * left + depth[1] * top);
+
+  const auto finite = [](float v) { return std::isfinite(v); };
+  if (!std::all_of(item.transform, item.transform + 6, finite) ||
+      !std::all_of(item.perspective, item.perspective + 3, finite) ||
+      (resultClip && !std::all_of(clip, clip + 16, finite)))
+    return false;
+  result = item;
+  if (resultClip) std::copy_n(clip, 16, resultClip);
+  return true;
 }
 
 } // namespace gpgp::vector

@@ -4,7 +4,8 @@
 
 namespace gpgp::vector {
 
-void placePanel(const GpgpPanel& panel, const float* viewProjection, const uint32_t* viewport, GpgpCanvasItem& item,
+/// False, and nothing is written, where a result is too large for a float.
+bool placePanel(const GpgpPanel& panel, const float* viewProjection, const uint32_t* viewport, GpgpCanvasItem& item,
                 float* clip);
 
 } // namespace gpgp::vector
