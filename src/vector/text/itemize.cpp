@@ -107,13 +107,17 @@ bool hasOtherForm(const Font& font, std::span<const char32_t> characters) {
   return false;
 }
 
+/// To be shown as an emoji (UTS #51): by itself, by U+FE0F, and a digit, # or * by the mark of a keycap behind that
+/// only.
 bool wantsColor(std::span<const char32_t> grapheme) {
-  bool emoji = u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), UCHAR_EMOJI_PRESENTATION) != 0;
-  for (const char32_t c : grapheme) {
-    if (c == 0xfe0f) emoji = true;
-    if (c == 0xfe0e) return false;
-  }
-  return emoji;
+  if (grapheme.size() == 1 && grapheme[0] < 0x2000) return false;
+  const auto is = [&](UProperty property) {
+    return u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), property) != 0;
+  };
+  const auto has = [&](char32_t c) { return std::find(grapheme.begin(), grapheme.end(), c) != grapheme.end(); };
+  if (has(0xfe0e)) return false;
+  if (is(UCHAR_EMOJI_PRESENTATION)) return true;
+  return has(0xfe0f) && is(UCHAR_EMOJI) && (grapheme[0] >= 0x80 || has(0x20e3));
 }
 
 bool sameShaping(const Style& a, const Style& b) {
@@ -138,7 +142,7 @@ hb_script_t Itemizer::scriptOf(std::span<const char32_t> characters) {
 
 Font* Itemizer::fontOf(std::span<const char32_t> grapheme, const Style& style) {
   const uint32_t count = style.source->fontCount;
-  if (grapheme[0] >= 0x2000 && wantsColor(grapheme))
+  if (wantsColor(grapheme))
     for (uint32_t i = 0; i < count; ++i)
       if ((style.font(i)->info().colors & ~uint32_t(GPGP_FONT_COLOR_SVG)) && hasAll(*style.font(i), grapheme))
         return style.font(i);
