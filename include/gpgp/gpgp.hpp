@@ -670,9 +670,9 @@ public:
   GpgpResult selection(uint32_t begin, uint32_t end, uint32_t& count, GpgpTextRect* rects) const noexcept {
     return gpgpGetSelection(get(), begin, end, &count, rects);
   }
-  Result<GpgpCaret> caret(uint32_t offset) const noexcept {
+  Result<GpgpCaret> caret(uint32_t offset, bool trailing = false) const noexcept {
     GpgpCaret value = GpgpCaret();
-    const GpgpResult code = gpgpGetCaret(get(), offset, &value);
+    const GpgpResult code = gpgpGetCaret(get(), offset, trailing, &value);
     return Result<GpgpCaret>(code, value);
   }
   /// gpgpHitTestLayout
@@ -682,9 +682,9 @@ public:
     return Result<GpgpTextHit>(code, value);
   }
   /// gpgpMoveCaret
-  Result<uint32_t> moveCaret(uint32_t offset, GpgpCaretMove move) const noexcept {
+  Result<uint32_t> moveCaret(uint32_t offset, GpgpCaretMove move, VkBool32* trailing = nullptr) const noexcept {
     uint32_t value = 0;
-    const GpgpResult code = gpgpMoveCaret(get(), offset, move, &value);
+    const GpgpResult code = gpgpMoveCaret(get(), offset, move, &value, trailing);
     return Result<uint32_t>(code, value);
   }
 };

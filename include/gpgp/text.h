@@ -198,8 +198,8 @@ typedef struct GpgpFontFeature {
 
 typedef struct GpgpTextStyle {
   /** A grapheme takes the first that has all its characters; emoji the first of those in colour. White space goes with
-   *  what is before it. What none has comes from the first with the grapheme's first character, or the first, and
-   *  is reported as missing. */
+   *  what is before it, but for emoji in colour. What none has comes from the first with the grapheme's first
+   *  character, or the first, and is reported as missing. */
   const GpgpFont* fonts;
   uint32_t fontCount;
   float size;           /**< pixels an em; more than 0 */
@@ -346,7 +346,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetSelection(GpgpLayout layout, uint32_t begin
                                                GpgpTextRect* rects);
 
 /** Where a caret before the character at an offset stands. At a change of direction two places belong to one offset:
- *  where that character begins, and where the one before it ends. */
+ *  where that character begins, and where the one before it ends. So they do where a line wraps, see gpgpGetCaret. */
 typedef struct GpgpCaret {
   float x, top, height;
   uint32_t line;
@@ -356,13 +356,15 @@ typedef struct GpgpCaret {
   VkBool32 splitRightToLeft; /**< of the character before */
 } GpgpCaret;
 
-/** The caret at a byte offset; within a grapheme: at its start; beyond the text: at its end. @threads handle */
-GPGP_API GpgpResult GPGP_CALL gpgpGetCaret(GpgpLayout layout, uint32_t offset, GpgpCaret* caret);
+/** The caret at a byte offset; within a grapheme: at its start; beyond the text: at its end. trailing: it belongs to
+ * the character before the offset. Where a line wraps it then stands at that line's end, not at the next one's begin;
+ *  elsewhere it is the same caret. @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetCaret(GpgpLayout layout, uint32_t offset, VkBool32 trailing, GpgpCaret* caret);
 
 typedef struct GpgpTextHit {
   uint32_t offset;    /**< of the grapheme that was hit; the nearest in the nearest line */
   uint32_t insertion; /**< where a caret goes: that offset, or the end of the grapheme */
-  VkBool32 trailing;  /**< the half where it ends was hit */
+  VkBool32 trailing;  /**< the half where it ends was hit; with `insertion` a caret of this line */
   VkBool32 inside;    /**< the point lies on the grapheme and in its line */
   uint32_t line;
 } GpgpTextHit;
@@ -379,11 +381,14 @@ enum {
   GPGP_CARET_WORD_BEGIN = 4,    /**< of what a double click selects: word, spaces or sign at the offset */
   GPGP_CARET_WORD_END = 5,
   GPGP_CARET_LINE_BEGIN = 6,
-  GPGP_CARET_LINE_END = 7 /**< before the line break */
+  GPGP_CARET_LINE_END = 7 /**< before the line break, or the white space where the line wraps; where it wraps without
+                             any: its end, trailing */
 };
 
-/** The offset that a caret at an offset moves to. @threads handle */
-GPGP_API GpgpResult GPGP_CALL gpgpMoveCaret(GpgpLayout layout, uint32_t offset, GpgpCaretMove move, uint32_t* moved);
+/** The offset that a caret at an offset moves to. trailing: in: of the caret that moves, as in gpgpGetCaret, out: of
+ *  the moved one; NULL: 0, and not asked for. @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpMoveCaret(GpgpLayout layout, uint32_t offset, GpgpCaretMove move, uint32_t* moved,
+                                            VkBool32* trailing);
 
 #ifdef __cplusplus
 }

@@ -245,12 +245,12 @@ GpgpResult GPGP_CALL gpgpGetSelection(GpgpLayout handle, uint32_t begin, uint32_
   });
 }
 
-GpgpResult GPGP_CALL gpgpGetCaret(GpgpLayout handle, uint32_t offset, GpgpCaret* caret) {
+GpgpResult GPGP_CALL gpgpGetCaret(GpgpLayout handle, uint32_t offset, VkBool32 trailing, GpgpCaret* caret) {
   const Layout* layout = toLayout(handle);
   return guarded("gpgpGetCaret", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
     if (!layout) return notA("layout", "layout");
     if (!caret) return invalid("caret is NULL");
-    *caret = layout->caret(offset);
+    *caret = layout->caret(offset, trailing != 0);
     return {};
   });
 }
@@ -266,14 +266,16 @@ GpgpResult GPGP_CALL gpgpHitTestLayout(GpgpLayout handle, float x, float y, Gpgp
   });
 }
 
-GpgpResult GPGP_CALL gpgpMoveCaret(GpgpLayout handle, uint32_t offset, GpgpCaretMove move, uint32_t* moved) {
+GpgpResult GPGP_CALL gpgpMoveCaret(GpgpLayout handle, uint32_t offset, GpgpCaretMove move, uint32_t* moved,
+                                   VkBool32* trailing) {
   Layout* layout = toLayout(handle);
   return guarded("gpgpMoveCaret", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
     if (!layout) return notA("layout", "layout");
     if (!moved) return invalid("moved is NULL");
-    const auto at = layout->move(offset, move);
+    const auto at = layout->move(offset, trailing && *trailing, move);
     if (!at) return at.error();
-    *moved = *at;
+    *moved = at->offset;
+    if (trailing) *trailing = at->trailing;
     return {};
   });
 }

@@ -62,12 +62,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       require(std::isfinite(info.glyphs[i].x) && info.glyphs[i].cluster <= text.size);
     for (uint32_t offset = 0; offset <= text.size; offset += 1 + data[1] % 7) {
       GpgpCaret caret{};
-      require(gpgpGetCaret(layout, offset, &caret) == GPGP_SUCCESS && caret.line < info.lineCount);
+      require(gpgpGetCaret(layout, offset, data[1] & 1, &caret) == GPGP_SUCCESS && caret.line < info.lineCount);
       GpgpTextHit hit{};
       require(gpgpHitTestLayout(layout, caret.x, caret.top, &hit) == GPGP_SUCCESS && hit.insertion <= text.size);
       uint32_t moved = 0, count = 0;
+      VkBool32 trailing = data[1] & 1;
       for (GpgpCaretMove move = GPGP_CARET_NEXT; move <= GPGP_CARET_LINE_END; ++move)
-        require(gpgpMoveCaret(layout, offset, move, &moved) == GPGP_SUCCESS && moved <= text.size);
+        require(gpgpMoveCaret(layout, offset, move, &moved, &trailing) == GPGP_SUCCESS && moved <= text.size);
       require(gpgpGetSelection(layout, offset, offset + 20, &count, nullptr) == GPGP_SUCCESS);
     }
   }

@@ -107,14 +107,26 @@ bool hasOtherForm(const Font& font, std::span<const char32_t> characters) {
   return false;
 }
 
+/// To be shown as an emoji (UTS #51): by itself, by U+FE0F, and a digit, # or * by the mark of a keycap behind that
+/// only.
 bool wantsColor(std::span<const char32_t> grapheme) {
-  bool emoji = u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), UCHAR_EMOJI_PRESENTATION) != 0;
-  for (const char32_t c : grapheme) {
-    if (c == 0xfe0f) emoji = true;
-    if (c == 0xfe0e) return false;
-  }
-  return emoji;
+  if (grapheme.size() == 1 && grapheme[0] < 0x2000) return false;
+  const auto is = [&](UProperty property) {
+    return u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), property) != 0;
+  };
+  const auto has = [&](char32_t c) { return std::find(grapheme.begin(), grapheme.end(), c) != grapheme.end(); };
+  if (has(0xfe0e)) return false;
+  if (is(UCHAR_EMOJI_PRESENTATION)) return true;
+  return has(0xfe0f) && is(UCHAR_EMOJI) && (grapheme[0] >= 0x80 || has(0x20e3));
 }
+
+/// An emoji, as text too; digits, # and * are not.
+bool isEmoji(std::span<const char32_t> grapheme) {
+  return wantsColor(grapheme) ||
+         (grapheme[0] >= 0x80 && u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), UCHAR_EMOJI) != 0);
+}
+
+bool isColored(const Font& font) { return (font.info().colors & ~uint32_t(GPGP_FONT_COLOR_SVG)) != 0; }
 
 bool sameShaping(const Style& a, const Style& b) {
   if (&a == &b) return true;
@@ -138,10 +150,9 @@ hb_script_t Itemizer::scriptOf(std::span<const char32_t> characters) {
 
 Font* Itemizer::fontOf(std::span<const char32_t> grapheme, const Style& style) {
   const uint32_t count = style.source->fontCount;
-  if (grapheme[0] >= 0x2000 && wantsColor(grapheme))
+  if (wantsColor(grapheme))
     for (uint32_t i = 0; i < count; ++i)
-      if ((style.font(i)->info().colors & ~uint32_t(GPGP_FONT_COLOR_SVG)) && hasAll(*style.font(i), grapheme))
-        return style.font(i);
+      if (isColored(*style.font(i)) && hasAll(*style.font(i), grapheme)) return style.font(i);
   for (uint32_t i = 0; i < count; ++i)
     if (hasAll(*style.font(i), grapheme) || (grapheme[0] >= 0x80 && hasOtherForm(*style.font(i), grapheme)) ||
         (grapheme.size() > 1 && hasOtherForm(*style.font(i), grapheme)))
@@ -155,6 +166,7 @@ void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) c
   resolveScripts(std::span(text.characters).subspan(begin, end - begin), scripts);
   const size_t first = runs.size();
   UScriptCode lastScript = USCRIPT_COMMON;
+  bool emoji = false; // the last run's font was taken for an emoji: its space is as wide as one
   for (uint32_t at = begin, next = 0; at < end; at = next) {
     // A letter with thousands of marks is shaped in parts: HarfBuzz takes time by the square of their number.
     constexpr uint32_t kMostTogether = 256;
@@ -168,9 +180,10 @@ void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) c
     Run* last = runs.size() > first ? &runs.back() : nullptr;
     if (run.kind == Run::Kind::text) {
       const auto grapheme = std::span(text.characters).subspan(at, next - at);
-      const bool stays = last && last->kind == Run::Kind::text && (isWhite(c) || isIgnorable(c)) &&
+      const bool stays = last && last->kind == Run::Kind::text && (isIgnorable(c) || (isWhite(c) && !emoji)) &&
                          styleOf[at - 1] == style && hasAll(*last->font, grapheme);
       run.font = stays ? last->font : fontOf(grapheme, styles[style]);
+      if (!stays) emoji = isColored(*run.font) && isEmoji(grapheme);
       const UScriptCode script = scripts[at - begin];
       if (whole && last && last->kind == Run::Kind::text && last->level == run.level && last->font == run.font &&
           lastScript == script && sameShaping(styles[last->style], styles[style])) {

@@ -26,9 +26,13 @@ public:
 
   void info(GpgpLayoutInfo& info) const;
   void selection(uint32_t begin, uint32_t end, std::vector<GpgpTextRect>& rects) const;
-  GpgpCaret caret(uint32_t offset) const;
+  GpgpCaret caret(uint32_t offset, bool trailing) const;
   GpgpTextHit hit(float x, float y) const;
-  Result<uint32_t> move(uint32_t offset, GpgpCaretMove move);
+  struct Moved {
+    uint32_t offset;
+    bool trailing;
+  };
+  Result<Moved> move(uint32_t offset, bool trailing, GpgpCaretMove move);
 
 private:
   struct Paragraph {
@@ -78,7 +82,7 @@ private:
 
   uint32_t graphemeAt(uint32_t character) const;
   uint32_t nextGrapheme(uint32_t character) const;
-  uint32_t lineAt(uint32_t character) const;
+  uint32_t lineAt(uint32_t character, bool trailing) const;
   float leadingEdge(const Piece& piece, uint32_t character) const;
   const Piece* pieceAt(const Line& line, uint32_t character) const;
 

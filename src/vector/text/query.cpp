@@ -5,10 +5,13 @@
 
 namespace gpgp::text {
 
-uint32_t Layout::lineAt(uint32_t character) const {
+/// trailing: where a line wraps, the one that ends.
+uint32_t Layout::lineAt(uint32_t character, bool trailing) const {
   const auto after = std::upper_bound(cut_.begin(), cut_.end(), character,
                                       [](uint32_t c, const Line& line) { return c < line.begin; });
-  return after == cut_.begin() ? 0 : static_cast<uint32_t>(after - cut_.begin()) - 1;
+  const uint32_t index = after == cut_.begin() ? 0 : static_cast<uint32_t>(after - cut_.begin()) - 1;
+  const bool wraps = index > 0 && character == cut_[index].begin && !cut_[index - 1].hard;
+  return trailing && wraps ? index - 1 : index;
 }
 
 const Layout::Piece* Layout::pieceAt(const Line& line, uint32_t character) const {
@@ -26,10 +29,10 @@ float Layout::leadingEdge(const Piece& piece, uint32_t character) const {
   return piece.rightToLeft() ? piece.x + piece.width - along : piece.x + along;
 }
 
-GpgpCaret Layout::caret(uint32_t offset) const {
+GpgpCaret Layout::caret(uint32_t offset, bool trailing) const {
   if (cut_.empty()) return {};
   const uint32_t character = std::min(graphemeAt(text_.characterAt(offset)), cut_.back().end);
-  const uint32_t index = lineAt(character);
+  const uint32_t index = lineAt(character, trailing);
   const Line& line = cut_[index];
   const GpgpTextLine& placed = lines_[index];
   const bool backwards = line.level & 1;
@@ -131,9 +134,10 @@ void Layout::selection(uint32_t begin, uint32_t end, std::vector<GpgpTextRect>& 
   }
 }
 
-Result<uint32_t> Layout::move(uint32_t offset, GpgpCaretMove move) {
+Result<Layout::Moved> Layout::move(uint32_t offset, bool trailing, GpgpCaretMove move) {
   const uint32_t size = text_.size();
   uint32_t at = graphemeAt(text_.characterAt(offset));
+  bool ends = false; // the line there wraps, and the caret stays on it
   if (move >= GPGP_CARET_NEXT_WORD && move <= GPGP_CARET_WORD_END && !wordsKnown_) {
     const auto shaper = shaper_.lock();
     if (!shaper) return makeError(GPGP_ERROR_INVALID_HANDLE, "the layout's shaper is destroyed");
@@ -159,18 +163,24 @@ Result<uint32_t> Layout::move(uint32_t offset, GpgpCaretMove move) {
     while (at < size && !(flags_[at] & kWord)) ++at;
     break;
   case GPGP_CARET_LINE_BEGIN:
-    if (!cut_.empty()) at = cut_[lineAt(at)].begin;
+    if (!cut_.empty()) at = cut_[lineAt(at, trailing)].begin;
     break;
   case GPGP_CARET_LINE_END:
     if (!cut_.empty()) {
-      const Line& line = cut_[lineAt(at)];
+      const Line& line = cut_[lineAt(at, trailing)];
       at = line.end;
-      if (at > line.begin && isNewline(text_.characters[graphemeAt(at - 1)])) at = graphemeAt(at - 1);
+      if (!line.hard) {
+        const uint32_t ink = graphemeAt(line.inkEnd);
+        ends = ink == at || ink <= line.begin;
+        if (!ends) at = ink;
+      } else if (at > line.begin && isNewline(text_.characters[graphemeAt(at - 1)])) {
+        at = graphemeAt(at - 1);
+      }
     }
     break;
   default: return makeError(GPGP_ERROR_INVALID_ARGUMENT, "move is %d, which is no GpgpCaretMove", move);
   }
-  return text_.byteOf[at];
+  return Moved{text_.byteOf[at], ends};
 }
 
 } // namespace gpgp::text

@@ -85,9 +85,9 @@ struct Paper {
     EXPECT_EQ(gpgpGetLayoutInfo(layout.get(), &info), GPGP_SUCCESS);
     return result;
   }
-  GpgpCaret caret(uint32_t offset) const {
+  GpgpCaret caret(uint32_t offset, VkBool32 trailing = 0) const {
     GpgpCaret caret{};
-    EXPECT_EQ(gpgpGetCaret(layout.get(), offset, &caret), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpGetCaret(layout.get(), offset, trailing, &caret), GPGP_SUCCESS);
     return caret;
   }
   GpgpTextHit hit(float x, float y) const {
@@ -95,9 +95,9 @@ struct Paper {
     EXPECT_EQ(gpgpHitTestLayout(layout.get(), x, y, &hit), GPGP_SUCCESS);
     return hit;
   }
-  uint32_t move(uint32_t offset, GpgpCaretMove move) const {
+  uint32_t move(uint32_t offset, GpgpCaretMove move, VkBool32* trailing = nullptr) const {
     uint32_t moved = ~0u;
-    EXPECT_EQ(gpgpMoveCaret(layout.get(), offset, move, &moved), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpMoveCaret(layout.get(), offset, move, &moved, trailing), GPGP_SUCCESS);
     return moved;
   }
   std::vector<GpgpTextRect> selection(uint32_t begin, uint32_t end) const {

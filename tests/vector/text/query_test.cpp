@@ -283,5 +283,73 @@ TEST_F(TextQuery, CaretsMoveByGraphemesAndWords) {
   EXPECT_EQ(paper_.move(18, GPGP_CARET_LINE_END), 20u);
   EXPECT_EQ(paper_.move(99, GPGP_CARET_PREVIOUS), 19u);
   uint32_t moved = 0;
-  EXPECT_EQ(gpgpMoveCaret(paper_.layout.get(), 0, 77, &moved), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpMoveCaret(paper_.layout.get(), 0, 77, &moved, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_F(TextQuery, ACaretWhereALineWrapsIsOnEitherLine) {
+  // "Hello ", "big ", "world ", "again"
+  ASSERT_EQ(paper_.set(textInfo("Hello big world again", fonts_, 16, 60)), GPGP_SUCCESS);
+  ASSERT_EQ(paper_.info.lineCount, 4u);
+  EXPECT_EQ(paper_.caret(6).line, 1u);
+  const GpgpCaret first = paper_.caret(6, 1);
+  EXPECT_EQ(first.line, 0u);
+  EXPECT_LT(first.top, paper_.caret(6).top);
+  EXPECT_NEAR(first.x, paper_.selection(0, 6)[0].width, 0.01f);
+  EXPECT_EQ(paper_.move(1, GPGP_CARET_LINE_END), 5u); // before the space
+  EXPECT_EQ(paper_.move(5, GPGP_CARET_LINE_END), 5u);
+  EXPECT_EQ(paper_.move(6, GPGP_CARET_LINE_END), 9u);
+  EXPECT_EQ(paper_.move(16, GPGP_CARET_LINE_END), 21u);
+  VkBool32 trailing = 1;
+  EXPECT_EQ(paper_.move(6, GPGP_CARET_LINE_BEGIN, &trailing), 0u);
+  EXPECT_FALSE(trailing);
+  trailing = 1;
+  EXPECT_EQ(paper_.move(6, GPGP_CARET_NEXT, &trailing), 7u);
+  EXPECT_FALSE(trailing);
+
+  // Behind a line break, at a text's begin and within a line there is one caret only.
+  ASSERT_EQ(paper_.set(textInfo("ab\n\ncd\n", fonts_, 16, 60)), GPGP_SUCCESS);
+  for (uint32_t offset = 0; offset <= 7; ++offset) {
+    EXPECT_EQ(paper_.caret(offset, 1).line, paper_.caret(offset).line);
+    EXPECT_EQ(paper_.caret(offset, 1).x, paper_.caret(offset).x);
+  }
+
+  // Within a word, with an ellipsis, in every script: a line's end is on the line and stays, a hit's caret is where it
+  // was hit.
+  uint32_t wraps = 0, spaces = 0;
+  for (const std::string& text : texts_)
+    for (const float width : {3.f, 30.f, 60.f, 130.f})
+      for (const uint32_t lines : {0u, 2u}) {
+        GpgpTextInfo info = textInfo(text, fonts_, 16, width);
+        info.maxLines = lines;
+        ASSERT_EQ(paper_.set(info), GPGP_SUCCESS);
+        const auto hasCaret = [&](uint32_t offset, VkBool32 behind, uint32_t line) {
+          EXPECT_EQ(paper_.caret(offset, behind).line, line);
+          VkBool32 again = behind;
+          EXPECT_EQ(paper_.move(offset, GPGP_CARET_LINE_BEGIN, &again), paper_.info.lines[line].begin);
+          EXPECT_FALSE(again);
+        };
+        for (const uint32_t offset : boundariesOf(text, UBRK_CHARACTER)) {
+          SCOPED_TRACE(text + " in " + std::to_string(width) + " at " + std::to_string(offset));
+          const uint32_t line = paper_.caret(offset).line;
+          VkBool32 ends = 0;
+          const uint32_t end = paper_.move(offset, GPGP_CARET_LINE_END, &ends);
+          hasCaret(end, ends, line);
+          VkBool32 again = ends;
+          EXPECT_EQ(paper_.move(end, GPGP_CARET_LINE_END, &again), end);
+          EXPECT_EQ(again, ends);
+          wraps += ends;
+          spaces += !ends && !paper_.info.lines[line].hardBreak;
+        }
+        for (uint32_t line = 0; line < paper_.info.lineCount; ++line) {
+          const GpgpTextLine& placed = paper_.info.lines[line];
+          for (float x = placed.left - 10; x < placed.left + placed.width + 20; x += 1.7f) {
+            SCOPED_TRACE(text + " in " + std::to_string(width) + " hit at " + std::to_string(x));
+            const GpgpTextHit hit = paper_.hit(x, placed.top + placed.height / 2);
+            ASSERT_EQ(hit.line, line);
+            hasCaret(hit.insertion, hit.trailing, line);
+          }
+        }
+      }
+  EXPECT_GT(wraps, 100u);
+  EXPECT_GT(spaces, 100u);
 }

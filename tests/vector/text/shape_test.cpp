@@ -259,6 +259,63 @@ TEST(TextShape, EachGraphemeTakesTheFirstFontThatHasIt) {
   EXPECT_EQ(paper.info.missingCount, 0u);
 }
 
+TEST(TextShape, EmojiOfLatinCharactersAreInColour) {
+  GPGP_NEEDS_FONTS();
+  // The first two have all of these in black, keycaps in the second.
+  const FontHandle latin = openFont("NotoSans-Regular.ttf"), symbols = openFont("NotoSansSymbols-Regular.ttf"),
+                   emoji = openFont("NotoColorEmoji.ttf");
+  const std::vector<GpgpFont> fonts = {latin.get(), symbols.get(), emoji.get()};
+  Paper paper;
+  for (const char* text : {"©\uFE0F", "®\uFE0F", "1\uFE0F\u20E3", "9\uFE0F\u20E3", "#\uFE0F\u20E3", "*\uFE0F\u20E3"}) {
+    SCOPED_TRACE(text);
+    const std::string line = std::string("a") + text + "b";
+    ASSERT_EQ(paper.set(textInfo(line, fonts, 10)), GPGP_SUCCESS);
+    ASSERT_EQ(paper.info.glyphCount, 3u);
+    EXPECT_EQ(paper.info.glyphs[0].font, latin.get());
+    EXPECT_EQ(paper.info.glyphs[1].font, emoji.get());
+    EXPECT_NE(paper.info.glyphs[1].glyph, 0u);
+    EXPECT_EQ(paper.info.glyphs[2].font, latin.get());
+  }
+  // What is text: alone, with the sign for text, keycaps without the sign for emoji, that sign behind what is none.
+  for (const char* text : {"0", "9", "#", "*", "©", "®", "©\uFE0E", "1\uFE0E\u20E3", "1\u20E3", "1\uFE0F", "a\uFE0F"}) {
+    SCOPED_TRACE(text);
+    const std::string line = text;
+    ASSERT_EQ(paper.set(textInfo(line, fonts, 10)), GPGP_SUCCESS);
+    for (uint32_t i = 0; i < paper.info.glyphCount; ++i) EXPECT_NE(paper.info.glyphs[i].font, emoji.get());
+  }
+}
+
+TEST(TextShape, SpacesBehindEmojiAreThoseOfText) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle dejavu = openFont("DejaVuSans.ttf"), arabic = openFont("NotoNaskhArabic-Regular.ttf"),
+                   emoji = openFont("NotoColorEmoji.ttf");
+  const std::vector<GpgpFont> fonts = {dejavu.get(), emoji.get()};
+  Paper paper;
+  ASSERT_EQ(paper.set(textInfo("a b", fonts, 100)), GPGP_SUCCESS);
+  const float space = paper.caret(2).x - paper.caret(1).x;
+  for (const char* text : {"a👍 b", "a👍  b", "👍 👍", "1\uFE0F\u20E3 ", "a👍\u200b b", "a👍🏽 b"}) {
+    SCOPED_TRACE(text);
+    const std::string line = text;
+    ASSERT_EQ(paper.set(textInfo(line, fonts, 100)), GPGP_SUCCESS);
+    for (size_t at = line.find(' '); at != std::string::npos; at = line.find(' ', at + 1)) {
+      const uint32_t offset = static_cast<uint32_t>(at);
+      EXPECT_NEAR(paper.caret(offset + 1).x - paper.caret(offset).x, space, 0.01f);
+      for (uint32_t i = 0; i < paper.info.glyphCount; ++i)
+        EXPECT_TRUE(paper.info.glyphs[i].cluster != offset || paper.info.glyphs[i].font == dejavu.get());
+    }
+  }
+  // The font of emoji comes first or alone: its space is taken as before. Letters of a later font keep its spaces.
+  for (const std::vector<GpgpFont>& chain : {std::vector<GpgpFont>{emoji.get(), dejavu.get()}, {emoji.get()}}) {
+    ASSERT_EQ(paper.set(textInfo("👍 👍", chain, 100)), GPGP_SUCCESS);
+    ASSERT_EQ(paper.info.glyphCount, 3u);
+    EXPECT_EQ(paper.info.glyphs[1].font, emoji.get());
+  }
+  const FontHandle latin = openFont("NotoSans-Regular.ttf");
+  const std::string words = "صباح الخير";
+  ASSERT_EQ(paper.set(textInfo(words, {latin.get(), arabic.get(), emoji.get()}, 100)), GPGP_SUCCESS);
+  for (uint32_t i = 0; i < paper.info.glyphCount; ++i) EXPECT_EQ(paper.info.glyphs[i].font, arabic.get());
+}
+
 TEST(TextShape, BytesThatAreNoTextAreReplacedAndReported) {
   GPGP_NEEDS_FONTS();
   const FontHandle font = openFont("DejaVuSans.ttf");
