@@ -96,14 +96,8 @@ TEST_F(CanvasTest, HitTestsFindThePathThatWindingNumbersSay) {
 TEST_F(CanvasTest, HitTestsOfListsFindWhatIsSeen) {
   makeCanvas(128);
   // Each entry in a colour of its own, so that the picture says which one lies on top.
-  GpgpGlyphSetCreateInfo setInfo = GPGP_GLYPH_SET_CREATE_INFO_INIT;
-  GpgpAsset set = nullptr;
-  ASSERT_EQ(gpgpCreateGlyphSet(context, &setInfo, &set), GPGP_SUCCESS);
-  const TestPath outline = randomShape(3, 1);
-  const GpgpPath outlineView = outline.view();
-  const GpgpGlyph glyph{1, &outlineView, 1, nullptr};
   uint32_t index = 0;
-  ASSERT_EQ(gpgpAddGlyphs(set, &glyph, 1, &index), GPGP_SUCCESS);
+  const GpgpAsset set = makeGlyphSet(context, index);
   const auto tone = [](uint32_t i) { return std::array{static_cast<float>(i) / 64, 0.5f, 1.0f, 1.0f}; };
   TestPath triangle;
   triangle.move(0, 0).line(50, 10).line(20, 60).close();

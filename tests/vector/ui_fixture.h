@@ -49,6 +49,18 @@ private:
   }
 };
 
+/// A set of one glyph, a random outline a unit wide; index: the glyph's.
+inline GpgpAsset makeGlyphSet(GpgpContext context, uint32_t& index) {
+  const GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  GpgpAsset set = nullptr;
+  EXPECT_EQ(gpgpCreateGlyphSet(context, &info, &set), GPGP_SUCCESS);
+  const TestPath outline = randomShape(3, 1);
+  const GpgpPath path = outline.view();
+  const GpgpGlyph glyph{1, &path, 1, nullptr};
+  EXPECT_EQ(gpgpAddGlyphs(set, &glyph, 1, &index), GPGP_SUCCESS);
+  return set;
+}
+
 inline GpgpListShape rectangle(float left, float top, float right, float bottom,
                                std::array<float, 4> color = {1, 1, 1, 1}) {
   GpgpListShape shape{};

@@ -205,14 +205,8 @@ TEST_F(CanvasTest, TurnedAndRoundClipsEqualClipsOfDrawings) {
 
 TEST_F(CanvasTest, ListsComposeTransformsAndOpacityAndGoWithOtherItems) {
   makeCanvas(128);
-  GpgpGlyphSetCreateInfo setInfo = GPGP_GLYPH_SET_CREATE_INFO_INIT;
-  GpgpAsset set = nullptr;
-  ASSERT_EQ(gpgpCreateGlyphSet(context, &setInfo, &set), GPGP_SUCCESS);
-  const TestPath outline = randomShape(3, 1);
-  const GpgpPath outlineView = outline.view();
-  const GpgpGlyph glyph{1, &outlineView, 1, nullptr};
   uint32_t index = 0;
-  ASSERT_EQ(gpgpAddGlyphs(set, &glyph, 1, &index), GPGP_SUCCESS);
+  const GpgpAsset set = makeGlyphSet(context, index);
   TestPath triangle;
   triangle.move(0, 0).line(50, 10).line(20, 60).close();
   triangle.color = {0.5f, 0.25f, 1, 0.75f};
@@ -403,14 +397,8 @@ TEST_F(CanvasTest, GroupsFadeAsOne) {
 
   // A group of text, a drawing with groups of its own and a round clip, beside images, equals the group on its own
   // canvas, faded.
-  GpgpGlyphSetCreateInfo setInfo = GPGP_GLYPH_SET_CREATE_INFO_INIT;
-  GpgpAsset set = nullptr;
-  ASSERT_EQ(gpgpCreateGlyphSet(context, &setInfo, &set), GPGP_SUCCESS);
-  const TestPath outline = randomShape(3, 1);
-  const GpgpPath outlineView = outline.view();
-  const GpgpGlyph glyph{1, &outlineView, 1, nullptr};
   uint32_t index = 0;
-  ASSERT_EQ(gpgpAddGlyphs(set, &glyph, 1, &index), GPGP_SUCCESS);
+  const GpgpAsset set = makeGlyphSet(context, index);
   const auto fill = [&](float opacity) {
     list.reset().group(opacity).clip({8, 8, 92, 82}, {20, 20, 20, 20}).push(turned(10, 1, 10, 0));
     list.add(rectangle(0, 0, 90, 80, {0.25f, 0.25f, 0.5f, 1})).add(grouped);
