@@ -62,11 +62,10 @@ struct SpawnConstants {
 };
 
 // What becomes of terminals.
-GPGP_CONST uint kToInstances = 0u; // at once, to instances
-GPGP_CONST uint kToRecords = 1u;   // to records without keys, which expand makes vertices of as they come
-GPGP_CONST uint kToCounts = 2u;    // they are counted by bucket
-GPGP_CONST uint kToKeyedRecords =
-    3u; // to records with keys, counted by bucket, which lie in order before they are used
+GPGP_CONST uint kToInstances = 0u;    // at once, to instances
+GPGP_CONST uint kToRecords = 1u;      // to records without keys, which expand makes vertices of as they come
+GPGP_CONST uint kToCounts = 2u;       // they are counted by bucket
+GPGP_CONST uint kToKeyedRecords = 3u; // to records with keys, counted by bucket and put in order before they are used
 
 /// Words by bucket: what it got, in what is counted while deriving; quads of terminals without a record; what the
 /// shape that fits only in part left free; where its records begin.

@@ -10,7 +10,8 @@
 #include "lists.glsl"
 const uint kRoom = kTileSize * kTileSize;
 layout(local_size_x = kRoom) in;
-shared uint counts[kRoom], groupCounts[kRoom / 16], candidates[kRoom];
+#include "scan.glsl"
+shared uint candidates[kRoom];
 shared uint coverage[kRoom]; // 1 all, 2: entry * 4 + 2 + inside
 shared vec4 colors[kRoom];
 #if PAINTS
@@ -64,20 +65,8 @@ void main() {
       // Each lane has one word of the bin, the foremost paths first, and learns how many paths lie before its own.
       word = wordEnd - 1 - min(lane, wordEnd - 1);
       found = lane < wordEnd ? bins[bits + word] : 0;
-      counts[lane] = bitCount(found);
-      barrier();
-      if (lane < kRoom / 16) {
-        uint group = 0;
-        for (uint k = 0; k < 16; ++k) group += counts[lane * 16 + k];
-        groupCounts[lane] = group;
-      }
-      for (uint k = lane & ~15u; k < lane; ++k) before += counts[k];
-      barrier();
-      total = 0;
-      for (uint k = 0; k < kRoom / 16; ++k) {
-        if (k < lane / 16) before += groupCounts[k];
-        total += groupCounts[k];
-      }
+      before = scan(lane, bitCount(found)) - bitCount(found);
+      total = scanTotal();
     }
     for (uint base = 0; base < total && !done; base += kRoom) {
       if (before < base + kRoom && before + bitCount(found) > base) {

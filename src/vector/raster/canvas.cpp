@@ -231,13 +231,6 @@ core::PassList Canvas::describe() const {
   const std::array<Spirv, 3> mark =
       software_ ? std::array<Spirv, 3>{vector_mark_software_one, vector_mark_software, vector_mark_software_projective}
                 : std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective};
-  const std::array<Spirv, 3> fill =
-      software_ ? std::array<Spirv, 3>{vector_fill_software_one, vector_fill_software, vector_fill_software_projective}
-                : std::array<Spirv, 3>{vector_fill_one, vector_fill, vector_fill_projective};
-  const std::array<const char*, 3> fillNames =
-      software_ ? std::array<const char*, 3>{"fill", "fill, several drawings", "fill, projective"}
-                : std::array<const char*, 3>{"fill without lists", "fill without lists, several drawings",
-                                             "fill without lists, projective"};
   either({"mark", "mark, several drawings", "mark, projective"}, mark,
          {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}}, kSegments);
   if (!software_) {
@@ -248,31 +241,33 @@ core::PassList Canvas::describe() const {
   dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
            {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
   if (software_) {
-    either(fillNames, fill, {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments);
-  } else {
-    static constexpr const char* kFromLists[] = {"fill", "fill, several drawings", "fill, projective"};
-    const std::array<Spirv, 3> fillRows = {vector_fill_rows_one, vector_fill_rows, vector_fill_rows};
-    for (uint32_t k = 0; k < 3; ++k) {
-      core::Pass& pass = list.dispatchIndirect(kFromLists[k], list.add(core::ShaderDesc{kFromLists[k], fillRows[k]}),
-                                               {{params, read},
-                                                {paths, read},
-                                                {words, read},
-                                                {counters, read},
-                                                {entries, readWrite},
-                                                {chords, read},
-                                                {rowList, read}},
-                                               counters, offsetof(CanvasCounters, rowsX));
-      pass.condition = kOneDrawing + k;
-      pass.beside = k > 0;
-    }
-    for (uint32_t k = 0; k < 3; ++k) { // where the lists did not suffice
-      core::Pass& pass = list.dispatchIndirect(
-          fillNames[k], list.add(core::ShaderDesc{fillNames[k], fill[k]}),
-          {{params, read}, {shapes, read}, {paths, read}, {words, read}, {counters, read}, {entries, readWrite}},
-          counters, offsetof(CanvasCounters, fillX));
-      pass.beside = true;
+    either({"fill", "fill, several drawings", "fill, projective"},
+           {vector_fill_software_one, vector_fill_software, vector_fill_software_projective},
+           {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments);
+  } else { // from the lists, or, where these did not suffice, without them; allot says which
+    static constexpr const char* kFills[] = {"fill",
+                                             "fill, several drawings",
+                                             "fill, projective",
+                                             "fill without lists",
+                                             "fill without lists, several drawings",
+                                             "fill without lists, projective"};
+    const std::array<Spirv, 6> spirv = {vector_fill_rows_one, vector_fill_rows, vector_fill_rows,
+                                        vector_fill_one,      vector_fill,      vector_fill_projective};
+    for (uint32_t k = 0; k < 6; ++k) {
+      core::Pass& pass =
+          list.dispatchIndirect(kFills[k], list.add(core::ShaderDesc{kFills[k], spirv[k]}),
+                                {{params, read},
+                                 {shapes, read},
+                                 {paths, read},
+                                 {words, read},
+                                 {counters, read},
+                                 {entries, readWrite},
+                                 {chords, read},
+                                 {rowList, read}},
+                                counters, k < 3 ? offsetof(CanvasCounters, rowsX) : offsetof(CanvasCounters, fillX));
       for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
-      pass.condition = kOneDrawing + k;
+      pass.condition = kOneDrawing + k % 3;
+      pass.beside = k > 0; // the first one's barrier is all of theirs
     }
   }
   // By target: the view alone, rgba8, rgba16f.
