@@ -371,17 +371,37 @@ GPGP_FN float middleOf(Grid g, int row) {
   GPGP_PRECISE float y = (float(row) + 0.5f) * sampleStep(g.samples);
   return y;
 }
-// Where a chord meets a sample row; never turns from row to row and never leaves the chord's ends.
-GPGP_FN float crossingAt(Chord c, float y) {
-  GPGP_PRECISE float x = c.top.x + (y - c.top.y) * c.slope;
-  const float within = clamp(x, min(c.top.x, c.bottom.x), max(c.top.x, c.bottom.x));
+// A chord's line across sample rows, in 1/256 pixel; between `low` and `high` it stays.
+struct Line {
+  float x, y, slope;
+  float low, high;
+};
+GPGP_FN Line lineOf(Grid g, Chord c) {
+  Line line;
+  line.x = c.top.x * 256.0f;
+  line.y = c.top.y;
+  line.slope = c.slope * 256.0f;
+  float low = min(c.top.x, c.bottom.x), high = max(c.top.x, c.bottom.x);
 #if SCISSORS
-  return clamp(within, c.left, c.right);
-#else
-  return within;
+  low = clamp(low, c.left, c.right);
+  high = clamp(high, c.left, c.right);
 #endif
+  line.low = clamp(low, -1.0f, float(g.columns)) * 256.0f;
+  line.high = clamp(high, -1.0f, float(g.columns)) * 256.0f;
+  return line;
 }
-GPGP_FN float crossingOf(Grid g, Chord c, int row) { return crossingAt(c, middleOf(g, row)); }
+// Where it meets a row, in 1/256 pixel, rounded up; never turns from row to row. Its upper bits are the pixel's column,
+// its lower eight the part of the pixel left of it; a sample at or right of it is right of the line as well.
+GPGP_FN int crossingAt(Line line, float y) {
+  GPGP_PRECISE float x = line.x + (y - line.y) * line.slope;
+  return int(ceil(clamp(x, line.low, line.high)));
+}
+// By how much a pixel's area right of the line differs from what its samples say, in 1/256 sample, as sums over `rows`
+// sample rows, of which `missed` have their sample left of the line; from the first and the last crossing.
+GPGP_FN int areaOf(uint rows, uint missed, int first, int last) {
+  return int(missed * 256u) - ((int(rows) * ((first & 255) + (last & 255))) >> 1);
+}
+GPGP_FN int crossingOf(Grid g, Chord c, int row) { return crossingAt(lineOf(g, c), middleOf(g, row)); }
 
 GPGP_SHADER_END
 #endif

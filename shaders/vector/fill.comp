@@ -14,44 +14,39 @@
 // All of a chord at once, tile by tile: what is dear without branches is done once a tile.
 void takeChord(Grid g, PlacedPath p, Chord c) {
   const int tileRows = int(kTileSize * g.samples);
-  const bool area = (header.flags & kExactArea) != 0;
-  int tile = tileOf(columnOf(g, topEnd(c))), row = c.first;
-  while (row < c.last) {
-    const int tileRow = row / tileRows, end = min(c.last, (tileRow + 1) * tileRows);
-    float x = crossingOf(g, c, row);
-    int column = columnOf(g, x);
+  const Line line = lineOf(g, c);
+  const uvec4 columns = sampleColumns(g.samples);
+  const int top = int(p.top) * tileRows, bottom = int(p.bottom) * tileRows, last = min(c.last, bottom);
+  int tile = tileOf(columnOf(g, topEnd(c))), row = max(c.first, top);
+  while (row < last) {
+    const int end = min(last, (row / tileRows + 1) * tileRows);
+    int x = crossingAt(line, middleOf(g, row)), column = x >> 8;
     const int t = tileOf(column);
-    if (t != tile && row % tileRows != 0) changeTile(g, p, row, tile, t);
+    TileRow tiles = tileRowOf(p, row / tileRows, t);
+    if (t != tile && row % tileRows != 0) changeTile(g, tiles, row, tile, t);
     tile = t;
-    const uint entry = entryOf(p, tile, tileRow);
+    const uint entry = entryOf(tiles, tile);
     do {
-      const int at = column, rowEnd = min(end, (row | int(g.samples - 1)) + 1);
-      const uint left = uint(column) % kTileSize;
-      const uint words = entry + (uint(row) >> findMSB(g.samples)) % kTileSize * 4 + left / 2;
-      uint here = 0, next = 0; // samples that change sides at the pixel and at the one right of it
-      int difference = 0;
+      const int at = column, begin = row, rowEnd = min(end, (row | int(g.samples - 1)) + 1), first = x;
+      uint covered = 0;
       do {
-        const float part = x - float(column);
         const uint bit = uint(row) & (g.samples - 1);
-        const bool covered = part <= (float(sampleColumn(bit, g.samples)) + 0.5) * sampleStep(g.samples);
-        here |= covered ? 1u << bit : 0u;
-        next |= covered ? 0u : 1u << bit;
-        difference += (covered ? 0 : 256) - int(part * 256.0);
+        covered |= (x & 255) <= int(byteOf(columns, bit)) ? 1u << bit : 0u;
         ++row;
-        x = crossingOf(g, c, row);
-        column = columnOf(g, x);
+        x = crossingAt(line, middleOf(g, row));
+        column = x >> 8;
       } while (row < rowEnd && column == at);
       if (at >= 0 && at < g.columns && entry != ~0u) {
-        const uint shifted = left % 2 * 16;
-        atomicXor(entries[words], shifted == 0 ? here | next << 16 : here << 16);
-        if (shifted != 0 && next != 0 && left + 1 < kTileSize) atomicXor(entries[words + 1], next);
-        if (area) atomicAdd(entries[words + kEntryWords / 2], uint(c.side > 0 ? difference : -difference) << shifted);
+        const uint from = uint(begin) & (g.samples - 1), rows = (1u << (from + uint(row - begin))) - (1u << from);
+        const int until = crossingAt(line, middleOf(g, row - 1)); // Mesa 22.3 loses it if it is kept from the loop
+        takeRun(runOf(rows, covered, first, until), entry, uint(at), uint(begin >> findMSB(g.samples)), c.side);
       }
     } while (row < end && tileOf(column) == tile);
   }
-  if (c.last % tileRows != 0) {
+  if (c.last % tileRows != 0 && c.last >= top && c.last < bottom) {
     const int t = tileOf(columnOf(g, lastEnd(c)));
-    if (t != tile) changeTile(g, p, c.last, tile, t);
+    TileRow tiles = tileRowOf(p, c.last / tileRows, t);
+    if (t != tile) changeTile(g, tiles, c.last, tile, t);
   }
 }
 void main() { takeSegment(); }

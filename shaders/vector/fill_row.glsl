@@ -1,13 +1,32 @@
 // What fill does with a chord in a row of pixels, whoever gives it the chord.
 layout(set = 0, binding = 15, std430) buffer Entries { uint entries[]; };
 
+// A row of tiles of a path: its box from left to right, where its words begin, and the one at hand.
+struct TileRow {
+  uint left, right, firstWord;
+  uint index, edges, firstEntry;
+};
+void fetchWord(inout TileRow row, uint index) {
+  row.index = index;
+  const TileWord word = words[row.firstWord + index];
+  row.edges = word.edges;
+  row.firstEntry = word.firstEntry;
+}
+// At hand is the word of `tile` or the nearest one.
+TileRow tileRowOf(PlacedPath p, int tileRow, int tile) {
+  TileRow row;
+  row.left = p.left;
+  row.right = p.right;
+  row.firstWord = p.firstWord + (uint(tileRow) - p.top) * wordsInRow(p);
+  fetchWord(row, (clamp(uint(max(tile, 0)), p.left, p.right - 1) - p.left) / 32);
+  return row;
+}
 // The first word of a tile's entry; ~0 where there is none.
-uint entryOf(PlacedPath p, int tile, int tileRow) {
-  if (tile < int(p.left) || tile >= int(p.right) || tileRow < int(p.top) || tileRow >= int(p.bottom)) return ~0u;
-  const uint bit = uint(tile) - p.left;
-  const TileWord w = words[p.firstWord + (uint(tileRow) - p.top) * wordsInRow(p) + bit / 32];
-  const uint mask = 1u << (bit & 31);
-  return (w.edges & mask) == 0 ? ~0u : (w.firstEntry + bitCount(w.edges & (mask - 1))) * kEntryWords;
+uint entryOf(inout TileRow row, int tile) {
+  if (tile < int(row.left) || tile >= int(row.right)) return ~0u;
+  const uint bit = uint(tile) - row.left, mask = 1u << (bit & 31);
+  if (bit / 32 != row.index) fetchWord(row, bit / 32);
+  return (row.edges & mask) == 0 ? ~0u : (row.firstEntry + bitCount(row.edges & (mask - 1))) * kEntryWords;
 }
 
 // Turns over what lies at the left edge of a tile from a sample row on.
@@ -15,63 +34,77 @@ void turnFrom(Grid g, uint entry, int row) {
   if (entry == ~0u) return;
   const uint all = (1u << g.samples) - 1, upper = all & (all << (uint(row) & (g.samples - 1)));
   const uint y = uint(row >> findMSB(g.samples)) % kTileSize;
-  for (uint k = 0; k < kTileSize; ++k)
-    if (k >= y) atomicXor(entries[entry + k * 4], k == y ? upper : all);
+  atomicXor(entries[entry + y * 4], upper);
+  for (uint k = y + 1; k < kTileSize; ++k) atomicXor(entries[entry + k * 4], all);
 }
 
 // Tiles from -> to at a sample row.
-void changeTile(Grid g, PlacedPath p, int row, int from, int to) {
-  const int tileRow = (row >> findMSB(g.samples)) / int(kTileSize);
-  for (int tile = min(from, to) + 1; tile <= max(from, to); ++tile) turnFrom(g, entryOf(p, tile, tileRow), row);
+void changeTile(Grid g, inout TileRow tiles, int row, int from, int to) {
+  for (int tile = min(from, to) + 1; tile <= max(from, to); ++tile) turnFrom(g, entryOf(tiles, tile), row);
+}
+
+// What a run of sample rows that meet one pixel does: samples that change sides there and at the pixel right of it, and
+// by how much its area differs from what they say.
+struct Run {
+  uint here, next;
+  int difference;
+};
+Run runOf(uint rows, uint covered, int firstCrossing, int lastCrossing) {
+  Run run;
+  run.here = rows & covered;
+  run.next = rows & ~covered;
+  run.difference = areaOf(uint(bitCount(rows)), uint(bitCount(run.next)), firstCrossing, lastCrossing);
+  return run;
+}
+void takeRun(Run run, uint entry, uint column, uint row, float side) {
+  const uint inTile = column % kTileSize, shifted = (inTile & 1) * 16;
+  const uint word = entry + row % kTileSize * 4 + inTile / 2;
+  atomicXor(entries[word], shifted == 0 ? run.here | run.next << 16 : run.here << 16);
+  if (shifted != 0 && run.next != 0 && inTile + 1 < kTileSize) atomicXor(entries[word + 1], run.next);
+  if ((header.flags & kExactArea) != 0)
+    atomicAdd(entries[word + kEntryWords / 2], uint(side > 0 ? run.difference : -run.difference) << shifted);
 }
 
 #if !SOFTWARE
 // A chord in one row of pixels; a level one as a whole.
+//
+// What all samples of the row say is found first, without branches; then each run of rows that meet one pixel is taken.
 void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
-  const int shift = findMSB(g.samples), n = int(g.samples), inTileRow = int(kTileSize) * n - 1;
-  const int begin = max(c.first, pixel << shift), end = min(c.last, (pixel << shift) + n);
+  const int shift = findMSB(g.samples), top = pixel << shift, inTileRow = (int(kTileSize) << shift) - 1;
+  const int begin = max(c.first, top), end = min(c.last, top + int(g.samples));
   const int tileRow = pixel / int(kTileSize);
-  const bool area = (header.flags & kExactArea) != 0;
-  const float height = sampleStep(g.samples);
-  int tile = tileOf(columnOf(g, begin == c.first ? topEnd(c) : crossingOf(g, c, begin - 1)));
-  uint entry = entryOf(p, tile, tileRow);
-  int row = begin;
-  float y = middleOf(g, row), x = crossingAt(c, y);
-  while (row < end) { // runs of sample rows that meet the same pixel: one, rarely more
-    const int column = columnOf(g, x), t = tileOf(column);
+  if (tileRow < int(p.top) || tileRow >= int(p.bottom)) return;
+  const uvec4 columns = sampleColumns(g.samples);
+  const Line line = lineOf(g, c);
+  uint covered = 0, first = 0; // rows whose sample in the crossing's pixel lies right of it; first ones of their pixels
+  int before = -2; // no column
+  for (int k = 0; k < 16; ++k) {
+    const int x = crossingAt(line, middleOf(g, top + k)), column = x >> 8;
+    covered |= (x & 255) <= int(byteOf(columns, k)) ? 1u << k : 0u;
+    first |= column != before ? 1u << k : 0u;
+    before = column;
+  }
+  int tile = begin == c.first ? tileOf(columnOf(g, topEnd(c))) : tileOf(crossingAt(line, middleOf(g, begin - 1)) >> 8);
+  TileRow tiles = tileRowOf(p, tileRow, tile);
+  uint entry = entryOf(tiles, tile);
+  const uint rows = begin < end ? (1u << (end - top)) - (1u << (begin - top)) : 0;
+  first = rows & (first | 1u << (begin - top));
+  while (first != 0) {
+    const int from = findLSB(first);
+    first &= first - 1;
+    const int to = first != 0 ? findLSB(first) : end - top;
+    const int x = crossingAt(line, middleOf(g, top + from)), last = crossingAt(line, middleOf(g, top + to - 1));
+    const int column = x >> 8, t = tileOf(column);
     if (t != tile) {
-      const uint other = entryOf(p, t, tileRow);
-      if ((row & inTileRow) != 0) {
-        if (abs(t - tile) == 1) turnFrom(g, t > tile ? other : entry, row);
-        else changeTile(g, p, row, tile, t);
-      }
+      if ((top + from & inTileRow) != 0) changeTile(g, tiles, top + from, tile, t);
       tile = t;
-      entry = other;
+      entry = entryOf(tiles, t);
     }
-    const float left = column < 0 ? -3e38 : float(column), right = column < g.columns ? float(column) + 1.0 : 3e38;
-    int difference = 0;
-    uint here = 0, next = 0; // samples that change sides at the pixel and at the one right of it
-    do {
-      const float part = x - left;
-      const uint bit = uint(row) & uint(n - 1);
-      const bool covered = part <= (float(sampleColumn(bit, g.samples)) + 0.5) * height;
-      here |= covered ? 1u << bit : 0u;
-      next |= covered ? 0u : 1u << bit;
-      difference += (covered ? 0 : 256) - int(part * 256.0);
-      ++row;
-      y += height;
-      x = crossingAt(c, y);
-    } while (row < end && x >= left && x < right);
     if (column < 0 || column >= g.columns || entry == ~0u) continue;
-    const uint inTile = uint(column) % kTileSize, shifted = (inTile & 1) * 16;
-    const uint word = entry + uint(pixel) % kTileSize * 4 + inTile / 2;
-    atomicXor(entries[word], shifted == 0 ? here | next << 16 : here << 16);
-    if (shifted != 0 && next != 0 && inTile + 1 < kTileSize) atomicXor(entries[word + 1], next);
-    if (area) atomicAdd(entries[word + kEntryWords / 2], uint(c.side > 0 ? difference : -difference) << shifted);
+    takeRun(runOf((1u << to) - (1u << from), covered, x, last), entry, uint(column), uint(pixel), c.side);
   }
   if (end != c.last || (end & inTileRow) == 0) return;
   const int t = tileOf(columnOf(g, lastEnd(c)));
-  if (abs(t - tile) == 1) turnFrom(g, t > tile ? entryOf(p, t, tileRow) : entry, end);
-  else if (t != tile) changeTile(g, p, end, tile, t);
+  if (t != tile) changeTile(g, tiles, end, tile, t);
 }
 #endif

@@ -28,8 +28,8 @@ void takeChord(Grid g, PlacedPath p, Chord c) {
     if (!meets && (c.first == begin || c.last <= begin)) continue;
     int from = 0, to = 0, low = int(p.right), high = -1; // tiles at either end of the rows, tiles met
     if (meets) {
-      from = tileOf(columnOf(g, crossingOf(g, c, first)));
-      to = tileOf(columnOf(g, crossingOf(g, c, last - 1)));
+      from = tileOf(crossingOf(g, c, first) >> 8);
+      to = tileOf(crossingOf(g, c, last - 1) >> 8);
       low = min(from, to);
       high = max(from, to);
     }

@@ -192,7 +192,7 @@ struct Twin {
       for (uint32_t i = 0; i < chords; ++i) {
         shader::Chord chord;
         if (!shader::chordOf(grid, item, segment, i, chords, step, chord)) continue;
-        for (int row = chord.first; row < chord.last; ++row) turn(paths[segment.path], grid, chord, row);
+        for (int row = chord.first; row < chord.last;) row = turn(paths[segment.path], grid, chord, row);
       }
     }
     for (auto& path : paths)
@@ -205,25 +205,28 @@ struct Twin {
   std::vector<std::vector<Pixel>> paths;
 
 private:
-  void turn(std::vector<Pixel>& path, const shader::Grid& grid, const shader::Chord& chord, int row) const {
-    const float x = shader::crossingOf(grid, chord, row);
-    const int column = shader::columnOf(grid, x);
-    if (column >= grid.columns) return;
-    const uint32_t bit = static_cast<uint32_t>(row) % grid.samples;
-    Pixel* pixel = &path[static_cast<uint32_t>(row) / grid.samples * width];
-    if (column < 0) {
-      pixel->mask ^= 1u << bit;
-      return;
+  /// The rows of one pixel from `row` on; returns the row behind them.
+  int turn(std::vector<Pixel>& path, const shader::Grid& grid, const shader::Chord& chord, int row) const {
+    const int n = static_cast<int>(grid.samples), first = shader::crossingOf(grid, chord, row), column = first >> 8;
+    const int rowOfPixels = row / n;
+    Pixel* pixel = &path[static_cast<uint32_t>(rowOfPixels) * width];
+    int last = first;
+    uint32_t rows = 0, missed = 0;
+    for (; row < chord.last && row / n == rowOfPixels; ++row) {
+      const int x = shader::crossingOf(grid, chord, row);
+      if (x >> 8 != column) break;
+      last = x;
+      ++rows;
+      const uint32_t bit = static_cast<uint32_t>(row % n);
+      const float sample = (static_cast<float>(shader::sampleColumn(bit, grid.samples)) + 0.5f) / static_cast<float>(n);
+      const bool covered = static_cast<float>(x & 255) <= 256 * sample;
+      missed += !covered;
+      const int turned = column < 0 ? 0 : covered ? column : column + 1;
+      if (turned < grid.columns) pixel[turned].mask ^= 1u << bit;
     }
-    const float part = x - static_cast<float>(column);
-    const int filled = static_cast<int>(part * 256);
-    const bool covered =
-        part <= (static_cast<float>(shader::sampleColumn(bit, grid.samples)) + 0.5f) * shader::sampleStep(grid.samples);
-    pixel[column].difference += (chord.side > 0 ? 1 : -1) * (covered ? -filled : 256 - filled);
-    if (covered)
-      pixel[column].mask ^= 1u << bit;
-    else if (column + 1 < grid.columns)
-      pixel[column + 1].mask ^= 1u << bit;
+    if (column >= 0 && column < grid.columns)
+      pixel[column].difference += (chord.side > 0 ? 1 : -1) * shader::areaOf(rows, missed, first, last);
+    return row;
   }
 };
 
