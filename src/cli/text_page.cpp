@@ -53,6 +53,11 @@ TextPage::TextPage(const PageOptions& options) {
   text.style.featureCount = static_cast<uint32_t>(options.features.size());
   text.style.underline = options.underline ? VK_TRUE : VK_FALSE;
   text.style.strike = options.strike ? VK_TRUE : VK_FALSE;
+  text.style.outlineWidth = options.outlineWidth;
+  std::copy(std::begin(options.outlineColor), std::end(options.outlineColor), text.style.outlineColor);
+  stroke_.width = options.outlineWidth / options.size;
+  stroke_.join = GPGP_JOIN_ROUND;
+  stroke_.scale = options.size;
   text.direction = options.direction;
   text.align = options.align;
   text.width = options.width;
