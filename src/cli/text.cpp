@@ -86,8 +86,10 @@ Outcome text(TextOptions options, const CommonOptions& common) {
 
   const float margin = std::ceil(std::max(2.0f, options.page.size / 8));
   const PageBox box = boxOf(layout, glyphs, options.page.width);
-  const float left = margin - std::floor(box.left), top = margin - std::floor(box.top);
-  const float across = left + std::ceil(box.right) + margin, down = top + std::ceil(box.bottom) + margin;
+  constexpr float kNothing = 1.0f / 64; // of a pixel: sums are rounded
+  const float left = margin - std::floor(box.left + kNothing), top = margin - std::floor(box.top + kNothing);
+  const float across = left + std::ceil(box.right - kNothing) + margin,
+              down = top + std::ceil(box.bottom - kNothing) + margin;
   if (!(across <= kLargest && down <= kLargest))
     throw Failure("the text takes " + std::to_string(std::llround(across)) + " x " +
                   std::to_string(std::llround(down)) + " pixels; pictures have at most " + std::to_string(kLargest) +

@@ -480,7 +480,8 @@ host::Picture byCairo(const Sample& sample, double size, uint32_t width, uint32_
     }
   }
   const double margin = std::ceil(std::max(2.0, size / 8));
-  cairo_translate(cairo, margin - std::floor(left), margin - std::floor(top) + shaped.ascent);
+  constexpr double kNothing = 1. / 64;
+  cairo_translate(cairo, margin - std::floor(left + kNothing), margin - std::floor(top + kNothing) + shaped.ascent);
   for (const Shaped::Glyph& glyph : shaped.glyphs) { // one after the other, as any text is composited
     cairo_save(cairo);
     cairo_translate(cairo, glyph.x, glyph.y);
@@ -565,7 +566,7 @@ TEST(TextBesideCairo, SevenScriptsAndEmoji) {
                 sum / static_cast<double>(ours.rgba.size()) * 4 / 3, 100 * sum / ink, off.largest);
     EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), 10);
     EXPECT_LT(sum, 0.02 * ink);
-    EXPECT_LT(off.largest, bitmaps ? 64u : 33u);
+    EXPECT_LE(off.largest, bitmaps ? 64u : 32u);
     rows.push_back(ours);
     rows.push_back(theirs);
   }
