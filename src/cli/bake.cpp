@@ -131,7 +131,9 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
 Work addBake(CLI::App& app) {
   auto options = std::make_shared<BakeOptions>();
   CLI::App* command = app.add_subcommand("bake", "Compile grammars, drawings and fonts to the files that a game loads");
-  command->add_option("IN", options->in, "Grammars (.pga), drawings (.svg, .svgz), fonts (.ttf, .otf, .ttc); - is standard input")
+  command
+      ->add_option("IN", options->in,
+                   "Grammars (.pga), drawings (.svg, .svgz), fonts (.ttf, .otf, .ttc); - is standard input")
       ->required();
   command->add_option("-o,--out", options->out, "The file, a folder, or - for standard output")
       ->type_name("FILE|FOLDER|-")

@@ -40,7 +40,8 @@ void addRanges(const std::string& list, std::vector<GpgpCharacterRange>& ranges)
     part.erase(0, part.find_first_not_of(' '));
     part.erase(part.find_last_not_of(' ') + 1);
     const auto number = [](std::string text, uint32_t& value) {
-      if (text.size() > 2 && (text.starts_with("U+") || text.starts_with("u+") || text.starts_with("0x"))) text.erase(0, 2);
+      if (text.size() > 2 && (text.starts_with("U+") || text.starts_with("u+") || text.starts_with("0x")))
+        text.erase(0, 2);
       if (text.empty() || text.size() > 6 || text.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
         return false;
       value = static_cast<uint32_t>(std::strtoul(text.c_str(), nullptr, 16));
@@ -48,12 +49,11 @@ void addRanges(const std::string& list, std::vector<GpgpCharacterRange>& ranges)
     };
     GpgpCharacterRange range{};
     const size_t dash = part.find('-');
-    const bool good = number(part.substr(0, dash), range.first) &&
-                      (dash == std::string::npos ? (range.last = range.first, true)
-                                                 : number(part.substr(dash + 1), range.last)) &&
-                      range.first <= range.last;
-    if (!good)
-      throw Usage("--ranges '" + part + "' is no range of characters; write for example U+0020-007E,U+20AC");
+    const bool good =
+        number(part.substr(0, dash), range.first) &&
+        (dash == std::string::npos ? (range.last = range.first, true) : number(part.substr(dash + 1), range.last)) &&
+        range.first <= range.last;
+    if (!good) throw Usage("--ranges '" + part + "' is no range of characters; write for example U+0020-007E,U+20AC");
     ranges.push_back(range);
   }
 }
@@ -129,7 +129,8 @@ void addBakeFontOptions(CLI::App& command, BakeFontOptions& options) {
                   "Of fonts: bake what a text of these characters needs; may be repeated (default: all glyphs)")
       ->type_name("TEXT")
       ->allow_extra_args(false);
-  command.add_option("--characters-file", options.characterFiles, "The same for all characters of a file; may be repeated")
+  command
+      .add_option("--characters-file", options.characterFiles, "The same for all characters of a file; may be repeated")
       ->check(CLI::ExistingFile)
       ->type_name("FILE")
       ->allow_extra_args(false);
@@ -199,7 +200,8 @@ BakedFont bakeFont(const std::string& bytes, const std::string& name, const Bake
       glyphs.push_back({uint64_t{line != nullptr} << 32 | glyph, one.paths.data(),
                         static_cast<uint32_t>(one.paths.size()), one.foreground.data()});
     }
-  if (!missing.empty()) std::fprintf(stderr, "%s: warning: the font has no %s\n", name.c_str(), listed(missing).c_str());
+  if (!missing.empty())
+    std::fprintf(stderr, "%s: warning: the font has no %s\n", name.c_str(), listed(missing).c_str());
   if (!pictures.empty())
     std::fprintf(stderr, "%s: warning: left out, as they are pictures and no outlines: glyphs %s\n", name.c_str(),
                  listed(pictures).c_str());

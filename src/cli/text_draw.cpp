@@ -112,8 +112,8 @@ private:
     const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     std::vector<GpgpCanvasItem> items;
     const auto addItem = [&](GpgpAsset drawing) -> GpgpCanvasItem& {
-      return items.emplace_back(GpgpCanvasItem{
-          drawing, {1, 0, 0, 1, frame_.left, frame_.top - static_cast<float>(band.first)}, 1.0f});
+      return items.emplace_back(
+          GpgpCanvasItem{drawing, {1, 0, 0, 1, frame_.left, frame_.top - static_cast<float>(band.first)}, 1.0f});
     };
     if (!band.glyphs.empty()) {
       GpgpCanvasItem& item = addItem(nullptr);
@@ -155,8 +155,8 @@ private:
       throw Failure("the text is too much for one record: row " + std::to_string(band.first) + " of the picture has " +
                     std::to_string(band.glyphs.size()) + " glyphs, of whose paths " +
                     std::to_string(report.pathsDropped) + " found no room; --width breaks lines");
-    const host::Picture rows = host::fromPremultiplied(
-        size.width, size.height, host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL));
+    const host::Picture rows =
+        host::fromPremultiplied(size.width, size.height, host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL));
     std::copy(rows.rgba.begin(), rows.rgba.end(),
               page_.picture.rgba.begin() + static_cast<std::ptrdiff_t>(size_t{band.first} * size.width * 4));
     if (!drawn.times.totals.empty()) {

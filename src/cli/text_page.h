@@ -16,7 +16,7 @@ struct PageOptions {
   std::vector<GpgpFontFeature> features;
   float color[4] = {0, 0, 0, 1}; ///< linear, straight alpha
   bool underline = false, strike = false;
-  float outlineWidth = 0;                ///< pixels; 0: none
+  float outlineWidth = 0;               ///< pixels; 0: none
   float outlineColor[4] = {1, 1, 1, 1}; ///< as color
 };
 

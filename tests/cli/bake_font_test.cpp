@@ -27,7 +27,8 @@ struct CliBakeFont : testing::Test {
 
 TEST_F(CliBakeFont, CharactersRangesAndFilesAddUp) {
   const json letters = bake({"--characters", "fi"});
-  EXPECT_EQ(keys(letters), (std::set<std::string>{"in", "type", "out", "bytes", "glyphs", "missing", "pictures", "broken"}));
+  EXPECT_EQ(keys(letters),
+            (std::set<std::string>{"in", "type", "out", "bytes", "glyphs", "missing", "pictures", "broken"}));
   EXPECT_EQ(letters["type"], "font");
   EXPECT_EQ(host::readText(out.path()).size(), letters["bytes"].get<size_t>());
   const std::string once = host::readText(out.path());
@@ -36,10 +37,11 @@ TEST_F(CliBakeFont, CharactersRangesAndFilesAddUp) {
   EXPECT_LT(letters["glyphs"], 40);
   // The same in other words gives the same bytes.
   const TemporaryFile text("letters.txt", "\xef\xbb\xbfif\r\nfi\n");
-  for (const std::vector<std::string>& same :
-       {std::vector<std::string>{"--ranges", "U+66,u+0069"}, {"--ranges", "0x66", "--ranges", "0x69-69"},
-        {"--characters", "f", "--characters", "i"}, {"--characters-file", text.path()},
-        {"--characters", "i", "--ranges", " U+0066-0066 "}}) {
+  for (const std::vector<std::string>& same : {std::vector<std::string>{"--ranges", "U+66,u+0069"},
+                                               {"--ranges", "0x66", "--ranges", "0x69-69"},
+                                               {"--characters", "f", "--characters", "i"},
+                                               {"--characters-file", text.path()},
+                                               {"--characters", "i", "--ranges", " U+0066-0066 "}}) {
     EXPECT_EQ(bake(same)["glyphs"], letters["glyphs"]);
     EXPECT_TRUE(host::readText(out.path()) == once) << testing::PrintToString(same);
   }
@@ -61,7 +63,8 @@ TEST_F(CliBakeFont, WithoutCharactersAllGlyphsOfTheFace) {
   };
   EXPECT_TRUE(bytes({"--characters", "a"}, inter) != bytes({"--characters", "a", "--axes", "wght=700"}, inter));
   const std::string cjk = font("NotoSansCJK-Regular.ttc");
-  EXPECT_TRUE(bytes({"--characters", "骨直角"}, cjk) != bytes({"--characters", "骨直角", "--face", "3"}, cjk)); // others share all forms
+  EXPECT_TRUE(bytes({"--characters", "骨直角"}, cjk) !=
+              bytes({"--characters", "骨直角", "--face", "3"}, cjk)); // others share all forms
 }
 
 TEST_F(CliBakeFont, WhatIsNotBakedIsSaid) {

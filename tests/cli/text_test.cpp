@@ -54,9 +54,9 @@ uint32_t firstInk(const host::Picture& picture) {
 
 TEST_F(CliText, OneObjectAndAPicture) {
   const json drawn = draw("Hello fi", {"--size", "20", "--repeat", "3", "--validate"});
-  EXPECT_EQ(keys(drawn), (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width",
-                                                "height", "shape_ms", "gpu_ms_median", "records", "missing",
-                                                "broken", "image"}));
+  EXPECT_EQ(keys(drawn),
+            (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width", "height",
+                                   "shape_ms", "gpu_ms_median", "records", "missing", "broken", "image"}));
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
   EXPECT_EQ(drawn["glyphs"], 7) << "fi is a ligature";
   EXPECT_EQ(drawn["lines"], 1);
@@ -173,8 +173,8 @@ host::Picture byCairo(const std::string& file, const std::string& text, double s
   EXPECT_EQ(FT_Init_FreeType(&library), 0);
   EXPECT_EQ(FT_New_Face(library, file.c_str(), 0, &face), 0);
   constexpr uint32_t kFine = 4; // as cairo counts in 15 rows a pixel, and shows what is behind two edges that meet
-  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width * kFine),
-                                                        static_cast<int>(height * kFine));
+  cairo_surface_t* surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width * kFine), static_cast<int>(height * kFine));
   cairo_t* cairo = cairo_create(surface);
   cairo_scale(cairo, kFine, kFine);
   cairo_set_source_rgb(cairo, 1, 1, 1);
@@ -280,9 +280,8 @@ TEST_F(CliText, OutlinesAreCairosStrokesBelowAllLetters) {
                 translucent ? "2" : "7", "--outline-color", translucent ? "#ff000080" : "red"});
     const host::Picture ours = seen();
     const double margin = 5, beyond = translucent ? 0 : 3; // of 3.5 pixels, W's own place takes 1.3
-    const host::Picture theirs =
-        byCairo(sans, text, size, margin + beyond, margin + size * 1901 / 2048, ours.width,
-                ours.height, std::array{Outline{wide, translucent ? 128 / 255. : 1}}.data());
+    const host::Picture theirs = byCairo(sans, text, size, margin + beyond, margin + size * 1901 / 2048, ours.width,
+                                         ours.height, std::array{Outline{wide, translucent ? 128 / 255. : 1}}.data());
     if (const char* folder = std::getenv("GPGP_TEXT_PICTURES")) {
       host::writePng(std::string(folder) + "/outline_gpgp" + (translucent ? "_2.png" : "_7.png"), ours);
       host::writePng(std::string(folder) + "/outline_cairo" + (translucent ? "_2.png" : "_7.png"), theirs);

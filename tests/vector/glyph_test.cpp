@@ -826,11 +826,12 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
         reference += std::abs(truth[i] - ofCurves[i]);
       }
       const double n = static_cast<double>(inked), m = static_cast<double>(inkedStraight);
-      std::printf("%s, %u px%s: %zu pixels with ink; of coverage %.3f; mean difference from FreeType %.2f, from the "
-                  "curves %.2f; FreeType's from the curves %.2f, sixteen times as large %.2f; letters without curves from "
-                  "16 exact rows a pixel %.2f, such rows from the letters %.2f\n",
-                  GetParam(), size, area ? ", area" : "", inked, sum / n, fromFreeType / n, fromTruth / n, freeType / n,
-                  reference / n, fromRows / m, rows / m);
+      std::printf(
+          "%s, %u px%s: %zu pixels with ink; of coverage %.3f; mean difference from FreeType %.2f, from the "
+          "curves %.2f; FreeType's from the curves %.2f, sixteen times as large %.2f; letters without curves from "
+          "16 exact rows a pixel %.2f, such rows from the letters %.2f\n",
+          GetParam(), size, area ? ", area" : "", inked, sum / n, fromFreeType / n, fromTruth / n, freeType / n,
+          reference / n, fromRows / m, rows / m);
       EXPECT_GT(inked, ids.size() * size);
       EXPECT_GT(inkedStraight, inked / 8);
       EXPECT_LE(std::abs(sum) / n, 2.0) << size << ": as much ink as FreeType";

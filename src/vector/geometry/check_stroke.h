@@ -22,7 +22,8 @@ inline core::Result<void> checkStroke(const GpgpStroke& s) {
   if (s.dashCount && !s.dashes) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.dashes is NULL");
   for (uint32_t i = 0; i < s.dashCount; ++i)
     if (!(s.dashes[i] >= 0 && std::isfinite(s.dashes[i])))
-      return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.dashes[%u] is %g", i, static_cast<double>(s.dashes[i]));
+      return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.dashes[%u] is %g", i,
+                             static_cast<double>(s.dashes[i]));
   return {};
 }
 

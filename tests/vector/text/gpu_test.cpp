@@ -135,8 +135,8 @@ struct TextGpu : testing::Test {
     info.items = &item;
     info.itemCount = 1;
     info.exactArea = VK_TRUE;
-    info.target = image.target(
-        {}, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
+    info.target =
+        image.target({}, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
     return info;
   }
   /// Uploads and draws, and reads back.
@@ -272,7 +272,8 @@ TEST_F(TextGpu, TenThousandGlyphsWhoseStringChangesEachFrame) {
     EXPECT_EQ(gpgpAdvance(context, &ring->frame()), GPGP_SUCCESS) << message;
     ring->submit();
     ring->waitAll();
-    while (gpgpGetCanvasReport(canvas, &report) == GPGP_SUCCESS) {}
+    while (gpgpGetCanvasReport(canvas, &report) == GPGP_SUCCESS) {
+    }
     EXPECT_EQ(report.base.status, GPGP_SUCCESS);
     EXPECT_GE(report.glyphs, 10000u);
     EXPECT_EQ(report.pathsDropped, 0u);
@@ -291,8 +292,8 @@ TEST_F(TextGpu, TenThousandGlyphsWhoseStringChangesEachFrame) {
     EXPECT_EQ(now.evicted, before.evicted);
     EXPECT_EQ(pending, 0u);
     EXPECT_EQ(uploads, 0u);
-    // The text itself goes up once: written by the record into memory that its passes read. No memory is made or mapped,
-    // and all that is copied is the report, the other way.
+    // The text itself goes up once: written by the record into memory that its passes read. No memory is made or
+    // mapped, and all that is copied is the report, the other way.
     size_t copies = 0;
     for (const LoggedCall& call : calls) {
       EXPECT_TRUE(call.name.starts_with("vkCmd") || call.name == "vkUpdateDescriptorSets") << call.name;
@@ -306,12 +307,13 @@ TEST_F(TextGpu, TenThousandGlyphsWhoseStringChangesEachFrame) {
   // The last picture is the one of a set that never saw another text.
   const GpgpAsset fresh = makeSet();
   add(fresh, font.get(), closure(font.get(), {{' ', '~'}}));
-  ASSERT_EQ(placer.place([&] {
-              GpgpLayoutInfo layout = GPGP_LAYOUT_INFO_INIT;
-              gpgpGetLayoutInfo(paper.layout.get(), &layout);
-              return layout;
-            }(),
-                         fresh),
+  ASSERT_EQ(placer.place(
+                [&] {
+                  GpgpLayoutInfo layout = GPGP_LAYOUT_INFO_INIT;
+                  gpgpGetLayoutInfo(paper.layout.get(), &layout);
+                  return layout;
+                }(),
+                fresh),
             GPGP_SUCCESS);
   EXPECT_TRUE(seen == picture(canvas, item(fresh, placer.instances), kSize));
 }
@@ -323,7 +325,9 @@ TEST_F(TextGpu, ABakedFontIsDrawnAsTheLiveOneWithoutConversion) {
     std::vector<std::string> chosen;
   };
   const std::vector<Case> cases = {
-      {"DejaVuSans.ttf", "The office: 3 fluffy waffles & é, naïve “AVAT”", "en",
+      {"DejaVuSans.ttf",
+       "The office: 3 fluffy waffles & é, naïve “AVAT”",
+       "en",
        {"--ranges", "U+0020-007E, U+00A0-00FF", "--characters", "“”é"}},
       {"NotoNaskhArabic-Regular.ttf", "الأبواب مفتوحة في الصباح", "ar", {"--characters", "الأبواب مفتوحة في الصباح"}},
       {"NotoSansDevanagari-Regular.ttf", "सुबह खिड़की क्षत्रिय श्रृंखला", "hi", {"--ranges", "U+0900-097F"}}};
@@ -441,15 +445,15 @@ struct Shaped {
   }
 };
 
-/// Black on white, as large as gpgp's picture: HarfBuzz's glyphs at its places, drawn by cairo. From FreeType's outlines:
-/// as unhinted paths, since cairo draws glyphs at whole pixels only, and four times as large, since it counts in 15 rows
-/// a pixel. Or from its bitmaps.
+/// Black on white, as large as gpgp's picture: HarfBuzz's glyphs at its places, drawn by cairo. From FreeType's
+/// outlines: as unhinted paths, since cairo draws glyphs at whole pixels only, and four times as large, since it counts
+/// in 15 rows a pixel. Or from its bitmaps.
 host::Picture byCairo(const Sample& sample, double size, uint32_t width, uint32_t height, bool bitmaps) {
   const Face open(fontPath(sample.font), static_cast<long>(sample.face));
   const Shaped shaped(sample, size);
   const int fine = bitmaps ? 1 : 4;
-  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width) * fine,
-                                                        static_cast<int>(height) * fine);
+  cairo_surface_t* surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width) * fine, static_cast<int>(height) * fine);
   cairo_t* cairo = cairo_create(surface);
   cairo_scale(cairo, fine, fine);
   cairo_set_source_rgb(cairo, 1, 1, 1);
@@ -550,8 +554,8 @@ TEST(TextBesideCairo, SevenScriptsAndEmoji) {
     const bool bitmaps = std::string_view(line.name) == "emoji";
     const double size = bitmaps ? 96 : 26.5;
     const TemporaryFile file("script.png");
-    const json told = gpgpJson({"text", fontPath(line.font), line.text, file.path(), "--size",
-                                bitmaps ? "96" : "26.5", "--language", line.language, "--background", "white"});
+    const json told = gpgpJson({"text", fontPath(line.font), line.text, file.path(), "--size", bitmaps ? "96" : "26.5",
+                                "--language", line.language, "--background", "white"});
     EXPECT_EQ(told["missing"], json::array());
     const host::Picture ours = host::readPng(file.path());
     const host::Picture theirs = byCairo(line, size, ours.width, ours.height, bitmaps);
