@@ -58,20 +58,6 @@ void addRanges(const std::string& list, std::vector<GpgpCharacterRange>& ranges)
   }
 }
 
-/// "wght=650,wdth=80"
-std::vector<GpgpFontAxisValue> parseAxes(const std::string& list) {
-  std::vector<GpgpFontAxisValue> axes;
-  std::istringstream parts(list);
-  for (std::string part; std::getline(parts, part, ',');) {
-    char* end = nullptr;
-    const bool named = part.size() > 5 && part[4] == '=';
-    const float value = named ? std::strtof(part.c_str() + 5, &end) : 0;
-    if (!named || *end != 0) throw Usage("--axes '" + part + "' is no axis; write for example wght=650,wdth=80");
-    axes.push_back({GPGP_TAG(part[0], part[1], part[2], part[3]), value});
-  }
-  return axes;
-}
-
 std::string listed(const std::vector<std::string>& names) {
   std::string list;
   for (size_t i = 0; i < std::min<size_t>(names.size(), 16); ++i) list += (i ? ", " : "") + names[i];

@@ -12,7 +12,7 @@ namespace {
 
 struct TextOptions {
   PageOptions page;
-  std::string font, out, color = "black", outlineColor = "white", background, features;
+  std::string font, out, color = "black", outlineColor = "white", background, features, axes;
   std::vector<std::string> fallbacks;
   uint32_t repeat = 1;
 };
@@ -78,6 +78,7 @@ Outcome text(TextOptions options, const CommonOptions& common) {
   std::copy(color.begin(), color.end(), options.page.color);
   std::copy(outlineColor.begin(), outlineColor.end(), options.page.outlineColor);
   options.page.features = parseFeatures(options.features);
+  options.page.axes = parseAxes(options.axes);
   options.page.fonts = {options.font};
   options.page.fonts.insert(options.page.fonts.end(), options.fallbacks.begin(), options.fallbacks.end());
   TextPage page(options.page);
@@ -155,6 +156,11 @@ Work addText(CLI::App& app) {
       ->check(CLI::ExistingFile)
       ->allow_extra_args(false)
       ->type_name("FONT");
+  command->add_option("--face", options->page.face, "Which of FONT, where it is a collection")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--axes", options->axes, "Values of FONT's axes, where it is variable: wght=650,wdth=80")
+      ->type_name("LIST");
   command->add_option("--align", options->page.align, "start, end, left, center, right or justify (default: start)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, GpgpTextAlign>{{"start", GPGP_TEXT_ALIGN_START},
                                                                                {"end", GPGP_TEXT_ALIGN_END},

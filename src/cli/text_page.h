@@ -7,8 +7,13 @@
 
 namespace gpgp::cli {
 
+/// "wght=650,wdth=80"; throws Usage, which names --axes, otherwise.
+std::vector<GpgpFontAxisValue> parseAxes(const std::string& list);
+
 struct PageOptions {
-  std::vector<std::string> fonts; ///< files; the first is the font, the others what falls back
+  std::vector<std::string> fonts;      ///< files; the first is the font, the others what falls back
+  uint32_t face = 0;                   ///< of the first, where it is a collection
+  std::vector<GpgpFontAxisValue> axes; ///< of the first
   std::string text, language;
   float size = 32, width = 0; ///< pixels; width 0: lines end only where the text says
   GpgpTextAlign align = GPGP_TEXT_ALIGN_START;

@@ -152,6 +152,18 @@ TEST_F(CliText, BitmapGlyphsColoursAndLines) {
   EXPECT_EQ((std::vector<int>{pixel(0, 0)[0], pixel(0, 0)[1], pixel(0, 0)[2]}), (std::vector<int>{255, 0, 255}));
 }
 
+TEST_F(CliText, FacesAndAxesOfTheFont) {
+  const auto ink = [&](std::vector<std::string> more) {
+    const json drawn = gpgpJson(more);
+    EXPECT_EQ(drawn["missing"], json::array());
+    return inked(seen());
+  };
+  const std::string inter = font("Inter-roman.var.ttf"), cjk = font("NotoSansCJK-Regular.ttc"), out = picture.path();
+  EXPECT_GT(ink({"text", inter, "Bold", out, "--axes", "wght=900"}), ink({"text", inter, "Bold", out}) * 11 / 10);
+  EXPECT_NE(gpgpFailure({"text", inter, "a", out, "--axes", "wght=2000"}).find("'wght' is 2000"), std::string::npos);
+  EXPECT_NE(gpgpFailure({"text", cjk, "a", out, "--face", "99"}).find("face is 99"), std::string::npos);
+}
+
 TEST_F(CliText, AnEmptyTextIsAPictureToo) {
   const json drawn = draw("");
   EXPECT_EQ(drawn["glyphs"], 0);
@@ -389,6 +401,8 @@ TEST_F(CliText, WrongUsage) {
                     {"text", sans, "a", out, "--features", "liga=on"},
                     {"text", sans, "a", out, "--features", "liga="},
                     {"text", sans, "a", out, "--outline", "-1"},
+                    {"text", sans, "a", out, "--axes", "wght"},
+                    {"text", sans, "a", out, "--face", "-1"},
                     {"text", sans, "a", out, "--outline-color", "reddish"},
                     {"text", sans, "a", out, "--repeat", "0"}});
 }
