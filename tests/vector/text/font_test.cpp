@@ -486,6 +486,8 @@ TEST_F(TextColor, LayersOfVersion0) {
     Glyph glyph;
     ASSERT_EQ(glyphOf(font_.get(), info, glyph), GPGP_SUCCESS);
     expectColor(glyph.paths[0].color, 0.1f, 0.2f, 0.3f, 0.4f);
+    info.colors = nullptr;
+    info.colorCount = 0;
   }
   { // without its colours: the glyph's own outline
     info.plain = VK_TRUE;
