@@ -305,8 +305,8 @@ typedef struct GpgpCanvasCreateInfo {
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
   /** CPatches in one record, and no more paths; 0: 262144. A drawing counts GpgpDrawingInfo::patches for each item
-   *  that shows it, a glyph its own each time it is placed (one to three for a curve of its outline; the report sums
-   *  them up), a shape of a list, and a clip that is not a scissor, 1. */
+   *  that shows it, a glyph its own each time it is placed (about as many as its outline has lines and curves; the
+   *  report sums them up), a shape of a list, and a clip that is not a scissor, 1. */
   uint32_t maxPatches;
   uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
                                 each; 0: 131072 */

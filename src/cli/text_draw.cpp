@@ -14,7 +14,7 @@ constexpr uint64_t kPatches = 1u << 18, kPixels = 1u << 24, kEntries = 1u << 18;
 struct Placed {
   GpgpGlyphInstance glyph;
   double top, bottom; ///< rows of the picture that it may touch
-  uint64_t patches;   ///< at most
+  uint64_t patches;   ///< more than it has, as a rule; where not, a band is drawn in two
 };
 
 /// In painting order: all outlines, so that none covers the letter beside it, then all glyphs.
@@ -27,10 +27,11 @@ std::vector<Placed> placeGlyphs(const GpgpLayoutInfo& layout, const PageGlyphs& 
       const PageGlyph& glyph = all.glyphs[which[i]];
       if (glyph.isPicture() || glyph.paths.empty()) continue;
       const double y = double(frame.top) + double(at.y), size = double(at.size);
+      const uint64_t patches = uint64_t{glyph.verbs} * (color ? 8 : 2); // an outline has two sides, and joins
       Placed& one = placed.emplace_back(Placed{{indices[which[i]], at.x, at.y, at.size, {}},
                                                y + size * double(glyph.box[1]) - 1,
                                                y + size * double(glyph.box[3]) + 1,
-                                               uint64_t{glyph.verbs} * 4}); // a curve is two or three
+                                               patches});
       std::copy_n(color ? color : at.color, 4, one.glyph.color);
     }
   };
