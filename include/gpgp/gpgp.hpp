@@ -626,6 +626,12 @@ inline Result<Blob> compileSvg(const GpgpSvgSource& source) noexcept {
   return Result<Blob>(code, Blob(blob));
 }
 
+inline Result<Blob> compileGlyphs(const GpgpGlyphSource& source) noexcept {
+  GpgpBlob blob = GpgpBlob();
+  const GpgpResult code = gpgpCompileGlyphs(&source, &blob);
+  return Result<Blob>(code, Blob(blob));
+}
+
 // ---------------------------------------------------------------- text (libgpgp_text)
 
 class Font : public Handle<GpgpFont> {
@@ -645,6 +651,11 @@ public:
     uint32_t value = 0;
     const GpgpResult code = gpgpGetNominalGlyph(get(), character, &value);
     return Result<uint32_t>(code, value);
+  }
+  /// gpgpGetGlyphClosure
+  GpgpResult closure(const GpgpCharacterRange* ranges, uint32_t rangeCount, uint32_t& count,
+                     uint32_t* glyphs) const noexcept {
+    return gpgpGetGlyphClosure(get(), ranges, rangeCount, &count, glyphs);
   }
   /// gpgpGetGlyphOutline. take: called once with a const GpgpGlyphOutline&.
   template <class Take> GpgpResult outline(const GpgpGlyphOutlineInfo& info, Take&& take) const noexcept {

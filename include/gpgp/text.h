@@ -120,12 +120,13 @@ typedef struct GpgpGlyphOutlineInfo {
   const void* pNext;
   uint32_t glyph;
   VkBool32 plain;                 /**< the outline without colours, also of a colour glyph */
-  float color[4];                 /**< of what is painted in the text's colour; all 0: opaque black */
+  float color[4];                 /**< linear RGB, straight alpha, 0 to 1, of what is painted in the text's colour; all
+                                       0: opaque black */
   uint32_t palette;               /**< of a colour font; one that it has not: its first */
   const GpgpPaletteColor* colors; /**< in place of the palette's */
   uint32_t colorCount;
   const GpgpStroke* stroke; /**< outline text: lengths in em, scale in pixels an em. Set on each path as it is, and
-                                 the glyph is then plain; NULL: filled */
+                                 the glyph is then plain; a glyph without paths has none; NULL: filled */
 } GpgpGlyphOutlineInfo;
 #define GPGP_GLYPH_OUTLINE_INFO_INIT GPGP_INIT(GpgpGlyphOutlineInfo, GPGP_STRUCTURE_GLYPH_OUTLINE_INFO)
 
@@ -143,19 +144,40 @@ typedef struct GpgpGlyphOutline {
   const GpgpPath* paths;
   uint32_t pathCount;
   const VkBool32* foreground; /**< for each path: it is painted in the text's colour, not one of the font's */
-  float box[4]; /**< of the paths' points, control points too: left, top, right, bottom; 0 without paths */
+  float box[4]; /**< of the paths' points, control points too: left, top, right, bottom; 0 without paths. A stroke
+                     reaches half its width beyond, and its miters further */
   const GpgpGlyphImage* image; /**< instead of paths, for bitmap glyphs; NULL otherwise */
   VkBool32 incomplete; /**< it has something that is not supported (sweep gradients, composite modes other than source
                             over, SVG); a warning names the glyph */
+  VkBool32 broken; /**< the font is broken there, and this is glyph 0's outline, or nothing where that is broken, too;
+                        a warning (INVALID_DATA) names the glyph */
 } GpgpGlyphOutline;
 /** Receives a glyph, on the thread that asked for it. @lifetime call */
 typedef void(GPGP_CALL* GpgpGlyphFn)(void* userData, const GpgpGlyphOutline* outline);
 
-/** Hands a glyph's outline, colour layers or image to `glyphFn`, once.
- *  Errors: INVALID_ARGUMENT (a glyph beyond glyphCount), INVALID_DATA (the font is broken there), INVALID_HANDLE.
+/** Hands a glyph's outline, colour layers or image to `glyphFn`, once. A glyph that is broken is no error: see
+ *  GpgpGlyphOutline::broken.
+ *  Errors: INVALID_ARGUMENT (a glyph beyond glyphCount; a colour that is not 0 to 1; a stroke's number that is not
+ *  finite, negative, or too large), INVALID_HANDLE.
  *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphOutline(GpgpFont font, const GpgpGlyphOutlineInfo* info, GpgpGlyphFn glyphFn,
                                                   void* userData);
+
+/** Characters (code points) from the first to the last, both included. */
+typedef struct GpgpCharacterRange {
+  uint32_t first, last; /**< at most 0x10ffff */
+} GpgpCharacterRange;
+
+/** Every glyph that a text of these characters may need, whatever its order, direction, language and features, in the
+ *  order of their numbers: what to bake, or to add beforehand. That is glyph 0; the characters' own glyphs; what is
+ *  composed of them, and their parts; mirrored brackets; what GSUB makes of these (ligatures, forms of Arabic and Indic
+ *  letters, small capitals, alternates); and what a layout adds: space, hyphens, ellipsis, dotted circle. A font that
+ *  substitutes by AAT's tables gives all its glyphs.
+ *  count: in: room in glyphs, out: needed; INCOMPLETE where that is more. glyphs NULL: only counts.
+ *  Errors: INVALID_ARGUMENT (a range that ends before it begins, or beyond 0x10ffff), INVALID_HANDLE.
+ *  @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphClosure(GpgpFont font, const GpgpCharacterRange* ranges, uint32_t rangeCount,
+                                                  uint32_t* count, uint32_t* glyphs);
 
 /* ---------------------------------------------------------------- shaper */
 
@@ -202,17 +224,20 @@ typedef struct GpgpTextStyle {
    *  character, or the first, and is reported as missing. */
   const GpgpFont* fonts;
   uint32_t fontCount;
-  float size;           /**< pixels an em; more than 0 */
+  float size;           /**< pixels an em; more than 0, at most 100000 */
   float color[4];       /**< linear RGB, straight alpha, 0 to 1, of glyphs and decorations; all 0: opaque black */
-  float letterSpacing;  /**< pixels after each grapheme; other than 0, optional ligatures are off. Not in scripts that
-                             join their letters */
+  float letterSpacing;  /**< pixels after each grapheme, -100000 to 100000, negative ones bring letters together; other
+                             than 0, optional ligatures are off. Not in scripts that join their letters */
   const char* language; /**< BCP 47, e.g. "ja" or "tr"; chooses forms of glyphs and, of a paragraph's first character,
                              where lines break; NULL: none */
   const GpgpFontFeature* features; /**< beyond those that are on by default */
   uint32_t featureCount;
   VkBool32 underline, strike;
-  float outlineWidth; /**< pixels; not used by the layout: the engine finds it here by a glyph's span */
-  float outlineColor[4];
+  /** Of outlined text: a line along the glyphs' edges, painted below all glyphs of the text, so that half its width
+   *  shows around them. It takes no room and is not used by the layout, which checks it: the engine finds it by a
+   *  glyph's span and draws each glyph once more, with GpgpGlyphOutlineInfo::stroke as wide as outlineWidth / size. */
+  float outlineWidth;    /**< pixels, 0 to 100000; 0: none */
+  float outlineColor[4]; /**< linear RGB, straight alpha, 0 to 1; all 0: opaque black */
 } GpgpTextStyle;
 
 /** A part of the text with a style of its own. Where spans overlap the later counts. A grapheme is shaped in the style
@@ -249,6 +274,7 @@ typedef struct GpgpTextInfo {
   uint32_t spanCount;
   GpgpTextDirection direction;
   GpgpTextAlign align;
+  /* lengths: 0 to 1e9 */
   float width;  /**< lines break to fit this (UAX #14; within a word that is longer); 0: only where the text says */
   float height; /**< lines that do not fit this are cut off, but for the first; 0: any */
   uint32_t maxLines;    /**< 0: any */
@@ -269,7 +295,8 @@ GPGP_API void GPGP_CALL gpgpDestroyLayout(GpgpLayout layout);
 
 /** Lays out a text in place of the one before, which stays where there is an error, but where memory runs out: then
  *  the layout is empty.
- *  Errors: INVALID_ARGUMENT (a style without font, a size that is not above 0, a span beyond the text; names the span),
+ *  Errors: INVALID_ARGUMENT (a style without font, a number or colour out of its range, a span beyond the text; names
+ *  the span and what of it),
  *  INVALID_HANDLE (a font, the shaper), INVALID_STRUCT, OUT_OF_HOST_MEMORY.
  *  @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpSetLayoutText(GpgpLayout layout, const GpgpTextInfo* info);

@@ -49,10 +49,11 @@ enum { GPGP_MAX_LIST_DEPTH = 64 };
 GPGP_API GpgpResult GPGP_CALL gpgpPushTransform(GpgpList list, const float* transform, const float* perspective);
 
 /** What is added from here on shows only inside of the box (left, top, right, bottom, in the current space), and of
- *  those around it. Round corners, if radii is not NULL: as GpgpListShape's. Where box and canvas are parallel and
- *  corners are not round, a scissor that costs next to nothing; else the clip counts as a shape and costs the pixels
- *  on its edge more. Either way edges are smooth, sample by sample, as those of any path. Errors: INVALID_ARGUMENT
- *  (not a number, right below left; too deep). @threads handle @lifetime call */
+ *  those around it. Round corners, if radii is not NULL: as GpgpListShape's. Where box and canvas are parallel (the
+ *  transforms move, scale, mirror or turn by quarters) and corners are not round, a scissor that costs next to nothing;
+ *  else (turned, skewed, in perspective) the clip goes with its box, counts as a shape (maxShapes, maxPatches) and
+ *  costs the pixels on its edge more. Either way edges are smooth, sample by sample, as those of any path.
+ *  Errors: INVALID_ARGUMENT (not a number, right below left; too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, const float* radii);
 
 /** Multiplies the alpha of each thing that is added from here on, one by one: what overlaps shows through.

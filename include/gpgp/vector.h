@@ -164,7 +164,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBl
 
 /** A small drawing under a key. */
 typedef struct GpgpGlyph {
-  uint64_t key;               /**< the engine's: font, glyph, stroke, ... */
+  uint64_t key;               /**< the engine's: font, glyph, stroke, ... `gpgp bake FONT` gives each glyph's number,
+                                 and 2^32 more to its outline */
   const GpgpPath* paths;      /**< in em units, +Y down, 0, 0 on the baseline where the glyph begins; painted in order;
                                  filled or stroked, in colours and gradients: without images and groups */
   uint32_t pathCount;         /**< 0: a blank */
@@ -303,7 +304,10 @@ typedef struct GpgpCanvasCreateInfo {
   const void* pNext;
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
-  uint32_t maxPatches;          /**< CPatches in one record, all drawings and their instances; 0: 262144 */
+  /** CPatches in one record, and no more paths; 0: 262144. A drawing counts GpgpDrawingInfo::patches for each item
+   *  that shows it, a glyph its own each time it is placed (about as many as its outline has lines and curves; the
+   *  report sums them up), a shape of a list, and a clip that is not a scissor, 1. */
+  uint32_t maxPatches;
   uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
                                 each; 0: 131072 */
   uint32_t maxDrawings;    /**< items in one record, and what lists have of drawings, clips, and changes of transform
@@ -311,9 +315,9 @@ typedef struct GpgpCanvasCreateInfo {
                                 glyph sets */
   uint32_t maxGlyphs;      /**< of all texts in one record, blanks not counted; 176 bytes each, 48 of them once more for
                                 every record in flight; 0: 1024, at most 1048576 */
-  uint32_t maxShapes;      /**< of all lists in one record, as many of them with an image or gradient, and twice as many
-                                stops; 592 bytes each, 240 of them once more for every record in flight; 0: 1024, at
-                                most 1048576 */
+  uint32_t maxShapes;      /**< of all lists in one record, their clips that are not scissors included (ui.h); as many
+                                of them with an image or gradient, and twice as many stops; 592 bytes each, 240 of them
+                                once more for every record in flight; 0: 1024, at most 1048576 */
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
@@ -363,7 +367,8 @@ typedef struct GpgpCanvasItem {
   GpgpAsset glyphSet;  /**< of a text; what is `drawing` above is the text then, whose units the instances have */
   const GpgpGlyphInstance* glyphs; /**< in painting order, the first at the bottom */
   uint32_t glyphCount;
-  float scissor[4]; /**< left, top, right, bottom in canvas pixels: nothing shows outside; all 0: none */
+  float scissor[4]; /**< left, top, right, bottom in canvas pixels, whatever the transform: nothing shows outside;
+                         all 0: none */
   GpgpList list;    /**< instead of drawing and glyphSet: all that is in it, with its own transforms before this one */
 } GpgpCanvasItem;
 

@@ -1,5 +1,7 @@
 // The C functions of text.h, in libgpgp_text, which has no context: messages go to those who made the object.
 #include "api/check_struct.h"
+#include "vector/geometry/check_stroke.h"
+#include "vector/text/closure.h"
 #include "vector/text/layout.h"
 
 #include <algorithm>
@@ -50,6 +52,24 @@ core::Error notA(const char* name, const char* kind) {
   return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is NULL or destroyed; expected a %s", name, kind);
 }
 
+/// As many as there is room for; *count becomes how many there are.
+template <class T> Result<void> deliver(const std::vector<T>& found, uint32_t* count, T* to, const char* what) {
+  const uint32_t room = *count;
+  *count = static_cast<uint32_t>(found.size());
+  if (!to) return {};
+  std::copy_n(found.begin(), std::min<size_t>(room, found.size()), to);
+  if (room < found.size()) return makeError(GPGP_INCOMPLETE, "%zu %s", found.size(), what);
+  return {};
+}
+
+Result<void> checkColor(const float (&color)[4], const char* owner, const char* name) {
+  for (int i = 0; i < 4; ++i)
+    if (!(color[i] >= 0 && color[i] <= 1))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s%s[%d] is %g; expected 0 to 1", owner, name, i,
+                       static_cast<double>(color[i]));
+  return {};
+}
+
 /// `name`: "style", or "spans[3].style".
 Result<void> checkStyle(const GpgpTextStyle& style, const char* name) {
   if (style.fontCount == 0 || !style.fonts) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s has no fonts", name);
@@ -60,10 +80,13 @@ Result<void> checkStyle(const GpgpTextStyle& style, const char* name) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.size is %g; expected above 0, at most 100000", name,
                      static_cast<double>(style.size));
   if (!(std::abs(style.letterSpacing) <= 1e5f))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.letterSpacing is %g; expected at most 100000", name,
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.letterSpacing is %g; expected -100000 to 100000", name,
                      static_cast<double>(style.letterSpacing));
-  for (const float value : style.color)
-    if (!(value >= 0 && value <= 1)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.color is out of range", name);
+  if (!(style.outlineWidth >= 0 && style.outlineWidth <= 1e5f))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.outlineWidth is %g; expected 0 to 100000", name,
+                     static_cast<double>(style.outlineWidth));
+  if (auto ok = checkColor(style.color, name, ".color"); !ok) return ok;
+  if (auto ok = checkColor(style.outlineColor, name, ".outlineColor"); !ok) return ok;
   if (style.featureCount && !style.features)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.featureCount is %u without features", name, style.featureCount);
   return {};
@@ -123,10 +146,35 @@ GpgpResult GPGP_CALL gpgpGetGlyphOutline(GpgpFont handle, const GpgpGlyphOutline
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_GLYPH_OUTLINE_INFO, "info"); !ok) return ok;
     if (!glyphFn) return invalid("glyphFn is NULL");
     if (info->colorCount && !info->colors) return invalid("colors is NULL, but colorCount is not 0");
+    if (auto ok = checkColor(info->color, "", "color"); !ok) return ok;
+    for (uint32_t i = 0; i < info->colorCount; ++i) {
+      char name[32];
+      std::snprintf(name, sizeof name, "colors[%u]", i);
+      if (auto ok = checkColor(info->colors[i].color, name, ".color"); !ok) return ok;
+    }
+    if (info->stroke)
+      if (auto ok = vector::checkStroke(*info->stroke); !ok) return ok;
     if (info->glyph >= font->info().glyphCount)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyph is %u; the font has %u", info->glyph,
                        font->info().glyphCount);
     return deliverGlyph(*font, *info, glyphFn, userData);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetGlyphClosure(GpgpFont handle, const GpgpCharacterRange* ranges, uint32_t rangeCount,
+                                         uint32_t* count, uint32_t* glyphs) {
+  const Font* font = toFont(handle);
+  return guarded("gpgpGetGlyphClosure", font ? &font->messages : nullptr, [&]() -> Result<void> {
+    if (!font) return notA("font", "font");
+    if (!count) return invalid("count is NULL");
+    if (rangeCount && !ranges) return invalid("ranges is NULL, but rangeCount is not 0");
+    for (uint32_t i = 0; i < rangeCount; ++i)
+      if (ranges[i].first > ranges[i].last || ranges[i].last > 0x10ffff)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "ranges[%u] is %x to %x; expected up to 10ffff, in this order", i,
+                         ranges[i].first, ranges[i].last);
+    std::vector<uint32_t> found;
+    glyphClosure(*font, {ranges, rangeCount}, found);
+    return deliver(found, count, glyphs, "glyphs");
   });
 }
 
@@ -236,12 +284,7 @@ GpgpResult GPGP_CALL gpgpGetSelection(GpgpLayout handle, uint32_t begin, uint32_
     if (!count) return invalid("count is NULL");
     std::vector<GpgpTextRect> found;
     layout->selection(begin, end, found);
-    const uint32_t room = *count;
-    *count = static_cast<uint32_t>(found.size());
-    if (!rects) return {};
-    std::copy_n(found.begin(), std::min<size_t>(room, found.size()), rects);
-    if (room < found.size()) return makeError(GPGP_INCOMPLETE, "%zu rectangles", found.size());
-    return {};
+    return deliver(found, count, rects, "rectangles");
   });
 }
 

@@ -1,12 +1,16 @@
-// `gpgp bake`: grammars and drawings as text to the files that a game loads. Needs no GPU.
+// `gpgp bake`: grammars, drawings and fonts to the files that a game loads. Needs no GPU.
 #include "cli/command.h"
 #include "host/files.h"
 #ifdef GPGP_CLI_SPAWN
 #include "cli/grammar_source.h"
 #endif
+#ifdef GPGP_CLI_TEXT
+#include "cli/bake_font.h"
+#endif
 
 #include <gpgp/gpgp.hpp>
 
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -20,18 +24,23 @@ struct BakeOptions {
   std::vector<std::string> in, set;
   std::string out, type;
   bool kernel = true;
+#ifdef GPGP_CLI_TEXT
+  BakeFontOptions font;
+#endif
 };
 
 const std::string kStandard = "-";
 
-/// grammar or drawing: as --type says, else by the file's ending.
+/// grammar, drawing or font: as --type says, else by the file's ending.
 std::string typeOf(const BakeOptions& options, const std::string& file) {
   if (!options.type.empty()) return options.type;
-  const std::string ending = std::filesystem::path(file).extension();
+  std::string ending = std::filesystem::path(file).extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".pga") return "grammar";
   if (ending == ".svg" || ending == ".svgz") return "drawing";
-  throw Usage(file == kStandard ? "--type says what standard input is: grammar or drawing"
-                                : file + ": neither .pga nor .svg; --type says what it is");
+  if (ending == ".ttf" || ending == ".otf" || ending == ".ttc" || ending == ".otc") return "font";
+  throw Usage(file == kStandard ? "--type says what standard input is: grammar, drawing or font"
+                                : file + ": neither .pga nor .svg nor a font; --type says what it is");
 }
 
 std::string read(const std::string& file) {
@@ -59,13 +68,25 @@ Blob bakeDrawing(const std::string& text, const std::string& name) {
 }
 #endif
 
-Blob bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& file, const std::string& type) {
+struct Baked {
+  Blob blob;
+  Json json = Json::object(); ///< what only this type tells
+  std::string words;
+};
+
+Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& file, const std::string& type) {
   const std::string name = file == kStandard ? "<standard input>" : file;
 #ifdef GPGP_CLI_SPAWN
-  if (type == "grammar") return compileGrammarText(read(file), name, options.set, options.kernel);
+  if (type == "grammar") return {compileGrammarText(read(file), name, options.set, options.kernel), Json::object(), {}};
 #endif
 #ifdef GPGP_CLI_VECTOR
-  if (type == "drawing") return bakeDrawing(read(file), name);
+  if (type == "drawing") return {bakeDrawing(read(file), name), Json::object(), {}};
+#endif
+#ifdef GPGP_CLI_TEXT
+  if (type == "font") {
+    BakedFont font = bakeFont(read(file), name, options.font);
+    return {std::move(font.blob), std::move(font.json), ", " + font.words};
+  }
 #endif
   throw Failure(name + ": this gpgp was built without what bakes a " + type);
 }
@@ -84,7 +105,7 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
   Json list = Json::array();
   std::ostringstream text;
   for (const auto& [file, type] : work) {
-    const Blob blob = bakeOne(options, file, type);
+    const auto [blob, facts, words] = bakeOne(options, file, type);
     const std::string_view bytes(static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size());
     if (options.out == kStandard) {
       outcome.text = bytes;
@@ -97,7 +118,8 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
       if (other["out"] == out) throw Usage(file + ": another input goes to " + out + " as well");
     host::writeFile(out, bytes);
     list.push_back({{"in", file}, {"type", type}, {"out", out}, {"bytes", blob.size()}});
-    text << file << ": " << type << ", " << blob.size() << " bytes, " << out << '\n';
+    list.back().update(facts);
+    text << file << ": " << type << words << ", " << blob.size() << " bytes, " << out << '\n';
   }
   outcome.text = text.str();
   outcome.json = {{"baked", list}};
@@ -108,23 +130,34 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
 
 Work addBake(CLI::App& app) {
   auto options = std::make_shared<BakeOptions>();
-  CLI::App* command = app.add_subcommand("bake", "Compile grammars and drawings to the files that a game loads");
-  command->add_option("IN", options->in, "Grammars (.pga) and drawings (.svg, .svgz); - is standard input")->required();
+  CLI::App* command = app.add_subcommand("bake", "Compile grammars, drawings and fonts to the files that a game loads");
+  command
+      ->add_option("IN", options->in,
+                   "Grammars (.pga), drawings (.svg, .svgz), fonts (.ttf, .otf, .ttc); - is standard input")
+      ->required();
   command->add_option("-o,--out", options->out, "The file, a folder, or - for standard output")
       ->type_name("FILE|FOLDER|-")
       ->required();
   command->add_option("--type", options->type, "What the inputs are, whatever their names")
-      ->check(CLI::IsMember({"grammar", "drawing"}));
+      ->check(CLI::IsMember({"grammar", "drawing", "font"}));
   command->add_option("--set", options->set, "Override a `var` of the grammars; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("!--no-kernel", options->kernel,
                     "Grammars run on the interpreter: smaller files, slower derivation");
+#ifdef GPGP_CLI_TEXT
+  addBakeFontOptions(*command, options->font);
+#endif
   command->footer(R"(
 Examples:
   gpgp bake city.pga -o city.gpgp
+  gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"
+  gpgp bake NotoNaskhArabic-Regular.ttf -o arabic.gpgpf --characters-file strings.txt --outline 0.1
   gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp
   cat tree.pga | gpgp bake - --type grammar -o - > tree.gpgp
+
+Of a font, glyphs that shaping makes of the chosen characters (ligatures, Arabic forms, alternates) are baked, too. A
+glyph's key is its number in the font, and 2^32 more for its outline. Shaping still needs the font file.
 
 A baked file depends on its input and this command's version alone, so it can be made on any machine and cached.)");
   return [options](const CommonOptions& common) { return bake(*options, common); };

@@ -42,27 +42,34 @@ PageGlyphs collectGlyphs(TextPage& page) {
   PageGlyphs all;
   std::unordered_map<uint64_t, uint32_t> known;
   const GpgpLayoutInfo& layout = page.layout();
-  for (uint32_t i = 0; i < layout.glyphCount; ++i) {
-    const GpgpTextGlyph& placed = layout.glyphs[i];
-    const uint64_t key = uint64_t{page.fontNumber(placed.font)} << 32 | placed.glyph;
+  const auto find = [&](const GpgpTextGlyph& placed, const GpgpStroke* stroke) {
+    const uint32_t font = page.fontNumber(placed.font);
+    const uint64_t key = uint64_t{stroke != nullptr} << 63 | uint64_t{font} << 32 | placed.glyph;
     const auto [at, isNew] = known.emplace(key, static_cast<uint32_t>(all.glyphs.size()));
-    all.which.push_back(at->second);
-    if (!isNew) continue;
+    if (!isNew) return at->second;
     PageGlyph& glyph = all.glyphs.emplace_back();
     glyph.key = key;
-    page.outline(placed, [&glyph](const GpgpGlyphOutline& outline) {
+    page.outline(placed, stroke, [&](const GpgpGlyphOutline& outline) {
       for (uint32_t p = 0; p < outline.pathCount; ++p) {
         glyph.paths.emplace_back(outline.paths[p]);
         glyph.foreground.push_back(outline.foreground[p]);
         glyph.verbs += outline.paths[p].verbCount;
       }
-      std::copy(std::begin(outline.box), std::end(outline.box), glyph.box);
+      const float reach = stroke ? stroke->width / 2 : 0;
+      for (size_t side = 0; side < 4 && outline.pathCount; ++side)
+        glyph.box[side] = outline.box[side] + (side < 2 ? -reach : reach);
       if (const GpgpGlyphImage* image = outline.image) {
         glyph.picture = {
             image->width, image->height, {image->pixels, image->pixels + size_t{image->width} * image->height * 4}};
         std::copy(std::begin(image->box), std::end(image->box), glyph.box);
       }
+      if (outline.broken && !stroke) all.broken.push_back({font, placed.glyph});
     });
+    return at->second;
+  };
+  for (uint32_t i = 0; i < layout.glyphCount; ++i) {
+    all.which.push_back(find(layout.glyphs[i], nullptr));
+    if (page.stroke()) all.outlines.push_back(find(layout.glyphs[i], page.stroke()));
   }
   return all;
 }

@@ -25,7 +25,7 @@ private:
 };
 
 struct PageGlyph {
-  uint64_t key = 0;              ///< number of the font, and glyph
+  uint64_t key = 0;              ///< number of the font, and glyph; 2^63 more: its outline
   std::vector<PlacedPath> paths; ///< in em
   std::vector<VkBool32> foreground;
   uint32_t verbs = 0;
@@ -36,7 +36,12 @@ struct PageGlyph {
 
 struct PageGlyphs {
   std::vector<PageGlyph> glyphs;
-  std::vector<uint32_t> which; ///< of these, for each glyph of the page
+  std::vector<uint32_t> which;    ///< of these, for each glyph of the page
+  std::vector<uint32_t> outlines; ///< likewise, what is painted below it; empty: the page has no outlines
+  struct Broken {
+    uint32_t font, glyph; ///< the font's number
+  };
+  std::vector<Broken> broken; ///< drawn as missing characters, each once
 };
 PageGlyphs collectGlyphs(TextPage& page);
 

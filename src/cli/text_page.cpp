@@ -5,8 +5,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
 namespace gpgp::cli {
+
+std::vector<GpgpFontAxisValue> parseAxes(const std::string& list) {
+  std::vector<GpgpFontAxisValue> axes;
+  std::istringstream parts(list);
+  for (std::string part; std::getline(parts, part, ',');) {
+    char* end = nullptr;
+    const bool named = part.size() > 5 && part[4] == '=';
+    const float value = named ? std::strtof(part.c_str() + 5, &end) : 0;
+    if (!named || *end != 0) throw Usage("--axes '" + part + "' is no axis; write for example wght=650,wdth=80");
+    axes.push_back({GPGP_TAG(part[0], part[1], part[2], part[3]), value});
+  }
+  return axes;
+}
 
 void GPGP_CALL TextPage::onMessage(void* userData, const GpgpMessage* message) {
   const std::string text = (message->label[0] ? std::string(message->label) + ": " : std::string()) + message->text;
@@ -25,6 +40,11 @@ TextPage::TextPage(const PageOptions& options) {
   for (const std::string& file : options.fonts) {
     GpgpFontCreateInfo info = GPGP_FONT_CREATE_INFO_INIT;
     info.filePath = file.c_str();
+    if (chain.empty()) {
+      info.face = options.face;
+      info.axes = options.axes.data();
+      info.axisCount = static_cast<uint32_t>(options.axes.size());
+    }
     info.messageFn = onMessage;
     info.messageUserData = this;
     Result<Font> font = Font::create(info);
@@ -53,6 +73,11 @@ TextPage::TextPage(const PageOptions& options) {
   text.style.featureCount = static_cast<uint32_t>(options.features.size());
   text.style.underline = options.underline ? VK_TRUE : VK_FALSE;
   text.style.strike = options.strike ? VK_TRUE : VK_FALSE;
+  text.style.outlineWidth = options.outlineWidth;
+  std::copy(std::begin(options.outlineColor), std::end(options.outlineColor), text.style.outlineColor);
+  stroke_.width = options.outlineWidth / options.size;
+  stroke_.join = GPGP_JOIN_ROUND;
+  stroke_.scale = options.size;
   text.direction = options.direction;
   text.align = options.align;
   text.width = options.width;

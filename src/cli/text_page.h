@@ -7,8 +7,13 @@
 
 namespace gpgp::cli {
 
+/// "wght=650,wdth=80"; throws Usage, which names --axes, otherwise.
+std::vector<GpgpFontAxisValue> parseAxes(const std::string& list);
+
 struct PageOptions {
-  std::vector<std::string> fonts; ///< files; the first is the font, the others what falls back
+  std::vector<std::string> fonts;      ///< files; the first is the font, the others what falls back
+  uint32_t face = 0;                   ///< of the first, where it is a collection
+  std::vector<GpgpFontAxisValue> axes; ///< of the first
   std::string text, language;
   float size = 32, width = 0; ///< pixels; width 0: lines end only where the text says
   GpgpTextAlign align = GPGP_TEXT_ALIGN_START;
@@ -16,6 +21,8 @@ struct PageOptions {
   std::vector<GpgpFontFeature> features;
   float color[4] = {0, 0, 0, 1}; ///< linear, straight alpha
   bool underline = false, strike = false;
+  float outlineWidth = 0;               ///< pixels; 0: none
+  float outlineColor[4] = {1, 1, 1, 1}; ///< as color
 };
 
 class TextPage {
@@ -31,10 +38,13 @@ public:
   /// Characters that no font has, each once, as "U+0041".
   const std::vector<std::string>& missing() const { return missing_; }
   uint32_t fontNumber(GpgpFont font) const;
-  /// gpgpGetGlyphOutline in the text's colour.
-  template <class Take> void outline(const GpgpTextGlyph& glyph, Take&& take) {
+  /// The line along glyphs' edges; NULL: the text has none.
+  const GpgpStroke* stroke() const { return stroke_.width > 0 ? &stroke_ : nullptr; }
+  /// gpgpGetGlyphOutline in the text's colour. What it hands over points to `stroke`.
+  template <class Take> void outline(const GpgpTextGlyph& glyph, const GpgpStroke* stroke, Take&& take) {
     GpgpGlyphOutlineInfo info = init<GpgpGlyphOutlineInfo>();
     info.glyph = glyph.glyph;
+    info.stroke = stroke;
     for (size_t i = 0; i < 4; ++i) info.color[i] = glyph.color[i];
     check(fonts_[fontNumber(glyph.font)].outline(info, take), "gpgpGetGlyphOutline");
   }
@@ -48,6 +58,7 @@ private:
   Layout layout_;
   GpgpLayoutInfo layoutInfo_ = GPGP_LAYOUT_INFO_INIT;
   double shapeMilliseconds_ = 0;
+  GpgpStroke stroke_{};
   std::vector<std::string> missing_;
 };
 

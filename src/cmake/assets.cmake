@@ -1,18 +1,23 @@
-# gpgp_add_assets(TARGET FILES... [DESTINATION folder] [SET NAME=VALUE...] [NO_KERNEL] [OUTPUTS variable])
+# gpgp_add_assets(TARGET FILES... [DESTINATION folder] [SET NAME=VALUE...] [NO_KERNEL] [RANGES list...]
+#   [CHARACTERS_FILES files...] [OUTLINE width] [OUTPUTS variable])
 #
-# Bakes grammars (.pga) and drawings (.svg, .svgz) when TARGET is built, with `gpgp bake`: each file becomes
+# Bakes grammars (.pga), drawings (.svg, .svgz) and fonts (.ttf, .otf, .ttc, .otc) when TARGET is built, with `gpgp bake`: each file becomes
 # folder/FILE.gpgp, below the path that it has in the source folder, and is baked again when it or the command changes.
 # An error in one of them fails the build, with its place.
 #
 #   DESTINATION  where the baked files go; relative to the build folder; without it: assets
 #   SET          overrides `var` of the grammars
 #   NO_KERNEL    grammars run on the interpreter: smaller files, faster builds, slower derivation
+#   RANGES, CHARACTERS_FILES
+#                which characters of the fonts, as U+0020-007E and as files that have them, baked again when these
+#                change; without either: all glyphs
+#   OUTLINE      the fonts' glyphs with an outline, too, as wide in em
 #   OUTPUTS      a variable for the list of baked files, to install or to pack
 #
 # The command is the target gpgp::command (an installed gpgp, or GPGP_BUILD_CLI=ON), or what GPGP_COMMAND names, as for
 # cross-compiling: baked files are the same whichever machine they are made on.
 function(gpgp_add_assets target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "NO_KERNEL" "DESTINATION;OUTPUTS" "SET")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "NO_KERNEL" "DESTINATION;OUTPUTS;OUTLINE" "SET;RANGES;CHARACTERS_FILES")
   if(NOT TARGET ${target})
     message(FATAL_ERROR "gpgp_add_assets: there is no target ${target}")
   endif()
@@ -20,7 +25,7 @@ function(gpgp_add_assets target)
     message(FATAL_ERROR "gpgp_add_assets: no value after ${arg_KEYWORDS_MISSING_VALUES}")
   endif()
   if(NOT arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "gpgp_add_assets: there are no files; expected grammars and drawings after ${target}")
+    message(FATAL_ERROR "gpgp_add_assets: there are no files; expected grammars, drawings and fonts after ${target}")
   endif()
   if(GPGP_COMMAND)
     set(command ${GPGP_COMMAND})
@@ -37,6 +42,19 @@ function(gpgp_add_assets target)
   set(options)
   if(arg_NO_KERNEL)
     list(APPEND options --no-kernel)
+  endif()
+  set(ofFonts)
+  foreach(list IN LISTS arg_RANGES)
+    list(APPEND ofFonts --ranges ${list})
+  endforeach()
+  set(characters)
+  foreach(file IN LISTS arg_CHARACTERS_FILES)
+    cmake_path(ABSOLUTE_PATH file NORMALIZE)
+    list(APPEND characters ${file})
+    list(APPEND ofFonts --characters-file ${file})
+  endforeach()
+  if(arg_OUTLINE)
+    list(APPEND ofFonts --outline ${arg_OUTLINE})
   endif()
   set(outputs)
   foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
@@ -61,9 +79,14 @@ function(gpgp_add_assets target)
         list(APPEND own --set ${variable})
       endforeach()
     endif()
+    set(needed ${file})
+    if(file MATCHES "\\.([TtOo][Tt][FfCc])$")
+      list(APPEND own ${ofFonts})
+      list(APPEND needed ${characters})
+    endif()
     cmake_path(GET output PARENT_PATH folder)
     add_custom_command(OUTPUT ${output} COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
-      COMMAND ${command} bake ${file} -o ${output} ${own} DEPENDS ${file} ${command} COMMENT "Baking ${name}" VERBATIM)
+      COMMAND ${command} bake ${file} -o ${output} ${own} DEPENDS ${needed} ${command} COMMENT "Baking ${name}" VERBATIM)
     list(APPEND outputs ${output})
   endforeach()
   # A target of its own, so that any kind of target can wait for it; one for each call.

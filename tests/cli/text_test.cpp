@@ -5,7 +5,9 @@
 #include "run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 
 #ifdef GPGP_TEST_CAIRO
 #include <cairo.h>
@@ -52,12 +54,15 @@ uint32_t firstInk(const host::Picture& picture) {
 
 TEST_F(CliText, OneObjectAndAPicture) {
   const json drawn = draw("Hello fi", {"--size", "20", "--repeat", "3", "--validate"});
-  EXPECT_EQ(keys(drawn), (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width",
-                                                "height", "shape_ms", "gpu_ms_median", "missing", "image"}));
+  EXPECT_EQ(keys(drawn),
+            (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width", "height",
+                                   "shape_ms", "gpu_ms_median", "records", "missing", "broken", "image"}));
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
   EXPECT_EQ(drawn["glyphs"], 7) << "fi is a ligature";
   EXPECT_EQ(drawn["lines"], 1);
   EXPECT_EQ(drawn["missing"], json::array());
+  EXPECT_EQ(drawn["broken"], json::array());
+  EXPECT_EQ(drawn["records"], 1);
   EXPECT_GT(drawn["shape_ms"], 0);
   EXPECT_GT(drawn["gpu_ms_median"], 0);
   const host::Picture shown = seen();
@@ -147,6 +152,18 @@ TEST_F(CliText, BitmapGlyphsColoursAndLines) {
   EXPECT_EQ((std::vector<int>{pixel(0, 0)[0], pixel(0, 0)[1], pixel(0, 0)[2]}), (std::vector<int>{255, 0, 255}));
 }
 
+TEST_F(CliText, FacesAndAxesOfTheFont) {
+  const auto ink = [&](std::vector<std::string> more) {
+    const json drawn = gpgpJson(more);
+    EXPECT_EQ(drawn["missing"], json::array());
+    return inked(seen());
+  };
+  const std::string inter = font("Inter-roman.var.ttf"), cjk = font("NotoSansCJK-Regular.ttc"), out = picture.path();
+  EXPECT_GT(ink({"text", inter, "Bold", out, "--axes", "wght=900"}), ink({"text", inter, "Bold", out}) * 11 / 10);
+  EXPECT_NE(gpgpFailure({"text", inter, "a", out, "--axes", "wght=2000"}).find("'wght' is 2000"), std::string::npos);
+  EXPECT_NE(gpgpFailure({"text", cjk, "a", out, "--face", "99"}).find("face is 99"), std::string::npos);
+}
+
 TEST_F(CliText, AnEmptyTextIsAPictureToo) {
   const json drawn = draw("");
   EXPECT_EQ(drawn["glyphs"], 0);
@@ -155,22 +172,30 @@ TEST_F(CliText, AnEmptyTextIsAPictureToo) {
 }
 
 #ifdef GPGP_TEST_CAIRO
+/// A line along the letters' edges, below all of them; red.
+struct Outline {
+  double width, alpha;
+};
+
 /// Letters side by side by the font's own advances, their outlines filled by cairo, black on white.
-host::Picture byCairo(const std::string& file, const std::string& text, double size, double x, double y, uint32_t width,
-                      uint32_t height) {
+host::Picture byCairo(const std::string& file, const std::string& text, double size, const double from, double y,
+                      uint32_t width, uint32_t height, const Outline* line = nullptr) {
   FT_Library library = nullptr;
   FT_Face face = nullptr;
   EXPECT_EQ(FT_Init_FreeType(&library), 0);
   EXPECT_EQ(FT_New_Face(library, file.c_str(), 0, &face), 0);
+  constexpr uint32_t kFine = 4; // as cairo counts in 15 rows a pixel, and shows what is behind two edges that meet
   cairo_surface_t* surface =
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height));
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width * kFine), static_cast<int>(height * kFine));
   cairo_t* cairo = cairo_create(surface);
+  cairo_scale(cairo, kFine, kFine);
   cairo_set_source_rgb(cairo, 1, 1, 1);
   cairo_paint(cairo);
   cairo_set_source_rgb(cairo, 0, 0, 0);
   cairo_set_tolerance(cairo, 0.01);
   cairo_set_antialias(cairo, CAIRO_ANTIALIAS_BEST);
-  for (const char c : text) {
+  double x = from;
+  const auto letter = [&](char c) {
     EXPECT_EQ(FT_Load_Char(face, static_cast<FT_ULong>(c), FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING), 0);
     struct Pen {
       cairo_t* cairo;
@@ -183,6 +208,7 @@ host::Picture byCairo(const std::string& file, const std::string& text, double s
     FT_Outline_Funcs functions{};
     functions.move_to = [](const FT_Vector* to, void* user) {
       double px = 0, py = 0;
+      cairo_close_path(static_cast<Pen*>(user)->cairo);
       static_cast<Pen*>(user)->point(to, px, py);
       cairo_move_to(static_cast<Pen*>(user)->cairo, px, py);
       return 0;
@@ -204,17 +230,37 @@ host::Picture byCairo(const std::string& file, const std::string& text, double s
       return 0;
     };
     EXPECT_EQ(FT_Outline_Decompose(&face->glyph->outline, &functions, &pen), 0);
-    cairo_fill(cairo);
+    cairo_close_path(cairo);
     x += static_cast<double>(face->glyph->advance.x) * pen.scale;
+  };
+  if (line) {
+    cairo_set_source_rgba(cairo, 1, 0, 0, line->alpha);
+    cairo_set_line_width(cairo, line->width);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    for (const char c : text) {
+      letter(c);
+      cairo_stroke(cairo);
+    }
+    cairo_set_source_rgb(cairo, 0, 0, 0);
+    x = from;
+  }
+  for (const char c : text) {
+    letter(c);
+    cairo_fill(cairo);
   }
   cairo_surface_flush(surface);
   host::Picture picture{width, height, std::vector<uint8_t>(size_t{width} * height * 4, 255)};
-  const int stride = cairo_image_surface_get_stride(surface);
+  const auto stride = static_cast<size_t>(cairo_image_surface_get_stride(surface));
+  const uint8_t* data = cairo_image_surface_get_data(surface);
   for (uint32_t row = 0; row < height; ++row)
     for (uint32_t column = 0; column < width; ++column)
-      for (size_t k = 0; k < 3; ++k)
+      for (size_t k = 0; k < 3; ++k) {
+        uint32_t sum = 0;
+        for (uint32_t at = 0; at < kFine * kFine; ++at)
+          sum += data[(row * kFine + at / kFine) * stride + (column * kFine + at % kFine) * 4 + 2 - k];
         picture.rgba[(size_t{row} * width + column) * 4 + k] =
-            cairo_image_surface_get_data(surface)[row * static_cast<uint32_t>(stride) + column * 4];
+            static_cast<uint8_t>((sum + kFine * kFine / 2) / (kFine * kFine));
+      }
   cairo_destroy(cairo);
   cairo_surface_destroy(surface);
   FT_Done_Face(face);
@@ -237,7 +283,84 @@ TEST_F(CliText, IsThePictureThatCairoMakesOfFreeTypesOutlines) {
   EXPECT_LE(off.mean, 0.6);
   EXPECT_LE(off.largest, 32u);
 }
+TEST_F(CliText, OutlinesAreCairosStrokesBelowAllLetters) {
+  // Wide enough for each line to reach the letter beside it; without a translucent one, where letters' lines overlap.
+  const std::string text = "Wide gjQ8";
+  for (const bool translucent : {false, true}) {
+    const double size = 40, wide = translucent ? 2 : 7;
+    draw(text, {"--size", "40", "--features", "kern=0,liga=0,clig=0", "--background", "white", "--outline",
+                translucent ? "2" : "7", "--outline-color", translucent ? "#ff000080" : "red"});
+    const host::Picture ours = seen();
+    const double margin = 5, beyond = translucent ? 0 : 3; // of 3.5 pixels, W's own place takes 1.3
+    const host::Picture theirs = byCairo(sans, text, size, margin + beyond, margin + size * 1901 / 2048, ours.width,
+                                         ours.height, std::array{Outline{wide, translucent ? 128 / 255. : 1}}.data());
+    if (const char* folder = std::getenv("GPGP_TEXT_PICTURES")) {
+      host::writePng(std::string(folder) + "/outline_gpgp" + (translucent ? "_2.png" : "_7.png"), ours);
+      host::writePng(std::string(folder) + "/outline_cairo" + (translucent ? "_2.png" : "_7.png"), theirs);
+    }
+    const host::PictureDifference off = host::compare(ours, theirs);
+    size_t red = 0;
+    for (size_t i = 0; i < theirs.rgba.size(); i += 4) red += ours.rgba[i] > 200 && ours.rgba[i + 1] < 160;
+    EXPECT_GT(red, translucent ? 300u : 2000u);
+    std::printf("outline %g: mean %.3f, largest %u\n", wide, off.mean, off.largest);
+    EXPECT_LE(off.mean, 0.6);
+    EXPECT_LE(off.largest, 32u);
+  }
+}
 #endif
+
+TEST_F(CliText, ABrokenGlyphIsDrawnAsMissingAndNamed) {
+  std::string bytes = host::readText(sans);
+  const auto at = [&bytes](size_t i) { return size_t{static_cast<unsigned char>(bytes[i])}; };
+  const auto number = [&](size_t i) { return at(i) << 24 | at(i + 1) << 16 | at(i + 2) << 8 | at(i + 3); };
+  const auto table = [&](std::string_view tag) {
+    for (size_t entry = 12;; entry += 16)
+      if (bytes.compare(entry, 4, tag) == 0) return number(entry + 8);
+  };
+  constexpr uint32_t kA = 68; // the font's number of a
+  const size_t loca = table("loca") + kA * 4;
+  bytes[table("glyf") + number(loca)] = 0x7f; // contours by the thousand
+  const TemporaryFile file("broken.ttf", bytes);
+  const ProcessResult result = gpgp({"text", file.path(), "banana", picture.path(), "--size", "40", "--json"});
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const json drawn = json::parse(result.out, nullptr, false);
+  EXPECT_EQ(drawn["broken"], json::array({{{"font", file.path()}, {"glyph", kA}}}));
+  EXPECT_EQ(drawn["missing"], json::array());
+  EXPECT_NE(result.err.find("glyph 68"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("named a "), std::string::npos) << result.err;
+  const size_t ink = inked(seen());
+  draw("bnn", {"--size", "40"});
+  EXPECT_GT(ink, inked(seen()) + 300) << "the sign for a missing character, three times";
+}
+
+TEST_F(CliText, AVeryLongTextTakesSeveralRecords) {
+  const std::vector<std::string> as = {"--size", "8", "--width", "1000", "--background", "white"};
+  const json drawn = draw(std::string(25000, 'm'), as);
+  EXPECT_EQ(drawn["glyphs"], 25000);
+  EXPECT_GT(drawn["records"], 1);
+  const host::Picture whole = seen();
+  const json few = draw(std::string(1280, 'm'), as); // ten lines of 128, in one record
+  EXPECT_EQ(few["records"], 1);
+  const host::Picture part = seen();
+  ASSERT_EQ(part.width, whole.width);
+  const auto lines = drawn["lines"].get<uint32_t>();
+  EXPECT_EQ(lines, (25000 + 127) / 128);
+  // Each line looks as the first does, as far as parts of pixels agree: as much ink, also where records meet.
+  const auto ink = [](const host::Picture& page, double first, double end) {
+    double sum = 0;
+    for (auto y = static_cast<uint32_t>(first); y < static_cast<uint32_t>(end); ++y)
+      for (uint32_t x = 0; x < page.width; ++x) sum += 255 - page.rgba[(size_t{y} * page.width + x) * 4];
+    return sum;
+  };
+  const double height = (whole.height - 4) / static_cast<double>(lines), wanted = ink(part, 0, 2 + height);
+  EXPECT_GT(wanted, 100000);
+  for (uint32_t line = 0; line + 1 < lines; ++line)
+    ASSERT_NEAR(ink(whole, 2 + line * height, 2 + (line + 1) * height), wanted, wanted / 50) << "line " << line;
+  for (uint32_t y = 0; y < part.height / 2; ++y)
+    ASSERT_TRUE(std::equal(part.rgba.begin() + y * part.width * 4, part.rgba.begin() + (y + 1) * part.width * 4,
+                           whole.rgba.begin() + y * part.width * 4))
+        << "row " << y;
+}
 
 TEST_F(CliText, WhatIsNoFontIsNamed) {
   const TemporaryFile file("no.ttf", "this is no font");
@@ -250,6 +373,14 @@ TEST_F(CliText, WhatDoesNotFitAPictureIsAnError) {
   const std::string error = gpgpFailure({"text", sans, std::string(500, 'm'), picture.path(), "--size", "100"});
   EXPECT_NE(error.find("16384"), std::string::npos) << error;
   EXPECT_FALSE(std::filesystem::exists(picture.path()));
+}
+
+TEST_F(CliText, NumbersThatAreNoneAreNamed) {
+  for (const char* option : {"--size", "--outline", "--width"}) {
+    const std::string error = gpgpFailure({"text", sans, "a", picture.path(), option, "nan"});
+    EXPECT_NE(error.find(" is nan"), std::string::npos) << error;
+    EXPECT_FALSE(std::filesystem::exists(picture.path()));
+  }
 }
 
 TEST_F(CliText, WrongUsage) {
@@ -269,6 +400,10 @@ TEST_F(CliText, WrongUsage) {
                     {"text", sans, "a", out, "--features", "lig"},
                     {"text", sans, "a", out, "--features", "liga=on"},
                     {"text", sans, "a", out, "--features", "liga="},
+                    {"text", sans, "a", out, "--outline", "-1"},
+                    {"text", sans, "a", out, "--axes", "wght"},
+                    {"text", sans, "a", out, "--face", "-1"},
+                    {"text", sans, "a", out, "--outline-color", "reddish"},
                     {"text", sans, "a", out, "--repeat", "0"}});
 }
 

@@ -39,6 +39,11 @@ bool check(const void* data, size_t size) {
     };
     (void)gpgpGetGlyphOutline(font, &outline, look, nullptr);
   }
+  const GpgpCharacterRange range = {'A', 'F'};
+  uint32_t glyphs[64] = {}, count = 64;
+  if (gpgpGetGlyphClosure(font, &range, 1, &count, glyphs) < 0) std::abort();
+  for (uint32_t i = 0; i < count && i < 64; ++i)
+    if (glyphs[i] >= about.glyphCount) std::abort();
   GpgpLayout layout = nullptr;
   if (gpgpCreateLayout(shaper(), &layout) != GPGP_SUCCESS) std::abort();
   GpgpTextInfo text = GPGP_TEXT_INFO_INIT;

@@ -4,6 +4,7 @@
 #
 #   assets_test.sh PREFIX SCRATCH_DIR CMAKE
 set -euo pipefail
+font=$(cd "$(dirname "$0")/../data" && pwd)/fetched/fonts/DejaVuSans.ttf # where tests/data/fetch.sh has been
 prefix=$1 scratch=$2 cmake=$3
 fail() {
   echo "FAILED: $*" >&2
@@ -49,6 +50,27 @@ same build/assets/parts/tower.pga.gpgp parts/tower.pga --no-kernel
 printf 'B = Nowhere;\n' >>small.pga
 if build; then fail "a grammar with an error was built"; fi
 grep -q 'small.pga:5:5: .*Nowhere' log || { cat log; fail "the error has no place"; }
+
+if [[ -e $font ]] && "$prefix/bin/gpgp" bake --help | grep -q -- --ranges; then
+  mkdir -p fonts
+  cp "$font" fonts/Sans.TTF
+  echo 'Score: é' >fonts/strings.txt
+  cat >fonts/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(fonts C)
+find_package(gpgp REQUIRED)
+add_custom_target(fonts ALL)
+gpgp_add_assets(fonts Sans.TTF RANGES U+0030-0039,U+20AC U+41 CHARACTERS_FILES strings.txt OUTLINE 0.1)
+END
+  "$cmake" -S fonts -B fonts/build -G Ninja -DCMAKE_PREFIX_PATH="$prefix" >log 2>&1 ||
+    { cat log; fail "configuring fonts"; }
+  wanted=(fonts/Sans.TTF --ranges U+30-39,U+20AC,U+41 --outline 0.1 --characters)
+  "$cmake" --build fonts/build >log 2>&1 || { cat log; fail "building fonts"; }
+  same fonts/build/assets/Sans.TTF.gpgp "${wanted[@]}" 'Score: é'
+  echo 'Tore: é' >fonts/strings.txt
+  "$cmake" --build fonts/build >log 2>&1 || { cat log; fail "building fonts again"; }
+  same fonts/build/assets/Sans.TTF.gpgp "${wanted[@]}" 'Tore: é'
+fi
 
 refused() { # ARGUMENTS EXPECTED
   mkdir -p refused

@@ -728,6 +728,27 @@ struct Font {
   }
 };
 
+/// Adds what a glyph covers of each pixel, exact along x, in so many rows a pixel.
+void cover(const PathOracle& path, const GpgpGlyphInstance& at, uint32_t rows, uint32_t width, uint32_t height,
+           std::vector<double>& pixels) {
+  const double x = static_cast<double>(at.x), y = static_cast<double>(at.y), size = static_cast<double>(at.size);
+  const auto first = static_cast<uint32_t>(std::max(0., std::floor(y + path.top * size)));
+  const uint32_t end = std::min(height, static_cast<uint32_t>(std::ceil(y + path.bottom * size)));
+  for (uint32_t row = first * rows; row < end * rows; ++row) {
+    int winding = 0;
+    double from = 0;
+    for (const auto& [crossing, direction] : path.crossings(((row + 0.5) / rows - y) / size)) {
+      const double to = x + crossing * size;
+      if (winding == 0) from = to;
+      winding += direction;
+      if (winding != 0) continue;
+      for (auto column = static_cast<uint32_t>(from); column < to && column < width; ++column)
+        pixels[size_t(row / rows) * width + column] +=
+            255. / rows * (std::min(to, column + 1.) - std::max(from, static_cast<double>(column)));
+    }
+  }
+}
+
 struct SmallText : GlyphTest, testing::WithParamInterface<const char*> {};
 
 TEST_P(SmallText, CoversWhatFreeTypeCovers) {
@@ -752,7 +773,15 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
   const GpgpAsset set = makeSet();
   const auto indices = add(set, glyphs);
   makeCanvas(512);
-  for (const uint32_t size : {8u, 10u, 12u, 16u}) {
+  std::vector<PathOracle> oracles;
+  std::vector<bool> straight; // lines only, as A and H
+  for (const GpgpPath& path : paths) {
+    oracles.emplace_back(path);
+    straight.push_back(std::all_of(path.verbs, path.verbs + path.verbCount, [](GpgpPathVerb verb) {
+      return verb != GPGP_PATH_QUAD && verb != GPGP_PATH_CUBIC;
+    }));
+  }
+  for (const uint32_t size : {8u, 9u, 10u, 12u, 16u}) {
     const uint32_t cell = 2 * size, width = 16 * cell, height = 6 * cell;
     // FreeType rounds outlines to 1/64 of a pixel, so once more sixteen times as large.
     constexpr uint32_t kFine = 16;
@@ -767,33 +796,50 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       instances.push_back(
           {indices[i], static_cast<float>(x) / 64, static_cast<float>(y) / 64, static_cast<float>(size), {0, 0, 0, 1}});
     }
-    std::vector<double> truth(coarse.size(), 0);
+    std::vector<double> truth(coarse.size(), 0), ofRows(coarse.size(), 0), ofCurves(coarse.size(), 0);
     for (size_t i = 0; i < fine.size(); ++i)
       truth[i / (size_t(width) * kFine) / kFine * width + i % (size_t(width) * kFine) / kFine] +=
           static_cast<double>(fine[i]) / (kFine * kFine);
+    for (size_t i = 0; i < ids.size(); ++i) {
+      cover(oracles[i], instances[i], 16, width, height, ofRows);
+      cover(oracles[i], instances[i], 1024, width, height, ofCurves);
+    }
     for (const bool area : {false, true}) {
       exactArea = area;
       const auto pixels = raster({text(set, instances)}, width, height, 16);
-      double sum = 0, difference = 0, differenceFine = 0, own = 0;
-      size_t inked = 0;
+      // Mean differences of pixels with ink, of 255.
+      double sum = 0, fromFreeType = 0, fromTruth = 0, freeType = 0, reference = 0, fromRows = 0, rows = 0;
+      size_t inked = 0, inkedStraight = 0;
       for (size_t i = 0; i < truth.size(); ++i) {
         const double seen = static_cast<double>(pixels[i].a) * 255, wanted = static_cast<double>(coarse[i]);
         if (seen == 0 && wanted == 0) continue;
         ++inked;
         sum += seen - wanted;
-        difference += std::abs(seen - wanted);
-        differenceFine += std::abs(seen - truth[i]);
-        own += std::abs(wanted - truth[i]);
+        fromFreeType += std::abs(seen - wanted);
+        fromTruth += std::abs(seen - ofCurves[i]);
+        if (const size_t glyph = i / width / cell * 16 + i % width / cell; glyph < ids.size() && straight[glyph]) {
+          ++inkedStraight;
+          fromRows += std::abs(seen - ofRows[i]);
+          rows += std::abs(ofRows[i] - ofCurves[i]);
+        }
+        freeType += std::abs(wanted - ofCurves[i]);
+        reference += std::abs(truth[i] - ofCurves[i]);
       }
-      const double n = static_cast<double>(inked);
+      const double n = static_cast<double>(inked), m = static_cast<double>(inkedStraight);
       std::printf(
-          "%s, %u px%s: %zu pixels with ink; of coverage %.3f, mean difference %.2f, from outlines that are not "
-          "rounded %.2f; FreeType itself %.2f\n",
-          GetParam(), size, area ? ", area" : "", inked, sum / n, difference / n, differenceFine / n, own / n);
+          "%s, %u px%s: %zu pixels with ink; of coverage %.3f; mean difference from FreeType %.2f, from the "
+          "curves %.2f; FreeType's from the curves %.2f, sixteen times as large %.2f; letters without curves from "
+          "16 exact rows a pixel %.2f, such rows from the letters %.2f\n",
+          GetParam(), size, area ? ", area" : "", inked, sum / n, fromFreeType / n, fromTruth / n, freeType / n,
+          reference / n, fromRows / m, rows / m);
       EXPECT_GT(inked, ids.size() * size);
-      EXPECT_LE(std::abs(sum) / n, 2.0) << size;
+      EXPECT_GT(inkedStraight, inked / 8);
+      EXPECT_LE(std::abs(sum) / n, 2.0) << size << ": as much ink as FreeType";
+      EXPECT_LE(reference / n, 0.4) << size << ": the curves are what FreeType comes to without its rounding";
       if (area) {
-        EXPECT_LE(differenceFine / n, 2.0) << size;
+        EXPECT_LE(fromTruth / n, 2.0) << size << ": the pixels of FreeType's rasteriser, had it not rounded outlines";
+        EXPECT_LT(fromTruth, freeType) << size << ": nearer to the curves than FreeType at this size";
+        EXPECT_LE(fromRows / m, 0.4) << size << ": without curves all that is off comes of 16 rows a pixel";
       }
       if (const char* folder = std::getenv("GPGP_TEST_PICTURES")) {
         std::vector<uint8_t> rgba;

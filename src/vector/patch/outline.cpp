@@ -1,4 +1,5 @@
 // Stage 1: a path's verbs and points, or its stroke's, to monotone pieces.
+#include "vector/geometry/check_stroke.h"
 #include "vector/geometry/stroke.h"
 #include "vector/patch/drawing.h"
 
@@ -77,24 +78,6 @@ core::Result<void> shapeOf(const GpgpPath& path, Shape& shape) {
     if (verb == GPGP_PATH_MOVE) start = at;
     if (verb == GPGP_PATH_CLOSE) at = start;
   }
-  return {};
-}
-
-core::Result<void> checkStroke(const GpgpStroke& s) {
-  const auto bad = [](const char* what, double value) {
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.%s is %g", what, value);
-  };
-  if (!(s.width >= 0 && s.width <= kMaxCoordinate)) return bad("width", static_cast<double>(s.width));
-  if (s.cap < GPGP_CAP_BUTT || s.cap > GPGP_CAP_SQUARE) return bad("cap", s.cap);
-  if (s.join < GPGP_JOIN_MITER || s.join > GPGP_JOIN_BEVEL) return bad("join", s.join);
-  if (s.miterLimit != 0 && !(s.miterLimit >= 1 && std::isfinite(s.miterLimit)))
-    return bad("miterLimit", static_cast<double>(s.miterLimit));
-  if (!std::isfinite(s.dashOffset)) return bad("dashOffset", static_cast<double>(s.dashOffset));
-  if (!(s.scale >= 0 && std::isfinite(s.scale))) return bad("scale", static_cast<double>(s.scale));
-  if (s.dashCount && !s.dashes) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.dashes is NULL");
-  for (uint32_t i = 0; i < s.dashCount; ++i)
-    if (!(s.dashes[i] >= 0 && std::isfinite(s.dashes[i])))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "stroke.dashes[%u] is %g", i, static_cast<double>(s.dashes[i]));
   return {};
 }
 

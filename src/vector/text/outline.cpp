@@ -215,43 +215,67 @@ Picture loadPicture(Font& font, uint32_t glyph) {
 
 } // namespace
 
+namespace {
+
+/// The glyph's paths, or its picture. `font` is locked.
+Result<void> collect(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths, Picture& picture,
+                     bool& incomplete) {
+  const bool plain = info.plain || info.stroke, scalable = font.opened().emPerUnit > 0;
+  const GpgpFontColors colors = font.info().colors;
+  if (!plain && scalable && (colors & (GPGP_FONT_COLOR_LAYERS | GPGP_FONT_COLOR_PAINTS))) {
+    const auto colored = addColors(font, info, paths, incomplete);
+    if (!colored) return colored.error();
+    if (*colored) return {};
+  }
+  if (!plain && (colors & GPGP_FONT_COLOR_BITMAPS)) {
+    picture = loadPicture(font, info.glyph);
+    if (!picture.pixels.empty()) return {};
+  }
+  if (!scalable) return {};
+  if (auto ok = paths.addGlyph(font, info.glyph, kIdentity); !ok) return ok;
+  const float black[4] = {0, 0, 0, 1};
+  const bool unset = std::all_of(info.color, info.color + 4, [](float value) { return value == 0; });
+  if (unset)
+    paths.paint(black, true, info.stroke);
+  else
+    paths.paint(info.color, true, info.stroke);
+  if (!plain && (colors & GPGP_FONT_COLOR_SVG)) incomplete = true;
+  return {};
+}
+
+void warn(const Font& font, const core::Error& warning) {
+  font.messages.send(GPGP_SEVERITY_WARNING, warning.code, "gpgpGetGlyphOutline", warning.text);
+}
+
+} // namespace
+
 Result<void> deliverGlyph(Font& font, const GpgpGlyphOutlineInfo& info, GpgpGlyphFn glyphFn, void* userData) {
   GlyphPaths paths;
   Picture picture;
   bool incomplete = false;
+  Result<void> whole;
   {
-    OpenFont& open = font.opened();
-    const std::lock_guard lock(open.lock);
-    bool done = false;
-    const bool plain = info.plain || info.stroke;
-    if (!plain && open.emPerUnit > 0 && (font.info().colors & (GPGP_FONT_COLOR_LAYERS | GPGP_FONT_COLOR_PAINTS))) {
-      const auto colored = addColors(font, info, paths, incomplete);
-      if (!colored) return colored.error();
-      done = *colored;
-    }
-    if (!done && !plain && (font.info().colors & GPGP_FONT_COLOR_BITMAPS)) {
-      picture = loadPicture(font, info.glyph);
-      done = !picture.pixels.empty();
-    }
-    if (!done && open.emPerUnit > 0) {
-      if (auto ok = paths.addGlyph(font, info.glyph, kIdentity); !ok) return ok;
-      const float black[4] = {0, 0, 0, 1};
-      const bool unset = std::all_of(info.color, info.color + 4, [](float value) { return value == 0; });
-      if (unset)
-        paths.paint(black, true, info.stroke);
-      else
-        paths.paint(info.color, true, info.stroke);
-      if (!plain && (font.info().colors & GPGP_FONT_COLOR_SVG)) incomplete = true;
+    const std::lock_guard lock(font.opened().lock);
+    whole = collect(font, info, paths, picture, incomplete);
+    if (!whole) { // the sign for a missing character instead; nothing where that is broken, too
+      GpgpGlyphOutlineInfo sign = info;
+      sign.glyph = 0;
+      paths = {};
+      if (info.glyph == 0 || !collect(font, sign, paths, picture, incomplete)) paths = {};
     }
   }
-  if (incomplete) {
-    const core::Error warning =
-        makeError(GPGP_ERROR_UNSUPPORTED, "glyph %u has paints that are not supported", info.glyph);
-    font.messages.send(GPGP_SEVERITY_WARNING, warning.code, "gpgpGetGlyphOutline", warning.text);
+  if (!whole) {
+    char name[64];
+    hb_font_glyph_to_string(font.shaping(), info.glyph, name, sizeof name);
+    warn(font, makeError(whole.error().code, "%s; it is named %s and drawn as a missing character", whole.error().text,
+                         name));
   }
+  if (incomplete)
+    warn(font, makeError(GPGP_ERROR_UNSUPPORTED, "glyph %u has paints that are not supported", info.glyph));
   GpgpGlyphOutline outline = paths.outline(info.glyph);
   if (!picture.pixels.empty()) outline.image = &picture.image;
   outline.incomplete = incomplete;
+  outline.broken = !whole;
   glyphFn(userData, &outline);
   return {};
 }

@@ -486,6 +486,8 @@ TEST_F(TextColor, LayersOfVersion0) {
     Glyph glyph;
     ASSERT_EQ(glyphOf(font_.get(), info, glyph), GPGP_SUCCESS);
     expectColor(glyph.paths[0].color, 0.1f, 0.2f, 0.3f, 0.4f);
+    info.colors = nullptr;
+    info.colorCount = 0;
   }
   { // without its colours: the glyph's own outline
     info.plain = VK_TRUE;
@@ -543,7 +545,8 @@ TEST_F(TextColor, WhatIsNotSupportedIsSaid) {
   Glyph circle;
   GpgpGlyphOutlineInfo info = GPGP_GLYPH_OUTLINE_INFO_INIT;
   info.glyph = tiny::kCircle;
-  EXPECT_EQ(glyphOf(font_.get(), info, circle), GPGP_ERROR_INVALID_DATA);
+  EXPECT_EQ(glyphOf(font_.get(), info, circle), GPGP_SUCCESS);
+  EXPECT_TRUE(circle.outline.broken);
   EXPECT_NE(log_.text.find("glyph 6"), std::string::npos) << log_.text;
 }
 
@@ -596,6 +599,157 @@ TEST(TextFont, RefusesWhatIsNoFont) {
   info.axes = &heavy;
   info.axisCount = 1;
   refused(GPGP_ERROR_INVALID_ARGUMENT, "'wght' is 1000; expected 100 to 900");
+}
+
+TEST(TextFont, NumbersOfGlyphsAreChecked) {
+  const std::vector<char> bytes = tinyFont();
+  GpgpFontCreateInfo open = GPGP_FONT_CREATE_INFO_INIT;
+  Log log;
+  open.data = bytes.data();
+  open.size = bytes.size();
+  open.messageFn = Log::take;
+  open.messageUserData = &log;
+  GpgpFont raw = nullptr;
+  ASSERT_EQ(gpgpCreateFont(&open, &raw), GPGP_SUCCESS);
+  const FontHandle font(raw);
+  const auto refused = [&](auto change, const char* words) {
+    GpgpGlyphOutlineInfo info = GPGP_GLYPH_OUTLINE_INFO_INIT;
+    GpgpPaletteColor entry{0, {0, 0, 0, 1}};
+    GpgpStroke stroke{};
+    stroke.width = 0.1f;
+    info.glyph = tiny::kSquare;
+    info.colors = &entry;
+    info.colorCount = 1;
+    info.stroke = &stroke;
+    Glyph glyph;
+    ASSERT_EQ(glyphOf(raw, info, glyph), GPGP_SUCCESS) << log.text;
+    change(info, entry, stroke);
+    EXPECT_EQ(glyphOf(raw, info, glyph), GPGP_ERROR_INVALID_ARGUMENT) << words;
+    EXPECT_NE(log.text.find(words), std::string::npos) << log.text;
+  };
+  using Info = GpgpGlyphOutlineInfo;
+  using Entry = GpgpPaletteColor;
+  using Stroke = GpgpStroke;
+  refused([](Info& info, Entry&, Stroke&) { info.color[1] = NAN; }, "color[1] is nan");
+  refused([](Info& info, Entry&, Stroke&) { info.color[3] = 1.5f; }, "color[3] is 1.5");
+  refused([](Info&, Entry& entry, Stroke&) { entry.color[2] = -1; }, "colors[0].color[2] is -1");
+  refused([](Info&, Entry&, Stroke& stroke) { stroke.width = NAN; }, "stroke.width is nan");
+  refused([](Info&, Entry&, Stroke& stroke) { stroke.width = -1; }, "stroke.width is -1");
+  refused([](Info&, Entry&, Stroke& stroke) { stroke.join = 7; }, "stroke.join is 7");
+  refused([](Info&, Entry&, Stroke& stroke) { stroke.scale = INFINITY; }, "stroke.scale is inf");
+  refused([](Info& info, Entry&, Stroke&) { info.glyph = tiny::kGlyphs; }, "glyph is 7; the font has 7");
+
+  Paper paper;
+  const std::vector<GpgpFont> fonts = {raw};
+  const auto textRefused = [&](auto change, const char* words) {
+    GpgpTextSpan span{1, 2, {}};
+    GpgpTextInfo info = textInfo("ABC", fonts, 12);
+    span.style = info.style;
+    info.spans = &span;
+    info.spanCount = 1;
+    ASSERT_EQ(paper.set(info), GPGP_SUCCESS) << paper.log.text;
+    change(info, span.style);
+    EXPECT_EQ(paper.set(info), GPGP_ERROR_INVALID_ARGUMENT) << words;
+    EXPECT_NE(paper.log.text.find(words), std::string::npos) << paper.log.text;
+  };
+  using Text = GpgpTextInfo;
+  using Style = GpgpTextStyle;
+  textRefused([](Text& text, Style&) { text.style.outlineWidth = NAN; }, "style.outlineWidth is nan");
+  textRefused([](Text&, Style& style) { style.outlineWidth = -1; }, "spans[0].style.outlineWidth is -1");
+  textRefused([](Text&, Style& style) { style.outlineColor[0] = NAN; }, "spans[0].style.outlineColor[0] is nan");
+  textRefused([](Text& text, Style&) { text.style.color[2] = 2; }, "style.color[2] is 2");
+  textRefused([](Text& text, Style&) { text.style.size = 2e5f; }, "style.size is 200000");
+  textRefused([](Text& text, Style&) { text.style.size = 0; }, "style.size is 0");
+  textRefused([](Text&, Style& style) { style.letterSpacing = -2e5f; }, "spans[0].style.letterSpacing is -200000");
+  textRefused([](Text& text, Style&) { text.width = -1; }, "width is -1");
+  textRefused([](Text& text, Style&) { text.lineHeight = INFINITY; }, "lineHeight is inf");
+}
+
+/// Where a table begins.
+size_t tableOf(const std::vector<char>& bytes, const char* tag) {
+  const auto at = [&](size_t i) { return size_t{static_cast<unsigned char>(bytes[i])}; };
+  for (size_t i = 0; i < at(4) * 256 + at(5); ++i) {
+    const size_t entry = 12 + i * 16;
+    if (std::equal(tag, tag + 4, bytes.begin() + static_cast<std::ptrdiff_t>(entry)))
+      return at(entry + 8) << 24 | at(entry + 9) << 16 | at(entry + 10) << 8 | at(entry + 11);
+  }
+  ADD_FAILURE() << tag;
+  return 0;
+}
+
+/// The font with contours that are not there in a glyph.
+void breakGlyph(std::vector<char>& bytes, uint32_t glyph) {
+  const auto at = [&](size_t i) { return size_t{static_cast<unsigned char>(bytes[i])}; };
+  const size_t loca = tableOf(bytes, "loca");
+  const bool isLong = at(tableOf(bytes, "head") + 51) == 1;
+  const size_t entry = loca + glyph * (isLong ? 4u : 2u);
+  const size_t offset = isLong ? at(entry) << 24 | at(entry + 1) << 16 | at(entry + 2) << 8 | at(entry + 3)
+                               : (at(entry) << 8 | at(entry + 1)) * 2;
+  const size_t contours = tableOf(bytes, "glyf") + offset;
+  bytes[contours] = 0x7f;
+  bytes[contours + 1] = 0x7f;
+}
+
+TEST(TextFont, ABrokenGlyphIsDrawnAsMissing) {
+  GPGP_NEEDS_FONTS();
+  std::vector<char> bytes = bytesOf(fontPath("DejaVuSans.ttf"));
+  uint32_t e = 0, a = 0;
+  const FontHandle whole = openFont("DejaVuSans.ttf");
+  ASSERT_EQ(gpgpGetNominalGlyph(whole.get(), 'e', &e), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetNominalGlyph(whole.get(), 'a', &a), GPGP_SUCCESS);
+  breakGlyph(bytes, e);
+  Log log;
+  GpgpFontCreateInfo open = GPGP_FONT_CREATE_INFO_INIT;
+  open.data = bytes.data();
+  open.size = bytes.size();
+  open.messageFn = Log::take;
+  open.messageUserData = &log;
+  for (const bool signToo : {false, true}) {
+    if (signToo) breakGlyph(bytes, 0);
+    GpgpFont raw = nullptr;
+    ASSERT_EQ(gpgpCreateFont(&open, &raw), GPGP_SUCCESS);
+    const FontHandle font(raw);
+    struct Seen {
+      std::vector<float> points;
+      bool broken = false;
+      uint32_t glyph = 0;
+    };
+    const auto look = [&](GpgpFont from, uint32_t glyph) {
+      Seen seen;
+      GpgpGlyphOutlineInfo info = GPGP_GLYPH_OUTLINE_INFO_INIT;
+      info.glyph = glyph;
+      EXPECT_EQ(gpgpGetGlyphOutline(
+                    from, &info,
+                    [](void* user, const GpgpGlyphOutline* outline) {
+                      auto& s = *static_cast<Seen*>(user);
+                      s.broken = outline->broken;
+                      s.glyph = outline->glyph;
+                      for (uint32_t i = 0; i < outline->pathCount; ++i)
+                        s.points.insert(s.points.end(), outline->paths[i].points,
+                                        outline->paths[i].points + size_t(outline->paths[i].pointCount) * 2);
+                    },
+                    &seen),
+                GPGP_SUCCESS);
+      return seen;
+    };
+    const Seen sign = look(whole.get(), 0), seen = look(raw, e);
+    EXPECT_TRUE(seen.broken);
+    EXPECT_EQ(seen.glyph, e);
+    if (signToo)
+      EXPECT_TRUE(seen.points.empty());
+    else
+      EXPECT_EQ(seen.points, sign.points);
+    EXPECT_GT(sign.points.size(), 8u);
+    EXPECT_NE(log.text.find("glyph " + std::to_string(e)), std::string::npos) << log.text;
+    EXPECT_NE(log.text.find("named e "), std::string::npos) << log.text;
+    EXPECT_FALSE(look(raw, a).broken) << "others are as they were";
+    EXPECT_EQ(look(raw, a).points, look(whole.get(), a).points);
+    Paper paper; // it is laid out as before
+    const std::vector<GpgpFont> fonts = {raw};
+    ASSERT_EQ(paper.set(textInfo("cheese", fonts, 20)), GPGP_SUCCESS);
+    EXPECT_EQ(paper.info.glyphCount, 6u);
+    EXPECT_EQ(paper.info.missingCount, 0u);
+  }
 }
 
 TEST(TextFont, IsSharedByThreads) {

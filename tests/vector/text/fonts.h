@@ -35,18 +35,19 @@ struct Log {
   }
 };
 
+inline Log fontLog; ///< of all that openFont opens: it outlives them
+
 inline FontHandle openFont(const std::string& name, uint32_t face = 0, std::vector<GpgpFontAxisValue> axes = {}) {
   GpgpFontCreateInfo info = GPGP_FONT_CREATE_INFO_INIT;
   const std::string path = fontPath(name);
-  Log log;
   info.filePath = path.c_str();
   info.face = face;
   info.axes = axes.data();
   info.axisCount = static_cast<uint32_t>(axes.size());
   info.messageFn = Log::take;
-  info.messageUserData = &log;
+  info.messageUserData = &fontLog;
   GpgpFont font = nullptr;
-  EXPECT_EQ(gpgpCreateFont(&info, &font), GPGP_SUCCESS) << name << ": " << log.text;
+  EXPECT_EQ(gpgpCreateFont(&info, &font), GPGP_SUCCESS) << name << ": " << fontLog.text;
   return FontHandle(font);
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 #include <random>
+#include <set>
 
 #include <fribidi.h>
 #include <hb.h>
@@ -378,6 +379,111 @@ TEST(TextShape, RunsAreKeptWithinTheBudget) {
   EXPECT_EQ(paper.info.glyphCount, large.size());
   look();
   EXPECT_EQ(report.runs, runs);
+}
+
+std::vector<uint32_t> closureOf(GpgpFont font, const std::vector<GpgpCharacterRange>& ranges) {
+  uint32_t count = 0;
+  const auto rangeCount = static_cast<uint32_t>(ranges.size());
+  EXPECT_EQ(gpgpGetGlyphClosure(font, ranges.data(), rangeCount, &count, nullptr), GPGP_SUCCESS);
+  std::vector<uint32_t> glyphs(count, ~0u);
+  EXPECT_EQ(gpgpGetGlyphClosure(font, ranges.data(), rangeCount, &count, glyphs.data()), GPGP_SUCCESS);
+  EXPECT_TRUE(std::is_sorted(glyphs.begin(), glyphs.end()));
+  return glyphs;
+}
+
+TEST(TextShape, TheClosureOfCharactersHasAllThatTheirTextsNeed) {
+  GPGP_NEEDS_FONTS();
+  struct Case {
+    const char* font;
+    std::vector<GpgpCharacterRange> ranges;
+    uint32_t face = 0;
+  };
+  const std::vector<Case> cases = {{"DejaVuSans.ttf", {{0x20, 0x7e}, {0x300, 0x310}}},
+                                   {"DejaVuSans.ttf", {{'a', 'f'}, {0x621, 0x64a}, {0x5d0, 0x5ea}, {0x5b0, 0x5bc}}},
+                                   {"NotoSans-Regular.ttf", {{0x20, 0x7e}, {0x300, 0x33f}, {0x391, 0x3c9}}},
+                                   {"NotoNaskhArabic-Regular.ttf", {{0x600, 0x652}, {0x20, 0x20}}},
+                                   {"NotoSansHebrew-Regular.ttf", {{0x590, 0x5f4}, {'(', ')'}}},
+                                   {"NotoSansDevanagari-Regular.ttf", {{0x900, 0x97f}, {0x200c, 0x200d}}},
+                                   {"NotoSansThai-Regular.ttf", {{0xe01, 0xe5b}}},
+                                   {"NotoSansCJK-Regular.ttc", {{0x3041, 0x30ff}, {0x4e00, 0x4e20}, {0xfe00, 0xfe01}}},
+                                   {"Cantarell-Regular.otf", {{0x20, 0x17f}}},
+                                   {"Inter-roman.var.ttf", {{0x20, 0x7e}}}};
+  const GpgpTag features[] = {GPGP_TAG('s', 'm', 'c', 'p'), GPGP_TAG('d', 'l', 'i', 'g'), GPGP_TAG('f', 'r', 'a', 'c'),
+                              GPGP_TAG('s', 's', '0', '1'), GPGP_TAG('o', 'n', 'u', 'm'), GPGP_TAG('s', 'a', 'l', 't'),
+                              GPGP_TAG('z', 'e', 'r', 'o'), GPGP_TAG('c', 'a', 'l', 't'), GPGP_TAG('v', 'e', 'r', 't')};
+  std::mt19937 random(7);
+  size_t beyond = 0;
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.font);
+    const FontHandle font = openFont(one.font, one.face);
+    const std::vector<GpgpFont> fonts = {font.get()};
+    const std::vector<uint32_t> glyphs = closureOf(font.get(), one.ranges);
+    EXPECT_EQ(glyphs.front(), 0u);
+    std::vector<char32_t> characters;
+    std::set<uint32_t> own; // glyphs of the characters before shaping
+    for (const GpgpCharacterRange& range : one.ranges)
+      for (uint32_t c = range.first; c <= range.last; ++c) {
+        characters.push_back(c);
+        uint32_t glyph = 0;
+        ASSERT_EQ(gpgpGetNominalGlyph(font.get(), c, &glyph), GPGP_SUCCESS);
+        own.insert(glyph);
+      }
+    Paper paper;
+    for (int round = 0; round < 300; ++round) {
+      std::string text;
+      for (int i = 0; i < 40; ++i) {
+        const char32_t c = characters[random() % characters.size()];
+        if (c < 0x80)
+          text += static_cast<char>(c);
+        else if (c < 0x800)
+          text += {static_cast<char>(0xc0 | c >> 6), static_cast<char>(0x80 | (c & 63))};
+        else
+          text += {static_cast<char>(0xe0 | c >> 12), static_cast<char>(0x80 | (c >> 6 & 63)),
+                   static_cast<char>(0x80 | (c & 63))};
+      }
+      const GpgpFontFeature feature{features[random() % std::size(features)], 1 + static_cast<uint32_t>(random() % 2)};
+      GpgpTextInfo info = textInfo(text, fonts, 20, round % 2 ? 0.f : 120.f);
+      info.style.features = &feature;
+      info.style.featureCount = round % 3 != 0;
+      info.direction = static_cast<GpgpTextDirection>(round % 3);
+      info.maxLines = round % 5 == 0 ? 1 : 0; // an ellipsis
+      ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+      for (uint32_t i = 0; i < paper.info.glyphCount; ++i) {
+        const uint32_t glyph = paper.info.glyphs[i].glyph;
+        ASSERT_TRUE(std::binary_search(glyphs.begin(), glyphs.end(), glyph)) << "glyph " << glyph << " in " << text;
+        beyond += glyph != 0 && !own.count(glyph);
+      }
+    }
+  }
+  EXPECT_GT(beyond, 1000u) << "the test has no shaped glyphs";
+
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  const auto glyphOf = [&](uint32_t character) {
+    uint32_t glyph = 0;
+    gpgpGetNominalGlyph(font.get(), character, &glyph);
+    return glyph;
+  };
+  const auto has = [](const std::vector<uint32_t>& glyphs, uint32_t glyph) {
+    return std::binary_search(glyphs.begin(), glyphs.end(), glyph);
+  };
+  const std::vector<uint32_t> few = closureOf(font.get(), {{'e', 'i'}, {0x301, 0x301}});
+  EXPECT_TRUE(has(few, glyphOf(0xe9))) << "e with an acute is composed";
+  EXPECT_TRUE(has(few, glyphOf(0xfb03))) << "ffi";
+  EXPECT_TRUE(has(few, glyphOf(' ')) && has(few, glyphOf(0x2026)));
+  EXPECT_FALSE(has(few, glyphOf('a')));
+  EXPECT_FALSE(has(few, glyphOf(0xfb02))) << "fl needs an l";
+  EXPECT_LT(few.size(), 100u);
+  EXPECT_EQ(closureOf(font.get(), {}).front(), 0u);
+  uint32_t count = 2, two[3] = {7, 7, 7};
+  const GpgpCharacterRange letters = {'a', 'z'}, turned = {'z', 'a'}, high = {0, 0x110000};
+  EXPECT_EQ(gpgpGetGlyphClosure(font.get(), &letters, 1, &count, two), GPGP_INCOMPLETE);
+  EXPECT_GT(count, 26u);
+  EXPECT_EQ(two[0], 0u);
+  EXPECT_EQ(two[2], 7u) << "no more than there is room for";
+  EXPECT_EQ(gpgpGetGlyphClosure(font.get(), &turned, 1, &count, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpGetGlyphClosure(font.get(), &high, 1, &count, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpGetGlyphClosure(font.get(), nullptr, 1, &count, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpGetGlyphClosure(nullptr, &letters, 1, &count, nullptr), GPGP_ERROR_INVALID_HANDLE);
 }
 
 TEST(TextShape, ATextThatIsKnownCostsNoMemory) {
