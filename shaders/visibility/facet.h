@@ -56,16 +56,20 @@ GPGP_FN bool isNearerSomewhere(Facet a, Facet b) {
 }
 
 /// Whether all of a triangle lies outside the edge from u to v.
-GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v) {
+GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v, bool compact) {
   ivec2 slope = edgeSlope(u, v);
+  if (compact)
+    return edgeCompact(u, slope, c.p0) <= 0 && edgeCompact(u, slope, c.p1) <= 0 && edgeCompact(u, slope, c.p2) <= 0;
   return wideSign(edgeWide(u, slope, c.p0)) <= 0 && wideSign(edgeWide(u, slope, c.p1)) <= 0 &&
          wideSign(edgeWide(u, slope, c.p2)) <= 0;
 }
 
-/// Whether two triangles have area in common on the screen: no edge has all of the other outside.
+/// Whether two triangles that touch one pixel have area in common on the screen: no edge has all of the other outside.
 GPGP_FN bool overlap(Candidate a, Candidate b) {
-  return !(liesOutside(b, a.p0, a.p1) || liesOutside(b, a.p1, a.p2) || liesOutside(b, a.p2, a.p0) ||
-           liesOutside(a, b.p0, b.p1) || liesOutside(a, b.p1, b.p2) || liesOutside(a, b.p2, b.p0));
+  bool compact = isCompact(triangleOf(a)) && isCompact(triangleOf(b)); // then they are near enough for 32 bits
+  return !(liesOutside(b, a.p0, a.p1, compact) || liesOutside(b, a.p1, a.p2, compact) ||
+           liesOutside(b, a.p2, a.p0, compact) || liesOutside(a, b.p0, b.p1, compact) ||
+           liesOutside(a, b.p1, b.p2, compact) || liesOutside(a, b.p2, b.p0, compact));
 }
 
 /// Where one facet is nearer than another: in row r, left (side -1) or right (side 1) of column start + r * step;

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in; // kTeams * kBatch
 
 const uint kRanked = kBatch;
 const uint kTeams = 2u;
+const uint kSuspectsEach = 8u;
 #include "visibility/resolve.glsl"
 #include "visibility/facet.h"
 
@@ -16,6 +17,10 @@ shared uint boxes[kTeams][kBatch];
 shared uint sorted[kTeams][kBatch]; // their candidates
 shared uint doubtful[kTeams];       // bits: entries that the order may have wrong
 shared uint kept[kTeams];           // those of them that are seen
+shared uint shown[kTeams];          // those that other pixels showed
+shared uint suspects[kTeams][kBatch * kSuspectsEach]; // an entry and one that it may be in the wrong order with
+shared uint suspectCount[kTeams];
+shared uint moreSuspects;
 
 void putFacet(uint place, Facet f, uint candidate) {
   planes[team()][place] = vec4(f.plane, f.nearest);
@@ -44,22 +49,55 @@ Outline outlineAt(uint place) {
   return o;
 }
 
-/// Whether an entry that is not seen yet comes before one that covers it, or one behind it in the order before it.
-bool isDoubtful(uint place, uint n) {
-  uint id = ids[team()][place];
-  if ((bits[id >> 5u] & (1u << (id & 31u))) != 0u) return false;
+/// Bits: those that an entry may be in the wrong order with, by their depths alone. Entries that are shown already need
+/// no answer.
+uint suspectsOf(uint place, uint n) {
+  uint bit = 1u << place;
+  if ((shown[team()] & bit) != 0u) return 0u;
+  bool claimed = (seen[team()] & bit) != 0u;
+  float own = claimed ? farthest[team()][place] : planes[team()][place].w;
+  uint found = 0u;
+  for (uint j = 0u; j < n; ++j)
+    if (claimed ? planes[team()][j].w < own : own < farthest[team()][j]) found |= 1u << j;
+  return found & (claimed ? ~(bit | bit - 1u) : (1u << min(place, stops[team()])) - 1u);
+}
+
+/// Whether two entries are in the wrong order: one that is seen before one that is nearer, or one that is hidden
+/// behind one that is farther.
+bool isWrong(uint place, uint other) {
   bool claimed = (seen[team()] & (1u << place)) != 0u;
-  uint begin = claimed ? place + 1u : 0u;
-  uint end = claimed ? n : min(place, stops[team()]);
-  Facet own = facetAt(place);
-  for (uint j = begin; j < end; ++j) {
-    // Nearly all pairs are far enough from each other for this.
-    if (claimed ? planes[team()][j].w >= own.farthest : own.nearest >= farthest[team()][j]) continue;
-    Facet other = facetAt(j);
-    if (claimed ? !isNearerSomewhere(other, own) : !isNearerSomewhere(own, other)) continue;
-    if (overlap(readCandidate(sorted[team()][place]), readCandidate(sorted[team()][j]))) return true;
+  uint nearer = claimed ? other : place;
+  uint farther = claimed ? place : other;
+  return isNearerSomewhere(facetAt(nearer), facetAt(farther)) &&
+         overlap(readCandidate(sorted[team()][nearer]), readCandidate(sorted[team()][farther]));
+}
+
+/// Notes entries that the order may have wrong. Few have suspects: the pairs are shared out.
+void findDoubtful(uint n) {
+  uint lane = laneOf();
+  uint left = lane < n ? suspectsOf(lane, n) : 0u;
+  bool again = true;
+  while (again) {
+    if (lane == 0u) suspectCount[team()] = 0u;
+    if (gl_LocalInvocationIndex == 0u) moreSuspects = 0u;
+    barrier();
+    if (left != 0u) {
+      uint count = min(uint(bitCount(left)), kSuspectsEach);
+      uint first = atomicAdd(suspectCount[team()], count);
+      for (uint i = first; i < first + count; ++i) {
+        suspects[team()][i] = lane | uint(findLSB(left)) << 8u;
+        left &= left - 1u;
+      }
+      if (left != 0u) moreSuspects = 1u;
+    }
+    barrier();
+    for (uint i = lane; i < suspectCount[team()]; i += kBatch) {
+      uint place = suspects[team()][i] & 255u;
+      if (isWrong(place, suspects[team()][i] >> 8u)) atomicOr(doubtful[team()], 1u << place);
+    }
+    again = moreSuspects != 0u;
+    barrier();
   }
-  return false;
 }
 
 /// Whether an entry has a sample, in this invocation's rows, at which none of the others is nearer.
@@ -81,14 +119,14 @@ bool isAhead(uint place, uint n) {
 /// After the order has proposed which are seen: corrects that, and shows them.
 void settle(uint n) {
   uint lane = laneOf();
-  if (lane < n && isDoubtful(lane, n)) atomicOr(doubtful[team()], 1u << lane);
-  barrier();
+  findDoubtful(n);
   for (uint left = doubtful[team()]; left != 0u; left &= left - 1u) {
     uint place = uint(findLSB(left));
     if (isAhead(place, n)) atomicOr(kept[team()], 1u << place);
   }
   barrier();
-  if (((seen[team()] & ~doubtful[team()] | kept[team()]) & (1u << lane)) != 0u) show(ids[team()][lane]);
+  uint visible = (seen[team()] & ~doubtful[team()] | kept[team()]) & ~shown[team()];
+  if ((visible & (1u << lane)) != 0u) show(ids[team()][lane]);
 }
 
 /// A list that is one batch.
@@ -102,6 +140,7 @@ void resolveShort(uint begin, uint n, ivec2 pixel) {
   if (lane == 0u) {
     doubtful[team()] = 0u;
     kept[team()] = 0u;
+    shown[team()] = 0u;
   }
   if (lane < n) {
     items[team()][lane] = entries[begin + lane];
@@ -118,6 +157,7 @@ void resolveShort(uint begin, uint n, ivec2 pixel) {
   if (lane < n) {
     put(place, o, id);
     putFacet(place, f, items[team()][lane]);
+    if ((bits[id >> 5u] & (1u << (id & 31u))) != 0u) atomicOr(shown[team()], 1u << place);
   }
   uvec4 covered = uvec4(0u);
   lookAtBatch(n, covered);
