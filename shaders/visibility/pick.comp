@@ -53,11 +53,13 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
       if (groupSeen != 0u) {
         firstSeen = atomicAdd(counters.seenCount, groupSeen);
-        atomicMax(counters.seenArgs[0], min((firstSeen + groupSeen + 63u) / 64u, kMaxGroups));
+        uint groups = groupsFor(firstSeen + groupSeen, 64u);
+        if (counters.seenArgs[0] < groups) atomicMax(counters.seenArgs[0], groups);
       }
       if (groupBig != 0u) {
         firstBig = atomicAdd(counters.bigQueueCount, groupBig);
-        atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
+        uint groups = groupsFor(firstBig + groupBig, 64u);
+        if (counters.bigUnfoldArgs[0] < groups) atomicMax(counters.bigUnfoldArgs[0], groups);
       }
     }
     barrier();

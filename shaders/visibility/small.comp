@@ -52,7 +52,8 @@ void main() {
       } else if (fate == kClipped || (fate == kWhole && !empty)) {
         uint entry = atomicAdd(counters.queueCount, 1u);
         queue[entry] = start.x + local;
-        atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
+        uint groups = groupsFor(entry + 1u, 64u);
+        if (counters.unfoldArgs[0] < groups) atomicMax(counters.unfoldArgs[0], groups);
       }
       if (params.method == kExact) {
         bool reaches = fate == kClipped;
@@ -67,11 +68,13 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
       if (groupWinners != 0u) {
         firstWinner = atomicAdd(counters.winnerCount, groupWinners);
-        atomicMax(counters.winnerArgs[0], min((firstWinner + groupWinners + 63u) / 64u, kMaxGroups));
+        uint groups = groupsFor(firstWinner + groupWinners, 64u);
+        if (counters.winnerArgs[0] < groups) atomicMax(counters.winnerArgs[0], groups);
       }
       if (groupOnScreen != 0u) {
         firstOnScreen = atomicAdd(counters.onScreenCount, groupOnScreen);
-        atomicMax(counters.onScreenArgs[0], min((firstOnScreen + groupOnScreen + 63u) / 64u, kMaxGroups));
+        uint groups = groupsFor(firstOnScreen + groupOnScreen, 64u);
+        if (counters.onScreenArgs[0] < groups) atomicMax(counters.onScreenArgs[0], groups);
       }
     }
     barrier();
