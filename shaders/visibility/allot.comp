@@ -36,9 +36,8 @@ void main() {
     if (lane == 0u && sums[255].x != 0u) {
       first = uvec3(atomicAdd(counters.entryCount, sums[255].x), atomicAdd(counters.openCount, sums[255].y),
                     atomicAdd(counters.longCount, sums[255].z));
-      uvec2 groups = uvec2(groupsFor(first.y + sums[255].y, 2u), groupsFor(first.z + sums[255].z, 1u));
-      if (counters.openArgs[0] < groups.x) atomicMax(counters.openArgs[0], groups.x);
-      if (counters.longArgs[0] < groups.y) atomicMax(counters.longArgs[0], groups.y);
+      atomicMax(counters.openArgs[0], min(first.y + sums[255].y, kMaxGroups));
+      atomicMax(counters.longArgs[0], min(first.z + sums[255].z, kMaxGroups));
     }
     barrier();
     if (n != 0u) {

@@ -14,10 +14,9 @@ GPGP_CONST uint kClockwise = 2u;           ///< GPGP_DRAW_CLOCKWISE
 GPGP_CONST uint kMaxCameras = 8u;          ///< of one record
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
-GPGP_CONST uint kGroupStep = 32u;          ///< workgroups by which indirect dispatches grow
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
 GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle that found no record
-GPGP_CONST uint kMaxSlices = 256u;         ///< records, a workgroup each, that share one large triangle at most
+GPGP_CONST uint kMaxSlices = 1024u;        ///< records, a workgroup each, that share one large triangle at most
 GPGP_CONST uint kSliceBlocks = 64u;        ///< blocks of 8 x 8 pixels that one workgroup is given at least
 GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
 GPGP_CONST uint kExact = 1u;               ///< GPGP_SAMPLING_EXACT
@@ -245,13 +244,6 @@ struct Counters {
 };
 GPGP_CONST uint kCounterWords = 80u;
 GPGP_CONST uint kReportWords = 24u;
-
-/// Workgroups of an indirect dispatch over `count` items, `each` of them a workgroup, in steps: atomics of all workgroups
-/// at one word are slow, so one that adds items raises the number only when a step is full. What is too many does nothing.
-GPGP_FN uint groupsFor(uint count, uint each) {
-  uint step = each * kGroupStep;
-  return min((count / step + (count % step != 0u ? 1u : 0u)) * kGroupStep, kMaxGroups);
-}
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
 GPGP_FN uvec3 listGroups(uint listed) {

@@ -53,13 +53,11 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
       if (groupSeen != 0u) {
         firstSeen = atomicAdd(counters.seenCount, groupSeen);
-        uint groups = groupsFor(firstSeen + groupSeen, 64u);
-        if (counters.seenArgs[0] < groups) atomicMax(counters.seenArgs[0], groups);
+        atomicMax(counters.seenArgs[0], min((firstSeen + groupSeen + 63u) / 64u, kMaxGroups));
       }
       if (groupBig != 0u) {
         firstBig = atomicAdd(counters.bigQueueCount, groupBig);
-        uint groups = groupsFor(firstBig + groupBig, 64u);
-        if (counters.bigUnfoldArgs[0] < groups) atomicMax(counters.bigUnfoldArgs[0], groups);
+        atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
       }
     }
     barrier();

@@ -2,10 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
-layout(local_size_x = 32) in; // kBatch
 
 const uint kRanked = kSorted;
-const uint kTeams = 1u;
 #include "visibility/resolve.glsl"
 
 const uint kBins = kBatch * 4u;
@@ -50,13 +48,12 @@ uint binsOfBatch() {
   return fitting;
 }
 
-/// The farthest key up to which entries from `low` on are sorted together: at most kBatch, or those of a range of keys
-/// that holds more, at most kSorted; false where more have one and the same key.
+/// The farthest key up to which entries from `low` on are sorted together: at most kBatch, or at most kSorted of one and
+/// the same key; false where more have it.
 bool lastKey(uint begin, uint end, uint low, out uint high) {
   high = farthest;
   while (true) {
     uint shift = uint(max(findMSB(high - low) - 6, 0));
-    barrier();
     for (uint i = gl_LocalInvocationIndex; i < kBins; i += kBatch) bins[i] = 0u;
     barrier();
     for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kBatch) {
@@ -64,35 +61,36 @@ bool lastKey(uint begin, uint end, uint low, out uint high) {
       if (key >= low && key <= high) atomicAdd(bins[(key - low) >> shift], 1u);
     }
     barrier();
+    uint first = bins[0];
     uint fitting = binsOfBatch();
     if (fitting == kBins) return true;
     uint span = max(fitting, 1u) << shift;
     if (span <= high - low) high = low + span - 1u;
-    if (fitting != 0u || bins[0] <= kSorted) return true;
-    if (shift == 0u) return false;
+    if (fitting != 0u) return true;
+    if (shift == 0u) return first <= kSorted;
   }
 }
 
 /// Goes through entries whose items and keys are there; false once all samples are covered.
 bool resolveSorted(uint n, ivec2 pixel, inout uvec4 covered) {
-  uint lane = gl_LocalInvocationIndex;
-  uint ranks[kSorted / kBatch];
-  for (uint j = 0u; j < kSorted / kBatch; ++j) {
-    ranks[j] = kNoTriangle;
-    if (j * kBatch + lane < n) ranks[j] = rankOf(j * kBatch + lane, n);
-  }
+  uint lane = laneOf();
+  for (uint i = lane; i < n; i += kBatch) takeRank(rankOf(i, n));
   barrier();
-  if (ties[0] != 0u)
-    for (uint j = 0u; j < kSorted / kBatch; ++j)
-      if (j * kBatch + lane < n) ranks[j] += rankAmongSame(j * kBatch + lane, n);
-  for (uint first = 0u; first < n; first += kBatch) {
-    for (uint j = 0u; j < kSorted / kBatch; ++j) {
-      uint place = ranks[j] - first;
+  for (uint first = 0u; first < n; first += kBatch) { // more than one batch where all have the same key
+    for (uint i = lane; i < n; i += kBatch) {
+      uint place = rankOf(i, n);
+      if (ties != 0u) place += rankAmongSame(i, n);
+      place -= first;
       if (place >= kBatch) continue;
-      Candidate c = readCandidate(items[0][j * kBatch + lane]);
+      Candidate c = readCandidate(items[i]);
       put(place, outlineOf(c, pixel), c.id);
     }
-    if (!resolveBatch(min(n - first, kBatch), covered)) return false;
+    uint batch = min(n - first, kBatch);
+    lookAtBatch(batch, covered);
+    if ((seen & (1u << lane)) != 0u) show(ids[lane]);
+    bool more = holes != 0u;
+    barrier();
+    if (!more) return false;
   }
   return true;
 }
@@ -106,8 +104,8 @@ uint takeEntries(uint begin, uint end, uint low, uint high) {
     uint key = keyOf(begin, end, i);
     if (key < low || key > high) continue;
     uint place = atomicAdd(count, 1u);
-    items[0][place] = entries[i];
-    keys[0][place >> 2u][place & 3u] = key;
+    items[place] = entries[i];
+    keys[place >> 2u][place & 3u] = key;
   }
   barrier();
   return count;
@@ -117,7 +115,7 @@ uint takeEntries(uint begin, uint end, uint low, uint high) {
 void showRest(uint begin, uint end, uint low) {
   for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kBatch) {
     uint id = candidateId(entries[i]);
-    if (keyOf(begin, end, i) < low || (bits[id >> 5u] & (1u << (id & 31u))) != 0u) continue;
+    if (keyOf(begin, end, i) < low || isShown(id)) continue;
     show(id);
     atomicAdd(counters.unresolved, 1u);
   }
@@ -133,7 +131,9 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   uint most = 0u;
   for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kBatch) {
     Candidate c = readCandidate(entries[i]);
-    uint key = middleKey(c, outlineOf(c, pixel), pixel, params.reversedDepth != 0u);
+    ScreenTriangle t = triangleOf(c);
+    Footing footing = footingOf(t, isCompact(t), pixel);
+    uint key = middleKey(c, outlineOf(c, pixel), footing, pixel, params.reversedDepth != 0u);
     if (end - begin <= kSorted) listKeys[i - begin] = key;
     else entries[keyAt(i)] = key;
     least = min(least, key);

@@ -52,8 +52,7 @@ void main() {
       } else if (fate == kClipped || (fate == kWhole && !empty)) {
         uint entry = atomicAdd(counters.queueCount, 1u);
         queue[entry] = start.x + local;
-        uint groups = groupsFor(entry + 1u, 64u);
-        if (counters.unfoldArgs[0] < groups) atomicMax(counters.unfoldArgs[0], groups);
+        atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
       }
       if (params.method == kExact) {
         bool reaches = fate == kClipped;
@@ -68,13 +67,11 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
       if (groupWinners != 0u) {
         firstWinner = atomicAdd(counters.winnerCount, groupWinners);
-        uint groups = groupsFor(firstWinner + groupWinners, 64u);
-        if (counters.winnerArgs[0] < groups) atomicMax(counters.winnerArgs[0], groups);
+        atomicMax(counters.winnerArgs[0], min((firstWinner + groupWinners + 63u) / 64u, kMaxGroups));
       }
       if (groupOnScreen != 0u) {
         firstOnScreen = atomicAdd(counters.onScreenCount, groupOnScreen);
-        uint groups = groupsFor(firstOnScreen + groupOnScreen, 64u);
-        if (counters.onScreenArgs[0] < groups) atomicMax(counters.onScreenArgs[0], groups);
+        atomicMax(counters.onScreenArgs[0], min((firstOnScreen + groupOnScreen + 63u) / 64u, kMaxGroups));
       }
     }
     barrier();

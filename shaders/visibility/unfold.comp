@@ -14,8 +14,7 @@ bool addMedium(ScreenTriangle t, uint id) {
   if (place >= params.mediumRecords) return false;
   records[place].triangle = t;
   records[place].id = id;
-  uint groups = groupsFor(place + 1u, 1u);
-  if (counters.mediumArgs[0] < groups) atomicMax(counters.mediumArgs[0], groups);
+  atomicMax(counters.mediumArgs[0], min(place + 1u, kMaxGroups));
   return true;
 }
 
