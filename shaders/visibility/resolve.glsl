@@ -1,6 +1,6 @@
-// Decides a part of a pixel's list, front to back: a workgroup of 32 invocations, each of which holds two of the pixel's
-// 64 rows of 64 samples. A triangle with a sample that nothing before it covers is visible. Needs kRanked: how many
-// entries are sorted together.
+// Decides a part of a pixel's list, front to back: a workgroup of 32 invocations, each of which holds two of the
+// pixel's 64 rows of 64 samples. A triangle with a sample that nothing before it covers is visible. Needs kRanked: how
+// many entries are sorted together.
 layout(local_size_x = 32) in; // kBatch
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };

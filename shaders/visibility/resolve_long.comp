@@ -48,8 +48,8 @@ uint binsOfBatch() {
   return fitting;
 }
 
-/// The farthest key up to which entries from `low` on are sorted together: at most kBatch, or at most kSorted of one and
-/// the same key; false where more have it.
+/// The farthest key up to which entries from `low` on are sorted together: at most kBatch, or at most kSorted that have
+/// one and the same key; false where more have it.
 bool lastKey(uint begin, uint end, uint low, out uint high) {
   high = farthest;
   while (true) {
