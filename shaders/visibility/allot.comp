@@ -1,5 +1,5 @@
-// Gives each pixel's list its place: a workgroup sums the lengths of four tiles of 8 x 8 pixels and takes that much room,
-// and notes the pixels that have one: short lists from one end, long ones from the other.
+// Gives each pixel's list its place: a workgroup sums the lengths of four tiles of 8 x 8 pixels and takes that much
+// room, and notes the pixels that have one: short lists from one end, long ones from the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
