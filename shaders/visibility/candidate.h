@@ -75,15 +75,35 @@ GPGP_FN vec2 planeDepth(ScreenTriangle t, bool compact, ivec2 point) {
   return vec2(z, rounding);
 }
 
+/// The part of a triangle's box that lies in a pixel, and its plane there.
+struct Footing {
+  ivec2 low; ///< first and last unit
+  ivec2 high;
+  ivec2 middle;
+  float depth; ///< in the middle
+  vec2 slope;  ///< how it changes by unit
+  float reach; ///< how far from it the depths in the box lie at most
+};
+
+GPGP_FN Footing footingOf(ScreenTriangle t, bool compact, ivec2 pixel) {
+  Footing f;
+  f.low = max(min(t.p0, min(t.p1, t.p2)), pixel * 256);
+  f.high = min(max(t.p0, max(t.p1, t.p2)), pixel * 256 + 255);
+  f.middle = ivec2((f.low.x + f.high.x) >> 1, (f.low.y + f.high.y) >> 1);
+  vec2 depth = planeDepth(t, compact, f.middle);
+  f.depth = depth.x;
+  f.slope = depthSlope(t);
+  GPGP_PRECISE float reach =
+      (abs(f.slope.x) * float(f.high.x - f.low.x + 1) + abs(f.slope.y) * float(f.high.y - f.low.y + 1)) * 0.5f +
+      depth.y;
+  f.reach = reach;
+  return f;
+}
+
 /// The nearest that the part of a triangle's box that lies in a pixel comes, as a key.
 GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
-  ivec2 low = max(min(t.p0, min(t.p1, t.p2)), pixel * 256);
-  ivec2 high = min(max(t.p0, max(t.p1, t.p2)), pixel * 256 + 255);
-  vec2 depth = planeDepth(t, compact, ivec2((low.x + high.x) >> 1, (low.y + high.y) >> 1));
-  vec2 slope = depthSlope(t);
-  GPGP_PRECISE float reach =
-      (abs(slope.x) * float(high.x - low.x + 1) + abs(slope.y) * float(high.y - low.y + 1)) * 0.5f + depth.y;
-  GPGP_PRECISE float nearest = reversed ? depth.x + reach : depth.x - reach;
+  Footing f = footingOf(t, compact, pixel);
+  GPGP_PRECISE float nearest = reversed ? f.depth + f.reach : f.depth - f.reach;
   return depthKey(withinDepths(t, nearest), reversed);
 }
 
@@ -231,19 +251,17 @@ GPGP_FN uvec2 samplesIn(Outline o, int row) {
 }
 
 /// The depth of a candidate in a pixel, as a key: in the middle of the row that halves its box there.
-GPGP_FN uint middleKey(Candidate c, Outline outline, ivec2 pixel, bool reversed) {
+GPGP_FN uint middleKey(Candidate c, Outline outline, Footing f, ivec2 pixel, bool reversed) {
   ivec2 first = pixel * 256;
-  ivec2 low = max(min(c.p0, min(c.p1, c.p2)), first);
-  ivec2 high = min(max(c.p0, max(c.p1, c.p2)), first + 255);
-  ivec2 middle = ivec2((low.x + high.x) >> 1, (low.y + high.y) >> 1);
-  GPGP_PRECISE float row = float(middle.y - first.y - 2) * 0.25f;
+  GPGP_PRECISE float row = float(f.middle.y - first.y - 2) * 0.25f;
   vec2 columns = columnsOf(outline, row);
+  int column = f.middle.x;
   if (columns.x < columns.y) {
     GPGP_PRECISE float x = (columns.x + columns.y) * 2.0f;
-    middle.x = first.x + int(floor(x));
+    column = first.x + int(floor(x));
   }
-  ScreenTriangle t = triangleOf(c);
-  return depthKey(withinDepths(t, planeDepth(t, isCompact(t), middle).x), reversed);
+  GPGP_PRECISE float z = f.depth + f.slope.x * float(column - f.middle.x);
+  return depthKey(withinDepths(triangleOf(c), z), reversed);
 }
 
 GPGP_SHADER_END

@@ -17,26 +17,18 @@ struct Facet {
   ivec4 box; ///< first and last unit within the pixel: x, y, z, w; 0 to 255
 };
 
-GPGP_FN Facet facetOf(Candidate c, ivec2 pixel, bool reversed) {
-  ScreenTriangle t = triangleOf(c);
+GPGP_FN Facet facetOf(Candidate c, Footing box, ivec2 pixel, bool reversed) {
   ivec2 first = pixel * 256;
-  ivec2 low = max(min(c.p0, min(c.p1, c.p2)), first);
-  ivec2 high = min(max(c.p0, max(c.p1, c.p2)), first + 255);
-  ivec2 middle = ivec2((low.x + high.x) >> 1, (low.y + high.y) >> 1);
-  vec2 depth = planeDepth(t, isCompact(t), middle);
-  vec2 slope = depthSlope(t);
-  GPGP_PRECISE float reach =
-      (abs(slope.x) * float(high.x - low.x + 1) + abs(slope.y) * float(high.y - low.y + 1)) * 0.5f + depth.y;
-  GPGP_PRECISE float least = max(depth.x - reach, t.zMin);
-  GPGP_PRECISE float most = min(depth.x + reach, t.zMax);
+  GPGP_PRECISE float least = max(box.depth - box.reach, c.zMin);
+  GPGP_PRECISE float most = min(box.depth + box.reach, c.zMax);
   GPGP_PRECISE float atFirst =
-      depth.x + slope.x * float(first.x + 2 - middle.x) + slope.y * float(first.y + 2 - middle.y);
+      box.depth + box.slope.x * float(first.x + 2 - box.middle.x) + box.slope.y * float(first.y + 2 - box.middle.y);
   float side = reversed ? -1.0f : 1.0f;
   Facet f;
-  f.plane = vec3(atFirst * side, slope.x * 4.0f * side, slope.y * 4.0f * side);
+  f.plane = vec3(atFirst * side, box.slope.x * 4.0f * side, box.slope.y * 4.0f * side);
   f.nearest = reversed ? -most : least;
   f.farthest = reversed ? -least : most;
-  f.box = ivec4(low - first, high - first);
+  f.box = ivec4(box.low - first, box.high - first);
   return f;
 }
 
@@ -56,16 +48,20 @@ GPGP_FN bool isNearerSomewhere(Facet a, Facet b) {
 }
 
 /// Whether all of a triangle lies outside the edge from u to v.
-GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v) {
+GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v, bool compact) {
   ivec2 slope = edgeSlope(u, v);
+  if (compact)
+    return edgeCompact(u, slope, c.p0) <= 0 && edgeCompact(u, slope, c.p1) <= 0 && edgeCompact(u, slope, c.p2) <= 0;
   return wideSign(edgeWide(u, slope, c.p0)) <= 0 && wideSign(edgeWide(u, slope, c.p1)) <= 0 &&
          wideSign(edgeWide(u, slope, c.p2)) <= 0;
 }
 
-/// Whether two triangles have area in common on the screen: no edge has all of the other outside.
+/// Whether two triangles that touch one pixel have area in common on the screen: no edge has all of the other outside.
 GPGP_FN bool overlap(Candidate a, Candidate b) {
-  return !(liesOutside(b, a.p0, a.p1) || liesOutside(b, a.p1, a.p2) || liesOutside(b, a.p2, a.p0) ||
-           liesOutside(a, b.p0, b.p1) || liesOutside(a, b.p1, b.p2) || liesOutside(a, b.p2, b.p0));
+  bool compact = isCompact(triangleOf(a)) && isCompact(triangleOf(b)); // then they are near enough for 32 bits
+  return !(liesOutside(b, a.p0, a.p1, compact) || liesOutside(b, a.p1, a.p2, compact) ||
+           liesOutside(b, a.p2, a.p0, compact) || liesOutside(a, b.p0, b.p1, compact) ||
+           liesOutside(a, b.p1, b.p2, compact) || liesOutside(a, b.p2, b.p0, compact));
 }
 
 /// Where one facet is nearer than another: in row r, left (side -1) or right (side 1) of column start + r * step;

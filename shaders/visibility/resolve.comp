@@ -1,77 +1,109 @@
-// Two teams of a workgroup decide a pixel's list each, of at most kBatch. What the order by one depth each may have
-// wrong is decided by planes.
+// Decides a pixel's list of at most kBatch. What the order by one depth each may have wrong is decided by planes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
-layout(local_size_x = 64) in; // kTeams * kBatch
 
 const uint kRanked = kBatch;
-const uint kTeams = 2u;
-#include "visibility/resolve.glsl"
+const uint kSuspectsEach = 4u;
 #include "visibility/facet.h"
+#include "visibility/resolve.glsl"
 
-shared vec4 planes[kTeams][kBatch]; // facets of the sorted entries: plane, nearest
-shared float farthest[kTeams][kBatch];
-shared uint boxes[kTeams][kBatch];
-shared uint sorted[kTeams][kBatch]; // their candidates
-shared uint doubtful[kTeams];       // bits: entries that the order may have wrong
-shared uint kept[kTeams];           // those of them that are seen
+shared vec4 planes[kBatch]; // facets of the sorted entries: plane, nearest
+shared float farthest[kBatch];
+shared uint boxes[kBatch];
+shared uint shown;          // bits: entries that other pixels showed
+shared uint doubtful;       // those that the order may have wrong
+shared uint kept;           // those of them that are seen
+shared uint rivals[kBatch]; // for each entry: those that may hide a part of it
+shared uint suspects[kBatch * kSuspectsEach]; // an entry and one that it may be in the wrong order with
+shared uint suspectCount;
+shared uint more;
 
-void putFacet(uint place, Facet f, uint candidate) {
-  planes[team()][place] = vec4(f.plane, f.nearest);
-  farthest[team()][place] = f.farthest;
-  boxes[team()][place] = uint(f.box.x) | uint(f.box.y) << 8u | uint(f.box.z) << 16u | uint(f.box.w) << 24u;
-  sorted[team()][place] = candidate;
+void putFacet(uint place, Facet f) {
+  planes[place] = vec4(f.plane, f.nearest);
+  farthest[place] = f.farthest;
+  boxes[place] = uint(f.box.x) | uint(f.box.y) << 8u | uint(f.box.z) << 16u | uint(f.box.w) << 24u;
 }
 
 Facet facetAt(uint place) {
-  vec4 plane = planes[team()][place];
-  uint box = boxes[team()][place];
+  vec4 plane = planes[place];
+  uint box = boxes[place];
   Facet f;
   f.plane = plane.xyz;
   f.nearest = plane.w;
-  f.farthest = farthest[team()][place];
+  f.farthest = farthest[place];
   f.box = ivec4(box & 255u, box >> 8u & 255u, box >> 16u & 255u, box >> 24u);
   return f;
 }
 
-Outline outlineAt(uint place) {
-  Outline o;
-  o.start = starts[team()][place];
-  o.step = steps[team()][place];
-  o.rowBegin = rows[team()][place].x;
-  o.rowEnd = rows[team()][place].y;
-  return o;
+/// Bits: those that an entry may be in the wrong order with, by their depths alone. Entries that are shown already need
+/// no answer.
+uint suspectsOf(uint place, uint n) {
+  uint bit = 1u << place;
+  bool claimed = (seen & bit) != 0u;
+  float near = planes[place].w;
+  float far = farthest[place];
+  uint before = 0u; // all that are not behind it as a whole
+  uint after = 0u;  // all that are not before it as a whole
+  for (uint j = 0u; j < n; ++j) {
+    if (planes[j].w <= far) before |= 1u << j;
+    if (near < farthest[j]) after |= 1u << j;
+  }
+  rivals[place] = before & ~bit;
+  if ((shown & bit) != 0u) return 0u;
+  return claimed ? before & ~(bit | bit - 1u) : after & (1u << min(place, stops)) - 1u;
 }
 
-/// Whether an entry that is not seen yet comes before one that covers it, or one behind it in the order before it.
-bool isDoubtful(uint place, uint n) {
-  uint id = ids[team()][place];
-  if ((bits[id >> 5u] & (1u << (id & 31u))) != 0u) return false;
-  bool claimed = (seen[team()] & (1u << place)) != 0u;
-  uint begin = claimed ? place + 1u : 0u;
-  uint end = claimed ? n : min(place, stops[team()]);
-  Facet own = facetAt(place);
-  for (uint j = begin; j < end; ++j) {
-    // Nearly all pairs are far enough from each other for this.
-    if (claimed ? planes[team()][j].w >= own.farthest : own.nearest >= farthest[team()][j]) continue;
-    Facet other = facetAt(j);
-    if (claimed ? !isNearerSomewhere(other, own) : !isNearerSomewhere(own, other)) continue;
-    if (overlap(readCandidate(sorted[team()][place]), readCandidate(sorted[team()][j]))) return true;
+/// Whether two entries are in the wrong order: one that is seen before one that is nearer, or one that is hidden
+/// behind one that is farther.
+bool isWrong(uint place, uint other) {
+  bool claimed = (seen & (1u << place)) != 0u;
+  uint nearer = claimed ? other : place;
+  uint farther = claimed ? place : other;
+  return isNearerSomewhere(facetAt(nearer), facetAt(farther)) &&
+         overlap(readCandidate(items[nearer]), readCandidate(items[farther]));
+}
+
+/// Notes entries that the order may have wrong. Few have suspects: the pairs are shared out.
+void findDoubtful(uint n) {
+  uint lane = laneOf();
+  uint left = lane < n ? suspectsOf(lane, n) : 0u;
+  bool again = true;
+  while (again) {
+    if (lane == 0u) {
+      suspectCount = 0u;
+      more = 0u;
+    }
+    barrier();
+    if (left != 0u) {
+      uint count = min(uint(bitCount(left)), kSuspectsEach);
+      uint first = atomicAdd(suspectCount, count);
+      for (uint i = first; i < first + count; ++i) {
+        suspects[i] = lane | uint(findLSB(left)) << 8u;
+        left &= left - 1u;
+      }
+      if (left != 0u) more = 1u;
+    }
+    barrier();
+    for (uint i = lane; i < suspectCount; i += kBatch) {
+      uint place = suspects[i] & 255u;
+      if (isWrong(place, suspects[i] >> 8u)) atomicOr(doubtful, 1u << place);
+    }
+    again = more != 0u;
+    barrier();
   }
-  return false;
 }
 
 /// Whether an entry has a sample, in this invocation's rows, at which none of the others is nearer.
-bool isAhead(uint place, uint n) {
+bool isAhead(uint place) {
   int row = int(laneOf());
   Outline o = outlineAt(place);
   Facet own = facetAt(place);
-  uint id = ids[team()][place];
+  uint id = ids[place];
   uvec4 rest = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
-  for (uint j = 0u; j < n && (rest.x | rest.y | rest.z | rest.w) != 0u; ++j) {
-    if (j == place || planes[team()][j].w > own.farthest) continue;
-    Crossing crossing = crossingOf(facetAt(j), own, ids[team()][j] < id);
+  for (uint left = rivals[place]; left != 0u && (rest.x | rest.y | rest.z | rest.w) != 0u; left &= left - 1u) {
+    uint j = uint(findLSB(left));
+    Crossing crossing = crossingOf(facetAt(j), own, ids[j] < id);
     Outline other = outlineAt(j);
     rest &= ~uvec4(samplesAhead(other, crossing, row), samplesAhead(other, crossing, row + 32));
   }
@@ -81,43 +113,72 @@ bool isAhead(uint place, uint n) {
 /// After the order has proposed which are seen: corrects that, and shows them.
 void settle(uint n) {
   uint lane = laneOf();
-  if (lane < n && isDoubtful(lane, n)) atomicOr(doubtful[team()], 1u << lane);
-  barrier();
-  for (uint left = doubtful[team()]; left != 0u; left &= left - 1u) {
+  findDoubtful(n);
+  for (uint left = doubtful; left != 0u; left &= left - 1u) {
     uint place = uint(findLSB(left));
-    if (isAhead(place, n)) atomicOr(kept[team()], 1u << place);
+    if (isAhead(place)) atomicOr(kept, 1u << place);
   }
   barrier();
-  if (((seen[team()] & ~doubtful[team()] | kept[team()]) & (1u << lane)) != 0u) show(ids[team()][lane]);
+  uint visible = (seen & ~doubtful | kept) & ~shown;
+  if ((visible & (1u << lane)) != 0u) show(ids[lane]);
 }
 
-/// A list that is one batch.
-void resolveShort(uint begin, uint n, ivec2 pixel) {
+/// A pixel's list, and the entry of it that this invocation reads.
+struct List {
+  uint slot;
+  uint n;
+  uint item;
+};
+
+List listAt(uint i) {
+  List list;
+  list.slot = open[i];
+  list.n = slots[lengthAt(list.slot)];
+  uint end = slots[list.slot];
+  list.item = laneOf() < list.n ? entries[end - list.n + laneOf()] : 0u;
+  return list;
+}
+
+void resolveShort(List list) {
   uint lane = laneOf();
+  uint n = list.n;
+  ivec2 pixel = pixelOf(list.slot);
+  bool reversed = params.reversedDepth != 0u;
   Outline o;
   Facet f;
   uint id = 0u;
   uint place = 0u;
   clearRanks();
   if (lane == 0u) {
-    doubtful[team()] = 0u;
-    kept[team()] = 0u;
+    doubtful = 0u;
+    kept = 0u;
+    shown = 0u;
   }
   if (lane < n) {
-    items[team()][lane] = entries[begin + lane];
-    Candidate c = readCandidate(items[team()][lane]);
+    items[lane] = list.item;
+    Candidate c = readCandidate(list.item);
+    ScreenTriangle t = triangleOf(c);
+    Footing footing = footingOf(t, isCompact(t), pixel);
     o = outlineOf(c, pixel);
     id = c.id;
-    keys[team()][lane >> 2u][lane & 3u] = middleKey(c, o, pixel, params.reversedDepth != 0u);
-    f = facetOf(c, pixel, params.reversedDepth != 0u);
+    keys[lane >> 2u][lane & 3u] = middleKey(c, o, footing, pixel, reversed);
+    f = facetOf(c, footing, pixel, reversed);
   }
   barrier();
-  if (lane < n) place = rankOf(lane, n);
-  barrier();
-  if (ties[team()] != 0u && lane < n) place += rankAmongSame(lane, n);
   if (lane < n) {
+    place = rankOf(lane, n);
+    takeRank(place);
+  }
+  barrier();
+  if (ties != 0u) {
+    if (lane < n) place += rankAmongSame(lane, n);
+    barrier();
+  }
+  if (lane < n) {
+    items[place] = list.item;
     put(place, o, id);
-    putFacet(place, f, items[team()][lane]);
+    putFacet(place, f);
+    if (isShown(id)) atomicOr(shown, 1u << place);
   }
   uvec4 covered = uvec4(0u);
   lookAtBatch(n, covered);
@@ -126,11 +187,14 @@ void resolveShort(uint begin, uint n, ivec2 pixel) {
 
 void main() {
   uint pixels = counters.openCount;
-  for (uint first = gl_WorkGroupID.x * kTeams; first < pixels; first += gl_NumWorkGroups.x * kTeams) {
-    uint i = min(first + team(), pixels - 1u); // the last one may be decided twice
-    uint slot = open[i];
-    uint n = slots[lengthAt(slot)];
-    resolveShort(slots[slot] - n, n, pixelOf(slot));
+  uint i = gl_WorkGroupID.x;
+  if (i >= pixels) return;
+  List next = listAt(i);
+  while (i < pixels) {
+    List list = next;
+    i += gl_NumWorkGroups.x;
+    if (i < pixels) next = listAt(i); // reads that depend on each other: they arrive while this list is decided
+    resolveShort(list);
     barrier();
   }
 }

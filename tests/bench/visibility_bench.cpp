@@ -1,8 +1,9 @@
 // What each sampling method finds and costs, on the measured scenes: coverage and overestimation against the truth made
 // in the same run, GPU time by timestamps, and the ratio to standard sampling (the baseline).
 //
-//   visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] [--passes] [SCENE...]
-//                                       --crop: a window of that picture, whose pixels are as small as the picture's
+//   visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] [--passes] [--exact]
+//                    [SCENE...]         --crop: a window of that picture, whose pixels are as small as the picture's;
+//                                       --exact: without the thesis's method
 //   visibility_bench --figures [--grid N] [--cell N] [--tables] [...]
 //                                       the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)
 //   visibility_bench --walk [--grid N] [--cell N] [...]
@@ -31,7 +32,7 @@ using namespace gpgp::test;
 
 struct Options {
   uint32_t width = 160, height = 90, truth = 64, recheck = 0;
-  bool passes = false, figures = false, tables = false, views = false, walk = false;
+  bool passes = false, exactOnly = false, figures = false, tables = false, views = false, walk = false;
   FigureOptions figure;
   uint32_t crop[4] = {}; ///< width, height, left, top
   std::string out = ".";
@@ -136,6 +137,7 @@ bool benchScene(Runner& runner, const std::string& name, const Options& options)
   bench("standard", standard, {});
   Sampler exact = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1);
   bench("exact", exact, {.method = GPGP_SAMPLING_EXACT});
+  if (options.exactOnly) return good;
   // The thesis's method, with the epsilons that others were measured with.
   Sampler sampler = runner.sampler(GPGP_SAMPLING_CONSERVATIVE_BIT, 1);
   constexpr uint32_t kFront = GPGP_HEURISTICS_THESIS | GPGP_HEURISTIC_KEEP_FRONT;
@@ -207,6 +209,8 @@ int main(int argc, char** argv) {
       options.out = next();
     } else if (arg == "--passes") {
       options.passes = true;
+    } else if (arg == "--exact") {
+      options.exactOnly = true;
     } else if (arg == "--figures") {
       options.figures = true;
     } else if (arg == "--views") {

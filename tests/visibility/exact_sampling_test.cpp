@@ -80,6 +80,17 @@ TEST_F(VisibilityGpuTest, ExactOfTrianglesThroughAllPlanesEqualsTheTwin) {
   }
 }
 
+// A sheet that faces the camera: some seventy triangles in each pixel, all of exactly one depth.
+TEST_F(VisibilityGpuTest, ExactOfManyTrianglesOfOneDepthEqualsTheTwin) {
+  Scene scene = sheet(5, 48, 0.3f);
+  scene.addDraw(0);
+  scene.setCamera(perspective(1.0f, 1.0f, 0.05f, 10.0f) * lookAt({0, 0, 1.8f}, {0, 0, 0}), 8, 8);
+  const TwinResult twin = sampleExactOnCpu(scene.input());
+  EXPECT_GT(twin.counters.pairs, 64u * 8 * 8); // more than two batches a pixel
+  EXPECT_GT(twin.counters.visible, sampleOnCpu(scene.input()).counters.visible * 8);
+  expectEqual(sample(scene, {.method = GPGP_SAMPLING_EXACT}), twin, "sheet");
+}
+
 TEST_F(VisibilityGpuTest, TruthEqualsTheTwinSliceBySlice) {
   Scene scene = colonnadeWithWires(0.3f);
   setWalkingCamera(scene, {0.3f, 1.7f, 3}, {0, 1.5f, -10}, 48, 27, true);

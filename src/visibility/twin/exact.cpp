@@ -58,7 +58,8 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   std::vector<Sorted> sorted;
   for (const Entry& entry : list) {
     const Candidate& c = candidates[entry.candidate];
-    sorted.push_back({c, outlineOf(c, pixel), facetOf(c, pixel, reversed)});
+    const ScreenTriangle t = triangleOf(c);
+    sorted.push_back({c, outlineOf(c, pixel), facetOf(c, footingOf(t, isCompact(t), pixel), pixel, reversed)});
   }
   std::array<uvec2, 64> covered{};
   std::vector<bool> seen(sorted.size());
@@ -148,7 +149,9 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
           if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, isCompact(t), pixel)) continue;
           if (nearestKey(t, isCompact(t), pixel, reversed) > limit) continue;
           any = true;
-          lists[at(pixel)].push_back({index, middleKey(candidate, outlineOf(candidate, pixel), pixel, reversed)});
+          const Footing footing = footingOf(t, isCompact(t), pixel);
+          lists[at(pixel)].push_back(
+              {index, middleKey(candidate, outlineOf(candidate, pixel), footing, pixel, reversed)});
           ++out.counters.pairs;
         }
       if (any || piece.shared) candidates.push_back(candidate);
