@@ -420,6 +420,7 @@ GpgpResult Renderer::Impl::prepare(ImDrawData& data, VkCommandBuffer commands, c
   canvasInfo.itemCount = static_cast<uint32_t>(items.size());
   // ImGui mixes colours as they are encoded.
   canvasInfo.encodeSrgb = canvasInfo.blendSrgb = info.srgbTarget ? VK_FALSE : VK_TRUE;
+  canvasInfo.exactArea = VK_TRUE; // small letters want it
   canvasInfo.target = {image, view, format(), 0, 0, info.maxWidth, height(), kSampledBefore, kSampled};
   const GpgpResult result = canvas.recordPrepare(commands, frame, canvasInfo);
   ready = result == GPGP_SUCCESS;

@@ -192,6 +192,7 @@ public:
     info.items = items.data();
     info.itemCount = static_cast<uint32_t>(items.size());
     info.view = view_;
+    info.exactArea = VK_TRUE; // small letters want it
     need(canvas_.recordPrepare(commands, frames_.number(), info), "gpgpRecordPrepareCanvas");
 
     pass_.begin(commands, acquired->index, {0.02f, 0.03f, 0.05f, 1});

@@ -164,6 +164,7 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
   info.items = layer.items;
   info.itemCount = layer.parts;
   info.view = layer.view;
+  info.exactArea = VK_TRUE; // small letters want it
   const GpgpCanvasImage frameImage = frame_.image();
   if (&layer == &world_) {
     info.images = &frameImage;

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,15 @@ TEST(Screen, ScoreChangesOnlyItsBoxAndASettledFrameConvertsNothing) {
     }
   EXPECT_GT(inside, 100u);
   EXPECT_EQ(outside, 0u);
+  // Letters in one colour on a button in another have the area of their edges: 16 samples would mix in 17 ways.
+  const Box button = boxOf(before.text, std::string("menu        ") + kItems[3]);
+  std::set<std::array<uint8_t, 3>> colours;
+  for (unsigned y = button[1] + 4; y < button[3] - 4; ++y)
+    for (unsigned x = button[0] + 6; x < button[2] - 6; ++x) {
+      const uint8_t* p = &before.picture.rgba[4 * (size_t{y} * before.picture.width + x)];
+      colours.insert({p[0], p[1], p[2]});
+    }
+  EXPECT_GT(colours.size(), 40u);
 }
 
 TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {

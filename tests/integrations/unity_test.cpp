@@ -170,6 +170,7 @@ std::vector<uint8_t> drawDirectly(FakeUnity& unity, uint32_t width, uint32_t hei
   record.height = height;
   record.items = items;
   record.itemCount = 2;
+  record.exactArea = VK_TRUE;
   record.target = {texture.image,
                    view,
                    texture.format,

@@ -266,6 +266,7 @@ void Plugin::record(Surface& surface, const UnityVulkanRecordingState& state, co
   info.items = items.data();
   info.itemCount = static_cast<uint32_t>(items.size());
   std::copy_n(surface.background, 4, info.background);
+  info.exactArea = VK_TRUE; // small letters want it
   info.encodeSrgb = info.blendSrgb = (surface.flags & GPGP_UNITY_ENCODE_SRGB) ? VK_TRUE : VK_FALSE;
   info.target.image = image.image;
   info.target.view = view.view;
