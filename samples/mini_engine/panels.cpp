@@ -81,7 +81,7 @@ void addMap(Painter& painter, const Camera& camera, const std::vector<GpgpAxiom>
 
 void addDialogue(Painter& painter, const Game& game, const Pictures& pictures, float width) {
   static constexpr const char* kLines[] = {
-      "The east cylinder runs hot again. Climb to the roof, open the valve, and be back before the bells ring six.\n"
+      "The east cylinder runs hot again 🔥. Climb to the roof, open the valve, and be back before the bells ring six.\n"
       "الأسطوانة الشرقية ساخنة مرة أخرى. اصعد إلى السطح، وافتح الصمام، وعُد قبل أن تدق الأجراس السادسة.",
       "東のシリンダーがまた過熱している。屋上へ行って弁を開け、鐘が六つ鳴る前に戻ってきてくれ。\n"
       "If the gauge is past the red mark, do not touch the wheel with bare hands: take the long key from the workshop, "
@@ -134,7 +134,7 @@ void addInventory(Painter& painter, const Game& game) {
   static constexpr Thing kThings[Game::kSlots] = {
       {"Gear", "Fits the small crane and nothing else.", 12, Icon::gear},
       {"Lamp oil", "Burns for an hour.", 3, Icon::flask},
-      {"Long valve key", "Opens the pressure valve on the roof of the east cylinder, if the gauge allows.", 1,
+      {"Long valve key 🗝️", "Opens the pressure valve on the roof of the east cylinder, if the gauge allows.", 1,
        Icon::key},
       {"Coins", "What the city pays its guards.", 86, Icon::coins},
       {"Wrench", "Older than the engine.", 1, Icon::wrench},
@@ -144,7 +144,7 @@ void addInventory(Painter& painter, const Game& game) {
   };
   const Box all{0, 0, kInventory[0], kInventory[1]};
   constexpr float kBorder = static_cast<float>(FramePicture::kBorder) / static_cast<float>(FramePicture::kSide);
-  painter.slices(all, {0, {0, 0, 1, 1}, {kBorder, kBorder, kBorder, kBorder}, {15, 15, 15, 15}, {}, {}});
+  painter.slices(all, {kFrameImage, {0, 0, 1, 1}, {kBorder, kBorder, kBorder, kBorder}, {15, 15, 15, 15}, {}, {}});
   painter.text("Inventory", {24, 12, 240, 52}, {24, kText, true});
   painter.text("108 of 120", {240, 12, 416, 52}, {17, kMuted, false, GPGP_TEXT_ALIGN_RIGHT});
   for (uint32_t i = 0; i < Game::kSlots; ++i) {

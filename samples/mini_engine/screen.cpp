@@ -25,7 +25,8 @@ enum Tag : uint64_t { tagWorld, tagFront };
 
 Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& dataFolder, uint32_t score,
                uint32_t eyes)
-    : gpgp_(gpgp), text_(gpgp, dataFolder + "/fetched/fonts"), frame_(device), houses_(levelAxioms()), eyes_(eyes) {
+    : gpgp_(gpgp), text_(device, gpgp, dataFolder + "/fetched/fonts"), frame_(device), houses_(levelAxioms()),
+      eyes_(eyes) {
   world_.parts = eyes;
   game_.score = score;
   pictures_.crest = gpgp.loadSvg(dataFolder + "/svg/crest.svg", "crest");
@@ -165,11 +166,11 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
   info.itemCount = layer.parts;
   info.view = layer.view;
   info.exactArea = VK_TRUE; // small letters want it
-  const GpgpCanvasImage frameImage = frame_.image();
-  if (&layer == &world_) {
-    info.images = &frameImage;
-    info.imageCount = 1;
-  }
+  GpgpCanvasImage images[2] = {frame_.image()};
+  const std::optional<GpgpCanvasImage> text = text_.image();
+  if (text) images[kTextImage] = *text;
+  info.images = images;
+  info.imageCount = text ? 2 : 1;
   if (gpgp_.check(canvas_.recordPrepare(commands, frame, info), "gpgpRecordPrepareCanvas") == GPGP_SUCCESS)
     layer.prepared = true;
 }
@@ -177,6 +178,7 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
 void Screen::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   const uint64_t allocations = gpgp_.hostMemory.allocations();
   const Clock::time_point start = Clock::now();
+  text_.upload(commands, frame);
   record(commands, frame, world_);
   record(commands, frame, front_);
   if (frames_ != lastConversion_ && frames_ > 1) { // in the others texts are laid out, and lists make room

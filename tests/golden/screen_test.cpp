@@ -92,6 +92,16 @@ TEST(Screen, ScoreChangesOnlyItsBoxAndASettledFrameConvertsNothing) {
       colours.insert({p[0], p[1], p[2]});
     }
   EXPECT_GT(colours.size(), 40u);
+  // The flame in the dialogue's first line, a glyph that is a picture: nothing else is orange there.
+  if (!fs::exists(std::string(GPGP_TEST_DATA) + "/fetched/fonts/NotoColorEmoji.ttf")) return;
+  size_t orange = 0;
+  for (unsigned y = 287; y < 348; ++y)
+    for (unsigned x = 224; x < 495; ++x) {
+      const uint8_t* p = &before.picture.rgba[4 * (size_t{y} * before.picture.width + x)];
+      orange += p[0] > 180 && p[1] > 60 && p[1] < 200 && p[2] < 90;
+    }
+  EXPECT_GT(orange, 5u);
+  EXPECT_LT(orange, 120u);
 }
 
 TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
