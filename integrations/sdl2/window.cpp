@@ -295,9 +295,9 @@ std::vector<uint8_t> Screenshot::rgba() const {
 
 void Screenshot::save(const std::string& file) const {
   std::vector<uint8_t> pixels = rgba();
-  SDL_Surface* surface = SDL_CreateRGBSurfaceWithFormatFrom(pixels.data(), static_cast<int>(extent_.width),
-                                                            static_cast<int>(extent_.height), 32,
-                                                            static_cast<int>(extent_.width * 4), SDL_PIXELFORMAT_RGBA32);
+  SDL_Surface* surface = SDL_CreateRGBSurfaceWithFormatFrom(
+      pixels.data(), static_cast<int>(extent_.width), static_cast<int>(extent_.height), 32,
+      static_cast<int>(extent_.width * 4), SDL_PIXELFORMAT_RGBA32);
   const bool saved = surface && SDL_SaveBMP(surface, file.c_str()) == 0;
   SDL_FreeSurface(surface);
   if (!saved) throw std::runtime_error(file + ": " + SDL_GetError());

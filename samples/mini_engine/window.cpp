@@ -59,9 +59,7 @@ public:
         event.button.y = pointer_.y;
       } else {
         event.type = SDL_KEYDOWN;
-        event.key.keysym.sym = input.kind == Input::up     ? SDLK_UP
-                               : input.kind == Input::down ? SDLK_DOWN
-                                                           : SDLK_RETURN;
+        event.key.keysym.sym = input.kind == Input::up ? SDLK_UP : input.kind == Input::down ? SDLK_DOWN : SDLK_RETURN;
       }
       if (SDL_PushEvent(&event) != 1) throw std::runtime_error(std::string("no room for an event: ") + SDL_GetError());
     }
@@ -88,9 +86,10 @@ private:
   /// The window's own coordinates may be coarser than pixels.
   void moved(int x, int y) {
     const SDL_Point size = windowSize();
-    inputs_.push_back({Input::move, 0,
-                       (static_cast<float>(x) + 0.5f) * static_cast<float>(extent().width) / static_cast<float>(size.x),
-                       (static_cast<float>(y) + 0.5f) * static_cast<float>(extent().height) / static_cast<float>(size.y)});
+    inputs_.push_back(
+        {Input::move, 0,
+         (static_cast<float>(x) + 0.5f) * static_cast<float>(extent().width) / static_cast<float>(size.x),
+         (static_cast<float>(y) + 0.5f) * static_cast<float>(extent().height) / static_cast<float>(size.y)});
   }
   SDL_Point windowPoint(float x, float y) const {
     const SDL_Point size = windowSize();

@@ -163,6 +163,16 @@ TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
   EXPECT_LT(light(run.picture), 0.6 * light(still.picture));
 }
 
+/// Panels find room beside each other, and the inventory hangs in sight.
+TEST(Screen, NarrowPicturesShowAll) {
+  const Shown run = runScreen("narrow", "--frames 2 --size 270x480 --input 225x212");
+  EXPECT_EQ(happenings(run.text), "over slot 3\n");
+  const Box score = boxOf(run.text, "score "), menu = boxOf(run.text, "menu        Pause");
+  const double unit = (menu[2] - menu[0]) / 196.0;
+  EXPECT_GT(score[0], 380 * unit) << "right of the status";
+  EXPECT_LT(score[2], 270u);
+}
+
 /// In a window of a virtual display: its events go through SDL, and the window shows what the headless picture has.
 TEST(Screen, AWindowsEventsDriveTheMenu) {
   if (!GPGP_XVFB_RUN[0]) GTEST_SKIP() << "no xvfb-run (Debian: xvfb, xauth)";
@@ -173,14 +183,14 @@ TEST(Screen, AWindowsEventsDriveTheMenu) {
     return std::to_string((box[0] + box[2]) / 2) + "x" + std::to_string((box[1] + box[3]) / 2);
   };
   // By mouse, by keys from there, by mouse again: onto the item, and past all of them.
-  const std::string inputs = "--input " + middle("Night") + ",click,down,enter," + middle("Next line") +
-                             ",click,320x40,click";
+  const std::string inputs =
+      "--input " + middle("Night") + ",click,down,enter," + middle("Next line") + ",click,320x40,click";
   const Shown headless = runScreen("window-none", size + inputs);
   EXPECT_EQ(happenings(headless.text), "over Night\nchose Night\nhighlighted Hide inventory\nchose Hide inventory\n"
                                        "over Next line\nchose Next line\nover nothing\nnothing\n");
-  const Shown window = runScreen("window", "--window " + size + inputs, GPGP_TEST_DATA,
-                                 std::string("SDL_VIDEODRIVER=x11 \"") + GPGP_XVFB_RUN +
-                                     "\" -a -s \"-screen 0 1280x800x24\" ");
+  const Shown window =
+      runScreen("window", "--window " + size + inputs, GPGP_TEST_DATA,
+                std::string("SDL_VIDEODRIVER=x11 \"") + GPGP_XVFB_RUN + "\" -a -s \"-screen 0 1280x800x24\" ");
   // A click says where it is, too; the display's own pointer may have been somewhere before.
   EXPECT_NE(happenings(window.text)
                 .find("over Night\nover Night\nchose Night\nhighlighted Hide inventory\nchose Hide inventory\n"
