@@ -94,6 +94,7 @@ GpgpResult Plugin::layOut(Text& to, const GpgpUnityText& text) {
   for (const int32_t fallback : fonts_.at(text.font).fallbacks)
     if (fonts_.count(fallback)) numbers.push_back(fallback);
   std::vector<GpgpFont> fonts;
+  fonts.reserve(numbers.size());
   for (const int32_t number : numbers) fonts.push_back(fonts_.at(number).font);
   auto info = init<GpgpTextInfo>();
   info.text = text.text ? text.text : "";
