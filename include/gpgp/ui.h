@@ -38,22 +38,25 @@ GPGP_API void GPGP_CALL gpgpDestroyList(GpgpList list);
 /** Empties the list and its stack. Not beside records and hit tests that show it. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpResetList(GpgpList list);
 
-/** Pushes in each other; of these, GPGP_MAX_CLIP_DEPTH clips and GPGP_MAX_OPACITY_DEPTH groups, with those of a drawing
- *  that is added. */
+/** Pushes in each other, of all kinds; of these, GPGP_MAX_CLIP_DEPTH clips and GPGP_MAX_OPACITY_DEPTH groups, with
+ *  those of a drawing that is added. After each other there may be any number; what a record takes of them is in
+ *  GpgpCanvasCreateInfo's budgets. */
 enum { GPGP_MAX_LIST_DEPTH = 64 };
 
 /** What is added from here on lies in a space of its own, which this map takes to the space so far: x' = t0 x + t2 y +
  *  t4, y' = t1 x + t3 y + t5, and, where perspective (3 numbers) is not NULL, both divided by w = p0 x + p1 y + p2 as
- *  in GpgpCanvasItem. Moves and even scales cost nothing; each other change of transform counts for maxDrawings.
+ *  in GpgpCanvasItem. Moves and even scales cost nothing: they are applied to what is added, which must lie within
+ *  +-1e7 then, too. Each other change of transform counts for maxDrawings.
  *  Errors: INVALID_ARGUMENT (a number is not finite; too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushTransform(GpgpList list, const float* transform, const float* perspective);
 
-/** What is added from here on shows only inside of the box (left, top, right, bottom, in the current space), and of
- *  those around it. Round corners, if radii is not NULL: as GpgpListShape's. Where box and canvas are parallel (the
- *  transforms move, scale, mirror or turn by quarters) and corners are not round, a scissor that costs next to nothing;
- *  else (turned, skewed, in perspective) the clip goes with its box, counts as a shape (maxShapes, maxPatches) and
- *  costs the pixels on its edge more. Either way edges are smooth, sample by sample, as those of any path.
- *  Errors: INVALID_ARGUMENT (not a number, right below left; too deep). @threads handle @lifetime call */
+/** What is added from here on shows only inside of the box (left, top, right, bottom, in the current space, within
+ *  +-1e7 before and after the moves and even scales pushed around it), and of those around it. Round corners, if radii
+ *  is not NULL: as GpgpListShape's. Where box and canvas are parallel (the transforms move, scale, mirror or turn by
+ *  quarters) and corners are not round, a scissor that costs next to nothing; else (turned, skewed, in perspective) the
+ *  clip goes with its box, counts as a shape (maxShapes, maxPatches) and costs the pixels on its edge more. Either way
+ *  edges are smooth, sample by sample, as those of any path.
+ *  Errors: INVALID_ARGUMENT (not a number, beyond 1e7, right below left; too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, const float* radii);
 
 /** Multiplies the alpha of each thing that is added from here on, one by one: what overlaps shows through.
@@ -90,7 +93,7 @@ enum {
 /** What of an image a shape shows, and where its edges go: all borders 0: evenly over the box, else nine-slice. */
 typedef struct GpgpListImage {
   uint32_t image;         /**< in GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES */
-  float source[4];        /**< left, top, right, bottom in texture coordinates (0 to 1 over the image) */
+  float source[4];        /**< left, top, right, bottom in texture coordinates (0 to 1 over the image), within +-1e6 */
   float sourceBorders[4]; /**< left, top, right, bottom: how far from the source's sides its borders end, texture
                                coordinates, 0 to its extent */
   float borders[4];       /**< the same for the box; where two do not find room, both shrink. Corners keep this size,
@@ -100,7 +103,8 @@ typedef struct GpgpListImage {
                           may not be 0. Not used where it is stretched */
 } GpgpListImage;
 
-/** A rectangle, ellipse or line. Coordinates within +-1e7, in the current space. */
+/** A rectangle, ellipse or line. Coordinates, radii and width within +-1e7 in the current space, and after the moves
+ *  and even scales pushed. */
 typedef struct GpgpListShape {
   GpgpListShapeKind kind;
   float box[4];   /**< left, top, right, bottom; a line: x, y of its begin and of its end */
@@ -115,7 +119,8 @@ typedef struct GpgpListShape {
 } GpgpListShape;
 
 /** Paints shapes on top of what is in the list. A filled shape with a border is two. Errors, after which none is added:
- *  INVALID_ARGUMENT (shape in the message), OUT_OF_HOST_MEMORY. @threads handle @lifetime call */
+ *  INVALID_ARGUMENT (shape in the message), UNSUPPORTED (2^32 of them), OUT_OF_HOST_MEMORY.
+ *  @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddShapes(GpgpList list, const GpgpListShape* shapes, uint32_t count);
 
 /** Paints glyphs on top of what is in the list, in the current space.

@@ -1,5 +1,6 @@
 #include "gpgp_glyph_cache.hpp"
 
+#include <algorithm>
 #include <deque>
 
 namespace gpgp::integration {
@@ -37,92 +38,180 @@ struct Outline {
   }
 };
 
-GpgpResult fetch(const FontGlyph& glyph, Outline& outline) {
+/// gpgpGetGlyphOutline; the callback is any function.
+template <class Take> GpgpResult fetch(GpgpFont font, uint32_t glyph, Take&& take) {
   GpgpGlyphOutlineInfo info = GPGP_GLYPH_OUTLINE_INFO_INIT;
-  info.glyph = glyph.glyph;
+  info.glyph = glyph;
   return gpgpGetGlyphOutline(
-      glyph.font, &info, [](void* user, const GpgpGlyphOutline* given) { static_cast<Outline*>(user)->take(*given); },
-      &outline);
+      font, &info, [](void* user, const GpgpGlyphOutline* given) { (*static_cast<Take*>(user))(*given); }, &take);
 }
 
 } // namespace
 
-GpgpResult GlyphCache::create(GpgpContext context, const char* label, uint32_t maxGlyphs, VkDeviceSize maxBytes) {
+void PlacedText::clear() {
+  glyphs.clear();
+  pictures.clear();
+  dropped = 0;
+}
+
+std::array<float, 4> inkBox(GpgpFont font, uint32_t glyph) {
+  std::array<float, 4> box{};
+  fetch(font, glyph, [&box](const GpgpGlyphOutline& outline) {
+    std::copy_n(outline.image ? outline.image->box : outline.box, 4, box.begin());
+  });
+  return box;
+}
+
+GpgpResult GlyphCache::create(const GlyphCacheInfo& wanted) {
   auto info = init<GpgpGlyphSetCreateInfo>();
-  info.label = label;
-  info.maxGlyphs = maxGlyphs;
-  info.maxBytes = maxBytes;
-  Result<GlyphSet> made = GlyphSet::create(context, info);
-  const GpgpResult code = made.code();
-  if (made) set_ = *std::move(made);
-  return code;
+  info.label = wanted.label;
+  info.maxGlyphs = wanted.maxGlyphs;
+  info.maxBytes = wanted.maxBytes;
+  Result<GlyphSet> made = GlyphSet::create(wanted.context, info);
+  if (!made) return made.code();
+  set_ = *std::move(made);
+  if (wanted.pictureDevice.device)
+    pictures_ = std::make_unique<GlyphPictures>(wanted.pictureDevice, wanted.maxPictures);
+  return GPGP_SUCCESS;
 }
 
-uint64_t GlyphCache::key(const FontGlyph& glyph) {
-  const auto [at, isNew] = fonts_.try_emplace(glyph.font, nextFont_);
-  if (isNew) ++nextFont_;
-  return uint64_t{at->second} << 32 | glyph.glyph;
+const GlyphCache::FontEntry& GlyphCache::entryOf(GpgpFont font) {
+  const auto [at, isNew] = fonts_.try_emplace(font);
+  if (isNew) {
+    GpgpFontInfo info = GPGP_FONT_INFO_INIT;
+    const bool known = gpgpGetFontInfo(font, &info) == GPGP_SUCCESS;
+    at->second = {nextFont_++, known && (info.colors & GPGP_FONT_COLOR_BITMAPS) != 0};
+  }
+  return at->second;
 }
 
-GpgpResult GlyphCache::find(std::span<const FontGlyph> glyphs, uint32_t* indices) {
-  if (glyphs.empty()) return GPGP_SUCCESS;
+/// keys_ and indices_ of all; those that the set has not are added.
+GpgpResult GlyphCache::findGlyphs(std::span<const GpgpTextGlyph> glyphs) {
   keys_.clear();
-  for (const FontGlyph& glyph : glyphs) keys_.push_back(key(glyph));
+  for (const GpgpTextGlyph& glyph : glyphs) keys_.push_back(uint64_t{entryOf(glyph.font).number} << 32 | glyph.glyph);
+  indices_.assign(glyphs.size(), GPGP_GLYPH_NONE);
   const auto count = static_cast<uint32_t>(glyphs.size());
-  const GpgpResult found = set_.find(keys_.data(), count, indices);
+  const GpgpResult found = set_.find(keys_.data(), count, indices_.data());
   if (found != GPGP_INCOMPLETE) return found;
-  std::vector<FontGlyph> missing;
-  std::vector<uint64_t> missingKeys;
-  std::unordered_map<uint64_t, bool> met;
-  for (uint32_t i = 0; i < count; ++i)
-    if (indices[i] == GPGP_GLYPH_NONE && met.emplace(keys_[i], true).second) {
-      missing.push_back(glyphs[i]);
-      missingKeys.push_back(keys_[i]);
-    }
-  const GpgpResult added = add(missing, missingKeys);
+  const GpgpResult added = addGlyphs(glyphs);
   if (added < 0) return added;
-  const GpgpResult again = set_.find(keys_.data(), count, indices);
+  const GpgpResult again = set_.find(keys_.data(), count, indices_.data());
   return again == GPGP_INCOMPLETE ? added : again;
 }
 
-GpgpResult GlyphCache::add(std::span<const FontGlyph> glyphs, std::span<const uint64_t> keys) {
+/// Those without an index. Pictures are blanks in the set.
+GpgpResult GlyphCache::addGlyphs(std::span<const GpgpTextGlyph> glyphs) {
   std::deque<Outline> outlines;
   std::vector<GpgpGlyph> made;
+  std::unordered_map<uint64_t, bool> met;
   for (size_t i = 0; i < glyphs.size(); ++i) {
+    if (indices_[i] != GPGP_GLYPH_NONE || !met.emplace(keys_[i], true).second) continue;
     Outline& outline = outlines.emplace_back();
-    const GpgpResult result = fetch(glyphs[i], outline);
+    const GpgpResult result =
+        fetch(glyphs[i].font, glyphs[i].glyph, [&outline](const GpgpGlyphOutline& given) { outline.take(given); });
     if (result < 0) return result;
     made.push_back(
-        {keys[i], outline.paths.data(), static_cast<uint32_t>(outline.paths.size()), outline.foreground.data()});
+        {keys_[i], outline.paths.data(), static_cast<uint32_t>(outline.paths.size()), outline.foreground.data()});
   }
-  std::vector<uint32_t> indices(made.size());
-  return set_.add(made.data(), static_cast<uint32_t>(made.size()), indices.data());
+  std::vector<uint32_t> added(made.size());
+  return set_.add(made.data(), static_cast<uint32_t>(made.size()), added.data());
 }
 
-GpgpResult GlyphCache::place(const GpgpLayoutInfo& layout, float x, float y, float scale,
-                             std::vector<GpgpGlyphInstance>& out) {
-  wanted_.clear();
-  for (uint32_t i = 0; i < layout.glyphCount; ++i) wanted_.push_back({layout.glyphs[i].font, layout.glyphs[i].glyph});
-  indices_.assign(layout.glyphCount, GPGP_GLYPH_NONE);
-  const GpgpResult result = find(wanted_, indices_.data());
+/// Its picture in the texture; null: it is none, or BUDGET_EXCEEDED.
+GpgpResult GlyphCache::findPicture(const GpgpTextGlyph& glyph, uint64_t key, const Picture*& found) {
+  const auto [at, isNew] = pictureGlyphs_.try_emplace(key);
+  Picture& picture = at->second;
+  const bool there = picture.place != GlyphPictures::kNone && pictures_->owner(picture.place) == picture.owner;
+  GpgpResult result = GPGP_SUCCESS;
+  if (isNew || (picture.is && !there)) {
+    if (!isNew && pictures_->full()) return GPGP_BUDGET_EXCEEDED; // without decoding it again in every frame
+    picture.place = GlyphPictures::kNone;
+    const GpgpResult fetched = fetch(glyph.font, glyph.glyph, [&](const GpgpGlyphOutline& outline) {
+      picture.is = outline.image != nullptr;
+      if (!picture.is) return;
+      std::copy_n(outline.image->box, 4, picture.box);
+      result = pictures_->add(*outline.image, picture.place);
+    });
+    if (fetched < 0) {
+      pictureGlyphs_.erase(at); // not known yet
+      return fetched;
+    }
+    if (result != GPGP_SUCCESS) return result;
+    if (picture.is) picture.owner = pictures_->owner(picture.place);
+  }
+  if (picture.is) {
+    pictures_->use(picture.place);
+    found = &picture;
+  }
+  return GPGP_SUCCESS;
+}
+
+GpgpResult GlyphCache::place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text) {
+  if (glyphs.empty()) return GPGP_SUCCESS;
+  GpgpResult result = findGlyphs(glyphs);
   if (result < 0) return result;
-  for (uint32_t i = 0; i < layout.glyphCount; ++i) {
-    const GpgpTextGlyph& from = layout.glyphs[i];
-    GpgpGlyphInstance to{indices_[i], x + from.x * scale, y + from.y * scale, from.size * scale, {}};
-    for (int c = 0; c < 4; ++c) to.color[c] = from.color[c];
-    out.push_back(to);
+  for (size_t i = 0; i < glyphs.size(); ++i) {
+    const GpgpTextGlyph& from = glyphs[i];
+    const float left = x + from.x * scale, top = y + from.y * scale, size = from.size * scale;
+    if (pictures_ && entryOf(from.font).pictures) {
+      const Picture* picture = nullptr;
+      const GpgpResult found = findPicture(from, keys_[i], picture);
+      if (found < 0) return found;
+      if (found == GPGP_BUDGET_EXCEEDED) {
+        ++text.dropped;
+        result = found;
+        continue;
+      }
+      if (picture) {
+        PlacedPicture& to = text.pictures.emplace_back();
+        for (size_t side = 0; side < 4; ++side) to.box[side] = (side % 2 == 0 ? left : top) + picture->box[side] * size;
+        std::copy_n(pictures_->source(picture->place).begin(), 4, to.source);
+        to.alpha = from.color[3];
+        continue;
+      }
+    }
+    if (indices_[i] == GPGP_GLYPH_NONE) {
+      ++text.dropped;
+      continue;
+    }
+    GpgpGlyphInstance& to = text.glyphs.emplace_back(GpgpGlyphInstance{indices_[i], left, top, size, {}});
+    std::copy_n(from.color, 4, to.color);
   }
   return result;
 }
 
-GpgpCanvasItem GlyphCache::item(std::span<const GpgpGlyphInstance> instances) const {
-  GpgpCanvasItem item{};
-  item.transform[0] = item.transform[3] = 1;
-  item.opacity = 1;
-  item.glyphSet = set_;
-  item.glyphs = instances.data();
-  item.glyphCount = static_cast<uint32_t>(instances.size());
-  return item;
+GpgpResult GlyphCache::addTo(GpgpList list, const PlacedText& text, uint32_t image, uint64_t id) const {
+  if (!text.glyphs.empty()) {
+    const auto count = static_cast<uint32_t>(text.glyphs.size());
+    if (const GpgpResult added = gpgpAddText(list, set_, text.glyphs.data(), count, id); added < 0) return added;
+  }
+  for (const PlacedPicture& picture : text.pictures) {
+    GpgpListImage from{};
+    from.image = image;
+    std::copy_n(picture.source, 4, from.source);
+    GpgpListShape shape{};
+    shape.kind = GPGP_LIST_RECTANGLE;
+    std::copy_n(picture.box, 4, shape.box);
+    std::fill_n(shape.color, 3, 1.0f);
+    shape.color[3] = picture.alpha;
+    shape.image = &from;
+    shape.id = id;
+    if (const GpgpResult added = gpgpAddShapes(list, &shape, 1); added < 0) return added;
+  }
+  return GPGP_SUCCESS;
+}
+
+GpgpResult GlyphCache::recordUpload(VkCommandBuffer commands, const GpgpFrame& frame) {
+  return pictures_ ? pictures_->recordUpload(commands, frame) : GPGP_SUCCESS;
+}
+
+std::optional<GpgpCanvasImage> GlyphCache::image() const { return pictures_ ? pictures_->image() : std::nullopt; }
+
+void GlyphCache::forget(GpgpFont font) {
+  const auto found = fonts_.find(font);
+  if (found == fonts_.end()) return;
+  std::erase_if(pictureGlyphs_, [&](const auto& entry) { return entry.first >> 32 == found->second.number; });
+  fonts_.erase(found);
 }
 
 } // namespace gpgp::integration

@@ -1,46 +1,90 @@
-// What lies between libgpgp_text and a canvas: glyphs of fonts in a glyph set, converted when they are first met.
+// What lies between libgpgp_text and a canvas: glyphs of fonts, converted when they are first met, into a glyph set,
+// or into a texture where they are pictures.
 //
-//   cache.place(layoutInfo, x, y, 1, instances);    each frame, before gpgpRecordUpload
-//   cache.item(instances)                           for GpgpCanvasInfo::items
+//   cache.place(layoutInfo, x, y, 1, text);     each frame, before the uploads
+//   cache.addTo(list, text);                    for GpgpCanvasItem::list
+//   cache.recordUpload(commands, frame);        beside gpgpRecordUpload
+//   cache.image()                               for GpgpCanvasInfo::images
 //
-// A glyph in colour is shown with its layers and gradients, but not at all where it is a picture. One context's;
-// @threads context. Fonts that were given stay open until the cache goes, or are forgotten.
+// One context's; @threads context. Fonts that were given stay open until the cache goes, or are forgotten.
 #pragma once
-#include <gpgp/gpgp.hpp>
+#include "gpgp_glyph_pictures.hpp"
 
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 namespace gpgp::integration {
 
-struct FontGlyph {
-  GpgpFont font = nullptr;
-  uint32_t glyph = 0;
+struct GlyphCacheInfo {
+  GpgpContext context = nullptr;
+  const char* label = "glyphs";
+  uint32_t maxGlyphs = 0; ///< budgets of the glyph set (GpgpGlyphSetCreateInfo; 0: that struct's defaults)
+  VkDeviceSize maxBytes = 0;
+  PictureDevice pictureDevice; ///< the context's device; none: glyphs that are pictures are not shown
+  uint32_t maxPictures = 64;   ///< at a time (gpgp_glyph_pictures.hpp)
 };
+
+/// A glyph that is a picture, in the units of the text.
+struct PlacedPicture {
+  float box[4] = {};    ///< left, top, right, bottom
+  float source[4] = {}; ///< of the texture
+  float alpha = 1;
+};
+
+/// Glyphs at their places. Valid in the frame in which they were placed; as long as all that is shown fits the
+/// budgets, in all later ones, too.
+struct PlacedText {
+  std::vector<GpgpGlyphInstance> glyphs;
+  std::vector<PlacedPicture> pictures;
+  uint32_t dropped = 0; ///< found no room in the set or the texture
+  void clear();
+};
+
+/// Where a glyph's paths or its picture lie, in em: left, top, right, bottom; all 0: a blank.
+std::array<float, 4> inkBox(GpgpFont font, uint32_t glyph);
 
 class GlyphCache {
 public:
-  /// The glyph set, with its budgets (GpgpGlyphSetCreateInfo; 0: that struct's defaults).
-  GpgpResult create(GpgpContext context, const char* label, uint32_t maxGlyphs = 0, VkDeviceSize maxBytes = 0);
+  GpgpResult create(const GlyphCacheInfo& info);
   GpgpAsset set() const { return set_; }
-  /// Indices in the set, valid until the next call that adds. BUDGET_EXCEEDED: some are GPGP_GLYPH_NONE.
-  GpgpResult find(std::span<const FontGlyph> glyphs, uint32_t* indices);
-  /// Appends the glyphs of a layout, its origin at (x, y), times scale. Errors and statuses as find.
-  GpgpResult place(const GpgpLayoutInfo& layout, float x, float y, float scale, std::vector<GpgpGlyphInstance>& out);
-  /// Instances as an item, in pixels.
-  GpgpCanvasItem item(std::span<const GpgpGlyphInstance> instances) const;
+  /// Appends glyphs, moved by (x, y) after they were scaled: of each font, glyph, x, y, size and color count.
+  /// BUDGET_EXCEEDED: some are not there, and counted.
+  GpgpResult place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text);
+  GpgpResult place(const GpgpLayoutInfo& layout, float x, float y, float scale, PlacedText& text) {
+    return place({layout.glyphs, layout.glyphCount}, x, y, scale, text);
+  }
+  /// Adds them to a list: image() is the image of this number (GpgpListImage::image).
+  GpgpResult addTo(GpgpList list, const PlacedText& text, uint32_t image = 0, uint64_t id = 0) const;
+  /// New pictures, before the records that show them. Glyphs go with gpgpRecordUpload. @pass outside
+  GpgpResult recordUpload(VkCommandBuffer commands, const GpgpFrame& frame);
+  /// Nothing as long as no picture was uploaded.
+  std::optional<GpgpCanvasImage> image() const;
   /// Before a font is destroyed that was given: another at the same address is another font.
-  void forget(GpgpFont font) { fonts_.erase(font); }
+  void forget(GpgpFont font);
 
 private:
-  GpgpResult add(std::span<const FontGlyph> glyphs, std::span<const uint64_t> keys);
-  uint64_t key(const FontGlyph& glyph);
+  struct FontEntry {
+    uint32_t number = 0;
+    bool pictures = false; ///< may have some
+  };
+  struct Picture { ///< of a glyph of such a font
+    bool is = false;
+    float box[4] = {}; ///< em
+    uint32_t place = GlyphPictures::kNone;
+    uint64_t owner = 0; ///< of the place, when it was this picture's
+  };
+  const FontEntry& entryOf(GpgpFont font);
+  GpgpResult findGlyphs(std::span<const GpgpTextGlyph> glyphs);
+  GpgpResult addGlyphs(std::span<const GpgpTextGlyph> glyphs);
+  GpgpResult findPicture(const GpgpTextGlyph& glyph, uint64_t key, const Picture*& found);
   GlyphSet set_;
-  std::unordered_map<GpgpFont, uint32_t> fonts_;
+  std::unique_ptr<GlyphPictures> pictures_;
+  std::unordered_map<GpgpFont, FontEntry> fonts_;
+  std::unordered_map<uint64_t, Picture> pictureGlyphs_;
   uint32_t nextFont_ = 0;
   std::vector<uint64_t> keys_;
-  std::vector<FontGlyph> wanted_;
   std::vector<uint32_t> indices_;
 };
 

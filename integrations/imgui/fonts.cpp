@@ -3,6 +3,8 @@
 // descent together, the baseline lies on a pixel), so that windows keep their layout.
 #include "fonts.h"
 
+#include "gpgp_glyph_cache.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -114,13 +116,9 @@ bool FontBuilder::addGlyphs(ImFontConfig& config, const Font& font, float em, co
       if (layout_.set(text) < 0) return false;
       const Result<GpgpCaret> end = layout_.caret(static_cast<uint32_t>(bytes.size()));
       AtlasGlyph entry{font, *glyph};
-      auto wanted = init<GpgpGlyphOutlineInfo>();
-      wanted.glyph = *glyph;
-      bool ink = false;
-      font.outline(wanted, [&](const GpgpGlyphOutline& outline) {
-        std::copy(std::begin(outline.box), std::end(outline.box), entry.box);
-        ink = outline.pathCount > 0 && entry.box[0] < entry.box[2] && entry.box[1] < entry.box[3];
-      });
+      const std::array<float, 4> box = integration::inkBox(font, *glyph);
+      std::copy(box.begin(), box.end(), entry.box);
+      const bool ink = box[0] < box[2] && box[1] < box[3];
       const ImVec2 offset{config.GlyphOffset.x, config.GlyphOffset.y + std::round(to.Ascent)};
       const float advance = end ? end->x : 0.0f;
       if (!ink) {

@@ -40,6 +40,7 @@ struct RendererInfo {
   uint32_t maxDrawings = 64;                  ///< widgets of one frame; at most 7 different drawings
   uint32_t glyphSetGlyphs = 0;                ///< kept, of all fonts (GpgpGlyphSetCreateInfo::maxGlyphs)
   VkDeviceSize glyphSetBytes = 0;
+  uint32_t maxPictures = 64; ///< kept: glyphs that are pictures, as bitmap emoji are; 136 KB each once there is one
 };
 
 /// What the last prepare did. What did not fit a budget was not drawn, and is counted here.
@@ -47,7 +48,7 @@ struct FrameReport {
   uint32_t glyphs = 0;  ///< drawn
   uint32_t pieces = 0;  ///< draw callbacks
   uint32_t layers = 0;  ///< of the canvas
-  uint32_t dropped = 0; ///< glyphs and widgets beyond maxGlyphs, maxDrawings, maxLayers or the glyph set
+  uint32_t dropped = 0; ///< glyphs and widgets beyond maxGlyphs, maxDrawings, maxLayers or what is kept
 };
 
 class Renderer {

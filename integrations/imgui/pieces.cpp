@@ -92,7 +92,7 @@ private:
         piece.parts.push_back({ink, intersect(ink, box)}); // it keeps to its box
       } else {
         for (size_t i = piece.firstGlyph; i < piece.firstGlyph + piece.glyphCount; ++i) {
-          PlacedGlyph& glyph = pieces_.glyphs[i]; // ImGui's units from the position so far
+          GpgpTextGlyph& glyph = pieces_.glyphs[i]; // ImGui's units from the position so far
           glyph.x = screenX(piece.position.x + glyph.x);
           glyph.y = screenY(piece.position.y + glyph.y);
           glyph.size *= data_.FramebufferScale.y;
@@ -186,7 +186,7 @@ private:
     const bool wide = du * width > dv * height; // the longer side tells the size best
     const float size = wide ? (screenX(high.pos.x) - screenX(low.pos.x)) / (du * width)
                             : (screenY(high.pos.y) - screenY(low.pos.y)) / (dv * height);
-    PlacedGlyph glyph{known.font, known.glyph};
+    GpgpTextGlyph glyph{known.font, known.glyph};
     glyph.size = size;
     glyph.x = screenX(low.pos.x) - (known.box[0] + (low.uv.x - corner.x) * width) * size;
     glyph.y = screenY(low.pos.y) - (known.box[1] + (low.uv.y - corner.y) * height) * size;

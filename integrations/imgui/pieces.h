@@ -1,7 +1,7 @@
 // What is taken out of ImGui's draw lists: pieces of text and widgets with their places, and the layers they lie in.
 // Pure CPU work.
 #pragma once
-#include <gpgp/gpgp.h>
+#include <gpgp/text.h>
 #include <imgui.h>
 
 #include <deque>
@@ -31,13 +31,6 @@ inline ImVec2 glyphCorner(uint32_t i) {
   return {2.0f + 2.0f * static_cast<float>(i & 1023u), 2.0f + 2.0f * static_cast<float>(i >> 10)};
 }
 
-struct PlacedGlyph {
-  GpgpFont font = nullptr;
-  uint32_t glyph = 0;
-  float x = 0, y = 0, size = 0; ///< framebuffer pixels: origin, em
-  float color[4] = {};          ///< linear, straight alpha
-};
-
 /// What is drawn in one go.
 struct Piece {
   void* owner = nullptr;
@@ -58,8 +51,8 @@ struct Piece {
 };
 
 struct Pieces {
-  std::deque<Piece> all; ///< stay where they are: draw lists point to them
-  std::vector<PlacedGlyph> glyphs;
+  std::deque<Piece> all;             ///< stay where they are: draw lists point to them
+  std::vector<GpgpTextGlyph> glyphs; ///< font, glyph and color; x, y and size in framebuffer pixels
   uint32_t layers = 0;
   uint32_t dropped = 0; ///< glyphs and widgets without room or layer
 

@@ -1,4 +1,5 @@
 // Dear ImGui in a window, all its text by gpgp, with a drawing and a paragraph as widgets beside the demo window.
+#include "sample.h"
 #include "gpgp_imgui.hpp"
 #include "gpgp_sdl2.hpp"
 
@@ -8,19 +9,20 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 
 namespace {
 
 using namespace gpgp;
+using sample::need;
+using sample::Options;
+using sample::take;
 
 constexpr const char* kHelp = R"(gpgp_imgui_sample: Dear ImGui with text and drawings by gpgp
 
   --svg FILE       the drawing (default: the HUD of the mini-engine)
   --font FILE      the font of everything (default: DejaVu Sans where it is installed, else ImGui's own)
+  --fallback FILE  a font for what it does not have in the paragraph, emoji for example; may be given several times
+  --text TEXT      the paragraph
   --frames N       ends after N frames; otherwise Escape does
   --size WxH       of the window (default 1280x720)
   --device NAME    GPU: part of its name, or an index (default: $GPGP_DEVICE, else the software device)
@@ -30,88 +32,18 @@ constexpr const char* kHelp = R"(gpgp_imgui_sample: Dear ImGui with text and dra
 Exit code 0: all is well; 1: an error, a validation message or an exceeded budget; 2: wrong usage.
 )";
 
-struct Options {
-  std::string svg = GPGP_SAMPLE_SVG, font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", device, picture;
-  uint32_t frames = 0, width = 1280, height = 720;
-  bool validate = false;
-};
-
-bool parse(int argc, char** argv, Options& options) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    if (name == "--validate") {
-      options.validate = true;
-      continue;
-    }
-    if (i + 1 == argc) return false;
-    const char* value = argv[++i];
-    char rest = 0;
-    if (name == "--svg")
-      options.svg = value;
-    else if (name == "--font")
-      options.font = value;
-    else if (name == "--device")
-      options.device = value;
-    else if (name == "--picture")
-      options.picture = value;
-    else if (name == "--frames") {
-      if (std::sscanf(value, "%u%c", &options.frames, &rest) != 1 || options.frames == 0) return false;
-    } else if (name != "--size" || std::sscanf(value, "%ux%u%c", &options.width, &options.height, &rest) != 2 ||
-               options.width == 0 || options.height == 0 || options.width > 2560 || options.height > 1440) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// The code of a call that failed, as an exception; statuses are handed back.
-GpgpResult need(GpgpResult result, const char* what) {
-  if (result < 0) throw std::runtime_error(std::string(what) + ": " + gpgpResultString(result));
-  return result;
-}
-
-template <class T> T take(Result<T> result, const char* what) {
-  need(result.code(), what);
-  return *std::move(result);
-}
-
-void GPGP_CALL onMessage(void*, const GpgpMessage* message) {
-  std::fprintf(stderr, "%s: %s: %s\n", message->function, message->label, message->text);
-}
-
-std::vector<char> readFile(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// What the widgets show.
 struct Content {
   Drawing drawing;
-  Font font;
+  sample::FontChain fonts;
   Shaper shaper;
   Layout layout;
-  std::string words = "This paragraph is a widget: shaped, with ligatures and kerning, in lines that break to fit.";
+  const std::string words;
   float width = 0;
 
-  Content(GpgpContext context, const Options& options) {
-    const std::vector<char> bytes = readFile(options.svg);
-    auto source = init<GpgpSvgSource>();
-    source.name = options.svg.c_str();
-    source.data = bytes.data();
-    source.size = bytes.size();
-    source.messageFn = onMessage;
-    const Blob baked = take(compileSvg(source), "gpgpCompileSvg");
-    auto info = init<GpgpDrawingCreateInfo>();
-    info.label = "drawing";
-    info.data = baked.data();
-    info.size = baked.size();
-    drawing = take(Drawing::create(context, info), "gpgpCreateDrawing");
-    if (!std::ifstream(options.font).good()) return;
-    auto fontInfo = init<GpgpFontCreateInfo>();
-    fontInfo.filePath = options.font.c_str();
-    fontInfo.messageFn = onMessage;
-    font = take(Font::create(fontInfo), "gpgpCreateFont");
+  Content(GpgpContext context, const Options& options)
+      : drawing(sample::loadDrawing(context, options.svg)), fonts(options), words(options.text) {
+    if (fonts.empty()) return;
     shaper = take(Shaper::create(), "gpgpCreateShaper");
     layout = take(shaper.layout(), "gpgpCreateLayout");
   }
@@ -121,12 +53,10 @@ struct Content {
     available = std::max(available, 50.0f);
     if (!layout || available == width) return;
     width = available;
-    const GpgpFont fonts[] = {font};
     auto info = init<GpgpTextInfo>();
     info.text = words.data();
     info.size = words.size();
-    info.style.fonts = fonts;
-    info.style.fontCount = 1;
+    fonts.set(info.style);
     info.style.size = 22;
     std::fill_n(info.style.color, 4, 1.0f);
     info.width = width;
@@ -209,12 +139,12 @@ int run(const Options& options) {
     GpgpContextCreateInfo contextInfo = device.contextCreateInfo();
     contextInfo.label = "sample";
     contextInfo.maxFramesInFlight = frames.inFlight();
-    contextInfo.messageFn = onMessage;
+    contextInfo.messageFn = sample::onMessage;
     Context context = take(Context::create(contextInfo), "gpgpCreateContext");
 
     UiContext ui;
     ImGui::GetIO().IniFilename = nullptr;
-    if (std::ifstream(options.font).good()) ImGui::GetIO().Fonts->AddFontFromFileTTF(options.font.c_str(), 15);
+    if (sample::isThere(options.font)) ImGui::GetIO().Fonts->AddFontFromFileTTF(options.font.c_str(), 15);
     imgui::RendererInfo info;
     info.context = context;
     info.physicalDevice = device.physical;
@@ -272,20 +202,11 @@ int run(const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i)
-    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) {
-      std::fputs(kHelp, stdout);
-      return EXIT_SUCCESS;
-    }
   Options options;
-  if (!parse(argc, argv, options)) {
-    std::fputs(kHelp, stderr);
-    return 2;
-  }
-  try {
-    return run(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "gpgp_imgui_sample: %s\n", error.what());
-    return EXIT_FAILURE;
-  }
+  options.text = "This paragraph is a widget: shaped, with ligatures and kerning, in lines that break to fit.";
+  options.width = 1280;
+  options.height = 720;
+  options.maxWidth = 2560;
+  options.maxHeight = 1440;
+  return sample::sampleMain(argc, argv, "gpgp_imgui_sample", kHelp, options, run);
 }

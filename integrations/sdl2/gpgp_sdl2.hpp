@@ -209,7 +209,9 @@ public:
 
   /// Copies an image, which is ready to be presented and stays so.
   void record(VkCommandBuffer commands, uint32_t image);
-  /// After the frame has finished: a BMP file.
+  /// After the frame has finished: what the window showed, 4 bytes a pixel, rows from the top.
+  std::vector<uint8_t> rgba() const;
+  /// The same as a BMP file.
   void save(const std::string& file) const;
 
 private:

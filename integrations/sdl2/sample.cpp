@@ -1,26 +1,26 @@
 // A window with a drawing and a line of text, both by gpgp: what gpgp::sdl2 is for.
+#include "sample.h"
 #include "gpgp_sdl2.hpp"
 
 #ifdef GPGP_SDL2_TEXT
 #include "gpgp_glyph_cache.hpp"
 #endif
-#include <gpgp/gpgp.hpp>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 
 namespace {
 
 using namespace gpgp;
+using sample::need;
+using sample::Options;
+using sample::take;
 
 constexpr const char* kHelp = R"(gpgp_sdl2_sample: a window with an SVG drawing and a line of text
 
   --svg FILE       the drawing (default: the HUD of the mini-engine)
   --font FILE      the text's font (default: DejaVu Sans, where it is installed); without one there is no text
+  --fallback FILE  a font for what it does not have, emoji for example; may be given several times
   --text TEXT      the line
   --frames N       ends after N frames; otherwise Escape does
   --size WxH       of the window (default 960x540)
@@ -31,108 +31,45 @@ constexpr const char* kHelp = R"(gpgp_sdl2_sample: a window with an SVG drawing 
 Exit code 0: all is well; 1: an error or a validation message; 2: wrong usage.
 )";
 
-struct Options {
-  std::string svg = GPGP_SAMPLE_SVG, font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", device, picture;
-  std::string text = "gpgp in a window";
-  uint32_t frames = 0, width = 960, height = 540;
-  bool validate = false;
-};
-
-bool parse(int argc, char** argv, Options& options) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    if (name == "--validate") {
-      options.validate = true;
-      continue;
-    }
-    if (i + 1 == argc) return false;
-    const char* value = argv[++i];
-    char rest = 0;
-    if (name == "--svg")
-      options.svg = value;
-    else if (name == "--font")
-      options.font = value;
-    else if (name == "--text")
-      options.text = value;
-    else if (name == "--device")
-      options.device = value;
-    else if (name == "--picture")
-      options.picture = value;
-    else if (name == "--frames") {
-      if (std::sscanf(value, "%u%c", &options.frames, &rest) != 1 || options.frames == 0) return false;
-    } else if (name != "--size" || std::sscanf(value, "%ux%u%c", &options.width, &options.height, &rest) != 2 ||
-               options.width == 0 || options.height == 0 || options.width > 4096 || options.height > 4096) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// The code of a call that failed, as an exception; statuses are handed back.
-GpgpResult need(GpgpResult result, const char* what) {
-  if (result < 0) throw std::runtime_error(std::string(what) + ": " + gpgpResultString(result));
-  return result;
-}
-
-template <class T> T take(Result<T> result, const char* what) {
-  need(result.code(), what);
-  return *std::move(result);
-}
-
-void GPGP_CALL onMessage(void*, const GpgpMessage* message) {
-  std::fprintf(stderr, "%s: %s: %s\n", message->function, message->label, message->text);
-}
-
-Drawing loadDrawing(GpgpContext context, const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + file);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-  auto source = init<GpgpSvgSource>();
-  source.name = file.c_str();
-  source.data = bytes.data();
-  source.size = bytes.size();
-  source.messageFn = onMessage;
-  const Blob baked = take(compileSvg(source), "gpgpCompileSvg");
-  auto info = init<GpgpDrawingCreateInfo>();
-  info.label = "drawing";
-  info.data = baked.data();
-  info.size = baked.size();
-  return take(Drawing::create(context, info), "gpgpCreateDrawing");
-}
-
 #ifdef GPGP_SDL2_TEXT
 /// A line of text, laid out once.
 struct Line {
-  Font font;
+  sample::FontChain fonts;
   Shaper shaper;
   Layout layout;
   GpgpLayoutInfo info = GPGP_LAYOUT_INFO_INIT;
   integration::GlyphCache glyphs;
-  std::vector<GpgpGlyphInstance> instances;
+  integration::PlacedText placed;
+  List list;
 
-  Line(GpgpContext context, const std::string& file, const std::string& text, float size) {
-    auto fontInfo = init<GpgpFontCreateInfo>();
-    fontInfo.filePath = file.c_str();
-    fontInfo.messageFn = onMessage;
-    font = take(Font::create(fontInfo), "gpgpCreateFont");
+  Line(const sdl2::Device& device, GpgpContext context, const Options& options, float size) : fonts(options) {
+    if (fonts.empty()) return;
     shaper = take(Shaper::create(), "gpgpCreateShaper");
     layout = take(shaper.layout(), "gpgpCreateLayout");
     auto textInfo = init<GpgpTextInfo>();
-    const GpgpFont fonts[] = {font};
-    textInfo.text = text.data();
-    textInfo.size = text.size();
-    textInfo.style.fonts = fonts;
-    textInfo.style.fontCount = 1;
+    textInfo.text = options.text.data();
+    textInfo.size = options.text.size();
+    fonts.set(textInfo.style);
     textInfo.style.size = size;
     std::fill_n(textInfo.style.color, 4, 1.0f);
     need(layout.set(textInfo), "gpgpSetLayoutText");
     info = take(layout.info(), "gpgpGetLayoutInfo");
-    need(glyphs.create(context, "line"), "gpgpCreateGlyphSet");
+    integration::GlyphCacheInfo cacheInfo;
+    cacheInfo.context = context;
+    cacheInfo.pictureDevice.device = device.device; // for emoji that are pictures
+    cacheInfo.pictureDevice.getDeviceProcAddr = vkGetDeviceProcAddr;
+    vkGetPhysicalDeviceMemoryProperties(device.physical, &cacheInfo.pictureDevice.memory);
+    need(glyphs.create(cacheInfo), "gpgpCreateGlyphSet");
+    list = take(List::create(context), "gpgpCreateList");
   }
-  GpgpCanvasItem at(float x, float y) {
-    instances.clear();
-    need(glyphs.place(info, x, y, 1, instances), "gpgpAddGlyphs");
-    return glyphs.item(instances);
+  /// The list, filled anew.
+  GpgpList at(float x, float y) {
+    if (!layout) return nullptr;
+    placed.clear();
+    need(glyphs.place(info, x, y, 1, placed), "gpgpAddGlyphs");
+    need(list.reset(), "gpgpResetList");
+    need(glyphs.addTo(list, placed), "gpgpAddText");
+    return list;
   }
 };
 #endif
@@ -144,15 +81,12 @@ public:
     GpgpContextCreateInfo info = device.contextCreateInfo();
     info.label = "sample";
     info.maxFramesInFlight = frames_.inFlight();
-    info.messageFn = onMessage;
+    info.messageFn = sample::onMessage;
     context_ = take(Context::create(info), "gpgpCreateContext");
-    drawing_ = loadDrawing(context_, options.svg);
+    drawing_ = sample::loadDrawing(context_, options.svg);
     drawingInfo_ = take(drawing_.info(), "gpgpGetDrawingInfo");
 #ifdef GPGP_SDL2_TEXT
-    if (std::ifstream(options.font).good())
-      line_.emplace(context_, options.font, options.text, 0.06f * static_cast<float>(options.height));
-    else
-      std::fprintf(stderr, "%s is not there: no text (--font)\n", options.font.c_str());
+    line_.emplace(device, context_, options, 0.06f * static_cast<float>(options.height));
 #endif
     auto canvasInfo = init<GpgpCanvasCreateInfo>();
     canvasInfo.base.label = "window";
@@ -181,17 +115,26 @@ public:
     std::vector<GpgpCanvasItem> items{fitted()};
 #ifdef GPGP_SDL2_TEXT
     const VkExtent2D extent = swapchain_.extent();
-    if (line_)
-      items.push_back(line_->at((static_cast<float>(extent.width) - line_->info.width) / 2,
-                                static_cast<float>(extent.height) * 0.97f - line_->info.height));
+    GpgpCanvasItem text{};
+    text.list = line_->at((static_cast<float>(extent.width) - line_->info.width) / 2,
+                          static_cast<float>(extent.height) * 0.97f - line_->info.height);
+    text.transform[0] = text.transform[3] = text.opacity = 1;
+    if (text.list) items.push_back(text);
 #endif
     need(context_.recordUpload(commands, frames_.number()).code(), "gpgpRecordUpload"); // what the items brought
     auto info = init<GpgpCanvasInfo>();
+#ifdef GPGP_SDL2_TEXT
+    need(line_->glyphs.recordUpload(commands, frames_.number()), "the upload of pictures");
+    const std::optional<GpgpCanvasImage> pictures = line_->glyphs.image();
+    info.images = pictures ? &*pictures : nullptr;
+    info.imageCount = pictures ? 1 : 0;
+#endif
     info.width = swapchain_.extent().width;
     info.height = swapchain_.extent().height;
     info.items = items.data();
     info.itemCount = static_cast<uint32_t>(items.size());
     info.view = view_;
+    info.exactArea = VK_TRUE; // small letters want it
     need(canvas_.recordPrepare(commands, frames_.number(), info), "gpgpRecordPrepareCanvas");
 
     pass_.begin(commands, acquired->index, {0.02f, 0.03f, 0.05f, 1});
@@ -290,20 +233,10 @@ int run(const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i)
-    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) {
-      std::fputs(kHelp, stdout);
-      return EXIT_SUCCESS;
-    }
   Options options;
-  if (!parse(argc, argv, options)) {
-    std::fputs(kHelp, stderr);
-    return 2;
-  }
-  try {
-    return run(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "gpgp_sdl2_sample: %s\n", error.what());
-    return EXIT_FAILURE;
-  }
+  options.text = "gpgp in a window";
+  options.width = 960;
+  options.height = 540;
+  options.maxWidth = options.maxHeight = 4096;
+  return sample::sampleMain(argc, argv, "gpgp_sdl2_sample", kHelp, options, run);
 }

@@ -282,12 +282,22 @@ void Screenshot::record(VkCommandBuffer commands, uint32_t image) {
                        1, &barrier);
 }
 
-void Screenshot::save(const std::string& file) const {
+std::vector<uint8_t> Screenshot::rgba() const {
+  const auto* from = static_cast<const uint8_t*>(mapped_);
+  std::vector<uint8_t> pixels(from, from + size_t{extent_.width} * extent_.height * 4);
   const bool bgra = swapchain_.format() == VK_FORMAT_B8G8R8A8_SRGB || swapchain_.format() == VK_FORMAT_B8G8R8A8_UNORM;
+  for (size_t i = 0; i < pixels.size(); i += 4) {
+    if (bgra) std::swap(pixels[i], pixels[i + 2]);
+    pixels[i + 3] = 255; // a window is opaque, whatever alpha says
+  }
+  return pixels;
+}
+
+void Screenshot::save(const std::string& file) const {
+  std::vector<uint8_t> pixels = rgba();
   SDL_Surface* surface = SDL_CreateRGBSurfaceWithFormatFrom(
-      mapped_, static_cast<int>(extent_.width), static_cast<int>(extent_.height), 32,
-      static_cast<int>(extent_.width * 4),
-      bgra ? SDL_PIXELFORMAT_XRGB8888 : SDL_PIXELFORMAT_XBGR8888); // a window is opaque, whatever alpha says
+      pixels.data(), static_cast<int>(extent_.width), static_cast<int>(extent_.height), 32,
+      static_cast<int>(extent_.width * 4), SDL_PIXELFORMAT_RGBA32);
   const bool saved = surface && SDL_SaveBMP(surface, file.c_str()) == 0;
   SDL_FreeSurface(surface);
   if (!saved) throw std::runtime_error(file + ": " + SDL_GetError());

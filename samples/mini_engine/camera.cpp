@@ -1,6 +1,7 @@
 // View and projection in one matrix.
 #include "camera.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mini {
@@ -12,7 +13,8 @@ Camera lookAt(const glm::vec3& eye, const glm::vec3& target, float fieldOfView, 
   const glm::mat4 view(glm::vec4(right.x, up.x, back.x, 0), glm::vec4(right.y, up.y, back.y, 0),
                        glm::vec4(right.z, up.z, back.z, 0),
                        glm::vec4(-glm::dot(right, eye), -glm::dot(up, eye), -glm::dot(back, eye), 1));
-  const float scale = 1.0f / std::tan(fieldOfView * 0.5f);
+  constexpr float kAcross = 16.0f / 9.0f; // a narrower picture shows as much across, and more above and below
+  const float scale = std::min(1.0f, aspect / kAcross) / std::tan(fieldOfView * 0.5f);
   glm::mat4 projection(0.0f);
   projection[0][0] = scale / aspect;
   projection[1][1] = -scale; // +Y of the view is up, of clip space down

@@ -43,19 +43,20 @@ Camera Engine::orbit(float angle, float distance, float height, float fieldOfVie
   return camera;
 }
 
-void Engine::take(const std::vector<Input>& inputs, bool fromScript) {
+void Engine::take(const std::vector<Input>& inputs) {
   for (const Input& input : inputs) {
     if (decoupled_ && input.kind == Input::key) decoupled_->key(input.character);
     if (!screen_) continue;
     const std::string happened = screen_->input(input);
-    if (fromScript) std::printf("input       %s\n", happened.c_str());
+    if (!script_.empty()) std::printf("input       %s\n", happened.c_str());
   }
 }
 
 void Engine::run(uint32_t frames) {
-  for (uint32_t i = 0; (frames == 0 || i < frames) && target_.pollEvents(); ++i) {
-    take(target_.takeInputs(), false);
-    if (i == 1) take(script_, true);
+  for (uint32_t i = 0; frames == 0 || i < frames; ++i) {
+    if (i == 1) target_.play(script_);
+    if (!target_.pollEvents()) break;
+    take(target_.takeInputs());
     if (screen_ && screen_->game().quit) break;
     frame();
     if (i % 30 == 29 && decoupled_) {
@@ -84,6 +85,7 @@ void Engine::frame() {
   gpgp_.check(gpgp_.context.advance(frames_.number()), "gpgpAdvance");
   collect();
   record(commands, *acquired);
+  target_.keep(commands, *acquired);
   frames_.submit(acquired->available, acquired->rendered);
   target_.present(*acquired);
 }

@@ -40,7 +40,7 @@ private:
   void resize();
   void collect();
   void printTimes();
-  void take(const std::vector<Input>& inputs, bool fromScript);
+  void take(const std::vector<Input>& inputs);
   void recordDecoupled(VkCommandBuffer commands, const Acquired& acquired);
   Camera orbit(float angle, float distance, float height, float fieldOfView, float aside = 0) const;
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a vector HUD and sampled visibility
 
-  --out FOLDER     write city.png and side.png there (default: pictures)
+  --out FOLDER     write city.png and side.png there (default: pictures; of a window: only where it is given)
   --frames N       render N frames before the pictures are written (default 3)
   --size WxH       picture size (default 1280x720)
   --window         open a window instead; Escape closes it (with --frames: after N frames)
@@ -20,7 +20,7 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --screen         a game's screen instead: crest, score, map, dialogue, menu, an inventory that hangs in the world;
                    screen.png. In a window: arrows and Enter, or the mouse
   --input LIST     for the screen, before the second frame: up, down, enter, click, or XxY, where the mouse moves to:
-                   --input down,enter,134x350,click; prints what happened
+                   --input down,enter,134x350,click; in a window as its events; prints what happened
   --score N        on the screen at the beginning
   --stereo         the screen for two eyes, side by side, each half of the picture
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
@@ -42,7 +42,7 @@ Exit code 0: all is well; 1: an error, a validation message or an exceeded budge
 )";
 
 struct Options {
-  std::string out = "pictures", device, data = MINI_ENGINE_DATA;
+  std::string out, device, data = MINI_ENGINE_DATA;
   uint32_t frames = 0;
   VkExtent2D size{1280, 720};
   bool screen = false, stereo = false;
@@ -177,7 +177,7 @@ int run(const Options& options) {
     mini::Device device(deviceOptions);
     std::unique_ptr<mini::Target> target;
 #ifdef GPGP_SDL2_WINDOW
-    if (window) target = mini::makeWindow(device, *window);
+    if (window) target = mini::makeWindow(device, *window, !options.out.empty());
 #endif
     if (!target) target = std::make_unique<mini::Offscreen>(device, options.size);
     {
@@ -191,17 +191,16 @@ int run(const Options& options) {
       engine.printSummary();
       well = engine.allWell();
     }
-    if (auto* offscreen = dynamic_cast<mini::Offscreen*>(target.get())) {
-      if (options.decoupled.on || options.screen) {
-        const std::string file = options.out + (options.screen ? "/screen.png" : "/shaded.png");
-        offscreen->writePng(0, file);
-        std::printf("picture     %s\n", file.c_str());
-      } else {
-        offscreen->writePng(0, options.out + "/city.png");
-        offscreen->writePng(1, options.out + "/side.png");
-        std::printf("pictures    %s/city.png: the frame; %s/side.png: the model from the side\n", options.out.c_str(),
-                    options.out.c_str());
-      }
+    const std::string out = options.out.empty() && !options.window ? "pictures" : options.out;
+    const auto* plain = options.screen ? "/screen.png" : options.decoupled.on ? "/shaded.png" : "/city.png";
+    if (!out.empty()) {
+      target->writePicture(out + plain);
+      std::printf("picture     %s%s\n", out.c_str(), plain);
+    }
+    auto* offscreen = dynamic_cast<mini::Offscreen*>(target.get());
+    if (offscreen && !options.decoupled.on && !options.screen) {
+      offscreen->writeImage(1, out + "/side.png");
+      std::printf("picture     %s/side.png: the model from the side\n", out.c_str());
     }
     messages = device.validationMessages();
   }

@@ -29,7 +29,7 @@ std::optional<Acquired> Offscreen::acquire(uint32_t) {
   return Acquired{0, framebuffers_[0], VK_NULL_HANDLE, VK_NULL_HANDLE};
 }
 
-void Offscreen::writePng(uint32_t image, const std::string& file) {
+void Offscreen::writeImage(uint32_t image, const std::string& file) {
   const VkDeviceSize bytes = VkDeviceSize{extent_.width} * extent_.height * 4;
   const Buffer pixels(device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, true);
   device_.runOnce([&](VkCommandBuffer commands) {
@@ -43,14 +43,18 @@ void Offscreen::writePng(uint32_t image, const std::string& file) {
     vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &toHost, 0,
                          nullptr, 0, nullptr);
   });
+  writePng(file, extent_, pixels.mapped);
+}
+
+void writePng(const std::string& file, VkExtent2D extent, const void* pixels) {
   const std::filesystem::path path(file);
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
-  png.width = extent_.width;
-  png.height = extent_.height;
-  png.format = PNG_FORMAT_RGBA; // the image is sRGB-encoded, as PNG wants it
-  if (!png_image_write_to_file(&png, file.c_str(), 0, pixels.mapped, 0, nullptr))
+  png.width = extent.width;
+  png.height = extent.height;
+  png.format = PNG_FORMAT_RGBA; // sRGB-encoded, as PNG wants it
+  if (!png_image_write_to_file(&png, file.c_str(), 0, pixels, 0, nullptr))
     throw std::runtime_error(file + ": " + png.message);
 }
 

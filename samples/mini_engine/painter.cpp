@@ -100,11 +100,9 @@ TextStyle Painter::style(const Box& box, const Label& label) const {
 }
 
 void Painter::glyphs(const TextBlock& block, float x, float y, uint64_t id) {
-  if (block.glyphs.empty()) return;
   const float move[6] = {1, 0, 0, 1, x, y};
   gpgp_.check(list_.pushTransform(move), "gpgpPushTransform");
-  gpgp_.check(gpgpAddText(list_, text_.glyphs(), block.glyphs.data(), static_cast<uint32_t>(block.glyphs.size()), id),
-              "gpgpAddText");
+  text_.add(list_, block, kTextImage, id);
   end();
 }
 

@@ -19,6 +19,9 @@ using Color = std::array<float, 4>;
 /// From 0xrrggbb as sRGB has it.
 Color rgb(uint32_t hex, float alpha = 1.0f);
 
+/// The images of what a painter paints.
+enum Images : uint32_t { kFrameImage, kTextImage };
+
 /// How a text lies in its box.
 struct Label {
   float size = 16;

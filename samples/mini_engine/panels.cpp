@@ -11,7 +11,7 @@ namespace {
 
 const Color kText = rgb(0xf3f6f9), kMuted = rgb(0xa9bccb), kAmber = rgb(0xffb84d);
 const Color kRim = rgb(0x7fb6cf, 0.6f);
-constexpr float kMargin = 24, kHeight = 720;
+constexpr float kMargin = 24;
 
 /// The plate that everything lies on.
 void plate(Painter& painter, const Box& box, float radius = 12) {
@@ -41,18 +41,18 @@ void addStatus(Painter& painter, const Game& game, const Pictures& pictures) {
   bar(painter, Box::sized(204, 96, 160, 16), game.stamina(), rgb(0x8ef0b0), rgb(0x1e8a4c));
 }
 
-Box scoreBox(float width) { return Box::sized(width - kMargin - 188, 52, 172, 42); }
+Box scoreBox(const Page& page) { return Box::sized(page.width - kMargin - 188, 52, 172, 42); }
 
-void addScore(Painter& painter, const Game& game, float width) {
-  plate(painter, Box::sized(width - kMargin - 204, kMargin, 204, 80));
-  painter.text("SCORE", Box::sized(width - kMargin - 188, 32, 172, 22), {13, kMuted, true, GPGP_TEXT_ALIGN_RIGHT});
-  painter.number(game.score, 7, scoreBox(width), {36, kText, true, GPGP_TEXT_ALIGN_RIGHT});
+void addScore(Painter& painter, const Game& game, const Page& page) {
+  plate(painter, Box::sized(page.width - kMargin - 204, kMargin, 204, 80));
+  painter.text("SCORE", Box::sized(page.width - kMargin - 188, 32, 172, 22), {13, kMuted, true, GPGP_TEXT_ALIGN_RIGHT});
+  painter.number(game.score, 7, scoreBox(page), {36, kText, true, GPGP_TEXT_ALIGN_RIGHT});
 }
 
 void addMap(Painter& painter, const Camera& camera, const std::vector<GpgpAxiom>& houses, const Pictures& pictures,
-            float width) {
+            const Page& page) {
   constexpr float kRadius = 84, kMetres = 112; // from the middle to the rim
-  const float x = width - kMargin - kRadius, y = kHeight - kMargin - kRadius, scale = kRadius / kMetres;
+  const float x = page.width - kMargin - kRadius, y = page.height - kMargin - kRadius, scale = kRadius / kMetres;
   const Box round{x - kRadius, y - kRadius, x + kRadius, y + kRadius};
   painter.ellipse(round, rgb(0x060c12, 0.965f));
   painter.clip(round.inset(3), kRadius - 3);
@@ -79,14 +79,14 @@ void addMap(Painter& painter, const Camera& camera, const std::vector<GpgpAxiom>
   painter.text("N", Box::sized(x - 12, y - kRadius - 12, 24, 24), {13, kText, true, GPGP_TEXT_ALIGN_CENTER});
 }
 
-void addDialogue(Painter& painter, const Game& game, const Pictures& pictures, float width) {
+void addDialogue(Painter& painter, const Game& game, const Pictures& pictures, const Page& page) {
   static constexpr const char* kLines[] = {
-      "The east cylinder runs hot again. Climb to the roof, open the valve, and be back before the bells ring six.\n"
+      "The east cylinder runs hot again 🔥. Climb to the roof, open the valve, and be back before the bells ring six.\n"
       "الأسطوانة الشرقية ساخنة مرة أخرى. اصعد إلى السطح، وافتح الصمام، وعُد قبل أن تدق الأجراس السادسة.",
       "東のシリンダーがまた過熱している。屋上へ行って弁を開け、鐘が六つ鳴る前に戻ってきてくれ。\n"
       "If the gauge is past the red mark, do not touch the wheel with bare hands: take the long key from the workshop, "
       "turn it twice against the clock, and wait until the whistle stops. Nobody has come back who did not wait."};
-  const Box box = Box::sized((width - 680) * 0.5f, kHeight - kMargin - 148, 680, 148);
+  const Box box = Box::sized((page.width - 680) * 0.5f, page.height - kMargin - 148, 680, 148);
   plate(painter, box, 16);
   // The picture of who speaks, cut round.
   const Box face = Box::sized(box.left + 20, box.top + 22, 104, 104);
@@ -134,7 +134,7 @@ void addInventory(Painter& painter, const Game& game) {
   static constexpr Thing kThings[Game::kSlots] = {
       {"Gear", "Fits the small crane and nothing else.", 12, Icon::gear},
       {"Lamp oil", "Burns for an hour.", 3, Icon::flask},
-      {"Long valve key", "Opens the pressure valve on the roof of the east cylinder, if the gauge allows.", 1,
+      {"Long valve key 🗝️", "Opens the pressure valve on the roof of the east cylinder, if the gauge allows.", 1,
        Icon::key},
       {"Coins", "What the city pays its guards.", 86, Icon::coins},
       {"Wrench", "Older than the engine.", 1, Icon::wrench},
@@ -144,7 +144,7 @@ void addInventory(Painter& painter, const Game& game) {
   };
   const Box all{0, 0, kInventory[0], kInventory[1]};
   constexpr float kBorder = static_cast<float>(FramePicture::kBorder) / static_cast<float>(FramePicture::kSide);
-  painter.slices(all, {0, {0, 0, 1, 1}, {kBorder, kBorder, kBorder, kBorder}, {15, 15, 15, 15}, {}, {}});
+  painter.slices(all, {kFrameImage, {0, 0, 1, 1}, {kBorder, kBorder, kBorder, kBorder}, {15, 15, 15, 15}, {}, {}});
   painter.text("Inventory", {24, 12, 240, 52}, {24, kText, true});
   painter.text("108 of 120", {240, 12, 416, 52}, {17, kMuted, false, GPGP_TEXT_ALIGN_RIGHT});
   for (uint32_t i = 0; i < Game::kSlots; ++i) {

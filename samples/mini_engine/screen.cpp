@@ -25,7 +25,8 @@ enum Tag : uint64_t { tagWorld, tagFront };
 
 Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& dataFolder, uint32_t score,
                uint32_t eyes)
-    : gpgp_(gpgp), text_(gpgp, dataFolder + "/fetched/fonts"), frame_(device), houses_(levelAxioms()), eyes_(eyes) {
+    : gpgp_(gpgp), text_(device, gpgp, dataFolder + "/fetched/fonts"), frame_(device), houses_(levelAxioms()),
+      eyes_(eyes) {
   world_.parts = eyes;
   game_.score = score;
   pictures_.crest = gpgp.loadSvg(dataFolder + "/svg/crest.svg", "crest");
@@ -105,6 +106,14 @@ void Screen::resize(VkExtent2D extent) {
   clip[12] = clip[13] = -1.0f;
 }
 
+float Screen::scale() const {
+  return std::min(static_cast<float>(extent_.height) / kHeight, static_cast<float>(extent_.width) / kNarrowest);
+}
+
+Page Screen::page() const {
+  return {static_cast<float>(extent_.width) / scale(), static_cast<float>(extent_.height) / scale()};
+}
+
 /// The inventory in the world: metres.
 void Screen::hang(const Camera* eyes) {
   constexpr float kWidth = 31.0f, kTurn = -0.35f, kTilt = 0.28f; // radians around the vertical, and back
@@ -141,12 +150,12 @@ void Screen::update(const Camera* eyes) {
   world_.shown = game_.inventory;
   if (world_.shown) hang(eyes);
   front_.shown = true;
-  const float scale = static_cast<float>(extent_.height) / 720.0f, width = static_cast<float>(extent_.width) / scale;
-  Painter painter(front_.list, text_, gpgp_, scale);
+  const Page all = page();
+  Painter painter(front_.list, text_, gpgp_, scale());
   addStatus(painter, game_, pictures_);
-  addScore(painter, game_, width);
-  addMap(painter, eyes[0], houses_, pictures_, width);
-  addDialogue(painter, game_, pictures_, width);
+  addScore(painter, game_, all);
+  addMap(painter, eyes[0], houses_, pictures_, all);
+  addDialogue(painter, game_, pictures_, all);
   addMenu(painter, game_);
   fillingNow_ = microsecondsSince(start);
   const uint32_t glyphs = text_.glyphCount();
@@ -164,11 +173,12 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
   info.items = layer.items;
   info.itemCount = layer.parts;
   info.view = layer.view;
-  const GpgpCanvasImage frameImage = frame_.image();
-  if (&layer == &world_) {
-    info.images = &frameImage;
-    info.imageCount = 1;
-  }
+  info.exactArea = VK_TRUE; // small letters want it
+  GpgpCanvasImage images[2] = {frame_.image()};
+  const std::optional<GpgpCanvasImage> text = text_.image();
+  if (text) images[kTextImage] = *text;
+  info.images = images;
+  info.imageCount = text ? 2 : 1;
   if (gpgp_.check(canvas_.recordPrepare(commands, frame, info), "gpgpRecordPrepareCanvas") == GPGP_SUCCESS)
     layer.prepared = true;
 }
@@ -176,6 +186,7 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
 void Screen::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   const uint64_t allocations = gpgp_.hostMemory.allocations();
   const Clock::time_point start = Clock::now();
+  text_.upload(commands, frame);
   record(commands, frame, world_);
   record(commands, frame, front_);
   if (frames_ != lastConversion_ && frames_ > 1) { // in the others texts are laid out, and lists make room
@@ -235,12 +246,12 @@ void Screen::collect() {
 }
 
 void Screen::printSummary() const {
-  const float scale = static_cast<float>(extent_.height) / 720.0f, width = static_cast<float>(extent_.width) / scale;
+  const float unit = scale();
   const auto at = [&](const Box& box) {
     char text[64];
-    std::snprintf(text, sizeof text, "%.0f,%.0f to %.0f,%.0f", static_cast<double>(box.left * scale),
-                  static_cast<double>(box.top * scale), static_cast<double>(box.right * scale),
-                  static_cast<double>(box.bottom * scale));
+    std::snprintf(text, sizeof text, "%.0f,%.0f to %.0f,%.0f", static_cast<double>(box.left * unit),
+                  static_cast<double>(box.top * unit), static_cast<double>(box.right * unit),
+                  static_cast<double>(box.bottom * unit));
     return std::string(text);
   };
   std::printf("screen      %u shapes, %u glyphs", report_.shapes, report_.glyphs);
@@ -252,7 +263,7 @@ void Screen::printSummary() const {
       "text        %u glyphs in the set, the last converted in frame %u of %u; gpgp allocated host memory last in "
       "frame %u\n",
       text_.glyphCount(), lastConversion_, frames_, lastAllocation_);
-  std::printf("score       %u at %s\n", game_.score, at(scoreBox(width)).c_str());
+  std::printf("score       %u at %s\n", game_.score, at(scoreBox(page())).c_str());
   for (uint32_t item = 0; item < menuItems; ++item)
     std::printf("menu        %s at %s\n", game_.menuLabel(item), at(menuBox(item)).c_str());
 }

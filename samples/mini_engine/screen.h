@@ -39,6 +39,8 @@ private:
     bool shown = false, prepared = false;
   };
   void makeArrow();
+  float scale() const; // pixels a unit
+  Page page() const;
   void hang(const Camera* eyes);
   void record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& layer);
   Under under(float x, float y);

@@ -40,12 +40,21 @@ public:
   /// False: the person wants to end.
   virtual bool pollEvents() { return true; }
   virtual void setTitle(const std::string&) {}
+  /// As if a person did it now: what pollEvents finds next.
+  virtual void play(const std::vector<Input>& inputs) { inputs_.insert(inputs_.end(), inputs.begin(), inputs.end()); }
+  /// Once a frame, after its last pass.
+  virtual void keep(VkCommandBuffer, const Acquired&) {}
+  /// After all frames: the last one's picture, as PNG.
+  virtual void writePicture(const std::string& file) = 0;
   /// Since the last call.
   std::vector<Input> takeInputs() { return std::exchange(inputs_, {}); }
 
 protected:
   std::vector<Input> inputs_;
 };
+
+/// Pixels as RGBA, sRGB-encoded. Makes missing folders; throws with the file's name.
+void writePng(const std::string& file, VkExtent2D extent, const void* pixels);
 
 /// Two images: the picture, and the same scene from the side. After the frame is finished they can be written.
 class Offscreen : public Target {
@@ -59,8 +68,9 @@ public:
   std::optional<Acquired> acquire(uint32_t slot) override;
   void present(const Acquired&) override {}
   VkFramebuffer sideFramebuffer() const { return framebuffers_[1]; }
-  /// Waits for everything and writes image 0 or 1.
-  void writePng(uint32_t image, const std::string& file);
+  void writePicture(const std::string& file) override { writeImage(0, file); }
+  /// The picture, or the scene from the side.
+  void writeImage(uint32_t image, const std::string& file);
 
 private:
   void destroyFramebuffers();
@@ -71,8 +81,8 @@ private:
 };
 
 #ifdef GPGP_SDL2_WINDOW
-/// Pictures go to the window, which outlives the target.
-std::unique_ptr<Target> makeWindow(Device& device, gpgp::sdl2::Window& window);
+/// Pictures go to the window, which outlives the target; they are kept for writePicture where that is wanted.
+std::unique_ptr<Target> makeWindow(Device& device, gpgp::sdl2::Window& window, bool keepPictures);
 #endif
 
 } // namespace mini

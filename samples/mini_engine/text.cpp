@@ -22,8 +22,9 @@ struct Text::Fonts {
   std::vector<GpgpFont> regular, bold; // chains: a character takes the first font that has it
   gpgp::Shaper shaper;
   gpgp::Layout layout;
-  gpgp::integration::GlyphCache cache; // layouts to glyphs of a set, which it converts when they are new
-  float capHeight = 0.7f;              // em, of the first font
+  gpgp::integration::GlyphCache cache;              // layouts to glyphs of a set, which it converts when they are new
+  std::deque<gpgp::integration::PlacedText> placed; // of texts that were laid out
+  float capHeight = 0.7f;                           // em, of the first font
 
   void open(Gpgp& gpgp, const std::string& file, std::initializer_list<std::vector<GpgpFont>*> chains,
             float weight = 0) {
@@ -43,12 +44,13 @@ struct Text::Fonts {
   }
 };
 
-Text::Text(Gpgp& gpgp, const std::string& folder) : gpgp_(gpgp), fonts_(std::make_unique<Fonts>()) {
+Text::Text(Device& device, Gpgp& gpgp, const std::string& folder) : gpgp_(gpgp), fonts_(std::make_unique<Fonts>()) {
   Fonts& f = *fonts_;
   f.open(gpgp, folder + "/Inter-roman.var.ttf", {&f.regular}, 450);
   f.open(gpgp, folder + "/Inter-roman.var.ttf", {&f.bold}, 700);
   f.open(gpgp, folder + "/NotoSansArabic-Regular.ttf", {&f.regular, &f.bold});
   f.open(gpgp, folder + "/NotoSansCJK-Regular.ttc", {&f.regular, &f.bold});
+  f.open(gpgp, folder + "/NotoColorEmoji.ttf", {&f.regular, &f.bold});
   if (f.fonts.empty()) {
     std::fprintf(stderr, "mini_engine: no font in %s; the screen goes without text\n", folder.c_str());
     return;
@@ -59,7 +61,16 @@ Text::Text(Gpgp& gpgp, const std::string& folder) : gpgp_(gpgp), fonts_(std::mak
   f.shaper = gpgp.take(gpgp::Shaper::create(shaper), "gpgpCreateShaper");
   f.layout = gpgp.take(f.shaper.layout(), "gpgpCreateLayout");
   // Large enough for all that is ever shown: nothing is evicted, and indices stay as they are.
-  gpgp_.check(f.cache.create(gpgp.context, "screen glyphs", 1024, VkDeviceSize{4} << 20), "gpgpCreateGlyphSet");
+  gpgp::integration::GlyphCacheInfo cache;
+  cache.context = gpgp.context;
+  cache.label = "screen glyphs";
+  cache.maxGlyphs = 1024;
+  cache.maxBytes = VkDeviceSize{4} << 20;
+  cache.maxPictures = 16;
+  cache.pictureDevice.device = device.device;
+  cache.pictureDevice.getDeviceProcAddr = vkGetDeviceProcAddr;
+  vkGetPhysicalDeviceMemoryProperties(device.physical, &cache.pictureDevice.memory);
+  gpgp_.check(f.cache.create(cache), "gpgpCreateGlyphSet");
   glyphs_ = f.cache.set();
 }
 
@@ -93,8 +104,24 @@ void Text::set(const Entry& entry, TextBlock& block) {
   block.width = layout.width;
   block.baseline = layout.lines[0].baseline;
   block.capHeight = fonts_->capHeight * style.size;
-  if (gpgp_.check(fonts_->cache.place(layout, 0, 0, 1, block.glyphs), "gpgpAddGlyphs") != GPGP_SUCCESS)
+  block.placed = fonts_->placed.size();
+  if (gpgp_.check(fonts_->cache.place(layout, 0, 0, 1, fonts_->placed.emplace_back()), "gpgpAddGlyphs") != GPGP_SUCCESS)
     throw std::runtime_error("the set of glyphs is full");
 }
+
+void Text::forget() {
+  entries_.clear();
+  fonts_->placed.clear();
+}
+
+void Text::add(gpgp::List& list, const TextBlock& block, uint32_t image, uint64_t id) {
+  if (glyphs_) gpgp_.check(fonts_->cache.addTo(list, fonts_->placed[block.placed], image, id), "gpgpAddText");
+}
+
+void Text::upload(VkCommandBuffer commands, const GpgpFrame& frame) {
+  if (glyphs_) gpgp_.check(fonts_->cache.recordUpload(commands, frame), "the upload of pictures");
+}
+
+std::optional<GpgpCanvasImage> Text::image() const { return glyphs_ ? fonts_->cache.image() : std::nullopt; }
 
 } // namespace mini

@@ -4,6 +4,7 @@
 #include "gpgp_glue.h"
 
 #include <deque>
+#include <optional>
 #include <string_view>
 
 namespace mini {
@@ -20,7 +21,7 @@ struct TextStyle {
 
 /// A laid out text, its upper left corner at 0, 0.
 struct TextBlock {
-  std::vector<GpgpGlyphInstance> glyphs;
+  size_t placed = 0;   // where Text keeps its glyphs
   float width = 0;     // of the widest line
   float baseline = 0;  // of the first line
   float capHeight = 0; // of the style's first font
@@ -29,7 +30,7 @@ struct TextBlock {
 class Text {
 public:
   /// Says on standard error which fonts are missing in the folder.
-  Text(Gpgp& gpgp, const std::string& fontFolder);
+  Text(Device& device, Gpgp& gpgp, const std::string& fontFolder);
   ~Text();
   Text(const Text&) = delete;
   Text& operator=(const Text&) = delete;
@@ -37,8 +38,13 @@ public:
   /// Lays out a text the first time it is asked for, which may convert glyphs; later it is found, without allocation.
   const TextBlock& layOut(std::string_view text, const TextStyle& style);
   /// Forgets the texts, as another picture size has others. Glyphs stay: they are there once for all sizes.
-  void forget() { entries_.clear(); }
-  GpgpAsset glyphs() const { return glyphs_; }
+  void forget();
+  /// Adds a text to a list, whose image of this number is image().
+  void add(gpgp::List& list, const TextBlock& block, uint32_t image, uint64_t id);
+  /// New glyphs that are pictures; outside render passes, beside gpgpRecordUpload, before what shows them.
+  void upload(VkCommandBuffer commands, const GpgpFrame& frame);
+  /// The texture of glyphs that are pictures; nothing as long as there is none.
+  std::optional<GpgpCanvasImage> image() const;
   /// Glyphs that were converted and are in the set.
   uint32_t glyphCount() const {
     auto info = gpgp::init<GpgpGlyphSetInfo>();
@@ -54,7 +60,7 @@ private:
   };
   void set(const Entry& entry, TextBlock& block);
   Gpgp& gpgp_;
-  GpgpAsset glyphs_ = nullptr;
+  GpgpAsset glyphs_ = nullptr; // the set; null: there is no font
   std::unique_ptr<Fonts> fonts_;
   std::deque<Entry> entries_; // as many as the screen has texts
 };

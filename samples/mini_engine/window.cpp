@@ -2,6 +2,7 @@
 #include "target.h"
 
 #include <SDL_events.h>
+#include <SDL_rect.h>
 #include <SDL_video.h>
 
 namespace mini {
@@ -9,8 +10,8 @@ namespace {
 
 class Window : public Target {
 public:
-  Window(Device& device, gpgp::sdl2::Window& window)
-      : device_(device), window_(window), swapchain_(device, window, {kMaxExtent}) {}
+  Window(Device& device, gpgp::sdl2::Window& window, bool keepPictures)
+      : device_(device), window_(window), swapchain_(device, window, {kMaxExtent}), keepPictures_(keepPictures) {}
   ~Window() override { destroyFramebuffers(); }
   VkFormat format() const override { return swapchain_.format(); }
   VkImageLayout finalLayout() const override { return VK_IMAGE_LAYOUT_PRESENT_SRC_KHR; }
@@ -21,6 +22,7 @@ public:
     swapchain_.resize();
     forward.resize(swapchain_.extent());
     for (const auto& image : swapchain_.images()) framebuffers_.push_back(forward.makeFramebuffer(image.view));
+    if (keepPictures_) picture_.emplace(device_, swapchain_);
   }
 
   std::optional<Acquired> acquire(uint32_t slot) override {
@@ -42,6 +44,32 @@ public:
       }
     });
   }
+  void play(const std::vector<Input>& inputs) override {
+    for (const Input& input : inputs) {
+      SDL_Event event{};
+      if (input.kind == Input::move) {
+        event.type = SDL_MOUSEMOTION;
+        pointer_ = windowPoint(input.x, input.y);
+        event.motion.x = pointer_.x;
+        event.motion.y = pointer_.y;
+      } else if (input.kind == Input::click) {
+        event.type = SDL_MOUSEBUTTONDOWN;
+        event.button.button = SDL_BUTTON_LEFT;
+        event.button.x = pointer_.x;
+        event.button.y = pointer_.y;
+      } else {
+        event.type = SDL_KEYDOWN;
+        event.key.keysym.sym = input.kind == Input::up ? SDLK_UP : input.kind == Input::down ? SDLK_DOWN : SDLK_RETURN;
+      }
+      if (SDL_PushEvent(&event) != 1) throw std::runtime_error(std::string("no room for an event: ") + SDL_GetError());
+    }
+  }
+  void keep(VkCommandBuffer commands, const Acquired& acquired) override {
+    if (picture_) picture_->record(commands, acquired.index);
+  }
+  void writePicture(const std::string& file) override {
+    if (picture_) writePng(file, extent(), picture_->rgba().data());
+  }
   void setTitle(const std::string& title) override { SDL_SetWindowTitle(window_.handle(), title.c_str()); }
 
 private:
@@ -57,12 +85,21 @@ private:
   }
   /// The window's own coordinates may be coarser than pixels.
   void moved(int x, int y) {
-    int width = 1, height = 1;
-    SDL_GetWindowSize(window_.handle(), &width, &height);
-    const VkExtent2D size = extent();
-    inputs_.push_back({Input::move, 0,
-                       (static_cast<float>(x) + 0.5f) * static_cast<float>(size.width) / static_cast<float>(width),
-                       (static_cast<float>(y) + 0.5f) * static_cast<float>(size.height) / static_cast<float>(height)});
+    const SDL_Point size = windowSize();
+    inputs_.push_back(
+        {Input::move, 0,
+         (static_cast<float>(x) + 0.5f) * static_cast<float>(extent().width) / static_cast<float>(size.x),
+         (static_cast<float>(y) + 0.5f) * static_cast<float>(extent().height) / static_cast<float>(size.y)});
+  }
+  SDL_Point windowPoint(float x, float y) const {
+    const SDL_Point size = windowSize();
+    return {static_cast<int>(x * static_cast<float>(size.x) / static_cast<float>(extent().width)),
+            static_cast<int>(y * static_cast<float>(size.y) / static_cast<float>(extent().height))};
+  }
+  SDL_Point windowSize() const {
+    SDL_Point size{1, 1};
+    SDL_GetWindowSize(window_.handle(), &size.x, &size.y);
+    return size;
   }
   void destroyFramebuffers() {
     for (VkFramebuffer framebuffer : framebuffers_) vkDestroyFramebuffer(device_.device, framebuffer, nullptr);
@@ -73,12 +110,15 @@ private:
   gpgp::sdl2::Swapchain swapchain_;
   std::vector<VkFramebuffer> framebuffers_;
   std::optional<gpgp::sdl2::Swapchain::Acquired> acquired_;
+  const bool keepPictures_;
+  std::optional<gpgp::sdl2::Screenshot> picture_;
+  SDL_Point pointer_{}; // as it was played
 };
 
 } // namespace
 
-std::unique_ptr<Target> makeWindow(Device& device, gpgp::sdl2::Window& window) {
-  return std::make_unique<Window>(device, window);
+std::unique_ptr<Target> makeWindow(Device& device, gpgp::sdl2::Window& window, bool keepPictures) {
+  return std::make_unique<Window>(device, window, keepPictures);
 }
 
 } // namespace mini

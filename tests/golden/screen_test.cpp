@@ -1,7 +1,7 @@
 // The mini-engine's game screen, as its summary and pictures show it: hit tests find the menu's items, nothing
 // between them, and the inventory's slots in perspective; a changed score changes no pixel outside of its box, nothing
-// is converted or allocated in a settled frame, without fonts the screen is there without text, and both eyes see the
-// inventory in its frame. Every run is validated.
+// is converted or allocated in a settled frame, without fonts the screen is there without text, both eyes see the
+// inventory in its frame, and a window's events drive the menu. Every run is validated.
 #include "host/picture.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,12 @@ struct Shown {
   Picture picture;
 };
 
-/// Runs the screen, with standard error in its text; the process is to succeed.
-Shown runScreen(const std::string& name, const std::string& arguments, const std::string& data = GPGP_TEST_DATA) {
+/// Runs the screen, with standard error in its text; the process is to succeed. before: a command that runs it.
+Shown runScreen(const std::string& name, const std::string& arguments, const std::string& data = GPGP_TEST_DATA,
+                const std::string& before = "") {
   const fs::path folder = kOut / name;
   fs::remove_all(folder);
-  const std::string command = std::string("\"") + GPGP_MINI_ENGINE + "\" --screen --validate --data \"" + data +
+  const std::string command = before + "\"" + GPGP_MINI_ENGINE + "\" --screen --validate --data \"" + data +
                               "\" --out \"" + folder.string() + "\" " + arguments + " 2>&1";
   Shown run;
   FILE* pipe = popen(command.c_str(), "r");
@@ -44,6 +46,16 @@ Shown runScreen(const std::string& name, const std::string& arguments, const std
 }
 
 using Box = std::array<unsigned, 4>; // left, top, right, bottom
+
+/// What each input did, a line for each.
+std::string happenings(const std::string& text) {
+  std::string said;
+  for (size_t line = text.find("input  "); line != std::string::npos; line = text.find("\ninput  ", line + 1)) {
+    const size_t begin = text.find("input", line) + 12;
+    said += text.substr(begin, text.find('\n', begin) - begin) + "\n";
+  }
+  return said;
+}
 
 /// What follows a label in the summary: "score       23 at 534,26 to 620,47".
 Box boxOf(const std::string& text, const std::string& label) {
@@ -82,6 +94,25 @@ TEST(Screen, ScoreChangesOnlyItsBoxAndASettledFrameConvertsNothing) {
     }
   EXPECT_GT(inside, 100u);
   EXPECT_EQ(outside, 0u);
+  // Letters in one colour on a button in another have the area of their edges: 16 samples would mix in 17 ways.
+  const Box button = boxOf(before.text, std::string("menu        ") + kItems[3]);
+  std::set<std::array<uint8_t, 3>> colours;
+  for (unsigned y = button[1] + 4; y < button[3] - 4; ++y)
+    for (unsigned x = button[0] + 6; x < button[2] - 6; ++x) {
+      const uint8_t* p = &before.picture.rgba[4 * (size_t{y} * before.picture.width + x)];
+      colours.insert({p[0], p[1], p[2]});
+    }
+  EXPECT_GT(colours.size(), 40u);
+  // The flame in the dialogue's first line, a glyph that is a picture: nothing else is orange there.
+  if (!fs::exists(std::string(GPGP_TEST_DATA) + "/fetched/fonts/NotoColorEmoji.ttf")) return;
+  size_t orange = 0;
+  for (unsigned y = 287; y < 348; ++y)
+    for (unsigned x = 224; x < 495; ++x) {
+      const uint8_t* p = &before.picture.rgba[4 * (size_t{y} * before.picture.width + x)];
+      orange += p[0] > 180 && p[1] > 60 && p[1] < 200 && p[2] < 90;
+    }
+  EXPECT_GT(orange, 5u);
+  EXPECT_LT(orange, 120u);
 }
 
 TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
@@ -121,12 +152,7 @@ TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
   input("click", "chose Resume"); // it does what it says
   const Shown run = runScreen("menu", "--frames 2 --size 320x180 --input " + inputs,
                               hasFonts() ? std::string(GPGP_TEST_DATA) : data.string());
-  std::string said;
-  for (size_t line = run.text.find("input  "); line != std::string::npos; line = run.text.find("\ninput  ", line + 1)) {
-    const size_t begin = run.text.find("input", line) + 12;
-    said += run.text.substr(begin, run.text.find('\n', begin) - begin) + "\n";
-  }
-  EXPECT_EQ(said, happened) << run.text;
+  EXPECT_EQ(happenings(run.text), happened) << run.text;
   // By night it is darker: the mean of what lies between the panels.
   const auto light = [](const Picture& picture) {
     double sum = 0;
@@ -135,6 +161,46 @@ TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
     return sum;
   };
   EXPECT_LT(light(run.picture), 0.6 * light(still.picture));
+}
+
+/// Panels find room beside each other, and the inventory hangs in sight.
+TEST(Screen, NarrowPicturesShowAll) {
+  const Shown run = runScreen("narrow", "--frames 2 --size 270x480 --input 225x212");
+  EXPECT_EQ(happenings(run.text), "over slot 3\n");
+  const Box score = boxOf(run.text, "score "), menu = boxOf(run.text, "menu        Pause");
+  const double unit = (menu[2] - menu[0]) / 196.0;
+  EXPECT_GT(score[0], 380 * unit) << "right of the status";
+  EXPECT_LT(score[2], 270u);
+}
+
+/// In a window of a virtual display: its events go through SDL, and the window shows what the headless picture has.
+TEST(Screen, AWindowsEventsDriveTheMenu) {
+  if (!GPGP_XVFB_RUN[0]) GTEST_SKIP() << "no xvfb-run (Debian: xvfb, xauth)";
+  const std::string size = "--size 640x360 --frames 3 ";
+  const Shown still = runScreen("window-still", size);
+  const auto middle = [&](const char* item) {
+    const Box box = boxOf(still.text, std::string("menu        ") + item);
+    return std::to_string((box[0] + box[2]) / 2) + "x" + std::to_string((box[1] + box[3]) / 2);
+  };
+  // By mouse, by keys from there, by mouse again: onto the item, and past all of them.
+  const std::string inputs =
+      "--input " + middle("Night") + ",click,down,enter," + middle("Next line") + ",click,320x40,click";
+  const Shown headless = runScreen("window-none", size + inputs);
+  EXPECT_EQ(happenings(headless.text), "over Night\nchose Night\nhighlighted Hide inventory\nchose Hide inventory\n"
+                                       "over Next line\nchose Next line\nover nothing\nnothing\n");
+  const Shown window =
+      runScreen("window", "--window " + size + inputs, GPGP_TEST_DATA,
+                std::string("SDL_VIDEODRIVER=x11 \"") + GPGP_XVFB_RUN + "\" -a -s \"-screen 0 1280x800x24\" ");
+  // A click says where it is, too; the display's own pointer may have been somewhere before.
+  EXPECT_NE(happenings(window.text)
+                .find("over Night\nover Night\nchose Night\nhighlighted Hide inventory\nchose Hide inventory\n"
+                      "over Next line\nover Next line\nchose Next line\nover nothing\nover nothing\nnothing\n"),
+            std::string::npos)
+      << window.text;
+  ASSERT_EQ(window.picture.width, 640u);
+  ASSERT_EQ(window.picture.height, 360u);
+  EXPECT_EQ(gpgp::host::compare(window.picture, headless.picture).pixelsDifferent, 0u);
+  EXPECT_GT(gpgp::host::compare(window.picture, still.picture).mean, 5.0) << "night, and no inventory";
 }
 
 /// The brass of the inventory's frame, which nothing else has around its upper half: how many of its pixels lie there

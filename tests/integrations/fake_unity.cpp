@@ -21,6 +21,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onValidation(VkDebugUtilsMessageSeverityFlagBitsE
   return VK_FALSE;
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL waitIdleOfLost(VkDevice) { return VK_ERROR_DEVICE_LOST; }
+
 VkDebugUtilsMessengerCreateInfoEXT messengerInfo() {
   VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
   info.messageSeverity =
@@ -81,6 +83,11 @@ struct FakeUnity::Interfaces {
     if (is(kUnityGraphicsGuid)) return &table().graphics;
     if (is(kUnityGraphicsVulkanGuid) || (is(kUnityGraphicsVulkanV2Guid) && host->options_.v2)) return &table().vulkan;
     return nullptr;
+  }
+  static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {
+    if (host->lost_ && std::strcmp(name, "vkDeviceWaitIdle") == 0)
+      return reinterpret_cast<PFN_vkVoidFunction>(waitIdleOfLost);
+    return vkGetInstanceProcAddr(instance, name);
   }
   static Interfaces& table() {
     static Interfaces interfaces;
@@ -147,7 +154,7 @@ UnityVulkanInstance FakeUnity::unityInstance() const {
   out.physicalDevice = physical_;
   out.device = device_;
   out.graphicsQueue = queue_;
-  out.getInstanceProcAddr = vkGetInstanceProcAddr;
+  out.getInstanceProcAddr = Interfaces::getInstanceProcAddr;
   out.queueFamilyIndex = family_;
   return out;
 }
@@ -173,6 +180,13 @@ FakeUnity::FakeUnity(const std::string& library, const FakeUnityOptions& options
 
 FakeUnity::~FakeUnity() {
   shutdown();
+  destroyDevice();
+  symbol<void (*)()>("UnityPluginUnload")();
+  dlclose(library_);
+  host = nullptr;
+}
+
+void FakeUnity::destroyDevice() {
   vkDeviceWaitIdle(device_);
   vkDestroyFramebuffer(device_, framebuffer_, nullptr);
   vkDestroyRenderPass(device_, pass_, nullptr);
@@ -187,9 +201,8 @@ FakeUnity::~FakeUnity() {
       vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
   destroy(instance_, messenger_, nullptr);
   vkDestroyInstance(instance_, nullptr);
-  symbol<void (*)()>("UnityPluginUnload")();
-  dlclose(library_);
-  host = nullptr;
+  recorded_.clear();
+  lost_ = false;
 }
 
 void* FakeUnity::symbolOf(const char* name) const {
@@ -201,13 +214,34 @@ void* FakeUnity::symbolOf(const char* name) const {
 void FakeUnity::initialize() {
   if (initialized_) return;
   initialized_ = true;
-  for (const auto& event : std::vector(deviceEvents_)) event(kUnityGfxDeviceEventInitialize);
+  send(kUnityGfxDeviceEventInitialize);
 }
+
+void FakeUnity::send(UnityGfxDeviceEventType type) {
+  for (const auto& event : std::vector(deviceEvents_)) event(type);
+}
+
+void FakeUnity::loseDevice() {
+  vkDeviceWaitIdle(device_); // it has stopped
+  lost_ = true;
+}
+
+void FakeUnity::replaceDevice() {
+  shutdown();
+  deviceMade_ = false;
+  destroyDevice();
+  family_ = 0;
+  makeDevice();
+  deviceMade_ = true;
+  initialize();
+}
+
+void FakeUnity::loadAgain() { symbol<void (*)(IUnityInterfaces*)>("UnityPluginLoad")(&Interfaces::table().registry); }
 
 void FakeUnity::shutdown() {
   if (!initialized_ && options_.preload) return;
   initialized_ = false;
-  for (const auto& event : std::vector(deviceEvents_)) event(kUnityGfxDeviceEventShutdown);
+  send(kUnityGfxDeviceEventShutdown);
 }
 
 /// As Unity: functions come from the hook, if there is one; the instance is an old one, features are the core's.

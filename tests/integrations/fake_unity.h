@@ -56,6 +56,13 @@ public:
   void holdSafe(bool hold) { held_ = hold; }
   void shutdown();   ///< the device event, when the renderer goes
   void initialize(); ///< and when it comes
+  /// A device event as it is, whether it makes sense or not.
+  void send(UnityGfxDeviceEventType type);
+  /// From here on waiting for the device says that it is lost, at once.
+  void loseDevice();
+  /// The renderer goes, its device, too, and comes back with another. Textures are gone.
+  void replaceDevice();
+  void loadAgain(); ///< UnityPluginLoad, though it is loaded
   std::vector<uint8_t> read(FakeTexture& texture);
   /// Work of the test's own, submitted and waited for.
   void submit(const std::function<void(VkCommandBuffer)>& record);
@@ -79,6 +86,7 @@ private:
   struct Interfaces; // the callbacks
   void* symbolOf(const char* name) const;
   void makeDevice();
+  void destroyDevice();
   void makeCamera();
   VkCommandBuffer nextCommands();
   void beginPass();
@@ -92,7 +100,7 @@ private:
   UnityVulkanInitCallback hook_ = nullptr;
   void* hookData_ = nullptr;
   uint32_t hooksTaken_ = 0;
-  bool deviceMade_ = false, initialized_ = false, synchronization2_ = false, held_ = false;
+  bool deviceMade_ = false, initialized_ = false, synchronization2_ = false, held_ = false, lost_ = false;
   std::vector<IUnityGraphicsDeviceEventCallback> deviceEvents_;
   std::map<int, UnityVulkanPluginEventConfig> configs_;
   std::vector<std::string> violations_;

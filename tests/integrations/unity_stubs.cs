@@ -8,6 +8,7 @@ namespace UnityEngine
     public struct Color
     {
         public float r, g, b, a;
+        public Color(float r, float g, float b, float a) { this.r = r; this.g = g; this.b = b; this.a = a; }
         public static Color clear { get { return new Color(); } }
         public static Color white { get { return new Color { r = 1, g = 1, b = 1, a = 1 }; } }
         public Color linear { get { return this; } }
@@ -31,6 +32,8 @@ namespace UnityEngine
         public void Release() { }
     }
     public class Material : Object { }
+    public class Font : Object { } // names that the package has, too: its own are found first
+    public class Canvas : Object { }
     public class TextAsset : Object { public byte[] bytes { get { return null; } } }
     public class MonoBehaviour : Object { public bool enabled; }
 

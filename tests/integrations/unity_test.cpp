@@ -32,15 +32,15 @@ static_assert(sizeof(IUnityGraphicsVulkan) == 14 * sizeof(void*) &&
               sizeof(IUnityGraphicsVulkanV2) == 16 * sizeof(void*));
 
 // As the scripts' structs are laid out (scripts_test.sh).
-static_assert(sizeof(GpgpUnityBudgets) == 20 && sizeof(GpgpUnityText) == 48 && sizeof(GpgpUnityItem) == 32 &&
+static_assert(sizeof(GpgpUnityBudgets) == 24 && sizeof(GpgpUnityText) == 48 && sizeof(GpgpUnityItem) == 32 &&
               sizeof(GpgpUnityCanvas) == 48);
 
 constexpr char kSvg[] = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>"
                         "<rect width='100' height='50' fill='#2040a0'/><circle cx='50' cy='50' r='40' "
                         "fill='#c03020' fill-opacity='0.5'/></svg>";
 
-std::vector<char> fontBytes() {
-  std::ifstream stream(GPGP_TEST_DATA "/fetched/fonts/DejaVuSans.ttf", std::ios::binary);
+std::vector<char> fontBytes(const std::string& file = "DejaVuSans.ttf") {
+  std::ifstream stream(GPGP_TEST_DATA "/fetched/fonts/" + file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -55,6 +55,7 @@ struct Script {
         createDrawing(unity.symbol<decltype(&gpgpUnityCreateDrawing)>("gpgpUnityCreateDrawing")),
         getBox(unity.symbol<decltype(&gpgpUnityGetBox)>("gpgpUnityGetBox")),
         createFont(unity.symbol<decltype(&gpgpUnityCreateFont)>("gpgpUnityCreateFont")),
+        setFallbacks(unity.symbol<decltype(&gpgpUnitySetFallbacks)>("gpgpUnitySetFallbacks")),
         createText(unity.symbol<decltype(&gpgpUnityCreateText)>("gpgpUnityCreateText")),
         setText(unity.symbol<decltype(&gpgpUnitySetText)>("gpgpUnitySetText")),
         createCanvas(unity.symbol<decltype(&gpgpUnityCreateCanvas)>("gpgpUnityCreateCanvas")),
@@ -68,6 +69,7 @@ struct Script {
   decltype(&gpgpUnityCreateDrawing) createDrawing;
   decltype(&gpgpUnityGetBox) getBox;
   decltype(&gpgpUnityCreateFont) createFont;
+  decltype(&gpgpUnitySetFallbacks) setFallbacks;
   decltype(&gpgpUnityCreateText) createText;
   decltype(&gpgpUnitySetText) setText;
   decltype(&gpgpUnityCreateCanvas) createCanvas;
@@ -145,9 +147,16 @@ std::vector<uint8_t> drawDirectly(FakeUnity& unity, uint32_t width, uint32_t hei
   std::copy_n(words.color, 4, text.style.color);
   EXPECT_EQ(layout.set(text), GPGP_SUCCESS);
   integration::GlyphCache glyphs;
-  EXPECT_EQ(glyphs.create(context, "direct"), GPGP_SUCCESS);
-  std::vector<GpgpGlyphInstance> instances;
-  EXPECT_EQ(glyphs.place(*layout.info(), 0, 0, 1, instances), GPGP_SUCCESS);
+  integration::GlyphCacheInfo cacheInfo;
+  cacheInfo.context = context;
+  cacheInfo.pictureDevice.device = unity.device();
+  cacheInfo.pictureDevice.getDeviceProcAddr = vkGetDeviceProcAddr;
+  vkGetPhysicalDeviceMemoryProperties(unity.physicalDevice(), &cacheInfo.pictureDevice.memory);
+  EXPECT_EQ(glyphs.create(cacheInfo), GPGP_SUCCESS);
+  integration::PlacedText placed;
+  EXPECT_EQ(glyphs.place(*layout.info(), 10, 110, 1, placed), GPGP_SUCCESS);
+  List list = *List::create(context);
+  EXPECT_EQ(glyphs.addTo(list, placed), GPGP_SUCCESS);
   auto canvasInfo = init<GpgpCanvasCreateInfo>();
   canvasInfo.base.queueFamily = unity.family();
   Canvas canvas = *Canvas::create(context, canvasInfo);
@@ -162,14 +171,14 @@ std::vector<uint8_t> drawDirectly(FakeUnity& unity, uint32_t width, uint32_t hei
   EXPECT_EQ(vkCreateImageView(unity.device(), &viewInfo, nullptr, &view), VK_SUCCESS);
   const GpgpFrame frame{1, 0};
   EXPECT_EQ(context.advance(frame), GPGP_SUCCESS);
-  GpgpCanvasItem items[2] = {{drawing, {1, 0, 0, 1, 10, 10}, 1}, glyphs.item(instances)};
-  items[1].transform[4] = 10;
-  items[1].transform[5] = 110;
+  GpgpCanvasItem items[2] = {{drawing, {1, 0, 0, 1, 10, 10}, 1}, {nullptr, {1, 0, 0, 1, 0, 0}, 1}};
+  items[1].list = list;
   auto record = init<GpgpCanvasInfo>();
   record.width = width;
   record.height = height;
   record.items = items;
   record.itemCount = 2;
+  record.exactArea = VK_TRUE;
   record.target = {texture.image,
                    view,
                    texture.format,
@@ -181,6 +190,10 @@ std::vector<uint8_t> drawDirectly(FakeUnity& unity, uint32_t width, uint32_t hei
                    {VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_GENERAL}};
   unity.submit([&](VkCommandBuffer commands) {
     EXPECT_TRUE(context.recordUpload(commands, frame));
+    EXPECT_EQ(glyphs.recordUpload(commands, frame), GPGP_SUCCESS);
+    const std::optional<GpgpCanvasImage> pictures = glyphs.image();
+    record.images = pictures ? &*pictures : nullptr;
+    record.imageCount = pictures ? 1 : 0;
     EXPECT_EQ(canvas.recordPrepare(commands, frame, record), GPGP_SUCCESS);
   });
   texture.layout = VK_IMAGE_LAYOUT_GENERAL;
@@ -318,6 +331,89 @@ TEST_F(UnityTest, WhatCannotBeDrawnIsSaidOnceAndNothingIsRecorded) {
   EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
   EXPECT_LT(script->setCanvas(canvas, &black), 0);
   EXPECT_GT(script->createCanvas(), canvas);
+}
+
+/// Pixels of a flame, which neither letters nor the background have.
+uint32_t orange(const std::vector<uint8_t>& pixels) {
+  uint32_t count = 0;
+  for (size_t i = 0; i < pixels.size(); i += 4) count += pixels[i] > 200 && pixels[i + 1] > 60 && pixels[i + 2] < 60;
+  return count;
+}
+
+TEST_F(UnityTest, TextsFallBackToOtherFontsAndToEmojiThatArePictures) {
+  const std::vector<char> latin = fontBytes(), emoji = fontBytes("NotoColorEmoji.ttf");
+  if (emoji.empty()) GTEST_SKIP() << "no NotoColorEmoji.ttf: run tests/data/fetch.sh";
+  start();
+  const int32_t font = script->createFont(latin.data(), static_cast<int32_t>(latin.size()));
+  const int32_t fallback = script->createFont(emoji.data(), static_cast<int32_t>(emoji.size()));
+  const int32_t wrong[] = {fallback, 12345};
+  EXPECT_LT(script->setFallbacks(font, wrong, 2), 0);
+  expectMessage(script->messages(), "fallback 1 is no font");
+  EXPECT_LT(script->setFallbacks(12345, &fallback, 1), 0);
+  EXPECT_LT(script->setFallbacks(font, nullptr, 1), 0);
+  const std::string words = "A \xF0\x9F\x94\xA5 B"; // fire
+  const GpgpUnityText info{words.c_str(), static_cast<int32_t>(words.size()), font, 32, {1, 1, 1, 1}, 0, 0};
+  const int32_t text = script->createText(&info);
+  ASSERT_GT(text, 0);
+  const int32_t canvas = script->createCanvas();
+  FakeTexture& texture = *unity->makeTexture(128, 64);
+  const GpgpUnityItem one = item(text, 1, 4, 4);
+  const GpgpUnityCanvas shown{&texture, GPGP_UNITY_FLIP | GPGP_UNITY_ENCODE_SRGB, {0, 0, 0.2f, 1}, &one, 1};
+  EXPECT_EQ(script->setCanvas(canvas, &shown), GPGP_SUCCESS);
+  frame(canvas);
+  EXPECT_EQ(orange(unity->read(texture)), 0u);
+  EXPECT_EQ(script->setFallbacks(font, &fallback, 1), GPGP_SUCCESS);
+  EXPECT_EQ(script->setText(text, &info), GPGP_SUCCESS);
+  for (int i = 0; i < 4; ++i) frame(canvas);
+  const std::vector<uint8_t> pixels = unity->read(texture);
+  EXPECT_GT(orange(pixels), 100u);
+  if (const char* folder = std::getenv("GPGP_UNITY_PICTURES"))
+    host::writePng(std::string(folder) + "/unity_emoji.png", {128, 64, pixels});
+  // A font of the text goes: so does the text, until it is set anew without it.
+  script->destroy(fallback);
+  frame(canvas);
+  EXPECT_EQ(orange(unity->read(texture)), 0u);
+  EXPECT_EQ(script->setText(text, &info), GPGP_SUCCESS);
+  frame(canvas);
+  const std::vector<uint8_t> without = unity->read(texture);
+  EXPECT_EQ(orange(without), 0u);
+  EXPECT_NE(without, std::vector<uint8_t>(without.size(), 0)) << "letters are there";
+}
+
+TEST_F(UnityTest, DeviceEventsInAnyOrderAndADeviceThatIsLostOrReplaced) {
+  start();
+  unity->loadAgain();
+  EXPECT_EQ(unity->hooksTaken(), 1u);
+  const int32_t canvas = script->createCanvas();
+  const auto drawsInto = [&](int32_t number) {
+    FakeTexture& texture = *unity->makeTexture(16, 16);
+    const GpgpUnityCanvas white{&texture, 0, {1, 1, 1, 1}, nullptr, 0};
+    if (script->setCanvas(number, &white) < 0) return false;
+    frame(number);
+    frame(number);
+    return unity->read(texture)[0] == 255;
+  };
+  EXPECT_TRUE(drawsInto(canvas));
+  unity->send(kUnityGfxDeviceEventInitialize); // said twice
+  EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
+  EXPECT_TRUE(drawsInto(canvas)) << "objects stay";
+  unity->send(kUnityGfxDeviceEventBeforeReset);
+  EXPECT_EQ(script->getState(), GPGP_UNITY_OFF);
+  frame(canvas);
+  unity->send(kUnityGfxDeviceEventShutdown); // there is nothing to shut down
+  unity->send(kUnityGfxDeviceEventAfterReset);
+  EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
+  EXPECT_LT(script->setCanvas(canvas, nullptr), 0);
+  EXPECT_TRUE(drawsInto(script->createCanvas()));
+  // Frames are under way, and the device is lost: the plugin lets go of all it has, and starts on the next one.
+  const int32_t drawing = script->createDrawing(kSvg, sizeof kSvg - 1, 0);
+  ASSERT_GT(drawing, 0);
+  unity->loseDevice();
+  unity->replaceDevice();
+  EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
+  float box[4];
+  EXPECT_LT(script->getBox(drawing, box), 0);
+  EXPECT_TRUE(drawsInto(script->createCanvas()));
 }
 
 TEST_F(UnityTest, LoadedTooLateOrWithoutVulkanItStaysOff) {

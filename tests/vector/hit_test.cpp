@@ -287,6 +287,22 @@ TEST_F(CanvasTest, WrongCallsOfListsSayWhatIsWrong) {
   refused(gpgpAddText(list.list, nullptr, nullptr, 0, 0), "glyphSet is NULL", GPGP_ERROR_INVALID_HANDLE);
   refused(gpgpAddDrawing(list.list, nullptr, 0, 0), "drawing is NULL", GPGP_ERROR_INVALID_HANDLE);
   refused(gpgpResetList(nullptr), "", GPGP_ERROR_INVALID_HANDLE);
+  // What lies within 1e7, and under a scale no longer does; the same under a turn is another matter.
+  const float larger[6] = {1e4f, 0, 0, 1e4f, 0, 0}, turned[6] = {0, 1e4f, -1e4f, 0, 0, 0}, far[4] = {0, 0, 2e3f, 9};
+  const float round[4] = {2e3f, 0, 0, 0};
+  ASSERT_EQ(gpgpPushTransform(list.list, larger, nullptr), GPGP_SUCCESS);
+  refused(gpgpPushClip(list.list, far, nullptr), "beyond 1e7 under the transforms pushed");
+  refused(gpgpPushClip(list.list, good, round), "beyond 1e7 under the transforms pushed");
+  shapes[2].box[2] = 2e3f, shape("shapes[2].box or width is beyond 1e7 under the transforms pushed");
+  ASSERT_EQ(gpgpPopState(list.list), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpPushTransform(list.list, turned, nullptr), GPGP_SUCCESS);
+  EXPECT_EQ(gpgpPushClip(list.list, far, round), GPGP_SUCCESS);
+  list.reset();
+  const float beyond[4] = {0, 0, 2e7f, 9};
+  refused(gpgpPushClip(list.list, beyond, nullptr), "within 1e7");
+  for (int i = 0; i < GPGP_MAX_OPACITY_DEPTH; ++i) EXPECT_EQ(gpgpPushGroup(list.list, 0.5f), GPGP_SUCCESS);
+  refused(gpgpPushGroup(list.list, 0.5f), "more than 4 groups");
+  list.reset();
   for (int i = 0; i < GPGP_MAX_LIST_DEPTH; ++i) list.fade(1);
   refused(gpgpPushOpacity(list.list, 1), "more than 64 pushes");
   list.reset();

@@ -34,7 +34,7 @@ void UNITY_INTERFACE_API onRenderEvent(int eventId, void* data) {
 extern "C" {
 
 UNITY_INTERFACE_EXPORT void UNITY_INTERFACE_API UnityPluginLoad(IUnityInterfaces* interfaces) {
-  if (!interfaces) return;
+  if (!interfaces || plugin) return; // a second time: it is there
   try {
     plugin = std::make_unique<gpgp::unity::Plugin>(*interfaces, onDeviceEvent);
   } catch (...) { // out of memory: the plugin stays off
@@ -63,6 +63,12 @@ int32_t gpgpUnityGetBox(int32_t object, float* box) {
 int32_t gpgpUnityCreateFont(const void* data, int32_t size) {
   return guarded([&](auto& p) {
     return data && size > 0 ? p.createFont(data, static_cast<size_t>(size)) : GPGP_ERROR_INVALID_ARGUMENT;
+  });
+}
+int32_t gpgpUnitySetFallbacks(int32_t font, const int32_t* fallbacks, int32_t count) {
+  return guarded([&](auto& p) {
+    return count >= 0 && (fallbacks || count == 0) ? p.setFallbacks(font, fallbacks, static_cast<size_t>(count))
+                                                   : GPGP_ERROR_INVALID_ARGUMENT;
   });
 }
 int32_t gpgpUnityCreateText(const GpgpUnityText* text) {

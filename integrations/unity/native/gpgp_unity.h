@@ -36,6 +36,7 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetEventId(void);
  * GpgpCanvasCreateInfo's own). Makes pipelines: while a level loads, not in a frame. */
 typedef struct GpgpUnityBudgets {
   uint32_t maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs;
+  uint32_t maxItems; /* drawings and texts; a text with emoji that are pictures counts twice */
 } GpgpUnityBudgets;
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnitySetBudgets(const GpgpUnityBudgets* budgets);
 
@@ -45,6 +46,9 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityCreateDrawing(const void* data, 
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetBox(int32_t object, float* box);
 /** From a font file's bytes, which are copied. */
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityCreateFont(const void* data, int32_t size);
+/** Fonts for what this one does not have, asked in their order, in texts that are laid out from now on. Where one of
+ *  the fonts of a text is destroyed, the text is left out until it is set anew. */
+GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnitySetFallbacks(int32_t font, const int32_t* fallbacks, int32_t count);
 
 typedef struct GpgpUnityText {
   const char* text; /* UTF-8 */

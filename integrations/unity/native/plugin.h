@@ -12,6 +12,8 @@
 
 namespace gpgp::unity {
 
+constexpr uint64_t kFramesInFlight = 4;
+
 class Plugin {
 public:
   /// deviceEvent: calls onDeviceEvent.
@@ -30,6 +32,7 @@ public:
   int32_t setBudgets(const GpgpUnityBudgets& budgets);
   int32_t createDrawing(const void* data, size_t size, bool baked);
   int32_t createFont(const void* data, size_t size);
+  int32_t setFallbacks(int32_t font, const int32_t* fallbacks, size_t count);
   int32_t createText(const GpgpUnityText& text);
   int32_t setText(int32_t object, const GpgpUnityText& text);
   int32_t getBox(int32_t object, float* box);
@@ -46,9 +49,13 @@ private:
     std::vector<GpgpUnityItem> items;
     std::string complaint; ///< said already
   };
+  struct OpenFont {
+    Font font;
+    std::vector<int32_t> fallbacks;
+  };
   struct Text {
     Layout layout;
-    int32_t font = 0;
+    std::vector<int32_t> fonts; ///< that it was laid out in
   };
   struct View { ///< of a texture in a frame
     VkImageView view = VK_NULL_HANDLE;
@@ -63,6 +70,8 @@ private:
   GpgpResult layOut(Text& to, const GpgpUnityText& text);
   bool advance(Surface& surface, const UnityVulkanRecordingState& state);
   void record(Surface& surface, const UnityVulkanRecordingState& state, const UnityVulkanImage& image);
+  bool fillList(Surface& surface, float height);
+  GpgpResult addText(Surface& surface, const Text& text);
   void freeViews(uint64_t safe);
   template <class Function> Function load(const char* name) const {
     return reinterpret_cast<Function>(device_.getInstanceProcAddr(device_.instance, name));
@@ -88,11 +97,13 @@ private:
   bool reportedBudget_ = false;
   Shaper shaper_;
   integration::GlyphCache glyphs_;
+  List list_;                      ///< of the canvas at hand
+  integration::PlacedText placed_; ///< of the text at hand
   uint64_t frame_ = 0;
   std::vector<View> views_;
   int32_t nextObject_ = 1;
   std::map<int32_t, Drawing> drawings_;
-  std::map<int32_t, Font> fonts_;
+  std::map<int32_t, OpenFont> fonts_;
   std::map<int32_t, Text> texts_;
   std::map<int32_t, Surface> surfaces_;
 };

@@ -1,4 +1,5 @@
 // A component that shows a drawing and a text.
+using System;
 using UnityEngine;
 
 namespace Gpgp
@@ -9,6 +10,7 @@ namespace Gpgp
     {
         [Tooltip("An SVG file with the ending .bytes")] public TextAsset svg;
         [Tooltip("A font file with the ending .bytes")] public TextAsset font;
+        [Tooltip("Fonts for what it does not have: other scripts, emoji")] public TextAsset[] fallbacks;
         public string text = "";
         public float textPixels = 32;
         public Color textColor = Color.white;
@@ -19,6 +21,7 @@ namespace Gpgp
         Canvas canvas;
         Drawing drawing;
         Font openFont;
+        Font[] openFallbacks = new Font[0];
         Text line;
 
         /// <summary>For materials; null until the plugin is ready.</summary>
@@ -38,6 +41,8 @@ namespace Gpgp
             if (font != null)
             {
                 openFont = new Font(font.bytes);
+                if (fallbacks != null) openFallbacks = Array.ConvertAll(fallbacks, file => new Font(file.bytes));
+                openFont.SetFallbacks(openFallbacks);
                 var color = textColor.linear;
                 line = new Text(openFont, text, textPixels, new[] { color.r, color.g, color.b, color.a }, width);
             }
@@ -67,10 +72,12 @@ namespace Gpgp
         {
             if (line != null) line.Dispose();
             if (openFont != null) openFont.Dispose();
+            foreach (var fallback in openFallbacks) fallback.Dispose();
             if (drawing != null) drawing.Dispose();
             if (canvas != null) canvas.Dispose();
             line = null;
             openFont = null;
+            openFallbacks = new Font[0];
             drawing = null;
             canvas = null;
         }

@@ -13,7 +13,7 @@ namespace Gpgp
         [StructLayout(LayoutKind.Sequential)]
         internal struct Budgets
         {
-            public uint maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs;
+            public uint maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs, maxItems;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -56,6 +56,7 @@ namespace Gpgp
         [DllImport(Library)] internal static extern int gpgpUnityCreateDrawing(byte[] data, int size, int baked);
         [DllImport(Library)] internal static extern int gpgpUnityGetBox(int obj, float[] box);
         [DllImport(Library)] internal static extern int gpgpUnityCreateFont(byte[] data, int size);
+        [DllImport(Library)] internal static extern int gpgpUnitySetFallbacks(int font, int[] fallbacks, int count);
         [DllImport(Library)] internal static extern int gpgpUnityCreateText(ref TextInfo text);
         [DllImport(Library)] internal static extern int gpgpUnitySetText(int obj, ref TextInfo text);
         [DllImport(Library)] internal static extern int gpgpUnityCreateCanvas();
@@ -87,7 +88,7 @@ namespace Gpgp
 
         /// <summary>Larger canvases, or more on them. Makes pipelines: while a level loads. 0: the default.</summary>
         public static void SetBudgets(uint maxWidth, uint maxHeight, uint maxTileEntries = 0, uint maxPatches = 0,
-                                      uint maxGlyphs = 0)
+                                      uint maxGlyphs = 0, uint maxItems = 0)
         {
             var budgets = new Native.Budgets
             {
@@ -95,7 +96,8 @@ namespace Gpgp
                 maxHeight = maxHeight,
                 maxTileEntries = maxTileEntries,
                 maxPatches = maxPatches,
-                maxGlyphs = maxGlyphs
+                maxGlyphs = maxGlyphs,
+                maxItems = maxItems
             };
             Need(Native.gpgpUnitySetBudgets(ref budgets), "gpgpUnitySetBudgets");
         }
@@ -161,6 +163,14 @@ namespace Gpgp
         /// <summary>From the bytes of a TTF, OTF or TTC file.</summary>
         public Font(byte[] bytes)
             : base(Plugin.Need(Native.gpgpUnityCreateFont(bytes, bytes.Length), "gpgpUnityCreateFont")) { }
+
+        /// <summary>Fonts for what this one does not have, asked in their order: other scripts, emoji. They count for
+        /// texts that are set from now on, and must not be disposed before those texts.</summary>
+        public void SetFallbacks(params Font[] fallbacks)
+        {
+            var numbers = Array.ConvertAll(fallbacks, font => font.Number);
+            Plugin.Need(Native.gpgpUnitySetFallbacks(Number, numbers, numbers.Length), "gpgpUnitySetFallbacks");
+        }
     }
 
     public enum TextAlign { Start = 0, End = 1, Left = 2, Center = 3, Right = 4, Justify = 5 }

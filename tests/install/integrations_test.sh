@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# A project that follows the integrations' pages: it finds an installed gpgp, adds integrations/ from the sources, and
+# is made of the pages' own programs. The window's runs on a virtual display, and the validation layer has nothing to say.
+#
+#   integrations_test.sh PREFIX SOURCE_DIR SCRATCH_DIR CMAKE CXX XVFB_RUN
+set -euo pipefail
+prefix=$1 source=$2 scratch=$3 cmake=$4 cxx=$5 xvfb=$6
+rm -rf "$scratch"
+mkdir -p "$scratch"
+# block PAGE N: the page's Nth block of C++
+block() { awk -v n="$2" '/^```/ { inside = /^```cpp/ && ++count == n; next } inside' "$source/integrations/$1/README.md"; }
+block sdl2 1 >"$scratch/window.cpp"
+{
+  cat <<END
+#include <gpgp_imgui.hpp>
+#include <imgui/backends/imgui_impl_vulkan.h>
+using namespace gpgp;
+GpgpResult frameOf(GpgpContext context, VkPhysicalDevice physicalDevice, VkDevice device, uint32_t queueFamily,
+                   VkRenderPass renderPass, VkCommandBuffer commands, GpgpFrame frame, GpgpAsset gauge, GpgpLayout layout) {
+  VkRenderPassBeginInfo passBegin{};
+END
+  block imgui 1
+  block imgui 2
+  echo 'return GPGP_SUCCESS; }'
+  # Without a device it says what it needs.
+  echo 'int main() { try { imgui::Renderer renderer({}); } catch (const std::exception&) { return 0; } return 1; }'
+} >"$scratch/widgets.cpp"
+cat >"$scratch/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.25)
+project(tool LANGUAGES CXX)
+find_package(gpgp REQUIRED)
+add_subdirectory($source/integrations gpgp-integrations)
+foreach(program window widgets)
+  add_executable(\${program} \${program}.cpp)
+  target_compile_options(\${program} PRIVATE -Wall -Werror)
+endforeach()
+target_link_libraries(window PRIVATE gpgp::sdl2)
+target_link_libraries(widgets PRIVATE gpgp::imgui)
+END
+launcher=()
+if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+"$cmake" -S "$scratch" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=None \
+  -DCMAKE_CXX_COMPILER="$cxx" "${launcher[@]}"
+"$cmake" --build "$scratch/build" --target window widgets
+"$scratch/build/widgets"
+# It goes on until its window is closed, which SDL takes a signal for, and then ends well.
+run='"$1" & sleep 10 && kill -TERM $! && wait $!'
+if ! SDL_VIDEODRIVER=x11 VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "$xvfb" -a -s "-screen 0 1280x800x24" \
+  bash -c "$run" window "$scratch/build/window" >"$scratch/window.log" 2>&1; then
+  cat "$scratch/window.log"
+  echo "FAILED: the window's program did not end well" >&2
+  exit 1
+fi
+if grep -i "validation" "$scratch/window.log"; then
+  echo "FAILED: validation messages" >&2
+  exit 1
+fi

@@ -1,0 +1,325 @@
+// gpgp::glyph_cache: glyphs that are pictures in a canvas, beside what the font says they are; budgets, eviction,
+// fonts that go. Under the validation layer. GPGP_GLYPH_CACHE_PICTURES=FOLDER writes what is compared.
+#include "gpgp_glyph_cache.hpp"
+#include "gpgp_sdl2.hpp"
+#include "host/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+namespace {
+
+using namespace gpgp;
+constexpr uint32_t kSide = 256;
+constexpr const char* kFonts = GPGP_TEST_DATA "/fetched/fonts/";
+
+/// A device, and a canvas whose pixels are read back.
+struct GlyphCacheTest : testing::Test {
+  struct Stage {
+    sdl2::Device device;
+    sdl2::Frames frames{device, 2};
+    Context context;
+    Canvas canvas;
+    VkImage image = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory imageMemory = VK_NULL_HANDLE, bufferMemory = VK_NULL_HANDLE;
+    void* mapped = nullptr;
+    std::vector<std::string> messages;
+
+    static sdl2::DeviceInfo wanted() {
+      sdl2::DeviceInfo info;
+      info.validate = true;
+      return info;
+    }
+    Stage() : device(wanted()) {
+      GpgpContextCreateInfo info = device.contextCreateInfo();
+      info.maxFramesInFlight = 2;
+      info.messageUserData = &messages;
+      info.messageFn = [](void* user, const GpgpMessage* m) {
+        static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
+      };
+      context = *Context::create(info);
+      auto canvasInfo = init<GpgpCanvasCreateInfo>();
+      canvasInfo.base.queueFamily = device.family;
+      canvas = *Canvas::create(context, canvasInfo);
+      EXPECT_EQ(canvas.prewarm(), GPGP_SUCCESS);
+      VkImageCreateInfo imageInfo{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+      imageInfo.imageType = VK_IMAGE_TYPE_2D;
+      imageInfo.format = VK_FORMAT_R8G8B8A8_UNORM;
+      imageInfo.extent = {kSide, kSide, 1};
+      imageInfo.mipLevels = imageInfo.arrayLayers = 1;
+      imageInfo.samples = VK_SAMPLE_COUNT_1_BIT;
+      imageInfo.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+      sdl2::check(vkCreateImage(device.device, &imageInfo, nullptr, &image), "image");
+      VkMemoryRequirements needs{};
+      vkGetImageMemoryRequirements(device.device, image, &needs);
+      imageMemory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+      vkBindImageMemory(device.device, image, imageMemory, 0);
+      VkImageViewCreateInfo viewInfo{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+      viewInfo.image = image;
+      viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
+      viewInfo.format = imageInfo.format;
+      viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      sdl2::check(vkCreateImageView(device.device, &viewInfo, nullptr, &view), "view");
+      VkBufferCreateInfo bufferInfo{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+      bufferInfo.size = VkDeviceSize{kSide} * kSide * 4;
+      bufferInfo.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+      sdl2::check(vkCreateBuffer(device.device, &bufferInfo, nullptr, &buffer), "buffer");
+      vkGetBufferMemoryRequirements(device.device, buffer, &needs);
+      bufferMemory = allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+      vkBindBufferMemory(device.device, buffer, bufferMemory, 0);
+      sdl2::check(vkMapMemory(device.device, bufferMemory, 0, VK_WHOLE_SIZE, 0, &mapped), "map");
+    }
+    ~Stage() {
+      vkDeviceWaitIdle(device.device);
+      canvas.reset();
+      context.reset();
+      vkDestroyImageView(device.device, view, nullptr);
+      vkDestroyImage(device.device, image, nullptr);
+      vkDestroyBuffer(device.device, buffer, nullptr);
+      vkFreeMemory(device.device, imageMemory, nullptr);
+      vkFreeMemory(device.device, bufferMemory, nullptr);
+    }
+    VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) const {
+      VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+      info.allocationSize = needs.size;
+      info.memoryTypeIndex = device.memoryType(needs.memoryTypeBits, flags);
+      VkDeviceMemory made = VK_NULL_HANDLE;
+      sdl2::check(vkAllocateMemory(device.device, &info, nullptr, &made), "memory");
+      return made;
+    }
+    integration::GlyphCacheInfo cacheInfo(uint32_t maxPictures) const {
+      integration::GlyphCacheInfo info;
+      info.context = context;
+      info.maxPictures = maxPictures;
+      info.pictureDevice.device = device.device;
+      info.pictureDevice.getDeviceProcAddr = vkGetDeviceProcAddr;
+      vkGetPhysicalDeviceMemoryProperties(device.physical, &info.pictureDevice.memory);
+      return info;
+    }
+  };
+  inline static std::unique_ptr<Stage> stage;
+  static void SetUpTestSuite() { stage = std::make_unique<Stage>(); }
+  static void TearDownTestSuite() { stage.reset(); }
+  Font emoji, latin;
+  Shaper shaper;
+  Layout layout;
+  integration::GlyphCache cache;
+  integration::PlacedText placed;
+
+  void SetUp() override {
+    if (!std::filesystem::exists(std::string(kFonts) + "NotoColorEmoji.ttf"))
+      GTEST_SKIP() << "no NotoColorEmoji.ttf in " << kFonts << ": run tests/data/fetch.sh";
+    emoji = open("NotoColorEmoji.ttf");
+    latin = open("DejaVuSans.ttf");
+    shaper = *Shaper::create();
+    layout = *shaper.layout();
+  }
+  void TearDown() override {
+    vkDeviceWaitIdle(stage->device.device);
+    cache = {};
+    EXPECT_EQ(stage->device.validationMessages(), 0u);
+    for (const std::string& message : stage->messages) ADD_FAILURE() << message;
+    stage->messages.clear();
+  }
+  static Font open(const char* file) {
+    const std::string path = std::string(kFonts) + file;
+    auto info = init<GpgpFontCreateInfo>();
+    info.filePath = path.c_str();
+    return *Font::create(info);
+  }
+  GpgpLayoutInfo layOut(const std::string& words, float size, float alpha = 1) {
+    const GpgpFont fonts[] = {latin, emoji};
+    auto text = init<GpgpTextInfo>();
+    text.text = words.data();
+    text.size = words.size();
+    text.style.fonts = fonts;
+    text.style.fontCount = 2;
+    text.style.size = size;
+    std::fill_n(text.style.color, 3, 1.0f);
+    text.style.color[3] = alpha;
+    EXPECT_EQ(layout.set(text), GPGP_SUCCESS);
+    return *layout.info();
+  }
+  /// What was placed, over dark blue.
+  host::Picture draw(const float (&background)[4] = {0, 0, 0.2f, 1}) {
+    List list = *List::create(stage->context);
+    EXPECT_EQ(cache.addTo(list, placed), GPGP_SUCCESS);
+    VkCommandBuffer commands = stage->frames.begin();
+    const GpgpFrame frame = stage->frames.number();
+    EXPECT_EQ(stage->context.advance(frame), GPGP_SUCCESS);
+    EXPECT_TRUE(stage->context.recordUpload(commands, frame));
+    EXPECT_EQ(cache.recordUpload(commands, frame), GPGP_SUCCESS);
+    const std::optional<GpgpCanvasImage> pictures = cache.image();
+    GpgpCanvasItem item{};
+    item.list = list;
+    item.transform[0] = item.transform[3] = item.opacity = 1;
+    auto info = init<GpgpCanvasInfo>();
+    info.width = info.height = kSide;
+    info.items = &item;
+    info.itemCount = 1;
+    info.images = pictures ? &*pictures : nullptr;
+    info.imageCount = pictures ? 1 : 0;
+    info.exactArea = info.encodeSrgb = info.blendSrgb = VK_TRUE;
+    std::copy_n(background, 4, info.background);
+    const GpgpAccess after{VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+    info.target = {stage->image, stage->view, VK_FORMAT_R8G8B8A8_UNORM, 0, 0, kSide, kSide, {}, after};
+    EXPECT_EQ(stage->canvas.recordPrepare(commands, frame, info), GPGP_SUCCESS);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {kSide, kSide, 1};
+    vkCmdCopyImageToBuffer(commands, stage->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, stage->buffer, 1, &copy);
+    stage->frames.submit();
+    vkDeviceWaitIdle(stage->device.device);
+    host::Picture picture{kSide, kSide, std::vector<uint8_t>(size_t{kSide} * kSide * 4)};
+    std::memcpy(picture.rgba.data(), stage->mapped, picture.rgba.size());
+    return picture;
+  }
+  static void keep(const host::Picture& picture, const std::string& name) {
+    if (const char* folder = std::getenv("GPGP_GLYPH_CACHE_PICTURES"))
+      host::writePng(std::string(folder) + "/" + name + ".png", picture);
+  }
+};
+
+/// A font's picture in a box of the canvas by the definition: each pixel the mean of what it covers, in linear light.
+struct Expected {
+  host::Picture picture;
+  float box[4] = {};
+  Expected(const Font& font, const GpgpTextGlyph& glyph, float x, float y) {
+    auto info = init<GpgpGlyphOutlineInfo>();
+    info.glyph = glyph.glyph;
+    font.outline(info, [&](const GpgpGlyphOutline& outline) {
+      ASSERT_NE(outline.image, nullptr);
+      const GpgpGlyphImage& image = *outline.image;
+      picture = {image.width, image.height, {image.pixels, image.pixels + size_t{image.width} * image.height * 4}};
+      for (size_t side = 0; side < 4; ++side)
+        box[side] = (side % 2 == 0 ? x + glyph.x : y + glyph.y) + image.box[side] * glyph.size;
+    });
+  }
+  /// Premultiplied linear colour and alpha of a pixel, by 8 x 8 points of it.
+  std::array<double, 4> at(uint32_t px, uint32_t py) const {
+    std::array<double, 4> sum{};
+    constexpr int kPoints = 8;
+    for (int j = 0; j < kPoints; ++j)
+      for (int i = 0; i < kPoints; ++i) {
+        const float x = static_cast<float>(px) + (static_cast<float>(i) + 0.5f) / kPoints;
+        const float y = static_cast<float>(py) + (static_cast<float>(j) + 0.5f) / kPoints;
+        const float u = (x - box[0]) / (box[2] - box[0]), v = (y - box[1]) / (box[3] - box[1]);
+        if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) continue;
+        const auto tx = static_cast<uint32_t>(u * static_cast<float>(picture.width));
+        const auto ty = static_cast<uint32_t>(v * static_cast<float>(picture.height));
+        const uint8_t* texel = &picture.rgba[(size_t{ty} * picture.width + tx) * 4];
+        const double alpha = texel[3] / 255.0 / (kPoints * kPoints);
+        for (size_t c = 0; c < 3; ++c)
+          sum[c] += double{host::linearFromSrgb(static_cast<float>(texel[c]) / 255)} * alpha;
+        sum[3] += alpha;
+      }
+    return sum;
+  }
+};
+
+TEST_F(GlyphCacheTest, PicturesAreTheFontsAtEverySize) {
+  ASSERT_EQ(cache.create(stage->cacheInfo(4)), GPGP_SUCCESS);
+  // Filters blur small pictures a little.
+  for (const auto& [size, limit] : {std::pair(13.0f, 7.0), {27.5f, 5.0}, {60.0f, 2.5}, {150.0f, 1.5}}) {
+    const GpgpLayoutInfo info = layOut("🔥", size);
+    ASSERT_EQ(info.glyphCount, 1u);
+    const float x = 20.25f, y = 30.5f; // between pixels
+    placed.clear();
+    ASSERT_EQ(cache.place(info, x, y, 1, placed), GPGP_SUCCESS);
+    ASSERT_EQ(placed.pictures.size(), 1u);
+    EXPECT_TRUE(placed.glyphs.empty());
+    const host::Picture picture = draw({0, 0, 0, 1});
+    keep(picture, "size" + std::to_string(static_cast<int>(size)));
+    const Expected expected(emoji, info.glyphs[0], x, y);
+    double difference = 0;
+    uint32_t pixels = 0, beyond = 0;
+    for (uint32_t py = 0; py < kSide; ++py)
+      for (uint32_t px = 0; px < kSide; ++px) {
+        const uint8_t* p = &picture.rgba[(size_t{py} * kSide + px) * 4];
+        const bool inside = static_cast<float>(px) >= expected.box[0] - 1 &&
+                            static_cast<float>(px) <= expected.box[2] &&
+                            static_cast<float>(py) >= expected.box[1] - 1 && static_cast<float>(py) <= expected.box[3];
+        if (!inside) {
+          beyond += p[0] || p[1] || p[2];
+          continue;
+        }
+        const std::array<double, 4> wanted = expected.at(px, py); // over black, where colours mix linearly or not
+        for (size_t c = 0; c < 3; ++c)
+          difference += std::abs(p[c] - 255.0 * double{host::srgbFromLinear(static_cast<float>(wanted[c]))});
+        pixels += 3;
+      }
+    EXPECT_EQ(beyond, 0u) << size;
+    EXPECT_LT(difference / pixels, limit) << "of 255 in the mean at " << size;
+    EXPECT_GT(pixels, 100u);
+  }
+}
+
+TEST_F(GlyphCacheTest, TextAndPicturesGoTogetherAndFade) {
+  ASSERT_EQ(cache.create(stage->cacheInfo(4)), GPGP_SUCCESS);
+  const auto red = [&](float alpha) {
+    placed.clear();
+    EXPECT_EQ(cache.place(layOut("A🔴 🔴B", 40, alpha), 8, 8, 1, placed), GPGP_SUCCESS);
+    EXPECT_EQ(placed.pictures.size(), 2u); // one picture at two places
+    EXPECT_EQ(placed.dropped, 0u);
+    const host::Picture picture = draw({0, 0, 0, 1});
+    keep(picture, "text" + std::to_string(static_cast<int>(alpha * 100)));
+    const float* box = placed.pictures[0].box;
+    const auto px = static_cast<size_t>((box[0] + box[2]) / 2), py = static_cast<size_t>((box[1] + box[3]) / 2);
+    return picture.rgba[(py * kSide + px) * 4];
+  };
+  const int whole = red(1), half = red(0.5f);
+  EXPECT_GT(whole, 200);
+  EXPECT_NEAR(half, whole / 2.0, 2); // mixed as sRGB encodes colours
+}
+
+TEST_F(GlyphCacheTest, APictureUnusedMakesRoomAndWhatFindsNoneIsCounted) {
+  ASSERT_EQ(cache.create(stage->cacheInfo(2)), GPGP_SUCCESS);
+  placed.clear();
+  EXPECT_EQ(cache.place(layOut("🔥🌍🚀", 30), 8, 8, 1, placed), GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(placed.pictures.size(), 2u);
+  EXPECT_EQ(placed.dropped, 1u);
+  const host::Picture two = draw();
+  // In later frames there is room for the one that was left out, where another is not shown any more.
+  placed.clear();
+  EXPECT_EQ(cache.place(layOut("🚀🌍", 30), 8, 8, 1, placed), GPGP_SUCCESS);
+  EXPECT_EQ(placed.dropped, 0u);
+  const host::Picture later = draw();
+  placed.clear();
+  EXPECT_EQ(cache.place(layOut("🔥🌍", 30), 8, 8, 1, placed), GPGP_SUCCESS);
+  const host::Picture again = draw();
+  keep(two, "two");
+  keep(later, "later");
+  EXPECT_NE(later.rgba, two.rgba);
+  EXPECT_EQ(again.rgba, two.rgba) << "it came back as it was";
+}
+
+TEST_F(GlyphCacheTest, WithoutADeviceThereAreNoPicturesAndFontsMayGo) {
+  integration::GlyphCacheInfo info;
+  info.context = stage->context;
+  ASSERT_EQ(cache.create(info), GPGP_SUCCESS);
+  EXPECT_EQ(cache.place(layOut("A🔥", 30), 8, 8, 1, placed), GPGP_SUCCESS);
+  EXPECT_TRUE(placed.pictures.empty());
+  const host::Picture without = draw();
+  cache = {};
+  ASSERT_EQ(cache.create(stage->cacheInfo(2)), GPGP_SUCCESS);
+  placed.clear();
+  EXPECT_EQ(cache.place(layOut("A🔥", 30), 8, 8, 1, placed), GPGP_SUCCESS);
+  const host::Picture with = draw();
+  EXPECT_NE(with.rgba, without.rgba);
+  cache.forget(emoji);
+  cache.forget(latin);
+  emoji = open("NotoColorEmoji.ttf"); // at the same address or another
+  latin = open("DejaVuSans.ttf");
+  placed.clear();
+  EXPECT_EQ(cache.place(layOut("A🔥", 30), 8, 8, 1, placed), GPGP_SUCCESS);
+  EXPECT_EQ(draw().rgba, with.rgba);
+}
+
+} // namespace
