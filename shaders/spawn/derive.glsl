@@ -4,7 +4,8 @@
 // A batch is one shape for each invocation, waiting for an operator that multiplies. Step by step its children are
 // made, one an invocation whoever the parent, and each goes through its chain of operators until it is a terminal, or
 // waits in its turn: on the stack, or, in the batch's last step, where it is, as a part of the next batch. Terminals
-// leave at once, a workgroup's together.
+// leave at once, a workgroup's together. A batch ends with a full step: parents whose children are too many for that go
+// back to the stack, one perhaps with a part of them made.
 // Work goes over to the next round, through the other queue, where a round began with too few shapes to keep the device
 // busy and a workgroup has enough to give (`spread`), where most workgroups have finished, where the stack is full, and
 // after `steps`, so that no workgroup runs for ever. Round 0 reads axioms. What does not fit the queue is counted and
@@ -288,7 +289,7 @@ void main() {
   bool fetched = false; // axioms, which are made of nothing
   uint first = 0;
   uint batches = 0;
-  for (uint step = 0; step < record.steps; ++step) {
+  for (uint step = 0; step < record.steps || made < total; ++step) {
     if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
       total = 0;
       made = 0;
@@ -341,18 +342,22 @@ void main() {
         }
         const uint before = sumBefore(fan.count, total); // at most groupSize * kMaxRepeat
         childrenUpTo[lane] = before + fan.count;
-        const uint room = stackRoom - stackSize;
-        if (total > room) { // only as many parents as could all have waiting children; the first in any case
-          const bool late = waits && before > 0 && before + fan.count > room;
-          if (late) childrenUpTo[lane] = 0xffffffffu;
+        if (total > groupSize) { // whole steps, as many as there is room for: what more children there are comes later
+#ifdef GPGP_COLLIDERS
+          const uint steps = 1; // a batch is not left before its end, and queries are as much work as many steps
+#else
+          const uint steps = clamp((stackRoom - stackSize) / groupSize, 1, total / groupSize);
+#endif
+          total = steps * groupSize;
+          const bool late = waits && before + fan.count > total;
+          if (late) {
+            const uint part = total - min(before, total);
+            childrenUpTo[lane] = part > 0 ? total : 0xffffffffu;
+            s.made += part;
+          }
           uint back;
           const uint place = ranksOf(late, false, back);
           push(late, place, back, s);
-          if (lane == 0) taken = 0;
-          barrier();
-          if (waits && !late) atomicMax(taken, before + fan.count);
-          barrier();
-          total = taken;
         }
       }
       waits = false;
@@ -405,17 +410,7 @@ void main() {
     }
   }
 
-  // What there were no steps left for goes over: the next batch, or this one's parents with the children that they
-  // have.
-  uint rest;
-  if (made < total) {
-    const uint before = lane > 0 ? childrenUpTo[lane - 1] : 0;
-    waits = childrenUpTo[lane] > max(made, before) && childrenUpTo[lane] <= total;
-    if (waits) {
-      s = parentAt(lane);
-      s.made += made - min(made, before);
-    }
-  }
+  uint rest; // what there were no steps left for goes over
   const uint place = ranksOf(waits, false, rest);
   push(waits, place, rest, s);
   leaveRest(count);
