@@ -4,10 +4,12 @@
 // A batch is one shape for each invocation, waiting for an operator that multiplies. Step by step its children are
 // made, one an invocation whoever the parent, and each goes through its chain of operators until it is a terminal, or
 // waits in its turn: on the stack, or, in the batch's last step, where it is, as a part of the next batch. Terminals
-// leave at once, a workgroup's together.
+// leave at once, a workgroup's together. A batch ends with a full step: parents whose children are too many for that go
+// back to the stack, one perhaps with a part of them made.
 // Work goes over to the next round, through the other queue, where a round began with too few shapes to keep the device
-// busy and a workgroup has enough to give (`spread`), where the stack is full, and after `steps`, so that no workgroup
-// runs for ever. Round 0 reads axioms. What does not fit the queue is counted and dropped.
+// busy and a workgroup has enough to give (`spread`), where most workgroups have finished, where the stack is full, and
+// after `steps`, so that no workgroup runs for ever. Round 0 reads axioms. What does not fit the queue is counted and
+// dropped.
 //
 // Kernels of grammars with Collider or IfCollides (GPGP_COLLIDERS) derive in phases, each with rounds of its own. A
 // shape that comes to an IfCollides of a later phase goes to a third queue, where the first round of each phase finds
@@ -25,7 +27,6 @@ layout(push_constant) uniform Push {
 layout(push_constant) uniform Push { uint round; };
 #endif
 
-shared uvec4 parents[kShapePlanes * groupSize];
 shared uvec2 fans[groupSize];         // of the parents: successors, length
 shared uint childrenUpTo[groupSize];  // of the parents: inclusive sums
 shared uint stackSize;
@@ -62,15 +63,15 @@ Shape queuedAt(uint index) {
                      queues[start + 3 * record.maxShapes], queues[start + 4 * record.maxShapes],
                      queues[start + 5 * record.maxShapes]);
 }
+/// The batch's parents lie behind the stack: in shared memory they would take most of it, and fewer workgroups would be
+/// resident.
+const uint stackRoom = stackShapes - groupSize;
 uint stackPlane(uint plane) { return (gl_WorkGroupID.x * kShapePlanes + plane) * stackShapes; }
 Shape stackedAt(uint index) {
   return unpackShape(stacks[stackPlane(0) + index], stacks[stackPlane(1) + index], stacks[stackPlane(2) + index],
                      stacks[stackPlane(3) + index], stacks[stackPlane(4) + index], stacks[stackPlane(5) + index]);
 }
-Shape parentAt(uint index) {
-  return unpackShape(parents[index], parents[groupSize + index], parents[2 * groupSize + index],
-                     parents[3 * groupSize + index], parents[4 * groupSize + index], parents[5 * groupSize + index]);
-}
+Shape parentAt(uint index) { return stackedAt(stackRoom + index); }
 
 /// Moves the stack to the next round's queue.
 void giveAway() {
@@ -93,10 +94,30 @@ void giveAway() {
   barrier();
 }
 
+/// Whether a workgroup should give away its shapes, as most others have nothing left to do. That takes another round,
+/// so another one must be left for what may have to go over there; and never more than half of the room of a queue.
+bool othersIdle(uint shapes) {
+#ifdef GPGP_COLLIDERS
+  const uint number = round - firstRound;
+#else
+  const uint number = round;
+#endif
+  if (record.balances == 0 || shapes <= groupSize || number + 3 > record.phaseRounds) return false;
+  if (laneIndex() == 0) {
+    taken = 0;
+    if (3 * atomicAdd(rounds[round].finished, 0) >= 2 * gl_NumWorkGroups.x)
+      taken = atomicAdd(rounds[round].given, shapes) + shapes <= record.maxShapes / 2 ? 1 : 0;
+  }
+  barrier();
+  const bool idle = taken != 0;
+  barrier();
+  return idle;
+}
+
 /// Shapes onto the stack, or by it to the next round. place: among count of them.
 void push(bool own, uint place, uint count, Shape s) {
   if (count == 0) return;
-  if (stackSize + count > stackShapes) giveAway();
+  if (stackSize + count > stackRoom) giveAway();
   const uint base = stackSize;
   if (own)
     for (uint plane = 0; plane < kShapePlanes; ++plane) stacks[stackPlane(plane) + base + place] = packShape(s, plane);
@@ -134,44 +155,66 @@ uint toChildOf(inout Shape s, Fan fan, uint index) {
   return kEndGoesOn;
 }
 
-/// Terminals to records or instances, or counted. place: among count of them.
-void emit(bool own, uint place, uint count, Shape s) {
-  if (count == 0) return;
-  const uint lane = laneIndex();
-  if (lane == 0) terminalBase = atomicAdd(state.terminals, count);
+/// Terminals to records, or counted. first: the room that was made for all.
+void keep(bool own, uint place, uint first, Shape s) {
   const uint bucket = own ? graphWords[s.node + kNodeArgument2] : 0;
   const bool quads = record.quads != 0; // vertices make themselves room when records become them
   if (record.terminalsTo == kToCounts) {
     if (own) atomicAdd(bucketCounts[bucket], quads ? meshQuads(s.geometry) : 1);
     return;
   }
+  if (laneIndex() == 0) terminalBase = first;
+  barrier();
+  if (!own) return;
+  const uint target = terminalBase + place;
+  const bool keyed = record.terminalsTo == kToKeyedRecords;
+  if (target < record.maxTerminals) {
+    for (uint plane = 0; plane < (keyed ? kShapePlanes : kShapePlanes - 1); ++plane) // the last one has the key
+      records[plane * record.maxTerminals + target] = packShape(s, plane);
+    if (keyed) atomicAdd(bucketCounts[bucket], 1);
+  } else if (quads) {
+    atomicAdd(bucketCounts[kBucketLost + (record.regions != 0 ? bucket : 0)], meshQuads(s.geometry));
+  }
+}
+
+/// Terminals to what the record wants of them. place: among count of them.
+void emit(bool own, uint place, uint count, Shape s) {
+  if (count == 0) return;
+  const uint lane = laneIndex();
+  uint first = 0;
+  if (lane == 0) first = atomicAdd(state.terminals, count);
+  if (record.terminalsTo != kToInstances) {
+    keep(own, place, first, s);
+    return;
+  }
+  // An instance is made while the device answers where it goes. Each by itself: staging them for whole lines costs more
+  // than it saves.
+  uvec4 row0, row1, row2, words;
+  if (own) {
+    const uint axiom = s.axiom * 6;
+    row0 = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom])));
+    row1 = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + 1])));
+    row2 = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + 2])));
+    words = uvec4(graphWords[s.node + kNodeArgument2], shapeType(s), axioms[axiom + 4].x,
+                  graphWords[s.node + kNodeArgument]);
+  }
+  if (lane == 0) terminalBase = first;
   barrier();
   if (!own) return;
   uint target = terminalBase + place;
-  const bool keyed = record.terminalsTo == kToKeyedRecords;
-  if (keyed || record.terminalsTo == kToRecords) {
-    if (target < record.maxTerminals) {
-      for (uint plane = 0; plane < (keyed ? kShapePlanes : kShapePlanes - 1); ++plane) // the last one has the key
-        records[plane * record.maxTerminals + target] = packShape(s, plane);
-      if (keyed) atomicAdd(bucketCounts[bucket], 1);
-    } else if (quads) {
-      atomicAdd(bucketCounts[kBucketLost + (record.regions != 0 ? bucket : 0)], meshQuads(s.geometry));
-    }
+  if (record.regions != 0) {
+    const uint bucket = words.x;
+    target = atomicAdd(bucketCounts[bucket], 1);
+    if (target >= regionCapacity(bucket, false)) return;
+    target += regionStart(bucket, false);
+  } else if (target >= record.instanceCapacity) {
     return;
   }
-  uint capacity = record.instanceCapacity;
-  if (record.regions != 0) {
-    target = atomicAdd(bucketCounts[bucket], 1);
-    capacity = regionCapacity(bucket, false);
-  }
-  if (target >= capacity) return;
-  if (record.regions != 0) target += regionStart(bucket, false);
-  // Each by itself: staging them for whole lines costs more than it saves.
   target *= kInstanceWords4;
-  const uint axiom = s.axiom * 6;
-  for (uint row = 0; row < 3; ++row)
-    instances[target + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
-  instances[target + 3] = uvec4(bucket, shapeType(s), axioms[axiom + 4].x, graphWords[s.node + kNodeArgument]);
+  instances[target] = row0;
+  instances[target + 1] = row1;
+  instances[target + 2] = row2;
+  instances[target + 3] = words;
   instances[target + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
   instances[target + 5] = packPlane(s.size, 0);
 }
@@ -218,7 +261,10 @@ void main() {
       if (needed > count) atomicAdd(state.droppedShapes, needed - count);
     }
   }
-  const uint share = clamp(count / (2 * gl_NumWorkGroups.x), 1, groupSize);
+  // Few at a time, so that work comes out even. But not fewer than all could take at once: invocations that idle in
+  // small batches cost more.
+  const uint even = min((count + gl_NumWorkGroups.x - 1) / gl_NumWorkGroups.x, 4);
+  const uint share = clamp(max(count / (2 * gl_NumWorkGroups.x), even), 1, groupSize);
   const uint enough =
       count >= record.spread ? 0xffffffffu : clamp(record.spread / max(count, 1), 16, 4 * groupSize);
   if (lane == 0) {
@@ -242,12 +288,13 @@ void main() {
   uint made = 0;      // of them
   bool fetched = false; // axioms, which are made of nothing
   uint first = 0;
-  for (uint step = 0; step < record.steps; ++step) {
+  uint batches = 0;
+  for (uint step = 0; step < record.steps || made < total; ++step) {
     if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
       total = 0;
       made = 0;
       fetched = false;
-      if (waiting + stackSize >= enough) {
+      if (waiting + stackSize >= enough || (++batches % 4 == 0 && othersIdle(waiting + stackSize))) {
         uint all;
         const uint place = ranksOf(waits, false, all);
         push(waits, place, all, s);
@@ -256,7 +303,7 @@ void main() {
         waiting = 0;
       }
       const uint space = groupSize - waiting;
-      const uint more = min(stackSize, min(space, max((stackShapes - stackSize) / 8, 1)));
+      const uint more = min(stackSize, min(space, max((stackRoom - stackSize) / 8, 1)));
       if (more > 0) {
         uint idle;
         const uint place = ranksOf(!waits, false, idle);
@@ -289,28 +336,33 @@ void main() {
         if (waits) {
           fan = fanFor(s);
           fan.count -= s.made;
-          for (uint plane = 0; plane < kShapePlanes; ++plane) parents[plane * groupSize + lane] = packShape(s, plane);
+          for (uint plane = 0; plane < kShapePlanes; ++plane)
+            stacks[stackPlane(plane) + stackRoom + lane] = packShape(s, plane);
           fans[lane] = uvec2(fan.successors, floatBitsToUint(fan.extent));
         }
         const uint before = sumBefore(fan.count, total); // at most groupSize * kMaxRepeat
         childrenUpTo[lane] = before + fan.count;
-        const uint room = stackShapes - stackSize;
-        if (total > room) { // only as many parents as could all have waiting children; the first in any case
-          const bool late = waits && before > 0 && before + fan.count > room;
-          if (late) childrenUpTo[lane] = 0xffffffffu;
+        if (total > groupSize) { // whole steps, as many as there is room for: what more children there are comes later
+#ifdef GPGP_COLLIDERS
+          const uint steps = 1; // a batch is not left before its end, and queries are as much work as many steps
+#else
+          const uint steps = clamp((stackRoom - stackSize) / groupSize, 1, total / groupSize);
+#endif
+          total = steps * groupSize;
+          const bool late = waits && before + fan.count > total;
+          if (late) {
+            const uint part = total - min(before, total);
+            childrenUpTo[lane] = part > 0 ? total : 0xffffffffu;
+            s.made += part;
+          }
           uint back;
           const uint place = ranksOf(late, false, back);
           push(late, place, back, s);
-          if (lane == 0) taken = 0;
-          barrier();
-          if (waits && !late) atomicMax(taken, before + fan.count);
-          barrier();
-          total = taken;
         }
       }
       waits = false;
       waiting = 0;
-      barrier();
+      stackBarrier();
     }
 
     const uint batch = min(total - made, groupSize);
@@ -358,17 +410,7 @@ void main() {
     }
   }
 
-  // What there were no steps left for goes over: the next batch, or this one's parents with the children that they
-  // have.
-  uint rest;
-  if (made < total) {
-    const uint before = lane > 0 ? childrenUpTo[lane - 1] : 0;
-    waits = childrenUpTo[lane] > max(made, before) && childrenUpTo[lane] <= total;
-    if (waits) {
-      s = parentAt(lane);
-      s.made += made - min(made, before);
-    }
-  }
+  uint rest; // what there were no steps left for goes over
   const uint place = ranksOf(waits, false, rest);
   push(waits, place, rest, s);
   leaveRest(count);

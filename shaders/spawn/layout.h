@@ -33,7 +33,7 @@ struct SpawnRound {
   uint taken;                     // by workgroups of this round
   uint finished;                  // workgroups
   uint linked;                    // the first round of a phase: colliders that its queries can find
-  uint reserved;
+  uint given;                     // shapes that its workgroups were willing to leave to idle ones
 };
 
 /// What the CPU says with each record.
@@ -59,6 +59,7 @@ struct SpawnConstants {
   uint phaseRounds;      // rounds that were recorded of each phase
   uint maxColliders;     // that are held
   uint cellMask;         // cells that colliders are linked in, a power of two, less 1
+  uint balances;         // 1: workgroups give work away as well where most have finished
 };
 
 // What becomes of terminals.

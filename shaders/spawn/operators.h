@@ -32,7 +32,17 @@ GPGP_FN Rotation rotationOfAngles(vec2 x, vec2 y, vec2 z) {
   return r;
 }
 GPGP_FN Rotation rotationOf(vec3 degrees) {
-  return rotationOfAngles(sineCosineDegrees(degrees.x), sineCosineDegrees(degrees.y), sineCosineDegrees(degrees.z));
+  // Most angles are zero, and a loop is one copy of the polynomials.
+  vec3 sines = vec3(0.0f);
+  vec3 cosines = vec3(1.0f);
+  for (uint i = 0u; i < 3u; ++i) {
+    const float angle = component(degrees, i);
+    if (angle == 0.0f) continue;
+    const vec2 both = sineCosineDegrees(angle);
+    sines = withComponent(sines, i, both.x);
+    cosines = withComponent(cosines, i, both.y);
+  }
+  return rotationOfAngles(vec2(sines.x, cosines.x), vec2(sines.y, cosines.y), vec2(sines.z, cosines.z));
 }
 /// From the right.
 GPGP_FN void rotate(GPGP_INOUT(Shape) s, Rotation rotation) {

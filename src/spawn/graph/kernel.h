@@ -16,7 +16,7 @@ namespace gpgp::spawn {
 struct Fit {
   uint32_t groupSize = 0;   ///< invocations of a workgroup, a power of two from 8; 0: all as the device's kind suggests
   uint32_t maxGroups = 0;   ///< workgroups of a round
-  uint32_t stackShapes = 0; ///< shapes on a workgroup's stack
+  uint32_t stackShapes = 0; ///< of a workgroup: on its stack, and a batch of parents
   uint32_t spread = 0;      ///< shapes that a round should at least begin with
   uint32_t rounds = 0; ///< that are recorded for the number of axioms it was tuned for; 0: all that the spawner may
 

@@ -52,8 +52,8 @@ static_assert(sizeof(GpgpInstance) == 96 && offsetof(GpgpInstance, bucket) == 48
 static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
 constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
-/// Shared memory of derive.glsl for each invocation: a parent with its fan, a sum.
-constexpr uint32_t kSharedBytesEach = 16 * shader::kShapePlanes + 20;
+/// Shared memory of derive.glsl for each invocation: a parent's fan, two sums.
+constexpr uint32_t kSharedBytesEach = 16;
 constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 4,
                    kSoftwareRounds = 32;
 
@@ -62,9 +62,10 @@ struct Limits {
   Fit fit;
   uint32_t steps;        // of a workgroup in a round
   uint32_t expandGroups; // workgroups at most
+  bool balances;         // rounds are cheap enough to even out work
 };
 /// Software devices end a shader's loops silently after 65 535 iterations in all, so workgroups give up early there.
-constexpr Limits kHardware{{32, 2048, 256, 4096}, 16384, 2048}, kSoftware{{64, 16, 1024, 512}, 256, 64};
+constexpr Limits kHardware{{32, 2048, 256, 4096}, 16384, 2048, true}, kSoftware{{64, 16, 1024, 512}, 256, 64, false};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
 
 /// Queries of an invocation that look at every collider stay below that many iterations.
@@ -298,6 +299,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.maxGroups = maxGroups;
   constants.maxDepth = maxDepth_;
   constants.spread = fit.spread;
+  constants.balances = limits.balances;
   constants.steps = limits.steps;
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
