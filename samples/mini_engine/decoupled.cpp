@@ -126,7 +126,8 @@ void Decoupled::sample(VkCommandBuffer commands, const GpgpFrame& frame, GpgpSam
   info.height = extent.height;
   if (method == GPGP_SAMPLING_CONSERVATIVE) {
     info.heuristics = GPGP_HEURISTICS_THESIS;
-    info.epsilonStatic = info.epsilonDynamic = 0.05f;
+    info.epsilonStatic = info.epsilonDynamic = options_.epsilon;
+    info.resolution = options_.resolution;
   }
   if (method == GPGP_SAMPLING_TRUTH) {
     info.samples = options_.truth;
@@ -271,7 +272,9 @@ void Decoupled::key(char key) {
   if (options_.show == DecoupledOptions::overlay && frozen_) frozen_ = false; // standard sampling has to be made, too
 }
 
-void Decoupled::restart(GpgpSamplingMethod method) {
+void Decoupled::restart(GpgpSamplingMethod method, float resolution, float epsilon) {
+  options_.resolution = resolution;
+  options_.epsilon = epsilon;
   options_.method = method;
   step_ = 0;
   frozen_ = false;

@@ -14,10 +14,11 @@ namespace mini {
 struct DecoupledOptions {
   bool on = false;
   GpgpSamplingMethod method = GPGP_SAMPLING_EXACT;
-  uint32_t rate = 4;                 ///< displayed frames for one of shading
-  uint32_t freezeAfter = UINT32_MAX; ///< frames after which shading stops
-  uint32_t truth = 16;               ///< overlay: N x N samples a pixel
-  float farther = 1;                 ///< how many times farther away than the display's camera the shading's is
+  float resolution = 1, epsilon = 0.05f; ///< of the conservative method: factor, static and dynamic alike
+  uint32_t rate = 4;                     ///< displayed frames for one of shading
+  uint32_t freezeAfter = UINT32_MAX;     ///< frames after which shading stops
+  uint32_t truth = 16;                   ///< overlay: N x N samples a pixel
+  float farther = 1;                     ///< how many times farther away than the display's camera the shading's is
   enum Show { shaded, overlay, density } show = shaded;
 };
 
@@ -36,7 +37,7 @@ public:
   /// F: freeze; M: method; 1, 2, 3: what is shown.
   void key(char key);
   /// The path begins again.
-  void restart(GpgpSamplingMethod method);
+  void restart(GpgpSamplingMethod method, float resolution, float epsilon);
 
   struct Misses { ///< of the displays since the last restart
     uint32_t displays = 0, triangles = 0;

@@ -28,8 +28,9 @@ public:
 
   /// Renders frame after frame until `frames` are done (0: until the window closes), then waits.
   void run(uint32_t frames);
-  /// Decoupled shading: walks the same path with standard and with exact sampling and prints what displays missed.
-  void comparePaths(uint32_t frames);
+  /// Decoupled shading: walks the same path with standard and with exact sampling and prints what displays missed, and
+  /// times. table: with the other configurations of the thesis's table 6.1 as well.
+  void comparePaths(uint32_t frames, bool table);
   void printSummary() const;
   /// Whether every record of every frame was executed and nothing exceeded its budget.
   bool allWell() const;
@@ -39,7 +40,6 @@ private:
   void record(VkCommandBuffer commands, const Acquired& acquired);
   void resize();
   void collect();
-  void printTimes();
   void take(const std::vector<Input>& inputs);
   void recordDecoupled(VkCommandBuffer commands, const Acquired& acquired);
   Camera orbit(float angle, float distance, float height, float fieldOfView, float aside = 0) const;

@@ -34,7 +34,8 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
                    grey: the method alone, red: not in the truth, blue: missed); density (red: a pixel and less,
                    blue: 64). 1, 2, 3 in a window
   --truth N        decoupled overlay: N x N samples a pixel (default 16), a few slices a frame
-  --path           decoupled: the same path with standard and exact sampling; prints what displays missed
+  --path           decoupled: the same path with standard and exact sampling; prints what displays missed, and times
+  --table          the path with all configurations of the thesis's table 6.1, too
   --data FOLDER    test data (default: the source tree's)
   --validate       run under the Khronos validation layer; any message of it is an error
 
@@ -48,7 +49,7 @@ struct Options {
   bool screen = false, stereo = false;
   uint32_t score = 0;
   std::vector<mini::Input> inputs;
-  bool window = false, validate = false, watch = false, path = false;
+  bool window = false, validate = false, watch = false, path = false, table = false;
   mini::DecoupledOptions decoupled;
 };
 
@@ -106,9 +107,10 @@ bool parse(int argc, char** argv, Options& options) {
       options.validate = true;
       continue;
     }
-    if (name == "--decoupled" || name == "--path") {
+    if (name == "--decoupled" || name == "--path" || name == "--table") {
       options.decoupled.on = true;
-      options.path = options.path || name == "--path";
+      options.table = options.table || name == "--table";
+      options.path = options.path || name != "--decoupled";
       continue;
     }
     if (i + 1 == argc) return false;
@@ -185,7 +187,7 @@ int run(const Options& options) {
                           {options.data, options.watch, options.decoupled, options.screen, options.stereo,
                            options.score, options.inputs});
       if (options.path)
-        engine.comparePaths(options.frames ? options.frames : 40);
+        engine.comparePaths(options.frames ? options.frames : 40, options.table);
       else
         engine.run(options.frames ? options.frames : options.window ? 0 : 3);
       engine.printSummary();

@@ -75,6 +75,26 @@ TEST(DecoupledShading, ExactSamplingLeavesLessWithoutShadingThanStandard) {
   EXPECT_LT(missing[1], missing[0] * 0.8) << text;
 }
 
+// Table 6.1: a row for each configuration, with times.
+TEST(DecoupledShading, TheTableHasAllConfigurations) {
+  const std::string out = GPGP_GOLDEN_OUT "-table";
+  const std::string text = outputOf("--table --frames 2 --rate 2 --size 160x90 --out \"" + out + "\"");
+  for (const char* name :
+       {"conservative 0.25", "conservative 0.5 ", "conservative 0.75", "conservative 1 ", "exact "}) {
+    const size_t at = text.find(std::string("path        ") + name);
+    ASSERT_NE(at, std::string::npos) << name << "\n" << text;
+    double visibility = 0, shading = 0, display = 0;
+    ASSERT_EQ(std::sscanf(text.c_str() + text.find("GPU times", at),
+                          "GPU times visibility %lf ms, shading %lf ms, display %lf ms", &visibility, &shading,
+                          &display),
+              3)
+        << text;
+    EXPECT_GT(visibility, 0) << name;
+    EXPECT_GT(shading, 0) << name;
+    EXPECT_GT(display, 0) << name;
+  }
+}
+
 // Figure 6.2: what standard sampling finds is green, what only the method finds is grey.
 TEST(DecoupledShading, FrozenShadingShowsWhatTheMethodAdds) {
   const std::string out = GPGP_GOLDEN_OUT "-overlay";
