@@ -1,8 +1,8 @@
 // gpgp::glyph_cache: glyphs that are pictures in a canvas, beside what the font says they are; budgets, eviction,
 // fonts that go. Under the validation layer. GPGP_GLYPH_CACHE_PICTURES=FOLDER writes what is compared.
 #include "gpgp_glyph_cache.hpp"
-#include "gpgp_sdl2.hpp"
 #include "host/picture.h"
+#include "stage.h"
 
 #include <gtest/gtest.h>
 
@@ -19,80 +19,16 @@ constexpr const char* kFonts = GPGP_TEST_DATA "/fetched/fonts/";
 
 /// A device, and a canvas whose pixels are read back.
 struct GlyphCacheTest : testing::Test {
-  struct Stage {
-    sdl2::Device device;
-    sdl2::Frames frames{device, 2};
-    Context context;
+  struct Stage : test::Stage {
     Canvas canvas;
-    VkImage image = VK_NULL_HANDLE;
-    VkImageView view = VK_NULL_HANDLE;
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory imageMemory = VK_NULL_HANDLE, bufferMemory = VK_NULL_HANDLE;
-    void* mapped = nullptr;
-    std::vector<std::string> messages;
 
-    static sdl2::DeviceInfo wanted() {
-      sdl2::DeviceInfo info;
-      info.validate = true;
-      return info;
-    }
-    Stage() : device(wanted()) {
-      GpgpContextCreateInfo info = device.contextCreateInfo();
-      info.maxFramesInFlight = 2;
-      info.messageUserData = &messages;
-      info.messageFn = [](void* user, const GpgpMessage* m) {
-        static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
-      };
-      context = *Context::create(info);
+    Stage() : test::Stage(VK_FORMAT_R8G8B8A8_UNORM, kSide, kSide, VK_IMAGE_USAGE_STORAGE_BIT) {
       auto canvasInfo = init<GpgpCanvasCreateInfo>();
       canvasInfo.base.queueFamily = device.family;
       canvas = *Canvas::create(context, canvasInfo);
       EXPECT_EQ(canvas.prewarm(), GPGP_SUCCESS);
-      VkImageCreateInfo imageInfo{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
-      imageInfo.imageType = VK_IMAGE_TYPE_2D;
-      imageInfo.format = VK_FORMAT_R8G8B8A8_UNORM;
-      imageInfo.extent = {kSide, kSide, 1};
-      imageInfo.mipLevels = imageInfo.arrayLayers = 1;
-      imageInfo.samples = VK_SAMPLE_COUNT_1_BIT;
-      imageInfo.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-      sdl2::check(vkCreateImage(device.device, &imageInfo, nullptr, &image), "image");
-      VkMemoryRequirements needs{};
-      vkGetImageMemoryRequirements(device.device, image, &needs);
-      imageMemory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-      vkBindImageMemory(device.device, image, imageMemory, 0);
-      VkImageViewCreateInfo viewInfo{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-      viewInfo.image = image;
-      viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
-      viewInfo.format = imageInfo.format;
-      viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-      sdl2::check(vkCreateImageView(device.device, &viewInfo, nullptr, &view), "view");
-      VkBufferCreateInfo bufferInfo{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-      bufferInfo.size = VkDeviceSize{kSide} * kSide * 4;
-      bufferInfo.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-      sdl2::check(vkCreateBuffer(device.device, &bufferInfo, nullptr, &buffer), "buffer");
-      vkGetBufferMemoryRequirements(device.device, buffer, &needs);
-      bufferMemory = allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-      vkBindBufferMemory(device.device, buffer, bufferMemory, 0);
-      sdl2::check(vkMapMemory(device.device, bufferMemory, 0, VK_WHOLE_SIZE, 0, &mapped), "map");
     }
-    ~Stage() {
-      vkDeviceWaitIdle(device.device);
-      canvas.reset();
-      context.reset();
-      vkDestroyImageView(device.device, view, nullptr);
-      vkDestroyImage(device.device, image, nullptr);
-      vkDestroyBuffer(device.device, buffer, nullptr);
-      vkFreeMemory(device.device, imageMemory, nullptr);
-      vkFreeMemory(device.device, bufferMemory, nullptr);
-    }
-    VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) const {
-      VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-      info.allocationSize = needs.size;
-      info.memoryTypeIndex = device.memoryType(needs.memoryTypeBits, flags);
-      VkDeviceMemory made = VK_NULL_HANDLE;
-      sdl2::check(vkAllocateMemory(device.device, &info, nullptr, &made), "memory");
-      return made;
-    }
+    ~Stage() { vkDeviceWaitIdle(device.device); }
     integration::GlyphCacheInfo cacheInfo(uint32_t maxPictures) const {
       integration::GlyphCacheInfo info;
       info.context = context;

@@ -1,8 +1,8 @@
 // gpgp::imgui, drawn into an image by ImGui's own Vulkan renderer under the validation layer: beside ImGui's look,
 // under other windows, clipped, at scales, within budgets. GPGP_IMGUI_PICTURES=FOLDER writes what is compared.
 #include "gpgp_imgui.hpp"
-#include "gpgp_sdl2.hpp"
 #include "host/picture.h"
+#include "stage.h"
 
 #include <gtest/gtest.h>
 #include <imgui/backends/imgui_impl_vulkan.h>
@@ -21,38 +21,16 @@ namespace {
 using namespace gpgp;
 constexpr uint32_t kWidth = 640, kHeight = 480;
 
-/// A device, an image to draw into, and a context: shared by all tests.
-struct Stage {
-  const VkFormat format;
-  sdl2::Device device;
-  sdl2::Frames frames{device, 2};
-  Context context;
+/// With a pass that draws into the image: shared by all tests.
+struct Stage : test::Stage {
   VkRenderPass pass = VK_NULL_HANDLE;
-  VkImage image = VK_NULL_HANDLE;
-  VkDeviceMemory memory = VK_NULL_HANDLE, bufferMemory = VK_NULL_HANDLE;
-  VkImageView view = VK_NULL_HANDLE;
   VkFramebuffer framebuffer = VK_NULL_HANDLE;
-  VkBuffer buffer = VK_NULL_HANDLE;
-  void* mapped = nullptr;
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  std::vector<std::string> messages;
 
-  static sdl2::DeviceInfo wanted() {
-    sdl2::DeviceInfo info;
-    info.validate = true;
-    return info;
-  }
-  explicit Stage(VkFormat f = VK_FORMAT_R8G8B8A8_UNORM) : format(f), device(wanted()) {
-    GpgpContextCreateInfo info = device.contextCreateInfo();
-    info.label = "imgui test";
-    info.maxFramesInFlight = 2;
-    info.messageUserData = &messages;
-    info.messageFn = [](void* user, const GpgpMessage* m) {
-      static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
-    };
-    context = *Context::create(info);
+  explicit Stage(VkFormat f = VK_FORMAT_R8G8B8A8_UNORM)
+      : test::Stage(f, kWidth, kHeight, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) {
     makePass();
-    makeImage();
+    makeFramebuffer();
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
     VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     poolInfo.maxSets = 8;
@@ -62,16 +40,9 @@ struct Stage {
   }
   ~Stage() {
     vkDeviceWaitIdle(device.device);
-    context.reset();
     vkDestroyDescriptorPool(device.device, pool, nullptr);
-    vkDestroyBuffer(device.device, buffer, nullptr);
     vkDestroyFramebuffer(device.device, framebuffer, nullptr);
-    vkDestroyImageView(device.device, view, nullptr);
-    vkDestroyImage(device.device, image, nullptr);
-    vkFreeMemory(device.device, memory, nullptr);
-    vkFreeMemory(device.device, bufferMemory, nullptr);
     vkDestroyRenderPass(device.device, pass, nullptr);
-    EXPECT_EQ(device.validationMessages(), 0u);
   }
   void makePass() {
     VkAttachmentDescription attachment{};
@@ -98,33 +69,7 @@ struct Stage {
     info.pDependencies = dependencies;
     sdl2::check(vkCreateRenderPass(device.device, &info, nullptr, &pass), "render pass");
   }
-  VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) {
-    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-    info.allocationSize = needs.size;
-    info.memoryTypeIndex = device.memoryType(needs.memoryTypeBits, flags);
-    VkDeviceMemory made = VK_NULL_HANDLE;
-    sdl2::check(vkAllocateMemory(device.device, &info, nullptr, &made), "memory");
-    return made;
-  }
-  void makeImage() {
-    VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent = {kWidth, kHeight, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    sdl2::check(vkCreateImage(device.device, &info, nullptr, &image), "image");
-    VkMemoryRequirements needs{};
-    vkGetImageMemoryRequirements(device.device, image, &needs);
-    memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-    vkBindImageMemory(device.device, image, memory, 0);
-    VkImageViewCreateInfo viewInfo{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-    viewInfo.image = image;
-    viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    viewInfo.format = format;
-    viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    sdl2::check(vkCreateImageView(device.device, &viewInfo, nullptr, &view), "view");
+  void makeFramebuffer() {
     VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
     framebufferInfo.renderPass = pass;
     framebufferInfo.attachmentCount = 1;
@@ -133,14 +78,6 @@ struct Stage {
     framebufferInfo.height = kHeight;
     framebufferInfo.layers = 1;
     sdl2::check(vkCreateFramebuffer(device.device, &framebufferInfo, nullptr, &framebuffer), "framebuffer");
-    VkBufferCreateInfo bufferInfo{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-    bufferInfo.size = VkDeviceSize{kWidth} * kHeight * 4;
-    bufferInfo.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    sdl2::check(vkCreateBuffer(device.device, &bufferInfo, nullptr, &buffer), "buffer");
-    vkGetBufferMemoryRequirements(device.device, buffer, &needs);
-    bufferMemory = allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-    vkBindBufferMemory(device.device, buffer, bufferMemory, 0);
-    sdl2::check(vkMapMemory(device.device, bufferMemory, 0, VK_WHOLE_SIZE, 0, &mapped), "map");
   }
 };
 
