@@ -292,7 +292,7 @@ public:
 
 /// What a user interface adds every frame (ui.h).
 ///
-///   list.reset();
+///   list.clear();
 ///   list.pushTransform(map);
 ///   list.add(shape);
 ///   list.pop();
@@ -303,7 +303,8 @@ public:
                              const GpgpListCreateInfo& info = init<GpgpListCreateInfo>()) noexcept {
     return detail::create<List>(gpgpCreateList, context, info);
   }
-  GpgpResult reset() noexcept { return gpgpResetList(get()); }
+  /// gpgpResetList
+  GpgpResult clear() noexcept { return gpgpResetList(get()); }
   /// transform: 6 numbers; perspective: 3, or nullptr.
   GpgpResult pushTransform(const float* transform, const float* perspective = nullptr) noexcept {
     return gpgpPushTransform(get(), transform, perspective);

@@ -218,7 +218,7 @@ GpgpResult Renderer::Impl::prepare(ImDrawData& data, VkCommandBuffer commands, c
   report.glyphs = static_cast<uint32_t>(text.glyphs.size() + text.pictures.size());
   report.dropped += text.dropped;
   if (report.glyphs > 0) {
-    textList.reset();
+    textList.clear();
     if (const GpgpResult added = cache.addTo(textList, text); added < 0) return added;
     GpgpCanvasItem& item = items.emplace_back();
     item.list = textList;

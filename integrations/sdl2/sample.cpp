@@ -67,7 +67,7 @@ struct Line {
     if (!layout) return nullptr;
     placed.clear();
     need(glyphs.place(info, x, y, 1, placed), "gpgpAddGlyphs");
-    need(list.reset(), "gpgpResetList");
+    need(list.clear(), "gpgpResetList");
     need(glyphs.addTo(list, placed), "gpgpAddText");
     return list;
   }

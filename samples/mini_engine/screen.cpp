@@ -146,7 +146,7 @@ void Screen::update(const Camera* eyes) {
   const Clock::time_point start = Clock::now();
   ++frames_;
   game_.tick();
-  for (Layer* layer : {&world_, &front_}) gpgp_.check(layer->list.reset(), "gpgpResetList");
+  for (Layer* layer : {&world_, &front_}) gpgp_.check(layer->list.clear(), "gpgpResetList");
   world_.shown = game_.inventory;
   if (world_.shown) hang(eyes);
   front_.shown = true;

@@ -90,7 +90,7 @@ GpgpResult useUi(GpgpContext context, const gpgp::GlyphSet& set, const gpgp::Dra
   const float map[6] = {1, 0, 0, 1, 0, 0}, box[4] = {0, 0, 8, 8};
   GpgpListShape shape = GpgpListShape();
   const GpgpGlyphInstance glyph = {1, 0, 0, 12, {0, 0, 0, 1}};
-  const GpgpResult codes[] = {list->reset(),
+  const GpgpResult codes[] = {list->clear(),
                               list->pushTransform(map),
                               list->pushClip(box),
                               list->pushOpacity(1),

@@ -142,7 +142,7 @@ void Plugin::stop() {
   surfaces_.clear();
   glyphs_ = {};
   fonts_.clear();
-  list_ = List(); // List::reset would empty it
+  list_.reset();
   canvas_.reset();
   context_.reset();
   frame_ = 0;

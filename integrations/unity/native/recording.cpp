@@ -67,7 +67,7 @@ void Plugin::freeViews(uint64_t safe) {
 
 /// What the canvas shows, as one list.
 bool Plugin::fillList(Surface& surface, float height) {
-  list_.reset();
+  list_.clear();
   for (const GpgpUnityItem& from : surface.items) {
     const auto drawing = drawings_.find(from.object);
     const auto text = texts_.find(from.object);
