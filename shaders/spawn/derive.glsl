@@ -94,15 +94,21 @@ void giveAway() {
   barrier();
 }
 
-/// Whether a workgroup should give away its shapes, as most others have nothing left to do. That takes another round,
-/// so another one must be left for what may have to go over there; and never more than half of the room of a queue.
-bool othersIdle(uint shapes) {
+/// Rounds of the phase behind this one. What goes over from the last is dropped, so that nothing is given away there by
+/// choice.
+uint roundsLeft() {
 #ifdef GPGP_COLLIDERS
   const uint number = round - firstRound;
 #else
   const uint number = round;
 #endif
-  if (record.balances == 0 || shapes <= groupSize || number + 3 > record.phaseRounds) return false;
+  return record.phaseRounds - 1 - number;
+}
+
+/// Whether a workgroup should give away its shapes, as most others have nothing left to do. That takes another round,
+/// so another one must be left for what may have to go over there; and never more than half of the room of a queue.
+bool othersIdle(uint shapes) {
+  if (record.balances == 0 || shapes <= groupSize || roundsLeft() < 2) return false;
   if (laneIndex() == 0) {
     taken = 0;
     if (3 * atomicAdd(rounds[round].finished, 0) >= 2 * gl_NumWorkGroups.x)
@@ -265,8 +271,8 @@ void main() {
   // small batches cost more.
   const uint even = min((count + gl_NumWorkGroups.x - 1) / gl_NumWorkGroups.x, 4);
   const uint share = clamp(max(count / (2 * gl_NumWorkGroups.x), even), 1, groupSize);
-  const uint enough =
-      count >= record.spread ? 0xffffffffu : clamp(record.spread / max(count, 1), 16, 4 * groupSize);
+  const bool spreads = count < record.spread && roundsLeft() > 0;
+  const uint enough = spreads ? clamp(record.spread / max(count, 1), 16, 4 * groupSize) : 0xffffffffu;
   if (lane == 0) {
     stackSize = 0;
     hashX = 0;

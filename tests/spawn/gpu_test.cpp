@@ -525,21 +525,22 @@ TEST_F(SpawnTest, FewerTerminalRecordsAreReported) {
 }
 
 TEST_F(SpawnTest, ShapesThatDoNotFitAreCounted) {
-  // Few axioms of many shapes: workgroups give work away, more than the queue holds.
+  // Few axioms of many shapes: workgroups give work away, more than the queue holds. 32 and 128 copies are whole steps of
+  // any workgroup, so that all are made before.
   GpgpSpawnerCreateInfo budgets{};
   budgets.maxShapes = 300;
   makeSpawner(budgets);
   const auto words =
       bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
-  const auto exact = run(words, {makeAxiom(300, 1, 1)}, 2000, true);
+  const auto exact = run(words, std::vector(8, makeAxiom(32, 1, 1)), 2000, true);
   EXPECT_EQ(exact.report.base.status, GPGP_SUCCESS);
-  EXPECT_EQ(exact.report.terminals, 600u);
-  EXPECT_LE(exact.report.peakShapes, 300u); // all on software devices; elsewhere the giver keeps a last few
-  const auto beyond = run(words, {makeAxiom(400, 1, 1)}, 2000, true);
+  EXPECT_EQ(exact.report.terminals, 512u);
+  EXPECT_LE(exact.report.peakShapes, 300u);
+  const auto beyond = run(words, std::vector(8, makeAxiom(128, 1, 1)), 4000, true);
   EXPECT_EQ(beyond.report.base.status, GPGP_BUDGET_EXCEEDED);
   EXPECT_GT(beyond.report.peakShapes, 300u);
   EXPECT_EQ(beyond.report.droppedShapes, beyond.report.peakShapes - 300);
-  EXPECT_EQ(beyond.report.terminals, 2 * (400 - beyond.report.droppedShapes));
+  EXPECT_EQ(beyond.report.terminals, 2 * (8 * 128 - beyond.report.droppedShapes));
   EXPECT_EQ(beyond.instances.size(), beyond.report.terminals);
 }
 
@@ -567,12 +568,24 @@ TEST_F(SpawnTest, RoundsThatAreMissingAreReported) {
   makeSpawner(budgets);
   const auto words =
       bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
-  // 384 copies are whole steps of any workgroup: the axiom is not dropped itself, with some of its copies to make.
-  const Derived gpu = run(words, {makeAxiom(384, 1, 1)}, 1000, true);
+  // More than a workgroup derives in one round, whatever the device.
+  const Derived gpu = run(words, {makeAxiom(600000, 1, 1)}, 1000, true);
   EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
   EXPECT_EQ(gpu.report.rounds, 1u);
-  EXPECT_EQ(gpu.report.terminals + 2 * gpu.report.droppedShapes, 768u);
   EXPECT_GT(gpu.report.droppedShapes, 0u);
+  EXPECT_LT(gpu.report.terminals, 1200000u);
+}
+
+TEST_F(SpawnTest, TheLastRoundGivesNothingAwayByChoice) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.maxRounds = 1;
+  makeSpawner(budgets);
+  const auto words =
+      bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
+  const Derived gpu = run(words, {makeAxiom(384, 1, 1)}, 1000, true);
+  EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(gpu.report.droppedShapes, 0u);
+  EXPECT_EQ(gpu.report.terminals, 768u);
 }
 
 TEST_F(SpawnTest, WorkgroupsThatGiveUpLoseNothing) {
