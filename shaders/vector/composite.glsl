@@ -36,11 +36,17 @@ vec4 sum;
 #if RICH
 // A group less than opaque has light of its own: what reached it times its opacity. Behind its last path that is joined
 // again with what passed the group by.
-uint depth, chainItem;
+uint depth, chainItem, chainLayer; // the last path's, of its drawing
 uvec2 chain[kMaxLayerDepth]; // the groups that paths at hand belong to, the outermost first: slot, and layer
 float opacities[kMaxLayerDepth], outerScale[kMaxLayerDepth], outerGap[kMaxLayerDepth];
 uint outerAlive[kMaxLayerDepth];
 float outer[kMaxLayerDepth * 16];
+
+// What the clips of the last clipped path leave of the pixel: paths that follow each other often share them.
+uvec2 clipped; // its item, and its clip as paintOver takes it
+bool clippedArea;
+uint clipMask;
+int clipDifference;
 #endif
 
 void beginPixel() {
@@ -53,7 +59,9 @@ void beginPixel() {
   gap = 0;
 #if RICH
   depth = 0;
-  chainItem = 0;
+  chainItem = ~0u;
+  chainLayer = 0;
+  clipped = uvec2(~0u);
 #endif
   for (uint k = 0; k < 16; ++k) through[k] = 1.0;
   sum = vec4(0);
@@ -95,12 +103,15 @@ uvec2 layerAt(ItemRecord item, uint layer, uint outside, uint wanted) { // slot,
 }
 
 // From the groups of the last path to those of the next one. `layer`: of its drawing; 0 none.
-void toLayer(uint index, ItemRecord item, uint layer) {
+void toLayer(uint index, uint layer) {
+  if (index == chainItem && layer == chainLayer) return;
+  const ItemRecord item = items[index];
   const uint outside = layerDepth(kShapeSlot, item.layer), wanted = outside + layerDepth(item.slot, layer);
   while (depth > 0 && (depth > wanted || (depth > outside && chainItem != index) ||
                        layerAt(item, layer, outside, depth) != chain[depth - 1]))
     leaveLayer();
   chainItem = index;
+  chainLayer = layer;
   while (depth < wanted) {
     chain[depth] = layerAt(item, layer, outside, depth + 1);
     const float opacity = uintBitsToFloat(fetchLayer(chain[depth].x, chain[depth].y).x);
@@ -174,7 +185,7 @@ void combine(inout uint mask, inout int difference, uint other, int otherDiffere
 }
 
 void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout int difference) {
-  while (clip != 0 && (mask != 0 || difference != 0)) {
+  while (clip != 0) {
     const uvec4 record = floatBitsToUint(fetch(item.slot, slots[item.slot].clips + clip - 1));
     uint shown = 0;
     int shownDifference = 0;
@@ -192,7 +203,7 @@ void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout u
 
 // The clips of an item.
 void clipItem(uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout int difference) {
-  while (clip != 0 && (mask != 0 || difference != 0)) {
+  while (clip != 0) {
     const uvec2 record = floatBitsToUint(fetch(kShapeSlot, clipRecord(clip)).xy);
     const uint code = coverageOf(paths[record.x], tile);
     int otherDifference = 0;
@@ -202,25 +213,36 @@ void clipItem(uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout
     clip = record.y;
   }
 }
+
+// All clips of a path.
+void applyClips(uint index, uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout int difference) {
+  if (clipped != uvec2(index, clip) || area && !clippedArea) {
+    clipped = uvec2(index, clip);
+    clippedArea = area;
+    clipMask = all;
+    clipDifference = 0;
+    const ItemRecord item = items[index];
+    clipBy(item, clip & ~kItemGrouped, tile, at, area, clipMask, clipDifference);
+    if ((clip & kItemGrouped) != 0) clipItem(item.clip, tile, at, area, clipMask, clipDifference);
+  }
+  combine(mask, difference, clipMask, area ? clipDifference : 0, false);
+}
 #endif
 
 // Whether what is painted next counts by its area.
 bool countsArea() { return first || gap > 0; }
 
 // A path over pixel `at` of the tile and `pixel` of the canvas; `edge` is its row there, with areas where countsArea();
-// `paint` is its item, its paint and its group.
-void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec3 paint) {
+// `paint` is its item, its paint, its layer and its clip, with kItemGrouped where clips of its item count.
+void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 paint) {
   const bool area = countsArea();
   int difference;
   uint mask = maskOf(code, edge, at.x, area, difference);
 #if RICH
-  uvec4 group = uvec4(0);
-  const ItemRecord own = items[paint.x];
-  if ((paint.z & ~kItemGrouped) != 0) group = floatBitsToUint(fetch(own.slot, (paint.z & ~kItemGrouped) - 1));
-  toLayer(paint.x, own, group.z);
+  toLayer(paint.x, paint.z);
   if (alive == 0 && gap <= 0) return; // the group is hidden, not what lies behind it
-  if (group.y != 0) clipBy(own, group.y, pixel / kTileSize, at, area, mask, difference);
-  if ((paint.z & kItemGrouped) != 0) clipItem(own.clip, pixel / kTileSize, at, area, mask, difference);
+  if (paint.w != 0 && (mask != 0 || difference != 0))
+    applyClips(paint.x, paint.w, pixel / kTileSize, at, area, mask, difference);
 #endif
   if (mask == 0 && (first ? difference == 0 : gap * float(difference) <= 0)) return;
 #if PAINTS

@@ -19,32 +19,28 @@ uint another(uint arguments) { // workgroup for the passes behind: in rows (canv
 
 const uint kHidden = 0, kEven = 1, kRich = 2;
 const uint kManyClipPaths = 64;
-// What a path's group and paint ask for in a tile: kHidden: a clip leaves nothing, kEven: nothing that the record's
-// other shaders do not know, kRich: the general shader.
-uint groupIn(PlacedPath p, uvec2 tile, inout uint steps) {
-  if (p.paint != 0 && items[p.item].perspective.w > 0) return kRich;
-  if (p.group == 0) return kEven;
-  const uint slot = items[p.item].slot;
+// What the clips of an item leave of a tile: kHidden: nothing, kEven: all of it, kRich: a part.
+uint itemClipsIn(uint item, uvec2 tile, inout uint steps) {
   uint found = kEven;
-  if ((p.group & kItemGrouped) != 0) {
-    if (items[p.item].layer != 0) found = kRich;
-    for (uint clip = items[p.item].clip; clip != 0; ++steps) {
-      const uvec2 record = floatBitsToUint(fetch(kShapeSlot, clipRecord(clip)).xy);
-      const uint code = coverageOf(paths[record.x], tile);
-      if (code == 0) return kHidden;
-      if (code != 1) found = kRich;
-      clip = record.y;
-    }
-    if ((p.group & ~kItemGrouped) == 0) return found;
+  for (uint clip = items[item].clip; clip != 0; ++steps) {
+    const uvec2 record = floatBitsToUint(fetch(kShapeSlot, clipRecord(clip)).xy);
+    const uint code = coverageOf(paths[record.x], tile);
+    if (code == 0) return kHidden;
+    if (code != 1) found = kRich;
+    clip = record.y;
   }
-  const uvec4 group = floatBitsToUint(fetch(slot, (p.group & ~kItemGrouped) - 1));
-  if (group.z != 0) return kRich;
-  for (uint clip = group.y; clip != 0;) {
+  return found;
+}
+// The same of a drawing's clip and those that hold it.
+uint clipsIn(uint item, uint clip, uvec2 tile, inout uint steps) {
+  const uint slot = items[item].slot;
+  uint found = kEven;
+  while (clip != 0) {
     const uvec4 record = floatBitsToUint(fetch(slot, slots[slot].clips + clip - 1));
     if (record.y > kManyClipPaths) return kRich;
     uint shown = kHidden;
     for (uint k = 0; k < record.y && shown != kEven; ++k, ++steps) {
-      const uint code = coverageOf(paths[items[p.item].firstPath + record.x + k], tile);
+      const uint code = coverageOf(paths[items[item].firstPath + record.x + k], tile);
       if (code != 0) shown = code == 1 ? kEven : kRich;
     }
     if (shown == kHidden) return kHidden;
@@ -53,4 +49,22 @@ uint groupIn(PlacedPath p, uvec2 tile, inout uint steps) {
     ++steps;
   }
   return found;
+}
+
+uvec2 groupOf(PlacedPath p) { // the path's clip and its layer, of its drawing
+  const uint group = p.group & ~kItemGrouped;
+  return group == 0 ? uvec2(0) : floatBitsToUint(fetch(items[p.item].slot, group - 1)).yz;
+}
+// What a path's group and paint ask for in a tile: kHidden: a clip leaves nothing, kEven: nothing that the record's
+// other shaders do not know, kRich: the general shader.
+uint groupIn(PlacedPath p, uvec2 tile, inout uint steps) {
+  if (p.paint != 0 && items[p.item].perspective.w > 0) return kRich;
+  if (p.group == 0) return kEven;
+  const uvec2 group = groupOf(p);
+  if (group.y != 0) return kRich;
+  uint found = clipsIn(p.item, group.x, tile, steps);
+  if ((p.group & kItemGrouped) == 0 || found == kHidden) return found;
+  if (items[p.item].layer != 0) found = kRich;
+  const uint shown = itemClipsIn(p.item, tile, steps);
+  return shown == kHidden ? kHidden : max(found, shown);
 }

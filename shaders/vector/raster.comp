@@ -16,7 +16,7 @@ shared uint coverage[kRoom]; // 1 all, 2: entry * 4 + 2 + inside
 shared vec4 colors[kRoom];
 #if PAINTS
 #if RICH
-shared uvec3 paints[kRoom]; // item, paint, group
+shared uvec4 paints[kRoom]; // item, paint, layer, clip (paintOver)
 #else
 shared uvec2 paints[kRoom]; // item, paint
 #endif
@@ -79,11 +79,25 @@ void main() {
       }
       barrier();
       uint path = ~0u, own = 0;
+#if RICH
+      uvec2 group = uvec2(0);
+#endif
       if (lane < total - base) path = listed != 0 ? bins[list + base + lane] : candidates[lane];
       PlacedPath p;
       if (path < cutPath) {
         p = paths[path];
         own = coverageOf(p, tile);
+#if RICH
+        if (own != 0 && p.group != 0) { // clips that show all of the tile are none
+          uint steps = 0;
+          const uint shown = (p.group & kItemGrouped) != 0 ? itemClipsIn(p.item, tile, steps) : kEven;
+          group = groupOf(p);
+          const uint within = clipsIn(p.item, group.x, tile, steps);
+          if (shown == kHidden || within == kHidden) own = 0;
+          if (within == kEven) group.x = 0;
+          if (shown == kRich) group.x |= kItemGrouped;
+        }
+#endif
 #if SPLIT
         if (own != 0 && (p.group | p.paint) != 0 && (header.flags & kSplitRich) != 0) {
           uint steps = 0;
@@ -111,7 +125,7 @@ void main() {
         colors[place] = p.color;
 #if PAINTS
 #if RICH
-        paints[place] = uvec3(p.item, p.paint, p.group);
+        paints[place] = uvec4(p.item, p.paint, group.y, group.x);
 #else
         paints[place] = uvec2(p.item, p.paint);
 #endif
@@ -126,9 +140,9 @@ void main() {
 #if RICH
         paintOver(code, edge, inTile, pixel, colors[e], paints[e]);
 #elif PAINTS
-        paintOver(code, edge, inTile, pixel, colors[e], uvec3(paints[e], 0));
+        paintOver(code, edge, inTile, pixel, colors[e], uvec4(paints[e], 0, 0));
 #else
-        paintOver(code, edge, inTile, pixel, colors[e], uvec3(0));
+        paintOver(code, edge, inTile, pixel, colors[e], uvec4(0));
 #endif
       }
       if (base + kRoom >= total && wordEnd <= kRoom) break;

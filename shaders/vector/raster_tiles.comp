@@ -11,7 +11,9 @@ layout(local_size_x = 64) in;
 
 void paintPath(uint code, uint path, uvec2 at, uvec2 pixel) {
   const PlacedPath p = paths[path];
-  paintOver(code, fetchEdge(code, at.y, countsArea()), at, pixel, p.color, uvec3(p.item, p.paint, p.group));
+  const uvec2 group = groupOf(p);
+  paintOver(code, fetchEdge(code, at.y, countsArea()), at, pixel, p.color,
+            uvec4(p.item, p.paint, group.y, group.x | p.group & kItemGrouped));
 }
 
 #if TILES == 0

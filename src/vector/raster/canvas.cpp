@@ -57,6 +57,9 @@
 #include "shaders/vector_raster_rich0.spv.h"
 #include "shaders/vector_raster_rich1.spv.h"
 #include "shaders/vector_raster_rich2.spv.h"
+#include "shaders/vector_raster_rich_one0.spv.h"
+#include "shaders/vector_raster_rich_one1.spv.h"
+#include "shaders/vector_raster_rich_one2.spv.h"
 #include "shaders/vector_sift.spv.h"
 #include "shaders/vector_tiles0.spv.h"
 #include "shaders/vector_tiles1.spv.h"
@@ -106,12 +109,14 @@ enum Conditions : uint32_t {
   kPaints = 3,
   kPaintsOne = 6,
   kRich = 9,
-  kImages = 12,
-  kAny = 15,
-  kOneDrawing = 18,
+  kRichOne = 12,
+  kImages = 15,
+  kAny = 18,
+  kOneDrawing = 21,
   kDrawings,
   kProjective
 };
+static_assert(kProjective < core::kMaxConditions);
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
@@ -299,7 +304,8 @@ core::PassList Canvas::describe() const {
                                                 {counters, read},
                                                 {view, write}},
                                                masks, arguments * 4);
-      const uint32_t drawings = condition == kPlain || condition == kPaintsOne ? 1 : kMaxSlots;
+      const bool one = condition == kPlain || condition == kPaintsOne || condition == kRichOne;
+      const uint32_t drawings = one ? 1 : kMaxSlots;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
       if (condition == kImages) useImages(pass);
       addTarget(pass, t, condition);
@@ -345,8 +351,12 @@ core::PassList Canvas::describe() const {
            {vector_raster_paints0, vector_raster_paints1, vector_raster_paints2}, kPaints);
     raster({"raster gradients", "raster gradients rgba8", "raster gradients rgba16f"},
            {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
+    tilesOf(
+        {"raster all, several drawings", "raster all rgba8, several drawings", "raster all rgba16f, several drawings"},
+        {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich, shader::kRichArguments);
     tilesOf({"raster all", "raster all rgba8", "raster all rgba16f"},
-            {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich, shader::kRichArguments);
+            {vector_raster_rich_one0, vector_raster_rich_one1, vector_raster_rich_one2}, kRichOne,
+            shader::kRichArguments);
     raster({"raster images", "raster images rgba8", "raster images rgba16f"},
            {vector_raster_images0, vector_raster_images1, vector_raster_images2}, kImages);
   }
@@ -481,7 +491,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                 : several                                          ? kPaints
                                                                    : kPaintsOne) +
                image] = true;
-  if (rich) r.conditions[kRich + image] = true;
+  if (rich) r.conditions[(several || software_ ? kRich : kRichOne) + image] = true;
   r.conditions[kAny + image] = true;
   // Shaders name all images, so those that are not there are bound to the first one.
   for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
