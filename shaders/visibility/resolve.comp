@@ -1,13 +1,13 @@
 // Decides a pixel's list of at most kBatch. What the order by one depth each may have wrong is decided by planes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "visibility/layout.h"
-
-const uint kRanked = kBatch;
-const uint kSuspectsEach = 4u;
 #include "visibility/facet.h"
+#include "visibility/layout.h"
 #include "visibility/resolve.glsl"
 
+const uint kSuspectsEach = 4u;
+
+shared uint ids[kBatch];
 shared vec4 planes[kBatch]; // facets of the sorted entries: plane, nearest
 shared float farthest[kBatch];
 shared uint boxes[kBatch];
@@ -147,8 +147,6 @@ void resolveShort(List list) {
   Outline o;
   Facet f;
   uint id = 0u;
-  uint place = 0u;
-  clearRanks();
   if (lane == 0u) {
     doubtful = 0u;
     kept = 0u;
@@ -157,26 +155,17 @@ void resolveShort(List list) {
   if (lane < n) {
     items[lane] = list.item;
     Candidate c = readCandidate(list.item);
-    ScreenTriangle t = triangleOf(c);
-    Footing footing = footingOf(t, isCompact(t), pixel);
+    Footing footing = footingIn(c, pixel);
     o = outlineOf(c, pixel);
     id = c.id;
-    keys[lane >> 2u][lane & 3u] = middleKey(c, o, footing, pixel, reversed);
+    setKey(lane, middleKey(c, o, footing, pixel, reversed));
     f = facetOf(c, footing, pixel, reversed);
   }
-  barrier();
-  if (lane < n) {
-    place = rankOf(lane, n);
-    takeRank(place);
-  }
-  barrier();
-  if (ties != 0u) {
-    if (lane < n) place += rankAmongSame(lane, n);
-    barrier();
-  }
+  uint place = placeAmong(n);
   if (lane < n) {
     items[place] = list.item;
-    put(place, o, id);
+    ids[place] = id;
+    put(place, o);
     putFacet(place, f);
     if (isShown(id)) atomicOr(shown, 1u << place);
   }

@@ -1,159 +1,167 @@
-// A workgroup decides a pixel's list of more than kBatch.
+// Decides a pixel's list of more than kBatch: the nearest kBatch first, and so on until all samples are covered.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
-
-const uint kRanked = kSorted;
 #include "visibility/resolve.glsl"
 
-const uint kBins = kBatch * 4u;
+const uint kBins = kBatch * 2u;
 
-shared uint bins[kBins]; // how many entries' keys lie in each of the ranges that the keys are divided into
-shared uint sums[kBatch];
+shared uint bins[kBins]; // of the ranges that keys are divided into, how many entries each holds
 shared uint count;
 shared uint nearest; // keys of a list
 shared uint farthest;
-shared uint listKeys[kSorted]; // of a list that is not longer
 
-/// Where a longer list keeps its keys. Each invocation reads only those that it wrote.
-uint keyAt(uint i) { return params.maxPairs + i; }
-uint keyOf(uint begin, uint end, uint i) {
-  if (end - begin <= kSorted) return listKeys[i - begin];
-  return entries[keyAt(i)];
-}
+/// The part of a list that is not decided yet.
+struct Rest {
+  uint begin;
+  uint end;
+  uint low; // what is nearer is decided
+};
+
+/// Where a list keeps its keys. Each invocation reads only those that it wrote.
+uint keyPlace(uint entry) { return params.maxPairs + entry; }
 
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
-  uint lane = gl_LocalInvocationIndex;
-  uvec4 own = uvec4(bins[lane * 4u], bins[lane * 4u + 1u], bins[lane * 4u + 2u], bins[lane * 4u + 3u]);
+  uint lane = laneOf();
+  uvec2 own = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
   own.y += own.x;
-  own.z += own.y;
-  own.w += own.z;
-  sums[lane] = own.w;
+  items[lane] = own.y;
   if (lane == 0u) count = 0u;
   barrier();
   for (uint step = 1u; step < kBatch; step *= 2u) {
-    uint before = lane >= step ? sums[lane - step] : 0u;
+    uint before = lane >= step ? items[lane - step] : 0u;
     barrier();
-    sums[lane] += before;
+    items[lane] += before;
     barrier();
   }
-  own += sums[lane] - own.w;
-  uint fitting =
-      uint(own.x <= kBatch) + uint(own.y <= kBatch) + uint(own.z <= kBatch) + uint(own.w <= kBatch);
+  own += items[lane] - own.y;
+  uint fitting = uint(own.x <= kBatch) + uint(own.y <= kBatch);
   if (fitting != 0u) atomicAdd(count, fitting);
   barrier();
-  fitting = count;
-  barrier();
-  return fitting;
+  return count;
 }
 
-/// The farthest key up to which entries from `low` on are sorted together: at most kBatch, or at most kSorted that have
-/// one and the same key; false where more have it.
-bool lastKey(uint begin, uint end, uint low, out uint high) {
-  high = farthest;
-  while (true) {
-    uint shift = uint(max(findMSB(high - low) - 6, 0));
-    for (uint i = gl_LocalInvocationIndex; i < kBins; i += kBatch) bins[i] = 0u;
-    barrier();
-    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kBatch) {
-      uint key = keyOf(begin, end, i);
-      if (key >= low && key <= high) atomicAdd(bins[(key - low) >> shift], 1u);
-    }
-    barrier();
-    uint first = bins[0];
-    uint fitting = binsOfBatch();
-    if (fitting == kBins) return true;
-    uint span = max(fitting, 1u) << shift;
-    if (span <= high - low) high = low + span - 1u;
-    if (fitting != 0u) return true;
-    if (shift == 0u) return first <= kSorted;
-  }
-}
-
-/// Goes through entries whose items and keys are there; false once all samples are covered.
-bool resolveSorted(uint n, ivec2 pixel, inout uvec4 covered) {
+/// The farthest key up to which entries are decided next: at most kBatch, or those that have one and the same key.
+uint lastKey(Rest rest) {
   uint lane = laneOf();
-  for (uint i = lane; i < n; i += kBatch) takeRank(rankOf(i, n));
-  barrier();
-  for (uint first = 0u; first < n; first += kBatch) { // more than one batch where all have the same key
-    for (uint i = lane; i < n; i += kBatch) {
-      uint place = rankOf(i, n);
-      if (ties != 0u) place += rankAmongSame(i, n);
-      place -= first;
-      if (place >= kBatch) continue;
-      Candidate c = readCandidate(items[i]);
-      put(place, outlineOf(c, pixel), c.id);
-    }
-    uint batch = min(n - first, kBatch);
-    lookAtBatch(batch, covered);
-    if ((seen & (1u << lane)) != 0u) show(ids[lane]);
-    bool more = holes != 0u;
+  uint high = farthest;
+  while (true) {
+    uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
+    bins[lane] = 0u;
+    bins[lane + kBatch] = 0u;
     barrier();
-    if (!more) return false;
+    for (uint i = rest.begin + lane; i < rest.end; i += kBatch) {
+      uint key = entries[keyPlace(i)];
+      if (key >= rest.low && key <= high) atomicAdd(bins[(key - rest.low) >> shift], 1u);
+    }
+    barrier();
+    uint fitting = binsOfBatch();
+    if (fitting == kBins) return high;
+    uint span = max(fitting, 1u) << shift;
+    if (span <= high - rest.low) high = rest.low + span - 1u;
+    if (fitting != 0u || shift == 0u) return high;
+    barrier();
   }
-  return true;
 }
 
-/// Gets the entries whose keys lie in a range; returns how many.
-uint takeEntries(uint begin, uint end, uint low, uint high) {
-  if (gl_LocalInvocationIndex == 0u) count = 0u;
-  clearRanks();
+/// Gets the entries up to a key, if they are not more than kBatch; returns how many there are.
+uint takeEntries(Rest rest, uint high) {
+  if (laneOf() == 0u) count = 0u;
   barrier();
-  for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kBatch) {
-    uint key = keyOf(begin, end, i);
-    if (key < low || key > high) continue;
-    uint place = atomicAdd(count, 1u);
-    items[place] = entries[i];
-    keys[place >> 2u][place & 3u] = key;
+  for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
+    uint key = entries[keyPlace(i)];
+    if (key < rest.low || key > high) continue;
+    uint at = atomicAdd(count, 1u);
+    if (at >= kBatch) continue;
+    items[at] = entries[i];
+    setKey(at, key);
   }
   barrier();
   return count;
 }
 
+/// Goes through a batch, whose items are there; false once all samples are covered.
+bool resolveBatch(uint n, uint place, ivec2 pixel, inout uvec4 covered) {
+  uint id = 0u;
+  if (laneOf() < n) {
+    Candidate c = readCandidate(items[laneOf()]);
+    put(place, outlineOf(c, pixel));
+    id = c.id;
+  }
+  lookAtBatch(n, covered);
+  if (laneOf() < n && (seen & (1u << place)) != 0u) show(id);
+  bool more = holes != 0u;
+  barrier();
+  return more;
+}
+
+/// Goes through more than kBatch entries of one and the same key: by number, a batch at a time.
+bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
+  for (uint first = 0u; first < n; first += kBatch) {
+    for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
+      if (entries[keyPlace(i)] != rest.low) continue;
+      uint place = 0u;
+      for (uint j = rest.begin; j < rest.end; ++j) {
+        if (j == i) continue;
+        Candidate c = readCandidate(entries[j]);
+        uint key = middleKey(c, outlineOf(c, pixel), footingIn(c, pixel), pixel, params.reversedDepth != 0u);
+        if (key == rest.low && precedes(entries[j], entries[i], j < i)) ++place;
+      }
+      if (place - first < kBatch) items[place - first] = entries[i];
+    }
+    barrier();
+    if (!resolveBatch(min(n - first, kBatch), laneOf(), pixel, covered)) return false;
+  }
+  return true;
+}
+
 /// A pixel with more than kSorted entries of one and the same depth shows those that are left.
-void showRest(uint begin, uint end, uint low) {
-  for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kBatch) {
+void showRest(Rest rest) {
+  for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
     uint id = candidateId(entries[i]);
-    if (keyOf(begin, end, i) < low || isShown(id)) continue;
+    if (entries[keyPlace(i)] < rest.low || isShown(id)) continue;
     show(id);
     atomicAdd(counters.unresolved, 1u);
   }
 }
 
 void resolveLong(uint begin, uint end, ivec2 pixel) {
-  if (gl_LocalInvocationIndex == 0u) {
+  if (laneOf() == 0u) {
     nearest = kFarthest;
     farthest = 0u;
   }
   barrier();
   uint least = kFarthest;
   uint most = 0u;
-  for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kBatch) {
+  for (uint i = begin + laneOf(); i < end; i += kBatch) {
     Candidate c = readCandidate(entries[i]);
-    ScreenTriangle t = triangleOf(c);
-    Footing footing = footingOf(t, isCompact(t), pixel);
-    uint key = middleKey(c, outlineOf(c, pixel), footing, pixel, params.reversedDepth != 0u);
-    if (end - begin <= kSorted) listKeys[i - begin] = key;
-    else entries[keyAt(i)] = key;
+    uint key = middleKey(c, outlineOf(c, pixel), footingIn(c, pixel), pixel, params.reversedDepth != 0u);
+    entries[keyPlace(i)] = key;
     least = min(least, key);
     most = max(most, key);
   }
   atomicMin(nearest, least);
   atomicMax(farthest, most);
   barrier();
+  Rest rest;
+  rest.begin = begin;
+  rest.end = end;
+  rest.low = nearest;
   uvec4 covered = uvec4(0u);
-  uint low = nearest;
   bool more = true;
   while (more) {
-    uint high;
-    if (!lastKey(begin, end, low, high)) {
-      showRest(begin, end, low);
+    uint high = lastKey(rest);
+    barrier();
+    uint n = takeEntries(rest, high);
+    if (n > kSorted) {
+      showRest(rest);
       break;
     }
-    more = resolveSorted(takeEntries(begin, end, low, high), pixel, covered) && high != farthest;
-    low = high + 1u;
-    barrier();
+    if (n > kBatch) more = resolveSame(rest, n, pixel, covered);
+    else more = resolveBatch(n, placeAmong(n), pixel, covered);
+    more = more && high != farthest;
+    rest.low = high + 1u;
   }
 }
 
