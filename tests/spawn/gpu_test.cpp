@@ -525,8 +525,8 @@ TEST_F(SpawnTest, FewerTerminalRecordsAreReported) {
 }
 
 TEST_F(SpawnTest, ShapesThatDoNotFitAreCounted) {
-  // Few axioms of many shapes: workgroups give work away, more than the queue holds. 32 and 128 copies are whole steps of
-  // any workgroup, so that all are made before.
+  // Few axioms of many shapes: workgroups give work away, more than the queue holds. 32 and 128 copies are whole steps
+  // of any workgroup, so that all are made before.
   GpgpSpawnerCreateInfo budgets{};
   budgets.maxShapes = 300;
   makeSpawner(budgets);
