@@ -59,18 +59,11 @@ void main() {
       barrier();
       uint touched = blockCount;
       uvec2 mask = uvec2(0u); // of the blocks in which this invocation's pixel is entered
-      for (uint i = 0u; i < touched; i += kAhead) {
-        Site sites[kAhead];
-        for (uint k = 0u; k < kAhead; ++k) {
-          ivec2 pixel = blockCorner[min(i + k, touched - 1u)] + inBlock;
-          sites[k] = siteAt(pixel, i + k < touched && pixel.x < bounds.z && pixel.y < bounds.w, seen);
-        }
-        for (uint k = 0u; k < kAhead; ++k) {
-          if (!isWanted(t, compact, sites[k])) continue;
-          uint bit = i + k;
-          if (bit < 32u) mask.x |= 1u << bit;
-          else mask.y |= 1u << (bit - 32u);
-        }
+      for (uint i = 0u; i < touched; ++i) {
+        ivec2 pixel = blockCorner[i] + inBlock;
+        if (pixel.x >= bounds.z || pixel.y >= bounds.w || !isWanted(t, compact, pixel, seen)) continue;
+        if (i < 32u) mask.x |= 1u << i;
+        else mask.y |= 1u << (i - 32u);
       }
       uint wanted = uint(bitCount(mask.x) + bitCount(mask.y));
       uint pair = wanted != 0u ? atomicAdd(groupPairs, wanted) : 0u;

@@ -11,35 +11,13 @@ void show(uint id) {
   atomicAdd(counters.unresolved, 1u);
 }
 
-/// What pixels say that a triangle may be entered in. Several are read before one is used: reads are long, and here they
-/// wait for each other else.
-const uint kAhead = 4u;
-struct Site {
-  ivec2 pixel;
-  bool open;
-  uint limit;
-};
-
-/// A triangle that is seen already only hides others, so it is entered where there are such.
-Site siteAt(ivec2 pixel, bool within, bool seen) {
-  Site site;
-  site.pixel = pixel;
-  site.open = within;
-  site.limit = 0u;
-  if (within) {
-    uint slot = slotOf(pixel);
-    site.limit = slots[slot];
-    site.open = !seen || slots[lengthAt(slot)] != 0u;
-  }
-  return site;
-}
-
-/// Whether a triangle is to be entered in a pixel within its bounds: it touches it in front of its limit.
-bool isWanted(ScreenTriangle t, bool compact, Site site) {
-  if (!site.open) return false;
+/// Whether a triangle is to be entered in a pixel within its bounds: it touches it in front of its limit. One that is
+/// seen already only hides others, so it is entered where there are such.
+bool isWanted(ScreenTriangle t, bool compact, ivec2 pixel, bool seen) {
+  uint slot = slotOf(pixel);
+  if (seen && slots[lengthAt(slot)] == 0u) return false;
   bool reversed = params.reversedDepth != 0u;
-  uint limit = site.limit;
-  ivec2 pixel = site.pixel;
+  uint limit = slots[slot];
   if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, compact, pixel)) return false;
   return limit == kFarthest || nearestKey(t, compact, pixel, reversed) <= limit;
 }

@@ -8,22 +8,13 @@ shared uint firstPair;
 /// Which of the 8 x 8 pixels from its bounds' corner on a triangle is to be entered in.
 uvec2 wantedPixels(ScreenTriangle t, ivec4 bounds, bool seen) {
   uvec2 mask = uvec2(0u);
-  ivec2 next = bounds.xy;
-  while (next.x < bounds.z && next.y < bounds.w) {
-    Site sites[kAhead];
-    for (uint k = 0u; k < kAhead; ++k) {
-      sites[k] = siteAt(next, next.y < bounds.w, seen);
-      ++next.x;
-      if (next.x == bounds.z) next = ivec2(bounds.x, next.y + 1);
-    }
-    for (uint k = 0u; k < kAhead; ++k) {
-      if (!isWanted(t, true, sites[k])) continue;
-      ivec2 at = sites[k].pixel - bounds.xy;
-      uint bit = uint(at.y * 8 + at.x);
+  for (int y = bounds.y; y < bounds.w; ++y)
+    for (int x = bounds.x; x < bounds.z; ++x) {
+      if (!isWanted(t, true, ivec2(x, y), seen)) continue;
+      uint bit = uint((y - bounds.y) * 8 + x - bounds.x);
       if (bit < 32u) mask.x |= 1u << bit;
       else mask.y |= 1u << (bit - 32u);
     }
-  }
   return mask;
 }
 
