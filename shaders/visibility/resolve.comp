@@ -36,8 +36,8 @@ Facet facetAt(uint place) {
   return f;
 }
 
-/// Bits: those that an entry may be in the wrong order with, by their depths alone. Order is nothing to those that share
-/// no samples, as neighbours on a surface; entries that are shown already need no answer.
+/// Bits: those that an entry may be in the wrong order with, by their depths alone. Entries that are shown already need
+/// no answer.
 uint suspectsOf(uint place, uint n) {
   uint bit = 1u << place;
   bool claimed = (seen & bit) != 0u;
@@ -51,8 +51,7 @@ uint suspectsOf(uint place, uint n) {
   }
   rivals[place] = before & ~bit;
   if ((shown & bit) != 0u) return 0u;
-  if (claimed) return before & met & ~(bit | bit - 1u);
-  return (met & bit) != 0u ? after & (1u << min(place, stops)) - 1u : 0u;
+  return claimed ? before & ~(bit | bit - 1u) : after & (1u << min(place, stops)) - 1u;
 }
 
 /// Whether two entries are in the wrong order: one that is seen before one that is nearer, or one that is hidden

@@ -19,7 +19,6 @@ shared uint rows[kBatch];
 shared uint taken; // bits: ranks that entries have
 shared uint ties;  // 1: two have the same
 shared uint seen;  // a bit for each of a batch's
-shared uint met;   // likewise: those that share a sample with one before them; also where a lane's rows are covered
 shared uint holes; // 1: samples that nothing covers yet
 shared uint stops; // how many of a batch come before all samples are covered
 
@@ -112,25 +111,19 @@ void lookAtBatch(uint batch, inout uvec4 covered) {
   int row = int(laneOf());
   if (row == 0) {
     seen = 0u;
-    met = 0u;
     holes = 0u;
     stops = 0u;
   }
   barrier();
   uint found = 0u;
-  uint both = 0u;
   uint k = 0u;
   for (; k < batch && (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu; ++k) {
     Outline o = outlineAt(k);
-    uvec4 own = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
-    uvec4 first = own & ~covered;
-    if ((first.x | first.y | first.z | first.w) != 0u) found |= 1u << k;
-    if (first != own) both |= 1u << k;
+    uvec4 own = uvec4(samplesIn(o, row), samplesIn(o, row + 32)) & ~covered;
+    if ((own.x | own.y | own.z | own.w) != 0u) found |= 1u << k;
     covered |= own;
   }
-  if (k < batch) both |= 0xffffffffu << k;
   if (found != 0u) atomicOr(seen, found);
-  if (both != 0u) atomicOr(met, both);
   atomicMax(stops, k);
   if ((covered.x & covered.y & covered.z & covered.w) != 0xffffffffu) holes = 1u;
   barrier();

@@ -63,18 +63,13 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   }
   std::array<uvec2, 64> covered{};
   std::vector<bool> seen(sorted.size());
-  std::vector<bool> met(sorted.size(), true); // shares a sample with one before; or rows that go together are covered
   size_t stop = 0; // how many come before all samples are covered
   for (bool holes = true; holes && stop < sorted.size(); ++stop) {
     holes = false;
-    const auto full = [&](size_t row) { return (covered[row].x & covered[row].y) == ~0u; };
-    met[stop] = false;
-    for (size_t row = 0; row < 32; ++row) met[stop] = met[stop] || (full(row) && full(row + 32));
     for (int row = 0; row < 64; ++row) {
       uvec2& mask = covered[static_cast<size_t>(row)];
       const uvec2 own = samplesIn(sorted[stop].outline, row);
       if ((own.x & ~mask.x) | (own.y & ~mask.y)) seen[stop] = true;
-      if ((own.x & mask.x) | (own.y & mask.y)) met[stop] = true;
       mask |= own;
       holes = holes || (mask.x & mask.y) != ~0u;
     }
@@ -85,8 +80,8 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
     };
     bool doubtful = false;
     if (sorted.size() <= kBatch && seen[i])
-      for (size_t j = i + 1; j < sorted.size() && !doubtful; ++j) doubtful = met[j] && nearer(sorted[j], sorted[i]);
-    else if (sorted.size() <= kBatch && met[i])
+      for (size_t j = i + 1; j < sorted.size() && !doubtful; ++j) doubtful = nearer(sorted[j], sorted[i]);
+    else if (sorted.size() <= kBatch)
       for (size_t j = 0; j < std::min(i, stop) && !doubtful; ++j) doubtful = nearer(sorted[i], sorted[j]);
     const uint32_t id = sorted[i].candidate.id;
     if (doubtful ? isAhead(sorted, i) : seen[i]) bits[id / 32] |= 1u << (id % 32);
