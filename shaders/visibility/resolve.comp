@@ -5,8 +5,6 @@
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
 
-const uint kSuspectsEach = 4u;
-
 shared uint ids[kBatch];
 shared vec4 planes[kBatch]; // facets of the sorted entries: plane, nearest
 shared float farthest[kBatch];
@@ -14,8 +12,8 @@ shared uint boxes[kBatch];
 shared uint shown;          // bits: entries that other pixels showed
 shared uint doubtful;       // those that the order may have wrong
 shared uint kept;           // those of them that are seen
-shared uint rivals[kBatch]; // for each entry: those that may hide a part of it
-shared uint suspects[kBatch * kSuspectsEach]; // an entry and one that it may be in the wrong order with
+shared uint rivals[kBatch];   // for each entry: those that may hide a part of it
+shared uint suspects[kBatch]; // an entry and one that it may be in the wrong order with
 shared uint suspectCount;
 shared uint more;
 
@@ -75,22 +73,21 @@ void findDoubtful(uint n) {
       more = 0u;
     }
     barrier();
-    if (left != 0u) {
-      uint count = min(uint(bitCount(left)), kSuspectsEach);
-      uint first = atomicAdd(suspectCount, count);
-      for (uint i = first; i < first + count; ++i) {
-        suspects[i] = lane | uint(findLSB(left)) << 8u;
-        left &= left - 1u;
-      }
-      if (left != 0u) more = 1u;
+    while (left != 0u) {
+      uint at = atomicAdd(suspectCount, 1u);
+      if (at >= kBatch) break;
+      suspects[at] = lane | uint(findLSB(left)) << 8u;
+      left &= left - 1u;
     }
+    if (left != 0u) more = 1u;
     barrier();
-    for (uint i = lane; i < suspectCount; i += kBatch) {
-      uint place = suspects[i] & 255u;
-      if (isWrong(place, suspects[i] >> 8u)) atomicOr(doubtful, 1u << place);
+    if (lane < suspectCount) {
+      uint place = suspects[lane] & 255u;
+      if (isWrong(place, suspects[lane] >> 8u)) atomicOr(doubtful, 1u << place);
     }
     again = more != 0u;
     barrier();
+    if ((doubtful & (1u << lane)) != 0u) left = 0u;
   }
 }
 
