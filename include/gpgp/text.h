@@ -121,7 +121,7 @@ typedef struct GpgpGlyphOutlineInfo {
   uint32_t glyph;
   VkBool32 plain;                 /**< the outline without colours, also of a colour glyph */
   float color[4];                 /**< linear RGB, straight alpha, 0 to 1, of what is painted in the text's colour; all
-                                       0: opaque black */
+                                       0: opaque black. For a glyph set opaque: an instance's alpha comes to it */
   uint32_t palette;               /**< of a colour font; one that it has not: its first */
   const GpgpPaletteColor* colors; /**< in place of the palette's */
   uint32_t colorCount;
