@@ -281,8 +281,9 @@ typedef struct GpgpTextInfo {
   float lineSpacing;    /**< times the fonts' own distance of lines; 0: 1 */
   float lineHeight;     /**< pixels between lines instead; 0: the fonts' */
   float tabWidth;       /**< pixels between tab stops; 0: eight spaces */
-  const char* ellipsis; /**< terminated; ends a text that was cut off, in one font and direction, whole also where it
-                             is wider than the width; NULL: "…" ("..." where no font has it) */
+  const char* ellipsis; /**< terminated; ends a text that was cut off, whose last line is filled up to it, with a part
+                           of a word, too; in one font and direction, whole also where it is wider than the width; NULL:
+                             "…" ("..." where no font has it) */
 } GpgpTextInfo;
 #define GPGP_TEXT_INFO_INIT GPGP_INIT(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO)
 
