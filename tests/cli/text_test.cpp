@@ -410,8 +410,9 @@ TEST_F(CliText, WhatDoesNotFitAPictureIsAnError) {
 
 TEST_F(CliText, NumbersThatAreNoneAreNamed) {
   for (const char* option : {"--size", "--outline", "--width"}) {
-    const std::string error = gpgpFailure({"text", sans, "a", picture.path(), option, "nan"});
-    EXPECT_NE(error.find(" is nan"), std::string::npos) << error;
+    const ProcessResult result = gpgp({"text", sans, "a", picture.path(), option, "nan"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_NE(result.err.find(std::string(option) + ": nan is not within "), std::string::npos) << result.err;
     EXPECT_FALSE(std::filesystem::exists(picture.path()));
   }
 }
