@@ -121,7 +121,7 @@ typedef struct GpgpGlyphOutlineInfo {
   uint32_t glyph;
   VkBool32 plain;                 /**< the outline without colours, also of a colour glyph */
   float color[4];                 /**< linear RGB, straight alpha, 0 to 1, of what is painted in the text's colour; all
-                                       0: opaque black */
+                                       0: opaque black. For a glyph set opaque: an instance's alpha comes to it */
   uint32_t palette;               /**< of a colour font; one that it has not: its first */
   const GpgpPaletteColor* colors; /**< in place of the palette's */
   uint32_t colorCount;
@@ -281,8 +281,9 @@ typedef struct GpgpTextInfo {
   float lineSpacing;    /**< times the fonts' own distance of lines; 0: 1 */
   float lineHeight;     /**< pixels between lines instead; 0: the fonts' */
   float tabWidth;       /**< pixels between tab stops; 0: eight spaces */
-  const char* ellipsis; /**< terminated; ends a text that was cut off, in one font and direction, whole also where it
-                             is wider than the width; NULL: "…" ("..." where no font has it) */
+  const char* ellipsis; /**< terminated; ends a text that was cut off, whose last line is filled up to it, with a part
+                           of a word, too; in one font and direction, whole also where it is wider than the width; NULL:
+                             "…" ("..." where no font has it) */
 } GpgpTextInfo;
 #define GPGP_TEXT_INFO_INIT GPGP_INIT(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO)
 

@@ -59,7 +59,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpPushTransform(GpgpList list, const float* tran
  *  Errors: INVALID_ARGUMENT (not a number, beyond 1e7, right below left; too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, const float* radii);
 
-/** Multiplies the alpha of each thing that is added from here on, one by one: what overlaps shows through.
+/** Multiplies the alpha of each thing that is added from here on, one by one, of drawings each path: what overlaps
+ *  shows through.
  *  Errors: INVALID_ARGUMENT (not 0 to 1; too deep). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList list, float opacity);
 

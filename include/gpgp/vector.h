@@ -169,7 +169,8 @@ typedef struct GpgpGlyph {
   const GpgpPath* paths;      /**< in em units, +Y down, 0, 0 on the baseline where the glyph begins; painted in order;
                                  filled or stroked, in colours and gradients: without images and groups */
   uint32_t pathCount;         /**< 0: a blank */
-  const VkBool32* foreground; /**< of each path: takes the text's colour instead of its own; NULL: all do */
+  const VkBool32* foreground; /**< of each path: takes the text's RGB instead of its own, and of alpha both; NULL: all
+                                 do */
 } GpgpGlyph;
 
 typedef struct GpgpGlyphSource {

@@ -260,10 +260,12 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
 #if IMAGES
     if (floatBitsToUint(fetch(item.slot, paint.y + 1)).y >= kPaintImage) {
       vec2 dx = item.inverse.xy, dy = item.inverse.zw;
+#if PROJECTIVE
       if (projects(item)) {
         dx -= at * item.eye.x;
         dy -= at * item.eye.y;
       }
+#endif
       source *= imageAt(item, paint.y - 1, at, dx * near, dy * near);
     } else
 #endif

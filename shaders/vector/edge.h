@@ -181,13 +181,13 @@ GPGP_FN bool mayMatter(Grid g, ItemRecord item, SegmentRecord s) {
   const vec2 b = toPixel(item, s.first.z, s.first.w);
   const vec2 c = toPixel(item, s.second.x, s.second.y);
   const vec2 d = toPixel(item, s.second.z, s.second.w);
+  const float top = min(min(a.y, b.y), min(c.y, d.y)), bottom = max(max(a.y, b.y), max(c.y, d.y));
+  bool left = min(min(a.x, b.x), min(c.x, d.x)) <= float(g.columns) + 1.0f;
 #if SCISSORS
-  const bool left = min(min(a.x, b.x), min(c.x, d.x)) <= float(g.columns) + 1.0f || item.scissor.z < float(g.columns);
-#else
-  const bool left = min(min(a.x, b.x), min(c.x, d.x)) <= float(g.columns) + 1.0f;
+  // A scissor moves to its sides, and to its left corners, what lies right of the canvas as well.
+  left = left || item.scissor.z < float(g.columns) || top <= item.scissor.y + 1.0f || bottom >= item.scissor.w - 1.0f;
 #endif
-  return left && max(max(a.y, b.y), max(c.y, d.y)) >= -1.0f &&
-         min(min(a.y, b.y), min(c.y, d.y)) * float(g.samples) <= float(g.rows) + 1.0f;
+  return left && bottom >= -1.0f && top * float(g.samples) <= float(g.rows) + 1.0f;
 }
 
 // A segment's curve at step i of n in the drawing; `step` is chordStep(n).

@@ -32,7 +32,7 @@ void main() {
   const uint lane = gl_LocalInvocationIndex;
   const uvec2 inTile = uvec2(lane % kTileSize, lane / kTileSize);
 #if CROWDED
-#if RICH && !IMAGES
+#if RICH
   if (groupIndex() >= bins[kRichCrowdedArguments + 3]) return;
   const uint place = bins[richTile(crowdedTiles(), groupIndex())];
 #else
@@ -40,7 +40,7 @@ void main() {
   const uint place = bins[crowdedTiles() + groupIndex()];
 #endif
   const uvec2 tile = uvec2(place % header.tilesX, place / header.tilesX);
-#elif RICH && !IMAGES
+#elif RICH
   if (groupIndex() >= bins[kRichArguments + 3]) return;
   const uint place = bins[richTiles() + groupIndex()];
   const uvec2 tile = uvec2(place % header.tilesX, place / header.tilesX);

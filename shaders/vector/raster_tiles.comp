@@ -30,7 +30,7 @@ void main() {
 #else
 void main() {
   const uint lane = gl_LocalInvocationIndex;
-#if RICH && !IMAGES
+#if RICH
   if (groupIndex() >= bins[kRichArguments + 3]) return;
   const uint tile = bins[richTile(paintedTiles(), groupIndex())];
 #else

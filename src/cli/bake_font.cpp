@@ -129,7 +129,7 @@ void addBakeFontOptions(CLI::App& command, BakeFontOptions& options) {
   command
       .add_option("--outline", options.outline,
                   "Of fonts: bake each glyph's outline, too, a line of this width in em along its edges")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->type_name("EM");
 }
 

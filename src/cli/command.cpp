@@ -43,6 +43,17 @@ std::array<float, 3> parseTriple(const std::string& text) {
   return values;
 }
 
+CLI::Validator within(double low, double high) {
+  std::ostringstream range;
+  range << low << " to " << high;
+  return {[=, range = range.str()](std::string& text) {
+            double value = 0;
+            const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+            return good ? std::string() : text + " is not within " + range;
+          },
+          "FLOAT from " + range.str()};
+}
+
 CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, const std::string& help) {
   return command
       .add_option_function<std::string>(

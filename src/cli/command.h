@@ -50,6 +50,9 @@ std::array<float, 3> parseTriple(const std::string& text);
 /// A callback option that holds a size.
 CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, const std::string& help);
 
+/// As CLI::Range, but what is no number is not within.
+CLI::Validator within(double low, double high);
+
 // One file per subcommand. Each adds itself to the app and returns what it does when chosen.
 Work addInfo(CLI::App& app);
 Work addSpawn(CLI::App& app);

@@ -386,10 +386,10 @@ Work addSpawn(CLI::App& app) {
   command->add_option("--image", options->image, "Write a picture of the result")->type_name("FILE.png");
   command->add_option("--yaw", options->yaw, "That picture's view: degrees around the scene")->capture_default_str();
   command->add_option("--pitch", options->pitch, "Degrees above the horizon")
-      ->check(CLI::Range(-89.0f, 89.0f))
+      ->check(within(-89.0, 89.0))
       ->capture_default_str();
   command->add_option("--zoom", options->zoom, "Times closer to the middle than all of the scene")
-      ->check(CLI::Range(0.01f, 1000.0f))
+      ->check(within(0.01, 1000.0))
       ->capture_default_str();
   command->add_option("--out", options->out, "Write what was derived as triangles")->type_name("FILE.glb");
   addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)");

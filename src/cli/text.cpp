@@ -144,11 +144,11 @@ Work addText(CLI::App& app) {
       ->required()
       ->type_name("FILE.png");
   command->add_option("--size", options->page.size, "Pixels an em")
-      ->check(CLI::Range(1.0, 4096.0))
+      ->check(within(1.0, 4096.0))
       ->type_name("PX")
       ->capture_default_str();
   command->add_option("--width", options->page.width, "Lines break to fit this (default: only where the text says)")
-      ->check(CLI::Range(1.0, double(kLargest)))
+      ->check(within(1.0, kLargest))
       ->type_name("PX");
   command
       ->add_option("--fallback", options->fallbacks,
@@ -174,7 +174,7 @@ Work addText(CLI::App& app) {
   command
       ->add_option("--outline", options->page.outlineWidth,
                    "Width of a line along the letters' edges, below them, so that half of it shows")
-      ->check(CLI::Range(0.0, 1024.0))
+      ->check(within(0.0, 1024.0))
       ->type_name("PX");
   command->add_option("--outline-color", options->outlineColor, "CSS colour of that line")
       ->type_name("COLOUR")

@@ -2,6 +2,7 @@
 #pragma once
 #include <gpgp/gpgp.hpp>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,14 @@ public:
   uint32_t fontNumber(GpgpFont font) const;
   /// The line along glyphs' edges; NULL: the text has none.
   const GpgpStroke* stroke() const { return stroke_.width > 0 ? &stroke_ : nullptr; }
-  /// gpgpGetGlyphOutline in the text's colour. What it hands over points to `stroke`.
+  /// gpgpGetGlyphOutline in the text's colour, opaque: alpha is that of each place. What it hands over points to
+  /// `stroke`.
   template <class Take> void outline(const GpgpTextGlyph& glyph, const GpgpStroke* stroke, Take&& take) {
     GpgpGlyphOutlineInfo info = init<GpgpGlyphOutlineInfo>();
     info.glyph = glyph.glyph;
     info.stroke = stroke;
-    for (size_t i = 0; i < 4; ++i) info.color[i] = glyph.color[i];
+    std::copy_n(glyph.color, 3, info.color);
+    info.color[3] = 1;
     check(fonts_[fontNumber(glyph.font)].outline(info, take), "gpgpGetGlyphOutline");
   }
 

@@ -125,7 +125,7 @@ Work addTune(CLI::App& app) {
   command
       ->add_option("--seconds", settings.seconds,
                    "Time budget: what would probably take longer is left out, and the best so far is kept; 0: none")
-      ->check(CLI::Range(0.0, 86400.0))
+      ->check(within(0.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");
   command

@@ -48,7 +48,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
   addSize(command, "--size", options.size, "Viewport in pixels (default 1280x720)");
   command.add_option("--yaw", options.yaw, "Degrees around the model")->capture_default_str();
   command.add_option("--pitch", options.pitch, "Degrees above the horizon")
-      ->check(CLI::Range(-89.0f, 89.0f))
+      ->check(within(-89.0, 89.0))
       ->capture_default_str();
   command.add_flag("--two-sided", options.twoSided, "Back faces count as well");
   command
@@ -60,7 +60,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       .add_option("--orbit", options.orbit, "N cameras on a circle 20 degrees above the horizon; results are averages")
       ->check(CLI::Range(1u, 4096u));
   command.add_option("--distance", options.distance, "Of the orbit's cameras, in radii of the bounding sphere")
-      ->check(CLI::Range(0.01f, 1e6f))
+      ->check(within(0.01, 1e6))
       ->capture_default_str();
   command.add_option("--camera", options.camera, "16 numbers, world to clip, column-major; a 17th not 0: near is 1")
       ->check(CLI::ExistingFile);
@@ -79,7 +79,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
           "in-circle,depth)")
       ->type_name("LIST");
   command.add_option("--resolution", options.resolution, "Conservative: factor of the viewport's size")
-      ->check(CLI::Range(0.25f, 1.0f))
+      ->check(within(0.25, 1.0))
       ->capture_default_str();
   command.add_option("--refinements", options.refinements, "Conservative: at most N passes that close gaps")
       ->check(CLI::Range(0u, 4u))

@@ -1,11 +1,10 @@
 // What it costs to convert paths to CPatches, on one thread.
 //
-//   convert_bench [rounds]
-//
 // Drawings (strokes to fills included, parsing not), glyphs of a font, and made paths of 10^2 to 10^5 curves in one
 // path, whose cost per curve tells whether the conversion is linear. Baseline in the same process: cairo filling the
 // same paths into a picture of 1024 x 1024 pixels, which flattens and tessellates them each time. Prints medians and
 // ratios; asserts nothing about time.
+#include "arguments.h"
 #include "host/files.h"
 #include "measuring.h"
 #include "vector/import/svg/import.h"
@@ -242,8 +241,10 @@ void glyphs(const std::string& file, const char* name, int rounds) {
 
 } // namespace
 
-int main(int argc, char** argv) {
-  const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 20;
+const char* const kUsage = "convert_bench [ROUNDS]     20 rounds where it does not say\n";
+
+int runBench(bench::Arguments arguments) {
+  const int rounds = arguments.next() ? static_cast<int>(arguments.count()) : 20;
   const std::string data = GPGP_TEST_DATA;
   std::printf("%-16s %7s %8s %8s %8s %10s %9s %10s %7s\n", "drawing", "paths", "in", "curves", "patches", "ms",
               "ns/curve", "cairo ms", "ratio");
@@ -279,3 +280,5 @@ int main(int argc, char** argv) {
   glyphs(data + "/fetched/fonts/NotoSansCJK-Regular.ttc", "Noto Sans CJK", rounds);
   return 0;
 }
+
+int main(int argc, char** argv) { return bench::benchMain(argc, argv, kUsage, runBench); }

@@ -1,10 +1,9 @@
 // What recording costs the engine: CPU time of each service's record function, and GPU time of what it records.
 //
-//   record_bench [records]
-//
 // Baseline in the same process: as many bare vkCmdPipelineBarrier + vkCmdFillBuffer pairs as the service has passes,
 // into the same command buffer. Prints medians and ratios; asserts nothing about time, but fails where a record fails.
 #include "../api/scenarios.h"
+#include "arguments.h"
 #include "host/frames.h"
 #include "measuring.h"
 
@@ -95,8 +94,10 @@ void measureList(host::HeadlessDevice& device, int records) {
 #endif
 } // namespace
 
-int main(int argc, char** argv) {
-  const int records = argc > 1 ? std::max(2, std::atoi(argv[1])) : 200;
+const char* const kUsage = "record_bench [RECORDS]     200 records of each service where it does not say\n";
+
+int runBench(Arguments arguments) {
+  const int records = arguments.next() ? static_cast<int>(arguments.count(2)) : 200;
   host::HeadlessDevice device;
   const double period = device.properties().limits.timestampPeriod * 1e-3; // microseconds a tick
   std::printf("device %s, %d records, medians\n", device.name().c_str(), records);
@@ -164,3 +165,5 @@ int main(int argc, char** argv) {
 #endif
   return 0;
 }
+
+int main(int argc, char** argv) { return benchMain(argc, argv, kUsage, runBench); }

@@ -1,32 +1,9 @@
 // What derivation costs by schedule: the tables of thesis chapter 4, a city, and curves over the number of axioms.
 //
-//   spawn_bench [--device D] [--seconds N] [--repeat N] [--pairs N] [--samples N] [--share F] [--quick]
-//               [TABLE[:ROW]]...
-//
-// TABLE is one of
-//   schedules   table 4.2: every case of samples/grammars/cases.txt by the interpreter, the named schedules (DGN:
-//   rules)
-//               and what `gpgp tune` finds, in how many seconds; that against the best named schedule, and against the
-//               best of all partitions, where there are few, all with the device's usual numbers. Rows: the cases'
-//               names
-//   searches    its other columns: the best that random and heuristic searches of --samples N schedules find, with and
-//               without matching. Rows: the cases' names
-//   partitions  figure 4.7: every valid partition of the Menger sponge at 1, 16 and 256 axioms. Those that differ only
-//               in the edges into operators that multiply have the same kernel, which is measured once
-//   vertices    cases as vertices of 32 bytes and 32-bit indices. Rows: the cases' names; `city` is figure 4.1
-//   curves      time and memory from 10 to 10^7 axioms; what the device does not bind at once is derived in parts, a
-//               record each. Rows: the cases' names
-//   heuristics  table 4.1: pairs of schedules, a heuristic's edges as it says against inverted, all others random, with
-//               a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published).
-//               Each pair's times go to standard error as they come
-// ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.
-// --exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,
-// simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out and
-// named below it.
-//
 // Prints tables in Markdown, row by row: medians of GPU timestamps of a warm device, and ratios. The baselines, in the
 // same process: the CPU evaluator on one thread, and the default schedule. Kernels and pipelines are made on all
 // processors. Asserts nothing about time, but fails where a derivation differs from the evaluator's.
+#include "arguments.h"
 #include "cli/axioms.h"
 #include "cli/processors.h"
 #include "cli/tuner.h"
@@ -651,41 +628,66 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
   }
 }
 
-int run(int argc, char** argv) {
+const char* const kUsage =
+    "spawn_bench [--device D] [--seconds N] [--repeat N] [--pairs N] [--samples N] [--share F] [--exhaustive N] "
+    "[--quick]\n"
+    "            [TABLE[:ROW]]...\n"
+    "TABLE is one of\n"
+    "  schedules   table 4.2: every case of samples/grammars/cases.txt by the interpreter, the named schedules (DGN: "
+    "rules)\n"
+    "              and what `gpgp tune` finds, in how many seconds; that against the best named schedule, and against "
+    "the\n"
+    "              best of all partitions, where there are few, all with the device's usual numbers. Rows: the cases' "
+    "names\n"
+    "  searches    its other columns: the best that random and heuristic searches of --samples N schedules find, with "
+    "and\n"
+    "              without matching. Rows: the cases' names\n"
+    "  partitions  figure 4.7: every valid partition of the Menger sponge at 1, 16 and 256 axioms. Those that differ "
+    "only\n"
+    "              in the edges into operators that multiply have the same kernel, which is measured once\n"
+    "  vertices    cases as vertices of 32 bytes and 32-bit indices. Rows: the cases' names; `city` is figure 4.1\n"
+    "  curves      time and memory from 10 to 10^7 axioms; what the device does not bind at once is derived in parts, "
+    "a\n"
+    "              record each. Rows: the cases' names\n"
+    "  heuristics  table 4.1: pairs of schedules, a heuristic's edges as it says against inverted, all others random, "
+    "with\n"
+    "              a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as "
+    "published).\n"
+    "              Each pair's times go to standard error as they come\n"
+    "ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.\n"
+    "--exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,\n"
+    "simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out "
+    "and\n"
+    "named below it.\n";
+
+int run(bench::Arguments arguments) {
   std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16); // a run that is ended has printed every row that it had
   Options options;
-  const auto number = [](const std::string& text) {
-    return static_cast<uint32_t>(std::max(1, std::atoi(text.c_str())));
-  };
   bool pairs = false, samples = false, repeat = false;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    const auto next = [&]() -> std::string { return i + 1 < argc ? argv[++i] : ""; };
-    if (arg == "--repeat")
-      options.repeat = number(next()), repeat = true;
-    else if (arg == "--pairs")
-      options.pairs = number(next()), pairs = true;
-    else if (arg == "--samples")
-      options.samples = std::max(5u, number(next())), samples = true;
-    else if (arg == "--share")
-      options.share = std::clamp(std::atof(next().c_str()), 0.0, 1.0);
-    else if (arg == "--seconds")
-      options.seconds = std::max(0.0, std::atof(next().c_str()));
-    else if (arg == "--exhaustive")
-      options.exhaustive = number(next());
-    else if (arg == "--device")
-      options.device = next();
-    else if (arg == "--quick")
-      options.quick = true;
-    else
-      options.tables.push_back(arg);
-  }
   const std::vector<std::string> known = {"schedules", "vertices", "partitions", "curves", "heuristics", "searches"};
-  for (const std::string& table : options.tables)
-    if (std::find(known.begin(), known.end(), table.substr(0, table.find(':'))) == known.end()) {
-      std::fprintf(stderr, "there is no table \"%s\"\n", table.c_str());
-      return 2;
-    }
+  while (arguments.next()) {
+    const std::string& word = arguments.word();
+    if (word == "--repeat")
+      options.repeat = arguments.number(), repeat = true;
+    else if (word == "--pairs")
+      options.pairs = arguments.number(), pairs = true;
+    else if (word == "--samples")
+      options.samples = arguments.number(5), samples = true;
+    else if (word == "--share")
+      options.share = arguments.real(0, 1);
+    else if (word == "--seconds")
+      options.seconds = arguments.real(0, 1e9);
+    else if (word == "--exhaustive")
+      options.exhaustive = arguments.number();
+    else if (word == "--device")
+      options.device = arguments.value();
+    else if (word == "--quick")
+      options.quick = true;
+    else if (std::find(known.begin(), known.end(), word.substr(0, word.find(':'))) != known.end())
+      options.tables.push_back(word);
+    else
+      throw bench::Usage("there is no table '" + arguments.name() + "'");
+  }
   if (options.tables.empty()) options.tables = known;
   if (options.quick) { // what was not asked for
     if (!pairs) options.pairs = 4;
@@ -714,11 +716,4 @@ int run(int argc, char** argv) {
 }
 } // namespace
 
-int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "spawn_bench: %s\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return bench::benchMain(argc, argv, kUsage, run); }

@@ -1,9 +1,8 @@
 // What drawings cost: conversion on one thread, GPU time by pass, and cairo's time in the same process.
 //
-//   vector_bench [--repeat N] [--size PIXELS] [--out FOLDER] [--shapes] [map | contours | page | ... | FILE.svg]...
-//
-// --shapes draws pages as one drawing instead of a text. The generated drawings are in vector_scenes.h. Prints medians
-// and ratios; asserts nothing about time, but fails where a record fails or drops paths.
+// The generated drawings are in vector_scenes.h. Prints medians and ratios; asserts nothing about time, but fails where
+// a record fails or drops paths.
+#include "arguments.h"
 #include "host/picture.h"
 #include "vector_runner.h"
 
@@ -45,27 +44,31 @@ void run(VectorRunner& runner, const Scene& scene, uint32_t size, VectorRunner::
 }
 } // namespace
 
-int main(int argc, char** argv) {
+const char* const kUsage =
+    "vector_bench [--repeat N] [--size PIXELS] [--samples N] [--out FOLDER] [--shapes] [SCENE]...\n"
+    "  --shapes  draws pages as one drawing instead of a text\n"
+    "  SCENE     map contours page live drops embrace clipart botanical plan feather, or FILE.svg\n";
+
+int runBench(Arguments arguments) {
   int repeat = 20;
   uint32_t size = 1024, samples = 16;
   bool shapes = false;
   std::string out;
   std::vector<Scene> scenes;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto value = [&] { return i + 1 < argc ? argv[++i] : "1"; };
+  while (arguments.next()) {
+    const std::string& word = arguments.word();
     if (word == "--repeat")
-      repeat = std::max(1, std::atoi(value()));
+      repeat = static_cast<int>(arguments.number());
     else if (word == "--size")
-      size = static_cast<uint32_t>(std::clamp(std::atoi(value()), 1, 16384));
+      size = arguments.number(1, 16384);
     else if (word == "--samples")
-      samples = static_cast<uint32_t>(std::atoi(value()));
+      samples = arguments.number(1, 16);
     else if (word == "--out")
-      out = value();
+      out = arguments.value();
     else if (word == "--shapes")
       shapes = true;
     else
-      scenes.push_back(sceneOf(word));
+      scenes.push_back(sceneOf(arguments.name()));
   }
   if (scenes.empty()) scenes = {streetMap(), contourMap(), page(), livePage()};
   host::HeadlessDevice device;
@@ -75,3 +78,5 @@ int main(int argc, char** argv) {
     run(runner, scene, size, {.samples = samples, .blendSrgb = false}, repeat, out, shapes);
   return 0;
 }
+
+int main(int argc, char** argv) { return benchMain(argc, argv, kUsage, runBench); }

@@ -1,16 +1,9 @@
 // The tables and figures of the thesis's section 5.4 for this library, as Markdown.
 //
-//   vector_tables [--repeat N] [--sizes PIXELS,...] [statistics | times | quality | curves]... [FILE.svg]...
-//
-//   statistics  table 5.1: paths, curves, patches, and how patches spread over tiles of 8 x 8 pixels at 1024 x 1024
-//   times       table 5.2 and figure 5.11: GPU milliseconds at 1 and 16 samples and with exact areas, cairo's
-//               time in the same process, and how the GPU's time falls to its passes
-//   quality     figure 5.12: a feather at 12 x 14 pixels against 256 samples a pixel, cairo's beside it
-//   curves      cost over the number of paths, of curves in a path, and of pixels
-//
-// Without words all of them. The drawings are the files, and generated ones in place of the thesis's. Times are medians
+// The drawings are the files, and generated ones in place of the thesis's. Times are medians
 // of N records (20), by two timestamps around each; passes are timed in records of their own, as timestamps between
 // them take time. Nothing about time is asserted; it fails where a record fails or drops paths.
+#include "arguments.h"
 #include "cli/patch_tiles.h"
 #include "cli/vector_truth.h"
 #include "vector_runner.h"
@@ -149,27 +142,41 @@ void curves(VectorRunner& runner, int repeat, uint32_t largest) {
 
 } // namespace
 
-int main(int argc, char** argv) {
+const char* const kUsage =
+    "vector_tables [--repeat N] [--sizes PIXELS,...] [statistics | times | quality | curves]... [FILE.svg]...\n"
+    "  statistics  table 5.1: paths, curves, patches, and how patches spread over tiles of 8 x 8 pixels at 1024 x "
+    "1024\n"
+    "  times       table 5.2 and figure 5.11: GPU milliseconds at 1 and 16 samples and with exact areas, cairo's time\n"
+    "              in the same process, and how the GPU's time falls to its passes\n"
+    "  quality     figure 5.12: a feather at 12 x 14 pixels against 256 samples a pixel, cairo's beside it\n"
+    "  curves      cost over the number of paths, of curves in a path, and of pixels\n"
+    "Without words all of them.\n";
+
+int runBench(Arguments arguments) {
   int repeat = 20;
   std::vector<uint32_t> sizes;
   std::set<std::string> wanted;
   std::vector<Scene> scenes;
   const std::set<std::string> known = {"statistics", "times", "quality", "curves"};
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--repeat" && i + 1 < argc) {
-      repeat = std::max(1, std::atoi(argv[++i]));
-    } else if (word == "--sizes" && i + 1 < argc) {
-      for (const char* at = argv[++i]; *at;) {
+  while (arguments.next()) {
+    const std::string& word = arguments.word();
+    if (word == "--repeat") {
+      repeat = static_cast<int>(arguments.number());
+    } else if (word == "--sizes") {
+      const std::string list = arguments.value();
+      for (const char* at = list.c_str();; ++at) {
         char* end = nullptr;
-        sizes.push_back(static_cast<uint32_t>(std::clamp(std::strtol(at, &end, 10), 16l, 8192l)));
-        if (end == at) break;
-        at = *end ? end + 1 : end;
+        const long size = std::strtol(at, &end, 10);
+        if (end == at || (*end && *end != ',') || size < 16 || size > 8192)
+          throw Usage("--sizes: '" + list + "' is no list of numbers from 16 to 8192");
+        sizes.push_back(static_cast<uint32_t>(size));
+        at = end;
+        if (!*at) break;
       }
     } else if (known.count(word)) {
       wanted.insert(word);
     } else {
-      scenes.push_back(sceneOf(word));
+      scenes.push_back(sceneOf(arguments.name()));
     }
   }
   if (sizes.empty()) sizes = {1024, 2048};
@@ -188,3 +195,5 @@ int main(int argc, char** argv) {
   if (wanted.count("times")) times(runner, scenes, sizes, repeat);
   return 0;
 }
+
+int main(int argc, char** argv) { return benchMain(argc, argv, kUsage, runBench); }

@@ -1,21 +1,9 @@
 // What each sampling method finds and costs, on the measured scenes: coverage and overestimation against the truth made
 // in the same run, GPU time by timestamps, and the ratio to standard sampling (the baseline).
 //
-//   visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] [--passes] [--exact]
-//                    [SCENE...]         --crop: a window of that picture, whose pixels are as small as the picture's;
-//                                       --exact: without the thesis's method
-//   visibility_bench --figures [--grid N] [--cell N] [--tables] [...]
-//                                       the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)
-//   visibility_bench --walk [--grid N] [--cell N] [...]
-//                                       the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points
-//   visibility_bench --views [...]      what a record of several view points of a cell costs against a record for each
-//   visibility_bench --plot FILE... --out FOLDER
-//                                       what runs with --figures printed, as SVG pictures
-//
-// Scenes: bunnies colonnade foliage city street bigcity bigstreet, small-colonnade small-foliage small-city, what gpgp
-// spawn derives where it is built in: spawned-city[:LOTS] (200 lots; 50 000 are 10 million triangles) and mini-engine;
-// or a .glb, .gltf or .obj file. As a test it runs on small ones. Asserts nothing about time, but fails where exact
+// As a test it runs on small ones. Asserts nothing about time, but fails where exact
 // sampling shows over 1.5 % that the truth does not hold, or a budget is exceeded.
+#include "arguments.h"
 #include "spawned_scenes.h"
 #include "visibility_figures.h"
 
@@ -183,30 +171,52 @@ void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
 }
 } // namespace
 
-int main(int argc, char** argv) {
+const char* const kUsage = "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] "
+                           "[--passes] [--exact] [SCENE]...\n"
+                           "  --crop   a window of that picture, whose pixels are as small as the picture's\n"
+                           "  --exact  without the thesis's method\n"
+                           "visibility_bench --figures [--grid N] [--cell N] [--tables] [...]\n"
+                           "  the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)\n"
+                           "visibility_bench --walk [--grid N] [--cell N] [...]\n"
+                           "  the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points\n"
+                           "visibility_bench --views [...]\n"
+                           "  what a record of several view points of a cell costs against a record for each\n"
+                           "visibility_bench --plot FILE... --out FOLDER\n"
+                           "  what runs with --figures printed, as SVG pictures\n"
+                           "SCENE: bunnies colonnade foliage city street bigcity bigstreet, small-colonnade "
+                           "small-foliage small-city, what gpgp\n"
+                           "spawn derives where it is built in: spawned-city[:LOTS] (200 lots; 50 000 are 10 million "
+                           "triangles) and mini-engine;\n"
+                           "or a .glb, .gltf or .obj file.\n";
+
+int runBench(bench::Arguments arguments) {
   Options options;
   bool plots = false;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    const auto next = [&] { return i + 1 < argc ? argv[++i] : ""; };
-    const auto number = [&] { return static_cast<uint32_t>(std::max(0, std::atoi(next()))); };
+  while (arguments.next()) {
+    const std::string& arg = arguments.word();
+    const auto scan = [&](const char* format, const char* sample, auto*... numbers) {
+      const std::string value = arguments.value();
+      char rest = 0;
+      if (std::sscanf(value.c_str(), format, numbers..., &rest) != int{sizeof...(numbers)})
+        throw bench::Usage(arg + ": '" + value + "' is not like " + sample);
+    };
     if (arg == "--size") {
-      if (std::sscanf(next(), "%ux%u", &options.width, &options.height) != 2) return 2;
+      scan("%ux%u%c", "640x360", &options.width, &options.height);
     } else if (arg == "--crop") {
       uint32_t* c = options.crop;
-      if (std::sscanf(next(), "%ux%u+%u+%u", &c[0], &c[1], &c[2], &c[3]) != 4) return 2;
+      scan("%ux%u+%u+%u%c", "64x48+100+80", &c[0], &c[1], &c[2], &c[3]);
     } else if (arg == "--repeat") {
-      options.figure.repeat = std::max(number(), 1u);
+      options.figure.repeat = arguments.number();
     } else if (arg == "--truth") {
-      options.truth = number();
+      options.truth = arguments.number(0);
     } else if (arg == "--recheck") {
-      options.recheck = number();
+      options.recheck = arguments.number(0);
     } else if (arg == "--grid") {
-      options.figure.largestGrid = number();
+      options.figure.largestGrid = arguments.number(0);
     } else if (arg == "--cell") {
-      options.figure.largestCell = number();
+      options.figure.largestCell = arguments.number(0);
     } else if (arg == "--out") {
-      options.out = next();
+      options.out = arguments.value();
     } else if (arg == "--passes") {
       options.passes = true;
     } else if (arg == "--exact") {
@@ -222,7 +232,7 @@ int main(int argc, char** argv) {
     } else if (arg == "--plot") {
       plots = true;
     } else {
-      (plots ? options.plots : options.scenes).push_back(arg);
+      (plots ? options.plots : options.scenes).push_back(arguments.name());
     }
   }
   if (plots) return plotFigures(options.plots, options.out) ? 0 : 1;
@@ -259,3 +269,5 @@ int main(int argc, char** argv) {
   device.vk().vkDestroyPipelineCache(device.device(), cache, nullptr);
   return good ? 0 : 1;
 }
+
+int main(int argc, char** argv) { return bench::benchMain(argc, argv, kUsage, runBench); }

@@ -89,8 +89,8 @@ TEST_F(CliBakeFont, BadInputIsNamedAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(out.path()));
   expectWrongUsage({command({"--ranges", "20 to 7e"}), command({"--ranges", "U+7E-20"}),
                     command({"--ranges", "U+110000"}), command({"--ranges", "a-"}), command({"--axes", "wght"}),
-                    command({"--axes", "wght=heavy"}), command({"--outline", "2"}), command({"--face", "-1"}),
-                    command({"--characters-file", "no_such_file.txt"})});
+                    command({"--axes", "wght=heavy"}), command({"--outline", "2"}), command({"--outline", "nan"}),
+                    command({"--face", "-1"}), command({"--characters-file", "no_such_file.txt"})});
   EXPECT_FALSE(std::filesystem::exists(out.path()));
 }
 

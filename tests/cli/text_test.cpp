@@ -152,6 +152,39 @@ TEST_F(CliText, BitmapGlyphsColoursAndLines) {
   EXPECT_EQ((std::vector<int>{pixel(0, 0)[0], pixel(0, 0)[1], pixel(0, 0)[2]}), (std::vector<int>{255, 0, 255}));
 }
 
+TEST_F(CliText, AlphaOfTheColourCountsOnceAndIsNotTheOutlines) {
+  const std::string half = "rgb(0 0 0 / 50%)";
+  const auto row = [this] { // the middle one's changes of colour, from left to right
+    const host::Picture shown = seen();
+    std::vector<std::array<int, 3>> colors;
+    for (uint32_t x = 0; x < shown.width; ++x) {
+      const uint8_t* p = &shown.rgba[(size_t{shown.height / 2} * shown.width + x) * 4];
+      const uint8_t *before = p - (x ? 4 : 0), *behind = p + (x + 1 < shown.width ? 4 : 0);
+      const std::array<int, 3> color = {p[0], p[1], p[2]};
+      const bool inside = std::equal(p, p + 4, before) && std::equal(p, p + 4, behind); // no edge runs through it
+      if (inside && (colors.empty() || colors.back() != color)) colors.push_back(color);
+    }
+    return colors;
+  };
+  using Colors = std::vector<std::array<int, 3>>;
+  const std::array<int, 3> white = {255, 255, 255}, gray = {128, 128, 128}, red = {255, 0, 0}, dark = {127, 0, 0};
+  draw("\u2588", {"--size", "40", "--color", half, "--background", "white"}); // a full block
+  EXPECT_EQ(row(), (Colors{white, gray, white}));
+  draw("\u2588",
+       {"--size", "40", "--color", half, "--background", "white", "--outline", "12", "--outline-color", "red"});
+  EXPECT_EQ(row(), (Colors{white, red, dark, gray, dark, red, white})) << "an opaque line, seen through the letter";
+  // Pictures fade as well.
+  std::array<std::array<int, 3>, 2> heart{};
+  for (size_t k = 0; k < 2; ++k) {
+    gpgpJson({"text", font("NotoColorEmoji.ttf"), "\U0001F49A", picture.path(), "--size", "64", "--color",
+              k ? half : "black", "--background", "white"});
+    const host::Picture shown = seen();
+    std::copy_n(&shown.rgba[(size_t{shown.height / 2} * shown.width + shown.width / 2) * 4], 3, heart[k].begin());
+  }
+  EXPECT_LT(heart[0][0], 200);
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(heart[1][i], (heart[0][i] + 255) / 2, 1);
+}
+
 TEST_F(CliText, FacesAndAxesOfTheFont) {
   const auto ink = [&](std::vector<std::string> more) {
     const json drawn = gpgpJson(more);
@@ -377,8 +410,9 @@ TEST_F(CliText, WhatDoesNotFitAPictureIsAnError) {
 
 TEST_F(CliText, NumbersThatAreNoneAreNamed) {
   for (const char* option : {"--size", "--outline", "--width"}) {
-    const std::string error = gpgpFailure({"text", sans, "a", picture.path(), option, "nan"});
-    EXPECT_NE(error.find(" is nan"), std::string::npos) << error;
+    const ProcessResult result = gpgp({"text", sans, "a", picture.path(), option, "nan"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_NE(result.err.find(std::string(option) + ": nan is not within "), std::string::npos) << result.err;
     EXPECT_FALSE(std::filesystem::exists(picture.path()));
   }
 }

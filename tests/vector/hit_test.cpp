@@ -7,18 +7,6 @@ namespace {
 using namespace gpgp;
 using namespace gpgp::test;
 
-GpgpHit hitAt(GpgpContext context, const std::vector<GpgpCanvasItem>& items, float x, float y,
-              GpgpResult expected = GPGP_SUCCESS) {
-  GpgpHitTestInfo info = GPGP_HIT_TEST_INFO_INIT;
-  info.items = items.data();
-  info.itemCount = static_cast<uint32_t>(items.size());
-  info.x = x;
-  info.y = y;
-  GpgpHit hit{};
-  EXPECT_EQ(gpgpHitTest(context, &info, &hit), expected);
-  return hit;
-}
-
 TEST_F(CanvasTest, HitTestsFindThePathThatWindingNumbersSay) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> pixel(-10, 110);

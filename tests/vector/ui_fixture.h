@@ -49,6 +49,18 @@ private:
   }
 };
 
+inline GpgpHit hitAt(GpgpContext context, const std::vector<GpgpCanvasItem>& items, float x, float y,
+                     GpgpResult expected = GPGP_SUCCESS) {
+  GpgpHitTestInfo info = GPGP_HIT_TEST_INFO_INIT;
+  info.items = items.data();
+  info.itemCount = static_cast<uint32_t>(items.size());
+  info.x = x;
+  info.y = y;
+  GpgpHit hit{};
+  EXPECT_EQ(gpgpHitTest(context, &info, &hit), expected);
+  return hit;
+}
+
 /// A set of one glyph, a random outline a unit wide; index: the glyph's.
 inline GpgpAsset makeGlyphSet(GpgpContext context, uint32_t& index) {
   const GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;

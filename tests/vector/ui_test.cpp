@@ -161,6 +161,26 @@ TEST_F(CanvasTest, ScissorsCutSampleBySample) {
   }
 }
 
+TEST_F(CanvasTest, ScissorsCutWhatReachesBeyondTheCanvas) {
+  makeCanvas(128);
+  TestList list(context);
+  for (const std::array<float, 4>& box : {std::array{60.2f, 30.5f, 210.0f, 70.2f},
+                                          {-90, 30.5f, 40.3f, 70.2f},
+                                          {20.4f, -50, 60.6f, 61.7f},
+                                          {20.4f, 41.3f, 60.6f, 300},
+                                          {-50, -50, 150, 150}})
+    for (const std::array<float, 4>& clip :
+         {std::array{50.3f, 33.3f, 300.0f, 90.0f}, {10.1f, 20.7f, 55.5f, 63.1f}, {-100, 45.4f, 300, 50.9f}}) {
+      const GpgpListShape inside = rectangle(std::max(box[0], clip[0]), std::max(box[1], clip[1]),
+                                             std::max(std::min(box[2], clip[2]), std::max(box[0], clip[0])),
+                                             std::max(std::min(box[3], clip[3]), std::max(box[1], clip[1])));
+      list.reset().clip(clip).add(rectangle(box[0], box[1], box[2], box[3])).pop();
+      const auto cut = raster({list.item()}, 100, 90, 16),
+                 whole = raster({list.reset().add(inside).item()}, 100, 90, 16);
+      EXPECT_TRUE(same(cut, whole)) << "box from " << box[0] << ", " << box[1] << ", clip from " << clip[0];
+    }
+}
+
 TEST_F(CanvasTest, TurnedAndRoundClipsEqualClipsOfDrawings) {
   makeCanvas(128);
   TestList list(context);

@@ -20,6 +20,9 @@
 #include "shaders/vector_crowded_rich0.spv.h"
 #include "shaders/vector_crowded_rich1.spv.h"
 #include "shaders/vector_crowded_rich2.spv.h"
+#include "shaders/vector_crowded_rich_images0.spv.h"
+#include "shaders/vector_crowded_rich_images1.spv.h"
+#include "shaders/vector_crowded_rich_images2.spv.h"
 #include "shaders/vector_draw_frag.spv.h"
 #include "shaders/vector_draw_frag_multiview.spv.h"
 #include "shaders/vector_draw_vert.spv.h"
@@ -57,6 +60,9 @@
 #include "shaders/vector_raster_rich0.spv.h"
 #include "shaders/vector_raster_rich1.spv.h"
 #include "shaders/vector_raster_rich2.spv.h"
+#include "shaders/vector_raster_rich_images0.spv.h"
+#include "shaders/vector_raster_rich_images1.spv.h"
+#include "shaders/vector_raster_rich_images2.spv.h"
 #include "shaders/vector_raster_rich_one0.spv.h"
 #include "shaders/vector_raster_rich_one1.spv.h"
 #include "shaders/vector_raster_rich_one2.spv.h"
@@ -76,6 +82,9 @@
 #include "shaders/vector_tiles_rich0.spv.h"
 #include "shaders/vector_tiles_rich1.spv.h"
 #include "shaders/vector_tiles_rich2.spv.h"
+#include "shaders/vector_tiles_rich_images0.spv.h"
+#include "shaders/vector_tiles_rich_images1.spv.h"
+#include "shaders/vector_tiles_rich_images2.spv.h"
 #include "shaders/vector_tiles_solid0.spv.h"
 #include "shaders/vector_tiles_solid1.spv.h"
 #include "shaders/vector_tiles_solid2.spv.h"
@@ -111,8 +120,9 @@ enum Conditions : uint32_t {
   kRich = 9,
   kRichOne = 12,
   kImages = 15,
-  kAny = 18,
-  kOneDrawing = 21,
+  kRichImages = 18,
+  kAny = 21,
+  kOneDrawing = 24,
   kDrawings,
   kProjective
 };
@@ -286,7 +296,7 @@ core::PassList Canvas::describe() const {
           dispatch(names[t], {names[t], spirv[t]},
                    {{paths, read}, {words, read}, {masks, readWrite}, {entries, read}, {counters, read}, {view, write}},
                    kRaster);
-      if (condition == kImages) useImages(pass);
+      if (condition == kImages || condition == kRichImages) useImages(pass);
       addTarget(pass, t, condition);
     }
   };
@@ -307,7 +317,7 @@ core::PassList Canvas::describe() const {
       const bool one = condition == kPlain || condition == kPaintsOne || condition == kRichOne;
       const uint32_t drawings = one ? 1 : kMaxSlots;
       for (core::ResourceIndex i = 0; i < drawings; ++i) pass.uses[pass.useCount++] = {i, read};
-      if (condition == kImages) useImages(pass);
+      if (condition == kImages || condition == kRichImages) useImages(pass);
       addTarget(pass, t, condition);
     }
   };
@@ -344,6 +354,12 @@ core::PassList Canvas::describe() const {
     tilesOf({"crowded images", "crowded images rgba8", "crowded images rgba16f"},
             {vector_crowded_images0, vector_crowded_images1, vector_crowded_images2}, kImages,
             shader::kCrowdedArguments);
+    tilesOf({"raster all, images", "raster all, images rgba8", "raster all, images rgba16f"},
+            {vector_tiles_rich_images0, vector_tiles_rich_images1, vector_tiles_rich_images2}, kRichImages,
+            shader::kRichArguments);
+    tilesOf({"crowded all, images", "crowded all, images rgba8", "crowded all, images rgba16f"},
+            {vector_crowded_rich_images0, vector_crowded_rich_images1, vector_crowded_rich_images2}, kRichImages,
+            shader::kRichCrowdedArguments);
   } else {
     raster({"raster", "raster rgba8", "raster rgba16f"}, {vector_raster0, vector_raster1, vector_raster2}, kPlain);
     raster({"raster gradients, several drawings", "raster gradients rgba8, several drawings",
@@ -359,6 +375,9 @@ core::PassList Canvas::describe() const {
             shader::kRichArguments);
     raster({"raster images", "raster images rgba8", "raster images rgba16f"},
            {vector_raster_images0, vector_raster_images1, vector_raster_images2}, kImages);
+    tilesOf({"raster all, images", "raster all, images rgba8", "raster all, images rgba16f"},
+            {vector_raster_rich_images0, vector_raster_rich_images1, vector_raster_rich_images2}, kRichImages,
+            shader::kRichArguments);
   }
   list.report = counters;
   list.reportBytes = sizeof(CanvasCounters);
@@ -460,8 +479,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.samples = info.samples ? info.samples : 16;
   header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
                  (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
-  // Only what is in a group or has a projective gradient takes the general shader, beside the others'.
-  const bool rich = !images && (gather.groups || (gradients && projective));
+  // Only what is in a group or has a projective gradient or image takes the general shader, beside the others'.
+  const bool rich = gather.groups || ((gradients || images) && projective);
   if (rich) header.flags |= shader::kSplitRich;
   // Few segments are dealt out to many workgroups, which then each wait for less; many are better taken together.
   const uint32_t perGroup = software_ ? 64 : header.segmentCount < 16384 ? 4 : shader::kMostSegments;
@@ -491,7 +510,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                 : several                                          ? kPaints
                                                                    : kPaintsOne) +
                image] = true;
-  if (rich) r.conditions[(several || software_ ? kRich : kRichOne) + image] = true;
+  if (rich) r.conditions[(images ? kRichImages : several || software_ ? kRich : kRichOne) + image] = true;
   r.conditions[kAny + image] = true;
   // Shaders name all images, so those that are not there are bound to the first one.
   for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {

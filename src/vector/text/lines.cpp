@@ -197,11 +197,15 @@ void Layout::metrics(Line& line) const {
   line.above = (line.height - line.ascent - line.descent) / 2 + line.ascent;
 }
 
+/// As much of the line as fits before an ellipsis, of a word that does not fit whole, too.
 void Layout::cutOff(Line& line) {
   truncated_ = true;
   const double limit = info_->width > 0 ? static_cast<double>(info_->width) + kSlack : HUGE_VAL;
   const uint32_t begin = line.begin;
-  uint32_t end = inkEndOf(begin, line.end);
+  double x = inkWidth(begin, line.end);
+  uint32_t end = line.end;
+  while (end < text_.size() && !(flags_[end] & kHardBreak) && x <= limit) x += static_cast<double>(width_[end++]);
+  end = inkEndOf(begin, graphemeAt(end));
   const uint32_t style = styleOf_[end > begin ? end - 1 : begin];
   uint32_t index = ~0u;
   double room = limit;

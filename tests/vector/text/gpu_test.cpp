@@ -11,6 +11,7 @@
 #include "host/frames.h"
 #include "host/memory.h"
 #include "host/picture.h"
+#include "tiny_font.h"
 
 #include <gpgp/vector.h>
 
@@ -388,6 +389,31 @@ TEST_F(TextGpu, ABakedFontIsDrawnAsTheLiveOneWithoutConversion) {
     EXPECT_EQ(setInfo(set).evicted, 0u);
     gpgpDestroyAsset(live);
     gpgpDestroyAsset(set);
+  }
+}
+
+// ---------------------------------------------------------------- alpha
+
+TEST(TextAlpha, CountsOnceForEachLayerOfAColourFont) {
+  // A square of the palette, and before it a triangle in the text's colour.
+  const std::vector<char> bytes = tinyFont();
+  const TemporaryFile file("tiny.ttf", {bytes.data(), bytes.size()}), picture("tiny.png");
+  const auto drawn = [&](const char* color) {
+    gpgpJson({"text", file.path(), "C", picture.path(), "--size", "80", "--color", color, "--background", "white"});
+    const host::Picture shown = host::readPng(picture.path());
+    std::array<int, 6> found{}; // in the square alone, and where the triangle lies on it
+    for (size_t k = 0; k < 2; ++k) {
+      const size_t x = k == 0 ? 42 : 18, y = 60;
+      std::copy_n(&shown.rgba[(y * shown.width + x) * 4], 3, &found[k * 3]);
+    }
+    return found;
+  };
+  const std::array<int, 6> opaque = drawn("black"), half = drawn("rgb(0 0 0 / 50%)");
+  EXPECT_NE(opaque[0] + opaque[1] + opaque[2], 3 * 255);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(opaque[3 + i], 0);
+    EXPECT_NEAR(half[i], (opaque[i] + 255) / 2, 1) << "the font's colours fade as well";
+    EXPECT_NEAR(half[3 + i], half[i] / 2, 1) << "black, half of it, over them";
   }
 }
 

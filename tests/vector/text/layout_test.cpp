@@ -117,6 +117,11 @@ TEST_F(TextMono, ClosedCasesOfCutting) {
   EXPECT_EQ(lines("aaa bbb ccc", 5, info), (Lines{"aaa"})); // no space before the ellipsis
   EXPECT_EQ(lines("aaa bbb ccc", 11, info), (Lines{"aaa bbb ccc"}));
   EXPECT_FALSE(paper_.info.truncated);
+  EXPECT_EQ(lines("a bbbbbbbbbbbb", 7, info), (Lines{"a bbbb"})); // a part of the word that does not fit
+  EXPECT_EQ(paper_.info.glyphCount, 7u);
+  EXPECT_EQ(lines("a bbbbbbb\u0301bb", 7, info), (Lines{"a bbbb"}));
+  EXPECT_EQ(lines("a b\u0301\u0301\u0301\u0301cccccc", 4, info), (Lines{"a b\u0301\u0301\u0301\u0301"}));
+  EXPECT_EQ(lines("a bbbb\ncc", 7, info), (Lines{"a bbbb"}));
   EXPECT_EQ(lines("aaa\nbbb", 20, info), (Lines{"aaa"}));
   EXPECT_TRUE(paper_.info.truncated);
   EXPECT_EQ(paper_.info.glyphCount, 4u);
@@ -131,6 +136,7 @@ TEST_F(TextMono, ClosedCasesOfCutting) {
   info.maxLines = 2;
   EXPECT_EQ(lines("aaa bbb ccc ddd", 4, info), (Lines{"aaa ", "bbb"}));
   EXPECT_TRUE(paper_.info.truncated);
+  EXPECT_EQ(lines("aaa b ccccccc", 4, info), (Lines{"aaa ", "b c"}));
   // By height: two lines and a half.
   lines("a", 9);
   info.maxLines = 0;
