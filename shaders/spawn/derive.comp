@@ -4,6 +4,7 @@
 #ifdef GPGP_SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 // A round of derivation by the interpreter. Generated kernels put their own functions in the place of interpret.h.
 #include "spawn/bindings.glsl"

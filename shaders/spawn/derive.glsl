@@ -4,8 +4,8 @@
 // A batch is one shape for each invocation, waiting for an operator that multiplies. Step by step its children are
 // made, one an invocation whoever the parent, and each goes through its chain of operators until it is a terminal, or
 // waits in its turn: on the stack, or, in the batch's last step, where it is, as a part of the next batch. Terminals
-// leave at once, a workgroup's together. A batch ends with a full step: parents whose children are too many for that go
-// back to the stack, one perhaps with a part of them made.
+// leave at once, a workgroup's together. Where more shapes wait on the stack, a batch ends with a full step: parents
+// whose children are too many for that go back to the stack, one perhaps with a part of them made.
 // Work goes over to the next round, through the other queue, where a round began with too few shapes to keep the device
 // busy and a workgroup has enough to give (`spread`), where most workgroups have finished, where the stack is full, and
 // after `steps`, so that no workgroup runs for ever. Round 0 reads axioms. What does not fit the queue is counted and
@@ -16,6 +16,8 @@
 // it.
 layout(constant_id = 0) const uint groupSize = 64;
 layout(constant_id = 1) const uint stackShapes = 1024;
+// The workgroup is one subgroup. (2 is tableStart of table.glsl.)
+layout(constant_id = 3) const bool oneSubgroup = false;
 layout(local_size_x_id = 0) in;
 #ifdef GPGP_COLLIDERS
 layout(push_constant) uniform Push {
@@ -27,21 +29,24 @@ layout(push_constant) uniform Push {
 layout(push_constant) uniform Push { uint round; };
 #endif
 
-shared uvec2 fans[groupSize];         // of the parents: successors, length
-shared uint childrenUpTo[groupSize];  // of the parents: inclusive sums
-shared uint stackSize;
-shared uint taken;
-shared uint terminalBase;
-shared uint queueBase;
+shared uint childrenUpTo[groupSize]; // of the batch's parents: inclusive sums
 shared uint hashX;
 shared uint hashY;
 shared uint deepest;
 
 #include "spawn/lanes.glsl"
 
+uint stackSize; // of the workgroup; each of its invocations counts along
+
 /// A barrier for the workgroup's stack as well. It stands before the stack is read, when what was written has long
 /// arrived, not after it is written, where everybody would wait.
 void stackBarrier() {
+#ifdef GPGP_SUBGROUPS
+  if (oneSubgroup) {
+    subgroupBarrier();
+    return;
+  }
+#endif
   controlBarrier(gl_ScopeWorkgroup, gl_ScopeWorkgroup, gl_StorageSemanticsBuffer | gl_StorageSemanticsShared,
                  gl_SemanticsAcquireRelease);
 }
@@ -63,20 +68,21 @@ Shape queuedAt(uint index) {
                      queues[start + 3 * record.maxShapes], queues[start + 4 * record.maxShapes],
                      queues[start + 5 * record.maxShapes]);
 }
-/// The batch's parents lie behind the stack: in shared memory they would take most of it, and fewer workgroups would be
-/// resident.
+/// Behind it is room for the batch's parents.
 const uint stackRoom = stackShapes - groupSize;
 uint stackPlane(uint plane) { return (gl_WorkGroupID.x * kShapePlanes + plane) * stackShapes; }
 Shape stackedAt(uint index) {
   return unpackShape(stacks[stackPlane(0) + index], stacks[stackPlane(1) + index], stacks[stackPlane(2) + index],
                      stacks[stackPlane(3) + index], stacks[stackPlane(4) + index], stacks[stackPlane(5) + index]);
 }
-Shape parentAt(uint index) { return stackedAt(stackRoom + index); }
+
+#include "spawn/parents.glsl"
 
 /// Moves the stack to the next round's queue.
 void giveAway() {
   const uint lane = laneIndex();
   const uint count = stackSize;
+  uint queueBase = 0;
   if (lane == 0) {
     queueBase = atomicAdd(rounds[round + 1].shapes, count); // stays far below 2^32: steps and groups are bounded
     const uint held = min(queueBase + count, record.maxShapes);
@@ -84,14 +90,15 @@ void giveAway() {
     rounds[round + 1].groupsY = 1;
     rounds[round + 1].groupsZ = 1;
   }
+  queueBase = fromFirst(queueBase);
   stackBarrier();
   const uint target = ((round + 1) & 1) * kShapePlanes * record.maxShapes + queueBase;
   const uint fitting = queueBase < record.maxShapes ? min(count, record.maxShapes - queueBase) : 0;
   for (uint plane = 0; plane < kShapePlanes; ++plane)
     for (uint i = lane; i < fitting; i += groupSize)
       queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
-  if (lane == 0) stackSize = 0;
-  barrier();
+  stackSize = 0;
+  groupBarrier();
 }
 
 /// Rounds of the phase behind this one. What goes over from the last is dropped, so that nothing is given away there by
@@ -109,27 +116,20 @@ uint roundsLeft() {
 /// so another one must be left for what may have to go over there; and never more than half of the room of a queue.
 bool othersIdle(uint shapes) {
   if (record.balances == 0 || shapes <= groupSize || roundsLeft() < 2) return false;
-  if (laneIndex() == 0) {
-    taken = 0;
-    if (3 * atomicAdd(rounds[round].finished, 0) >= 2 * gl_NumWorkGroups.x)
-      taken = atomicAdd(rounds[round].given, shapes) + shapes <= record.maxShapes / 2 ? 1 : 0;
-  }
-  barrier();
-  const bool idle = taken != 0;
-  barrier();
-  return idle;
+  uint idle = 0;
+  if (laneIndex() == 0 && 3 * atomicAdd(rounds[round].finished, 0) >= 2 * gl_NumWorkGroups.x)
+    idle = atomicAdd(rounds[round].given, shapes) + shapes <= record.maxShapes / 2 ? 1 : 0;
+  return fromFirst(idle) != 0;
 }
 
 /// Shapes onto the stack, or by it to the next round. place: among count of them.
 void push(bool own, uint place, uint count, Shape s) {
   if (count == 0) return;
   if (stackSize + count > stackRoom) giveAway();
-  const uint base = stackSize;
   if (own)
-    for (uint plane = 0; plane < kShapePlanes; ++plane) stacks[stackPlane(plane) + base + place] = packShape(s, plane);
-  barrier();
-  if (laneIndex() == 0) stackSize = base + count;
-  barrier();
+    for (uint plane = 0; plane < kShapePlanes; ++plane)
+      stacks[stackPlane(plane) + stackSize + place] = packShape(s, plane);
+  stackSize += count;
 }
 
 #include "spawn/mesh.h"
@@ -169,10 +169,9 @@ void keep(bool own, uint place, uint first, Shape s) {
     if (own) atomicAdd(bucketCounts[bucket], quads ? meshQuads(s.geometry) : 1);
     return;
   }
-  if (laneIndex() == 0) terminalBase = first;
-  barrier();
+  first = fromFirst(first);
   if (!own) return;
-  const uint target = terminalBase + place;
+  const uint target = first + place;
   const bool keyed = record.terminalsTo == kToKeyedRecords;
   if (target < record.maxTerminals) {
     for (uint plane = 0; plane < (keyed ? kShapePlanes : kShapePlanes - 1); ++plane) // the last one has the key
@@ -183,46 +182,56 @@ void keep(bool own, uint place, uint first, Shape s) {
   }
 }
 
-/// Terminals to what the record wants of them. place: among count of them.
-void emit(bool own, uint place, uint count, Shape s) {
+const uint kNowhere = 0xffffffffu;
+/// Everybody writes an instance, or nowhere. Neighbours write theirs together, one after the other, so that the halves
+/// of each sector of 32 bytes, which is what memory takes at once, come together.
+void writeInstance(uint target, uvec4 words[kInstanceWords4]) {
+#ifdef GPGP_SUBGROUPS
+  const bool odd = (gl_SubgroupInvocationID & 1) != 0;
+  const uint other = subgroupShuffleXor(target, 1);
+  const uint part = odd ? 1 : 0;
+  for (uint i = 0; i < kInstanceWords4; i += 2) {
+    const uvec4 own = odd ? words[i + 1] : words[i];
+    const uvec4 others = subgroupShuffleXor(odd ? words[i] : words[i + 1], 1);
+    const uint even = odd ? other : target;
+    if (even != kNowhere) instances[even * kInstanceWords4 + i + part] = odd ? others : own;
+    const uint second = odd ? target : other;
+    if (second != kNowhere) instances[second * kInstanceWords4 + i + part] = odd ? own : others;
+  }
+#else
+  if (target == kNowhere) return;
+  for (uint i = 0; i < kInstanceWords4; ++i) instances[target * kInstanceWords4 + i] = words[i];
+#endif
+}
+
+/// Terminals to what the record wants of them. place: among count of them. first: the room that was made for all, as
+/// the first invocation knows.
+void emit(bool own, uint place, uint count, uint first, Shape s) {
   if (count == 0) return;
-  const uint lane = laneIndex();
-  uint first = 0;
-  if (lane == 0) first = atomicAdd(state.terminals, count);
   if (record.terminalsTo != kToInstances) {
     keep(own, place, first, s);
     return;
   }
-  // An instance is made while the device answers where it goes. Each by itself: staging them for whole lines costs more
-  // than it saves.
-  uvec4 row0, row1, row2, words;
+  // An instance is made while the device answers where it goes.
+  uvec4 words[kInstanceWords4];
   if (own) {
     const uint axiom = s.axiom * 6;
-    row0 = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom])));
-    row1 = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + 1])));
-    row2 = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + 2])));
-    words = uvec4(graphWords[s.node + kNodeArgument2], shapeType(s), axioms[axiom + 4].x,
-                  graphWords[s.node + kNodeArgument]);
+    for (uint row = 0; row < 3; ++row)
+      words[row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
+    words[3] = uvec4(graphWords[s.node + kNodeArgument2], shapeType(s), axioms[axiom + 4].x,
+                     graphWords[s.node + kNodeArgument]);
+    words[4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
+    words[5] = packPlane(s.size, 0);
   }
-  if (lane == 0) terminalBase = first;
-  barrier();
-  if (!own) return;
-  uint target = terminalBase + place;
-  if (record.regions != 0) {
-    const uint bucket = words.x;
+  uint target = fromFirst(first) + place;
+  if (record.regions != 0 && own) {
+    const uint bucket = words[3].x;
     target = atomicAdd(bucketCounts[bucket], 1);
-    if (target >= regionCapacity(bucket, false)) return;
-    target += regionStart(bucket, false);
-  } else if (target >= record.instanceCapacity) {
-    return;
+    target = target < regionCapacity(bucket, false) ? target + regionStart(bucket, false) : kNowhere;
+  } else if (!own || target >= record.instanceCapacity) {
+    target = kNowhere;
   }
-  target *= kInstanceWords4;
-  instances[target] = row0;
-  instances[target + 1] = row1;
-  instances[target + 2] = row2;
-  instances[target + 3] = words;
-  instances[target + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
-  instances[target + 5] = packPlane(s.size, 0);
+  writeInstance(target, words);
 }
 
 /// The shapes of a round that nobody took, once all workgroups have run out of steps: the last one leaves them to the
@@ -230,14 +239,13 @@ void emit(bool own, uint place, uint count, Shape s) {
 void leaveRest(uint count) {
   const uint lane = laneIndex();
   if (stackSize > 0) giveAway();
-  if (lane == 0) taken = atomicAdd(rounds[round].finished, 1) + 1 == gl_NumWorkGroups.x ? 1 : 0;
-  barrier();
-  if (taken == 0) return;
+  uint last = 0;
+  if (lane == 0) last = atomicAdd(rounds[round].finished, 1) + 1 == gl_NumWorkGroups.x ? 1 : 0;
+  if (fromFirst(last) == 0) return;
   for (;;) {
-    barrier();
-    if (lane == 0) taken = atomicAdd(rounds[round].taken, groupSize);
-    barrier();
-    const uint first = taken;
+    uint first = 0;
+    if (lane == 0) first = atomicAdd(rounds[round].taken, groupSize);
+    first = fromFirst(first);
     if (first >= count) break;
     const uint rest = min(count - first, groupSize);
     Shape s;
@@ -267,14 +275,17 @@ void main() {
       if (needed > count) atomicAdd(state.droppedShapes, needed - count);
     }
   }
-  // Few at a time, so that work comes out even. But not fewer than all could take at once: invocations that idle in
-  // small batches cost more.
-  const uint even = min((count + gl_NumWorkGroups.x - 1) / gl_NumWorkGroups.x, 4);
-  const uint share = clamp(max(count / (2 * gl_NumWorkGroups.x), even), 1, groupSize);
+  // Few at a time, so that work comes out even. But not fewer than all could take at once, and more of axioms, which
+  // take a step of their own: invocations that idle in small batches cost more.
+  const uint even = min((count + gl_NumWorkGroups.x - 1) / gl_NumWorkGroups.x, 8);
+  const uint share = clamp(max(count / ((round == 0 ? 2 : 8) * gl_NumWorkGroups.x), even), 1, groupSize);
+  // A workgroup by itself grows fast only until its invocations are busy: what takes much more than that grows further
+  // in more rounds.
+  const uint growth = record.spread / max(count, 1);
   const bool spreads = count < record.spread && roundsLeft() > 0;
-  const uint enough = spreads ? clamp(record.spread / max(count, 1), 16, 4 * groupSize) : 0xffffffffu;
+  const uint enough = spreads ? (growth <= 2 * groupSize ? max(growth, 16) : 16) : 0xffffffffu;
+  stackSize = 0;
   if (lane == 0) {
-    stackSize = 0;
     hashX = 0;
     hashY = 0;
     deepest = 0;
@@ -318,14 +329,12 @@ void main() {
           s = stackedAt(stackSize - 1 - place);
           waits = true;
         }
-        barrier();
-        if (lane == 0) stackSize -= more;
+        stackSize -= more;
         waiting += more;
       }
       if (waiting == 0) {
-        if (lane == 0) taken = atomicAdd(rounds[round].taken, share);
-        barrier();
-        first = taken;
+        if (lane == 0) first = atomicAdd(rounds[round].taken, share);
+        first = fromFirst(first);
         if (first >= count) break;
         waiting = min(share, count - first);
         fetched = round == 0;
@@ -342,19 +351,20 @@ void main() {
         if (waits) {
           fan = fanFor(s);
           fan.count -= s.made;
-          for (uint plane = 0; plane < kShapePlanes; ++plane)
-            stacks[stackPlane(plane) + stackRoom + lane] = packShape(s, plane);
-          fans[lane] = uvec2(fan.successors, floatBitsToUint(fan.extent));
+          keepParent(s, fan);
         }
         const uint before = sumBefore(fan.count, total); // at most groupSize * kMaxRepeat
         childrenUpTo[lane] = before + fan.count;
-        if (total > groupSize) { // whole steps, as many as there is room for: what more children there are comes later
 #ifdef GPGP_COLLIDERS
-          const uint steps = 1; // a batch is not left before its end, and queries are as much work as many steps
+        const uint most = groupSize; // a batch is not left before its end, and queries are as much work as many steps
 #else
-          const uint steps = clamp((stackRoom - stackSize) / groupSize, 1, total / groupSize);
+        // Whole steps where others wait to fill the next one, and no more than there is room for: what more children
+        // there are comes later.
+        const uint whole = stackSize < groupSize / 2 ? total : total / groupSize * groupSize;
+        const uint most = max(min(whole, (stackRoom - stackSize) / groupSize * groupSize), groupSize);
 #endif
-          total = steps * groupSize;
+        if (total > most) {
+          total = most;
           const bool late = waits && before + fan.count > total;
           if (late) {
             const uint part = total - min(before, total);
@@ -372,6 +382,14 @@ void main() {
     }
 
     const uint batch = min(total - made, groupSize);
+    const uint child = made + lane;
+    uint parent = 0; // the first whose sum lies above child
+    Fan fan;
+    if (!fetched) {
+      for (uint stride = groupSize / 2; stride > 0; stride /= 2)
+        if (childrenUpTo[parent + stride - 1] <= child) parent += stride;
+      s = parentAt(parent, fan);
+    }
     uint end = kEndDiscarded;
     if (lane < batch) {
       bool arrives = false;
@@ -379,14 +397,6 @@ void main() {
       if (fetched) {
         s = axiomAt(first + lane);
       } else {
-        const uint child = made + lane;
-        uint parent = 0; // the first whose sum lies above child
-        for (uint stride = groupSize / 2; stride > 0; stride /= 2)
-          if (childrenUpTo[parent + stride - 1] <= child) parent += stride;
-        s = parentAt(parent);
-        Fan fan;
-        fan.successors = fans[parent].x;
-        fan.extent = uintBitsToFloat(fans[parent].y);
         const uint index = s.made + child - (parent > 0 ? childrenUpTo[parent - 1] : 0);
         s.made = 0;
         arrives = fan.successors != 0;
@@ -399,7 +409,6 @@ void main() {
 #endif
       depth = max(depth, s.depth);
       if (end == kEndUnfinished) unfinished += 1;
-      if (end == kEndTerminal) hash += terminalHash(s.key, graphWords[s.node + kNodeArgument2], shapeType(s));
     }
     made += batch;
 #ifdef GPGP_COLLIDERS
@@ -407,13 +416,17 @@ void main() {
 #endif
     uint leaving;
     const uint places = ranksOf(end == kEndTerminal, end == kEndWaits, leaving);
-    emit(end == kEndTerminal, places & 0xffffu, leaving & 0xffffu, s);
+    const uint terminals = leaving & 0xffffu;
+    uint firstTerminal = 0; // known much later
+    if (lane == 0 && terminals > 0) firstTerminal = atomicAdd(state.terminals, terminals);
     if (made < total) {
       push(end == kEndWaits, places >> 16, leaving >> 16, s);
     } else {
       waits = end == kEndWaits;
       waiting = leaving >> 16;
     }
+    if (end == kEndTerminal) hash += terminalHash(s.key, graphWords[s.node + kNodeArgument2], shapeType(s));
+    emit(end == kEndTerminal, places & 0xffffu, terminals, firstTerminal, s);
   }
 
   uint rest; // what there were no steps left for goes over

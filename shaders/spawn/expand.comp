@@ -21,6 +21,7 @@ layout(set = 0, binding = 11, std430) writeonly buffer VertexWords { uint vertex
 
 #include "spawn/regions.glsl"
 const uint groupSize = 64; // kSpawnGroupSize
+const bool oneSubgroup = false;
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint stride = 4; // words of a vertex
 // vertexAttribute(), or kNoAttribute.

@@ -1,14 +1,24 @@
 // What invocations of a workgroup say to each other: sums and ranks, by subgroups where the device has them. Needs the
-// workgroup's size as groupSize, a power of two.
+// workgroup's size as groupSize, a power of two, and oneSubgroup: whether it is known to be one subgroup, whose
+// invocations need not wait for each other.
 #ifdef GPGP_SUBGROUPS
-shared uint subgroupSums[groupSize];
-uint laneIndex() { return gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
+shared uint subgroupSums[oneSubgroup ? 1 : groupSize];
+uint laneIndex() {
+  return (oneSubgroup ? 0 : gl_SubgroupID * gl_SubgroupSize) + gl_SubgroupInvocationID;
+}
+/// A barrier for shared memory.
+void groupBarrier() {
+  if (oneSubgroup)
+    subgroupBarrier();
+  else
+    barrier();
+}
 /// Sums of value over the invocations before this one, and over all. A barrier for shared memory.
 uint sumBefore(uint value, out uint total) {
   const uint own = subgroupExclusiveAdd(value);
-  if (gl_NumSubgroups == 1) {
+  if (oneSubgroup) {
     total = subgroupAdd(value);
-    barrier();
+    subgroupBarrier();
     return own;
   }
   if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) subgroupSums[gl_SubgroupID] = own + value;
@@ -25,16 +35,17 @@ uint sumBefore(uint value, out uint total) {
 /// How many invocations before this one have a, in the low half, and b, in the high half; counts: of all. No invocation
 /// has both. A barrier for shared memory.
 uint ranksOf(bool a, bool b, out uint counts) {
-  if (gl_NumSubgroups > 1) return sumBefore((a ? 1 : 0) | (b ? 0x10000u : 0), counts);
+  if (!oneSubgroup) return sumBefore((a ? 1 : 0) | (b ? 0x10000u : 0), counts);
   const uvec4 as = subgroupBallot(a);
   const uvec4 bs = subgroupBallot(b);
   counts = subgroupBallotBitCount(as) | (subgroupBallotBitCount(bs) << 16);
-  barrier();
+  subgroupBarrier();
   return subgroupBallotExclusiveBitCount(as) | (subgroupBallotExclusiveBitCount(bs) << 16);
 }
 #else
 shared uint sums[groupSize];
 uint laneIndex() { return gl_LocalInvocationIndex; }
+void groupBarrier() { barrier(); }
 uint sumBefore(uint value, out uint total) {
   const uint lane = laneIndex();
   uint sum = value;
@@ -52,3 +63,15 @@ uint sumBefore(uint value, out uint total) {
 }
 uint ranksOf(bool a, bool b, out uint counts) { return sumBefore((a ? 1 : 0) | (b ? 0x10000u : 0), counts); }
 #endif
+shared uint saidByFirst;
+/// What the first invocation has, for all. A barrier for shared memory.
+uint fromFirst(uint value) {
+#ifdef GPGP_SUBGROUPS
+  if (oneSubgroup) return subgroupBroadcastFirst(value);
+#endif
+  if (laneIndex() == 0) saidByFirst = value;
+  barrier();
+  value = saidByFirst;
+  barrier();
+  return value;
+}

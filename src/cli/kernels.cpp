@@ -54,7 +54,8 @@ bool hasSubgroups(const host::HeadlessDevice& device) {
   VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
   device.vki().getPhysicalDeviceProperties2(device.physicalDevice(), &properties);
-  constexpr VkSubgroupFeatureFlags kWanted = VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+  constexpr VkSubgroupFeatureFlags kWanted =
+      VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
   return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
          (subgroups.supportedOperations & kWanted) == kWanted;
 }

@@ -80,14 +80,18 @@ Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
   if (!vk) return vk.error();
   device.vk = *vk;
   VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
+  VkPhysicalDeviceSubgroupSizeControlProperties sizes{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES, &subgroups};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &sizes};
   device.vki.GetPhysicalDeviceProperties2(device.physicalDevice, &properties);
   device.limits = properties.properties.limits;
   device.vendor = properties.properties.vendorID;
   device.model = properties.properties.deviceID;
   device.subgroupArithmetic = (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
                               (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT) &&
-                              (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT);
+                              (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT) &&
+                              (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT);
+  if (sizes.minSubgroupSize == sizes.maxSubgroupSize) device.subgroupSize = sizes.maxSubgroupSize;
   device.software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
 
   gpu_ = makeUnique<GpuMemory>(host_, device, host_, info.gpuAllocator);

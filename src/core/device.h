@@ -14,7 +14,8 @@ struct Device {
   VkPhysicalDeviceLimits limits{};
   uint32_t vendor = 0, model = 0;  ///< vendorID and deviceID
   bool software = false;           ///< runs on the CPU
-  bool subgroupArithmetic = false; ///< and ballots, in compute shaders
+  bool subgroupArithmetic = false; ///< and ballots and shuffles, in compute shaders
+  uint32_t subgroupSize = 0;       ///< 0: not the same for all shaders
 
   bool has(GpgpFeatures wanted) const { return (features & wanted) == wanted; }
   template <class Handle> void setName(VkObjectType type, Handle handle, const char* label, const char* part) const;

@@ -52,6 +52,7 @@ std::string kernelText(const std::string& functions, bool subgroups) {
                      "#extension GL_KHR_memory_scope_semantics : require\n") +
          (subgroups ? "#define GPGP_SUBGROUPS\n#extension GL_KHR_shader_subgroup_arithmetic : require\n"
                       "#extension GL_KHR_shader_subgroup_ballot : require\n"
+                      "#extension GL_KHR_shader_subgroup_shuffle : require\n"
                     : "") +
          "#include \"spawn/bindings.glsl\"\n"
          "#include \"spawn/operators.h\"\n"

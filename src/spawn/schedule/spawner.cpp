@@ -76,8 +76,11 @@ uint32_t cellsOf(uint32_t maxColliders) { return std::bit_ceil(2 * maxColliders)
 /// Shapes on the stacks of all workgroups.
 uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
 
-std::array<uint32_t, core::kMaxSpecialization> specialization(const Fit& fit, uint32_t table = 0) {
-  return {fit.groupSize, fit.stackShapes, table};
+/// Of shaders/spawn/derive.glsl.
+constexpr uint32_t kDeriveConstants = 4;
+std::array<uint32_t, core::kMaxSpecialization> specialization(const core::Device& device, const Fit& fit,
+                                                              uint32_t table = 0) {
+  return {fit.groupSize, fit.stackShapes, table, fit.groupSize == device.subgroupSize};
 }
 
 /// Of shaders/spawn/expand.comp: the stride, and all attributes.
@@ -150,7 +153,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                                                     ? std::span<const uint32_t>(spawn_derive_subgroups)
                                                     : std::span<const uint32_t>(spawn_derive);
   const uint32_t derive = spawner->derive_ =
-      list.add(core::ShaderDesc{"derive", interpreter, specialization(limits.fit), 2});
+      list.add(core::ShaderDesc{"derive", interpreter, specialization(context.device, limits.fit), kDeriveConstants});
   const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
   const bool subgroups = context.device.subgroupArithmetic;
   const auto colliding = subgroups ? std::span<const uint32_t>(spawn_derive_colliders_subgroups)
@@ -378,8 +381,9 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
         info.fit.groupSize > device.maxComputeWorkGroupSize[0] ||
         info.fit.groupSize * kSharedBytesEach + 64 > device.maxComputeSharedMemorySize)
       continue;
-    const auto pipeline = createComputePipeline(
-        {kernel.info.schedule, kernel.spirv(), specialization(info.fit, grammar.tableOf(kernel)), 3});
+    const auto pipeline =
+        createComputePipeline({kernel.info.schedule, kernel.spirv(),
+                               specialization(context.device, info.fit, grammar.tableOf(kernel)), kDeriveConstants});
     if (!pipeline) return pipeline.error();
     grammar.add({info, *pipeline});
   }
