@@ -184,12 +184,15 @@ struct Figures {
     walk.walkDistance = 0.5f;
     std::vector<GpgpCamera> corners = take({-0.5f, -0.5f, 0, 0.5f, -0.5f, 0, -0.5f, 0.5f, 0, 0.5f, 0.5f, 0});
     corners.erase(corners.begin());
-    for (const uint32_t divisor : {4u, 2u})
-      for (const uint32_t count : {32u, 48u, 64u, 96u}) {
+    using Counts = std::vector<uint32_t>;
+    const bool few = options.largestCell < 32;
+    for (const uint32_t divisor : few ? Counts{4} : Counts{4, 2})
+      for (const uint32_t count : few ? Counts{16} : Counts{32, 48, 64, 96}) {
         walk.walkCount = count;
         smallViews(corners, camerasOf(walk), divisor, "", row);
       }
-    for (const uint32_t count : {5u, 9u}) smallViews(corners, take(rows(count)), 4, " on grid", row);
+    for (const uint32_t count : few ? Counts{3} : Counts{5, 9})
+      smallViews(corners, take(rows(count)), 4, " on grid", row);
   }
 
   /// Views with a part of the width and height, of what may be seen from the cell. The first camera, the middle, is
