@@ -39,7 +39,7 @@ typedef struct GpgpSamplerCreateInfo {
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel and camera
                                      (conservative: 56) */
-  uint32_t maxCameras;          /**< of one record, at most 8; 0: 1 */
+  uint32_t maxCameras;          /**< of one record, at most 32; 0: 1 */
   uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 48 bytes each */
   uint32_t maxTriangles;        /**< of one record, all draws and cameras together; 0: 4194304. What is beyond is not
                                      sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle */
@@ -90,17 +90,21 @@ typedef struct GpgpVisibilityDraw {
 
 typedef int32_t GpgpSamplingMethod;
 enum {
-  GPGP_SAMPLING_STANDARD = 0,    /**< a grid of `samples` x `samples` a pixel; 1: its centre */
-  GPGP_SAMPLING_EXACT = 1,       /**< standard, and then, among those that it did not find, the triangles with one of
-                                      64 x 64 samples a pixel that nothing in front of them covers */
-  GPGP_SAMPLING_TRUTH = 2,       /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
-  GPGP_SAMPLING_CONSERVATIVE = 3 /**< the thesis's (6.1.3): a pixel's centre, and then the triangles that touch a pixel
+  GPGP_SAMPLING_STANDARD = 0,     /**< a grid of `samples` x `samples` a pixel; 1: its centre */
+  GPGP_SAMPLING_EXACT = 1,        /**< standard, and then, among those that it did not find, the triangles with one of
+                                       64 x 64 samples a pixel that nothing in front of them covers */
+  GPGP_SAMPLING_TRUTH = 2,        /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
+  GPGP_SAMPLING_CONSERVATIVE = 3, /**< the thesis's (6.1.3): a pixel's centre, and then the triangles that touch a pixel
                                       and come near what was found there, by `heuristics` */
+  GPGP_SAMPLING_NEARBY = 4 /**< a pixel's centre, and then what may be seen from up to `reach` away: several times as
+                                many triangles as can be seen, for further records of a view cell, which find those.
+                                Perspective cameras */
 };
 #define GPGP_SAMPLING_STANDARD_BIT 1u
 #define GPGP_SAMPLING_EXACT_BIT 2u
 #define GPGP_SAMPLING_TRUTH_BIT 4u
 #define GPGP_SAMPLING_CONSERVATIVE_BIT 8u
+#define GPGP_SAMPLING_NEARBY_BIT 16u
 
 /** What the conservative method asks of a triangle that touches a pixel; with none of these every one is visible.
  *  IN_CIRCLE: its in-circle's radius is at most a pixel (6.1).
@@ -135,13 +139,16 @@ typedef struct GpgpViewCellInfo {
   const float* points; /**< more view points: 3 floats each, in world units along the camera's right, its up and
                             back towards the viewer, from the middle. Finite */
   uint32_t pointCount;
+  uint32_t walkCount; /**< view points in a square across the view, denser towards its border, from where most is seen;
+                           at most 1024; 0: none */
+  float walkDistance; /**< of the square's sides from its middle, in world units; above 0 where there are such points */
 } GpgpViewCellInfo;
 #define GPGP_VIEW_CELL_INFO_INIT GPGP_INIT(GpgpViewCellInfo, GPGP_STRUCTURE_VIEW_CELL_INFO)
 
-/** Makes the cameras of a view cell: the middle, the grid row by row, the points. For a record with several cameras,
- *  or several records that accumulate. cameras may be NULL; *count is what it has room for, and then how many there are
- *  (INCOMPLETE: more than the room; the first ones are written).
- *  Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */
+/** Makes the cameras of a view cell: the middle, the grid row by row, the square's, the points. For a record with
+ * several cameras, or several records that accumulate. cameras may be NULL; *count is what it has room for, and then
+ * how many there are (INCOMPLETE: more than the room; the first ones are written). Errors: INVALID_ARGUMENT,
+ * INVALID_STRUCT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32_t* count,
                                                      GpgpCamera* cameras);
 
@@ -175,6 +182,7 @@ typedef struct GpgpSampleInfo {
   uint32_t refinements; /**< conservative: at most 4 further passes, each of which shows, in every pixel that visible
                              triangles do not cover at 8 x 8 samples, the nearest one in each quarter that covers such
                              a sample */
+  float reach;          /**< nearby: how far from a camera, in units of clip space's w; 0 or more */
   GpgpBuffer positions; /**< vertex positions; STORAGE usage; size a multiple of 4 for 16-bit formats */
   VkFormat positionFormat; /**< R32G32B32_SFLOAT, R16G16B16_SFLOAT or R16G16B16_SNORM, or the same with A; UNDEFINED:
                                 R32G32B32_SFLOAT. Only the first three numbers are read */
@@ -190,6 +198,10 @@ typedef struct GpgpSampleInfo {
                                `mesh` is not read. Instances beyond `draws` are skipped and counted */
   uint32_t commandCount;  /**< at most */
   uint32_t commandStride; /**< bytes, a multiple of 4; 0: 20 */
+  GpgpBuffer triangleNumbers; /**< optional, with commands: uint32_t: the number of a command's primitive i is
+                                   [firstIndex / 3 + i]; `draws` give none. So a record can sample what another one
+                                   listed: its drawCommands, drawIndices and drawTriangles as commands, indices and
+                                   these. STORAGE usage */
   GpgpBuffer drawCountBuffer; /**< optional: uint32_t: how many of the commands, or without them of the draws, there
                                    are; STORAGE usage */
   uint32_t triangleCount;     /**< of all draws: one past the last triangle number; at most 2^31 */

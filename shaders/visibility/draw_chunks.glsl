@@ -28,10 +28,8 @@ Listed listedOf(uint chunk) {
   DrawEntry e = entryOf(l.entry);
   uint local = (chunk - chunkStart(l.entry)) * kChunk + gl_LocalInvocationIndex;
   if (local >= e.indexCount / 3u) return l;
-  uint first = draws[e.draw].firstTriangle;
-  l.id = first + local;
   l.index = e.firstIndex + local * 3u;
-  if (first >= params.triangleCount || local >= params.triangleCount - first) return l;
+  if (!fetchId(e, draws[e.draw].firstTriangle, local, l.id)) return l;
   if ((bits[l.id >> 5u] & (1u << (l.id & 31u))) == 0u) return l;
   uint vertex;
   l.listed = l.index >= e.firstIndex && l.index <= 0xfffffffdu && fetchPlace(e, l.index, vertex) &&

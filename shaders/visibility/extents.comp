@@ -18,8 +18,9 @@ void main() {
     uint end = min(entryOf(entry).indexCount / 3u, params.maxItems - start.x);
     uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
     if (local >= end) continue;
-    uint id = draws[entryOf(entry).draw].firstTriangle + local;
-    if (id >= params.triangleCount || (bits[id >> 5u] & (1u << (id & 31u))) == 0u) continue;
+    DrawEntry e = entryOf(entry);
+    uint id;
+    if (!fetchId(e, draws[e.draw].firstTriangle, local, id) || (bits[id >> 5u] & (1u << (id & 31u))) == 0u) continue;
     Fetched f = fetchTriangle(entry, local);
     Extent extent = noExtent();
     ScreenTriangle t;

@@ -11,6 +11,7 @@ layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params par
 layout(std430, set = 0, binding = kBindPositions) readonly buffer PositionBuffer { uint positions[]; };
 layout(std430, set = 0, binding = kBindIndices) readonly buffer IndexBuffer { uint indices[]; };
 layout(std430, set = 0, binding = kBindDraws) readonly buffer DrawBuffer { Draw draws[]; };
+layout(std430, set = 0, binding = kBindNumbers) readonly buffer NumberBuffer { uint numbers[]; };
 #ifndef TABLE_ACCESS
 #define TABLE_ACCESS readonly
 #endif
@@ -88,13 +89,23 @@ mat4 viewProjection(uint camera) {
               params.viewProjection[camera * 4u + 2u], params.viewProjection[camera * 4u + 3u]);
 }
 
+/// The number of a draw's triangle; false where there is none, or none below triangleCount.
+bool fetchId(DrawEntry e, uint firstTriangle, uint local, out uint id) {
+  id = firstTriangle + local;
+  if (params.hasNumbers == 0u)
+    return firstTriangle < params.triangleCount && local < params.triangleCount - firstTriangle;
+  uint place = e.firstIndex / 3u + local; // both below 2^32 / 3
+  if (place >= params.numberCount) return false;
+  id = numbers[place];
+  return id < params.triangleCount;
+}
+
 Fetched fetchTriangle(uint entry, uint local) {
   Fetched f;
   DrawEntry e = entryOf(entry);
   Draw draw = draws[e.draw];
-  f.id = draw.firstTriangle + local;
   f.camera = e.camera;
-  f.valid = draw.firstTriangle < params.triangleCount && local < params.triangleCount - draw.firstTriangle;
+  f.valid = fetchId(e, draw.firstTriangle, local, f.id);
   f.mirrored = turnsFaces(draw);
   f.twoSided = (draw.flags & kTwoSided) != 0u;
   uint index = e.firstIndex + local * 3u;

@@ -11,7 +11,7 @@ GPGP_CONST uint kNoTriangle = 0xffffffffu; ///< in the id buffer: nothing
 GPGP_CONST uint kFarthest = 0xffffffffu;   ///< in the depth buffer: nothing
 GPGP_CONST uint kTwoSided = 1u;            ///< GPGP_DRAW_TWO_SIDED
 GPGP_CONST uint kClockwise = 2u;           ///< GPGP_DRAW_CLOCKWISE
-GPGP_CONST uint kMaxCameras = 8u;          ///< of one record
+GPGP_CONST uint kMaxCameras = 32u;         ///< of one record
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
@@ -22,6 +22,7 @@ GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a wor
 GPGP_CONST uint kExact = 1u;               ///< GPGP_SAMPLING_EXACT
 GPGP_CONST uint kTruth = 2u;               ///< GPGP_SAMPLING_TRUTH
 GPGP_CONST uint kConservative = 3u;        ///< GPGP_SAMPLING_CONSERVATIVE
+GPGP_CONST uint kNearby = 4u;              ///< GPGP_SAMPLING_NEARBY
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
 GPGP_CONST uint kSorted = 256u;            ///< entries of a pixel's list that are sorted together
 GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
@@ -62,6 +63,8 @@ GPGP_CONST int kBindCandidates = kBindRecords; // exact, once ids are drawn
 GPGP_CONST int kBindEntries = kBindQueue;      // exact, once all pairs are there: candidates in lists; long lists' keys
 GPGP_CONST int kBindSurfaces = kBindRecords;   // conservative, once ids are drawn
 GPGP_CONST int kBindGaps = kBindPairs;         // conservative: words per pixel
+GPGP_CONST int kBindTiles = kBindRecords;      // nearby, once ids are drawn
+GPGP_CONST int kBindNumbers = kBindMeshes;     // with commands, which need no meshes: triangles' numbers
 GPGP_CONST int kBindTruth = kBindPositions;    // of records that measure, which have no geometry
 GPGP_CONST int kBindTruthCounts = kBindIndices;
 GPGP_CONST int kBindRecheck = kBindDraws;
@@ -104,9 +107,11 @@ GPGP_CONST uint kTablePlaces = 11u;
 /// Of one record.
 struct Params {
 #ifdef __cplusplus
-  float viewProjection[128]; // of each camera, column-major
+  float viewProjection[kMaxCameras * 16]; // of each camera, column-major
+  float depthScales[kMaxCameras * 4];
 #else
-  vec4 viewProjection[32]; // the columns
+  vec4 viewProjection[kMaxCameras * 4u]; // the columns
+  vec4 depthScales[kMaxCameras];         // nearby: of each camera, see nearby.h
 #endif
   uint cameraCount;
   uint width;
@@ -154,6 +159,8 @@ struct Params {
   float epsilonStatic;
   float epsilonDynamic;
   uint metricBuffers; // kHas... of a record that measures
+  uint numberCount;   // triangles' numbers that are there; with hasNumbers
+  uint hasNumbers;    // 1: triangles have the numbers of their place among the indices
 };
 GPGP_CONST uint kHasTruthCounts = 1u;
 GPGP_CONST uint kHasRecheck = 2u;
@@ -253,7 +260,7 @@ GPGP_FN uvec3 listGroups(uint listed) {
 
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
-static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == 512 + 46 * 4 &&
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == kMaxCameras * 80 + 48 * 4 &&
               sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Surface) == 20 &&
               sizeof(Counters) == 4 * kCounterWords);
 #endif

@@ -57,7 +57,7 @@ GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext handle, const GpgpSamplerCrea
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxSamples is %u; expected a power of two up to 64",
                        info->maxSamples);
     if (info->methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_TRUTH_BIT |
-                          GPGP_SAMPLING_CONSERVATIVE_BIT))
+                          GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_NEARBY_BIT))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods is 0x%x; it has unknown bits", info->methods);
     auto made = Sampler::create(**context, *info);
     if (!made) return made.error();

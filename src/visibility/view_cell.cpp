@@ -10,7 +10,8 @@
 namespace gpgp::visibility {
 namespace {
 using core::makeError;
-constexpr uint32_t kMaxSide = 64;
+constexpr uint32_t kMaxSide = 64, kMaxWalk = 1024;
+constexpr float kPi = 3.14159265f, kGolden = 0.618033989f;
 
 glm::vec3 rowOf(const GpgpCamera& camera, int row) {
   const float* m = camera.viewProjection + row;
@@ -25,6 +26,21 @@ GpgpCamera moved(const GpgpCamera& camera, const glm::vec3& by) {
 }
 } // namespace
 
+glm::vec4 depthScale(const GpgpCamera& camera, uint32_t width, uint32_t height, float reach) {
+  const glm::vec3 w = rowOf(camera, 3);
+  const float square = glm::dot(w, w);
+  if (!(square > 0)) return glm::vec4(0);
+  // Depth is far + near / w: what is infinitely far has `far`.
+  const float far = glm::dot(rowOf(camera, 2), w) / square;
+  const float near = camera.viewProjection[14] - far * camera.viewProjection[15];
+  const auto pixels = [&](int row, uint32_t size) {
+    const glm::vec3 axis = rowOf(camera, row), across = axis - w * (glm::dot(axis, w) / square);
+    return glm::length(across) * 0.5f * static_cast<float>(size);
+  };
+  const glm::vec4 scale(far, 1 / near, std::max(pixels(0, width), pixels(1, height)) * reach, near);
+  return near != 0 && std::isfinite(scale.x + scale.y + scale.z) ? scale : glm::vec4(0);
+}
+
 core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t room, GpgpCamera* cameras) {
   const uint32_t skip = std::max(info.skip, 1u);
   if (info.columns > kMaxSide || info.rows > kMaxSide || !info.columns != !info.rows)
@@ -33,6 +49,9 @@ core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t ro
   if (info.columns && (!info.height || !(info.distance > 0 && info.distance < 1e30f)))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "height, distance are %u, %g; a grid needs them above 0", info.height,
                      static_cast<double>(info.distance));
+  if (info.walkCount > kMaxWalk || (info.walkCount && !(info.walkDistance > 0 && info.walkDistance < 1e30f)))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "walkCount, walkDistance are %u, %g; expected at most %u, above 0",
+                     info.walkCount, static_cast<double>(info.walkDistance), kMaxWalk);
   if (info.pointCount && !info.points)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points is NULL, but pointCount is %u", info.pointCount);
   const glm::vec3 w = rowOf(info.camera, 3), depth = rowOf(info.camera, 2);
@@ -65,6 +84,15 @@ core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t ro
                          static_cast<float>(2 * j) - static_cast<float>(rows - 1), 0);
       if (at.x != 0 || at.y != 0) add(at * (0.5f * static_cast<float>(skip) * pixel));
     }
+  // A lattice of the golden ratio: no two points have the same height or lie in one column. Both coordinates are spread
+  // as a cosine is.
+  const auto spread = [&](float share) { return -std::cos(kPi * share) * info.walkDistance; };
+  for (uint32_t i = 0; i < info.walkCount; ++i) {
+    const auto place = static_cast<float>(i);
+    const float height = 0.5f + place * kGolden;
+    add({spread(info.walkCount > 1 ? place / static_cast<float>(info.walkCount - 1) : 0.5f),
+         spread(height - std::floor(height)), 0});
+  }
   for (uint32_t i = 0; i < info.pointCount; ++i) {
     const glm::vec3 at(info.points[i * 3], info.points[i * 3 + 1], info.points[i * 3 + 2]);
     if (!std::isfinite(at.x + at.y + at.z))

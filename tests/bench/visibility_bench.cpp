@@ -146,22 +146,23 @@ bool benchScene(Runner& runner, const std::string& name, const Options& options)
 
 /// 1, 2, 4 and 8 view points up to half a metre from the camera, in one record and in one each.
 void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
+  constexpr uint32_t kViews = 8;
   std::vector<float> points;
-  for (uint32_t i = 1; i < shader::kMaxCameras; ++i)
+  for (uint32_t i = 1; i < kViews; ++i)
     points.insert(points.end(), {i & 1 ? 0.5f : 0.0f, i & 2 ? 0.5f : 0.0f, i & 4 ? 0.5f : 0.0f});
   GpgpViewCellInfo info = GPGP_VIEW_CELL_INFO_INIT;
   info.camera = runner.camera();
   info.points = points.data();
-  info.pointCount = shader::kMaxCameras - 1;
-  std::vector<GpgpCamera> cameras(shader::kMaxCameras);
-  uint32_t count = shader::kMaxCameras;
+  info.pointCount = kViews - 1;
+  std::vector<GpgpCamera> cameras(kViews);
+  uint32_t count = kViews;
   expect(gpgpGetViewCellCameras(&info, &count, cameras.data()), "view cell");
   std::printf("%s: %u triangles\n  %-10s %5s %10s %12s %7s\n", name.c_str(), runner.triangles(), "method", "views",
               "one record", "a record each", "ratio");
   for (const auto& [method, what] : {std::pair(GPGP_SAMPLING_STANDARD, "standard"), {GPGP_SAMPLING_EXACT, "exact"}}) {
-    Sampler united = runner.sampler(1u << method, 1, shader::kMaxCameras), single = runner.sampler(1u << method, 1);
+    Sampler united = runner.sampler(1u << method, 1, kViews), single = runner.sampler(1u << method, 1);
     double each = 0;
-    for (uint32_t n = 1, views = 0; n <= shader::kMaxCameras; n *= 2) {
+    for (uint32_t n = 1, views = 0; n <= kViews; n *= 2) {
       for (; views < n; ++views)
         each += runner.measure(single, {.method = method}, repeat, {&cameras[views], 1}).milliseconds;
       const double one = runner.measure(united, {.method = method}, repeat, std::span(cameras).first(n)).milliseconds;
@@ -177,7 +178,7 @@ const char* const kUsage = "visibility_bench [--size WxH] [--crop WxH+X+Y] [--re
                            "  --exact  without the thesis's method\n"
                            "visibility_bench --figures [--grid N] [--cell N] [--tables] [...]\n"
                            "  the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)\n"
-                           "visibility_bench --walk [--grid N] [--cell N] [...]\n"
+                           "visibility_bench --walk [--cell N] [--passes] [...]\n"
                            "  the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points\n"
                            "visibility_bench --views [...]\n"
                            "  what a record of several view points of a cell costs against a record for each\n"
@@ -236,6 +237,7 @@ int runBench(bench::Arguments arguments) {
     }
   }
   if (plots) return plotFigures(options.plots, options.out) ? 0 : 1;
+  options.figure.passes = options.passes;
   if (options.scenes.empty()) options.scenes = {"bunnies", "colonnade", "foliage", "city", "street"};
   host::HeadlessDevice device;
   std::printf("device %s, %u x %u, medians of %u\n", device.name().c_str(), options.width, options.height,

@@ -128,8 +128,8 @@ struct Figures {
   }
 
   /// A viewer who walks: half a metre to each side, and up and down. The truth: side x side view points, 16 x 16
-  /// samples; what a view point of a method claims beyond that counts as seen from the cell where the largest grid
-  /// shows it from one of them.
+  /// samples. What a method claims beyond is not sampled again, so it counts as too much even where it is seen from
+  /// between those view points, or between those samples.
   void walkingCell() {
     const auto square = [&](uint32_t side) { // rows from below
       std::vector<float> points;
@@ -147,43 +147,80 @@ struct Figures {
       info.pointCount = static_cast<uint32_t>(points.size() / 3);
       return camerasOf(info);
     };
-    host::Buffer whole = runner.makeBits(), again = runner.makeBits();
-    runner.truth(16, take(square(options.largestCell >= 32 ? 17 : 5)), whole);
-    std::vector<float> points = square(3);
-    points.insert(points.end(), {0.25f, -0.5f, 0, -0.5f, -0.25f, 0, 0.5f, 0.25f, 0, -0.25f, 0.5f, 0});
-    // Middle; corner, side, corner; side, side; the same; a turned square.
-    const std::vector<GpgpCamera> cell = take(points);
-    const bool sampledAgain = options.largestGrid > 16;
-    if (sampledAgain) runner.truth(options.largestGrid, cell, again);
+    host::Buffer whole = runner.makeBits();
+    const std::vector<GpgpCamera> all = take(square(options.largestCell >= 32 ? 17 : 5));
+    runner.truth(16, all, whole, nullptr, [&](size_t n) {
+      if (n % 17 == 0 || n == all.size()) print("celltruth", scene, "view points", std::to_string(n), double(n), 0);
+    });
     const Runner::Run one = runner.measure(exact, {.method = GPGP_SAMPLING_EXACT}, options.repeat);
-    Sampler together = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, shader::kMaxCameras);
-    const auto run = [&](const char* series, Sampler& sampler, const Sampling& sampling, uint32_t perRecord,
-                         const std::vector<size_t>& which) {
-      std::vector<GpgpCamera> cameras;
-      for (const size_t i : which) cameras.push_back(cell[i]);
-      const Runner::Run all = runner.measureUnion(sampler, sampling, cameras, perRecord, options.repeat);
-      const GpgpSampleReport m =
-          runner.metrics(standard, runner.bits(), whole, nullptr, sampledAgain ? &again : nullptr);
-      const std::string label = std::to_string(cameras.size()) + (which.back() == 12 ? " turned" : "");
+    const auto row = [&](const char* series, const std::string& label, double milliseconds, const Runner::Run& run) {
+      const GpgpSampleReport m = runner.metrics(standard, runner.bits(), whole, nullptr, nullptr);
       print("cell", scene, series, label, percent(m.overestimation), percent(m.coverage));
-      print("cellcost", scene, series, label, static_cast<double>(cameras.size()), all.milliseconds / one.milliseconds);
-      if (sampling.method == GPGP_SAMPLING_EXACT)
-        print("cellpairs", scene, series, label, static_cast<double>(cameras.size()),
-              double(all.report.neededPairs) / one.report.neededPairs);
+      print("cellcost", scene, series, label, milliseconds, milliseconds / one.milliseconds);
+      print("cellpairs", scene, series, label, double(run.report.neededPairs),
+            double(run.report.neededPairs) / one.report.neededPairs);
+      if (run.report.unresolved) print("cellbudget", scene, series, label, double(run.report.unresolved), 0);
     };
-    const Sampling exactly{.method = GPGP_SAMPLING_EXACT};
-    for (const std::vector<size_t>& which : {std::vector<size_t>{0},
-                                             {1, 3, 6, 8},
-                                             {9, 10, 11, 12},
-                                             {0, 1, 3, 6, 8},
-                                             {0, 9, 10, 11, 12},
-                                             {1, 8, 3, 6, 2, 7, 4, 5},
-                                             {0, 1, 8, 3, 6, 2, 7, 4, 5}}) {
-      run("exact", exact, exactly, 1, which);
-      if (which.size() > 1) run("exact together", together, exactly, shader::kMaxCameras, which);
+    // Whole views: the middle; corners; those, the sides and the middle.
+    const std::vector<GpgpCamera> nine = take(square(3));
+    for (const std::vector<size_t>& which : {std::vector<size_t>{0}, {1, 3, 6, 8}, {1, 8, 3, 6, 0, 2, 7, 4, 5}}) {
+      std::vector<GpgpCamera> cameras;
+      for (const size_t i : which) cameras.push_back(nine[i]);
+      const Runner::Run run = runner.measureUnion(exact, {.method = GPGP_SAMPLING_EXACT}, cameras, 1, options.repeat);
+      row("exact", std::to_string(cameras.size()), run.milliseconds, run);
     }
-    run("standard", standard, {}, 1, {0, 1, 3, 6, 8});
-    run("conservative", conservative, thesis(0.05f, 0.05f), 1, {0, 1, 3, 6, 8});
+    // Many small views: those of gpgpGetViewCellCameras; and in rows on the truth's own grid, in every other row moved
+    // by half a step.
+    const auto rows = [](uint32_t count) {
+      std::vector<float> points;
+      for (uint32_t y = 0; y < count; ++y)
+        for (uint32_t x = y % 2; x < 17; x += 2)
+          points.insert(points.end(), {static_cast<float>(x) / 16 - 0.5f,
+                                       static_cast<float>(y) / static_cast<float>(count - 1) - 0.5f, 0});
+      return points;
+    };
+    GpgpViewCellInfo walk = GPGP_VIEW_CELL_INFO_INIT;
+    walk.camera = runner.camera();
+    walk.walkDistance = 0.5f;
+    std::vector<GpgpCamera> corners = take({-0.5f, -0.5f, 0, 0.5f, -0.5f, 0, -0.5f, 0.5f, 0, 0.5f, 0.5f, 0});
+    corners.erase(corners.begin());
+    using Counts = std::vector<uint32_t>;
+    const bool few = options.largestCell < 32;
+    for (const uint32_t divisor : few ? Counts{4} : Counts{4, 2})
+      for (const uint32_t count : few ? Counts{16} : Counts{32, 48, 64, 96}) {
+        walk.walkCount = count;
+        smallViews(corners, camerasOf(walk), divisor, "", row);
+      }
+    for (const uint32_t count : few ? Counts{3} : Counts{5, 9})
+      smallViews(corners, take(rows(count)), 4, " on grid", row);
+  }
+
+  /// Views with a part of the width and height, of what may be seen from the cell. The first camera, the middle, is
+  /// left out.
+  template <class Row>
+  void smallViews(const std::vector<GpgpCamera>& corners, const std::vector<GpgpCamera>& views, uint32_t divisor,
+                  const char* kind, const Row& row) {
+    const uint32_t room = std::min(runner.triangles(), 1u << 18);
+    std::vector<GpgpCamera> spread; // neighbours in different records, so that the first ones find most
+    for (size_t k = 1; k < 6; ++k)
+      for (size_t i = k; i < views.size(); i += 5) spread.push_back(views[i]);
+    const DrawLists lists = runner.makeLists(room);
+    const uint32_t perRecord = runner.camerasPerRecord(divisor);
+    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, divisor),
+            small = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, divisor, room);
+    const Runner::Run first =
+        runner.measure(nearby, {.method = GPGP_SAMPLING_NEARBY, .divisor = divisor, .reach = 1, .listed = &lists},
+                       options.repeat, corners);
+    const Runner::Run run = runner.measureUnion(
+        small, {.method = GPGP_SAMPLING_EXACT, .divisor = divisor, .lists = &lists}, spread, perRecord, options.repeat);
+    const std::string series = "exact at 1/" + std::to_string(divisor) + kind, label = std::to_string(spread.size());
+    print("cellnearby", scene, series.c_str(), label, first.report.neededDrawTriangles, first.milliseconds);
+    row(series.c_str(), label, first.milliseconds + run.milliseconds, run);
+    if (!options.passes) return;
+    for (const auto& [pass, time] : first.passes)
+      if (time > 0.01) print("cellpass", scene, "nearby", pass, time, 0);
+    for (const auto& [pass, time] : run.passes)
+      if (time > 0.01) print("cellpass", scene, series.c_str(), pass, time, 0);
   }
 };
 } // namespace

@@ -10,6 +10,7 @@ struct FigureOptions {
   uint32_t repeat = 3;
   uint32_t largestGrid = 256; ///< samples a pixel in each direction, figure 6.9's reference
   uint32_t largestCell = 32;  ///< pixels of figure 6.14's largest cell
+  bool passes = false;        ///< of the walking viewer's views, too
 };
 
 /// Prints lines of figure, scene, series, label, x and y, separated by commas:
@@ -19,7 +20,8 @@ struct FigureOptions {
 ///   6.12  label static/dynamic epsilon: overestimation, coverage
 ///   6.14  label pixels and skip of the view cell: overestimation, coverage, against the truth of its middle
 ///   cell  label view points: overestimation, coverage of a walking viewer's cell
-///   cellcost  label view points: their number, and their cost in exact views; cellpairs: their pairs likewise
+///   cellcost  label view points: milliseconds, and in exact views; cellpairs: pairs likewise
+///   cellnearby  label view points: triangles that may be seen from the cell, milliseconds of finding them
 void printFigures(Runner& runner, const std::string& scene, uint32_t height, const FigureOptions& options);
 /// The cell alone.
 void printWalkingCell(Runner& runner, const std::string& scene, uint32_t height, const FigureOptions& options);

@@ -9,12 +9,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <gpgp/gpgp.hpp>
 
 namespace gpgp::test {
 
 using bench::expect;
 using bench::median;
+
+/// What a record lists by draw, for others to sample: of method nearby, what may be seen from a view cell.
+struct DrawLists {
+  host::Buffer commands, indices, numbers;
+};
 
 /// What a record asks for, the scene apart.
 struct Sampling {
@@ -24,6 +30,10 @@ struct Sampling {
   float resolution = 0;
   uint32_t heuristics = 0, refinements = 0; ///< of the conservative method
   float epsilonStatic = 0, epsilonDynamic = 0;
+  uint32_t divisor = 1;              ///< of the scene's width and height
+  float reach = 0;                   ///< of method nearby, metres
+  const DrawLists* lists = nullptr;  ///< what is sampled, instead of the scene
+  const DrawLists* listed = nullptr; ///< out
 };
 
 class Runner {
@@ -59,16 +69,25 @@ public:
   host::Buffer makeCounts() { return {device_, VkDeviceSize(triangles()) * 4, kStorage}; }
   const host::Buffer& bits() const { return bits_; }
 
-  Sampler sampler(uint32_t methods, uint32_t maxSamples, uint32_t maxCameras = 1) {
+  /// Room for `triangles`.
+  DrawLists makeLists(uint32_t listed) {
+    return {{device_, scene_.draws.size() * 20, kStorage},
+            {device_, VkDeviceSize(listed) * 12, kStorage},
+            {device_, VkDeviceSize(listed) * 4, kStorage}};
+  }
+
+  /// listed: triangles of lists that it samples; 0: it samples the scene.
+  Sampler sampler(uint32_t methods, uint32_t maxSamples, uint32_t maxCameras = 1, uint32_t divisor = 1,
+                  uint32_t listed = 0) {
     GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
     info.base.label = "bench";
     info.base.queueFamily = device_.graphics().family;
     info.base.queueFlags = device_.graphics().flags;
-    info.maxWidth = scene_.params.width;
-    info.maxHeight = scene_.params.height;
+    info.maxWidth = reduced(scene_.params.width, divisor);
+    info.maxHeight = reduced(scene_.params.height, divisor);
     info.maxCameras = maxCameras;
     info.maxDraws = static_cast<uint32_t>(scene_.draws.size()) * maxCameras;
-    info.maxTriangles = std::max(triangles() * maxCameras, 1u);
+    info.maxTriangles = std::max((listed ? listed : triangles()) * maxCameras, 1u);
     info.methods = methods;
     info.maxSamples = maxSamples;
     const uint64_t range = device_.properties().limits.maxStorageBufferRange;
@@ -143,12 +162,24 @@ public:
         const size_t n = std::min<size_t>(perRecord, cameras.size() - first);
         const Run one = measure(sampler, sampling, 1, cameras.subspan(first, n));
         total += one.milliseconds;
+        if (all.passes.empty())
+          all.passes = one.passes;
+        else if (i == 0)
+          for (size_t p = 0; p < one.passes.size(); ++p) all.passes[p].second += one.passes[p].second;
         all.report.neededPairs += one.report.neededPairs;
+        all.report.unresolved += one.report.unresolved;
         sampling.accumulate = true;
       }
     }
     all.milliseconds = median(totals);
     return all;
+  }
+
+  /// Cameras of a record, so that its lists fit what the device binds.
+  uint32_t camerasPerRecord(uint32_t divisor) const {
+    const uint64_t pixels = uint64_t(reduced(scene_.params.width, divisor)) * reduced(scene_.params.height, divisor);
+    const uint64_t most = device_.properties().limits.maxStorageBufferRange / 8 / (pixels * 8);
+    return static_cast<uint32_t>(std::clamp<uint64_t>(most, 1, shader::kMaxCameras));
   }
 
   /// One record, not timed.
@@ -164,9 +195,11 @@ public:
     return report;
   }
 
-  /// The truth of all the cameras with samples x samples a pixel and the centre; counts may be null.
-  void truth(uint32_t samples, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
-             const host::Buffer* counts = nullptr) {
+  /// The truth of all the cameras with samples x samples a pixel and the centre, each told when it is there; counts may
+  /// be null.
+  void truth(
+      uint32_t samples, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
+      const host::Buffer* counts = nullptr, const std::function<void(size_t)>& told = [](size_t) {}) {
     uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
     while (perRecord > 1 && uint64_t(scene_.params.width) * scene_.params.height * perRecord * perRecord * 4 >
                                 device_.properties().limits.maxStorageBufferRange)
@@ -177,7 +210,7 @@ public:
     step.method = GPGP_SAMPLING_TRUTH;
     step.samples = samples;
     constexpr uint32_t kTogether = 12; // records of one submission: a GPU that waits for each lowers its clocks
-    for (const GpgpCamera& camera : cameras)
+    for (const GpgpCamera& camera : cameras) {
       for (uint32_t slice = 0; slice < slices;) {
         const uint32_t end = std::min(slice + kTogether, slices);
         submit([&](VkCommandBuffer cmd) {
@@ -190,6 +223,8 @@ public:
         GpgpSampleReport report{};
         collect(worker, report);
       }
+      told(static_cast<size_t>(&camera - cameras.data()) + 1);
+    }
   }
 
   /// counts and recheck may be null.
@@ -214,6 +249,7 @@ private:
   static constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   static constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, {}};
 
+  static uint32_t reduced(uint32_t pixels, uint32_t divisor) { return (pixels + divisor - 1) / divisor; }
   GpgpSampleInfo infoOf(const Sampling& sampling, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
                         const host::Buffer* counts) const {
     GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
@@ -224,8 +260,9 @@ private:
       info.moreCameras = cameras.data() + 1;
       info.moreCameraCount = static_cast<uint32_t>(cameras.size() - 1);
     }
-    info.width = scene_.params.width;
-    info.height = scene_.params.height;
+    info.width = reduced(scene_.params.width, sampling.divisor);
+    info.height = reduced(scene_.params.height, sampling.divisor);
+    info.reach = sampling.reach;
     info.samples = sampling.samples;
     info.slice = sampling.slice;
     info.accumulate = sampling.accumulate;
@@ -242,6 +279,17 @@ private:
     info.draws = draws_.range();
     info.drawCount = static_cast<uint32_t>(scene_.draws.size());
     info.triangleCount = triangles();
+    if (sampling.listed) {
+      info.drawCommands = sampling.listed->commands.range({}, kRead);
+      info.drawIndices = sampling.listed->indices.range({}, kRead);
+      info.drawTriangles = sampling.listed->numbers.range({}, kRead);
+    }
+    if (sampling.lists) {
+      info.commands = sampling.lists->commands.range();
+      info.commandCount = info.drawCount;
+      info.indices = sampling.lists->indices.range();
+      info.triangleNumbers = sampling.lists->numbers.range();
+    }
     info.visibleBits = bits.range({}, kRead);
     if (counts) info.pixelCounts = counts->range({}, kRead);
     return info;

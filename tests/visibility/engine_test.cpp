@@ -363,6 +363,8 @@ TEST_F(EngineTest, EngineArgumentsAreChecked) {
   record("commandStride is 16", [&](auto& i) { commands(i), i.commandStride = 16; });
   record("commands.size", [&](auto& i) { commands(i), i.commands.size = 36; });
   record("commandCount is 9", [&](auto& i) { commands(i), i.commandCount = 9; });
+  record("triangleNumbers is given", [&](auto& i) { i.triangleNumbers = any.range(); });
+  record("triangleNumbers.size", [&](auto& i) { commands(i), i.triangleNumbers = any.range({}, {}, 0, 2); });
   record("drawCountBuffer.size", [&](auto& i) { i.drawCountBuffer = any.range(), i.drawCountBuffer.size = 2; });
   record("drawCommands.size", [&](auto& i) { i.drawCommands = any.range(), i.drawCommands.size = 16; });
   record("drawIndices.size", [&](auto& i) { i.drawIndices = any.range(), i.drawIndices.size = 8; });
@@ -374,7 +376,7 @@ TEST_F(EngineTest, EngineArgumentsAreChecked) {
   });
   GpgpSamplerCreateInfo create = GPGP_SAMPLER_CREATE_INFO_INIT;
   create.base.queueFamily = queue().family;
-  create.maxCameras = 9;
+  create.maxCameras = 33;
   GpgpWorker none = nullptr;
   EXPECT_EQ(gpgpCreateSampler(context, &create, &none), GPGP_ERROR_INVALID_ARGUMENT);
 }

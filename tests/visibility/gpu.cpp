@@ -42,6 +42,7 @@ SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
   indices = copy(input.indices, "indices");
   draws = copy(input.draws, "draws");
   if (!scene.commands.empty()) commands = copy(input.commands, "commands");
+  if (!scene.numbers.empty()) numbers = copy(input.numbers, "numbers");
   if (scene.drawCount != UINT32_MAX) drawCount = copy(std::array{scene.drawCount}, "draw count");
 }
 
@@ -113,6 +114,7 @@ GpgpSampleInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuff
   if (buffers.commands.handle()) {
     info.commands = buffers.commands.range();
     info.commandCount = scene.params.commandCount;
+    if (buffers.numbers.handle()) info.triangleNumbers = buffers.numbers.range();
   }
   if (buffers.drawCount.handle()) info.drawCountBuffer = buffers.drawCount.range();
   info.triangleCount = scene.params.triangleCount;
@@ -145,6 +147,7 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
   info.epsilonDynamic = scene.params.epsilonDynamic;
   info.refinements = options.refinements;
   info.resolution = options.resolution;
+  info.reach = options.reach;
   if (options.width) info.width = options.width, info.height = options.height;
   const uint32_t words = (info.triangleCount + 31) / 32;
   const uint32_t capacity = std::min(options.listTriangles, std::max(info.triangleCount, 1u));

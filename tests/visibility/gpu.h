@@ -20,7 +20,7 @@ struct GpuOptions {
   uint32_t samples = 0, slice = 0;
   uint32_t refinements = 0;
   uint32_t width = 0, height = 0; ///< 0: the scene's
-  float resolution = 0;
+  float resolution = 0, reach = 0;
   bool byDraw = true;                                             ///< lists by draw, commands, sizes
   uint32_t drawTriangles = UINT32_MAX, drawCommands = UINT32_MAX; ///< their budgets
 };
@@ -37,7 +37,7 @@ struct GpuResult {
 /// The engine's side of one scene: its buffers on the device.
 struct SceneBuffers {
   SceneBuffers(host::HeadlessDevice& device, Scene& scene);
-  host::Buffer positions, indices, draws, commands, drawCount;
+  host::Buffer positions, indices, draws, commands, numbers, drawCount;
 };
 
 struct VisibilityGpuTest : DeviceTest {

@@ -41,7 +41,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 47u);
+    EXPECT_EQ(offsets.size(), 50u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -56,6 +56,8 @@ TEST(Layout, ParamsAgree) {
     EXPECT_OFFSET(offsets, Params, largeRecords);
     EXPECT_OFFSET(offsets, Params, cameraCount);
     EXPECT_OFFSET(offsets, Params, epsilonDynamic);
+    EXPECT_OFFSET(offsets, Params, depthScales);
+    EXPECT_OFFSET(offsets, Params, hasNumbers);
   }
 }
 

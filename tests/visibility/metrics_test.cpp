@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
+#include <set>
 
 namespace gpgp::test {
 namespace {
@@ -374,6 +375,39 @@ TEST(ViewCell, PointsAreWorldUnitsAlongTheCamerasAxes) {
         EXPECT_NEAR(cameras[i].viewProjection[k], expected[k / 4][k % 4], 2e-5f) << i << ' ' << k;
     }
   }
+}
+
+TEST(ViewCell, AWalkingViewersPointsFillTheSquareUpToItsBorder) {
+  const glm::mat4 projection = perspective(1.0f, 1.0f, 0.1f, 100.0f);
+  GpgpViewCellInfo info = cellOf(projection);
+  info.walkCount = 64;
+  info.walkDistance = 0.5f;
+  uint32_t count = 65;
+  std::vector<GpgpCamera> cameras(count);
+  ASSERT_EQ(gpgpGetViewCellCameras(&info, &count, cameras.data()), GPGP_SUCCESS);
+  ASSERT_EQ(count, 65u);
+  std::set<std::pair<int, int>> parts; // of 4 x 4
+  std::set<float> columns, rows;
+  uint32_t atBorder = 0;
+  for (uint32_t i = 1; i < count; ++i) {
+    const float* m = cameras[i].viewProjection;
+    const float x = -m[12] / projection[0][0], y = -m[13] / projection[1][1];
+    EXPECT_LE(std::max(std::abs(x), std::abs(y)), 0.50001f);
+    EXPECT_NEAR(m[14], projection[3][2], 1e-6f);
+    parts.emplace(static_cast<int>(x * 3.99f + 2), static_cast<int>(y * 3.99f + 2));
+    columns.insert(x);
+    rows.insert(y);
+    atBorder += std::max(std::abs(x), std::abs(y)) > 0.4f;
+  }
+  EXPECT_EQ(parts.size(), 16u);
+  EXPECT_EQ(columns.size(), 64u);
+  EXPECT_EQ(rows.size(), 64u);
+  EXPECT_GT(atBorder, 32u); // of 23 if they lay evenly
+  info.walkDistance = 0;
+  EXPECT_EQ(gpgpGetViewCellCameras(&info, &count, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  info.walkDistance = 1;
+  info.walkCount = 1025;
+  EXPECT_EQ(gpgpGetViewCellCameras(&info, &count, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
 }
 
 TEST(ViewCell, ArgumentsAreChecked) {

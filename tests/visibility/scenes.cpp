@@ -66,6 +66,8 @@ visibility::TwinInput Scene::input() {
   params.commandCount = static_cast<uint32_t>(commands.size() / 5);
   params.entryCount =
       params.hasCommands ? params.maxEntries / params.cameraCount * params.cameraCount : params.drawCount;
+  params.hasNumbers = !numbers.empty();
+  params.numberCount = static_cast<uint32_t>(numbers.size());
   params.drawListCapacity = params.drawCommandCapacity = UINT32_MAX;
   if (params.positionStride == 0) params.positionStride = 12;
   if (params.positionFormat == shader::kFloats)
@@ -75,7 +77,7 @@ visibility::TwinInput Scene::input() {
     for (size_t i = 0; i < indices.size(); ++i) shortIndices[i / 2] |= (indices[i] & 0xffffu) << (i % 2 * 16);
     params.indexCount = static_cast<uint32_t>(shortIndices.size() * 2);
   }
-  return {params, positionWords, useShort ? shortIndices : indices, draws, meshes, commands, drawCount, {}};
+  return {params, positionWords, useShort ? shortIndices : indices, draws, meshes, commands, numbers, drawCount, {}};
 }
 
 glm::mat4 perspective(float fieldOfView, float aspect, float nearPlane, float farPlane, bool reversed) {

@@ -16,6 +16,7 @@ struct Scene {
   std::vector<shader::Draw> draws;
   std::vector<uint32_t> positionWords; ///< made by input()
   std::vector<uint32_t> commands;      ///< VkDrawIndexedIndirectCommand[]: draws are their instances
+  std::vector<uint32_t> numbers;       ///< with commands: of the triangles, by their place among the indices
   uint32_t drawCount = UINT32_MAX;     ///< what drawCountBuffer holds; UINT32_MAX: there is none
   shader::Params params{};
 

@@ -2,6 +2,7 @@
 
 #include "visibility/sampling/parameters.h"
 #include "visibility/sampling/passes.h"
+#include "visibility/view_cell.h"
 
 #include <algorithm>
 #include <bit>
@@ -59,6 +60,13 @@ Result<void> checkSampling(const GpgpSampleInfo& info, const Budgets& budgets, c
     if (info.refinements > kMaxRefinements)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "refinements is %u; at most %u", info.refinements, kMaxRefinements);
   }
+  if (info.method == GPGP_SAMPLING_NEARBY) {
+    if (!(info.reach >= 0 && info.reach < 1e30f))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "reach is %g; expected 0 to 1e30", static_cast<double>(info.reach));
+    for (uint32_t i = 0; i < cameras; ++i)
+      if (depthScale(i ? info.moreCameras[i - 1] : info.camera, info.width, info.height, info.reach).y == 0)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera %u has no perspective, which method nearby needs", i);
+  }
   if (info.triangleCount > 1u << 31)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; at most 2147483648", info.triangleCount);
   if (view && info.triangleCount > view->maxTriangles())
@@ -105,6 +113,10 @@ Result<void> checkInput(const GpgpSampleInfo& info) {
           !ok)
         return ok;
   }
+  if (info.triangleNumbers.buffer && !info.commands.buffer)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleNumbers is given, but commands is not");
+  if (info.triangleNumbers.buffer)
+    if (auto ok = checkSize("triangleNumbers", info.triangleNumbers, 4, "a number"); !ok) return ok;
   if (info.drawCountBuffer.buffer)
     if (auto ok = checkSize("drawCountBuffer", info.drawCountBuffer, 4, "the number of draws"); !ok) return ok;
   return {};

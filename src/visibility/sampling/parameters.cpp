@@ -2,6 +2,7 @@
 
 #include "visibility/conservative.h"
 #include "visibility/sampling/passes.h"
+#include "visibility/view_cell.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +14,8 @@ using shader::Params;
 static_assert(sizeof(GpgpMesh) == sizeof(shader::Mesh) && sizeof(GpgpVisibilityDraw) == sizeof(shader::Draw));
 static_assert(offsetof(GpgpVisibilityDraw, flags) == offsetof(shader::Draw, flags));
 static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided && GPGP_DRAW_CLOCKWISE == shader::kClockwise);
-static_assert(GPGP_SAMPLING_EXACT == shader::kExact && GPGP_SAMPLING_CONSERVATIVE == shader::kConservative);
+static_assert(GPGP_SAMPLING_EXACT == shader::kExact && GPGP_SAMPLING_CONSERVATIVE == shader::kConservative &&
+              GPGP_SAMPLING_NEARBY == shader::kNearby);
 static_assert(GPGP_HEURISTIC_IN_CIRCLE == shader::kInCircle && GPGP_HEURISTIC_DEPTH == shader::kDepths &&
               GPGP_HEURISTIC_KEEP_FRONT == shader::kKeepFront);
 
@@ -53,7 +55,7 @@ PositionFormat positionFormatOf(VkFormat format) {
 }
 
 uint32_t samplesOf(const GpgpSampleInfo& info) {
-  if (info.method == GPGP_SAMPLING_EXACT || info.method == GPGP_SAMPLING_CONSERVATIVE) return 1;
+  if (info.method != GPGP_SAMPLING_STANDARD && info.method != GPGP_SAMPLING_TRUTH) return 1;
   return info.samples ? info.samples : info.method == GPGP_SAMPLING_TRUTH ? kTruthSamples : 1;
 }
 
@@ -61,8 +63,13 @@ Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const Ge
                     const CameraView* view) {
   Params params{};
   const uint32_t cameras = info.moreCameraCount + 1;
-  for (uint32_t i = 0; i < cameras; ++i)
-    std::copy_n((i ? info.moreCameras[i - 1] : info.camera).viewProjection, 16, params.viewProjection + size_t(i) * 16);
+  for (uint32_t i = 0; i < cameras; ++i) {
+    const GpgpCamera& camera = i ? info.moreCameras[i - 1] : info.camera;
+    std::copy_n(camera.viewProjection, 16, params.viewProjection + size_t(i) * 16);
+    if (info.method != GPGP_SAMPLING_NEARBY) continue;
+    const glm::vec4 scale = depthScale(camera, info.width, info.height, info.reach);
+    for (int k = 0; k < 4; ++k) params.depthScales[i * 4 + static_cast<uint32_t>(k)] = scale[k];
+  }
   params.cameraCount = cameras;
   params.width = info.width;
   params.height = info.height;
@@ -91,6 +98,10 @@ Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const Ge
     params.commandCount = info.commandCount;
     params.commandWords = (info.commandStride ? info.commandStride : kCommandBytes) / 4;
     params.entryCount = budgets.maxDraws / cameras * cameras;
+  }
+  if (params.hasCommands && info.triangleNumbers.buffer) {
+    params.hasNumbers = 1;
+    params.numberCount = static_cast<uint32_t>(std::min<VkDeviceSize>(info.triangleNumbers.size / 4, UINT32_MAX));
   }
   if (info.drawCount) {
     const PositionFormat format = positionFormatOf(info.positionFormat);

@@ -1,6 +1,8 @@
 // The resources that the passes share, and the parts in their order.
 #include "visibility/sampling/passes.h"
 
+#include "visibility/nearby.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -21,6 +23,8 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   const VkDeviceSize queueBytes = VkDeviceSize(budgets.maxTriangles) * 4;
   VkDeviceSize recordBytes = (budgets.mediumRecords() + budgets.largeRecords()) * kRecordBytes;
   if (exact) recordBytes = std::max(recordBytes, VkDeviceSize(budgets.maxCandidates) * sizeof(shader::Candidate));
+  if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT)
+    recordBytes = std::max(recordBytes, VkDeviceSize(budgets.maxCameras) * shader::kCameraTiles * sizeof(shader::Tile));
   if (conservative) recordBytes = std::max(recordBytes, budgets.pixels() * sizeof(shader::Surface));
   const auto engine = [&](const char* name) { list.add({name, buffer, 0, true}); };
   const auto own = [&](const char* name, VkDeviceSize bytes) { list.add({name, scratch, bytes}); };
@@ -62,8 +66,8 @@ uint32_t addShader(core::PassList& list, const char* name, std::span<const uint3
 }
 
 core::Pass& fetchesTriangles(core::Pass& pass) {
-  for (const int binding :
-       {shader::kBindParams, shader::kBindPositions, shader::kBindIndices, shader::kBindDraws, shader::kBindTable}) {
+  for (const int binding : {shader::kBindParams, shader::kBindPositions, shader::kBindIndices, shader::kBindDraws,
+                            shader::kBindNumbers, shader::kBindTable}) {
     const auto resource = static_cast<core::ResourceIndex>(binding);
     const auto end = pass.uses.begin() + pass.useCount;
     if (std::any_of(pass.uses.begin(), end, [&](const core::Use& use) { return use.resource == resource; })) continue;
@@ -80,6 +84,7 @@ core::PassList describePasses(const Budgets& budgets, std::pmr::memory_resource*
   addStandard(list, conservative);
   if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, budgets);
   if (conservative) addConservative(list, budgets);
+  if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT) addNearby(list);
   addOutputs(list);
   for (core::Pass& pass : list.passes)
     if (pass.condition == UINT32_MAX) pass.condition = kIfSampling;

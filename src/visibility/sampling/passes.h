@@ -13,10 +13,10 @@ namespace gpgp::visibility {
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3, kTileGroups = 4,
-                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7;
+                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7, kScreenTileGroups = 8;
 // Conditions of a record.
 constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
-                   kIfMeasuring = 6;
+                   kIfMeasuring = 6, kIfNearby = 7;
 
 constexpr uint32_t kMaxBig = 1 << 20; ///< entries for candidates of more than 8 x 8 pixels
 constexpr uint32_t kMaxRefinements = 4;
@@ -32,6 +32,7 @@ core::PassList describePasses(const Budgets& budgets, std::pmr::memory_resource*
 void addStandard(core::PassList& list, bool conservative); ///< bits of what is seen at the pixels' samples
 void addExact(core::PassList& list, const Budgets& budgets);
 void addConservative(core::PassList& list, const Budgets& budgets);
+void addNearby(core::PassList& list);
 void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes
 void addMetrics(core::PassList& list); ///< records that measure have these passes only
 

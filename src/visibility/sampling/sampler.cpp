@@ -1,6 +1,7 @@
 // A record: what is bound, how many workgroups run, and which passes.
 #include "visibility/sampling/sampler.h"
 
+#include "visibility/nearby.h"
 #include "visibility/sampling/checks.h"
 #include "visibility/sampling/parameters.h"
 
@@ -30,7 +31,10 @@ void setBindings(core::Record& record, const GpgpSampleInfo& info, const shader:
   if (params.hasDrawIndices) bind(shader::kBindDrawIndices, info.drawIndices);
   if (params.hasDrawTriangles) bind(shader::kBindDrawTriangles, info.drawTriangles);
   if (params.hasExtents) bind(shader::kBindExtents, info.triangleSizes);
-  bindOwn(shader::kBindMeshes, geometry);
+  if (params.hasNumbers)
+    bind(shader::kBindNumbers, info.triangleNumbers);
+  else
+    bindOwn(shader::kBindMeshes, geometry);
   if (info.triangleCount) bind(shader::kBindBits, info.visibleBits);
   if (params.hasSizes) bind(shader::kBindSizes, info.pixelCounts);
   if (params.hasList) bind(shader::kBindList, info.visibleList);
@@ -54,6 +58,8 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
                                 1};
   record.groups[kEntryGroups] = {groupsOf256(params.entryCount), 1, 1};
   record.groups[kChunkGroups] = {groupsOf256(budgets.chunks()), 1, 1};
+  const uint32_t side = shader::tileSide(params.width, params.height);
+  record.groups[kScreenTileGroups] = {(params.width + side - 1) / side, shader::kMaxTiles * params.cameraCount, 1};
   record.groups[kEachPixelGroups] = {groupsOf256(uint64_t(params.width) * rows), 1, 1};
 }
 } // namespace
@@ -79,6 +85,7 @@ Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInf
   record.levels = info.refinements + 1;
   record.conditions[kIfSampling] = true;
   record.conditions[kIfConservative] = params.method == shader::kConservative;
+  record.conditions[kIfNearby] = params.method == shader::kNearby;
   record.conditions[kIfExact] = params.method == shader::kExact;
   record.conditions[kIfCommands] = params.hasCommands != 0;
   record.conditions[kIfDraws] = info.drawCommands.buffer || params.hasDrawIndices || params.hasDrawTriangles;

@@ -25,9 +25,9 @@ struct Sampling {
 
   explicit Sampling(const TwinInput& input) : in(input), params(input.params) {
     forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t item) {
-      const uint32_t first = in.draws[e.draw].firstTriangle;
-      if (first >= params.triangleCount || local >= params.triangleCount - first) return;
-      Placed p{placeTriangle(in, e, local), first + local, item, {}, gridOf(params, e.camera), false};
+      uint32_t id = 0;
+      if (!numberOf(in, e, local, id)) return;
+      Placed p{placeTriangle(in, e, local), id, item, {}, gridOf(params, e.camera), false};
       if (p.made.pieces.empty()) return;
       p.normal = normalOf(p.made.world[0], p.made.world[1], p.made.world[2]);
       const float* m = params.viewProjection + size_t(e.camera) * 16;

@@ -106,8 +106,8 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
   };
   std::vector<Piece> pieces;
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
-    const uint32_t first = in.draws[e.draw].firstTriangle, id = first + local;
-    if (first >= params.triangleCount || local >= params.triangleCount - first) return;
+    uint32_t id = 0;
+    if (!numberOf(in, e, local, id)) return;
     const TwinTriangle placed = placeTriangle(in, e, local);
     for (const ScreenTriangle& t : placed.pieces) {
       const ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(params, e.camera));

@@ -117,6 +117,16 @@ void forEachTriangle(const TwinInput& in, const std::function<void(const DrawEnt
   }
 }
 
+bool numberOf(const TwinInput& in, const DrawEntry& e, uint32_t local, uint32_t& id) {
+  const uint32_t first = in.draws[e.draw].firstTriangle;
+  id = first + local;
+  if (!in.params.hasNumbers) return first < in.params.triangleCount && local < in.params.triangleCount - first;
+  const uint64_t place = uint64_t(e.firstIndex / 3) + local;
+  if (place >= in.params.numberCount) return false;
+  id = in.numbers[place];
+  return id < in.params.triangleCount;
+}
+
 TwinTriangle placeTriangle(const TwinInput& in, const Draw& draw, uint32_t localTriangle) {
   const Mesh& mesh = in.meshes[draw.mesh];
   const auto record = static_cast<uint32_t>(&draw - in.draws.data());
@@ -171,8 +181,8 @@ void listDraws(const TwinInput& in, TwinResult& out) {
     const DrawEntry& e = entries[i];
     const auto first = static_cast<uint32_t>(out.drawTriangles.size());
     for (uint32_t local = 0; local < e.indexCount / 3; ++local) {
-      const uint64_t id = uint64_t(in.draws[e.draw].firstTriangle) + local;
-      if (id >= in.params.triangleCount || !isSeen(static_cast<uint32_t>(id)) || !hasIndices(e, local)) continue;
+      uint32_t id = 0;
+      if (!numberOf(in, e, local, id) || !isSeen(id) || !hasIndices(e, local)) continue;
       uint32_t vertex = 0, corner[3];
       bool valid = true;
       for (uint32_t k = 0; k < 3; ++k) {
@@ -183,7 +193,7 @@ void listDraws(const TwinInput& in, TwinResult& out) {
         if (in.params.shortIndices) corner[k] = index % 2 ? corner[k] >> 16 : corner[k] & 0xffffu;
       }
       if (!valid) continue;
-      out.drawTriangles.push_back(static_cast<uint32_t>(id));
+      out.drawTriangles.push_back(id);
       out.drawIndices.insert(out.drawIndices.end(), corner, corner + 3);
     }
     const uint32_t count = static_cast<uint32_t>(out.drawTriangles.size()) - first;
@@ -195,8 +205,8 @@ void listDraws(const TwinInput& in, TwinResult& out) {
   out.counters.drawTriangles = static_cast<uint32_t>(out.drawTriangles.size());
   out.extents.assign(size_t(in.params.triangleCount) * 3, 0);
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
-    const uint32_t id = in.draws[e.draw].firstTriangle + local;
-    if (id < local || !isSeen(id)) return;
+    uint32_t id = 0;
+    if (!numberOf(in, e, local, id) || !isSeen(id)) return;
     Extent extent = noExtent();
     for (const ScreenTriangle& t : placeTriangle(in, e, local).pieces) extent = withPiece(extent, t);
     const uvec3 bits = extentBits(extent);
@@ -244,8 +254,8 @@ TwinResult sampleOnCpu(const TwinInput& in) {
   Counters& counters = out.counters;
 
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t item) {
-    const uint32_t first = in.draws[e.draw].firstTriangle;
-    if (first >= params.triangleCount || local >= params.triangleCount - first) {
+    uint32_t id = 0;
+    if (!numberOf(in, e, local, id)) {
       ++counters.skippedTriangles;
       return;
     }
@@ -253,7 +263,7 @@ TwinResult sampleOnCpu(const TwinInput& in) {
     counters.skippedTriangles += placed.fate == kSkipped;
     counters.triangles += placed.fate == kWhole || placed.fate == kClipped;
     for (const ScreenTriangle& piece : placed.pieces)
-      draw(out, params, piece, params.method == kConservative ? item : first + local);
+      draw(out, params, piece, params.method == kConservative ? item : id);
   });
   TwinEntries about;
   entriesOf(in, about);

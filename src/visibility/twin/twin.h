@@ -19,6 +19,7 @@ struct TwinInput {
   std::span<const shader::Draw> draws;
   std::span<const shader::Mesh> meshes;
   std::span<const uint32_t> commands;     ///< params.commandWords each
+  std::span<const uint32_t> numbers;      ///< with params.hasNumbers: triangles' numbers
   uint32_t drawCount = UINT32_MAX;        ///< what the buffer of the draw or command count holds
   std::span<const uint32_t> previousBits; ///< the view's, empty at its first record
 };
@@ -46,6 +47,9 @@ TwinTriangle placeTriangle(const TwinInput& input, const shader::DrawEntry& entr
 /// Of one of the input's draws, for the first camera.
 TwinTriangle placeTriangle(const TwinInput& input, const shader::Draw& draw, uint32_t localTriangle);
 
+/// The number of a draw's triangle; false where there is none below triangleCount.
+bool numberOf(const TwinInput& input, const shader::DrawEntry& entry, uint32_t localTriangle, uint32_t& id);
+
 /// Of one camera, but for `skipped`.
 struct TwinEntries {
   uint64_t draws = 0, items = 0, skipped = 0;
@@ -65,6 +69,9 @@ TwinResult sampleOnCpu(const TwinInput& input);
 
 /// Method exact. depth: at the pixels' centres; ids: empty. counters.candidates and .pairs have no budget.
 TwinResult sampleExactOnCpu(const TwinInput& input);
+
+/// Method nearby; what TwinResult::ids shows is standard sampling's.
+TwinResult sampleNearbyOnCpu(const TwinInput& input);
 
 /// Method conservative, with params.heuristics and epsilons, and at most `refinements` further passes.
 TwinResult sampleConservativelyOnCpu(const TwinInput& input, uint32_t refinements = 0);
