@@ -276,9 +276,14 @@ void main() {
     }
   }
   // Few at a time, so that work comes out even. But not fewer than all could take at once, and more of axioms, which
-  // take a step of their own: invocations that idle in small batches cost more.
+  // take a step of their own, and of what queries: invocations that idle in small batches cost more.
+#ifdef GPGP_COLLIDERS
+  const uint times = 2;
+#else
+  const uint times = round == 0 ? 2 : 8;
+#endif
   const uint even = min((count + gl_NumWorkGroups.x - 1) / gl_NumWorkGroups.x, 8);
-  const uint share = clamp(max(count / ((round == 0 ? 2 : 8) * gl_NumWorkGroups.x), even), 1, groupSize);
+  const uint share = clamp(max(count / (times * gl_NumWorkGroups.x), even), 1, groupSize);
   // A workgroup by itself grows fast only until its invocations are busy: what takes much more than that grows further
   // in more rounds.
   const uint growth = record.spread / max(count, 1);
