@@ -21,7 +21,8 @@ uint sumBefore(uint value, out uint total) {
     subgroupBarrier();
     return own;
   }
-  if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) subgroupSums[gl_SubgroupID] = own + value;
+  // A workgroup may be a part of a subgroup.
+  if (gl_SubgroupInvocationID == min(gl_SubgroupSize, groupSize) - 1) subgroupSums[gl_SubgroupID] = own + value;
   barrier();
   uint before = 0;
   total = 0;

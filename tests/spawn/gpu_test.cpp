@@ -330,20 +330,25 @@ Other = Repeat(Y, 2, ANCHOR_TO_START) Flat;
 }
 
 TEST_F(SpawnTest, WorkgroupsOfASubgroupEqualTheEvaluator) {
-  // One of these sizes is a subgroup's on most devices: such workgroups know it, and hand shapes on without memory.
+  // One of these sizes is a subgroup's on most devices: such workgroups know it, and hand shapes on without memory. The
+  // kernel without subgroups must not mind, and a workgroup may be a part of a subgroup.
   std::vector<uint32_t> words = bake(ownGrammar("shapes.pga"));
   const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
   ASSERT_TRUE(graph);
-  const auto code = spawn::compileKernel(spawn::generate(*graph, spawn::namedSchedule(*graph, "default")->waits), true);
-  ASSERT_TRUE(code) << code.error().text;
-  for (const uint32_t size : {8u, 32u}) {
-    spawn::KernelInfo info;
-    info.subgroups = 1;
-    info.fit = {size, 16, 6 * size, 64, 0}; // stacks that flow over
-    auto all = words;
-    const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
-    all.insert(all.end(), kernel.begin(), kernel.end());
-    check("workgroups of " + std::to_string(size), all, axioms(9, 12, 16, 10));
+  const auto generated = spawn::generate(*graph, spawn::namedSchedule(*graph, "default")->waits);
+  for (const bool subgroups : {true, false}) {
+    const auto code = spawn::compileKernel(generated, subgroups);
+    ASSERT_TRUE(code) << code.error().text;
+    for (const uint32_t size : {8u, 32u}) {
+      spawn::KernelInfo info;
+      info.subgroups = subgroups;
+      info.fit = {size, 16, 6 * size, 64, 0}; // stacks that flow over
+      auto all = words;
+      const auto kernel =
+          spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
+      all.insert(all.end(), kernel.begin(), kernel.end());
+      check("workgroups of " + std::to_string(size) + (subgroups ? "" : ", no subgroups"), all, axioms(9, 12, 16, 10));
+    }
   }
 }
 
