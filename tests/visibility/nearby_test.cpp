@@ -177,10 +177,10 @@ TEST_F(NearbyTest, ArgumentsAreChecked) {
     info.method = GPGP_SAMPLING_NEARBY;
     info.reach = reach;
     if (parallel) std::copy_n(&glm::mat4(1.0f)[0][0], 16, info.camera.viewProjection);
+    const GpgpResult expected = *text ? GPGP_ERROR_INVALID_ARGUMENT : GPGP_SUCCESS;
     messages.clear();
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info),
-                *text ? GPGP_ERROR_INVALID_ARGUMENT : GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), expected);
     });
     if (!*text) continue;
     ASSERT_EQ(messages.size(), 1u) << text;
