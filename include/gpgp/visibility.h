@@ -146,9 +146,9 @@ typedef struct GpgpViewCellInfo {
 #define GPGP_VIEW_CELL_INFO_INIT GPGP_INIT(GpgpViewCellInfo, GPGP_STRUCTURE_VIEW_CELL_INFO)
 
 /** Makes the cameras of a view cell: the middle, the grid row by row, the square's, the points. For a record with
- * several cameras, or several records that accumulate. cameras may be NULL; *count is what it has room for, and then
- * how many there are (INCOMPLETE: more than the room; the first ones are written). Errors: INVALID_ARGUMENT,
- * INVALID_STRUCT. @threads any @lifetime call */
+ *  several cameras, or several records that accumulate. cameras may be NULL; *count is what it has room for, and then
+ *  how many there are (INCOMPLETE: more than the room; the first ones are written).
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32_t* count,
                                                      GpgpCamera* cameras);
 

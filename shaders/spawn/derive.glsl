@@ -16,8 +16,11 @@
 // it.
 layout(constant_id = 0) const uint groupSize = 64;
 layout(constant_id = 1) const uint stackShapes = 1024;
-// The workgroup is one subgroup. (2 is tableStart of table.glsl.)
+#ifdef GPGP_SUBGROUPS // the workgroup is one subgroup, and knows of it (2 is tableStart of table.glsl)
 layout(constant_id = 3) const bool oneSubgroup = false;
+#else
+const bool oneSubgroup = false;
+#endif
 layout(local_size_x_id = 0) in;
 #ifdef GPGP_COLLIDERS
 layout(push_constant) uniform Push {

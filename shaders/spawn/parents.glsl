@@ -4,11 +4,8 @@
 #ifdef GPGP_SUBGROUPS
 Shape ownParent;
 Fan ownFan;
-const uint fanCount = oneSubgroup ? 1 : groupSize;
-#else // it may be one subgroup here, too, but not know of it
-const uint fanCount = groupSize;
 #endif
-shared uvec2 fans[fanCount]; // successors, length
+shared uvec2 fans[oneSubgroup ? 1 : groupSize]; // successors, length
 
 /// The invocation's parent.
 void keepParent(Shape s, Fan fan) {

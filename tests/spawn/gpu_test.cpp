@@ -547,14 +547,18 @@ TEST_F(SpawnTest, FewerTerminalRecordsAreReported) {
   EXPECT_EQ(gpu.report.instancesWritten, 300u);
 }
 
+/// Of an axiom, two terminals for each unit of its length.
+std::vector<uint32_t> bakePairs() {
+  return bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
+}
+
 TEST_F(SpawnTest, ShapesThatDoNotFitAreCounted) {
   // Few axioms of many shapes: workgroups give work away, more than the queue holds. 32 and 128 copies are whole steps
   // of any workgroup, so that all are made before.
   GpgpSpawnerCreateInfo budgets{};
   budgets.maxShapes = 300;
   makeSpawner(budgets);
-  const auto words =
-      bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
+  const auto words = bakePairs();
   const auto exact = run(words, std::vector(8, makeAxiom(32, 1, 1)), 2000, true);
   EXPECT_EQ(exact.report.base.status, GPGP_SUCCESS);
   EXPECT_EQ(exact.report.terminals, 512u);
@@ -586,11 +590,8 @@ TEST_F(SpawnTest, DeeperShapesAreReported) {
 }
 
 TEST_F(SpawnTest, RoundsThatAreMissingAreReported) {
-  GpgpSpawnerCreateInfo budgets{};
-  budgets.maxRounds = 1;
-  makeSpawner(budgets);
-  const auto words =
-      bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
+  makeSpawner({.maxRounds = 1});
+  const auto words = bakePairs();
   // More than a workgroup derives in one round, whatever the device.
   const Derived gpu = run(words, {makeAxiom(600000, 1, 1)}, 1000, true);
   EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
@@ -600,11 +601,8 @@ TEST_F(SpawnTest, RoundsThatAreMissingAreReported) {
 }
 
 TEST_F(SpawnTest, TheLastRoundGivesNothingAwayByChoice) {
-  GpgpSpawnerCreateInfo budgets{};
-  budgets.maxRounds = 1;
-  makeSpawner(budgets);
-  const auto words =
-      bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
+  makeSpawner({.maxRounds = 1});
+  const auto words = bakePairs();
   const Derived gpu = run(words, {makeAxiom(384, 1, 1)}, 1000, true);
   EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
   EXPECT_EQ(gpu.report.droppedShapes, 0u);
