@@ -1,5 +1,5 @@
 #version 460
-// Gives each tile with edges an entry, and clears it.
+// Gives each tile with edges an entry, and clears it, unless mark has.
 //
 // Entries are taken in any order. Where they do not suffice, the workgroup that finishes last deals them out again in
 // painting order, and from the first path that does not fit on all are left out.
@@ -31,7 +31,9 @@ void main() {
     barrier();
     if (i < total) words[i].firstEntry = start + end - count;
     const uint sum = scanTotal();
-    if (start <= header.entryLimit && sum <= header.entryLimit - start) clearEntries(lane, start, sum);
+    const uint clear = max(start, counters.cleared);
+    if (start <= header.entryLimit && sum <= header.entryLimit - start && start + sum > clear)
+      clearEntries(lane, clear, start + sum - clear);
   }
   memoryBarrierBuffer();
   barrier();

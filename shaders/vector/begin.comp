@@ -20,7 +20,7 @@ layout(set = 0, binding = 14, std430) writeonly buffer Bins { uint bins[]; };
 layout(set = 0, binding = 28, std430) writeonly buffer Shapes { vec4 shapes[]; };
 #if !SOFTWARE
 layout(set = 0, binding = 13, std430) writeonly buffer Words { uvec4 words[]; };
-layout(set = 0, binding = 16, std430) writeonly buffer Counters { uvec4 counters[]; };
+layout(set = 0, binding = 16, std430) buffer Counters { uvec4 counters[6]; }; // CanvasCounters
 #endif
 
 ItemRecord sourceOf(uint i) {
@@ -70,7 +70,10 @@ void main() {
   const uint lane = gl_GlobalInvocationID.x, lanes = gl_NumWorkGroups.x * 64;
 #if !SOFTWARE
   for (uint i = lane; i < words.length(); i += lanes) words[i] = uvec4(0);
-  if (lane < counters.length()) counters[lane] = uvec4(0);
+  if (lane == 0) {
+    const uint before = counters[0].y; // entries of the record before, or anything at all
+    for (uint k = 0; k < 6; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
+  }
 #endif
   if (lane == 0) copied = header;
   if (lane < kSlots) copiedSlots[lane] = slots[lane];

@@ -82,6 +82,10 @@ SegmentRecord fetchSegment(ItemRecord item, uint i) {
 
 // The item that path i of the record belongs to: the last one that begins at or before it.
 uint itemOfPath(uint i) {
+  // In a text most have one path, so what lies as far along is tried first.
+  const uint guess = uint(float(i) * (float(header.itemCount) / float(header.pathCount)));
+  const bool last = guess + 1 >= header.itemCount;
+  if (guess < header.itemCount && items[guess].firstPath <= i && (last || items[guess + 1].firstPath > i)) return guess;
   uint low = 0, high = header.itemCount;
   while (low + 1 < high) {
     const uint middle = (low + high) / 2;

@@ -316,14 +316,14 @@ void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
   imageStore(image, ivec2(pixel), target);
 #endif
 }
+void storePixel(uvec2 pixel, vec4 color) { storePixel(pixel, linearColor(color), targetColor(color)); }
 
-// What is left of the light reaches the background; then the pixel is written.
-void writePixel(uvec2 pixel) {
+// What is left of the light reaches the background.
+void finishPixel() {
 #if RICH
   while (depth > 0) leaveLayer();
 #endif
   float light = 0;
   for (uint k = 0; k < 16; ++k) light += (alive >> k & 1) != 0 ? through[k] : 0.0;
   sum += header.background * (light * share * scale + gap);
-  storePixel(pixel, linearColor(sum), targetColor(sum));
 }

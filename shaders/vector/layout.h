@@ -204,7 +204,7 @@ struct CanvasCounters {
   uint shapes, shapesGiven, items, itemsGiven;
   uint listed;              // paths in bins' lists
   uint rowsX, rowsY, rowsZ; // workgroups of the pass that fills from lists
-  uint pad0;
+  uint cleared;             // entries that mark clears: as many as the record before had
 };
 
 // A chord between mark and fill.
@@ -249,9 +249,12 @@ GPGP_CONST uint kPaintedArguments = 0u;
 GPGP_CONST uint kCrowdedArguments = 4u;
 GPGP_CONST uint kRichArguments = 8u;
 GPGP_CONST uint kRichCrowdedArguments = 12u;
+GPGP_CONST uint kTilesAside = 4096u; // painted by the general shader beside the other tiles
+GPGP_CONST uint kClearGroups = 256u; // workgroups of mark that clear entries
 GPGP_CONST uint kMostSegments = 64u; // of a workgroup, a power of two
 GPGP_CONST uint kFirstBin = 16u;
-GPGP_CONST uint kBinHead = 2u; // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies
+GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:
+GPGP_CONST uint kBinGrouped = 2u; // 1: one of its paths may need the general shader
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
 
 GPGP_SHADER_END

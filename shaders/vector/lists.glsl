@@ -1,6 +1,7 @@
 // Where the lists of tiles lie behind the bins: a tile's list is how many paths there are and, for each, what it does
 // to the tile and which one it is; or else the tile's colour. With barriers bins have lists instead: there lies which
-// tiles take the general shader, and then the bins' lists of paths, the last one in painting order first.
+// tiles take the general shader, whether each tile does (split.comp), and then the bins' lists of paths, the last one
+// in painting order first.
 uint listRoom() { return (header.listWords - 1) / 2; }
 uint listOf(uint tile) { return kFirstBin + header.binCount * header.binWords + tile * header.listWords; }
 uint paintedTiles() { return listOf(header.tilesX * header.tilesY); }
@@ -8,7 +9,8 @@ uint paintedTiles() { return listOf(header.tilesX * header.tilesY); }
 uint crowdedTiles() { return paintedTiles() + header.tilesX * header.tilesY; }
 uint richTile(uint list, uint i) { return list + header.tilesX * header.tilesY - 1 - i; }
 uint richTiles() { return kFirstBin + header.binCount * header.binWords; }
-uint binLists() { return richTiles() + header.tilesX * header.tilesY; }
+uint tileKinds() { return richTiles() + header.tilesX * header.tilesY; }
+uint binLists() { return tileKinds() + header.tilesX * header.tilesY; }
 
 uint another(uint arguments) { // workgroup for the passes behind: in rows (canvas.glsl, groupIndex)
   const uint place = atomicAdd(bins[arguments + 3], 1);

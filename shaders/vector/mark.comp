@@ -5,11 +5,14 @@
 // turns over "inside" for all tiles right of where it meets the first sample row of a row of tiles. As outlines are
 // closed and all comparisons are made on rows and columns that neighbours agree on, that is exact.
 //
-// Chords that are to be filled are listed, and so are their rows of pixels.
+// Chords that are to be filled are listed, and so are their rows of pixels. Marking waits more than it writes, so the
+// first workgroups clear entries beside it; allot clears what more there are.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
+#define SEGMENT_GROUP (groupIndex() - kClearGroups)
 #include "segments.glsl"
 #if !SOFTWARE
+layout(set = 0, binding = 15, std430) writeonly buffer Entries { uvec4 entries[]; };
 #include "chords.glsl"
 #include "rows.glsl"
 shared uint taken, firstRow; // rows of the chords at hand: how many, where they lie in the list
@@ -50,6 +53,12 @@ void takeChord(Grid g, PlacedPath p, Chord c) {
 void main() { takeSegment(); }
 #else
 void main() {
+  if (groupIndex() < kClearGroups) {
+    const uint end = counters.cleared * (kEntryWords / 4);
+    for (uint i = groupIndex() * LANES + gl_LocalInvocationID.x; i < end; i += kClearGroups * LANES)
+      entries[i] = uvec4(0);
+    return;
+  }
   loadSegments();
   const Grid g = canvasGrid();
   const uint lane = gl_LocalInvocationID.x, total = chordTotal();

@@ -15,11 +15,17 @@ const uint kFewBins = 4; // more are dealt out to the workgroup
 shared uint wide[64], wideCount;
 shared uvec4 wideBins[64]; // left, top, right, bottom, exclusive
 
+const uint kGrouped = 0x80000000u; // beside a path's number: it may need the general shader (lists.glsl)
+
 // Every step-th bin of a row from x on, of every step-th row from y on.
-void setBins(uint path, uvec4 box, uint x, uint y, uint step) {
+void setBins(uint which, uvec4 box, uint x, uint y, uint step) {
+  const uint path = which & ~kGrouped;
   for (uint row = box.y + y; row < box.w; row += step)
-    for (uint column = box.x + x; column < box.z; column += step)
-      atomicOr(bins[bitsOf(row * header.binsX + column) + path / 32], 1u << (path & 31));
+    for (uint column = box.x + x; column < box.z; column += step) {
+      const uint bits = bitsOf(row * header.binsX + column);
+      atomicOr(bins[bits + path / 32], 1u << (path & 31));
+      if (which != path) bins[bits - kBinHead + kBinGrouped] = 1;
+    }
 }
 
 vec2 cornerOf(vec4 box, vec4 frame, uint corner) { // of the box, which lies in a frame
@@ -111,14 +117,15 @@ void main() {
     p.firstWord = count == 0 ? 0 : atomicAdd(counters.words, count);
     paths[i] = p;
     if (count != 0 && p.color.a > 0) {
+      const uint which = i | (p.group != 0 || (p.paint != 0 && item.perspective.w > 0) ? kGrouped : 0);
       const uint shift = header.binShift;
       const uvec4 box =
         uvec4(p.left >> shift, p.top >> shift, ((p.right - 1) >> shift) + 1, ((p.bottom - 1) >> shift) + 1);
       if ((box.z - box.x) * (box.w - box.y) <= kFewBins) {
-        setBins(i, box, 0, 0, 1);
+        setBins(which, box, 0, 0, 1);
       } else {
         const uint at = atomicAdd(wideCount, 1);
-        wide[at] = i;
+        wide[at] = which;
         wideBins[at] = box;
       }
     }

@@ -2,8 +2,10 @@
 // The fine level: the paths of a tile, front to back, over the samples of its pixels.
 //
 // A workgroup owns a tile, an invocation a pixel. The bin's paths are sifted, as many at a time, for those that touch
-// the tile; they wait in shared memory in painting order. Tiles that need the general shader are left to it, in a list
-// (kSplitRich). CROWDED: software devices' tiles whose own lists are full (sift.comp).
+// the tile; they wait in shared memory in painting order. Tiles that need the general shader are left to it
+// (split.comp). CROWDED: software devices' tiles whose own lists are full (sift.comp). ASIDE: other devices' general
+// shader puts pixels aside, so that its tiles are painted beside the others; KEPT: it puts them where they belong, and
+// paints tiles for which there was no room.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "composite.glsl"
@@ -21,12 +23,12 @@ shared uvec4 paints[kRoom]; // item, paint, layer, clip (paintOver)
 shared uvec2 paints[kRoom]; // item, paint
 #endif
 #endif
+#if ASIDE || KEPT
+layout(set = 0, binding = 29, std430) buffer Aside { vec4 aside[]; };
+#endif
 shared uint touching[2][kRoom / 32]; // of the paths at hand, in turn
 shared uint open[2];
 #define SPLIT (PAINTS && !RICH && !CROWDED) // records that need the general shader as well take the one for gradients
-#if SPLIT
-shared bool rich; // this tile is not for this shader
-#endif
 
 void main() {
   const uint lane = gl_LocalInvocationIndex;
@@ -44,10 +46,19 @@ void main() {
   if (groupIndex() >= bins[kRichArguments + 3]) return;
   const uint place = bins[richTiles() + groupIndex()];
   const uvec2 tile = uvec2(place % header.tilesX, place / header.tilesX);
+#if ASIDE
+  if (groupIndex() >= kTilesAside) return;
+#elif KEPT
+  if (groupIndex() < kTilesAside) {
+    storePixel(tile * kTileSize + inTile, aside[groupIndex() * kRoom + lane]);
+    return;
+  }
+#endif
 #else
   const uvec2 tile = gl_WorkGroupID.xy;
 #if SPLIT
-  if (lane == 0) rich = false;
+  const bool split = (header.flags & kSplitRich) != 0;
+  if (split && bins[tileKinds() + tile.y * header.tilesX + tile.x] == kRich) return;
 #endif
 #endif
   const uvec2 pixel = tile * kTileSize + inTile;
@@ -99,22 +110,12 @@ void main() {
         }
 #endif
 #if SPLIT
-        if (own != 0 && (p.group | p.paint) != 0 && (header.flags & kSplitRich) != 0) {
-          uint steps = 0;
-          const uint what = groupIn(p, tile, steps);
-          if (what == kHidden) own = 0;
-          if (what == kRich) rich = true;
-        }
+        uint steps = 0; // what only the general shader knows lies behind something opaque here
+        if (own != 0 && (p.group | p.paint) != 0 && split && groupIn(p, tile, steps) != kEven) own = 0;
 #endif
       }
       if (own != 0) atomicOr(touching[turn][lane / 32], 1u << (lane & 31));
       barrier();
-#if SPLIT
-      if (rich) {
-        if (lane == 0) bins[richTiles() + another(kRichArguments)] = tile.y * header.tilesX + tile.x;
-        return;
-      }
-#endif
       uint count = 0, place = 0;
       for (uint k = 0; k < kRoom / 32; ++k) {
         if (k == lane / 32) place = count + bitCount(touching[turn][k] & ((1u << (lane & 31)) - 1));
@@ -152,5 +153,10 @@ void main() {
       turn ^= 1;
     }
   }
-  writePixel(pixel);
+  finishPixel();
+#if ASIDE
+  aside[groupIndex() * kRoom + lane] = sum;
+#else
+  storePixel(pixel, sum);
+#endif
 }

@@ -43,6 +43,7 @@ void main() {
   const uint own = listOf(tile);
   const uint count = bins[own];
   for (uint k = 0; k < count && pixelOpen(); ++k) paintPath(bins[own + 1 + k * 2], bins[own + 2 + k * 2], at, pixel);
-  writePixel(pixel);
+  finishPixel();
+  storePixel(pixel, sum);
 }
 #endif

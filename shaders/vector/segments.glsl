@@ -3,6 +3,9 @@
 #ifndef LANES
 #define LANES 64
 #endif
+#ifndef SEGMENT_GROUP
+#define SEGMENT_GROUP groupIndex()
+#endif
 layout(local_size_x = LANES) in;
 uint itemOf(uint segment) { // the last one that begins at or before it
   uint low = 0, high = header.itemCount;
@@ -59,7 +62,7 @@ shared uint firstChord[kMostSegments + 1];
 void loadSegments() {
   const uint lane = gl_LocalInvocationID.x;
   if (lane < header.groupSegments) {
-    const uint i = groupIndex() * header.groupSegments + lane;
+    const uint i = SEGMENT_GROUP * header.groupSegments + lane;
     uint count = 0;
     if (i < header.segmentCount) {
       const uint low = itemOf(i);

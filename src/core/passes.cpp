@@ -69,6 +69,7 @@ void PassList::finish(VkDeviceSize alignment) {
   std::pmr::vector<uint8_t> touched(resources.size(), 0, resources.get_allocator().resource()); // 1 read, 2 written
   for (Pass& pass : passes) {
     for (uint32_t i = 0; i < pass.useCount; ++i) {
+      resources[pass.uses[i].resource].written |= writes(pass.uses[i].kind);
       const uint8_t before = touched[pass.uses[i].resource];
       if (!pass.beside && ((before & 2) || (before && writes(pass.uses[i].kind)))) pass.barrierBefore = true;
     }

@@ -31,6 +31,7 @@ struct Resource {
   ResourceKind kind;
   VkDeviceSize bytes = 0; ///< scratch, constants and uniforms
   bool optional = false;  ///< buffer, image, texture: a record may leave it out; an unused range is bound instead
+  bool written = false;   ///< by a pass (finish)
 };
 
 constexpr VkDescriptorType descriptorType(ResourceKind kind) {

@@ -162,7 +162,8 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i,      0, 1,
                                descriptorType(resource.kind),          nullptr, &buffers[i], nullptr};
     // What a record leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
-    buffers[i] = {constants_.handle(), 0, std::clamp<VkDeviceSize>(passes_.constantsBytes, 16, 256)};
+    buffers[i] = {constants_.handle(), resource.written ? unusedOffset_ : 0,
+                  resource.written ? kUnusedBytes : std::clamp<VkDeviceSize>(passes_.constantsBytes, 16, kUnusedBytes)};
     if (resource.kind == ResourceKind::image) {
       if (!binding.image || !binding.image->view) continue; // passes that use it are skipped
       images[i] = {VK_NULL_HANDLE, binding.image->view, VK_IMAGE_LAYOUT_GENERAL};

@@ -143,9 +143,10 @@ Result<void> Worker::init(PassList passes, const DrawShaders* draw) {
     if (!scratch) return scratch.error();
     scratch_ = std::move(*scratch);
   }
-  auto constants = Buffer::create(
-      device, context.gpu(), service_, "constants", std::max<VkDeviceSize>(passes_.constantsBytes, 16) * slotCount,
-      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryPlace::constants);
+  unusedOffset_ = (std::max<VkDeviceSize>(passes_.constantsBytes, 16) * slotCount + 255) / 256 * 256;
+  auto constants =
+      Buffer::create(device, context.gpu(), service_, "constants", unusedOffset_ + kUnusedBytes,
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryPlace::constants);
   if (!constants) return constants.error();
   constants_ = std::move(*constants);
   reportStride_ = (passes_.reportBytes + kStampBytes + 63) / 64 * 64;

@@ -138,6 +138,8 @@ private:
   std::atomic<bool> ready_{false};
   Buffer scratch_, constants_, reports_;
   VkDeviceSize reportStride_ = 0;
+  static constexpr VkDeviceSize kUnusedBytes = 256;
+  VkDeviceSize unusedOffset_ = 0; ///< behind the constants: what records leave out and passes could write
   std::pmr::vector<InFlight> slots_;
   std::pmr::vector<uint32_t> harvested_; // words of harvested reports, as many as queue_ has places
   std::pmr::vector<RawReport> queue_;    // ring of harvested reports

@@ -487,6 +487,39 @@ TEST_F(CanvasTest, GroupsFadeAsOne) {
   EXPECT_EQ(report.itemsGiven, 64u);
 }
 
+// More tiles than are painted beside those without groups (kTilesAside), in a pattern that does not repeat soon.
+TEST_F(CanvasTest, GroupsFadeOverAllOfALargeCanvas) {
+  constexpr uint32_t kWidth = 1040, kHeight = 536;
+  static_assert(kWidth / shader::kTileSize * (kHeight / shader::kTileSize) > 2 * shader::kTilesAside);
+  makeCanvas(1040);
+  const auto isSquare = [](uint32_t x, uint32_t y) { return (x / 8 * 7 + y / 8 * 13) % 31 * 11 % 31 < 14; };
+  TestPath back = rectanglePath(0, 0, kWidth, kHeight), squares;
+  back.color = {0, 0, 1, 1};
+  squares.color = {1, 0, 0, 1};
+  for (uint32_t y = 0; y < kHeight; y += 8)
+    for (uint32_t x = 0; x < kWidth; x += 8)
+      if (isSquare(x, y)) {
+        const float left = static_cast<float>(x), top = static_cast<float>(y);
+        squares.move(left, top);
+        squares.line(left + 8, top);
+        squares.line(left + 8, top + 8);
+        squares.line(left, top + 8);
+        squares.close();
+      }
+  std::vector<GpgpPath> paths = {back.view(), squares.view()};
+  paths[0].group = paths[1].group = 1;
+  const std::vector<Rgba> pixels = raster({place(makeDrawing(paths, {{0, 0.5f, nullptr, 0}}))}, kWidth, kHeight, 4);
+  uint32_t wrong = 0;
+  for (uint32_t y = 0; y < kHeight; ++y)
+    for (uint32_t x = 0; x < kWidth; ++x) {
+      const bool square = isSquare(x, y);
+      const Rgba& p = pixels[y * kWidth + x];
+      wrong += std::abs(p.r - (square ? 0.5f : 0)) > 0.001f || std::abs(p.b - (square ? 0 : 0.5f)) > 0.001f ||
+               p.g != 0 || std::abs(p.a - 0.5f) > 0.001f;
+    }
+  EXPECT_EQ(wrong, 0u);
+}
+
 TEST_F(CanvasTest, NineSlicesRepeat) {
   makeCanvas(128);
   // 8 x 8 texels of different colours within an atlas of 16 x 8; borders of 2, so that the middle is 4.

@@ -3,6 +3,9 @@
 
 #include "shaders/vector_allot.spv.h"
 #include "shaders/vector_allot_software.spv.h"
+#include "shaders/vector_aside_rich.spv.h"
+#include "shaders/vector_aside_rich_images.spv.h"
+#include "shaders/vector_aside_rich_one.spv.h"
 #include "shaders/vector_begin.spv.h"
 #include "shaders/vector_begin_software.spv.h"
 #include "shaders/vector_crowded0.spv.h"
@@ -67,6 +70,8 @@
 #include "shaders/vector_raster_rich_one1.spv.h"
 #include "shaders/vector_raster_rich_one2.spv.h"
 #include "shaders/vector_sift.spv.h"
+#include "shaders/vector_split.spv.h"
+#include "shaders/vector_split_one.spv.h"
 #include "shaders/vector_tiles0.spv.h"
 #include "shaders/vector_tiles1.spv.h"
 #include "shaders/vector_tiles2.spv.h"
@@ -109,9 +114,9 @@ using shader::SlotRecord;
 
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
-[[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28;
+[[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28, kAsideTiles = 29;
 // Workgroup counts and conditions of a record.
-enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRaster, kTiles, kSift, kBins };
+enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRaster, kTiles, kSift, kBins, kSplits };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
   kPlain = 0,
@@ -124,9 +129,14 @@ enum Conditions : uint32_t {
   kAny = 21,
   kOneDrawing = 24,
   kDrawings,
-  kProjective
+  kProjective,
+  kSplit,
+  kSplitOne,
+  kAside,
+  kAsideOne,
+  kAsideImages
 };
-static_assert(kProjective < core::kMaxConditions);
+static_assert(kAsideImages < core::kMaxConditions);
 
 uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
@@ -189,7 +199,7 @@ core::PassList Canvas::describe() const {
                 heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
-  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 2 : 1) + binLists();
+  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 2 : 2) + binLists();
   const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + lists) * 4});
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
@@ -206,7 +216,9 @@ core::PassList Canvas::describe() const {
       list.add({"chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * sizeof(shader::ChordRecord)});
   const auto rowList = list.add({"rows of chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * 4});
   const auto shapes = list.add({"shapes", scratch, shapeBytes});
-  assert(images == kFirstImage && chords == kChordList && shapes == kShapes);
+  const VkDeviceSize keptTiles = software_ ? 0 : std::min<VkDeviceSize>(tiles(), shader::kTilesAside);
+  const auto aside = list.add({"tiles painted aside", scratch, std::max<VkDeviceSize>(keptTiles * 64 * 16, 16)});
+  assert(images == kFirstImage && chords == kChordList && shapes == kShapes && aside == kAsideTiles);
   const auto useImages = [images](core::Pass& pass) {
     for (uint32_t i = 0; i < shader::kMaxImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
   };
@@ -246,8 +258,10 @@ core::PassList Canvas::describe() const {
   const std::array<Spirv, 3> mark =
       software_ ? std::array<Spirv, 3>{vector_mark_software_one, vector_mark_software, vector_mark_software_projective}
                 : std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective};
-  either({"mark", "mark, several drawings", "mark, projective"}, mark,
-         {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}}, kSegments);
+  either(
+      {"mark", "mark, several drawings", "mark, projective"}, mark,
+      {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}, {entries, write}},
+      kSegments);
   if (!software_) {
     core::Pass& pack = list.dispatch("pack", list.add(core::ShaderDesc{"pack", vector_pack}),
                                      {{params, read}, {masks, readWrite}, {counters, readWrite}}, kBins);
@@ -260,6 +274,14 @@ core::PassList Canvas::describe() const {
            {vector_fill_software_one, vector_fill_software, vector_fill_software_projective},
            {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments);
   } else { // from the lists, or, where these did not suffice, without them; allot says which
+    const auto split = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
+      core::Pass& pass =
+          dispatch(shader.name, shader, {{paths, read}, {words, read}, {masks, readWrite}, {counters, read}}, kSplits);
+      pass.condition = condition;
+      return pass;
+    };
+    split({"split, several drawings", vector_split}, kSplit);
+    split({"split", vector_split_one}, kSplitOne).beside = true;
     static constexpr const char* kFills[] = {"fill",
                                              "fill, several drawings",
                                              "fill, projective",
@@ -282,7 +304,7 @@ core::PassList Canvas::describe() const {
                                 counters, k < 3 ? offsetof(CanvasCounters, rowsX) : offsetof(CanvasCounters, fillX));
       for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
       pass.condition = kOneDrawing + k % 3;
-      pass.beside = k > 0; // the first one's barrier is all of theirs
+      pass.beside = true; // split's barrier, which is owed where that is left out, is all of theirs
     }
   }
   // By target: the view alone, rgba8, rgba16f.
@@ -292,10 +314,9 @@ core::PassList Canvas::describe() const {
   };
   const auto raster = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition) {
     for (uint32_t t = 0; t < 3; ++t) {
-      core::Pass& pass =
-          dispatch(names[t], {names[t], spirv[t]},
-                   {{paths, read}, {words, read}, {masks, readWrite}, {entries, read}, {counters, read}, {view, write}},
-                   kRaster);
+      core::Pass& pass = dispatch(
+          names[t], {names[t], spirv[t]},
+          {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}}, kRaster);
       if (condition == kImages || condition == kRichImages) useImages(pass);
       addTarget(pass, t, condition);
     }
@@ -361,23 +382,50 @@ core::PassList Canvas::describe() const {
             {vector_crowded_rich_images0, vector_crowded_rich_images1, vector_crowded_rich_images2}, kRichImages,
             shader::kRichCrowdedArguments);
   } else {
+    // The general shader's tiles are painted beside the others, and first, as there are few and each takes long. They
+    // are put aside, as two passes that write one image must not run beside each other.
+    const auto asideOf = [&](const core::ShaderDesc& shader, uint32_t condition) {
+      core::Pass& pass = list.dispatchIndirect(shader.name, list.add(shader),
+                                               {{params, read},
+                                                {shapes, read},
+                                                {paths, read},
+                                                {words, read},
+                                                {masks, read},
+                                                {entries, read},
+                                                {counters, read},
+                                                {aside, write}},
+                                               masks, shader::kRichArguments * 4);
+      for (core::ResourceIndex i = 0; i < (condition == kAsideOne ? 1 : kMaxSlots); ++i)
+        pass.uses[pass.useCount++] = {i, read};
+      if (condition == kAsideImages) useImages(pass);
+      pass.condition = condition;
+    };
+    asideOf({"aside, several drawings", vector_aside_rich}, kAside);
+    const size_t first = list.passes.size(); // the pass before has the barrier of all up to `kept`
+    asideOf({"aside", vector_aside_rich_one}, kAsideOne);
+    asideOf({"aside, images", vector_aside_rich_images}, kAsideImages);
     raster({"raster", "raster rgba8", "raster rgba16f"}, {vector_raster0, vector_raster1, vector_raster2}, kPlain);
     raster({"raster gradients, several drawings", "raster gradients rgba8, several drawings",
             "raster gradients rgba16f, several drawings"},
            {vector_raster_paints0, vector_raster_paints1, vector_raster_paints2}, kPaints);
     raster({"raster gradients", "raster gradients rgba8", "raster gradients rgba16f"},
            {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
-    tilesOf(
-        {"raster all, several drawings", "raster all rgba8, several drawings", "raster all rgba16f, several drawings"},
-        {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich, shader::kRichArguments);
-    tilesOf({"raster all", "raster all rgba8", "raster all rgba16f"},
-            {vector_raster_rich_one0, vector_raster_rich_one1, vector_raster_rich_one2}, kRichOne,
-            shader::kRichArguments);
     raster({"raster images", "raster images rgba8", "raster images rgba16f"},
            {vector_raster_images0, vector_raster_images1, vector_raster_images2}, kImages);
-    tilesOf({"raster all, images", "raster all, images rgba8", "raster all, images rgba16f"},
-            {vector_raster_rich_images0, vector_raster_rich_images1, vector_raster_rich_images2}, kRichImages,
-            shader::kRichArguments);
+    for (size_t i = first; i < list.passes.size(); ++i) list.passes[i].beside = true;
+    const auto kept = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition) {
+      tilesOf(names, spirv, condition, shader::kRichArguments);
+      for (size_t i = list.passes.size() - 3; i < list.passes.size(); ++i) {
+        core::Pass& pass = list.passes[i];
+        pass.uses[pass.useCount++] = {aside, read};
+      }
+    };
+    kept({"raster all, several drawings", "raster all rgba8, several drawings", "raster all rgba16f, several drawings"},
+         {vector_raster_rich0, vector_raster_rich1, vector_raster_rich2}, kRich);
+    kept({"raster all", "raster all rgba8", "raster all rgba16f"},
+         {vector_raster_rich_one0, vector_raster_rich_one1, vector_raster_rich_one2}, kRichOne);
+    kept({"raster all, images", "raster all, images rgba8", "raster all, images rgba16f"},
+         {vector_raster_rich_images0, vector_raster_rich_images1, vector_raster_rich_images2}, kRichImages);
   }
   list.report = counters;
   list.reportBytes = sizeof(CanvasCounters);
@@ -510,7 +558,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                 : several                                          ? kPaints
                                                                    : kPaintsOne) +
                image] = true;
-  if (rich) r.conditions[(images ? kRichImages : several || software_ ? kRich : kRichOne) + image] = true;
+  const bool one = !several && !software_; // software devices have one general shader
+  if (rich) {
+    r.conditions[(images ? kRichImages : one ? kRichOne : kRich) + image] = true;
+    r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
+    r.conditions[one ? kSplitOne : kSplit] = true;
+  }
   r.conditions[kAny + image] = true;
   // Shaders name all images, so those that are not there are bound to the first one.
   for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
@@ -523,7 +576,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                           ? divide(std::max<uint64_t>({header.itemCount, header.shapeTables / 16, bins / 16, 1}), 64)
                           : divide(maxWords_, 64 * 8),
                       1, 1};
-  r.groups[kSegments] = rows(divide(header.segmentCount, perGroup));
+  r.groups[kSegments] = rows((software_ ? 0 : shader::kClearGroups) + divide(header.segmentCount, perGroup));
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
   r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
@@ -531,6 +584,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kBins] = rows(header.binCount);
   r.groups[kSift] = {divide(uint64_t(header.binCount) << header.binShift, 64), 1, 1};
   r.groups[kRaster] = {header.tilesX, header.tilesY, 1};
+  constexpr uint32_t kSplitSide = 1u << shader::kMinBinShift;
+  r.groups[kSplits] = {divide(header.tilesX, kSplitSide), divide(header.tilesY, kSplitSide), 1};
   if (auto ok = check(r); !ok) return ok;
   if (auto ok = record(r); !ok) return ok;
   if (view) {
