@@ -237,8 +237,27 @@ void emit(bool own, uint place, uint count, uint first, Shape s) {
   writeInstance(target, words);
 }
 
-/// The shapes of a round that nobody took, once all workgroups have run out of steps: the last one leaves them to the
-/// next round.
+/// All has been derived, or nothing more can be: says how many instances there are. What workgroups have counted was
+/// answered before they said that they have finished.
+void reportInstances() {
+  if (round + 1 == record.rounds) {
+    const uint left = atomicAdd(rounds[round + 1].shapes, 0);
+    atomicMax(state.peakShapes, left);
+    atomicAdd(state.droppedShapes, left);
+  }
+  const uint terminals = atomicAdd(state.terminals, 0);
+  const uint written = min(terminals, record.instanceCapacity);
+  state.instancesWritten = written;
+  state.exceeded = written < terminals ? 1 : 0;
+  if (record.writeCount != 0) instanceCount = written;
+  if (record.drawCapacity > 0 && graphWords[kHeaderBuckets] > 0) {
+    draws[1] = written;
+    draws[4] = 0;
+  }
+}
+
+/// The last workgroup of a round leaves the shapes to the next one that nobody took, as all have run out of steps; and
+/// if nothing is left, the derivation is over.
 void leaveRest(uint count) {
   const uint lane = laneIndex();
   if (stackSize > 0) giveAway();
@@ -261,6 +280,9 @@ void leaveRest(uint count) {
     push(lane < rest, lane, rest, s);
   }
   if (stackSize > 0) giveAway();
+  if (lane == 0 && record.reports != 0 &&
+      (round + 1 == record.rounds || atomicAdd(rounds[round + 1].shapes, 0) == 0))
+    reportInstances();
 }
 
 void main() {
@@ -278,6 +300,7 @@ void main() {
       if (needed > count) atomicAdd(state.droppedShapes, needed - count);
     }
   }
+  if (count == 0) return; // the second round is recorded before anybody knows
   // Few at a time, so that work comes out even. But not fewer than all could take at once, and more of axioms, which
   // take a step of their own, and of what queries: invocations that idle in small batches cost more.
 #ifdef GPGP_COLLIDERS

@@ -60,6 +60,7 @@ struct SpawnConstants {
   uint maxColliders;     // that are held
   uint cellMask;         // cells that colliders are linked in, a power of two, less 1
   uint balances;         // 1: workgroups give work away as well where most have finished
+  uint reports;          // 1: the last workgroup to derive says what was written, and place is left out
 };
 
 // What becomes of terminals.

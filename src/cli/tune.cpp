@@ -51,7 +51,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   text << "best: " << milliseconds(best.milliseconds) << " by " << schedule.name;
   if (best.fit.groupSize)
     text << ", " << best.fit.maxGroups << " workgroups of " << best.fit.groupSize << ", work is given away below "
-         << best.fit.spread << " shapes";
+         << best.fit.spread << " shapes" << (best.fit.balances ? " and to idle workgroups" : "");
   text << "; " << tuned.candidates << " candidates in " << std::round(tuned.seconds * 10) / 10 << " s";
   if (tuned.leftOut) text << "; " << tuned.leftOut << " were left out for lack of time";
   text << "\nkept: " << out.string() << '\n';
@@ -74,6 +74,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
                     {"groups", best.fit.maxGroups},
                     {"stack_shapes", best.fit.stackShapes},
                     {"spread", best.fit.spread},
+                    {"balances", best.fit.balances == 1},
                     {"rounds", best.rounds}}},
                   {"candidates", tuned.candidates},
                   {"left_out", tuned.leftOut},

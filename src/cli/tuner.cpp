@@ -12,23 +12,27 @@ namespace {
 
 /// Sizes and counts of workgroups that are worth a try. Stacks share what a spawner has by default; no two of them have
 /// the same pipeline.
-std::vector<spawn::Fit> fits(bool software) {
+std::vector<spawn::Fit> fits(bool software, bool balances) {
   const uint32_t spread = software ? 512 : 4096;
   std::vector<spawn::Fit> all;
   for (const uint32_t groupSize : software ? std::vector<uint32_t>{32, 64} : std::vector<uint32_t>{32, 64, 128})
     for (const uint32_t groups : software ? std::vector<uint32_t>{16} : std::vector<uint32_t>{1024, 2048, 4096}) {
       const uint32_t stack = std::min(524288 / groups, 1024u);
-      if (stack >= 2 * groupSize) all.push_back({groupSize, groups, stack, spread, 0});
+      if (stack >= 2 * groupSize) all.push_back({groupSize, groups, stack, spread, 0, balances});
     }
   return all;
 }
 /// The same pipeline with other numbers.
 std::vector<spawn::Fit> variants(const spawn::Fit& fit, bool software) {
   std::vector<spawn::Fit> all;
-  for (const uint32_t spread : software ? std::vector<uint32_t>{64} : std::vector<uint32_t>{256, 1024, 8192, 32768}) {
-    all.push_back(fit);
-    all.back().spread = spread;
-  }
+  for (const uint32_t spread :
+       software ? std::vector<uint32_t>{64, 512} : std::vector<uint32_t>{256, 1024, 4096, 16384})
+    for (const uint32_t balances : {0, 1}) {
+      if (spread == fit.spread && balances == fit.balances) continue;
+      all.push_back(fit);
+      all.back().spread = spread;
+      all.back().balances = balances;
+    }
   return all;
 }
 
@@ -66,7 +70,7 @@ public:
       // Two schedules are enough for the numbers: what is behind them now hardly wins by them.
       std::vector<Candidate> sizes;
       for (size_t i = 0; i < std::min<size_t>(2, all.size()); ++i)
-        for (const spawn::Fit& fit : fits(software_)) sizes.push_back({all[i].schedule, fit});
+        for (const spawn::Fit& fit : fits(software_, isUneven(grammar_.graph))) sizes.push_back({all[i].schedule, fit});
       addAll(all, measured(std::move(sizes), "sizes", kForSizes));
       if (const Candidate& best = all.front(); best.fit.groupSize) {
         std::vector<Candidate> spreads;

@@ -77,6 +77,11 @@ void PassList::finish(VkDeviceSize alignment) {
     for (uint32_t i = 0; i < pass.useCount; ++i)
       touched[pass.uses[i].resource] |= writes(pass.uses[i].kind) ? uint8_t(3) : uint8_t(1);
   }
+  uint32_t kinds = 0;
+  for (auto pass = passes.rbegin(); pass != passes.rend(); ++pass) {
+    pass->kindsAhead = kinds |= 1u << static_cast<uint32_t>(pass->kind);
+    if (pass->barrierBefore) kinds = 0;
+  }
 }
 
 } // namespace gpgp::core

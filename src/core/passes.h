@@ -78,6 +78,8 @@ struct Pass {
   bool beside = false;             ///< needs no barrier after the pass before: what both write, they add to, or
                                    ///< only one of them is recorded
   bool barrierBefore = false;      ///< worked out by finish()
+  uint32_t kindsAhead = 0;         ///< worked out by finish(): bits by PassKind, of this pass and those behind it up to
+                                   ///< the next barrier
 };
 
 struct PassList {

@@ -11,6 +11,39 @@ constexpr VkPipelineStageFlags kWorkStages =
 constexpr VkAccessFlags kWorkWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kWorkReads =
     VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
+
+/// A barrier between passes, from and to kinds of them (bits by PassKind): stages and caches that none of them uses
+/// would cost microseconds on some devices.
+void passBarrier(const DeviceTable& vk, VkCommandBuffer commandBuffer, uint32_t from, uint32_t to) {
+  const auto has = [](uint32_t kinds, PassKind kind) { return (kinds >> static_cast<uint32_t>(kind) & 1) != 0; };
+  const auto computes = [&](uint32_t kinds) {
+    return has(kinds, PassKind::dispatch) || has(kinds, PassKind::dispatchIndirect);
+  };
+  VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+  VkPipelineStageFlags source = 0, target = 0;
+  if (computes(from)) {
+    source |= VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+    memory.srcAccessMask |= VK_ACCESS_SHADER_WRITE_BIT;
+  }
+  if (has(from, PassKind::fill)) {
+    source |= VK_PIPELINE_STAGE_TRANSFER_BIT;
+    memory.srcAccessMask |= VK_ACCESS_TRANSFER_WRITE_BIT;
+  }
+  if (computes(to)) {
+    target |= VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+    memory.dstAccessMask |= VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+  }
+  if (has(to, PassKind::dispatchIndirect)) {
+    target |= VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
+    memory.dstAccessMask |= VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
+  }
+  if (has(to, PassKind::fill)) {
+    target |= VK_PIPELINE_STAGE_TRANSFER_BIT;
+    memory.dstAccessMask |= VK_ACCESS_TRANSFER_WRITE_BIT;
+  }
+  vk.CmdPipelineBarrier(commandBuffer, source, target, 0, 1, &memory, 0, nullptr, 0, nullptr);
+}
+
 constexpr VkPipelineStageFlags kGraphicsStages =
     VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
     VK_PIPELINE_STAGE_TESSELLATION_CONTROL_SHADER_BIT | VK_PIPELINE_STAGE_TESSELLATION_EVALUATION_SHADER_BIT |
@@ -292,16 +325,18 @@ Result<void> Worker::record(const Record& record) {
     vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 1, 1, &textureSets_[slot], 0, nullptr);
   VkPipeline bound = VK_NULL_HANDLE;
   bool barrier = false; // owed by a pass that was left out, or needed by this one
+  uint32_t since = 0;   // kinds of the passes since the last barrier
   for (const Pass& pass : passes_.passes) {
     barrier = barrier || pass.barrierBefore;
     const bool wanted =
         pass.level < record.levels && (pass.condition == UINT32_MAX || record.conditions[pass.condition]);
     if (wanted && barrier) {
       barrier = false;
-      const VkMemoryBarrier work{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, kWorkReads | kWorkWrites};
-      vk.CmdPipelineBarrier(cmd, kWorkStages, kWorkStages, 0, 1, &work, 0, nullptr, 0, nullptr);
+      if (since) passBarrier(vk, cmd, since, pass.kindsAhead);
+      since = 0;
     }
     if (wanted) {
+      since |= 1u << static_cast<uint32_t>(pass.kind);
       beginLabel(cmd, pass.name);
       if (pass.kind == PassKind::fill) {
         const auto [buffer, offset] = place(pass.target);

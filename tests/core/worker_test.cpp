@@ -179,10 +179,17 @@ TEST(PassList, PlacesBarriersOnlyWhereDataFlows) {
   list.dispatch("read both", 0, {{a, read}, {b, read}}, 0); // after writes
   list.dispatch("read again", 0, {{a, read}}, 0);           // reads beside reads
   list.dispatch("overwrite", 0, {{a, write}}, 0);           // after a read
+  list.fill("clear", b, 0);                                 // b was read before that barrier
+  list.dispatchIndirect("indirect", 0, {{b, read}}, a, 0);
   list.finish(256);
   std::vector<bool> barriers;
   for (const core::Pass& pass : list.passes) barriers.push_back(pass.barrierBefore);
-  EXPECT_EQ(barriers, (std::vector<bool>{false, false, true, false, true}));
+  EXPECT_EQ(barriers, (std::vector<bool>{false, false, true, false, true, false, true}));
+  const uint32_t direct = 1u << uint32_t(core::PassKind::dispatch), fill = 1u << uint32_t(core::PassKind::fill);
+  const uint32_t counted = 1u << uint32_t(core::PassKind::dispatchIndirect);
+  std::vector<uint32_t> kinds;
+  for (const core::Pass& pass : list.passes) kinds.push_back(pass.kindsAhead);
+  EXPECT_EQ(kinds, (std::vector<uint32_t>{direct, direct, direct, direct, direct | fill, fill, counted}));
   EXPECT_EQ(list.scratchOffsets[a], 0u);
   EXPECT_EQ(list.scratchOffsets[b], 256u);
   EXPECT_EQ(list.scratchBytes, 768u);

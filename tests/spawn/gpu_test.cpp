@@ -342,7 +342,7 @@ TEST_F(SpawnTest, WorkgroupsOfASubgroupEqualTheEvaluator) {
     for (const uint32_t size : {8u, 32u}) {
       spawn::KernelInfo info;
       info.subgroups = subgroups;
-      info.fit = {size, 16, 6 * size, 64, 0}; // stacks that flow over
+      info.fit = {size, 16, 6 * size, 64, 0, subgroups ? 1u : 0u}; // stacks that flow over
       auto all = words;
       const auto kernel =
           spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
@@ -370,7 +370,7 @@ TEST_F(SpawnTest, DamagedKernelsAreRefused) {
   };
   const std::string begin = "gpgpCreateGrammar: kernel 0 of the baked grammar: ";
   EXPECT_EQ(refused([&](auto& w) { w[graph] ^= 1; }), begin + "what follows is no kernel");
-  EXPECT_EQ(refused([&](auto& w) { w[graph + 1] = 9; }), begin + "it has a format that this library does not read");
+  EXPECT_EQ(refused([&](auto& w) { ++w[graph + 1]; }), begin + "it has a format that this library does not read");
   EXPECT_EQ(refused([&](auto& w) { w[graph + 40] ^= 1; }), begin + "its checksum is wrong");
   EXPECT_EQ(refused([&](auto& w) { w.resize(graph + 30); }), begin + "it was cut");
   EXPECT_EQ(refused([&](auto& w) {
@@ -379,6 +379,14 @@ TEST_F(SpawnTest, DamagedKernelsAreRefused) {
               w.insert(w.begin(), other.begin(), other.end());
             }),
             begin + "it was made for another graph");
+  const spawn::KernelInfo strange{.fit = {32, 16, 128, 64, 0, 2}};
+  EXPECT_EQ(refused([&](auto& w) {
+              w.resize(graph);
+              const auto kernel = spawn::serialize(strange, std::vector<uint32_t>{0, 0x07230203},
+                                                   w[shader::kHeaderChecksum], std::pmr::new_delete_resource());
+              w.insert(w.end(), kernel.begin(), kernel.end());
+            }),
+            begin + "its schedule has numbers that cannot run");
 }
 
 TEST_F(SpawnTest, AnyOrderOfAxiomsGivesTheSame) {

@@ -20,6 +20,17 @@ spawn::Graph graphOf(const std::string& text) {
   if (diagnostics.hasErrors()) throw std::runtime_error("the grammar has errors");
   return graph;
 }
+
+TEST(Schedules, UnevenDerivationsAreKnownByTheirGraph) {
+  const auto uneven = [](const char* rules) {
+    return isUneven(graphOf(std::string("axiom Box A; terminal T U (1, 0);\n") + rules));
+  };
+  EXPECT_TRUE(uneven("A = RandomRule(ShapeSeed()) { 1: T | 2: B }; B = Repeat(X, 0.1, ADJUST_TO_FILL) U;"));
+  EXPECT_FALSE(uneven("A = RandomRule(ShapeSeed()) { 1: T | 2: U };")); // one for one
+  EXPECT_FALSE(
+      uneven("A = Repeat(X, 0.1, ADJUST_TO_FILL) SubDiv(Y) { 1: T | -1: U };")); // alike for all axioms of a size
+}
+
 TEST(Schedules, RootsWaitButForTerminals) {
   for (uint32_t seed = 0; seed < 300; ++seed) {
     const spawn::Graph graph = graphOf(randomGrammar(seed));

@@ -98,6 +98,17 @@ inline bool isContext(uint32_t op) { return op == shader::kOpCollider || op == s
 /// Whether an operator makes several shapes of one, not only could.
 inline bool multiplies(const Node& node) { return node.op >= shader::kOpCompSplit && !node.filter; }
 
+/// Whether axioms grow into very different numbers of shapes: chance chooses among successors, and lengths say how many
+/// children there are.
+inline bool isUneven(const Graph& graph) {
+  bool draws = false, repeats = false;
+  for (const Node& node : graph.nodes) {
+    draws = draws || node.op == shader::kOpRandomRule;
+    repeats = repeats || node.op == shader::kOpRepeat;
+  }
+  return draws && repeats;
+}
+
 const char* operatorName(uint32_t op);
 const char* shapeName(uint32_t shape);
 

@@ -18,7 +18,8 @@ struct Fit {
   uint32_t maxGroups = 0;   ///< workgroups of a round
   uint32_t stackShapes = 0; ///< of a workgroup: on its stack, and a batch of parents
   uint32_t spread = 0;      ///< shapes that a round should at least begin with
-  uint32_t rounds = 0; ///< that are recorded for the number of axioms it was tuned for; 0: all that the spawner may
+  uint32_t rounds = 0;   ///< that are recorded for the number of axioms it was tuned for; 0: all that the spawner may
+  uint32_t balances = 0; ///< 1: work is given away as well where most workgroups have finished
 
   bool operator==(const Fit&) const = default;
 };

@@ -42,9 +42,10 @@ enum : core::ResourceIndex {
 };
 
 // Workgroup counts of a record.
-constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kLinkGroups = 2, kPartGroups = 3, kExpandGroups = 4;
+constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kLinkGroups = 2, kPartGroups = 3, kExpandGroups = 4,
+                   kRoundGroups = 5;
 // Conditions of a record; kPhases and on: there are more phases than 1, 2 ...
-constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2, kColliding = 3, kExpanded = 4, kPhases = 5;
+constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2, kColliding = 3, kExpanded = 4, kPlaced = 5, kPhases = 6;
 
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
@@ -57,15 +58,16 @@ constexpr uint32_t kSharedBytesEach = 16;
 constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 4,
                    kSoftwareRounds = 32;
 
-/// The interpreter's fit to a kind of device, and what no schedule changes.
+/// What fits a kind of device.
 struct Limits {
-  Fit fit;
+  Fit fit;               // of the interpreter, and of kernels that name none
+  Fit uneven;            // of kernels whose derivations are uneven (isUneven): more at work on what is left at the end
   uint32_t steps;        // of a workgroup in a round
   uint32_t expandGroups; // workgroups at most
-  bool balances;         // rounds are cheap enough to even out work
 };
 /// Software devices end a shader's loops silently after 65 535 iterations in all, so workgroups give up early there.
-constexpr Limits kHardware{{32, 2048, 256, 4096}, 16384, 2048, true}, kSoftware{{64, 16, 1024, 512}, 256, 64, false};
+constexpr Limits kHardware{{32, 2048, 256, 4096}, {128, 1024, 512, 4096, 0, 1}, 16384, 2048},
+    kSoftware{{64, 16, 1024, 512}, {64, 16, 1024, 512}, 256, 64};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
 
 /// Queries of an invocation that look at every collider stay below that many iterations.
@@ -170,9 +172,10 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.fill("clear counters", kCounters, 0);
   list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
   if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
-  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write},     {kDraws, read},
+  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write},     {kDraws, readWrite},
                      {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},       {kCounters, readWrite},
-                     {kBuckets, readWrite},   {kConstants, read},   {kColliders, readWrite}, {kColliderCells, read}};
+                     {kBuckets, readWrite},   {kConstants, read},   {kColliders, readWrite}, {kColliderCells, read},
+                     {kCount, write}};
   for (uint32_t phase = 0; phase < phases; ++phase) {
     const uint32_t first = phase * spawner->phaseStride();
     if (phase == 0)
@@ -187,8 +190,11 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                     kLinkGroups, {first, first - spawner->phaseStride()})
           .condition = kPhases + phase - 1;
     for (uint32_t round = phase ? 0 : 1; round < spawner->rounds_; ++round) {
-      core::Pass& pass = list.dispatchIndirect("derive", derive, uses, kCounters, roundAt(first + round),
-                                               {first + round, phase, first});
+      // Where there is work for a second round, it is for all; those behind it are mostly empty.
+      const std::initializer_list<uint32_t> pushed = {first + round, phase, first};
+      core::Pass& pass = first + round == 1
+                             ? list.dispatch("derive", derive, uses, kRoundGroups, pushed)
+                             : list.dispatchIndirect("derive", derive, uses, kCounters, roundAt(first + round), pushed);
       pass.level = round;
       if (phase) pass.condition = kPhases + phase - 1;
     }
@@ -247,7 +253,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                  {kConstants, read},
                  {kNeeded, write},
                  {kOrder, read}},
-                kOneGroup);
+                kOneGroup)
+      .condition = kPlaced;
   if (!vertices) {
     if (ordered) orderRecords();
     const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, {ordered}, 1});
@@ -277,7 +284,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "grammar has Collider or IfCollides, and maxColliders of the "
                                                         "spawner is 0");
   const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount);
-  const Fit& fit = kernel ? kernel->info.fit : limits.fit;
+  Fit fit = kernel ? kernel->info.fit : limits.fit;
+  if (!kernel && isUneven(grammar.graph)) fit.balances = limits.uneven.balances;
   // Rounds were counted for a number of axioms; for more of them, or far fewer, nothing is known.
   const bool counted = fit.rounds && (!kernel || kernel->info.axioms == 0 ||
                                       (info.axiomCount <= kernel->info.axioms &&
@@ -302,7 +310,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.maxGroups = maxGroups;
   constants.maxDepth = maxDepth_;
   constants.spread = fit.spread;
-  constants.balances = limits.balances;
+  constants.balances = fit.balances;
+  constants.reports = info.axiomCount && phases == 1 && !vertices() && !counts && !sorted && !inOrder && !regions;
   constants.steps = limits.steps;
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
@@ -341,6 +350,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kOneGroup] = {1, 1, 1};
   record.groups[kPartGroups] = {shader::kOrderParts, 1, 1};
   record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
+  record.groups[kRoundGroups] = {maxGroups, 1, 1};
   record.groups[kLinkGroups] = {std::clamp(maxColliders_ / (4 * shader::kSpawnGroupSize), 1u, 256u), 1, 1};
   record.groups[kExpandGroups] = {std::min((maxTerminals_ - 1) / shader::kSpawnGroupSize + 1, limits.expandGroups), 1,
                                   1};
@@ -348,6 +358,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.conditions[kExpanded] = vertices() && !counts;
   record.conditions[kOrdered] = inOrder;
   record.conditions[kBucketed] = sorted || regions || counts || vertices();
+  record.conditions[kPlaced] = !constants.reports;
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
   record.levels = rounds;
@@ -368,7 +379,7 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
   for (const Kernel& kernel : grammar.kernels) {
     KernelInfo info = kernel.info;
     if (!info.fit.groupSize) {
-      info.fit = limitsOf(context.device).fit;
+      info.fit = isUneven(grammar.graph) ? limitsOf(context.device).uneven : limitsOf(context.device).fit;
       info.fit.rounds = kernel.info.fit.rounds;
     }
     if (grammar.readyCount() == Grammar::kMaxReady) break;
