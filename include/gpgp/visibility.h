@@ -39,7 +39,7 @@ typedef struct GpgpSamplerCreateInfo {
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel and camera
                                      (conservative: 56) */
-  uint32_t maxCameras;          /**< of one record, at most 32; 0: 1 */
+  uint32_t maxCameras;          /**< of one record, at most 128; 0: 1 */
   uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 48 bytes each */
   uint32_t maxTriangles;        /**< of one record, all draws and cameras together; 0: 4194304. What is beyond is not
                                      sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle */

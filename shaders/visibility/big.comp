@@ -14,15 +14,10 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 
 shared uint blockCount;
 shared ivec2 blockCorner[64];
+shared ivec3 blockEdges[64];
 shared uint groupPairs;
 shared uint firstPair;
 shared bool groupSeen;
-
-/// Whether a block of 8 x 8 pixels may hold points inside an edge.
-bool blockInside(ivec2 u, ivec2 slope, ivec2 corner) {
-  ivec2 best = ivec2(corner.x * 256 + (slope.x > 0 ? 2047 : 0), corner.y * 256 + (slope.y > 0 ? 2047 : 0));
-  return insideWide(u, slope, best);
-}
 
 void main() {
   uint count = min(counters.bigCount, params.maxBig);
@@ -39,6 +34,9 @@ void main() {
     if (seen != (kPhase == 1u)) continue;
     ScreenTriangle t = triangleOf(c);
     bool compact = isCompact(t);
+    ivec2 s0 = edgeSlope(t.p1, t.p2);
+    ivec2 s1 = edgeSlope(t.p2, t.p0);
+    ivec2 s2 = edgeSlope(t.p0, t.p1);
     ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(place >> 24u));
     ivec2 inBlock = ivec2(int(gl_LocalInvocationIndex & 7u), int(gl_LocalInvocationIndex >> 3u));
     uint columns = uint(bounds.z - bounds.x + 7) / 8u;
@@ -52,16 +50,23 @@ void main() {
       uint block = first + gl_LocalInvocationIndex;
       if (block < blocks) {
         ivec2 corner = bounds.xy + 8 * ivec2(int(block % columns), int(block / columns));
-        if (blockInside(t.p1, edgeSlope(t.p1, t.p2), corner) && blockInside(t.p2, edgeSlope(t.p2, t.p0), corner) &&
-            blockInside(t.p0, edgeSlope(t.p0, t.p1), corner))
-          blockCorner[atomicAdd(blockCount, 1u)] = corner;
+        ivec3 edges = ivec3(innermostBlock(t.p1, s0, corner), innermostBlock(t.p2, s1, corner),
+                            innermostBlock(t.p0, s2, corner));
+        if (!blockOutside(edges.x, s0, 8) && !blockOutside(edges.y, s1, 8) && !blockOutside(edges.z, s2, 8)) {
+          uint place = atomicAdd(blockCount, 1u);
+          blockCorner[place] = corner;
+          blockEdges[place] = edges;
+        }
       }
       barrier();
       uint touched = blockCount;
+      ivec3 toPixel = ivec3(s0.x, s1.x, s2.x) * inBlock.x + ivec3(s0.y, s1.y, s2.y) * inBlock.y;
       uvec2 mask = uvec2(0u); // of the blocks in which this invocation's pixel is entered
       for (uint i = 0u; i < touched; ++i) {
+        ivec3 edges = blockEdges[i] + toPixel;
+        if ((edges.x | edges.y | edges.z) < 0) continue;
         ivec2 pixel = blockCorner[i] + inBlock;
-        if (pixel.x >= bounds.z || pixel.y >= bounds.w || !isWanted(t, compact, pixel, seen)) continue;
+        if (pixel.x >= bounds.z || pixel.y >= bounds.w || !isWanted(t, compact, true, pixel, seen)) continue;
         if (i < 32u) mask.x |= 1u << i;
         else mask.y |= 1u << (i - 32u);
       }

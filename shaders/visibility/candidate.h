@@ -42,6 +42,17 @@ GPGP_FN bool touchesWide(ScreenTriangle t, ivec2 pixel) {
          insideWide(t.p0, s2, innermost(s2, pixel));
 }
 
+/// The same for pixels of a block of up to 16 x 16 that starts at `first`: pixel (i, j) of it has points inside an edge
+/// exactly if innermostBlock + slope.x * i + slope.y * j >= 0.
+GPGP_FN int innermostBlock(ivec2 u, ivec2 slope, ivec2 first) {
+  Grid grid;
+  grid.pixels = ivec2(0, 0);
+  grid.shift = 8;
+  grid.offset = innermost(slope, ivec2(0, 0));
+  grid.top = 0;
+  return edgeBlock(u, slope, first, grid);
+}
+
 GPGP_FN float withinDepths(ScreenTriangle t, float z) {
   float held = clamp(z, t.zMin, t.zMax);
   return held < 1.17549435e-38f ? 0.0f : held;

@@ -11,14 +11,14 @@ void show(uint id) {
   atomicAdd(counters.unresolved, 1u);
 }
 
-/// Whether a triangle is to be entered in a pixel within its bounds: it touches it in front of its limit. One that is
-/// seen already only hides others, so it is entered where there are such.
-bool isWanted(ScreenTriangle t, bool compact, ivec2 pixel, bool seen) {
+/// Whether a triangle is to be entered in a pixel within its bounds: it touches it (`touching`: that is known) in front
+/// of its limit. One that is seen already only hides others, so it is entered where there are such.
+bool isWanted(ScreenTriangle t, bool compact, bool touching, ivec2 pixel, bool seen) {
   uint slot = slotOf(pixel);
   if (seen && slots[lengthAt(slot)] == 0u) return false;
   bool reversed = params.reversedDepth != 0u;
   uint limit = slots[slot];
-  if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, compact, pixel)) return false;
+  if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !(touching || touches(t, compact, pixel))) return false;
   return limit == kFarthest || nearestKey(t, compact, pixel, reversed) <= limit;
 }
 

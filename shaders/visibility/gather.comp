@@ -15,7 +15,9 @@ shared uint groupCovered;
 
 void note(uint id, uint count, bool known) {
   if (id == kNoTriangle) return;
-  if (!known) atomicOr(bits[id >> 5u], 1u << (id & 31u));
+  // A triangle has many pixels, and more from several cameras: most find that it is known.
+  uint bit = 1u << (id & 31u);
+  if (!known && (bits[id >> 5u] & bit) == 0u) atomicOr(bits[id >> 5u], bit);
   if (params.hasSizes == 0u) return;
   if (params.method != kTruth)
     atomicAdd(sizes[id], count);

@@ -11,21 +11,21 @@ layout(std430, set = 0, binding = kBindTiles) readonly buffer TileBuffer { Tile 
 
 bool isSeen(uint id) { return (bits[id >> 5u] & (1u << (id & 31u))) != 0u; }
 
-/// By what tiles, or parts of them, show.
-bool isNearby(ScreenTriangle t, ivec4 bounds, uint camera, bool parts) {
+/// By what a level's tiles show.
+bool isNearby(ScreenTriangle t, ivec4 bounds, uint camera, uint level) {
   vec4 scale = params.depthScales[camera];
   Grid grid = gridOf(camera);
-  uint side = tileSide(params.width, params.height) / (parts ? kTileParts : 1u);
+  uint side = tileSide(params.width, params.height, level);
   float own = nearestInverse(scale, t, params.reversedDepth != 0u);
   float occluder = 0.0;
   ivec4 range = tilesAround(bounds, 0, grid, side);
   for (int y = range.y; y <= range.w; ++y)
     for (int x = range.x; x <= range.z; ++x)
-      occluder = max(occluder, tiles[tileAt(camera, parts, uint(x), uint(y))].nearest);
+      occluder = max(occluder, tiles[tileAt(camera, level, uint(x), uint(y))].nearest);
   range = tilesAround(bounds, reachOf(scale, occluder, own), grid, side);
   for (int y = range.y; y <= range.w; ++y)
     for (int x = range.x; x <= range.z; ++x)
-      if (mayShow(own, tiles[tileAt(camera, parts, uint(x), uint(y))].farthest)) return true;
+      if (mayShow(own, tiles[tileAt(camera, level, uint(x), uint(y))].farthest)) return true;
   return false;
 }
 
@@ -49,8 +49,8 @@ void main() {
     }
     if (fate == kWhole) {
       ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
-      shown = bounds.x < bounds.z && bounds.y < bounds.w && isNearby(t, bounds, f.camera, false) &&
-              isNearby(t, bounds, f.camera, true);
+      shown = bounds.x < bounds.z && bounds.y < bounds.w;
+      for (uint level = 0u; level < kTileLevels && shown; ++level) shown = isNearby(t, bounds, f.camera, level);
     }
     if (shown) atomicOr(bits[f.id >> 5u], 1u << (f.id & 31u));
   }

@@ -1,20 +1,21 @@
 // What a viewer may see who is up to some distance away from the camera: a superset to sample further views of.
 //
-// The picture is cut into at most 64 x 64 tiles of 4 x 4 parts. Both hold how near and how far what their pixels'
-// centres show is; a triangle that the tiles let pass is asked about with their parts. By moving, what hides a triangle
-// moves against it by as many pixels as the difference of their inverse distances says. A triangle may be seen where,
-// within so many pixels, something shows that is farther than a share of its own distance. The share stands for gaps
-// that no pixel shows as yet: a guess, which the results measure, not a bound.
+// The picture is cut into at most 16 x 16 tiles, each of those into 4 x 4, and each of these again. All hold how near
+// and how far what their pixels' centres show is; a triangle that the large ones let pass is asked about with smaller
+// ones. By moving, what hides a triangle moves against it by as many pixels as the difference of their inverse
+// distances says. A triangle may be seen where, within so many pixels, something shows that is farther than a share of
+// its own distance. The share stands for gaps that no pixel shows as yet: a guess, which the results measure, not a
+// bound.
 #ifndef GPGP_SHADERS_VISIBILITY_NEARBY_H
 #define GPGP_SHADERS_VISIBILITY_NEARBY_H
 #include "visibility/candidate.h"
 
 GPGP_SHADER_BEGIN
 
-GPGP_CONST uint kMaxTiles = 64u; ///< in each direction
-GPGP_CONST uint kTileParts = 4u; ///< of a tile in each direction
-/// Tiles and parts of a camera.
-GPGP_CONST uint kCameraTiles = kMaxTiles * kMaxTiles * (1u + kTileParts * kTileParts);
+GPGP_CONST uint kTileLevels = 3u; ///< of tiles, the largest first
+GPGP_CONST uint kMaxTiles = 16u;  ///< in each direction, of the largest
+/// Tiles of a camera, of all levels.
+GPGP_CONST uint kCameraTiles = kMaxTiles * kMaxTiles * (1u + 16u + 256u);
 /// The share of a triangle's distance.
 GPGP_CONST float kNearbyShare = 0.5f;
 
@@ -24,15 +25,16 @@ struct Tile {
   float farthest;
 };
 
-/// Pixels of a tile in each direction, a multiple of 8.
-GPGP_FN uint tileSide(uint width, uint height) {
-  return (max(width, height) + kMaxTiles * 8u - 1u) / (kMaxTiles * 8u) * 8u;
+/// Pixels of a level's tiles in each direction.
+GPGP_FN uint tileSide(uint width, uint height, uint level) {
+  uint smallest = (max(width, height) + kMaxTiles * 32u - 1u) / (kMaxTiles * 32u) * 2u;
+  return smallest << (4u - level * 2u);
 }
 
-/// Where a camera's tile or part of one lies.
-GPGP_FN uint tileAt(uint camera, bool part, uint x, uint y) {
-  uint first = camera * kCameraTiles;
-  return part ? first + kMaxTiles * kMaxTiles + y * (kMaxTiles * kTileParts) + x : first + y * kMaxTiles + x;
+/// Where a camera's tile lies.
+GPGP_FN uint tileAt(uint camera, uint level, uint x, uint y) {
+  uint before = level == 0u ? 0u : level == 1u ? 1u : 17u; // times the largest
+  return camera * kCameraTiles + before * (kMaxTiles * kMaxTiles) + y * (kMaxTiles << (level * 2u)) + x;
 }
 
 /// The inverse distance of a depth; scale: a camera's. x: depth of what is infinitely far, y: distance times
@@ -53,8 +55,7 @@ GPGP_FN float nearestInverse(vec4 scale, ScreenTriangle t, bool reversed) {
   return inverseDistance(scale, reversed ? t.zMax : t.zMin);
 }
 
-/// First and last tile (or part: `side` is its own) that pixels up to `reach` away from bounds lie in; both corners
-/// inclusive.
+/// First and last tile, whose side is given, that pixels up to `reach` away from bounds lie in; both corners inclusive.
 GPGP_FN ivec4 tilesAround(ivec4 bounds, int reach, Grid grid, uint side) {
   int size = int(side);
   ivec4 r;

@@ -1,6 +1,9 @@
 // Decides a pixel's list of at most kBatch. What the order by one depth each may have wrong is decided by planes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef GPGP_SUBGROUPS
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
 #include "visibility/facet.h"
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
@@ -9,13 +12,8 @@ shared uint ids[kBatch];
 shared vec4 planes[kBatch]; // facets of the sorted entries: plane, nearest
 shared float farthest[kBatch];
 shared uint boxes[kBatch];
-shared uint shown;          // bits: entries that other pixels showed
-shared uint doubtful;       // those that the order may have wrong
-shared uint kept;           // those of them that are seen
-shared uint rivals[kBatch];   // for each entry: those that may hide a part of it
-shared uint suspects[kBatch]; // an entry and one that it may be in the wrong order with
+shared uint rivals[kBatch]; // for each entry: those that may hide a part of it
 shared uint suspectCount;
-shared uint more;
 
 void putFacet(uint place, Facet f) {
   planes[place] = vec4(f.plane, f.nearest);
@@ -36,9 +34,9 @@ Facet facetAt(uint place) {
 
 /// Bits: those that an entry may be in the wrong order with, by their depths alone. Entries that are shown already need
 /// no answer.
-uint suspectsOf(uint place, uint n) {
+uint suspectsOf(uint place, uint n, Looked looked, uint shown) {
   uint bit = 1u << place;
-  bool claimed = (seen & bit) != 0u;
+  bool claimed = (looked.seen & bit) != 0u;
   float near = planes[place].w;
   float far = farthest[place];
   uint before = 0u; // all that are not behind it as a whole
@@ -49,58 +47,55 @@ uint suspectsOf(uint place, uint n) {
   }
   rivals[place] = before & ~bit;
   if ((shown & bit) != 0u) return 0u;
-  return claimed ? before & ~(bit | bit - 1u) : after & (1u << min(place, stops)) - 1u;
+  return claimed ? before & ~(bit | bit - 1u) : after & (1u << min(place, looked.stops)) - 1u;
 }
 
 /// Whether two entries are in the wrong order: one that is seen before one that is nearer, or one that is hidden
 /// behind one that is farther.
-bool isWrong(uint place, uint other) {
-  bool claimed = (seen & (1u << place)) != 0u;
+bool isWrong(uint place, uint other, bool claimed) {
   uint nearer = claimed ? other : place;
   uint farther = claimed ? place : other;
   return isNearerSomewhere(facetAt(nearer), facetAt(farther)) &&
          overlap(readCandidate(items[nearer]), readCandidate(items[farther]));
 }
 
-/// Notes entries that the order may have wrong. Few have suspects: the pairs are shared out.
-void findDoubtful(uint n) {
+/// Entries that the order may have wrong. Few have suspects: the pairs are shared out.
+uint doubtfulOf(uint n, Looked looked, uint shown) {
   uint lane = laneOf();
-  uint left = lane < n ? suspectsOf(lane, n) : 0u;
-  bool again = true;
-  while (again) {
-    if (lane == 0u) {
-      suspectCount = 0u;
-      more = 0u;
-    }
-    barrier();
+  uint left = lane < n ? suspectsOf(lane, n, looked, shown) : 0u;
+  uint doubtful = 0u;
+  while (orAll(left) != 0u) {
+    if (lane == 0u) suspectCount = 0u;
+    sync();
     while (left != 0u) {
       uint at = atomicAdd(suspectCount, 1u);
       if (at >= kBatch) break;
-      suspects[at] = lane | uint(findLSB(left)) << 8u;
+      setKey(at, lane | uint(findLSB(left)) << 8u); // the order is there, so that nobody needs the keys
       left &= left - 1u;
     }
-    if (left != 0u) more = 1u;
-    barrier();
+    sync();
+    uint wrong = 0u;
     if (lane < suspectCount) {
-      uint place = suspects[lane] & 255u;
-      if (isWrong(place, suspects[lane] >> 8u)) atomicOr(doubtful, 1u << place);
+      uint pair = keyAt(lane);
+      uint bit = 1u << (pair & 255u);
+      if (isWrong(pair & 255u, pair >> 8u, (looked.seen & bit) != 0u)) wrong = bit;
     }
-    again = more != 0u;
-    barrier();
+    doubtful |= orAll(wrong);
     if ((doubtful & (1u << lane)) != 0u) left = 0u;
   }
+  return doubtful;
 }
 
 /// Whether an entry has a sample, in this invocation's rows, at which none of the others is nearer.
 bool isAhead(uint place) {
   int row = int(laneOf());
   Outline o = outlineAt(place);
-  Facet own = facetAt(place);
+  Facet f = facetAt(place);
   uint id = ids[place];
   uvec4 rest = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
   for (uint left = rivals[place]; left != 0u && (rest.x | rest.y | rest.z | rest.w) != 0u; left &= left - 1u) {
     uint j = uint(findLSB(left));
-    Crossing crossing = crossingOf(facetAt(j), own, ids[j] < id);
+    Crossing crossing = crossingOf(facetAt(j), f, ids[j] < id);
     Outline other = outlineAt(j);
     rest &= ~uvec4(samplesAhead(other, crossing, row), samplesAhead(other, crossing, row + 32));
   }
@@ -108,16 +103,16 @@ bool isAhead(uint place) {
 }
 
 /// After the order has proposed which are seen: corrects that, and shows them.
-void settle(uint n) {
-  uint lane = laneOf();
-  findDoubtful(n);
+void settle(uint n, Looked looked, uint shown) {
+  uint doubtful = doubtfulOf(n, looked, shown);
+  uint kept = 0u;
   for (uint left = doubtful; left != 0u; left &= left - 1u) {
     uint place = uint(findLSB(left));
-    if (isAhead(place)) atomicOr(kept, 1u << place);
+    if (isAhead(place)) kept |= 1u << place;
   }
-  barrier();
-  uint visible = (seen & ~doubtful | kept) & ~shown;
-  if ((visible & (1u << lane)) != 0u) show(ids[lane]);
+  if (doubtful != 0u) kept = orAll(kept);
+  uint visible = (looked.seen & ~doubtful | kept) & ~shown;
+  if ((visible & (1u << laneOf())) != 0u) show(ids[laneOf()]);
 }
 
 /// A pixel's list, and the entry of it that this invocation reads.
@@ -144,11 +139,6 @@ void resolveShort(List list) {
   Outline o;
   Facet f;
   uint id = 0u;
-  if (lane == 0u) {
-    doubtful = 0u;
-    kept = 0u;
-    shown = 0u;
-  }
   if (lane < n) {
     items[lane] = list.item;
     Candidate c = readCandidate(list.item);
@@ -159,16 +149,18 @@ void resolveShort(List list) {
     f = facetOf(c, footing, pixel, reversed);
   }
   uint place = placeAmong(n);
+  bool isKnown = false;
   if (lane < n) {
     items[place] = list.item;
     ids[place] = id;
     put(place, o);
     putFacet(place, f);
-    if (isShown(id)) atomicOr(shown, 1u << place);
+    isKnown = isShown(id);
   }
+  uint shown = orAll(isKnown ? 1u << place : 0u);
   uvec4 covered = uvec4(0u);
-  lookAtBatch(n, covered);
-  settle(n);
+  Looked looked = lookAtBatch(n, covered);
+  settle(n, looked, shown);
 }
 
 void main() {
@@ -181,6 +173,6 @@ void main() {
     i += gl_NumWorkGroups.x;
     if (i < pixels) next = listAt(i); // reads that depend on each other: they arrive while this list is decided
     resolveShort(list);
-    barrier();
+    sync();
   }
 }

@@ -1,11 +1,9 @@
 // Decides a part of a pixel's list, front to back: a workgroup of 32 invocations, each of which holds two of the
-// pixel's 64 rows of 64 samples. A triangle with a sample that nothing before it covers is visible. What a workgroup
-// keeps in shared memory decides how many run at a time, so it is little.
-layout(local_size_x = 32) in; // kBatch
-
+// pixel's 64 rows of 64 samples. A triangle with a sample that nothing before it covers is visible.
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/lists.glsl"
+#include "visibility/team.glsl"
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindOpen) readonly buffer OpenBuffer { uint open[]; };
 #include "visibility/candidates.glsl"
@@ -16,13 +14,6 @@ shared uvec4 keys[kBatch / 4u];
 shared vec4 starts[kBatch]; // their outlines, in order
 shared vec4 steps[kBatch];
 shared uint rows[kBatch];
-shared uint taken; // bits: ranks that entries have
-shared uint ties;  // 1: two have the same
-shared uint seen;  // a bit for each of a batch's
-shared uint holes; // 1: samples that nothing covers yet
-shared uint stops; // how many of a batch come before all samples are covered
-
-uint laneOf() { return gl_LocalInvocationIndex; }
 
 bool isShown(uint id) { return (bits[id >> 5u] & (1u << (id & 31u))) != 0u; }
 void show(uint id) {
@@ -72,22 +63,13 @@ uint rankAmongSame(uint i, uint n) {
 /// The place of this invocation's entry in the order of a batch, whose items and keys are there.
 uint placeAmong(uint n) {
   uint lane = laneOf();
-  if (lane == 0u) {
-    taken = 0u;
-    ties = 0u;
-  }
-  barrier();
-  uint place = 0u;
-  if (lane < n) {
-    place = rankOf(lane, n);
-    uint bit = 1u << place;
-    if ((atomicOr(taken, bit) & bit) != 0u) ties = 1u;
-  }
-  barrier();
-  if (ties != 0u) {
+  sync();
+  uint place = lane < n ? rankOf(lane, n) : 0u;
+  uint taken = orAll(lane < n ? 1u << place : 0u);
+  if (uint(bitCount(taken)) != n) { // some have the same
     if (lane < n) place += rankAmongSame(lane, n);
-    barrier();
   }
+  sync();
   return place;
 }
 
@@ -106,25 +88,31 @@ Outline outlineAt(uint place) {
   return o;
 }
 
-/// Goes through a batch, whose outlines are there, and notes which are seen.
-void lookAtBatch(uint batch, inout uvec4 covered) {
+/// What a batch shows.
+struct Looked {
+  uint seen;  // bits: entries
+  uint stops; // how many of a batch come before all samples are covered
+  bool holes; // samples that nothing covers yet
+};
+
+/// Goes through a batch, whose outlines are there.
+Looked lookAtBatch(uint batch, inout uvec4 covered) {
   int row = int(laneOf());
-  if (row == 0) {
-    seen = 0u;
-    holes = 0u;
-    stops = 0u;
-  }
-  barrier();
+  sync();
   uint found = 0u;
   uint k = 0u;
   for (; k < batch && (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu; ++k) {
     Outline o = outlineAt(k);
-    uvec4 own = uvec4(samplesIn(o, row), samplesIn(o, row + 32)) & ~covered;
-    if ((own.x | own.y | own.z | own.w) != 0u) found |= 1u << k;
-    covered |= own;
+    uvec4 fresh = uvec4(samplesIn(o, row), samplesIn(o, row + 32)) & ~covered;
+    if ((fresh.x | fresh.y | fresh.z | fresh.w) != 0u) found |= 1u << k;
+    covered |= fresh;
   }
-  if (found != 0u) atomicOr(seen, found);
-  atomicMax(stops, k);
-  if ((covered.x & covered.y & covered.z & covered.w) != 0xffffffffu) holes = 1u;
-  barrier();
+  Looked looked;
+  looked.seen = orAll(found);
+  // An invocation with samples left goes through all: one more than there can be says so to the others.
+  bool open_ = (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu;
+  uint most = maxAll(open_ ? batch + 1u : k);
+  looked.holes = most > batch;
+  looked.stops = min(most, batch);
+  return looked;
 }

@@ -1,6 +1,9 @@
 // Decides a pixel's list of more than kBatch: the nearest kBatch first, and so on until all samples are covered.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef GPGP_SUBGROUPS
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
 
@@ -8,14 +11,13 @@ const uint kBins = kBatch * 2u;
 
 shared uint bins[kBins]; // of the ranges that keys are divided into, how many entries each holds
 shared uint count;
-shared uint nearest; // keys of a list
-shared uint farthest;
 
 /// The part of a list that is not decided yet.
 struct Rest {
   uint begin;
   uint end;
   uint low; // what is nearer is decided
+  uint farthest;
 };
 
 /// Where a list keeps its keys. Each invocation reads only those that it wrote.
@@ -24,51 +26,40 @@ uint keyPlace(uint entry) { return params.maxPairs + entry; }
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
   uint lane = laneOf();
-  uvec2 own = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
-  own.y += own.x;
-  items[lane] = own.y;
-  if (lane == 0u) count = 0u;
-  barrier();
-  for (uint step = 1u; step < kBatch; step *= 2u) {
-    uint before = lane >= step ? items[lane - step] : 0u;
-    barrier();
-    items[lane] += before;
-    barrier();
-  }
-  own += items[lane] - own.y;
-  uint fitting = uint(own.x <= kBatch) + uint(own.y <= kBatch);
-  if (fitting != 0u) atomicAdd(count, fitting);
-  barrier();
-  return count;
+  uvec2 held = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
+  uint second = sumUpTo(held.x + held.y);
+  uint first = second - held.y;
+  // The sums grow, so those that fit come first.
+  return maxAll(second <= kBatch ? lane * 2u + 2u : first <= kBatch ? lane * 2u + 1u : 0u);
 }
 
 /// The farthest key up to which entries are decided next: at most kBatch, or those that have one and the same key.
 uint lastKey(Rest rest) {
   uint lane = laneOf();
-  uint high = farthest;
+  uint high = rest.farthest;
   while (true) {
     uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
     bins[lane] = 0u;
     bins[lane + kBatch] = 0u;
-    barrier();
+    sync();
     for (uint i = rest.begin + lane; i < rest.end; i += kBatch) {
       uint key = entries[keyPlace(i)];
       if (key >= rest.low && key <= high) atomicAdd(bins[(key - rest.low) >> shift], 1u);
     }
-    barrier();
+    sync();
     uint fitting = binsOfBatch();
     if (fitting == kBins) return high;
     uint span = max(fitting, 1u) << shift;
     if (span <= high - rest.low) high = rest.low + span - 1u;
     if (fitting != 0u || shift == 0u) return high;
-    barrier();
+    sync();
   }
 }
 
 /// Gets the entries up to a key, if they are not more than kBatch; returns how many there are.
 uint takeEntries(Rest rest, uint high) {
   if (laneOf() == 0u) count = 0u;
-  barrier();
+  sync();
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
     uint key = entries[keyPlace(i)];
     if (key < rest.low || key > high) continue;
@@ -77,7 +68,7 @@ uint takeEntries(Rest rest, uint high) {
     items[at] = entries[i];
     setKey(at, key);
   }
-  barrier();
+  sync();
   return count;
 }
 
@@ -89,11 +80,10 @@ bool resolveBatch(uint n, uint place, ivec2 pixel, inout uvec4 covered) {
     put(place, outlineOf(c, pixel));
     id = c.id;
   }
-  lookAtBatch(n, covered);
-  if (laneOf() < n && (seen & (1u << place)) != 0u) show(id);
-  bool more = holes != 0u;
-  barrier();
-  return more;
+  Looked looked = lookAtBatch(n, covered);
+  if (laneOf() < n && (looked.seen & (1u << place)) != 0u) show(id);
+  sync();
+  return looked.holes;
 }
 
 /// Goes through more than kBatch entries of one and the same key: by number, a batch at a time.
@@ -110,7 +100,7 @@ bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
       }
       if (place - first < kBatch) items[place - first] = entries[i];
     }
-    barrier();
+    sync();
     if (!resolveBatch(min(n - first, kBatch), laneOf(), pixel, covered)) return false;
   }
   return true;
@@ -127,11 +117,6 @@ void showRest(Rest rest) {
 }
 
 void resolveLong(uint begin, uint end, ivec2 pixel) {
-  if (laneOf() == 0u) {
-    nearest = kFarthest;
-    farthest = 0u;
-  }
-  barrier();
   uint least = kFarthest;
   uint most = 0u;
   for (uint i = begin + laneOf(); i < end; i += kBatch) {
@@ -141,18 +126,16 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
     least = min(least, key);
     most = max(most, key);
   }
-  atomicMin(nearest, least);
-  atomicMax(farthest, most);
-  barrier();
   Rest rest;
   rest.begin = begin;
   rest.end = end;
-  rest.low = nearest;
+  rest.low = minAll(least);
+  rest.farthest = maxAll(most);
   uvec4 covered = uvec4(0u);
   bool more = true;
   while (more) {
     uint high = lastKey(rest);
-    barrier();
+    sync();
     uint n = takeEntries(rest, high);
     if (n > kSorted) {
       showRest(rest);
@@ -160,7 +143,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
     }
     if (n > kBatch) more = resolveSame(rest, n, pixel, covered);
     else more = resolveBatch(n, placeAmong(n), pixel, covered);
-    more = more && high != farthest;
+    more = more && high != rest.farthest;
     rest.low = high + 1u;
   }
 }
@@ -171,6 +154,6 @@ void main() {
     uint slot = open[params.pixelCapacity - 1u - i];
     uint end = slots[slot];
     resolveLong(end - slots[lengthAt(slot)], end, pixelOf(slot));
-    barrier();
+    sync();
   }
 }

@@ -10,7 +10,7 @@ uvec2 wantedPixels(ScreenTriangle t, ivec4 bounds, bool seen) {
   uvec2 mask = uvec2(0u);
   for (int y = bounds.y; y < bounds.w; ++y)
     for (int x = bounds.x; x < bounds.z; ++x) {
-      if (!isWanted(t, true, ivec2(x, y), seen)) continue;
+      if (!isWanted(t, true, false, ivec2(x, y), seen)) continue;
       uint bit = uint((y - bounds.y) * 8 + x - bounds.x);
       if (bit < 32u) mask.x |= 1u << bit;
       else mask.y |= 1u << (bit - 32u);

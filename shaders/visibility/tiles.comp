@@ -1,52 +1,61 @@
-// A workgroup a tile of a camera's picture: the nearest and the farthest that its pixels' centres show, and its parts'.
+// A workgroup a large tile of a camera's picture: the nearest and the farthest that its pixels' centres show, and its
+// parts' and theirs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/nearby.h"
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindDepth) readonly buffer DepthBuffer { uint depths[]; };
 layout(std430, set = 0, binding = kBindTiles) writeonly buffer TileBuffer { Tile tiles[]; };
 
-const uint kParts = kTileParts * kTileParts;
-shared uint nearest[kParts + 1u]; // keys: of the parts, and of the tile
-shared uint farthest[kParts + 1u];
+// Keys, the largest tile's first.
+shared uint nearest[1 + 16 + 256];
+shared uint farthest[1 + 16 + 256];
+
+void write(uint level, uint camera, uvec2 tile, uint place) {
+  bool reversed = params.reversedDepth != 0u;
+  vec4 scale = params.depthScales[camera];
+  Tile t;
+  t.nearest = inverseOfKey(scale, nearest[place], reversed);
+  t.farthest = inverseOfKey(scale, farthest[place], reversed);
+  tiles[tileAt(camera, level, tile.x, tile.y)] = t;
+}
 
 void main() {
   uvec2 tile = gl_WorkGroupID.xy % kMaxTiles;
   uint camera = gl_WorkGroupID.y / kMaxTiles;
-  uint side = tileSide(params.width, params.height);
+  uint side = tileSide(params.width, params.height, 0u);
   uvec2 first = tile * side;
   if (first.x >= params.width || first.y >= params.height) return;
   uint lane = gl_LocalInvocationIndex;
-  if (lane <= kParts) {
-    nearest[lane] = kFarthest;
-    farthest[lane] = 0u;
+  for (uint i = lane; i < 273u; i += 256u) {
+    nearest[i] = kFarthest;
+    farthest[i] = 0u;
   }
   barrier();
-  uint partSide = side / kTileParts;
-  for (uint i = lane; i < side * side; i += 64u) {
+  uint smallest = tileSide(params.width, params.height, 2u);
+  for (uint i = lane; i < side * side; i += 256u) {
     uvec2 at = uvec2(i % side, i / side);
     uvec2 pixel = first + at;
     if (pixel.x >= params.width || pixel.y >= params.height) continue;
     uint key = depths[(camera * params.height + pixel.y) * params.width + pixel.x];
-    uint part = at.y / partSide * kTileParts + at.x / partSide;
-    atomicMin(nearest[part], key);
-    atomicMax(farthest[part], key);
+    uint place = 17u + at.y / smallest * 16u + at.x / smallest;
+    atomicMin(nearest[place], key);
+    atomicMax(farthest[place], key);
   }
   barrier();
-  if (lane < kParts) {
-    atomicMin(nearest[kParts], nearest[lane]);
-    atomicMax(farthest[kParts], farthest[lane]);
+  uvec2 part = uvec2(lane % 16u, lane / 16u);
+  uint middle = 1u + part.y / 4u * 4u + part.x / 4u;
+  atomicMin(nearest[middle], nearest[17u + lane]);
+  atomicMax(farthest[middle], farthest[17u + lane]);
+  barrier();
+  if (lane < 16u) {
+    atomicMin(nearest[0], nearest[1u + lane]);
+    atomicMax(farthest[0], farthest[1u + lane]);
   }
   barrier();
-  if (lane > kParts) return;
-  bool reversed = params.reversedDepth != 0u;
-  vec4 scale = params.depthScales[camera];
-  Tile t;
-  t.nearest = inverseOfKey(scale, nearest[lane], reversed);
-  t.farthest = inverseOfKey(scale, farthest[lane], reversed);
-  if (lane == kParts) tiles[tileAt(camera, false, tile.x, tile.y)] = t;
-  uvec2 part = tile * kTileParts + uvec2(lane % kTileParts, lane / kTileParts);
-  if (lane != kParts) tiles[tileAt(camera, true, part.x, part.y)] = t;
+  write(2u, camera, tile * 16u + part, 17u + lane);
+  if (lane < 16u) write(1u, camera, tile * 4u + uvec2(lane % 4u, lane / 4u), 1u + lane);
+  if (lane == 0u) write(0u, camera, tile, 0u);
 }

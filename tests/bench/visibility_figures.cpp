@@ -186,8 +186,8 @@ struct Figures {
     corners.erase(corners.begin());
     using Counts = std::vector<uint32_t>;
     const bool few = options.largestCell < 32;
-    for (const uint32_t divisor : few ? Counts{4} : Counts{4, 2})
-      for (const uint32_t count : few ? Counts{16} : Counts{32, 48, 64, 96}) {
+    for (const uint32_t divisor : few ? Counts{4} : Counts{4, 6, 8, 2})
+      for (const uint32_t count : few ? Counts{16} : Counts{16, 24, 48, 64, 72, 96}) {
         walk.walkCount = count;
         smallViews(corners, camerasOf(walk), divisor, "", row);
       }
@@ -195,8 +195,8 @@ struct Figures {
       smallViews(corners, take(rows(count)), 4, " on grid", row);
   }
 
-  /// Views with a part of the width and height, of what may be seen from the cell. The first camera, the middle, is
-  /// left out.
+  /// Views with a part of the width and height, of what may be seen from the cell: no place in it is farther from a
+  /// corner than the reach. The first camera, the middle, is left out.
   template <class Row>
   void smallViews(const std::vector<GpgpCamera>& corners, const std::vector<GpgpCamera>& views, uint32_t divisor,
                   const char* kind, const Row& row) {
@@ -205,12 +205,14 @@ struct Figures {
     for (size_t k = 1; k < 6; ++k)
       for (size_t i = k; i < views.size(); i += 5) spread.push_back(views[i]);
     const DrawLists lists = runner.makeLists(room);
-    const uint32_t perRecord = runner.camerasPerRecord(divisor);
-    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, divisor),
+    const uint32_t perRecord = std::min(runner.camerasPerRecord(divisor), static_cast<uint32_t>(spread.size()));
+    constexpr uint32_t kNearbyDivisor = 4;
+    const float reach = std::sqrt(0.5f);
+    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, kNearbyDivisor),
             small = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, divisor, room);
-    const Runner::Run first =
-        runner.measure(nearby, {.method = GPGP_SAMPLING_NEARBY, .divisor = divisor, .reach = 1, .listed = &lists},
-                       options.repeat, corners);
+    const Runner::Run first = runner.measure(
+        nearby, {.method = GPGP_SAMPLING_NEARBY, .divisor = kNearbyDivisor, .reach = reach, .listed = &lists},
+        options.repeat, corners);
     const Runner::Run run = runner.measureUnion(
         small, {.method = GPGP_SAMPLING_EXACT, .divisor = divisor, .lists = &lists}, spread, perRecord, options.repeat);
     const std::string series = "exact at 1/" + std::to_string(divisor) + kind, label = std::to_string(spread.size());

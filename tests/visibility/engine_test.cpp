@@ -221,6 +221,19 @@ TEST_F(EngineTest, CamerasAndCommandsThroughAllPlanesEqualTheTwin) {
   }
 }
 
+// A view cell's views, as many as a record takes.
+TEST_F(EngineTest, TheMostCamerasOfARecordEqualTheTwin) {
+  Scene scene = randomSoup(7, 90, 20, 17, true, true);
+  for (uint32_t i = 1; i < shader::kMaxCameras; ++i)
+    scene.addCamera(perspective(1.2f, 20.0f / 17, 0.25f, 20.0f, true) *
+                    lookAt({0.01f * static_cast<float>(i), 0.3f, 3}, {0.3f, 0.1f, 0}));
+  useCommands(scene);
+  sampler = createSampler(20, 17, 0, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT, 0, 0, 0,
+                          shader::kMaxCameras);
+  for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT})
+    expectEqual(run(scene, {.method = method}), twinOf(method, scene), "method " + std::to_string(method));
+}
+
 // Reversed depth with an infinitely far plane, as engines use it.
 TEST_F(EngineTest, AnInfiniteFarPlaneLosesNothing) {
   Scene scene = colonnade(128, 72);
@@ -376,7 +389,7 @@ TEST_F(EngineTest, EngineArgumentsAreChecked) {
   });
   GpgpSamplerCreateInfo create = GPGP_SAMPLER_CREATE_INFO_INIT;
   create.base.queueFamily = queue().family;
-  create.maxCameras = 33;
+  create.maxCameras = 129;
   GpgpWorker none = nullptr;
   EXPECT_EQ(gpgpCreateSampler(context, &create, &none), GPGP_ERROR_INVALID_ARGUMENT);
 }

@@ -6,8 +6,9 @@
 
 namespace gpgp::visibility {
 namespace {
-constexpr uint32_t kMediumRecords = 65536, kLargeRecords = 32768; // at most, and at most a quarter of all triangles
-}
+// At most, for four cameras, and at most a quarter of all triangles.
+constexpr uint32_t kMediumRecords = 65536, kLargeRecords = 32768;
+} // namespace
 
 Budgets::Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits& limits)
     : maxWidth(info.maxWidth ? info.maxWidth : 2048), maxHeight(info.maxHeight ? info.maxHeight : 2048),
@@ -18,12 +19,15 @@ Budgets::Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits
       maxPairs(info.maxPairs ? info.maxPairs
                              : static_cast<uint32_t>(
                                    std::min<uint64_t>((uint64_t(maxWidth) * maxHeight * maxCameras + maxCandidates) * 4,
-                                                      limits.maxStorageBufferRange / shader::kPairBytes))) {}
+                                                      limits.maxStorageBufferRange / shader::kPairBytes))),
+      recordShares(std::max(
+          std::min(maxCameras / 4, limits.maxStorageBufferRange / kRecordBytes / (kMediumRecords + kLargeRecords)),
+          1u)) {}
 
 uint64_t Budgets::chunks() const { return uint64_t(maxTriangles) / shader::kChunk + maxDraws + 1; }
 uint64_t Budgets::slots() const { return slotsOf(maxWidth, maxHeight * maxCameras); }
-uint32_t Budgets::mediumRecords() const { return std::clamp(maxTriangles / 4, 1u, kMediumRecords); }
-uint32_t Budgets::largeRecords() const { return std::clamp(maxTriangles / 4, 1u, kLargeRecords); }
+uint32_t Budgets::mediumRecords() const { return std::clamp(maxTriangles / 4, 1u, kMediumRecords * recordShares); }
+uint32_t Budgets::largeRecords() const { return std::clamp(maxTriangles / 4, 1u, kLargeRecords * recordShares); }
 
 uint64_t slotsOf(uint32_t width, uint32_t height) { return uint64_t((width + 7) / 8) * ((height + 7) / 8) * 64; }
 

@@ -4,10 +4,13 @@
 
 namespace gpgp::visibility {
 
+constexpr uint32_t kRecordBytes = 80; // TriangleRecord of records.glsl
+
 struct Budgets {
   uint32_t maxWidth, maxHeight, maxCameras, maxDraws, maxTriangles, maxSamples;
   uint32_t methods; // GPGP_SAMPLING_..._BIT
   uint32_t maxCandidates, maxPairs;
+  uint32_t recordShares; // of records: one for four cameras, as many as the device binds
 
   /// Zeros mean the defaults of gpgp/visibility.h.
   Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits& limits);

@@ -9,12 +9,14 @@
 #include "shaders/visibility_place.spv.h"
 #include "shaders/visibility_resolve.spv.h"
 #include "shaders/visibility_resolve_long.spv.h"
+#include "shaders/visibility_resolve_long_subgroups.spv.h"
+#include "shaders/visibility_resolve_subgroups.spv.h"
 
 #include <cstddef>
 
 namespace gpgp::visibility {
 
-void addExact(core::PassList& list, const Budgets& budgets) {
+void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device) {
   using namespace shader;
   using enum core::UseKind;
   // Candidates of the triangles that a queue names: picked where they can be seen, or where something hides them.
@@ -70,8 +72,13 @@ void addExact(core::PassList& list, const Budgets& budgets) {
       "place", addShader(list, "place", visibility_place),
       {{kBindParams, read}, {kBindCounters, read}, {kBindSlots, readWrite}, {kBindPairs, read}, {kBindEntries, write}},
       kBindCounters, offsetof(Counters, placeArgs));
-  addResolve("resolve", visibility_resolve, offsetof(Counters, openArgs));
-  addResolve("resolve long", visibility_resolve_long, offsetof(Counters, longArgs));
+  const bool subgroups = device.subgroupArithmetic && device.subgroupSize == kBatch;
+  const auto choose = [&](std::span<const uint32_t> bySubgroups, std::span<const uint32_t> others) {
+    return subgroups ? bySubgroups : others;
+  };
+  addResolve("resolve", choose(visibility_resolve_subgroups, visibility_resolve), offsetof(Counters, openArgs));
+  addResolve("resolve long", choose(visibility_resolve_long_subgroups, visibility_resolve_long),
+             offsetof(Counters, longArgs));
   for (size_t i = first; i < list.passes.size(); ++i) list.passes[i].condition = kIfExact;
 }
 

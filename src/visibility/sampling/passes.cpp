@@ -11,8 +11,6 @@ namespace {
 using core::Resource;
 using core::ResourceKind;
 
-constexpr VkDeviceSize kRecordBytes = 80; // TriangleRecord of records.glsl
-
 /// In the order of shader::kBind...
 void addResources(core::PassList& list, const Budgets& budgets) {
   using enum ResourceKind;
@@ -21,7 +19,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   const VkDeviceSize pixelBytes = budgets.pixels() * budgets.maxSamples * budgets.maxSamples * 4;
   const VkDeviceSize pairBytes = VkDeviceSize(budgets.maxPairs) * shader::kPairBytes;
   const VkDeviceSize queueBytes = VkDeviceSize(budgets.maxTriangles) * 4;
-  VkDeviceSize recordBytes = (budgets.mediumRecords() + budgets.largeRecords()) * kRecordBytes;
+  VkDeviceSize recordBytes = VkDeviceSize(budgets.mediumRecords() + budgets.largeRecords()) * kRecordBytes;
   if (exact) recordBytes = std::max(recordBytes, VkDeviceSize(budgets.maxCandidates) * sizeof(shader::Candidate));
   if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT)
     recordBytes = std::max(recordBytes, VkDeviceSize(budgets.maxCameras) * shader::kCameraTiles * sizeof(shader::Tile));
@@ -77,12 +75,12 @@ core::Pass& fetchesTriangles(core::Pass& pass) {
   return pass;
 }
 
-core::PassList describePasses(const Budgets& budgets, std::pmr::memory_resource* memory) {
+core::PassList describePasses(const Budgets& budgets, const core::Device& device, std::pmr::memory_resource* memory) {
   const bool conservative = budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT;
   core::PassList list(memory);
   addResources(list, budgets);
   addStandard(list, conservative);
-  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, budgets);
+  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, budgets, device);
   if (conservative) addConservative(list, budgets);
   if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT) addNearby(list);
   addOutputs(list);

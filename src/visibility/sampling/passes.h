@@ -3,6 +3,7 @@
 // One list serves all records of a sampler; a record leaves out what its conditions say. docs/visibility.md has the
 // flow. Each part of the list has a file.
 #pragma once
+#include "core/device.h"
 #include "core/passes.h"
 #include "visibility/layout.h"
 #include "visibility/sampling/budgets.h"
@@ -26,11 +27,12 @@ inline uint32_t groupsOf256(uint64_t items) {
   return static_cast<uint32_t>(std::min<uint64_t>((items + 255) / 256, shader::kMaxGroups));
 }
 
-core::PassList describePasses(const Budgets& budgets, std::pmr::memory_resource* memory);
+/// device: chooses the shaders that it can run.
+core::PassList describePasses(const Budgets& budgets, const core::Device& device, std::pmr::memory_resource* memory);
 
 // The parts of it.
 void addStandard(core::PassList& list, bool conservative); ///< bits of what is seen at the pixels' samples
-void addExact(core::PassList& list, const Budgets& budgets);
+void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device);
 void addConservative(core::PassList& list, const Budgets& budgets);
 void addNearby(core::PassList& list);
 void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes

@@ -58,7 +58,7 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
                                 1};
   record.groups[kEntryGroups] = {groupsOf256(params.entryCount), 1, 1};
   record.groups[kChunkGroups] = {groupsOf256(budgets.chunks()), 1, 1};
-  const uint32_t side = shader::tileSide(params.width, params.height);
+  const uint32_t side = shader::tileSide(params.width, params.height, 0);
   record.groups[kScreenTileGroups] = {(params.width + side - 1) / side, shader::kMaxTiles * params.cameraCount, 1};
   record.groups[kEachPixelGroups] = {groupsOf256(uint64_t(params.width) * rows), 1, 1};
 }
@@ -69,7 +69,8 @@ Sampler::Sampler(core::Context& owner, const GpgpSamplerCreateInfo& info)
 
 Result<core::Unique<Sampler>> Sampler::create(core::Context& context, const GpgpSamplerCreateInfo& info) {
   auto sampler = core::makeUnique<Sampler>(context.host(), context, info);
-  if (auto ok = sampler->init(describePasses(sampler->budgets_, &context.host())); !ok) return ok.error();
+  if (auto ok = sampler->init(describePasses(sampler->budgets_, context.device, &context.host())); !ok)
+    return ok.error();
   return sampler;
 }
 

@@ -1,0 +1,54 @@
+// A workgroup of 32 invocations that decide a list together, and what they say to each other: by subgroups where those
+// are of 32 on the device, so that it is one.
+layout(local_size_x = 32) in; // kBatch
+
+uint laneOf() { return gl_LocalInvocationIndex; }
+
+#ifdef GPGP_SUBGROUPS
+void sync() { subgroupBarrier(); }
+uint orAll(uint v) { return subgroupOr(v); }
+uint minAll(uint v) { return subgroupMin(v); }
+uint maxAll(uint v) { return subgroupMax(v); }
+uint sumUpTo(uint v) { return subgroupInclusiveAdd(v); } // with the invocation's own
+#else
+shared uint joined;
+shared uint sums[kBatch];
+
+void sync() { barrier(); }
+
+void beginJoin(uint neutral) {
+  barrier();
+  if (laneOf() == 0u) joined = neutral;
+  barrier();
+}
+uint endJoin() {
+  barrier();
+  return joined;
+}
+uint orAll(uint v) {
+  beginJoin(0u);
+  if (v != 0u) atomicOr(joined, v);
+  return endJoin();
+}
+uint minAll(uint v) {
+  beginJoin(0xffffffffu);
+  atomicMin(joined, v);
+  return endJoin();
+}
+uint maxAll(uint v) {
+  beginJoin(0u);
+  atomicMax(joined, v);
+  return endJoin();
+}
+uint sumUpTo(uint v) {
+  sums[laneOf()] = v;
+  barrier();
+  for (uint step = 1u; step < kBatch; step *= 2u) {
+    uint before = laneOf() >= step ? sums[laneOf() - step] : 0u;
+    barrier();
+    sums[laneOf()] += before;
+    barrier();
+  }
+  return sums[laneOf()];
+}
+#endif
