@@ -66,7 +66,8 @@ GpgpResult codeOf(VkResult result) {
 } // namespace
 
 GlyphPictures::GlyphPictures(const PictureDevice& device, uint32_t maxPictures) : device_(device) {
-  places_.resize(std::clamp(maxPictures, 1u, 576u)); // 24 x 24 places have 3840 texels a side: every device has 4096
+  const uint32_t across = std::max(device.maxSide / kPitch, 1u);
+  places_.resize(std::clamp(maxPictures, 1u, across * across));
   columns_ = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<float>(places_.size()))));
   rows_ = (static_cast<uint32_t>(places_.size()) + columns_ - 1) / columns_;
 }

@@ -33,12 +33,22 @@ struct PlacedPicture {
   float alpha = 1;
 };
 
+/// An underline or a strike, in the units of the text.
+struct PlacedLine {
+  float box[4] = {}; ///< left, top, right, bottom
+  float color[4] = {};
+  bool strike = false; ///< painted over the glyphs; else below them
+};
+
 /// Glyphs at their places. Valid in the frame in which they were placed; as long as all that is shown fits the
 /// budgets, in all later ones, too.
 struct PlacedText {
   std::vector<GpgpGlyphInstance> glyphs;
   std::vector<PlacedPicture> pictures;
+  std::vector<PlacedLine> lines;
   uint32_t dropped = 0; ///< found no room in the set or the texture
+  /// Appends underlines and strikes, moved by (x, y) after they were scaled.
+  void decorate(std::span<const GpgpTextDecoration> decorations, float x, float y, float scale);
   void clear();
 };
 
@@ -52,10 +62,12 @@ public:
   /// Appends glyphs, moved by (x, y) after they were scaled: of each font, glyph, x, y, size and color count.
   /// BUDGET_EXCEEDED: some are not there, and counted.
   GpgpResult place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text);
+  /// With underlines and strikes.
   GpgpResult place(const GpgpLayoutInfo& layout, float x, float y, float scale, PlacedText& text) {
+    text.decorate({layout.decorations, layout.decorationCount}, x, y, scale);
     return place({layout.glyphs, layout.glyphCount}, x, y, scale, text);
   }
-  /// Adds them to a list: image() is the image of this number (GpgpListImage::image).
+  /// Adds them to a list, underlines first, strikes last: image() is the image of this number (GpgpListImage::image).
   GpgpResult addTo(GpgpList list, const PlacedText& text, uint32_t image = 0, uint64_t id = 0) const;
   /// New pictures, before the records that show them. Glyphs go with gpgpRecordUpload. @pass outside
   GpgpResult recordUpload(VkCommandBuffer commands, const GpgpFrame& frame);

@@ -22,6 +22,7 @@ Rect pixels(float left, float top, float right, float bottom) {
 void Pieces::clear() {
   all.clear();
   glyphs.clear();
+  lines.clear();
   layers = dropped = 0;
 }
 
@@ -96,6 +97,11 @@ private:
           glyph.x = screenX(piece.position.x + glyph.x);
           glyph.y = screenY(piece.position.y + glyph.y);
           glyph.size *= data_.FramebufferScale.y;
+        }
+        for (size_t i = piece.firstLine; i < piece.firstLine + piece.lineCount; ++i) {
+          GpgpTextRect& line = pieces_.lines[i].rect; // likewise
+          line = {screenX(piece.position.x + line.x), screenY(piece.position.y + line.y),
+                  line.width * data_.FramebufferScale.x, line.height * data_.FramebufferScale.y};
         }
         const Rect ink = pixels(screenX(piece.position.x + piece.ink[0]), screenY(piece.position.y + piece.ink[1]),
                                 screenX(piece.position.x + piece.ink[2]), screenY(piece.position.y + piece.ink[3]));

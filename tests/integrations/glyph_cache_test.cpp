@@ -215,6 +215,37 @@ TEST_F(GlyphCacheTest, TextAndPicturesGoTogetherAndFade) {
   EXPECT_NEAR(half, whole / 2.0, 2); // mixed as sRGB encodes colours
 }
 
+TEST_F(GlyphCacheTest, UnderlinesLieBelowAndStrikesOver) {
+  ASSERT_EQ(cache.create(stage->cacheInfo(4)), GPGP_SUCCESS);
+  const std::string words = "x💚";
+  const GpgpFont fonts[] = {latin, emoji};
+  auto text = init<GpgpTextInfo>();
+  text.text = words.data();
+  text.size = words.size();
+  text.style = {.fonts = fonts, .fontCount = 2, .size = 96, .color = {1, 0, 0, 1}, .underline = 1, .strike = 1};
+  ASSERT_EQ(layout.set(text), GPGP_SUCCESS);
+  const GpgpLayoutInfo info = *layout.info();
+  ASSERT_EQ(info.decorationCount, 2u);
+  placed.clear();
+  ASSERT_EQ(cache.place(info, 4, 4, 0.5f, placed), GPGP_SUCCESS); // as ever after a scale
+  ASSERT_EQ(placed.lines.size(), 2u);
+  ASSERT_EQ(placed.pictures.size(), 1u);
+  const host::Picture picture = draw();
+  keep(picture, "lines");
+  const auto at = [&](float x, const GpgpTextDecoration& line) {
+    return &picture.rgba[(static_cast<size_t>(4 + (line.rect.y + line.rect.height / 2) / 2) * kSide +
+                          static_cast<size_t>(x)) *
+                         4];
+  };
+  const float* heart = placed.pictures[0].box;
+  const float middle = (heart[0] + heart[2]) / 2, corner = heart[0] + 1;
+  for (uint32_t i = 0; i < 2; ++i) {
+    const GpgpTextDecoration& line = info.decorations[i];
+    EXPECT_EQ(at(corner, line)[0], 255) << "beside the heart's tip, or over it";
+    EXPECT_EQ(at(middle, line)[0] == 255, line.strike != 0);
+  }
+}
+
 TEST_F(GlyphCacheTest, APictureUnusedMakesRoomAndWhatFindsNoneIsCounted) {
   ASSERT_EQ(cache.create(stage->cacheInfo(2)), GPGP_SUCCESS);
   placed.clear();

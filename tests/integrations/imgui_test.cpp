@@ -423,6 +423,39 @@ TEST_F(ImGuiTest, LayoutsAreWidgets) {
   screen.renderer->forget(font);
 }
 
+/// Underlines and strikes that are thinner than a pixel, at no whole pixel.
+TEST_F(ImGuiTest, LinesOfLayoutsAreAsThickAsTheyAre) {
+  auto fontInfo = init<GpgpFontCreateInfo>();
+  fontInfo.filePath = GPGP_TEST_DATA "/fetched/fonts/DejaVuSerif.ttf";
+  Font font = *Font::create(fontInfo);
+  Shaper shaper = *Shaper::create();
+  Layout layout = *shaper.layout();
+  const GpgpFont fonts[] = {font};
+  auto text = init<GpgpTextInfo>();
+  text.text = "i          i";
+  text.size = 12;
+  text.style = {.fonts = fonts, .fontCount = 1, .size = 9, .color = {1, 1, 1, 1}, .underline = 1, .strike = 1};
+  ASSERT_EQ(layout.set(text), GPGP_SUCCESS);
+  const GpgpLayoutInfo info = *layout.info();
+  ASSERT_EQ(info.decorationCount, 2u);
+  float thickness = 0;
+  for (uint32_t i = 0; i < 2; ++i) thickness += info.decorations[i].rect.height;
+  ASSERT_LT(thickness, 1.5f);
+  for (const float y : {20.0f, 20.3f, 20.6f}) {
+    const host::Picture picture = screen.render([&] {
+      ImDrawList& list = *ImGui::GetForegroundDrawList();
+      list.AddRectFilled({0, 0}, {300, 200}, IM_COL32(0, 0, 0, 255));
+      screen.renderer->addText(list, layout, {10, y});
+    });
+    uint32_t sum = 0; // down a column between the letters
+    const auto middle = static_cast<uint32_t>(10 + info.width / 2);
+    for (uint32_t row = 0; row < 100; ++row) sum += at(picture, middle, row)[0];
+    EXPECT_NEAR(static_cast<float>(sum) / 255, thickness, 0.15f) << y; // counted in 16 rows a pixel
+    EXPECT_EQ(screen.renderer->report().dropped, 0u);
+  }
+  screen.renderer->forget(font);
+}
+
 /// Emoji of a font of pictures: in a layout, and in ImGui's own text, at two sizes.
 TEST_F(ImGuiTest, GlyphsThatArePicturesAreShown) {
   const std::string file = GPGP_TEST_DATA "/fetched/fonts/NotoColorEmoji.ttf";

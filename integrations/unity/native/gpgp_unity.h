@@ -36,7 +36,8 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetEventId(void);
  * GpgpCanvasCreateInfo's own). Makes pipelines: while a level loads, not in a frame. */
 typedef struct GpgpUnityBudgets {
   uint32_t maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs;
-  uint32_t maxItems; /* drawings and texts; a text with emoji that are pictures counts twice */
+  uint32_t maxItems;  /* drawings and texts; a text with emoji that are pictures counts twice */
+  uint32_t maxShapes; /* emoji that are pictures, at each place that they are shown at */
 } GpgpUnityBudgets;
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnitySetBudgets(const GpgpUnityBudgets* budgets);
 
