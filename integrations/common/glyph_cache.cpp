@@ -64,6 +64,16 @@ void PlacedText::decorate(std::span<const GpgpTextDecoration> decorations, float
   }
 }
 
+std::array<float, 4> linesBox(const GpgpLayoutInfo& layout) {
+  if (layout.lineCount == 0) return {};
+  std::array<float, 4> box{layout.lines[0].left, 0, layout.lines[0].left, layout.height};
+  for (uint32_t i = 0; i < layout.lineCount; ++i) {
+    box[0] = std::min(box[0], layout.lines[i].left);
+    box[2] = std::max(box[2], layout.lines[i].left + layout.lines[i].width);
+  }
+  return box;
+}
+
 std::array<float, 4> inkBox(GpgpFont font, uint32_t glyph) {
   std::array<float, 4> box{};
   fetch(font, glyph, [&box](const GpgpGlyphOutline& outline) {

@@ -52,6 +52,10 @@ struct PlacedText {
   void clear();
 };
 
+/// Where a layout's lines lie: left, top, right, bottom. Lines at the right or in the middle of a width do not begin
+/// at 0.
+std::array<float, 4> linesBox(const GpgpLayoutInfo& layout);
+
 /// Where a glyph's paths or its picture lie, in em: left, top, right, bottom; all 0: a blank.
 std::array<float, 4> inkBox(GpgpFont font, uint32_t glyph);
 

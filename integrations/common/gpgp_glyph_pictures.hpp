@@ -30,8 +30,8 @@ public:
   GlyphPictures& operator=(const GlyphPictures&) = delete;
 
   static constexpr uint32_t kNone = UINT32_MAX;
-  /// A place for a picture, which goes with the next recordUpload. OUT_OF_DEVICE_MEMORY: there is no texture.
-  /// BUDGET_EXCEEDED: all others are in use.
+  /// A place for a picture, which goes with the next recordUpload; one with more than 144 texels a side is shrunk.
+  /// OUT_OF_DEVICE_MEMORY: there is no texture. BUDGET_EXCEEDED: all others are in use.
   GpgpResult add(const GpgpGlyphImage& image, uint32_t& place);
   uint32_t capacity() const { return static_cast<uint32_t>(places_.size()); }
   bool full() const; ///< add would exceed the budget

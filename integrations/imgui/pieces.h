@@ -46,8 +46,8 @@ struct Piece {
   GpgpAsset drawing = nullptr;
   float transform[6] = {};
   // A widget, before the draw data are there: ImGui's units.
-  ImVec2 position, size;
-  float ink[4] = {}; ///< of glyphs and lines, from the position: left, top, right, bottom
+  ImVec2 position, size; ///< size: of a drawing's box
+  float ink[4] = {};     ///< of glyphs and lines, from the position: left, top, right, bottom
 };
 
 struct Pieces {

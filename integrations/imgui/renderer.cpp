@@ -28,7 +28,7 @@ RendererInfo checked(const RendererInfo& info) {
 
 struct Renderer::Impl {
   explicit Impl(const RendererInfo& wanted);
-  Piece& widget(ImDrawList& list, const ImVec2& position, const ImVec2& size);
+  Piece& widget(ImDrawList& list, const ImVec2& position);
   void beginFrame();
   const float* boxOf(GpgpFont font, uint32_t glyph);
   GpgpResult prepare(ImDrawData& data, VkCommandBuffer commands, const GpgpFrame& frame);
@@ -91,11 +91,10 @@ void Renderer::Impl::beginFrame() {
   collected = ready = false;
 }
 
-Piece& Renderer::Impl::widget(ImDrawList& list, const ImVec2& position, const ImVec2& size) {
+Piece& Renderer::Impl::widget(ImDrawList& list, const ImVec2& position) {
   Piece& piece = pieces.all.emplace_back();
   piece.owner = this;
   piece.position = position;
-  piece.size = size;
   list.AddCallback(onDraw, &piece);
   return piece;
 }
@@ -125,14 +124,16 @@ void Renderer::text(GpgpLayout layout) {
   GpgpLayoutInfo info = GPGP_LAYOUT_INFO_INIT;
   if (gpgpGetLayoutInfo(layout, &info) < 0) return;
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImGui::Dummy({info.width, info.height});
+  ImGui::Dummy({std::max(integration::linesBox(info)[2], 0.0f), info.height});
   if (ImGui::IsItemVisible()) addText(*ImGui::GetWindowDrawList(), layout, at);
 }
 
 void Renderer::addDrawing(ImDrawList& list, GpgpAsset asset, const ImVec2& min, const ImVec2& max) {
   if (!asset || max.x <= min.x || max.y <= min.y) return;
   impl_->beginFrame();
-  impl_->widget(list, min, {max.x - min.x, max.y - min.y}).drawing = asset;
+  Piece& piece = impl_->widget(list, min);
+  piece.drawing = asset;
+  piece.size = {max.x - min.x, max.y - min.y};
 }
 
 void Renderer::addText(ImDrawList& list, GpgpLayout layout, const ImVec2& position) {
@@ -167,7 +168,7 @@ void Renderer::addText(ImDrawList& list, GpgpLayout layout, const ImVec2& positi
          from.y + box[3] * from.size);
   }
   if (glyphs.size() == first && lines.size() == firstLine) return;
-  Piece& piece = impl_->widget(list, position, {info.width, info.height});
+  Piece& piece = impl_->widget(list, position);
   piece.firstGlyph = first;
   piece.glyphCount = glyphs.size() - first;
   piece.firstLine = firstLine;

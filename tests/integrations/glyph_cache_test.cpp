@@ -29,6 +29,34 @@ struct GlyphCacheTest : testing::Test {
       EXPECT_EQ(canvas.prewarm(), GPGP_SUCCESS);
     }
     ~Stage() { vkDeviceWaitIdle(device.device); }
+    /// A list in the frame that `commands` are of, whose uploads they have.
+    host::Picture draw(VkCommandBuffer commands, GpgpList list, const std::optional<GpgpCanvasImage>& pictures,
+                       const float (&background)[4]) {
+      GpgpCanvasItem item{};
+      item.list = list;
+      item.transform[0] = item.transform[3] = item.opacity = 1;
+      auto info = init<GpgpCanvasInfo>();
+      info.width = info.height = kSide;
+      info.items = &item;
+      info.itemCount = 1;
+      info.images = pictures ? &*pictures : nullptr;
+      info.imageCount = pictures ? 1 : 0;
+      info.exactArea = info.encodeSrgb = info.blendSrgb = VK_TRUE;
+      std::copy_n(background, 4, info.background);
+      const GpgpAccess after{VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+      info.target = {image, view, VK_FORMAT_R8G8B8A8_UNORM, 0, 0, kSide, kSide, {}, after};
+      EXPECT_EQ(canvas.recordPrepare(commands, frames.number(), info), GPGP_SUCCESS);
+      VkBufferImageCopy copy{};
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      copy.imageExtent = {kSide, kSide, 1};
+      vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
+      frames.submit();
+      vkDeviceWaitIdle(device.device);
+      host::Picture picture{kSide, kSide, std::vector<uint8_t>(size_t{kSide} * kSide * 4)};
+      std::memcpy(picture.rgba.data(), mapped, picture.rgba.size());
+      return picture;
+    }
     integration::GlyphCacheInfo cacheInfo(uint32_t maxPictures) const {
       integration::GlyphCacheInfo info;
       info.context = context;
@@ -91,31 +119,7 @@ struct GlyphCacheTest : testing::Test {
     EXPECT_EQ(stage->context.advance(frame), GPGP_SUCCESS);
     EXPECT_TRUE(stage->context.recordUpload(commands, frame));
     EXPECT_EQ(cache.recordUpload(commands, frame), GPGP_SUCCESS);
-    const std::optional<GpgpCanvasImage> pictures = cache.image();
-    GpgpCanvasItem item{};
-    item.list = list;
-    item.transform[0] = item.transform[3] = item.opacity = 1;
-    auto info = init<GpgpCanvasInfo>();
-    info.width = info.height = kSide;
-    info.items = &item;
-    info.itemCount = 1;
-    info.images = pictures ? &*pictures : nullptr;
-    info.imageCount = pictures ? 1 : 0;
-    info.exactArea = info.encodeSrgb = info.blendSrgb = VK_TRUE;
-    std::copy_n(background, 4, info.background);
-    const GpgpAccess after{VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
-    info.target = {stage->image, stage->view, VK_FORMAT_R8G8B8A8_UNORM, 0, 0, kSide, kSide, {}, after};
-    EXPECT_EQ(stage->canvas.recordPrepare(commands, frame, info), GPGP_SUCCESS);
-    VkBufferImageCopy copy{};
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    copy.imageExtent = {kSide, kSide, 1};
-    vkCmdCopyImageToBuffer(commands, stage->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, stage->buffer, 1, &copy);
-    stage->frames.submit();
-    vkDeviceWaitIdle(stage->device.device);
-    host::Picture picture{kSide, kSide, std::vector<uint8_t>(size_t{kSide} * kSide * 4)};
-    std::memcpy(picture.rgba.data(), stage->mapped, picture.rgba.size());
-    return picture;
+    return stage->draw(commands, list, cache.image(), background);
   }
   static void keep(const host::Picture& picture, const std::string& name) {
     if (const char* folder = std::getenv("GPGP_GLYPH_CACHE_PICTURES"))
@@ -244,6 +248,40 @@ TEST_F(GlyphCacheTest, UnderlinesLieBelowAndStrikesOver) {
     EXPECT_EQ(at(corner, line)[0], 255) << "beside the heart's tip, or over it";
     EXPECT_EQ(at(middle, line)[0] == 255, line.strike != 0);
   }
+}
+
+TEST_F(GlyphCacheTest, LargePicturesAreShrunkNoMoreThanTheyMust) {
+  integration::GlyphPictures pictures(stage->cacheInfo(1).pictureDevice, 1000);
+  EXPECT_EQ(pictures.capacity(), 625u) << "as many as 4096 texels a side hold";
+  for (const auto& [width, height, wide, tall] :
+       {std::array{160u, 160u, 144u, 144u}, {300u, 10u, 144u, 4u}, {136u, 128u, 136u, 128u}, {2000u, 1u, 144u, 1u}}) {
+    const std::vector<uint8_t> white(size_t{width} * height * 4, 255);
+    uint32_t place = 0;
+    ASSERT_EQ(pictures.add({white.data(), width, height, {}}, place), GPGP_SUCCESS);
+    const auto& source = pictures.source(place);
+    EXPECT_NEAR((source[2] - source[0]) * 25 * 160, static_cast<float>(wide), 0.01f) << width;
+    EXPECT_NEAR((source[3] - source[1]) * 25 * 160, static_cast<float>(tall), 0.01f) << height;
+  }
+  // Stripes of a texel become grey, half as bright in linear light, and keep their alpha.
+  std::vector<uint8_t> stripes(size_t{288} * 288 * 4, 255);
+  for (size_t i = 0; i < stripes.size(); i += 8) stripes[i] = stripes[i + 1] = stripes[i + 2] = 0;
+  integration::GlyphPictures one(stage->cacheInfo(1).pictureDevice, 1);
+  uint32_t place = 0;
+  ASSERT_EQ(one.add({stripes.data(), 288, 288, {}}, place), GPGP_SUCCESS);
+  VkCommandBuffer commands = stage->frames.begin();
+  EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
+  EXPECT_EQ(one.recordUpload(commands, stage->frames.number()), GPGP_SUCCESS);
+  List list = *List::create(stage->context);
+  GpgpListImage image{};
+  std::copy_n(one.source(place).begin(), 4, image.source);
+  GpgpListShape shape{};
+  shape.box[2] = shape.box[3] = 144;
+  std::fill_n(shape.color, 4, 1.0f);
+  shape.image = &image;
+  EXPECT_EQ(list.add(shape), GPGP_SUCCESS);
+  const host::Picture seen = stage->draw(commands, list, one.image(), {0, 0, 0, 1});
+  for (const uint32_t at : {20u, 70u, 120u})
+    EXPECT_NEAR(seen.rgba[(size_t{at} * kSide + at) * 4], 255 * host::srgbFromLinear(0.5f), 2);
 }
 
 TEST_F(GlyphCacheTest, APictureUnusedMakesRoomAndWhatFindsNoneIsCounted) {

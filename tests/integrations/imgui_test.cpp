@@ -420,6 +420,27 @@ TEST_F(ImGuiTest, LayoutsAreWidgets) {
   for (uint32_t y = 30; y < 30 + static_cast<uint32_t>(info.height); ++y)
     for (uint32_t x = 10; x < 300; ++x) white += at(picture, x, y) == Color{255, 255, 255} ? 1 : 0;
   EXPECT_GT(white, 500u);
+  // Lines at the right of the width: the widget reaches as far.
+  text.size = 11; // A paragraph
+  text.align = GPGP_TEXT_ALIGN_RIGHT;
+  ASSERT_EQ(layout.set(text), GPGP_SUCCESS);
+  float widget = 0;
+  const host::Picture aligned = screen.render([&] {
+    ImGui::SetNextWindowPos({10, 10});
+    ImGui::SetNextWindowSize({300, 300});
+    ImGui::Begin("window", nullptr, ImGuiWindowFlags_NoDecoration);
+    screen.renderer->text(layout);
+    widget = ImGui::GetItemRectSize().x;
+    ImGui::SetCursorScreenPos({-240, 60}); // only the letters at the right are in the window
+    screen.renderer->text(layout);
+    ImGui::End();
+  });
+  keep(aligned, "aligned");
+  EXPECT_NEAR(widget, 250, 0.1f);
+  uint32_t left = 0;
+  for (uint32_t y = 60; y < 90; ++y)
+    for (uint32_t x = 10; x < 20; ++x) left += at(aligned, x, y)[0] > 128 ? 1 : 0;
+  EXPECT_EQ(left, 0u) << "clipped to the window's inside";
   screen.renderer->forget(font);
 }
 

@@ -43,7 +43,7 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnitySetBudgets(const GpgpUnityBudget
 
 /** From an SVG file's bytes, or from a baked drawing's (baked != 0). */
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityCreateDrawing(const void* data, int32_t size, int32_t baked);
-/** The page of a drawing (x, y, width, height), or the box of a text (0, 0, width, height), in its units. */
+/** The page of a drawing (x, y, width, height), or the box of a text's lines, in its units. */
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetBox(int32_t object, float* box);
 /** From a font file's bytes, which are copied. */
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityCreateFont(const void* data, int32_t size);

@@ -139,7 +139,8 @@ int32_t Plugin::getBox(int32_t object, float* box) {
   if (const auto text = texts_.find(object); text != texts_.end()) {
     const Result<GpgpLayoutInfo> info = text->second.layout.info();
     if (!info) return info.code();
-    const float size[4] = {0, 0, info->width, info->height};
+    const auto lines = integration::linesBox(*info);
+    const float size[4] = {lines[0], 0, lines[2] - lines[0], lines[3]};
     std::copy_n(size, 4, box);
     return GPGP_SUCCESS;
   }
