@@ -156,6 +156,7 @@ VkResult GlyphPictures::makeTexture() {
   info.magFilter = info.minFilter = VK_FILTER_LINEAR;
   info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
   info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.mipLodBias = -0.5f; // nearest to the mean over each pixel at 13 to 96 pixels; without, pictures are soft
   info.maxLod = static_cast<float>(kLevels - 1);
   return load<PFN_vkCreateSampler>("vkCreateSampler")(device_.device, &info, nullptr, &sampler_);
 }

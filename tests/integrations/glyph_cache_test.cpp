@@ -167,7 +167,7 @@ struct Expected {
 TEST_F(GlyphCacheTest, PicturesAreTheFontsAtEverySize) {
   ASSERT_EQ(cache.create(stage->cacheInfo(4)), GPGP_SUCCESS);
   // Filters blur small pictures a little.
-  for (const auto& [size, limit] : {std::pair(13.0f, 7.0), {27.5f, 5.0}, {60.0f, 2.5}, {150.0f, 1.5}}) {
+  for (const auto& [size, limit] : {std::pair(13.0f, 5.5), {27.5f, 3.3}, {60.0f, 1.6}, {150.0f, 1.1}}) {
     const GpgpLayoutInfo info = layOut("🔥", size);
     ASSERT_EQ(info.glyphCount, 1u);
     const float x = 20.25f, y = 30.5f; // between pixels
