@@ -324,7 +324,7 @@ TEST_F(GlyphCacheTest, WithoutADeviceThereAreNoPicturesAndFontsMayGo) {
   latin = open("DejaVuSans.ttf");
   placed.clear();
   EXPECT_EQ(cache.place(layOut("A🔥", 30), 8, 8, 1, placed), GPGP_SUCCESS);
-  EXPECT_EQ(draw().rgba, with.rgba);
+  EXPECT_LE(host::compare(draw(), with).largest, 1u); // another place of the texture: coordinates are rounded
 }
 
 } // namespace
