@@ -329,7 +329,7 @@ typedef struct GpgpTextRect {
   float x, y, width, height;
 } GpgpTextRect;
 
-/** An underline or a strike. */
+/** An underline, to be painted below the glyphs of the text, or a strike, over them. */
 typedef struct GpgpTextDecoration {
   GpgpTextRect rect;
   float color[4];

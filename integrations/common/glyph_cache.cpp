@@ -51,7 +51,27 @@ template <class Take> GpgpResult fetch(GpgpFont font, uint32_t glyph, Take&& tak
 void PlacedText::clear() {
   glyphs.clear();
   pictures.clear();
+  lines.clear();
   dropped = 0;
+}
+
+void PlacedText::decorate(std::span<const GpgpTextDecoration> decorations, float x, float y, float scale) {
+  for (const GpgpTextDecoration& from : decorations) {
+    const float left = x + from.rect.x * scale, top = y + from.rect.y * scale;
+    PlacedLine& to = lines.emplace_back(
+        PlacedLine{{left, top, left + from.rect.width * scale, top + from.rect.height * scale}, {}, from.strike != 0});
+    std::copy_n(from.color, 4, to.color);
+  }
+}
+
+std::array<float, 4> linesBox(const GpgpLayoutInfo& layout) {
+  if (layout.lineCount == 0) return {};
+  std::array<float, 4> box{layout.lines[0].left, 0, layout.lines[0].left, layout.height};
+  for (uint32_t i = 0; i < layout.lineCount; ++i) {
+    box[0] = std::min(box[0], layout.lines[i].left);
+    box[2] = std::max(box[2], layout.lines[i].left + layout.lines[i].width);
+  }
+  return box;
 }
 
 std::array<float, 4> inkBox(GpgpFont font, uint32_t glyph) {
@@ -181,6 +201,19 @@ GpgpResult GlyphCache::place(std::span<const GpgpTextGlyph> glyphs, float x, flo
 }
 
 GpgpResult GlyphCache::addTo(GpgpList list, const PlacedText& text, uint32_t image, uint64_t id) const {
+  const auto addLines = [&](bool strikes) -> GpgpResult {
+    for (const PlacedLine& line : text.lines) {
+      if (line.strike != strikes) continue;
+      GpgpListShape shape{};
+      shape.kind = GPGP_LIST_RECTANGLE;
+      std::copy_n(line.box, 4, shape.box);
+      std::copy_n(line.color, 4, shape.color);
+      shape.id = id;
+      if (const GpgpResult added = gpgpAddShapes(list, &shape, 1); added < 0) return added;
+    }
+    return GPGP_SUCCESS;
+  };
+  if (const GpgpResult added = addLines(false); added < 0) return added;
   if (!text.glyphs.empty()) {
     const auto count = static_cast<uint32_t>(text.glyphs.size());
     if (const GpgpResult added = gpgpAddText(list, set_, text.glyphs.data(), count, id); added < 0) return added;
@@ -198,7 +231,7 @@ GpgpResult GlyphCache::addTo(GpgpList list, const PlacedText& text, uint32_t ima
     shape.id = id;
     if (const GpgpResult added = gpgpAddShapes(list, &shape, 1); added < 0) return added;
   }
-  return GPGP_SUCCESS;
+  return addLines(true);
 }
 
 GpgpResult GlyphCache::recordUpload(VkCommandBuffer commands, const GpgpFrame& frame) {

@@ -33,14 +33,28 @@ struct PlacedPicture {
   float alpha = 1;
 };
 
+/// An underline or a strike, in the units of the text.
+struct PlacedLine {
+  float box[4] = {}; ///< left, top, right, bottom
+  float color[4] = {};
+  bool strike = false; ///< painted over the glyphs; else below them
+};
+
 /// Glyphs at their places. Valid in the frame in which they were placed; as long as all that is shown fits the
 /// budgets, in all later ones, too.
 struct PlacedText {
   std::vector<GpgpGlyphInstance> glyphs;
   std::vector<PlacedPicture> pictures;
+  std::vector<PlacedLine> lines;
   uint32_t dropped = 0; ///< found no room in the set or the texture
+  /// Appends underlines and strikes, moved by (x, y) after they were scaled.
+  void decorate(std::span<const GpgpTextDecoration> decorations, float x, float y, float scale);
   void clear();
 };
+
+/// Where a layout's lines lie: left, top, right, bottom. Lines at the right or in the middle of a width do not begin
+/// at 0.
+std::array<float, 4> linesBox(const GpgpLayoutInfo& layout);
 
 /// Where a glyph's paths or its picture lie, in em: left, top, right, bottom; all 0: a blank.
 std::array<float, 4> inkBox(GpgpFont font, uint32_t glyph);
@@ -52,10 +66,12 @@ public:
   /// Appends glyphs, moved by (x, y) after they were scaled: of each font, glyph, x, y, size and color count.
   /// BUDGET_EXCEEDED: some are not there, and counted.
   GpgpResult place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text);
+  /// With underlines and strikes.
   GpgpResult place(const GpgpLayoutInfo& layout, float x, float y, float scale, PlacedText& text) {
+    text.decorate({layout.decorations, layout.decorationCount}, x, y, scale);
     return place({layout.glyphs, layout.glyphCount}, x, y, scale, text);
   }
-  /// Adds them to a list: image() is the image of this number (GpgpListImage::image).
+  /// Adds them to a list, underlines first, strikes last: image() is the image of this number (GpgpListImage::image).
   GpgpResult addTo(GpgpList list, const PlacedText& text, uint32_t image = 0, uint64_t id = 0) const;
   /// New pictures, before the records that show them. Glyphs go with gpgpRecordUpload. @pass outside
   GpgpResult recordUpload(VkCommandBuffer commands, const GpgpFrame& frame);

@@ -17,20 +17,23 @@ struct PictureDevice {
   VkDevice device = VK_NULL_HANDLE;
   PFN_vkGetDeviceProcAddr getDeviceProcAddr = nullptr;
   VkPhysicalDeviceMemoryProperties memory{}; ///< vkGetPhysicalDeviceMemoryProperties
+  uint32_t maxSide = 4096;                   ///< VkPhysicalDeviceLimits::maxImageDimension2D, or less
 };
 
 class GlyphPictures {
 public:
-  /// maxPictures: at a time; 136 KB each, allocated together when the first one comes.
+  /// maxPictures: at a time, as far as maxSide allows (4096: 625); 136 KB each, allocated together when the first one
+  /// comes.
   GlyphPictures(const PictureDevice& device, uint32_t maxPictures);
   ~GlyphPictures(); ///< frames that show pictures have finished
   GlyphPictures(const GlyphPictures&) = delete;
   GlyphPictures& operator=(const GlyphPictures&) = delete;
 
   static constexpr uint32_t kNone = UINT32_MAX;
-  /// A place for a picture, which goes with the next recordUpload. OUT_OF_DEVICE_MEMORY: there is no texture.
-  /// BUDGET_EXCEEDED: all others are in use.
+  /// A place for a picture, which goes with the next recordUpload; one with more than 144 texels a side is shrunk.
+  /// OUT_OF_DEVICE_MEMORY: there is no texture. BUDGET_EXCEEDED: all others are in use.
   GpgpResult add(const GpgpGlyphImage& image, uint32_t& place);
+  uint32_t capacity() const { return static_cast<uint32_t>(places_.size()); }
   bool full() const; ///< add would exceed the budget
   /// It is in use: it stays until the next recordUpload, and what that frame shows of it stays as it is.
   void use(uint32_t place) { places_[place].used = upload_; }

@@ -8,14 +8,17 @@
 namespace gpgp::sample {
 namespace {
 
-bool parse(int argc, char** argv, Options& options) {
+/// False: wrong says what is.
+bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
     if (name == "--validate") {
       options.validate = true;
       continue;
     }
+    wrong = name;
     if (i + 1 == argc) return false;
+    wrong += std::string(" ") + argv[i + 1];
     const char* value = argv[++i];
     char rest = 0;
     if (name == "--svg")
@@ -49,8 +52,8 @@ int sampleMain(int argc, char** argv, const char* name, const char* help, Option
       std::fputs(help, stdout);
       return 0;
     }
-  if (!parse(argc, argv, options)) {
-    std::fputs(help, stderr);
+  if (std::string wrong; !parse(argc, argv, options, wrong)) {
+    std::fprintf(stderr, "%s\n%s: wrong: %s\n", help, name, wrong.c_str());
     return 2;
   }
   try {

@@ -22,6 +22,7 @@ Rect pixels(float left, float top, float right, float bottom) {
 void Pieces::clear() {
   all.clear();
   glyphs.clear();
+  lines.clear();
   layers = dropped = 0;
 }
 
@@ -84,8 +85,12 @@ private:
       return;
     }
     piece.clip = clip_;
-    const Rect box = pixels(screenX(piece.position.x), screenY(piece.position.y),
-                            screenX(piece.position.x + piece.size.x), screenY(piece.position.y + piece.size.y));
+    const auto around = [&](float left, float top, float right, float bottom) {
+      return pixels(screenX(piece.position.x + left), screenY(piece.position.y + top),
+                    screenX(piece.position.x + right), screenY(piece.position.y + bottom));
+    };
+    const Rect box = piece.drawing ? around(0, 0, piece.size.x, piece.size.y)
+                                   : around(piece.ink[0], piece.ink[1], piece.ink[2], piece.ink[3]);
     if (overlap(box, clip_)) {
       if (piece.drawing) {
         const Rect ink = place(piece);
@@ -97,9 +102,12 @@ private:
           glyph.y = screenY(piece.position.y + glyph.y);
           glyph.size *= data_.FramebufferScale.y;
         }
-        const Rect ink = pixels(screenX(piece.position.x + piece.ink[0]), screenY(piece.position.y + piece.ink[1]),
-                                screenX(piece.position.x + piece.ink[2]), screenY(piece.position.y + piece.ink[3]));
-        piece.parts.push_back({ink, ink});
+        for (size_t i = piece.firstLine; i < piece.firstLine + piece.lineCount; ++i) {
+          GpgpTextRect& line = pieces_.lines[i].rect; // likewise
+          line = {screenX(piece.position.x + line.x), screenY(piece.position.y + line.y),
+                  line.width * data_.FramebufferScale.x, line.height * data_.FramebufferScale.y};
+        }
+        piece.parts.push_back({box, box});
       }
       giveLayer(piece);
     }

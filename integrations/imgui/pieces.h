@@ -41,18 +41,19 @@ struct Piece {
   std::vector<Part> parts; ///< no two are shown in the same pixel
   Rect clip;
   int layer = -1; ///< none: not drawn
-  // What is painted: glyphs [first, first + count) of the frame, or a drawing.
-  size_t firstGlyph = 0, glyphCount = 0;
+  // What is painted: glyphs [first, first + count) and lines of the frame, or a drawing.
+  size_t firstGlyph = 0, glyphCount = 0, firstLine = 0, lineCount = 0;
   GpgpAsset drawing = nullptr;
   float transform[6] = {};
   // A widget, before the draw data are there: ImGui's units.
-  ImVec2 position, size;
-  float ink[4] = {}; ///< of glyphs, from the position: left, top, right, bottom
+  ImVec2 position, size; ///< size: of a drawing's box
+  float ink[4] = {};     ///< of glyphs and lines, from the position: left, top, right, bottom
 };
 
 struct Pieces {
-  std::deque<Piece> all;             ///< stay where they are: draw lists point to them
-  std::vector<GpgpTextGlyph> glyphs; ///< font, glyph and color; x, y and size in framebuffer pixels
+  std::deque<Piece> all;                 ///< stay where they are: draw lists point to them
+  std::vector<GpgpTextGlyph> glyphs;     ///< font, glyph and color; x, y and size in framebuffer pixels
+  std::vector<GpgpTextDecoration> lines; ///< rect in framebuffer pixels
   uint32_t layers = 0;
   uint32_t dropped = 0; ///< glyphs and widgets without room or layer
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -29,7 +28,7 @@ RendererInfo checked(const RendererInfo& info) {
 
 struct Renderer::Impl {
   explicit Impl(const RendererInfo& wanted);
-  Piece& widget(ImDrawList& list, const ImVec2& position, const ImVec2& size);
+  Piece& widget(ImDrawList& list, const ImVec2& position);
   void beginFrame();
   const float* boxOf(GpgpFont font, uint32_t glyph);
   GpgpResult prepare(ImDrawData& data, VkCommandBuffer commands, const GpgpFrame& frame);
@@ -92,11 +91,10 @@ void Renderer::Impl::beginFrame() {
   collected = ready = false;
 }
 
-Piece& Renderer::Impl::widget(ImDrawList& list, const ImVec2& position, const ImVec2& size) {
+Piece& Renderer::Impl::widget(ImDrawList& list, const ImVec2& position) {
   Piece& piece = pieces.all.emplace_back();
   piece.owner = this;
   piece.position = position;
-  piece.size = size;
   list.AddCallback(onDraw, &piece);
   return piece;
 }
@@ -126,35 +124,37 @@ void Renderer::text(GpgpLayout layout) {
   GpgpLayoutInfo info = GPGP_LAYOUT_INFO_INIT;
   if (gpgpGetLayoutInfo(layout, &info) < 0) return;
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImGui::Dummy({info.width, info.height});
+  ImGui::Dummy({std::max(integration::linesBox(info)[2], 0.0f), info.height});
   if (ImGui::IsItemVisible()) addText(*ImGui::GetWindowDrawList(), layout, at);
 }
 
 void Renderer::addDrawing(ImDrawList& list, GpgpAsset asset, const ImVec2& min, const ImVec2& max) {
   if (!asset || max.x <= min.x || max.y <= min.y) return;
   impl_->beginFrame();
-  impl_->widget(list, min, {max.x - min.x, max.y - min.y}).drawing = asset;
+  Piece& piece = impl_->widget(list, min);
+  piece.drawing = asset;
+  piece.size = {max.x - min.x, max.y - min.y};
 }
 
 void Renderer::addText(ImDrawList& list, GpgpLayout layout, const ImVec2& position) {
   GpgpLayoutInfo info = GPGP_LAYOUT_INFO_INIT;
   if (gpgpGetLayoutInfo(layout, &info) < 0) return;
   impl_->beginFrame();
-  for (uint32_t i = 0; i < info.decorationCount; ++i) {
-    const GpgpTextDecoration& line = info.decorations[i];
-    const auto encoded = [&](int c) {
-      const float v = line.color[c];
-      return c == 3 || impl_->info.srgbTarget ? v
-             : v <= 0.0031308f                ? 12.92f * v
-                                              : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-    };
-    list.AddRectFilled({position.x + line.rect.x, position.y + line.rect.y},
-                       {position.x + line.rect.x + line.rect.width, position.y + line.rect.y + line.rect.height},
-                       ImGui::ColorConvertFloat4ToU32({encoded(0), encoded(1), encoded(2), encoded(3)}));
-  }
   std::vector<GpgpTextGlyph>& glyphs = impl_->pieces.glyphs;
-  const size_t first = glyphs.size();
+  std::vector<GpgpTextDecoration>& lines = impl_->pieces.lines;
+  const size_t first = glyphs.size(), firstLine = lines.size();
   float ink[4] = {1e9f, 1e9f, -1e9f, -1e9f};
+  const auto take = [&ink](float left, float top, float right, float bottom) {
+    ink[0] = std::min(ink[0], left);
+    ink[1] = std::min(ink[1], top);
+    ink[2] = std::max(ink[2], right);
+    ink[3] = std::max(ink[3], bottom);
+  };
+  lines.insert(lines.end(), info.decorations, info.decorations + info.decorationCount);
+  for (size_t i = firstLine; i < lines.size(); ++i) {
+    const GpgpTextRect& line = lines[i].rect;
+    take(line.x, line.y, line.x + line.width, line.y + line.height);
+  }
   for (uint32_t i = 0; i < info.glyphCount; ++i) {
     const GpgpTextGlyph& from = info.glyphs[i];
     const float* box = impl_->boxOf(from.font, from.glyph);
@@ -164,15 +164,15 @@ void Renderer::addText(ImDrawList& list, GpgpLayout layout, const ImVec2& positi
       continue;
     }
     glyphs.push_back(from);
-    ink[0] = std::min(ink[0], from.x + box[0] * from.size);
-    ink[1] = std::min(ink[1], from.y + box[1] * from.size);
-    ink[2] = std::max(ink[2], from.x + box[2] * from.size);
-    ink[3] = std::max(ink[3], from.y + box[3] * from.size);
+    take(from.x + box[0] * from.size, from.y + box[1] * from.size, from.x + box[2] * from.size,
+         from.y + box[3] * from.size);
   }
-  if (glyphs.size() == first) return;
-  Piece& piece = impl_->widget(list, position, {info.width, info.height});
+  if (glyphs.size() == first && lines.size() == firstLine) return;
+  Piece& piece = impl_->widget(list, position);
   piece.firstGlyph = first;
   piece.glyphCount = glyphs.size() - first;
+  piece.firstLine = firstLine;
+  piece.lineCount = lines.size() - firstLine;
   std::copy_n(ink, 4, piece.ink);
 }
 
@@ -212,12 +212,13 @@ GpgpResult Renderer::Impl::prepare(ImDrawData& data, VkCommandBuffer commands, c
       item.transform[5] += down;
       item.opacity = 1;
     }
+    text.decorate({pieces.lines.data() + piece.firstLine, piece.lineCount}, 0, down, 1);
     const std::span glyphs(pieces.glyphs.data() + piece.firstGlyph, piece.glyphCount);
     if (const GpgpResult placed = cache.place(glyphs, 0, down, 1, text); placed < 0) return placed;
   }
   report.glyphs = static_cast<uint32_t>(text.glyphs.size() + text.pictures.size());
   report.dropped += text.dropped;
-  if (report.glyphs > 0) {
+  if (report.glyphs > 0 || !text.lines.empty()) {
     textList.clear();
     if (const GpgpResult added = cache.addTo(textList, text); added < 0) return added;
     GpgpCanvasItem& item = items.emplace_back();

@@ -41,6 +41,7 @@ struct Line {
   integration::GlyphCache glyphs;
   integration::PlacedText placed;
   List list;
+  bool told = false; // that not all has found room
 
   Line(const sdl2::Device& device, GpgpContext context, const Options& options, float size) : fonts(options) {
     if (fonts.empty()) return;
@@ -66,7 +67,10 @@ struct Line {
   GpgpList at(float x, float y) {
     if (!layout) return nullptr;
     placed.clear();
-    need(glyphs.place(info, x, y, 1, placed), "gpgpAddGlyphs");
+    if (need(glyphs.place(info, x, y, 1, placed), "gpgpAddGlyphs") == GPGP_BUDGET_EXCEEDED && !told) {
+      std::fprintf(stderr, "%u glyphs found no room and are not shown\n", placed.dropped);
+      told = true;
+    }
     need(list.clear(), "gpgpResetList");
     need(glyphs.addTo(list, placed), "gpgpAddText");
     return list;

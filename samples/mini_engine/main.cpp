@@ -14,7 +14,7 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
 
   --out FOLDER     write city.png and side.png there (default: pictures; of a window: only where it is given)
   --frames N       render N frames before the pictures are written (default 3)
-  --size WxH       picture size (default 1280x720)
+  --size WxH       picture size, from 64x64 on (default 1280x720)
   --window         open a window instead; Escape closes it (with --frames: after N frames)
   --device NAME    GPU: part of its name, or an index (default: $GPGP_DEVICE, else the software device)
   --screen         a game's screen instead: crest, score, map, dialogue, menu, an inventory that hangs in the world;
@@ -84,7 +84,8 @@ bool parseInputs(const std::string& list, std::vector<mini::Input>& inputs) {
   return true;
 }
 
-bool parse(int argc, char** argv, Options& options) {
+/// False: wrong says what is.
+bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
     if (name == "--window") {
@@ -113,7 +114,9 @@ bool parse(int argc, char** argv, Options& options) {
       options.path = options.path || name != "--decoupled";
       continue;
     }
+    wrong = name;
     if (i + 1 == argc) return false;
+    wrong += std::string(" ") + argv[i + 1];
     const char* value = argv[++i];
     char rest = 0;
     int chosen = -1;
@@ -153,10 +156,12 @@ bool parse(int argc, char** argv, Options& options) {
     else
       return false;
   }
-  if (options.screen && options.decoupled.on) return false;
-  if (options.frames == 1 && !options.inputs.empty()) return false;
-  if (!options.screen && (!options.inputs.empty() || options.score || options.stereo)) return false;
-  return true;
+  wrong.clear();
+  if (options.screen && options.decoupled.on) wrong = "--screen beside --decoupled";
+  if (options.frames == 1 && !options.inputs.empty()) wrong = "--input with --frames 1: it comes before the second";
+  if (!options.screen && (!options.inputs.empty() || options.score || options.stereo))
+    wrong = "--input, --score or --stereo without --screen";
+  return wrong.empty();
 }
 
 int run(const Options& options) {
@@ -219,8 +224,8 @@ int main(int argc, char** argv) {
       return EXIT_SUCCESS;
     }
   Options options;
-  if (!parse(argc, argv, options)) {
-    std::fputs(kHelp, stderr);
+  if (std::string wrong; !parse(argc, argv, options, wrong)) {
+    std::fprintf(stderr, "%s\nmini_engine: wrong: %s\n", kHelp, wrong.c_str());
     return 2;
   }
   try {

@@ -157,7 +157,7 @@ BakedFont bakeFont(const std::string& bytes, const std::string& name, const Bake
   stroke.join = GPGP_JOIN_ROUND;
   stroke.scale = 256; // pixels an em up to which it is exact to a twentieth of a pixel
   struct Kept {
-    std::vector<PlacedPath> placed;
+    std::vector<KeptPath> placed;
     std::vector<GpgpPath> paths;
     std::vector<VkBool32> foreground;
   };
@@ -182,7 +182,7 @@ BakedFont bakeFont(const std::string& bytes, const std::string& name, const Bake
         pictures.push_back(std::to_string(glyph));
         continue;
       }
-      for (const PlacedPath& path : one.placed) one.paths.push_back(path.view());
+      for (const KeptPath& path : one.placed) one.paths.push_back(path.view());
       glyphs.push_back({uint64_t{line != nullptr} << 32 | glyph, one.paths.data(),
                         static_cast<uint32_t>(one.paths.size()), one.foreground.data()});
     }

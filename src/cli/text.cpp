@@ -68,6 +68,10 @@ PageBox boxOf(const GpgpLayoutInfo& layout, const PageGlyphs& glyphs, float widt
         box.take(at.x + ink[0] * at.size, at.y + ink[1] * at.size, at.x + ink[2] * at.size, at.y + ink[3] * at.size);
     }
   }
+  for (uint32_t i = 0; i < layout.decorationCount; ++i) {
+    const auto& [x, y, w, h] = layout.decorations[i].rect;
+    box.take(x, y, x + w, y + h);
+  }
   return box;
 }
 
@@ -111,6 +115,7 @@ Outcome text(TextOptions options, const CommonOptions& common) {
         << options.repeat << ", the first run not counted";
   if (drawn.records > 1) words << "; " << drawn.records << " records";
   words << ") on " << session.device().name() << '\n';
+  if (layout.truncated) words << "the text was cut off\n";
   if (!page.missing().empty()) words << page.missing().size() << " characters are in no font\n";
   words << "picture: " << options.out << '\n';
   outcome.text = words.str();
@@ -121,6 +126,7 @@ Outcome text(TextOptions options, const CommonOptions& common) {
                   {"status", statusName(drawn.status)},
                   {"glyphs", layout.glyphCount},
                   {"lines", layout.lineCount},
+                  {"truncated", layout.truncated != 0},
                   {"width", width},
                   {"height", height},
                   {"shape_ms", page.shapeMilliseconds()},
@@ -148,6 +154,30 @@ Work addText(CLI::App& app) {
       ->type_name("PX")
       ->capture_default_str();
   command->add_option("--width", options->page.width, "Lines break to fit this (default: only where the text says)")
+      ->check(within(1.0, kLargest))
+      ->type_name("PX");
+  command->add_option("--height", options->page.height, "Lines that do not fit this are cut off (default: none are)")
+      ->check(within(1.0, kLargest))
+      ->type_name("PX");
+  command->add_option("--max-lines", options->page.maxLines, "Lines beyond these are cut off (default: none are)")
+      ->check(CLI::Range(1u, 1000000u))
+      ->type_name("N");
+  command->add_option("--ellipsis", options->page.ellipsis, "What ends a text that was cut off (default: …)")
+      ->type_name("TEXT");
+  command
+      ->add_option("--letter-spacing", options->page.letterSpacing,
+                   "Added after each letter, or taken where it is negative")
+      ->check(within(-4096.0, 4096.0))
+      ->type_name("PX");
+  command->add_option("--line-spacing", options->page.lineSpacing, "Times the fonts' distance of lines (default: 1)")
+      ->check(within(0.01, 100.0))
+      ->type_name("TIMES");
+  CLI::Option* spacing = command->get_option("--line-spacing");
+  command->add_option("--line-height", options->page.lineHeight, "From line to line (default: as the fonts say)")
+      ->check(within(0.01, kLargest))
+      ->excludes(spacing)
+      ->type_name("PX");
+  command->add_option("--tab-width", options->page.tabWidth, "From tab stop to tab stop (default: eight spaces)")
       ->check(within(1.0, kLargest))
       ->type_name("PX");
   command
@@ -203,6 +233,7 @@ Examples:
   gpgp text NotoSans-Regular.ttf "Tea ☕ شاي" tea.png --fallback NotoSansArabic-Regular.ttf --fallback NotoColorEmoji.ttf
   gpgp text DejaVuSerif.ttf $'A title\n\nAnd text' page.png --size 16 --width 480 --align justify --background white
   gpgp text DejaVuSans-Bold.ttf "LEVEL 7" level.png --size 72 --color gold --outline 10 --outline-color "#402000"
+  gpgp text DejaVuSans.ttf "A long message" line.png --width 120 --max-lines 1 --underline
   gpgp text DejaVuSans.ttf office office.png --features liga=0 --json | jq .glyphs
 
 Characters that no font has are named on standard error and drawn as the font's sign for them.)");

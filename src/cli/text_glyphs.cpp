@@ -5,36 +5,20 @@
 
 namespace gpgp::cli {
 
-PlacedPath::PlacedPath(const GpgpPath& path, float x, float y, float size)
+KeptPath::KeptPath(const GpgpPath& path)
     : verbs_(path.verbs, path.verbs + path.verbCount), points_(path.points, path.points + size_t{path.pointCount} * 2),
       path_(path) {
-  const auto placed = [&](float(&t)[6]) {
-    for (float& value : t) value *= size;
-    t[4] += x;
-    t[5] += y;
-  };
-  for (size_t i = 0; i < points_.size(); i += 2) {
-    points_[i] = points_[i] * size + x;
-    points_[i + 1] = points_[i + 1] * size + y;
-  }
-  if (path.gradient) {
-    gradient_ = *path.gradient;
-    stops_.assign(gradient_->stops, gradient_->stops + gradient_->stopCount);
-    gradient_->stops = stops_.data();
-    placed(gradient_->transform);
-  }
-  if (path.image) {
-    image_ = *path.image;
-    placed(image_->transform);
-  }
+  if (!path.gradient) return;
+  gradient_ = *path.gradient;
+  stops_.assign(gradient_->stops, gradient_->stops + gradient_->stopCount);
+  gradient_->stops = stops_.data();
 }
 
-GpgpPath PlacedPath::view() const {
+GpgpPath KeptPath::view() const {
   GpgpPath path = path_;
   path.verbs = verbs_.data();
   path.points = points_.data();
   path.gradient = gradient_ ? &*gradient_ : nullptr;
-  path.image = image_ ? &*image_ : nullptr;
   return path;
 }
 
@@ -81,7 +65,7 @@ std::pair<GlyphSet, std::vector<uint32_t>> makeGlyphSet(Session& session, const 
     const PageGlyph& glyph = all.glyphs[i];
     glyphs[i].key = glyph.key;
     if (glyph.isPicture()) continue; // a blank
-    for (const PlacedPath& path : glyph.paths) paths[i].push_back(path.view());
+    for (const KeptPath& path : glyph.paths) paths[i].push_back(path.view());
     glyphs[i].paths = paths[i].data();
     glyphs[i].pathCount = static_cast<uint32_t>(paths[i].size());
     glyphs[i].foreground = glyph.foreground.data();

@@ -6,12 +6,12 @@
 
 namespace gpgp::cli {
 
-/// A copy of a path, turned into pixels: moved by (x, y) after it was scaled.
-class PlacedPath {
+/// A copy of a path.
+class KeptPath {
 public:
-  explicit PlacedPath(const GpgpPath& path, float x = 0, float y = 0, float size = 1);
-  PlacedPath(PlacedPath&&) = default; // stops stay where they are
-  PlacedPath& operator=(PlacedPath&&) = default;
+  explicit KeptPath(const GpgpPath& path);
+  KeptPath(KeptPath&&) = default; // stops stay where they are
+  KeptPath& operator=(KeptPath&&) = default;
   /// Valid as long as this lies where it lies.
   GpgpPath view() const;
 
@@ -20,13 +20,12 @@ private:
   std::vector<float> points_;
   std::vector<GpgpGradientStop> stops_;
   std::optional<GpgpGradient> gradient_;
-  std::optional<GpgpImagePaint> image_;
   GpgpPath path_;
 };
 
 struct PageGlyph {
-  uint64_t key = 0;              ///< number of the font, and glyph; 2^63 more: its outline
-  std::vector<PlacedPath> paths; ///< in em
+  uint64_t key = 0;            ///< number of the font, and glyph; 2^63 more: its outline
+  std::vector<KeptPath> paths; ///< in em
   std::vector<VkBool32> foreground;
   uint32_t verbs = 0;
   host::Picture picture;                               ///< of a bitmap glyph; 0 x 0: none

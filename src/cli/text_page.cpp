@@ -71,6 +71,7 @@ TextPage::TextPage(const PageOptions& options) {
   text.style.language = options.language.empty() ? nullptr : options.language.c_str();
   text.style.features = options.features.data();
   text.style.featureCount = static_cast<uint32_t>(options.features.size());
+  text.style.letterSpacing = options.letterSpacing;
   text.style.underline = options.underline ? VK_TRUE : VK_FALSE;
   text.style.strike = options.strike ? VK_TRUE : VK_FALSE;
   text.style.outlineWidth = options.outlineWidth;
@@ -81,6 +82,12 @@ TextPage::TextPage(const PageOptions& options) {
   text.direction = options.direction;
   text.align = options.align;
   text.width = options.width;
+  text.height = options.height;
+  text.maxLines = options.maxLines;
+  text.lineSpacing = options.lineSpacing;
+  text.lineHeight = options.lineHeight;
+  text.tabWidth = options.tabWidth;
+  text.ellipsis = options.ellipsis ? options.ellipsis->c_str() : nullptr;
   const auto start = std::chrono::steady_clock::now();
   check(layout_.set(text), "gpgpSetLayoutText");
   shapeMilliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

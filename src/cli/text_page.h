@@ -3,6 +3,7 @@
 #include <gpgp/gpgp.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct PageOptions {
   std::vector<GpgpFontAxisValue> axes; ///< of the first
   std::string text, language;
   float size = 32, width = 0; ///< pixels; width 0: lines end only where the text says
+  float height = 0, letterSpacing = 0, lineSpacing = 0, lineHeight = 0, tabWidth = 0; ///< as GpgpTextInfo's
+  uint32_t maxLines = 0;
+  std::optional<std::string> ellipsis; ///< none: the API's own
   GpgpTextAlign align = GPGP_TEXT_ALIGN_START;
   GpgpTextDirection direction = GPGP_TEXT_AUTO;
   std::vector<GpgpFontFeature> features;

@@ -33,8 +33,7 @@ host::Picture shrunk(host::Picture picture, double texelsAcross, double texelsDo
   return picture;
 }
 
-Textures::Textures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures, bool premultiplied)
-    : device_(device) {
+Textures::Textures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures) : device_(device) {
   if (pictures.empty()) return;
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = VK_FILTER_LINEAR;
@@ -47,8 +46,7 @@ Textures::Textures(host::HeadlessDevice& device, const std::vector<host::Picture
                                                    .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
     const host::Image& image = textures_.back();
     host::uploadImage(device, image, picture.rgba, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    views_.push_back(
-        {image.view(), sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, premultiplied ? VK_TRUE : VK_FALSE});
+    views_.push_back({image.view(), sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_FALSE});
   }
 }
 

@@ -16,8 +16,7 @@ host::Picture shrunk(host::Picture picture, double texelsAcross, double texelsDo
 /// A texture for each picture, filtered linearly and clamped.
 class Textures {
 public:
-  /// premultiplied: colours have been multiplied by alpha before sRGB encoded them.
-  Textures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures, bool premultiplied = false);
+  Textures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures);
   ~Textures();
   Textures(const Textures&) = delete;
   Textures& operator=(const Textures&) = delete;

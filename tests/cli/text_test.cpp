@@ -56,10 +56,11 @@ TEST_F(CliText, OneObjectAndAPicture) {
   const json drawn = draw("Hello fi", {"--size", "20", "--repeat", "3", "--validate"});
   EXPECT_EQ(keys(drawn),
             (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width", "height",
-                                   "shape_ms", "gpu_ms_median", "records", "missing", "broken", "image"}));
+                                   "truncated", "shape_ms", "gpu_ms_median", "records", "missing", "broken", "image"}));
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
   EXPECT_EQ(drawn["glyphs"], 7) << "fi is a ligature";
   EXPECT_EQ(drawn["lines"], 1);
+  EXPECT_EQ(drawn["truncated"], false);
   EXPECT_EQ(drawn["missing"], json::array());
   EXPECT_EQ(drawn["broken"], json::array());
   EXPECT_EQ(drawn["records"], 1);
@@ -93,6 +94,70 @@ TEST_F(CliText, FeaturesWidthAndAlignment) {
   };
   EXPECT_NEAR(ends(0, shown.height / 3), ends(shown.height * 2 / 3, shown.height), 1);
   EXPECT_GT(ends(shown.height * 2 / 3, shown.height), 35u);
+}
+
+TEST_F(CliText, SpacingsLinesAndEllipsis) {
+  const std::string words = "one two three four five six";
+  const auto size = [](const json& drawn) {
+    return std::pair(drawn["width"].get<double>(), drawn["height"].get<double>());
+  };
+  const std::vector<std::string> wrapped = {"--size", "20", "--width", "100"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), wrapped.begin(), wrapped.end());
+    return draw(words, more);
+  };
+  const json all = with({});
+  ASSERT_EQ(all["lines"], 3);
+  EXPECT_EQ(all["truncated"], false);
+  const json cut = with({"--max-lines", "2"});
+  EXPECT_EQ(cut["lines"], 2);
+  EXPECT_EQ(cut["truncated"], true);
+  EXPECT_EQ(with({"--max-lines", "2", "--ellipsis", "||||||||||||||||"})["glyphs"], 8 + 16) << "one two, and this";
+  const double line = 20 * 2384 / 2048.; // of the font
+  EXPECT_EQ(with({"--height", std::to_string(line * 2 + 1)})["lines"], 2);
+  // Heights: lines by their spacing, and margins of 3 pixels.
+  EXPECT_NEAR(size(all).second, 6 + 3 * line, 1.001);
+  EXPECT_NEAR(size(with({"--line-spacing", "1.5"})).second, 6 + 4.5 * line, 1.001);
+  EXPECT_NEAR(size(with({"--line-height", "40"})).second, 6 + 120, 1.001);
+  // Widths of one line: 16 letters and spaces.
+  const double plain = size(draw("sixteen letters.", {"--size", "20"})).first;
+  EXPECT_NEAR(size(draw("sixteen letters.", {"--size", "20", "--letter-spacing", "3"})).first, plain + 48, 1.001);
+  EXPECT_NEAR(size(draw("sixteen letters.", {"--size", "20", "--letter-spacing", "-.5"})).first, plain - 8, 1.001);
+  EXPECT_NEAR(size(draw("a\tb", {"--size", "20", "--tab-width", "200"})).first, 6 + 200 + 20 * 1300 / 2048., 1.001);
+}
+
+TEST_F(CliText, UnderlinesLieBelowPicturesAndStrikesOver) {
+  // A green heart reaches below the underline, in orange; beside it both lines are seen.
+  draw(std::string("x\U0001F49A   x"), {"--size", "96", "--color", "#ff8000", "--underline", "--strike", "--fallback",
+                                        font("NotoColorEmoji.ttf"), "--background", "white"});
+  const host::Picture shown = seen();
+  const auto isOrange = [&shown](uint32_t x, uint32_t y) {
+    const uint8_t* p = &shown.rgba[(size_t{y} * shown.width + x) * 4];
+    return p[0] == 255 && p[1] == 128 && p[2] == 0;
+  };
+  const auto heart = [&shown] { // its lowest row and that row's middle: green is
+    for (uint32_t y = shown.height; y-- > 0;) {
+      uint32_t sum = 0, count = 0;
+      for (uint32_t x = 0; x < shown.width; ++x) {
+        const uint8_t* p = &shown.rgba[(size_t{y} * shown.width + x) * 4];
+        if (p[1] < p[0] + 40 || p[1] < p[2] + 40) continue;
+        sum += x;
+        ++count;
+      }
+      if (count > 2) return std::pair(sum / count, y);
+    }
+    return std::pair(0u, 0u);
+  }();
+  ASSERT_GT(heart.second, 0u);
+  uint32_t gap = 0; // a column between the letters, where nothing but lines is
+  for (uint32_t x = heart.first + 60; x < shown.width && gap == 0; ++x) gap = isOrange(x, shown.height / 2) ? 0 : x;
+  std::vector<uint32_t> lines; // where they begin
+  for (uint32_t y = 1; y < shown.height; ++y)
+    if (isOrange(gap, y) && !isOrange(gap, y - 1)) lines.push_back(y);
+  ASSERT_EQ(lines.size(), 2u);
+  ASSERT_LT(lines[1], heart.second) << "the heart reaches below the underline";
+  EXPECT_TRUE(isOrange(heart.first, lines[0])) << "the strike";
+  EXPECT_FALSE(isOrange(heart.first, lines[1])) << "the underline";
 }
 
 TEST_F(CliText, WhatNoFontHasIsNamedOnce) {
@@ -409,7 +474,8 @@ TEST_F(CliText, WhatDoesNotFitAPictureIsAnError) {
 }
 
 TEST_F(CliText, NumbersThatAreNoneAreNamed) {
-  for (const char* option : {"--size", "--outline", "--width"}) {
+  for (const char* option : {"--size", "--outline", "--width", "--height", "--letter-spacing", "--line-spacing",
+                             "--line-height", "--tab-width"}) {
     const ProcessResult result = gpgp({"text", sans, "a", picture.path(), option, "nan"});
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_NE(result.err.find(std::string(option) + ": nan is not within "), std::string::npos) << result.err;
@@ -428,6 +494,15 @@ TEST_F(CliText, WrongUsage) {
                     {"text", sans, "a", out, "--size", "big"},
                     {"text", sans, "a", out, "--width", "-5"},
                     {"text", sans, "a", out, "--align", "middle"},
+                    {"text", sans, "a", out, "--max-lines", "0"},
+                    {"text", sans, "a", out, "--max-lines", "-1"},
+                    {"text", sans, "a", out, "--max-lines", "2.5"},
+                    {"text", sans, "a", out, "--height", "0"},
+                    {"text", sans, "a", out, "--line-spacing", "0"},
+                    {"text", sans, "a", out, "--line-height", "-3"},
+                    {"text", sans, "a", out, "--line-height", "20", "--line-spacing", "2"},
+                    {"text", sans, "a", out, "--tab-width", "0"},
+                    {"text", sans, "a", out, "--letter-spacing", "5000"},
                     {"text", sans, "a", out, "--direction", "up"},
                     {"text", sans, "a", out, "--color", "reddish"},
                     {"text", sans, "a", out, "--background", "ffffff"},

@@ -420,6 +420,61 @@ TEST_F(ImGuiTest, LayoutsAreWidgets) {
   for (uint32_t y = 30; y < 30 + static_cast<uint32_t>(info.height); ++y)
     for (uint32_t x = 10; x < 300; ++x) white += at(picture, x, y) == Color{255, 255, 255} ? 1 : 0;
   EXPECT_GT(white, 500u);
+  // Lines at the right of the width: the widget reaches as far.
+  text.size = 11; // A paragraph
+  text.align = GPGP_TEXT_ALIGN_RIGHT;
+  ASSERT_EQ(layout.set(text), GPGP_SUCCESS);
+  float widget = 0;
+  const host::Picture aligned = screen.render([&] {
+    ImGui::SetNextWindowPos({10, 10});
+    ImGui::SetNextWindowSize({300, 300});
+    ImGui::Begin("window", nullptr, ImGuiWindowFlags_NoDecoration);
+    screen.renderer->text(layout);
+    widget = ImGui::GetItemRectSize().x;
+    ImGui::SetCursorScreenPos({-200, 60}); // only the letters at the right are in the window
+    screen.renderer->text(layout);
+    ImGui::End();
+  });
+  keep(aligned, "aligned");
+  EXPECT_NEAR(widget, 250, 0.1f);
+  uint32_t shown = 0;
+  for (uint32_t y = 60; y < 90; ++y)
+    for (uint32_t x = 0; x < 60; ++x) shown += at(aligned, x, y) == Color{255, 255, 255} ? 1 : 0;
+  EXPECT_GT(shown, 30u);
+  EXPECT_EQ(at(aligned, 5, 80), at(aligned, 5, 400)) << "clipped to the window";
+  screen.renderer->forget(font);
+}
+
+/// Underlines and strikes that are thinner than a pixel, at no whole pixel.
+TEST_F(ImGuiTest, LinesOfLayoutsAreAsThickAsTheyAre) {
+  auto fontInfo = init<GpgpFontCreateInfo>();
+  fontInfo.filePath = GPGP_TEST_DATA "/fetched/fonts/DejaVuSerif.ttf";
+  Font font = *Font::create(fontInfo);
+  Shaper shaper = *Shaper::create();
+  Layout layout = *shaper.layout();
+  const GpgpFont fonts[] = {font};
+  auto text = init<GpgpTextInfo>();
+  text.text = "i          i";
+  text.size = 12;
+  text.style = {.fonts = fonts, .fontCount = 1, .size = 9, .color = {1, 1, 1, 1}, .underline = 1, .strike = 1};
+  ASSERT_EQ(layout.set(text), GPGP_SUCCESS);
+  const GpgpLayoutInfo info = *layout.info();
+  ASSERT_EQ(info.decorationCount, 2u);
+  float thickness = 0;
+  for (uint32_t i = 0; i < 2; ++i) thickness += info.decorations[i].rect.height;
+  ASSERT_LT(thickness, 1.5f);
+  for (const float y : {20.0f, 20.3f, 20.6f}) {
+    const host::Picture picture = screen.render([&] {
+      ImDrawList& list = *ImGui::GetForegroundDrawList();
+      list.AddRectFilled({0, 0}, {300, 200}, IM_COL32(0, 0, 0, 255));
+      screen.renderer->addText(list, layout, {10, y});
+    });
+    uint32_t sum = 0; // down a column between the letters
+    const auto middle = static_cast<uint32_t>(10 + info.width / 2);
+    for (uint32_t row = 0; row < 100; ++row) sum += at(picture, middle, row)[0];
+    EXPECT_NEAR(static_cast<float>(sum) / 255, thickness, 0.15f) << y; // counted in 16 rows a pixel
+    EXPECT_EQ(screen.renderer->report().dropped, 0u);
+  }
   screen.renderer->forget(font);
 }
 

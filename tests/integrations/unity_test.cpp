@@ -13,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 namespace {
 
@@ -32,7 +33,7 @@ static_assert(sizeof(IUnityGraphicsVulkan) == 14 * sizeof(void*) &&
               sizeof(IUnityGraphicsVulkanV2) == 16 * sizeof(void*));
 
 // As the scripts' structs are laid out (scripts_test.sh).
-static_assert(sizeof(GpgpUnityBudgets) == 24 && sizeof(GpgpUnityText) == 48 && sizeof(GpgpUnityItem) == 32 &&
+static_assert(sizeof(GpgpUnityBudgets) == 28 && sizeof(GpgpUnityText) == 48 && sizeof(GpgpUnityItem) == 32 &&
               sizeof(GpgpUnityCanvas) == 48);
 
 constexpr char kSvg[] = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>"
@@ -369,6 +370,21 @@ TEST_F(UnityTest, TextsFallBackToOtherFontsAndToEmojiThatArePictures) {
   EXPECT_GT(orange(pixels), 100u);
   if (const char* folder = std::getenv("GPGP_UNITY_PICTURES"))
     host::writePng(std::string(folder) + "/unity_emoji.png", {128, 64, pixels});
+  // More emoji than are kept at a time: said once, however often they are drawn and whatever else is.
+  std::string many;
+  for (int i = 0; i < 70; ++i)
+    many += {'\xF0', '\x9F', static_cast<char>(0x90 + i / 64), static_cast<char>(0x80 + i % 64)};
+  const GpgpUnityText crowd{many.c_str(), static_cast<int32_t>(many.size()), font, 8, {1, 1, 1, 1}, 100, 0};
+  EXPECT_EQ(script->setText(text, &crowd), GPGP_SUCCESS);
+  for (int i = 0; i < 4; ++i) frame(canvas);
+  expectMessage(script->messages(), "6 glyphs are not drawn");
+  EXPECT_EQ(script->setText(text, &info), GPGP_SUCCESS);
+  for (int i = 0; i < 4; ++i) frame(canvas);
+  EXPECT_EQ(orange(unity->read(texture)), orange(pixels));
+  EXPECT_TRUE(script->messages().empty());
+  const GpgpUnityText endless{"a", 1, font, std::numeric_limits<float>::quiet_NaN(), {1, 1, 1, 1}, 0, 0};
+  EXPECT_LT(script->setText(text, &endless), 0);
+  expectMessage(script->messages(), "style.size is nan");
   // A font of the text goes: so does the text, until it is set anew without it.
   script->destroy(fallback);
   frame(canvas);

@@ -4,6 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include <numeric>
+
 namespace {
 using namespace gpgp;
 using namespace gpgp::test;
@@ -235,6 +237,50 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
   const uint32_t nothing[] = {0, 0, 0, 48};
   EXPECT_EQ(gpgpPlacePanel(&panel, glm::value_ptr(camera(0)), nothing, &item, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
 }
+/// A panel that turns about its upright middle until its edge is all that is seen, reaching past the eye in some.
+TEST_F(CanvasTest, PanelsSeenNearlyEdgeOnCoverWhatRaysSay) {
+  makeCanvas(128);
+  TestList list(context);
+  fillWindow(list);
+  for (const float width : {4.0f, 12.0f}) // of the second, a side is behind the eye
+    for (const float degrees : {60.0f, 80.0f, 88.0f, 89.9f, 89.999f, 90.0f, 90.001f, 91.0f}) {
+      SCOPED_TRACE(std::to_string(width) + " m at " + std::to_string(degrees));
+      const float a = glm::radians(degrees), c = width * std::cos(a), s = width * std::sin(a);
+      const GpgpPanel panel{
+          {-c / 2, 1.2f, s / 2}, {c / 400, 0, -s / 400}, {0, -0.008f, 0}}; // its right side is the far one
+      const glm::mat4 seenBy = camera(0);
+      const uint32_t viewport[] = {0, 0, kWidth, kHeight};
+      GpgpCanvasItem item = list.item();
+      float clip[16];
+      ASSERT_EQ(gpgpPlacePanel(&panel, glm::value_ptr(seenBy), viewport, &item, clip), GPGP_SUCCESS);
+      const GpgpListShape window = rounded(rectangle(0, 0, 400, 300), 40, 40, 40, 40);
+      std::vector<double> wanted(kWidth * kHeight);
+      for (uint32_t i = 0; i < wanted.size(); ++i)
+        for (int k = 0; k < 256; ++k) {
+          double u = 0, v = 0, depth = 0;
+          const double x = i % kWidth + (k % 16 + 0.5) / 16, y = i / kWidth + (k / 16 + 0.5) / 16;
+          wanted[i] += panelAt(panel, seenBy, x, y, u, v, depth) && inShape(window, u, v) ? 1 / 256.0 : 0;
+        }
+      const double seen = std::accumulate(wanted.begin(), wanted.end(), 0.0);
+      if (degrees < 85 || degrees > 90.5f) {
+        EXPECT_GT(seen, degrees < 85 ? 100 : 1);
+      }
+      for (const bool area : {false, true}) {
+        exactArea = area;
+        const auto pixels = raster({item}, kWidth, kHeight, 16);
+        double worst = 0, sum = 0;
+        for (uint32_t i = 0; i < wanted.size(); ++i) {
+          const auto alpha = static_cast<double>(pixels[i].a);
+          ASSERT_TRUE(alpha >= 0 && alpha <= 1.001) << alpha;
+          worst = std::max(worst, std::abs(alpha - wanted[i]));
+          sum += std::abs(alpha - wanted[i]);
+        }
+        EXPECT_LE(worst, 0.3);
+        EXPECT_LE(sum / static_cast<double>(wanted.size()), 0.008);
+      }
+    }
+}
+
 TEST(Panel, NothingOfOneInTheEyesPlaneAndNoNumbersBeyondFloats) {
   const float camera[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0}; // at 0, looking along -z
   const uint32_t viewport[4] = {0, 0, 64, 64};

@@ -36,13 +36,14 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetEventId(void);
  * GpgpCanvasCreateInfo's own). Makes pipelines: while a level loads, not in a frame. */
 typedef struct GpgpUnityBudgets {
   uint32_t maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs;
-  uint32_t maxItems; /* drawings and texts; a text with emoji that are pictures counts twice */
+  uint32_t maxItems;  /* drawings and texts; a text with emoji that are pictures counts twice */
+  uint32_t maxShapes; /* emoji that are pictures, at each place that they are shown at */
 } GpgpUnityBudgets;
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnitySetBudgets(const GpgpUnityBudgets* budgets);
 
 /** From an SVG file's bytes, or from a baked drawing's (baked != 0). */
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityCreateDrawing(const void* data, int32_t size, int32_t baked);
-/** The page of a drawing (x, y, width, height), or the box of a text (0, 0, width, height), in its units. */
+/** The page of a drawing (x, y, width, height), or the box of a text's lines, in its units. */
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetBox(int32_t object, float* box);
 /** From a font file's bytes, which are copied. */
 GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityCreateFont(const void* data, int32_t size);

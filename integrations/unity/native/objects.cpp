@@ -105,8 +105,7 @@ GpgpResult Plugin::layOut(Text& to, const GpgpUnityText& text) {
   std::copy_n(text.color, 4, info.style.color);
   info.width = text.width;
   info.align = text.align;
-  const GpgpResult result = to.layout.set(info);
-  if (result < 0) say(std::string("a text could not be laid out: ") + gpgpResultString(result));
+  const GpgpResult result = to.layout.set(info); // errors are messages already
   if (result >= 0) to.fonts = std::move(numbers);
   return result;
 }
@@ -139,9 +138,11 @@ int32_t Plugin::getBox(int32_t object, float* box) {
   }
   if (const auto text = texts_.find(object); text != texts_.end()) {
     const Result<GpgpLayoutInfo> info = text->second.layout.info();
-    const float size[4] = {0, 0, info->width, info->height};
-    if (info) std::copy_n(size, 4, box);
-    return info.code();
+    if (!info) return info.code();
+    const auto lines = integration::linesBox(*info);
+    const float size[4] = {lines[0], 0, lines[2] - lines[0], lines[3]};
+    std::copy_n(size, 4, box);
+    return GPGP_SUCCESS;
   }
   return GPGP_ERROR_INVALID_HANDLE;
 }

@@ -57,6 +57,7 @@ void Plugin::say(const std::string& message) {
 }
 
 void Plugin::complain(Surface& surface, const std::string& message) {
+  complained_ = true;
   if (surface.complaint == message) return; // once, not every frame
   surface.complaint = message;
   say(message);
@@ -114,6 +115,7 @@ void Plugin::start() {
   integration::GlyphCacheInfo cacheInfo;
   cacheInfo.context = context_;
   cacheInfo.label = "unity";
+  cacheInfo.maxPictures = kPictures;
   cacheInfo.pictureDevice.device = device_.device;
   cacheInfo.pictureDevice.getDeviceProcAddr = load<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr");
   load<PFN_vkGetPhysicalDeviceMemoryProperties>("vkGetPhysicalDeviceMemoryProperties")(device_.physicalDevice,
@@ -124,7 +126,11 @@ void Plugin::start() {
   if (!list) return fail(list.code(), "gpgp could not make its list");
   list_ = *std::move(list);
   if (!shaper_) {
-    Result<Shaper> shaper = Shaper::create();
+    auto shaperInfo = init<GpgpShaperCreateInfo>();
+    shaperInfo.label = "text";
+    shaperInfo.messageFn = onMessage;
+    shaperInfo.messageUserData = this;
+    Result<Shaper> shaper = Shaper::create(shaperInfo);
     if (!shaper) return fail(shaper.code(), "gpgp could not make its shaper");
     shaper_ = *std::move(shaper);
   }
@@ -159,6 +165,7 @@ GpgpResult Plugin::makeCanvas() {
   info.maxPatches = budgets_.maxPatches;
   info.maxGlyphs = budgets_.maxGlyphs;
   info.maxDrawings = budgets_.maxItems;
+  info.maxShapes = budgets_.maxShapes;
   Result<Canvas> made = Canvas::create(context_, info);
   if (!made) return made.code();
   const GpgpResult result = made->prewarm();

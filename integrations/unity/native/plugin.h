@@ -13,6 +13,7 @@
 namespace gpgp::unity {
 
 constexpr uint64_t kFramesInFlight = 4;
+constexpr uint32_t kPictures = 64; ///< glyphs that are pictures, at a time
 
 class Plugin {
 public:
@@ -71,7 +72,7 @@ private:
   bool advance(Surface& surface, const UnityVulkanRecordingState& state);
   void record(Surface& surface, const UnityVulkanRecordingState& state, const UnityVulkanImage& image);
   bool fillList(Surface& surface, float height);
-  GpgpResult addText(Surface& surface, const Text& text);
+  GpgpResult addText(const Text& text, uint32_t& dropped);
   void freeViews(uint64_t safe);
   template <class Function> Function load(const char* name) const {
     return reinterpret_cast<Function>(device_.getInstanceProcAddr(device_.instance, name));
@@ -95,6 +96,7 @@ private:
   GpgpUnityBudgets budgets_{};
   Canvas canvas_;
   bool reportedBudget_ = false;
+  bool complained_ = false; ///< in the event at hand
   Shaper shaper_;
   integration::GlyphCache glyphs_;
   List list_;                      ///< of the canvas at hand

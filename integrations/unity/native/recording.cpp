@@ -8,6 +8,7 @@ namespace gpgp::unity {
 void Plugin::onRenderEvent(int eventId, int32_t number) {
   const std::scoped_lock lock(mutex_);
   if (state_ != GPGP_UNITY_READY || eventId != eventId_) return;
+  complained_ = false;
   const auto found = surfaces_.find(number);
   if (found == surfaces_.end() || !found->second.texture) return;
   Surface& surface = found->second;
@@ -52,7 +53,8 @@ bool Plugin::advance(Surface& surface, const UnityVulkanRecordingState& state) {
       };
       say("a canvas needs " + needed("maxTileEntries", report->tileEntries, report->tileEntriesGiven) + ", " +
           needed("maxGlyphs", report->glyphs, report->glyphsGiven) + ", " +
-          needed("maxItems", report->items, report->itemsGiven) + ": gpgpUnitySetBudgets");
+          needed("maxItems", report->items, report->itemsGiven) + ", " +
+          needed("maxShapes", report->shapes, report->shapesGiven) + ": gpgpUnitySetBudgets");
     }
   return true;
 }
@@ -68,6 +70,7 @@ void Plugin::freeViews(uint64_t safe) {
 /// What the canvas shows, as one list.
 bool Plugin::fillList(Surface& surface, float height) {
   list_.clear();
+  uint32_t dropped = 0;
   for (const GpgpUnityItem& from : surface.items) {
     const auto drawing = drawings_.find(from.object);
     const auto text = texts_.find(from.object);
@@ -81,24 +84,27 @@ bool Plugin::fillList(Surface& surface, float height) {
     }
     if (list_.pushTransform(transform) < 0) continue; // errors are messages already
     if (list_.pushOpacity(from.opacity) >= 0) {
-      const GpgpResult added = drawing != drawings_.end() ? list_.add(drawing->second) : addText(surface, text->second);
+      const GpgpResult added = drawing != drawings_.end() ? list_.add(drawing->second) : addText(text->second, dropped);
       list_.pop();
       if (added < 0) return false;
     }
     list_.pop();
   }
+  if (dropped > 0)
+    complain(surface, std::to_string(dropped) +
+                          " glyphs are not drawn: there is no room in the glyph set, or for more than " +
+                          std::to_string(kPictures) + " pictures at a time");
   return true;
 }
 
-GpgpResult Plugin::addText(Surface& surface, const Text& text) {
+GpgpResult Plugin::addText(const Text& text, uint32_t& dropped) {
   for (const int32_t font : text.fonts)
     if (!fonts_.count(font)) return GPGP_SUCCESS; // as its number says, it is gone
   const Result<GpgpLayoutInfo> layout = text.layout.info();
   if (!layout) return layout.code();
   placed_.clear();
   const GpgpResult result = glyphs_.place(*layout, 0, 0, 1, placed_);
-  if (result == GPGP_BUDGET_EXCEEDED)
-    complain(surface, "the glyph set is full: " + std::to_string(placed_.dropped) + " glyphs are not drawn");
+  dropped += placed_.dropped;
   return result < 0 ? result : glyphs_.addTo(list_, placed_);
 }
 
@@ -143,7 +149,7 @@ void Plugin::record(Surface& surface, const UnityVulkanRecordingState& state, co
   info.target.width = image.extent.width;
   info.target.height = image.extent.height;
   const GpgpResult result = canvas_.recordPrepare(state.commandBuffer, frame, info); // errors are messages already
-  if (result == GPGP_SUCCESS) surface.complaint.clear();
+  if (result == GPGP_SUCCESS && !complained_) surface.complaint.clear();
 }
 
 } // namespace gpgp::unity

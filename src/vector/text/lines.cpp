@@ -152,7 +152,14 @@ Layout::Line Layout::breakLine(uint32_t begin, uint8_t level) {
     if (x <= limit || isWhite(text_.characters[c])) continue;
     line.hard = false;
     line.end = soft > begin ? soft : std::max(graphemeAt(c), begin);
-    if (line.end == begin) line.end = nextGrapheme(begin);
+    if (line.end == begin) { // one grapheme, too wide; with what takes no room behind it
+      constexpr uint8_t kBreak = kSoftBreak | kHardBreak;
+      line.end = nextGrapheme(begin);
+      while (line.end < size && !(flags_[line.end] & kBreak) &&
+             (isWhite(text_.characters[line.end]) || isIgnorable(text_.characters[line.end])))
+        line.end = nextGrapheme(line.end);
+      line.hard = line.end < size && (flags_[line.end] & kHardBreak);
+    }
     break;
   }
   const uint32_t pieces = static_cast<uint32_t>(pieces_.size());
@@ -160,9 +167,11 @@ Layout::Line Layout::breakLine(uint32_t begin, uint8_t level) {
     pieces_.resize(pieces);
     build(line);
     if (line.ink <= limit) break;
-    uint32_t earlier = line.inkEnd > begin ? line.inkEnd - 1 : begin;
+    uint32_t last = line.inkEnd > begin ? line.inkEnd - 1 : begin;
+    while (last > begin && isIgnorable(text_.characters[last])) --last; // a soft hyphen goes with what is before it
+    uint32_t earlier = last;
     while (earlier > begin && !(flags_[earlier] & kSoftBreak)) --earlier;
-    if (earlier == begin) earlier = graphemeAt(line.inkEnd > begin ? line.inkEnd - 1 : begin);
+    if (earlier == begin) earlier = graphemeAt(last);
     if (earlier <= begin) break; // a single grapheme that is too wide
     line.end = earlier;
     line.hard = false;

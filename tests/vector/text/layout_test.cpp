@@ -75,6 +75,12 @@ TEST_F(TextMono, ClosedCasesOfLines) {
   EXPECT_EQ(lines("ab cdefghij", 4), (Lines{"ab ", "cdef", "ghij"}));
   EXPECT_EQ(lines("abc", 0.5f), (Lines{"a", "b", "c"}));
   EXPECT_EQ(lines("ae\u0301i", 0.5f), (Lines{"a", "e\u0301", "i"}));
+  // What takes no room goes with the letter that is too wide.
+  EXPECT_EQ(lines("ab cd", 0.5f), (Lines{"a", "b ", "c", "d"}));
+  EXPECT_EQ(lines("a\nb\n\nc\n", 0.5f), (Lines{"a\n", "b\n", "\n", "c\n", ""}));
+  EXPECT_EQ(lines("a\u200bb\u200f", 0.5f), (Lines{"a\u200b", "b\u200f"}));
+  EXPECT_EQ(lines("ab\u00adcd\u00ad", 0.5f), (Lines{"a", "b\u00ad", "c", "d\u00ad"}));
+  EXPECT_EQ(lines("ab\u00adcdefgh", 2), (Lines{"a", "b\u00ad", "cd", "ef", "gh"})); // no hyphen alone
   EXPECT_EQ(lines("well-known words", 7), (Lines{"well-", "known ", "words"}));
   EXPECT_EQ(lines("a\nb\r\nc\n", 9), (Lines{"a\n", "b\r\n", "c\n", ""}));
   EXPECT_EQ(lines("a\n\nb", 9), (Lines{"a\n", "\n", "b"}));
@@ -231,17 +237,19 @@ TEST(TextLayout, LinesEndWhereIcuLetsThem) {
         // The line is as wide as its text alone, but for letters that join across its ends.
         const auto next = allowed.upper_bound(line.begin);
         const bool fits = line.width <= width + 0.02f;
+        const auto inkEnd = static_cast<uint32_t>(
+            line.begin + withoutSpaces(text.substr(line.begin, line.end - line.begin)).size()); // spaces hang
         if (allowed.count(line.end)) {
           // It fits, unless there is nowhere to break: and the next piece would not have.
           const auto further = allowed.upper_bound(line.end);
           if (further != allowed.end()) {
             EXPECT_GT(widthOf(line.begin, *further), width - 0.02f) << "line " << i;
           }
-          EXPECT_TRUE(fits || *graphemes.upper_bound(line.begin) >= line.end) << "line " << i;
+          EXPECT_TRUE(fits || *graphemes.upper_bound(line.begin) >= inkEnd) << "line " << i;
         } else { // within a word: because its first piece is too wide, and as much as fits
           ASSERT_TRUE(graphemes.count(line.end)) << "line " << i;
           EXPECT_GT(widthOf(line.begin, *next), width - 0.02f) << "line " << i;
-          EXPECT_TRUE(fits || *graphemes.upper_bound(line.begin) >= line.end) << "line " << i;
+          EXPECT_TRUE(fits || *graphemes.upper_bound(line.begin) >= inkEnd) << "line " << i;
         }
       }
       EXPECT_EQ(at, text.size());

@@ -13,7 +13,7 @@ namespace Gpgp
         [StructLayout(LayoutKind.Sequential)]
         internal struct Budgets
         {
-            public uint maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs, maxItems;
+            public uint maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs, maxItems, maxShapes;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -88,7 +88,7 @@ namespace Gpgp
 
         /// <summary>Larger canvases, or more on them. Makes pipelines: while a level loads. 0: the default.</summary>
         public static void SetBudgets(uint maxWidth, uint maxHeight, uint maxTileEntries = 0, uint maxPatches = 0,
-                                      uint maxGlyphs = 0, uint maxItems = 0)
+                                      uint maxGlyphs = 0, uint maxItems = 0, uint maxShapes = 0)
         {
             var budgets = new Native.Budgets
             {
@@ -97,7 +97,8 @@ namespace Gpgp
                 maxTileEntries = maxTileEntries,
                 maxPatches = maxPatches,
                 maxGlyphs = maxGlyphs,
-                maxItems = maxItems
+                maxItems = maxItems,
+                maxShapes = maxShapes
             };
             Need(Native.gpgpUnitySetBudgets(ref budgets), "gpgpUnitySetBudgets");
         }
