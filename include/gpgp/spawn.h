@@ -221,7 +221,9 @@ typedef struct GpgpSpawnInfo {
   const void* pNext;
   GpgpRecordInfo base;
   GpgpAsset grammar;
-  GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]; STORAGE usage */
+  GpgpBuffer axioms;       /**< GpgpAxiom[axiomCount]; STORAGE usage */
+  GpgpBuffer axiomCounter; /**< optional: uint32_t, how many axioms there are, for those that the GPU has written (4
+                              bytes); STORAGE usage. axiomCount is the most that are derived then */
   uint32_t axiomCount;
   GpgpSpawnFlags flags;
   GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage. NULL with draws: the record
@@ -258,7 +260,8 @@ typedef struct GpgpSpawnReport {
   uint32_t peakShapes;       /**< the most shapes that waited for a round, those that did not fit included: a
                                   maxShapes that would have been enough for them */
   uint32_t droppedShapes;    /**< shapes that did not fit maxShapes or were left after maxRounds, and axioms whose
-                                  rule does not exist; what lay below them is not known */
+                                  rule does not exist or that axiomCounter counts beyond axiomCount; what lay below
+                                  them is not known */
   uint32_t unfinishedShapes; /**< shapes deeper than maxDepth */
   uint32_t rounds;           /**< rounds that had work */
   uint32_t keyHash[2];       /**< order-free hash of (path key, bucket, shape) over all terminals */

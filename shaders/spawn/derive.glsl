@@ -287,18 +287,18 @@ void leaveRest(uint count) {
 
 void main() {
   const uint lane = laneIndex();
-  const uint needed = round == 0 ? record.axiomCount : rounds[round].shapes;
-  const uint count = round == 0 ? needed : min(needed, record.maxShapes);
+  const uint axiomsThere = record.readsAxiomCounter != 0 ? axiomCounter : record.axiomCount;
+  const uint needed = round == 0 ? axiomsThere : rounds[round].shapes;
+  const uint count = min(needed, round == 0 ? record.axiomCount : record.maxShapes);
   if (gl_GlobalInvocationID.x == 0) {
 #ifdef GPGP_COLLIDERS
     if (count > 0) state.rounds += 1; // rounds follow each other
 #else
     if (count > 0) state.rounds = round + 1;
 #endif
-    if (round > 0) {
-      state.peakShapes = max(state.peakShapes, needed);
-      if (needed > count) atomicAdd(state.droppedShapes, needed - count);
-    }
+    if (round > 0) state.peakShapes = max(state.peakShapes, needed);
+    if (needed > count) atomicAdd(state.droppedShapes, needed - count);
+    if (round == 0 && count == 0 && record.reports != 0) reportInstances();
   }
   if (count == 0) return; // the second round is recorded before anybody knows
   // Few at a time, so that work comes out even. But not fewer than all could take at once, and more of axioms, which

@@ -38,29 +38,30 @@ struct SpawnRound {
 
 /// What the CPU says with each record.
 struct SpawnConstants {
-  uint axiomCount;
-  uint instanceCapacity; // GpgpInstance
-  uint drawCapacity;     // VkDrawIndexedIndirectCommand; 0: instances are not sorted
-  uint writeCount;       // 1: the count buffer is there
-  uint rounds;           // the number of what the last round leaves
-  uint maxGroups;        // workgroups of a round at most
-  uint maxDepth;         // recursive edges that a shape may pass
-  uint spread;           // shapes that a round should at least begin with: below, workgroups give work away
-  uint steps;            // after which a workgroup leaves its work to the next round
-  uint maxShapes;        // that each queue holds
-  uint maxTerminals;     // that the records hold
-  uint terminalsTo;      // kTo..., below
-  uint regions;          // 1: the engine's draws say where each bucket begins
-  uint writeNeeded;      // 1: the buffer for needed counts is there
-  uint quadCapacity;     // that vertices and indices hold
-  uint regionQuads;      // that indices of one draw can reach
-  uint indexWords;       // of a quad: 6, 3, or 0 without indices
-  uint quads;            // 1: terminals become quads of vertices, not instances
-  uint phaseRounds;      // rounds that were recorded of each phase
-  uint maxColliders;     // that are held
-  uint cellMask;         // cells that colliders are linked in, a power of two, less 1
-  uint balances;         // 1: workgroups give work away as well where most have finished
-  uint reports;          // 1: the last workgroup to derive says what was written, and place is left out
+  uint axiomCount;        // at most
+  uint instanceCapacity;  // GpgpInstance
+  uint drawCapacity;      // VkDrawIndexedIndirectCommand; 0: instances are not sorted
+  uint writeCount;        // 1: the count buffer is there
+  uint rounds;            // the number of what the last round leaves
+  uint maxGroups;         // workgroups of a round at most
+  uint maxDepth;          // recursive edges that a shape may pass
+  uint spread;            // shapes that a round should at least begin with: below, workgroups give work away
+  uint steps;             // after which a workgroup leaves its work to the next round
+  uint maxShapes;         // that each queue holds
+  uint maxTerminals;      // that the records hold
+  uint terminalsTo;       // kTo..., below
+  uint regions;           // 1: the engine's draws say where each bucket begins
+  uint writeNeeded;       // 1: the buffer for needed counts is there
+  uint quadCapacity;      // that vertices and indices hold
+  uint regionQuads;       // that indices of one draw can reach
+  uint indexWords;        // of a quad: 6, 3, or 0 without indices
+  uint quads;             // 1: terminals become quads of vertices, not instances
+  uint phaseRounds;       // rounds that were recorded of each phase
+  uint maxColliders;      // that are held
+  uint cellMask;          // cells that colliders are linked in, a power of two, less 1
+  uint balances;          // 1: workgroups give work away as well where most have finished
+  uint reports;           // 1: the last workgroup to derive says what was written, and place is left out
+  uint readsAxiomCounter; // 1: the engine's buffer says how many axioms there are
 };
 
 // What becomes of terminals.

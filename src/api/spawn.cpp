@@ -146,6 +146,10 @@ GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer c
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
                        static_cast<unsigned long long>(info->axioms.size), info->axiomCount,
                        static_cast<unsigned long long>(info->axiomCount) * sizeof(GpgpAxiom));
+    if (info->axiomCounter.buffer && info->axiomCounter.size < 4)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axiomCounter.size is below 4 bytes");
+    if (info->axiomCounter.buffer && !info->axiomCount)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axiomCounter.buffer is set, and axiomCount, the most, is 0");
     if (auto ok = checkOutput(**spawner, *info, (*grammar)->graph.buckets); !ok) return ok;
     if (auto ok = checkRecord(**spawner, frame); !ok) return ok;
     if (!(*grammar)->resident()) return makeError(GPGP_NOT_READY, "the grammar is not resident");

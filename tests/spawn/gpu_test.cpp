@@ -21,6 +21,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <tuple>
 
@@ -64,8 +65,8 @@ struct SpawnTest : DeviceTest {
   }
 
   /// Uploads, derives once and reads everything back.
-  Derived run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity,
-              bool sorted) {
+  Derived run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity, bool sorted,
+              std::optional<uint32_t> axiomCounter = {}) {
     Derived result;
     GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
     grammarInfo.data = words.data();
@@ -81,12 +82,15 @@ struct SpawnTest : DeviceTest {
     const auto draws =
         host::makeBuffer(device, std::vector<VkDrawIndexedIndirectCommand>(buckets, {36, kPoison, 5, 6, kPoison}),
                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    const host::Buffer count(device, 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    const auto count = host::makeBuffer(device, std::vector<uint32_t>{kPoison}, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    const auto counter =
+        host::makeBuffer(device, std::vector<uint32_t>{axiomCounter.value_or(0)}, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
     info.base.tag = 1000 + axioms.size();
     info.grammar = grammar;
     info.axioms = axiomBuffer.range();
     info.axiomCount = static_cast<uint32_t>(axioms.size());
+    if (axiomCounter) info.axiomCounter = counter.range();
     info.instances = instances.range();
     if (sorted) info.draws = draws.range();
     info.count = count.range();
@@ -400,6 +404,25 @@ TEST_F(SpawnTest, AnyOrderOfAxiomsGivesTheSame) {
   EXPECT_EQ(first.report.keyHash[1], second.report.keyHash[1]);
   EXPECT_EQ(first.report.terminals, second.report.terminals);
   EXPECT_GT(first.report.terminals, 0u);
+}
+
+TEST_F(SpawnTest, AxiomsAreAsManyAsTheGpuHasCounted) {
+  const auto words = bake(ownGrammar("building.pga"));
+  const std::vector<GpgpAxiom> all = axioms(20, 13, 19, 11);
+  for (const bool sorted : {false, true})
+    for (const uint32_t counted : {0u, 1u, 7u, 20u, 23u}) {
+      Derived gpu = run(words, all, 50000, sorted, counted);
+      const uint32_t beyond = counted > 20 ? counted - 20 : 0;
+      EXPECT_EQ(gpu.report.droppedShapes, beyond);
+      EXPECT_EQ(gpu.report.base.status, beyond ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS);
+      gpu.report.droppedShapes = 0;
+      gpu.report.base.status = GPGP_SUCCESS;
+      const std::vector<GpgpAxiom> there(all.begin(), all.begin() + (counted - beyond));
+      compare(spawn::derive(words, there), gpu, std::to_string(counted) + (sorted ? " axioms, sorted" : " axioms"));
+      uint32_t drawn = 0;
+      for (const auto& draw : gpu.draws) drawn += sorted ? draw.instanceCount : 0;
+      EXPECT_EQ(drawn, sorted ? gpu.count : 0);
+    }
 }
 
 TEST_F(SpawnTest, NoAxiomsGiveNothing) {

@@ -38,7 +38,8 @@ enum : core::ResourceIndex {
   kNeeded,
   kColliders,
   kColliderCells,
-  kOrder
+  kOrder,
+  kAxiomCounter
 };
 
 // Workgroup counts of a record.
@@ -150,6 +151,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"collider cells", scratch, VkDeviceSize(4) * (cellsOf(maxColliders) + maxColliders)});
   list.add({"order", scratch,
             sizeof(uint32_t) * (ordered ? shader::kOrderWords * VkDeviceSize(maxTerminals) + shader::kOrderParts : 1)});
+  list.add({"axiomCounter", buffer, 0, true});
 
   const std::span<const uint32_t> interpreter = context.device.subgroupArithmetic
                                                     ? std::span<const uint32_t>(spawn_derive_subgroups)
@@ -175,7 +177,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write},     {kDraws, readWrite},
                      {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},       {kCounters, readWrite},
                      {kBuckets, readWrite},   {kConstants, read},   {kColliders, readWrite}, {kColliderCells, read},
-                     {kCount, write}};
+                     {kCount, write},         {kAxiomCounter, read}};
   for (uint32_t phase = 0; phase < phases; ++phase) {
     const uint32_t first = phase * spawner->phaseStride();
     if (phase == 0)
@@ -300,6 +302,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
       !vertices() && (inOrder || (!counts && !regions && info.draws.buffer && grammar.graph.buckets > 1));
   shader::SpawnConstants constants{};
   constants.axiomCount = info.axiomCount;
+  constants.readsAxiomCounter = info.axiomCounter.buffer ? 1 : 0;
   constants.instanceCapacity = elementsIn<GpgpInstance>(info.instances);
   constants.drawCapacity = elementsIn<VkDrawIndexedIndirectCommand>(info.draws);
   constants.writeCount = info.count.buffer ? 1 : 0;
@@ -339,6 +342,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[kGraph].ownBuffer = grammar.buffer();
   record.bindings[kGraph].ownSize = grammar.size();
   record.bindings[kAxioms].engineBuffer = &info.axioms;
+  record.bindings[kAxiomCounter].engineBuffer = &info.axiomCounter;
   record.bindings[kInstances].engineBuffer = &info.instances;
   record.bindings[kDraws].engineBuffer = &info.draws;
   record.bindings[kCount].engineBuffer = &info.count;
