@@ -48,7 +48,8 @@ struct FrameReport {
   uint32_t glyphs = 0;  ///< drawn
   uint32_t pieces = 0;  ///< draw callbacks
   uint32_t layers = 0;  ///< of the canvas
-  uint32_t dropped = 0; ///< glyphs and widgets beyond maxGlyphs, maxDrawings, maxLayers or what is kept
+  uint32_t dropped = 0; ///< glyphs and widgets beyond maxGlyphs, maxDrawings, maxLayers or what is kept; pictures,
+                        ///< underlines and strikes beyond 1024
 };
 
 class Renderer {

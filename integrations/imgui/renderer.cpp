@@ -14,6 +14,8 @@
 namespace gpgp::imgui {
 namespace {
 
+constexpr size_t kMaxShapes = 1024; // of a frame: pictures, underlines and strikes
+
 void check(GpgpResult result, const char* what) {
   if (result < 0) throw std::runtime_error(std::string(what) + ": " + gpgpResultString(result));
 }
@@ -74,6 +76,7 @@ Renderer::Impl::Impl(const RendererInfo& wanted) : info(checked(wanted)), layers
   canvasInfo.maxWidth = info.maxWidth;
   canvasInfo.maxHeight = layers.height();
   canvasInfo.maxGlyphs = info.maxGlyphs;
+  canvasInfo.maxShapes = kMaxShapes;
   canvasInfo.maxDrawings = info.maxDrawings + 2; // and one item for all glyphs, one for all pictures among them
   Result<Canvas> made = Canvas::create(info.context, canvasInfo);
   check(made.code(), "gpgpCreateCanvas");
@@ -216,6 +219,10 @@ GpgpResult Renderer::Impl::prepare(ImDrawData& data, VkCommandBuffer commands, c
     const std::span glyphs(pieces.glyphs.data() + piece.firstGlyph, piece.glyphCount);
     if (const GpgpResult placed = cache.place(glyphs, 0, down, 1, text); placed < 0) return placed;
   }
+  const size_t shapes = text.lines.size() + text.pictures.size();
+  text.lines.resize(std::min(text.lines.size(), kMaxShapes));
+  text.pictures.resize(std::min(text.pictures.size(), kMaxShapes - text.lines.size()));
+  report.dropped += static_cast<uint32_t>(shapes - text.lines.size() - text.pictures.size());
   report.glyphs = static_cast<uint32_t>(text.glyphs.size() + text.pictures.size());
   report.dropped += text.dropped;
   if (report.glyphs > 0 || !text.lines.empty()) {

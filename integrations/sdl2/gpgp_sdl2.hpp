@@ -132,7 +132,7 @@ private:
 };
 
 struct SwapchainInfo {
-  VkExtent2D maxExtent{4096, 4096}; ///< a larger window's images are no larger
+  VkExtent2D maxExtent{4096, 4096}; ///< of images: the window is told to become no larger
   bool srgb = true;                 ///< the format encodes what shaders write as sRGB; false: it stores it as it is
 };
 

@@ -68,6 +68,15 @@ Swapchain::Swapchain(Device& device, const Window& window, const SwapchainInfo& 
   if (wanted == formats.end())
     throw std::runtime_error(info.srgb ? "the window offers no sRGB format" : "the window offers no 8-bit format");
   format_ = *wanted;
+  // A surface that is larger than its swapchain is an error in most window systems.
+  int width = 0, height = 0; // in the window system's units
+  SDL_GetWindowSize(window.handle(), &width, &height);
+  const VkExtent2D drawable = window.drawableSize();
+  if (drawable.width > 0 && drawable.height > 0)
+    SDL_SetWindowMaximumSize(
+        window.handle(),
+        static_cast<int>(uint64_t{info.maxExtent.width} * static_cast<uint64_t>(width) / drawable.width),
+        static_cast<int>(uint64_t{info.maxExtent.height} * static_cast<uint64_t>(height) / drawable.height));
   VkSemaphoreCreateInfo semaphoreInfo{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
   for (VkSemaphore& semaphore : available_)
     check(vkCreateSemaphore(device.device, &semaphoreInfo, nullptr, &semaphore), "vkCreateSemaphore");

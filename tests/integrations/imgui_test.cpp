@@ -506,6 +506,18 @@ TEST_F(ImGuiTest, GlyphsThatArePicturesAreShown) {
   });
   keep(picture, "emoji");
   EXPECT_EQ(emoji.renderer->report().dropped, 0u);
+  // One picture at more places than a frame has: those beyond are counted.
+  std::string many;
+  for (int i = 0; i < 1100; ++i) many += words;
+  text.text = many.data();
+  text.size = many.size();
+  text.style.size = 8;
+  text.width = 600;
+  Layout crowd = *shaper.layout();
+  ASSERT_EQ(crowd.set(text), GPGP_SUCCESS);
+  emoji.render([&] { emoji.renderer->addText(*ImGui::GetForegroundDrawList(), crowd, {10, 10}); });
+  EXPECT_EQ(emoji.renderer->report().glyphs, 1024u);
+  EXPECT_EQ(emoji.renderer->report().dropped, 1100u - 1024u);
   EXPECT_EQ(emoji.renderer->report().layers, 1u);
   const auto coloured = [&](uint32_t left, uint32_t top, uint32_t right, uint32_t bottom) {
     uint32_t count = 0;
