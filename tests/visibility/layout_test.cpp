@@ -2,6 +2,8 @@
 // them.
 #include "visibility/layout.h"
 
+#include "visibility/sampling/budgets.h"
+
 #include "shaders/visibility_finish.spv.h"
 #include "shaders/visibility_large.spv.h"
 #include "shaders/visibility_plan.spv.h"
@@ -108,6 +110,27 @@ TEST(Layout, ListDispatchesCoverTheListInRows) {
   EXPECT_EQ(shader::listGroups(0), glm::uvec3(0, 1, 1));
   EXPECT_EQ(shader::listGroups(4194240), glm::uvec3(65535, 1, 1));
   EXPECT_EQ(shader::listGroups(4194241), glm::uvec3(65535, 2, 1));
+}
+
+// Else the views of a cell would draw most of what is large the slow way.
+TEST(Budgets, RecordsGrowWithTheCamerasAsFarAsTheDeviceBindsThem) {
+  VkPhysicalDeviceLimits limits{};
+  limits.maxStorageBufferRange = 1u << 27;
+  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+  info.maxTriangles = 1u << 24;
+  const auto recordsFor = [&](uint32_t cameras) {
+    info.maxCameras = cameras;
+    const visibility::Budgets budgets(info, limits);
+    return std::pair(budgets.mediumRecords(), budgets.largeRecords());
+  };
+  EXPECT_EQ(recordsFor(0), std::pair(65536u, 32768u));
+  EXPECT_EQ(recordsFor(4), recordsFor(0));
+  EXPECT_EQ(recordsFor(32), std::pair(8 * 65536u, 8 * 32768u));
+  const auto [medium, large] = recordsFor(128);
+  EXPECT_GT(medium, 8 * 65536u);
+  EXPECT_LE((uint64_t(medium) + large) * visibility::kRecordBytes, limits.maxStorageBufferRange);
+  info.maxTriangles = 40;
+  EXPECT_EQ(recordsFor(128), std::pair(10u, 10u));
 }
 
 } // namespace
