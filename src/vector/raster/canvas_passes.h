@@ -1,0 +1,35 @@
+// What the canvas's pass list and its records name each other by.
+#pragma once
+#include "vector/raster/canvas.h"
+
+namespace gpgp::vector {
+
+// Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
+constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
+[[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28, kAsideTiles = 29;
+// Workgroup counts and conditions of a record.
+enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRaster, kTiles, kSift, kBins, kSplits };
+constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
+enum Conditions : uint32_t {
+  kPlain = 0,
+  kPaints = 3,
+  kPaintsOne = 6,
+  kRich = 9,
+  kRichOne = 12,
+  kImages = 15,
+  kRichImages = 18,
+  kAny = 21,
+  kOneDrawing = 24,
+  kDrawings,
+  kProjective,
+  kSplit,
+  kSplitOne,
+  kAside,
+  kAsideOne,
+  kAsideImages
+};
+static_assert(kAsideImages < core::kMaxConditions);
+
+inline uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
+
+} // namespace gpgp::vector
