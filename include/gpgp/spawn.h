@@ -211,6 +211,11 @@ typedef struct GpgpVertexOutput {
   VkIndexType indexType; /**< UINT16 or UINT32. 16 bits reach 65532 vertices of a draw */
 } GpgpVertexOutput;
 
+/** A box in the world. 24 bytes. */
+typedef struct GpgpSpawnBounds {
+  float min[3], max[3]; /**< metres; infinite and turned over, min > max, where there is nothing */
+} GpgpSpawnBounds;
+
 typedef uint64_t GpgpSpawnFlags;
 /** Buckets have regions of the engine's: draws say where each begins, and it reaches to where the next one begins, or
  *  to the buffer's end. Regions lie in the order of the buckets. */
@@ -241,6 +246,8 @@ typedef struct GpgpSpawnInfo {
   GpgpBuffer needed; /**< out, optional: uint32_t[buckets], instances or indices that each bucket needs; only with
                           GPGP_SPAWN_REGIONS or where the record only counts; STORAGE usage */
   GpgpBuffer count;  /**< out, optional: uint32_t, instances or indices written (4 bytes); STORAGE usage */
+  GpgpBuffer bounds; /**< out, optional: GpgpSpawnBounds[buckets], around all terminals of each bucket, of which not all
+                        may have been written with BUDGET_EXCEEDED; not where the record only counts; STORAGE usage */
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 

@@ -76,6 +76,7 @@ GPGP_CONST uint kBucketLost = kMaxBuckets;
 GPGP_CONST uint kBucketGaps = 2u * kMaxBuckets;
 GPGP_CONST uint kBucketPlaces = 3u * kMaxBuckets;
 GPGP_CONST uint kBucketWords = 4u * kMaxBuckets;
+GPGP_CONST uint kBoundWords = 6u; // of a bucket's box: lower and upper ends
 
 GPGP_CONST uint kSpawnGroupSize = 64u; // of place, order and emit
 

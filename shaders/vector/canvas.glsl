@@ -1,4 +1,4 @@
-// The canvas's bindings, in the order of its resources (src/vector/raster/canvas.cpp), and what passes share.
+// The canvas's bindings, in the order of its resources (src/vector/raster/canvas_passes.cpp), and what passes share.
 #ifndef SCISSORS // only records of several drawings have any
 #if ONE_DRAWING
 #define SCISSORS 0

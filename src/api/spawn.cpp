@@ -125,6 +125,11 @@ Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& inf
   if (info.needed.buffer && info.needed.size < 4ull * buckets)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "needed.size is %llu bytes, the grammar's %u buckets need %llu",
                      static_cast<unsigned long long>(info.needed.size), buckets, 4ull * buckets);
+  if (info.bounds.buffer && counts)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "bounds.buffer is set, but the record only counts");
+  if (info.bounds.buffer && info.bounds.size < sizeof(GpgpSpawnBounds) * buckets)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "bounds.size is %llu bytes, the grammar's %u buckets need %zu",
+                     static_cast<unsigned long long>(info.bounds.size), buckets, sizeof(GpgpSpawnBounds) * buckets);
   if (info.count.buffer && info.count.size < 4)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count.size is below 4 bytes");
   return {};

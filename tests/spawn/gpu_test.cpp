@@ -1,5 +1,6 @@
 // The interpreter kernel against the CPU evaluator, through the C API, with validation.
 #include "../device_test.h"
+#include "bounds.h"
 #include "grammars.h"
 #include "host/device.h"
 #include "host/memory.h"
@@ -91,6 +92,8 @@ struct SpawnTest : DeviceTest {
     info.axioms = axiomBuffer.range();
     info.axiomCount = static_cast<uint32_t>(axioms.size());
     if (axiomCounter) info.axiomCounter = counter.range();
+    const host::Buffer bounds(device, buckets * sizeof(GpgpSpawnBounds), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    info.bounds = bounds.range();
     info.instances = instances.range();
     if (sorted) info.draws = draws.range();
     info.count = count.range();
@@ -113,6 +116,8 @@ struct SpawnTest : DeviceTest {
         break;
       }
     result.draws = host::download<VkDrawIndexedIndirectCommand>(device, draws, buckets);
+    if (result.report.instancesWritten == result.report.terminals)
+      expectBounds(host::download<GpgpSpawnBounds>(device, bounds, buckets), result.instances);
     gpgpDestroyAsset(grammar);
     return result;
   }

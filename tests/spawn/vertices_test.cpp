@@ -1,6 +1,7 @@
 // Terminals as vertices and indices, regions of buckets, and counting before writing: shapes against closed forms, the
 // GPU against the CPU evaluator, budgets, through the C API with validation.
 #include "../device_test.h"
+#include "bounds.h"
 #include "grammars.h"
 #include "host/device.h"
 #include "host/memory.h"
@@ -378,6 +379,8 @@ struct VerticesTest : DeviceTest {
     if (wanted.withDraws) info.draws = draws.range();
     if (wanted.withNeeded) info.needed = needed.range();
     info.count = count.range();
+    const auto bounds = poisoned(buckets * sizeof(GpgpSpawnBounds));
+    if (wanted.instances || wanted.quads) info.bounds = bounds.range();
     const GpgpFrame f = advance();
     device.submitAndWait([&](VkCommandBuffer cmd) {
       EXPECT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS);
@@ -397,6 +400,11 @@ struct VerticesTest : DeviceTest {
     out.instances = host::download<GpgpInstance>(device, instances, wanted.instances);
     out.draws = host::download<VkDrawIndexedIndirectCommand>(device, draws, given.size());
     out.needed = host::download<uint32_t>(device, needed, buckets);
+    if (info.bounds.buffer) {
+      const spawn::Derivation cpu = spawn::derive(words, axioms);
+      if (out.report.terminals == cpu.terminals && out.report.base.status == GPGP_SUCCESS)
+        expectBounds(host::download<GpgpSpawnBounds>(device, bounds, buckets), cpu.instances);
+    }
     gpgpDestroyAsset(grammar);
     return out;
   }
@@ -1087,6 +1095,28 @@ TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
             "needed.buffer is set, but there are no regions to fill");
   EXPECT_EQ(refused(1, [](auto&, auto& v) { v.indexType = VK_INDEX_TYPE_NONE_KHR; }),
             "vertices->indexType is neither UINT16 nor UINT32");
+  EXPECT_EQ(refused(0,
+                    [&](auto& i, auto&) {
+                      i.axiomCounter = GpgpBuffer{buffer.handle(), 0, 2, {}, {}};
+                    }),
+            "axiomCounter.size is below 4 bytes");
+  EXPECT_EQ(refused(0,
+                    [&](auto& i, auto&) {
+                      i.axiomCounter = buffer.range();
+                      i.axiomCount = 0;
+                    }),
+            "axiomCounter.buffer is set, and axiomCount, the most, is 0");
+  EXPECT_EQ(refused(0,
+                    [&](auto& i, auto&) {
+                      i.bounds = GpgpBuffer{buffer.handle(), 0, 20, {}, {}};
+                    }),
+            "bounds.size is 20 bytes, the grammar's 14 buckets need 336");
+  EXPECT_EQ(refused(0,
+                    [&](auto& i, auto&) {
+                      i.bounds = i.draws = buffer.range();
+                      i.instances = {};
+                    }),
+            "bounds.buffer is set, but the record only counts");
   gpgpDestroyAsset(grammar);
 }
 

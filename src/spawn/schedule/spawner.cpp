@@ -1,5 +1,6 @@
 #include "spawn/schedule/spawner.h"
 
+#include "shaders/spawn_bounds.spv.h"
 #include "shaders/spawn_derive.spv.h"
 #include "shaders/spawn_derive_colliders.spv.h"
 #include "shaders/spawn_derive_colliders_subgroups.spv.h"
@@ -39,14 +40,17 @@ enum : core::ResourceIndex {
   kColliders,
   kColliderCells,
   kOrder,
-  kAxiomCounter
+  kAxiomCounter,
+  kBounds,
+  kBoundKeys
 };
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kLinkGroups = 2, kPartGroups = 3, kExpandGroups = 4,
-                   kRoundGroups = 5;
+                   kRoundGroups = 5, kBoundGroups = 6;
 // Conditions of a record; kPhases and on: there are more phases than 1, 2 ...
-constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2, kColliding = 3, kExpanded = 4, kPlaced = 5, kPhases = 6;
+constexpr uint32_t kSorted = 0, kBucketed = 1, kOrdered = 2, kColliding = 3, kExpanded = 4, kPlaced = 5, kBounded = 6,
+                   kPhases = 7;
 
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
@@ -152,6 +156,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"order", scratch,
             sizeof(uint32_t) * (ordered ? shader::kOrderWords * VkDeviceSize(maxTerminals) + shader::kOrderParts : 1)});
   list.add({"axiomCounter", buffer, 0, true});
+  list.add({"bounds", buffer, 0, true});
+  list.add({"bound keys", scratch, sizeof(uint32_t) * shader::kMaxBuckets * shader::kBoundWords});
 
   const std::span<const uint32_t> interpreter = context.device.subgroupArithmetic
                                                     ? std::span<const uint32_t>(spawn_derive_subgroups)
@@ -173,6 +179,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   using enum core::UseKind;
   list.fill("clear counters", kCounters, 0);
   list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
+  list.fill("clear bounds", kBoundKeys, 0).condition = kBounded;
   if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
   const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write},     {kDraws, readWrite},
                      {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},       {kCounters, readWrite},
@@ -273,6 +280,20 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                           kCounters, perRecord)
         .condition = kSorted;
   }
+  const auto bounds = [&](const char* name, uint32_t decodes, std::initializer_list<core::Use> used, uint32_t groups) {
+    const uint32_t shader = list.add(core::ShaderDesc{name, spawn_bounds, {decodes}, 1});
+    list.dispatch(name, shader, used, groups).condition = kBounded;
+  };
+  bounds("bounds", 0,
+         {{kGraph, read},
+          {kAxioms, read},
+          {kInstances, read},
+          {kRecords, read},
+          {kCounters, read},
+          {kConstants, read},
+          {kBoundKeys, readWrite}},
+         kBoundGroups);
+  bounds("write bounds", 1, {{kGraph, read}, {kBoundKeys, read}, {kBounds, write}}, kOneGroup);
   list.report = kCounters;
   list.reportBytes = 4 * shader::kSpawnReportWords;
   if (auto ok = spawner->init(std::move(list)); !ok) return ok.error();
@@ -343,6 +364,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[kGraph].ownSize = grammar.size();
   record.bindings[kAxioms].engineBuffer = &info.axioms;
   record.bindings[kAxiomCounter].engineBuffer = &info.axiomCounter;
+  record.bindings[kBounds].engineBuffer = &info.bounds;
   record.bindings[kInstances].engineBuffer = &info.instances;
   record.bindings[kDraws].engineBuffer = &info.draws;
   record.bindings[kCount].engineBuffer = &info.count;
@@ -354,6 +376,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kOneGroup] = {1, 1, 1};
   record.groups[kPartGroups] = {shader::kOrderParts, 1, 1};
   record.groups[kAxiomGroups] = {std::min(info.axiomCount, maxGroups), 1, 1};
+  record.groups[kBoundGroups] = {256, 1, 1};
   record.groups[kRoundGroups] = {maxGroups, 1, 1};
   record.groups[kLinkGroups] = {std::clamp(maxColliders_ / (4 * shader::kSpawnGroupSize), 1u, 256u), 1, 1};
   record.groups[kExpandGroups] = {std::min((maxTerminals_ - 1) / shader::kSpawnGroupSize + 1, limits.expandGroups), 1,
@@ -362,6 +385,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.conditions[kExpanded] = vertices() && !counts;
   record.conditions[kOrdered] = inOrder;
   record.conditions[kBucketed] = sorted || regions || counts || vertices();
+  record.conditions[kBounded] = info.bounds.buffer != VK_NULL_HANDLE;
   record.conditions[kPlaced] = !constants.reports;
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
