@@ -187,7 +187,7 @@ struct CanvasHeader {
   uint shapeTables;  // vec4: ShapeRecords, their paints, stops, clips and layers: behind placements
   uint binWords;     // of a bin: kBinHead, then a bit for each path
   uint binListLimit; // paths in all bins' lists
-  uint pad0;
+  uint zero;         // 0, which no compiler knows (raster.comp)
   vec4 background;
 };
 
