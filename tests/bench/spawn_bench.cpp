@@ -410,6 +410,16 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
       settings.seconds = std::min(settings.seconds, budget.left());
       const Tuned found = tuneGrammar(session, on.grammar, on.axioms, settings);
       tuningSeconds = found.seconds;
+      const spawn::Fit& fit = found.info.fit;
+      std::fprintf(stderr,
+                   "%s: tuned is schedule %s, invocations %u, workgroups %u, spread %u, balances %u, rounds %u;",
+                   c.name.c_str(), found.schedule().name.c_str(), fit.groupSize, fit.maxGroups, fit.spread,
+                   fit.balances, fit.rounds);
+      std::fprintf(stderr, " of %zu, not tried %zu; schedules alone:", found.candidates, found.leftOut);
+      for (const Candidate& candidate : std::span(found.measured).first(std::min<size_t>(4, found.measured.size())))
+        std::fprintf(stderr, " %s %s", found.schedules[candidate.schedule].name.c_str(),
+                     shown(candidate.milliseconds).c_str());
+      std::fprintf(stderr, "\n");
       const Grammar prepared = on.deriver->prepare(kernelWords(on.grammar, found.info, found.code));
       tuned = timeOf(*on.deriver, prepared, on.reference.result, c.name + " tuned", options.repeat);
     }
@@ -566,6 +576,46 @@ void vertices(Session& session, const std::vector<Case>& cases, const Options& o
   }
 }
 
+// ---------------------------------------------------------------- bounds
+
+void bounds(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+  std::printf("\n## Boxes around each bucket (GpgpSpawnInfo::bounds), default schedule: ms, by turns\n\n"
+              "| case | buckets | terminals | instances | with bounds | µs more | vertices | with bounds | µs more |\n"
+              "|---|---|---|---|---|---|---|---|---|\n");
+  constexpr uint32_t kTurns = 3; // whose fastest is taken
+  double longest = 0;            // row
+  for (const Case& c : cases) {
+    if (!options.wants("bounds", c.name) || !budget.allows(longest, c.name)) continue;
+    const auto begin = Clock::now();
+    const BakedGraph grammar = grammarOf(c);
+    const auto axioms = axiomsOf(c, shareOf(options, c.axioms));
+    const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
+    const bool subgroups = hasSubgroups(session.device());
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
+    std::printf("| %s | %u |", c.name.c_str(), grammar.graph.buckets);
+    for (const bool asVertices : {false, true}) {
+      DeriverOptions deriverOptions;
+      deriverOptions.vertices = asVertices;
+      Deriver without(session, grammar, axioms, deriverOptions);
+      deriverOptions.bounds = true;
+      Deriver with(session, grammar, axioms, deriverOptions);
+      const Grammar prepared = without.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), code[0]));
+      const GpgpSpawnReport report = without.fit(prepared);
+      with.fit(prepared);
+      std::array<double, 2> best;
+      best.fill(std::numeric_limits<double>::infinity());
+      for (uint32_t turn = 0; turn < kTurns; ++turn) {
+        best[0] = std::min(best[0], without.measure(prepared, options.repeat).times.median());
+        best[1] = std::min(best[1], with.measure(prepared, options.repeat).times.median());
+      }
+      if (!asVertices) std::printf(" %u |", report.terminals);
+      std::printf(" %s | %s | %.1f |", shown(best[0]).c_str(), shown(best[1]).c_str(), 1e3 * (best[1] - best[0]));
+    }
+    std::printf("\n");
+    longest = std::max(longest, secondsSince(begin));
+  }
+}
+
 // ---------------------------------------------------------------- curves
 
 void curves(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
@@ -637,8 +687,9 @@ const char* const kUsage =
     "rules)\n"
     "              and what `gpgp tune` finds, in how many seconds; that against the best named schedule, and against "
     "the\n"
-    "              best of all partitions, where there are few, all with the device's usual numbers. Rows: the cases' "
-    "names\n"
+    "              best of all partitions, where there are few, all with the device's usual numbers. What was tuned to "
+    "goes\n"
+    "              to standard error. Rows: the cases' names\n"
     "  searches    its other columns: the best that random and heuristic searches of --samples N schedules find, with "
     "and\n"
     "              without matching. Rows: the cases' names\n"
@@ -646,6 +697,9 @@ const char* const kUsage =
     "only\n"
     "              in the edges into operators that multiply have the same kernel, which is measured once\n"
     "  vertices    cases as vertices of 32 bytes and 32-bit indices. Rows: the cases' names; `city` is figure 4.1\n"
+    "  bounds      cases as instances and as vertices, each with and without a box around each bucket. Rows: the "
+    "cases' "
+    "names\n"
     "  curves      time and memory from 10 to 10^7 axioms; what the device does not bind at once is derived in parts, "
     "a\n"
     "              record each. Rows: the cases' names\n"
@@ -664,7 +718,8 @@ int run(bench::Arguments arguments) {
   std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16); // a run that is ended has printed every row that it had
   Options options;
   bool pairs = false, samples = false, repeat = false;
-  const std::vector<std::string> known = {"schedules", "vertices", "partitions", "curves", "heuristics", "searches"};
+  const std::vector<std::string> known = {"schedules", "vertices",   "partitions", "bounds",
+                                          "curves",    "heuristics", "searches"};
   while (arguments.next()) {
     const std::string& word = arguments.word();
     if (word == "--repeat")
@@ -704,6 +759,7 @@ int run(bench::Arguments arguments) {
   for (const auto& [name, table] : {std::pair<const char*, Table>{"schedules", schedules},
                                     {"vertices", vertices},
                                     {"partitions", partitions},
+                                    {"bounds", bounds},
                                     {"curves", curves},
                                     {"heuristics", heuristics},
                                     {"searches", searches}}) {
