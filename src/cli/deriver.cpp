@@ -49,6 +49,7 @@ Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<
   draws_ = host::makeBuffer(session.device(), std::vector<VkDrawIndexedIndirectCommand>(buckets),
                             kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "draws");
   count_ = host::Buffer(session.device(), 4, kStorage);
+  if (options.bounds) bounds_ = host::Buffer(session.device(), buckets * sizeof(GpgpSpawnBounds), kStorage);
   setAxioms(axioms);
   makeOutput(options.maxInstances ? options.maxInstances : std::max<uint64_t>(options.expected, 1));
   makeSpawner();
@@ -157,6 +158,7 @@ Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repe
                             else
                               info.instances = instances_.range({}, kRead);
                             if (options_.sorted) info.draws = draws_.range({}, kRead);
+                            if (options_.bounds) info.bounds = bounds_.range({}, kRead);
                             return spawner.recordPrepare(commands, frame, info);
                           });
 }

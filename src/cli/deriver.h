@@ -10,6 +10,7 @@ namespace gpgp::cli {
 struct DeriverOptions {
   bool vertices = false;     ///< vertices and indices, not instances
   bool sorted = false;       ///< instances by bucket, with draws
+  bool bounds = false;       ///< and a box around each bucket
   uint32_t maxShapes = 0;    ///< 0: the library's default, and more where that is too little
   uint32_t maxDepth = 0;     ///< 0: the library's default
   uint32_t maxColliders = 0; ///< 0: as many as there are
@@ -71,7 +72,7 @@ private:
   uint32_t firstShapes_ = 0, firstRounds_ = 0; // budgets of the start
   std::optional<Spawner> spawner_;
   std::map<uint32_t, Spawner> limited_; // with fewer rounds
-  host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_;
+  host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_, bounds_;
   uint64_t elements_ = 0; // instances or vertices that the buffers hold
 };
 

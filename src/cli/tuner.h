@@ -2,7 +2,7 @@
 //
 // First schedules (which edges are static), each with the device's usual numbers, and those near the best of them,
 // until none of these is better; then, for the best two, the size and count of workgroups; then, for the best, when
-// work is spread, and whether idle workgroups get some; then the best few once more, as they would be kept. Every
+// work is spread, and whether idle workgroups get some; then the best few by turns, as they would be kept. Every
 // candidate must derive what the interpreter derives, within the budgets that the interpreter needs.
 //
 // Nearly all of the time goes into the driver's compiler. Kernels are compiled on all processors, as many at a time as

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace {
@@ -29,6 +30,22 @@ TEST(Schedules, UnevenDerivationsAreKnownByTheirGraph) {
   EXPECT_FALSE(uneven("A = RandomRule(ShapeSeed()) { 1: T | 2: U };")); // one for one
   EXPECT_FALSE(
       uneven("A = Repeat(X, 0.1, ADJUST_TO_FILL) SubDiv(Y) { 1: T | -1: U };")); // alike for all axioms of a size
+}
+
+TEST(Schedules, TheDefaultWaitsForSubDivsBehindSubDivsWhereThereAreMany) {
+  const auto waiting = [](const std::string& rules) {
+    const spawn::Graph graph = graphOf("axiom Box A; terminal T U (1, 0);\n" + rules);
+    const auto waits = spawn::namedSchedule(graph, "default")->waits;
+    return std::count(waits.begin(), waits.end(), true);
+  };
+  const std::string uneven = " B = RandomRule(ShapeSeed()) { 1: T | 2: C }; C = Repeat(X, 0.1, ADJUST_TO_FILL) ";
+  const std::string twice = "SubDiv(Y) { 0.3: SubDiv(X) { 0.3: T | -1: B } | -1: T };";
+  EXPECT_EQ(waiting("A = SubDiv(Y) { 0.3: SubDiv(X) { 0.3: T | -1: U } | -1: T };"), 1);
+  EXPECT_EQ(waiting("A = " + twice + uneven + "U;"), 0); // one for each axiom
+  EXPECT_EQ(waiting("A = B;" + uneven + "SubDiv(Y) { 0.3: SubDiv(X) { 0.3: T | -1: U } | -1: T };"), 1);
+  EXPECT_EQ(
+      waiting("A = IfSizeLess(X, 0.2) { T | SubDiv(Y) { 0.3: SubDiv(X) { -1: A | -1: B } | -1: T } };" + uneven + "U;"),
+      1); // one for each turn
 }
 
 TEST(Schedules, RootsWaitButForTerminals) {

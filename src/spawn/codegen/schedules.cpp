@@ -18,6 +18,27 @@ template <class Call> void forEdges(const Graph& graph, uint32_t node, const Cal
   }
 }
 
+/// The nodes that shapes of one axiom come to any number of times: those behind an operator that makes as many shapes
+/// as the shape's size says, and those in and behind cycles.
+std::vector<bool> reachedOften(const Graph& graph) {
+  std::vector<bool> often(graph.nodes.size());
+  std::vector<uint32_t> open;
+  const auto reach = [&](const Edge& edge) {
+    if (!often[edge.target]) open.push_back(edge.target);
+    often[edge.target] = true;
+  };
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n)
+    forEdges(graph, n, [&](const Edge& edge) {
+      if (edge.recursive || (multiplies(graph.nodes[n]) && !multipliesByKnown(graph.nodes[n]))) reach(edge);
+    });
+  while (!open.empty()) {
+    const uint32_t node = open.back();
+    open.pop_back();
+    forEdges(graph, node, reach);
+  }
+  return often;
+}
+
 /// Marks the SubDivs that shapes come to from a SubDiv by what a family can hold.
 void markInner(const Graph& graph, uint32_t subDiv, std::vector<bool>& inner) {
   std::vector<bool> seen(graph.nodes.size());
@@ -38,16 +59,20 @@ void markInner(const Graph& graph, uint32_t subDiv, std::vector<bool>& inner) {
 }
 
 /// Shapes wait where they must, and for a SubDiv behind another one on static edges: families make every child from the
-/// start, and the outer one's pieces again for each piece of the inner one.
+/// start, and the outer one's pieces again for each piece of the inner one. Those are few where an axiom has only as
+/// many shapes as the grammar says, and to wait there costs more; but families that outgrow a workgroup do so as well,
+/// and only uneven derivations have large workgroups.
 Schedule defaultSchedule(const Graph& graph, const Flow& flow) {
   Schedule schedule{"default", 0, std::vector<bool>(graph.nodes.size()), {}};
-  std::vector<bool> comesBack(graph.nodes.size());
+  std::vector<bool> comesBack(graph.nodes.size()), often = reachedOften(graph);
   for (uint32_t n = 0; n < graph.nodes.size(); ++n) {
     if (graph.nodes[n].op == shader::kOpSubDiv && multiplies(graph.nodes[n])) markInner(graph, n, schedule.waits);
     forEdges(graph, n, [&](const Edge& edge) {
       if (edge.recursive) comesBack[edge.target] = true;
     });
   }
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n)
+    schedule.waits[n] = schedule.waits[n] && (often[n] || !isUneven(graph));
   for (uint32_t n = 0; n < graph.nodes.size(); ++n) { // a group for each node that shapes wait for, and for the start
     const Node& node = graph.nodes[n];
     const bool waits = multiplies(node) && (schedule.waits[n] || comesBack[n] || !multipliesByKnown(node));
