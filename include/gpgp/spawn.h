@@ -109,8 +109,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source
  *  Each source is called by its file: GpgpGrammarSource::name without folders and without what follows the first point,
  *  characters other than letters, digits and _ made _. Its rules and terminals have that name before theirs, as in
  *  house.Wall, and its first axiom line is the start house; see gpgpGetGrammarStarts. Tags of Collider and IfCollides
- * are the same in all of them. Each source has its own variables and gets its own messages; a kernel is generated where
- *  any asks for one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages say where; also
+ *  are common. Each source has its own variables and gets its own messages; a kernel is generated where any asks for
+ *  one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages say where; also
  *  where two sources have the same name, or one has none), INVALID_ARGUMENT (no sources), INVALID_STRUCT, UNSUPPORTED,
  *  OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpLinkGrammars(const GpgpGrammarSource* sources, uint32_t sourceCount, GpgpBlob* blob);
@@ -152,8 +152,8 @@ typedef struct GpgpGrammarStart {
   uint32_t axiomLine; /**< 1: an axiom line, 0: a rule */
 } GpgpGrammarStart;
 
-/** The grammar's starts: its rules, in their order, then its axiom lines. count in: capacity, out: all. starts NULL
- * asks for the count. @threads any */
+/** The grammar's starts: its rules, in order, then its axiom lines. count in: capacity, out: all. starts NULL asks for
+ *  the count. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarStarts(GpgpAsset grammar, uint32_t* count, GpgpGrammarStart* starts);
 
 /** The place of the first start by that name, for GpgpAxiom::rule: a rule, or a linked grammar as a whole.

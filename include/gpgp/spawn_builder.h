@@ -1,7 +1,7 @@
 /* gpgp spawn: grammars made in code instead of text, with the same graph as the result. All of it is in
  * libgpgp_compiler.
  *
- *   gpgpCreateGrammarBuilder -> gpgpAdd..., gpgpAddAxiom -> gpgpCompileGrammar (GpgpGrammarSource::builder) -> blob
+ *   gpgpCreateGrammarBuilder -> gpgpAdd... -> gpgpCompileGrammar (GpgpGrammarSource::builder) -> blob
  *
  * What is added is checked when it is compiled, all at once: every error is a message that says in which rule and
  * operator it is and what was expected. So the functions here return no errors: what went wrong in them (a NULL name,

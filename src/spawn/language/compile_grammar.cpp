@@ -35,9 +35,7 @@ void report(const GpgpGrammarSource& source, const spawn::Diagnostics& diagnosti
     }
   }
 }
-} // namespace
 
-namespace {
 constexpr size_t kMostText = size_t(1) << 28;
 
 GpgpResult check(const GpgpGrammarSource& source) {
