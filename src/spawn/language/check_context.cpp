@@ -25,9 +25,7 @@ public:
             return o.op == other && o.argument == node.argument;
           }))
         continue;
-      const std::string tag = std::string("(").append(tagText(graph_, node.argument)).append(")");
-      diagnosticsOf(n).warning(places_[n].place, operatorName(node.op) + tag + " has no effect: there is no " +
-                                                     operatorName(other) + tag);
+      warn(n, other);
     }
   }
 
@@ -38,6 +36,18 @@ private:
     const std::string text = diagnosticsOf(node).where(places_[node].place);
     const uint32_t part = places_[node].part;
     return part == places_[from].part ? text : text + " of " + parts_[part].file;
+  }
+
+  void warn(uint32_t n, uint32_t other) {
+    const std::string tag = std::string("(").append(tagText(graph_, graph_.nodes[n].argument)).append(")");
+    diagnosticsOf(n).warning(places_[n].place, operatorName(graph_.nodes[n].op) + tag + " has no effect: there is no " +
+                                                   operatorName(other) + tag);
+  }
+  void refuse(const Dependency& d) {
+    const std::string tag = std::string("(").append(tagText(graph_, graph_.nodes[d.target].argument)).append(")");
+    diagnosticsOf(d.target).error(places_[d.target].place, "IfCollides" + tag + " waits for all of Collider" + tag +
+                                                               " in " + where(d.source, d.target) +
+                                                               ", which comes after it");
   }
 
   void refusePhases() {
@@ -62,9 +72,7 @@ private:
       }
       for (const Dependency& d : dependencies) {
         if (d.target != n || !reached[d.source]) continue;
-        const std::string tag = tagText(graph_, graph_.nodes[n].argument);
-        diagnosticsOf(n).error(places_[n].place, "IfCollides(" + tag + ") waits for all of Collider(" + tag + ") in " +
-                                                     where(d.source, n) + ", which comes after it");
+        refuse(d);
         found = true;
         break;
       }
