@@ -51,7 +51,7 @@ void buildSponge(GpgpGrammarBuilder builder) {
   const GpgpGrammarValue stop = gpgpAddVariable(builder, "stop", number(0.05f));
   const GpgpGrammarValue size[2] = {kX, stop};
   const GpgpGrammarSuccessor next[2] = {named("Cube"), named("Thirds")};
-  gpgpSetAxiom(builder, GPGP_SHAPE_BOX, NULL, 0, "Sponge");
+  gpgpAddAxiom(builder, GPGP_SHAPE_BOX, NULL, 0, "Sponge");
   gpgpAddTerminal(builder, "Cube", 1, 13);
   /* names may be used before what they name is there */
   gpgpAddRule(builder, "Sponge", NULL, gpgpAddOperator(builder, GPGP_OPERATOR_IF_SIZE_LESS, size, 2, next, 2));
@@ -76,7 +76,7 @@ void buildHouse(GpgpGrammarBuilder builder) {
   GpgpGrammarValue values[3];
   GpgpGrammarOperator op;
 
-  gpgpSetAxiom(builder, GPGP_SHAPE_BOX, NULL, 0, "House");
+  gpgpAddAxiom(builder, GPGP_SHAPE_BOX, NULL, 0, "House");
   gpgpAddTerminal(builder, "Wall", 1, 13);
   gpgpAddTerminal(builder, "Window", 1, 14);
   gpgpAddTerminal(builder, "Roof", 1, 12);

@@ -235,6 +235,16 @@ public:
   [[nodiscard]] GpgpResult terminals(uint32_t& count, GpgpGrammarTerminal* terminals) const noexcept {
     return gpgpGetGrammarTerminals(get(), &count, terminals);
   }
+  /// As terminals(). Places in the list are what GpgpAxiom::rule takes.
+  [[nodiscard]] GpgpResult starts(uint32_t& count, GpgpGrammarStart* starts) const noexcept {
+    return gpgpGetGrammarStarts(get(), &count, starts);
+  }
+  /// A rule, or a grammar that was linked, for GpgpAxiom::rule.
+  Result<uint32_t> start(const char* name) const noexcept {
+    uint32_t rule = 0;
+    const GpgpResult code = gpgpFindGrammarStart(get(), name, &rule);
+    return Result<uint32_t>(code, rule);
+  }
 };
 
 class Spawner : public Worker {
@@ -432,6 +442,13 @@ inline Result<Blob> compileGrammar(const GpgpGrammarSource& source) noexcept {
   return Result<Blob>(code, Blob(blob));
 }
 
+/// gpgpLinkGrammars: sources to one grammar.
+inline Result<Blob> linkGrammars(const GpgpGrammarSource* sources, uint32_t sourceCount) noexcept {
+  GpgpBlob blob = GpgpBlob();
+  const GpgpResult code = gpgpLinkGrammars(sources, sourceCount, &blob);
+  return Result<Blob>(code, Blob(blob));
+}
+
 // ---------------------------------------------------------------- grammars in code (libgpgp_compiler)
 
 /// A value in a grammar: a number, or what a GrammarBuilder made. Sums and comparisons of values are values, too; at
@@ -525,12 +542,12 @@ public:
   }
 
   GrammarBuilder& axiom(GpgpShape shape, const char* rule) noexcept {
-    gpgpSetAxiom(get(), shape, nullptr, 0, rule);
+    gpgpAddAxiom(get(), shape, nullptr, 0, rule);
     return *this;
   }
   /// For dynamic shapes.
   GrammarBuilder& axiom(GpgpShape shape, Corners corners, const char* rule) noexcept {
-    gpgpSetAxiom(get(), shape, corners.begin(), static_cast<uint32_t>(corners.size()), rule);
+    gpgpAddAxiom(get(), shape, corners.begin(), static_cast<uint32_t>(corners.size()), rule);
     return *this;
   }
   GrammarBuilder& terminal(const char* names, uint32_t kind, uint32_t index) noexcept {

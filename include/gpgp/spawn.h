@@ -18,7 +18,8 @@ typedef struct GpgpAxiom {
   float size[3];        /**< extents of the start shape, metres, its centre at the object's origin */
   uint32_t seed;        /**< of all random values below this axiom */
   uint32_t id;          /**< the engine's own number, found again in each instance */
-  uint32_t rule;        /**< start rule, by its place in the grammar; GPGP_AXIOM_DEFAULT_RULE: the axiom's */
+  uint32_t rule;        /**< its start, which says its shape, by its place in gpgpGetGrammarStarts;
+                             GPGP_AXIOM_DEFAULT_RULE: the grammar's first axiom line */
   float attribute;      /**< custom attribute, inherited; NaN: taken from the seed as in [0, 1) */
   uint32_t reserved[5]; /**< 0 */
 } GpgpAxiom;
@@ -103,6 +104,17 @@ typedef struct GpgpGrammarSource {
  * call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
+/** Compiles several grammars to one, so that one record derives axioms of all of them. It has their rules, terminals,
+ *  buckets and axiom lines in the order of the sources; the first axiom line of the first source is the default start.
+ *  Each source is called by its file: GpgpGrammarSource::name without folders and without what follows the first point,
+ *  characters other than letters, digits and _ made _. Its rules and terminals have that name before theirs, as in
+ *  house.Wall, and its first axiom line is the start house; see gpgpGetGrammarStarts. Tags of Collider and IfCollides
+ *  are common. Each source has its own variables and gets its own messages; a kernel is generated where any asks for
+ *  one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages say where; also
+ *  where two sources have the same name, or one has none), INVALID_ARGUMENT (no sources), INVALID_STRUCT, UNSUPPORTED,
+ *  OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpLinkGrammars(const GpgpGrammarSource* sources, uint32_t sourceCount, GpgpBlob* blob);
+
 /* ---------------------------------------------------------------- grammar */
 
 typedef struct GpgpGrammarCreateInfo {
@@ -130,6 +142,23 @@ typedef struct GpgpGrammarTerminal {
 /** The grammar's terminals. count in: capacity, out: all. terminals NULL asks for the count. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset grammar, uint32_t* count,
                                                       GpgpGrammarTerminal* terminals);
+
+/** Where a derivation can start: a rule or an axiom line. Its place in the list is what GpgpAxiom::rule takes. */
+typedef struct GpgpGrammarStart {
+  const char* name;   /**< of the rule; of an axiom line, the name of what it starts, but of the first one of a linked
+                           grammar that grammar's name alone. @lifetime handle */
+  GpgpShape shape;    /**< of axioms that start here: an axiom line's; a rule's is that of the first axiom line of its
+                           grammar that names it, else of the first one of all */
+  uint32_t axiomLine; /**< 1: an axiom line, 0: a rule */
+} GpgpGrammarStart;
+
+/** The grammar's starts: its rules, in order, then its axiom lines. count in: capacity, out: all. starts NULL asks for
+ *  the count. @threads any */
+GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarStarts(GpgpAsset grammar, uint32_t* count, GpgpGrammarStart* starts);
+
+/** The place of the first start by that name, for GpgpAxiom::rule: a rule, or a linked grammar as a whole.
+ *  Errors: INVALID_ARGUMENT (there is none), INVALID_HANDLE. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpFindGrammarStart(GpgpAsset grammar, const char* name, uint32_t* rule);
 
 /* ---------------------------------------------------------------- spawner */
 

@@ -1,7 +1,7 @@
 /* gpgp spawn: grammars made in code instead of text, with the same graph as the result. All of it is in
  * libgpgp_compiler.
  *
- *   gpgpCreateGrammarBuilder -> gpgpAdd..., gpgpSetAxiom -> gpgpCompileGrammar (GpgpGrammarSource::builder) -> blob
+ *   gpgpCreateGrammarBuilder -> gpgpAdd... -> gpgpCompileGrammar (GpgpGrammarSource::builder) -> blob
  *
  * What is added is checked when it is compiled, all at once: every error is a message that says in which rule and
  * operator it is and what was expected. So the functions here return no errors: what went wrong in them (a NULL name,
@@ -150,9 +150,9 @@ GPGP_API void GPGP_CALL gpgpAddTerminal(GpgpGrammarBuilder builder, const char* 
 GPGP_API void GPGP_CALL gpgpAddRule(GpgpGrammarBuilder builder, const char* name, const char* successor,
                                     GpgpGrammarOperator op);
 
-/** Sets the start shape and the rule or terminal that it goes to. Only dynamic shapes have corners.
- *  In libgpgp_compiler. @threads handle @lifetime call */
-GPGP_API void GPGP_CALL gpgpSetAxiom(GpgpGrammarBuilder builder, GpgpShape shape, const GpgpGrammarValue* corners,
+/** Adds a start: a shape and the rule or terminal that it goes to. The first one is the default, for the others see
+ *  gpgpGetGrammarStarts. Only dynamic shapes have corners. In libgpgp_compiler. @threads handle @lifetime call */
+GPGP_API void GPGP_CALL gpgpAddAxiom(GpgpGrammarBuilder builder, GpgpShape shape, const GpgpGrammarValue* corners,
                                      uint32_t cornerCount, const char* rule);
 
 #ifdef __cplusplus

@@ -57,7 +57,7 @@ void stackBarrier() {
 Shape axiomAt(uint index) {
   const uvec4 a = axioms[index * 6 + 3];
   const uvec4 b = axioms[index * 6 + 4];
-  if (!hasRule(b.y)) atomicAdd(state.droppedShapes, 1);
+  if (startWords(b.y) == 0) atomicAdd(state.droppedShapes, 1);
   return axiomShape(unpackVector(a), a.w, b.x, b.y, uintBitsToFloat(b.z), index);
 }
 Shape queuedAt(uint index) {

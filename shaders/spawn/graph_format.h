@@ -20,7 +20,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 3u;
+GPGP_CONST uint kGraphVersion = 4u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -28,12 +28,9 @@ GPGP_CONST uint kHeaderVersion = 1u;
 GPGP_CONST uint kHeaderWords = 2u;    // of everything
 GPGP_CONST uint kHeaderChecksum = 3u; // of all words from kHeaderChecked on
 GPGP_CONST uint kHeaderChecked = 4u;
-GPGP_CONST uint kHeaderSections = 4u;      // count and offset of each section
-GPGP_CONST uint kHeaderAxiomShape = 26u;   // GpgpShape
-GPGP_CONST uint kHeaderAxiomPolygon = 27u; // its polygon, by number
-GPGP_CONST uint kHeaderAxiomNode = 28u;    // where a derivation starts by default
-GPGP_CONST uint kHeaderBuckets = 29u;      // terminal lines
-GPGP_CONST uint kHeaderPhases = 30u;       // of derivation, where there are Collider or IfCollides; else 0
+GPGP_CONST uint kHeaderSections = 4u; // count and offset of each section
+GPGP_CONST uint kHeaderBuckets = 28u; // terminal lines
+GPGP_CONST uint kHeaderPhases = 29u;  // of derivation, where there are Collider or IfCollides; else 0
 GPGP_CONST uint kHeaderSize = 32u;
 
 // sections, in order
@@ -48,7 +45,8 @@ GPGP_CONST uint kSectionRules = 7u;
 GPGP_CONST uint kSectionNames = 8u; // bytes in words, each name ends in 0
 GPGP_CONST uint kSectionDivisions = 9u;
 GPGP_CONST uint kSectionQuads = 10u;
-GPGP_CONST uint kSectionCount = 11u;
+GPGP_CONST uint kSectionAxioms = 11u;
+GPGP_CONST uint kSectionCount = 12u;
 
 // node: eight words
 GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter
@@ -105,8 +103,10 @@ GPGP_CONST uint kQuadPolygon = 2u;
 
 // terminal: name (byte offset in names), kind, index, bucket
 GPGP_CONST uint kTerminalSize = 4u;
-// rule: name (byte offset in names), node offset or 0
-GPGP_CONST uint kRuleSize = 2u;
+// rule: name (byte offset in names), node offset or 0, the axiom whose shape it starts with (offset)
+GPGP_CONST uint kRuleSize = 3u;
+// axiom: name (byte offset in names), node offset or 0, GpgpShape and its polygon << 8. The first is the default.
+GPGP_CONST uint kAxiomSize = 3u;
 
 // operators
 GPGP_CONST uint kOpTerminal = 0u; // argument: terminal, argument2: bucket
@@ -159,7 +159,8 @@ GPGP_CONST uint kCodeCustom = 51u;
 GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
 GPGP_CONST uint kCodeCount = 52u;
 
-GPGP_CONST uint kDefaultRule = 0xffffffffu; // GPGP_AXIOM_DEFAULT_RULE
+/// GPGP_AXIOM_DEFAULT_RULE. Other starts are counted: first the rules, then the axioms.
+GPGP_CONST uint kDefaultRule = 0xffffffffu;
 
 // limits that the interpreter relies on
 GPGP_CONST uint kMaxStack = 8u;       // of expressions

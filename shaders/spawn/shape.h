@@ -62,9 +62,18 @@ GPGP_FN Shape unpackShape(uvec4 p0, uvec4 p1, uvec4 p2, uvec4 p3, uvec4 p4, uvec
 GPGP_FN uint shapeType(Shape s) { return s.geometry & 0xffu; }
 GPGP_FN uint shapePolygon(Shape s) { return s.geometry >> 8; }
 
-/// Whether an axiom's rule exists.
-GPGP_FN bool hasRule(GPGP_GRAPH uint rule) {
-  return rule == kDefaultRule || rule < graphWords[kHeaderSections + 2u * kSectionRules];
+/// The words of a start, which is a rule or an axiom; 0 where there is none. Of both the second word is the node.
+GPGP_FN uint startWords(GPGP_GRAPH uint start) {
+  const uint rules = graphWords[kHeaderSections + 2u * kSectionRules];
+  const uint axioms = graphWords[kHeaderSections + 2u * kSectionAxioms + 1u];
+  if (start == kDefaultRule) return axioms;
+  if (start < rules) return graphWords[kHeaderSections + 2u * kSectionRules + 1u] + start * kRuleSize;
+  return start - rules < graphWords[kHeaderSections + 2u * kSectionAxioms] ? axioms + (start - rules) * kAxiomSize : 0u;
+}
+/// The shape that it starts with, and its polygon << 8.
+GPGP_FN uint startGeometry(GPGP_GRAPH uint start, uint words) {
+  const bool isRule = start < graphWords[kHeaderSections + 2u * kSectionRules];
+  return graphWords[(isRule ? graphWords[words + 2u] : words) + 2u];
 }
 
 /// The start of a derivation, from a GpgpAxiom's fields. node 0 where its rule does not exist.
@@ -77,16 +86,13 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
   s.size = settle3(size);
   s.seed = childSeed(seed, 0u); // engines may count seeds up: 1, 2, 3 must not look alike
   s.custom = isNan(custom) ? unitFloat(s.seed) : settle(custom);
-  s.geometry = graphWords[kHeaderAxiomShape] | (graphWords[kHeaderAxiomPolygon] << 8);
+  const uint words = startWords(GPGP_G rule);
+  s.geometry = words != 0u ? startGeometry(GPGP_G rule, words) : 0u;
   s.key = childKey(uvec2(seed, id), 0u);
   s.axiom = index;
   s.depth = 0u;
   s.made = 0u;
-  s.node = graphWords[kHeaderAxiomNode];
-  if (rule != kDefaultRule) {
-    const uint rules = graphWords[kHeaderSections + 2u * kSectionRules + 1u];
-    s.node = hasRule(GPGP_G rule) ? graphWords[rules + rule * kRuleSize + 1u] : 0u;
-  }
+  s.node = words != 0u ? graphWords[words + 1u] : 0u;
   return s;
 }
 

@@ -52,6 +52,39 @@ GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset handle, uint32_t* count, 
   });
 }
 
+GpgpResult GPGP_CALL gpgpGetGrammarStarts(GpgpAsset handle, uint32_t* count, GpgpGrammarStart* starts) {
+  return guarded("gpgpGetGrammarStarts", [&](Call& call) -> Result<void> {
+    const auto grammar = resolve<spawn::Grammar>(call, handle, Kind::grammar, "grammar");
+    if (!grammar) return grammar.error();
+    if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
+    const spawn::Graph& graph = (*grammar)->graph;
+    const uint32_t all = spawn::startCount(graph);
+    const uint32_t written = starts ? std::min(*count, all) : 0;
+    for (uint32_t i = 0; i < written; ++i) {
+      const spawn::Start start = spawn::startAt(graph, i);
+      starts[i] = {start.name, start.axiom->shape, i >= graph.rules.size()};
+    }
+    *count = all;
+    if (starts && written < all) return makeError(GPGP_INCOMPLETE, "starts is too small");
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpFindGrammarStart(GpgpAsset handle, const char* name, uint32_t* rule) {
+  return guarded("gpgpFindGrammarStart", [&](Call& call) -> Result<void> {
+    const auto grammar = resolve<spawn::Grammar>(call, handle, Kind::grammar, "grammar");
+    if (!grammar) return grammar.error();
+    if (!name || !rule) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s is NULL", name ? "rule" : "name");
+    const spawn::Graph& graph = (*grammar)->graph;
+    for (uint32_t i = 0; i < spawn::startCount(graph); ++i) {
+      if (std::strcmp(spawn::startAt(graph, i).name, name) != 0) continue;
+      *rule = i;
+      return {};
+    }
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the grammar has no start \"%s\"", name);
+  });
+}
+
 GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCreateInfo* info, GpgpWorker* spawner) {
   return guarded("gpgpCreateSpawner", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);

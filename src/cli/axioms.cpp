@@ -169,10 +169,12 @@ std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefau
   const float offset = static_cast<float>(side - 1) * 0.5f;
   std::vector<GpgpAxiom> axioms;
   axioms.reserve(count);
-  for (uint32_t i = 0; i < count; ++i)
+  for (uint32_t i = 0; i < count; ++i) {
     axioms.push_back(axiomAt(
         {(static_cast<float>(i % side) - offset) * spacing, 0, (static_cast<float>(i / side) - offset) * spacing}, 0,
         defaults.size, defaults.seed + i, i));
+    axioms.back().rule = defaults.starts[i % defaults.starts.size()];
+  }
   return axioms;
 }
 

@@ -13,7 +13,8 @@ namespace gpgp::cli {
 /// What an axiom is where a file does not say.
 struct AxiomDefaults {
   std::array<float, 3> size{1, 1, 1};
-  uint32_t seed = 1; ///< axiom i has seed + i
+  uint32_t seed = 1;                                     ///< axiom i has seed + i
+  std::vector<uint32_t> starts{GPGP_AXIOM_DEFAULT_RULE}; ///< a grid's axioms take them in turn
 };
 
 /// Standing at a place, turned about Y by degrees.
@@ -26,7 +27,7 @@ std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefau
 /// A file whose first character is [ is JSON, an array of objects with position [x, y, z], rotation (degrees), size
 /// [x, y, z], seed, rule, attribute; only position is needed. Anything else is CSV: a first line that names the columns
 /// x y z rotation size_x size_y size_z seed rule attribute, of which x and z are needed; # begins a comment.
-/// rules are the grammar's, for names in the file. Throws Failure with FILE:LINE and what was expected.
+/// rules are the grammar's starts, for names in the file. Throws Failure with FILE:LINE and what was expected.
 std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<std::string>& rules,
                                   const AxiomDefaults& defaults);
 

@@ -23,7 +23,7 @@ namespace {
 struct BakeOptions {
   std::vector<std::string> in, set;
   std::string out, type;
-  bool kernel = true;
+  bool kernel = true, link = false;
 #ifdef GPGP_CLI_TEXT
   BakeFontOptions font;
 #endif
@@ -77,7 +77,7 @@ struct Baked {
 Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& file, const std::string& type) {
   const std::string name = file == kStandard ? "<standard input>" : file;
 #ifdef GPGP_CLI_SPAWN
-  if (type == "grammar") return {compileGrammarText(read(file), name, options.set, options.kernel), Json::object(), {}};
+  if (type == "grammar") return {compileGrammar({name, read(file)}, options.set, options.kernel), Json::object(), {}};
 #endif
 #ifdef GPGP_CLI_VECTOR
   if (type == "drawing") return {bakeDrawing(read(file), name), Json::object(), {}};
@@ -91,11 +91,37 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
   throw Failure(name + ": this gpgp was built without what bakes a " + type);
 }
 
+/// All grammars to one file.
+Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
+#ifdef GPGP_CLI_SPAWN
+  if (std::filesystem::is_directory(options.out) || options.out.ends_with('/'))
+    throw Usage("--link makes one file; " + options.out + " is a folder");
+  std::vector<GrammarText> grammars;
+  for (const std::string& file : options.in) {
+    if (file == kStandard) throw Usage("standard input has no name to be linked by");
+    if (typeOf(options, file) != "grammar") throw Usage(file + " is no grammar; --link is for grammars");
+    grammars.push_back({file, host::readText(file)});
+  }
+  const Blob blob = linkGrammars(grammars, options.set, options.kernel);
+  const std::string_view bytes(static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size());
+  if (options.out == kStandard) return {Json::object(), std::string(bytes)};
+  host::writeFile(options.out, bytes);
+  std::ostringstream text;
+  for (const GrammarText& grammar : grammars) text << (text.tellp() > 0 ? " + " : "") << grammar.name;
+  text << ": grammar, " << blob.size() << " bytes, " << options.out << '\n';
+  const Json line = {{"in", options.in}, {"type", "grammar"}, {"out", options.out}, {"bytes", blob.size()}};
+  return {{{"baked", Json::array({line})}}, text.str()};
+#else
+  throw Failure("this gpgp was built without what bakes a grammar");
+#endif
+}
+
 Outcome bake(const BakeOptions& options, const CommonOptions& common) {
+  if (options.out == kStandard && common.json) throw Usage("standard output takes the baked file or --json, not both");
+  if (options.link) return bakeLinked(options);
   // With several inputs, or where OUT is a folder, each gets a file of its own name there, with .gpgp behind it.
   const bool folder = options.in.size() > 1 || std::filesystem::is_directory(options.out) || options.out.ends_with('/');
   if (folder && options.out == kStandard) throw Usage("standard output takes one input");
-  if (options.out == kStandard && common.json) throw Usage("standard output takes the baked file or --json, not both");
   std::vector<std::pair<std::string, std::string>> work; // file, type: all of them are known before any is written
   for (const std::string& file : options.in) {
     if (file == kStandard && folder) throw Usage("standard input has no name for a file in a folder; give it alone");
@@ -140,9 +166,12 @@ Work addBake(CLI::App& app) {
       ->required();
   command->add_option("--type", options->type, "What the inputs are, whatever their names")
       ->check(CLI::IsMember({"grammar", "drawing", "font"}));
-  command->add_option("--set", options->set, "Override a `var` of the grammars; may be repeated")
+  command
+      ->add_option("--set", options->set, "Override a `var` of the grammars, with --link GRAMMAR.NAME; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
+  command->add_flag("--link", options->link,
+                    "The grammars become one, in one file: names of a.pga are a.Name, and its start is a");
   command->add_flag("!--no-kernel", options->kernel,
                     "Grammars run on the interpreter: smaller files, slower derivation");
 #ifdef GPGP_CLI_TEXT
@@ -151,6 +180,7 @@ Work addBake(CLI::App& app) {
   command->footer(R"(
 Examples:
   gpgp bake city.pga -o city.gpgp
+  gpgp bake house.pga tree.pga lamp.pga --link -o street.gpgp      one grammar: one record derives all of them
   gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"
   gpgp bake NotoNaskhArabic-Regular.ttf -o arabic.gpgpf --characters-file strings.txt --outline 0.1
   gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp

@@ -1,7 +1,7 @@
 #include "cli/grammar_source.h"
 
 #include "cli/command.h"
-#include "host/files.h"
+#include "spawn/language/build_graph.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -10,39 +10,35 @@
 namespace gpgp::cli {
 namespace {
 
-std::vector<GpgpVariable> variables(const std::vector<std::string>& assignments) {
-  std::vector<GpgpVariable> result;
-  for (const std::string& assignment : assignments) {
-    const size_t equals = assignment.find('=');
-    char* end = nullptr;
-    const float value = equals == std::string::npos ? 0.0f : std::strtof(assignment.c_str() + equals + 1, &end);
-    if (equals == 0 || equals == std::string::npos || equals + 1 == assignment.size() || *end != 0)
-      throw Usage("--set takes NAME=VALUE with a number, for example --set floors=12; got \"" + assignment + "\"");
-    result.push_back({nullptr, value}); // the name follows once the strings lie still
-  }
+struct Assignment {
+  std::string grammar; ///< empty: the only one
+  std::string name;
+  float value = 0;
+};
+
+Assignment parseAssignment(const std::string& text, bool linked) {
+  const size_t equals = text.find('=');
+  char* end = nullptr;
+  Assignment result;
+  result.value = equals == std::string::npos ? 0.0f : std::strtof(text.c_str() + equals + 1, &end);
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size() || *end != 0)
+    throw Usage("--set takes NAME=VALUE with a number, for example --set floors=12; got \"" + text + "\"");
+  result.name = text.substr(0, equals);
+  if (!linked) return result;
+  const size_t point = result.name.find('.');
+  if (point == std::string::npos)
+    throw Usage("of linked grammars, --set takes GRAMMAR.NAME=VALUE, for example --set tower.floors=12; got \"" + text +
+                "\"");
+  result.grammar = result.name.substr(0, point);
+  result.name.erase(0, point + 1);
   return result;
 }
 
-} // namespace
+struct Errors {
+  std::string first;
+  uint32_t count = 0;
 
-Blob compileGrammarText(const std::string& text, const std::string& name, const std::vector<std::string>& set,
-                        bool kernel) {
-  std::vector<GpgpVariable> overrides = variables(set);
-  std::vector<std::string> names;
-  for (const std::string& assignment : set) names.push_back(assignment.substr(0, assignment.find('=')));
-  for (size_t i = 0; i < names.size(); ++i) overrides[i].name = names[i].c_str();
-  GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
-  source.name = name.c_str();
-  source.text = text.data();
-  source.size = text.size();
-  source.variables = overrides.data();
-  source.variableCount = static_cast<uint32_t>(overrides.size());
-  struct Errors {
-    std::string first;
-    uint32_t count = 0;
-  } errors;
-  source.messageUserData = &errors;
-  source.messageFn = [](void* userData, const GpgpCompileMessage* message) {
+  static void GPGP_CALL print(void* userData, const GpgpCompileMessage* message) {
     auto* all = static_cast<Errors*>(userData);
     std::ostringstream line;
     line << message->file << ':' << message->line << ':' << message->column << ": "
@@ -53,16 +49,51 @@ Blob compileGrammarText(const std::string& text, const std::string& name, const 
     std::fprintf(stderr, "%s\n", line.str().c_str());
     if (message->severity != GPGP_SEVERITY_ERROR) return;
     if (all->count++ == 0) all->first = line.str();
-  };
-  if (kernel) source.flags = GPGP_COMPILE_KERNEL;
-  Result<Blob> blob = compileGrammar(source);
+  }
+};
+
+Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vector<std::string>& set, bool kernel) {
+  std::vector<Assignment> assignments;
+  for (const std::string& text : set) assignments.push_back(parseAssignment(text, linked));
+  std::vector<std::vector<GpgpVariable>> variables(grammars.size());
+  for (const Assignment& a : assignments) {
+    bool found = false;
+    for (size_t i = 0; i < grammars.size(); ++i) {
+      if (linked && spawn::linkedName(grammars[i].name) != a.grammar) continue;
+      variables[i].push_back({a.name.c_str(), a.value});
+      found = true;
+    }
+    if (!found) throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"");
+  }
+  Errors errors;
+  std::vector<GpgpGrammarSource> sources;
+  for (size_t i = 0; i < grammars.size(); ++i) {
+    GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+    source.name = grammars[i].name.c_str();
+    source.text = grammars[i].text.data();
+    source.size = grammars[i].text.size();
+    source.variables = variables[i].data();
+    source.variableCount = static_cast<uint32_t>(variables[i].size());
+    source.messageUserData = &errors;
+    source.messageFn = Errors::print;
+    if (kernel) source.flags = GPGP_COMPILE_KERNEL;
+    sources.push_back(source);
+  }
+  Result<Blob> blob = linked ? gpgp::linkGrammars(sources.data(), static_cast<uint32_t>(sources.size()))
+                             : gpgp::compileGrammar(sources[0]);
   if (blob) return std::move(*blob);
-  if (errors.count == 0) throw Failure(name + ": " + blob.name());
+  if (errors.count == 0) throw Failure(grammars[0].name + ": " + blob.name());
   throw Failure(errors.first + (errors.count > 1 ? " (and " + std::to_string(errors.count - 1) + " more)" : ""));
 }
 
-Blob compileGrammarFile(const std::string& file, const std::vector<std::string>& set, bool kernel) {
-  return compileGrammarText(host::readText(file), file, set, kernel);
+} // namespace
+
+Blob compileGrammar(const GrammarText& grammar, const std::vector<std::string>& set, bool kernel) {
+  return compile({&grammar, 1}, false, set, kernel);
+}
+
+Blob linkGrammars(std::span<const GrammarText> grammars, const std::vector<std::string>& set, bool kernel) {
+  return compile(grammars, true, set, kernel);
 }
 
 } // namespace gpgp::cli

@@ -3,14 +3,20 @@
 #pragma once
 #include <gpgp/gpgp.hpp>
 
+#include <span>
 #include <string>
 #include <vector>
 
 namespace gpgp::cli {
 
-/// set holds NAME=VALUE, as --set takes them. name is for messages. Throws Usage and Failure.
-Blob compileGrammarText(const std::string& text, const std::string& name, const std::vector<std::string>& set,
-                        bool kernel);
-Blob compileGrammarFile(const std::string& file, const std::vector<std::string>& set, bool kernel);
+struct GrammarText {
+  std::string name; ///< of its file, for messages
+  std::string text;
+};
+
+/// set holds NAME=VALUE, as --set takes them. Throws Usage and Failure.
+Blob compileGrammar(const GrammarText& grammar, const std::vector<std::string>& set, bool kernel);
+/// Several to one. set holds GRAMMAR.NAME=VALUE.
+Blob linkGrammars(std::span<const GrammarText> grammars, const std::vector<std::string>& set, bool kernel);
 
 } // namespace gpgp::cli

@@ -16,8 +16,8 @@ namespace {
 constexpr size_t kMostDrawn = 2000; // nodes; long edges through many layers are what takes the time
 
 struct GraphOptions {
-  std::string grammar, schedule, format = "text", out;
-  std::vector<std::string> set;
+  std::string schedule, format = "text", out;
+  std::vector<std::string> grammars, set;
   bool partitions = false;
   uint32_t minimumGroupSize = spawn::Heuristics{}.minimumGroupSize;
   uint64_t limit = 1000000;
@@ -55,15 +55,15 @@ std::optional<spawn::Partition> schedule(const GraphOptions& options, const spaw
 }
 
 Outcome drawGraph(const GraphOptions& options) {
-  const BakedGraph grammar = bakeGraph(options.grammar, options.set);
+  const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   const spawn::Graph& graph = grammar.graph;
   const spawn::Flow flow = spawn::makeFlow(graph);
   const std::optional<spawn::Partition> partition = schedule(options, graph, flow);
 
   Outcome outcome;
   std::ostringstream summary;
-  outcome.json = {{"grammar", options.grammar}, {"nodes", graph.nodes.size()}, {"edges", graph.edges.size()}};
-  summary << options.grammar << ": " << graph.nodes.size() << " nodes, " << graph.edges.size() << " edges\n";
+  outcome.json = {{"grammar", jsonOf(options.grammars)}, {"nodes", graph.nodes.size()}, {"edges", graph.edges.size()}};
+  summary << joined(options.grammars) << ": " << graph.nodes.size() << " nodes, " << graph.edges.size() << " edges\n";
   if (partition) {
     size_t fixed = 0, queued = 0;
     for (const spawn::Group& group : partition->groups) {
@@ -97,7 +97,7 @@ Outcome drawGraph(const GraphOptions& options) {
     drawing = exportDot(graph, partition ? &*partition : nullptr);
   } else if (options.format == "svg") {
     if (graph.nodes.size() > kMostDrawn)
-      throw Failure(options.grammar + ": more than " + std::to_string(kMostDrawn) +
+      throw Failure(joined(options.grammars) + ": more than " + std::to_string(kMostDrawn) +
                     " nodes are too many to draw; take --format dot");
     drawing = exportSvg(graph, partition ? &*partition : nullptr);
   } else {
@@ -118,10 +118,11 @@ Outcome drawGraph(const GraphOptions& options) {
 Work addGraph(CLI::App& app) {
   auto options = std::make_shared<GraphOptions>();
   CLI::App* command = app.add_subcommand("graph", "Show the operator graph of a grammar and its schedules");
-  command->add_option("GRAMMAR", options->grammar, "PGA-shape grammar text (.pga)")
+  command->add_option("GRAMMAR", options->grammars, "PGA-shape grammar text (.pga); several are linked to one grammar")
       ->required()
       ->check(CLI::ExistingFile);
-  command->add_option("--set", options->set, "Override a `var` of the grammar; may be repeated")
+  command
+      ->add_option("--set", options->set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command

@@ -28,15 +28,40 @@ bool isFor(const spawn::KernelInfo& info, const host::HeadlessDevice& device) {
 
 } // namespace
 
-BakedGraph bakeGraph(const std::string& file, const std::vector<std::string>& set) {
-  const Blob blob = compileGrammarFile(file, set, false);
+std::vector<std::string> BakedGraph::startNames() const {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < spawn::startCount(graph); ++i) names.emplace_back(spawn::startAt(graph, i).name);
+  return names;
+}
+
+std::vector<uint32_t> BakedGraph::starts() const {
+  if (!linked) return {GPGP_AXIOM_DEFAULT_RULE};
+  std::vector<uint32_t> starts;
+  for (size_t a = 0; a < graph.axioms.size(); ++a) // a grammar's first axiom has its name alone
+    if (!std::strchr(graph.nameAt(graph.axioms[a].name), '.'))
+      starts.push_back(static_cast<uint32_t>(graph.rules.size() + a));
+  return starts;
+}
+
+BakedGraph bakeGraph(const std::vector<std::string>& files, const std::vector<std::string>& set) {
+  std::vector<GrammarText> texts;
+  for (const std::string& file : files) texts.push_back({file, host::readText(file)});
+  const Blob blob = files.size() > 1 ? linkGrammars(texts, set, false) : compileGrammar(texts.at(0), set, false);
   const auto* bytes = static_cast<const std::byte*>(blob.data());
   auto graph = spawn::load({bytes, blob.size()}, memory());
-  if (!graph) throw Failure(file + ": " + graph.error().text);
+  if (!graph) throw Failure(joined(files) + ": " + graph.error().text);
   std::pmr::vector<uint32_t> words(blob.size() / sizeof(uint32_t), memory());
   std::memcpy(words.data(), bytes, blob.size());
-  return {std::move(words), std::move(*graph)};
+  return {std::move(words), std::move(*graph), files.size() > 1};
 }
+
+std::string joined(const std::vector<std::string>& files) {
+  std::string text;
+  for (const std::string& file : files) text += (text.empty() ? "" : " + ") + file;
+  return text;
+}
+
+Json jsonOf(const std::vector<std::string>& files) { return files.size() == 1 ? Json(files[0]) : Json(files); }
 
 std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile) {
   if (auto named = spawn::namedSchedule(graph, nameOrFile)) return named;
@@ -136,7 +161,7 @@ void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, co
   host::writeFile(file, {reinterpret_cast<const char*>(all.data()), all.size() * 4});
 }
 
-std::filesystem::path tunedFile(const std::string& grammarFile, const BakedGraph& grammar) {
+std::filesystem::path tunedFile(const std::vector<std::string>& files, const BakedGraph& grammar) {
   const auto folder = [](const char* variable) {
     const char* value = std::getenv(variable);
     return std::filesystem::path(value ? value : "");
@@ -146,7 +171,11 @@ std::filesystem::path tunedFile(const std::string& grammarFile, const BakedGraph
   if (cache.empty()) throw Failure("neither XDG_CACHE_HOME nor HOME say where tuned kernels could be kept");
   char sum[24];
   std::snprintf(sum, sizeof sum, "-%08x-%zu", grammar.words[shader::kHeaderChecksum], grammar.words.size());
-  return cache / "gpgp" / (std::filesystem::path(grammarFile).stem().string() + sum + ".gpgp");
+  std::string names;
+  for (const std::string& file : files)
+    names += (names.empty() ? "" : "+") + std::filesystem::path(file).stem().string();
+  names.resize(std::min<size_t>(names.size(), 128)); // the sum tells them apart
+  return cache / "gpgp" / (names + sum + ".gpgp");
 }
 
 } // namespace gpgp::cli

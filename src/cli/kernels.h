@@ -1,5 +1,6 @@
 // Kernels of a grammar by schedule, and the baked files that keep tuned ones.
 #pragma once
+#include "cli/command.h"
 #include "host/device.h"
 #include "spawn/codegen/schedules.h"
 #include "spawn/graph/kernel.h"
@@ -16,11 +17,18 @@ namespace gpgp::cli {
 struct BakedGraph {
   std::pmr::vector<uint32_t> words;
   spawn::Graph graph;
+  bool linked = false; ///< of several grammars
 
-  const char* ruleName(size_t rule) const { return graph.nameAt(graph.rules[rule].name); }
+  /// Names of all starts, as GpgpAxiom::rule counts them.
+  std::vector<std::string> startNames() const;
+  /// Where axioms start in turn that nobody says more of: each linked grammar, or the only one.
+  std::vector<uint32_t> starts() const;
 };
-/// From text, with variables set as --set takes them. Throws Usage and Failure.
-BakedGraph bakeGraph(const std::string& file, const std::vector<std::string>& set);
+/// From text, with variables set as --set takes them. Several files are linked. Throws Usage and Failure.
+BakedGraph bakeGraph(const std::vector<std::string>& files, const std::vector<std::string>& set);
+/// For messages: a.pga + b.pga; and for JSON: a string, of several files a list.
+std::string joined(const std::vector<std::string>& files);
+Json jsonOf(const std::vector<std::string>& files);
 
 /// A named schedule, or the one of a file with groups as `gpgp graph` prints it; nothing where there is neither.
 std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile);
@@ -54,7 +62,7 @@ bool isTunedFor(const spawn::KernelInfo& info, const host::HeadlessDevice& devic
 void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, const spawn::KernelInfo& info,
                 std::span<const uint32_t> code);
 /// Where tuned kernels are kept unless a file is named: in $XDG_CACHE_HOME/gpgp, or else in ~/.cache/gpgp, by the
-/// grammar's name and the graph's checksum.
-std::filesystem::path tunedFile(const std::string& grammarFile, const BakedGraph& grammar);
+/// grammars' names and the graph's checksum.
+std::filesystem::path tunedFile(const std::vector<std::string>& files, const BakedGraph& grammar);
 
 } // namespace gpgp::cli

@@ -19,7 +19,7 @@ namespace gpgp::cli {
 namespace {
 
 struct SpawnOptions {
-  std::string grammar;
+  std::vector<std::string> grammars;
   uint32_t axioms = 1, seed = 1, repeat = 1;
   std::array<float, 3> size{1, 1, 1};
   float spacing = 0;
@@ -75,7 +75,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
   if (name == "interpreter")
     return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
   if (name == "tuned") {
-    const std::filesystem::path file = tunedFile(options.grammar, grammar);
+    const std::filesystem::path file = tunedFile(options.grammars, grammar);
     if (std::filesystem::exists(file))
       if (const auto kernel = kernelFor(kernelsIn(file, grammar), session.device(), count);
           kernel && isTunedFor(kernel->info, session.device(), count))
@@ -178,13 +178,12 @@ void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
-  const BakedGraph grammar = bakeGraph(options.grammar, options.set);
+  const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   const spawn::Graph& graph = grammar.graph;
-  const AxiomDefaults defaults{options.size, options.seed};
-  std::vector<std::string> rules;
-  for (size_t rule = 0; rule < graph.rules.size(); ++rule) rules.emplace_back(grammar.ruleName(rule));
-  const std::vector<GpgpAxiom> start = options.axiomFile.empty() ? axiomGrid(options.axioms, options.spacing, defaults)
-                                                                 : readAxioms(options.axiomFile, rules, defaults);
+  const AxiomDefaults defaults{options.size, options.seed, grammar.starts()};
+  const std::vector<GpgpAxiom> start = options.axiomFile.empty()
+                                           ? axiomGrid(options.axioms, options.spacing, defaults)
+                                           : readAxioms(options.axiomFile, grammar.startNames(), defaults);
   const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices);
   Session session(common);
   const Chosen chosen = chooseKernel(options, grammar, start, session);
@@ -244,7 +243,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (whole && reference.result.complete &&
       (reference.result.terminals != report.terminals ||
        std::memcmp(reference.result.keyHash, report.keyHash, sizeof report.keyHash) != 0))
-    throw Failure(options.grammar + ": the device derived something else than the CPU evaluator; please report this");
+    throw Failure(joined(options.grammars) +
+                  ": the device derived something else than the CPU evaluator; please report this");
 
   Outcome outcome;
   char hash[20];
@@ -296,7 +296,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
   outcome.text = text.str();
-  outcome.json = {{"grammar", options.grammar},
+  outcome.json = {{"grammar", jsonOf(options.grammars)},
                   {"device", session.device().name()},
                   {"status", statusName(report.base.status)},
                   {"output", options.output},
@@ -334,12 +334,14 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
 Work addSpawn(CLI::App& app) {
   auto options = std::make_shared<SpawnOptions>();
   CLI::App* command = app.add_subcommand("spawn", "Derive a grammar on the GPU and say what came out");
-  command->add_option("GRAMMAR", options->grammar, "PGA-shape grammar text (.pga)")
+  command->add_option("GRAMMAR", options->grammars, "PGA-shape grammar text (.pga); several are linked to one grammar")
       ->required()
       ->check(CLI::ExistingFile);
-  CLI::Option* axioms = command->add_option("--axioms", options->axioms, "Start shapes, on a square grid")
-                            ->check(CLI::Range(1u, 10000000u))
-                            ->capture_default_str();
+  CLI::Option* axioms =
+      command
+          ->add_option("--axioms", options->axioms, "Start shapes, on a square grid; those of linked grammars in turn")
+          ->check(CLI::Range(1u, 10000000u))
+          ->capture_default_str();
   command
       ->add_option("--axiom-file", options->axiomFile,
                    "Start shapes from a file, CSV or JSON: position, rotation about Y, size, seed, rule")
@@ -354,7 +356,8 @@ Work addSpawn(CLI::App& app) {
       ->add_option("--spacing", options->spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", options->seed, "Random seed; axiom i has seed S + i")->capture_default_str();
-  command->add_option("--set", options->set, "Override a `var` of the grammar; may be repeated")
+  command
+      ->add_option("--set", options->set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_option("--repeat", options->repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
@@ -410,6 +413,7 @@ Examples:
   gpgp spawn tower.pga --axioms 256 --axiom-size 24,34,24 --spacing 40
   gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
   gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line
+  gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
   gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50
 

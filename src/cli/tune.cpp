@@ -10,26 +10,29 @@ namespace gpgp::cli {
 namespace {
 
 struct TuneOptions {
-  std::string grammar, out, search = "auto", matching = "off";
-  std::vector<std::string> set;
+  std::string axiomFile, out, search = "auto", matching = "off";
+  std::vector<std::string> grammars, set;
   uint32_t axioms = 256;
   std::array<float, 3> size{1, 1, 1};
   TuneSettings settings;
 };
 
 Outcome tune(const TuneOptions& options, const CommonOptions& common) {
-  const BakedGraph grammar = bakeGraph(options.grammar, options.set);
+  const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   TuneSettings settings = options.settings;
   settings.matching = options.matching == "on";
   if (options.search == "exhaustive") settings.search = spawn::Search::exhaustive;
   if (options.search == "random") settings.search = spawn::Search::random;
   if (options.search == "heuristic") settings.search = spawn::Search::heuristic;
   const std::filesystem::path out =
-      options.out.empty() ? tunedFile(options.grammar, grammar) : std::filesystem::path(options.out);
+      options.out.empty() ? tunedFile(options.grammars, grammar) : std::filesystem::path(options.out);
   if (std::filesystem::exists(out)) kernelsIn(out, grammar); // throws now rather than after the search
+  const AxiomDefaults defaults{options.size, settings.seed, grammar.starts()};
+  const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
+                                            ? axiomGrid(options.axioms, 0, defaults)
+                                            : readAxioms(options.axiomFile, grammar.startNames(), defaults);
   Session session(common);
-  const Tuned tuned =
-      tuneGrammar(session, grammar, axiomGrid(options.axioms, 0, {options.size, settings.seed}), settings);
+  const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
   keepKernel(out, grammar, tuned.info, tuned.code);
   session.checkValidation();
 
@@ -37,8 +40,8 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   const Candidate& best = tuned.best;
   Json scheduleList = Json::array();
   std::ostringstream text;
-  text << options.grammar << ": " << tuned.report.terminals << " terminals from " << options.axioms << " axioms on "
-       << session.device().name() << "\n  " << milliseconds(tuned.interpreter) << "  interpreter\n";
+  text << joined(options.grammars) << ": " << tuned.report.terminals << " terminals from " << axioms.size()
+       << " axioms on " << session.device().name() << "\n  " << milliseconds(tuned.interpreter) << "  interpreter\n";
   for (const Candidate& c : tuned.measured) {
     const bool fits = std::isfinite(c.milliseconds);
     scheduleList.push_back({{"schedule", tuned.schedules[c.schedule].name},
@@ -57,9 +60,9 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   text << "\nkept: " << out.string() << '\n';
   Outcome outcome;
   outcome.text = text.str();
-  outcome.json = {{"grammar", options.grammar},
+  outcome.json = {{"grammar", jsonOf(options.grammars)},
                   {"device", session.device().name()},
-                  {"axioms", options.axioms},
+                  {"axioms", axioms.size()},
                   {"terminals", tuned.report.terminals},
                   {"search", options.search},
                   {"matching", settings.matching},
@@ -89,18 +92,23 @@ Work addTune(CLI::App& app) {
   auto options = std::make_shared<TuneOptions>();
   TuneSettings& settings = options->settings;
   CLI::App* command = app.add_subcommand("tune", "Find the fastest schedule of a grammar on this device");
-  command->add_option("GRAMMAR", options->grammar, "PGA-shape grammar text (.pga)")
+  command->add_option("GRAMMAR", options->grammars, "PGA-shape grammar text (.pga); several are linked to one grammar")
       ->required()
       ->check(CLI::ExistingFile);
-  command->add_option("--axioms", options->axioms, "Start shapes to tune for")
-      ->check(CLI::Range(1u, 1000000u))
-      ->capture_default_str();
+  CLI::Option* axioms =
+      command->add_option("--axioms", options->axioms, "Start shapes to tune for; those of linked grammars in turn")
+          ->check(CLI::Range(1u, 1000000u))
+          ->capture_default_str();
+  command->add_option("--axiom-file", options->axiomFile, "Start shapes from a file, as `gpgp spawn` takes it")
+      ->check(CLI::ExistingFile)
+      ->excludes(axioms);
   command
       ->add_option_function<std::string>(
           "--axiom-size", [o = options.get()](const std::string& t) { o->size = parseTriple(t); },
           "Extents of each start shape in metres (default 1,1,1)")
       ->type_name("X,Y,Z");
-  command->add_option("--set", options->set, "Override a `var` of the grammar; may be repeated")
+  command
+      ->add_option("--set", options->set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_option("--seed", settings.seed, "Random seed, of the search too; axiom i has seed S + i")

@@ -99,7 +99,7 @@ const Case& caseOf(const std::vector<Case>& cases, const std::string& name) {
   throw Failure("cases.txt has no " + name);
 }
 std::vector<GpgpAxiom> axiomsOf(const Case& c, uint32_t count) { return axiomGrid(count, c.spacing, {c.size, 1}); }
-BakedGraph grammarOf(const Case& c) { return bakeGraph(GPGP_SAMPLE_GRAMMARS "/" + c.name + ".pga", {}); }
+BakedGraph grammarOf(const Case& c) { return bakeGraph({GPGP_SAMPLE_GRAMMARS "/" + c.name + ".pga"}, {}); }
 uint32_t shareOf(const Options& options, uint32_t axioms) {
   return std::max(1u, static_cast<uint32_t>(options.share * axioms));
 }

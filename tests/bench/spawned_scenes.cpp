@@ -12,7 +12,7 @@ namespace {
 /// One mesh and one draw. The grammar is interpreted: deriving is not what is measured.
 void addSpawned(test::Scene& scene, const std::string& grammarFile, const std::vector<GpgpAxiom>& axioms) {
   cli::Session session({});
-  const cli::BakedGraph grammar = cli::bakeGraph(grammarFile, {});
+  const cli::BakedGraph grammar = cli::bakeGraph({grammarFile}, {});
   cli::DeriverOptions options;
   options.vertices = true;
   cli::Deriver deriver(session, grammar, axioms, options);

@@ -196,6 +196,65 @@ TEST(CliSpawn, AxiomFiles) {
   EXPECT_EQ(a["key_hash"], b["key_hash"]);
 }
 
+TEST(CliSpawn, SeveralGrammarsAreLinked) {
+  const TemporaryFile house("house.pga", "var n = 2;\naxiom Box House;\nterminal Wall (1, 0);\n"
+                                         "House = Repeat(X, n, ADJUST_TO_FILL) Wall;\n"),
+      tree("tree.pga", "axiom Box Trunk;\naxiom Quad Leaf;\nterminal Wood (1, 1);\nterminal Green (1, 2);\n"
+                       "Trunk = CompSplit() { Leaf | Wood | Leaf };\nLeaf = Green;\n");
+  const std::string name = "gpgp_cli_test_"; // of files, and so of grammars
+  const TemporaryFile lots("street.csv", "x,z,size_x,rule\n0,0,6," + name + "house\n10,0,1," + name + "tree\n20,0,1," +
+                                             name + "tree.Leaf\n30,0,8,\n");
+  const std::vector<std::string> both = {house.path(), tree.path()};
+  const auto spawn = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"spawn", house.path(), tree.path()});
+    return gpgpJson(more);
+  };
+  for (const char* schedule : {"interpreter", "default", "rw"}) {
+    const json all = spawn({"--axiom-file", lots.path(), "--schedule", schedule, "--validate"});
+    EXPECT_EQ(all["grammar"], json(both));
+    EXPECT_EQ(all["terminals"], 3 + 6 + 1 + 4);
+    EXPECT_EQ(all["buckets"][0]["name"], name + "house.Wall");
+    EXPECT_EQ(all["buckets"][0]["instances"], 3 + 4);
+    EXPECT_EQ(all["buckets"][1]["instances"], 1);
+    EXPECT_EQ(all["buckets"][2]["instances"], 5 + 1);
+  }
+  const json turns = spawn({"--axioms", "5", "--axiom-size", "8,1,1", "--set", name + "house.n=4"});
+  EXPECT_EQ(turns["terminals"], 3 * 2 + 2 * 6); // a house first
+  const TemporaryFile baked("street.gpgp");
+  const json bake = gpgpJson({"bake", house.path(), tree.path(), "--link", "-o", baked.path()});
+  EXPECT_EQ(bake["baked"][0]["in"], json(both));
+  EXPECT_EQ(bake["baked"][0]["bytes"], std::filesystem::file_size(baked.path()));
+  EXPECT_EQ(spawn({"--axiom-file", lots.path(), "--schedule", baked.path()})["terminals"], 14);
+  const TemporaryFile tuned("tuned_street.gpgp");
+  const json tune = gpgpJson({"tune", house.path(), tree.path(), "--axiom-file", lots.path(), "--samples", "5",
+                              "--repeat", "3", "--schedules-only", "-o", tuned.path()});
+  EXPECT_EQ(tune["axioms"], 4);
+  EXPECT_EQ(tune["terminals"], 14);
+  EXPECT_EQ(spawn({"--axiom-file", lots.path(), "--schedule", tuned.path()})["terminals"], 14);
+  const TemporaryFile wrong("wrong_street.csv", "x,z,rule\n0,0,House\n"),
+      broken("broken.pga", "axiom Box A;\nA = B;\n");
+  EXPECT_NE(
+      gpgpFailure({"spawn", house.path(), tree.path(), "--axiom-file", wrong.path()}).find("csv:2: error: the gram"),
+      std::string::npos);
+  EXPECT_NE(gpgpFailure({"spawn", house.path(), broken.path()}).find("broken.pga:2:5: error: there is no rule or term"),
+            std::string::npos);
+  EXPECT_NE(gpgpFailure({"graph", house.path(), house.path()}).find("is also the name of"), std::string::npos);
+  expectWrongUsage({{"spawn", house.path(), tree.path(), "--set", "n=4"},
+                    {"spawn", house.path(), tree.path(), "--set", "other.n=4"},
+                    {"bake", house.path(), "-", "--link", "-o", "x.gpgp"},
+                    {"bake", house.path(), lots.path(), "--link", "-o", "x.gpgp"},
+                    {"bake", house.path(), tree.path(), "--link", "-o", testing::TempDir()},
+                    {"tune", house.path(), "--axioms", "3", "--axiom-file", lots.path()}});
+}
+
+TEST(CliSpawn, TheSampleStreet) {
+  const std::string folder = GPGP_SAMPLE_GRAMMARS "/";
+  const json street = gpgpJson({"spawn", folder + "simple_house.pga", folder + "suburban_house.pga",
+                                folder + "tree_4_3.pga", "--axiom-file", folder + "street.csv"});
+  EXPECT_EQ(street["axioms"], 38);
+  EXPECT_EQ(street["terminals"], 5 * 361 + 5 * 374 + 28 * 94); // trees have lost a whorl to their thin trunks
+}
+
 TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
   const TemporaryFile grammar("rules2.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n");
   const auto error = [&](const std::string& text) {

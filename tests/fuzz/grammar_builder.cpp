@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (gpgpCreateGrammarBuilder(&source.builder) != GPGP_SUCCESS) return 0;
   GpgpGrammarBuilder builder = source.builder;
   uint32_t operators = 0;
-  gpgpSetAxiom(builder, GPGP_SHAPE_BOX, nullptr, 0, "A");
+  gpgpAddAxiom(builder, GPGP_SHAPE_BOX, nullptr, 0, "A");
   gpgpAddTerminal(builder, "T U", 1, 0);
   while (in.at < size) {
     GpgpGrammarValue values[4] = {};
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     case 4: {
       const uint32_t count = in.below(5);
       for (uint32_t i = 0; i < count; ++i) values[i] = in.value();
-      gpgpSetAxiom(builder, in.below(18), values, count, in.name());
+      gpgpAddAxiom(builder, in.below(18), values, count, in.name());
       break;
     }
     default: {

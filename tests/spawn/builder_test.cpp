@@ -231,18 +231,28 @@ TEST(GrammarBuilder, WarnsOfWhatHasNoUse) {
 
 TEST(GrammarBuilder, AnAxiomIsNeededAndItsShapeMustExist) {
   GrammarBuilder g = empty();
-  EXPECT_EQ(messagesOf(g), Messages{"error: there is no axiom; expected gpgpSetAxiom"});
-  g.terminal("T", 1, 0).axiom(17, "T");
-  EXPECT_EQ(messagesOf(g), Messages{"error: axiom: there is no shape 17; expected a GpgpShape"});
-  g.axiom(GPGP_SHAPE_BOX, "U");
-  EXPECT_EQ(messagesOf(g), Messages{"error: axiom: there is no rule or terminal 'U'"});
-  g.axiom(GPGP_SHAPE_BOX, {g.corner(0, 0)}, "T");
-  EXPECT_EQ(messagesOf(g), Messages{"error: axiom, corner 1: only Dynamic... shapes have corners of their own"});
-  const GpgpGrammarValue number = GPGP_GRAMMAR_NUMBER(1);
-  gpgpSetAxiom(g, GPGP_SHAPE_DYNAMIC_POLYGON, &number, 1, "T");
-  EXPECT_EQ(messagesOf(g), Messages{"error: axiom, corner 1: expected a corner as (x, y)"});
-  g.axiom(GPGP_SHAPE_BOX, "T"); // the last one counts
+  EXPECT_EQ(messagesOf(g), Messages{"error: there is no axiom; expected gpgpAddAxiom"});
+  g.terminal("T", 1, 0).axiom(GPGP_SHAPE_BOX, "T").axiom(GPGP_SHAPE_QUAD, "T"); // as many as are wanted
   EXPECT_EQ(messagesOf(g), Messages{});
+  Messages errors;
+  const auto expectMore = [&](const char* message) {
+    errors.push_back(std::string("error: axiom") + message);
+    EXPECT_EQ(messagesOf(g), errors);
+  };
+  g.axiom(17, "T");
+  expectMore(": there is no shape 17; expected a GpgpShape");
+  g.axiom(GPGP_SHAPE_BOX, "U");
+  expectMore(": there is no rule or terminal 'U'");
+  g.axiom(GPGP_SHAPE_BOX, {g.corner(0, 0)}, "T");
+  expectMore(", corner 1: only Dynamic... shapes have corners of their own");
+  const GpgpGrammarValue number = GPGP_GRAMMAR_NUMBER(1);
+  gpgpAddAxiom(g, GPGP_SHAPE_DYNAMIC_POLYGON, &number, 1, "T");
+  expectMore(", corner 1: expected a corner as (x, y)");
+}
+
+TEST(GrammarBuilder, VariablesThatAreSetMustExist) {
+  GrammarBuilder g = empty();
+  g.terminal("T", 1, 0).axiom(GPGP_SHAPE_BOX, "T");
   EXPECT_EQ(messagesOf(g, nullptr, {{"k", 1}}), Messages{"error: there is no var 'k' that could be set"});
 }
 
@@ -276,7 +286,7 @@ TEST(GrammarBuilder, TakesNullAndNoOtherSource) {
   gpgpDestroyGrammarBuilder(nullptr);
   gpgpAddRule(nullptr, "A", "B", 0);
   gpgpAddTerminal(nullptr, "A", 0, 0);
-  gpgpSetAxiom(nullptr, GPGP_SHAPE_BOX, nullptr, 0, "A");
+  gpgpAddAxiom(nullptr, GPGP_SHAPE_BOX, nullptr, 0, "A");
   EXPECT_EQ(gpgpAddOperator(nullptr, GPGP_OPERATOR_DISCARD, nullptr, 0, nullptr, 0), 0u);
   EXPECT_EQ(gpgpAddVariable(nullptr, "v", GPGP_GRAMMAR_NUMBER(1)).id, GPGP_VALUE_NONE);
   const GrammarBuilder builder = empty();
@@ -301,7 +311,7 @@ TEST(GrammarBuilder, SurvivesRandomCalls) {
       return {below(run % 4 ? 19 : 40), 0};
     };
     uint32_t operators = 0;
-    gpgpSetAxiom(builder, below(run % 4 ? 12 : 20), nullptr, 0, "A");
+    gpgpAddAxiom(builder, below(run % 4 ? 12 : 20), nullptr, 0, "A");
     gpgpAddTerminal(builder, "T U", 1, 0);
     const uint32_t calls = 4 + below(12);
     for (uint32_t i = 0; i < calls; ++i) {

@@ -282,7 +282,9 @@ TEST(Operators, StartRulesAndUnknownRules) {
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 4u);
   axiom.rule = 1;
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 3u);
-  axiom.rule = 2;
+  axiom.rule = 2; // the axiom line
+  EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 4u);
+  axiom.rule = 3;
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 0u);
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).droppedShapes, 1u);
 }

@@ -51,7 +51,7 @@ TEST(Export, PicturesShowEveryNodeEdgeAndGroup) {
     const Flow flow = makeFlow(graph);
     std::mt19937 random(seed);
     const Partition partition = makePartition(flow, randomPartition(flow, random));
-    size_t live = graph.axiomNode != kNoNode, fixed = 0, queued = 0;
+    size_t live = graph.axioms[0].node != kNoNode, fixed = 0, queued = 0;
     for (const Edge& edge : graph.edges) live += edge.target != kNoNode;
     const size_t dependencies = dependenciesOf(graph).size();
     live += dependencies;

@@ -654,13 +654,77 @@ TEST_F(SpawnTest, WorkgroupsThatGiveUpLoseNothing) {
 
 TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {
   const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | B }; B = Replicate() { T | T | T };");
-  std::vector<GpgpAxiom> all(3, makeAxiom(1, 1, 1));
+  std::vector<GpgpAxiom> all(4, makeAxiom(1, 1, 1));
   all[1].rule = 1;
-  all[2].rule = 2;
+  all[2].rule = 2; // the axiom line
+  all[3].rule = 3;
   const Derived gpu = run(words, all, 100, true);
-  EXPECT_EQ(gpu.report.terminals, 4u + 3u);
+  EXPECT_EQ(gpu.report.terminals, 4u + 3u + 4u);
   EXPECT_EQ(gpu.report.droppedShapes, 1u);
   EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+}
+
+TEST_F(SpawnTest, LinkedGrammarsEqualTheEvaluator) { // which derives what each does alone, see link_test.cpp
+  std::vector<GrammarFile> files;
+  for (const std::string& name : ownGrammarNames()) files.push_back({name, ownGrammar(name)});
+  files.push_back({"lines.pga", "axiom Hexagon Faces; axiom Box Faces; axiom DynamicRightPrism{(0,0.5),(-0.5,-0.5),"
+                                "(0.5,0)} Part; axiom Quad T; terminal T (1,0); terminal U (1,1);"
+                                "Faces = CompSplit() { T | U | Part }; Part = SubDiv(X) { 1: Tall | -1: U };"
+                                "Tall = Extrude(3) CompSplit() { T | Discard() | U };"});
+  for (const GpgpCompileFlags flags : {GpgpCompileFlags(0), GPGP_COMPILE_KERNEL}) {
+    const auto words = linked(files, flags);
+    const size_t graphWords = words[shader::kHeaderWords];
+    const auto graph = spawn::load(std::as_bytes(std::span(words).first(graphWords)), std::pmr::new_delete_resource());
+    ASSERT_TRUE(graph);
+    ASSERT_EQ(graph->axioms.size(), 8u);
+    auto all = axioms(60, 12, 16, 10);
+    for (uint32_t i = 0; i < all.size(); ++i) { // all starts, the axiom lines more often
+      const uint32_t rules = static_cast<uint32_t>(graph->rules.size());
+      all[i].rule = i % 2 ? rules + i / 2 % 8 : i / 2 % rules;
+    }
+    check(flags ? "linked, by a kernel" : "linked", words, all);
+  }
+}
+
+TEST_F(SpawnTest, StartsCanBeListedAndFound) {
+  const auto words = linked({{"house.pga", "axiom Box House; axiom Quad Wall; terminal T (1,0);"
+                                           "House = CompSplit() Wall; Wall = T; Rest = House;"},
+                             {"tree.pga", "axiom Sphere Leaf; terminal Leaf (1,0);"}});
+  GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+  info.data = words.data();
+  info.size = words.size() * 4;
+  GpgpAsset grammar = nullptr;
+  ASSERT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_SUCCESS);
+  uint32_t count = 0;
+  ASSERT_EQ(gpgpGetGrammarStarts(grammar, &count, nullptr), GPGP_SUCCESS);
+  std::vector<GpgpGrammarStart> starts(count);
+  ASSERT_EQ(gpgpGetGrammarStarts(grammar, &count, starts.data()), GPGP_SUCCESS);
+  const std::vector<std::tuple<std::string, GpgpShape, uint32_t>> wanted{
+      {"house.House", GPGP_SHAPE_BOX, 0}, {"house.Wall", GPGP_SHAPE_QUAD, 0}, {"house.Rest", GPGP_SHAPE_BOX, 0},
+      {"house", GPGP_SHAPE_BOX, 1},       {"house.Wall", GPGP_SHAPE_QUAD, 1}, {"tree", GPGP_SHAPE_SPHERE, 1}};
+  ASSERT_EQ(count, wanted.size());
+  for (uint32_t i = 0; i < count; ++i)
+    EXPECT_EQ(std::tuple(std::string(starts[i].name), starts[i].shape, starts[i].axiomLine), wanted[i]);
+  const auto find = [&](const char* name) {
+    uint32_t rule = 99;
+    EXPECT_EQ(gpgpFindGrammarStart(grammar, name, &rule), GPGP_SUCCESS);
+    return rule;
+  };
+  EXPECT_EQ(find("house.Wall"), 1u);
+  EXPECT_EQ(find("house"), 3u);
+  EXPECT_EQ(find("tree"), 5u);
+  uint32_t rule = 99;
+  EXPECT_EQ(gpgpFindGrammarStart(grammar, "Wall", &rule), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(rule, 99u);
+  EXPECT_EQ(gpgpFindGrammarStart(grammar, nullptr, &rule), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpGetGrammarStarts(grammar, nullptr, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  count = 2;
+  EXPECT_EQ(gpgpGetGrammarStarts(grammar, &count, starts.data()), GPGP_INCOMPLETE);
+  EXPECT_EQ(count, wanted.size());
+  ASSERT_FALSE(messages.empty());
+  EXPECT_EQ(messages[0], "gpgpFindGrammarStart: the grammar has no start \"Wall\"");
+  messages.clear();
+  gpgpDestroyAsset(grammar);
 }
 
 TEST_F(SpawnTest, GrammarsTakeTurnsInOneFrame) {

@@ -1,6 +1,7 @@
 #include "grammars.h"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -52,6 +53,56 @@ std::vector<uint32_t> bake(const std::string& text, const std::vector<GpgpVariab
   if (auto ok = spawn::validate(graph); !ok) throw std::runtime_error(ok.error().text);
   const auto words = spawn::serialize(graph, std::pmr::new_delete_resource());
   return {words.begin(), words.end()};
+}
+
+namespace {
+std::vector<uint32_t> link(const std::vector<GrammarFile>& files, GpgpCompileFlags flags,
+                           std::vector<std::string>& messages) {
+  std::vector<GpgpGrammarSource> sources;
+  for (const GrammarFile& file : files) {
+    GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+    source.name = file.name.c_str();
+    source.text = file.text.data();
+    source.size = file.text.size();
+    source.variables = file.variables.data();
+    source.variableCount = static_cast<uint32_t>(file.variables.size());
+    source.flags = flags;
+    source.messageUserData = &messages;
+    source.messageFn = [](void* user, const GpgpCompileMessage* m) {
+      const spawn::Diagnostic diagnostic{{m->line, m->column}, m->severity, m->text};
+      static_cast<std::vector<std::string>*>(user)->push_back(spawn::format(diagnostic, m->file));
+    };
+    sources.push_back(source);
+  }
+  GpgpBlob blob{};
+  const GpgpResult result = gpgpLinkGrammars(sources.data(), static_cast<uint32_t>(sources.size()), &blob);
+  if (result != GPGP_SUCCESS && messages.empty()) messages.push_back("failed without a message");
+  std::vector<uint32_t> words(blob.size / 4);
+  if (blob.data) std::memcpy(words.data(), blob.data, blob.size);
+  gpgpFreeBlob(&blob);
+  return words;
+}
+} // namespace
+
+std::vector<uint32_t> linked(const std::vector<GrammarFile>& files, GpgpCompileFlags flags) {
+  std::vector<std::string> messages;
+  auto words = link(files, flags, messages);
+  std::string all;
+  for (const std::string& message : messages) all += message + "\n";
+  if (words.empty()) throw std::runtime_error(all);
+  return words;
+}
+
+std::vector<std::string> linkMessages(const std::vector<GrammarFile>& files) {
+  std::vector<std::string> messages;
+  link(files, 0, messages);
+  return messages;
+}
+
+std::string textOf(const std::string& path) {
+  auto text = readText(path);
+  if (!text) throw std::runtime_error("there is no " + path);
+  return *text;
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

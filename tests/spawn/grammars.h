@@ -18,6 +18,17 @@ std::vector<std::string> ownGrammarNames();
 
 /// Compiles text to words; throws with all messages where it has errors.
 std::vector<uint32_t> bake(const std::string& text, const std::vector<GpgpVariable>& variables = {});
+struct GrammarFile {
+  std::string name, text;
+  std::vector<GpgpVariable> variables = {};
+};
+/// Links files to words, by the C function; throws with all messages where it fails.
+std::vector<uint32_t> linked(const std::vector<GrammarFile>& files, GpgpCompileFlags flags = 0);
+/// The messages of linking, as "file:line:column: error: text".
+std::vector<std::string> linkMessages(const std::vector<GrammarFile>& files);
+/// A file. Throws where it is absent.
+std::string textOf(const std::string& path);
+
 /// The messages of compiling, as "line:column: error: text".
 std::vector<std::string> messagesOf(const std::string& text, const std::vector<GpgpVariable>& variables = {});
 

@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"A = T; A = T;", "3:8: error: 'A' is defined twice; the first time in line 3"},
         Case{"A = T; Scale = T;", "3:8: error: 'Scale' is the name of an operator; expected another name"},
         Case{"A = T; var x = 1; var x = 2;", "3:23: error: var 'x' is defined twice"},
-        Case{"A = T; axiom Box A;", "3:8: error: there is a second axiom; the first is in line 1"},
+        Case{"A = T; axiom Quad B;", "3:19: error: there is no rule or terminal 'B'"},
         Case{"A = T; terminal U (2,0);", "3:20: error: a terminal's kind is 0 (triangles) or 1 (an instanced mesh)"},
         Case{"A = T; terminal U (1,0.5);", "3:22: error: a terminal's index is a whole number from 0"},
         Case{"A = T; terminal U (1);", "3:8: error: a terminal needs (kind, index), found 1 value"},

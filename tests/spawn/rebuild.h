@@ -19,7 +19,7 @@ public:
     for (const auto& axiom : tree.axioms) {
       std::vector<GpgpGrammarValue> corners;
       for (const auto& corner : axiom.corners) corners.push_back(value(corner));
-      gpgpSetAxiom(builder, shape(axiom.shape), corners.data(), static_cast<uint32_t>(corners.size()),
+      gpgpAddAxiom(builder, shape(axiom.shape), corners.data(), static_cast<uint32_t>(corners.size()),
                    axiom.name.c_str());
     }
     for (const auto& terminal : tree.terminals) {

@@ -73,10 +73,11 @@ Schedule defaultSchedule(const Graph& graph, const Flow& flow) {
   }
   for (uint32_t n = 0; n < graph.nodes.size(); ++n)
     schedule.waits[n] = schedule.waits[n] && (often[n] || !isUneven(graph));
-  for (uint32_t n = 0; n < graph.nodes.size(); ++n) { // a group for each node that shapes wait for, and for the start
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n) { // a group for each node that shapes wait for, and for starts
     const Node& node = graph.nodes[n];
     const bool waits = multiplies(node) && (schedule.waits[n] || comesBack[n] || !multipliesByKnown(node));
-    schedule.groups += flow.rank[n] != kNoNode && (waits || n == graph.axiomNode);
+    const bool starts = std::find(flow.starts.begin(), flow.starts.end(), n) != flow.starts.end();
+    schedule.groups += flow.rank[n] != kNoNode && (waits || starts);
   }
   return schedule;
 }

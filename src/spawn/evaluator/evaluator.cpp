@@ -67,7 +67,7 @@ public:
   void run() {
     for (size_t a = 0; a < axioms_.size() && out_.complete; ++a) {
       const GpgpAxiom& axiom = axioms_[a];
-      if (!hasRule(words_, axiom.rule)) ++out_.droppedShapes;
+      if (!startWords(words_, axiom.rule)) ++out_.droppedShapes;
       runFrom(axiomShape(words_, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id, axiom.rule,
                          axiom.attribute, static_cast<uint32_t>(a)));
     }

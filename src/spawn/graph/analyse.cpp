@@ -1,8 +1,8 @@
 // What follows from a graph's shape: multiplicities, the types of shapes on each edge, which operators only filter,
 // which edges are recursive, and the phases of Collider and IfCollides.
 //
-// Types flow from the axiom and, since a derivation may start with any rule, from every rule with the axiom's type.
-// Recursive are the back edges of a depth-first search from the axiom's node: without them there is no cycle.
+// Types flow from the axioms and, since a derivation may start with any rule, from every rule with its axiom's type.
+// Recursive are the back edges of a depth-first search from the axioms' nodes: without them there is no cycle.
 #include "core/math.h"
 #include "spawn/graph/graph.h"
 #include "spawn/graph/longest_paths.h"
@@ -135,8 +135,8 @@ void analyse(Graph& graph) {
     graph.nodes[node].shapes |= shapes;
     changed.push_back(node);
   };
-  arrive(graph.axiomNode, bit(graph.axiomShape));
-  for (const Rule& rule : graph.rules) arrive(rule.node, bit(graph.axiomShape));
+  for (const Axiom& axiom : graph.axioms) arrive(axiom.node, bit(axiom.shape));
+  for (const Rule& rule : graph.rules) arrive(rule.node, bit(graph.axioms[rule.axiom].shape));
   while (!changed.empty()) {
     const Node node = graph.nodes[changed.back()];
     changed.pop_back();
@@ -172,7 +172,7 @@ void analyse(Graph& graph) {
       stack.push_back({edge.target, 0});
     }
   };
-  visit(graph.axiomNode);
+  for (const Axiom& axiom : graph.axioms) visit(axiom.node);
   for (uint32_t root = 0; root < graph.nodes.size(); ++root) visit(root);
   assignPhases(graph);
 }

@@ -10,7 +10,7 @@ using namespace shader;
 
 /// Words of each section, from counts of entries.
 constexpr uint32_t kEntryWords[kSectionCount] = {
-    kNodeSize, kEdgeSize, kParameterSize, 1, kPolygonSize, 2, kTerminalSize, kRuleSize, 1, 1, kQuadSize};
+    kNodeSize, kEdgeSize, kParameterSize, 1, kPolygonSize, 2, kTerminalSize, kRuleSize, 1, 1, kQuadSize, kAxiomSize};
 
 uint32_t bitsOf(float v) {
   uint32_t bits;
@@ -45,7 +45,8 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
                                           static_cast<uint32_t>(graph.rules.size()),
                                           static_cast<uint32_t>((graph.names.size() + 3) / 4),
                                           static_cast<uint32_t>(graph.divisions.size()),
-                                          static_cast<uint32_t>(graph.quads.size() / kQuadSize)};
+                                          static_cast<uint32_t>(graph.quads.size() / kQuadSize),
+                                          static_cast<uint32_t>(graph.axioms.size())};
   std::pmr::vector<uint32_t> words(kHeaderSize, 0u, memory);
   uint32_t offsets[kSectionCount];
   uint32_t offset = kHeaderSize;
@@ -60,9 +61,6 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   words[kHeaderMagic] = kGraphMagic;
   words[kHeaderVersion] = kGraphVersion;
   words[kHeaderWords] = offset;
-  words[kHeaderAxiomShape] = graph.axiomShape;
-  words[kHeaderAxiomPolygon] = graph.axiomPolygon;
-  words[kHeaderAxiomNode] = nodeAt(graph.axiomNode);
   words[kHeaderBuckets] = graph.buckets;
   words[kHeaderPhases] = graph.phases;
   for (const Node& n : graph.nodes)
@@ -80,10 +78,11 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
                  {at(kSectionVertices, p.firstVertex), p.vertexCount, at(kSectionQuads, p.firstQuad), p.quadCount});
   for (const float v : graph.vertices) words.push_back(bitsOf(v));
   for (const Terminal& t : graph.terminals) words.insert(words.end(), {t.name, t.kind, t.index, t.bucket});
-  for (const Rule& r : graph.rules) words.insert(words.end(), {r.name, nodeAt(r.node)});
+  for (const Rule& r : graph.rules) words.insert(words.end(), {r.name, nodeAt(r.node), at(kSectionAxioms, r.axiom)});
   words.resize(offsets[kSectionDivisions], 0u); // names
   words.insert(words.end(), graph.divisions.begin(), graph.divisions.end());
   words.insert(words.end(), graph.quads.begin(), graph.quads.end());
+  for (const Axiom& a : graph.axioms) words.insert(words.end(), {a.name, nodeAt(a.node), a.shape | a.polygon << 8});
   if (!graph.names.empty()) std::memcpy(words.data() + offsets[kSectionNames], graph.names.data(), graph.names.size());
   words[kHeaderChecksum] = checksum(std::span(words).subspan(kHeaderChecked));
   return words;
@@ -127,9 +126,6 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   };
 
   Graph graph(memory);
-  graph.axiomShape = words[kHeaderAxiomShape];
-  graph.axiomPolygon = words[kHeaderAxiomPolygon];
-  graph.axiomNode = nodeIndex(words[kHeaderAxiomNode]);
   graph.buckets = words[kHeaderBuckets];
   graph.nodes.reserve(counts[kSectionNodes]);
   for (uint32_t i = 0; i < counts[kSectionNodes]; ++i) {
@@ -164,7 +160,11 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   }
   for (uint32_t i = 0; i < counts[kSectionRules]; ++i) {
     const uint32_t* w = entry(kSectionRules, i);
-    graph.rules.push_back({w[0], nodeIndex(w[1])});
+    graph.rules.push_back({w[0], nodeIndex(w[1]), indexOf(kSectionAxioms, w[2], 0)});
+  }
+  for (uint32_t i = 0; i < counts[kSectionAxioms]; ++i) {
+    const uint32_t* w = entry(kSectionAxioms, i);
+    graph.axioms.push_back({w[0], nodeIndex(w[1]), w[2] & 0xffu, w[2] >> 8});
   }
   graph.names.resize(size_t(counts[kSectionNames]) * 4);
   if (!graph.names.empty()) std::memcpy(graph.names.data(), entry(kSectionNames, 0), graph.names.size());

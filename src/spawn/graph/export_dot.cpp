@@ -17,6 +17,9 @@ std::string escaped(const std::string& text) {
   }
   return result;
 }
+std::string startName(size_t axiom) {
+  return std::string("start").append(axiom ? std::to_string(axiom) : std::string());
+}
 } // namespace
 
 std::string groupColour(uint32_t group) {
@@ -33,9 +36,9 @@ std::string groupColour(uint32_t group) {
 
 std::string exportDot(const Graph& graph, const Partition* partition) {
   std::ostringstream out;
-  out << "digraph grammar {\n  node [shape=box, style=\"rounded,filled\", fillcolor=white, fontname=\"sans-serif\"];\n"
-         "  start [label=\""
-      << shapeName(graph.axiomShape) << "\", color=blue];\n";
+  out << "digraph grammar {\n  node [shape=box, style=\"rounded,filled\", fillcolor=white, fontname=\"sans-serif\"];\n";
+  for (size_t a = 0; a < graph.axioms.size(); ++a)
+    out << "  " << startName(a) << " [label=\"" << escaped(axiomText(graph, graph.axioms[a])) << "\", color=blue];\n";
   const auto node = [&](const char* indent, uint32_t n) {
     const Node& v = graph.nodes[n];
     const bool unreached = partition && partition->groupOf[n] == kNoGroup;
@@ -63,7 +66,8 @@ std::string exportDot(const Graph& graph, const Partition* partition) {
     }
     out << "  " << source << " -> " << end << " [label=\"" << escaped(label) << '"' << style << "];\n";
   };
-  edge("start", graph.axiomNode, "*", partition ? ", color=blue" : "");
+  for (size_t a = 0; a < graph.axioms.size(); ++a)
+    edge(startName(a), graph.axioms[a].node, "*", partition ? ", color=blue" : "");
   for (uint32_t n = 0; n < graph.nodes.size(); ++n) {
     const Node& v = graph.nodes[n];
     for (uint32_t e = 0; e < v.edgeCount; ++e) {

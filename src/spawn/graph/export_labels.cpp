@@ -48,6 +48,11 @@ std::string numberText(float value) {
   return {text.data(), end};
 }
 
+std::string axiomText(const Graph& graph, const Axiom& axiom) {
+  const std::string name = graph.axioms.size() > 1 ? graph.nameAt(axiom.name) + std::string(": ") : std::string();
+  return name + shapeName(axiom.shape);
+}
+
 uint32_t usualPolygon(uint32_t shape) {
   const uint32_t corners = shape <= kShapeOctagon ? shape + 3 : shape <= kShapePrism8 ? shape - 3 : 3;
   return 2 * (corners - 3);

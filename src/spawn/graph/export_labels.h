@@ -21,6 +21,8 @@ const char* multiplicityText(const Graph& graph, const Node& node, uint32_t slot
 
 /// The polygon that an axiom of this shape has unless another is named.
 uint32_t usualPolygon(uint32_t shape);
+/// An axiom's shape; behind its name, as in house: Box, where there are several axioms.
+std::string axiomText(const Graph& graph, const Axiom& axiom);
 
 const char* axisText(uint32_t axis);
 const char* repeatModeText(uint32_t mode);

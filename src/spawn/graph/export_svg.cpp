@@ -94,12 +94,14 @@ class Drawing {
 public:
   Drawing(const Graph& graph, const Partition* partition) : graph_(graph), partition_(partition) {
     for (const Node& node : graph.nodes) cards_.push_back(cardOf(graph, node));
-    Card start;
-    start.title = start.label = shapeName(graph.axiomShape);
-    start.cells.push_back({"*", "any number of axioms"});
-    start.stroke = "#2166ac";
-    start.measure();
-    cards_.push_back(start); // as a node with the number graph.nodes.size()
+    for (const Axiom& axiom : graph.axioms) { // as nodes with numbers from graph.nodes.size() on
+      Card start;
+      start.title = start.label = axiomText(graph, axiom);
+      start.cells.push_back({"*", "any number of axioms"});
+      start.stroke = "#2166ac";
+      start.measure();
+      cards_.push_back(start);
+    }
     makeUnits();
     for (Unit& unit : units_) layOutUnit(unit);
     layOutUnits();
@@ -124,8 +126,7 @@ public:
 
 private:
   void makeUnits() {
-    const uint32_t startNode = static_cast<uint32_t>(graph_.nodes.size());
-    unitOf_.assign(graph_.nodes.size() + 1, 0);
+    unitOf_.assign(cards_.size(), 0);
     const auto add = [&](std::vector<uint32_t> nodes, bool isGroup) {
       for (const uint32_t n : nodes) unitOf_[n] = static_cast<uint32_t>(units_.size());
       Unit unit;
@@ -133,7 +134,7 @@ private:
       unit.isGroup = isGroup;
       units_.push_back(std::move(unit));
     };
-    add({startNode}, false);
+    for (uint32_t n = static_cast<uint32_t>(graph_.nodes.size()); n < cards_.size(); ++n) add({n}, false);
     const Flow flow = makeFlow(graph_);
     if (partition_)
       for (const Group& group : partition_->groups) add(group.nodes, true);
@@ -145,8 +146,9 @@ private:
 
   std::vector<Link> linksOf(uint32_t n) const {
     std::vector<Link> links;
-    if (n == graph_.nodes.size()) {
-      if (graph_.axiomNode != kNoNode) links.push_back({kNoEdge, n, 0, graph_.axiomNode, kMultiplicityAny});
+    if (n >= graph_.nodes.size()) {
+      const uint32_t target = graph_.axioms[n - graph_.nodes.size()].node;
+      if (target != kNoNode) links.push_back({kNoEdge, n, 0, target, kMultiplicityAny});
       return links;
     }
     const Node& node = graph_.nodes[n];
@@ -354,7 +356,7 @@ private:
 
   const Graph& graph_;
   const Partition* partition_;
-  std::vector<Card> cards_; // by node, then the start
+  std::vector<Card> cards_; // by node, then the starts
   std::vector<uint32_t> unitOf_;
   std::vector<Unit> units_;
   Layout outer_;

@@ -32,7 +32,7 @@ struct Node {
   uint32_t argument = 0, argument2 = 0;
   uint32_t firstParameter = 0, parameterCount = 0;
   uint32_t firstEdge = 0, edgeCount = 0;
-  uint32_t shapes = 0;            ///< bit set of the shape types that can arrive, from the axiom or as a start rule
+  uint32_t shapes = 0;            ///< bit set of the shape types that can arrive, from axioms or as a start rule
   uint32_t division = UINT32_MAX; ///< in Graph::divisions
   bool filter = false;            ///< could multiply shapes, but passes on at most one
 };
@@ -51,12 +51,20 @@ struct Terminal {
 struct Rule {
   uint32_t name = 0;
   uint32_t node = kNoNode;
+  uint32_t axiom = 0; ///< with whose shape a derivation starts at this rule
+};
+
+/// Where derivations start.
+struct Axiom {
+  uint32_t name = 0;
+  uint32_t node = kNoNode;
+  uint32_t shape = shader::kShapeBox, polygon = 0;
 };
 
 struct Graph {
   explicit Graph(std::pmr::memory_resource* memory)
       : nodes(memory), edges(memory), parameters(memory), code(memory), polygons(memory), vertices(memory),
-        quads(memory), terminals(memory), rules(memory), names(memory), divisions(memory) {}
+        quads(memory), terminals(memory), rules(memory), axioms(memory), names(memory), divisions(memory) {}
 
   std::pmr::vector<Node> nodes;
   std::pmr::vector<Edge> edges;
@@ -67,15 +75,29 @@ struct Graph {
   std::pmr::vector<uint32_t> quads; ///< four corners of their polygon each, 16 bits
   std::pmr::vector<Terminal> terminals;
   std::pmr::vector<Rule> rules;
+  std::pmr::vector<Axiom> axioms;       ///< the first is the default
   std::pmr::vector<char> names;         ///< each ends in 0
   std::pmr::vector<uint32_t> divisions; ///< of SubDivs with constant parts, as in the baked form; from analyse()
-  uint32_t axiomShape = shader::kShapeBox, axiomPolygon = 0, axiomNode = kNoNode;
-  uint32_t buckets = 0; ///< terminal lines
+  uint32_t buckets = 0;                 ///< terminal lines
   /// Of derivation; 0 without Collider and IfCollides, kNoPhases where they cannot run in any order. From analyse().
   uint32_t phases = 0;
 
   const char* nameAt(uint32_t offset) const { return names.data() + offset; }
 };
+
+/// Where a derivation can start: at the rules, then at the axioms, as GpgpAxiom::rule counts them.
+struct Start {
+  const char* name;
+  const Axiom* axiom; ///< which has the shape
+};
+inline uint32_t startCount(const Graph& graph) {
+  return static_cast<uint32_t>(graph.rules.size() + graph.axioms.size());
+}
+inline Start startAt(const Graph& graph, uint32_t start) {
+  const bool isRule = start < graph.rules.size();
+  const Axiom& axiom = graph.axioms[isRule ? graph.rules[start].axiom : start - graph.rules.size()];
+  return {graph.nameAt(isRule ? graph.rules[start].name : axiom.name), &axiom};
+}
 
 /// The six pairs of regular polygons that every graph begins with. A polygon with n corners spans [-0.5, 0.5] on both
 /// axes; its number is 2 (n - 3).

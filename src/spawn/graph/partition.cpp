@@ -68,7 +68,8 @@ Flow makeFlow(const Graph& graph, std::span<const uint32_t> starts, std::span<co
     if (node != kNoNode && std::find(flow.starts.begin(), flow.starts.end(), node) == flow.starts.end())
       flow.starts.push_back(node);
   };
-  if (starts.empty()) addStart(graph.axiomNode);
+  if (starts.empty())
+    for (const Axiom& axiom : graph.axioms) addStart(axiom.node);
   for (const uint32_t start : starts) addStart(start);
 
   flow.in.resize(nodes);

@@ -211,12 +211,17 @@ Result<void> validate(const Graph& graph) {
     if (!nameEnds(graph, terminal.name) || terminal.bucket >= graph.buckets || terminal.kind > 1)
       return makeError(GPGP_ERROR_INVALID_DATA, "a terminal has a bad name, kind or bucket");
   for (const Rule& rule : graph.rules)
-    if (!nameEnds(graph, rule.name) || !isTarget(rule.node))
-      return makeError(GPGP_ERROR_INVALID_DATA, "a rule has a bad name or node");
+    if (!nameEnds(graph, rule.name) || !isTarget(rule.node) || rule.axiom >= graph.axioms.size())
+      return makeError(GPGP_ERROR_INVALID_DATA, "a rule has a bad name, node or axiom");
   for (uint32_t i = 0; i < nodes; ++i)
     if (auto ok = checkNode(graph, i); !ok) return ok;
-  if (!isTarget(graph.axiomNode)) return makeError(GPGP_ERROR_INVALID_DATA, "the axiom has no such node");
-  return checkGeometry(graph, "the axiom", graph.axiomShape, graph.axiomPolygon);
+  if (graph.axioms.empty()) return makeError(GPGP_ERROR_INVALID_DATA, "there is no axiom");
+  for (const Axiom& axiom : graph.axioms) {
+    if (!nameEnds(graph, axiom.name) || !isTarget(axiom.node))
+      return makeError(GPGP_ERROR_INVALID_DATA, "an axiom has a bad name or node");
+    if (auto ok = checkGeometry(graph, "an axiom", axiom.shape, axiom.polygon); !ok) return ok;
+  }
+  return {};
 }
 
 } // namespace gpgp::spawn

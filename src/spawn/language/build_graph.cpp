@@ -2,11 +2,13 @@
 
 #include "spawn/expression.h"
 #include "spawn/graph/export_labels.h"
-#include "spawn/graph/partition.h"
+#include "spawn/language/check_context.h"
 #include "spawn/language/expressions.h"
+#include "spawn/language/lexer.h"
 
 #include <algorithm>
 #include <array>
+#include <deque>
 
 namespace gpgp::spawn {
 namespace {
@@ -20,26 +22,24 @@ std::optional<uint32_t> shapeNamed(const std::string& name) {
 
 std::string count(size_t n, const char* noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
 
+using Tags = std::map<std::string, uint32_t>;
+
+/// Adds one grammar to a graph that others share. All have the same tags.
 class Builder {
 public:
-  Builder(const SyntaxTree& tree, Diagnostics& diagnostics, std::pmr::memory_resource* memory)
-      : tree_(tree), diagnostics_(diagnostics), graph_(memory), expressions_(variables_, graph_, diagnostics) {}
+  Builder(const GrammarPart& part, Graph& graph, std::vector<NodePlace>& places, Tags& tags, uint32_t number)
+      : part_(part), tree_(*part.tree), diagnostics_(*part.diagnostics), graph_(graph), places_(places), tags_(tags),
+        number_(number), firstNode_(graph.nodes.size()), firstRule_(graph.rules.size()),
+        expressions_(variables_, graph_, diagnostics_) {}
 
-  Graph run(std::span<const GpgpVariable> overrides) {
-    addRegularPolygons(graph_);
-    defineVariables(overrides);
+  void run() {
+    defineVariables(part_.overrides);
     defineTerminals();
     defineRules();
     for (size_t i = 0; i < tree_.rules.size(); ++i) buildRule(i);
-    for (size_t i = 0; i < tree_.rules.size(); ++i) graph_.rules[i].node = resolveRule(i);
-    for (const auto& [edge, rule] : ruleEdges_) graph_.edges[edge].target = graph_.rules[rule].node;
-    buildAxiom();
-    if (!diagnostics_.hasErrors()) {
-      analyse(graph_);
-      if (graph_.phases == kNoPhases) refusePhases();
-      warn();
-    }
-    return std::move(graph_);
+    for (size_t i = 0; i < tree_.rules.size(); ++i) graph_.rules[firstRule_ + i].node = resolveRule(i);
+    for (const auto& [edge, rule] : ruleEdges_) graph_.edges[edge].target = graph_.rules[firstRule_ + rule].node;
+    buildAxioms();
   }
 
 private:
@@ -61,6 +61,8 @@ private:
     graph_.names.push_back(0);
     return at;
   }
+  /// Of a rule or terminal.
+  uint32_t addOwnName(const std::string& name) { return addName(part_.name.empty() ? name : part_.name + "." + name); }
 
   bool define(const std::string& name, Name what) {
     const auto [it, isNew] = names_.try_emplace(name, what);
@@ -109,7 +111,7 @@ private:
       for (const auto& [place, name] : line.names) {
         const size_t terminal = graph_.terminals.size();
         if (define(name, {NameKind::terminal, terminal, place}))
-          graph_.terminals.push_back({addName(name), kind, index, bucket});
+          graph_.terminals.push_back({addOwnName(name), kind, index, bucket});
       }
     }
   }
@@ -126,7 +128,7 @@ private:
     ruleTargets_.resize(tree_.rules.size());
     for (size_t i = 0; i < tree_.rules.size(); ++i) {
       define(tree_.rules[i].name, {NameKind::rule, i, tree_.rules[i].place});
-      graph_.rules.push_back({addName(tree_.rules[i].name), kNoNode});
+      graph_.rules.push_back({addOwnName(tree_.rules[i].name)});
     }
   }
 
@@ -188,7 +190,7 @@ private:
     const auto [it, isNew] = terminalNodes_.try_emplace(terminal, static_cast<uint32_t>(graph_.nodes.size()));
     if (isNew) {
       graph_.nodes.push_back({kOpTerminal, terminal, graph_.terminals[terminal].bucket});
-      places_.push_back(place);
+      places_.push_back({number_, place});
     }
     return it->second;
   }
@@ -242,7 +244,7 @@ private:
       if (call.name == "Discard") return {};
       if (!generate_) { // a terminal without a name of its own
         generate_ = static_cast<uint32_t>(graph_.terminals.size());
-        graph_.terminals.push_back({addName("Generate"), 0, 0, graph_.buckets++});
+        graph_.terminals.push_back({addOwnName("Generate"), 0, 0, graph_.buckets++});
       }
       return {terminalNode(*generate_, call.place), std::nullopt};
     }
@@ -401,7 +403,7 @@ private:
     graph_.parameters.insert(graph_.parameters.end(), parameters.begin(), parameters.end());
     graph_.edges.resize(graph_.edges.size() + branches.size());
     graph_.nodes.push_back(node);
-    places_.push_back(place);
+    places_.push_back({number_, place});
     for (size_t i = 0; i < branches.size(); ++i) {
       const Target target = buildSuccessor(branches[i].successor);
       const uint32_t edge = node.firstEdge + static_cast<uint32_t>(i);
@@ -413,99 +415,68 @@ private:
     return index;
   }
 
-  void buildAxiom() {
+  /// Each axiom line is a start; rules start with the shape of the first line that names them, else of the first line.
+  void buildAxioms() {
     if (tree_.axioms.empty()) {
       if (!tree_.brokenAxiom) diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box Start;");
       return;
     }
-    for (size_t i = 1; i < tree_.axioms.size(); ++i)
-      diagnostics_.error(tree_.axioms[i].place,
-                         "there is a second axiom; the first is in " + diagnostics_.where(tree_.axioms[0].place));
-    const AxiomDefinition& axiom = tree_.axioms[0];
-    Successor start;
-    start.place = axiom.namePlace;
-    start.name = axiom.name;
-    const Target target = buildSuccessor(start);
-    graph_.axiomNode = target.rule ? graph_.rules[*target.rule].node : target.node;
-    const auto shape = shapeNamed(axiom.shape);
+    const uint32_t first = static_cast<uint32_t>(graph_.axioms.size());
+    for (size_t i = 0; i < tree_.rules.size(); ++i) graph_.rules[firstRule_ + i].axiom = first;
+    std::vector<bool> named(tree_.rules.size());
+    for (const AxiomDefinition& definition : tree_.axioms) {
+      const uint32_t number = static_cast<uint32_t>(graph_.axioms.size());
+      Axiom axiom;
+      Successor start;
+      start.place = definition.namePlace;
+      start.name = definition.name;
+      const Target target = buildSuccessor(start);
+      axiom.node = target.node;
+      if (target.rule) {
+        Rule& rule = graph_.rules[firstRule_ + *target.rule];
+        axiom.node = rule.node;
+        axiom.name = rule.name;
+        if (!named[*target.rule]) rule.axiom = number;
+        named[*target.rule] = true;
+      } else if (target.node != kNoNode) {
+        axiom.name = graph_.terminals[graph_.nodes[target.node].argument].name;
+      }
+      if (number == first && !part_.name.empty()) axiom.name = addName(part_.name);
+      setShape(axiom, definition);
+      graph_.axioms.push_back(axiom);
+    }
+  }
+
+  void setShape(Axiom& axiom, const AxiomDefinition& definition) {
+    const auto shape = shapeNamed(definition.shape);
     if (!shape) {
-      diagnostics_.error(axiom.shapePlace,
-                         "there is no shape '" + axiom.shape +
+      diagnostics_.error(definition.shapePlace,
+                         "there is no shape '" + definition.shape +
                              "'; expected Triangle, Quad, Pentagon, "
                              "Hexagon, Heptagon, Octagon, Prism3, Box, Prism5 to Prism8, Sphere or a Dynamic... shape");
       return;
     }
-    graph_.axiomShape = *shape;
+    axiom.shape = *shape;
     const bool dynamic = *shape >= kShapeDynamicConvexPolygon && *shape <= kShapeDynamicRightPrism;
     if (dynamic) {
-      graph_.axiomPolygon =
-          buildPolygon(axiom.shapePlace, axiom.corners,
-                       *shape == kShapeDynamicConvexPolygon || *shape == kShapeDynamicConvexRightPrism);
+      axiom.polygon = buildPolygon(definition.shapePlace, definition.corners,
+                                   *shape == kShapeDynamicConvexPolygon || *shape == kShapeDynamicConvexRightPrism);
     } else {
-      if (!axiom.corners.empty())
-        diagnostics_.error(axiom.corners[0].place, "only Dynamic... shapes have corners of their own");
-      const uint32_t corners = *shape <= kShapeOctagon ? *shape + 3 : *shape <= kShapePrism8 ? *shape - 3 : 3;
-      graph_.axiomPolygon = 2 * (corners - 3);
+      if (!definition.corners.empty())
+        diagnostics_.error(definition.corners[0].place, "only Dynamic... shapes have corners of their own");
+      axiom.polygon = usualPolygon(*shape);
     }
   }
 
-  // ---------------------------------------------------------------- phases
-
-  /// Why there is no order: an IfCollides whose shapes can become colliders with its own tag, also by way of others.
-  void refusePhases() {
-    const std::vector<Dependency> dependencies = dependenciesOf(graph_);
-    bool found = false;
-    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
-      if (graph_.nodes[n].op != kOpIfCollides) continue;
-      std::vector<bool> reached(graph_.nodes.size());
-      std::vector<uint32_t> open{n};
-      const auto reach = [&](uint32_t node) {
-        if (node == kNoNode || reached[node]) return;
-        reached[node] = true;
-        open.push_back(node);
-      };
-      while (!open.empty()) {
-        const uint32_t from = open.back();
-        open.pop_back();
-        for (uint32_t e = 0; e < graph_.nodes[from].edgeCount; ++e)
-          reach(graph_.edges[graph_.nodes[from].firstEdge + e].target);
-        for (const Dependency& d : dependencies)
-          if (d.source == from) reach(d.target);
-      }
-      for (const Dependency& d : dependencies) {
-        if (d.target != n || !reached[d.source]) continue;
-        const std::string tag = tagText(graph_, graph_.nodes[n].argument);
-        diagnostics_.error(places_[n], "IfCollides(" + tag + ") waits for all of Collider(" + tag + ") in " +
-                                           diagnostics_.where(places_[d.source]) + ", which comes after it");
-        found = true;
-        break;
-      }
-    }
-    for (uint32_t n = 0; !found && n < graph_.nodes.size(); ++n)
-      if (graph_.nodes[n].op == kOpIfCollides && graph_.nodes[n].argument2 + 1 == kMaxPhases) {
-        diagnostics_.error(places_[n], "IfCollides and Collider wait for each other in more than " +
-                                           std::to_string(kMaxPhases) + " phases");
-        found = true;
-      }
-  }
-
-  // ---------------------------------------------------------------- warnings
-
+public:
+  /// Once all is built and analysed: what has no effect.
   void warn() {
     usedRules_.resize(tree_.rules.size());
     for (size_t i = 0; i < tree_.rules.size(); ++i)
       if (!usedRules_[i])
         diagnostics_.warning(tree_.rules[i].place, "rule '" + tree_.rules[i].name + "' is never used");
-    for (size_t i = 0; i < graph_.nodes.size(); ++i) {
+    for (size_t i = firstNode_; i < graph_.nodes.size() && places_[i].part == number_; ++i) {
       const Node& node = graph_.nodes[i];
-      const uint32_t other = node.op == kOpCollider ? kOpIfCollides : kOpCollider;
-      if (isContext(node.op) && std::none_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const Node& n) {
-            return n.op == other && n.argument == node.argument;
-          })) {
-        const std::string tag = "(" + tagText(graph_, node.argument) + ")";
-        diagnostics_.warning(places_[i],
-                             operatorName(node.op) + tag + " has no effect: there is no " + operatorName(other) + tag);
-      }
       if (node.shapes == 0) continue;
       uint32_t fitting = node.shapes;
       for (uint32_t s = 0; s < kShapeCount; ++s) {
@@ -513,11 +484,12 @@ private:
         if (node.op == kOpCompSplit && !isPrism(s)) fitting &= ~(1u << s);
       }
       if (fitting == 0)
-        diagnostics_.warning(places_[i], std::string(operatorName(node.op)) + " has no effect here: only " +
-                                             list(node.shapes) + " arrives");
+        diagnostics_.warning(places_[i].place, std::string(operatorName(node.op)) + " has no effect here: only " +
+                                                   list(node.shapes) + " arrives");
     }
   }
 
+private:
   static std::string list(uint32_t shapes) {
     std::string text;
     for (uint32_t s = 0; s < kShapeCount; ++s)
@@ -525,25 +497,54 @@ private:
     return text;
   }
 
+  const GrammarPart& part_;
   const SyntaxTree& tree_;
   Diagnostics& diagnostics_;
-  Graph graph_;
+  Graph& graph_;
+  std::vector<NodePlace>& places_; // by node
+  Tags& tags_;
+  const uint32_t number_; // of the part
+  const size_t firstNode_, firstRule_;
   std::map<std::string, float> variables_;
   ExpressionCompiler expressions_;
   std::map<std::string, Name> names_;
   std::vector<Target> ruleTargets_;
   std::vector<std::pair<uint32_t, size_t>> ruleEdges_;
   std::map<uint32_t, uint32_t> terminalNodes_;
-  std::map<std::string, uint32_t> tags_;
   std::vector<bool> usedRules_;
-  std::vector<Place> places_; // by node
   std::optional<uint32_t> generate_;
 };
 } // namespace
 
+std::string linkedName(std::string_view file) {
+  std::string name(file.substr(file.find_last_of("/\\") + 1)); // npos + 1 is 0
+  name.erase(std::min(name.find('.'), name.size()));
+  for (char& c : name)
+    if (!isNameCharacter(c)) c = '_';
+  const bool digits = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+  return digits ? std::string("_").append(name) : name;
+}
+
+Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* memory) {
+  Graph graph(memory);
+  addRegularPolygons(graph);
+  std::vector<NodePlace> places;
+  Tags tags;
+  std::deque<Builder> builders; // they stay where they are
+  for (const GrammarPart& part : parts)
+    builders.emplace_back(part, graph, places, tags, static_cast<uint32_t>(builders.size())).run();
+  if (std::any_of(parts.begin(), parts.end(), [](const GrammarPart& p) { return p.diagnostics->hasErrors(); }))
+    return graph;
+  analyse(graph);
+  checkContext(graph, places, parts);
+  for (Builder& builder : builders) builder.warn();
+  return graph;
+}
+
 Graph buildGraph(const SyntaxTree& tree, std::span<const GpgpVariable> overrides, Diagnostics& diagnostics,
                  std::pmr::memory_resource* memory) {
-  return Builder(tree, diagnostics, memory).run(overrides);
+  const GrammarPart part{&tree, overrides, &diagnostics, {}, {}};
+  return buildGraph({&part, 1}, memory);
 }
 
 Graph compile(std::string_view text, std::span<const GpgpVariable> overrides, Diagnostics& diagnostics,

@@ -96,7 +96,7 @@ struct GpgpGrammarBuilder_T {
   std::vector<Operator> operators;
   std::vector<Terminal> terminals;
   std::vector<Rule> rules;
-  std::optional<Axiom> axiom;
+  std::vector<Axiom> axioms;
   std::vector<std::string> problems; ///< of calls that added nothing
   uint32_t statements = 0;
   bool outOfMemory = false;
@@ -170,11 +170,10 @@ public:
       made.place = place(where);
       made.body = successor(rule.successor, where);
     }
-    if (builder_.axiom) {
-      addAxiom(*builder_.axiom, tree);
-    } else {
+    for (const auto& axiom : builder_.axioms) addAxiom(axiom, tree);
+    if (builder_.axioms.empty()) {
       tree.brokenAxiom = true;
-      diagnostics_.error({}, "there is no axiom; expected gpgpSetAxiom");
+      diagnostics_.error({}, "there is no axiom; expected gpgpAddAxiom");
     }
     for (size_t i = 0; i < used_.size(); ++i)
       if (!used_[i])
@@ -317,19 +316,21 @@ private:
   void addAxiom(const GpgpGrammarBuilder_T::Axiom& axiom, SyntaxTree& tree) {
     begin(axiom.statement);
     AxiomDefinition made;
+    bool broken = false;
     made.place = made.shapePlace = made.namePlace = place("axiom");
     made.name = axiom.rule;
     for (size_t i = 0; i < axiom.corners.size(); ++i) {
       made.corners.push_back(value(axiom.corners[i], "axiom, corner " + std::to_string(i + 1)));
       if (made.corners.back().kind == ExpressionKind::pair) continue;
       diagnostics_.error(made.corners.back().place, "expected a corner as (x, y)");
-      tree.brokenAxiom = true;
+      broken = true;
     }
     if (axiom.shape >= gpgp::shader::kShapeCount) {
       diagnostics_.error(made.place, "there is no shape " + std::to_string(axiom.shape) + "; expected a GpgpShape");
-      tree.brokenAxiom = true;
+      broken = true;
     }
-    if (tree.brokenAxiom) return;
+    tree.brokenAxiom = tree.brokenAxiom || broken;
+    if (broken) return;
     made.shape = shapeName(axiom.shape);
     tree.axioms.push_back(std::move(made));
   }
@@ -460,15 +461,15 @@ void GPGP_CALL gpgpAddRule(GpgpGrammarBuilder builder, const char* name, const c
   });
 }
 
-void GPGP_CALL gpgpSetAxiom(GpgpGrammarBuilder builder, GpgpShape shape, const GpgpGrammarValue* corners,
+void GPGP_CALL gpgpAddAxiom(GpgpGrammarBuilder builder, GpgpShape shape, const GpgpGrammarValue* corners,
                             uint32_t cornerCount, const char* rule) {
   guarded(builder, 0, [&] {
-    if (!builder->checkName(rule, "gpgpSetAxiom")) return 0;
-    if (!builder->check(corners || !cornerCount, "gpgpSetAxiom", "corners is NULL, cornerCount is not 0"))
+    if (!builder->checkName(rule, "gpgpAddAxiom")) return 0;
+    if (!builder->check(corners || !cornerCount, "gpgpAddAxiom", "corners is NULL, cornerCount is not 0"))
       cornerCount = 0;
     GpgpGrammarBuilder_T::Axiom made{builder->statements++, shape, {}, rule};
     if (cornerCount) made.corners.assign(corners, corners + cornerCount);
-    builder->axiom = std::move(made);
+    builder->axioms.push_back(std::move(made));
     return 0;
   });
 }

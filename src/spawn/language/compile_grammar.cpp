@@ -1,4 +1,4 @@
-// gpgpCompileGrammar: text, or what a builder holds, to a baked grammar.
+// gpgpCompileGrammar, gpgpLinkGrammars: text, or what builders hold, to a baked grammar.
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
 #include "spawn/codegen/schedules.h"
@@ -35,54 +35,99 @@ void report(const GpgpGrammarSource& source, const spawn::Diagnostics& diagnosti
     }
   }
 }
+
+constexpr size_t kMostText = size_t(1) << 28;
+
+GpgpResult check(const GpgpGrammarSource& source) {
+  if (source.builder && source.text) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "both text and builder are set");
+  if (!source.text && source.size) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
+  if (!source.variables && source.variableCount)
+    return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
+  for (uint32_t i = 0; i < source.variableCount; ++i)
+    if (!source.variables[i].name) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "a variable's name is NULL");
+  if (source.flags & ~GPGP_COMPILE_KERNEL) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
+  if (source.size > kMostText) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "the text is over 256 MiB");
+  return GPGP_SUCCESS;
+}
+
+struct Input {
+  spawn::Diagnostics diagnostics;
+  spawn::SyntaxTree tree;
+};
+
+/// A graph with a kernel behind it, where one is wanted.
+GpgpResult bake(const GpgpGrammarSource& first, const spawn::Graph& graph, bool kernel, GpgpBlob* blob) {
+  std::pmr::memory_resource* memory = graph.nodes.get_allocator().resource();
+  if (auto ok = spawn::validate(graph); !ok) return fail(first, GPGP_ERROR_UNSUPPORTED, ok.error().text);
+  auto words = spawn::serialize(graph, memory);
+  if (kernel) {
+    const spawn::Schedule schedule = *spawn::namedSchedule(graph, "default");
+    const spawn::KernelSource kernelSource = spawn::generate(graph, schedule.waits);
+    for (const bool subgroups : {true, false}) { // the first that a device can run is taken
+      const auto code = spawn::compileKernel(kernelSource, subgroups);
+      if (!code) return fail(first, code.error().code, code.error().text);
+      spawn::KernelInfo info;
+      info.subgroups = subgroups;
+      info.groups = static_cast<uint32_t>(schedule.groups);
+      schedule.name.copy(info.schedule, sizeof info.schedule - 1);
+      const auto behind = spawn::serialize(info, *code, words[shader::kHeaderChecksum], memory);
+      words.insert(words.end(), behind.begin(), behind.end());
+    }
+  }
+  GpgpBlob made{std::malloc(words.size() * 4), words.size() * 4};
+  if (!made.data) return fail(first, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+  std::memcpy(made.data, words.data(), made.size);
+  *blob = made;
+  return GPGP_SUCCESS;
+}
+
+GpgpResult compile(std::span<const GpgpGrammarSource> sources, bool linked, GpgpBlob* blob) {
+  for (const GpgpGrammarSource& source : sources)
+    if (source.sType != GPGP_STRUCTURE_GRAMMAR_SOURCE || source.pNext) return GPGP_ERROR_INVALID_STRUCT;
+  try {
+    for (const GpgpGrammarSource& source : sources)
+      if (const GpgpResult result = check(source); result != GPGP_SUCCESS) return result;
+    std::vector<Input> inputs(sources.size());
+    std::vector<spawn::GrammarPart> parts;
+    std::map<std::string, std::string> files; // by the name of the grammar
+    bool kernel = false;
+    for (size_t i = 0; i < sources.size(); ++i) {
+      const GpgpGrammarSource& source = sources[i];
+      auto& [diagnostics, tree] = inputs[i];
+      const std::string file = source.name ? source.name : "", name = linked ? spawn::linkedName(file) : std::string();
+      tree = source.builder ? spawn::treeOf(*source.builder, diagnostics)
+                            : spawn::parse({source.text ? source.text : "", source.size}, diagnostics);
+      const auto [other, isNew] = files.try_emplace(name, file);
+      if (linked && name.empty())
+        diagnostics.error({},
+                          "this grammar has no name; expected one, as of a file: what it is linked with calls it so");
+      else if (!isNew)
+        diagnostics.error({}, "'" + name + "' is also the name of " + other->second +
+                                  "; expected another file name: linked grammars are told apart by them");
+      parts.push_back({&tree, {source.variables, source.variableCount}, &diagnostics, name, file});
+      kernel = kernel || (source.flags & GPGP_COMPILE_KERNEL);
+    }
+    const spawn::Graph graph = spawn::buildGraph(parts, std::pmr::new_delete_resource());
+    bool failed = false;
+    for (size_t i = 0; i < sources.size(); ++i) {
+      report(sources[i], inputs[i].diagnostics);
+      failed = failed || inputs[i].diagnostics.hasErrors();
+    }
+    return failed ? GPGP_ERROR_INVALID_DATA : bake(sources[0], graph, kernel, blob);
+  } catch (const std::bad_alloc&) {
+    return fail(sources[0], GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+  } catch (...) {
+    return fail(sources[0], GPGP_ERROR_OUT_OF_HOST_MEMORY, "the compiler failed");
+  }
+}
 } // namespace
 
 GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob) {
   if (!source || !blob) return GPGP_ERROR_INVALID_ARGUMENT;
-  if (source->sType != GPGP_STRUCTURE_GRAMMAR_SOURCE || source->pNext) return GPGP_ERROR_INVALID_STRUCT;
-  try {
-    if (source->builder && source->text)
-      return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "both text and builder are set");
-    if (!source->text && source->size) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
-    if (!source->variables && source->variableCount)
-      return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
-    for (uint32_t i = 0; i < source->variableCount; ++i)
-      if (!source->variables[i].name) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "a variable's name is NULL");
-    if (source->flags & ~GPGP_COMPILE_KERNEL)
-      return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
-    if (source->size > (size_t(1) << 28)) return fail(*source, GPGP_ERROR_INVALID_ARGUMENT, "the text is over 256 MiB");
-    std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
-    spawn::Diagnostics diagnostics;
-    const std::string_view text(source->text ? source->text : "", source->size);
-    const spawn::SyntaxTree tree =
-        source->builder ? spawn::treeOf(*source->builder, diagnostics) : spawn::parse(text, diagnostics);
-    const spawn::Graph graph = spawn::buildGraph(tree, {source->variables, source->variableCount}, diagnostics, memory);
-    report(*source, diagnostics);
-    if (diagnostics.hasErrors()) return GPGP_ERROR_INVALID_DATA;
-    if (auto ok = spawn::validate(graph); !ok) return fail(*source, GPGP_ERROR_UNSUPPORTED, ok.error().text);
-    auto words = spawn::serialize(graph, memory);
-    if (source->flags & GPGP_COMPILE_KERNEL) {
-      const spawn::Schedule schedule = *spawn::namedSchedule(graph, "default");
-      const spawn::KernelSource kernelSource = spawn::generate(graph, schedule.waits);
-      for (const bool subgroups : {true, false}) { // the first that a device can run is taken
-        const auto code = spawn::compileKernel(kernelSource, subgroups);
-        if (!code) return fail(*source, code.error().code, code.error().text);
-        spawn::KernelInfo info;
-        info.subgroups = subgroups;
-        info.groups = static_cast<uint32_t>(schedule.groups);
-        schedule.name.copy(info.schedule, sizeof info.schedule - 1);
-        const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], memory);
-        words.insert(words.end(), kernel.begin(), kernel.end());
-      }
-    }
-    GpgpBlob made{std::malloc(words.size() * 4), words.size() * 4};
-    if (!made.data) return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
-    std::memcpy(made.data, words.data(), made.size);
-    *blob = made;
-    return GPGP_SUCCESS;
-  } catch (const std::bad_alloc&) {
-    return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
-  } catch (...) {
-    return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "the compiler failed");
-  }
+  return compile({source, 1}, false, blob);
+}
+
+GpgpResult GPGP_CALL gpgpLinkGrammars(const GpgpGrammarSource* sources, uint32_t sourceCount, GpgpBlob* blob) {
+  if (!sources || !sourceCount || !blob) return GPGP_ERROR_INVALID_ARGUMENT;
+  return compile({sources, sourceCount}, true, blob);
 }

@@ -26,7 +26,8 @@ constexpr Symbol kSymbols[] = {
 
 class Lexer {
 public:
-  Lexer(std::string_view text, Diagnostics& diagnostics) : text_(text), diagnostics_(diagnostics) {}
+  Lexer(std::string_view text, Diagnostics& diagnostics, bool qualified)
+      : text_(text), diagnostics_(diagnostics), qualified_(qualified) {}
 
   std::vector<Token> run() {
     std::vector<Token> tokens;
@@ -34,6 +35,7 @@ public:
     while (skipSpace()) {
       const Place start = place_;
       const size_t from = at_;
+      if (qualified_ && lexQualified(tokens, start)) continue;
       if (lexNumber(tokens, start)) continue;
       if (isNameCharacter(text_[at_])) {
         while (at_ < text_.size() && isNameCharacter(text_[at_])) ++at_;
@@ -95,6 +97,23 @@ private:
     return false;
   }
 
+  /// a.b; with digits alone before the point, and one behind it, it is a number.
+  bool lexQualified(std::vector<Token>& tokens, Place start) {
+    const auto nameEnd = [&](size_t at) {
+      while (at < text_.size() && isNameCharacter(text_[at])) ++at;
+      return at;
+    };
+    const size_t from = at_, point = nameEnd(from);
+    if (point == from || point + 1 >= text_.size() || text_[point] != '.' || !isNameCharacter(text_[point + 1]))
+      return false;
+    if (isDigit(text_[point + 1]) &&
+        text_.substr(from, point - from).find_first_not_of("0123456789") == std::string_view::npos)
+      return false;
+    at_ = nameEnd(point + 1);
+    push(tokens, TokenKind::name, from, start);
+    return true;
+  }
+
   /// Names may begin with digits, so "3" is a number and "3rd" a name.
   bool lexNumber(std::vector<Token>& tokens, Place start) {
     const bool point = text_[at_] == '.' && at_ + 1 < text_.size() && isDigit(text_[at_ + 1]);
@@ -135,6 +154,7 @@ private:
 
   std::string_view text_;
   Diagnostics& diagnostics_;
+  bool qualified_;
   size_t at_ = 0;
   Place place_;
 };
@@ -144,7 +164,9 @@ bool isNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-std::vector<Token> tokenize(std::string_view text, Diagnostics& diagnostics) { return Lexer(text, diagnostics).run(); }
+std::vector<Token> tokenize(std::string_view text, Diagnostics& diagnostics, bool qualified) {
+  return Lexer(text, diagnostics, qualified).run();
+}
 
 std::string describe(const Token& token) {
   if (token.kind == TokenKind::end) return "the end of the file";

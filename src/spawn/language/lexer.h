@@ -44,8 +44,8 @@ struct Token {
 /// Letters, digits and _ make names.
 bool isNameCharacter(char c);
 
-/// The tokens of a file; the last is end. Views point into text.
-std::vector<Token> tokenize(std::string_view text, Diagnostics& diagnostics);
+/// The tokens of a file; the last is end. Views point into text. qualified: a.b is one name, as in linked grammars.
+std::vector<Token> tokenize(std::string_view text, Diagnostics& diagnostics, bool qualified = false);
 
 /// As in "found '}'" or "found the end of the file".
 std::string describe(const Token& token);

@@ -13,9 +13,11 @@ std::string targetText(uint32_t node) { return node == kNoNode ? std::string("Di
 
 std::string printGraph(const Graph& graph) {
   std::ostringstream out;
-  out << "axiom " << shapeName(graph.axiomShape);
-  if (graph.axiomPolygon != usualPolygon(graph.axiomShape)) out << '(' << graph.axiomPolygon << ')';
-  out << " -> " << targetText(graph.axiomNode) << '\n';
+  for (const Axiom& axiom : graph.axioms) {
+    out << "axiom " << axiomText(graph, axiom);
+    if (axiom.polygon != usualPolygon(axiom.shape)) out << '(' << axiom.polygon << ')';
+    out << " -> " << targetText(axiom.node) << '\n';
+  }
   for (const Terminal& t : graph.terminals)
     out << "terminal " << graph.nameAt(t.name) << " (" << t.kind << ", " << t.index << ") bucket " << t.bucket << '\n';
   for (uint32_t i = kRegularPolygons; i < graph.polygons.size(); i += 2) {
@@ -26,8 +28,11 @@ std::string printGraph(const Graph& graph) {
     }
     out << " }\n";
   }
-  for (const Rule& rule : graph.rules)
-    out << "rule " << graph.nameAt(rule.name) << " -> " << targetText(rule.node) << '\n';
+  for (const Rule& rule : graph.rules) {
+    out << "rule " << graph.nameAt(rule.name);
+    if (rule.axiom) out << '(' << rule.axiom << ')';
+    out << " -> " << targetText(rule.node) << '\n';
+  }
   for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
     const Node& node = graph.nodes[i];
     out << i << ' ' << nodeText(graph, node);

@@ -1,9 +1,11 @@
 // The printed form of operator graphs: text that people read and edit, and that gives the same graph back.
 //
 //   axiom Box -> 0                          the start shape and the node where it goes; a polygon's number in ( )
+//   axiom house: Box -> 0                   with its name, where there are several; the first is the default
 //   terminal Wall (1, 4) bucket 2           kind, index, bucket
 //   polygon 12 { (0,0.5) (-0.5,0) (0.5,0) } corners of Dynamic... shapes; 13 is its mirror image
 //   rule A -> 0                             or Discard
+//   rule B(1) -> 2                          starts with the shape of axiom 1, counted from 0
 //   0 SubDiv(X) { -1: / -> 1 | 2: / -> 2 }  a node with its edges: value, multiplicity (1, n, / or *), target
 //   1 Wall
 //   2 Translate(0,(ShapeSize(Y) * 1.5),0) { 1 -> 0 }

@@ -19,7 +19,7 @@ struct Stop {}; // an error that leaves no way to go on in the statement
 class Parser {
 public:
   Parser(std::string_view text, Diagnostics& diagnostics, std::pmr::memory_resource* memory)
-      : diagnostics_(diagnostics), tokens_(tokenize(text, diagnostics)), graph_(memory) {
+      : diagnostics_(diagnostics), tokens_(tokenize(text, diagnostics, true)), graph_(memory) {
     addRegularPolygons(graph_);
     while (!is(TokenKind::end)) {
       const size_t before = at_;
@@ -32,10 +32,10 @@ public:
     }
   }
 
-  bool hasGraph() const { return axiomPlace_ || !graph_.nodes.empty(); }
+  bool hasGraph() const { return !axiomPlaces_.empty() || !graph_.nodes.empty(); }
 
   std::optional<Graph> takeGraph() {
-    if (!axiomPlace_) diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box -> 0");
+    if (axiomPlaces_.empty()) diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box -> 0");
     finish();
     if (diagnostics_.hasErrors()) return std::nullopt;
     analyse(graph_);
@@ -158,18 +158,20 @@ private:
   }
 
   void axiom(Place place) {
-    if (axiomPlace_)
-      diagnostics_.error(place, std::string("there is a second axiom; the first is in line ") +
-                                    std::to_string(axiomPlace_->line));
-    axiomPlace_ = place;
-    graph_.axiomShape = oneOf(kShapeCount, shapeName, "a shape");
-    graph_.axiomPolygon = usualPolygon(graph_.axiomShape);
+    axiomPlaces_.push_back(place);
+    Axiom axiom;
+    const bool named = !is(TokenKind::end) && tokens_[at_ + 1].kind == TokenKind::colon; // as a file: also 2e5
+    axiom.name = addName(named ? std::string(now().text) : std::string());
+    if (named) at_ += 2;
+    axiom.shape = oneOf(kShapeCount, shapeName, "a shape");
+    axiom.polygon = usualPolygon(axiom.shape);
     if (accept(TokenKind::open)) {
-      graph_.axiomPolygon = whole("a polygon's number");
+      axiom.polygon = whole("a polygon's number");
       expect(TokenKind::close, "')'");
     }
     expect(TokenKind::arrow, "'->'");
-    graph_.axiomNode = target();
+    axiom.node = target();
+    graph_.axioms.push_back(axiom);
   }
 
   uint32_t addName(const std::string& text) {
@@ -224,6 +226,11 @@ private:
   void rule() {
     Rule rule;
     rule.name = addName(name("a rule's name"));
+    if (accept(TokenKind::open)) {
+      axioms_.push_back(now());
+      rule.axiom = whole("an axiom's number");
+      expect(TokenKind::close, "')'");
+    }
     expect(TokenKind::arrow, "'->'");
     rule.node = target();
     graph_.rules.push_back(rule);
@@ -405,6 +412,9 @@ private:
     for (const auto& [place, node] : targets_)
       if (node >= graph_.nodes.size())
         diagnostics_.error(place, std::string("there is no node ") + std::to_string(node));
+    for (const Token& axiom : axioms_)
+      if (axiom.number >= static_cast<float>(axiomPlaces_.size()))
+        diagnostics_.error(axiom.place, std::string("there is no axiom ") + describe(axiom));
     for (const auto& [word, n] : terminalNodes_) {
       const auto found = terminals_.find(std::string(word.text));
       if (found == terminals_.end()) {
@@ -430,7 +440,8 @@ private:
   std::vector<Token> tokens_;
   size_t at_ = 0;
   Graph graph_;
-  std::optional<Place> axiomPlace_;
+  std::vector<Place> axiomPlaces_;
+  std::vector<Token> axioms_;                             // named by rules
   std::vector<std::pair<Token, uint32_t>> terminalNodes_; // with the node
   std::vector<std::pair<Place, uint32_t>> targets_;
   std::vector<Token> multiplicities_; // by edge

@@ -1,0 +1,17 @@
+// Collider and IfCollides of a whole graph, which grammars may share: whether they have an order, and an effect.
+#pragma once
+#include "spawn/language/build_graph.h"
+
+namespace gpgp::spawn {
+
+/// Where a node was written.
+struct NodePlace {
+  uint32_t part = 0; ///< of the grammars
+  Place place;
+};
+
+/// Reports, where it was written, each IfCollides that must wait for what comes after it, and operators with a tag that
+/// no other one has. The graph is analysed; places: by node.
+void checkContext(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts);
+
+} // namespace gpgp::spawn
