@@ -188,19 +188,23 @@ TEST_F(NearbyTest, WhatItListsIsSampledUnderItsOwnNumbers) {
 TEST_F(NearbyTest, ArgumentsAreChecked) {
   Scene scene = randomSoup(1, 10, 16, 16, true, false);
   scene.input();
-  sampler = createSampler(64, 64, 0, false, GPGP_SAMPLING_NEARBY_BIT);
+  sampler = createSampler(64, 64, 0, false, GPGP_SAMPLING_NEARBY_BIT | GPGP_SAMPLING_EXACT_BIT);
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
   const host::Buffer any(device, 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   upload();
   const GpgpFrame f = advance();
-  for (const auto& [text, reach, parallel] : {std::tuple("", 0.5f, false),
-                                              {"reach is -1", -1.0f, false},
-                                              {"reach is", NAN, false},
-                                              {"camera 0 has no perspective", 1.0f, true}}) {
+  constexpr GpgpSamplingMethod nearby = GPGP_SAMPLING_NEARBY, exact = GPGP_SAMPLING_EXACT;
+  for (const auto& [method, text, reach, parallel] : {std::tuple(nearby, "", 0.5f, false),
+                                                      {nearby, "reach is -1", -1.0f, false},
+                                                      {nearby, "reach is", NAN, false},
+                                                      {nearby, "camera 0 has no perspective", 1.0f, true},
+                                                      {exact, "reach is -1", -1.0f, false},
+                                                      {exact, "camera 0 has no perspective", 1.0f, true},
+                                                      {exact, "", 0.0f, true}}) {
     GpgpSampleInfo info = sampleInfo(scene, buffers, set);
     info.visibleBits = any.range();
-    info.method = GPGP_SAMPLING_NEARBY;
+    info.method = method;
     info.reach = reach;
     if (parallel) std::copy_n(&glm::mat4(1.0f)[0][0], 16, info.camera.viewProjection);
     const GpgpResult expected = *text ? GPGP_ERROR_INVALID_ARGUMENT : GPGP_SUCCESS;
