@@ -182,7 +182,9 @@ typedef struct GpgpSampleInfo {
   uint32_t refinements; /**< conservative: at most 4 further passes, each of which shows, in every pixel that visible
                              triangles do not cover at 8 x 8 samples, the nearest one in each quarter that covers such
                              a sample */
-  float reach;          /**< nearby: how far from a camera, in units of clip space's w; 0 or more */
+  float reach;          /**< nearby: how far from a camera, in units of clip space's w; 0 or more. exact: also shows
+                             what a move that far would uncover within a pixel, for views of a cell whose view points
+                             lie twice as far apart; 0: nothing more. Above 0: perspective cameras */
   GpgpBuffer positions; /**< vertex positions; STORAGE usage; size a multiple of 4 for 16-bit formats */
   VkFormat positionFormat; /**< R32G32B32_SFLOAT, R16G16B16_SFLOAT or R16G16B16_SNORM, or the same with A; UNDEFINED:
                                 R32G32B32_SFLOAT. Only the first three numbers are read */

@@ -197,15 +197,19 @@ GPGP_FN uvec2 bitRange(int first, int end) {
   return uvec2(bitsFrom(first0, max(min(end, 32) - first0, 0)), bitsFrom(first1, max(max(end, 32) - 32 - first1, 0)));
 }
 
-/// A candidate within a pixel: in row r of 64 it covers the samples from the greater of start + r * step (x, y: its
-/// left edges) to before the lesser (z, w: its right ones), both rounded, in rows rowBegin to rowEnd - 1. A sample that
-/// an edge meets lies right of it.
+/// A candidate within a pixel. Each edge is a line, at column x + r * y in row r of 64. It covers the samples from the
+/// greater of its left edges to before the lesser of its right ones, both rounded, in rows rowBegin to rowEnd - 1; the
+/// third edge is one of them. A sample that an edge meets lies right of it.
 struct Outline {
-  vec4 start;
-  vec4 step;
+  vec2 left;
+  vec2 right;
+  vec2 third;
+  bool isThirdLeft;
   int rowBegin;
   int rowEnd;
 };
+
+GPGP_CONST float kNoEdge = -1e30f;
 
 /// Adds an edge. Its line is computed from its upper corner, so that both triangles at an edge have the same one, and
 /// neither share a sample nor leave one out.
@@ -213,24 +217,25 @@ GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2
   if (u.y == v.y) return;
   ivec2 top = (u.y < v.y ? u : v) - first;
   GPGP_PRECISE float start = (float(top.x - 2) + float(2 - top.y) * slope) * 0.25f + 0.498046875f;
-  if (u.y > v.y) { // upwards: bounds from the left, as the triangle is clockwise as seen
-    o.start.y = o.start.x;
-    o.step.y = o.step.x;
-    o.start.x = start;
-    o.step.x = slope;
-  } else {
-    o.start.w = o.start.z;
-    o.step.w = o.step.z;
-    o.start.z = start;
-    o.step.z = slope;
+  bool isLeft = u.y > v.y; // upwards: bounds from the left, as the triangle is clockwise as seen
+  vec2 before = isLeft ? o.left : o.right;
+  if (before.x != kNoEdge) {
+    o.third = before;
+    o.isThirdLeft = isLeft;
   }
+  if (isLeft)
+    o.left = vec2(start, slope);
+  else
+    o.right = vec2(start, slope);
 }
 
 GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
   Outline o;
   ivec2 first = pixel * 256;
-  o.start = vec4(0.0f, 0.0f, 64.0f, 64.0f);
-  o.step = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+  o.left = vec2(kNoEdge, 0.0f); // each triangle has both
+  o.right = vec2(kNoEdge, 0.0f);
+  o.third = vec2(kNoEdge, 0.0f);
+  o.isThirdLeft = true;
   addEdge(o, c.p1, c.p2, c.slope0, first);
   addEdge(o, c.p2, c.p0, c.slope1, first);
   addEdge(o, c.p0, c.p1, c.slope2, first);
@@ -241,11 +246,14 @@ GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
 
 /// From where to where an outline reaches in a row: x to before y, once rounded.
 GPGP_FN vec2 columnsOf(Outline o, float row) {
-  GPGP_PRECISE float left0 = o.start.x + row * o.step.x;
-  GPGP_PRECISE float left1 = o.start.y + row * o.step.y;
-  GPGP_PRECISE float right0 = o.start.z + row * o.step.z;
-  GPGP_PRECISE float right1 = o.start.w + row * o.step.w;
-  return vec2(clamp(max(left0, left1), 0.0f, 64.0f), clamp(min(right0, right1), 0.0f, 64.0f));
+  GPGP_PRECISE float left = o.left.x + row * o.left.y;
+  GPGP_PRECISE float right = o.right.x + row * o.right.y;
+  GPGP_PRECISE float third = o.third.x + row * o.third.y;
+  if (o.isThirdLeft)
+    left = max(left, third);
+  else
+    right = min(right, third);
+  return vec2(clamp(left, 0.0f, 64.0f), clamp(right, 0.0f, 64.0f));
 }
 
 /// The integer nearest to 0 to 64: a large number leaves its sum with v no other bits. Conversions are slow.
@@ -259,6 +267,21 @@ GPGP_FN uvec2 samplesIn(Outline o, int row) {
   vec2 columns = columnsOf(o, float(row));
   int end = row >= o.rowBegin && row < o.rowEnd ? roundedColumn(columns.y) : 0;
   return bitRange(roundedColumn(columns.x), end);
+}
+
+/// The same, with all samples that are at most so many columns and rows away, corners cut off.
+GPGP_FN uvec2 samplesAround(Outline o, int reach, int row) {
+  if (row < o.rowBegin - reach || row >= o.rowEnd + reach) return uvec2(0u, 0u);
+  Outline wide = o;
+  float by = float(reach);
+  GPGP_PRECISE float left = o.left.x - by * (abs(o.left.y) + 1.0f);
+  GPGP_PRECISE float right = o.right.x + by * (abs(o.right.y) + 1.0f);
+  GPGP_PRECISE float third = o.third.x + (o.isThirdLeft ? -by : by) * (abs(o.third.y) + 1.0f);
+  wide.left.x = left;
+  wide.right.x = right;
+  wide.third.x = third;
+  vec2 columns = columnsOf(wide, float(row));
+  return bitRange(roundedColumn(columns.x), roundedColumn(columns.y));
 }
 
 /// The depth of a candidate in a pixel, as a key: in the middle of the row that halves its box there.

@@ -72,6 +72,19 @@ GPGP_FN int reachOf(vec4 scale, float occluder, float own) {
   return int(clamp(pixels, 0.0f, 8192.0f));
 }
 
+GPGP_CONST int kMostParallax = 16;   ///< samples: a quarter of a pixel
+GPGP_CONST uint kMovedEntries = 16u; ///< of a pixel's list
+
+/// By how many samples a triangle moves against what is nearest in its pixel, kMostParallax at most; both by their
+/// keys. place: in the pixel's order. What lies behind many others, behind leaves for example, hardly ever comes out
+/// between all of them: it does not move.
+GPGP_FN int parallaxOf(vec4 scale, uint nearest, uint own, uint place, bool reversed) {
+  if (scale.z == 0.0f || place >= kMovedEntries) return 0;
+  GPGP_PRECISE float samples =
+      (inverseOfKey(scale, nearest, reversed) - inverseOfKey(scale, own, reversed)) * scale.z * 64.0f;
+  return int(clamp(samples, 0.0f, float(kMostParallax)));
+}
+
 /// Whether a triangle may be seen where that far shows.
 GPGP_FN bool mayShow(float own, float farthest) {
   GPGP_PRECISE float least = farthest * kNearbyShare;

@@ -8,46 +8,51 @@
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
 
-shared uint ids[kBatch];
-shared vec4 planes[kBatch]; // facets of the sorted entries: plane, nearest
-shared float farthest[kBatch];
+// How many lists are decided at a time is a matter of how little shared memory each takes.
+shared float planes[kBatch * 3u]; // facets of the sorted entries
+shared vec4 nearest[kBatch / 4u];
+shared vec4 farthest[kBatch / 4u];
 shared uint boxes[kBatch];
-shared uint rivals[kBatch]; // for each entry: those that may hide a part of it
 shared uint suspectCount;
 
 void putFacet(uint place, Facet f) {
-  planes[place] = vec4(f.plane, f.nearest);
-  farthest[place] = f.farthest;
+  planes[place * 3u] = f.plane.x;
+  planes[place * 3u + 1u] = f.plane.y;
+  planes[place * 3u + 2u] = f.plane.z;
+  nearest[place >> 2u][place & 3u] = f.nearest;
+  farthest[place >> 2u][place & 3u] = f.farthest;
   boxes[place] = uint(f.box.x) | uint(f.box.y) << 8u | uint(f.box.z) << 16u | uint(f.box.w) << 24u;
 }
 
 Facet facetAt(uint place) {
-  vec4 plane = planes[place];
   uint box = boxes[place];
   Facet f;
-  f.plane = plane.xyz;
-  f.nearest = plane.w;
-  f.farthest = farthest[place];
+  f.plane = vec3(planes[place * 3u], planes[place * 3u + 1u], planes[place * 3u + 2u]);
+  f.nearest = nearest[place >> 2u][place & 3u];
+  f.farthest = farthest[place >> 2u][place & 3u];
   f.box = ivec4(box & 255u, box >> 8u & 255u, box >> 16u & 255u, box >> 24u);
   return f;
 }
 
+uint bitsOf(bvec4 v) { return uint(v.x) | uint(v.y) << 1u | uint(v.z) << 2u | uint(v.w) << 3u; }
+
 /// Bits: those that an entry may be in the wrong order with, by their depths alone. Entries that are shown already need
-/// no answer.
-uint suspectsOf(uint place, uint n, Looked looked, uint shown) {
+/// no answer. rivals: those that may hide a part of it.
+uint suspectsOf(uint place, uint n, Looked looked, uint shown, out uint rivals) {
   uint bit = 1u << place;
   bool claimed = (looked.seen & bit) != 0u;
-  float near = planes[place].w;
-  float far = farthest[place];
+  vec4 near = vec4(nearest[place >> 2u][place & 3u]);
+  vec4 far = vec4(farthest[place >> 2u][place & 3u]);
   uint before = 0u; // all that are not behind it as a whole
   uint after = 0u;  // all that are not before it as a whole
-  for (uint j = 0u; j < n; ++j) {
-    if (planes[j].w <= far) before |= 1u << j;
-    if (near < farthest[j]) after |= 1u << j;
+  for (uint j = 0u; j < n; j += 4u) {
+    before |= bitsOf(lessThanEqual(nearest[j >> 2u], far)) << j;
+    after |= bitsOf(lessThan(near, farthest[j >> 2u])) << j;
   }
-  rivals[place] = before & ~bit;
+  uint all_ = 0xffffffffu >> (kBatch - n); // not what an earlier list left
+  rivals = before & all_ & ~bit;
   if ((shown & bit) != 0u) return 0u;
-  return claimed ? before & ~(bit | bit - 1u) : after & (1u << min(place, looked.stops)) - 1u;
+  return claimed ? rivals & ~(bit - 1u) : after & all_ & (1u << min(place, looked.stops)) - 1u;
 }
 
 /// Whether two entries are in the wrong order: one that is seen before one that is nearer, or one that is hidden
@@ -59,10 +64,11 @@ bool isWrong(uint place, uint other, bool claimed) {
          overlap(readCandidate(items[nearer]), readCandidate(items[farther]));
 }
 
-/// Entries that the order may have wrong. Few have suspects: the pairs are shared out.
-uint doubtfulOf(uint n, Looked looked, uint shown) {
+/// Entries that the order may have wrong. Few have suspects: the pairs are shared out. rivals: of this invocation's.
+uint doubtfulOf(uint n, Looked looked, uint shown, out uint rivals) {
   uint lane = laneOf();
-  uint left = lane < n ? suspectsOf(lane, n, looked, shown) : 0u;
+  rivals = 0u;
+  uint left = lane < n ? suspectsOf(lane, n, looked, shown, rivals) : 0u;
   uint doubtful = 0u;
   while (orAll(left) != 0u) {
     if (lane == 0u) suspectCount = 0u;
@@ -86,33 +92,39 @@ uint doubtfulOf(uint n, Looked looked, uint shown) {
   return doubtful;
 }
 
-/// Whether an entry has a sample, in this invocation's rows, at which none of the others is nearer.
+/// Whether an entry has a sample, in this invocation's rows, at which none of its rivals, which are its key now, is
+/// nearer.
 bool isAhead(uint place) {
   int row = int(laneOf());
   Outline o = outlineAt(place);
   Facet f = facetAt(place);
-  uint id = ids[place];
+  uint id = candidateId(items[place]);
   uvec4 rest = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
-  for (uint left = rivals[place]; left != 0u && (rest.x | rest.y | rest.z | rest.w) != 0u; left &= left - 1u) {
+  for (uint left = keyAt(place); left != 0u && (rest.x | rest.y | rest.z | rest.w) != 0u; left &= left - 1u) {
     uint j = uint(findLSB(left));
-    Crossing crossing = crossingOf(facetAt(j), f, ids[j] < id);
+    Crossing crossing = crossingOf(facetAt(j), f, candidateId(items[j]) < id);
     Outline other = outlineAt(j);
     rest &= ~uvec4(samplesAhead(other, crossing, row), samplesAhead(other, crossing, row + 32));
   }
   return (rest.x | rest.y | rest.z | rest.w) != 0u;
 }
 
-/// After the order has proposed which are seen: corrects that, and shows them.
-void settle(uint n, Looked looked, uint shown) {
-  uint doubtful = doubtfulOf(n, looked, shown);
+/// After the order has proposed which are seen: corrects that; bits of those that are, and are not shown yet.
+uint settle(uint n, Looked looked, uint shown) {
+  uint rivals;
+  uint doubtful = doubtfulOf(n, looked, shown, rivals);
   uint kept = 0u;
+  if (doubtful != 0u) {
+    sync();
+    setKey(laneOf(), rivals);
+    sync();
+  }
   for (uint left = doubtful; left != 0u; left &= left - 1u) {
     uint place = uint(findLSB(left));
     if (isAhead(place)) kept |= 1u << place;
   }
   if (doubtful != 0u) kept = orAll(kept);
-  uint visible = (looked.seen & ~doubtful | kept) & ~shown;
-  if ((visible & (1u << laneOf())) != 0u) show(ids[laneOf()]);
+  return (looked.seen & ~doubtful | kept) & ~shown;
 }
 
 /// A pixel's list, and the entry of it that this invocation reads.
@@ -139,28 +151,32 @@ void resolveShort(List list) {
   Outline o;
   Facet f;
   uint id = 0u;
+  uint key = kFarthest;
   if (lane < n) {
     items[lane] = list.item;
     Candidate c = readCandidate(list.item);
     Footing footing = footingIn(c, pixel);
     o = outlineOf(c, pixel);
     id = c.id;
-    setKey(lane, middleKey(c, o, footing, pixel, reversed));
+    key = middleKey(c, o, footing, pixel, reversed);
+    setKey(lane, key);
     f = facetOf(c, footing, pixel, reversed);
   }
   uint place = placeAmong(n);
+  bool moves = movesIn(pixel);
+  uint first = moves ? minAll(key) : 0u;
   bool isKnown = false;
   if (lane < n) {
     items[place] = list.item;
-    ids[place] = id;
-    put(place, o);
+    put(place, o, parallaxIn(pixel, first, key, place));
     putFacet(place, f);
     isKnown = isShown(id);
   }
   uint shown = orAll(isKnown ? 1u << place : 0u);
   uvec4 covered = uvec4(0u);
-  Looked looked = lookAtBatch(n, covered);
-  settle(n, looked, shown);
+  Looked looked = lookAtBatch(n, moves, covered);
+  uint visible = settle(n, looked, shown);
+  if (lane < n && (visible & (1u << place)) != 0u) show(id);
 }
 
 void main() {

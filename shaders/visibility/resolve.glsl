@@ -3,6 +3,7 @@
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/lists.glsl"
+#include "visibility/nearby.h"
 #include "visibility/team.glsl"
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindOpen) readonly buffer OpenBuffer { uint open[]; };
@@ -11,9 +12,9 @@ layout(std430, set = 0, binding = kBindEntries) buffer EntryBuffer { uint entrie
 
 shared uint items[kBatch]; // candidates of a batch
 shared uvec4 keys[kBatch / 4u];
-shared vec4 starts[kBatch]; // their outlines, in order
-shared vec4 steps[kBatch];
-shared uint rows[kBatch];
+shared vec4 edges[kBatch]; // their outlines, in order: left, right
+shared vec2 thirds[kBatch];
+shared uint rows[kBatch]; // first and last; parallax; whether the third edge is a left one
 
 bool isShown(uint id) { return (bits[id >> 5u] & (1u << (id & 31u))) != 0u; }
 void show(uint id) {
@@ -73,18 +74,29 @@ uint placeAmong(uint n) {
   return place;
 }
 
-void put(uint place, Outline o) {
-  starts[place] = o.start;
-  steps[place] = o.step;
-  rows[place] = uint(o.rowBegin) | uint(o.rowEnd) << 8u;
+/// Whether the record asks, too, what a move would uncover; by how many samples it moves an entry of a pixel's list
+/// against what is nearest there.
+bool movesIn(ivec2 pixel) { return params.depthScales[uint(pixel.y) / params.height].z != 0.0; }
+int parallaxIn(ivec2 pixel, uint nearest, uint own, uint place) {
+  vec4 scale = params.depthScales[uint(pixel.y) / params.height];
+  return parallaxOf(scale, nearest, own, place, params.reversedDepth != 0u);
 }
+
+void put(uint place, Outline o, int parallax) {
+  edges[place] = vec4(o.left, o.right);
+  thirds[place] = o.third;
+  rows[place] = uint(o.rowBegin) | uint(o.rowEnd) << 8u | uint(parallax) << 16u | uint(o.isThirdLeft) << 24u;
+}
+int parallaxAt(uint place) { return int(rows[place] >> 16u & 255u); }
 
 Outline outlineAt(uint place) {
   Outline o;
-  o.start = starts[place];
-  o.step = steps[place];
+  o.left = edges[place].xy;
+  o.right = edges[place].zw;
+  o.third = thirds[place];
+  o.isThirdLeft = rows[place] >= 1u << 24u;
   o.rowBegin = int(rows[place] & 255u);
-  o.rowEnd = int(rows[place] >> 8u);
+  o.rowEnd = int(rows[place] >> 8u & 255u);
   return o;
 }
 
@@ -95,8 +107,8 @@ struct Looked {
   bool holes; // samples that nothing covers yet
 };
 
-/// Goes through a batch, whose outlines are there.
-Looked lookAtBatch(uint batch, inout uvec4 covered) {
+/// Goes through a batch, whose outlines are there; `moves`: some have a parallax.
+Looked lookAtBatch(uint batch, bool moves, inout uvec4 covered) {
   int row = int(laneOf());
   sync();
   uint found = 0u;
@@ -104,7 +116,10 @@ Looked lookAtBatch(uint batch, inout uvec4 covered) {
   for (; k < batch && (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu; ++k) {
     Outline o = outlineAt(k);
     uvec4 fresh = uvec4(samplesIn(o, row), samplesIn(o, row + 32)) & ~covered;
-    if ((fresh.x | fresh.y | fresh.z | fresh.w) != 0u) found |= 1u << k;
+    uvec4 shown = fresh;
+    int parallax = moves ? parallaxAt(k) : 0;
+    if (parallax != 0) shown = uvec4(samplesAround(o, parallax, row), samplesAround(o, parallax, row + 32)) & ~covered;
+    if ((shown.x | shown.y | shown.z | shown.w) != 0u) found |= 1u << k;
     covered |= fresh;
   }
   Looked looked;

@@ -17,6 +17,8 @@ struct Rest {
   uint begin;
   uint end;
   uint low; // what is nearer is decided
+  uint before; // how many that are
+  uint nearest;
   uint farthest;
 };
 
@@ -72,15 +74,15 @@ uint takeEntries(Rest rest, uint high) {
   return count;
 }
 
-/// Goes through a batch, whose items are there; false once all samples are covered.
-bool resolveBatch(uint n, uint place, ivec2 pixel, inout uvec4 covered) {
+/// Goes through a batch, whose items and keys are there; false once all samples are covered.
+bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 covered) {
   uint id = 0u;
   if (laneOf() < n) {
     Candidate c = readCandidate(items[laneOf()]);
-    put(place, outlineOf(c, pixel));
+    put(place, outlineOf(c, pixel), parallaxIn(pixel, rest.nearest, keyAt(laneOf()), rest.before + place));
     id = c.id;
   }
-  Looked looked = lookAtBatch(n, covered);
+  Looked looked = lookAtBatch(n, movesIn(pixel), covered);
   if (laneOf() < n && (looked.seen & (1u << place)) != 0u) show(id);
   sync();
   return looked.holes;
@@ -100,8 +102,10 @@ bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
       }
       if (place - first < kBatch) items[place - first] = entries[i];
     }
+    setKey(laneOf(), rest.low);
     sync();
-    if (!resolveBatch(min(n - first, kBatch), laneOf(), pixel, covered)) return false;
+    if (!resolveBatch(rest, min(n - first, kBatch), laneOf(), pixel, covered)) return false;
+    rest.before += kBatch;
   }
   return true;
 }
@@ -129,7 +133,9 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   Rest rest;
   rest.begin = begin;
   rest.end = end;
-  rest.low = minAll(least);
+  rest.before = 0u;
+  rest.nearest = minAll(least);
+  rest.low = rest.nearest;
   rest.farthest = maxAll(most);
   uvec4 covered = uvec4(0u);
   bool more = true;
@@ -142,9 +148,10 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
       break;
     }
     if (n > kBatch) more = resolveSame(rest, n, pixel, covered);
-    else more = resolveBatch(n, placeAmong(n), pixel, covered);
+    else more = resolveBatch(rest, n, placeAmong(n), pixel, covered);
     more = more && high != rest.farthest;
     rest.low = high + 1u;
+    rest.before += n;
   }
 }
 

@@ -190,16 +190,17 @@ struct Figures {
       for (const uint32_t count : few ? Counts{16} : Counts{16, 24, 48, 64, 72, 96}) {
         walk.walkCount = count;
         smallViews(corners, camerasOf(walk), divisor, "", row);
+        if (divisor >= 6) smallViews(corners, camerasOf(walk), divisor, " with a reach", row, 0.04f);
       }
     for (const uint32_t count : few ? Counts{3} : Counts{5, 9})
       smallViews(corners, take(rows(count)), 4, " on grid", row);
   }
 
   /// Views with a part of the width and height, of what may be seen from the cell: no place in it is farther from a
-  /// corner than the reach. The first camera, the middle, is left out.
+  /// corner than the reach. The first camera, the middle, is left out. ownReach: of the views.
   template <class Row>
   void smallViews(const std::vector<GpgpCamera>& corners, const std::vector<GpgpCamera>& views, uint32_t divisor,
-                  const char* kind, const Row& row) {
+                  const char* kind, const Row& row, float ownReach = 0) {
     const uint32_t room = std::min(runner.triangles(), 1u << 18);
     std::vector<GpgpCamera> spread; // neighbours in different records, so that the first ones find most
     for (size_t k = 1; k < 6; ++k)
@@ -214,7 +215,8 @@ struct Figures {
         nearby, {.method = GPGP_SAMPLING_NEARBY, .divisor = kNearbyDivisor, .reach = reach, .listed = &lists},
         options.repeat, corners);
     const Runner::Run run = runner.measureUnion(
-        small, {.method = GPGP_SAMPLING_EXACT, .divisor = divisor, .lists = &lists}, spread, perRecord, options.repeat);
+        small, {.method = GPGP_SAMPLING_EXACT, .divisor = divisor, .reach = ownReach, .lists = &lists}, spread,
+        perRecord, options.repeat);
     const std::string series = "exact at 1/" + std::to_string(divisor) + kind, label = std::to_string(spread.size());
     print("cellnearby", scene, series.c_str(), label, first.report.neededDrawTriangles, first.milliseconds);
     row(series.c_str(), label, first.milliseconds + run.milliseconds, run);

@@ -138,6 +138,31 @@ TEST_F(NearbyTest, EqualsTheTwin) {
   expectEqual(run(scene, {.method = GPGP_SAMPLING_NEARBY, .reach = 0.3f}), sampleNearbyOnCpu(scene.input()), "clipped");
 }
 
+TEST_F(NearbyTest, ExactWithAReachEqualsTheTwinAndShowsWhatAMoveUncovers) {
+  for (const bool reversed : {false, true}) {
+    Scene scene = street(96, 54, reversed);
+    const std::vector<uint32_t> one = sampleExactOnCpu(scene.input()).bits;
+    setCell(scene, {{0, 0}}, 0.02f);
+    const TwinResult twin = sampleExactOnCpu(scene.input());
+    expectEqual(run(scene, {.method = GPGP_SAMPLING_EXACT, .reach = 0.02f}), twin, "exact with a reach");
+    std::vector<uint32_t> moved(one.size());
+    for (const auto& by : std::vector<glm::vec2>{{-0.02f, 0}, {0.02f, 0}, {0, -0.02f}, {0, 0.02f}}) {
+      Scene other = scene;
+      setCell(other, {by}, 0);
+      const std::vector<uint32_t> bits = sampleExactOnCpu(other.input()).bits;
+      for (size_t i = 0; i < bits.size(); ++i) moved[i] |= bits[i] & ~one[i];
+    }
+    std::vector<uint32_t> found = moved;
+    for (size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i] & ~twin.bits[i], 0u); // nothing is lost
+      found[i] &= twin.bits[i];
+    }
+    EXPECT_GT(countOf(moved), 20u);
+    EXPECT_GT(countOf(found) * 5, countOf(moved)); // a part of what shows by moving
+    EXPECT_LT(countOf(twin.bits), countOf(one) * 5 / 4);
+  }
+}
+
 TEST_F(NearbyTest, WhatItListsIsSampledUnderItsOwnNumbers) {
   Scene scene = street(64, 36, true);
   std::vector<glm::vec2> points = kCorners;
@@ -146,6 +171,7 @@ TEST_F(NearbyTest, WhatItListsIsSampledUnderItsOwnNumbers) {
   const TwinResult all = sampleOnCpu(scene.input());
   Scene cell = listed(scene, sampleNearbyOnCpu(scene.input()));
   ASSERT_LT(cell.numbers.size() * 2, scene.params.triangleCount);
+  std::fill(std::begin(cell.params.depthScales), std::end(cell.params.depthScales), 0.0f);
   const TwinResult standard = sampleOnCpu(cell.input()), exact = sampleExactOnCpu(cell.input());
   EXPECT_EQ(standard.bits, all.bits); // whatever a centre shows is nearby
   expectEqual(run(cell, {}), standard, "standard");
@@ -162,19 +188,23 @@ TEST_F(NearbyTest, WhatItListsIsSampledUnderItsOwnNumbers) {
 TEST_F(NearbyTest, ArgumentsAreChecked) {
   Scene scene = randomSoup(1, 10, 16, 16, true, false);
   scene.input();
-  sampler = createSampler(64, 64, 0, false, GPGP_SAMPLING_NEARBY_BIT);
+  sampler = createSampler(64, 64, 0, false, GPGP_SAMPLING_NEARBY_BIT | GPGP_SAMPLING_EXACT_BIT);
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
   const host::Buffer any(device, 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   upload();
   const GpgpFrame f = advance();
-  for (const auto& [text, reach, parallel] : {std::tuple("", 0.5f, false),
-                                              {"reach is -1", -1.0f, false},
-                                              {"reach is", NAN, false},
-                                              {"camera 0 has no perspective", 1.0f, true}}) {
+  constexpr GpgpSamplingMethod nearby = GPGP_SAMPLING_NEARBY, exact = GPGP_SAMPLING_EXACT;
+  for (const auto& [method, text, reach, parallel] : {std::tuple(nearby, "", 0.5f, false),
+                                                      {nearby, "reach is -1", -1.0f, false},
+                                                      {nearby, "reach is", NAN, false},
+                                                      {nearby, "camera 0 has no perspective", 1.0f, true},
+                                                      {exact, "reach is -1", -1.0f, false},
+                                                      {exact, "camera 0 has no perspective", 1.0f, true},
+                                                      {exact, "", 0.0f, true}}) {
     GpgpSampleInfo info = sampleInfo(scene, buffers, set);
     info.visibleBits = any.range();
-    info.method = GPGP_SAMPLING_NEARBY;
+    info.method = method;
     info.reach = reach;
     if (parallel) std::copy_n(&glm::mat4(1.0f)[0][0], 16, info.camera.viewProjection);
     const GpgpResult expected = *text ? GPGP_ERROR_INVALID_ARGUMENT : GPGP_SUCCESS;

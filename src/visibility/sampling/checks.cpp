@@ -60,12 +60,13 @@ Result<void> checkSampling(const GpgpSampleInfo& info, const Budgets& budgets, c
     if (info.refinements > kMaxRefinements)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "refinements is %u; at most %u", info.refinements, kMaxRefinements);
   }
-  if (info.method == GPGP_SAMPLING_NEARBY) {
+  if (info.method == GPGP_SAMPLING_NEARBY || info.method == GPGP_SAMPLING_EXACT) {
     if (!(info.reach >= 0 && info.reach < 1e30f))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "reach is %g; expected 0 to 1e30", static_cast<double>(info.reach));
+    const bool needed = info.method == GPGP_SAMPLING_NEARBY || info.reach > 0;
     for (uint32_t i = 0; i < cameras; ++i)
-      if (depthScale(i ? info.moreCameras[i - 1] : info.camera, info.width, info.height, info.reach).y == 0)
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera %u has no perspective, which method nearby needs", i);
+      if (needed && depthScale(i ? info.moreCameras[i - 1] : info.camera, info.width, info.height, info.reach).y == 0)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera %u has no perspective, which a reach needs", i);
   }
   if (info.triangleCount > 1u << 31)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; at most 2147483648", info.triangleCount);

@@ -66,7 +66,8 @@ Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const Ge
   for (uint32_t i = 0; i < cameras; ++i) {
     const GpgpCamera& camera = i ? info.moreCameras[i - 1] : info.camera;
     std::copy_n(camera.viewProjection, 16, params.viewProjection + size_t(i) * 16);
-    if (info.method != GPGP_SAMPLING_NEARBY) continue;
+    const bool reaches = info.method == GPGP_SAMPLING_EXACT && info.reach > 0;
+    if (info.method != GPGP_SAMPLING_NEARBY && !reaches) continue;
     const glm::vec4 scale = depthScale(camera, info.width, info.height, info.reach);
     for (int k = 0; k < 4; ++k) params.depthScales[i * 4 + static_cast<uint32_t>(k)] = scale[k];
   }

@@ -1,5 +1,6 @@
 // Exact and truth sampling in plain loops.
 #include "visibility/facet.h"
+#include "visibility/nearby.h"
 #include "visibility/twin/twin.h"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ bool isAhead(const std::vector<Sorted>& list, size_t place) {
 
 /// Front to back: those with a sample that nothing before them covers become visible. In a short list, what the order
 /// by one depth each may have wrong is decided by planes.
-void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed,
+void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed, vec4 depthScale,
              std::vector<uint32_t>& bits) {
   const auto rank = [&](const Entry& e) {
     const Candidate& c = candidates[e.candidate];
@@ -66,10 +67,12 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   size_t stop = 0; // how many come before all samples are covered
   for (bool holes = true; holes && stop < sorted.size(); ++stop) {
     holes = false;
+    const int parallax = parallaxOf(depthScale, list[0].key, list[stop].key, static_cast<uint32_t>(stop), reversed);
     for (int row = 0; row < 64; ++row) {
       uvec2& mask = covered[static_cast<size_t>(row)];
       const uvec2 own = samplesIn(sorted[stop].outline, row);
-      if ((own.x & ~mask.x) | (own.y & ~mask.y)) seen[stop] = true;
+      const uvec2 shown = parallax ? samplesAround(sorted[stop].outline, parallax, row) : own;
+      if ((shown.x & ~mask.x) | (shown.y & ~mask.y)) seen[stop] = true;
       mask |= own;
       holes = holes || (mask.x & mask.y) != ~0u;
     }
@@ -159,8 +162,11 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
   }
   out.counters.candidates = static_cast<uint32_t>(candidates.size());
 
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), reversed, out.bits);
+  for (int y = 0; y < height; ++y) {
+    const float* s = params.depthScales + static_cast<uint32_t>(y) / params.height * 4;
+    for (int x = 0; x < width; ++x)
+      resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), reversed, vec4(s[0], s[1], s[2], s[3]), out.bits);
+  }
   out.ids.clear();
   finish(in, out);
   return out;
