@@ -6,12 +6,32 @@
 #include <gpgp/core.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gpgp::test {
+
+/// Vulkan as the library sees it where GPGP_TEST_HARDWARE is set: all devices say that they are GPUs, so that software
+/// devices run the passes that they have others for.
+struct AsHardware {
+  static inline PFN_vkGetInstanceProcAddr real = nullptr;
+  static inline PFN_vkGetPhysicalDeviceProperties2 realProperties = nullptr;
+
+  static VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice device, VkPhysicalDeviceProperties2* found) {
+    realProperties(device, found);
+    found->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  }
+  static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL lookUp(VkInstance instance, const char* name) {
+    const PFN_vkVoidFunction found = real(instance, name);
+    if (std::string_view(name) != "vkGetPhysicalDeviceProperties2") return found;
+    realProperties = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties2>(found);
+    return reinterpret_cast<PFN_vkVoidFunction>(&properties);
+  }
+};
 
 struct SharedDevice {
   host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
@@ -23,6 +43,10 @@ struct SharedDevice {
   explicit SharedDevice(const char* label) {
     GpgpContextCreateInfo info = device.contextCreateInfo();
     info.label = label;
+    if (std::getenv("GPGP_TEST_HARDWARE")) {
+      AsHardware::real = info.getInstanceProcAddr;
+      info.getInstanceProcAddr = &AsHardware::lookUp;
+    }
     info.messageUserData = &messages;
     info.messageFn = [](void* user, const GpgpMessage* m) {
       static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);

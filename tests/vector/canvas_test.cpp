@@ -273,6 +273,16 @@ TEST_F(CanvasTest, ExceededBudgetsLeaveOutWholePathsAndSayHowMany) {
   EXPECT_GT(patches.pathsDropped, 0u);
 }
 
+TEST_F(CanvasTest, HardwareHasPassesThatSoftwareDevicesHaveNot) {
+  makeCanvas();
+  uint32_t count = 0;
+  ASSERT_EQ(gpgpGetPasses(canvas, &count, nullptr), GPGP_SUCCESS);
+  std::vector<const char*> names(count);
+  ASSERT_EQ(gpgpGetPasses(canvas, &count, names.data()), GPGP_SUCCESS);
+  const bool packs = std::any_of(names.begin(), names.end(), [](const char* n) { return !std::strcmp(n, "pack"); });
+  EXPECT_EQ(packs, std::getenv("GPGP_TEST_HARDWARE") || !device.isSoftware());
+}
+
 TEST_F(CanvasTest, TooFewTileWordsLeaveOutTheLastPaths) {
   makeCanvas(512, 65536); // as many tile words, of which a path across the whole canvas takes 128
   std::vector<TestPath> squares(700);
