@@ -14,6 +14,7 @@ layout(set = 0, binding = 11, std430) readonly buffer From {
 layout(set = 0, binding = 17, std430) writeonly buffer To {
   CanvasHeader copied;
   SlotRecord copiedSlots[kSlots];
+  uint firstItems[kFirstItems];
   ItemRecord items[];
 };
 layout(set = 0, binding = 14, std430) writeonly buffer Bins { uint bins[]; };
@@ -80,6 +81,10 @@ void main() {
   for (uint i = lane; i < header.itemCount; i += lanes) {
     const PlacementRecord p = placementOf(i);
     items[i] = placed(sourceOf(p.source & ((1u << kSlotBit) - 1)), p);
+    if (header.itemCount <= kManyItems) continue;
+    const uint step = firstItemsStep(header.segmentCount);
+    const uint end = i + 1 < header.itemCount ? placementOf(i + 1).firstSegment : header.segmentCount;
+    for (uint k = (p.firstSegment + step - 1) / step; k * step < end; ++k) firstItems[k] = i;
   }
   const uint tables = header.sourceCount * 10 + header.itemCount * 3;
   for (uint i = lane; i < header.shapeTables; i += lanes) shapes[i] = from[tables + i];

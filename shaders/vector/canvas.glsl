@@ -22,6 +22,7 @@ layout(set = 0, binding = 28, std430) readonly buffer Shapes { vec4 shapes[]; };
 layout(set = 0, binding = 17, std430) readonly buffer Constants {
   CanvasHeader header;
   SlotRecord slots[kSlots];
+  uint firstItems[kFirstItems]; // that segment 0, step, 2 step ... belong to; only of many items
   ItemRecord items[];
 };
 layout(set = 0, binding = 12, std430) SHARING buffer Paths { PlacedPath paths[]; };

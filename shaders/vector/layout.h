@@ -249,6 +249,8 @@ GPGP_CONST uint kPaintedArguments = 0u;
 GPGP_CONST uint kCrowdedArguments = 4u;
 GPGP_CONST uint kRichArguments = 8u;
 GPGP_CONST uint kRichCrowdedArguments = 12u;
+GPGP_CONST uint kFirstItems = 1024u; // segments at whose items it is known to search
+GPGP_CONST uint kManyItems = 256u;   // where that is worth it
 GPGP_CONST uint kTilesAside = 4096u; // painted by the general shader beside the other tiles
 GPGP_CONST uint kClearGroups = 256u; // workgroups of mark that clear entries
 GPGP_CONST uint kMostSegments = 64u; // of a workgroup, a power of two
@@ -256,6 +258,9 @@ GPGP_CONST uint kFirstBin = 16u;
 GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:
 GPGP_CONST uint kBinGrouped = 2u; // 1: one of its paths may need the general shader
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
+
+// How many segments lie between those of the table of first items.
+GPGP_FN uint firstItemsStep(uint segmentCount) { return segmentCount / kFirstItems + 1u; }
 
 GPGP_SHADER_END
 

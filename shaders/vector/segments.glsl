@@ -9,6 +9,11 @@
 layout(local_size_x = LANES) in;
 uint itemOf(uint segment) { // the last one that begins at or before it
   uint low = 0, high = header.itemCount;
+  if (high > kManyItems) {
+    const uint step = firstItemsStep(header.segmentCount), k = segment / step;
+    low = firstItems[k];
+    if ((k + 1) * step < header.segmentCount) high = firstItems[k + 1] + 1;
+  }
   while (low + 1 < high) {
     const uint middle = (low + high) / 2;
     if (items[middle].firstSegment <= segment) low = middle;

@@ -144,7 +144,7 @@ core::PassList Canvas::describe() const {
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
-  const auto params = list.add({"items", scratch, heads + placed * sizeof(ItemRecord)});
+  const auto params = list.add({"items", scratch, heads + shader::kFirstItems * 4 + placed * sizeof(ItemRecord)});
   core::ResourceIndex images = 0; // the first
   static constexpr const char* kImageNames[shader::kMaxImages] = {"images[0]", "images[1]", "images[2]", "images[3]",
                                                                   "images[4]", "images[5]", "images[6]", "images[7]"};
