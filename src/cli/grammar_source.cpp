@@ -67,7 +67,11 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
       variables[i].push_back({a.name.c_str(), a.value});
       found = true;
     }
-    if (!found) throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"");
+    if (found) continue;
+    std::string names;
+    for (const GrammarText& grammar : grammars) names += (names.empty() ? "" : ", ") + spawn::linkedName(grammar.name);
+    throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"; there are " +
+                names);
   }
   Errors errors;
   std::vector<GpgpGrammarSource> sources;
