@@ -275,8 +275,9 @@ typedef struct GpgpSpawnInfo {
   GpgpBuffer needed; /**< out, optional: uint32_t[buckets], instances or indices that each bucket needs; only with
                           GPGP_SPAWN_REGIONS or where the record only counts; STORAGE usage */
   GpgpBuffer count;  /**< out, optional: uint32_t, instances or indices written (4 bytes); STORAGE usage */
-  GpgpBuffer bounds; /**< out, optional: GpgpSpawnBounds[buckets], around all terminals of each bucket, of which not all
-                        may have been written with BUDGET_EXCEEDED; not where the record only counts; STORAGE usage */
+  GpgpBuffer bounds; /**< out, optional: GpgpSpawnBounds[buckets], around the terminals of each bucket that were
+                        written, with BUDGET_EXCEEDED maybe around others, too; not where the record only counts;
+                        STORAGE usage */
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 

@@ -13,6 +13,7 @@ layout(set = 0, binding = 19, std430) buffer BoundKeys { uint boundKeys[]; };   
 layout(local_size_x = 64) in;                        // kSpawnGroupSize
 layout(constant_id = 0) const bool decodes = false; // what has been gathered to the engine's buffer
 #include "spawn/shape.h"
+#include "spawn/regions.glsl"
 
 const uint kKeys = 512 * kBoundWords;
 shared uint keys[decodes ? 1 : kKeys];
@@ -51,6 +52,15 @@ void grow(uint bucket, vec4 rows[3], bool isFlat) {
   }
 }
 
+void gatherInstances(uint first, uint count) {
+  for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * kSpawnGroupSize) {
+    const uint at = (first + i) * 6;
+    vec4 rows[3];
+    for (uint axis = 0; axis < 3; ++axis) rows[axis] = uintBitsToFloat(written[at + axis]);
+    grow(written[at + 3].x, rows, written[at + 5].z << 1 == 0);
+  }
+}
+
 void main() {
   const uint buckets = graphWords[kHeaderBuckets];
   if (decodes) {
@@ -61,13 +71,15 @@ void main() {
   for (uint i = gl_LocalInvocationIndex; i < used; i += kSpawnGroupSize) keys[i] = 0;
   barrier();
   const bool fromInstances = record.terminalsTo == kToInstances;
-  const uint count = fromInstances ? state.instancesWritten : min(state.terminals, record.maxTerminals);
-  for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * kSpawnGroupSize) {
-    vec4 rows[3];
-    if (fromInstances) {
-      for (uint axis = 0; axis < 3; ++axis) rows[axis] = uintBitsToFloat(written[i * 6 + axis]);
-      grow(written[i * 6 + 3].x, rows, written[i * 6 + 5].z << 1 == 0);
-    } else {
+  if (fromInstances && record.regions != 0) { // there is room between them
+    for (uint bucket = 0; bucket < buckets; ++bucket)
+      gatherInstances(regionStart(bucket, false), min(bucketCounts[bucket], regionCapacity(bucket, false)));
+  } else if (fromInstances) {
+    gatherInstances(0, state.instancesWritten);
+  } else {
+    const uint count = min(state.terminals, record.maxTerminals);
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * kSpawnGroupSize) {
+      vec4 rows[3];
       const Shape s = unpackShape(records[i], records[i + record.maxTerminals], records[i + 2 * record.maxTerminals],
                                   records[i + 3 * record.maxTerminals], records[i + 4 * record.maxTerminals],
                                   uvec4(0));

@@ -112,7 +112,10 @@ std::vector<Row> readJson(const std::string& text, const Place& place) {
     const size_t end = std::min(error.byte, text.size());
     place.fail(1 + static_cast<size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n')),
                error.what());
+  } catch (const Json::exception& error) { // a number beyond all numbers, without its place
+    throw Failure(place.file + ": error: " + error.what());
   }
+  if (!all.is_array()) place.fail(1, "expected an array of axioms, [{...}, {...}]");
   const std::vector<size_t> lines = linesOfObjects(text);
   std::vector<Row> rows;
   for (size_t i = 0; i < all.size(); ++i) {
@@ -180,10 +183,11 @@ std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefau
 
 std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<std::string>& rules,
                                   const AxiomDefaults& defaults) {
-  const std::string text = host::readText(file);
+  std::string text = host::readText(file);
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3); // spreadsheets write it
   const Place place{file.string()};
   const size_t begin = text.find_first_not_of(" \t\r\n");
-  const bool json = begin != std::string::npos && text[begin] == '[';
+  const bool json = begin != std::string::npos && (text[begin] == '[' || text[begin] == '{');
   std::vector<GpgpAxiom> axioms;
   for (const Row& row : json ? readJson(text, place) : readCsv(text, place)) {
     const auto number = [&](std::string_view name, float otherwise) {
@@ -215,7 +219,11 @@ std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::
     }
     if (const auto rule = row.values.find("rule"); rule != row.values.end()) {
       const auto found = std::find(rules.begin(), rules.end(), rule->second);
-      if (found == rules.end()) place.fail(row.line, "the grammar has no rule \"" + rule->second + "\"");
+      if (found == rules.end()) {
+        const bool linked = rules[0].find('.') != std::string::npos;
+        place.fail(row.line, "the grammar has no rule \"" + rule->second + "\"" +
+                                 (linked ? "; expected a grammar, or its rule as in " + rules[0] : std::string()));
+      }
       axiom.rule = static_cast<uint32_t>(found - rules.begin());
     }
     axiom.attribute = number("attribute", axiom.attribute);

@@ -24,9 +24,9 @@ GpgpAxiom axiomAt(const std::array<float, 3>& place, float degrees, const std::a
 /// A square grid in the ground plane around the origin, row by row; spacing 0: 1.5 times the axioms' width.
 std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefaults& defaults);
 
-/// A file whose first character is [ is JSON, an array of objects with position [x, y, z], rotation (degrees), size
-/// [x, y, z], seed, rule, attribute; only position is needed. Anything else is CSV: a first line that names the columns
-/// x y z rotation size_x size_y size_z seed rule attribute, of which x and z are needed; # begins a comment.
+/// A file whose first character is [ or { is JSON, an array of objects with position [x, y, z], rotation (degrees),
+/// size [x, y, z], seed, rule, attribute; only position is needed. Anything else is CSV: a first line that names the
+/// columns x y z rotation size_x size_y size_z seed rule attribute, of which x and z are needed; # begins a comment.
 /// rules are the grammar's starts, for names in the file. Throws Failure with FILE:LINE and what was expected.
 std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<std::string>& rules,
                                   const AxiomDefaults& defaults);

@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "spawn/language/build_graph.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -21,7 +22,8 @@ Assignment parseAssignment(const std::string& text, bool linked) {
   char* end = nullptr;
   Assignment result;
   result.value = equals == std::string::npos ? 0.0f : std::strtof(text.c_str() + equals + 1, &end);
-  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size() || *end != 0)
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size() || *end != 0 ||
+      !std::isfinite(result.value))
     throw Usage("--set takes NAME=VALUE with a number, for example --set floors=12; got \"" + text + "\"");
   result.name = text.substr(0, equals);
   if (!linked) return result;
@@ -53,6 +55,8 @@ struct Errors {
 };
 
 Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vector<std::string>& set, bool kernel) {
+  for (const GrammarText& grammar : grammars)
+    if (grammar.text.starts_with("gppg")) throw Failure(grammar.name + " is a baked grammar; expected its text (.pga)");
   std::vector<Assignment> assignments;
   for (const std::string& text : set) assignments.push_back(parseAssignment(text, linked));
   std::vector<std::vector<GpgpVariable>> variables(grammars.size());
@@ -63,7 +67,11 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
       variables[i].push_back({a.name.c_str(), a.value});
       found = true;
     }
-    if (!found) throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"");
+    if (found) continue;
+    std::string names;
+    for (const GrammarText& grammar : grammars) names += (names.empty() ? "" : ", ") + spawn::linkedName(grammar.name);
+    throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"; there are " +
+                names);
   }
   Errors errors;
   std::vector<GpgpGrammarSource> sources;

@@ -20,7 +20,7 @@ namespace {
 
 struct SpawnOptions {
   std::vector<std::string> grammars;
-  uint32_t axioms = 1, seed = 1, repeat = 1;
+  uint32_t axioms = 0, seed = 1, repeat = 1; // axioms 0: one of each grammar
   std::array<float, 3> size{1, 1, 1};
   float spacing = 0;
   std::string axiomFile;
@@ -181,9 +181,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   const spawn::Graph& graph = grammar.graph;
   const AxiomDefaults defaults{options.size, options.seed, grammar.starts()};
-  const std::vector<GpgpAxiom> start = options.axiomFile.empty()
-                                           ? axiomGrid(options.axioms, options.spacing, defaults)
-                                           : readAxioms(options.axiomFile, grammar.startNames(), defaults);
+  const uint32_t grammarCount = static_cast<uint32_t>(defaults.starts.size());
+  const std::vector<GpgpAxiom> start =
+      options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
+                                : readAxioms(options.axiomFile, grammar.startNames(), defaults);
   const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices);
   Session session(common);
   const Chosen chosen = chooseKernel(options, grammar, start, session);
@@ -339,9 +340,9 @@ Work addSpawn(CLI::App& app) {
       ->check(CLI::ExistingFile);
   CLI::Option* axioms =
       command
-          ->add_option("--axioms", options->axioms, "Start shapes, on a square grid; those of linked grammars in turn")
-          ->check(CLI::Range(1u, 10000000u))
-          ->capture_default_str();
+          ->add_option("--axioms", options->axioms,
+                       "Start shapes, on a square grid; those of linked grammars in turn (default: one of each)")
+          ->check(CLI::Range(1u, 10000000u));
   command
       ->add_option("--axiom-file", options->axiomFile,
                    "Start shapes from a file, CSV or JSON: position, rotation about Y, size, seed, rule")

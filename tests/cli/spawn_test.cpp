@@ -219,7 +219,8 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
     EXPECT_EQ(all["buckets"][2]["instances"], 5 + 1);
   }
   const json turns = spawn({"--axioms", "5", "--axiom-size", "8,1,1", "--set", name + "house.n=4"});
-  EXPECT_EQ(turns["terminals"], 3 * 2 + 2 * 6); // a house first
+  EXPECT_EQ(turns["terminals"], 3 * 2 + 2 * 6);                 // a house first
+  EXPECT_EQ(spawn({"--schedule", "interpreter"})["axioms"], 2); // one of each
   const TemporaryFile baked("street.gpgp");
   const json bake = gpgpJson({"bake", house.path(), tree.path(), "--link", "-o", baked.path()});
   EXPECT_EQ(bake["baked"][0]["in"], json(both));
@@ -233,14 +234,18 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
   EXPECT_EQ(spawn({"--axiom-file", lots.path(), "--schedule", tuned.path()})["terminals"], 14);
   const TemporaryFile wrong("wrong_street.csv", "x,z,rule\n0,0,House\n"),
       broken("broken.pga", "axiom Box A;\nA = B;\n");
-  EXPECT_NE(
-      gpgpFailure({"spawn", house.path(), tree.path(), "--axiom-file", wrong.path()}).find("csv:2: error: the gram"),
-      std::string::npos);
+  EXPECT_NE(gpgpFailure({"spawn", house.path(), tree.path(), "--axiom-file", wrong.path()})
+                .find("csv:2: error: the grammar has no rule \"House\"; expected a grammar, or its rule as in " + name +
+                      "house.House"),
+            std::string::npos);
   EXPECT_NE(gpgpFailure({"spawn", house.path(), broken.path()}).find("broken.pga:2:5: error: there is no rule or term"),
             std::string::npos);
   EXPECT_NE(gpgpFailure({"graph", house.path(), house.path()}).find("is also the name of"), std::string::npos);
+  EXPECT_NE(gpgpFailure({"graph", tree.path(), baked.path()}).find("street.gpgp is a baked grammar; expected its text"),
+            std::string::npos);
   expectWrongUsage({{"spawn", house.path(), tree.path(), "--set", "n=4"},
                     {"spawn", house.path(), tree.path(), "--set", "other.n=4"},
+                    {"spawn", house.path(), tree.path(), "--set", name + "house.n=nan"},
                     {"bake", house.path(), "-", "--link", "-o", "x.gpgp"},
                     {"bake", house.path(), lots.path(), "--link", "-o", "x.gpgp"},
                     {"bake", house.path(), tree.path(), "--link", "-o", testing::TempDir()},
@@ -278,6 +283,9 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
             "2: error: expected an object with position, rotation, size, seed, rule");
   EXPECT_EQ(error("[\n{]").substr(0, 9), "2: error:");
   EXPECT_NE(error("x,z\n").find("no axioms"), std::string::npos);
+  EXPECT_EQ(error("{\"position\": [1, 2, 3]}"), "1: error: expected an array of axioms, [{...}, {...}]");
+  EXPECT_NE(error("[{\"position\": [1, 2, 1e999]}]").find(" error: "), std::string::npos);
+  EXPECT_EQ(error("\xef\xbb\xbfx,z\n1,two\n"), "2: error: z takes a number; \"two\" is none");
 }
 
 TEST(CliSpawn, WritesTriangles) {

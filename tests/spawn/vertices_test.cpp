@@ -964,6 +964,18 @@ TEST_F(VerticesTest, InstancesBeyondTheirRegionAreCounted) {
   }
 }
 
+TEST_F(VerticesTest, BoundsLeaveOutTheRoomBetweenRegions) {
+  const auto words = bake("axiom Box A; terminal S (1,0); terminal T (1,1); terminal U (1,2);"
+                          "A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { S | T | T | Translate(0,7,0) U };");
+  Wanted wanted;
+  wanted.flags = GPGP_SPAWN_REGIONS;
+  wanted.instances = 2000;
+  wanted.draws = {{1, 2, 3, 4, 10}, {1, 2, 3, 4, 400}, {1, 2, 3, 4, 1500}};
+  const Output out = run(words, {makeAxiom(300, 1, 1, 5)}, wanted); // compares the boxes
+  EXPECT_EQ(out.report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(out.count, 1200u);
+}
+
 TEST_F(VerticesTest, OrderedInstancesFillTheirRegionsFromTheFront) {
   flags = GPGP_SPAWNER_ORDERED;
   const auto words = bake("axiom Box A; terminal S (1,0); terminal T (1,1); terminal U (1,2);"

@@ -288,8 +288,10 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
          {{kGraph, read},
           {kAxioms, read},
           {kInstances, read},
+          {kDraws, read},
           {kRecords, read},
           {kCounters, read},
+          {kBuckets, read},
           {kConstants, read},
           {kBoundKeys, readWrite}},
          kBoundGroups);
