@@ -19,8 +19,8 @@ struct Row {
   std::map<std::string, std::string, std::less<>> values;
 };
 
-const std::array<std::string_view, 10> kColumns = {"x",      "y",      "z",    "rotation", "size_x",
-                                                   "size_y", "size_z", "seed", "rule",     "attribute"};
+const std::array<std::string_view, 11> kColumns = {"x",      "y",    "z",    "rotation", "size_x",   "size_y",
+                                                   "size_z", "seed", "rule", "shape",    "attribute"};
 
 struct Place { // for messages
   std::string file;
@@ -60,7 +60,7 @@ std::vector<Row> readCsv(const std::string& text, const Place& place) {
         if (std::find(kColumns.begin(), kColumns.end(), values[i]) == kColumns.end())
           place.fail(number, "\"" + values[i] +
                                  "\" is no column; the first line names some of x, y, z, rotation, size_x, size_y, "
-                                 "size_z, seed, rule, attribute");
+                                 "size_z, seed, rule, shape, attribute");
         if (std::find(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values[i]) !=
             values.begin() + static_cast<std::ptrdiff_t>(i))
           place.fail(number, "two columns are named \"" + values[i] + "\"");
@@ -132,11 +132,12 @@ std::vector<Row> readJson(const std::string& text, const Place& place) {
           number(name, value[axis], (name == "size" ? "size_" : "") + std::string(1, "xyz"[axis]));
       } else if (name == "rotation" || name == "seed" || name == "attribute") {
         number(name, value, name);
-      } else if (name == "rule") {
-        if (!value.is_string()) place.fail(row.line, "rule takes a rule's name");
+      } else if (name == "rule" || name == "shape") {
+        if (!value.is_string()) place.fail(row.line, name + " takes a " + name + "'s name");
         row.values[name] = value.get<std::string>();
       } else {
-        place.fail(row.line, "\"" + name + "\" is unknown; there are position, rotation, size, seed, rule, attribute");
+        place.fail(row.line,
+                   "\"" + name + "\" is unknown; there are position, rotation, size, seed, rule, shape, attribute");
       }
     }
     rows.push_back(std::move(row));
@@ -181,7 +182,7 @@ std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefau
   return axioms;
 }
 
-std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<std::string>& rules,
+std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<NamedStart>& starts,
                                   const AxiomDefaults& defaults) {
   std::string text = host::readText(file);
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3); // spreadsheets write it
@@ -217,14 +218,25 @@ std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::
       if (error != std::errc() || at != end)
         place.fail(row.line, "seed takes a whole number from 0 to 4294967295; \"" + seed->second + "\" is none");
     }
-    if (const auto rule = row.values.find("rule"); rule != row.values.end()) {
-      const auto found = std::find(rules.begin(), rules.end(), rule->second);
-      if (found == rules.end()) {
-        const bool linked = rules[0].find('.') != std::string::npos;
+    const auto rule = row.values.find("rule"), shape = row.values.find("shape");
+    if (rule != row.values.end()) {
+      std::string shapes;
+      const auto found = std::find_if(starts.begin(), starts.end(), [&](const NamedStart& start) {
+        if (start.name != rule->second) return false;
+        if (shapes.find(start.shape) == std::string::npos) shapes += (shapes.empty() ? "" : ", ") + start.shape;
+        return shape == row.values.end() || shape->second == start.shape;
+      });
+      if (found == starts.end() && !shapes.empty())
+        place.fail(row.line, "the grammar does not start \"" + rule->second + "\" with shape \"" + shape->second +
+                                 "\", only with: " + shapes);
+      if (found == starts.end()) {
+        const bool linked = starts[0].name.find('.') != std::string::npos;
         place.fail(row.line, "the grammar has no rule \"" + rule->second + "\"" +
-                                 (linked ? "; expected a grammar, or its rule as in " + rules[0] : std::string()));
+                                 (linked ? "; expected a grammar, or its rule as in " + starts[0].name : ""));
       }
-      axiom.rule = static_cast<uint32_t>(found - rules.begin());
+      axiom.rule = static_cast<uint32_t>(found - starts.begin());
+    } else if (shape != row.values.end()) {
+      place.fail(row.line, "a shape needs the rule that starts with it");
     }
     axiom.attribute = number("attribute", axiom.attribute);
     axioms.push_back(axiom);

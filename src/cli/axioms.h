@@ -17,6 +17,11 @@ struct AxiomDefaults {
   std::vector<uint32_t> starts{GPGP_AXIOM_DEFAULT_RULE}; ///< a grid's axioms take them in turn
 };
 
+/// A place that a derivation can start at, as a file names it.
+struct NamedStart {
+  std::string name, shape;
+};
+
 /// Standing at a place, turned about Y by degrees.
 GpgpAxiom axiomAt(const std::array<float, 3>& place, float degrees, const std::array<float, 3>& size, uint32_t seed,
                   uint32_t id);
@@ -25,10 +30,11 @@ GpgpAxiom axiomAt(const std::array<float, 3>& place, float degrees, const std::a
 std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefaults& defaults);
 
 /// A file whose first character is [ or { is JSON, an array of objects with position [x, y, z], rotation (degrees),
-/// size [x, y, z], seed, rule, attribute; only position is needed. Anything else is CSV: a first line that names the
-/// columns x y z rotation size_x size_y size_z seed rule attribute, of which x and z are needed; # begins a comment.
-/// rules are the grammar's starts, for names in the file. Throws Failure with FILE:LINE and what was expected.
-std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<std::string>& rules,
+/// size [x, y, z], seed, rule, shape, attribute; only position is needed. Anything else is CSV: a first line that names
+/// the columns x y z rotation size_x size_y size_z seed rule shape attribute, of which x and z are needed; # begins a
+/// comment. rule is the first of the grammar's starts by that name, or with that shape. Throws Failure with FILE:LINE
+/// and what was expected.
+std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::vector<NamedStart>& starts,
                                   const AxiomDefaults& defaults);
 
 } // namespace gpgp::cli

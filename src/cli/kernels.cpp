@@ -28,10 +28,13 @@ bool isFor(const spawn::KernelInfo& info, const host::HeadlessDevice& device) {
 
 } // namespace
 
-std::vector<std::string> BakedGraph::startNames() const {
-  std::vector<std::string> names;
-  for (uint32_t i = 0; i < spawn::startCount(graph); ++i) names.emplace_back(spawn::startAt(graph, i).name);
-  return names;
+std::vector<NamedStart> BakedGraph::namedStarts() const {
+  std::vector<NamedStart> starts;
+  for (uint32_t i = 0; i < spawn::startCount(graph); ++i) {
+    const spawn::Start start = spawn::startAt(graph, i);
+    starts.push_back({start.name, spawn::shapeName(start.axiom->shape)});
+  }
+  return starts;
 }
 
 std::vector<uint32_t> BakedGraph::starts() const {

@@ -1,5 +1,6 @@
 // Kernels of a grammar by schedule, and the baked files that keep tuned ones.
 #pragma once
+#include "cli/axioms.h"
 #include "cli/command.h"
 #include "host/device.h"
 #include "spawn/codegen/schedules.h"
@@ -20,7 +21,7 @@ struct BakedGraph {
   bool linked = false; ///< of several grammars
 
   /// Names of all starts, as GpgpAxiom::rule counts them.
-  std::vector<std::string> startNames() const;
+  std::vector<NamedStart> namedStarts() const;
   /// Where axioms start in turn that nobody says more of: each linked grammar, or the only one.
   std::vector<uint32_t> starts() const;
 };

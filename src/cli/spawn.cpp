@@ -184,7 +184,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const uint32_t grammarCount = static_cast<uint32_t>(defaults.starts.size());
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
-                                : readAxioms(options.axiomFile, grammar.startNames(), defaults);
+                                : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
   const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices);
   Session session(common);
   const Chosen chosen = chooseKernel(options, grammar, start, session);
@@ -345,7 +345,7 @@ Work addSpawn(CLI::App& app) {
           ->check(CLI::Range(1u, 10000000u));
   command
       ->add_option("--axiom-file", options->axiomFile,
-                   "Start shapes from a file, CSV or JSON: position, rotation about Y, size, seed, rule")
+                   "Start shapes from a file, CSV or JSON: position, rotation about Y, size, seed, rule, shape")
       ->check(CLI::ExistingFile)
       ->excludes(axioms);
   command

@@ -30,7 +30,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   const AxiomDefaults defaults{options.size, settings.seed, grammar.starts()};
   const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
                                             ? axiomGrid(options.axioms, 0, defaults)
-                                            : readAxioms(options.axiomFile, grammar.startNames(), defaults);
+                                            : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
   Session session(common);
   const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
   keepKernel(out, grammar, tuned.info, tuned.code);

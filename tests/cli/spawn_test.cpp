@@ -196,6 +196,13 @@ TEST(CliSpawn, AxiomFiles) {
   EXPECT_EQ(a["key_hash"], b["key_hash"]);
 }
 
+TEST(CliSpawn, AxiomFilesChooseShapes) {
+  const TemporaryFile grammar("shapes.pga", "axiom Box All;\naxiom Hexagon All;\nterminal Face (1, 0);\n"
+                                            "All = CompSplit() Face;\n");
+  const TemporaryFile lots("shapes.csv", "x,z,rule,shape\n0,0,All,\n2,0,All,Hexagon\n4,0,All,Box\n6,0,,\n");
+  EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--axiom-file", lots.path()})["terminals"], 6 + 1 + 6 + 6);
+}
+
 TEST(CliSpawn, SeveralGrammarsAreLinked) {
   const TemporaryFile house("house.pga", "var n = 2;\naxiom Box House;\nterminal Wall (1, 0);\n"
                                          "House = Repeat(X, n, ADJUST_TO_FILL) Wall;\n"),
@@ -275,6 +282,9 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
   EXPECT_EQ(error("x,y\n1,2\n"), "2: error: an axiom needs a value for z");
   EXPECT_EQ(error("x,z,size_y\n1,2,0\n"), "2: error: sizes are above 0");
   EXPECT_EQ(error("x,z,rule\n1,2,Other\n"), "2: error: the grammar has no rule \"Other\"");
+  EXPECT_EQ(error("x,z,rule,shape\n1,2,One,Quad\n"),
+            "2: error: the grammar does not start \"One\" with shape \"Quad\", only with: Box");
+  EXPECT_EQ(error("x,z,shape\n1,2,Box\n"), "2: error: a shape needs the rule that starts with it");
   EXPECT_EQ(error("x,x\n"), "1: error: two columns are named \"x\"");
   EXPECT_EQ(error("x,w\n").substr(0, 27), "1: error: \"w\" is no column;");
   EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]"), "3: error: an axiom needs a position");
