@@ -65,15 +65,20 @@ struct SpawnTest : DeviceTest {
     spawner = worker(gpgpCreateSpawner, info);
   }
 
+  GpgpAsset makeGrammar(const std::vector<uint32_t>& words) {
+    GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+    info.data = words.data();
+    info.size = words.size() * 4;
+    GpgpAsset grammar = nullptr;
+    EXPECT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_SUCCESS);
+    return grammar;
+  }
+
   /// Uploads, derives once and reads everything back.
   Derived run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity, bool sorted,
               std::optional<uint32_t> axiomCounter = {}) {
     Derived result;
-    GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
-    grammarInfo.data = words.data();
-    grammarInfo.size = words.size() * 4;
-    GpgpAsset grammar = nullptr;
-    EXPECT_EQ(gpgpCreateGrammar(context, &grammarInfo, &grammar), GPGP_SUCCESS);
+    const GpgpAsset grammar = makeGrammar(words);
     EXPECT_EQ(gpgpPrewarmGrammar(spawner, grammar), GPGP_SUCCESS); // a grammar without kernels has nothing to make
     const uint32_t buckets = words[shader::kHeaderBuckets];
     const auto axiomBuffer = host::makeBuffer(device, axioms, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
@@ -690,11 +695,7 @@ TEST_F(SpawnTest, StartsCanBeListedAndFound) {
   const auto words = linked({{"house.pga", "axiom Box House; axiom Quad Wall; terminal T (1,0);"
                                            "House = CompSplit() Wall; Wall = T; Rest = House;"},
                              {"tree.pga", "axiom Sphere Leaf; terminal Leaf (1,0);"}});
-  GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
-  info.data = words.data();
-  info.size = words.size() * 4;
-  GpgpAsset grammar = nullptr;
-  ASSERT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_SUCCESS);
+  const GpgpAsset grammar = makeGrammar(words);
   uint32_t count = 0;
   ASSERT_EQ(gpgpGetGrammarStarts(grammar, &count, nullptr), GPGP_SUCCESS);
   std::vector<GpgpGrammarStart> starts(count);
@@ -786,11 +787,7 @@ TEST_F(SpawnTest, ThePassesAreTheDocumentedOnes) {
 
 TEST_F(SpawnTest, TerminalsCanBeListed) {
   const auto words = bake(ownGrammar("building.pga"));
-  GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
-  info.data = words.data();
-  info.size = words.size() * 4;
-  GpgpAsset grammar = nullptr;
-  ASSERT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_SUCCESS);
+  const GpgpAsset grammar = makeGrammar(words);
   uint32_t count = 0;
   ASSERT_EQ(gpgpGetGrammarTerminals(grammar, &count, nullptr), GPGP_SUCCESS);
   std::vector<GpgpGrammarTerminal> terminals(count);
