@@ -3,6 +3,7 @@
 #include "host/files.h"
 #ifdef GPGP_CLI_SPAWN
 #include "cli/grammar_source.h"
+#include "cli/kernels.h"
 #endif
 #ifdef GPGP_CLI_TEXT
 #include "cli/bake_font.h"
@@ -107,8 +108,7 @@ Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
   if (options.out == kStandard) return {Json::object(), std::string(bytes)};
   host::writeFile(options.out, bytes);
   std::ostringstream text;
-  for (const GrammarText& grammar : grammars) text << (text.tellp() > 0 ? " + " : "") << grammar.name;
-  text << ": grammar, " << blob.size() << " bytes, " << options.out << '\n';
+  text << joined(options.in) << ": grammar, " << blob.size() << " bytes, " << options.out << '\n';
   const Json line = {{"in", options.in}, {"type", "grammar"}, {"out", options.out}, {"bytes", blob.size()}};
   return {{{"baked", Json::array({line})}}, text.str()};
 #else

@@ -71,10 +71,10 @@ Schedule defaultSchedule(const Graph& graph, const Flow& flow) {
       if (edge.recursive) comesBack[edge.target] = true;
     });
   }
-  for (uint32_t n = 0; n < graph.nodes.size(); ++n)
-    schedule.waits[n] = schedule.waits[n] && (often[n] || !isUneven(graph));
+  const bool uneven = isUneven(graph);
   for (uint32_t n = 0; n < graph.nodes.size(); ++n) { // a group for each node that shapes wait for, and for starts
     const Node& node = graph.nodes[n];
+    schedule.waits[n] = schedule.waits[n] && (often[n] || !uneven);
     const bool waits = multiplies(node) && (schedule.waits[n] || comesBack[n] || !multipliesByKnown(node));
     const bool starts = std::find(flow.starts.begin(), flow.starts.end(), n) != flow.starts.end();
     schedule.groups += flow.rank[n] != kNoNode && (waits || starts);
