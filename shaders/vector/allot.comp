@@ -1,5 +1,5 @@
 #version 460
-// Gives each tile with edges an entry, and clears it, unless mark has.
+// Gives each tile with edges an entry, and clears it, unless mark has. Those of small glyphs have theirs (stamp.comp).
 //
 // Entries are taken in any order. Where they do not suffice, the workgroup that finishes last deals them out again in
 // painting order, and from the first path that does not fit on all are left out.
@@ -25,11 +25,12 @@ void main() {
   const uint total = min(counters.words, header.wordLimit);
   for (uint first = gl_WorkGroupID.x * 64; first < total; first += gl_NumWorkGroups.x * 64) {
     const uint i = first + lane;
-    const uint count = i < total ? bitCount(words[i].edges) : 0;
+    const bool own = i < total && words[i].stamped == 0;
+    const uint count = own ? bitCount(words[i].edges) : 0;
     const uint end = scan(lane, count);
     if (lane == 63) start = atomicAdd(counters.entries, end);
     barrier();
-    if (i < total) words[i].firstEntry = start + end - count;
+    if (own) words[i].firstEntry = start + end - count;
     const uint sum = scanTotal();
     const uint clear = max(start, counters.cleared);
     if (start <= header.entryLimit && sum <= header.entryLimit - start && start + sum > clear)
@@ -63,7 +64,7 @@ void main() {
     if (path < pathEnd) {
       const PlacedPath p = paths[path];
       firstWord = p.firstWord;
-      wordCount = wordsInRow(p) * (p.bottom - p.top);
+      wordCount = items[p.item].stamped != 0 ? 0 : wordsInRow(p) * (p.bottom - p.top);
       for (uint w = 0; w < wordCount; ++w) count += bitCount(words[firstWord + w].edges);
     }
     const uint end = add(used, scan(lane, count));

@@ -21,7 +21,7 @@ layout(set = 0, binding = 14, std430) writeonly buffer Bins { uint bins[]; };
 layout(set = 0, binding = 28, std430) writeonly buffer Shapes { vec4 shapes[]; };
 #if !SOFTWARE
 layout(set = 0, binding = 13, std430) writeonly buffer Words { uvec4 words[]; };
-layout(set = 0, binding = 16, std430) buffer Counters { uvec4 counters[6]; }; // CanvasCounters
+layout(set = 0, binding = 16, std430) buffer Counters { uvec4 counters[7]; }; // CanvasCounters
 #endif
 
 ItemRecord sourceOf(uint i) {
@@ -46,7 +46,7 @@ ItemRecord sourceOf(uint i) {
   const uvec2 around = floatBitsToUint(from[at + 9].xy);
   item.clip = around.x;
   item.layer = around.y;
-  item.pad0 = item.pad1 = 0;
+  item.stamped = item.pad0 = 0;
   return item;
 }
 
@@ -73,7 +73,7 @@ void main() {
   for (uint i = lane; i < words.length(); i += lanes) words[i] = uvec4(0);
   if (lane == 0) {
     const uint before = counters[0].y; // entries of the record before, or anything at all
-    for (uint k = 0; k < 6; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
+    for (uint k = 0; k < 7; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
   }
 #endif
   if (lane == 0) copied = header;

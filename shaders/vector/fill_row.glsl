@@ -1,4 +1,5 @@
 // What fill does with a chord in a row of pixels, whoever gives it the chord.
+#include "run.glsl"
 layout(set = 0, binding = 15, std430) buffer Entries { uint entries[]; };
 
 // A row of tiles of a path: its box from left to right, where its words begin, and the one at hand.
@@ -43,19 +44,6 @@ void changeTile(Grid g, inout TileRow tiles, int row, int from, int to) {
   for (int tile = min(from, to) + 1; tile <= max(from, to); ++tile) turnFrom(g, entryOf(tiles, tile), row);
 }
 
-// What a run of sample rows that meet one pixel does: samples that change sides there and at the pixel right of it, and
-// by how much its area differs from what they say.
-struct Run {
-  uint here, next;
-  int difference;
-};
-Run runOf(uint rows, uint covered, int firstCrossing, int lastCrossing) {
-  Run run;
-  run.here = rows & covered;
-  run.next = rows & ~covered;
-  run.difference = areaOf(uint(bitCount(rows)), uint(bitCount(run.next)), firstCrossing, lastCrossing);
-  return run;
-}
 void takeRun(Run run, uint entry, uint column, uint row, float side) {
   const uint inTile = column % kTileSize, shifted = (inTile & 1) * 16;
   const uint word = entry + row % kTileSize * 4 + inTile / 2;
@@ -78,8 +66,9 @@ void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
   const Line line = lineOf(g, c);
   uint covered = 0, first = 0; // rows whose sample in the crossing's pixel lies right of it; first ones of their pixels
   int before = -2; // no column
+  const float firstRow = middleOf(g, top), step = sampleStep(g.samples);
   for (int k = 0; k < 16; ++k) {
-    const int x = crossingAt(line, middleOf(g, top + k)), column = x >> 8;
+    const int x = crossingAt(line, firstRow + float(k) * step), column = x >> 8; // both exact
     covered |= (x & 255) <= int(byteOf(columns, k)) ? 1u << k : 0u;
     first |= column != before ? 1u << k : 0u;
     before = column;

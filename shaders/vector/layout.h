@@ -116,14 +116,15 @@ struct ItemRecord {
   uint whole;           // 1: all of its paths are drawn or none
   uint clip;            // 1 + index of its ItemClipRecord; 0: none
   uint layer;           // 1 + index of the LayerRecord of the record's own that holds it; 0: none
-  uint pad0, pad1;
+  uint stamped;         // 1: a small glyph of one path, whose segments are not among the record's (stamp.comp)
+  uint pad0;
 };
 
 // What the host writes for each item: where the one that it names is placed, in the units of that one.
 struct PlacementRecord {
   float x, y, size;
   uint source;                                   // of the record's sources: ItemRecords without a place of their own;
-                                                 // in its bits from kSlotBit on, the slot
+                                                 // in its bits from kSlotBit on, the slot; kStampedBit: it is stamped
   vec4 color;                                    // straight; alpha multiplies
   uint firstSegment, firstPath, segments, paths; // as an item's
 };
@@ -168,13 +169,13 @@ struct TileWord {
   uint edges;      // the path's boundary passes through the tile
   uint inside;     // the tile's first sample row is inside at its left edge
   uint firstEntry; // of the tiles with edges, in order
-  uint pad0;
+  uint stamped;    // 1: a small glyph's
 };
 
 struct CanvasHeader {
   uint width, height, tilesX, tilesY;
   uint segmentCount, pathCount, itemCount, pathWords; // pathWords: 32 paths each
-  uint wordLimit, entryLimit, samples, flags;         // flags: kWrite...
+  uint wordLimit, entryLimit, samples, flags;         // entryLimit: without those of small glyphs; flags: kWrite...
   uint pathsDropped, binsX, binCount, patchCount;
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
   uint premultiplied;            // images whose colours are, as bits
@@ -205,6 +206,8 @@ struct CanvasCounters {
   uint listed;              // paths in bins' lists
   uint rowsX, rowsY, rowsZ; // workgroups of the pass that fills from lists
   uint cleared;             // entries that mark clears: as many as the record before had
+  uint stamped;             // entries of small glyphs, behind the others
+  uint pad0, pad1, pad2;
 };
 
 // A chord between mark and fill.
@@ -229,7 +232,7 @@ GPGP_CONST uint kForeground = 1u; // takes the colour of the item
 GPGP_CONST uint kMaxSlots = 8u;
 GPGP_CONST uint kShapeSlot = 8u; // the buffer of the record's own shapes
 GPGP_CONST uint kSlots = 9u;
-GPGP_CONST uint kSlotBit = 24u;
+GPGP_CONST uint kSlotBit = 24u, kStampedBit = 31u;
 GPGP_CONST uint kShapeRound = 1u;
 GPGP_CONST float kUnbounded = 1e30f; // sides of a scissor that is none
 GPGP_CONST uint kItemGrouped = 0x80000000u;
@@ -254,6 +257,8 @@ GPGP_CONST uint kManyItems = 256u;   // where that is worth it
 GPGP_CONST uint kTilesAside = 4096u; // painted by the general shader beside the other tiles
 GPGP_CONST uint kClearGroups = 256u; // workgroups of mark that clear entries
 GPGP_CONST uint kMostSegments = 64u; // of a workgroup, a power of two
+GPGP_CONST uint kStampTiles = 16u;   // of a small path, at most
+GPGP_CONST uint kStampPairs = 128u;  // of its pixels
 GPGP_CONST uint kFirstBin = 16u;
 GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:
 GPGP_CONST uint kBinGrouped = 2u; // 1: one of its paths may need the general shader
@@ -273,7 +278,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 96 &&
+              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 112 &&
               sizeof(gpgp::shader::ChordRecord) == 24);
 #endif
 #endif

@@ -28,7 +28,8 @@ GPGP_FN ItemRecord placed(ItemRecord source, PlacementRecord p) {
   GPGP_PRECISE float wz = w.z + (w.x * p.x + w.y * p.y);
   item.perspective = vec4(wx, wy, wz, w.w);
   item.color = vec4(p.color.x, p.color.y, p.color.z, p.color.w * source.color.w);
-  item.slot = p.source >> kSlotBit;
+  item.slot = (p.source >> kSlotBit) & ((1u << (kStampedBit - kSlotBit)) - 1u);
+  item.stamped = p.source >> kStampedBit;
   item.firstSegment = p.firstSegment;
   item.firstPath = p.firstPath;
   item.segments = p.segments;

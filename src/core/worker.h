@@ -12,7 +12,7 @@ namespace gpgp::core {
 
 constexpr uint32_t kMaxResources = 32;
 constexpr uint32_t kMaxGroupCounts = 16;
-constexpr uint32_t kMaxConditions = 32;
+constexpr uint32_t kMaxConditions = 48;
 constexpr uint32_t kMaxTargets = 16;
 
 /// What one record gives for the resources of kinds buffer and image.

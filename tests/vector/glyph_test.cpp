@@ -154,6 +154,89 @@ TEST_F(GlyphTest, ATextEqualsItsGlyphsAsDrawings) {
     }
 }
 
+/// Small glyphs take passes of their own on GPUs: alone, among others, cut by scissors and by the canvas.
+TEST_F(GlyphTest, SmallGlyphsAreDrawnAsDrawingsAre) {
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+  info.maxWidth = info.maxHeight = 128;
+  info.maxDrawings = 160;
+  canvas = worker(gpgpCreateCanvas, info);
+  const Shapes shapes(1, 3);
+  const GpgpAsset set = makeSet();
+  const auto indices = add(set, shapes.glyphs);
+  GpgpAsset drawings[3];
+  for (size_t k = 0; k < 3; ++k) {
+    std::vector<GpgpPath> black{shapes.paths[k]};
+    std::copy_n(std::array<float, 4>{0, 0, 0, 1}.data(), 4, black[0].color);
+    drawings[k] = makeDrawing(black);
+  }
+  TestPath triangle;
+  triangle.move(20, 30).line(90, 40).line(60, 110).close();
+  triangle.color = {0.5f, 0.25f, 1, 0.75f};
+  const GpgpCanvasItem other = place(makeDrawing({triangle.view()}));
+
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> at(-60, 560), size(2, 40);
+  std::vector<GpgpGlyphInstance> glyphs;
+  for (int i = 0; i < 150; ++i)
+    glyphs.push_back({indices[static_cast<size_t>(i) % 3],
+                      static_cast<float>(at(random)) / 4,
+                      static_cast<float>(at(random)) / 4,
+                      i % 10 ? static_cast<float>(size(random)) / 4 : 40.0f,
+                      {0, 0, 0, 1}});
+  // Sums and products of these are exact, so that drawings can be given the same map.
+  const float maps[][6] = {{1, 0, 0, 1, 0, 0}, {0.5f, 0.5f, -0.5f, 0.5f, 64, 0}, {-2, 0.5f, 0, 2, 120, -60}};
+  const float scissors[][4] = {{0, 0, 0, 0}, {30.5f, 20.25f, 90.75f, 100.5f}};
+  for (const auto& t : maps)
+    for (const auto& scissor : scissors)
+      for (const bool large : {false, true})
+        for (const uint32_t samples : {16u, 4u, 1u}) {
+          exactArea = samples == 16;
+          std::vector<GpgpGlyphInstance> some;
+          for (const GpgpGlyphInstance& g : glyphs)
+            if (large || g.size < 40) some.push_back(g);
+          GpgpCanvasItem item = text(set, some);
+          item.opacity = 0.5f;
+          std::copy_n(t, 6, item.transform);
+          std::copy_n(scissor, 4, item.scissor);
+          std::vector<GpgpCanvasItem> apart;
+          for (const GpgpGlyphInstance& g : some) {
+            const auto which =
+                static_cast<size_t>(std::find(indices.begin(), indices.end(), g.glyph) - indices.begin());
+            apart.push_back({drawings[which],
+                             {t[0] * g.size, t[1] * g.size, t[2] * g.size, t[3] * g.size,
+                              t[0] * g.x + t[2] * g.y + t[4], t[1] * g.x + t[3] * g.y + t[5]},
+                             0.5f});
+            std::copy_n(scissor, 4, apart.back().scissor);
+          }
+          std::vector<GpgpCanvasItem> together{item};
+          if (large) together.push_back(other), apart.push_back(other);
+          ASSERT_TRUE(same(raster(together, 128, 128, samples), raster(apart, 128, 128, samples)))
+              << "map " << &t - maps << ", scissor " << &scissor - scissors << ", large " << large << ", " << samples
+              << " samples";
+        }
+
+  // Too few entries: those that are drawn are the first ones, whichever passes they take.
+  const GpgpWorker roomy = canvas;
+  GpgpCanvasReport whole = GPGP_CANVAS_REPORT_INIT;
+  raster({text(set, glyphs)}, 128, 128, 16, &whole);
+  ASSERT_EQ(whole.base.status, GPGP_SUCCESS);
+  for (const uint32_t share : {8u, 4u, 2u}) {
+    info.maxTileEntries = whole.tileEntries / share;
+    canvas = worker(gpgpCreateCanvas, info);
+    GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+    const auto pixels = raster({text(set, glyphs)}, 128, 128, 16, &report);
+    EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+    EXPECT_GT(report.tileEntries, report.tileEntriesGiven);
+    EXPECT_EQ(report.tileEntriesGiven, info.maxTileEntries);
+    ASSERT_GT(report.pathsDropped, 0u);
+    ASSERT_LT(report.pathsDropped, 150u);
+    canvas = roomy;
+    const std::vector<GpgpGlyphInstance> first(glyphs.begin(), glyphs.end() - report.pathsDropped);
+    ASSERT_TRUE(same(pixels, raster({text(set, first)}, 128, 128, 16))) << share;
+  }
+}
+
 /// A glyph of three paths: in a linear gradient, in a radial one with a transform, in the text's colour.
 struct PaintedGlyph {
   TestPath shapes[3] = {glyphShape(4), glyphShape(5), glyphShape(6)};

@@ -101,7 +101,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   core::Record r;
   r.commandBuffer = commandBuffer;
   r.info = &info.base;
-  Gather gather(context, budgets_, tables_, info);
+  Gather gather(context, budgets_, tables_, info, software_ ? 0 : maxEntries_ / 2);
   for (uint32_t i = 0; i < info.itemCount; ++i)
     if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
@@ -132,7 +132,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.binWords = header.pathWords + shader::kBinHead;
   header.binListLimit = binLists();
   header.wordLimit = maxWords_;
-  header.entryLimit = maxEntries_;
+  header.entryLimit = maxEntries_ - gather.stampEntries;
   header.rowLimit = maxRows();
   header.samples = info.samples ? info.samples : 16;
   header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
@@ -160,7 +160,15 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   const bool wide = info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT;
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
-  r.conditions[projective ? kProjective : several ? kDrawings : kOneDrawing] = true;
+  const uint32_t form = projective ? 2 : several ? 1 : 0;
+  r.conditions[kOneDrawing + form] = true;
+  // Small glyphs are stamped; where there is nothing else, the passes for what is not are left out.
+  const bool stamps = gather.stampEntries > 0;
+  if (stamps) r.conditions[several ? kStampDrawings : kStampOne] = true;
+  if (stamps && !header.segmentCount)
+    r.conditions[kStampsAlone] = true;
+  else
+    r.conditions[kMarkOne + form] = r.conditions[kMarked] = true;
   const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
   r.conditions[(images ? kImages
                 // The plain shader fetches from one drawing only, and on hardware leaves no squares to the general one.
@@ -189,6 +197,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kSegments] = rows((software_ ? 0 : shader::kClearGroups) + divide(header.segmentCount, perGroup));
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
+  r.groups[kStamps] = rows(std::max(header.itemCount, 1u));
   r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
   r.groups[kTiles] = rows(divide(uint64_t(header.tilesX) * header.tilesY, 8));
   r.groups[kBins] = rows(header.binCount);
@@ -245,8 +254,13 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.base = raw.header;
   report.patches = counters.patches;
   // Room for tile words is by maxTileEntries as well; entries were counted behind that.
-  report.tileEntries = std::max(counters.entries, counters.words > counters.wordsGiven ? counters.words : 0);
-  report.tileEntriesGiven = counters.entriesGiven;
+  // Where the others do not fit, small glyphs count as what was put aside for them.
+  const bool executed = raw.header.status == GPGP_SUCCESS;
+  const uint32_t aside = executed ? maxEntries_ - counters.entriesGiven : 0;
+  report.tileEntries =
+      std::max(counters.entries + (counters.entries > counters.entriesGiven ? aside : counters.stamped),
+               counters.words > counters.wordsGiven ? counters.words : 0);
+  report.tileEntriesGiven = executed ? maxEntries_ : 0;
   report.pathsDropped = counters.pathsDropped;
   report.glyphs = counters.glyphs;
   report.glyphsGiven = counters.glyphsGiven;

@@ -68,6 +68,10 @@
 #include "shaders/vector_sift.spv.h"
 #include "shaders/vector_split.spv.h"
 #include "shaders/vector_split_one.spv.h"
+#include "shaders/vector_stamp.spv.h"
+#include "shaders/vector_stamp_one.spv.h"
+#include "shaders/vector_stamp_one_subgroups.spv.h"
+#include "shaders/vector_stamp_subgroups.spv.h"
 #include "shaders/vector_tiles0.spv.h"
 #include "shaders/vector_tiles1.spv.h"
 #include "shaders/vector_tiles2.spv.h"
@@ -122,6 +126,7 @@ uint32_t Canvas::binLists() const { return software_ ? 0 : 2 * budgets_.patches 
 core::PassList Canvas::describe() const {
   using enum core::ResourceKind;
   using enum core::UseKind;
+  using Spirv = std::span<const uint32_t>;
   core::PassList list(&context.host());
   static constexpr const char* kNames[kMaxSlots] = {"drawing 0", "drawing 1", "drawing 2", "drawing 3",
                                                     "drawing 4", "drawing 5", "drawing 6", "drawing 7"};
@@ -183,36 +188,52 @@ core::PassList Canvas::describe() const {
   };
   // Shaders that fetch from drawings come in three forms: one need not choose among drawings at each access, two know
   // no projective items.
-  using Spirv = std::span<const uint32_t>;
   const auto either = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv,
-                          std::initializer_list<core::Use> uses, uint32_t groups) {
+                          std::initializer_list<core::Use> uses, uint32_t groups, uint32_t condition) {
     for (uint32_t k = 0; k < 3; ++k) {
       core::Pass& pass = dispatch(names[k], {names[k], spirv[k]}, uses, groups);
-      pass.condition = kOneDrawing + k;
+      pass.condition = condition + k;
       pass.beside = k > 0; // of the three one is recorded: the first one's barrier is all of theirs
     }
   };
   either({"place", "place, several drawings", "place, projective"},
          {vector_place_one, vector_place, vector_place_projective},
-         {{paths, readWrite}, {words, readWrite}, {masks, readWrite}, {counters, readWrite}}, kPaths);
+         {{paths, readWrite}, {words, readWrite}, {masks, readWrite}, {counters, readWrite}}, kPaths, kOneDrawing);
+  const auto pack = [&](const char* name, uint32_t condition) {
+    core::Pass& pass = list.dispatch(name, list.add(core::ShaderDesc{name, vector_pack}),
+                                     {{params, read}, {masks, readWrite}, {counters, readWrite}}, kBins);
+    pass.condition = condition;
+    pass.beside = true;
+  };
+  if (!software_) {
+    const bool subgroups = context.device.subgroupArithmetic && context.device.subgroupSize >= 32;
+    const auto stamp = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
+      core::Pass& pass = dispatch(shader.name, shader,
+                                  {{paths, read}, {words, write}, {counters, readWrite}, {entries, write}}, kStamps);
+      pass.condition = condition;
+      return pass;
+    };
+    stamp({"stamp", subgroups ? Spirv(vector_stamp_one_subgroups) : Spirv(vector_stamp_one)}, kStampOne);
+    stamp({"stamp, several drawings", subgroups ? Spirv(vector_stamp_subgroups) : Spirv(vector_stamp)}, kStampDrawings)
+        .beside = true;
+    pack("pack, glyphs alone", kStampsAlone);
+  }
   const std::array<Spirv, 3> mark =
       software_ ? std::array<Spirv, 3>{vector_mark_software_one, vector_mark_software, vector_mark_software_projective}
                 : std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective};
   either(
       {"mark", "mark, several drawings", "mark, projective"}, mark,
       {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}, {entries, write}},
-      kSegments);
-  if (!software_) {
-    core::Pass& pack = list.dispatch("pack", list.add(core::ShaderDesc{"pack", vector_pack}),
-                                     {{params, read}, {masks, readWrite}, {counters, readWrite}}, kBins);
-    pack.beside = true;
-  }
-  dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
-           {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
+      kSegments, kMarkOne);
+  if (!software_) pack("pack", kMarked);
+  core::Pass& allot =
+      dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
+               {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
+  allot.condition = kMarked;
   if (software_) {
     either({"fill", "fill, several drawings", "fill, projective"},
            {vector_fill_software_one, vector_fill_software, vector_fill_software_projective},
-           {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments);
+           {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments, kMarkOne);
   } else { // from the lists, or, where these did not suffice, without them; allot says which
     const auto split = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass =
@@ -243,7 +264,7 @@ core::PassList Canvas::describe() const {
                                  {rowList, read}},
                                 counters, k < 3 ? offsetof(CanvasCounters, rowsX) : offsetof(CanvasCounters, fillX));
       for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
-      pass.condition = kOneDrawing + k % 3;
+      pass.condition = kMarkOne + k % 3;
       pass.beside = true; // split's barrier, which is owed where that is left out, is all of theirs
     }
   }

@@ -8,7 +8,7 @@ namespace gpgp::vector {
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
 [[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28, kAsideTiles = 29;
 // Workgroup counts and conditions of a record.
-enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRaster, kTiles, kSift, kBins, kSplits };
+enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRaster, kTiles, kSift, kBins, kSplits, kStamps };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
   kPlain = 0,
@@ -26,9 +26,16 @@ enum Conditions : uint32_t {
   kSplitOne,
   kAside,
   kAsideOne,
-  kAsideImages
+  kAsideImages,
+  kMarkOne,
+  kMarkDrawings,
+  kMarkProjective,
+  kStampOne,
+  kStampDrawings,
+  kMarked,
+  kStampsAlone
 };
-static_assert(kAsideImages < core::kMaxConditions);
+static_assert(kStampsAlone < core::kMaxConditions);
 
 inline uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 

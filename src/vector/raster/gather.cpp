@@ -111,15 +111,41 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   return {};
 }
 
+namespace {
+/// How many tiles a glyph may have edges in, if it is one for stamp.comp: small, and no scissor cuts it; otherwise 0.
+uint32_t stampTiles(const ItemRecord& source, const shader::vec4& box, const GpgpGlyphInstance& glyph) {
+  const shader::vec4& t = source.transform;
+  const float halfX = 0.5f * glyph.size * (box.z - box.x), halfY = 0.5f * glyph.size * (box.w - box.y);
+  const float reachX = std::abs(t.x) * halfX + std::abs(t.z) * halfY,
+              reachY = std::abs(t.y) * halfX + std::abs(t.w) * halfY;
+  if (!(reachX >= 0 && reachX < 128 && reachY >= 0 && reachY < 128)) return 0;
+  // What shaders take of pixels and of tiles around it is in their margins: placeOf in stamp.comp, place.comp.
+  const auto at = [](float v) { return static_cast<uint32_t>(v); };
+  const uint32_t pairs = at(reachX + 0.95f) + 2, rows = at(2 * reachY + 2.5f);
+  const uint32_t tiles =
+      (at((2 * reachX + 2.5f) / shader::kTileSize) + 2) * (at((2 * reachY + 2.5f) / shader::kTileSize) + 2);
+  if (pairs * rows > shader::kStampPairs || tiles > shader::kStampTiles) return 0;
+  if (!shader::hasScissor(source)) return tiles;
+  const float x = glyph.x + 0.5f * glyph.size * (box.x + box.z), y = glyph.y + 0.5f * glyph.size * (box.y + box.w);
+  const float px = t.x * x + t.z * y + source.offsets.z, py = t.y * x + t.w * y + source.offsets.w;
+  const bool whole = px - reachX - 1 > source.scissor.x && px + reachX + 1 < source.scissor.z &&
+                     py - reachY - 1 > source.scissor.y && py + reachY + 1 < source.scissor.w;
+  return whole ? tiles : 0;
+}
+} // namespace
+
 /// A placement for each glyph that has paths, as long as there is room. This loop is what changing text costs.
 Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source) {
   const uint64_t frame = context_.current();
   constexpr float kMost = kMaxCoordinate;
   const bool hidden = source == kNone && !full_;
+  const uint32_t sourceIndex = source;
+  bool stampable = false;
   if (source != kNone) {
     ItemRecord& item = tables_.sources[source];
     item.whole = 1;
     if (!placesGlyphs(item)) return {}; // covers nothing
+    stampable = stampRoom_ && item.perspective.w == 0;
     const auto slot = bind(set);
     if (!slot) return slot.error();
     source |= *slot << shader::kSlotBit;
@@ -157,7 +183,14 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     to.firstPath = paths_;
     to.segments = glyph->first;
     to.paths = glyph->first + glyph->segments * static_cast<uint32_t>(sizeof(shader::SegmentRecord) / 16);
-    segments_ += glyph->segments;
+    const uint32_t tiles =
+        stampable && glyph->paths == 1 ? stampTiles(tables_.sources[sourceIndex], glyph->box, from) : 0;
+    if (tiles && tiles <= stampRoom_ - stampEntries) {
+      to.source |= 1u << shader::kStampedBit;
+      stampEntries += tiles;
+    } else {
+      segments_ += glyph->segments;
+    }
     paths_ += glyph->paths;
     patches_ += glyph->patches;
   }

@@ -49,8 +49,10 @@ struct ItemTables {
 
 class Gather {
 public:
-  Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, const GpgpCanvasInfo& info)
-      : context_(context), budgets_(budgets), tables_(tables), info_(info) {}
+  /// `stampRoom`: how many tile entries small glyphs may take for themselves (stamp.comp).
+  Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, const GpgpCanvasInfo& info,
+         uint32_t stampRoom)
+      : context_(context), budgets_(budgets), tables_(tables), info_(info), stampRoom_(stampRoom) {}
 
   /// NOT_READY where a glyph or a list's drawing is not resident.
   core::Result<void> add(uint32_t index, const ItemAsset& asset);
@@ -61,7 +63,8 @@ public:
   const core::Resident* bound[shader::kMaxSlots] = {};
   uint32_t slotCount = 0;
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
-  bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
+  bool lists = false;        ///< there are shapes, scissors or clips, which shaders for one drawing do not know
+  uint32_t stampEntries = 0; ///< of small glyphs, at most; 0: there are none
   uint32_t sources = 0, placements = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0; ///< used
 
 private:
@@ -89,6 +92,7 @@ private:
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
   uint32_t glyphsNeeded_ = 0, shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
   uint32_t pathsDropped_ = 0;
+  const uint32_t stampRoom_;
   bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
 };
 

@@ -170,6 +170,7 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     uint32_t paint = divide(block + glyph.segments * kSegmentSize + glyph.paths * kPathSize, kPaintSize);
     uint32_t stop = (paint + countPaints(glyphs.drawing, firstPath, path)) * (kPaintSize / kStopSize);
     for (size_t i = firstPath; i < path; ++i, to += sizeof(BoxedPath)) {
+      glyph.box = tables.outlines.boxes[i];
       BoxedPath boxed{tables.outlines.boxes[i], glyphs.drawing.paths[i]};
       if (boxed.path.paint) {
         PaintRecord record = glyphs.drawing.paints[boxed.path.paint - 1];

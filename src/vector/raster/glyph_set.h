@@ -17,6 +17,7 @@ public:
   struct Glyph {
     uint32_t first = 0, size = 0; ///< its block, in vec4
     uint32_t segments = 0, paths = 0, patches = 0;
+    shader::vec4 box = {};   ///< of its last path
     uint32_t generation = 0; ///< of the glyph; of the next one where there is none
     bool living = false, gradients = false;
     mutable uint64_t lastUsed = 0; ///< frame

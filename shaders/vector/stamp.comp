@@ -1,0 +1,201 @@
+#version 460
+// Small glyphs: what a path's boundary does to the tiles and pixels that it passes through, all of it in shared memory.
+//
+// A workgroup takes an item that has one path: its invocations take a segment each, then a chord, then a row of pixels
+// of one. Samples and areas change as fill has them (fill_row.glsl), but in rows of all of the path's pixels; what lies
+// left of a tile is summed up in the end, when it shows which tiles have edges. Their entries lie behind those of all
+// other paths, and are written whole.
+#extension GL_GOOGLE_include_directive : require
+#if SUBGROUPS
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
+#define SCISSORS 0 // what one may cut is not small (Gather)
+#include "canvas.glsl"
+#include "run.glsl"
+const uint kLanes = 32;
+layout(local_size_x = kLanes) in;
+layout(set = 0, binding = 15, std430) writeonly buffer Entries { uint entries[]; };
+shared uint pixels[kStampPairs * 2];                      // the samples of pairs, row by row, then their areas
+shared vec4 chords[kLanes];                               // x, y to x, y: down where the region begins right of it
+shared uint firstChord[kLanes + 1], firstRow[kLanes + 1]; // of each segment; of each chord
+shared uint edges[kStampTiles], inside[kStampTiles];      // of each row of tiles, as TileWord has them
+shared uint firstEntry;
+#if SUBGROUPS // of at least as many invocations
+uint upTo(uint count) { return subgroupInclusiveAdd(count); }
+#else
+#define SCAN_LANES 32
+#include "scan.glsl"
+uint upTo(uint count) { return scan(gl_LocalInvocationIndex, count); }
+#endif
+
+// The path's pixels: the first pair, how many there are in a row, the first row.
+struct Place {
+  uint left, pairs, top;
+};
+
+Place placeOf(Grid g, ItemRecord item) {
+  const vec4 box = fetch(item.slot, item.paths);
+  const vec2 a = toPixel(item, box.x, box.y), b = toPixel(item, box.z, box.y), c = toPixel(item, box.z, box.w),
+             d = toPixel(item, box.x, box.w);
+  const vec2 low = min(min(a, b), min(c, d)), high = max(max(a, b), max(c, d));
+  const vec2 margin = 0.25 + 1e-5 * max(abs(low), abs(high)); // far more than rounding
+  const uint left = uint(max(low.x - margin.x, 0.0)) / 2;
+  const uint last = (uint(clamp(high.x + margin.x, 0.0, float(g.columns))) + 1) / 2; // it has the pixel right of all
+  return Place(left, max(last, left) + 1 - left, uint(max(low.y - margin.y, 0.0)));
+}
+
+// A chord in one row of pixels.
+void stampRow(Grid g, Place place, Chord c, int pixel) {
+  const int shift = findMSB(g.samples), top = pixel << shift;
+  const int begin = max(c.first, top) - top, end = min(c.last - top, int(g.samples));
+  const uvec4 columns = sampleColumns(g.samples);
+  const Line line = lineOf(g, c);
+  const float firstRow = middleOf(g, top), step = sampleStep(g.samples);
+  uint covered = 0, first = 0; // rows whose sample in the crossing's pixel lies right of it; first ones of their pixels
+  int before = -2;             // no column
+  for (int k = 0; k < 16; ++k) {
+    const int x = crossingAt(line, firstRow + float(k) * step), column = x >> 8; // both exact
+    covered |= (x & 255) <= int(byteOf(columns, k)) ? 1u << k : 0u;
+    first |= column != before ? 1u << k : 0u;
+    before = column;
+  }
+  first = (first | 1u << begin) & ((1u << end) - (1u << begin));
+  const uint row = (uint(pixel) - place.top) * place.pairs - place.left;
+  while (first != 0) {
+    const int from = findLSB(first);
+    first &= first - 1;
+    const int to = first != 0 ? findLSB(first) : end;
+    const int x = crossingAt(line, firstRow + float(from) * step);
+    const int last = crossingAt(line, firstRow + float(to - 1) * step), column = x >> 8;
+    if (column >= g.columns) continue;
+    Run run = runOf((1u << to) - (1u << from), covered, x, last);
+    if (column < 0) run = Run(run.here | run.next, 0, 0);
+    const uint at = uint(max(column, 0)), shifted = (at & 1) * 16, word = row + at / 2;
+    atomicXor(pixels[word], shifted == 0 ? run.here | run.next << 16 : run.here << 16);
+    if (shifted != 0 && run.next != 0) atomicXor(pixels[word + 1], run.next);
+    if ((header.flags & kExactArea) != 0 && run.difference != 0)
+      atomicAdd(pixels[word + kStampPairs], uint(c.side > 0 ? run.difference : -run.difference) << shifted);
+  }
+}
+
+// The samples that are inside in the first pixel of a tile's row, which begins with a pair; none where the row is not
+// the path's.
+uint insideAt(Place place, uint pair, uint row) {
+  uint both = 0;
+  if (row - place.top < kStampPairs / place.pairs) {
+    const uint first = (row - place.top) * place.pairs;
+    for (uint k = 0; k < place.pairs && place.left + k < pair; ++k) both ^= pixels[first + k];
+    both ^= both >> 16;
+    if (pair - place.left < place.pairs) both ^= pixels[first + pair - place.left];
+  }
+  return both & 0xffff;
+}
+
+void main() {
+  const uint i = groupIndex(), lane = gl_LocalInvocationIndex;
+  if (i >= header.itemCount) return;
+  const ItemRecord item = items[i];
+  if (item.stamped == 0) return;
+  const PlacedPath p = paths[item.firstPath];
+  if (item.firstPath >= counters.cutPath || p.left >= p.right) return;
+  for (uint k = lane; k < kStampPairs * 2; k += kLanes) pixels[k] = 0;
+  if (lane < kStampTiles) edges[lane] = inside[lane] = 0;
+  barrier();
+  const Grid g = canvasGrid();
+  const Place place = placeOf(g, item);
+  const uint end = (item.paths - item.segments) / 4; // a glyph's path lies behind its segments
+  for (uint first = 0; first < end; first += kLanes) {
+    uint count = 0;
+    if (first + lane < end) {
+      const SegmentRecord s = fetchSegment(item, item.firstSegment + first + lane);
+      if (mayMatter(g, item, s)) count = chordCount(g, item, s);
+    }
+    const uint chordEnd = upTo(count);
+    firstChord[lane + 1] = chordEnd;
+    if (lane == 0) firstChord[0] = 0;
+    barrier();
+    const uint total = firstChord[kLanes];
+    for (uint batch = 0; batch < total; batch += kLanes) {
+      uint rowCount = 0;
+      if (batch + lane < total) {
+        uint low = 0;
+        for (uint step = kLanes / 2; step > 0; step /= 2)
+          if (firstChord[low + step] <= batch + lane) low += step;
+        const uint begin = firstChord[low], n = firstChord[low + 1] - begin;
+        const SegmentRecord s = fetchSegment(item, item.firstSegment + first + low);
+        Chord c;
+        if (chordOf(g, item, s, batch + lane - begin, n, chordStep(n), c) &&
+            c.first < c.last && min(c.top.x, c.bottom.x) < float(g.columns)) {
+          const int shift = findMSB(g.samples);
+          rowCount = uint(((c.last - 1) >> shift) - (c.first >> shift) + 1);
+          chords[lane] = c.side > 0 ? vec4(c.top, c.bottom) : vec4(c.bottom, c.top);
+        }
+      }
+      const uint rowEnd = upTo(rowCount);
+      firstRow[lane + 1] = rowEnd;
+      if (lane == 0) firstRow[0] = 0;
+      barrier();
+      const uint rowTotal = firstRow[kLanes];
+      for (uint r = lane; r < rowTotal; r += kLanes) {
+        uint low = 0;
+        for (uint step = kLanes / 2; step > 0; step /= 2)
+          if (firstRow[low + step] <= r) low += step;
+        const vec4 from = chords[low];
+        Chord c;
+        c.side = from.y < from.w ? 1.0 : -1.0;
+        c.top = c.side > 0 ? from.xy : from.zw;
+        c.bottom = c.side > 0 ? from.zw : from.xy;
+        c.first = rowOf(g, c.top.y);
+        c.last = rowOf(g, c.bottom.y);
+        precise float width = c.bottom.x - c.top.x;
+        precise float height = c.bottom.y - c.top.y;
+        c.slope = slopeOf(width, height);
+        stampRow(g, place, c, (c.first >> findMSB(g.samples)) + int(r - firstRow[low]));
+      }
+      barrier();
+    }
+  }
+  // Which tiles have edges, and which lie inside.
+  const uint across = p.right - p.left, down = p.bottom - p.top, rows = kStampPairs / place.pairs;
+  const uvec2 own = uvec2(lane % 4, lane / 4); // this invocation's pair in each tile
+  const uint all = (1u << g.samples) - 1;
+  for (uint t = 0; t < across * down; ++t) {
+    const uvec2 tile = uvec2(t % across, t / across), first = (uvec2(p.left, p.top) + tile) * uvec2(4, kTileSize);
+    const uint whole = (insideAt(place, first.x, first.y) & 1) != 0 ? all : 0;
+    if (lane == 0 && whole != 0) inside[tile.y] |= 1u << tile.x;
+    const uvec2 at = first + own - uvec2(place.left, place.top);
+    uint changes = own.x == 0 ? insideAt(place, first.x, first.y + own.y) ^ whole : 0;
+    if (at.x < place.pairs && at.y < rows) {
+      const uint word = at.y * place.pairs + at.x;
+      changes |= pixels[word] & (own.x == 0 ? 0xffff0000u : ~0u) | pixels[word + kStampPairs];
+    }
+    if (changes != 0) atomicOr(edges[tile.y], 1u << tile.x);
+  }
+  barrier();
+  uint count = 0, before = 0;
+  for (uint row = 0; row < down; ++row) {
+    if (row == lane) before = count;
+    count += bitCount(edges[row]);
+  }
+  if (lane == 0) firstEntry = header.entryLimit + atomicAdd(counters.stamped, count);
+  barrier();
+  if (lane < down) words[p.firstWord + lane] = TileWord(edges[lane], inside[lane], firstEntry + before, 1);
+  uint entry = firstEntry * kEntryWords + lane;
+  for (uint t = 0; t < across * down; ++t) {
+    const uvec2 tile = uvec2(t % across, t / across), first = (uvec2(p.left, p.top) + tile) * uvec2(4, kTileSize);
+    if ((edges[tile.y] >> tile.x & 1) == 0) continue;
+    const uvec2 at = first + own - uvec2(place.left, place.top);
+    uint samples = 0, areas = 0;
+    if (at.x < place.pairs && at.y < rows) {
+      const uint word = at.y * place.pairs + at.x;
+      samples = pixels[word];
+      areas = pixels[word + kStampPairs];
+    }
+    if (own.x == 0)
+      samples = samples & 0xffff0000u |
+                insideAt(place, first.x, first.y + own.y) ^ ((inside[tile.y] >> tile.x & 1) != 0 ? all : 0);
+    entries[entry] = samples;
+    entries[entry + kEntryWords / 2] = areas;
+    entry += kEntryWords;
+  }
+}
