@@ -212,9 +212,11 @@ typedef struct GpgpSpawnerCreateInfo {
   uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 4, or 32 on software devices. Few are
                          needed: workgroups derive by themselves, and rounds only share work out again. What is left is
                          counted */
-  uint32_t maxColliders; /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
-                              grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
-                              devices */
+  uint32_t maxColliders;  /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
+                               grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
+                               devices */
+  uint32_t maxHostAxioms; /**< axioms of one record that GpgpSpawnInfo::hostAxioms gives; 0: none. 96 bytes each, for
+                               every record that can be in flight, of memory that the host writes; at most 2^24 */
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
@@ -255,9 +257,11 @@ typedef struct GpgpSpawnInfo {
   const void* pNext;
   GpgpRecordInfo base;
   GpgpAsset grammar;
-  GpgpBuffer axioms;       /**< GpgpAxiom[axiomCount]; STORAGE usage */
-  GpgpBuffer axiomCounter; /**< optional: uint32_t, how many axioms there are, for those that the GPU has written (4
-                              bytes); STORAGE usage. axiomCount is the most that are derived then */
+  GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]; STORAGE usage. Part of a longer list is its offset and count */
+  const GpgpAxiom* hostAxioms; /**< instead of axioms: GpgpAxiom[axiomCount] of the CPU, copied while recording; at most
+                                    GpgpSpawnerCreateInfo::maxHostAxioms. @lifetime call */
+  GpgpBuffer axiomCounter;     /**< optional: uint32_t, how many axioms there are, for those that the GPU has written (4
+                                  bytes); STORAGE usage. axiomCount is the most that are derived then */
   uint32_t axiomCount;
   GpgpSpawnFlags flags;
   GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage. NULL with draws: the record

@@ -132,8 +132,11 @@ Work addTune(CLI::App& app) {
       ->check(CLI::Range(3u, 1000u))
       ->capture_default_str();
   command
-      ->add_option("--seconds", settings.seconds,
-                   "Time budget: what would probably take longer is left out, and the best so far is kept; 0: none")
+      ->add_option(
+          "--seconds", settings.seconds,
+          "Time budget: what would probably take longer is left out, slow derivations are measured less often, and "
+          "the best so far is kept. The interpreter and one schedule are always measured, which takes a "
+          "software device some seconds; 0: no limit")
       ->check(within(0.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");
