@@ -109,7 +109,7 @@ private:
 
   void findSchedules() {
     const auto search = [&](spawn::Search kind, size_t limit) {
-      return searchSchedules(grammar_.graph, kind, limit, settings_.seed, tuned_.complete);
+      return searchSchedules(grammar_.graph, kind, limit, settings_.seed, tuned_.complete, settings_.heuristics);
     };
     tuned_.schedules = search(settings_.search.value_or(spawn::Search::exhaustive), settings_.samples);
     if (settings_.search || tuned_.complete) return;

@@ -18,7 +18,8 @@ struct TuneSettings {
   /// Nothing: every partition where there are no more than samples; else half of the samples as the heuristics and
   /// coins say, and what is near the best of them.
   std::optional<spawn::Search> search;
-  bool matching = false;      ///< chains of groups that differ in parameters only share code
+  bool matching = false; ///< chains of groups that differ in parameters only share code
+  spawn::Heuristics heuristics;
   bool schedulesOnly = false; ///< leave the numbers as the device suggests
   uint32_t samples = 32;      ///< schedules at most, the named ones included
   uint32_t repeat = 15, seed = 1;

@@ -308,12 +308,13 @@ TEST(Link, TagsAreCommon) {
                 "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in line 3 of a.pga, which comes "
                 "after it"}));
   EXPECT_EQ(linked({bakedFile({"wall.pga", wall}), bakedFile({"plant.pga", plant})}), words);
-  EXPECT_EQ(linkMessages({bakedFile({"a.pga", circle}),
-                          {"b.pga", replaced(replaced(circle, "(one)", "(two)"), "Collider(two)", "Collider(one)")}}),
-            (Messages{"a.pga:1:1: error: IfCollides(one) waits for all of Collider(one) in line 3 of b.pga, which comes "
-                      "after it",
-                      "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in the baked grammar of a.pga, "
-                      "which comes after it"}));
+  EXPECT_EQ(
+      linkMessages({bakedFile({"a.pga", circle}),
+                    {"b.pga", replaced(replaced(circle, "(one)", "(two)"), "Collider(two)", "Collider(one)")}}),
+      (Messages{"a.pga:1:1: error: IfCollides(one) waits for all of Collider(one) in line 3 of b.pga, which comes "
+                "after it",
+                "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in the baked grammar of a.pga, "
+                "which comes after it"}));
 }
 
 /// A start derives what the same file does with its shape and rule in the only axiom line.

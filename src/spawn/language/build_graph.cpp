@@ -55,7 +55,9 @@ private:
   };
 
   /// Of a rule or terminal.
-  uint32_t addOwnName(const std::string& name) { return addName(graph_, part_.name.empty() ? name : part_.name + "." + name); }
+  uint32_t addOwnName(const std::string& name) {
+    return addName(graph_, part_.name.empty() ? name : part_.name + "." + name);
+  }
 
   bool define(const std::string& name, Name what) {
     const auto [it, isNew] = names_.try_emplace(name, what);

@@ -42,7 +42,8 @@ constexpr size_t kMostText = size_t(1) << 28;
 GpgpResult check(const GpgpGrammarSource& source) {
   if ((source.builder != nullptr) + (source.text != nullptr) + (source.baked != nullptr) > 1)
     return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "more than one of text, builder and baked is set");
-  if (!source.text && !source.baked && source.size) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
+  if (!source.text && !source.baked && source.size)
+    return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
   if (!source.variables && source.variableCount)
     return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
   for (uint32_t i = 0; i < source.variableCount; ++i)
@@ -127,7 +128,8 @@ GpgpResult compile(std::span<const GpgpGrammarSource> sources, bool linked, Gpgp
       else if (!isNew)
         diagnostics.error({}, "'" + name + "' is also the name of " + other->second +
                                   "; expected another file name, or an alias: linked grammars are told apart by them");
-      parts.push_back({&tree, baked ? &*baked : nullptr, {source.variables, source.variableCount}, &diagnostics, name, file});
+      parts.push_back(
+          {&tree, baked ? &*baked : nullptr, {source.variables, source.variableCount}, &diagnostics, name, file});
       kernel = kernel || (source.flags & GPGP_COMPILE_KERNEL);
     }
     const spawn::Graph graph = spawn::buildGraph(parts, std::pmr::new_delete_resource());
