@@ -104,18 +104,18 @@ typedef struct GpgpGrammarSource {
 
 /** Compiles PGA-shape text (.pga), what a builder holds, or a baked grammar, to a baked grammar. In libgpgp_compiler. A
  *  pure function of its input. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY.
- * @threads any @lifetime call */
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
 /** Compiles several grammars to one, so that one record derives axioms of all of them. It has their rules, terminals,
  *  buckets and axiom lines in the order of the sources; the first axiom line of the first source is the default start.
  *  Each source is called by its alias, or else by its file: GpgpGrammarSource::name without folders and without what
  *  follows the first point, characters other than letters, digits and _ made _. Its rules and terminals have that name
- * before theirs, as in house.Wall, and its first axiom line is the start house; see gpgpGetGrammarStarts. Tags of
- * Collider and IfCollides are common. Each source has its own variables and gets its own messages; a kernel is
- * generated where any asks for one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages
- * say where; also where two sources have the same name, or one has none), INVALID_ARGUMENT (no sources),
- * INVALID_STRUCT, UNSUPPORTED, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+ *  before theirs, as in house.Wall, and its first axiom line is the start house; see gpgpGetGrammarStarts. Tags of
+ *  Collider and IfCollides are common. Each source has its own variables and gets its own messages; a kernel is
+ *  generated where any asks for one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages
+ *  say where; also where two sources have the same name, or one has none), INVALID_ARGUMENT (no sources),
+ *  INVALID_STRUCT, UNSUPPORTED, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpLinkGrammars(const GpgpGrammarSource* sources, uint32_t sourceCount, GpgpBlob* blob);
 
 /* ---------------------------------------------------------------- grammar */

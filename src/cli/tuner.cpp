@@ -201,7 +201,7 @@ private:
   uint32_t repeats(double milliseconds) const {
     if (settings_.seconds == 0) return settings_.repeat;
     const double count = kForMeasurement * settings_.seconds * 1000 / milliseconds;
-    return static_cast<uint32_t>(std::clamp<double>(count, kFirstLook, settings_.repeat));
+    return static_cast<uint32_t>(std::min<double>(std::max<double>(count, kFirstLook), settings_.repeat));
   }
   /// The fastest first, without those that there was no time for. share: of all time, that may have passed at the end.
   std::vector<Candidate> measured(std::vector<Candidate> list, const char* label, double share) {

@@ -306,8 +306,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
   if (info.hostAxioms && info.axiomCount > maxHostAxioms_)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                           "axiomCount is %u, of hostAxioms; the spawner was made with maxHostAxioms "
-                           "%u",
+                           "axiomCount is %u, of hostAxioms; the spawner was made with maxHostAxioms %u",
                            info.axiomCount, maxHostAxioms_);
   const Limits& limits = limitsOf(context.device);
   const uint32_t phases = std::max(grammar.graph.phases, 1u);
