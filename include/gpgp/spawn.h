@@ -87,32 +87,35 @@ typedef struct GpgpGrammarBuilder_T* GpgpGrammarBuilder; /**< a grammar made in 
 typedef struct GpgpGrammarSource {
   GpgpStructureType sType;
   const void* pNext;
-  const char* name; /**< file name for messages */
-  const char* text; /**< UTF-8, need not end in 0 */
-  size_t size;
+  const char* name;  /**< file name for messages */
+  const char* alias; /**< optional: what gpgpLinkGrammars calls it, instead of by its file; letters, digits and _ */
+  const char* text;  /**< UTF-8, need not end in 0 */
+  size_t size;       /**< bytes of text or baked */
   const GpgpVariable* variables;
   uint32_t variableCount;
   GpgpCompileMessageFn messageFn; /**< every error of the file, in order */
   void* messageUserData;
   GpgpCompileFlags flags;
   GpgpGrammarBuilder builder; /**< instead of text, which then is NULL; read during the call */
+  const void* baked; /**< instead of text: a baked grammar, as it stands in a file. It has no variables any more, and
+                          kernels in it are left out. @lifetime call */
 } GpgpGrammarSource;
 #define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
 
-/** Compiles PGA-shape text (.pga), or what a builder holds, to a baked grammar. In libgpgp_compiler. A pure function of
- *  its input. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime
- * call */
+/** Compiles PGA-shape text (.pga), what a builder holds, or a baked grammar, to a baked grammar. In libgpgp_compiler. A
+ *  pure function of its input. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY.
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
 /** Compiles several grammars to one, so that one record derives axioms of all of them. It has their rules, terminals,
  *  buckets and axiom lines in the order of the sources; the first axiom line of the first source is the default start.
- *  Each source is called by its file: GpgpGrammarSource::name without folders and without what follows the first point,
- *  characters other than letters, digits and _ made _. Its rules and terminals have that name before theirs, as in
- *  house.Wall, and its first axiom line is the start house; see gpgpGetGrammarStarts. Tags of Collider and IfCollides
- *  are common. Each source has its own variables and gets its own messages; a kernel is generated where any asks for
- *  one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages say where; also
- *  where two sources have the same name, or one has none), INVALID_ARGUMENT (no sources), INVALID_STRUCT, UNSUPPORTED,
- *  OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+ *  Each source is called by its alias, or else by its file: GpgpGrammarSource::name without folders and without what
+ *  follows the first point, characters other than letters, digits and _ made _. Its rules and terminals have that name
+ *  before theirs, as in house.Wall, and its first axiom line is the start house; see gpgpGetGrammarStarts. Tags of
+ *  Collider and IfCollides are common. Each source has its own variables and gets its own messages; a kernel is
+ *  generated where any asks for one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages
+ *  say where; also where two sources have the same name, or one has none), INVALID_ARGUMENT (no sources),
+ *  INVALID_STRUCT, UNSUPPORTED, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpLinkGrammars(const GpgpGrammarSource* sources, uint32_t sourceCount, GpgpBlob* blob);
 
 /* ---------------------------------------------------------------- grammar */
@@ -212,9 +215,11 @@ typedef struct GpgpSpawnerCreateInfo {
   uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 4, or 32 on software devices. Few are
                          needed: workgroups derive by themselves, and rounds only share work out again. What is left is
                          counted */
-  uint32_t maxColliders; /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
-                              grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
-                              devices */
+  uint32_t maxColliders;  /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
+                               grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
+                               devices */
+  uint32_t maxHostAxioms; /**< axioms of one record that GpgpSpawnInfo::hostAxioms gives; 0: none. 96 bytes each, for
+                               every record that can be in flight, of memory that the host writes; at most 2^24 */
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
@@ -255,9 +260,11 @@ typedef struct GpgpSpawnInfo {
   const void* pNext;
   GpgpRecordInfo base;
   GpgpAsset grammar;
-  GpgpBuffer axioms;       /**< GpgpAxiom[axiomCount]; STORAGE usage */
-  GpgpBuffer axiomCounter; /**< optional: uint32_t, how many axioms there are, for those that the GPU has written (4
-                              bytes); STORAGE usage. axiomCount is the most that are derived then */
+  GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]; STORAGE usage. Part of a longer list is its offset and count */
+  const GpgpAxiom* hostAxioms; /**< instead of axioms: GpgpAxiom[axiomCount] of the CPU, copied while recording; at most
+                                    GpgpSpawnerCreateInfo::maxHostAxioms. @lifetime call */
+  GpgpBuffer axiomCounter;     /**< optional: uint32_t, how many axioms there are, for those that the GPU has written (4
+                                  bytes); STORAGE usage. axiomCount is the most that are derived then */
   uint32_t axiomCount;
   GpgpSpawnFlags flags;
   GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage. NULL with draws: the record

@@ -74,8 +74,7 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
   makeMaterials();
   if (watch) {
     GrammarWatchOptions options;
-    options.file = grammarFile;
-    options.text.assign(text.begin(), text.end());
+    options.files = {{grammarFile, {text.begin(), text.end()}}};
     options.kernels = true;
     options.say = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
     watch_ = std::make_unique<GrammarWatch>(gpgp.context, spawner_, options);

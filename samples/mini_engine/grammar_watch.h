@@ -1,8 +1,11 @@
-// Hot reload: follows a grammar file and hands over a new grammar whenever the file has changed and compiles.
+// Hot reload: follows grammar files, linked where they are several, and hands over a new grammar whenever one of them
+// has changed and all compile.
 //
 // A thread reads and compiles, so that frames never wait. What it made becomes an asset between two frames, travels to
 // the device with the frames' own gpgpRecordUpload, and is handed over once it can be recorded with: the frame that has
 // it is as fast as any other. A file with errors is reported and changes nothing.
+//
+// Places of starts are a version's own: engines whose axioms name starts look them up again (gpgpFindGrammarStart).
 #pragma once
 #include <gpgp/gpgp.hpp>
 
@@ -17,8 +20,11 @@
 namespace mini {
 
 struct GrammarWatchOptions {
-  std::string file;
-  std::string text;     ///< of the file, as it is in use now
+  struct File {
+    std::string path;
+    std::string text; ///< as it is in use now
+  };
+  std::vector<File> files;
   bool kernels = false; ///< each version twice: at once for the interpreter, then with a kernel of its own
   std::function<void(const std::string&)> say; ///< errors and warnings with their places; called by update
 };
@@ -37,7 +43,7 @@ public:
 
 private:
   void run();
-  bool compile(const std::string& text, GpgpCompileFlags flags);
+  bool compile(const std::vector<std::string>& texts, GpgpCompileFlags flags);
 
   const GpgpContext context_;
   const GpgpWorker spawner_;

@@ -96,6 +96,8 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (info->maxShapes > (1u << 24) || info->maxTerminals > (1u << 24))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes and maxTerminals are at most 16777216");
     if (info->maxDepth > 65535) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDepth is at most 65535");
+    if (info->maxHostAxioms > (1u << 24))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxHostAxioms is at most 16777216");
     if (info->maxRounds > 256) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRounds is at most 256");
     auto made = spawn::Spawner::create(**context, *info);
     if (!made) return made.error();
@@ -178,8 +180,11 @@ GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer c
     const auto grammar =
         resolve<spawn::Grammar>(call, info->grammar, Kind::grammar, "info->grammar", &(*spawner)->context);
     if (!grammar) return grammar.error();
-    if (info->axiomCount && !info->axioms.buffer)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.buffer is NULL, axiomCount is %u", info->axiomCount);
+    if (info->hostAxioms && info->axioms.buffer)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "both hostAxioms and axioms.buffer are set");
+    if (info->axiomCount && !info->hostAxioms && !info->axioms.buffer)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.buffer and hostAxioms are NULL, axiomCount is %u",
+                       info->axiomCount);
     if (info->axioms.buffer && info->axioms.size / sizeof(GpgpAxiom) < info->axiomCount)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
                        static_cast<unsigned long long>(info->axioms.size), info->axiomCount,

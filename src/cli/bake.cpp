@@ -78,7 +78,11 @@ struct Baked {
 Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& file, const std::string& type) {
   const std::string name = file == kStandard ? "<standard input>" : file;
 #ifdef GPGP_CLI_SPAWN
-  if (type == "grammar") return {compileGrammar({name, read(file)}, options.set, options.kernel), Json::object(), {}};
+  if (type == "grammar") {
+    const GrammarFile grammar(name);
+    if (!grammar.alias.empty()) throw Usage(file + ": NAME=FILE is for --link");
+    return {compileGrammar({grammar, read(file)}, options.set, options.kernel), Json::object(), {}};
+  }
 #endif
 #ifdef GPGP_CLI_VECTOR
   if (type == "drawing") return {bakeDrawing(read(file), name), Json::object(), {}};
@@ -98,10 +102,14 @@ Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
   if (std::filesystem::is_directory(options.out) || options.out.ends_with('/'))
     throw Usage("--link makes one file; " + options.out + " is a folder");
   std::vector<GrammarText> grammars;
-  for (const std::string& file : options.in) {
-    if (file == kStandard) throw Usage("standard input has no name to be linked by");
-    if (typeOf(options, file) != "grammar") throw Usage(file + " is no grammar; --link is for grammars");
-    grammars.push_back({file, host::readText(file)});
+  for (const std::string& argument : options.in) {
+    const GrammarFile file(argument);
+    if (file.path == kStandard && file.alias.empty())
+      throw Usage("standard input has no name to be linked by; NAME=- gives it one");
+    std::string text = read(file.path);
+    if (!text.starts_with("gppg") && typeOf(options, file.path) != "grammar")
+      throw Usage(file.path + " is no grammar; --link is for grammars");
+    grammars.push_back({file, std::move(text)});
   }
   const Blob blob = linkGrammars(grammars, options.set, options.kernel);
   const std::string_view bytes(static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size());
@@ -171,7 +179,8 @@ Work addBake(CLI::App& app) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--link", options->link,
-                    "The grammars become one, in one file: names of a.pga are a.Name, and its start is a");
+                    "The grammars, baked ones too, become one, in one file: names of a.pga are a.Name, and its start "
+                    "is a. Files of the same name take another one as NAME=FILE");
   command->add_flag("!--no-kernel", options->kernel,
                     "Grammars run on the interpreter: smaller files, slower derivation");
 #ifdef GPGP_CLI_TEXT
@@ -181,6 +190,7 @@ Work addBake(CLI::App& app) {
 Examples:
   gpgp bake city.pga -o city.gpgp
   gpgp bake house.pga tree.pga lamp.pga --link -o street.gpgp      one grammar: one record derives all of them
+  gpgp bake old=a/house.pga new=b/house.pga --link -o houses.gpgp  their starts are old and new
   gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"
   gpgp bake NotoNaskhArabic-Regular.ttf -o arabic.gpgpf --characters-file strings.txt --outline 0.1
   gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp

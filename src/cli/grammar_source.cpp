@@ -1,11 +1,11 @@
 #include "cli/grammar_source.h"
 
-#include "cli/command.h"
 #include "spawn/language/build_graph.h"
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -36,6 +36,8 @@ Assignment parseAssignment(const std::string& text, bool linked) {
   return result;
 }
 
+std::string nameOf(const GrammarFile& file) { return file.alias.empty() ? spawn::linkedName(file.path) : file.alias; }
+
 struct Errors {
   std::string first;
   uint32_t count = 0;
@@ -55,21 +57,19 @@ struct Errors {
 };
 
 Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vector<std::string>& set, bool kernel) {
-  for (const GrammarText& grammar : grammars)
-    if (grammar.text.starts_with("gppg")) throw Failure(grammar.name + " is a baked grammar; expected its text (.pga)");
   std::vector<Assignment> assignments;
   for (const std::string& text : set) assignments.push_back(parseAssignment(text, linked));
   std::vector<std::vector<GpgpVariable>> variables(grammars.size());
   for (const Assignment& a : assignments) {
     bool found = false;
     for (size_t i = 0; i < grammars.size(); ++i) {
-      if (linked && spawn::linkedName(grammars[i].name) != a.grammar) continue;
+      if (linked && nameOf(grammars[i].file) != a.grammar) continue;
       variables[i].push_back({a.name.c_str(), a.value});
       found = true;
     }
     if (found) continue;
     std::string names;
-    for (const GrammarText& grammar : grammars) names += (names.empty() ? "" : ", ") + spawn::linkedName(grammar.name);
+    for (const GrammarText& grammar : grammars) names += (names.empty() ? "" : ", ") + nameOf(grammar.file);
     throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"; there are " +
                 names);
   }
@@ -77,8 +77,12 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
   std::vector<GpgpGrammarSource> sources;
   for (size_t i = 0; i < grammars.size(); ++i) {
     GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
-    source.name = grammars[i].name.c_str();
-    source.text = grammars[i].text.data();
+    source.name = grammars[i].file.path.c_str();
+    if (!grammars[i].file.alias.empty()) source.alias = grammars[i].file.alias.c_str();
+    if (grammars[i].text.starts_with("gppg"))
+      source.baked = grammars[i].text.data();
+    else
+      source.text = grammars[i].text.data();
     source.size = grammars[i].text.size();
     source.variables = variables[i].data();
     source.variableCount = static_cast<uint32_t>(variables[i].size());
@@ -90,11 +94,43 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
   Result<Blob> blob = linked ? gpgp::linkGrammars(sources.data(), static_cast<uint32_t>(sources.size()))
                              : gpgp::compileGrammar(sources[0]);
   if (blob) return std::move(*blob);
-  if (errors.count == 0) throw Failure(grammars[0].name + ": " + blob.name());
+  if (errors.count == 0) throw Failure(grammars[0].file.path + ": " + blob.name());
   throw Failure(errors.first + (errors.count > 1 ? " (and " + std::to_string(errors.count - 1) + " more)" : ""));
 }
 
 } // namespace
+
+GrammarFile::GrammarFile(const std::string& argument) : path(argument) {
+  const size_t equals = argument.find('=');
+  if (equals == std::string::npos || std::filesystem::exists(argument)) return;
+  alias = argument.substr(0, equals);
+  path = argument.substr(equals + 1);
+  if (alias.empty() || spawn::linkedName(alias) != alias)
+    throw Usage(argument + ": \"" + alias + "\" is no name for " + path +
+                "; expected letters, digits and _, not digits alone");
+}
+
+void addGrammars(CLI::App& command, std::vector<std::string>& arguments) {
+  const auto exists = [](const std::string& argument) -> std::string {
+    try {
+      return CLI::ExistingFile(GrammarFile(argument).path);
+    } catch (const Usage& error) {
+      return error.what();
+    }
+  };
+  command
+      .add_option("GRAMMAR", arguments,
+                  "PGA-shape grammar text (.pga), or a baked grammar; several are linked to one grammar, by their file "
+                  "names or as NAME=FILE says")
+      ->required()
+      ->check(CLI::Validator(exists, "[NAME=]FILE"));
+}
+
+void addVariables(CLI::App& command, std::vector<std::string>& set) {
+  command.add_option("--set", set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+}
 
 Blob compileGrammar(const GrammarText& grammar, const std::vector<std::string>& set, bool kernel) {
   return compile({&grammar, 1}, false, set, kernel);

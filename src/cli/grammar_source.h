@@ -1,6 +1,7 @@
-// Grammar text to a baked grammar, for the subcommands: every message goes to standard error, the first error is
-// thrown.
+// Grammars to a baked grammar, for the subcommands: every message goes to standard error, the first error is thrown.
 #pragma once
+#include "cli/command.h"
+
 #include <gpgp/gpgp.hpp>
 
 #include <span>
@@ -9,9 +10,20 @@
 
 namespace gpgp::cli {
 
+/// A grammar as the command line names it: FILE, or NAME=FILE, which calls it NAME where it is linked. What exists as
+/// a file is one, whatever its name.
+struct GrammarFile {
+  explicit GrammarFile(const std::string& argument);
+  std::string alias, path; ///< alias: empty where there is none
+};
+/// The option GRAMMAR of the subcommands that link several.
+void addGrammars(CLI::App& command, std::vector<std::string>& arguments);
+/// And its --set.
+void addVariables(CLI::App& command, std::vector<std::string>& set);
+
 struct GrammarText {
-  std::string name; ///< of its file, for messages
-  std::string text;
+  GrammarFile file;
+  std::string text; ///< or the bytes of a baked grammar
 };
 
 /// set holds NAME=VALUE, as --set takes them. Throws Usage and Failure.

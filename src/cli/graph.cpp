@@ -1,5 +1,6 @@
 // `gpgp graph`: the operator graph of a grammar and its schedules, as text or as a picture. Needs no GPU.
 #include "cli/command.h"
+#include "cli/grammar_source.h"
 #include "cli/kernels.h"
 #include "host/files.h"
 #include "spawn/graph/export.h"
@@ -19,7 +20,7 @@ struct GraphOptions {
   std::string schedule, format = "text", out;
   std::vector<std::string> grammars, set;
   bool partitions = false;
-  uint32_t minimumGroupSize = spawn::Heuristics{}.minimumGroupSize;
+  spawn::Heuristics heuristics;
   uint64_t limit = 1000000;
 };
 
@@ -36,8 +37,6 @@ void report(const spawn::Diagnostics& diagnostics, const std::string& file) {
     throw Failure(first + (more ? std::string(" (and ").append(std::to_string(more)).append(" more)") : std::string()));
 }
 
-spawn::Heuristics heuristics(const GraphOptions& options) { return {true, true, options.minimumGroupSize}; }
-
 std::optional<spawn::Partition> schedule(const GraphOptions& options, const spawn::Graph& graph,
                                          const spawn::Flow& flow) {
   const std::string& name = options.schedule;
@@ -45,7 +44,7 @@ std::optional<spawn::Partition> schedule(const GraphOptions& options, const spaw
   if (name == "sgl") return makePartition(flow, coarsestPartition(flow));
   if (name == "rw") return makePartition(flow, singleGroups(flow));
   if (name == "rules") return makePartition(flow, rulePartition(graph, flow));
-  if (name == "heuristic") return makePartition(flow, heuristicPartition(graph, flow, heuristics(options)));
+  if (name == "heuristic") return makePartition(flow, heuristicPartition(graph, flow, options.heuristics));
   if (!std::filesystem::exists(name))
     throw Usage("--schedule takes sgl, rw, rules, heuristic or a file with groups; there is no \"" + name + "\"");
   spawn::Diagnostics diagnostics;
@@ -85,7 +84,7 @@ Outcome drawGraph(const GraphOptions& options) {
     const Json named = {{"sgl", groups(coarsestPartition(flow))},
                         {"rw", groups(singleGroups(flow))},
                         {"rules", groups(rulePartition(graph, flow))},
-                        {"heuristic", groups(heuristicPartition(graph, flow, heuristics(options)))}};
+                        {"heuristic", groups(heuristicPartition(graph, flow, options.heuristics))}};
     outcome.json.update({{"partitions", count}, {"partitions_complete", count < options.limit}, {"groups", named}});
     summary << count << (count < options.limit ? "" : " or more") << " valid partitions; groups:";
     for (const auto& [name, size] : named.items()) summary << ' ' << name << ' ' << size;
@@ -118,21 +117,14 @@ Outcome drawGraph(const GraphOptions& options) {
 Work addGraph(CLI::App& app) {
   auto options = std::make_shared<GraphOptions>();
   CLI::App* command = app.add_subcommand("graph", "Show the operator graph of a grammar and its schedules");
-  command->add_option("GRAMMAR", options->grammars, "PGA-shape grammar text (.pga); several are linked to one grammar")
-      ->required()
-      ->check(CLI::ExistingFile);
-  command
-      ->add_option("--set", options->set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
+  addGrammars(*command, options->grammars);
+  addVariables(*command, options->set);
   command
       ->add_option("--schedule", options->schedule,
                    "Execution groups: sgl (as few as possible), rw (one a node), rules (one a rule), heuristic, or a "
                    "file with groups")
       ->type_name("NAME|FILE");
-  command->add_option("--group-size", options->minimumGroupSize, "heuristic: nodes that a group should have")
-      ->check(CLI::Range(0u, 1000000u))
-      ->capture_default_str();
+  addGroupSize(*command, options->heuristics);
   command->add_option("--format", options->format, "text, dot or svg")
       ->check(CLI::IsMember({"text", "dot", "svg"}))
       ->capture_default_str();

@@ -9,6 +9,7 @@
 #include "spawn/graph/blob.h"
 #include "spawn/language/print.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <cstdlib>
@@ -38,24 +39,30 @@ std::vector<NamedStart> BakedGraph::namedStarts() const {
 }
 
 std::vector<uint32_t> BakedGraph::starts() const {
-  if (!linked) return {GPGP_AXIOM_DEFAULT_RULE};
+  const auto isLinked = [&](const auto& entry) { return std::strchr(graph.nameAt(entry.name), '.') != nullptr; };
+  if (std::none_of(graph.terminals.begin(), graph.terminals.end(), isLinked) &&
+      std::none_of(graph.rules.begin(), graph.rules.end(), isLinked))
+    return {GPGP_AXIOM_DEFAULT_RULE};
   std::vector<uint32_t> starts;
   for (size_t a = 0; a < graph.axioms.size(); ++a) // a grammar's first axiom has its name alone
-    if (!std::strchr(graph.nameAt(graph.axioms[a].name), '.'))
-      starts.push_back(static_cast<uint32_t>(graph.rules.size() + a));
+    if (!isLinked(graph.axioms[a])) starts.push_back(static_cast<uint32_t>(graph.rules.size() + a));
   return starts;
 }
 
 BakedGraph bakeGraph(const std::vector<std::string>& files, const std::vector<std::string>& set) {
   std::vector<GrammarText> texts;
-  for (const std::string& file : files) texts.push_back({file, host::readText(file)});
-  const Blob blob = files.size() > 1 ? linkGrammars(texts, set, false) : compileGrammar(texts.at(0), set, false);
+  for (const std::string& argument : files) {
+    const GrammarFile file(argument);
+    texts.push_back({file, host::readText(file.path)});
+  }
+  const bool linked = files.size() > 1 || !texts.at(0).file.alias.empty();
+  const Blob blob = linked ? linkGrammars(texts, set, false) : compileGrammar(texts[0], set, false);
   const auto* bytes = static_cast<const std::byte*>(blob.data());
   auto graph = spawn::load({bytes, blob.size()}, memory());
   if (!graph) throw Failure(joined(files) + ": " + graph.error().text);
   std::pmr::vector<uint32_t> words(blob.size() / sizeof(uint32_t), memory());
   std::memcpy(words.data(), bytes, blob.size());
-  return {std::move(words), std::move(*graph), files.size() > 1};
+  return {std::move(words), std::move(*graph)};
 }
 
 std::string joined(const std::vector<std::string>& files) {
@@ -66,8 +73,17 @@ std::string joined(const std::vector<std::string>& files) {
 
 Json jsonOf(const std::vector<std::string>& files) { return files.size() == 1 ? Json(files[0]) : Json(files); }
 
-std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile) {
-  if (auto named = spawn::namedSchedule(graph, nameOrFile)) return named;
+void addGroupSize(CLI::App& command, spawn::Heuristics& heuristics) {
+  command
+      .add_option("--group-size", heuristics.minimumGroupSize,
+                  "heuristic: nodes that a group should have, t of the thesis's H3; 0 switches that off")
+      ->check(CLI::Range(0u, 1000000u))
+      ->capture_default_str();
+}
+
+std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile,
+                                           const spawn::Heuristics& heuristics) {
+  if (auto named = spawn::namedSchedule(graph, nameOrFile, heuristics)) return named;
   if (!std::filesystem::is_regular_file(nameOrFile)) return std::nullopt;
   spawn::Diagnostics diagnostics;
   const auto partition = spawn::parseGroups(host::readText(nameOrFile), graph, diagnostics);

@@ -18,21 +18,24 @@ namespace gpgp::cli {
 struct BakedGraph {
   std::pmr::vector<uint32_t> words;
   spawn::Graph graph;
-  bool linked = false; ///< of several grammars
 
   /// Names of all starts, as GpgpAxiom::rule counts them.
   std::vector<NamedStart> namedStarts() const;
   /// Where axioms start in turn that nobody says more of: each linked grammar, or the only one.
   std::vector<uint32_t> starts() const;
 };
-/// From text, with variables set as --set takes them. Several files are linked. Throws Usage and Failure.
+/// Of files as addGrammars takes them, with variables set as --set takes them. Several, or one with an alias, are
+/// linked. Throws Usage and Failure.
 BakedGraph bakeGraph(const std::vector<std::string>& files, const std::vector<std::string>& set);
 /// For messages: a.pga + b.pga; and for JSON: a string, of several files a list.
 std::string joined(const std::vector<std::string>& files);
 Json jsonOf(const std::vector<std::string>& files);
 
 /// A named schedule, or the one of a file with groups as `gpgp graph` prints it; nothing where there is neither.
-std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile);
+std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile,
+                                           const spawn::Heuristics& heuristics);
+/// The option --group-size: t of the heuristics.
+void addGroupSize(CLI::App& command, spawn::Heuristics& heuristics);
 
 /// Whether the library takes kernels that need subgroup operations on this device.
 bool hasSubgroups(const host::HeadlessDevice& device);

@@ -1,5 +1,6 @@
 // `gpgp spawn`: compiles a grammar, derives axioms and says what came out, beside the CPU evaluator.
 #include "cli/axioms.h"
+#include "cli/grammar_source.h"
 #include "cli/painter.h"
 #include "cli/triangles_gltf.h"
 #include "cli/tuner.h"
@@ -31,6 +32,7 @@ struct SpawnOptions {
   uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0;
   std::string schedule = "default", output = "instances", matching = "off";
   bool sorted = false;
+  spawn::Heuristics heuristics;
 };
 
 /// What the CPU evaluator derives, on one thread, instances or vertices included, into memory that an earlier run has
@@ -83,6 +85,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     std::fprintf(stderr, "gpgp spawn: no stored schedule for this grammar, device and number of axioms; tuning\n");
     TuneSettings settings;
     settings.matching = options.matching == "on";
+    settings.heuristics = options.heuristics;
     const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
     keepKernel(file, grammar, tuned.info, tuned.code);
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
@@ -90,7 +93,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
   }
   const bool subgroups = hasSubgroups(session.device());
   if (spawn::namedSchedule(grammar.graph, name) || !isBaked(name)) {
-    const auto schedule = scheduleFor(grammar.graph, name);
+    const auto schedule = scheduleFor(grammar.graph, name, options.heuristics);
     if (!schedule)
       throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
                   name + "\"");
@@ -335,9 +338,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
 Work addSpawn(CLI::App& app) {
   auto options = std::make_shared<SpawnOptions>();
   CLI::App* command = app.add_subcommand("spawn", "Derive a grammar on the GPU and say what came out");
-  command->add_option("GRAMMAR", options->grammars, "PGA-shape grammar text (.pga); several are linked to one grammar")
-      ->required()
-      ->check(CLI::ExistingFile);
+  addGrammars(*command, options->grammars);
   CLI::Option* axioms =
       command
           ->add_option("--axioms", options->axioms,
@@ -357,10 +358,7 @@ Work addSpawn(CLI::App& app) {
       ->add_option("--spacing", options->spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", options->seed, "Random seed; axiom i has seed S + i")->capture_default_str();
-  command
-      ->add_option("--set", options->set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
+  addVariables(*command, options->set);
   command->add_option("--repeat", options->repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
@@ -375,6 +373,7 @@ Work addSpawn(CLI::App& app) {
           "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
       ->type_name("NAME|FILE")
       ->capture_default_str();
+  addGroupSize(*command, options->heuristics);
   command
       ->add_option("--matching", options->matching,
                    "Execution groups that differ in parameters only share one piece of code; not for baked kernels")
@@ -415,6 +414,7 @@ Examples:
   gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
   gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line
   gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
+  gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
   gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50
 

@@ -1,6 +1,7 @@
 // `gpgp tune`: finds the fastest schedule of a grammar on a device and keeps its kernel, baked behind the graph.
 #include "cli/axioms.h"
 #include "cli/command.h"
+#include "cli/grammar_source.h"
 #include "cli/tuner.h"
 
 #include <cmath>
@@ -55,7 +56,8 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   if (best.fit.groupSize)
     text << ", " << best.fit.maxGroups << " workgroups of " << best.fit.groupSize << ", work is given away below "
          << best.fit.spread << " shapes" << (best.fit.balances ? " and to idle workgroups" : "");
-  text << "; " << tuned.candidates << " candidates in " << std::round(tuned.seconds * 10) / 10 << " s";
+  text << "; " << tuned.candidates << (tuned.candidates == 1 ? " candidate in " : " candidates in ")
+       << std::round(tuned.seconds * 10) / 10 << " s";
   if (tuned.leftOut) text << "; " << tuned.leftOut << " were left out for lack of time";
   text << "\nkept: " << out.string() << '\n';
   Outcome outcome;
@@ -92,9 +94,7 @@ Work addTune(CLI::App& app) {
   auto options = std::make_shared<TuneOptions>();
   TuneSettings& settings = options->settings;
   CLI::App* command = app.add_subcommand("tune", "Find the fastest schedule of a grammar on this device");
-  command->add_option("GRAMMAR", options->grammars, "PGA-shape grammar text (.pga); several are linked to one grammar")
-      ->required()
-      ->check(CLI::ExistingFile);
+  addGrammars(*command, options->grammars);
   CLI::Option* axioms =
       command->add_option("--axioms", options->axioms, "Start shapes to tune for; those of linked grammars in turn")
           ->check(CLI::Range(1u, 1000000u))
@@ -107,10 +107,7 @@ Work addTune(CLI::App& app) {
           "--axiom-size", [o = options.get()](const std::string& t) { o->size = parseTriple(t); },
           "Extents of each start shape in metres (default 1,1,1)")
       ->type_name("X,Y,Z");
-  command
-      ->add_option("--set", options->set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
+  addVariables(*command, options->set);
   command->add_option("--seed", settings.seed, "Random seed, of the search too; axiom i has seed S + i")
       ->capture_default_str();
   command
@@ -120,6 +117,7 @@ Work addTune(CLI::App& app) {
                    "else some of both, and then what is near the best")
       ->check(CLI::IsMember({"auto", "exhaustive", "random", "heuristic"}))
       ->capture_default_str();
+  addGroupSize(*command, settings.heuristics);
   command
       ->add_option("--matching", options->matching,
                    "Execution groups that differ in parameters only share one piece of code")
@@ -132,8 +130,11 @@ Work addTune(CLI::App& app) {
       ->check(CLI::Range(3u, 1000u))
       ->capture_default_str();
   command
-      ->add_option("--seconds", settings.seconds,
-                   "Time budget: what would probably take longer is left out, and the best so far is kept; 0: none")
+      ->add_option(
+          "--seconds", settings.seconds,
+          "Time budget: what would probably take longer is left out, slow derivations are measured less often, and "
+          "the best so far is kept. The interpreter and one schedule are always measured, which takes a "
+          "software device some seconds; 0: no limit")
       ->check(within(0.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");

@@ -39,10 +39,14 @@ std::vector<spawn::Fit> variants(const spawn::Fit& fit, bool software) {
 /// Candidates that take this many times the fastest one's time after a few derivations are measured no further.
 constexpr double kHopeless = 1.3;
 constexpr uint32_t kFirstLook = 3;
-/// The share of the time that schedules may take, so that some is left for numbers.
-constexpr double kForSchedules = 0.6, kForSizes = 0.85;
-/// Candidates of the first part, which says how long a candidate takes.
+/// The shares of the time after which no more schedules, sizes and numbers are begun, so that some is left.
+constexpr double kForSchedules = 0.6, kForSizes = 0.8, kForNumbers = 0.9;
+/// And one measurement, as far as that leaves it a few derivations.
+constexpr double kForMeasurement = 0.02;
+/// Candidates of the first part, which says how long a candidate takes; one where the interpreter took this share of
+/// the time.
 constexpr size_t kFirstPart = 4;
+constexpr double kLittleTime = 0.1;
 /// That are measured once more at the end.
 constexpr size_t kFinalists = 4;
 /// Of the finalists, whose fastest counts.
@@ -77,7 +81,7 @@ public:
       if (const Candidate& best = all.front(); best.fit.groupSize) {
         std::vector<Candidate> spreads;
         for (const spawn::Fit& fit : variants(best.fit, software_)) spreads.push_back({best.schedule, fit});
-        addAll(all, measured(std::move(spreads), "numbers", 1));
+        addAll(all, measured(std::move(spreads), "numbers", kForNumbers));
       }
     }
     choose(all);
@@ -105,7 +109,7 @@ private:
 
   void findSchedules() {
     const auto search = [&](spawn::Search kind, size_t limit) {
-      return searchSchedules(grammar_.graph, kind, limit, settings_.seed, tuned_.complete);
+      return searchSchedules(grammar_.graph, kind, limit, settings_.seed, tuned_.complete, settings_.heuristics);
     };
     tuned_.schedules = search(settings_.search.value_or(spawn::Search::exhaustive), settings_.samples);
     if (settings_.search || tuned_.complete) return;
@@ -123,7 +127,7 @@ private:
   bool measureNeighbours(std::vector<Candidate>& all) {
     const size_t first = tuned_.schedules.size();
     if (first >= settings_.samples) return false;
-    const size_t most = affordable(settings_.samples - first, kForSchedules);
+    const size_t most = affordable(std::min(settings_.samples - first, atOnce()), kForSchedules);
     std::vector<spawn::Schedule> near = neighbours(grammar_.graph, tuned_.schedules[all.front().schedule]);
     std::shuffle(near.begin(), near.end(), std::mt19937(settings_.seed));
     std::vector<Candidate> list;
@@ -143,11 +147,12 @@ private:
     if (wanted.droppedShapes || wanted.unfinishedShapes)
       throw Failure("the derivation exceeds the budgets; use fewer axioms");
     if (!wanted.terminals) throw Failure("the grammar derives nothing from these axioms");
-    tuned_.interpreter = deriver_->measure(interpreted, settings_.repeat).times.median();
+    tuned_.interpreter = deriver_->measure(interpreted, 1).times.median();
+    tuned_.interpreter = deriver_->measure(interpreted, repeats(tuned_.interpreter)).times.median();
   }
 
   /// What a candidate takes, as it would be kept: with one round to spare. Empty ones cost time on a GPU as well.
-  void measure(Candidate& candidate, const Grammar& prepared, uint32_t repeat) {
+  void measure(Candidate& candidate, const Grammar& prepared) {
     const GpgpSpawnReport& wanted = tuned_.report;
     const GpgpSpawnReport r = deriver_->measure(prepared, 1).report;
     if (r.droppedShapes) return;
@@ -157,9 +162,9 @@ private:
                     std::to_string(r.terminals) + " terminals instead of " + std::to_string(wanted.terminals));
     candidate.rounds = r.rounds;
     const uint32_t rounds = software_ ? 0 : r.rounds + 1;
-    const uint32_t look = std::min(kFirstLook, repeat);
-    candidate.milliseconds = deriver_->measure(prepared, look, rounds).times.median();
-    if (look < repeat && candidate.milliseconds < kHopeless * fastest_)
+    candidate.milliseconds = deriver_->measure(prepared, kFirstLook, rounds).times.median();
+    const uint32_t repeat = repeats(candidate.milliseconds);
+    if (kFirstLook < repeat && candidate.milliseconds < kHopeless * fastest_)
       candidate.milliseconds = deriver_->measure(prepared, repeat, rounds).times.median();
     fastest_ = std::min(fastest_, candidate.milliseconds);
   }
@@ -186,11 +191,17 @@ private:
   static size_t atOnce() { return std::max(1u, std::thread::hardware_concurrency()); }
   /// How many candidates of so many can be measured next.
   size_t affordable(size_t wanted, double share) const {
-    if (each_ == 0) return std::min({wanted, atOnce(), kFirstPart});
-    double count = static_cast<double>(std::min(wanted, atOnce()));
-    if (settings_.seconds > 0) // as if a larger part took longer: drivers may compile one after the other
-      count = std::clamp((share * settings_.seconds - secondsPassed()) / each_, 0.0, count);
-    return static_cast<size_t>(count);
+    if (settings_.seconds == 0) return wanted;
+    if (each_ == 0) return secondsPassed() < kLittleTime * settings_.seconds ? std::min(wanted, kFirstPart) : 1;
+    // as if a larger part took longer: drivers may compile one after the other
+    const double count = (share * settings_.seconds - secondsPassed()) / each_;
+    return static_cast<size_t>(std::clamp(count, 0.0, static_cast<double>(wanted)));
+  }
+  /// How often a derivation that takes so long is measured.
+  uint32_t repeats(double milliseconds) const {
+    if (settings_.seconds == 0) return settings_.repeat;
+    const double count = kForMeasurement * settings_.seconds * 1000 / milliseconds;
+    return static_cast<uint32_t>(std::min<double>(std::max<double>(count, kFirstLook), settings_.repeat));
   }
   /// The fastest first, without those that there was no time for. share: of all time, that may have passed at the end.
   std::vector<Candidate> measured(std::vector<Candidate> list, const char* label, double share) {
@@ -198,12 +209,12 @@ private:
     size_t first = 0;
     while (first < list.size()) {
       const double begin = secondsPassed();
-      const size_t count = affordable(list.size() - first, share);
+      const size_t count = affordable(std::min(list.size() - first, atOnce()), share);
       if (!count) break;
       const auto part = std::span(list).subspan(first, count);
       compile(part);
       const std::vector<Grammar> grammars = deriver_->prepare(wordsOf(part));
-      for (size_t i = 0; i < part.size(); ++i, progress.advance()) measure(part[i], grammars[i], settings_.repeat);
+      for (size_t i = 0; i < part.size(); ++i, progress.advance()) measure(part[i], grammars[i]);
       each_ = (secondsPassed() - begin) / static_cast<double>(count);
       first += count;
     }
@@ -215,9 +226,10 @@ private:
   }
 
   /// The best of the fastest few, measured as they are kept, by turns: whoever was first by luck is not so again, and
-  /// clocks that rise and fall are the same for all.
+  /// clocks that rise and fall are the same for all. Without time for that, the first one, with all rounds.
   void choose(const std::vector<Candidate>& all) {
-    std::vector<Candidate> finalists(all.begin(), all.begin() + std::ptrdiff_t(std::min(kFinalists, all.size())));
+    const size_t count = affordable(std::min(kFinalists, all.size()), 1);
+    std::vector<Candidate> finalists(all.begin(), all.begin() + std::ptrdiff_t(count));
     std::erase_if(finalists, [](const Candidate& c) { return !std::isfinite(c.milliseconds); });
     for (Candidate& c : finalists) c.fit.rounds = c.rounds + 1;
     const std::vector<Grammar> grammars = deriver_->prepare(wordsOf(finalists));
@@ -226,16 +238,15 @@ private:
     for (Candidate& c : finalists) c.milliseconds = kInfinite;
     for (uint32_t turn = 0; turn < kTurns; ++turn)
       for (size_t i = 0; i < finalists.size(); ++i) {
-        const auto times = deriver_->measure(grammars[i], settings_.repeat);
+        const auto times = deriver_->measure(grammars[i], repeats(all[i].milliseconds));
         drops[i] = drops[i] || times.report.droppedShapes;
         finalists[i].milliseconds = drops[i] ? kInfinite : std::min(finalists[i].milliseconds, times.times.median());
       }
     sort(finalists);
-    tuned_.best = finalists.front();
-    if (!std::isfinite(tuned_.best.milliseconds)) { // a round more was needed than the first time
+    if (finalists.empty() || !std::isfinite(finalists.front().milliseconds)) // more rounds than the first time
       tuned_.best = all.front();
-      tuned_.best.fit.rounds = 0;
-    }
+    else
+      tuned_.best = finalists.front();
     tuned_.code = kernels_[tuned_.best.schedule];
     tuned_.info = infoOf(tuned_.best);
     tuned_.info.vendor = session_.device().properties().vendorID;

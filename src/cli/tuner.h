@@ -18,11 +18,13 @@ struct TuneSettings {
   /// Nothing: every partition where there are no more than samples; else half of the samples as the heuristics and
   /// coins say, and what is near the best of them.
   std::optional<spawn::Search> search;
-  bool matching = false;      ///< chains of groups that differ in parameters only share code
+  bool matching = false; ///< chains of groups that differ in parameters only share code
+  spawn::Heuristics heuristics;
   bool schedulesOnly = false; ///< leave the numbers as the device suggests
   uint32_t samples = 32;      ///< schedules at most, the named ones included
   uint32_t repeat = 15, seed = 1;
-  double seconds = 50; ///< nothing is begun that would probably take longer; 0: no limit. A first part always runs
+  double seconds = 50; ///< nothing is begun that would probably take longer; 0: no limit. The interpreter and one
+                       ///< schedule are always measured
 };
 
 /// A schedule with numbers, and what it took.

@@ -56,16 +56,17 @@ Pass& PassList::fill(const char* name, ResourceIndex target, uint32_t value, VkD
 void PassList::finish(VkDeviceSize alignment) {
   scratchOffsets.assign(resources.size(), 0);
   scratchBytes = constantsBytes = 0;
+  const auto place = [&](size_t i, VkDeviceSize& end) {
+    scratchOffsets[i] = end;
+    end += (resources[i].bytes + alignment - 1) / alignment * alignment;
+  };
   for (size_t i = 0; i < resources.size(); ++i) {
-    const VkDeviceSize size = (resources[i].bytes + alignment - 1) / alignment * alignment;
-    if (resources[i].kind == ResourceKind::scratch) {
-      scratchOffsets[i] = scratchBytes;
-      scratchBytes += size;
-    } else if (resources[i].kind == ResourceKind::constants || resources[i].kind == ResourceKind::uniforms) {
-      scratchOffsets[i] = constantsBytes;
-      constantsBytes += size;
-    }
+    const ResourceKind kind = resources[i].kind;
+    if (kind == ResourceKind::scratch) place(i, scratchBytes);
+    if (kind == ResourceKind::constants || kind == ResourceKind::uniforms) place(i, constantsBytes);
   }
+  for (size_t i = 0; i < resources.size(); ++i) // behind the constants
+    if (resources[i].kind == ResourceKind::buffer && resources[i].bytes) place(i, constantsBytes);
   std::pmr::vector<uint8_t> touched(resources.size(), 0, resources.get_allocator().resource()); // 1 read, 2 written
   for (Pass& pass : passes) {
     for (uint32_t i = 0; i < pass.useCount; ++i) {

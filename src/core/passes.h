@@ -29,7 +29,7 @@ enum class ResourceKind : uint8_t {
 struct Resource {
   const char* name;
   ResourceKind kind;
-  VkDeviceSize bytes = 0; ///< scratch, constants and uniforms
+  VkDeviceSize bytes = 0; ///< scratch, constants and uniforms; buffer: room for what a record gives from the host
   bool optional = false;  ///< buffer, image, texture: a record may leave it out; an unused range is bound instead
   bool written = false;   ///< by a pass (finish)
 };

@@ -128,7 +128,7 @@ Result<void> Worker::check(const Record& record) const {
     const Binding& binding = record.bindings[i];
     const char* name = binding.name ? binding.name : resource.name;
     if (resource.kind == ResourceKind::buffer) {
-      if (binding.ownBuffer) continue;
+      if (binding.ownBuffer || !binding.hostData.empty()) continue;
       if (!binding.engineBuffer || !binding.engineBuffer->buffer) {
         if (resource.optional) continue;
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL", name);
@@ -214,6 +214,9 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
         buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[i], std::max<VkDeviceSize>(resource.bytes, 4)};
     } else if (resource.kind == ResourceKind::constants || resource.kind == ResourceKind::uniforms) {
       buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i], resource.bytes};
+    } else if (!binding.hostData.empty()) {
+      buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i],
+                    binding.hostData.size()};
     } else if (binding.ownBuffer) {
       buffers[i] = {binding.ownBuffer, binding.ownOffset, binding.ownSize};
     } else if (binding.engineBuffer && binding.engineBuffer->buffer) {
@@ -299,6 +302,10 @@ Result<void> Worker::record(const Record& record) {
     if (!part.empty()) std::memcpy(constants, part.data(), part.size());
     constants += part.size();
   }
+  for (size_t i = 0; i < passes_.resources.size(); ++i)
+    if (const auto data = record.bindings[i].hostData; !data.empty())
+      std::memcpy(constants_.mapped() + slot * passes_.constantsBytes + passes_.scratchOffsets[i], data.data(),
+                  data.size());
   writeDescriptors(slot, record.bindings, scratch, scratchOffset);
 
   // Where a buffer resource lies, for transfers and indirect arguments.

@@ -68,7 +68,7 @@ Result<void> Worker::init(PassList passes, const DrawShaders* draw) {
   draws_ = draw && (queueFlags_ & VK_QUEUE_GRAPHICS_BIT);
   if (draw) draw_ = *draw;
   for (const Resource& resource : passes_.resources)
-    if (resource.kind == ResourceKind::scratch && resource.bytes > device.limits.maxStorageBufferRange)
+    if (resource.bytes > device.limits.maxStorageBufferRange)
       return makeError(
           GPGP_ERROR_UNSUPPORTED, "the budgets need %llu bytes for \"%s\", but this device binds at most %u",
           static_cast<unsigned long long>(resource.bytes), resource.name, device.limits.maxStorageBufferRange);

@@ -18,6 +18,7 @@ constexpr uint32_t kMaxTargets = 16;
 /// What one record gives for the resources of kinds buffer and image.
 struct Binding {
   const GpgpBuffer* engineBuffer = nullptr; ///< with before/after states
+  std::span<const std::byte> hostData;      ///< copied while recording, at most Resource::bytes
   VkBuffer ownBuffer = VK_NULL_HANDLE;      ///< an asset's or view's
   VkDeviceSize ownOffset = 0, ownSize = VK_WHOLE_SIZE;
   const GpgpImage* image = nullptr;

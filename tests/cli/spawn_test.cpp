@@ -1,5 +1,6 @@
 // `gpgp spawn` on grammars whose terminals can be counted by hand.
 #include "files.h"
+#include "host/files.h"
 #include "host/picture.h"
 #include "run.h"
 
@@ -108,6 +109,19 @@ TEST(CliSpawn, EveryScheduleDerivesTheSame) {
   EXPECT_EQ(fromFile["schedule_file"], baked.path());
   EXPECT_EQ(fromFile["execution_groups"], all["default"]["execution_groups"]);
   EXPECT_EQ(fromFile["key_hash"], wanted["key_hash"]);
+}
+
+TEST(CliSpawn, TheHeuristicsGroupSizeIsSet) {
+  const std::string house = GPGP_SAMPLE_GRAMMARS "/simple_house.pga";
+  std::vector<json> groups;
+  for (const char* size : {"0", "5"}) {
+    const json spawned = gpgpJson({"spawn", house, "--schedule", "heuristic", "--group-size", size});
+    groups.push_back(spawned["execution_groups"]);
+    EXPECT_EQ(groups.back(),
+              gpgpJson({"graph", house, "--schedule", "heuristic", "--group-size", size})["execution_groups"]);
+  }
+  EXPECT_GT(groups[0], groups[1]);
+  EXPECT_EQ(gpgpJson({"spawn", house, "--schedule", "heuristic"})["execution_groups"], groups[1]); // the thesis's 5
 }
 
 TEST(CliSpawn, WritesVertices) {
@@ -248,12 +262,27 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
   EXPECT_NE(gpgpFailure({"spawn", house.path(), broken.path()}).find("broken.pga:2:5: error: there is no rule or term"),
             std::string::npos);
   EXPECT_NE(gpgpFailure({"graph", house.path(), house.path()}).find("is also the name of"), std::string::npos);
-  EXPECT_NE(gpgpFailure({"graph", tree.path(), baked.path()}).find("street.gpgp is a baked grammar; expected its text"),
+  // What is baked can be linked again, or derived alone; a name before a file calls it so.
+  const TemporaryFile bakedHouse("house.gpgp"), again("again.gpgp");
+  gpgpJson({"bake", house.path(), "-o", bakedHouse.path()});
+  gpgpJson({"bake", bakedHouse.path(), tree.path(), "--link", "-o", again.path()});
+  EXPECT_EQ(host::readText(again.path()), host::readText(baked.path()));
+  EXPECT_EQ(gpgpJson({"spawn", baked.path(), "--axioms", "5", "--axiom-size", "8,1,1"})["terminals"], 3 * 4 + 2 * 6);
+  const json twice = gpgpJson({"spawn", house.path(), "other=" + house.path(), "--set", "other.n=1"});
+  EXPECT_EQ(twice["buckets"][1]["name"], "other.Wall");
+  EXPECT_EQ(twice["axioms"], 2);
+  EXPECT_EQ(gpgpJson({"graph", "other=" + house.path()})["nodes"], gpgpJson({"graph", house.path()})["nodes"]);
+  EXPECT_NE(gpgpFailure({"graph", bakedHouse.path(), tree.path(), "--set", name + "house.n=4"})
+                .find("house.gpgp:1:1: error: a baked grammar has no var that could be set"),
             std::string::npos);
   expectWrongUsage({{"spawn", house.path(), tree.path(), "--set", "n=4"},
                     {"spawn", house.path(), tree.path(), "--set", "other.n=4"},
                     {"spawn", house.path(), tree.path(), "--set", name + "house.n=nan"},
                     {"bake", house.path(), "-", "--link", "-o", "x.gpgp"},
+                    {"bake", "other=" + house.path(), "-o", "x.gpgp"},
+                    {"spawn", house.path(), "two words=" + house.path()},
+                    {"graph", "7=" + house.path()},
+                    {"tune", "other=no_such_file.pga"},
                     {"bake", house.path(), lots.path(), "--link", "-o", "x.gpgp"},
                     {"bake", house.path(), tree.path(), "--link", "-o", testing::TempDir()},
                     {"tune", house.path(), "--axioms", "3", "--axiom-file", lots.path()}});

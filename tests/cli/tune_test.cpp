@@ -38,9 +38,8 @@ TEST(CliTune, KeepsToItsTime) {
   const TemporaryFile grammar("brief.pga", kTower), baked("brief.gpgpg");
   const json tuned = gpgpJson({"tune", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--repeat", "3",
                                "--seconds", "0.001", "-o", baked.path()});
-  EXPECT_GE(tuned["candidates"], 1); // the first part
-  EXPECT_LE(tuned["candidates"], 4);
-  EXPECT_GT(tuned["left_out"], 0); // sizes and counts of workgroups at least
+  EXPECT_EQ(tuned["candidates"], 1); // whatever the time
+  EXPECT_GT(tuned["left_out"], 0);   // sizes and counts of workgroups at least
   EXPECT_FALSE(tuned["complete"]);
   EXPECT_EQ(tuned["best"]["group_size"], 0); // as the device suggests
   EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--schedule",

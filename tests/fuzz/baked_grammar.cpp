@@ -1,5 +1,7 @@
-// Any bytes as a baked grammar, the checksum made right first, so that the checks behind it are reached.
+// Any bytes as a baked grammar, the checksum made right first, so that the checks behind it are reached. What loads can
+// be linked.
 #include "spawn/graph/blob.h"
+#include "spawn/language/append_graph.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +17,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     words[shader::kHeaderChecksum] = spawn::checksum(std::span<const uint32_t>(words).subspan(shader::kHeaderChecked));
   }
   const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::get_default_resource());
-  if (graph && !spawn::validate(*graph)) std::abort(); // what loads is valid
+  if (!graph) return 0;
+  if (!spawn::validate(*graph)) std::abort(); // what loads is valid
+  spawn::Graph linked(std::pmr::get_default_resource());
+  spawn::addRegularPolygons(linked);
+  spawn::Tags tags;
+  for (const char* name : {"a", "b"}) spawn::appendGraph(*graph, name, linked, tags);
+  spawn::analyse(linked);
+  if (linked.buckets <= shader::kMaxBuckets && !spawn::validate(linked)) std::abort();
   return 0;
 }

@@ -2,6 +2,7 @@
 #include "grammars.h"
 #include "random_grammar.h"
 #include "spawn/evaluator/evaluator.h"
+#include "spawn/language/append_graph.h"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +19,16 @@ auto load(const std::vector<uint32_t>& words) { return spawn::load(bytesOf(words
 /// Makes changed words pass the checksum, so that the checks behind it are reached.
 void sign(std::vector<uint32_t>& words) {
   words[shader::kHeaderChecksum] = spawn::checksum(std::span(words).subspan(shader::kHeaderChecked));
+}
+
+/// What loads can be linked as well, with itself here.
+void expectLinks(const spawn::Graph& graph) {
+  spawn::Graph linked(std::pmr::new_delete_resource());
+  spawn::addRegularPolygons(linked);
+  spawn::Tags tags;
+  for (const char* name : {"a", "b"}) spawn::appendGraph(graph, name, linked, tags);
+  spawn::analyse(linked);
+  if (const auto ok = spawn::validate(linked); !ok) ADD_FAILURE() << ok.error().text;
 }
 
 std::vector<std::vector<uint32_t>> grammars() {
@@ -71,10 +82,12 @@ TEST(Blob, EveryWordIsChecked) {
       auto changed = words;
       changed[i] = value;
       sign(changed);
-      if (!load(changed))
-        ++refused;
-      else
+      if (const auto graph = load(changed)) {
         spawn::derive(changed, std::span(&axiom, 1), options);
+        expectLinks(*graph);
+      } else {
+        ++refused;
+      }
     }
   EXPECT_GT(refused, words.size());
 }
@@ -110,8 +123,10 @@ TEST(Blob, MutatedGrammarsNeverCrash) {
                                                        : random());
     }
     sign(words);
-    if (!load(words)) continue;
+    const auto graph = load(words);
+    if (!graph) continue;
     ++accepted;
+    expectLinks(*graph);
     spawn::derive(words, std::span(&axiom, 1), options);
   }
   EXPECT_GT(accepted, 100u); // numbers and names may change freely

@@ -62,6 +62,7 @@ struct SpawnTest : DeviceTest {
     info.flags = budgets.flags;
     info.vertices = budgets.vertices;
     info.maxColliders = budgets.maxColliders;
+    info.maxHostAxioms = budgets.maxHostAxioms;
     spawner = worker(gpgpCreateSpawner, info);
   }
 
@@ -76,7 +77,7 @@ struct SpawnTest : DeviceTest {
 
   /// Uploads, derives once and reads everything back.
   Derived run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity, bool sorted,
-              std::optional<uint32_t> axiomCounter = {}) {
+              std::optional<uint32_t> axiomCounter = {}, bool fromHost = false) {
     Derived result;
     const GpgpAsset grammar = makeGrammar(words);
     EXPECT_EQ(gpgpPrewarmGrammar(spawner, grammar), GPGP_SUCCESS); // a grammar without kernels has nothing to make
@@ -94,7 +95,10 @@ struct SpawnTest : DeviceTest {
     GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
     info.base.tag = 1000 + axioms.size();
     info.grammar = grammar;
-    info.axioms = axiomBuffer.range();
+    if (fromHost)
+      info.hostAxioms = axioms.data();
+    else
+      info.axioms = axiomBuffer.range();
     info.axiomCount = static_cast<uint32_t>(axioms.size());
     if (axiomCounter) info.axiomCounter = counter.range();
     const host::Buffer bounds(device, buckets * sizeof(GpgpSpawnBounds), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
@@ -433,6 +437,113 @@ TEST_F(SpawnTest, AxiomsAreAsManyAsTheGpuHasCounted) {
       for (const auto& draw : gpu.draws) drawn += sorted ? draw.instanceCount : 0;
       EXPECT_EQ(drawn, sorted ? gpu.count : 0);
     }
+}
+
+TEST_F(SpawnTest, AxiomsOfTheCpuEqualThoseOfABuffer) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.maxHostAxioms = 20;
+  makeSpawner(budgets);
+  const auto words = linked({{"building.pga", ownGrammar("building.pga")}, {"tree.pga", ownGrammar("tree.pga")}});
+  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
+  ASSERT_TRUE(graph);
+  std::vector<GpgpAxiom> all = axioms(20, 13, 19, 11);
+  for (uint32_t i = 0; i < all.size(); ++i) all[i].rule = i % spawn::startCount(*graph);
+  for (const bool sorted : {false, true}) {
+    compare(spawn::derive(words, all), run(words, all, 50000, sorted, {}, true), "20 axioms of the CPU");
+    const std::vector<GpgpAxiom> some(all.begin(), all.begin() + 7);
+    compare(spawn::derive(words, some), run(words, some, 50000, sorted, {}, true), "7 axioms of the CPU");
+    compare(spawn::derive(words, some), run(words, all, 50000, sorted, 7, true), "20 of the CPU, 7 counted by the GPU");
+  }
+  compare(spawn::derive(words, all), run(words, all, 50000, true), "a buffer, in a spawner for axioms of the CPU");
+}
+
+TEST_F(SpawnTest, SlicesOfAxiomsSumUpToOneRecord) {
+  const auto words = bake(ownGrammar("building.pga"));
+  const std::vector<GpgpAxiom> all = axioms(61, 13, 19, 11);
+  const spawn::Derivation whole = spawn::derive(words, all);
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.maxHostAxioms = 24;
+  makeSpawner(budgets);
+  const GpgpAsset grammar = makeGrammar(words);
+  const auto axiomBuffer = host::makeBuffer(device, all, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const host::Buffer instances(device, 50000 * sizeof(GpgpInstance), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  constexpr uint32_t kSlice = 24; // 24 axioms are a multiple of every device's alignment of offsets
+  for (const bool fromHost : {false, true}) {
+    const GpgpFrame f = advance();
+    uint32_t records = 0;
+    device.submitAndWait([&](VkCommandBuffer cmd) {
+      EXPECT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS);
+      for (uint32_t first = 0; first < all.size(); first += kSlice, ++records) {
+        GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+        info.grammar = grammar;
+        info.axiomCount = std::min(kSlice, static_cast<uint32_t>(all.size()) - first);
+        std::vector<GpgpAxiom> copied(all.begin() + first, all.begin() + first + info.axiomCount);
+        if (fromHost) {
+          info.hostAxioms = copied.data();
+        } else {
+          info.axioms = axiomBuffer.range();
+          info.axioms.offset += first * sizeof(GpgpAxiom);
+          info.axioms.size = info.axiomCount * sizeof(GpgpAxiom);
+        }
+        info.instances = instances.range();
+        EXPECT_EQ(gpgpRecordPrepareSpawn(spawner, cmd, &f, &info), GPGP_SUCCESS);
+        std::fill(copied.begin(), copied.end(), GpgpAxiom{}); // the record has a copy
+      }
+    });
+    advance();
+    EXPECT_EQ(records, 3u);
+    uint32_t terminals = 0, keyHash[2] = {};
+    for (uint32_t i = 0; i < records; ++i) {
+      GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+      ASSERT_EQ(gpgpGetSpawnReport(spawner, &report), GPGP_SUCCESS);
+      EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+      EXPECT_LT(report.terminals, whole.terminals);
+      terminals += report.terminals;
+      for (int w = 0; w < 2; ++w) keyHash[w] += report.keyHash[w];
+    }
+    EXPECT_EQ(terminals, whole.terminals);
+    EXPECT_EQ(keyHash[0], whole.keyHash[0]);
+    EXPECT_EQ(keyHash[1], whole.keyHash[1]);
+  }
+  gpgpDestroyAsset(grammar);
+}
+
+TEST_F(SpawnTest, AxiomsOfTheCpuStayWithinTheirBudget) {
+  GpgpSpawnerCreateInfo budgets{};
+  budgets.maxHostAxioms = 20;
+  makeSpawner(budgets);
+  const GpgpAsset grammar = makeGrammar(bake(ownGrammar("building.pga")));
+  const std::vector<GpgpAxiom> all = axioms(21, 13, 19, 11);
+  const auto axiomBuffer = host::makeBuffer(device, all, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const host::Buffer instances(device, sizeof(GpgpInstance), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const GpgpFrame f = advance();
+  device.submitAndWait([&](VkCommandBuffer cmd) {
+    EXPECT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS);
+    GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+    info.grammar = grammar;
+    info.hostAxioms = all.data();
+    info.axiomCount = 21;
+    info.instances = instances.range();
+    EXPECT_EQ(gpgpRecordPrepareSpawn(spawner, cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(lastMessage(),
+              "gpgpRecordPrepareSpawn: axiomCount is 21, of hostAxioms; the spawner was made with maxHostAxioms 20");
+    info.axiomCount = 20;
+    info.axioms = axiomBuffer.range();
+    EXPECT_EQ(gpgpRecordPrepareSpawn(spawner, cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(lastMessage(), "gpgpRecordPrepareSpawn: both hostAxioms and axioms.buffer are set");
+    info.hostAxioms = nullptr;
+    info.axioms = {};
+    EXPECT_EQ(gpgpRecordPrepareSpawn(spawner, cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(lastMessage(), "gpgpRecordPrepareSpawn: axioms.buffer and hostAxioms are NULL, axiomCount is 20");
+  });
+  GpgpSpawnerCreateInfo tooMany = GPGP_SPAWNER_CREATE_INFO_INIT;
+  tooMany.base.queueFamily = device.graphics().family;
+  tooMany.maxHostAxioms = (1u << 24) + 1;
+  GpgpWorker none = nullptr;
+  EXPECT_EQ(gpgpCreateSpawner(context, &tooMany, &none), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(lastMessage(), "gpgpCreateSpawner: maxHostAxioms is at most 16777216");
+  messages.clear();
+  gpgpDestroyAsset(grammar);
 }
 
 TEST_F(SpawnTest, NoAxiomsGiveNothing) {

@@ -62,7 +62,11 @@ std::vector<uint32_t> link(const std::vector<GrammarFile>& files, GpgpCompileFla
   for (const GrammarFile& file : files) {
     GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
     source.name = file.name.c_str();
-    source.text = file.text.data();
+    if (file.text.starts_with("gppg"))
+      source.baked = file.text.data();
+    else
+      source.text = file.text.data();
+    source.alias = file.alias;
     source.size = file.text.size();
     source.variables = file.variables.data();
     source.variableCount = static_cast<uint32_t>(file.variables.size());
@@ -97,6 +101,20 @@ std::vector<std::string> linkMessages(const std::vector<GrammarFile>& files) {
   std::vector<std::string> messages;
   link(files, 0, messages);
   return messages;
+}
+
+GrammarFile bakedFile(const GrammarFile& file, GpgpCompileFlags flags) {
+  GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+  source.text = file.text.data();
+  source.size = file.text.size();
+  source.variables = file.variables.data();
+  source.variableCount = static_cast<uint32_t>(file.variables.size());
+  source.flags = flags;
+  GpgpBlob blob{};
+  if (gpgpCompileGrammar(&source, &blob) != GPGP_SUCCESS) throw std::runtime_error(file.name + " has errors");
+  GrammarFile baked{file.name, {static_cast<const char*>(blob.data), blob.size}};
+  gpgpFreeBlob(&blob);
+  return baked;
 }
 
 std::string textOf(const std::string& path) {

@@ -19,13 +19,16 @@ std::vector<std::string> ownGrammarNames();
 /// Compiles text to words; throws with all messages where it has errors.
 std::vector<uint32_t> bake(const std::string& text, const std::vector<GpgpVariable>& variables = {});
 struct GrammarFile {
-  std::string name, text;
+  std::string name, text; ///< or the bytes of a baked grammar
   std::vector<GpgpVariable> variables = {};
+  const char* alias = nullptr;
 };
 /// Links files to words, by the C function; throws with all messages where it fails.
 std::vector<uint32_t> linked(const std::vector<GrammarFile>& files, GpgpCompileFlags flags = 0);
 /// The messages of linking, as "file:line:column: error: text".
 std::vector<std::string> linkMessages(const std::vector<GrammarFile>& files);
+/// The file baked, kernels included where the flags say so, with its variables set.
+GrammarFile bakedFile(const GrammarFile& file, GpgpCompileFlags flags = 0);
 /// A file. Throws where it is absent.
 std::string textOf(const std::string& path);
 

@@ -56,6 +56,11 @@ std::vector<GpgpAxiom> axiomsOf(const spawn::Graph& graph, uint32_t seed, uint32
 /// Derives mixed axioms of all files with the linked grammar, and those of each with it alone. Returns terminals.
 uint64_t expectEqualsAlone(const std::vector<GrammarFile>& files, uint32_t seed) {
   const auto words = linked(files);
+  std::vector<GrammarFile> baked;
+  for (const GrammarFile& file : files) baked.push_back(bakedFile(file));
+  EXPECT_EQ(linked(baked), words);
+  baked[0] = files[0]; // some of each
+  EXPECT_EQ(linked(baked), words);
   const spawn::Graph graph = graphOf(words);
   spawn::DeriveOptions options;
   options.maxShapes = 200000;
@@ -186,8 +191,8 @@ TEST(Link, ErrorsHaveThePlaceInTheirFile) {
   EXPECT_EQ(linkMessages({{"a.pga", "terminal T (1,0);"}, {"b.pga", kTree}}),
             Messages{"a.pga:1:1: error: there is no axiom; expected a line as: axiom Box Start;"});
   EXPECT_EQ(linkMessages({{"a.pga", kHouse}, {"b/a.other", kTree}}),
-            Messages{"b/a.other:1:1: error: 'a' is also the name of a.pga; expected another file name: linked grammars "
-                     "are told apart by them"});
+            Messages{"b/a.other:1:1: error: 'a' is also the name of a.pga; expected another file name, or an alias: "
+                     "linked grammars are told apart by them"});
   EXPECT_EQ(linkMessages({{"folder/", kHouse}}),
             Messages{"folder/:1:1: error: this grammar has no name; expected one, as of a file: what it is linked with "
                      "calls it so"});
@@ -199,6 +204,54 @@ TEST(Link, ErrorsHaveThePlaceInTheirFile) {
   EXPECT_EQ(linkMessages({{"a.pga", kHouse}, {"b.pga", std::string(kHouse) + "\nB = Extrude(1) B2;\nB2 = Wall;"}}),
             (Messages{"b.pga:3:1: warning: rule 'B' is never used",
                       "b.pga:3:5: warning: Extrude has no effect here: only Box arrives"}));
+}
+
+TEST(Link, AliasesTellFilesOfOneNameApart) {
+  const auto words = linked({{"a/x.pga", kHouse}, {"b/x.pga", kTree, {}, "tree"}});
+  EXPECT_EQ(words, linked({{"x.pga", kHouse}, {"tree.pga", kTree}}));
+  EXPECT_EQ(linkMessages({{"a/x.pga", kHouse}, {"b/y.pga", kTree, {}, "x"}}),
+            Messages{"b/y.pga:1:1: error: 'x' is also the name of a/x.pga; expected another file name, or an alias: "
+                     "linked grammars are told apart by them"});
+  for (const char* wrong : {"two words", "42", "a.b", "é"})
+    EXPECT_EQ(linkMessages({{"a/x.pga", kHouse}, {"b/x.pga", kTree, {}, wrong}}),
+              Messages{std::string("b/x.pga:1:1: error: the alias '") + wrong +
+                       "' is no name; expected letters, digits and _, not digits alone"});
+}
+
+TEST(Link, BakedGrammarsLinkAsTheirTextDoes) { // and in all tests of linked text above
+  const GrammarFile house{"house.pga", kHouse}, tree{"tree.pga", kTree, {{"n", 4}}};
+  const auto words = linked({house, tree});
+  GrammarFile files[] = {bakedFile(house, GPGP_COMPILE_KERNEL), bakedFile(tree)};
+  files[0].name = "out/house.pga.gpgp"; // as `gpgp bake` names it
+  EXPECT_EQ(linked({files[0], files[1]}), words);
+  // What is linked already is one grammar.
+  std::string bytes(words.size() * 4, 0);
+  std::memcpy(bytes.data(), words.data(), bytes.size());
+  const spawn::Graph street = graphOf(linked({{"street.gpgp", bytes}, {"lamp.pga", kHouse}}));
+  EXPECT_EQ(startNamed(street, "street.house.House"), 0u);
+  EXPECT_EQ(startNamed(street, "street"), 4u);
+  EXPECT_EQ(startNamed(street, "street.tree"), 5u);
+  EXPECT_EQ(startNamed(street, "lamp"), 6u);
+  // Alone, it is compiled again: the same bytes.
+  GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+  source.baked = bytes.data();
+  source.size = bytes.size();
+  const auto again = compileGrammar(source);
+  ASSERT_TRUE(again);
+  ASSERT_EQ(again->size(), bytes.size());
+  EXPECT_EQ(std::memcmp(again->data(), bytes.data(), bytes.size()), 0);
+  source.text = kHouse;
+  GpgpBlob none{};
+  EXPECT_EQ(gpgpCompileGrammar(&source, &none), GPGP_ERROR_INVALID_ARGUMENT);
+
+  GrammarFile set = files[1], cut = files[1];
+  set.variables = {{"n", 5}};
+  cut.text.pop_back();
+  EXPECT_EQ(linkMessages({files[0], set}),
+            Messages{"tree.pga:1:1: error: a baked grammar has no var that could be set; they were set when it was "
+                     "baked"});
+  EXPECT_EQ(linkMessages({files[0], cut}),
+            Messages{"tree.pga:1:1: error: not a baked grammar: its size is not one that grammars have"});
 }
 
 TEST(Link, NeedsSources) {
@@ -254,6 +307,14 @@ TEST(Link, TagsAreCommon) {
                 "after it",
                 "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in line 3 of a.pga, which comes "
                 "after it"}));
+  EXPECT_EQ(linked({bakedFile({"wall.pga", wall}), bakedFile({"plant.pga", plant})}), words);
+  EXPECT_EQ(
+      linkMessages({bakedFile({"a.pga", circle}),
+                    {"b.pga", replaced(replaced(circle, "(one)", "(two)"), "Collider(two)", "Collider(one)")}}),
+      (Messages{"a.pga:1:1: error: IfCollides(one) waits for all of Collider(one) in line 3 of b.pga, which comes "
+                "after it",
+                "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in the baked grammar of a.pga, "
+                "which comes after it"}));
 }
 
 /// A start derives what the same file does with its shape and rule in the only axiom line.

@@ -1,4 +1,4 @@
-// Hot reload as an engine does it, with the mini-engine's own code: frames run while the grammar's file changes, to
+// Hot reload as an engine does it, with the mini-engine's own code: frames run while the grammar's files change, to
 // another grammar, to errors and back. No frame waits, and each derives one of the versions, whole.
 #include "grammar_watch.h"
 #include "host/files.h"
@@ -33,28 +33,12 @@ protected:
     auto spawnerInfo = init<GpgpSpawnerCreateInfo>();
     spawnerInfo.base.queueFamily = device_.graphics().family;
     spawnerInfo.maxShapes = spawnerInfo.maxTerminals = 4096;
+    spawnerInfo.maxHostAxioms = 2;
     auto spawner = Spawner::create(context_, spawnerInfo);
     EXPECT_TRUE(spawner) << spawner.name();
     spawner_ = *std::move(spawner);
     EXPECT_EQ(spawner_.prewarm(), GPGP_SUCCESS);
-    GpgpAxiom axiom{};
-    axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1;
-    axiom.size[0] = axiom.size[1] = axiom.size[2] = 10;
-    axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
-    axioms_ = host::makeBuffer(device_, std::vector<GpgpAxiom>{axiom}, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     instances_ = host::Buffer(device_, 64 * sizeof(GpgpInstance), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    write(slices(5));
-    auto source = init<GpgpGrammarSource>();
-    const std::string text = slices(5);
-    source.text = text.data();
-    source.size = text.size();
-    const auto blob = compileGrammar(source);
-    auto grammarInfo = init<GpgpGrammarCreateInfo>();
-    grammarInfo.data = blob->data();
-    grammarInfo.size = blob->size();
-    auto grammar = Grammar::create(context_, grammarInfo);
-    EXPECT_TRUE(grammar) << grammar.name();
-    grammar_ = *std::move(grammar);
   }
   ~ReloadTest() override {
     watch_.reset();
@@ -63,18 +47,48 @@ protected:
     spawner_.reset();
     context_.reset();
     for (const std::string& message : device_.validationMessages()) ADD_FAILURE() << message;
-    std::filesystem::remove(file_);
+    for (const std::string& file : {file_, other_}) std::filesystem::remove(file);
   }
 
-  void watch(bool kernels) {
+  /// Frames begin with a grammar of these files, five slices each, which are followed from now on.
+  void watch(bool kernels, const std::vector<std::string>& files) {
     mini::GrammarWatchOptions options;
-    options.file = file_;
-    options.text = slices(5);
+    const std::string text = slices(5);
+    std::vector<GpgpGrammarSource> sources(files.size(), init<GpgpGrammarSource>());
+    for (size_t i = 0; i < files.size(); ++i) {
+      write(text, files[i]);
+      options.files.push_back({files[i], text});
+      sources[i].name = files[i].c_str();
+      sources[i].text = text.data();
+      sources[i].size = text.size();
+    }
+    const auto blob = files.size() > 1 ? linkGrammars(sources.data(), static_cast<uint32_t>(sources.size()))
+                                       : compileGrammar(sources[0]);
+    auto grammarInfo = init<GpgpGrammarCreateInfo>();
+    grammarInfo.data = blob->data();
+    grammarInfo.size = blob->size();
+    auto grammar = Grammar::create(context_, grammarInfo);
+    ASSERT_TRUE(grammar) << grammar.name();
+    grammar_ = *std::move(grammar);
     options.kernels = kernels;
     options.say = [this](const std::string& message) { said_.push_back(message); };
     watch_ = std::make_unique<mini::GrammarWatch>(context_, spawner_, options);
   }
-  void write(const std::string& text) { host::writeFile(file_, text); }
+  void watch(bool kernels) { watch(kernels, {file_}); }
+  void write(const std::string& text) { write(text, file_); }
+  static void write(const std::string& text, const std::string& file) { host::writeFile(file, text); }
+
+  /// One for each start. Their places are this grammar's.
+  std::vector<GpgpAxiom> axioms() const {
+    GpgpAxiom axiom{};
+    axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1;
+    axiom.size[0] = axiom.size[1] = axiom.size[2] = 10;
+    axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+    std::vector<GpgpAxiom> all(std::max<size_t>(starts_.size(), 1), axiom);
+    for (size_t i = 0; i < starts_.size(); ++i)
+      EXPECT_EQ(gpgpFindGrammarStart(grammar_, starts_[i].c_str(), &all[i].rule), GPGP_SUCCESS);
+    return all;
+  }
 
   /// One frame of an engine. Its record must succeed whatever is being compiled.
   void frame() {
@@ -91,8 +105,9 @@ protected:
     EXPECT_TRUE(context_.recordUpload(commands, frames_.frame()));
     auto info = init<GpgpSpawnInfo>();
     info.grammar = grammar_;
-    info.axioms = axioms_.range();
-    info.axiomCount = 1;
+    const std::vector<GpgpAxiom> start = axioms();
+    info.hostAxioms = start.data();
+    info.axiomCount = static_cast<uint32_t>(start.size());
     const GpgpAccess written{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT, {}};
     info.instances = instances_.range(written, written);
     EXPECT_EQ(spawner_.recordPrepare(commands, frames_.frame(), info), GPGP_SUCCESS);
@@ -111,10 +126,12 @@ protected:
   Context context_;
   Spawner spawner_;
   Grammar grammar_;
-  host::Buffer axioms_, instances_;
+  host::Buffer instances_;
   host::FrameRing frames_{device_, 3};
   std::unique_ptr<mini::GrammarWatch> watch_;
-  const std::string file_ = testing::TempDir() + "gpgp_reload_" + std::to_string(getpid()) + ".pga";
+  const std::string file_ = testing::TempDir() + "gpgp_reload_" + std::to_string(getpid()) + ".pga",
+                    other_ = testing::TempDir() + "gpgp_reload_other_" + std::to_string(getpid()) + ".pga";
+  std::vector<std::string> starts_; // of axioms; none: one of the default
   std::vector<std::string> said_;
   std::vector<uint32_t> derived_; // terminals of each report
   uint32_t swaps_ = 0, frameCount_ = 0;
@@ -147,6 +164,29 @@ TEST_F(ReloadTest, ErrorsKeepThePreviousVersion) {
   EXPECT_TRUE(std::is_sorted(derived_.begin(), derived_.end()));
   for (const uint32_t count : derived_) EXPECT_TRUE(count == 5 || count == 7 || count == 9) << count;
   EXPECT_GE(derived_.size() + 3, frameCount_);
+}
+
+TEST_F(ReloadTest, LinkedFilesAreFollowed) {
+  const auto name = [](const std::string& file) { return std::filesystem::path(file).stem().string(); };
+  starts_ = {name(file_), name(other_)};
+  watch(true, {file_, other_});
+  ASSERT_TRUE(framesUntil([&] { return last() == 5 + 5; }));
+  write(slices(7) + "Unused = A;\n"); // a rule more: the other file's starts move
+  ASSERT_TRUE(framesUntil([&] { return last() == 7 + 5; }));
+  EXPECT_EQ(std::exchange(said_, {}), std::vector{file_ + ":4:1: warning: rule 'Unused' is never used"});
+  write(slices(20), other_);
+  ASSERT_TRUE(framesUntil([&] { return last() == 7 + 20; }));
+  said_.clear(); // warned again
+
+  write("axiom Box A;\nA = Nowhere;\n", other_); // an error in one: both stay
+  ASSERT_TRUE(framesUntil([&] { return !said_.empty(); }));
+  EXPECT_EQ(said_, std::vector{other_ + ":2:5: error: there is no rule or terminal 'Nowhere'"});
+  write(slices(9));
+  for (int i = 0; i < 8; ++i) frame();
+  EXPECT_EQ(last(), 7u + 20u);
+
+  write(slices(3), other_);
+  ASSERT_TRUE(framesUntil([&] { return last() == 9 + 3; }));
 }
 
 TEST_F(ReloadTest, KernelsTakeOverWhenTheyAreReady) {

@@ -1,7 +1,6 @@
 #include "spawn/codegen/schedules.h"
 
 #include "spawn/codegen/table.h"
-#include "spawn/graph/heuristics.h"
 
 #include <algorithm>
 
@@ -95,17 +94,18 @@ Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, st
   return schedule;
 }
 
-std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name) {
+std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name, const Heuristics& heuristics) {
   const Flow flow = makeFlow(graph);
   if (name == "default") return defaultSchedule(graph, flow);
   if (name == "sgl") return scheduleOf(graph, flow, coarsestPartition(flow), name);
   if (name == "rw") return scheduleOf(graph, flow, singleGroups(flow), name);
   if (name == "rules") return scheduleOf(graph, flow, rulePartition(graph, flow), name);
-  if (name == "heuristic") return scheduleOf(graph, flow, heuristicPartition(graph, flow), name);
+  if (name == "heuristic") return scheduleOf(graph, flow, heuristicPartition(graph, flow, heuristics), name);
   return std::nullopt;
 }
 
-std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t limit, uint32_t seed, bool& complete) {
+std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t limit, uint32_t seed, bool& complete,
+                                      const Heuristics& heuristics) {
   std::vector<Schedule> found;
   const auto add = [&](Schedule schedule) {
     const bool known =
@@ -113,7 +113,7 @@ std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t 
     if (!known && found.size() < limit) found.push_back(std::move(schedule));
     return !known;
   };
-  for (const char* name : kScheduleNames) add(*namedSchedule(graph, name));
+  for (const char* name : kScheduleNames) add(*namedSchedule(graph, name, heuristics));
   const Flow flow = makeFlow(graph);
   complete = false;
   if (search == Search::exhaustive) {
@@ -129,7 +129,7 @@ std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t 
   std::mt19937 random(seed);
   for (size_t misses = 0; misses < 100 && found.size() < limit;) { // until nothing new comes up for long
     const Roots roots =
-        search == Search::random ? randomPartition(flow, random) : heuristicPartition(graph, flow, {}, &random);
+        search == Search::random ? randomPartition(flow, random) : heuristicPartition(graph, flow, heuristics, &random);
     if (add(scheduleOf(graph, flow, roots,
                        (search == Search::random ? "random " : "heuristic ") + std::to_string(found.size()))))
       misses = 0;

@@ -3,9 +3,8 @@
 // A partition's roots wait, and so does what multiplies by a number that is not known before (table.h). Partitions that
 // differ only in edges into the latter give the same kernel, and a search meets each kernel once.
 #pragma once
-#include "spawn/graph/partition.h"
+#include "spawn/graph/heuristics.h"
 
-#include <random>
 #include <string>
 
 namespace gpgp::spawn {
@@ -18,7 +17,7 @@ struct Schedule {
 };
 
 /// sgl, rw, rules, heuristic, or default (as few as are worth it, docs/spawn.md); nothing for other names.
-std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name);
+std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name, const Heuristics& heuristics = {});
 constexpr const char* kScheduleNames[] = {"default", "sgl", "rw", "rules", "heuristic"};
 
 Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, std::string name);
@@ -29,7 +28,8 @@ enum class Search {
   heuristic   ///< the heuristics, and coins for the edges that they leave open
 };
 /// The named schedules, then what a search finds: at most `limit` in all, no kernel twice. complete: all there are.
-std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t limit, uint32_t seed, bool& complete);
+std::vector<Schedule> searchSchedules(const Graph& graph, Search search, size_t limit, uint32_t seed, bool& complete,
+                                      const Heuristics& heuristics = {});
 
 /// The schedules of partitions in which one node more, or one fewer, begins a group. Some may have the same kernel, or
 /// the schedule's own.

@@ -2,6 +2,7 @@
 
 #include "spawn/expression.h"
 #include "spawn/graph/export_labels.h"
+#include "spawn/language/append_graph.h"
 #include "spawn/language/check_context.h"
 #include "spawn/language/expressions.h"
 #include "spawn/language/lexer.h"
@@ -21,8 +22,6 @@ std::optional<uint32_t> shapeNamed(const std::string& name) {
 }
 
 std::string count(size_t n, const char* noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
-
-using Tags = std::map<std::string, uint32_t>;
 
 /// Adds one grammar to a graph that others share. All have the same tags.
 class Builder {
@@ -55,14 +54,10 @@ private:
     std::optional<size_t> rule;
   };
 
-  uint32_t addName(const std::string& name) {
-    const uint32_t at = static_cast<uint32_t>(graph_.names.size());
-    graph_.names.insert(graph_.names.end(), name.begin(), name.end());
-    graph_.names.push_back(0);
-    return at;
-  }
   /// Of a rule or terminal.
-  uint32_t addOwnName(const std::string& name) { return addName(part_.name.empty() ? name : part_.name + "." + name); }
+  uint32_t addOwnName(const std::string& name) {
+    return addName(graph_, part_.name.empty() ? name : part_.name + "." + name);
+  }
 
   bool define(const std::string& name, Name what) {
     const auto [it, isNew] = names_.try_emplace(name, what);
@@ -320,7 +315,7 @@ private:
   uint32_t tagOf(const Expression& expression) {
     if (expression.kind == ExpressionKind::name && !variables_.count(expression.name)) {
       const auto [tag, isNew] = tags_.try_emplace(expression.name);
-      if (isNew) tag->second = kTagName | addName(expression.name);
+      if (isNew) tag->second = kTagName | addName(graph_, expression.name);
       return tag->second;
     }
     const float value = expressions_.constant(expression, "a tag");
@@ -441,7 +436,7 @@ private:
       } else if (target.node != kNoNode) {
         axiom.name = graph_.terminals[graph_.nodes[target.node].argument].name;
       }
-      if (number == first && !part_.name.empty()) axiom.name = addName(part_.name);
+      if (number == first && !part_.name.empty()) axiom.name = addName(graph_, part_.name);
       setShape(axiom, definition);
       graph_.axioms.push_back(axiom);
     }
@@ -531,8 +526,14 @@ Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* 
   std::vector<NodePlace> places;
   Tags tags;
   std::deque<Builder> builders; // they stay where they are
-  for (const GrammarPart& part : parts)
-    builders.emplace_back(part, graph, places, tags, static_cast<uint32_t>(builders.size())).run();
+  for (const GrammarPart& part : parts) {
+    const uint32_t number = static_cast<uint32_t>(&part - parts.data());
+    if (part.baked)
+      appendGraph(*part.baked, part.name, graph, tags);
+    else
+      builders.emplace_back(part, graph, places, tags, number).run();
+    places.resize(graph.nodes.size(), {number, {}});
+  }
   if (std::any_of(parts.begin(), parts.end(), [](const GrammarPart& p) { return p.diagnostics->hasErrors(); }))
     return graph;
   analyse(graph);
@@ -543,7 +544,7 @@ Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* 
 
 Graph buildGraph(const SyntaxTree& tree, std::span<const GpgpVariable> overrides, Diagnostics& diagnostics,
                  std::pmr::memory_resource* memory) {
-  const GrammarPart part{&tree, overrides, &diagnostics, {}, {}};
+  const GrammarPart part{&tree, nullptr, overrides, &diagnostics, {}, {}};
   return buildGraph({&part, 1}, memory);
 }
 

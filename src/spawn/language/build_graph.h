@@ -12,6 +12,7 @@ namespace gpgp::spawn {
 /// A grammar that becomes part of a graph.
 struct GrammarPart {
   const SyntaxTree* tree = nullptr;
+  const Graph* baked = nullptr; ///< instead of a tree
   std::span<const GpgpVariable> overrides;
   Diagnostics* diagnostics = nullptr;
   std::string name; ///< a linked grammar's: its rules and terminals are name.Rule, its first axiom is name; else empty

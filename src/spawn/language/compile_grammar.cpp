@@ -1,4 +1,4 @@
-// gpgpCompileGrammar, gpgpLinkGrammars: text, or what builders hold, to a baked grammar.
+// gpgpCompileGrammar, gpgpLinkGrammars: text, what builders hold, or baked grammars to a baked grammar.
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
 #include "spawn/codegen/schedules.h"
@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 
 using namespace gpgp;
 
@@ -39,8 +40,10 @@ void report(const GpgpGrammarSource& source, const spawn::Diagnostics& diagnosti
 constexpr size_t kMostText = size_t(1) << 28;
 
 GpgpResult check(const GpgpGrammarSource& source) {
-  if (source.builder && source.text) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "both text and builder are set");
-  if (!source.text && source.size) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
+  if ((source.builder != nullptr) + (source.text != nullptr) + (source.baked != nullptr) > 1)
+    return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "more than one of text, builder and baked is set");
+  if (!source.text && !source.baked && source.size)
+    return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "text is NULL, size is not 0");
   if (!source.variables && source.variableCount)
     return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
   for (uint32_t i = 0; i < source.variableCount; ++i)
@@ -53,7 +56,22 @@ GpgpResult check(const GpgpGrammarSource& source) {
 struct Input {
   spawn::Diagnostics diagnostics;
   spawn::SyntaxTree tree;
+  std::optional<spawn::Graph> baked;
 };
+
+/// The graph of a baked grammar; what is behind it serves this graph alone.
+std::optional<spawn::Graph> load(const GpgpGrammarSource& source, spawn::Diagnostics& diagnostics) {
+  const std::span bytes(static_cast<const std::byte*>(source.baked), source.size);
+  auto graph = spawn::load(bytes.first(spawn::sizeOfGraph(bytes)), std::pmr::new_delete_resource());
+  if (!graph) {
+    diagnostics.error({}, graph.error().text);
+    return std::nullopt;
+  }
+  if (source.variableCount)
+    diagnostics.error({}, "a baked grammar has no var that could be set; they were set when it was baked");
+  diagnostics.name({}, "the baked grammar"); // in messages of others
+  return std::move(*graph);
+}
 
 /// A graph with a kernel behind it, where one is wanted.
 GpgpResult bake(const GpgpGrammarSource& first, const spawn::Graph& graph, bool kernel, GpgpBlob* blob) {
@@ -93,18 +111,25 @@ GpgpResult compile(std::span<const GpgpGrammarSource> sources, bool linked, Gpgp
     bool kernel = false;
     for (size_t i = 0; i < sources.size(); ++i) {
       const GpgpGrammarSource& source = sources[i];
-      auto& [diagnostics, tree] = inputs[i];
-      const std::string file = source.name ? source.name : "", name = linked ? spawn::linkedName(file) : std::string();
-      tree = source.builder ? spawn::treeOf(*source.builder, diagnostics)
-                            : spawn::parse({source.text ? source.text : "", source.size}, diagnostics);
+      auto& [diagnostics, tree, baked] = inputs[i];
+      const std::string file = source.name ? source.name : "", alias = source.alias ? source.alias : "";
+      const std::string name = linked ? spawn::linkedName(alias.empty() ? file : alias) : std::string();
+      if (source.baked)
+        tree.brokenAxiom = !(baked = load(source, diagnostics)); // was reported
+      else
+        tree = source.builder ? spawn::treeOf(*source.builder, diagnostics)
+                              : spawn::parse({source.text ? source.text : "", source.size}, diagnostics);
+      if (linked && !alias.empty() && alias != name)
+        diagnostics.error({}, "the alias '" + alias + "' is no name; expected letters, digits and _, not digits alone");
       const auto [other, isNew] = files.try_emplace(name, file);
       if (linked && name.empty())
         diagnostics.error({},
                           "this grammar has no name; expected one, as of a file: what it is linked with calls it so");
       else if (!isNew)
         diagnostics.error({}, "'" + name + "' is also the name of " + other->second +
-                                  "; expected another file name: linked grammars are told apart by them");
-      parts.push_back({&tree, {source.variables, source.variableCount}, &diagnostics, name, file});
+                                  "; expected another file name, or an alias: linked grammars are told apart by them");
+      parts.push_back(
+          {&tree, baked ? &*baked : nullptr, {source.variables, source.variableCount}, &diagnostics, name, file});
       kernel = kernel || (source.flags & GPGP_COMPILE_KERNEL);
     }
     const spawn::Graph graph = spawn::buildGraph(parts, std::pmr::new_delete_resource());

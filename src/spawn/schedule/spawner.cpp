@@ -120,6 +120,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const uint32_t maxShapes = spawner->maxShapes_ = info.maxShapes ? info.maxShapes : kDefaultShapes;
   const uint32_t maxTerminals = spawner->maxTerminals_ = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
   const uint32_t maxColliders = spawner->maxColliders_ = info.maxColliders;
+  spawner->maxHostAxioms_ = info.maxHostAxioms;
   spawner->stride_ = 4 * layout.strideWords;
   const bool vertices = spawner->vertices();
   const bool ordered = spawner->ordered_ = info.flags & GPGP_SPAWNER_ORDERED;
@@ -134,7 +135,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   core::PassList list(&context.host());
   using enum core::ResourceKind;
   list.add({"grammar", buffer});
-  list.add({"axioms", buffer, 0, true});
+  list.add({"axioms", buffer, sizeof(GpgpAxiom) * VkDeviceSize(info.maxHostAxioms), true});
   list.add({"instances", buffer, 0, true});
   list.add({"draws", buffer, 0, true});
   list.add({"count", buffer, 0, true});
@@ -303,6 +304,10 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 }
 
 core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
+  if (info.hostAxioms && info.axiomCount > maxHostAxioms_)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "axiomCount is %u, of hostAxioms; the spawner was made with maxHostAxioms %u",
+                           info.axiomCount, maxHostAxioms_);
   const Limits& limits = limitsOf(context.device);
   const uint32_t phases = std::max(grammar.graph.phases, 1u);
   if (grammar.graph.phases && !maxColliders_)
@@ -365,6 +370,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[kGraph].ownBuffer = grammar.buffer();
   record.bindings[kGraph].ownSize = grammar.size();
   record.bindings[kAxioms].engineBuffer = &info.axioms;
+  if (info.hostAxioms) record.bindings[kAxioms].hostData = std::as_bytes(std::span(info.hostAxioms, info.axiomCount));
   record.bindings[kAxiomCounter].engineBuffer = &info.axiomCounter;
   record.bindings[kBounds].engineBuffer = &info.bounds;
   record.bindings[kInstances].engineBuffer = &info.instances;

@@ -1,0 +1,95 @@
+#include "spawn/language/append_graph.h"
+
+namespace gpgp::spawn {
+namespace {
+using namespace shader;
+
+template <class List> uint32_t sizeOf(const List& list) { return static_cast<uint32_t>(list.size()); }
+
+/// Names in their order, which is that of adding them: new offsets by old ones, and whether they are tags.
+using Names = std::map<std::pair<uint32_t, bool>, uint32_t>;
+
+Names appendNames(const Graph& part, const std::string& name, Graph& graph, Tags& tags) {
+  Names names;
+  for (const Terminal& t : part.terminals) names[{t.name, false}];
+  for (const Rule& r : part.rules) names[{r.name, false}];
+  for (size_t i = name.empty() ? 0 : 1; i < part.axioms.size(); ++i) names[{part.axioms[i].name, false}];
+  for (const Node& n : part.nodes)
+    if (isContext(n.op) && (n.argument & kTagName)) names[{n.argument & ~kTagName, true}];
+  for (auto& [old, offset] : names) {
+    const std::string text = part.nameAt(old.first);
+    if (!old.second) {
+      offset = addName(graph, name.empty() ? text : name + "." + text);
+      continue;
+    }
+    const auto [tag, isNew] = tags.try_emplace(text);
+    if (isNew) tag->second = kTagName | addName(graph, text);
+    offset = tag->second;
+  }
+  return names;
+}
+
+/// All but the regular ones, which every graph has.
+void appendPolygons(const Graph& part, Graph& graph) {
+  for (size_t i = kRegularPolygons; i < part.polygons.size(); ++i) {
+    const Polygon& p = part.polygons[i];
+    graph.polygons.push_back({sizeOf(graph.vertices) / 2, p.vertexCount, sizeOf(graph.quads) / kQuadSize, p.quadCount});
+    const auto vertices = part.vertices.begin() + 2 * std::ptrdiff_t(p.firstVertex);
+    graph.vertices.insert(graph.vertices.end(), vertices, vertices + 2 * std::ptrdiff_t(p.vertexCount));
+    const auto quads = part.quads.begin() + kQuadSize * std::ptrdiff_t(p.firstQuad);
+    graph.quads.insert(graph.quads.end(), quads, quads + kQuadSize * std::ptrdiff_t(p.quadCount));
+  }
+}
+} // namespace
+
+uint32_t addName(Graph& graph, std::string_view name) {
+  const uint32_t at = sizeOf(graph.names);
+  graph.names.insert(graph.names.end(), name.begin(), name.end());
+  graph.names.push_back(0);
+  return at;
+}
+
+void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags& tags) {
+  const uint32_t firstNode = sizeOf(graph.nodes), firstEdge = sizeOf(graph.edges),
+                 firstParameter = sizeOf(graph.parameters), firstCode = sizeOf(graph.code),
+                 firstPolygon = sizeOf(graph.polygons) - kRegularPolygons, firstTerminal = sizeOf(graph.terminals),
+                 firstAxiom = sizeOf(graph.axioms), firstBucket = graph.buckets;
+  const auto node = [&](uint32_t n) { return n == kNoNode ? kNoNode : firstNode + n; };
+  const auto polygon = [&](uint32_t p) { return p < kRegularPolygons ? p : firstPolygon + p; };
+  const Names names = appendNames(part, name, graph, tags);
+  const auto named = [&](uint32_t offset) { return names.at({offset, false}); };
+
+  appendPolygons(part, graph);
+  for (Node n : part.nodes) {
+    if (n.op != kOpTerminal) { // which has neither
+      n.firstParameter += firstParameter;
+      n.firstEdge += firstEdge;
+    }
+    if (n.op == kOpSetGeometry) n.argument2 = polygon(n.argument2);
+    if (isContext(n.op) && (n.argument & kTagName)) n.argument = names.at({n.argument & ~kTagName, true});
+    if (n.op == kOpTerminal) {
+      n.argument += firstTerminal;
+      n.argument2 += firstBucket;
+    }
+    graph.nodes.push_back(n);
+  }
+  for (Edge e : part.edges) {
+    e.target = node(e.target);
+    graph.edges.push_back(e);
+  }
+  for (Parameter p : part.parameters) {
+    if (p.kind == kParameterProgram) p.value += firstCode;
+    graph.parameters.push_back(p);
+  }
+  graph.code.insert(graph.code.end(), part.code.begin(), part.code.end());
+  for (const Terminal& t : part.terminals)
+    graph.terminals.push_back({named(t.name), t.kind, t.index, firstBucket + t.bucket});
+  graph.buckets += part.buckets;
+  for (const Rule& r : part.rules) graph.rules.push_back({named(r.name), node(r.node), firstAxiom + r.axiom});
+  for (const Axiom& a : part.axioms) {
+    const bool isWhole = &a == part.axioms.data() && !name.empty();
+    graph.axioms.push_back({isWhole ? addName(graph, name) : named(a.name), node(a.node), a.shape, polygon(a.polygon)});
+  }
+}
+
+} // namespace gpgp::spawn
