@@ -32,9 +32,14 @@ GPGP_FN Facet facetOf(Candidate c, Footing box, ivec2 pixel, bool reversed) {
   return f;
 }
 
-/// Whether `a` is nearer than `b` anywhere in the box that both are in.
-GPGP_FN bool isNearerSomewhere(Facet a, Facet b) {
-  if (a.nearest >= b.farthest) return false;
+/// A number whose order is a float's.
+GPGP_FN uint orderOf(float v) {
+  uint bits = floatBitsToUint(v);
+  return (bits >> 31u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+/// Whether the plane of `a` is nearer than that of `b` anywhere in the box that both are in.
+GPGP_FN bool isNearerWithin(Facet a, Facet b) {
   ivec2 low = max(ivec2(a.box.x, a.box.y), ivec2(b.box.x, b.box.y));
   ivec2 high = min(ivec2(a.box.z, a.box.w), ivec2(b.box.z, b.box.w));
   if (low.x > high.x || low.y > high.y) return false;
@@ -46,6 +51,9 @@ GPGP_FN bool isNearerSomewhere(Facet a, Facet b) {
                             abs(behind.z) * float(high.y - low.y + 1) * 0.125f;
   return most > 0.0f;
 }
+
+/// Whether `a` is nearer than `b` anywhere in that box.
+GPGP_FN bool isNearerSomewhere(Facet a, Facet b) { return a.nearest < b.farthest && isNearerWithin(a, b); }
 
 /// Whether all of a triangle lies outside the edge from u to v.
 GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v, bool compact) {

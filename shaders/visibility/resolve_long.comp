@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
