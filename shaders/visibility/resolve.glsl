@@ -8,7 +8,7 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindOpen) readonly buffer OpenBuffer { uint open[]; };
 #include "visibility/candidates.glsl"
-layout(std430, set = 0, binding = kBindEntries) buffer EntryBuffer { uint entries[]; };
+layout(std430, set = 0, binding = kBindEntries) readonly buffer EntryBuffer { uint entries[]; };
 
 shared uint items[kBatch]; // candidates of a batch
 shared uvec4 keys[kBatch / 4u];

@@ -8,10 +8,25 @@
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
 
+/// Keys lie as the entries do. Each invocation reads only those that it wrote.
+layout(std430, set = 0, binding = kBindKeys) buffer KeyBuffer { uint depths[]; };
+
 const uint kBins = kBatch * 2u;
 
-shared uint bins[kBins]; // of the ranges that keys are divided into, how many entries each holds
 shared uint count;
+
+// Bins, of the ranges that keys are divided into, hold how many entries each has. While those are chosen there is no
+// batch, whose memory is theirs: less of it lets more lists be decided at a time.
+void clearBins() {
+  items[laneOf()] = 0u;
+  rows[laneOf()] = 0u;
+}
+void addToBin(uint bin) {
+  if ((bin & 1u) == 0u) atomicAdd(items[bin >> 1u], 1u);
+  else atomicAdd(rows[bin >> 1u], 1u);
+}
+/// Two neighbours for each invocation.
+uvec2 twoBins() { return uvec2(items[laneOf()], rows[laneOf()]); }
 
 /// The part of a list that is not decided yet.
 struct Rest {
@@ -23,13 +38,10 @@ struct Rest {
   uint farthest;
 };
 
-/// Where a list keeps its keys. Each invocation reads only those that it wrote.
-uint keyPlace(uint entry) { return params.maxPairs + entry; }
-
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
   uint lane = laneOf();
-  uvec2 held = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
+  uvec2 held = twoBins();
   uint second = sumUpTo(held.x + held.y);
   uint first = second - held.y;
   // The sums grow, so those that fit come first.
@@ -42,12 +54,11 @@ uint lastKey(Rest rest) {
   uint high = rest.farthest;
   while (true) {
     uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
-    bins[lane] = 0u;
-    bins[lane + kBatch] = 0u;
+    clearBins();
     sync();
     for (uint i = rest.begin + lane; i < rest.end; i += kBatch) {
-      uint key = entries[keyPlace(i)];
-      if (key >= rest.low && key <= high) atomicAdd(bins[(key - rest.low) >> shift], 1u);
+      uint key = depths[i];
+      if (key >= rest.low && key <= high) addToBin((key - rest.low) >> shift);
     }
     sync();
     uint fitting = binsOfBatch();
@@ -64,7 +75,7 @@ uint takeEntries(Rest rest, uint high) {
   if (laneOf() == 0u) count = 0u;
   sync();
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-    uint key = entries[keyPlace(i)];
+    uint key = depths[i];
     if (key < rest.low || key > high) continue;
     uint at = atomicAdd(count, 1u);
     if (at >= kBatch) continue;
@@ -93,7 +104,7 @@ bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 covere
 bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
   for (uint first = 0u; first < n; first += kBatch) {
     for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-      if (entries[keyPlace(i)] != rest.low) continue;
+      if (depths[i] != rest.low) continue;
       uint place = 0u;
       for (uint j = rest.begin; j < rest.end; ++j) {
         if (j == i) continue;
@@ -115,7 +126,7 @@ bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
 void showRest(Rest rest) {
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
     uint id = candidateId(entries[i]);
-    if (entries[keyPlace(i)] < rest.low || isShown(id)) continue;
+    if (depths[i] < rest.low || isShown(id)) continue;
     show(id);
     atomicAdd(counters.unresolved, 1u);
   }
@@ -127,7 +138,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   for (uint i = begin + laneOf(); i < end; i += kBatch) {
     Candidate c = readCandidate(entries[i]);
     uint key = middleKey(c, outlineOf(c, pixel), footingIn(c, pixel), pixel, params.reversedDepth != 0u);
-    entries[keyPlace(i)] = key;
+    depths[i] = key;
     least = min(least, key);
     most = max(most, key);
   }

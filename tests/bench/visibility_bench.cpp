@@ -178,8 +178,9 @@ const char* const kUsage = "visibility_bench [--size WxH] [--crop WxH+X+Y] [--re
                            "  --exact  without the thesis's method\n"
                            "visibility_bench --figures [--grid N] [--cell N] [--tables] [...]\n"
                            "  the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)\n"
-                           "visibility_bench --walk [--cell N] [--passes] [...]\n"
+                           "visibility_bench --walk [--cell N] [--passes] [--small DIVISOR/VIEWS/REACH]... [...]\n"
                            "  the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points\n"
+                           "  --small  views of a part of the width and height, metres\n"
                            "visibility_bench --views [...]\n"
                            "  what a record of several view points of a cell costs against a record for each\n"
                            "visibility_bench --plot FILE... --out FOLDER\n"
@@ -228,6 +229,10 @@ int runBench(bench::Arguments arguments) {
       options.views = true;
     } else if (arg == "--walk") {
       options.walk = true;
+    } else if (arg == "--small") {
+      SmallViews& views = options.figure.views.emplace_back();
+      scan("%u/%u/%f%c", "8/96/0.04", &views.divisor, &views.count, &views.reach);
+      if (!views.divisor || !views.count) throw bench::Usage(arg + ": a divisor and a number of views above 0");
     } else if (arg == "--tables") {
       options.tables = true;
     } else if (arg == "--plot") {
