@@ -196,41 +196,49 @@ struct Figures {
     walk.walkDistance = 0.5f;
     std::vector<GpgpCamera> corners = take({-0.5f, -0.5f, 0, 0.5f, -0.5f, 0, -0.5f, 0.5f, 0, 0.5f, 0.5f, 0});
     corners.erase(corners.begin());
+    const auto spread = [&](uint32_t count) {
+      walk.walkCount = count;
+      return camerasOf(walk);
+    };
     const bool few = options.largestCell < 32;
     using Views = std::vector<SmallViews>;
-    const Views usual = few ? Views{{4, 16}} : Views{{4, 16}, {4, 64}, {6, 24}, {6, 72}, {8, 32}, {8, 96}};
-    for (const SmallViews& views : options.views.empty() ? usual : options.views) {
-      walk.walkCount = views.count;
-      smallViews(corners, camerasOf(walk), views.divisor, views.reach, "", row);
-    }
+    const Views usual =
+        few ? Views{{4, 16}} : Views{{4, 16}, {6, 24}, {8, 32}, {8, 80, 0.06f}, {8, 80, 0.06f, 1u << 22}};
+    for (const SmallViews& views : options.views.empty() ? usual : options.views)
+      smallViews(corners, views, spread, "", row);
     if (!options.views.empty()) return;
     for (const uint32_t count : few ? std::vector{3u} : std::vector{5u, 9u})
-      smallViews(corners, take(rows(count)), 4, 0, " on grid", row);
+      smallViews(
+          corners, {4, UINT32_MAX}, [&](uint32_t) { return take(rows(count)); }, " on grid", row);
   }
 
   /// Views with a part of the width and height, of what may be seen from the cell: no place in it is farther from a
-  /// corner than the reach. The first camera, the middle, is left out. ownReach: of the views.
-  template <class Row>
-  void smallViews(const std::vector<GpgpCamera>& corners, const std::vector<GpgpCamera>& views, uint32_t divisor,
-                  float ownReach, const char* kind, const Row& row) {
+  /// corner than the reach. The first of the cameras for a number of views, the middle, is left out.
+  template <class Cameras, class Row>
+  void smallViews(const std::vector<GpgpCamera>& corners, const SmallViews& which, const Cameras& cameras,
+                  const char* kind, const Row& row) {
     const uint32_t room = std::min(runner.triangles(), 1u << 18);
-    std::vector<GpgpCamera> spread; // neighbours in different records, so that the first ones find most
-    for (size_t k = 1; k < 6; ++k)
-      for (size_t i = k; i < views.size(); i += 5) spread.push_back(views[i]);
     const DrawLists lists = runner.makeLists(room);
-    const uint32_t perRecord = std::min(runner.camerasPerRecord(divisor), static_cast<uint32_t>(spread.size()));
     constexpr uint32_t kNearbyDivisor = 4;
     const float reach = std::sqrt(0.5f);
-    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, kNearbyDivisor),
-            small = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, divisor, room);
+    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, kNearbyDivisor);
     const Runner::Run first = runner.measure(
         nearby, {.method = GPGP_SAMPLING_NEARBY, .divisor = kNearbyDivisor, .reach = reach, .listed = &lists},
         options.repeat, corners);
+    const uint32_t listed = std::max(first.report.neededDrawTriangles, 1u);
+    const std::vector<GpgpCamera> views =
+        cameras(which.most ? std::clamp(which.most / listed, 1u, which.count) : which.count);
+    std::vector<GpgpCamera> spread; // neighbours in different records, so that the first ones find most
+    for (size_t k = 1; k < 6; ++k)
+      for (size_t i = k; i < views.size(); i += 5) spread.push_back(views[i]);
+    const uint32_t perRecord = std::min(runner.camerasPerRecord(which.divisor), static_cast<uint32_t>(spread.size()));
+    Sampler small = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, which.divisor, room);
     const Runner::Run run = runner.measureUnion(
-        small, {.method = GPGP_SAMPLING_EXACT, .divisor = divisor, .reach = ownReach, .lists = &lists}, spread,
+        small, {.method = GPGP_SAMPLING_EXACT, .divisor = which.divisor, .reach = which.reach, .lists = &lists}, spread,
         perRecord, options.repeat);
-    const std::string series = "exact at 1/" + std::to_string(divisor) + kind +
-                               (ownReach > 0 ? " with a reach of " + text(double(ownReach)) : ""),
+    const std::string series = "exact at 1/" + std::to_string(which.divisor) + kind +
+                               (which.reach > 0 ? " with a reach of " + text(double(which.reach)) : "") +
+                               (which.most ? " of " + std::to_string(which.most) + " triangles" : ""),
                       label = std::to_string(spread.size());
     print("cellnearby", scene, series.c_str(), label, first.report.neededDrawTriangles, first.milliseconds);
     row(series.c_str(), label, first.milliseconds + run.milliseconds, run, spread);

@@ -9,8 +9,9 @@ namespace gpgp::test {
 /// Views of a walking viewer's cell.
 struct SmallViews {
   uint32_t divisor = 1; ///< of the picture's width and height
-  uint32_t count = 0;
-  float reach = 0; ///< metres
+  uint32_t count = 0;   ///< at most
+  float reach = 0;      ///< metres
+  uint32_t most = 0;    ///< triangles of all views together; 0: as many as there are
 };
 
 struct FigureOptions {
