@@ -13,20 +13,8 @@ layout(std430, set = 0, binding = kBindKeys) buffer KeyBuffer { uint depths[]; }
 
 const uint kBins = kBatch * 2u;
 
+shared uint bins[kBins]; // of the ranges that keys are divided into, how many entries each holds
 shared uint count;
-
-// Bins, of the ranges that keys are divided into, hold how many entries each has. While those are chosen there is no
-// batch, whose memory is theirs: less of it lets more lists be decided at a time.
-void clearBins() {
-  items[laneOf()] = 0u;
-  rows[laneOf()] = 0u;
-}
-void addToBin(uint bin) {
-  if ((bin & 1u) == 0u) atomicAdd(items[bin >> 1u], 1u);
-  else atomicAdd(rows[bin >> 1u], 1u);
-}
-/// Two neighbours for each invocation.
-uvec2 twoBins() { return uvec2(items[laneOf()], rows[laneOf()]); }
 
 /// The part of a list that is not decided yet.
 struct Rest {
@@ -41,7 +29,7 @@ struct Rest {
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
   uint lane = laneOf();
-  uvec2 held = twoBins();
+  uvec2 held = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
   uint second = sumUpTo(held.x + held.y);
   uint first = second - held.y;
   // The sums grow, so those that fit come first.
@@ -54,11 +42,12 @@ uint lastKey(Rest rest) {
   uint high = rest.farthest;
   while (true) {
     uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
-    clearBins();
+    bins[lane] = 0u;
+    bins[lane + kBatch] = 0u;
     sync();
     for (uint i = rest.begin + lane; i < rest.end; i += kBatch) {
       uint key = depths[i];
-      if (key >= rest.low && key <= high) addToBin((key - rest.low) >> shift);
+      if (key >= rest.low && key <= high) atomicAdd(bins[(key - rest.low) >> shift], 1u);
     }
     sync();
     uint fitting = binsOfBatch();
