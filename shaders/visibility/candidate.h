@@ -197,9 +197,9 @@ GPGP_FN uvec2 bitRange(int first, int end) {
   return uvec2(bitsFrom(first0, max(min(end, 32) - first0, 0)), bitsFrom(first1, max(max(end, 32) - 32 - first1, 0)));
 }
 
-/// A candidate within a pixel. Each edge is a line, at column x + r * y in row r of 64. It covers the samples from the
-/// greater of its left edges to before the lesser of its right ones, both rounded, in rows rowBegin to rowEnd - 1; the
-/// third edge is one of them. A sample that an edge meets lies right of it.
+/// A candidate within a pixel. Each edge is a line, at x + r * y of the pixel's width in row r of 64. It covers the
+/// samples from the greater of its left edges to before the lesser of its right ones, both rounded to columns, in rows
+/// rowBegin to rowEnd - 1; the third edge is one of them. A sample that an edge meets lies right of it.
 struct Outline {
   vec2 left;
   vec2 right;
@@ -210,6 +210,7 @@ struct Outline {
 };
 
 GPGP_CONST float kNoEdge = -1e30f;
+GPGP_CONST float kColumn = 0.015625f; ///< in widths; a power of two, so that what is multiplied by it stays exact
 
 /// Adds an edge. Its line is computed from its upper corner, so that both triangles at an edge have the same one, and
 /// neither share a sample nor leave one out.
@@ -223,10 +224,11 @@ GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2
     o.third = before;
     o.isThirdLeft = isLeft;
   }
+  vec2 line = vec2(start * kColumn, slope * kColumn);
   if (isLeft)
-    o.left = vec2(start, slope);
+    o.left = line;
   else
-    o.right = vec2(start, slope);
+    o.right = line;
 }
 
 GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
@@ -244,28 +246,32 @@ GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
   return o;
 }
 
-/// From where to where an outline reaches in a row: x to before y, once rounded.
+/// From where to where an outline reaches in a row, in widths: x to before y, once rounded. Clamping to 0 to 1 costs
+/// nothing where a sum is made.
 GPGP_FN vec2 columnsOf(Outline o, float row) {
   GPGP_PRECISE float left = o.left.x + row * o.left.y;
   GPGP_PRECISE float right = o.right.x + row * o.right.y;
   GPGP_PRECISE float third = o.third.x + row * o.third.y;
+  vec2 columns = vec2(clamp(left, 0.0f, 1.0f), clamp(right, 0.0f, 1.0f));
+  float held = clamp(third, 0.0f, 1.0f);
   if (o.isThirdLeft)
-    left = max(left, third);
+    columns.x = max(columns.x, held);
   else
-    right = min(right, third);
-  return vec2(clamp(left, 0.0f, 64.0f), clamp(right, 0.0f, 64.0f));
+    columns.y = min(columns.y, held);
+  return columns;
 }
 
-/// The integer nearest to 0 to 64: a large number leaves its sum with v no other bits. Conversions are slow.
+/// The column nearest to 0 to 1: a large number leaves its sum with v no bits below. Conversions are slow.
 GPGP_FN int roundedColumn(float v) {
-  GPGP_PRECISE float sum = v + 8388608.0f;
-  return int(floatBitsToUint(sum) - 0x4b000000u);
+  GPGP_PRECISE float sum = v + 131072.0f;
+  return int(floatBitsToUint(sum) - 0x48000000u);
 }
 
 /// Which samples of a row an outline covers.
 GPGP_FN uvec2 samplesIn(Outline o, int row) {
   vec2 columns = columnsOf(o, float(row));
-  int end = row >= o.rowBegin && row < o.rowEnd ? roundedColumn(columns.y) : 0;
+  bool any = uint(row - o.rowBegin) < uint(o.rowEnd - o.rowBegin);
+  int end = any ? roundedColumn(columns.y) : 0;
   return bitRange(roundedColumn(columns.x), end);
 }
 
@@ -274,9 +280,9 @@ GPGP_FN uvec2 samplesAround(Outline o, int reach, int row) {
   if (row < o.rowBegin - reach || row >= o.rowEnd + reach) return uvec2(0u, 0u);
   Outline wide = o;
   float by = float(reach);
-  GPGP_PRECISE float left = o.left.x - by * (abs(o.left.y) + 1.0f);
-  GPGP_PRECISE float right = o.right.x + by * (abs(o.right.y) + 1.0f);
-  GPGP_PRECISE float third = o.third.x + (o.isThirdLeft ? -by : by) * (abs(o.third.y) + 1.0f);
+  GPGP_PRECISE float left = o.left.x - by * (abs(o.left.y) + kColumn);
+  GPGP_PRECISE float right = o.right.x + by * (abs(o.right.y) + kColumn);
+  GPGP_PRECISE float third = o.third.x + (o.isThirdLeft ? -by : by) * (abs(o.third.y) + kColumn);
   wide.left.x = left;
   wide.right.x = right;
   wide.third.x = third;
@@ -291,7 +297,7 @@ GPGP_FN uint middleKey(Candidate c, Outline outline, Footing f, ivec2 pixel, boo
   vec2 columns = columnsOf(outline, row);
   int column = f.middle.x;
   if (columns.x < columns.y) {
-    GPGP_PRECISE float x = (columns.x + columns.y) * 2.0f;
+    GPGP_PRECISE float x = (columns.x + columns.y) * 128.0f;
     column = first.x + int(floor(x));
   }
   GPGP_PRECISE float z = f.depth + f.slope.x * float(column - f.middle.x);

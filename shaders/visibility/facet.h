@@ -32,9 +32,14 @@ GPGP_FN Facet facetOf(Candidate c, Footing box, ivec2 pixel, bool reversed) {
   return f;
 }
 
-/// Whether `a` is nearer than `b` anywhere in the box that both are in.
-GPGP_FN bool isNearerSomewhere(Facet a, Facet b) {
-  if (a.nearest >= b.farthest) return false;
+/// A number whose order is a float's.
+GPGP_FN uint orderOf(float v) {
+  uint bits = floatBitsToUint(v);
+  return (bits >> 31u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+/// Whether the plane of `a` is nearer than that of `b` anywhere in the box that both are in.
+GPGP_FN bool isNearerWithin(Facet a, Facet b) {
   ivec2 low = max(ivec2(a.box.x, a.box.y), ivec2(b.box.x, b.box.y));
   ivec2 high = min(ivec2(a.box.z, a.box.w), ivec2(b.box.z, b.box.w));
   if (low.x > high.x || low.y > high.y) return false;
@@ -46,6 +51,9 @@ GPGP_FN bool isNearerSomewhere(Facet a, Facet b) {
                             abs(behind.z) * float(high.y - low.y + 1) * 0.125f;
   return most > 0.0f;
 }
+
+/// Whether `a` is nearer than `b` anywhere in that box.
+GPGP_FN bool isNearerSomewhere(Facet a, Facet b) { return a.nearest < b.farthest && isNearerWithin(a, b); }
 
 /// Whether all of a triangle lies outside the edge from u to v.
 GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v, bool compact) {
@@ -64,8 +72,8 @@ GPGP_FN bool overlap(Candidate a, Candidate b) {
            liesOutside(a, b.p1, b.p2, compact) || liesOutside(a, b.p2, b.p0, compact));
 }
 
-/// Where one facet is nearer than another: in row r, left (side -1) or right (side 1) of column start + r * step;
-/// side 0: in rows in which that is below 0.
+/// Where one facet is nearer than another: in row r, left (side -1) or right (side 1) of start + r * step, in widths of
+/// the pixel; side 0: in rows in which that is below 0.
 struct Crossing {
   float start;
   float step;
@@ -80,8 +88,8 @@ GPGP_FN Crossing crossingOf(Facet a, Facet b, bool wins) {
     GPGP_PRECISE float inverse = reciprocal(abs(ahead.y)) * (ahead.y > 0.0f ? -1.0f : 1.0f);
     GPGP_PRECISE float start = ahead.x * inverse + 0.498046875f; // samples on the line lie right of it, as in addEdge
     GPGP_PRECISE float step = ahead.z * inverse;
-    c.start = start;
-    c.step = step;
+    c.start = start * kColumn;
+    c.step = step * kColumn;
     c.side = ahead.y > 0.0f ? -1 : 1;
   } else {
     c.start = ahead.x == 0.0f && ahead.z == 0.0f && wins ? -1.0f : ahead.x;
@@ -96,7 +104,7 @@ GPGP_FN uvec2 samplesAhead(Outline o, Crossing c, int row) {
   vec2 columns = columnsOf(o, float(row));
   GPGP_PRECISE float at = c.start + float(row) * c.step;
   bool any = row >= o.rowBegin && row < o.rowEnd && (c.side != 0 || at < 0.0f);
-  float held = clamp(at, 0.0f, 64.0f);
+  float held = clamp(at, 0.0f, 1.0f);
   if (c.side < 0) columns.y = min(columns.y, held);
   if (c.side > 0) columns.x = max(columns.x, held);
   return bitRange(roundedColumn(columns.x), any ? roundedColumn(columns.y) : 0);

@@ -3,128 +3,84 @@
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "visibility/facet.h"
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
 
-// How many lists are decided at a time is a matter of how little shared memory each takes.
-shared float planes[kBatch * 3u]; // facets of the sorted entries
-shared vec4 nearest[kBatch / 4u];
-shared vec4 farthest[kBatch / 4u];
-shared uint boxes[kBatch];
-shared uint suspectCount;
+/// An entry of the list, which an invocation holds.
+struct Entry {
+  bool isThere;
+  bool isSeen; // by the order
+  uint place;  // in the order
+  uint id;
+  Facet facet;
+};
 
-void putFacet(uint place, Facet f) {
-  planes[place * 3u] = f.plane.x;
-  planes[place * 3u + 1u] = f.plane.y;
-  planes[place * 3u + 2u] = f.plane.z;
-  nearest[place >> 2u][place & 3u] = f.nearest;
-  farthest[place >> 2u][place & 3u] = f.farthest;
-  boxes[place] = uint(f.box.x) | uint(f.box.y) << 8u | uint(f.box.z) << 16u | uint(f.box.w) << 24u;
-}
+uint packedBox(ivec4 b) { return uint(b.x) | uint(b.y) << 8u | uint(b.z) << 16u | uint(b.w) << 24u; }
 
-Facet facetAt(uint place) {
-  uint box = boxes[place];
+/// The plane and the box of an invocation's entry.
+Facet facetOfLane(Facet own, uint lane) {
+  uvec4 told = fromLane(uvec4(floatBitsToUint(own.plane), packedBox(own.box)), lane);
   Facet f;
-  f.plane = vec3(planes[place * 3u], planes[place * 3u + 1u], planes[place * 3u + 2u]);
-  f.nearest = nearest[place >> 2u][place & 3u];
-  f.farthest = farthest[place >> 2u][place & 3u];
-  f.box = ivec4(box & 255u, box >> 8u & 255u, box >> 16u & 255u, box >> 24u);
+  f.plane = uintBitsToFloat(told.xyz);
+  f.nearest = 0.0;
+  f.farthest = 0.0;
+  f.box = ivec4(told.w & 255u, told.w >> 8u & 255u, told.w >> 16u & 255u, told.w >> 24u);
   return f;
 }
 
-uint bitsOf(bvec4 v) { return uint(v.x) | uint(v.y) << 1u | uint(v.z) << 2u | uint(v.w) << 3u; }
-
-/// Bits: those that an entry may be in the wrong order with, by their depths alone. Entries that are shown already need
-/// no answer. rivals: those that may hide a part of it.
-uint suspectsOf(uint place, uint n, Looked looked, uint shown, out uint rivals) {
-  uint bit = 1u << place;
-  bool claimed = (looked.seen & bit) != 0u;
-  vec4 near = vec4(nearest[place >> 2u][place & 3u]);
-  vec4 far = vec4(farthest[place >> 2u][place & 3u]);
-  uint before = 0u; // all that are not behind it as a whole
-  uint after = 0u;  // all that are not before it as a whole
-  for (uint j = 0u; j < n; j += 4u) {
-    before |= bitsOf(lessThanEqual(nearest[j >> 2u], far)) << j;
-    after |= bitsOf(lessThan(near, farthest[j >> 2u])) << j;
+/// Bits, by place: entries that the order may have wrong. One that is seen, with one behind it in the order that is
+/// nearer somewhere; one that is hidden, with one that is seen, before it, and farther somewhere. Those that are shown
+/// already need no answer, nor do hidden ones behind all that is seen: few are left.
+uint doubtfulOf(Entry own, uint n, bool isShown_) {
+  uint reach = maxAll(own.isSeen ? orderOf(own.facet.farthest) : 0u);
+  bool asks = own.isThere && !isShown_ &&
+              (own.isSeen ? own.place + 1u < n : orderOf(own.facet.nearest) < reach);
+  uint seen = orAll(own.isSeen ? 1u << laneOf() : 0u);
+  uint suspects = 0u; // by place
+  for (uint left = orAll(asks ? 1u << laneOf() : 0u); left != 0u; left &= left - 1u) {
+    uint lane = uint(findLSB(left));
+    bool isSeen = (seen & (1u << lane)) != 0u;
+    uvec2 told = fromLane(uvec2(own.place, floatBitsToUint(own.isSeen ? own.facet.farthest : own.facet.nearest)), lane);
+    float bound = uintBitsToFloat(told.y);
+    bool may = isSeen ? own.isThere && own.place > told.x && own.facet.nearest < bound
+                      : own.isSeen && own.place < told.x && bound < own.facet.farthest;
+    if (orAll(uint(may)) == 0u) continue;
+    Facet other = facetOfLane(own.facet, lane);
+    if (may && (isSeen ? isNearerWithin(own.facet, other) : isNearerWithin(other, own.facet))) suspects |= 1u << told.x;
   }
-  uint all_ = 0xffffffffu >> (kBatch - n); // not what an earlier list left
-  rivals = before & all_ & ~bit;
-  if ((shown & bit) != 0u) return 0u;
-  return claimed ? rivals & ~(bit - 1u) : after & all_ & (1u << min(place, looked.stops)) - 1u;
-}
-
-/// Whether two entries are in the wrong order: one that is seen before one that is nearer, or one that is hidden
-/// behind one that is farther.
-bool isWrong(uint place, uint other, bool claimed) {
-  uint nearer = claimed ? other : place;
-  uint farther = claimed ? place : other;
-  return isNearerSomewhere(facetAt(nearer), facetAt(farther)) &&
-         overlap(readCandidate(items[nearer]), readCandidate(items[farther]));
-}
-
-/// Entries that the order may have wrong. Few have suspects: the pairs are shared out. rivals: of this invocation's.
-uint doubtfulOf(uint n, Looked looked, uint shown, out uint rivals) {
-  uint lane = laneOf();
-  rivals = 0u;
-  uint left = lane < n ? suspectsOf(lane, n, looked, shown, rivals) : 0u;
   uint doubtful = 0u;
-  while (orAll(left) != 0u) {
-    if (lane == 0u) suspectCount = 0u;
-    sync();
-    while (left != 0u) {
-      uint at = atomicAdd(suspectCount, 1u);
-      if (at >= kBatch) break;
-      setKey(at, lane | uint(findLSB(left)) << 8u); // the order is there, so that nobody needs the keys
-      left &= left - 1u;
-    }
-    sync();
+  while (orAll(suspects) != 0u) {
     uint wrong = 0u;
-    if (lane < suspectCount) {
-      uint pair = keyAt(lane);
-      uint bit = 1u << (pair & 255u);
-      if (isWrong(pair & 255u, pair >> 8u, (looked.seen & bit) != 0u)) wrong = bit;
+    if (suspects != 0u) {
+      uint place = uint(findLSB(suspects));
+      if (overlap(readCandidate(items[place]), readCandidate(items[own.place]))) wrong = 1u << place;
     }
     doubtful |= orAll(wrong);
-    if ((doubtful & (1u << lane)) != 0u) left = 0u;
+    suspects &= (suspects - 1u) & ~doubtful;
   }
   return doubtful;
 }
 
-/// Whether an entry has a sample, in this invocation's rows, at which none of its rivals, which are its key now, is
-/// nearer.
-bool isAhead(uint place) {
+/// Whether the entry at a place has a sample at which none that may hide a part of it is nearer.
+bool isAhead(Entry own, uint place) {
+  uint lane = uint(findLSB(orAll(own.isThere && own.place == place ? 1u << laneOf() : 0u)));
+  uvec2 told = fromLane(uvec2(own.id, floatBitsToUint(own.facet.farthest)), lane);
+  Facet f = facetOfLane(own.facet, lane);
+  bool isRival = own.isThere && own.place != place && own.facet.nearest <= uintBitsToFloat(told.y);
   int row = int(laneOf());
   Outline o = outlineAt(place);
-  Facet f = facetAt(place);
-  uint id = candidateId(items[place]);
   uvec4 rest = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
-  for (uint left = keyAt(place); left != 0u && (rest.x | rest.y | rest.z | rest.w) != 0u; left &= left - 1u) {
+  for (uint left = orAll(isRival ? 1u << laneOf() : 0u); left != 0u; left &= left - 1u) {
     uint j = uint(findLSB(left));
-    Crossing crossing = crossingOf(facetAt(j), f, candidateId(items[j]) < id);
-    Outline other = outlineAt(j);
+    uvec2 rival = fromLane(uvec2(own.id, own.place), j);
+    Crossing crossing = crossingOf(facetOfLane(own.facet, j), f, rival.x < told.x);
+    Outline other = outlineAt(rival.y);
     rest &= ~uvec4(samplesAhead(other, crossing, row), samplesAhead(other, crossing, row + 32));
   }
-  return (rest.x | rest.y | rest.z | rest.w) != 0u;
-}
-
-/// After the order has proposed which are seen: corrects that; bits of those that are, and are not shown yet.
-uint settle(uint n, Looked looked, uint shown) {
-  uint rivals;
-  uint doubtful = doubtfulOf(n, looked, shown, rivals);
-  uint kept = 0u;
-  if (doubtful != 0u) {
-    sync();
-    setKey(laneOf(), rivals);
-    sync();
-  }
-  for (uint left = doubtful; left != 0u; left &= left - 1u) {
-    uint place = uint(findLSB(left));
-    if (isAhead(place)) kept |= 1u << place;
-  }
-  if (doubtful != 0u) kept = orAll(kept);
-  return (looked.seen & ~doubtful | kept) & ~shown;
+  return orAll(rest.x | rest.y | rest.z | rest.w) != 0u;
 }
 
 /// A pixel's list, and the entry of it that this invocation reads.
@@ -162,21 +118,32 @@ void resolveShort(List list) {
     setKey(lane, key);
     f = facetOf(c, footing, pixel, reversed);
   }
-  uint place = placeAmong(n);
+  Entry own;
+  own.isThere = lane < n;
+  own.place = placeAmong(n);
+  own.id = id;
+  own.facet = f;
   bool moves = movesIn(pixel);
   uint first = moves ? minAll(key) : 0u;
   bool isKnown = false;
-  if (lane < n) {
-    items[place] = list.item;
-    put(place, o, parallaxIn(pixel, first, key, place));
-    putFacet(place, f);
+  if (own.isThere) {
+    items[own.place] = list.item;
+    put(own.place, o, parallaxIn(pixel, first, key, own.place));
     isKnown = isShown(id);
   }
-  uint shown = orAll(isKnown ? 1u << place : 0u);
   uvec4 covered = uvec4(0u);
   Looked looked = lookAtBatch(n, moves, covered);
-  uint visible = settle(n, looked, shown);
-  if (lane < n && (visible & (1u << place)) != 0u) show(id);
+  uint bit = 1u << own.place;
+  own.isSeen = own.isThere && (looked.seen & bit) != 0u;
+  // What the order has proposed, corrected.
+  uint doubtful = doubtfulOf(own, n, isKnown);
+  bool isVisible = own.isSeen;
+  for (uint left = doubtful; left != 0u; left &= left - 1u) {
+    uint place = uint(findLSB(left));
+    bool isAhead_ = isAhead(own, place);
+    if (own.place == place) isVisible = isAhead_;
+  }
+  if (own.isThere && isVisible && !isKnown) show(id);
 }
 
 void main() {

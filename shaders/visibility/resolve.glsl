@@ -8,7 +8,7 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindOpen) readonly buffer OpenBuffer { uint open[]; };
 #include "visibility/candidates.glsl"
-layout(std430, set = 0, binding = kBindEntries) buffer EntryBuffer { uint entries[]; };
+layout(std430, set = 0, binding = kBindEntries) readonly buffer EntryBuffer { uint entries[]; };
 
 shared uint items[kBatch]; // candidates of a batch
 shared uvec4 keys[kBatch / 4u];
@@ -103,17 +103,17 @@ Outline outlineAt(uint place) {
 /// What a batch shows.
 struct Looked {
   uint seen;  // bits: entries
-  uint stops; // how many of a batch come before all samples are covered
   bool holes; // samples that nothing covers yet
 };
+
+bool isFull(uvec4 covered) { return (covered.x & covered.y & covered.z & covered.w) == 0xffffffffu; }
 
 /// Goes through a batch, whose outlines are there; `moves`: some have a parallax.
 Looked lookAtBatch(uint batch, bool moves, inout uvec4 covered) {
   int row = int(laneOf());
   sync();
   uint found = 0u;
-  uint k = 0u;
-  for (; k < batch && (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu; ++k) {
+  for (uint k = 0u; k < batch && !isFull(covered); ++k) {
     Outline o = outlineAt(k);
     uvec4 fresh = uvec4(samplesIn(o, row), samplesIn(o, row + 32)) & ~covered;
     uvec4 shown = fresh;
@@ -124,10 +124,6 @@ Looked lookAtBatch(uint batch, bool moves, inout uvec4 covered) {
   }
   Looked looked;
   looked.seen = orAll(found);
-  // An invocation with samples left goes through all: one more than there can be says so to the others.
-  bool open_ = (covered.x & covered.y & covered.z & covered.w) != 0xffffffffu;
-  uint most = maxAll(open_ ? batch + 1u : k);
-  looked.holes = most > batch;
-  looked.stops = min(most, batch);
+  looked.holes = orAll(uint(!isFull(covered))) != 0u;
   return looked;
 }

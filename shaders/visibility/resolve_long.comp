@@ -3,9 +3,13 @@
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
+
+/// Keys lie as the entries do. Each invocation reads only those that it wrote.
+layout(std430, set = 0, binding = kBindKeys) buffer KeyBuffer { uint depths[]; };
 
 const uint kBins = kBatch * 2u;
 
@@ -21,9 +25,6 @@ struct Rest {
   uint nearest;
   uint farthest;
 };
-
-/// Where a list keeps its keys. Each invocation reads only those that it wrote.
-uint keyPlace(uint entry) { return params.maxPairs + entry; }
 
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
@@ -45,7 +46,7 @@ uint lastKey(Rest rest) {
     bins[lane + kBatch] = 0u;
     sync();
     for (uint i = rest.begin + lane; i < rest.end; i += kBatch) {
-      uint key = entries[keyPlace(i)];
+      uint key = depths[i];
       if (key >= rest.low && key <= high) atomicAdd(bins[(key - rest.low) >> shift], 1u);
     }
     sync();
@@ -63,7 +64,7 @@ uint takeEntries(Rest rest, uint high) {
   if (laneOf() == 0u) count = 0u;
   sync();
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-    uint key = entries[keyPlace(i)];
+    uint key = depths[i];
     if (key < rest.low || key > high) continue;
     uint at = atomicAdd(count, 1u);
     if (at >= kBatch) continue;
@@ -92,7 +93,7 @@ bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 covere
 bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
   for (uint first = 0u; first < n; first += kBatch) {
     for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-      if (entries[keyPlace(i)] != rest.low) continue;
+      if (depths[i] != rest.low) continue;
       uint place = 0u;
       for (uint j = rest.begin; j < rest.end; ++j) {
         if (j == i) continue;
@@ -114,7 +115,7 @@ bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
 void showRest(Rest rest) {
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
     uint id = candidateId(entries[i]);
-    if (entries[keyPlace(i)] < rest.low || isShown(id)) continue;
+    if (depths[i] < rest.low || isShown(id)) continue;
     show(id);
     atomicAdd(counters.unresolved, 1u);
   }
@@ -126,7 +127,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   for (uint i = begin + laneOf(); i < end; i += kBatch) {
     Candidate c = readCandidate(entries[i]);
     uint key = middleKey(c, outlineOf(c, pixel), footingIn(c, pixel), pixel, params.reversedDepth != 0u);
-    entries[keyPlace(i)] = key;
+    depths[i] = key;
     least = min(least, key);
     most = max(most, key);
   }

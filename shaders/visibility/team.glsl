@@ -10,9 +10,12 @@ uint orAll(uint v) { return subgroupOr(v); }
 uint minAll(uint v) { return subgroupMin(v); }
 uint maxAll(uint v) { return subgroupMax(v); }
 uint sumUpTo(uint v) { return subgroupInclusiveAdd(v); } // with the invocation's own
+uvec2 fromLane(uvec2 v, uint lane) { return subgroupShuffle(v, lane); } // lane: the same for all
+uvec4 fromLane(uvec4 v, uint lane) { return subgroupShuffle(v, lane); }
 #else
 shared uint joined;
 shared uint sums[kBatch];
+shared uvec4 told;
 
 void sync() { barrier(); }
 
@@ -40,6 +43,13 @@ uint maxAll(uint v) {
   atomicMax(joined, v);
   return endJoin();
 }
+uvec4 fromLane(uvec4 v, uint lane) {
+  barrier();
+  if (laneOf() == lane) told = v;
+  barrier();
+  return told;
+}
+uvec2 fromLane(uvec2 v, uint lane) { return fromLane(v.xyxy, lane).xy; }
 uint sumUpTo(uint v) {
   sums[laneOf()] = v;
   barrier();

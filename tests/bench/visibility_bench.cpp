@@ -172,23 +172,25 @@ void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
 }
 } // namespace
 
-const char* const kUsage = "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] "
-                           "[--passes] [--exact] [SCENE]...\n"
-                           "  --crop   a window of that picture, whose pixels are as small as the picture's\n"
-                           "  --exact  without the thesis's method\n"
-                           "visibility_bench --figures [--grid N] [--cell N] [--tables] [...]\n"
-                           "  the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)\n"
-                           "visibility_bench --walk [--cell N] [--passes] [...]\n"
-                           "  the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points\n"
-                           "visibility_bench --views [...]\n"
-                           "  what a record of several view points of a cell costs against a record for each\n"
-                           "visibility_bench --plot FILE... --out FOLDER\n"
-                           "  what runs with --figures printed, as SVG pictures\n"
-                           "SCENE: bunnies colonnade foliage city street bigcity bigstreet, small-colonnade "
-                           "small-foliage small-city, what gpgp\n"
-                           "spawn derives where it is built in: spawned-city[:LOTS] (200 lots; 50 000 are 10 million "
-                           "triangles) and mini-engine;\n"
-                           "or a .glb, .gltf or .obj file.\n";
+const char* const kUsage =
+    "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] "
+    "[--passes] [--exact] [SCENE]...\n"
+    "  --crop   a window of that picture, whose pixels are as small as the picture's\n"
+    "  --exact  without the thesis's method\n"
+    "visibility_bench --figures [--grid N] [--cell N] [--tables] [...]\n"
+    "  the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)\n"
+    "visibility_bench --walk [--cell N] [--passes] [--small DIVISOR/VIEWS/REACH/MOST]... [...]\n"
+    "  the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points\n"
+    "  --small  views of a part of the width and height; metres; triangles of all views together, or 0\n"
+    "visibility_bench --views [...]\n"
+    "  what a record of several view points of a cell costs against a record for each\n"
+    "visibility_bench --plot FILE... --out FOLDER\n"
+    "  what runs with --figures printed, as SVG pictures\n"
+    "SCENE: bunnies colonnade foliage city street bigcity bigstreet, small-colonnade "
+    "small-foliage small-city, what gpgp\n"
+    "spawn derives where it is built in: spawned-city[:LOTS] (200 lots; 50 000 are 10 million "
+    "triangles) and mini-engine;\n"
+    "or a .glb, .gltf or .obj file.\n";
 
 int runBench(bench::Arguments arguments) {
   Options options;
@@ -228,6 +230,10 @@ int runBench(bench::Arguments arguments) {
       options.views = true;
     } else if (arg == "--walk") {
       options.walk = true;
+    } else if (arg == "--small") {
+      SmallViews& views = options.figure.views.emplace_back();
+      scan("%u/%u/%f/%u%c", "8/80/0.06/4194304", &views.divisor, &views.count, &views.reach, &views.most);
+      if (!views.divisor || !views.count) throw bench::Usage(arg + ": a divisor and a number of views above 0");
     } else if (arg == "--tables") {
       options.tables = true;
     } else if (arg == "--plot") {

@@ -2,6 +2,7 @@
 // false positives were sampled again at the largest grid where that is finer.
 #include "visibility_figures.h"
 
+#include <chrono>
 #include <cmath>
 
 namespace gpgp::test {
@@ -149,13 +150,24 @@ struct Figures {
     };
     host::Buffer whole = runner.makeBits();
     const std::vector<GpgpCamera> all = take(square(options.largestCell >= 32 ? 17 : 5));
+    const auto start = std::chrono::steady_clock::now();
     runner.truth(16, all, whole, nullptr, [&](size_t n) {
-      if (n % 17 == 0 || n == all.size()) print("celltruth", scene, "view points", std::to_string(n), double(n), 0);
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (n % 17 == 0 || n == all.size()) print("celltruth", scene, "view points", std::to_string(n), seconds, 0);
     });
     const Runner::Run one = runner.measure(exact, {.method = GPGP_SAMPLING_EXACT}, options.repeat);
-    const auto row = [&](const char* series, const std::string& label, double milliseconds, const Runner::Run& run) {
-      const GpgpSampleReport m = runner.metrics(standard, runner.bits(), whole, nullptr, nullptr);
+    host::Buffer again = runner.makeBits();
+    const auto row = [&](const char* series, const std::string& label, double milliseconds, const Runner::Run& run,
+                         std::span<const GpgpCamera> claiming) {
+      GpgpSampleReport m = runner.metrics(standard, runner.bits(), whole, nullptr, nullptr);
       print("cell", scene, series, label, percent(m.overestimation), percent(m.coverage));
+      Sampling whence{.method = GPGP_SAMPLING_EXACT};
+      for (const GpgpCamera& camera : claiming) {
+        runner.record(exact, whence, {&camera, 1}, again);
+        whence.accumulate = true;
+      }
+      m = runner.metrics(standard, runner.bits(), whole, nullptr, &again);
+      print("cellagain", scene, series, label, percent(m.overestimation), percent(m.coverage));
       print("cellcost", scene, series, label, milliseconds, milliseconds / one.milliseconds);
       print("cellpairs", scene, series, label, double(run.report.neededPairs),
             double(run.report.neededPairs) / one.report.neededPairs);
@@ -167,7 +179,7 @@ struct Figures {
       std::vector<GpgpCamera> cameras;
       for (const size_t i : which) cameras.push_back(nine[i]);
       const Runner::Run run = runner.measureUnion(exact, {.method = GPGP_SAMPLING_EXACT}, cameras, 1, options.repeat);
-      row("exact", std::to_string(cameras.size()), run.milliseconds, run);
+      row("exact", std::to_string(cameras.size()), run.milliseconds, run, cameras);
     }
     // Many small views: those of gpgpGetViewCellCameras; and in rows on the truth's own grid, in every other row moved
     // by half a step.
@@ -184,42 +196,52 @@ struct Figures {
     walk.walkDistance = 0.5f;
     std::vector<GpgpCamera> corners = take({-0.5f, -0.5f, 0, 0.5f, -0.5f, 0, -0.5f, 0.5f, 0, 0.5f, 0.5f, 0});
     corners.erase(corners.begin());
-    using Counts = std::vector<uint32_t>;
+    const auto spread = [&](uint32_t count) {
+      walk.walkCount = count;
+      return camerasOf(walk);
+    };
     const bool few = options.largestCell < 32;
-    for (const uint32_t divisor : few ? Counts{4} : Counts{4, 6, 8, 2})
-      for (const uint32_t count : few ? Counts{16} : Counts{16, 24, 48, 64, 72, 96}) {
-        walk.walkCount = count;
-        smallViews(corners, camerasOf(walk), divisor, "", row);
-        if (divisor >= 6) smallViews(corners, camerasOf(walk), divisor, " with a reach", row, 0.04f);
-      }
-    for (const uint32_t count : few ? Counts{3} : Counts{5, 9})
-      smallViews(corners, take(rows(count)), 4, " on grid", row);
+    using Views = std::vector<SmallViews>;
+    const Views usual =
+        few ? Views{{4, 16}} : Views{{4, 16}, {6, 24}, {8, 32}, {8, 80, 0.06f}, {8, 80, 0.06f, 1u << 22}};
+    for (const SmallViews& views : options.views.empty() ? usual : options.views)
+      smallViews(corners, views, spread, "", row);
+    if (!options.views.empty()) return;
+    for (const uint32_t count : few ? std::vector{3u} : std::vector{5u, 9u})
+      smallViews(
+          corners, {4, UINT32_MAX}, [&](uint32_t) { return take(rows(count)); }, " on grid", row);
   }
 
   /// Views with a part of the width and height, of what may be seen from the cell: no place in it is farther from a
-  /// corner than the reach. The first camera, the middle, is left out. ownReach: of the views.
-  template <class Row>
-  void smallViews(const std::vector<GpgpCamera>& corners, const std::vector<GpgpCamera>& views, uint32_t divisor,
-                  const char* kind, const Row& row, float ownReach = 0) {
+  /// corner than the reach. The first of the cameras for a number of views, the middle, is left out.
+  template <class Cameras, class Row>
+  void smallViews(const std::vector<GpgpCamera>& corners, const SmallViews& which, const Cameras& cameras,
+                  const char* kind, const Row& row) {
     const uint32_t room = std::min(runner.triangles(), 1u << 18);
-    std::vector<GpgpCamera> spread; // neighbours in different records, so that the first ones find most
-    for (size_t k = 1; k < 6; ++k)
-      for (size_t i = k; i < views.size(); i += 5) spread.push_back(views[i]);
     const DrawLists lists = runner.makeLists(room);
-    const uint32_t perRecord = std::min(runner.camerasPerRecord(divisor), static_cast<uint32_t>(spread.size()));
     constexpr uint32_t kNearbyDivisor = 4;
     const float reach = std::sqrt(0.5f);
-    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, kNearbyDivisor),
-            small = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, divisor, room);
+    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, kNearbyDivisor);
     const Runner::Run first = runner.measure(
         nearby, {.method = GPGP_SAMPLING_NEARBY, .divisor = kNearbyDivisor, .reach = reach, .listed = &lists},
         options.repeat, corners);
+    const uint32_t listed = std::max(first.report.neededDrawTriangles, 1u);
+    const std::vector<GpgpCamera> views =
+        cameras(which.most ? std::clamp(which.most / listed, 1u, which.count) : which.count);
+    std::vector<GpgpCamera> spread; // neighbours in different records, so that the first ones find most
+    for (size_t k = 1; k < 6; ++k)
+      for (size_t i = k; i < views.size(); i += 5) spread.push_back(views[i]);
+    const uint32_t perRecord = std::min(runner.camerasPerRecord(which.divisor), static_cast<uint32_t>(spread.size()));
+    Sampler small = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, which.divisor, room);
     const Runner::Run run = runner.measureUnion(
-        small, {.method = GPGP_SAMPLING_EXACT, .divisor = divisor, .reach = ownReach, .lists = &lists}, spread,
+        small, {.method = GPGP_SAMPLING_EXACT, .divisor = which.divisor, .reach = which.reach, .lists = &lists}, spread,
         perRecord, options.repeat);
-    const std::string series = "exact at 1/" + std::to_string(divisor) + kind, label = std::to_string(spread.size());
+    const std::string series = "exact at 1/" + std::to_string(which.divisor) + kind +
+                               (which.reach > 0 ? " with a reach of " + text(double(which.reach)) : "") +
+                               (which.most ? " of " + std::to_string(which.most) + " triangles" : ""),
+                      label = std::to_string(spread.size());
     print("cellnearby", scene, series.c_str(), label, first.report.neededDrawTriangles, first.milliseconds);
-    row(series.c_str(), label, first.milliseconds + run.milliseconds, run);
+    row(series.c_str(), label, first.milliseconds + run.milliseconds, run, spread);
     if (!options.passes) return;
     for (const auto& [pass, time] : first.passes)
       if (time > 0.01) print("cellpass", scene, "nearby", pass, time, 0);

@@ -107,7 +107,8 @@ public:
     GpgpSampleReport report{};
   };
 
-  /// Repeats one record into bits(), each timed.
+  /// Repeats one record into bits(), each timed as a whole; then as often again, with times of its passes, which wait
+  /// for each other where they are timed.
   Run measure(Sampler& sampler, const Sampling& sampling, uint32_t repeat, std::span<const GpgpCamera> cameras = {}) {
     uint32_t passes = 0;
     expect(gpgpGetPasses(sampler.get(), &passes, nullptr), "passes");
@@ -120,25 +121,36 @@ public:
     host::check(vk.vkCreateQueryPool(device_.device(), &queryInfo, nullptr, &queries), "vkCreateQueryPool");
     const double period = double(device_.properties().limits.timestampPeriod) * 1e-6;
     Run result;
-    std::vector<double> totals;
-    std::vector<std::vector<double>> each(passes);
-    busy_.warmUp();
-    for (uint32_t i = 0; i < repeat; ++i) {
+    const auto once = [&](bool byPass) {
+      const uint32_t count = byPass ? passes + 1 : 2;
       submit([&](VkCommandBuffer cmd) {
-        vk.vkCmdResetQueryPool(cmd, queries, 0, passes + 1);
+        vk.vkCmdResetQueryPool(cmd, queries, 0, count);
         busy_.record(cmd);
         host::fullBarrier(device_, cmd);
         GpgpSampleInfo info = infoOf(sampling, cameras, bits_, nullptr);
-        info.base.timestamps = {queries, 0, passes + 1};
+        if (byPass)
+          info.base.timestamps = {queries, 0, count};
+        else
+          vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, 0);
         expect(sampler.recordPrepare(cmd, frames_.frame(), info), "record");
+        if (!byPass) vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, 1);
       });
-      std::vector<uint64_t> stamps(passes + 1);
-      host::check(vk.vkGetQueryPoolResults(device_.device(), queries, 0, passes + 1, stamps.size() * 8, stamps.data(),
-                                           8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+      std::vector<uint64_t> stamps(count);
+      host::check(vk.vkGetQueryPoolResults(device_.device(), queries, 0, count, stamps.size() * 8, stamps.data(), 8,
+                                           VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                   "vkGetQueryPoolResults");
-      totals.push_back(static_cast<double>(stamps.back() - stamps.front()) * period);
-      for (uint32_t p = 0; p < passes; ++p) each[p].push_back(static_cast<double>(stamps[p + 1] - stamps[p]) * period);
       collect(sampler, result.report);
+      std::vector<double> times;
+      for (uint32_t i = 1; i < count; ++i) times.push_back(static_cast<double>(stamps[i] - stamps[i - 1]) * period);
+      return times;
+    };
+    std::vector<double> totals;
+    std::vector<std::vector<double>> each(passes);
+    busy_.warmUp();
+    for (uint32_t i = 0; i < repeat; ++i) totals.push_back(once(false)[0]);
+    for (uint32_t i = 0; i < repeat; ++i) {
+      const std::vector<double> times = once(true);
+      for (uint32_t p = 0; p < passes; ++p) each[p].push_back(times[p]);
     }
     submit([](VkCommandBuffer) {});
     collect(sampler, result.report);

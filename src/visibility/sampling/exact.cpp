@@ -41,16 +41,17 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                            {kBindPairs, write}},
                           kBindCounters, offsetof(Counters, bigArgs));
   };
-  const auto addResolve = [&](const char* name, std::span<const uint32_t> spirv, size_t arguments) {
-    list.dispatchIndirect(name, addShader(list, name, spirv),
-                          {{kBindParams, read},
-                           {kBindSlots, readWrite},
-                           {kBindCounters, readWrite},
-                           {kBindBits, readWrite},
-                           {kBindOpen, read},
-                           {kBindCandidates, read},
-                           {kBindEntries, readWrite}},
-                          kBindCounters, arguments);
+  const auto addResolve = [&](const char* name, std::span<const uint32_t> spirv, size_t arguments) -> core::Pass& {
+    return list.dispatchIndirect(name, addShader(list, name, spirv),
+                                 {{kBindParams, read},
+                                  {kBindSlots, readWrite},
+                                  {kBindCounters, readWrite},
+                                  {kBindBits, readWrite},
+                                  {kBindOpen, read},
+                                  {kBindCandidates, read},
+                                  {kBindEntries, read},
+                                  {kBindKeys, readWrite}},
+                                 kBindCounters, arguments);
   };
   const size_t first = list.passes.size();
   list.fill("clear lists", kBindSlots, 0, budgets.slots() * 4, budgets.slots() * 4);
@@ -76,9 +77,11 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
   const auto choose = [&](std::span<const uint32_t> bySubgroups, std::span<const uint32_t> others) {
     return subgroups ? bySubgroups : others;
   };
-  addResolve("resolve", choose(visibility_resolve_subgroups, visibility_resolve), offsetof(Counters, openArgs));
+  // Lists do not ask each other. The long ones first: what takes longest is not what is waited for at the end.
   addResolve("resolve long", choose(visibility_resolve_long_subgroups, visibility_resolve_long),
              offsetof(Counters, longArgs));
+  addResolve("resolve", choose(visibility_resolve_subgroups, visibility_resolve), offsetof(Counters, openArgs)).beside =
+      true;
   for (size_t i = first; i < list.passes.size(); ++i) list.passes[i].condition = kIfExact;
 }
 

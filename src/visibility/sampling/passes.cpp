@@ -33,7 +33,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("draws");
   engine("geometrySet");
   own("draw table", VkDeviceSize(budgets.maxDraws) * shader::kTableWords * 4 + budgets.chunks() * 4);
-  own("queue", exact ? std::max(queueBytes * 2, pairBytes) : queueBytes);
+  own("queue", exact ? std::max(queueBytes * 2, VkDeviceSize(budgets.maxPairs) * 4) : queueBytes);
   own("depth", pixelBytes);
   own("ids", pixelBytes);
   own("counters", sizeof(shader::Counters));

@@ -55,24 +55,25 @@ void addStandard(core::PassList& list, bool conservative) {
                                    {"ids small", "ids medium", "ids large", "ids left"}};
   for (uint32_t phase = 0; phase < 2; ++phase) {
     // Draws triangles that it makes itself, or those that have a record.
-    const auto addMaking = [&](const char* name, uint32_t shader, core::UseKind queue, size_t arguments) {
-      fetchesTriangles(list.dispatchIndirect(name, shader,
-                                             {{kBindQueue, queue},
-                                              {kBindDepth, readWrite},
-                                              {kBindIds, readWrite},
-                                              {kBindSlots, readWrite},
-                                              {kBindCounters, readWrite}},
-                                             kBindCounters, arguments));
+    const auto addMaking = [&](const char* name, uint32_t shader, core::UseKind queue,
+                               size_t arguments) -> core::Pass& {
+      return fetchesTriangles(list.dispatchIndirect(name, shader,
+                                                    {{kBindQueue, queue},
+                                                     {kBindDepth, readWrite},
+                                                     {kBindIds, readWrite},
+                                                     {kBindSlots, readWrite},
+                                                     {kBindCounters, readWrite}},
+                                                    kBindCounters, arguments));
     };
-    const auto addRecorded = [&](const char* name, uint32_t shader, size_t arguments) {
-      list.dispatchIndirect(name, shader,
-                            {{kBindParams, read},
-                             {kBindRecords, read},
-                             {kBindDepth, readWrite},
-                             {kBindIds, readWrite},
-                             {kBindSlots, readWrite},
-                             {kBindCounters, read}},
-                            kBindCounters, arguments);
+    const auto addRecorded = [&](const char* name, uint32_t shader, size_t arguments) -> core::Pass& {
+      return list.dispatchIndirect(name, shader,
+                                   {{kBindParams, read},
+                                    {kBindRecords, read},
+                                    {kBindDepth, readWrite},
+                                    {kBindIds, readWrite},
+                                    {kBindSlots, readWrite},
+                                    {kBindCounters, read}},
+                                   kBindCounters, arguments);
     };
     if (phase == 0) {
       addMaking(names[0][0], addShader(list, "small", visibility_small), write, offsetof(Counters, smallArgs));
@@ -83,9 +84,13 @@ void addStandard(core::PassList& list, bool conservative) {
     } else {
       addMaking(names[1][0], addShader(list, "ids", visibility_ids, 1), read, offsetof(Counters, winnerArgs));
     }
-    addRecorded(names[phase][1], addShader(list, "medium", visibility_medium, phase), offsetof(Counters, mediumArgs));
-    addRecorded(names[phase][2], addShader(list, "large", visibility_large, phase), offsetof(Counters, largeArgs));
-    addMaking(names[phase][3], addShader(list, "left", visibility_left, phase), read, offsetof(Counters, leftArgs));
+    // Minima do not depend on order: what draws goes beside what draws. Ids of all need the depth of all.
+    addRecorded(names[phase][1], addShader(list, "medium", visibility_medium, phase), offsetof(Counters, mediumArgs))
+        .beside = phase == 1;
+    addRecorded(names[phase][2], addShader(list, "large", visibility_large, phase), offsetof(Counters, largeArgs))
+        .beside = true;
+    addMaking(names[phase][3], addShader(list, "left", visibility_left, phase), read, offsetof(Counters, leftArgs))
+        .beside = true;
   }
   if (conservative)
     fetchesTriangles(list.dispatch("surfaces", addShader(list, "surfaces", visibility_surfaces),

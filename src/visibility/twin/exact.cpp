@@ -64,7 +64,7 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   }
   std::array<uvec2, 64> covered{};
   std::vector<bool> seen(sorted.size());
-  size_t stop = 0; // how many come before all samples are covered
+  size_t stop = 0;
   for (bool holes = true; holes && stop < sorted.size(); ++stop) {
     holes = false;
     const int parallax = parallaxOf(depthScale, list[0].key, list[stop].key, static_cast<uint32_t>(stop), reversed);
@@ -85,7 +85,7 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
     if (sorted.size() <= kBatch && seen[i])
       for (size_t j = i + 1; j < sorted.size() && !doubtful; ++j) doubtful = nearer(sorted[j], sorted[i]);
     else if (sorted.size() <= kBatch)
-      for (size_t j = 0; j < std::min(i, stop) && !doubtful; ++j) doubtful = nearer(sorted[i], sorted[j]);
+      for (size_t j = 0; j < i && !doubtful; ++j) doubtful = seen[j] && nearer(sorted[i], sorted[j]);
     const uint32_t id = sorted[i].candidate.id;
     if (doubtful ? isAhead(sorted, i) : seen[i]) bits[id / 32] |= 1u << (id % 32);
   }
