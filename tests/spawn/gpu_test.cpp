@@ -650,6 +650,27 @@ TEST_F(SpawnTest, TheLastRoundGivesNothingAwayByChoice) {
   EXPECT_EQ(gpu.report.terminals, 768u);
 }
 
+TEST_F(SpawnTest, StacksThatFlowOverInTheLastRoundLoseNothing) {
+  auto words = bake("axiom Box A; terminal T (1,0);"
+                    "A = IfSizeLess(X,1) { T | Scale(-0.5,-1,-1) Replicate() { T | A | A | A } };");
+  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
+  ASSERT_TRUE(graph);
+  const auto code = spawn::compileKernel(spawn::generate(*graph, spawn::namedSchedule(*graph, "default")->waits), true);
+  ASSERT_TRUE(code) << code.error().text;
+  spawn::KernelInfo info;
+  info.subgroups = 1;
+  info.fit = {32, 1, 64, 64}; // one workgroup, whose stack holds a batch
+  const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
+  words.insert(words.end(), kernel.begin(), kernel.end());
+  const std::vector<GpgpAxiom> all = {makeAxiom(20, 1, 1, 1, 1), makeAxiom(40, 1, 1, 2, 2), makeAxiom(10, 1, 1, 3, 3)};
+  makeSpawner({.maxRounds = 1});
+  check("kept", words, all);
+  makeSpawner({.maxShapes = 32, .maxRounds = 1}); // where there is no room for that either
+  const Derived gpu = run(words, all, 2000, true);
+  EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_GT(gpu.report.droppedShapes, 0u);
+}
+
 TEST_F(SpawnTest, WorkgroupsThatGiveUpLoseNothing) {
   // One axiom of very many shapes and one that multiplies for ever, so that steps run out in the middle of a batch.
   const auto words = bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { T | T | B };"
