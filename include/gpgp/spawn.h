@@ -208,13 +208,14 @@ typedef struct GpgpSpawnerCreateInfo {
   GpgpSpawnerFlags flags;
   const GpgpVertexLayout* vertices; /**< optional: terminals become vertices and indices, not instances; records give
                                          GpgpSpawnInfo::vertices. @lifetime call */
-  uint32_t maxShapes;    /**< shapes that wait for a round of derivation; 0: 131072. What does not fit is counted */
-  uint32_t maxTerminals; /**< terminal shapes of one record, where they become vertices, or instances that are sorted
-                              or ordered; 96 bytes each; 0: 524288. What does not fit is counted */
-  uint32_t maxDepth;     /**< how deep rules may nest in themselves; 0: 64. Deeper shapes are counted, not derived */
-  uint32_t maxRounds; /**< rounds of derivation that are recorded, a pass each; 0: 4, or 32 on software devices. Few are
-                         needed: workgroups derive by themselves, and rounds only share work out again. What is left is
-                         counted */
+  uint32_t maxShapes;     /**< shapes that wait for a round of derivation; 0: 131072. What does not fit is counted */
+  uint32_t maxTerminals;  /**< terminal shapes of one record, where they become vertices, or instances that are sorted
+                               or ordered; 96 bytes each; 0: 524288. What does not fit is counted */
+  uint32_t maxDepth;      /**< how deep rules may nest in themselves; 0: 64. Deeper shapes are counted, not derived */
+  uint32_t maxRounds;     /**< rounds of derivation that are recorded, a pass each. Few are needed: workgroups derive by
+                             themselves, and rounds only share work out again. 0: at most 4, or 32 on software devices,
+                             and fewer where the number of axioms says that fewer spread them over the device. What is
+                             left is counted */
   uint32_t maxColliders;  /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
                                grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
                                devices */

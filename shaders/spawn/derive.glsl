@@ -9,7 +9,8 @@
 // Work goes over to the next round, through the other queue, where a round began with too few shapes to keep the device
 // busy and a workgroup has enough to give (`spread`), where most workgroups have finished, where the stack is full, and
 // after `steps`, so that no workgroup runs for ever. Round 0 reads axioms. What does not fit the queue is counted and
-// dropped.
+// dropped. In the last round, which no other one follows, the next queue's memory is more room for full stacks: their
+// workgroups take back what they put there.
 //
 // Kernels of grammars with Collider or IfCollides (GPGP_COLLIDERS) derive in phases, each with rounds of its own. A
 // shape that comes to an IfCollides of a later phase goes to a third queue, where the first round of each phase finds
@@ -81,29 +82,6 @@ Shape stackedAt(uint index) {
 
 #include "spawn/parents.glsl"
 
-/// Moves the stack to the next round's queue.
-void giveAway() {
-  const uint lane = laneIndex();
-  const uint count = stackSize;
-  uint queueBase = 0;
-  if (lane == 0) {
-    queueBase = atomicAdd(rounds[round + 1].shapes, count); // stays far below 2^32: steps and groups are bounded
-    const uint held = min(queueBase + count, record.maxShapes);
-    atomicMax(rounds[round + 1].groupsX, min(held, record.maxGroups));
-    rounds[round + 1].groupsY = 1;
-    rounds[round + 1].groupsZ = 1;
-  }
-  queueBase = fromFirst(queueBase);
-  stackBarrier();
-  const uint target = ((round + 1) & 1) * kShapePlanes * record.maxShapes + queueBase;
-  const uint fitting = queueBase < record.maxShapes ? min(count, record.maxShapes - queueBase) : 0;
-  for (uint plane = 0; plane < kShapePlanes; ++plane)
-    for (uint i = lane; i < fitting; i += groupSize)
-      queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
-  stackSize = 0;
-  groupBarrier();
-}
-
 /// Rounds of the phase behind this one. What goes over from the last is dropped, so that nothing is given away there by
 /// choice.
 uint roundsLeft() {
@@ -113,6 +91,70 @@ uint roundsLeft() {
   const uint number = round;
 #endif
   return record.phaseRounds - 1 - number;
+}
+
+// Stacks that the workgroup has put into the next queue's memory, each behind a place that says where the one put there
+// before is.
+bool keepsRest;  // it does so where its stack is full
+uint keptAt;     // the last one
+uint keptCount;  // its shapes; 0: there is none
+uint keptShapes; // of all of them
+
+uint nextQueue() { return ((round + 1) & 1) * kShapePlanes * record.maxShapes; }
+
+/// Moves the stack to the next round's queue, or keeps it there.
+void giveAway() {
+  const uint lane = laneIndex();
+  const uint count = stackSize;
+  const uint wanted = keepsRest ? count + 1 : count;
+  uint base = 0; // stays far below 2^32: steps and groups are bounded
+  if (lane == 0) {
+    if (keepsRest)
+      base = atomicAdd(rounds[round + 1].taken, wanted);
+    else
+      base = atomicAdd(rounds[round + 1].shapes, count);
+  }
+  base = fromFirst(base);
+  stackBarrier();
+  const uint room = base < record.maxShapes ? record.maxShapes - base : 0;
+  const bool keeps = keepsRest && wanted <= room;
+  const uint target = nextQueue() + base + (keeps ? 1 : 0);
+  const uint fitting = keeps ? count : roundsLeft() > 0 ? min(count, room) : 0;
+  if (lane == 0) {
+    if (keeps) {
+      queues[target - 1] = uvec4(keptAt, keptCount, 0, 0);
+    } else if (keepsRest) {
+      atomicAdd(rounds[round + 1].shapes, count); // dropped
+    } else {
+      atomicMax(rounds[round + 1].groupsX, min(min(base + count, record.maxShapes), record.maxGroups));
+      rounds[round + 1].groupsY = 1;
+      rounds[round + 1].groupsZ = 1;
+    }
+  }
+  for (uint plane = 0; plane < kShapePlanes; ++plane)
+    for (uint i = lane; i < fitting; i += groupSize)
+      queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
+  if (keeps) {
+    keptAt = base;
+    keptCount = count;
+    keptShapes += count;
+  }
+  stackSize = 0;
+  groupBarrier();
+}
+
+/// The last stack that was kept is the stack again.
+void takeBack() {
+  stackBarrier();
+  const uint source = nextQueue() + keptAt;
+  for (uint plane = 0; plane < kShapePlanes; ++plane)
+    for (uint i = laneIndex(); i < keptCount; i += groupSize)
+      stacks[stackPlane(plane) + i] = queues[source + 1 + plane * record.maxShapes + i];
+  stackSize = keptCount;
+  keptShapes -= keptCount;
+  const uvec4 before = queues[source];
+  keptAt = before.x;
+  keptCount = before.y;
 }
 
 /// Whether a workgroup should give away its shapes, as most others have nothing left to do. That takes another round,
@@ -314,8 +356,12 @@ void main() {
   // in more rounds.
   const uint growth = record.spread / max(count, 1);
   const bool spreads = count < record.spread && roundsLeft() > 0;
-  const uint enough = spreads ? (growth <= 2 * groupSize ? max(growth, 16) : 16) : 0xffffffffu;
+  const uint enough = spreads ? (growth <= kGrowing * groupSize ? max(growth, kGrowth) : kGrowth) : 0xffffffffu;
   stackSize = 0;
+  keepsRest = roundsLeft() == 0;
+  keptAt = 0;
+  keptCount = 0;
+  keptShapes = 0;
   if (lane == 0) {
     hashX = 0;
     hashY = 0;
@@ -350,6 +396,7 @@ void main() {
         waits = false;
         waiting = 0;
       }
+      if (waiting + stackSize == 0 && keptCount > 0) takeBack();
       const uint space = groupSize - waiting;
       const uint more = min(stackSize, min(space, max((stackRoom - stackSize) / 8, 1)));
       if (more > 0) {
@@ -460,6 +507,8 @@ void main() {
     emit(end == kEndTerminal, places & 0xffffu, terminals, firstTerminal, s);
   }
 
+  keepsRest = false;
+  if (lane == 0 && keptShapes > 0) atomicAdd(rounds[round + 1].shapes, keptShapes);
   uint rest; // what there were no steps left for goes over
   const uint place = ranksOf(waits, false, rest);
   push(waits, place, rest, s);

@@ -26,11 +26,15 @@ struct SpawnState {
 };
 GPGP_CONST uint kSpawnReportWords = 13u;
 
+// What a workgroup's shapes should grow to in a round that spreads work.
+GPGP_CONST uint kGrowing = 2u; // batches at most,
+GPGP_CONST uint kGrowth = 16u; // or else, and at least, so many times
+
 /// One round of derivation: the arguments of its dispatch, and what its queue holds.
 struct SpawnRound {
   uint groupsX, groupsY, groupsZ; // VkDispatchIndirectCommand
   uint shapes;                    // that the round before left, those that did not fit included
-  uint taken;                     // by workgroups of this round
+  uint taken;                     // by workgroups of this round; behind the last one: room that it kept full stacks in
   uint finished;                  // workgroups
   uint linked;                    // the first round of a phase: colliders that its queries can find
   uint given;                     // shapes that its workgroups were willing to leave to idle ones

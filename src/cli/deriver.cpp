@@ -71,7 +71,7 @@ Spawner Deriver::newSpawner(uint32_t rounds) {
   if (options_.sorted) maxTerminals_ = static_cast<uint32_t>(std::min<uint64_t>(elements_, kMostTerminals));
   info.maxTerminals = maxTerminals_;
   info.maxDepth = options_.maxDepth;
-  info.maxRounds = rounds;
+  info.maxRounds = rounds == maxRounds_ && rounds == firstRounds_ ? 0 : rounds; // 0: fewer where fewer are enough
   info.maxColliders = maxColliders_;
   Spawner spawner = session_.take(Spawner::create(session_.context(), info), "gpgpCreateSpawner");
   session_.check(spawner.prewarm(), "gpgpPrewarm");
@@ -175,7 +175,9 @@ GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
           std::max<uint64_t>(2 * uint64_t{maxShapes_}, std::bit_ceil(uint64_t{report.peakShapes})), mostShapes));
       another = true;
     }
-    if (report.droppedShapes && report.rounds >= maxRounds_ && maxRounds_ < kMostRounds) {
+    const bool allTaken =
+        maxRounds_ == firstRounds_ ? !another : report.rounds >= maxRounds_; // the library may take fewer
+    if (report.droppedShapes && allTaken && maxRounds_ < kMostRounds) {
       maxRounds_ *= 2;
       another = true;
     }

@@ -112,42 +112,52 @@ GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, con
   check(gpgpGetPasses(worker, &passCount, nullptr), "gpgpGetPasses");
   std::vector<const char*> names(passCount);
   check(gpgpGetPasses(worker, &passCount, names.data()), "gpgpGetPasses");
-  const uint32_t queryCount = passCount + 1;
   const bool timed = device_.properties().limits.timestampComputeAndGraphics == VK_TRUE;
+  const uint32_t whole = passCount + 1, queryCount = passCount + 3; // two around the record behind those of passes
   const QueryPool queries(device_, queryCount);
+  const auto stamp = [&](VkCommandBuffer commands, uint32_t query) {
+    if (timed) device_.vk().vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries.pool, query);
+  };
   const double period = static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-6;
 
   GpuTimes times;
   std::vector<std::vector<double>> perPass(passCount);
   if (repeat > 1) busy_.warmUp();
   Progress progress(label, repeat);
-  for (uint32_t i = 0; i < repeat; ++i) {
+  const uint32_t each = repeat > 1 && timed ? 2 : 1; // records: one by pass, one as a whole; a single one is both
+  for (uint32_t i = 0; i < each * repeat; ++i) {
+    const bool byPass = i % 2 == 0 || each == 1, asWhole = i % 2 == 1 || each == 1;
     VkCommandBuffer commands = frames_.begin();
     check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
     collectReports();
     if (repeat > 1) busy_.record(commands);
     GpgpRecordInfo base{};
-    base.tag = i;
+    base.tag = i / each;
     if (timed) {
       device_.vk().vkCmdResetQueryPool(commands, queries.pool, 0, queryCount);
-      base.timestamps = {queries.pool, 0, queryCount};
+      if (byPass) base.timestamps = {queries.pool, 0, whole};
     }
     host::fullBarrier(device_, commands); // repeats write the same buffers
+    stamp(commands, whole);
     const GpgpResult result = check(record(commands, frames_.frame(), base), label);
     if (result != GPGP_SUCCESS) throw Failure(std::string(label) + ": " + gpgpResultString(result));
+    stamp(commands, whole + 1);
     frames_.submit();
     frames_.waitAll();
-    if (timed) {
-      std::vector<uint64_t> stamps(queryCount);
-      host::check(device_.vk().vkGetQueryPoolResults(device_.device(), queries.pool, 0, queryCount,
+    const auto read = [&](uint32_t first, uint32_t count) {
+      std::vector<uint64_t> stamps(count);
+      host::check(device_.vk().vkGetQueryPoolResults(device_.device(), queries.pool, first, count,
                                                      stamps.size() * sizeof(uint64_t), stamps.data(), sizeof(uint64_t),
                                                      VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                   "vkGetQueryPoolResults");
-      times.totals.push_back(static_cast<double>(stamps.back() - stamps.front()) * period);
-      for (uint32_t p = 0; p < passCount; ++p)
-        perPass[p].push_back(static_cast<double>(stamps[p + 1] - stamps[p]) * period);
-    }
-    progress.advance();
+      return stamps;
+    };
+    const auto stamps = timed && byPass ? read(0, whole) : std::vector<uint64_t>();
+    for (size_t p = 0; p + 1 < stamps.size(); ++p)
+      perPass[p].push_back(static_cast<double>(stamps[p + 1] - stamps[p]) * period);
+    const auto ends = timed && asWhole ? read(whole, 2) : std::vector<uint64_t>();
+    if (!ends.empty()) times.totals.push_back(static_cast<double>(ends[1] - ends[0]) * period);
+    if (asWhole) progress.advance();
   }
   // Everything is finished: one more advance makes the last report ready.
   frames_.begin();

@@ -11,9 +11,10 @@
 
 namespace gpgp::cli {
 
-/// GPU times of a repeated record, milliseconds.
+/// GPU times of a repeated record, milliseconds. Passes are timed in records of their own: a timestamp after each of
+/// them takes time as well, and keeps them from running beside each other.
 struct GpuTimes {
-  std::vector<double> totals;                         ///< one per repeat
+  std::vector<double> totals;                         ///< of whole records, one per repeat
   std::vector<std::pair<std::string, double>> passes; ///< median of each pass, in order
   double median() const;
   double least() const;
@@ -45,9 +46,10 @@ public:
   GpgpWorkerCreateInfo workerInfo(const char* label) const;
   /// Uploads all pending assets.
   void upload();
-  /// Runs record `repeat` times, a frame each, and waits for it; measures every one. record is given the info's common
-  /// part with timestamps set, and returns what the record function returned. The report is the last run's. A GPU is
-  /// kept busy for a while before, and between records: idle ones lower their clocks within milliseconds.
+  /// Runs record `repeat` times, a frame each, and waits for it; measures every one by two timestamps around all that
+  /// it records, and before each of them, if there are several, another one by a timestamp after each pass. record is
+  /// given the info's common part, and returns what the record function returned. The report is the last run's. A GPU
+  /// is kept busy for a while before, and between records: idle ones lower their clocks within milliseconds.
   using Record = std::function<GpgpResult(VkCommandBuffer, const GpgpFrame&, const GpgpRecordInfo&)>;
   template <class WorkerType>
   auto measure(WorkerType& worker, const char* label, uint32_t repeat, const Record& record) {

@@ -151,7 +151,8 @@ private:
     tuned_.interpreter = deriver_->measure(interpreted, repeats(tuned_.interpreter)).times.median();
   }
 
-  /// What a candidate takes, as it would be kept: with one round to spare. Empty ones cost time on a GPU as well.
+  /// What a candidate takes, as it would be kept: with a round to spare where rounds even out the work, or may end it.
+  /// Empty ones cost time on a GPU as well.
   void measure(Candidate& candidate, const Grammar& prepared) {
     const GpgpSpawnReport& wanted = tuned_.report;
     const GpgpSpawnReport r = deriver_->measure(prepared, 1).report;
@@ -160,8 +161,8 @@ private:
     if (r.terminals != wanted.terminals || r.keyHash[0] != wanted.keyHash[0] || r.keyHash[1] != wanted.keyHash[1])
       throw Failure("schedule \"" + name + "\" derives something else than the interpreter: " +
                     std::to_string(r.terminals) + " terminals instead of " + std::to_string(wanted.terminals));
-    candidate.rounds = r.rounds;
-    const uint32_t rounds = software_ ? 0 : r.rounds + 1;
+    candidate.rounds = r.rounds + (software_ || candidate.fit.balances || isUneven(grammar_.graph) ? 1 : 0);
+    const uint32_t rounds = software_ ? 0 : candidate.rounds;
     candidate.milliseconds = deriver_->measure(prepared, kFirstLook, rounds).times.median();
     const uint32_t repeat = repeats(candidate.milliseconds);
     if (kFirstLook < repeat && candidate.milliseconds < kHopeless * fastest_)
@@ -231,7 +232,7 @@ private:
     const size_t count = affordable(std::min(kFinalists, all.size()), 1);
     std::vector<Candidate> finalists(all.begin(), all.begin() + std::ptrdiff_t(count));
     std::erase_if(finalists, [](const Candidate& c) { return !std::isfinite(c.milliseconds); });
-    for (Candidate& c : finalists) c.fit.rounds = c.rounds + 1;
+    for (Candidate& c : finalists) c.fit.rounds = c.rounds;
     const std::vector<Grammar> grammars = deriver_->prepare(wordsOf(finalists));
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
     std::vector<bool> drops(finalists.size());

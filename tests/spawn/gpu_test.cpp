@@ -761,6 +761,30 @@ TEST_F(SpawnTest, TheLastRoundGivesNothingAwayByChoice) {
   EXPECT_EQ(gpu.report.terminals, 768u);
 }
 
+TEST_F(SpawnTest, StacksThatFlowOverInTheLastRoundLoseNothing) {
+  const auto words = bake("axiom Box A; terminal T (1,0);"
+                          "A = IfSizeLess(X,1) { T | Scale(-0.5,-1,-1) Replicate() { T | A | A | A } };");
+  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
+  ASSERT_TRUE(graph);
+  const auto code = spawn::compileKernel(spawn::generate(*graph, spawn::namedSchedule(*graph, "default")->waits), true);
+  ASSERT_TRUE(code) << code.error().text;
+  const std::vector<GpgpAxiom> all = {makeAxiom(20, 1, 1, 1, 1), makeAxiom(10, 1, 1, 2, 2), makeAxiom(10, 1, 1, 3, 3)};
+  for (const uint32_t size : {8u, 32u}) { // a subgroup's on most devices
+    spawn::KernelInfo info;
+    info.subgroups = 1;
+    info.fit = {size, 1, 2 * size, 64}; // one workgroup, whose stack holds a batch
+    auto both = words;
+    const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
+    both.insert(both.end(), kernel.begin(), kernel.end());
+    makeSpawner({.maxRounds = 1});
+    check("workgroups of " + std::to_string(size), both, all);
+    makeSpawner({.maxShapes = size, .maxRounds = 1}); // where there is no room for that either
+    const Derived gpu = run(both, all, 2000, true);
+    EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+    EXPECT_GT(gpu.report.droppedShapes, 0u);
+  }
+}
+
 TEST_F(SpawnTest, WorkgroupsThatGiveUpLoseNothing) {
   // One axiom of very many shapes and one that multiplies for ever, so that steps run out in the middle of a batch.
   const auto words = bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { T | T | B };"

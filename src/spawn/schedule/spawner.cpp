@@ -125,6 +125,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const bool vertices = spawner->vertices();
   const bool ordered = spawner->ordered_ = info.flags & GPGP_SPAWNER_ORDERED;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
+  spawner->roundsGiven_ = info.maxRounds != 0;
   spawner->rounds_ = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
   const Limits& limits = limitsOf(context.device);
   const uint32_t mostColliders = context.device.software ? kMostSoftwareColliders : kMostColliders;
@@ -303,6 +304,19 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   return spawner;
 }
 
+/// All rounds but the last one only spread the work, of which a workgroup makes kGrowth times as many shapes, or in the
+/// round that is enough as many as kGrowing batches hold (shaders/spawn/derive.glsl). In uneven derivations they even
+/// it out as well, and nobody knows how much there is behind a counter, or in later phases.
+uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Graph& graph, const Fit& fit) const {
+  const bool known = !info.axiomCounter.buffer && graph.phases <= 1;
+  if (roundsGiven_ || context.device.software || isUneven(graph) || !known) return rounds_;
+  uint32_t rounds = 1;
+  const uint64_t most = shader::kGrowing * fit.groupSize;
+  for (uint64_t shapes = std::max(info.axiomCount, 1u); shapes < fit.spread && rounds < rounds_; ++rounds)
+    shapes *= shapes * most < fit.spread ? shader::kGrowth : most;
+  return rounds;
+}
+
 core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
   if (info.hostAxioms && info.axiomCount > maxHostAxioms_)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
@@ -320,7 +334,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const bool counted = fit.rounds && (!kernel || kernel->info.axioms == 0 ||
                                       (info.axiomCount <= kernel->info.axioms &&
                                        std::bit_width(info.axiomCount) == std::bit_width(kernel->info.axioms)));
-  const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : rounds_;
+  const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : roundsFor(info, grammar.graph, fit);
   const uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
   const bool counts = vertices() ? !info.vertices->vertices.buffer : !info.instances.buffer;

@@ -37,10 +37,13 @@ private:
   /// Counters from the first round of a phase to the next phase's: its rounds, and what the last one left.
   uint32_t phaseStride() const { return rounds_ + 1; }
 
+  /// That a record takes where neither the engine nor a tuned kernel says so.
+  uint32_t roundsFor(const GpgpSpawnInfo& info, const Graph& graph, const Fit& fit) const;
+
   uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0, maxColliders_ = 0, maxHostAxioms_ = 0;
-  uint32_t derive_ = 0, deriveColliding_ = 0; // shaders
-  uint32_t stride_ = 0;                       // of a vertex; 0: it writes instances
-  bool ordered_ = false;
+  uint32_t derive_ = 0, deriveColliding_ = 0;  // shaders
+  uint32_t stride_ = 0;                        // of a vertex; 0: it writes instances
+  bool ordered_ = false, roundsGiven_ = false; // by the engine
 };
 
 } // namespace gpgp::spawn
