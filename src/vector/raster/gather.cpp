@@ -112,25 +112,31 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
 }
 
 namespace {
-/// How many tiles a glyph may have edges in, if it is one for stamp.comp: small, and no scissor cuts it; otherwise 0.
-uint32_t stampTiles(const ItemRecord& source, const shader::vec4& box, const GpgpGlyphInstance& glyph) {
+/// How many tiles a glyph may have edges in, and at least 1, if it is one for stamp.comp: small, and no scissor cuts
+/// it; otherwise 0.
+uint32_t stampTiles(const ItemRecord& source, const shader::vec4& box, const GpgpGlyphInstance& glyph,
+                    const GpgpCanvasInfo& info) {
   const shader::vec4& t = source.transform;
   const float halfX = 0.5f * glyph.size * (box.z - box.x), halfY = 0.5f * glyph.size * (box.w - box.y);
   const float reachX = std::abs(t.x) * halfX + std::abs(t.z) * halfY,
               reachY = std::abs(t.y) * halfX + std::abs(t.w) * halfY;
   if (!(reachX >= 0 && reachX < 128 && reachY >= 0 && reachY < 128)) return 0;
-  // What shaders take of pixels and of tiles around it is in their margins: placeOf in stamp.comp, place.comp.
-  const auto at = [](float v) { return static_cast<uint32_t>(v); };
-  const uint32_t pairs = at(reachX + 0.95f) + 2, rows = at(2 * reachY + 2.5f);
-  const uint32_t tiles =
-      (at((2 * reachX + 2.5f) / shader::kTileSize) + 2) * (at((2 * reachY + 2.5f) / shader::kTileSize) + 2);
-  if (pairs * rows > shader::kStampPairs || tiles > shader::kStampTiles) return 0;
-  if (!shader::hasScissor(source)) return tiles;
   const float x = glyph.x + 0.5f * glyph.size * (box.x + box.z), y = glyph.y + 0.5f * glyph.size * (box.y + box.w);
   const float px = t.x * x + t.z * y + source.offsets.z, py = t.y * x + t.w * y + source.offsets.w;
-  const bool whole = px - reachX - 1 > source.scissor.x && px + reachX + 1 < source.scissor.z &&
-                     py - reachY - 1 > source.scissor.y && py + reachY + 1 < source.scissor.w;
-  return whole ? tiles : 0;
+  if (!(std::abs(px) < 1e9f && std::abs(py) < 1e9f)) return 0;
+  // Room for the margins that shaders take: placeOf in stamp.comp, place.comp.
+  const auto tiles = [](float middle, float reach, uint32_t size) {
+    const float side = reach + 1.1f + 2e-5f * std::abs(middle), end = static_cast<float>(size);
+    const float low = std::clamp(middle - side, 0.0f, end), high = std::clamp(middle + side, 0.0f, end);
+    return static_cast<uint32_t>(std::ceil(high / shader::kTileSize)) - static_cast<uint32_t>(low / shader::kTileSize);
+  };
+  const uint32_t pairs = static_cast<uint32_t>(reachX + 0.95f) + 2, rows = static_cast<uint32_t>(2 * reachY + 2.5f);
+  const uint32_t count = tiles(px, reachX, info.width) * tiles(py, reachY, info.height);
+  if (pairs * rows > shader::kStampPairs || count > shader::kStampTiles) return 0;
+  const shader::vec4& scissor = source.scissor;
+  const bool cut = !(px - reachX - 1 > scissor.x && px + reachX + 1 < scissor.z && py - reachY - 1 > scissor.y &&
+                     py + reachY + 1 < scissor.w);
+  return cut ? 0 : std::max(count, 1u);
 }
 } // namespace
 
@@ -184,7 +190,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     to.segments = glyph->first;
     to.paths = glyph->first + glyph->segments * static_cast<uint32_t>(sizeof(shader::SegmentRecord) / 16);
     const uint32_t tiles =
-        stampable && glyph->paths == 1 ? stampTiles(tables_.sources[sourceIndex], glyph->box, from) : 0;
+        stampable && glyph->paths == 1 ? stampTiles(tables_.sources[sourceIndex], glyph->box, from, info_) : 0;
     if (tiles && tiles <= stampRoom_ - stampEntries) {
       to.source |= 1u << shader::kStampedBit;
       stampEntries += tiles;
