@@ -62,22 +62,13 @@ void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
   const int begin = max(c.first, top), end = min(c.last, top + int(g.samples));
   const int tileRow = pixel / int(kTileSize);
   if (tileRow < int(p.top) || tileRow >= int(p.bottom)) return;
-  const uvec4 columns = sampleColumns(g.samples);
   const Line line = lineOf(g, c);
-  uint covered = 0, first = 0; // rows whose sample in the crossing's pixel lies right of it; first ones of their pixels
-  int before = -2; // no column
-  const float firstRow = middleOf(g, top), step = sampleStep(g.samples);
-  for (int k = 0; k < 16; ++k) {
-    const int x = crossingAt(line, firstRow + float(k) * step), column = x >> 8; // both exact
-    covered |= (x & 255) <= int(byteOf(columns, k)) ? 1u << k : 0u;
-    first |= column != before ? 1u << k : 0u;
-    before = column;
-  }
+  const Crossings crossings = crossingsOf(g, line, top);
   int tile = begin == c.first ? tileOf(columnOf(g, topEnd(c))) : tileOf(crossingAt(line, middleOf(g, begin - 1)) >> 8);
   TileRow tiles = tileRowOf(p, tileRow, tile);
   uint entry = entryOf(tiles, tile);
   const uint rows = begin < end ? (1u << (end - top)) - (1u << (begin - top)) : 0;
-  first = rows & (first | 1u << (begin - top));
+  uint first = rows & (crossings.first | 1u << (begin - top));
   while (first != 0) {
     const int from = findLSB(first);
     first &= first - 1;
@@ -90,7 +81,7 @@ void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
       entry = entryOf(tiles, t);
     }
     if (column < 0 || column >= g.columns || entry == ~0u) continue;
-    takeRun(runOf((1u << to) - (1u << from), covered, x, last), entry, uint(column), uint(pixel), c.side);
+    takeRun(runOf((1u << to) - (1u << from), crossings.covered, x, last), entry, uint(column), uint(pixel), c.side);
   }
   if (end != c.last || (end & inTileRow) == 0) return;
   const int t = tileOf(columnOf(g, lastEnd(c)));
