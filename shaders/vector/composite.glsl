@@ -308,6 +308,24 @@ vec4 targetColor(vec4 color) {
   const bool encoded = (header.flags & kBlendSrgb) != 0, wanted = (header.flags & kEncodeSrgb) != 0;
   return encoded == wanted ? color : convert(color, wanted);
 }
+#if SOFTWARE // writes the view or the image, as both would convert for both
+vec4 storedColor(vec4 color) {
+#if TARGET
+  return targetColor(color);
+#else
+  return linearColor(color);
+#endif
+}
+void storeColor(uvec2 pixel, vec4 stored) {
+  if (pixel.x >= header.width || pixel.y >= header.height) return;
+#if TARGET
+  imageStore(image, ivec2(pixel), stored);
+#else
+  view[pixel.y * header.width + pixel.x] = uvec2(packHalf2x16(stored.rg), packHalf2x16(stored.ba));
+#endif
+}
+void storePixel(uvec2 pixel, vec4 color) { storeColor(pixel, storedColor(color)); }
+#else
 void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
   if (pixel.x >= header.width || pixel.y >= header.height) return;
   if ((header.flags & kWriteView) != 0)
@@ -317,6 +335,7 @@ void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
 #endif
 }
 void storePixel(uvec2 pixel, vec4 color) { storePixel(pixel, linearColor(color), targetColor(color)); }
+#endif
 
 // What is left of the light reaches the background.
 void finishPixel() {

@@ -203,11 +203,11 @@ struct CanvasCounters {
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
   uint glyphs, glyphsGiven; // needed; room for as many
   uint shapes, shapesGiven, items, itemsGiven;
-  uint listed;              // paths in bins' lists
-  uint rowsX, rowsY, rowsZ; // workgroups of the pass that fills from lists
-  uint cleared;             // entries that mark clears: as many as the record before had
-  uint stamped;             // entries of small glyphs, behind the others
-  uint pad0, pad1, pad2;
+  uint listed;                 // paths in bins' lists; on software devices tiles that are painted by rows
+  uint rowsX, rowsY, rowsZ;    // workgroups of the pass that fills from lists
+  uint cleared;                // entries that mark clears: as many as the record before had
+  uint stamped;                // entries of small glyphs, behind the others
+  uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
 };
 
 // A chord between mark and fill.

@@ -1,7 +1,7 @@
 // What drawings cost: conversion on one thread, GPU time by pass, and cairo's time in the same process.
 //
-// The generated drawings are in vector_scenes.h. Prints medians, or least times, and ratios; asserts nothing about time, but fails where
-// a record fails or drops paths.
+// The generated drawings are in vector_scenes.h. Prints medians, or least times, and ratios; asserts nothing about
+// time, but fails where a record fails or drops paths.
 #include "arguments.h"
 #include "host/picture.h"
 #include "vector_runner.h"
@@ -30,10 +30,10 @@ void run(VectorRunner& runner, const Scene& scene, Size size, VectorRunner::Sett
   std::vector<uint8_t> cairoPixels;
   const double scale = std::min(width / scene.width, height / scene.height);
   const double cairo = cairoTime(scene, width, height, std::min(repeat, 5), scale, &cairoPixels);
-  std::printf(
-      "%-16s %4u x %u, %2u samples: %6u paths %7u curves %6u entries; made in %.1f ms, recorded in %.1f us, GPU %.4f ms",
-      scene.name.c_str(), width, height, settings.samples, facts.paths, facts.curves, drawn.entries, made.milliseconds,
-      drawn.microseconds, drawn.milliseconds);
+  std::printf("%-16s %4u x %u, %2u samples: %6u paths %7u curves %6u entries; made in %.1f ms, recorded in %.1f us, "
+              "GPU %.4f ms",
+              scene.name.c_str(), width, height, settings.samples, facts.paths, facts.curves, drawn.entries,
+              made.milliseconds, drawn.microseconds, drawn.milliseconds);
   if (made.item.glyphCount) std::printf(", %.1f ns a glyph", drawn.microseconds * 1000 / made.item.glyphCount);
   if (cairo > 0) std::printf(", cairo %.2f ms (ratio %.3f)", cairo, drawn.milliseconds / cairo);
   std::printf(" |");

@@ -66,6 +66,7 @@
 #include "shaders/vector_raster_rich_one1.spv.h"
 #include "shaders/vector_raster_rich_one2.spv.h"
 #include "shaders/vector_sift.spv.h"
+#include "shaders/vector_sift_split.spv.h"
 #include "shaders/vector_split.spv.h"
 #include "shaders/vector_split_one.spv.h"
 #include "shaders/vector_stamp.spv.h"
@@ -90,6 +91,9 @@
 #include "shaders/vector_tiles_rich_images0.spv.h"
 #include "shaders/vector_tiles_rich_images1.spv.h"
 #include "shaders/vector_tiles_rich_images2.spv.h"
+#include "shaders/vector_tiles_rows0.spv.h"
+#include "shaders/vector_tiles_rows1.spv.h"
+#include "shaders/vector_tiles_rows2.spv.h"
 #include "shaders/vector_tiles_solid0.spv.h"
 #include "shaders/vector_tiles_solid1.spv.h"
 #include "shaders/vector_tiles_solid2.spv.h"
@@ -111,7 +115,7 @@ uint64_t Canvas::tiles() const {
   return uint64_t(divide(maxWidth_, shader::kTileSize)) * divide(maxHeight_, shader::kTileSize);
 }
 uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would take more than 64 MiB
-  return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 4, 63));
+  return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 8, 64) & ~uint64_t(3));
 }
 
 uint64_t Canvas::binWords() const { // enough for any record with the largest bins, or for most with the smallest
@@ -144,8 +148,8 @@ core::PassList Canvas::describe() const {
                 heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
-  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 2 : 2) + binLists();
-  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + lists) * 4});
+  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 3 : 2) + binLists();
+  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + 3 + lists) * 4});
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
@@ -308,12 +312,26 @@ core::PassList Canvas::describe() const {
     }
   };
   if (software_) {
-    dispatch("sift", {"sift", vector_sift}, {{paths, read}, {words, read}, {masks, readWrite}, {counters, read}},
-             kSift);
+    const auto sift = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
+      core::Pass& pass = dispatch(shader.name, shader,
+                                  {{paths, read}, {words, read}, {masks, readWrite}, {counters, readWrite}}, kSift);
+      pass.condition = condition;
+      return pass;
+    };
+    sift({"sift", vector_sift}, kSiftPlain);
+    sift({"sift, groups", vector_sift_split}, kSplit).beside = true;
     const std::array<const char*, 3> solid = {"solid tiles", "solid tiles rgba8", "solid tiles rgba16f"};
     const std::array<Spirv, 3> shaders = {vector_tiles_solid0, vector_tiles_solid1, vector_tiles_solid2};
     for (uint32_t t = 0; t < 3; ++t)
       addTarget(dispatch(solid[t], {solid[t], shaders[t]}, {{masks, read}, {view, write}}, kTiles), t, kAny);
+    const std::array<const char*, 3> byRows = {"raster rows", "raster rows rgba8", "raster rows rgba16f"};
+    const std::array<Spirv, 3> rowShaders = {vector_tiles_rows0, vector_tiles_rows1, vector_tiles_rows2};
+    for (uint32_t t = 0; t < 3; ++t)
+      addTarget(list.dispatchIndirect(
+                    byRows[t], list.add(core::ShaderDesc{byRows[t], rowShaders[t]}),
+                    {{params, read}, {paths, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}},
+                    counters, offsetof(CanvasCounters, tilesX)),
+                t, kAny);
     painted({"raster", "raster rgba8", "raster rgba16f"}, {vector_tiles0, vector_tiles1, vector_tiles2}, kPlain,
             shader::kPaintedArguments);
     painted({"raster gradients, several drawings", "raster gradients rgba8, several drawings",

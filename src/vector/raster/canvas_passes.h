@@ -33,9 +33,10 @@ enum Conditions : uint32_t {
   kStampOne,
   kStampDrawings,
   kMarked,
-  kStampsAlone
+  kStampsAlone,
+  kSiftPlain
 };
-static_assert(kStampsAlone < core::kMaxConditions);
+static_assert(kSiftPlain < core::kMaxConditions);
 
 inline uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 
