@@ -132,6 +132,32 @@ void toLayer(uint index, uint layer) {
 bool pixelOpen() { return alive != 0 || gap > 0; }
 #endif
 
+#if SOFTWARE
+// A row of pixels of an entry, a word each: samples that change sides, and the area in the upper half.
+struct Edge {
+  uvec4 left, right;
+};
+Edge fetchEdge(uint code, uint y, bool area) {
+  Edge edge = Edge(uvec4(0), uvec4(0));
+  const uint row = (code >> 2) * (kEntryWords / 4) + y * 2;
+  if (code > 1) {
+    edge.left = entries[row];
+    edge.right = entries[row + 1];
+  }
+  return edge;
+}
+// What a path does to pixel x of the row: samples, and by how much its area differs from them.
+uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
+  uint sum = (code & 1) != 0 ? all : 0, own = 0;
+  for (uint k = 0; k < 8; ++k) {
+    const uint word = k < 4 ? edge.left[k] : edge.right[k - 4];
+    sum ^= k <= x ? word & 0xffffu : 0;
+    own = k == x ? word : own;
+  }
+  difference = area ? int(own) >> 16 : 0;
+  return sum;
+}
+#else
 // Samples of pixel x of a tile's row that change sides at or left of it.
 uint foldRow(uvec4 row, uint x) {
   const uint lower = (x & 1) != 0 ? ~0u : 0xffffu; // of the pair that the pixel is in
@@ -166,6 +192,7 @@ uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
   if (area) difference = differenceAt(edge.areas, x);
   return foldRow(edge.samples, x) ^ ((code & 1) != 0 ? all : 0);
 }
+#endif
 
 #if RICH
 // Where a path and its clips, or two paths of a clip, both have an edge, samples alone count.

@@ -45,17 +45,18 @@ void main() {
     const vec4 color = uintBitsToFloat(pathVectors[item.y * 3 + 2]);
     uint inside = (item.x & 1) != 0 ? all : 0;
     open = false;
-#define PAINT(x, samples, areas)                                                                                       \
-  inside ^= samples & 0xffffu;                                                                                         \
-  paint(pixels[x], inside, int(areas << 16) >> 16, color);                                                             \
-  open = open || pixels[x].alive != 0 || pixels[x].gap > 0;                                                            \
-  inside ^= samples >> 16;                                                                                             \
-  paint(pixels[x + 1], inside, (int(areas) - (int(areas << 16) >> 16)) >> 16, color);                                  \
-  open = open || pixels[x + 1].alive != 0 || pixels[x + 1].gap > 0;
-    PAINT(0, edge.samples.x, edge.areas.x)
-    PAINT(2, edge.samples.y, edge.areas.y)
-    PAINT(4, edge.samples.z, edge.areas.z)
-    PAINT(6, edge.samples.w, edge.areas.w)
+#define PAINT(x, word)                                                                                                 \
+  inside ^= word & 0xffffu;                                                                                            \
+  paint(pixels[x], inside, int(word) >> 16, color);                                                                    \
+  open = open || pixels[x].alive != 0 || pixels[x].gap > 0;
+    PAINT(0, edge.left.x)
+    PAINT(1, edge.left.y)
+    PAINT(2, edge.left.z)
+    PAINT(3, edge.left.w)
+    PAINT(4, edge.right.x)
+    PAINT(5, edge.right.y)
+    PAINT(6, edge.right.z)
+    PAINT(7, edge.right.w)
   }
   const uvec2 pixel = uvec2(tile % header.tilesX, tile / header.tilesX) * kTileSize + uvec2(0, row);
   for (int x = 0; x < 8; ++x) {
