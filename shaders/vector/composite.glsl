@@ -7,11 +7,7 @@
 // PAINTS: whether there are gradients. RICH: whether there are groups and projective items. IMAGES: whether there are
 // images. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
 #include "color.glsl"
-vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
-  if (color.a <= 0) return color;
-  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
-  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
-}
+#include "convert.glsl"
 #if PAINTS
 #include "paint.glsl"
 #endif
@@ -330,11 +326,7 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
   }
 }
 
-vec4 linearColor(vec4 color) { return (header.flags & kBlendSrgb) != 0 ? convert(color, false) : color; }
-vec4 targetColor(vec4 color) {
-  const bool encoded = (header.flags & kBlendSrgb) != 0, wanted = (header.flags & kEncodeSrgb) != 0;
-  return encoded == wanted ? color : convert(color, wanted);
-}
+#include "targets.glsl"
 #if SOFTWARE // writes the view or the image, as both would convert for both
 vec4 storedColor(vec4 color) {
 #if TARGET

@@ -3,7 +3,8 @@
 // tiles take the general shader, whether each tile does (split.comp), and then the bins' lists of paths, the last one
 // in painting order first.
 #if SOFTWARE
-const uint kSolidTile = ~0u; // in place of a count: the tile's colour lies in the list's second four words
+const uint kSolidTile = ~0u; // in place of a count: the tile's colours, of the view and the target, lie in
+                                // the list's second and third four words
 // A list's first two words are how many paths there are and nothing, the others pairs.
 uint listRoom() { return (header.listWords - 2) / 2; }
 uint listOf(uint tile) { // a multiple of 4

@@ -1,7 +1,7 @@
 #version 460
 // The fine level for software devices: the pixels of tiles from their lists, without barriers.
 //
-// TILES: 0 the tiles of one colour, an invocation a row of eight pixels; 1 those with edges or gradients that are not
+// TILES: 0 the tiles of one colour, an invocation a column of eight pixels; 1 those with edges or gradients that are not
 // painted by rows (raster_rows.comp), a workgroup each. The crowded ones, whose lists are full, take raster.comp.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
@@ -19,11 +19,11 @@ void paintPath(uint code, uint path, uvec2 at, uvec2 pixel) {
 #if TILES == 0
 void main() { // a workgroup has eight tiles of a row
   const uvec2 tile = uvec2(gl_WorkGroupID.x * 8 + gl_LocalInvocationIndex / 8, gl_WorkGroupID.y);
-  const uvec2 pixel = tile * kTileSize + uvec2(0, gl_LocalInvocationIndex % 8);
+  const uvec2 pixel = tile * kTileSize + uvec2(gl_LocalInvocationIndex % 8, 0);
   const uint list = listOf(tile.y * header.tilesX + tile.x);
   if (tile.x >= header.tilesX || bins[list] != kSolidTile) return;
-  const vec4 color = storedColor(uintBitsToFloat(binVectors[list / 4 + 1]));
-  for (uint x = 0; x < kTileSize; ++x) storeColor(pixel + uvec2(x, 0), color);
+  const vec4 color = uintBitsToFloat(binVectors[list / 4 + (TARGET == 0 ? 1 : 2)]);
+  for (uint y = 0; y < kTileSize; ++y) storeColor(pixel + uvec2(0, y), color);
 }
 #else
 void main() {

@@ -10,6 +10,7 @@
 #include "shaders/vector_begin.spv.h"
 #include "shaders/vector_begin_software.spv.h"
 #include "shaders/vector_clear_entries.spv.h"
+#include "shaders/vector_clear_words.spv.h"
 #include "shaders/vector_crowded0.spv.h"
 #include "shaders/vector_crowded1.spv.h"
 #include "shaders/vector_crowded2.spv.h"
@@ -120,7 +121,7 @@ uint64_t Canvas::tiles() const {
   return uint64_t(divide(maxWidth_, shader::kTileSize)) * divide(maxHeight_, shader::kTileSize);
 }
 uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would take more than 64 MiB
-  return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 8, 64) & ~uint64_t(3));
+  return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 12, 64) & ~uint64_t(3));
 }
 
 uint64_t Canvas::binWords() const { // enough for any record with the largest bins, or for most with the smallest
@@ -181,7 +182,6 @@ core::PassList Canvas::describe() const {
 
   if (software_) {
     list.fill("clear counters", counters, 0);
-    list.fill("clear words", words, 0);
     list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin_software}),
                   {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}}, kBegin);
   } else {
@@ -210,6 +210,11 @@ core::PassList Canvas::describe() const {
   either({"place", "place, several drawings", "place, projective"},
          {vector_place_one, vector_place, vector_place_projective},
          {{paths, readWrite}, {words, readWrite}, {masks, readWrite}, {counters, readWrite}}, kPaths, kOneDrawing);
+  const auto clear = [&](const core::ShaderDesc& shader, core::ResourceIndex what) {
+    list.dispatch(shader.name, list.add(shader), {{params, read}, {counters, read}, {what, write}}, kClear).condition =
+        kMarked;
+  };
+  if (software_) clear({"clear words", vector_clear_words}, words);
   const auto pack = [&](const char* name, uint32_t condition) {
     core::Pass& pass = list.dispatch(name, list.add(core::ShaderDesc{name, vector_pack}),
                                      {{params, read}, {masks, readWrite}, {counters, readWrite}}, kBins);
@@ -268,9 +273,7 @@ core::PassList Canvas::describe() const {
   if (software_) {
     allot({"allot", vector_allot_rows}, kWords, true);
     allot({"allot again", vector_allot_software}, kOnce, false);
-    const core::ShaderDesc clear{"clear entries", vector_clear_entries};
-    list.dispatch("clear entries", list.add(clear), {{params, read}, {counters, read}, {entries, write}}, kClear)
-        .condition = kMarked;
+    clear({"clear entries", vector_clear_entries}, entries);
     const std::array<Spirv, 3> listed = {vector_fill_pieces_one, vector_fill_pieces, vector_fill_pieces},
                                unlisted = {vector_fill_software_one, vector_fill_software,
                                            vector_fill_software_projective};
