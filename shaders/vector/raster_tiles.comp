@@ -1,8 +1,8 @@
 #version 460
 // The fine level for software devices: the pixels of tiles from their lists, without barriers.
 //
-// TILES: 0 the tiles of one colour, an invocation a column of eight pixels; 1 those with edges or gradients that are not
-// painted by rows (raster_rows.comp), a workgroup each. The crowded ones, whose lists are full, take raster.comp.
+// TILES: 0 the tiles of one colour, an invocation a column of eight pixels; 1 those with edges or gradients that are
+// not painted by rows (raster_rows.comp), a workgroup each. The crowded ones, whose lists are full, take raster.comp.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "composite.glsl"

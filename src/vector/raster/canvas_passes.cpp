@@ -248,7 +248,7 @@ core::PassList Canvas::describe() const {
     pass.condition = kMarked;
     if (!listing) return;
     pass.uses[pass.useCount++] = {chords, read};
-    pass.uses[pass.useCount++] = {rowList, write};
+    pass.uses[pass.useCount++] = {rowList, readWrite};
   };
   // From lists, or, where these did not suffice, without them; allot says which.
   const auto fill = [&](const core::ShaderDesc& shader, bool fromLists, uint32_t condition, bool beside) {
