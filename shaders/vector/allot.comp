@@ -2,16 +2,16 @@
 // Gives each tile with edges an entry, and clears it, unless mark has. Those of small glyphs have theirs (stamp.comp).
 //
 // Entries are taken in any order. Where they do not suffice, the workgroup that finishes last deals them out again in
-// painting order, and from the first path that does not fit on all are left out.
+// painting order, and from the first path that does not fit on all are left out. SOFTWARE: that is all it does, by one
+// workgroup (allot_rows.comp).
 #extension GL_GOOGLE_include_directive : require
 #define SHARING coherent
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
 #include "scan.glsl"
-layout(set = 0, binding = 15, std430) coherent buffer Entries { uvec4 entries[]; };
 #if !SOFTWARE
+layout(set = 0, binding = 15, std430) coherent buffer Entries { uvec4 entries[]; };
 #include "chords.glsl"
-#endif
 shared uint start;
 shared bool last;
 
@@ -20,8 +20,11 @@ void clearEntries(uint lane, uint first, uint count) {
   for (uint i = lane; i < count * (kEntryWords / 4); i += 64) entries[first * (kEntryWords / 4) + i] = none;
 }
 
+#endif
+
 void main() {
   const uint lane = gl_LocalInvocationID.x;
+#if !SOFTWARE
   const uint total = min(counters.words, header.wordLimit);
   for (uint first = gl_WorkGroupID.x * 64; first < total; first += gl_NumWorkGroups.x * 64) {
     const uint i = first + lane;
@@ -42,7 +45,6 @@ void main() {
   barrier();
   if (!last) return;
   memoryBarrierBuffer();
-#if !SOFTWARE
   if (lane == 0 && listed(counters.rows)) {
     const uint groups = (counters.rows + 63) / 64;
     counters.rowsX = min(groups, 32768);
@@ -79,7 +81,9 @@ void main() {
     if (fits < 64) cut = min(cut, first + fits);
     used = add(used, scanTotal());
   }
+#if !SOFTWARE
   clearEntries(lane, 0, header.entryLimit);
+#endif
   if (lane == 0) {
     cut = wholeItems(cut);
     counters.cutPath = cut;

@@ -29,6 +29,12 @@ layout(set = 0, binding = 12, std430) SHARING buffer Paths { PlacedPath paths[];
 layout(set = 0, binding = 13, std430) SHARING buffer Words { TileWord words[]; };
 layout(set = 0, binding = 14, std430) buffer Bins { uint bins[]; };
 layout(set = 0, binding = 16, std430) SHARING buffer Counters { CanvasCounters counters; };
+#if SOFTWARE // to which four words cost little more than one
+layout(set = 0, binding = 12, std430) SHARING buffer PathVectors { uvec4 pathVectors[]; };
+layout(set = 0, binding = 13, std430) SHARING buffer WordVectors { uvec4 wordVectors[]; };
+layout(set = 0, binding = 14, std430) buffer BinPairs { uvec2 binPairs[]; };
+layout(set = 0, binding = 14, std430) buffer BinVectors { uvec4 binVectors[]; };
+#endif
 
 #if ONE_DRAWING // a record of one drawing need not choose at each access
 vec4 fetch(uint slot, uint i) { return drawing0[i]; }
@@ -102,6 +108,17 @@ uint wholeItems(uint cut) {
   return items[item].whole != 0 ? items[item].firstPath : cut;
 }
 
+#if SOFTWARE
+PlacedPath fetchPath(uint i) {
+  const uvec4 box = pathVectors[i * 3], rest = pathVectors[i * 3 + 1];
+  return PlacedPath(box.x, box.y, box.z, box.w, rest.x, rest.y, rest.z, rest.w,
+                    uintBitsToFloat(pathVectors[i * 3 + 2]));
+}
+TileWord fetchTileWord(uint i) {
+  const uvec4 word = wordVectors[i];
+  return TileWord(word.x, word.y, word.z, word.w);
+}
+#endif
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
 Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }

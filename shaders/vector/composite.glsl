@@ -7,11 +7,7 @@
 // PAINTS: whether there are gradients. RICH: whether there are groups and projective items. IMAGES: whether there are
 // images. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
 #include "color.glsl"
-vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
-  if (color.a <= 0) return color;
-  const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
-  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
-}
+#include "convert.glsl"
 #if PAINTS
 #include "paint.glsl"
 #endif
@@ -132,6 +128,32 @@ void toLayer(uint index, uint layer) {
 bool pixelOpen() { return alive != 0 || gap > 0; }
 #endif
 
+#if SOFTWARE
+// A row of pixels of an entry, a word each: samples that change sides, and the area in the upper half.
+struct Edge {
+  uvec4 left, right;
+};
+Edge fetchEdge(uint code, uint y, bool area) {
+  Edge edge = Edge(uvec4(0), uvec4(0));
+  const uint row = (code >> 2) * (kEntryWords / 4) + y * 2;
+  if (code > 1) {
+    edge.left = entries[row];
+    edge.right = entries[row + 1];
+  }
+  return edge;
+}
+// What a path does to pixel x of the row: samples, and by how much its area differs from them.
+uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
+  uint sum = (code & 1) != 0 ? all : 0, own = 0;
+  for (uint k = 0; k < 8; ++k) {
+    const uint word = k < 4 ? edge.left[k] : edge.right[k - 4];
+    sum ^= k <= x ? word & 0xffffu : 0;
+    own = k == x ? word : own;
+  }
+  difference = area ? int(own) >> 16 : 0;
+  return sum;
+}
+#else
 // Samples of pixel x of a tile's row that change sides at or left of it.
 uint foldRow(uvec4 row, uint x) {
   const uint lower = (x & 1) != 0 ? ~0u : 0xffffu; // of the pair that the pixel is in
@@ -166,6 +188,7 @@ uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
   if (area) difference = differenceAt(edge.areas, x);
   return foldRow(edge.samples, x) ^ ((code & 1) != 0 ? all : 0);
 }
+#endif
 
 #if RICH
 // Where a path and its clips, or two paths of a clip, both have an edge, samples alone count.
@@ -303,11 +326,25 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
   }
 }
 
-vec4 linearColor(vec4 color) { return (header.flags & kBlendSrgb) != 0 ? convert(color, false) : color; }
-vec4 targetColor(vec4 color) {
-  const bool encoded = (header.flags & kBlendSrgb) != 0, wanted = (header.flags & kEncodeSrgb) != 0;
-  return encoded == wanted ? color : convert(color, wanted);
+#include "targets.glsl"
+#if SOFTWARE // writes the view or the image, as both would convert for both
+vec4 storedColor(vec4 color) {
+#if TARGET
+  return targetColor(color);
+#else
+  return linearColor(color);
+#endif
 }
+void storeColor(uvec2 pixel, vec4 stored) {
+  if (pixel.x >= header.width || pixel.y >= header.height) return;
+#if TARGET
+  imageStore(image, ivec2(pixel), stored);
+#else
+  view[pixel.y * header.width + pixel.x] = uvec2(packHalf2x16(stored.rg), packHalf2x16(stored.ba));
+#endif
+}
+void storePixel(uvec2 pixel, vec4 color) { storeColor(pixel, storedColor(color)); }
+#else
 void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
   if (pixel.x >= header.width || pixel.y >= header.height) return;
   if ((header.flags & kWriteView) != 0)
@@ -317,6 +354,7 @@ void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
 #endif
 }
 void storePixel(uvec2 pixel, vec4 color) { storePixel(pixel, linearColor(color), targetColor(color)); }
+#endif
 
 // What is left of the light reaches the background.
 void finishPixel() {

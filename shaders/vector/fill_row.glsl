@@ -1,6 +1,11 @@
 // What fill does with a chord in a row of pixels, whoever gives it the chord.
 #include "run.glsl"
 layout(set = 0, binding = 15, std430) buffer Entries { uint entries[]; };
+#if SOFTWARE
+const uint kRowWords = 8; // a pixel each: samples that change sides, and the area in the upper half
+#else
+const uint kRowWords = 4;
+#endif
 
 // A row of tiles of a path: its box from left to right, where its words begin, and the one at hand.
 struct TileRow {
@@ -35,8 +40,8 @@ void turnFrom(Grid g, uint entry, int row) {
   if (entry == ~0u) return;
   const uint all = (1u << g.samples) - 1, upper = all & (all << (uint(row) & (g.samples - 1)));
   const uint y = uint(row >> findMSB(g.samples)) % kTileSize;
-  atomicXor(entries[entry + y * 4], upper);
-  for (uint k = y + 1; k < kTileSize; ++k) atomicXor(entries[entry + k * 4], all);
+  atomicXor(entries[entry + y * kRowWords], upper);
+  for (uint k = y + 1; k < kTileSize; ++k) atomicXor(entries[entry + k * kRowWords], all);
 }
 
 // Tiles from -> to at a sample row.
@@ -44,6 +49,15 @@ void changeTile(Grid g, inout TileRow tiles, int row, int from, int to) {
   for (int tile = min(from, to) + 1; tile <= max(from, to); ++tile) turnFrom(g, entryOf(tiles, tile), row);
 }
 
+#if SOFTWARE
+void takeRun(Run run, uint entry, uint column, uint row, float side) {
+  const uint inTile = column % kTileSize, word = entry + row % kTileSize * kRowWords + inTile;
+  atomicXor(entries[word], run.here);
+  if (run.next != 0 && inTile + 1 < kTileSize) atomicXor(entries[word + 1], run.next);
+  if ((header.flags & kExactArea) != 0)
+    atomicAdd(entries[word], uint(side > 0 ? run.difference : -run.difference) << 16);
+}
+#else
 void takeRun(Run run, uint entry, uint column, uint row, float side) {
   const uint inTile = column % kTileSize, shifted = (inTile & 1) * 16;
   const uint word = entry + row % kTileSize * 4 + inTile / 2;
@@ -52,8 +66,8 @@ void takeRun(Run run, uint entry, uint column, uint row, float side) {
   if ((header.flags & kExactArea) != 0)
     atomicAdd(entries[word + kEntryWords / 2], uint(side > 0 ? run.difference : -run.difference) << shifted);
 }
+#endif
 
-#if !SOFTWARE
 // A chord in one row of pixels; a level one as a whole.
 //
 // What all samples of the row say is found first, without branches; then each run of rows that meet one pixel is taken.
@@ -62,22 +76,13 @@ void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
   const int begin = max(c.first, top), end = min(c.last, top + int(g.samples));
   const int tileRow = pixel / int(kTileSize);
   if (tileRow < int(p.top) || tileRow >= int(p.bottom)) return;
-  const uvec4 columns = sampleColumns(g.samples);
   const Line line = lineOf(g, c);
-  uint covered = 0, first = 0; // rows whose sample in the crossing's pixel lies right of it; first ones of their pixels
-  int before = -2; // no column
-  const float firstRow = middleOf(g, top), step = sampleStep(g.samples);
-  for (int k = 0; k < 16; ++k) {
-    const int x = crossingAt(line, firstRow + float(k) * step), column = x >> 8; // both exact
-    covered |= (x & 255) <= int(byteOf(columns, k)) ? 1u << k : 0u;
-    first |= column != before ? 1u << k : 0u;
-    before = column;
-  }
+  const Crossings crossings = crossingsOf(g, line, top);
   int tile = begin == c.first ? tileOf(columnOf(g, topEnd(c))) : tileOf(crossingAt(line, middleOf(g, begin - 1)) >> 8);
   TileRow tiles = tileRowOf(p, tileRow, tile);
   uint entry = entryOf(tiles, tile);
   const uint rows = begin < end ? (1u << (end - top)) - (1u << (begin - top)) : 0;
-  first = rows & (first | 1u << (begin - top));
+  uint first = rows & (crossings.first | 1u << (begin - top));
   while (first != 0) {
     const int from = findLSB(first);
     first &= first - 1;
@@ -90,10 +95,9 @@ void fillRow(Grid g, PlacedPath p, Chord c, int pixel) {
       entry = entryOf(tiles, t);
     }
     if (column < 0 || column >= g.columns || entry == ~0u) continue;
-    takeRun(runOf((1u << to) - (1u << from), covered, x, last), entry, uint(column), uint(pixel), c.side);
+    takeRun(runOf((1u << to) - (1u << from), crossings.covered, x, last), entry, uint(column), uint(pixel), c.side);
   }
   if (end != c.last || (end & inTileRow) == 0) return;
   const int t = tileOf(columnOf(g, lastEnd(c)));
   if (t != tile) changeTile(g, tiles, end, tile, t);
 }
-#endif

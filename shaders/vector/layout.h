@@ -197,17 +197,17 @@ struct CanvasCounters {
   uint words, entries;        // needed
   uint cutPath, pathsDropped; // paths from cutPath on are left out
   uint wordsGiven, entriesGiven;
-  uint placed, allotted; // workgroups that are done
+  uint placed, allotted; // workgroups that are done; the latter on software devices pieces (pieces.glsl)
   uint patches;
-  uint rows;                // needed: of the lists between mark and fill
+  uint rows;                // needed: of the lists between mark and fill; on software devices chords (pieces.glsl)
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
   uint glyphs, glyphsGiven; // needed; room for as many
   uint shapes, shapesGiven, items, itemsGiven;
-  uint listed;              // paths in bins' lists
-  uint rowsX, rowsY, rowsZ; // workgroups of the pass that fills from lists
-  uint cleared;             // entries that mark clears: as many as the record before had
-  uint stamped;             // entries of small glyphs, behind the others
-  uint pad0, pad1, pad2;
+  uint listed;                 // paths in bins' lists; on software devices tiles that are painted by rows
+  uint rowsX, rowsY, rowsZ;    // workgroups of the pass that fills from lists
+  uint cleared;                // entries that mark clears: as many as the record before had
+  uint stamped;                // entries of small glyphs, behind the others
+  uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
 };
 
 // A chord between mark and fill.
@@ -244,7 +244,8 @@ GPGP_CONST uint kSplitRich = 16u; // what has groups or projective gradients is 
 GPGP_CONST uint kTileSize = 8u;   // pixels: what one entry holds of a path
 GPGP_CONST uint kMinBinShift = 2u, kMaxBinShift = 4u; // tiles: the upper level of the hierarchy
 // An entry: for each pair of pixels of a tile's row, whose samples change sides there (16 bits a pixel), then by how
-// much the pixel's area differs from its samples (16 signed bits a pixel, in 1/256 of a sample).
+// much the pixel's area differs from its samples (16 signed bits a pixel, in 1/256 of a sample). On software devices a
+// word for each pixel, with the samples in its lower half and the area in its upper one.
 GPGP_CONST uint kEntryWords = 64u;
 // At the beginning of the bins, indirect arguments and how many: for tiles painted from lists and for crowded ones, and
 // for those of either kind that take the general shader.

@@ -2,11 +2,24 @@
 // to the tile and which one it is; or else the tile's colour. With barriers bins have lists instead: there lies which
 // tiles take the general shader, whether each tile does (split.comp), and then the bins' lists of paths, the last one
 // in painting order first.
+#if SOFTWARE
+const uint kSolidTile = ~0u; // in place of a count: the tile's colours, of the view and the target, lie in
+                                // the list's second and third four words
+// A list's first two words are how many paths there are and nothing, the others pairs.
+uint listRoom() { return (header.listWords - 2) / 2; }
+uint listOf(uint tile) { // a multiple of 4
+  return (kFirstBin + header.binCount * header.binWords + 3 & ~3u) + tile * header.listWords;
+}
+#else
 uint listRoom() { return (header.listWords - 1) / 2; }
 uint listOf(uint tile) { return kFirstBin + header.binCount * header.binWords + tile * header.listWords; }
+#endif
 uint paintedTiles() { return listOf(header.tilesX * header.tilesY); }
 // Those that take the general shader are listed from the other end.
 uint crowdedTiles() { return paintedTiles() + header.tilesX * header.tilesY; }
+#if SOFTWARE
+uint rowTiles() { return crowdedTiles() + header.tilesX * header.tilesY; } // painted by rows (raster_rows.comp)
+#endif
 uint richTile(uint list, uint i) { return list + header.tilesX * header.tilesY - 1 - i; }
 uint richTiles() { return kFirstBin + header.binCount * header.binWords; }
 uint tileKinds() { return richTiles() + header.tilesX * header.tilesY; }
@@ -18,6 +31,18 @@ uint another(uint arguments) { // workgroup for the passes behind: in rows (canv
   atomicMax(bins[arguments + 1], place / 32768 + 1);
   return place;
 }
+
+#if SOFTWARE
+uint several(uint arguments, uint count) { // `count` of them: the first one
+  uint place = 0;
+  if (count != 0) {
+    place = atomicAdd(bins[arguments + 3], count);
+    atomicMax(bins[arguments], min(place + count, 32768));
+    atomicMax(bins[arguments + 1], (place + count - 1) / 32768 + 1);
+  }
+  return place;
+}
+#endif
 
 const uint kHidden = 0, kEven = 1, kRich = 2;
 const uint kManyClipPaths = 64;

@@ -6,17 +6,15 @@
 // closed and all comparisons are made on rows and columns that neighbours agree on, that is exact.
 //
 // Chords that are to be filled are listed, and so are their rows of pixels. Marking waits more than it writes, so the
-// first workgroups clear entries beside it; allot clears what more there are.
+// first workgroups clear entries beside it; allot clears what more there are. Software devices: mark_pieces.comp.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #define SEGMENT_GROUP (groupIndex() - kClearGroups)
 #include "segments.glsl"
-#if !SOFTWARE
 layout(set = 0, binding = 15, std430) writeonly buffer Entries { uvec4 entries[]; };
 #include "chords.glsl"
 #include "rows.glsl"
 shared uint taken, firstRow; // rows of the chords at hand: how many, where they lie in the list
-#endif
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
 
@@ -49,9 +47,6 @@ void takeChord(Grid g, PlacedPath p, Chord c) {
   }
 }
 
-#if SOFTWARE
-void main() { takeSegment(); }
-#else
 void main() {
   if (groupIndex() < kClearGroups) {
     const uint end = counters.cleared * (kEntryWords / 4);
@@ -88,4 +83,3 @@ void main() {
     for (uint k = 0; k < rowCount; ++k) rows[first + k] = k;
   }
 }
-#endif

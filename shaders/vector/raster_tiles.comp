@@ -1,8 +1,8 @@
 #version 460
 // The fine level for software devices: the pixels of tiles from their lists, without barriers.
 //
-// TILES: 0 every tile's colour, as if it had no edges, an invocation a row of eight pixels; 1 the tiles with edges or
-// gradients, a workgroup each. The crowded ones, whose lists are full, take raster.comp.
+// TILES: 0 the tiles of one colour, an invocation a column of eight pixels; 1 those with edges or gradients that are
+// not painted by rows (raster_rows.comp), a workgroup each. The crowded ones, whose lists are full, take raster.comp.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 #include "composite.glsl"
@@ -10,22 +10,20 @@
 layout(local_size_x = 64) in;
 
 void paintPath(uint code, uint path, uvec2 at, uvec2 pixel) {
-  const PlacedPath p = paths[path];
+  const PlacedPath p = fetchPath(path);
   const uvec2 group = groupOf(p);
   paintOver(code, fetchEdge(code, at.y, countsArea()), at, pixel, p.color,
             uvec4(p.item, p.paint, group.y, group.x | p.group & kItemGrouped));
 }
 
 #if TILES == 0
-void main() {
-  const uint tile = groupIndex() * 8 + gl_LocalInvocationIndex / 8, row = gl_LocalInvocationIndex % 8;
-  if (tile >= header.tilesX * header.tilesY) return;
-  const uint list = listOf(tile);
-  sum = vec4(uintBitsToFloat(bins[list]), uintBitsToFloat(bins[list + 1]), uintBitsToFloat(bins[list + 2]),
-             uintBitsToFloat(bins[list + 3]));
-  const uvec2 pixel = uvec2(tile % header.tilesX, tile / header.tilesX) * kTileSize + uvec2(0, row);
-  const vec4 linear = linearColor(sum), target = targetColor(sum);
-  for (uint x = 0; x < kTileSize; ++x) storePixel(pixel + uvec2(x, 0), linear, target);
+void main() { // a workgroup has eight tiles of a row
+  const uvec2 tile = uvec2(gl_WorkGroupID.x * 8 + gl_LocalInvocationIndex / 8, gl_WorkGroupID.y);
+  const uvec2 pixel = tile * kTileSize + uvec2(gl_LocalInvocationIndex % 8, 0);
+  const uint list = listOf(tile.y * header.tilesX + tile.x);
+  if (tile.x >= header.tilesX || bins[list] != kSolidTile) return;
+  const vec4 color = uintBitsToFloat(binVectors[list / 4 + (TARGET == 0 ? 1 : 2)]);
+  for (uint y = 0; y < kTileSize; ++y) storeColor(pixel + uvec2(0, y), color);
 }
 #else
 void main() {
@@ -42,8 +40,11 @@ void main() {
   beginPixel();
   const uint own = listOf(tile);
   const uint count = bins[own];
-  for (uint k = 0; k < count && pixelOpen(); ++k) paintPath(bins[own + 1 + k * 2], bins[own + 2 + k * 2], at, pixel);
+  for (uint k = 0; k < count && pixelOpen(); ++k) {
+    const uvec2 item = binPairs[own / 2 + 1 + k];
+    paintPath(item.x, item.y, at, pixel);
+  }
   finishPixel();
-  storePixel(pixel, sum);
+  storeColor(pixel, storedColor(sum));
 }
 #endif

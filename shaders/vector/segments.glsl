@@ -1,5 +1,6 @@
 // What the passes over segments share: a workgroup takes header.groupSegments of them and deals their chords out
-// evenly. SOFTWARE: without barriers; an invocation takes a segment, or a share of its chords.
+// evenly. SOFTWARE: without barriers; an invocation takes a segment, or a share of its chords. SEGMENTS_ONLY: the pass
+// itself does.
 #ifndef LANES
 #define LANES 64
 #endif
@@ -24,7 +25,8 @@ uint itemOf(uint segment) { // the last one that begins at or before it
 bool matters(Grid g, uint path, ItemRecord item, SegmentRecord s) {
   return path < counters.cutPath && paths[path].left < paths[path].right && mayMatter(g, item, s);
 }
-#if SOFTWARE
+#if SEGMENTS_ONLY
+#elif SOFTWARE
 void takeChord(Grid g, PlacedPath p, Chord c); // the pass's work
 void takeSegment() {
   const uint i = groupIndex() * 64 + gl_LocalInvocationID.x;
@@ -34,7 +36,7 @@ void takeSegment() {
   const uint path = item.firstPath + s.path;
   const Grid g = canvasGrid();
   if (!matters(g, path, item, s)) return;
-  const PlacedPath p = paths[path];
+  const PlacedPath p = fetchPath(path);
   const uint count = chordCount(g, item, s);
   const float step = chordStep(count);
 #if PROJECTIVE

@@ -48,18 +48,10 @@ Place placeOf(Grid g, ItemRecord item) {
 void stampRow(Grid g, Place place, Chord c, int pixel) {
   const int shift = findMSB(g.samples), top = pixel << shift;
   const int begin = max(c.first, top) - top, end = min(c.last - top, int(g.samples));
-  const uvec4 columns = sampleColumns(g.samples);
   const Line line = lineOf(g, c);
   const float firstRow = middleOf(g, top), step = sampleStep(g.samples);
-  uint covered = 0, first = 0; // rows whose sample in the crossing's pixel lies right of it; first ones of their pixels
-  int before = -2;             // no column
-  for (int k = 0; k < 16; ++k) {
-    const int x = crossingAt(line, firstRow + float(k) * step), column = x >> 8; // both exact
-    covered |= (x & 255) <= int(byteOf(columns, k)) ? 1u << k : 0u;
-    first |= column != before ? 1u << k : 0u;
-    before = column;
-  }
-  first = (first | 1u << begin) & ((1u << end) - (1u << begin));
+  const Crossings crossings = crossingsOf(g, line, top);
+  uint first = (crossings.first | 1u << begin) & ((1u << end) - (1u << begin));
   const uint row = (uint(pixel) - place.top) * place.pairs - place.left;
   while (first != 0) {
     const int from = findLSB(first);
@@ -68,7 +60,7 @@ void stampRow(Grid g, Place place, Chord c, int pixel) {
     const int x = crossingAt(line, firstRow + float(from) * step);
     const int last = crossingAt(line, firstRow + float(to - 1) * step), column = x >> 8;
     if (column >= g.columns) continue;
-    Run run = runOf((1u << to) - (1u << from), covered, x, last);
+    Run run = runOf((1u << to) - (1u << from), crossings.covered, x, last);
     if (column < 0) run = Run(run.here | run.next, 0, 0);
     const uint at = uint(max(column, 0)), shifted = (at & 1) * 16, word = row + at / 2;
     atomicXor(pixels[word], shifted == 0 ? run.here | run.next << 16 : run.here << 16);

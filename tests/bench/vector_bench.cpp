@@ -1,7 +1,7 @@
 // What drawings cost: conversion on one thread, GPU time by pass, and cairo's time in the same process.
 //
-// The generated drawings are in vector_scenes.h. Prints medians and ratios; asserts nothing about time, but fails where
-// a record fails or drops paths.
+// The generated drawings are in vector_scenes.h. Prints medians, or least times, and ratios; asserts nothing about
+// time, but fails where a record fails or drops paths.
 #include "arguments.h"
 #include "host/picture.h"
 #include "vector_runner.h"
@@ -16,19 +16,24 @@ namespace {
 using namespace gpgp;
 using namespace gpgp::bench;
 
-void run(VectorRunner& runner, const Scene& scene, uint32_t size, VectorRunner::Settings settings, int repeat,
+struct Size {
+  uint32_t width, height;
+};
+
+void run(VectorRunner& runner, const Scene& scene, Size size, VectorRunner::Settings settings, int repeat,
          const std::string& out, bool shapes) {
+  const auto [width, height] = size;
   VectorMade made = scene.glyphs.empty() || shapes ? runner.makeDrawing(scene) : runner.makeText(scene);
   const GpgpDrawingInfo& facts = made.facts;
-  runner.openCanvas(size, std::max(facts.patches, 1024u), made.item.glyphCount);
-  const VectorDrawn drawn = runner.draw(made, scene, size, size, settings, repeat);
+  runner.openCanvas(std::max(width, height), std::max(facts.patches, 1024u), made.item.glyphCount);
+  const VectorDrawn drawn = runner.draw(made, scene, width, height, settings, repeat);
   std::vector<uint8_t> cairoPixels;
-  const double scale = std::min(size / scene.width, size / scene.height);
-  const double cairo = cairoTime(scene, size, size, std::min(repeat, 5), scale, &cairoPixels);
-  std::printf(
-      "%-16s %4u px %2u samples: %6u paths %7u curves %6u entries; made in %.1f ms, recorded in %.1f us, GPU %.4f ms",
-      scene.name.c_str(), size, settings.samples, facts.paths, facts.curves, drawn.entries, made.milliseconds,
-      drawn.microseconds, drawn.milliseconds);
+  const double scale = std::min(width / scene.width, height / scene.height);
+  const double cairo = cairoTime(scene, width, height, std::min(repeat, 5), scale, &cairoPixels);
+  std::printf("%-16s %4u x %u, %2u samples: %6u paths %7u curves %6u entries; made in %.1f ms, recorded in %.1f us, "
+              "GPU %.4f ms",
+              scene.name.c_str(), width, height, settings.samples, facts.paths, facts.curves, drawn.entries,
+              made.milliseconds, drawn.microseconds, drawn.milliseconds);
   if (made.item.glyphCount) std::printf(", %.1f ns a glyph", drawn.microseconds * 1000 / made.item.glyphCount);
   if (cairo > 0) std::printf(", cairo %.2f ms (ratio %.3f)", cairo, drawn.milliseconds / cairo);
   std::printf(" |");
@@ -37,22 +42,36 @@ void run(VectorRunner& runner, const Scene& scene, uint32_t size, VectorRunner::
   std::printf("\n");
   std::fflush(stdout);
   if (out.empty()) return;
-  host::writePng(out + "/" + scene.name + ".png", host::fromPremultiplied(size, size, drawn.pixels));
+  host::writePng(out + "/" + scene.name + ".png", host::fromPremultiplied(width, height, drawn.pixels));
   for (size_t i = 0; i < cairoPixels.size(); i += 4)
     std::swap(cairoPixels[i], cairoPixels[i + 2]), cairoPixels[i + 3] = 255;
-  if (cairo > 0) host::writePng(out + "/" + scene.name + ".cairo.png", {size, size, cairoPixels});
+  if (cairo > 0) host::writePng(out + "/" + scene.name + ".cairo.png", {width, height, cairoPixels});
+}
+
+Size sizeOf(const std::string& text) { // "1024" or "1920x1080"
+  Size size{};
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%5u%c", &size.width, &rest) == 1)
+    size.height = size.width;
+  else if (std::sscanf(text.c_str(), "%5ux%5u%c", &size.width, &size.height, &rest) != 2)
+    size = {};
+  if (size.width < 1 || size.width > 16384 || size.height < 1 || size.height > 16384)
+    throw Usage("--size: '" + text + "' is not like 1024 or 1920x1080, up to 16384");
+  return size;
 }
 } // namespace
 
 const char* const kUsage =
-    "vector_bench [--repeat N] [--size PIXELS] [--samples N] [--out FOLDER] [--shapes] [SCENE]...\n"
+    "vector_bench [--repeat N] [--least] [--size PIXELS | WxH] [--samples N] [--out FOLDER] [--shapes] [SCENE]...\n"
+    "  --least   prints least times instead of medians, for machines that do other work as well\n"
     "  --shapes  draws pages as one drawing instead of a text\n"
     "  SCENE     map contours page live drops embrace clipart botanical plan feather, or FILE.svg\n";
 
 int runBench(Arguments arguments) {
   int repeat = 20;
-  uint32_t size = 1024, samples = 16;
-  bool shapes = false;
+  Size size{1024, 1024};
+  uint32_t samples = 16;
+  bool shapes = false, least = false;
   std::string out;
   std::vector<Scene> scenes;
   while (arguments.next()) {
@@ -60,7 +79,9 @@ int runBench(Arguments arguments) {
     if (word == "--repeat")
       repeat = static_cast<int>(arguments.number());
     else if (word == "--size")
-      size = arguments.number(1, 16384);
+      size = sizeOf(arguments.value());
+    else if (word == "--least")
+      least = true;
     else if (word == "--samples")
       samples = arguments.number(1, 16);
     else if (word == "--out")
@@ -72,10 +93,10 @@ int runBench(Arguments arguments) {
   }
   if (scenes.empty()) scenes = {streetMap(), contourMap(), page(), livePage()};
   host::HeadlessDevice device;
-  std::printf("device %s, %d records, medians\n", device.name().c_str(), repeat);
+  std::printf("device %s, %d records, %s\n", device.name().c_str(), repeat, least ? "least times" : "medians");
   VectorRunner runner(device);
   for (const Scene& scene : scenes)
-    run(runner, scene, size, {.samples = samples, .blendSrgb = false}, repeat, out, shapes);
+    run(runner, scene, size, {.samples = samples, .blendSrgb = false, .least = least}, repeat, out, shapes);
   return 0;
 }
 

@@ -47,6 +47,7 @@ public:
   struct Settings {
     uint32_t samples = 16;
     bool exactArea = true, blendSrgb = true;
+    bool least = false; ///< least times instead of medians
   };
   /// The scene fitted into the picture, at its top left. Medians of `repeat` records; passes are timed in records of
   /// their own, as timestamps between them take time.

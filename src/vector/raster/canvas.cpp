@@ -169,20 +169,24 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     r.conditions[kStampsAlone] = true;
   else
     r.conditions[kMarkOne + form] = r.conditions[kMarked] = true;
-  const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
-  r.conditions[(images ? kImages
-                // The plain shader fetches from one drawing only, and on hardware leaves no squares to the general one.
-                : !gradients && !(rich && (several || !software_)) ? kPlain
-                : several                                          ? kPaints
-                                                                   : kPaintsOne) +
-               image] = true;
   const bool one = !several && !software_; // software devices have one general shader
-  if (rich) {
-    r.conditions[(images ? kRichImages : one ? kRichOne : kRich) + image] = true;
-    r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
-    r.conditions[one ? kSplitOne : kSplit] = true;
+  const uint32_t kinds[] = {images ? kImages
+                            // The plain shader fetches from one drawing only, and on hardware leaves no squares to the
+                            // general one.
+                            : !gradients && !(rich && (several || !software_)) ? kPlain
+                            : several                                          ? kPaints
+                                                                               : kPaintsOne,
+                            kAny,
+                            images ? kRichImages
+                            : one  ? kRichOne
+                                   : kRich};
+  const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
+  for (const uint32_t painted : std::span(kinds).first(rich ? 3 : 2)) {
+    r.conditions[painted + image] = true;
+    if (software_ && view) r.conditions[painted + kNoImage] = true; // there no pass writes both
   }
-  r.conditions[kAny + image] = true;
+  if (rich) r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
+  if (rich || software_) r.conditions[!rich ? kSiftPlain : one ? kSplitOne : kSplit] = true;
   // Shaders name all images, so those that are not there are bound to the first one.
   for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
     const GpgpCanvasImage& from = info.images[i < info.imageCount ? i : 0];
@@ -197,9 +201,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kSegments] = rows((software_ ? 0 : shader::kClearGroups) + divide(header.segmentCount, perGroup));
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
+  r.groups[kOnce] = {1, 1, 1};
+  r.groups[kClear] = {64, 1, 1};
+  r.groups[kFill] = {std::clamp(header.segmentCount / 160, 16u, 4096u), 1, 1};
   r.groups[kStamps] = rows(std::max(header.itemCount, 1u));
   r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
-  r.groups[kTiles] = rows(divide(uint64_t(header.tilesX) * header.tilesY, 8));
+  r.groups[kTiles] = {divide(header.tilesX, 8), header.tilesY, 1};
   r.groups[kBins] = rows(header.binCount);
   r.groups[kSift] = {divide(uint64_t(header.binCount) << header.binShift, 64), 1, 1};
   r.groups[kRaster] = {header.tilesX, header.tilesY, 1};

@@ -32,7 +32,8 @@ private:
   uint32_t listWords() const; ///< of a tile's list on software devices
   uint64_t binWords() const;
   uint32_t binLists() const;
-  uint32_t maxRows() const { return maxEntries_ * 8; } ///< of the lists between mark and fill
+  /// Of the lists between mark and fill: rows of chords, or pieces of them on software devices.
+  uint32_t maxRows() const { return maxEntries_ * (software_ ? 4 : 8); }
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const;
 
   const uint32_t maxWidth_, maxHeight_, maxEntries_, maxWords_;

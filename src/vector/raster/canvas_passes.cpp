@@ -2,12 +2,15 @@
 #include "vector/raster/canvas_passes.h"
 
 #include "shaders/vector_allot.spv.h"
+#include "shaders/vector_allot_rows.spv.h"
 #include "shaders/vector_allot_software.spv.h"
 #include "shaders/vector_aside_rich.spv.h"
 #include "shaders/vector_aside_rich_images.spv.h"
 #include "shaders/vector_aside_rich_one.spv.h"
 #include "shaders/vector_begin.spv.h"
 #include "shaders/vector_begin_software.spv.h"
+#include "shaders/vector_clear_entries.spv.h"
+#include "shaders/vector_clear_words.spv.h"
 #include "shaders/vector_crowded0.spv.h"
 #include "shaders/vector_crowded1.spv.h"
 #include "shaders/vector_crowded2.spv.h"
@@ -27,7 +30,10 @@
 #include "shaders/vector_crowded_rich_images1.spv.h"
 #include "shaders/vector_crowded_rich_images2.spv.h"
 #include "shaders/vector_fill.spv.h"
+#include "shaders/vector_fill_left.spv.h"
 #include "shaders/vector_fill_one.spv.h"
+#include "shaders/vector_fill_pieces.spv.h"
+#include "shaders/vector_fill_pieces_one.spv.h"
 #include "shaders/vector_fill_projective.spv.h"
 #include "shaders/vector_fill_rows.spv.h"
 #include "shaders/vector_fill_rows_one.spv.h"
@@ -66,6 +72,7 @@
 #include "shaders/vector_raster_rich_one1.spv.h"
 #include "shaders/vector_raster_rich_one2.spv.h"
 #include "shaders/vector_sift.spv.h"
+#include "shaders/vector_sift_split.spv.h"
 #include "shaders/vector_split.spv.h"
 #include "shaders/vector_split_one.spv.h"
 #include "shaders/vector_stamp.spv.h"
@@ -90,6 +97,9 @@
 #include "shaders/vector_tiles_rich_images0.spv.h"
 #include "shaders/vector_tiles_rich_images1.spv.h"
 #include "shaders/vector_tiles_rich_images2.spv.h"
+#include "shaders/vector_tiles_rows0.spv.h"
+#include "shaders/vector_tiles_rows1.spv.h"
+#include "shaders/vector_tiles_rows2.spv.h"
 #include "shaders/vector_tiles_solid0.spv.h"
 #include "shaders/vector_tiles_solid1.spv.h"
 #include "shaders/vector_tiles_solid2.spv.h"
@@ -111,7 +121,7 @@ uint64_t Canvas::tiles() const {
   return uint64_t(divide(maxWidth_, shader::kTileSize)) * divide(maxHeight_, shader::kTileSize);
 }
 uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would take more than 64 MiB
-  return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 4, 63));
+  return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 12, 64) & ~uint64_t(3));
 }
 
 uint64_t Canvas::binWords() const { // enough for any record with the largest bins, or for most with the smallest
@@ -144,8 +154,8 @@ core::PassList Canvas::describe() const {
                 heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
-  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 2 : 2) + binLists();
-  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + lists) * 4});
+  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 3 : 2) + binLists();
+  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + 3 + lists) * 4});
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
@@ -157,9 +167,11 @@ core::PassList Canvas::describe() const {
     const auto added = list.add({kImageNames[i], texture, 0, true});
     if (i == 0) images = added;
   }
+  // Software devices have lists of pieces and of rows of tiles there (pieces.glsl).
   const auto chords =
-      list.add({"chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * sizeof(shader::ChordRecord)});
-  const auto rowList = list.add({"rows of chords", scratch, software_ ? 4 : VkDeviceSize(maxRows()) * 4});
+      list.add({"chords", scratch, VkDeviceSize(maxRows()) * (software_ ? 16 : sizeof(shader::ChordRecord))});
+  const auto rowList = list.add(
+      {"rows of chords", scratch, software_ ? VkDeviceSize(maxWords_ + maxRows()) * 16 : VkDeviceSize(maxRows()) * 4});
   const auto shapes = list.add({"shapes", scratch, shapeBytes});
   const VkDeviceSize keptTiles = software_ ? 0 : std::min<VkDeviceSize>(tiles(), shader::kTilesAside);
   const auto aside = list.add({"tiles painted aside", scratch, std::max<VkDeviceSize>(keptTiles * 64 * 16, 16)});
@@ -170,7 +182,6 @@ core::PassList Canvas::describe() const {
 
   if (software_) {
     list.fill("clear counters", counters, 0);
-    list.fill("clear words", words, 0);
     list.dispatch("begin", list.add(core::ShaderDesc{"begin", vector_begin_software}),
                   {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}}, kBegin);
   } else {
@@ -199,6 +210,11 @@ core::PassList Canvas::describe() const {
   either({"place", "place, several drawings", "place, projective"},
          {vector_place_one, vector_place, vector_place_projective},
          {{paths, readWrite}, {words, readWrite}, {masks, readWrite}, {counters, readWrite}}, kPaths, kOneDrawing);
+  const auto clear = [&](const core::ShaderDesc& shader, core::ResourceIndex what) {
+    list.dispatch(shader.name, list.add(shader), {{params, read}, {counters, read}, {what, write}}, kClear).condition =
+        kMarked;
+  };
+  if (software_) clear({"clear words", vector_clear_words}, words);
   const auto pack = [&](const char* name, uint32_t condition) {
     core::Pass& pass = list.dispatch(name, list.add(core::ShaderDesc{name, vector_pack}),
                                      {{params, read}, {masks, readWrite}, {counters, readWrite}}, kBins);
@@ -226,15 +242,59 @@ core::PassList Canvas::describe() const {
       {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}, {entries, write}},
       kSegments, kMarkOne);
   if (!software_) pack("pack", kMarked);
-  core::Pass& allot =
-      dispatch("allot", {"allot", software_ ? Spirv(vector_allot_software) : Spirv(vector_allot)},
-               {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, kWords);
-  allot.condition = kMarked;
+  const auto allot = [&](const core::ShaderDesc& shader, uint32_t groups, bool listing) {
+    core::Pass& pass = dispatch(
+        shader.name, shader, {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, groups);
+    pass.condition = kMarked;
+    if (!listing) return;
+    pass.uses[pass.useCount++] = {chords, read};
+    pass.uses[pass.useCount++] = {rowList, readWrite};
+  };
+  // From lists, or, where these did not suffice, without them; allot says which.
+  const auto fill = [&](const core::ShaderDesc& shader, bool fromLists, uint32_t condition, bool beside) {
+    core::Pass& pass =
+        list.dispatchIndirect(shader.name, list.add(shader),
+                              {{params, read},
+                               {shapes, read},
+                               {paths, read},
+                               {words, read},
+                               {counters, read},
+                               {entries, readWrite},
+                               {chords, read},
+                               {rowList, read}},
+                              counters, fromLists ? offsetof(CanvasCounters, rowsX) : offsetof(CanvasCounters, fillX));
+    for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
+    pass.condition = condition;
+    pass.beside = beside;
+  };
+  static constexpr const char* kFills[] = {"fill", "fill, several drawings", "fill, projective"};
+  static constexpr const char* kUnlisted[] = {"fill without lists", "fill without lists, several drawings",
+                                              "fill without lists, projective"};
   if (software_) {
-    either({"fill", "fill, several drawings", "fill, projective"},
-           {vector_fill_software_one, vector_fill_software, vector_fill_software_projective},
-           {{paths, read}, {words, read}, {entries, readWrite}, {counters, read}}, kSegments, kMarkOne);
-  } else { // from the lists, or, where these did not suffice, without them; allot says which
+    allot({"allot", vector_allot_rows}, kWords, true);
+    allot({"allot again", vector_allot_software}, kOnce, false);
+    clear({"clear entries", vector_clear_entries}, entries);
+    const std::array<Spirv, 3> listed = {vector_fill_pieces_one, vector_fill_pieces, vector_fill_pieces},
+                               unlisted = {vector_fill_software_one, vector_fill_software,
+                                           vector_fill_software_projective};
+    for (uint32_t k = 0; k < 3; ++k) {
+      core::Pass& pass = list.dispatch(kFills[k], list.add(core::ShaderDesc{kFills[k], listed[k]}),
+                                       {{params, read},
+                                        {paths, read},
+                                        {words, read},
+                                        {counters, readWrite},
+                                        {chords, read},
+                                        {rowList, read},
+                                        {entries, readWrite}},
+                                       kFill);
+      pass.condition = kMarkOne + k;
+      pass.beside = k > 0;
+    }
+    fill({"left of tiles", vector_fill_left}, true, kMarked, false);
+    fill({"clear entries again", vector_clear_entries}, false, kMarked, false);
+    for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, k > 0);
+  } else {
+    allot({"allot", vector_allot}, kWords, false);
     const auto split = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass =
           dispatch(shader.name, shader, {{paths, read}, {words, read}, {masks, readWrite}, {counters, read}}, kSplits);
@@ -243,30 +303,11 @@ core::PassList Canvas::describe() const {
     };
     split({"split, several drawings", vector_split}, kSplit);
     split({"split", vector_split_one}, kSplitOne).beside = true;
-    static constexpr const char* kFills[] = {"fill",
-                                             "fill, several drawings",
-                                             "fill, projective",
-                                             "fill without lists",
-                                             "fill without lists, several drawings",
-                                             "fill without lists, projective"};
-    const std::array<Spirv, 6> spirv = {vector_fill_rows_one, vector_fill_rows, vector_fill_rows,
-                                        vector_fill_one,      vector_fill,      vector_fill_projective};
-    for (uint32_t k = 0; k < 6; ++k) {
-      core::Pass& pass =
-          list.dispatchIndirect(kFills[k], list.add(core::ShaderDesc{kFills[k], spirv[k]}),
-                                {{params, read},
-                                 {shapes, read},
-                                 {paths, read},
-                                 {words, read},
-                                 {counters, read},
-                                 {entries, readWrite},
-                                 {chords, read},
-                                 {rowList, read}},
-                                counters, k < 3 ? offsetof(CanvasCounters, rowsX) : offsetof(CanvasCounters, fillX));
-      for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
-      pass.condition = kMarkOne + k % 3;
-      pass.beside = true; // split's barrier, which is owed where that is left out, is all of theirs
-    }
+    const std::array<Spirv, 3> listed = {vector_fill_rows_one, vector_fill_rows, vector_fill_rows},
+                               unlisted = {vector_fill_one, vector_fill, vector_fill_projective};
+    // Split's barrier, which is owed where that is left out, is all of theirs.
+    for (uint32_t k = 0; k < 3; ++k) fill({kFills[k], listed[k]}, true, kMarkOne + k, true);
+    for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, true);
   }
   // By target: the view alone, rgba8, rgba16f.
   const auto addTarget = [&](core::Pass& pass, uint32_t target, uint32_t condition) {
@@ -308,12 +349,26 @@ core::PassList Canvas::describe() const {
     }
   };
   if (software_) {
-    dispatch("sift", {"sift", vector_sift}, {{paths, read}, {words, read}, {masks, readWrite}, {counters, read}},
-             kSift);
+    const auto sift = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
+      core::Pass& pass = dispatch(shader.name, shader,
+                                  {{paths, read}, {words, read}, {masks, readWrite}, {counters, readWrite}}, kSift);
+      pass.condition = condition;
+      return pass;
+    };
+    sift({"sift", vector_sift}, kSiftPlain);
+    sift({"sift, groups", vector_sift_split}, kSplit).beside = true;
     const std::array<const char*, 3> solid = {"solid tiles", "solid tiles rgba8", "solid tiles rgba16f"};
     const std::array<Spirv, 3> shaders = {vector_tiles_solid0, vector_tiles_solid1, vector_tiles_solid2};
     for (uint32_t t = 0; t < 3; ++t)
       addTarget(dispatch(solid[t], {solid[t], shaders[t]}, {{masks, read}, {view, write}}, kTiles), t, kAny);
+    const std::array<const char*, 3> byRows = {"raster rows", "raster rows rgba8", "raster rows rgba16f"};
+    const std::array<Spirv, 3> rowShaders = {vector_tiles_rows0, vector_tiles_rows1, vector_tiles_rows2};
+    for (uint32_t t = 0; t < 3; ++t)
+      addTarget(list.dispatchIndirect(
+                    byRows[t], list.add(core::ShaderDesc{byRows[t], rowShaders[t]}),
+                    {{params, read}, {paths, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}},
+                    counters, offsetof(CanvasCounters, tilesX)),
+                t, kAny);
     painted({"raster", "raster rgba8", "raster rgba16f"}, {vector_tiles0, vector_tiles1, vector_tiles2}, kPlain,
             shader::kPaintedArguments);
     painted({"raster gradients, several drawings", "raster gradients rgba8, several drawings",

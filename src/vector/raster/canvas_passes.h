@@ -8,7 +8,21 @@ namespace gpgp::vector {
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
 [[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28, kAsideTiles = 29;
 // Workgroup counts and conditions of a record.
-enum Groups : uint32_t { kBegin, kPaths, kSegments, kWords, kRaster, kTiles, kSift, kBins, kSplits, kStamps };
+enum Groups : uint32_t {
+  kBegin,
+  kPaths,
+  kSegments,
+  kWords,
+  kRaster,
+  kTiles,
+  kSift,
+  kBins,
+  kSplits,
+  kStamps,
+  kOnce,
+  kClear,
+  kFill
+};
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
   kPlain = 0,
@@ -33,9 +47,10 @@ enum Conditions : uint32_t {
   kStampOne,
   kStampDrawings,
   kMarked,
-  kStampsAlone
+  kStampsAlone,
+  kSiftPlain
 };
-static_assert(kStampsAlone < core::kMaxConditions);
+static_assert(kSiftPlain < core::kMaxConditions);
 
 inline uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 

@@ -1,0 +1,51 @@
+#version 460
+// For software devices, as allot.comp: entries for the tiles of each row of a path, one after another, and a list of
+// the rows that have any.
+//
+// An invocation has a row's first word, and finds which tiles have edges from what the row's pieces say. Where entries
+// do not suffice, allot.comp deals them out again.
+#extension GL_GOOGLE_include_directive : require
+#include "canvas.glsl"
+#include "pieces.glsl"
+layout(local_size_x = 64) in;
+const uint kMostPieces = 7000; // of a row, as lavapipe ends a shader's loops after 65 535 turns
+
+void main() {
+  const uint total = min(counters.words, header.wordLimit);
+  for (uint i = gl_GlobalInvocationID.x; i < total; i += gl_NumWorkGroups.x * 64) {
+    const TileWord head = fetchTileWord(i);
+    if ((head.firstEntry & kOwned) == 0) continue;
+    const uint path = head.firstEntry ^ kOwned;
+    const PlacedPath p = fetchPath(path);
+    const uint end = i + wordsInRow(p);
+    uint count = 0, turns = 0;
+    for (uint w = i; w < end; ++w) {
+      const TileWord word = fetchTileWord(w);
+      uint edges = word.edges;
+      for (uint next = word.stamped; next != 0 && turns < kMostPieces; ++turns) {
+        const Piece piece = fetchPiece(next - 1);
+        edges |= piece.edges;
+        next = piece.next;
+      }
+      if (turns == kMostPieces) { // that all have edges is not wrong
+        const uint across = p.right - p.left - (w - i) * 32;
+        edges = across < 32 ? (1u << across) - 1 : ~0u;
+      }
+      words[w].edges = edges;
+      count += bitCount(edges);
+    }
+    uint next = 0;
+    if (count != 0) {
+      next = atomicAdd(counters.entries, count);
+      const uint place = atomicAdd(counters.cleared, 1), groups = place / 8 + 1;
+      pathRows[place] = uvec4(i, path, p.top + (i - p.firstWord) / wordsInRow(p), 0);
+      atomicMax(counters.rowsX, min(groups, 32768));
+      atomicMax(counters.rowsY, (groups - 1) / 32768 + 1);
+      counters.rowsZ = 1;
+    }
+    for (uint w = i; w < end; ++w) {
+      words[w].firstEntry = next;
+      next += bitCount(words[w].edges);
+    }
+  }
+}
