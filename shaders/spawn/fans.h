@@ -38,6 +38,7 @@ GPGP_FN Division divisionOf(GPGP_GRAPH Shape s, uint wanted) {
   uint weightedParts = 0u;
   d.part.fixedBefore = 0.0f;
   for (uint i = 0u; i < count; ++i) {
+    GPGP_TURN;
     const float v = parameter(GPGP_G s, i);
     const uint bit = edgeTarget(GPGP_G s.node, i) != 0u ? 1u << i : 0u;
     if (i == wanted) {
@@ -97,8 +98,10 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
     return fan;
   }
   const uint count = graphWords[s.node + kNodeEdgeCount];
-  for (uint i = 0u; i < count; ++i)
+  for (uint i = 0u; i < count; ++i) {
+    GPGP_TURN;
     if (edgeTarget(GPGP_G s.node, i) != 0u) fan.successors |= 1u << i;
+  }
   fan.count = uint(bitCount(fan.successors));
   if (isOperator(op, kOpCompSplit)) {
     const Faces faces = facesOf(GPGP_G s.geometry, fan.successors);
@@ -110,7 +113,7 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
 
 /// The shape becomes its child number index, below fan.count. Of the fan it needs successors and length.
 GPGP_FN void toChild(GPGP_GRAPH GPGP_INOUT(Shape) s, Fan fan, uint index) {
-  if (fan.successors == 0u) return;
+  if (GPGP_OPERATORS == 0u || fan.successors == 0u) return;
   const uint op = graphWords[s.node + kNodeOperator] & kOperatorMask;
   const uint argument = graphWords[s.node + kNodeArgument];
   const uint argument2 = graphWords[s.node + kNodeArgument2];

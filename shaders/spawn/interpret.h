@@ -26,11 +26,15 @@ GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op) {
   if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
   const uint count = graphWords[s.node + kNodeEdgeCount];
   float total = 0.0f;
-  for (uint i = 0u; i < count; ++i) total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u)));
+  for (uint i = 0u; i < count; ++i) {
+    GPGP_TURN;
+    total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u)));
+  }
   const float x = multiply(subtract(first, floor(first)), total);
   float sum = 0.0f;
   uint chosen = 0u;
   for (uint i = 0u; i < count; ++i) {
+    GPGP_TURN;
     const float p = max(0.0f, parameter(GPGP_G s, i + 1u));
     if (p > 0.0f && (sum <= x)) chosen = i;
     sum = add(sum, p);
@@ -43,7 +47,10 @@ GPGP_FN void transform(GPGP_GRAPH GPGP_INOUT(Shape) s, uint op) {
   // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called.
   vec3 value = vec3(0.0f);
   const uint count = min(graphWords[s.node + kNodeParameterCount], 3u);
-  for (uint i = 0u; i < count; ++i) value = withComponent(value, i, parameter(GPGP_G s, i));
+  for (uint i = 0u; i < count; ++i) {
+    GPGP_TURN;
+    value = withComponent(value, i, parameter(GPGP_G s, i));
+  }
   switch (op) {
   case kOpTranslate: translate(s, value); break;
   case kOpRotate: rotate(s, rotationOf(value)); break;
@@ -59,6 +66,7 @@ GPGP_FN void transform(GPGP_GRAPH GPGP_INOUT(Shape) s, uint op) {
 /// first.
 GPGP_FN uint runChain(GPGP_GRAPH GPGP_INOUT(Shape) s, bool /* arrives */, uint maxDepth) {
   for (uint step = 0u; step < kMaxChain; ++step) {
+    GPGP_TURN;
     if (s.node == 0u) return kEndDiscarded;
     if (s.depth > maxDepth) return kEndUnfinished;
     const uint operatorWord = graphWords[s.node + kNodeOperator];

@@ -37,7 +37,7 @@ struct SpawnRound {
   uint taken;                     // by workgroups of this round; behind the last one: room that it kept full stacks in
   uint finished;                  // workgroups
   uint linked;                    // the first round of a phase: colliders that its queries can find
-  uint given;                     // shapes that its workgroups were willing to leave to idle ones
+  uint given; // shapes that its workgroups were willing to leave to idle ones; by batches: axioms that all rounds took
 };
 
 /// What the CPU says with each record.

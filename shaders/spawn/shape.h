@@ -8,6 +8,12 @@
 #include "core/random.h"
 #include "spawn/graph_format.h"
 
+// Stands in each loop whose turns the graph decides. Compilers of software devices allow a kernel a number of turns, so
+// that there it has to count them.
+#ifndef GPGP_TURN
+#define GPGP_TURN
+#endif
+
 GPGP_SHADER_BEGIN
 
 struct Shape {

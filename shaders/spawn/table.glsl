@@ -6,18 +6,20 @@ layout(constant_id = 2) const uint tableStart = 0; // in graphRows
 uint familyOf(uint node) { return graphWords[4u * tableStart + (node - kHeaderSize) / kNodeSize]; }
 uvec4 tableAt(uint offset) { return graphRows[tableStart + offset]; }
 
+// What no frame has costs nothing.
+bool hasFrame(uint flags, uint flag) { return (GPGP_FRAMES & flag) != 0u && (flags & flag) != 0u; }
 float frameFactor(vec3 size, uint factor) {
   return factor == kFrameNoFactor ? 1.0f : component(size, factor);
 }
 vec3 frameVector(uint row, vec3 v, vec3 size, float seed, uint flags, uint factors) {
-  if ((flags & kFrameDrawn) != 0u) {
+  if (hasFrame(flags, kFrameDrawn)) {
     const vec3 d = unpackVector(tableAt(row + 1u));
     v = vec3(add(v.x, multiply(d.x, seed)), add(v.y, multiply(d.y, seed)), add(v.z, multiply(d.z, seed)));
   }
   if (factors != 0x3fu)
     v = vec3(multiply(frameFactor(size, factors & 3u), v.x), multiply(frameFactor(size, (factors >> 2) & 3u), v.y),
              multiply(frameFactor(size, factors >> 4), v.z));
-  if ((flags & kFrameAdded) != 0u) {
+  if (hasFrame(flags, kFrameAdded)) {
     const vec3 c = unpackVector(tableAt(row + 2u));
     v = vec3(add(v.x, c.x), add(v.y, c.y), add(v.z, c.z));
   }
@@ -28,18 +30,18 @@ void transformBy(inout Shape s, uint frame) {
   const uint flags = translation.w;
   const float seed = unitFloat(s.seed);
   const vec3 size = s.size;
-  if ((flags & kFrameTranslates) != 0u)
+  if (hasFrame(flags, kFrameTranslates))
     s.position = framePoint(s, frameVector(frame, unpackVector(translation), size, seed, flags, flags & 0x3fu));
-  if ((flags & kFrameScales) != 0u) {
+  if (hasFrame(flags, kFrameScales)) {
     const uint scale = frame + kFrameScale / 4u;
     resize(s, frameVector(scale, unpackVector(tableAt(scale)), size, seed, flags, (flags >> 6) & 0x3fu));
   }
-  if ((flags & kFrameRotates) != 0u) {
+  if (hasFrame(flags, kFrameRotates)) {
     const uint rotation = frame + kFrameRotation / 4u;
     Rotation r;
     r.c0 = unpackVector(tableAt(rotation));
     r.c1 = unpackVector(tableAt(rotation + 1u));
-    if ((flags & kFrameTurned) != 0u)
+    if (hasFrame(flags, kFrameTurned))
       r = rotationOf(vec3(add(r.c0.x, multiply(r.c1.x, seed)), add(r.c0.y, multiply(r.c1.y, seed)),
                           add(r.c0.z, multiply(r.c1.z, seed))));
     else
@@ -51,6 +53,7 @@ void transformBy(inout Shape s, uint frame) {
 uint toDescendant(inout Shape s, uint family, uint index, uint maxDepth) {
   const uvec4 child = tableAt(family + 1u + index);
   for (uint i = 0; i < child.y; ++i) {
+    GPGP_TURN;
     const uvec4 row = tableAt(child.x + kStepSize * i);
     const uint op = row.x & kStepOperator;
     if (isStep(op, kOpSubDiv)) {
@@ -64,7 +67,7 @@ uint toDescendant(inout Shape s, uint family, uint index, uint maxDepth) {
     } else if (isStep(op, kOpReplicate)) {
       toCopy(s, row.y);
     }
-    if (row.w != 0u) transformBy(s, row.w);
+    if (GPGP_FRAMES != 0u && row.w != 0u) transformBy(s, row.w);
   }
   s.node = child.z & ~kEdgeRecursive;
   s.depth += child.z >> 31;

@@ -20,11 +20,26 @@ namespace {
 
 std::pmr::memory_resource* memory() { return std::pmr::new_delete_resource(); }
 
+/// Subgroup arithmetic, ballots and shuffles in compute shaders.
+bool hasSubgroups(const host::HeadlessDevice& device) {
+  VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
+  device.vki().getPhysicalDeviceProperties2(device.physicalDevice(), &properties);
+  constexpr VkSubgroupFeatureFlags kWanted =
+      VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+  return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
+         (subgroups.supportedOperations & kWanted) == kWanted;
+}
+bool canRun(const host::HeadlessDevice& device, spawn::KernelTarget target) {
+  return target == spawn::KernelTarget::any ||
+         (hasSubgroups(device) && (target == spawn::KernelTarget::subgroups || device.isSoftware()));
+}
+
 /// Software devices compare by vendor and model like all others.
 bool isFor(const spawn::KernelInfo& info, const host::HeadlessDevice& device) {
   const auto& properties = device.properties();
   return (info.vendor == 0 || info.vendor == properties.vendorID) &&
-         (info.device == 0 || info.device == properties.deviceID) && (!info.subgroups || hasSubgroups(device));
+         (info.device == 0 || info.device == properties.deviceID) && canRun(device, info.target);
 }
 
 } // namespace
@@ -94,32 +109,28 @@ std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std:
   return spawn::scheduleOf(graph, spawn::makeFlow(graph), roots, std::filesystem::path(nameOrFile).stem().string());
 }
 
-bool hasSubgroups(const host::HeadlessDevice& device) {
-  VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
-  device.vki().getPhysicalDeviceProperties2(device.physicalDevice(), &properties);
-  constexpr VkSubgroupFeatureFlags kWanted =
-      VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
-  return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
-         (subgroups.supportedOperations & kWanted) == kWanted;
+spawn::KernelTarget targetFor(const host::HeadlessDevice& device, const spawn::Graph& graph) {
+  for (const spawn::KernelTarget target : spawn::targetsOf(graph))
+    if (canRun(device, target)) return target;
+  return spawn::KernelTarget::any;
 }
 
 std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules,
-                                       bool subgroups, bool matching) {
+                                       spawn::KernelTarget target, bool matching) {
   std::vector<KernelCode> kernels(schedules.size());
   onAllProcessors(schedules.size(), [&](size_t i) {
     const spawn::Schedule& schedule = schedules[i];
     auto code = spawn::compileKernel(spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{}),
-                                     subgroups);
+                                     target);
     if (!code) throw Failure(schedule.name + ": " + code.error().text);
     kernels[i] = std::move(*code);
   });
   return kernels;
 }
 
-spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, bool subgroups) {
+spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, spawn::KernelTarget target) {
   spawn::KernelInfo info;
-  info.subgroups = subgroups;
+  info.target = target;
   info.groups = static_cast<uint32_t>(schedule.groups);
   std::snprintf(info.schedule, sizeof info.schedule, "%s", schedule.name.c_str());
   return info;

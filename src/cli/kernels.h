@@ -37,17 +37,17 @@ std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std:
 /// The option --group-size: t of the heuristics.
 void addGroupSize(CLI::App& command, spawn::Heuristics& heuristics);
 
-/// Whether the library takes kernels that need subgroup operations on this device.
-bool hasSubgroups(const host::HeadlessDevice& device);
+/// The best of what a graph's kernels can be compiled for that the library takes on this device.
+spawn::KernelTarget targetFor(const host::HeadlessDevice& device, const spawn::Graph& graph);
 
 using KernelCode = std::vector<uint32_t>; ///< as spawn::Kernel::code
 /// The kernel of each schedule, compiled on all processors. matching: execution groups that differ in parameters only
 /// share code.
 std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules,
-                                       bool subgroups, bool matching);
+                                       spawn::KernelTarget target, bool matching);
 
 /// What a kernel says of itself, for any device and number of axioms.
-spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, bool subgroups);
+spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, spawn::KernelTarget target);
 /// As it stands in a file behind the graph.
 std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::KernelInfo& info,
                                        std::span<const uint32_t> code);

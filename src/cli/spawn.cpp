@@ -91,14 +91,14 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
     return taken({tuned.info, {tuned.code.begin(), tuned.code.end()}}, file);
   }
-  const bool subgroups = hasSubgroups(session.device());
+  const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
   if (spawn::namedSchedule(grammar.graph, name) || !isBaked(name)) {
     const auto schedule = scheduleFor(grammar.graph, name, options.heuristics);
     if (!schedule)
       throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
                   name + "\"");
-    const auto code = compileKernels(grammar.graph, std::span(&*schedule, 1), subgroups, options.matching == "on");
-    return {kernelWords(grammar, kernelInfo(*schedule, subgroups), code[0]), schedule->name, {}, schedule->groups};
+    const auto code = compileKernels(grammar.graph, std::span(&*schedule, 1), target, options.matching == "on");
+    return {kernelWords(grammar, kernelInfo(*schedule, target), code[0]), schedule->name, {}, schedule->groups};
   }
   const auto kernel = kernelFor(kernelsIn(name, grammar), session.device(), count);
   if (!kernel) throw Failure(name + " holds no kernel that is for this device");

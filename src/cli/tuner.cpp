@@ -12,7 +12,9 @@ namespace {
 
 /// Sizes and counts of workgroups that are worth a try. Stacks share what a spawner has by default; no two of them have
 /// the same pipeline.
-std::vector<spawn::Fit> fits(bool software, bool balances) {
+std::vector<spawn::Fit> fits(spawn::KernelTarget target, bool software, bool balances) {
+  if (target == spawn::KernelTarget::software) // what has none of its own takes a subgroup; this is lavapipe's, mostly
+    return {{8, 16, 2048, 512}, {8, 128, 2048, 512}};
   const uint32_t spread = software ? 512 : 4096;
   std::vector<spawn::Fit> all;
   for (const uint32_t groupSize : software ? std::vector<uint32_t>{32, 64} : std::vector<uint32_t>{32, 64, 128})
@@ -56,7 +58,7 @@ class Tuner {
 public:
   Tuner(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms, const TuneSettings& settings)
       : session_(session), grammar_(grammar), settings_(settings), axioms_(static_cast<uint32_t>(axioms.size())),
-        software_(session.device().isSoftware()), subgroups_(hasSubgroups(session.device())) {
+        target_(targetFor(session.device(), grammar.graph)), software_(session.device().isSoftware()) {
     findSchedules();
     deriver_.emplace(session, grammar, axioms, DeriverOptions{});
   }
@@ -76,7 +78,8 @@ public:
       // Two schedules are enough for the numbers: what is behind them now hardly wins by them.
       std::vector<Candidate> sizes;
       for (size_t i = 0; i < std::min<size_t>(2, all.size()); ++i)
-        for (const spawn::Fit& fit : fits(software_, isUneven(grammar_.graph))) sizes.push_back({all[i].schedule, fit});
+        for (const spawn::Fit& fit : fits(target_, software_, isUneven(grammar_.graph)))
+          sizes.push_back({all[i].schedule, fit});
       addAll(all, measured(std::move(sizes), "sizes", kForSizes));
       if (const Candidate& best = all.front(); best.fit.groupSize) {
         std::vector<Candidate> spreads;
@@ -94,7 +97,7 @@ private:
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
   spawn::KernelInfo infoOf(const Candidate& candidate) const {
-    spawn::KernelInfo info = kernelInfo(tuned_.schedules[candidate.schedule], subgroups_);
+    spawn::KernelInfo info = kernelInfo(tuned_.schedules[candidate.schedule], target_);
     info.fit = candidate.fit;
     return info;
   }
@@ -180,7 +183,7 @@ private:
         missing.push_back(c.schedule);
         schedules.push_back(tuned_.schedules[c.schedule]);
       }
-    auto compiled = compileKernels(grammar_.graph, schedules, subgroups_, settings_.matching);
+    auto compiled = compileKernels(grammar_.graph, schedules, target_, settings_.matching);
     for (size_t i = 0; i < missing.size(); ++i) kernels_[missing[i]] = std::move(compiled[i]);
   }
   std::vector<std::pmr::vector<uint32_t>> wordsOf(std::span<const Candidate> candidates) const {
@@ -260,7 +263,8 @@ private:
   const BakedGraph& grammar_;
   const TuneSettings& settings_;
   const uint32_t axioms_;
-  const bool software_, subgroups_;
+  const spawn::KernelTarget target_;
+  const bool software_;
   std::vector<KernelCode> kernels_; // by schedule; empty: not compiled yet
   std::optional<Deriver> deriver_;
   Tuned tuned_;

@@ -93,6 +93,7 @@ Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
                               (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT);
   if (sizes.minSubgroupSize == sizes.maxSubgroupSize) device.subgroupSize = sizes.maxSubgroupSize;
   device.software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  if (device.software) device.subgroupSize = subgroups.subgroupSize; // theirs is a vector's
 
   gpu_ = makeUnique<GpuMemory>(host_, device, host_, info.gpuAllocator);
   if (info.pipelineCache) {

@@ -133,8 +133,8 @@ void compare(const spawn::Derivation& cpu, const GpgpSpawnReport& gpu, const std
 /// Kernels of one grammar, each made once: schedules that wait at the same nodes have the same one.
 class Kernels {
 public:
-  Kernels(const BakedGraph& grammar, bool subgroups, bool matching = false)
-      : grammar_(grammar), subgroups_(subgroups), matching_(matching) {}
+  Kernels(const BakedGraph& grammar, spawn::KernelTarget target, bool matching = false)
+      : grammar_(grammar), target_(target), matching_(matching) {}
   /// Its number.
   size_t add(const spawn::Schedule& schedule) {
     const auto [at, isNew] =
@@ -148,15 +148,16 @@ public:
   std::vector<std::pmr::vector<uint32_t>> compile(size_t first, size_t count) const {
     std::vector<std::pmr::vector<uint32_t>> words;
     const auto part = std::span(schedules_).subspan(first, count);
-    const auto code = compileKernels(grammar_.graph, part, subgroups_, matching_);
+    const auto code = compileKernels(grammar_.graph, part, target_, matching_);
     for (size_t i = 0; i < code.size(); ++i)
-      words.push_back(kernelWords(grammar_, kernelInfo(part[i], subgroups_), code[i]));
+      words.push_back(kernelWords(grammar_, kernelInfo(part[i], target_), code[i]));
     return words;
   }
 
 private:
   const BakedGraph& grammar_;
-  bool subgroups_, matching_;
+  spawn::KernelTarget target_;
+  bool matching_;
   std::map<std::pair<std::vector<bool>, spawn::Roots>, size_t> known_;
   std::vector<spawn::Schedule> schedules_;
 };
@@ -271,7 +272,6 @@ void heuristics(Session& session, const std::vector<Case>& cases, const Options&
   std::printf(
       "| test, edges | pairs | pairs that differ | axioms | t | p | H (deviation) | not H | H faster | not H / H |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n");
-  const bool subgroups = hasSubgroups(session.device());
   double tests = 0; // that share the time
   for (const char* name : {"H1", "H2", "H3"}) tests += options.wants("heuristics", name);
   for (const auto& [name, grammarName] :
@@ -285,7 +285,7 @@ void heuristics(Session& session, const std::vector<Case>& cases, const Options&
     size_t edges = 0;
     for (const auto& links : flow.out) edges += links.size();
     std::mt19937 random(1);
-    Kernels kernels(grammar, subgroups);
+    Kernels kernels(grammar, targetFor(session.device(), grammar.graph));
     std::vector<std::array<size_t, 2>> pairs;
     for (uint32_t i = 0; i < options.pairs; ++i) {
       std::vector<bool> isStatic(grammar.graph.edges.size());
@@ -393,14 +393,13 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
       "| case | edges | axioms | terminals | CPU | interpreter | default | SGL (groups) | RW | DGN | heuristic | "
       "tuned | found in s | tuned / best named ≤ 1 | all partitions' best (kernels) | tuned / that ≤ 1.05 | "
       "CPU / tuned | GB/s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const bool subgroups = hasSubgroups(session.device());
   double longest = 0; // row
   for (const Case& c : cases) {
     if (!options.wants("schedules", c.name) || !budget.allows(longest, c.name)) continue;
     const auto begin = Clock::now();
     OnDevice on(session, c, options);
     const spawn::Graph& graph = on.grammar.graph;
-    Kernels kernels(on.grammar, subgroups);
+    Kernels kernels(on.grammar, targetFor(session.device(), graph));
     std::map<std::string, size_t> named;
     for (const char* name : spawn::kScheduleNames) named[name] = kernels.add(*spawn::namedSchedule(graph, name));
     Times times(*on.deriver, kernels, on.reference.result, c.name, options.repeat);
@@ -465,7 +464,6 @@ void searches(Session& session, const std::vector<Case>& cases, const Options& o
               "| case | edges | axioms | default | OPTs (s) | OPTH (s) | OPTs,M (s) | OPTH,M (s) | default / best |\n"
               "|---|---|---|---|---|---|---|---|---|\n",
               options.samples);
-  const bool subgroups = hasSubgroups(session.device());
   double longest = 0; // row
   for (const Case& c : cases) {
     if (!options.wants("searches", c.name) || !budget.allows(longest, c.name)) continue;
@@ -474,7 +472,7 @@ void searches(Session& session, const std::vector<Case>& cases, const Options& o
     double usual = std::numeric_limits<double>::quiet_NaN(), best = std::numeric_limits<double>::infinity();
     std::string columns;
     for (const bool matching : {false, true}) {
-      Kernels kernels(on.grammar, subgroups, matching);
+      Kernels kernels(on.grammar, targetFor(session.device(), on.grammar.graph), matching);
       Times times(*on.deriver, kernels, on.reference.result, c.name, options.repeat);
       // Named schedules are measured once for both searches, and each search's seconds hold them.
       const auto begin = Clock::now();
@@ -514,7 +512,7 @@ void partitions(Session& session, const std::vector<Case>& cases, const Options&
     size_t groups, kernel;
   };
   std::vector<Row> rows;
-  Kernels kernels(grammar, hasSubgroups(session.device()));
+  Kernels kernels(grammar, targetFor(session.device(), grammar.graph));
   spawn::PartitionEnumerator enumerator(flow);
   do {
     const auto schedule = scheduleOf(grammar.graph, flow, enumerator.roots(), std::to_string(rows.size()));
@@ -569,9 +567,9 @@ void vertices(Session& session, const std::vector<Case>& cases, const Options& o
     deriverOptions.vertices = true;
     Deriver deriver(session, grammar, axiomsOf(c, count), deriverOptions);
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
-    const bool subgroups = hasSubgroups(session.device());
-    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
-    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), code[0]));
+    const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), target, false);
+    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, target), code[0]));
     GpgpSpawnReport report = deriver.fit(prepared);
     while (report.verticesWritten < report.vertices && count > 1) { // fewer, where the device binds less
       count = static_cast<uint32_t>(0.95 * count * report.verticesWritten / report.vertices);
@@ -601,8 +599,8 @@ void bounds(Session& session, const std::vector<Case>& cases, const Options& opt
     const BakedGraph grammar = grammarOf(c);
     const auto axioms = axiomsOf(c, shareOf(options, c.axioms));
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
-    const bool subgroups = hasSubgroups(session.device());
-    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
+    const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), target, false);
     std::printf("| %s | %u |", c.name.c_str(), grammar.graph.buckets);
     for (const bool asVertices : {false, true}) {
       DeriverOptions deriverOptions;
@@ -610,7 +608,7 @@ void bounds(Session& session, const std::vector<Case>& cases, const Options& opt
       Deriver without(session, grammar, axioms, deriverOptions);
       deriverOptions.bounds = true;
       Deriver with(session, grammar, axioms, deriverOptions);
-      const Grammar prepared = without.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), code[0]));
+      const Grammar prepared = without.prepare(kernelWords(grammar, kernelInfo(schedule, target), code[0]));
       const GpgpSpawnReport report = without.fit(prepared);
       with.fit(prepared);
       std::array<double, 2> best;
@@ -639,10 +637,10 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
     if (!options.wants("curves", c.name) || (!usual && options.wants("curves", "mc_spaceship"))) continue;
     const BakedGraph grammar = grammarOf(c);
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
-    const bool subgroups = hasSubgroups(session.device());
-    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), subgroups, false);
+    const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), target, false);
     Deriver deriver(session, grammar, axiomsOf(c, 1), {});
-    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, subgroups), code[0]));
+    const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, target), code[0]));
     const VkDeviceSize range = session.device().properties().limits.maxStorageBufferRange;
     uint32_t records = 1;
     double before = 0, work = 0; // seconds of ten times fewer: all, and what grows with their number

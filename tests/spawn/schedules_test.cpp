@@ -158,7 +158,7 @@ Three = Translate(0, 3, 0) Scale(2, 2, 2) T;
   EXPECT_EQ(own.find("matchedWords"), std::string::npos);
   EXPECT_NE(shared.find("matchedWords"), std::string::npos);
   EXPECT_EQ(spawn::generate(graph, schedule.waits, spawn::Roots()).functions, own);
-  for (const bool subgroups : {false, true}) EXPECT_TRUE(spawn::compileKernel(matched, subgroups));
+  for (const spawn::KernelTarget target : spawn::targetsOf(graph)) EXPECT_TRUE(spawn::compileKernel(matched, target));
 }
 
 TEST(Schedules, KernelsOfAllSchedulesCompile) {
@@ -168,8 +168,8 @@ TEST(Schedules, KernelsOfAllSchedulesCompile) {
     for (const char* schedule : spawn::kScheduleNames) {
       const spawn::KernelSource source = spawn::generate(graph, spawn::namedSchedule(graph, schedule)->waits);
       texts.insert(source.functions);
-      for (const bool subgroups : {false, true}) {
-        const auto spirv = spawn::compileKernel(source, subgroups);
+      for (const spawn::KernelTarget target : spawn::targetsOf(graph)) {
+        const auto spirv = spawn::compileKernel(source, target);
         ASSERT_TRUE(spirv) << spirv.error().text;
         EXPECT_GT(spirv->size(), 1000u);
       }

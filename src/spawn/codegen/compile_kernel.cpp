@@ -46,24 +46,33 @@ struct Process {
 };
 } // namespace
 
-std::string kernelText(const std::string& functions, bool subgroups) {
+std::string kernelText(const std::string& functions, KernelTarget target) {
   return std::string("#version 460\n"
                      "#extension GL_GOOGLE_include_directive : require\n"
                      "#extension GL_KHR_memory_scope_semantics : require\n") +
-         (subgroups ? "#define GPGP_SUBGROUPS\n#extension GL_KHR_shader_subgroup_arithmetic : require\n"
-                      "#extension GL_KHR_shader_subgroup_ballot : require\n"
-                      "#extension GL_KHR_shader_subgroup_shuffle : require\n"
-                    : "") +
+         (target != KernelTarget::any
+              ? "#define GPGP_SUBGROUPS\n#extension GL_KHR_shader_subgroup_arithmetic : require\n"
+                "#extension GL_KHR_shader_subgroup_ballot : require\n"
+                "#extension GL_KHR_shader_subgroup_shuffle : require\n"
+              : "") +
+         (target == KernelTarget::software
+              ? "#define GPGP_SOFTWARE\nuint loopTurns; // of the invocation\n#define GPGP_TURN ++loopTurns\n"
+              : "") +
          "#include \"spawn/bindings.glsl\"\n"
          "#include \"spawn/operators.h\"\n"
          "#include \"spawn/table_format.h\"\n" +
          functions + "#include \"spawn/derive.glsl\"\n";
 }
 
-core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, bool subgroups) {
+std::span<const KernelTarget> targetsOf(const Graph& graph) {
+  static constexpr KernelTarget kTargets[] = {KernelTarget::software, KernelTarget::subgroups, KernelTarget::any};
+  return std::span(kTargets).subspan(graph.phases ? 1 : 0);
+}
+
+core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, KernelTarget target) {
   static const Process process;
   static const TBuiltInResource limits = resources();
-  const std::string text = kernelText(source.functions, subgroups);
+  const std::string text = kernelText(source.functions, target);
   const char* const texts[] = {text.c_str()};
   glslang::TShader shader(EShLangCompute);
   shader.setStrings(texts, 1);

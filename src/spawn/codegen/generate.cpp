@@ -230,8 +230,10 @@ private:
   // ---------------------------------------------------------------- by table
 
   void writeTable() {
+    if (std::find(table_.family.begin(), table_.family.end(), true) == table_.family.end()) return;
     add("#define GPGP_TABLE\nbool isStep(uint op, uint which) { return (" + number(table_.stepOperators) +
-        " & (1u << which)) != 0u && op == which; }\n#include \"spawn/table.glsl\"\n");
+        " & (1u << which)) != 0u && op == which; }\n#define GPGP_FRAMES " + number(table_.frameFlags) +
+        "\n#include \"spawn/table.glsl\"\n");
   }
 
   // ---------------------------------------------------------------- chains
@@ -389,18 +391,34 @@ private:
     add("  " + take(node, kept, followed) + "\n");
   }
 
+  /// By node: whether a shape can come there that no chain has brought.
+  std::vector<bool> entered() const {
+    std::vector<bool> nodes = table_.entered;
+    for (const Rule& rule : graph_.rules) nodes[rule.node] = true;
+    for (const Axiom& axiom : graph_.axioms) nodes[axiom.node] = true;
+    for (const Node& node : graph_.nodes)
+      for (uint32_t e = 0; e < node.edgeCount; ++e) {
+        const Edge& edge = edgeOf(node, e);
+        const bool brought = isChain(indexOf(node)) && !edge.recursive;
+        if (edge.target == kNoNode || table_.family[indexOf(node)]) continue;
+        if (!brought || waits_[edge.target]) nodes[edge.target] = true;
+      }
+    return nodes;
+  }
   /// A shape comes from an operator that multiplies (arrives), or has waited for this one.
   void writeRunChain() {
     add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n"
         "  uint end = s.node == 0u ? kEndDiscarded : kEndUnfinished;\n"
         "  if (s.node != 0u && s.depth <= maxDepth) switch (s.node) {\n");
     std::string terminals;
+    const std::vector<bool> entries = entered();
+    const auto isEntry = [&](uint32_t n) { return entries[n]; };
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       if (graph_.nodes[n].op == kOpTerminal) terminals += "  case " + number(offsetOf(n)) + ":\n";
       if (isContext(graph_.nodes[n].op))
         add("  case " + number(offsetOf(n)) +
             ": end = " + (waits_[n] ? "arrives ? kEndWaits : kEndContext" : "kEndContext") + "; break;\n");
-      if (!isChain(n) || peers_[n][0] != n) continue;
+      if (!isChain(n) || peers_[n][0] != n || std::none_of(peers_[n].begin(), peers_[n].end(), isEntry)) continue;
       for (const uint32_t peer : peers_[n]) add("  case " + number(offsetOf(peer)) + ":");
       const std::string row =
           matched_.empty() ? "0u" : "matchedRows[(s.node - " + number(kHeaderSize) + ") / " + number(kNodeSize) + "]";

@@ -57,6 +57,7 @@ public:
   KernelTable run() {
     const auto count = static_cast<uint32_t>(graph_.nodes.size());
     table_.family.assign(count, false);
+    table_.entered.assign(count, false);
     table_.words.assign((count + 3) / 4 * 4, 0);
     for (uint32_t n = 0; n < count; ++n) makeFrame(n);
     for (uint32_t n = 0; n < count; ++n)
@@ -263,8 +264,13 @@ private:
     if (std::all_of(children.begin(), children.end(),
                     [](const Child& c) { return c.steps.size() == 1 && c.steps[0].words[3] == 0; }))
       return;
-    for (const Child& child : children)
-      for (const Step& step : child.steps) table_.stepOperators |= 1u << (step.words[0] & kStepOperator);
+    for (const Child& child : children) {
+      if (child.end == kEndGoesOn) table_.entered[(child.target - kHeaderSize) / kNodeSize] = true;
+      for (const Step& step : child.steps) {
+        table_.stepOperators |= 1u << (step.words[0] & kStepOperator);
+        if (step.words[3]) table_.frameFlags |= table_.words[4 * step.words[3] + kFrameFlags];
+      }
+    }
     const uint32_t row = here();
     table_.words[index] = row;
     table_.family[index] = true;

@@ -8,7 +8,9 @@ namespace gpgp::spawn {
 struct KernelTable {
   std::vector<uint32_t> words;
   std::vector<bool> family;   ///< by node: its children are a family
+  std::vector<bool> entered;  ///< by node: children of families go on there
   uint32_t stepOperators = 0; ///< bits by kOp: of families' steps
+  uint32_t frameFlags = 0;    ///< of the frames behind them, all together
 };
 
 /// Whether an operator multiplies every shape by the same number, but for parts without a length.

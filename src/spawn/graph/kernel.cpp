@@ -9,7 +9,7 @@ namespace {
 using core::makeError;
 
 constexpr uint32_t kKernelMagic = 0x6b677067u; // "gpgk"
-constexpr uint32_t kKernelVersion = 11;
+constexpr uint32_t kKernelVersion = 12;
 constexpr uint32_t kSpirvMagic = 0x07230203u;
 /// Words before the code: magic, version, words of everything, checksum of what follows it, graph, info.
 constexpr uint32_t kChecked = 4, kInfo = 5, kInfoWords = sizeof(KernelInfo) / 4, kHeader = kInfo + kInfoWords;
@@ -17,7 +17,7 @@ static_assert(sizeof(KernelInfo) == 76);
 
 bool isUsable(const KernelInfo& info) {
   const Fit& fit = info.fit;
-  if (info.schedule[31] != 0) return false;
+  if (info.schedule[31] != 0 || info.target > KernelTarget::software) return false;
   if (fit == Fit{.rounds = fit.rounds}) return true; // as the device's kind suggests
   const bool power = (fit.groupSize & (fit.groupSize - 1)) == 0;
   return power && fit.groupSize >= 8 && fit.groupSize <= 1024 && fit.maxGroups >= 1 && fit.maxGroups <= 65535 &&

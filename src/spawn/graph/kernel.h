@@ -24,14 +24,21 @@ struct Fit {
   bool operator==(const Fit&) const = default;
 };
 
+/// The devices that a kernel is compiled for.
+enum class KernelTarget : uint32_t {
+  any,
+  subgroups, ///< with subgroup arithmetic, ballots and shuffles in compute shaders
+  software   ///< on the CPU, and with them (shaders/spawn/derive_batches.glsl); workgroups are subgroups
+};
+
 /// What one kernel is for.
 struct KernelInfo {
   Fit fit;
   uint32_t vendor = 0, device = 0; ///< VkPhysicalDeviceProperties; 0: any
   uint32_t axioms = 0;             ///< tuned for this many axioms; 0: any
-  uint32_t subgroups = 0;          ///< 1: needs subgroup arithmetic in compute shaders
-  uint32_t groups = 0;             ///< execution groups of the schedule
-  char schedule[32] = {};          ///< a name for people
+  KernelTarget target = KernelTarget::any;
+  uint32_t groups = 0;    ///< execution groups of the schedule
+  char schedule[32] = {}; ///< a name for people
 };
 
 struct Kernel {

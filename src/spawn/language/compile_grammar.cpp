@@ -81,11 +81,11 @@ GpgpResult bake(const GpgpGrammarSource& first, const spawn::Graph& graph, bool 
   if (kernel) {
     const spawn::Schedule schedule = *spawn::namedSchedule(graph, "default");
     const spawn::KernelSource kernelSource = spawn::generate(graph, schedule.waits);
-    for (const bool subgroups : {true, false}) { // the first that a device can run is taken
-      const auto code = spawn::compileKernel(kernelSource, subgroups);
+    for (const spawn::KernelTarget target : spawn::targetsOf(graph)) { // the first that a device can run is taken
+      const auto code = spawn::compileKernel(kernelSource, target);
       if (!code) return fail(first, code.error().code, code.error().text);
       spawn::KernelInfo info;
-      info.subgroups = subgroups;
+      info.target = target;
       info.groups = static_cast<uint32_t>(schedule.groups);
       schedule.name.copy(info.schedule, sizeof info.schedule - 1);
       const auto behind = spawn::serialize(info, *code, words[shader::kHeaderChecksum], memory);

@@ -4,6 +4,7 @@
 #include "shaders/spawn_derive.spv.h"
 #include "shaders/spawn_derive_colliders.spv.h"
 #include "shaders/spawn_derive_colliders_subgroups.spv.h"
+#include "shaders/spawn_derive_software.spv.h"
 #include "shaders/spawn_derive_subgroups.spv.h"
 #include "shaders/spawn_emit.spv.h"
 #include "shaders/spawn_expand.spv.h"
@@ -65,8 +66,8 @@ constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefault
 
 /// What fits a kind of device.
 struct Limits {
-  Fit fit;               // of the interpreter, and of kernels that name none
-  Fit uneven;            // of kernels whose derivations are uneven (isUneven): more at work on what is left at the end
+  Fit fit;               // of kernels that name none
+  Fit uneven;            // of those whose derivations are uneven (isUneven): more at work on what is left at the end
   uint32_t steps;        // of a workgroup in a round
   uint32_t expandGroups; // workgroups at most
 };
@@ -74,6 +75,33 @@ struct Limits {
 constexpr Limits kHardware{{32, 2048, 256, 4096}, {128, 1024, 512, 4096, 0, 1}, 16384, 2048},
     kSoftware{{64, 16, 1024, 512}, {64, 16, 1024, 512}, 256, 64};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
+
+/// Whether shaders/spawn/derive_batches.glsl can run.
+bool takesBatches(const core::Device& device) {
+  return device.software && device.subgroupArithmetic && device.subgroupSize;
+}
+bool canRun(const core::Device& device, KernelTarget target) {
+  return target == KernelTarget::any ||
+         (target == KernelTarget::software ? takesBatches(device) : device.subgroupArithmetic);
+}
+/// A kernel's own, or what fits it.
+Fit fitOf(const core::Device& device, const KernelInfo& info, bool uneven) {
+  if (info.fit.groupSize) return info.fit;
+  Fit fit = uneven ? limitsOf(device).uneven : limitsOf(device).fit;
+  if (info.target == KernelTarget::software) fit = {device.subgroupSize, 256, 1024, 512};
+  fit.rounds = info.fit.rounds;
+  return fit;
+}
+/// For batches: stacks below this many have no room for them. Workgroups that are worth it, and axioms for each of
+/// more; turns of loops after which a workgroup leaves its work to the next round.
+constexpr uint32_t kLeastBatches = 16, kBatchGroups = 64, kBatchAxioms = 512, kBatchTurns = 8192;
+
+/// The interpreter, for grammars with colliders or without.
+KernelInfo interpreterFor(const core::Device& device, bool colliders) {
+  KernelInfo info;
+  info.target = takesBatches(device) && !colliders ? KernelTarget::software : KernelTarget::any;
+  return info;
+}
 
 /// Queries of an invocation that look at every collider stay below that many iterations.
 constexpr uint32_t kMostColliders = 1u << 24, kMostSoftwareColliders = 8192;
@@ -127,7 +155,6 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
   spawner->roundsGiven_ = info.maxRounds != 0;
   spawner->rounds_ = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
-  const Limits& limits = limitsOf(context.device);
   const uint32_t mostColliders = context.device.software ? kMostSoftwareColliders : kMostColliders;
   if (maxColliders > mostColliders)
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "maxColliders is %u; this device takes at most %u", maxColliders,
@@ -161,20 +188,21 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"bounds", buffer, 0, true});
   list.add({"bound keys", scratch, sizeof(uint32_t) * shader::kMaxBuckets * shader::kBoundWords});
 
-  const std::span<const uint32_t> interpreter = context.device.subgroupArithmetic
-                                                    ? std::span<const uint32_t>(spawn_derive_subgroups)
-                                                    : std::span<const uint32_t>(spawn_derive);
-  const uint32_t derive = spawner->derive_ =
-      list.add(core::ShaderDesc{"derive", interpreter, specialization(context.device, limits.fit), kDeriveConstants});
-  const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
+  const auto interpreter = [&](bool colliders, std::span<const uint32_t> spirv) {
+    const Fit fit = fitOf(context.device, interpreterFor(context.device, colliders), false);
+    return core::ShaderDesc{"derive", spirv, specialization(context.device, fit), kDeriveConstants};
+  };
   const bool subgroups = context.device.subgroupArithmetic;
-  const auto colliding = subgroups ? std::span<const uint32_t>(spawn_derive_colliders_subgroups)
-                                   : std::span<const uint32_t>(spawn_derive_colliders);
+  const uint32_t derive = spawner->derive_ =
+      list.add(interpreter(false, takesBatches(context.device) ? std::span<const uint32_t>(spawn_derive_software)
+                                  : subgroups                  ? std::span<const uint32_t>(spawn_derive_subgroups)
+                                                               : std::span<const uint32_t>(spawn_derive)));
+  const uint32_t place = list.add(core::ShaderDesc{"place", spawn_place, {vertices}, 1});
   uint32_t link = 0;
   if (maxColliders) {
-    core::ShaderDesc shader = list.shaders[derive];
-    shader.spirv = colliding;
-    spawner->deriveColliding_ = list.add(shader); // takes the other's place in records that need it
+    spawner->deriveColliding_ = // takes the other's place in records that need it
+        list.add(interpreter(true, subgroups ? std::span<const uint32_t>(spawn_derive_colliders_subgroups)
+                                             : std::span<const uint32_t>(spawn_derive_colliders)));
     link = list.add(core::ShaderDesc{"link", spawn_link});
   }
 
@@ -328,14 +356,17 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "grammar has Collider or IfCollides, and maxColliders of the "
                                                         "spawner is 0");
   const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount);
-  Fit fit = kernel ? kernel->info.fit : limits.fit;
+  const KernelInfo interpreter = interpreterFor(context.device, grammar.graph.phases > 0);
+  Fit fit = kernel ? kernel->info.fit : fitOf(context.device, interpreter, false);
   if (!kernel && isUneven(grammar.graph)) fit.balances = limits.uneven.balances;
   // Rounds were counted for a number of axioms; for more of them, or far fewer, nothing is known.
   const bool counted = fit.rounds && (!kernel || kernel->info.axioms == 0 ||
                                       (info.axiomCount <= kernel->info.axioms &&
                                        std::bit_width(info.axiomCount) == std::bit_width(kernel->info.axioms)));
   const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : roundsFor(info, grammar.graph, fit);
-  const uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
+  const bool batches = (kernel ? kernel->info : interpreter).target == KernelTarget::software;
+  uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
+  if (batches) maxGroups = std::clamp(info.axiomCount / kBatchAxioms, std::min(kBatchGroups, maxGroups), maxGroups);
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
   const bool counts = vertices() ? !info.vertices->vertices.buffer : !info.instances.buffer;
   const bool inOrder = ordered_ && !counts;
@@ -357,7 +388,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.spread = fit.spread;
   constants.balances = fit.balances;
   constants.reports = info.axiomCount && phases == 1 && !vertices() && !counts && !sorted && !inOrder && !regions;
-  constants.steps = limits.steps;
+  constants.steps = batches ? kBatchTurns : limits.steps;
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
   constants.terminalsTo = counts              ? shader::kToCounts
@@ -428,13 +459,18 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
   const VkPhysicalDeviceLimits& device = context.device.limits;
   for (const Kernel& kernel : grammar.kernels) {
     KernelInfo info = kernel.info;
-    if (!info.fit.groupSize) {
-      info.fit = isUneven(grammar.graph) ? limitsOf(context.device).uneven : limitsOf(context.device).fit;
-      info.fit.rounds = kernel.info.fit.rounds;
-    }
+    info.fit = fitOf(context.device, info, isUneven(grammar.graph));
     if (grammar.readyCount() == Grammar::kMaxReady) break;
-    if (info.subgroups && !context.device.subgroupArithmetic) continue;
-    info.subgroups = 0; // of two that differ only here, the first is made
+    // Of those that differ only in their target, the first one that can run is made.
+    const bool isFirst = std::none_of(grammar.kernels.data(), &kernel, [&](const Kernel& before) {
+      KernelInfo other = before.info;
+      other.target = kernel.info.target;
+      return std::memcmp(&other, &kernel.info, sizeof other) == 0 && canRun(context.device, before.info.target);
+    });
+    if (!isFirst || !canRun(context.device, info.target)) continue;
+    if (info.target == KernelTarget::software && (info.fit.groupSize != context.device.subgroupSize ||
+                                                  info.fit.stackShapes < kLeastBatches * info.fit.groupSize))
+      continue;
     if (grammar.isReady(info) || info.fit.stackShapes > stackShapesOf(maxShapes_)) continue;
     if ((info.vendor && info.vendor != context.device.vendor) || (info.device && info.device != context.device.model))
       continue; // tuned for another device
