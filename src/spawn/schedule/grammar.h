@@ -38,6 +38,7 @@ public:
   uint32_t readyCount() const { return readyCount_.load(std::memory_order_acquire); }
 
   const Graph graph;
+  const bool uneven = isUneven(graph); ///< asked for by each record
   const std::pmr::vector<Kernel> kernels;
   /// Where a kernel's table begins in the uploaded words, in units of 16 bytes.
   uint32_t tableOf(const Kernel& kernel) const { return tables_[static_cast<size_t>(&kernel - kernels.data())]; }

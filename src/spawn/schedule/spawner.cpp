@@ -335,9 +335,9 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 /// All rounds but the last one only spread the work, of which a workgroup makes kGrowth times as many shapes, or in the
 /// round that is enough as many as kGrowing batches hold (shaders/spawn/derive.glsl). In uneven derivations they even
 /// it out as well, and nobody knows how much there is behind a counter, or in later phases.
-uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Graph& graph, const Fit& fit) const {
-  const bool known = !info.axiomCounter.buffer && graph.phases <= 1;
-  if (roundsGiven_ || context.device.software || isUneven(graph) || !known) return rounds_;
+uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const {
+  const bool known = !info.axiomCounter.buffer && grammar.graph.phases <= 1;
+  if (roundsGiven_ || context.device.software || grammar.uneven || !known) return rounds_;
   uint32_t rounds = 1;
   const uint64_t most = shader::kGrowing * fit.groupSize;
   for (uint64_t shapes = std::max(info.axiomCount, 1u); shapes < fit.spread && rounds < rounds_; ++rounds)
@@ -358,12 +358,12 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount);
   const KernelInfo interpreter = interpreterFor(context.device, grammar.graph.phases > 0);
   Fit fit = kernel ? kernel->info.fit : fitOf(context.device, interpreter, false);
-  if (!kernel && isUneven(grammar.graph)) fit.balances = limits.uneven.balances;
+  if (!kernel && grammar.uneven) fit.balances = limits.uneven.balances;
   // Rounds were counted for a number of axioms; for more of them, or far fewer, nothing is known.
   const bool counted = fit.rounds && (!kernel || kernel->info.axioms == 0 ||
                                       (info.axiomCount <= kernel->info.axioms &&
                                        std::bit_width(info.axiomCount) == std::bit_width(kernel->info.axioms)));
-  const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : roundsFor(info, grammar.graph, fit);
+  const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : roundsFor(info, grammar, fit);
   const bool batches = (kernel ? kernel->info : interpreter).target == KernelTarget::software;
   uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
   if (batches) maxGroups = std::clamp(info.axiomCount / kBatchAxioms, std::min(kBatchGroups, maxGroups), maxGroups);
@@ -459,7 +459,7 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
   const VkPhysicalDeviceLimits& device = context.device.limits;
   for (const Kernel& kernel : grammar.kernels) {
     KernelInfo info = kernel.info;
-    info.fit = fitOf(context.device, info, isUneven(grammar.graph));
+    info.fit = fitOf(context.device, info, grammar.uneven);
     if (grammar.readyCount() == Grammar::kMaxReady) break;
     // Of those that differ only in their target, the first one that can run is made.
     const bool isFirst = std::none_of(grammar.kernels.data(), &kernel, [&](const Kernel& before) {

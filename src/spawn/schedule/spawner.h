@@ -38,7 +38,7 @@ private:
   uint32_t phaseStride() const { return rounds_ + 1; }
 
   /// That a record takes where neither the engine nor a tuned kernel says so.
-  uint32_t roundsFor(const GpgpSpawnInfo& info, const Graph& graph, const Fit& fit) const;
+  uint32_t roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const;
 
   uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0, maxColliders_ = 0, maxHostAxioms_ = 0;
   uint32_t derive_ = 0, deriveColliding_ = 0;  // shaders
