@@ -7,10 +7,6 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 // A round of derivation by the interpreter. Generated kernels put their own functions in the place of interpret.h.
-#ifdef GPGP_SOFTWARE
-uint loopTurns; // of the invocation
-#define GPGP_TURN ++loopTurns
-#endif
 #include "spawn/bindings.glsl"
 
 #include "spawn/interpret.h"

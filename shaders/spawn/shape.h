@@ -10,7 +10,10 @@
 
 // Stands in each loop whose turns the graph decides. Compilers of software devices allow a kernel a number of turns, so
 // that there it has to count them.
-#ifndef GPGP_TURN
+#ifdef GPGP_SOFTWARE
+uint loopTurns; // of the invocation
+#define GPGP_TURN ++loopTurns
+#else
 #define GPGP_TURN
 #endif
 

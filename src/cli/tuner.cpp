@@ -13,8 +13,9 @@ namespace {
 /// Sizes and counts of workgroups that are worth a try. Stacks share what a spawner has by default; no two of them have
 /// the same pipeline.
 std::vector<spawn::Fit> fits(spawn::KernelTarget target, bool software, bool balances) {
-  if (target == spawn::KernelTarget::software) // what has none of its own takes a subgroup; this is lavapipe's, mostly
-    return {{8, 16, 2048, 512}, {8, 128, 2048, 512}};
+  // Workgroups are subgroups there. With another size than lavapipe's usual one the library skips these kernels, and
+  // those stay that name no fit.
+  if (target == spawn::KernelTarget::software) return {{8, 16, 2048, 512}, {8, 128, 2048, 512}};
   const uint32_t spread = software ? 512 : 4096;
   std::vector<spawn::Fit> all;
   for (const uint32_t groupSize : software ? std::vector<uint32_t>{32, 64} : std::vector<uint32_t>{32, 64, 128})

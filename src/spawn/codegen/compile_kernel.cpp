@@ -55,9 +55,7 @@ std::string kernelText(const std::string& functions, KernelTarget target) {
                 "#extension GL_KHR_shader_subgroup_ballot : require\n"
                 "#extension GL_KHR_shader_subgroup_shuffle : require\n"
               : "") +
-         (target == KernelTarget::software
-              ? "#define GPGP_SOFTWARE\nuint loopTurns; // of the invocation\n#define GPGP_TURN ++loopTurns\n"
-              : "") +
+         (target == KernelTarget::software ? "#define GPGP_SOFTWARE\n" : "") +
          "#include \"spawn/bindings.glsl\"\n"
          "#include \"spawn/operators.h\"\n"
          "#include \"spawn/table_format.h\"\n" +
