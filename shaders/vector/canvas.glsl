@@ -19,12 +19,20 @@ DRAWING(0)
 DRAWING(0) DRAWING(1) DRAWING(2) DRAWING(3) DRAWING(4) DRAWING(5) DRAWING(6) DRAWING(7)
 layout(set = 0, binding = 28, std430) readonly buffer Shapes { vec4 shapes[]; };
 #endif
+#if SOFTWARE // read where all invocations are, at the beginning of main, as elsewhere each reads for itself
+#define HEADER headerOfRecord
+#else
+#define HEADER header
+#endif
 layout(set = 0, binding = 17, std430) readonly buffer Constants {
-  CanvasHeader header;
+  CanvasHeader HEADER;
   SlotRecord slots[kSlots];
   uint firstItems[kFirstItems]; // that segment 0, step, 2 step ... belong to; only of many items
   ItemRecord items[];
 };
+#if SOFTWARE
+CanvasHeader header = headerOfRecord;
+#endif
 layout(set = 0, binding = 12, std430) SHARING buffer Paths { PlacedPath paths[]; };
 layout(set = 0, binding = 13, std430) SHARING buffer Words { TileWord words[]; };
 layout(set = 0, binding = 14, std430) buffer Bins { uint bins[]; };

@@ -203,7 +203,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
   r.groups[kOnce] = {1, 1, 1};
   r.groups[kClear] = {64, 1, 1};
-  r.groups[kFill] = {std::clamp(header.segmentCount / 160, 16u, 4096u), 1, 1};
+  r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(info.height, 64)), 4096u), 1, 1};
   r.groups[kStamps] = rows(std::max(header.itemCount, 1u));
   r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
   r.groups[kTiles] = {divide(header.tilesX, 8), header.tilesY, 1};
