@@ -134,7 +134,7 @@ Grid canvasGrid() { return Grid(header.samples, int(header.height * header.sampl
 uint bitsOf(uint bin) { return kFirstBin + bin * header.binWords + kBinHead; }
 uint binOf(uvec2 tile) { return (tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift); }
 uint clipRecord(uint clip) { return slots[kShapeSlot].clips + clip - 1; } // its vec4
-int tileOf(int column) { return (column + int(kTileSize)) / int(kTileSize) - 1; } // of column -1: -1
+int tileOf(int column) { return column >> findMSB(kTileSize); } // of column -1: -1
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
 uint coverageOf(PlacedPath p, uvec2 tile) {

@@ -40,7 +40,9 @@ void main() {
   bool right = false;
   uint starts = 0, covered = 0; // sample rows of a row of pixels: where runs begin, right of the chord
   int pixelTop = 0, end = 0;
-  uint firstOfRow = 0, at = ~0u; // of the entries: the row of pixels; the pixel that was changed last, or none
+  uint firstOfRow = 0, at = ~0u; // of the entries: the row of pixels; the pixel of the run at hand, or none; and beside it
+  uint beside = ~0u, here = 0, there = 0;
+  bool both = false;
 #if SCISSORS
   vec4 scissor = kNoScissor;
 #endif
@@ -124,14 +126,18 @@ void main() {
       const int tile = (column >> 3) - left; // in the word
       const uint inTile = uint(column) & 7, mask = 1u << (tile & 31);
       const bool takes = runs && tile >= 0 && tile < 32 && column < g.columns && (word.edges & mask) != 0;
-      if (takes) at = firstOfRow + bitCount(word.edges & (mask - 1)) * kEntryWords + inTile;
-      else run = Run(0, 0, 0);
-      entries[at] = (entries[at] ^ run.here) + (uint(!area ? 0 : right ? run.difference : -run.difference) << 16);
       // The pixel right of it may be another tile's; where that has no edges, its own rows agree.
       const bool crosses = inTile == 7, marked = tile < 31 ? (word.edges & mask << 1) != 0 : (after.edges & 1) != 0;
-      const bool both = takes && (!crosses || marked);
-      const uint beside = both ? at + (crosses ? kEntryWords - 7 : 1) : at;
-      entries[beside] ^= both ? run.next : 0;
+      both = takes && (!crosses || marked);
+      entries[at] = here;
+      entries[beside] = there;
+      if (takes) at = firstOfRow + bitCount(word.edges & (mask - 1)) * kEntryWords + inTile;
+      else run = Run(0, 0, 0);
+      beside = both ? at + (crosses ? kEntryWords - 7 : 1) : at;
+      const uint change = uint(!area ? 0 : right ? run.difference : -run.difference) << 16;
+      here = (entries[at] ^ run.here) + change;
+      const uint other = entries[beside] ^ run.next;
+      there = both ? other : here;
       ++turns;
       busy = starts != 0 || from < to || k < kEnd;
     } while (countOf(!busy) < enough && turns < kMostTurns);
@@ -140,6 +146,8 @@ void main() {
       return;
     }
   }
+  entries[at] = here;
+  entries[beside] = there;
   if (turns >= kManyTurns && gl_WorkGroupID.x + 1 == gl_NumWorkGroups.x && counters.rowsTaken < rowCount)
     withoutLists();
 }

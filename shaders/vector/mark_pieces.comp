@@ -45,11 +45,11 @@ void put(Part p) {
 void main() {
   const uint i = groupIndex() * 64 + gl_LocalInvocationID.x;
   const Grid g = canvasGrid();
-  const int tileRows = int(kTileSize * g.samples);
+  const int tileRows = int(kTileSize * g.samples), shift = findMSB(tileRows);
   const bool exists = i < header.segmentCount;
-  const uint last = header.segmentCount - 1, itemIndex = itemOf(min(i, last));
+  const uint own = min(i, header.segmentCount - 1), itemIndex = itemOf(own);
   const ItemRecord ownItem = items[itemIndex];
-  const SegmentRecord ownSegment = fetchSegment(ownItem, min(i, last));
+  const SegmentRecord ownSegment = fetchSegment(ownItem, own);
   const uint ownPath = ownItem.firstPath + ownSegment.path;
   const PlacedPath ownPlaced = fetchPath(ownPath);
   const bool counts = exists && matters(g, ownPath, ownItem, ownSegment);
@@ -57,7 +57,7 @@ void main() {
   const uint ownEnd = sumOver(ownCount), total = lastOf(ownEnd), parts = gl_NumWorkGroups.z;
 #if PROJECTIVE // chords may be long and very unlike each other, so parts share their rows, by rows of tiles
   const uint begin = 0, end = total;
-  const int perPart = ((g.rows + tileRows - 1) / tileRows + int(parts) - 1) / int(parts);
+  const int perPart = ((g.rows + tileRows - 1 >> shift) + int(parts) - 1) / int(parts);
   const int partBegin = int(gl_WorkGroupID.z) * perPart, partEnd = partBegin + perPart;
 #else
   const uint perPart = (total + parts - 1) / parts;
@@ -87,13 +87,14 @@ void main() {
     turn.inRow = 0;
     put(done);
     done.word = ~0u;
-    const bool busy = chord < chordEnd || row < lastRow || w < wEnd;
-    if (!busy) {
+    const bool over = chord == chordEnd && row >= lastRow && w >= wEnd;
+    if (over) {
       done = part;
       part.word = ~0u;
     }
-    if (!anyOf(busy || done.word != ~0u)) break;
-    bool wait = false;
+    const bool last = !anyOf(!over);
+    if (last && !anyOf(done.word != ~0u)) break;
+    bool stops = false; // as one more invocation is done, or has to put something
     do {
       if (w >= wEnd && row >= lastRow && chord < chordEnd) {
         place = first + chord - begin;
@@ -132,12 +133,12 @@ void main() {
         chordLast = c.last;
         topTile = tileOf(columnOf(g, topEnd(c)));
         lastTile = tileOf(columnOf(g, lastEnd(c)));
-        row = max(c.first / tileRows, max(top, partBegin));
-        lastRow = found ? min(c.last / tileRows + 1, min(int(of(ownPlaced.bottom, owner)), partEnd)) : row;
+        row = max(c.first >> shift, max(top, partBegin));
+        lastRow = found ? min((c.last >> shift) + 1, min(int(of(ownPlaced.bottom, owner)), partEnd)) : row;
       }
       chordList[stored] = ends; // once more where there is no new one
       if (w >= wEnd && row < lastRow && turn.inRow == 0) {
-        const int rowTop = row * tileRows, rowBottom = rowTop + tileRows;
+        const int rowTop = row << shift, rowBottom = rowTop + tileRows;
         const int from = max(chordFirst, rowTop), to = min(chordLast, rowBottom);
         const bool meets = from < to;
         rowWord = firstWord + uint((row - top) * inRow);
@@ -178,8 +179,9 @@ void main() {
           ++w;
         }
       }
-      wait = w < wEnd ? done.word != ~0u && rowWord + uint(w) != part.word : row < lastRow && turn.inRow != 0;
-    } while (anyOf(chord < chordEnd || row < lastRow || w < wEnd) && !anyOf(wait));
+      stops = w < wEnd ? done.word != ~0u && rowWord + uint(w) != part.word
+                       : row < lastRow ? turn.inRow != 0 : chord == chordEnd && !over;
+    } while (!last && !anyOf(stops));
   }
   if (leftOut) {
     atomicMax(counters.rows, header.rowLimit + 1);
