@@ -128,6 +128,9 @@ TileWord fetchTileWord(uint i) {
 }
 #endif
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+#if SOFTWARE // whose threads take a run of workgroups each: neighbours, which are alike, lie in different ones
+uint spreadIndex() { return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y; }
+#endif
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
 Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }
 // The bits of a bin begin there; and a tile's bin.

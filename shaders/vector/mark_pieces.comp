@@ -43,7 +43,7 @@ void put(Part p) {
 }
 
 void main() {
-  const uint i = groupIndex() * 64 + gl_LocalInvocationID.x;
+  const uint i = spreadIndex() * 64 + gl_LocalInvocationID.x;
   const Grid g = canvasGrid();
   const int tileRows = int(kTileSize * g.samples), shift = findMSB(tileRows);
   const bool exists = i < header.segmentCount;
