@@ -40,9 +40,9 @@ void main() {
   bool right = false;
   uint starts = 0, covered = 0; // sample rows of a row of pixels: where runs begin, right of the chord
   int pixelTop = 0, end = 0;
-  uint firstOfRow = 0, at = ~0u; // of the entries: the row of pixels; the pixel of the run at hand, or none; and beside it
-  uint beside = ~0u, here = 0, there = 0;
-  bool both = false;
+  // Of the entries: the row of pixels; the pixel of the run at hand, or none, and the one beside it; and what is stored
+  // there in the next turn, so that no turn waits for what it reads.
+  uint firstOfRow = 0, at = ~0u, beside = ~0u, here = 0, there = 0;
 #if SCISSORS
   vec4 scissor = kNoScissor;
 #endif
@@ -128,7 +128,7 @@ void main() {
       const bool takes = runs && tile >= 0 && tile < 32 && column < g.columns && (word.edges & mask) != 0;
       // The pixel right of it may be another tile's; where that has no edges, its own rows agree.
       const bool crosses = inTile == 7, marked = tile < 31 ? (word.edges & mask << 1) != 0 : (after.edges & 1) != 0;
-      both = takes && (!crosses || marked);
+      const bool both = takes && (!crosses || marked);
       entries[at] = here;
       entries[beside] = there;
       if (takes) at = firstOfRow + bitCount(word.edges & (mask - 1)) * kEntryWords + inTile;

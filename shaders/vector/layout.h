@@ -208,8 +208,8 @@ struct CanvasCounters {
   uint cleared;                // entries that mark clears: as many as the record before had
   uint stamped;                // entries of small glyphs, behind the others
   uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
-  uint segmentsTaken, rowsTaken; // on software devices, by mark and by fill
-  uint pad0, pad1;
+  uint rowsTaken;              // of tiles, by fill on software devices
+  uint pad0, pad1, pad2;
 };
 
 // A chord between mark and fill.

@@ -299,9 +299,10 @@ core::PassList Canvas::describe() const {
       pass.condition = kMarkOne + k;
       pass.beside = k > 0;
     }
-    list.dispatch("left of tiles", list.add(core::ShaderDesc{"left of tiles", vector_fill_left}),
-                  {{params, read}, {paths, read}, {words, read}, {counters, read}, {rowList, read}, {entries, readWrite}},
-                  kFill)
+    list.dispatch(
+            "left of tiles", list.add(core::ShaderDesc{"left of tiles", vector_fill_left}),
+            {{params, read}, {paths, read}, {words, read}, {counters, read}, {rowList, read}, {entries, readWrite}},
+            kFill)
         .condition = kMarked;
     fill({"clear entries again", vector_clear_entries}, false, kMarked, false);
     for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, k > 0);
