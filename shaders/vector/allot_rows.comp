@@ -12,7 +12,8 @@ const uint kMostPieces = 7000; // of a row, as lavapipe ends a shader's loops af
 
 void main() {
   const uint total = min(counters.words, header.wordLimit);
-  for (uint i = gl_GlobalInvocationID.x; i < total; i += gl_NumWorkGroups.x * 64) {
+  const uint lanes = gl_NumWorkGroups.x * gl_NumWorkGroups.y * 64;
+  for (uint i = spreadIndex() * 64 + gl_LocalInvocationID.x; i < total; i += lanes) {
     const TileWord head = fetchTileWord(i);
     if ((head.firstEntry & kOwned) == 0) continue;
     const uint path = head.firstEntry ^ kOwned;
@@ -37,11 +38,7 @@ void main() {
     uint next = 0;
     if (count != 0) {
       next = atomicAdd(counters.entries, count);
-      const uint place = atomicAdd(counters.cleared, 1), groups = place / 8 + 1;
-      pathRows[place] = uvec4(i, path, p.top + (i - p.firstWord) / wordsInRow(p), 0);
-      atomicMax(counters.rowsX, min(groups, 32768));
-      atomicMax(counters.rowsY, (groups - 1) / 32768 + 1);
-      counters.rowsZ = 1;
+      pathRows[atomicAdd(counters.cleared, 1)] = uvec4(i, path, p.top + (i - p.firstWord) / wordsInRow(p), 0);
     }
     for (uint w = i; w < end; ++w) {
       words[w].firstEntry = next;

@@ -21,7 +21,7 @@ layout(set = 0, binding = 14, std430) writeonly buffer Bins { uint bins[]; };
 layout(set = 0, binding = 28, std430) writeonly buffer Shapes { vec4 shapes[]; };
 #if !SOFTWARE
 layout(set = 0, binding = 13, std430) writeonly buffer Words { uvec4 words[]; };
-layout(set = 0, binding = 16, std430) buffer Counters { uvec4 counters[7]; }; // CanvasCounters
+layout(set = 0, binding = 16, std430) buffer Counters { uvec4 counters[8]; }; // CanvasCounters
 #endif
 
 ItemRecord sourceOf(uint i) {
@@ -73,7 +73,7 @@ void main() {
   for (uint i = lane; i < words.length(); i += lanes) words[i] = uvec4(0);
   if (lane == 0) {
     const uint before = counters[0].y; // entries of the record before, or anything at all
-    for (uint k = 0; k < 7; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
+    for (uint k = 0; k < 8; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
   }
 #endif
   if (lane == 0) copied = header;

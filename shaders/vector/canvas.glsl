@@ -19,12 +19,20 @@ DRAWING(0)
 DRAWING(0) DRAWING(1) DRAWING(2) DRAWING(3) DRAWING(4) DRAWING(5) DRAWING(6) DRAWING(7)
 layout(set = 0, binding = 28, std430) readonly buffer Shapes { vec4 shapes[]; };
 #endif
+#if SOFTWARE // read where all invocations are, at the beginning of main, as elsewhere each reads for itself
+#define HEADER headerOfRecord
+#else
+#define HEADER header
+#endif
 layout(set = 0, binding = 17, std430) readonly buffer Constants {
-  CanvasHeader header;
+  CanvasHeader HEADER;
   SlotRecord slots[kSlots];
   uint firstItems[kFirstItems]; // that segment 0, step, 2 step ... belong to; only of many items
   ItemRecord items[];
 };
+#if SOFTWARE
+CanvasHeader header = headerOfRecord;
+#endif
 layout(set = 0, binding = 12, std430) SHARING buffer Paths { PlacedPath paths[]; };
 layout(set = 0, binding = 13, std430) SHARING buffer Words { TileWord words[]; };
 layout(set = 0, binding = 14, std430) buffer Bins { uint bins[]; };
@@ -120,13 +128,16 @@ TileWord fetchTileWord(uint i) {
 }
 #endif
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+#if SOFTWARE // whose threads take a run of workgroups each: neighbours, which are alike, lie in different ones
+uint spreadIndex() { return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y; }
+#endif
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
 Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }
 // The bits of a bin begin there; and a tile's bin.
 uint bitsOf(uint bin) { return kFirstBin + bin * header.binWords + kBinHead; }
 uint binOf(uvec2 tile) { return (tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift); }
 uint clipRecord(uint clip) { return slots[kShapeSlot].clips + clip - 1; } // its vec4
-int tileOf(int column) { return (column + int(kTileSize)) / int(kTileSize) - 1; } // of column -1: -1
+int tileOf(int column) { return column >> findMSB(kTileSize); } // of column -1: -1
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
 uint coverageOf(PlacedPath p, uvec2 tile) {

@@ -2,5 +2,5 @@
 vec4 convert(vec4 color, bool encode) { // premultiplied, to sRGB or from it
   if (color.a <= 0) return color;
   const vec3 straight = clamp(color.rgb / color.a, 0.0, 1.0);
-  return vec4((encode ? encodeSrgb(straight) : decodeSrgb(straight)) * color.a, color.a);
+  return vec4(convertSrgb(straight, encode) * color.a, color.a);
 }

@@ -33,10 +33,6 @@
 #define SCISSORS 0
 #endif
 
-#ifndef CHORDS_IN_TURN // whether a segment's chords are asked for one after another
-#define CHORDS_IN_TURN 0
-#endif
-
 GPGP_SHADER_BEGIN
 
 GPGP_CONST float kFlatness = 0.03125f;  // pixels: how far a chord may lie from its curve
@@ -284,12 +280,7 @@ GPGP_FN float slopeOf(float width, float height) {
 }
 
 // Chord i of n of a segment, clipped to it and to the scissor. False where nothing of it is left.
-#if CHORDS_IN_TURN // `point` is the curve's where the chord begins, and then where it ends
-GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, float step, GPGP_INOUT(vec2) point,
-                     GPGP_OUT(Chord) chord) {
-#else
 GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, float step, GPGP_OUT(Chord) chord) {
-#endif
   chord.first = 0;
   chord.last = 0;
   chord.side = 0.0f;
@@ -323,13 +314,9 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
   }
   vec2 a = curvePoint(s, at, chords, spacing);
   vec2 b = curvePoint(s, at + 1u, chords, spacing);
-#elif CHORDS_IN_TURN
-  vec2 a = point;
-  vec2 b = curvePoint(s, i + 1u, n, step);
-  point = b;
 #else
-vec2 a = curvePoint(s, i, n, step);
-vec2 b = curvePoint(s, i + 1u, n, step);
+  vec2 a = curvePoint(s, i, n, step);
+  vec2 b = curvePoint(s, i + 1u, n, step);
 #endif
   if (s.ends.y > s.first.y) { // begins below its curve's begin
     if (b.y <= s.ends.y) return false;

@@ -208,6 +208,8 @@ struct CanvasCounters {
   uint cleared;                // entries that mark clears: as many as the record before had
   uint stamped;                // entries of small glyphs, behind the others
   uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
+  uint rowsTaken;              // of tiles, by fill on software devices
+  uint pad0, pad1, pad2;
 };
 
 // A chord between mark and fill.
@@ -279,7 +281,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 112 &&
+              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 128 &&
               sizeof(gpgp::shader::ChordRecord) == 24);
 #endif
 #endif

@@ -2,112 +2,187 @@
 // For software devices, as mark.comp: which tiles a path's boundary passes through, and for the others whether they lie
 // inside.
 //
-// An invocation takes a segment, or a share of its chords. What follows each other in one word of tiles is marked and
-// listed at once, as atomics are dear.
+// Invocations of a subgroup take a segment each, and then an equal share of all their chords. What follows each other
+// in one word of tiles is marked and listed at once. Atomics are dear, also for the other invocations, so they wait
+// until as many as possible have something for them.
 #extension GL_GOOGLE_include_directive : require
-#define CHORDS_IN_TURN !PROJECTIVE
 #include "canvas.glsl"
+#include "lanes.glsl"
 #include "pieces.glsl"
 #define SEGMENTS_ONLY 1
 #include "segments.glsl"
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
 
-uint path;
-uint word, rowWord; // at hand: a word of tiles, and the first one of its row
-Piece piece;
+// What follows each other in a word of tiles.
+struct Part {
+  uint path, word, rowWord; // the word, and the first one of its row
+  uint begin, end, edges;   // as a Piece's
+};
+const Part kNoPart = Part(0, ~0u, 0, 0, 0, 0);
+
+// Tiles right of a crossing into a row of tiles.
+struct Turn {
+  int from, inRow; // bit and words
+  uint rowWord;
+};
 
 bool leftOut; // of the lists
 
-void putWord() {
-  if (word == ~0u) return;
-  words[rowWord].firstEntry = kOwned | path;
+void put(Part p) {
+  if (p.word == ~0u) return;
+  words[p.rowWord].firstEntry = kOwned | p.path;
   const uint place = atomicAdd(counters.allotted, 1);
   if (place < header.rowLimit) {
-    piece.next = atomicExchange(words[word].stamped, place + 1);
-    putPiece(place, piece);
+    const uint next = atomicExchange(words[p.word].stamped, place + 1);
+    putPiece(place, Piece(p.begin, p.end, next, p.edges));
   } else {
-    atomicOr(words[word].edges, piece.edges);
+    atomicOr(words[p.word].edges, p.edges);
     leftOut = true;
   }
 }
 
 void main() {
-  const uint i = groupIndex() * 64 + gl_LocalInvocationID.x;
-  if (i >= header.segmentCount) return;
-  const ItemRecord item = items[itemOf(i)];
-  const SegmentRecord s = fetchSegment(item, i);
-  path = item.firstPath + s.path;
+  const uint i = spreadIndex() * 64 + gl_LocalInvocationID.x;
   const Grid g = canvasGrid();
-  if (!matters(g, path, item, s)) return;
-  const PlacedPath p = fetchPath(path);
-  const uint count = chordCount(g, item, s), parts = gl_NumWorkGroups.z;
-  const float step = chordStep(count);
-  const int tileRows = int(kTileSize * g.samples), inRow = int(wordsInRow(p));
-#if PROJECTIVE // chords may be long and very unlike each other, so invocations share their rows, by rows of tiles
-  const uint begin = 0, end = count;
-  const int perPart = ((g.rows + tileRows - 1) / tileRows + int(parts) - 1) / int(parts);
-  const int firstRow = max(int(gl_WorkGroupID.z) * perPart, int(p.top)),
-            rowEnd = min(int(gl_WorkGroupID.z + 1) * perPart, int(p.bottom));
+  const int tileRows = int(kTileSize * g.samples), shift = findMSB(tileRows);
+  const bool exists = i < header.segmentCount;
+  const uint own = min(i, header.segmentCount - 1), itemIndex = itemOf(own);
+  const ItemRecord ownItem = items[itemIndex];
+  const SegmentRecord ownSegment = fetchSegment(ownItem, own);
+  const uint ownPath = ownItem.firstPath + ownSegment.path;
+  const PlacedPath ownPlaced = fetchPath(ownPath);
+  const bool counts = exists && matters(g, ownPath, ownItem, ownSegment);
+  const uint ownCount = counts ? chordCount(g, ownItem, ownSegment) : 0;
+  const uint ownEnd = sumOver(ownCount), total = lastOf(ownEnd), parts = gl_NumWorkGroups.z;
+#if PROJECTIVE // chords may be long and very unlike each other, so parts share their rows, by rows of tiles
+  const uint begin = 0, end = total;
+  const int perPart = ((g.rows + tileRows - 1 >> shift) + int(parts) - 1) / int(parts);
+  const int partBegin = int(gl_WorkGroupID.z) * perPart, partEnd = partBegin + perPart;
 #else
-  const uint perPart = (count + parts - 1) / parts;
-  const uint begin = gl_WorkGroupID.z * perPart, end = min(begin + perPart, count);
-  const int firstRow = int(p.top), rowEnd = int(p.bottom);
+  const uint perPart = (total + parts - 1) / parts;
+  const uint begin = gl_WorkGroupID.z * perPart, end = min(begin + perPart, total);
+  const int partBegin = 0, partEnd = 0x7fffffff;
 #endif
   if (begin >= end) return;
-  uint place = atomicAdd(counters.rows, end - begin);
-  word = ~0u;
-  leftOut = end - begin > header.rowLimit || place > header.rowLimit - (end - begin);
-#if !PROJECTIVE
-  vec2 point = curvePoint(s, begin, count, step);
-#endif
-  for (uint k = begin; k < end; ++k, ++place) {
-    Chord c;
-#if PROJECTIVE
-    const bool found = chordOf(g, item, s, k, count, step, c);
-#else
-    const bool found = chordOf(g, item, s, k, count, step, point, c);
-#endif
-    if (!leftOut)
-      chordList[place] = !found ? vec4(0) : c.side > 0 ? vec4(c.top, c.bottom) : vec4(c.bottom, c.top);
-    if (!found) continue;
-    const Line line = lineOf(g, c);
-    const int lastRow = min(c.last / tileRows + 1, rowEnd);
-    for (int row = max(c.first / tileRows, firstRow); row < lastRow; ++row) {
-      const int top = row * tileRows, bottom = top + tileRows;
-      const int first = max(c.first, top), last = min(c.last, bottom);
-      const bool meets = first < last;
-      if (!meets && (c.first == top || c.last <= top)) continue;
-      int from = 0, to = 0, low = int(p.right), high = -1; // tiles at either end of the rows, tiles met
-      if (meets) {
-        from = tileOf(crossingAt(line, middleOf(g, first)) >> 8);
-        to = tileOf(crossingAt(line, middleOf(g, last - 1)) >> 8);
-        low = min(from, to);
-        high = max(from, to);
-      }
-      const int firstWord = int(p.firstWord) + (row - int(p.top)) * inRow;
-      if (meets && first == top)
-        for (int w = max(from + 1 - int(p.left), 0) / 32; w < inRow; ++w)
-          atomicXor(words[firstWord + w].inside, bitsFrom(from + 1 - int(p.left) - w * 32));
-      if (c.first > top) from = tileOf(columnOf(g, topEnd(c)));
-      if (c.last < bottom) to = tileOf(columnOf(g, lastEnd(c)));
-      low = min(low, min(from, to) + 1) - int(p.left);
-      high = min(max(high, max(from, to)), int(p.right) - 1) - int(p.left);
-      if (low > max(high, 0)) continue; // right of the canvas
-      for (int w = max(low, 0) / 32; w <= max(high, 0) / 32; ++w) {
-        if (firstWord + w != word) {
-          putWord();
-          word = firstWord + w;
-          rowWord = firstWord;
-          piece.begin = place;
-          piece.edges = 0;
-        }
-        piece.end = place + 1;
-        piece.edges |= bitsFrom(low - w * 32) & ~bitsFrom(high + 1 - w * 32);
-      }
+  const uint first = firstOf(isFirst() ? atomicAdd(counters.rows, end - begin) : 0);
+  leftOut = end - begin > header.rowLimit || first > header.rowLimit - (end - begin);
+  const uint share = (end - begin + kLanes - 1) / kLanes;
+  uint chord = min(begin + lane() * share, end);
+  const uint chordEnd = min(chord + share, end);
+  uint place = 0; // of the chord at hand
+  Part part = kNoPart, done = kNoPart;
+  Turn turn = Turn(0, 0, 0);
+  Line line = Line(0, 0, 0, 0, 0);
+  int chordFirst = 0, chordLast = 0, topTile = 0, lastTile = 0;
+  int row = 0, lastRow = 0, w = 0, wEnd = 0, low = 0, high = 0;
+  int left = 0, right = 0, top = 0, inRow = 0;
+  uint path = 0, firstWord = 0, rowWord = 0;
+  vec4 ends = vec4(0);
+  uint stored = ~0u;
+  for (;;) {
+    if (turn.inRow > 0)
+      for (int k = max(turn.from, 0) / 32; k < turn.inRow; ++k)
+        atomicXor(words[turn.rowWord + k].inside, bitsFrom(turn.from - k * 32));
+    turn.inRow = 0;
+    put(done);
+    done.word = ~0u;
+    const bool over = chord == chordEnd && row >= lastRow && w >= wEnd;
+    if (over) {
+      done = part;
+      part.word = ~0u;
     }
+    const bool last = !anyOf(!over);
+    if (last && !anyOf(done.word != ~0u)) break;
+    bool stops = false; // as one more invocation is done, or has to put something
+    do {
+      if (w >= wEnd && row >= lastRow && chord < chordEnd) {
+        place = first + chord - begin;
+        const uint owner = ownerOf(ownEnd, chord);
+        SegmentRecord s = ownSegment;
+        ItemRecord item = ownItem;
+        s.first = of(ownSegment.first, owner);
+        s.second = of(ownSegment.second, owner);
+        s.ends = of(ownSegment.ends, owner);
+        s.side = of(ownSegment.side, owner);
+        s.line = of(ownSegment.line, owner);
+        item.transform = of(ownItem.transform, owner);
+        item.offsets = of(ownItem.offsets, owner);
+        item.side = of(ownItem.side, owner);
+#if SCISSORS
+        item.scissor = of(ownItem.scissor, owner);
+#endif
+#if PROJECTIVE
+        item.perspective = of(ownItem.perspective, owner);
+        item.eye = of(ownItem.eye, owner);
+#endif
+        const uint count = of(ownCount, owner), k = chord - (of(ownEnd, owner) - count);
+        path = of(ownPath, owner);
+        left = int(of(ownPlaced.left, owner));
+        right = int(of(ownPlaced.right, owner));
+        top = int(of(ownPlaced.top, owner));
+        firstWord = of(ownPlaced.firstWord, owner);
+        inRow = (right - left + 31) / 32;
+        ++chord;
+        Chord c;
+        const bool found = chordOf(g, item, s, k, count, chordStep(count), c);
+        ends = !found ? vec4(0) : c.side > 0 ? vec4(c.top, c.bottom) : vec4(c.bottom, c.top);
+        if (!leftOut) stored = place;
+        line = lineOf(g, c);
+        chordFirst = c.first;
+        chordLast = c.last;
+        topTile = tileOf(columnOf(g, topEnd(c)));
+        lastTile = tileOf(columnOf(g, lastEnd(c)));
+        row = max(c.first >> shift, max(top, partBegin));
+        lastRow = found ? min((c.last >> shift) + 1, min(int(of(ownPlaced.bottom, owner)), partEnd)) : row;
+      }
+      chordList[stored] = ends; // once more where there is no new one
+      if (w >= wEnd && row < lastRow && turn.inRow == 0) {
+        const int rowTop = row << shift, rowBottom = rowTop + tileRows;
+        const int from = max(chordFirst, rowTop), to = min(chordLast, rowBottom);
+        const bool meets = from < to;
+        rowWord = firstWord + uint((row - top) * inRow);
+        ++row;
+        if (meets || !(chordFirst == rowTop || chordLast <= rowTop)) {
+          int a = topTile, b = lastTile; // tiles at either end of the rows
+          low = right;                   // tiles met
+          high = -1;
+          if (meets) {
+            const int x = tileOf(crossingAt(line, middleOf(g, from)) >> 8);
+            const int y = tileOf(crossingAt(line, middleOf(g, to - 1)) >> 8);
+            low = min(x, y);
+            high = max(x, y);
+            if (from == rowTop) turn = Turn(x + 1 - left, inRow, rowWord);
+            if (chordFirst <= rowTop) a = x;
+            if (chordLast >= rowBottom) b = y;
+          } else {
+            if (chordFirst <= rowTop) a = 0;
+            if (chordLast >= rowBottom) b = 0;
+          }
+          low = min(low, min(a, b) + 1) - left;
+          high = min(max(high, max(a, b)), right - 1) - left;
+          if (low <= max(high, 0)) { // else right of the canvas
+            w = max(low, 0) / 32;
+            wEnd = max(high, 0) / 32 + 1;
+          }
+        }
+      }
+      if (w < wEnd) {
+        const bool other = rowWord + uint(w) != part.word;
+        if (!other || done.word == ~0u) {
+          if (other) {
+            done = part;
+            part = Part(path, rowWord + uint(w), rowWord, place, 0, 0);
+          }
+          part.end = place + 1;
+          part.edges |= bitsFrom(low - w * 32) & ~bitsFrom(high + 1 - w * 32);
+          ++w;
+        }
+      }
+      stops = w < wEnd ? done.word != ~0u && rowWord + uint(w) != part.word
+                       : row < lastRow ? turn.inRow != 0 : chord == chordEnd && !over;
+    } while (!last && !anyOf(stops));
   }
-  putWord();
   if (leftOut) {
     atomicMax(counters.rows, header.rowLimit + 1);
     fillWithoutLists();

@@ -39,8 +39,7 @@ vec4 gradientAt(uint slot, uint paint, vec2 at) {
   else if (kinds.z == kSpreadReflect) t = abs(t - 2.0 * floor(t * 0.5 + 0.5));
   vec4 color = stopColor(slot, slots[slot].stops + ramp.x * 2, ramp.y, clamp(t, 0.0, 1.0));
   const bool encoded = (kinds.w & kInterpolateSrgb) != 0, wanted = (header.flags & kBlendSrgb) != 0;
-  if (encoded && !wanted) color.rgb = decodeSrgb(color.rgb);
-  if (!encoded && wanted) color.rgb = encodeSrgb(color.rgb);
+  if (encoded != wanted) color.rgb = convertSrgb(color.rgb, wanted);
   return vec4(color.rgb * color.a, color.a);
 }
 

@@ -15,16 +15,15 @@ struct Pixel {
   vec4 sum;
 };
 
+// Without branches, as both sides would be taken: where paintOver does nothing, nothing is added here.
 void paint(inout Pixel p, uint mask, int difference, vec4 source) {
-  const bool edge = p.first && (mask != all || difference != 0);
-  if (p.alive == 0 && p.gap <= 0) return;
-  if (mask == 0 && (p.first ? difference == 0 : p.gap * float(difference) <= 0)) return;
-  const float covered = float(bitCount(mask)) * share;
-  const float area = clamp(covered + float(difference) * share * (1.0 / 256.0), 0.0, 1.0);
-  const float left = 1.0 - covered;
-  const float weight = edge ? area : float(bitCount(mask & p.alive)) * share * p.scale + p.gap;
+  const bool even = (mask == all || mask == 0) && difference == 0, edge = p.first && p.alive != 0 && !even;
+  const float hit = float(bitCount(mask & p.alive)) * share; // of an edge, before which nothing is covered, all
+  const float area = clamp(hit + float(difference) * share * (1.0 / 256.0), 0.0, 1.0), left = 1.0 - hit;
+  const bool fills = mask != 0 || difference > 0; // what is left of the light
+  const float weight = edge ? area : hit * p.scale + (fills ? p.gap : 0.0);
   if (edge && left > 0) p.scale = (1.0 - area) / left;
-  p.gap = edge && !(left > 0) ? 1.0 - weight : 0.0;
+  p.gap = edge ? (left > 0 ? 0.0 : 1.0 - weight) : fills ? 0.0 : p.gap;
   p.first = p.first && !edge;
   p.sum += source * weight;
   p.alive &= ~mask;

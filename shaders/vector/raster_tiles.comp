@@ -18,10 +18,11 @@ void paintPath(uint code, uint path, uvec2 at, uvec2 pixel) {
 
 #if TILES == 0
 void main() { // a workgroup has eight tiles of a row
-  const uvec2 tile = uvec2(gl_WorkGroupID.x * 8 + gl_LocalInvocationIndex / 8, gl_WorkGroupID.y);
+  const uvec2 tile = uvec2(gl_WorkGroupID.x * 8 + gl_LocalInvocationIndex / 8,
+                           gl_WorkGroupID.y * gl_NumWorkGroups.z + gl_WorkGroupID.z);
   const uvec2 pixel = tile * kTileSize + uvec2(gl_LocalInvocationIndex % 8, 0);
   const uint list = listOf(tile.y * header.tilesX + tile.x);
-  if (tile.x >= header.tilesX || bins[list] != kSolidTile) return;
+  if (tile.x >= header.tilesX || tile.y >= header.tilesY || bins[list] != kSolidTile) return;
   const vec4 color = uintBitsToFloat(binVectors[list / 4 + (TARGET == 0 ? 1 : 2)]);
   for (uint y = 0; y < kTileSize; ++y) storeColor(pixel + uvec2(0, y), color);
 }

@@ -32,7 +32,7 @@ uint byRows(uint count) { // as many tiles that are painted by rows: the first o
 
 void main() {
   const uint perBin = 1u << header.binShift; // at most 32
-  const uint bin = gl_GlobalInvocationID.x / perBin, row = gl_GlobalInvocationID.x % perBin;
+  const uint i = spreadIndex() * 64 + gl_LocalInvocationID.x, bin = i / perBin, row = i % perBin;
   if (bin >= header.binCount) return;
   const uint tileY = bin / header.binsX * perBin + row, left = bin % header.binsX * perBin;
   if (tileY >= header.tilesY) return;

@@ -20,6 +20,7 @@ using shader::CanvasHeader;
 
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
 std::array<uint32_t, 3> rows(uint32_t groups) { return {std::min(groups, 32768u), divide(groups, 32768), 1}; }
+std::array<uint32_t, 3> spread(uint32_t groups) { return {divide(groups, 8), 8, 1}; } // for software devices
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
@@ -198,17 +199,19 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                           ? divide(std::max<uint64_t>({header.itemCount, header.shapeTables / 16, bins / 16, 1}), 64)
                           : divide(maxWords_, 64 * 8),
                       1, 1};
-  r.groups[kSegments] = rows((software_ ? 0 : shader::kClearGroups) + divide(header.segmentCount, perGroup));
+  const uint32_t segmentGroups = divide(header.segmentCount, perGroup);
+  r.groups[kSegments] = software_ ? spread(segmentGroups) : rows(shader::kClearGroups + segmentGroups);
   // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
   r.groups[kOnce] = {1, 1, 1};
   r.groups[kClear] = {64, 1, 1};
-  r.groups[kFill] = {std::clamp(header.segmentCount / 160, 16u, 4096u), 1, 1};
+  r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(info.height, 64)), 4096u), 1, 1};
   r.groups[kStamps] = rows(std::max(header.itemCount, 1u));
-  r.groups[kWords] = {std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64)), 1, 1};
-  r.groups[kTiles] = {divide(header.tilesX, 8), header.tilesY, 1};
+  const uint32_t wordGroups = std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64));
+  r.groups[kWords] = software_ ? spread(wordGroups) : std::array<uint32_t, 3>{wordGroups, 1, 1};
+  r.groups[kTiles] = {divide(header.tilesX, 8), divide(header.tilesY, 8), 8};
   r.groups[kBins] = rows(header.binCount);
-  r.groups[kSift] = {divide(uint64_t(header.binCount) << header.binShift, 64), 1, 1};
+  r.groups[kSift] = spread(divide(uint64_t(header.binCount) << header.binShift, 64));
   r.groups[kRaster] = {header.tilesX, header.tilesY, 1};
   constexpr uint32_t kSplitSide = 1u << shader::kMinBinShift;
   r.groups[kSplits] = {divide(header.tilesX, kSplitSide), divide(header.tilesY, kSplitSide), 1};

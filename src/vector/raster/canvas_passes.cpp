@@ -34,6 +34,8 @@
 #include "shaders/vector_fill_one.spv.h"
 #include "shaders/vector_fill_pieces.spv.h"
 #include "shaders/vector_fill_pieces_one.spv.h"
+#include "shaders/vector_fill_pieces_one_subgroups.spv.h"
+#include "shaders/vector_fill_pieces_subgroups.spv.h"
 #include "shaders/vector_fill_projective.spv.h"
 #include "shaders/vector_fill_rows.spv.h"
 #include "shaders/vector_fill_rows_one.spv.h"
@@ -42,10 +44,13 @@
 #include "shaders/vector_fill_software_projective.spv.h"
 #include "shaders/vector_mark.spv.h"
 #include "shaders/vector_mark_one.spv.h"
+#include "shaders/vector_mark_pieces.spv.h"
+#include "shaders/vector_mark_pieces_one.spv.h"
+#include "shaders/vector_mark_pieces_one_subgroups.spv.h"
+#include "shaders/vector_mark_pieces_projective.spv.h"
+#include "shaders/vector_mark_pieces_projective_subgroups.spv.h"
+#include "shaders/vector_mark_pieces_subgroups.spv.h"
 #include "shaders/vector_mark_projective.spv.h"
-#include "shaders/vector_mark_software.spv.h"
-#include "shaders/vector_mark_software_one.spv.h"
-#include "shaders/vector_mark_software_projective.spv.h"
 #include "shaders/vector_pack.spv.h"
 #include "shaders/vector_place.spv.h"
 #include "shaders/vector_place_one.spv.h"
@@ -221,8 +226,8 @@ core::PassList Canvas::describe() const {
     pass.condition = condition;
     pass.beside = true;
   };
+  const bool subgroups = context.device.subgroupArithmetic && (software_ || context.device.subgroupSize >= 32);
   if (!software_) {
-    const bool subgroups = context.device.subgroupArithmetic && context.device.subgroupSize >= 32;
     const auto stamp = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass = dispatch(shader.name, shader,
                                   {{paths, read}, {words, write}, {counters, readWrite}, {entries, write}}, kStamps);
@@ -235,8 +240,10 @@ core::PassList Canvas::describe() const {
     pack("pack, glyphs alone", kStampsAlone);
   }
   const std::array<Spirv, 3> mark =
-      software_ ? std::array<Spirv, 3>{vector_mark_software_one, vector_mark_software, vector_mark_software_projective}
-                : std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective};
+      !software_  ? std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective}
+      : subgroups ? std::array<Spirv, 3>{vector_mark_pieces_one_subgroups, vector_mark_pieces_subgroups,
+                                         vector_mark_pieces_projective_subgroups}
+                  : std::array<Spirv, 3>{vector_mark_pieces_one, vector_mark_pieces, vector_mark_pieces_projective};
   either(
       {"mark", "mark, several drawings", "mark, projective"}, mark,
       {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}, {entries, write}},
@@ -274,7 +281,9 @@ core::PassList Canvas::describe() const {
     allot({"allot", vector_allot_rows}, kWords, true);
     allot({"allot again", vector_allot_software}, kOnce, false);
     clear({"clear entries", vector_clear_entries}, entries);
-    const std::array<Spirv, 3> listed = {vector_fill_pieces_one, vector_fill_pieces, vector_fill_pieces},
+    const Spirv listedOne = subgroups ? Spirv(vector_fill_pieces_one_subgroups) : Spirv(vector_fill_pieces_one),
+                listedAll = subgroups ? Spirv(vector_fill_pieces_subgroups) : Spirv(vector_fill_pieces);
+    const std::array<Spirv, 3> listed = {listedOne, listedAll, listedAll},
                                unlisted = {vector_fill_software_one, vector_fill_software,
                                            vector_fill_software_projective};
     for (uint32_t k = 0; k < 3; ++k) {
@@ -290,7 +299,11 @@ core::PassList Canvas::describe() const {
       pass.condition = kMarkOne + k;
       pass.beside = k > 0;
     }
-    fill({"left of tiles", vector_fill_left}, true, kMarked, false);
+    list.dispatch(
+            "left of tiles", list.add(core::ShaderDesc{"left of tiles", vector_fill_left}),
+            {{params, read}, {paths, read}, {words, read}, {counters, read}, {rowList, read}, {entries, readWrite}},
+            kFill)
+        .condition = kMarked;
     fill({"clear entries again", vector_clear_entries}, false, kMarked, false);
     for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, k > 0);
   } else {
