@@ -48,7 +48,8 @@ typedef struct GpgpSamplerCreateInfo {
   uint32_t maxCandidates; /**< exact: triangles that may be seen, and those that may hide them; 0: a quarter
                                of maxTriangles, at least 65536. Scratch: 64 bytes each */
   uint32_t maxPairs;      /**< exact: of a candidate and a pixel; 0: 4 each and 4 a pixel, as far as the device
-                               binds them. Scratch: 24 bytes each */
+                               binds them; and half as many of a candidate and 8 x 8 pixels. Scratch: 24 bytes
+                               each */
 } GpgpSamplerCreateInfo;
 #define GPGP_SAMPLER_CREATE_INFO_INIT GPGP_INIT(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO)
 

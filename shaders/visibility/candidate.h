@@ -53,6 +53,33 @@ GPGP_FN int innermostBlock(ivec2 u, ivec2 slope, ivec2 first) {
   return edgeBlock(u, slope, first, grid);
 }
 
+/// Bits: which pixels of a tile of 8 x 8 a triangle touches, whose pixelBounds and the tile's first pixel are given.
+GPGP_FN uvec2 touchedPixels(ScreenTriangle t, ivec4 bounds, ivec2 first) {
+  ivec2 s0 = edgeSlope(t.p1, t.p2);
+  ivec2 s1 = edgeSlope(t.p2, t.p0);
+  ivec2 s2 = edgeSlope(t.p0, t.p1);
+  ivec3 corner =
+      ivec3(innermostBlock(t.p1, s0, first), innermostBlock(t.p2, s1, first), innermostBlock(t.p0, s2, first));
+  ivec3 toRight = ivec3(s0.x, s1.x, s2.x);
+  ivec3 down = ivec3(s0.y, s1.y, s2.y);
+  ivec2 low = max(ivec2(bounds.x, bounds.y) - first, ivec2(0, 0));
+  ivec2 high = min(ivec2(bounds.z, bounds.w) - first, ivec2(8, 8));
+  uvec2 mask = uvec2(0u, 0u);
+  for (int y = low.y; y < high.y; ++y) {
+    ivec3 edges = corner + down * y + toRight * low.x;
+    uint row = 0u;
+    for (int x = low.x; x < high.x; ++x) {
+      if ((edges.x | edges.y | edges.z) >= 0) row |= 1u << uint(x);
+      edges += toRight;
+    }
+    if (y < 4)
+      mask.x |= row << uint(y * 8);
+    else
+      mask.y |= row << uint(y * 8 - 32);
+  }
+  return mask;
+}
+
 GPGP_FN float withinDepths(ScreenTriangle t, float z) {
   float held = clamp(z, t.zMin, t.zMax);
   return held < 1.17549435e-38f ? 0.0f : held;

@@ -18,7 +18,8 @@ void main() {
   uint rows = params.height * params.cameraCount;
   uint pixels = params.width * rows * samples;
   uint words = (params.triangleCount + 31u) / 32u;
-  uint limits = params.method == kExact ? (params.width + 7u) / 8u * ((rows + 7u) / 8u) * 64u : 0u;
+  uint tiles = (params.width + 7u) / 8u * ((params.height + 7u) / 8u) * params.cameraCount;
+  uint limits = params.method == kExact ? tiles * 64u : 0u;
   bool perTriangle = params.hasSizes != 0u || params.hasExtents != 0u;
   uint count = max(max(pixels, limits), max(words, perTriangle ? params.triangleCount : 0u));
   uint stride = gl_NumWorkGroups.x * 256u;

@@ -11,6 +11,9 @@ layout(std430, set = 0, binding = kBindCount) writeonly buffer CountBuffer { uin
 void main() {
   uint listed = min(counters.visible, params.listCapacity);
   counters.listed = listed;
+  // Pairs of tiles that found no room were not looked at: so many would have.
+  if (counters.tilePairs > params.maxPairs / 2u)
+    counters.pairs = max(counters.pairs, min(counters.tilePairs, 0x7fffffffu) * 2u);
   if (params.writeCount == 0u) return;
   countAndArgs[0] = counters.visible;
   uvec3 groups = listGroups(listed);

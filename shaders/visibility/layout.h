@@ -18,12 +18,14 @@ GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup o
 GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle that found no record
 GPGP_CONST uint kMaxSlices = 256u;         ///< records, a workgroup each, that share one large triangle at most
 GPGP_CONST uint kSliceBlocks = 64u;        ///< blocks of 8 x 8 pixels that one workgroup is given at least
+GPGP_CONST uint kSliceTiles = 64u;         ///< the same of exact sampling's tiles: one an invocation
 GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
 GPGP_CONST uint kExact = 1u;               ///< GPGP_SAMPLING_EXACT
 GPGP_CONST uint kTruth = 2u;               ///< GPGP_SAMPLING_TRUTH
 GPGP_CONST uint kConservative = 3u;        ///< GPGP_SAMPLING_CONSERVATIVE
 GPGP_CONST uint kNearby = 4u;              ///< GPGP_SAMPLING_NEARBY
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
+GPGP_CONST uint kListRun = 8u;             ///< lists of at most so many that a workgroup is given
 GPGP_CONST uint kSorted = 256u;            ///< entries of a pixel's list that are sorted together
 GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 
@@ -50,15 +52,16 @@ GPGP_CONST int kBindCount = 12;
 GPGP_CONST int kBindView = 13;
 GPGP_CONST int kBindRecords = 14;
 GPGP_CONST int kBindSizes = 15;
-GPGP_CONST int kBindSlots = 16; // words per pixel: limits (then where its list begins), list lengths; big candidates
+GPGP_CONST int kBindSlots =
+    16; // words per pixel: limits (then where its list ends), list lengths; tiles; big candidates
 GPGP_CONST int kBindCommands = 17;
 GPGP_CONST int kBindCommandCount = 18;
 GPGP_CONST int kBindDrawCommands = 19;
 GPGP_CONST int kBindDrawIndices = 20;
 GPGP_CONST int kBindDrawTriangles = 21;
 GPGP_CONST int kBindExtents = 22;
-GPGP_CONST int kBindPairs = 23;                // a pixel and a candidate each, before the lists have their places
-GPGP_CONST int kBindOpen = kBindIds;           // exact, once ids are gathered: pixels with lists
+GPGP_CONST int kBindPairs = 23;      // a tile and a candidate each, then which of its pixels; by tile: candidates
+GPGP_CONST int kBindOpen = kBindIds; // exact, once ids are gathered: pixels with lists
 GPGP_CONST int kBindCandidates = kBindRecords; // exact, once ids are drawn
 GPGP_CONST int kBindEntries = kBindQueue;      // exact, once all pairs are there: candidates in lists
 GPGP_CONST int kBindKeys = kBindPairs;         // exact, once lists have their places: depths of long ones' entries
@@ -194,6 +197,9 @@ struct Surface {
   float normalZ;
 };
 GPGP_CONST uint kPairBytes = 8u;
+GPGP_CONST uint kTilePairWords = 3u;        ///< tile, candidate, the how manieth of its tile
+GPGP_CONST uint kNoTile = 0xffffffffu;      ///< of a pair that found no room
+GPGP_CONST uint kIsSeen = 0x80000000u;      ///< beside a candidate's number in its pairs: at some pixel's centre
 GPGP_CONST uint kQuarters = 4u;             ///< of a pixel, each of 4 x 4 samples
 GPGP_CONST uint kGapWords = 2u + kQuarters; ///< of a pixel: its covered samples; behind all, quarters' depths
 
@@ -235,13 +241,12 @@ struct Counters {
   uint bigUnfoldArgs[3];
   uint bigCount;
   uint bigArgs[3];
-  uint seenCount; // small triangles that are seen at a pixel's centre
-  uint seenArgs[3];
+  uint tilePairs; // of a candidate and a tile: asked for
   uint placeArgs[3];
   uint overlapCount; // conservative: triangles of more than 8 x 8 pixels, or clipped
   uint overlapArgs[3];
-  uint entryCount; // in the lists that have their place
-  uint openCount;  // pixels with lists of at most kBatch
+  uint placedCount; // pairs of tiles that have their place
+  uint openCount;   // pixels with lists of at most kBatch
   uint openArgs[3];
   uint winnerCount; // small triangles that were nearest in a pixel when they were drawn
   uint winnerArgs[3];
@@ -250,7 +255,7 @@ struct Counters {
   uint longCount; // pixels with lists of more than kBatch
   uint longArgs[3];
 };
-GPGP_CONST uint kCounterWords = 80u;
+GPGP_CONST uint kCounterWords = 77u;
 GPGP_CONST uint kReportWords = 24u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.

@@ -1,20 +1,43 @@
 // The list of candidates that each pixel has, and its limit: a key behind which nothing is seen there. Pixels are
-// numbered in tiles of 8 x 8, so that a workgroup's lists lie together. Needs `params`.
+// numbered in tiles of 8 x 8 of one camera, so that a tile's lists lie together. Needs `params`.
 #include "visibility/candidate.h"
 
-/// Limits, the lists' lengths, then the big candidates: regions of params.slotCapacity words, the last one longer.
+/// Limits (then where lists end), the lists' lengths, two words a tile (how many candidates reach over it; whether some
+/// are not seen yet, then where they lie), the big candidates.
 layout(std430, set = 0, binding = kBindSlots) buffer SlotBuffer { uint slots[]; };
 
 uint lengthAt(uint slot) { return params.slotCapacity + slot; }
-uint bigAt(uint entry) { return params.slotCapacity * 2u + entry * 2u; }
+uint tileWord(uint tile) { return params.slotCapacity * 2u + tile * 2u; }
+uint bigAt(uint entry) { return params.slotCapacity * 2u + params.slotCapacity / 32u + entry * 2u; }
+
+/// Of candidates and tiles there is room for half as many pairs as of candidates and pixels.
+uint maxTilePairs() { return params.maxPairs / 2u; }
+uint placedAt(uint i) { return maxTilePairs() * kTilePairWords + i; } // among the words of pairs
 
 uint tileColumns() { return (params.width + 7u) / 8u; }
-uint tileCount() { return tileColumns() * ((params.height * params.cameraCount + 7u) / 8u); }
-ivec2 pixelOf(uint slot) {
-  uint tile = slot / 64u;
-  return ivec2(int(tile % tileColumns() * 8u + (slot & 7u)), int(tile / tileColumns() * 8u + ((slot >> 3u) & 7u)));
+uint tileRows() { return (params.height + 7u) / 8u; } // of a camera
+uint tileCount() { return tileColumns() * tileRows() * params.cameraCount; }
+/// A tile's first pixel.
+ivec2 cornerOf(uint tile) {
+  uint row = tile / tileColumns();
+  uint camera = row / tileRows();
+  return ivec2(int(tile % tileColumns() * 8u), int(camera * params.height + (row - camera * tileRows()) * 8u));
 }
-uint slotOf(ivec2 pixel) {
-  return (uint(pixel.y) / 8u * tileColumns() + uint(pixel.x) / 8u) * 64u + (uint(pixel.y) & 7u) * 8u +
-         (uint(pixel.x) & 7u);
+/// The tile of a camera's pixel.
+uint tileOf(ivec2 pixel, uint camera) {
+  uint row = uint(pixel.y) - camera * params.height;
+  return (camera * tileRows() + row / 8u) * tileColumns() + uint(pixel.x) / 8u;
 }
+/// The tiles of a camera's pixels: the first, how many lie beside each other, how many there are.
+uvec3 tilesOf(ivec4 bounds, uint camera) {
+  uint top = camera * params.height;
+  uint columns = uint(bounds.z - 1) / 8u - uint(bounds.x) / 8u + 1u;
+  uint rows = (uint(bounds.w - 1) - top) / 8u - (uint(bounds.y) - top) / 8u + 1u;
+  return uvec3(tileOf(bounds.xy, camera), columns, columns * rows);
+}
+ivec2 pixelOf(uint slot) { return cornerOf(slot / 64u) + ivec2(int(slot & 7u), int((slot >> 3u) & 7u)); }
+uint slotOf(ivec2 pixel, uint camera) {
+  uint row = uint(pixel.y) - camera * params.height;
+  return tileOf(pixel, camera) * 64u + (row & 7u) * 8u + (uint(pixel.x) & 7u);
+}
+uint slotOf(ivec2 pixel) { return slotOf(pixel, uint(pixel.y) / params.height); }

@@ -1,68 +1,97 @@
-// One invocation a triangle on the screen: enters those that are not seen at any pixel's centre, in the pixels in which
-// they may be seen. Those that are seen are queued for hide.comp; in the same buffer, from its end, those that are
-// clipped or reach over more than 8 x 8 pixels.
+// One invocation a triangle on the screen: makes candidates of those that are seen at a pixel's centre, which may hide
+// others, and of those that may be seen elsewhere, and enters them in the tiles that they reach over. Those that are
+// clipped or reach over more than 8 x 8 pixels are queued.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
 #include "visibility/lists.glsl"
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
-#include "visibility/enter.glsl"
-#include "visibility/small_pairs.glsl"
+#include "visibility/tile_pairs.glsl"
 layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = kBindQueue) buffer QueueBuffer { uint queue[]; };
 
-shared uint groupSeen;
 shared uint groupBig;
-shared uint firstSeen;
+shared uint groupCandidates;
+shared uint groupPairs;
 shared uint firstBig;
+shared uint firstCandidate;
+shared uint firstPair;
+
+/// Whether a triangle comes in front of a limit of the pixels in its bounds.
+bool mayShow(ScreenTriangle t, ivec4 bounds, uint camera) {
+  bool reversed = params.reversedDepth != 0u;
+  uint nearest = depthKey(reversed ? t.zMax : t.zMin, reversed);
+  for (int y = bounds.y; y < bounds.w; ++y)
+    for (int x = bounds.x; x < bounds.z; ++x)
+      if (nearest <= slots[slotOf(ivec2(x, y), camera)]) return true;
+  return false;
+}
 
 void main() {
   uint count = counters.onScreenCount;
   for (uint first = gl_WorkGroupID.x * 64u; first < count; first += gl_NumWorkGroups.x * 64u) {
     if (gl_LocalInvocationIndex == 0u) {
-      groupSeen = 0u;
       groupBig = 0u;
+      groupCandidates = 0u;
+      groupPairs = 0u;
     }
     barrier();
-    uint number = 0u;
     const uint kNone = 0xffffffffu;
+    uint number = 0u;
     uint big = kNone;
-    uint seen = kNone;
-    uvec2 mask = uvec2(0u);
     ScreenTriangle t;
     uint id = 0u;
-    ivec4 bounds = ivec4(0);
+    bool seen = false;
+    uvec3 tiles = uvec3(0u);
+    uint candidate = 0u;
+    uint pair = 0u;
     if (first + gl_LocalInvocationIndex < count) {
       number = queue[params.maxItems + first + gl_LocalInvocationIndex];
       uint item;
       Fetched f = fetchNumber(number, item);
       id = f.id;
       uint fate = classifyFetched(f, t);
-      if (fate == kClipped) big = atomicAdd(groupBig, 1u);
-      if (fate == kWhole) {
-        bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
-        if (bounds.x < bounds.z && bounds.y < bounds.w) {
-          if (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8) big = atomicAdd(groupBig, 1u);
-          else if (isSeen(id)) seen = atomicAdd(groupSeen, 1u);
-          else mask = wantedPixels(t, bounds, false);
+      ivec4 bounds = ivec4(0);
+      if (fate == kWhole) bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
+      bool reaches = bounds.x < bounds.z && bounds.y < bounds.w;
+      if (fate == kClipped || (reaches && (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8))) {
+        big = atomicAdd(groupBig, 1u);
+      } else if (reaches) {
+        seen = isSeen(id);
+        if (seen || mayShow(t, bounds, f.camera)) {
+          tiles = tilesOf(bounds, f.camera);
+          candidate = atomicAdd(groupCandidates, 1u);
+          pair = atomicAdd(groupPairs, tiles.z);
         }
       }
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u) {
-      if (groupSeen != 0u) {
-        firstSeen = atomicAdd(counters.seenCount, groupSeen);
-        atomicMax(counters.seenArgs[0], min((firstSeen + groupSeen + 63u) / 64u, kMaxGroups));
-      }
       if (groupBig != 0u) {
         firstBig = atomicAdd(counters.bigQueueCount, groupBig);
         atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
       }
+      if (groupCandidates != 0u) {
+        firstCandidate = atomicAdd(counters.candidates, groupCandidates);
+        firstPair = atomicAdd(counters.tilePairs, groupPairs);
+      }
     }
     barrier();
-    if (seen != kNone) queue[firstSeen + seen] = number;
-    if (big != kNone) queue[params.maxItems - 1u - firstBig - big] = number;
-    enterSmall(t, id, bounds.xy, mask);
+    if (big != kNone) queue[firstBig + big] = number;
+    if (tiles.z != 0u) {
+      candidate += firstCandidate;
+      pair += firstPair;
+      uint room = maxTilePairs() - min(pair, maxTilePairs());
+      if (candidate < params.maxCandidates && tiles.z <= room) {
+        writeCandidate(candidate, makeCandidate(t, id));
+        for (uint i = 0u; i < tiles.z; ++i)
+          enter(candidate, seen, tiles.x + i / tiles.y * tileColumns() + i % tiles.y, pair + i);
+      } else {
+        show(id);
+        for (uint i = 0u; i < min(tiles.z, room); ++i) pairs[(pair + i) * kTilePairWords] = kNoTile;
+      }
+    }
+    barrier();
   }
 }

@@ -16,8 +16,7 @@ void add(ScreenTriangle t, uint id, uint camera) {
   uint place = atomicAdd(counters.candidates, 1u);
   if (place < params.maxCandidates) {
     writeCandidate(place, makeCandidate(t, id));
-    uint blocks = uint(bounds.z - bounds.x + 7) / 8u * (uint(bounds.w - bounds.y + 7) / 8u);
-    uint slices = clamp(blocks / kSliceBlocks, 1u, kMaxSlices);
+    uint slices = clamp(tilesOf(bounds, camera).z / kSliceTiles, 1u, kMaxSlices);
     uint first = atomicAdd(counters.bigCount, slices);
     // What is counted below the capacity is written, so that no entry lies unwritten among the others.
     uint end = min(first + slices, params.maxBig);
@@ -36,7 +35,7 @@ void main() {
   uint count = counters.bigQueueCount;
   for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
     uint item;
-    Fetched f = fetchNumber(queue[params.maxItems - 1u - entry], item);
+    Fetched f = fetchNumber(queue[entry], item);
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
     if (fate == kWhole) add(t, f.id, f.camera);

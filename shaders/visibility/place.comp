@@ -1,4 +1,5 @@
-// One invocation a pair: puts it into its pixel's list. Where the list begins becomes where it ends.
+// One invocation a pair of a candidate and a tile: puts it where the tile's candidates lie. Tiles of which all are
+// seen get none.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -6,14 +7,15 @@ layout(local_size_x = 256) in;
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) readonly buffer CounterBuffer { Counters counters; };
-layout(std430, set = 0, binding = kBindSlots) buffer SlotBuffer { uint slots[]; };
-layout(std430, set = 0, binding = kBindPairs) readonly buffer PairBuffer { uvec2 pairs[]; };
-layout(std430, set = 0, binding = kBindEntries) writeonly buffer EntryBuffer { uint entries[]; };
+#include "visibility/lists.glsl"
+layout(std430, set = 0, binding = kBindPairs) buffer PairBuffer { uint pairs[]; };
 
 void main() {
-  uint count = min(counters.pairs, params.maxPairs);
+  uint count = min(counters.tilePairs, maxTilePairs());
   for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 256u) {
-    uvec2 p = pairs[i];
-    entries[atomicAdd(slots[p.x], 1u)] = p.y;
+    uint pair = i * kTilePairWords;
+    if (pairs[pair] == kNoTile) continue;
+    uint begin = slots[tileWord(pairs[pair]) + 1u];
+    if (begin != kNoTile) pairs[placedAt(begin + pairs[pair + 2u])] = pairs[pair + 1u];
   }
 }

@@ -140,8 +140,6 @@ void main() {
     counters.bigUnfoldArgs[2] = 1u;
     counters.bigArgs[1] = 1u;
     counters.bigArgs[2] = 1u;
-    counters.seenArgs[1] = 1u;
-    counters.seenArgs[2] = 1u;
     counters.openArgs[1] = 1u;
     counters.openArgs[2] = 1u;
     counters.longArgs[1] = 1u;

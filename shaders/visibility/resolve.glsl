@@ -39,36 +39,37 @@ bool precedes(uint first, uint second, bool otherwise) {
 void setKey(uint i, uint key) { keys[i >> 2u][i & 3u] = key; }
 uint keyAt(uint i) { return keys[i >> 2u][i & 3u]; }
 
-/// How many of `n` entries, whose keys are there, are nearer than one of them.
-uint rankOf(uint i, uint n) {
+/// How many of `n` entries from `first` on, whose keys are there, are nearer than one of them; first: a multiple of 4.
+uint rankOf(uint i, uint first, uint n) {
   uint key = keyAt(i);
   uint before = 0u;
   uint quads = n / 4u;
   for (uint j = 0u; j < quads; ++j) {
-    uvec4 other = keys[j];
+    uvec4 other = keys[first / 4u + j];
     before += uint(other.x < key) + uint(other.y < key) + uint(other.z < key) + uint(other.w < key);
   }
-  for (uint j = quads * 4u; j < n; ++j) before += uint(keyAt(j) < key);
+  for (uint j = quads * 4u; j < n; ++j) before += uint(keyAt(first + j) < key);
   return before;
 }
 
 /// How many of those of the same depth come before it.
-uint rankAmongSame(uint i, uint n) {
+uint rankAmongSame(uint i, uint first, uint n) {
   uint key = keyAt(i);
   uint before = 0u;
-  for (uint j = 0u; j < n; ++j)
+  for (uint j = first; j < first + n; ++j)
     if (keyAt(j) == key && j != i && precedes(items[j], items[i], j < i)) ++before;
   return before;
 }
 
-/// The place of this invocation's entry in the order of a batch, whose items and keys are there.
-uint placeAmong(uint n) {
+/// The place of this invocation's entry in the order of `n` from `first` on, whose items and keys are there; all: how
+/// many invocations have one.
+uint placeAmong(bool isThere, uint first, uint n, uint all_) {
   uint lane = laneOf();
   sync();
-  uint place = lane < n ? rankOf(lane, n) : 0u;
-  uint taken = orAll(lane < n ? 1u << place : 0u);
-  if (uint(bitCount(taken)) != n) { // some have the same
-    if (lane < n) place += rankAmongSame(lane, n);
+  uint place = isThere ? first + rankOf(lane, first, n) : 0u;
+  uint taken = orAll(isThere ? 1u << place : 0u);
+  if (uint(bitCount(taken)) != all_) { // some have the same
+    if (isThere) place += rankAmongSame(lane, first, n);
   }
   sync();
   return place;
@@ -102,18 +103,18 @@ Outline outlineAt(uint place) {
 
 /// What a batch shows.
 struct Looked {
-  uint seen;  // bits: entries
+  uint seen;  // bits: places
   bool holes; // samples that nothing covers yet
 };
 
 bool isFull(uvec4 covered) { return (covered.x & covered.y & covered.z & covered.w) == 0xffffffffu; }
 
-/// Goes through a batch, whose outlines are there; `moves`: some have a parallax.
-Looked lookAtBatch(uint batch, bool moves, inout uvec4 covered) {
+/// Goes through `n` entries from `first` on, whose outlines are there; `moves`: some have a parallax.
+Looked lookAtBatch(uint first, uint n, bool moves, inout uvec4 covered) {
   int row = int(laneOf());
   sync();
   uint found = 0u;
-  for (uint k = 0u; k < batch && !isFull(covered); ++k) {
+  for (uint k = first; k < first + n && !isFull(covered); ++k) {
     Outline o = outlineAt(k);
     uvec4 fresh = uvec4(samplesIn(o, row), samplesIn(o, row + 32)) & ~covered;
     uvec4 shown = fresh;

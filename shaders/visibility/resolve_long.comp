@@ -83,7 +83,7 @@ bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 covere
     put(place, outlineOf(c, pixel), parallaxIn(pixel, rest.nearest, keyAt(laneOf()), rest.before + place));
     id = c.id;
   }
-  Looked looked = lookAtBatch(n, movesIn(pixel), covered);
+  Looked looked = lookAtBatch(0u, n, movesIn(pixel), covered);
   if (laneOf() < n && (looked.seen & (1u << place)) != 0u) show(id);
   sync();
   return looked.holes;
@@ -149,7 +149,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
       break;
     }
     if (n > kBatch) more = resolveSame(rest, n, pixel, covered);
-    else more = resolveBatch(rest, n, placeAmong(n), pixel, covered);
+    else more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n, n), pixel, covered);
     more = more && high != rest.farthest;
     rest.low = high + 1u;
     rest.before += n;

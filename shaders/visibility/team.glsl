@@ -10,12 +10,12 @@ uint orAll(uint v) { return subgroupOr(v); }
 uint minAll(uint v) { return subgroupMin(v); }
 uint maxAll(uint v) { return subgroupMax(v); }
 uint sumUpTo(uint v) { return subgroupInclusiveAdd(v); } // with the invocation's own
-uvec2 fromLane(uvec2 v, uint lane) { return subgroupShuffle(v, lane); } // lane: the same for all
+uvec2 fromLane(uvec2 v, uint lane) { return subgroupShuffle(v, lane); }
 uvec4 fromLane(uvec4 v, uint lane) { return subgroupShuffle(v, lane); }
 #else
 shared uint joined;
 shared uint sums[kBatch];
-shared uvec4 told;
+shared uvec4 told[kBatch];
 
 void sync() { barrier(); }
 
@@ -45,9 +45,9 @@ uint maxAll(uint v) {
 }
 uvec4 fromLane(uvec4 v, uint lane) {
   barrier();
-  if (laneOf() == lane) told = v;
+  told[laneOf()] = v;
   barrier();
-  return told;
+  return told[lane];
 }
 uvec2 fromLane(uvec2 v, uint lane) { return fromLane(v.xyxy, lane).xy; }
 uint sumUpTo(uint v) {

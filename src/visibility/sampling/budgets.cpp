@@ -25,7 +25,7 @@ Budgets::Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits
           1u)) {}
 
 uint64_t Budgets::chunks() const { return uint64_t(maxTriangles) / shader::kChunk + maxDraws + 1; }
-uint64_t Budgets::slots() const { return slotsOf(maxWidth, maxHeight * maxCameras); }
+uint64_t Budgets::slots() const { return slotsOf(maxWidth, maxHeight) * maxCameras; }
 uint32_t Budgets::mediumRecords() const { return std::clamp(maxTriangles / 4, 1u, kMediumRecords * recordShares); }
 uint32_t Budgets::largeRecords() const { return std::clamp(maxTriangles / 4, 1u, kLargeRecords * recordShares); }
 

@@ -3,7 +3,7 @@
 
 #include "shaders/visibility_allot.spv.h"
 #include "shaders/visibility_big.spv.h"
-#include "shaders/visibility_hide.spv.h"
+#include "shaders/visibility_enter.spv.h"
 #include "shaders/visibility_pick.spv.h"
 #include "shaders/visibility_pick_unfold.spv.h"
 #include "shaders/visibility_place.spv.h"
@@ -19,28 +19,6 @@ namespace gpgp::visibility {
 void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device) {
   using namespace shader;
   using enum core::UseKind;
-  // Candidates of the triangles that a queue names: picked where they can be seen, or where something hides them.
-  const auto addCandidates = [&](const char* name, std::span<const uint32_t> spirv, core::UseKind queue,
-                                 size_t arguments) {
-    fetchesTriangles(list.dispatchIndirect(name, addShader(list, name, spirv),
-                                           {{kBindQueue, queue},
-                                            {kBindSlots, readWrite},
-                                            {kBindCounters, readWrite},
-                                            {kBindBits, readWrite},
-                                            {kBindCandidates, readWrite},
-                                            {kBindPairs, write}},
-                                           kBindCounters, arguments));
-  };
-  const auto addBig = [&](const char* name, uint32_t phase) {
-    list.dispatchIndirect(name, addShader(list, "big", visibility_big, phase),
-                          {{kBindParams, read},
-                           {kBindSlots, readWrite},
-                           {kBindCounters, readWrite},
-                           {kBindBits, readWrite},
-                           {kBindCandidates, readWrite},
-                           {kBindPairs, write}},
-                          kBindCounters, offsetof(Counters, bigArgs));
-  };
   const auto addResolve = [&](const char* name, std::span<const uint32_t> spirv, size_t arguments) -> core::Pass& {
     return list.dispatchIndirect(name, addShader(list, name, spirv),
                                  {{kBindParams, read},
@@ -54,8 +32,15 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                                  kBindCounters, arguments);
   };
   const size_t first = list.passes.size();
-  list.fill("clear lists", kBindSlots, 0, budgets.slots() * 4, budgets.slots() * 4);
-  addCandidates("pick", visibility_pick, readWrite, offsetof(Counters, onScreenArgs));
+  list.fill("clear tiles", kBindSlots, 0, budgets.slots() * 8, budgets.slots() / 8);
+  fetchesTriangles(list.dispatchIndirect("pick", addShader(list, "pick", visibility_pick),
+                                         {{kBindQueue, readWrite},
+                                          {kBindSlots, readWrite},
+                                          {kBindCounters, readWrite},
+                                          {kBindBits, readWrite},
+                                          {kBindCandidates, write},
+                                          {kBindPairs, write}},
+                                         kBindCounters, offsetof(Counters, onScreenArgs)));
   fetchesTriangles(list.dispatchIndirect("pick unfold", addShader(list, "pick unfold", visibility_pick_unfold),
                                          {{kBindQueue, read},
                                           {kBindCounters, readWrite},
@@ -63,16 +48,29 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                                           {kBindCandidates, write},
                                           {kBindSlots, readWrite}},
                                          kBindCounters, offsetof(Counters, bigUnfoldArgs)));
-  addBig("pick big", 0);
-  addCandidates("hide", visibility_hide, read, offsetof(Counters, seenArgs));
-  addBig("hide big", 1);
+  list.dispatchIndirect("pick big", addShader(list, "big", visibility_big),
+                        {{kBindParams, read},
+                         {kBindSlots, readWrite},
+                         {kBindCounters, readWrite},
+                         {kBindBits, readWrite},
+                         {kBindCandidates, read},
+                         {kBindPairs, write}},
+                        kBindCounters, offsetof(Counters, bigArgs));
   list.dispatch("allot", addShader(list, "allot", visibility_allot),
-                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindSlots, readWrite}, {kBindOpen, write}},
+                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindSlots, readWrite}}, kAllotGroups);
+  list.dispatchIndirect("place", addShader(list, "place", visibility_place),
+                        {{kBindParams, read}, {kBindCounters, read}, {kBindSlots, readWrite}, {kBindPairs, readWrite}},
+                        kBindCounters, offsetof(Counters, placeArgs));
+  list.dispatch("enter", addShader(list, "enter", visibility_enter),
+                {{kBindParams, read},
+                 {kBindCounters, readWrite},
+                 {kBindSlots, readWrite},
+                 {kBindBits, readWrite},
+                 {kBindCandidates, read},
+                 {kBindPairs, readWrite},
+                 {kBindEntries, write},
+                 {kBindOpen, write}},
                 kTileGroups);
-  list.dispatchIndirect(
-      "place", addShader(list, "place", visibility_place),
-      {{kBindParams, read}, {kBindCounters, read}, {kBindSlots, readWrite}, {kBindPairs, read}, {kBindEntries, write}},
-      kBindCounters, offsetof(Counters, placeArgs));
   const bool subgroups = device.subgroupArithmetic && device.subgroupSize == kBatch;
   const auto choose = [&](std::span<const uint32_t> bySubgroups, std::span<const uint32_t> others) {
     return subgroups ? bySubgroups : others;

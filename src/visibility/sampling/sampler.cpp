@@ -46,7 +46,8 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
   const uint32_t rows = params.height * params.cameraCount;
   const uint64_t pixels = uint64_t(params.width) * rows << (16 - 2 * params.gridShift);
   const uint64_t words = (uint64_t(params.triangleCount) + 31) / 32;
-  const uint64_t slots = params.method == shader::kExact ? slotsOf(params.width, rows) : 0;
+  const uint64_t slots =
+      params.method == shader::kExact ? slotsOf(params.width, params.height) * params.cameraCount : 0;
   record.groups[kOneGroup] = {1, 1, 1};
   record.groups[kClearGroups] = {
       groupsOf256(
@@ -54,8 +55,8 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
       1, 1};
   record.groups[kPixelGroups] = {groupsOf256((pixels + 7) / 8), 1, 1};
   record.groups[kWordGroups] = {groupsOf256(std::max<uint64_t>(words, params.viewWords)), 1, 1};
-  record.groups[kTileGroups] = {static_cast<uint32_t>(std::min<uint64_t>((slots + 255) / 256, shader::kMaxGroups)), 1,
-                                1};
+  record.groups[kTileGroups] = {static_cast<uint32_t>(std::min<uint64_t>(slots / 64, shader::kMaxGroups)), 1, 1};
+  record.groups[kAllotGroups] = {groupsOf256(slots / 64), 1, 1};
   record.groups[kEntryGroups] = {groupsOf256(params.entryCount), 1, 1};
   record.groups[kChunkGroups] = {groupsOf256(budgets.chunks()), 1, 1};
   const uint32_t side = shader::tileSide(params.width, params.height, 0);

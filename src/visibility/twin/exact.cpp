@@ -105,7 +105,7 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
     ScreenTriangle triangle;
     ivec4 bounds;
     uint32_t id;
-    bool shared, seen; // by several invocations: the GPU makes a candidate before it knows
+    bool shared, seen; // by several invocations
   };
   std::vector<Piece> pieces;
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
@@ -143,21 +143,21 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
       if (piece.seen != seen) continue;
       const auto index = static_cast<uint32_t>(candidates.size());
       const Candidate candidate = makeCandidate(t, piece.id);
-      bool any = false;
+      bool mayShow = false;
       for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
         for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
           const ivec2 pixel(x, y);
           const uint32_t limit = limits[at(pixel)];
-          if (seen && !open[at(pixel)]) continue;
-          if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit || !touches(t, isCompact(t), pixel)) continue;
+          if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit) continue;
+          mayShow = true;
+          if ((seen && !open[at(pixel)]) || !touches(t, isCompact(t), pixel)) continue;
           if (nearestKey(t, isCompact(t), pixel, reversed) > limit) continue;
-          any = true;
           const Footing footing = footingOf(t, isCompact(t), pixel);
           lists[at(pixel)].push_back(
               {index, middleKey(candidate, outlineOf(candidate, pixel), footing, pixel, reversed)});
           ++out.counters.pairs;
         }
-      if (any || piece.shared) candidates.push_back(candidate);
+      if (mayShow || piece.shared || seen) candidates.push_back(candidate);
     }
   }
   out.counters.candidates = static_cast<uint32_t>(candidates.size());
