@@ -70,17 +70,18 @@ void stampRow(Grid g, Place place, Chord c, int pixel) {
   }
 }
 
-// The samples that are inside in the first pixel of a tile's row, which begins with a pair; none where the row is not
-// the path's.
-uint insideAt(Place place, uint pair, uint row) {
-  uint both = 0;
-  if (row - place.top < kStampPairs / place.pairs) {
-    const uint first = (row - place.top) * place.pairs;
-    for (uint k = 0; k < place.pairs && place.left + k < pair; ++k) both ^= pixels[first + k];
-    both ^= both >> 16;
-    if (pair - place.left < place.pairs) both ^= pixels[first + pair - place.left];
+// Pixel pairs of a row of tiles begin with what is inside in the first pixel of each tile, instead of with what changes
+// there.
+void sumRows(Place place, uint rows, uint lane) {
+  for (uint row = lane; row < rows; row += kLanes) {
+    uint both = 0;
+    for (uint k = 0; k < place.pairs; ++k) {
+      const uint word = pixels[row * place.pairs + k];
+      if ((place.left + k) % 4 == 0)
+        pixels[row * place.pairs + k] = word & 0xffff0000u | (both ^ both >> 16 ^ word) & 0xffffu;
+      both ^= word;
+    }
   }
-  return both & 0xffff;
 }
 
 void main() {
@@ -149,19 +150,25 @@ void main() {
   }
   // Which tiles have edges, and which lie inside.
   const uint across = p.right - p.left, down = p.bottom - p.top, rows = kStampPairs / place.pairs;
+  sumRows(place, rows, lane);
+  barrier();
   const uvec2 own = uvec2(lane % 4, lane / 4); // this invocation's pair in each tile
   const uint all = (1u << g.samples) - 1;
-  for (uint t = 0; t < across * down; ++t) {
-    const uvec2 tile = uvec2(t % across, t / across), first = (uvec2(p.left, p.top) + tile) * uvec2(4, kTileSize);
-    const uint whole = (insideAt(place, first.x, first.y) & 1) != 0 ? all : 0;
-    if (lane == 0 && whole != 0) inside[tile.y] |= 1u << tile.x;
-    const uvec2 at = first + own - uvec2(place.left, place.top);
-    uint changes = own.x == 0 ? insideAt(place, first.x, first.y + own.y) ^ whole : 0;
-    if (at.x < place.pairs && at.y < rows) {
-      const uint word = at.y * place.pairs + at.x;
-      changes |= pixels[word] & (own.x == 0 ? 0xffff0000u : ~0u) | pixels[word + kStampPairs];
+  const uvec2 first = uvec2(p.left, p.top) * uvec2(4, kTileSize) - uvec2(place.left, place.top); // of the path's pairs
+  for (uint row = 0; row < down; ++row) {
+    const uint y = first.y + row * kTileSize + own.y, begin = first.y + row * kTileSize;
+    for (uint column = 0; column < across; ++column) {
+      const uint corner = first.x + column * 4, x = corner + own.x;
+      const bool there = corner < place.pairs && begin < rows;
+      const uint whole = there && (pixels[begin * place.pairs + corner] & 1) != 0 ? all : 0;
+      if (lane == 0 && whole != 0) inside[row] |= 1u << column;
+      uint changes = own.x == 0 ? whole : 0;
+      if (x < place.pairs && y < rows) {
+        const uint word = y * place.pairs + x;
+        changes = changes ^ pixels[word] | pixels[word + kStampPairs];
+      }
+      if (changes != 0) atomicOr(edges[row], 1u << column);
     }
-    if (changes != 0) atomicOr(edges[tile.y], 1u << tile.x);
   }
   barrier();
   uint count = 0, before = 0;
@@ -173,21 +180,19 @@ void main() {
   barrier();
   if (lane < down) words[p.firstWord + lane] = TileWord(edges[lane], inside[lane], firstEntry + before, 1);
   uint entry = firstEntry * kEntryWords + lane;
-  for (uint t = 0; t < across * down; ++t) {
-    const uvec2 tile = uvec2(t % across, t / across), first = (uvec2(p.left, p.top) + tile) * uvec2(4, kTileSize);
-    if ((edges[tile.y] >> tile.x & 1) == 0) continue;
-    const uvec2 at = first + own - uvec2(place.left, place.top);
-    uint samples = 0, areas = 0;
-    if (at.x < place.pairs && at.y < rows) {
-      const uint word = at.y * place.pairs + at.x;
-      samples = pixels[word];
-      areas = pixels[word + kStampPairs];
+  for (uint row = 0; row < down; ++row) {
+    const uint y = first.y + row * kTileSize + own.y;
+    for (uint left = edges[row]; left != 0; left &= left - 1) {
+      const uint column = uint(findLSB(left)), x = first.x + column * 4 + own.x;
+      uint samples = own.x == 0 && (inside[row] >> column & 1) != 0 ? all : 0, areas = 0;
+      if (x < place.pairs && y < rows) {
+        const uint word = y * place.pairs + x;
+        samples ^= pixels[word];
+        areas = pixels[word + kStampPairs];
+      }
+      entries[entry] = samples;
+      entries[entry + kEntryWords / 2] = areas;
+      entry += kEntryWords;
     }
-    if (own.x == 0)
-      samples = samples & 0xffff0000u |
-                insideAt(place, first.x, first.y + own.y) ^ ((inside[tile.y] >> tile.x & 1) != 0 ? all : 0);
-    entries[entry] = samples;
-    entries[entry + kEntryWords / 2] = areas;
-    entry += kEntryWords;
   }
 }

@@ -405,7 +405,8 @@ private:
       }
     return nodes;
   }
-  /// A shape comes from an operator that multiplies (arrives), or has waited for this one.
+  /// A shape comes from an operator that multiplies (arrives), or has waited for this one. Software devices run every
+  /// chain that is named here, so there only those are that a shape can come to.
   void writeRunChain() {
     add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n"
         "  uint end = s.node == 0u ? kEndDiscarded : kEndUnfinished;\n"
@@ -418,12 +419,15 @@ private:
       if (isContext(graph_.nodes[n].op))
         add("  case " + number(offsetOf(n)) +
             ": end = " + (waits_[n] ? "arrives ? kEndWaits : kEndContext" : "kEndContext") + "; break;\n");
-      if (!isChain(n) || peers_[n][0] != n || std::none_of(peers_[n].begin(), peers_[n].end(), isEntry)) continue;
+      if (!isChain(n) || peers_[n][0] != n) continue;
+      const bool entry = std::any_of(peers_[n].begin(), peers_[n].end(), isEntry);
+      if (!entry) add("#ifndef GPGP_SOFTWARE\n");
       for (const uint32_t peer : peers_[n]) add("  case " + number(offsetOf(peer)) + ":");
       const std::string row =
           matched_.empty() ? "0u" : "matchedRows[(s.node - " + number(kHeaderSize) + ") / " + number(kNodeSize) + "]";
       add(std::string(waits_[n] ? " if (arrives) end = kEndWaits; else" : "") + " end = " + chainOf(n) +
           "(s, maxDepth, " + (peers_[n].size() > 1 ? row : number(row_[n])) + "); break;\n");
+      if (!entry) add("#endif\n");
     }
     if (!terminals.empty()) add(terminals + "    end = kEndTerminal; break;\n");
     add("  default: end = kEndWaits; break;\n  }\n  return end;\n}\n");
