@@ -18,6 +18,8 @@ const uint kIdle = 2; // invocations that wait for work before it is looked for
 // loops after 65 535.
 const uint kManyTurns = 20000, kMostTurns = 30000;
 
+const uint kNone = ~0u; // no word of an entry
+
 const TileWord kNoTiles = TileWord(0, 0, 0, 0);
 
 void withoutLists() {
@@ -42,7 +44,7 @@ void main() {
   int pixelTop = 0, end = 0;
   // Of the entries: the row of pixels; the pixel of the run at hand, or none, and the one beside it; and what is stored
   // there in the next turn, so that no turn waits for what it reads.
-  uint firstOfRow = 0, at = ~0u, beside = ~0u, here = 0, there = 0;
+  uint firstOfRow = 0, at = kNone, beside = kNone, here = 0, there = 0;
 #if SCISSORS
   vec4 scissor = kNoScissor;
 #endif
@@ -129,15 +131,19 @@ void main() {
       // The pixel right of it may be another tile's; where that has no edges, its own rows agree.
       const bool crosses = inTile == 7, marked = tile < 31 ? (word.edges & mask << 1) != 0 : (after.edges & 1) != 0;
       const bool both = takes && (!crosses || marked);
-      entries[at] = here;
-      entries[beside] = there;
+      if (at != kNone) {
+        entries[at] = here;
+        entries[beside] = there;
+      }
       if (takes) at = firstOfRow + bitCount(word.edges & (mask - 1)) * kEntryWords + inTile;
       else run = Run(0, 0, 0);
       beside = both ? at + (crosses ? kEntryWords - 7 : 1) : at;
       const uint change = uint(!area ? 0 : right ? run.difference : -run.difference) << 16;
-      here = (entries[at] ^ run.here) + change;
-      const uint other = entries[beside] ^ run.next;
-      there = both ? other : here;
+      if (at != kNone) {
+        here = (entries[at] ^ run.here) + change;
+        const uint other = entries[beside] ^ run.next;
+        there = both ? other : here;
+      }
       ++turns;
       busy = starts != 0 || from < to || k < kEnd;
     } while (countOf(!busy) < enough && turns < kMostTurns);
@@ -146,8 +152,10 @@ void main() {
       return;
     }
   }
-  entries[at] = here;
-  entries[beside] = there;
+  if (at != kNone) {
+    entries[at] = here;
+    entries[beside] = there;
+  }
   if (turns >= kManyTurns && gl_WorkGroupID.x + 1 == gl_NumWorkGroups.x && counters.rowsTaken < rowCount)
     withoutLists();
 }

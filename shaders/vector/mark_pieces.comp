@@ -79,7 +79,7 @@ void main() {
   int left = 0, right = 0, top = 0, inRow = 0;
   uint path = 0, firstWord = 0, rowWord = 0;
   vec4 ends = vec4(0);
-  uint stored = ~0u;
+  uint stored = header.rowLimit; // behind all chords, for those that have none
   for (;;) {
     if (turn.inRow > 0)
       for (int k = max(turn.from, 0) / 32; k < turn.inRow; ++k)
@@ -96,32 +96,36 @@ void main() {
     if (last && !anyOf(done.word != ~0u)) break;
     bool stops = false; // as one more invocation is done, or has to put something
     do {
-      if (w >= wEnd && row >= lastRow && chord < chordEnd) {
-        place = first + chord - begin;
-        const uint owner = ownerOf(ownEnd, chord);
-        SegmentRecord s = ownSegment;
-        ItemRecord item = ownItem;
-        s.first = of(ownSegment.first, owner);
-        s.second = of(ownSegment.second, owner);
-        s.ends = of(ownSegment.ends, owner);
-        s.side = of(ownSegment.side, owner);
-        s.line = of(ownSegment.line, owner);
-        item.transform = of(ownItem.transform, owner);
-        item.offsets = of(ownItem.offsets, owner);
-        item.side = of(ownItem.side, owner);
+      // What other invocations tell is asked for by all, whether they take a chord or not.
+      const uint owner = ownerOf(ownEnd, chord);
+      SegmentRecord s = ownSegment;
+      ItemRecord item = ownItem;
+      s.first = of(ownSegment.first, owner);
+      s.second = of(ownSegment.second, owner);
+      s.ends = of(ownSegment.ends, owner);
+      s.side = of(ownSegment.side, owner);
+      s.line = of(ownSegment.line, owner);
+      item.transform = of(ownItem.transform, owner);
+      item.offsets = of(ownItem.offsets, owner);
+      item.side = of(ownItem.side, owner);
 #if SCISSORS
-        item.scissor = of(ownItem.scissor, owner);
+      item.scissor = of(ownItem.scissor, owner);
 #endif
 #if PROJECTIVE
-        item.perspective = of(ownItem.perspective, owner);
-        item.eye = of(ownItem.eye, owner);
+      item.perspective = of(ownItem.perspective, owner);
+      item.eye = of(ownItem.eye, owner);
 #endif
-        const uint count = of(ownCount, owner), k = chord - (of(ownEnd, owner) - count);
-        path = of(ownPath, owner);
-        left = int(of(ownPlaced.left, owner));
-        right = int(of(ownPlaced.right, owner));
-        top = int(of(ownPlaced.top, owner));
-        firstWord = of(ownPlaced.firstWord, owner);
+      const uint count = of(ownCount, owner), k = chord - (of(ownEnd, owner) - count);
+      const uint itsPath = of(ownPath, owner), itsWord = of(ownPlaced.firstWord, owner);
+      const uvec4 box = uvec4(of(ownPlaced.left, owner), of(ownPlaced.top, owner), of(ownPlaced.right, owner),
+                              of(ownPlaced.bottom, owner));
+      if (w >= wEnd && row >= lastRow && chord < chordEnd) {
+        place = first + chord - begin;
+        path = itsPath;
+        left = int(box.x);
+        top = int(box.y);
+        right = int(box.z);
+        firstWord = itsWord;
         inRow = (right - left + 31) / 32;
         ++chord;
         Chord c;
@@ -134,7 +138,7 @@ void main() {
         topTile = tileOf(columnOf(g, topEnd(c)));
         lastTile = tileOf(columnOf(g, lastEnd(c)));
         row = max(c.first >> shift, max(top, partBegin));
-        lastRow = found ? min((c.last >> shift) + 1, min(int(of(ownPlaced.bottom, owner)), partEnd)) : row;
+        lastRow = found ? min((c.last >> shift) + 1, min(int(box.w), partEnd)) : row;
       }
       chordList[stored] = ends; // once more where there is no new one
       if (w >= wEnd && row < lastRow && turn.inRow == 0) {

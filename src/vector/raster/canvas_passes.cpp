@@ -172,9 +172,11 @@ core::PassList Canvas::describe() const {
     const auto added = list.add({kImageNames[i], texture, 0, true});
     if (i == 0) images = added;
   }
-  // Software devices have lists of pieces and of rows of tiles there (pieces.glsl).
-  const auto chords =
-      list.add({"chords", scratch, VkDeviceSize(maxRows()) * (software_ ? 16 : sizeof(shader::ChordRecord))});
+  // Software devices have lists of pieces and of rows of tiles there (pieces.glsl), and a chord behind all, which
+  // invocations write that have none.
+  const VkDeviceSize chordBytes =
+      software_ ? (VkDeviceSize(maxRows()) + 1) * 16 : VkDeviceSize(maxRows()) * sizeof(shader::ChordRecord);
+  const auto chords = list.add({"chords", scratch, chordBytes});
   const auto rowList = list.add(
       {"rows of chords", scratch, software_ ? VkDeviceSize(maxWords_ + maxRows()) * 16 : VkDeviceSize(maxRows()) * 4});
   const auto shapes = list.add({"shapes", scratch, shapeBytes});
