@@ -132,11 +132,21 @@ uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupI
 uint spreadIndex() { return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y; }
 #endif
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
-Grid canvasGrid() { return Grid(header.samples, int(header.height * header.samples), int(header.width)); }
+#ifndef SAMPLES // of the records that a shader is for
+#define SAMPLES header.samples
+#endif
+Grid canvasGrid() { return Grid(SAMPLES, int(header.height * SAMPLES), int(header.width)); }
 // The bits of a bin begin there; and a tile's bin.
 uint bitsOf(uint bin) { return kFirstBin + bin * header.binWords + kBinHead; }
 uint binOf(uvec2 tile) { return (tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift); }
 uint clipRecord(uint clip) { return slots[kShapeSlot].clips + clip - 1; } // its vec4
+// Tiles of a box of pixels: left, top, right and bottom, exclusive; zeros where it has none.
+uvec4 tilesIn(vec2 low, vec2 high) {
+  const vec2 tiles = vec2(header.tilesX, header.tilesY);
+  const vec2 from = clamp(floor(low / float(kTileSize)), vec2(0), tiles);
+  const vec2 to = clamp(ceil(high / float(kTileSize)), vec2(0), tiles);
+  return from.x < to.x && from.y < to.y ? uvec4(from, to) : uvec4(0);
+}
 int tileOf(int column) { return column >> findMSB(kTileSize); } // of column -1: -1
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.

@@ -2,6 +2,9 @@
 vec3 encodeSrgb(vec3 v) {
   return mix(1.055 * pow(v, vec3(1.0 / 2.4)) - 0.055, v * 12.92, lessThanEqual(v, vec3(0.0031308)));
 }
+vec4 blended(vec3 color, float alpha) { // premultiplied, as colours mix
+  return vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color) : color) * alpha, alpha);
+}
 vec3 decodeSrgb(vec3 v) {
   return mix(pow((v + 0.055) / 1.055, vec3(2.4)), v / 12.92, lessThanEqual(v, vec3(0.04045)));
 }

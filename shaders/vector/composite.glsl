@@ -26,8 +26,9 @@ bool soft;       // something translucent so far
 uint alive;
 float scale;
 float gap; // light past the first edge where its samples say that none is left: the next path's that is there
-float through[16];
+float through[16]; // where soft, or EARLY, as software devices make no branch of what would spare it
 vec4 sum;
+#define EARLY (RICH || SOFTWARE)
 
 #if RICH
 // A group less than opaque has light of its own: what reached it times its opacity. Behind its last path that is joined
@@ -59,7 +60,9 @@ void beginPixel() {
   chainLayer = 0;
   clipped = uvec2(~0u);
 #endif
+#if EARLY
   for (uint k = 0; k < 16; ++k) through[k] = 1.0;
+#endif
   sum = vec4(0);
 }
 
@@ -154,6 +157,15 @@ uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
   return sum;
 }
 #else
+// Paths are looked at one after another, and each would wait for its entry. Where there are more than a few, all
+// entries are fetched first, into the caches, each by one invocation. Nothing comes of what they hold.
+const uint kFewEntries = 4;
+uint fetchAhead(uint code) {
+  uint any = 0;
+  for (uint k = 0; k < kEntryWords / 4; k += 2) any |= entries[(code >> 2) * (kEntryWords / 4) + k].x; // each 32 bytes
+  return any & header.zero;
+}
+
 // Samples of pixel x of a tile's row that change sides at or left of it.
 uint foldRow(uvec4 row, uint x) {
   const uint lower = (x & 1) != 0 ? ~0u : 0xffffu; // of the pair that the pixel is in
@@ -302,9 +314,14 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
     const float covered = float(bitCount(mask)) * share;
     const float area = clamp(covered + float(difference) * share * (1.0 / 256.0), 0.0, 1.0);
     const float left = 1.0 - source.a * covered;
-    weight = through[0] * area;
+#if EARLY
+    const float light = through[0];
+#else
+    const float light = soft ? through[0] : 1.0;
+#endif
+    weight = light * area;
     if (left > 0) scale = (1.0 - source.a * area) / left;
-    else gap = through[0] - weight;
+    else gap = light - weight;
   } else {
     const uint hit = mask & alive;
     weight = float(bitCount(hit));
@@ -319,6 +336,10 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
   if (source.a >= 1.0) {
     alive &= ~mask;
   } else {
+#if !EARLY
+    if (!soft)
+      for (uint k = 0; k < 16; ++k) through[k] = 1.0;
+#endif
     soft = true;
     const float keep = 1.0 - source.a;
     for (uint k = 0; k < 16; ++k)
@@ -361,7 +382,12 @@ void finishPixel() {
 #if RICH
   while (depth > 0) leaveLayer();
 #endif
+#if EARLY
   float light = 0;
-  for (uint k = 0; k < 16; ++k) light += (alive >> k & 1) != 0 ? through[k] : 0.0;
+#else
+  float light = soft ? 0.0 : float(bitCount(alive));
+  if (soft)
+#endif
+    for (uint k = 0; k < 16; ++k) light += (alive >> k & 1) != 0 ? through[k] : 0.0;
   sum += header.background * (light * share * scale + gap);
 }

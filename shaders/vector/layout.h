@@ -203,7 +203,8 @@ struct CanvasCounters {
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
   uint glyphs, glyphsGiven; // needed; room for as many
   uint shapes, shapesGiven, items, itemsGiven;
-  uint listed;                 // paths in bins' lists; on software devices tiles that are painted by rows
+  uint listed;                 // paths in bins' lists; of small glyphs alone those that tiles' lists had no room for;
+                               // on software devices tiles that are painted by rows
   uint rowsX, rowsY, rowsZ;    // workgroups of the pass that fills from lists
   uint cleared;                // entries that mark clears: as many as the record before had
   uint stamped;                // entries of small glyphs, behind the others
@@ -263,6 +264,10 @@ GPGP_CONST uint kMostSegments = 64u; // of a workgroup, a power of two
 GPGP_CONST uint kStampTiles = 16u;   // of a small path, at most
 GPGP_CONST uint kStampPairs = 128u;  // of its pixels
 GPGP_CONST uint kFirstBin = 16u;
+// Of records of small glyphs alone, in place of bins: for each tile how many paths it has, nothing, and for as many as
+// there is room for what they do to it and which they are. Others follow all tiles: tile, what, which.
+GPGP_CONST uint kTileListWords = 32u;
+GPGP_CONST uint kTileListPaths = 15u;
 GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:
 GPGP_CONST uint kBinGrouped = 2u; // 1: one of its paths may need the general shader
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most

@@ -23,6 +23,7 @@ uint rowTiles() { return crowdedTiles() + header.tilesX * header.tilesY; } // pa
 uint richTile(uint list, uint i) { return list + header.tilesX * header.tilesY - 1 - i; }
 uint richTiles() { return kFirstBin + header.binCount * header.binWords; }
 uint tileKinds() { return richTiles() + header.tilesX * header.tilesY; }
+uint fullTiles() { return kFirstBin + header.tilesX * header.tilesY * kTileListWords; } // what their lists leave over
 uint binLists() { return tileKinds() + header.tilesX * header.tilesY; }
 
 uint another(uint arguments) { // workgroup for the passes behind: in rows (canvas.glsl, groupIndex)

@@ -97,21 +97,17 @@ void main() {
       a = max(a, item.scissor.xy);
       b = min(b, item.scissor.zw);
 #endif
-      const vec2 tiles = vec2(header.tilesX, header.tilesY);
-      const vec2 from = clamp(floor((a - margin) / float(kTileSize)), vec2(0), tiles);
-      const vec2 to = clamp(ceil((b + margin) / float(kTileSize)), vec2(0), tiles);
-      if (from.x < to.x && from.y < to.y) {
-        p.left = uint(from.x);
-        p.top = uint(from.y);
-        p.right = uint(to.x);
-        p.bottom = uint(to.y);
-      }
+      const uvec4 tiles = tilesIn(a - margin, b + margin);
+      p.left = tiles.x;
+      p.top = tiles.y;
+      p.right = tiles.z;
+      p.bottom = tiles.w;
     }
     const float alpha = color.a * item.color.a;
     p.item = itemIndex;
     p.paint = paint == 0 ? 0 : slots[item.slot].paints + (paint - 1) * 4 + 1;
     p.group = ((rest.y | rest.z) == 0 ? 0 : path + 2 + 1) | ((item.clip | item.layer) == 0 ? 0 : kItemGrouped);
-    p.color = vec4(((header.flags & kBlendSrgb) != 0 ? encodeSrgb(color.rgb) : color.rgb) * alpha, alpha);
+    p.color = blended(color.rgb, alpha);
     if (p.paint != 0 && !shaped) p.color = vec4(alpha);
     const uint count = wordsOf(p);
     p.firstWord = count == 0 ? 0 : atomicAdd(counters.words, count);

@@ -28,16 +28,6 @@ layout(set = 0, binding = 29, std430) buffer Aside { vec4 aside[]; };
 #endif
 shared uint touching[2][kRoom / 32]; // of the paths at hand, in turn
 shared uint open[2];
-#if !CROWDED
-// Paths are looked at one after another, and each would wait for its entry. Where there are more than a few, all
-// entries are fetched first, into the caches, each by one invocation. Nothing comes of what they hold.
-const uint kFewEntries = 4;
-uint fetchAhead(uint code) {
-  uint any = 0;
-  for (uint k = 0; k < kEntryWords / 4; k += 2) any |= entries[(code >> 2) * (kEntryWords / 4) + k].x; // each 32 bytes
-  return any & header.zero;
-}
-#endif
 #define SPLIT (PAINTS && !RICH && !CROWDED) // records that need the general shader as well take the one for gradients
 
 void main() {

@@ -4,7 +4,8 @@
 // A workgroup takes an item that has one path: its invocations take a segment each, then a chord, then a row of pixels
 // of one. Samples and areas change as fill has them (fill_row.glsl), but in rows of all of the path's pixels; what lies
 // left of a tile is summed up in the end, when it shows which tiles have edges. Their entries lie behind those of all
-// other paths, and are written whole.
+// other paths, and are written whole. ALONE: a record has nothing else, so they are placed here, and their tiles'
+// lists name them, which need no other path to be known.
 #extension GL_GOOGLE_include_directive : require
 #if SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -12,6 +13,12 @@
 #define SCISSORS 0 // what one may cut is not small (Gather)
 #include "canvas.glsl"
 #include "run.glsl"
+#if ALONE
+#include "color.glsl"
+#include "constants.glsl"
+#include "lists.glsl"
+#include "placement.h"
+#endif
 const uint kLanes = 32;
 layout(local_size_x = kLanes) in;
 layout(set = 0, binding = 15, std430) writeonly buffer Entries { uint entries[]; };
@@ -28,9 +35,10 @@ uint upTo(uint count) { return subgroupInclusiveAdd(count); }
 uint upTo(uint count) { return scan(gl_LocalInvocationIndex, count); }
 #endif
 
-// The path's pixels: the first pair, how many there are in a row, the first row.
+// The path's pixels: the first pair, how many there are in a row, the first row; and tiles that it may touch.
 struct Place {
   uint left, pairs, top;
+  uvec4 tiles; // left, top, right, bottom
 };
 
 Place placeOf(Grid g, ItemRecord item) {
@@ -38,10 +46,11 @@ Place placeOf(Grid g, ItemRecord item) {
   const vec2 a = toPixel(item, box.x, box.y), b = toPixel(item, box.z, box.y), c = toPixel(item, box.z, box.w),
              d = toPixel(item, box.x, box.w);
   const vec2 low = min(min(a, b), min(c, d)), high = max(max(a, b), max(c, d));
-  const vec2 margin = 0.25 + 1e-5 * max(abs(low), abs(high)); // far more than rounding
+  const vec2 rounding = 1e-5 * max(abs(low), abs(high)), margin = 0.25 + rounding; // far more than rounding
   const uint left = uint(max(low.x - margin.x, 0.0)) / 2;
   const uint last = (uint(clamp(high.x + margin.x, 0.0, float(g.columns))) + 1) / 2; // it has the pixel right of all
-  return Place(left, max(last, left) + 1 - left, uint(max(low.y - margin.y, 0.0)));
+  const uvec4 tiles = box.x <= box.z ? tilesIn(low - 1.0 - rounding, high + 1.0 + rounding) : uvec4(0);
+  return Place(left, max(last, left) + 1 - left, uint(max(low.y - margin.y, 0.0)), tiles);
 }
 
 // A chord in one row of pixels.
@@ -84,18 +93,53 @@ void sumRows(Place place, uint rows, uint lane) {
   }
 }
 
+uint edgesBefore(uint row) { // of the path's tiles
+  uint count = 0;
+  for (uint k = 0; k < row; ++k) count += bitCount(edges[k]);
+  return count;
+}
+
+#if ALONE
+// Into the tile's list, or behind all lists.
+void name(uvec2 tile, uint code, uint path) {
+  const uint which = tile.y * header.tilesX + tile.x, list = kFirstBin + which * kTileListWords;
+  const uint place = atomicAdd(bins[list], 1);
+  uint at = list + 2 + place * 2;
+  if (place >= kTileListPaths) {
+    at = fullTiles() + atomicAdd(counters.listed, 1) * 3;
+    bins[at++] = which;
+  }
+  bins[at] = code;
+  bins[at + 1] = path;
+}
+#endif
+
 void main() {
   const uint i = groupIndex(), lane = gl_LocalInvocationIndex;
   if (i >= header.itemCount) return;
+  const Grid g = canvasGrid();
+#if ALONE
+  const PlacementRecord placement = placementOf(i, header.sourceCount);
+  const ItemRecord item = placed(items[sourceIndex(placement)], placement);
+  const Place place = placeOf(g, item);
+  const uvec4 box = place.tiles;
+  if (box.x >= box.z) return;
+  const vec4 ink = fetch(item.slot, item.paths + 1);
+  const bool foreground = (floatBitsToUint(fetch(item.slot, item.paths + 2)).w & kForeground) != 0;
+  const float alpha = ink.a * item.color.a;
+  if (alpha <= 0) return;
+  if (lane == 0) paths[item.firstPath].color = blended(foreground ? item.color.rgb : ink.rgb, alpha);
+#else
   const ItemRecord item = items[i];
   if (item.stamped == 0) return;
   const PlacedPath p = paths[item.firstPath];
-  if (item.firstPath >= counters.cutPath || p.left >= p.right) return;
+  const Place place = placeOf(g, item);
+  const uvec4 box = uvec4(p.left, p.top, p.right, p.bottom);
+  if (item.firstPath >= counters.cutPath || box.x >= box.z) return;
+#endif
   for (uint k = lane; k < kStampPairs * 2; k += kLanes) pixels[k] = 0;
   if (lane < kStampTiles) edges[lane] = inside[lane] = 0;
   barrier();
-  const Grid g = canvasGrid();
-  const Place place = placeOf(g, item);
   const uint end = (item.paths - item.segments) / 4; // a glyph's path lies behind its segments
   for (uint first = 0; first < end; first += kLanes) {
     uint count = 0;
@@ -149,12 +193,12 @@ void main() {
     }
   }
   // Which tiles have edges, and which lie inside.
-  const uint across = p.right - p.left, down = p.bottom - p.top, rows = kStampPairs / place.pairs;
+  const uint across = box.z - box.x, down = box.w - box.y, rows = kStampPairs / place.pairs;
   sumRows(place, rows, lane);
   barrier();
   const uvec2 own = uvec2(lane % 4, lane / 4); // this invocation's pair in each tile
   const uint all = (1u << g.samples) - 1;
-  const uvec2 first = uvec2(p.left, p.top) * uvec2(4, kTileSize) - uvec2(place.left, place.top); // of the path's pairs
+  const uvec2 first = box.xy * uvec2(4, kTileSize) - uvec2(place.left, place.top); // of the path's pairs
   for (uint row = 0; row < down; ++row) {
     const uint y = first.y + row * kTileSize + own.y, begin = first.y + row * kTileSize;
     for (uint column = 0; column < across; ++column) {
@@ -171,14 +215,20 @@ void main() {
     }
   }
   barrier();
-  uint count = 0, before = 0;
-  for (uint row = 0; row < down; ++row) {
-    if (row == lane) before = count;
-    count += bitCount(edges[row]);
-  }
-  if (lane == 0) firstEntry = header.entryLimit + atomicAdd(counters.stamped, count);
+  if (lane == 0) firstEntry = header.entryLimit + atomicAdd(counters.stamped, edgesBefore(down));
   barrier();
-  if (lane < down) words[p.firstWord + lane] = TileWord(edges[lane], inside[lane], firstEntry + before, 1);
+#if ALONE
+  if (lane < across * down) {
+    const uint row = lane / across, column = lane % across, bit = 1u << column;
+    const uint within = inside[row] >> column & 1;
+    const uint entry = firstEntry + edgesBefore(row) + bitCount(edges[row] & (bit - 1));
+    if ((edges[row] & bit) != 0) name(box.xy + uvec2(column, row), entry * 4 + 2 + within, item.firstPath);
+    else if (within != 0) name(box.xy + uvec2(column, row), 1, item.firstPath);
+  }
+#else
+  if (lane < down)
+    words[p.firstWord + lane] = TileWord(edges[lane], inside[lane], firstEntry + edgesBefore(lane), 1);
+#endif
   uint entry = firstEntry * kEntryWords + lane;
   for (uint row = 0; row < down; ++row) {
     const uint y = first.y + row * kTileSize + own.y;

@@ -237,6 +237,51 @@ TEST_F(GlyphTest, SmallGlyphsAreDrawnAsDrawingsAre) {
   }
 }
 
+/// More small glyphs over one tile than its list has room for, in an order that shows, translucent and opaque.
+TEST_F(GlyphTest, SmallGlyphsMayLieOnTopOfEachOther) {
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+  info.maxWidth = info.maxHeight = 128;
+  info.maxDrawings = 256;
+  canvas = worker(gpgpCreateCanvas, info);
+  const Shapes shapes(1, 3);
+  const GpgpAsset set = makeSet();
+  const auto indices = add(set, shapes.glyphs);
+  const float colors[3][4] = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+  GpgpAsset drawings[3];
+  for (size_t k = 0; k < 3; ++k) {
+    std::vector<GpgpPath> painted{shapes.paths[k]};
+    std::copy_n(colors[k], 4, painted[0].color);
+    drawings[k] = makeDrawing(painted);
+  }
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> shift(-8, 8), at(0, 480);
+  for (const uint32_t stacked : {14u, 16u, 20u, 200u})
+    for (const float opacity : {0.125f, 1.0f})
+      for (const bool area : {false, true}) {
+        exactArea = area;
+        std::vector<GpgpGlyphInstance> glyphs;
+        std::vector<GpgpCanvasItem> apart;
+        for (uint32_t i = 0; i < stacked + 40; ++i) { // in two heaps, and all over the canvas
+          const size_t which = random() % 3;
+          const bool alone = i % (stacked / 10 + 1) == 0 && i / (stacked / 10 + 1) < 40;
+          GpgpGlyphInstance g{
+              indices[which], static_cast<float>(at(random)) / 4, static_cast<float>(at(random)) / 4, 8, {}};
+          if (!alone) g.x = 36 + static_cast<float>(shift(random)) / 4 + (i % 2 ? 60.0f : 0.0f);
+          if (!alone) g.y = 50 + static_cast<float>(shift(random)) / 4;
+          std::copy_n(colors[which], 4, g.color);
+          glyphs.push_back(g);
+          apart.push_back({drawings[which], {g.size, 0, 0, g.size, g.x, g.y}, opacity});
+        }
+        GpgpCanvasItem item = text(set, glyphs);
+        item.opacity = opacity;
+        const auto pixels = raster({item}, 128, 128, 16);
+        ASSERT_TRUE(same(pixels, raster(apart, 128, 128, 16))) << stacked << ", " << opacity << ", area " << area;
+        std::reverse(glyphs.begin(), glyphs.end());
+        ASSERT_FALSE(same(pixels, raster({item}, 128, 128, 16))) << stacked;
+      }
+}
+
 /// A glyph of three paths: in a linear gradient, in a radial one with a transform, in the text's colour.
 struct PaintedGlyph {
   TestPath shapes[3] = {glyphShape(4), glyphShape(5), glyphShape(6)};

@@ -102,7 +102,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   core::Record r;
   r.commandBuffer = commandBuffer;
   r.info = &info.base;
-  Gather gather(context, budgets_, tables_, info, software_ ? 0 : maxEntries_ / 2);
+  Gather gather(context, budgets_, tables_, info, stampRoom());
   for (uint32_t i = 0; i < info.itemCount; ++i)
     if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
@@ -161,17 +161,23 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   const bool wide = info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT;
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
+  // Small glyphs are stamped; records of nothing else, in one colour each, need little more than that.
+  const uint32_t tiles = header.tilesX * header.tilesY;
+  const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.stampEntries) * 3;
+  const bool alone = gather.stamps > 0 && gather.stamps == gather.placements && !gradients && !rich &&
+                     shader::kFirstBin + tileLists <= binsEnd();
   const uint32_t form = projective ? 2 : several ? 1 : 0;
-  r.conditions[kOneDrawing + form] = true;
-  // Small glyphs are stamped; where there is nothing else, the passes for what is not are left out.
-  const bool stamps = gather.stampEntries > 0;
-  if (stamps) r.conditions[several ? kStampDrawings : kStampOne] = true;
-  if (stamps && !header.segmentCount)
-    r.conditions[kStampsAlone] = true;
-  else
-    r.conditions[kMarkOne + form] = r.conditions[kMarked] = true;
+  const bool sixteen = header.samples == 16 && !software_;
+  if (alone) {
+    r.conditions[kAlone] = r.conditions[several ? kAloneDrawings : sixteen ? kAloneSixteen : kAloneOne] = true;
+  } else {
+    r.conditions[kPlaced] = r.conditions[kOneDrawing + form] = true;
+    r.conditions[sixteen && form == 0 ? kMarkSixteen : kMarkOne + form] = true;
+    if (gather.stamps > 0) r.conditions[several ? kStampDrawings : kStampOne] = true;
+  }
   const bool one = !several && !software_; // software devices have one general shader
-  const uint32_t kinds[] = {images ? kImages
+  const uint32_t kinds[] = {alone    ? kGlyphs
+                            : images ? kImages
                             // The plain shader fetches from one drawing only, and on hardware leaves no squares to the
                             // general one.
                             : !gradients && !(rich && (several || !software_)) ? kPlain
@@ -195,7 +201,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
   const uint64_t bins = uint64_t(header.binCount) * header.binWords;
-  r.groups[kBegin] = {software_
+  r.groups[kBegin] = {alone ? divide(std::max(tiles, gather.sources), 64)
+                      : software_
                           ? divide(std::max<uint64_t>({header.itemCount, header.shapeTables / 16, bins / 16, 1}), 64)
                           : divide(maxWords_, 64 * 8),
                       1, 1};
@@ -210,7 +217,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const uint32_t wordGroups = std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64));
   r.groups[kWords] = software_ ? spread(wordGroups) : std::array<uint32_t, 3>{wordGroups, 1, 1};
   r.groups[kTiles] = {divide(header.tilesX, 8), divide(header.tilesY, 8), 8};
-  r.groups[kBins] = rows(header.binCount);
+  r.groups[kPacks] = rows(header.binCount);
   r.groups[kSift] = spread(divide(uint64_t(header.binCount) << header.binShift, 64));
   r.groups[kRaster] = {header.tilesX, header.tilesY, 1};
   constexpr uint32_t kSplitSide = 1u << shader::kMinBinShift;

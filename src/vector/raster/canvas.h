@@ -32,6 +32,8 @@ private:
   uint32_t listWords() const; ///< of a tile's list on software devices
   uint64_t binWords() const;
   uint32_t binLists() const;
+  uint64_t binsEnd() const;                                              ///< words that bins, lists and all take
+  uint32_t stampRoom() const { return software_ ? 0 : maxEntries_ / 2; } ///< tile entries that small glyphs may take
   /// Of the lists between mark and fill: rows of chords, or pieces of them on software devices.
   uint32_t maxRows() const { return maxEntries_ * (software_ ? 4 : 8); }
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const;

@@ -8,6 +8,7 @@
 #include "shaders/vector_aside_rich_images.spv.h"
 #include "shaders/vector_aside_rich_one.spv.h"
 #include "shaders/vector_begin.spv.h"
+#include "shaders/vector_begin_alone.spv.h"
 #include "shaders/vector_begin_software.spv.h"
 #include "shaders/vector_clear_entries.spv.h"
 #include "shaders/vector_clear_words.spv.h"
@@ -39,6 +40,7 @@
 #include "shaders/vector_fill_projective.spv.h"
 #include "shaders/vector_fill_rows.spv.h"
 #include "shaders/vector_fill_rows_one.spv.h"
+#include "shaders/vector_fill_rows_sixteen.spv.h"
 #include "shaders/vector_fill_software.spv.h"
 #include "shaders/vector_fill_software_one.spv.h"
 #include "shaders/vector_fill_software_projective.spv.h"
@@ -51,6 +53,7 @@
 #include "shaders/vector_mark_pieces_projective_subgroups.spv.h"
 #include "shaders/vector_mark_pieces_subgroups.spv.h"
 #include "shaders/vector_mark_projective.spv.h"
+#include "shaders/vector_mark_sixteen.spv.h"
 #include "shaders/vector_pack.spv.h"
 #include "shaders/vector_place.spv.h"
 #include "shaders/vector_place_one.spv.h"
@@ -58,6 +61,9 @@
 #include "shaders/vector_raster0.spv.h"
 #include "shaders/vector_raster1.spv.h"
 #include "shaders/vector_raster2.spv.h"
+#include "shaders/vector_raster_glyphs0.spv.h"
+#include "shaders/vector_raster_glyphs1.spv.h"
+#include "shaders/vector_raster_glyphs2.spv.h"
 #include "shaders/vector_raster_images0.spv.h"
 #include "shaders/vector_raster_images1.spv.h"
 #include "shaders/vector_raster_images2.spv.h"
@@ -81,6 +87,12 @@
 #include "shaders/vector_split.spv.h"
 #include "shaders/vector_split_one.spv.h"
 #include "shaders/vector_stamp.spv.h"
+#include "shaders/vector_stamp_alone.spv.h"
+#include "shaders/vector_stamp_alone_one.spv.h"
+#include "shaders/vector_stamp_alone_one_subgroups.spv.h"
+#include "shaders/vector_stamp_alone_sixteen.spv.h"
+#include "shaders/vector_stamp_alone_sixteen_subgroups.spv.h"
+#include "shaders/vector_stamp_alone_subgroups.spv.h"
 #include "shaders/vector_stamp_one.spv.h"
 #include "shaders/vector_stamp_one_subgroups.spv.h"
 #include "shaders/vector_stamp_subgroups.spv.h"
@@ -138,6 +150,13 @@ uint64_t Canvas::binWords() const { // enough for any record with the largest bi
 // Paths in the lists of all bins: most paths are in one or two.
 uint32_t Canvas::binLists() const { return software_ ? 0 : 2 * budgets_.patches + 65536; }
 
+uint64_t Canvas::binsEnd() const {
+  const uint64_t lists = tiles() * (software_ ? listWords() + 3 : 2) + binLists();
+  // Of small glyphs alone the tiles have lists in place of bins and theirs, and some are left over.
+  const uint64_t ofTiles = tiles() * shader::kTileListWords + uint64_t(stampRoom()) * 3;
+  return shader::kFirstBin + std::max(binWords() + 3 + lists, software_ ? 0 : std::min<uint64_t>(ofTiles, 16 << 20));
+}
+
 core::PassList Canvas::describe() const {
   using enum core::ResourceKind;
   using enum core::UseKind;
@@ -159,8 +178,7 @@ core::PassList Canvas::describe() const {
                 heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
-  const VkDeviceSize lists = tiles() * (software_ ? listWords() + 3 : 2) + binLists();
-  const auto masks = list.add({"bins", scratch, (shader::kFirstBin + binWords() + 3 + lists) * 4});
+  const auto masks = list.add({"bins", scratch, binsEnd() * 4});
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});
   const auto counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
 
@@ -193,9 +211,15 @@ core::PassList Canvas::describe() const {
                   {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}}, kBegin);
   } else {
     list.dispatch(
-        "begin", list.add(core::ShaderDesc{"begin", vector_begin}),
-        {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}, {words, write}, {counters, write}},
-        kBegin);
+            "begin", list.add(core::ShaderDesc{"begin", vector_begin}),
+            {{fromHost, read}, {params, write}, {masks, write}, {shapes, write}, {words, write}, {counters, write}},
+            kBegin)
+        .condition = kPlaced;
+    core::Pass& alone =
+        list.dispatch("begin, glyphs alone", list.add(core::ShaderDesc{"begin, glyphs alone", vector_begin_alone}),
+                      {{fromHost, read}, {params, write}, {masks, write}, {counters, write}}, kBegin);
+    alone.condition = kAlone;
+    alone.beside = true;
   }
   const auto dispatch = [&](const char* name, const core::ShaderDesc& shader, std::initializer_list<core::Use> uses,
                             uint32_t groups) -> core::Pass& {
@@ -204,6 +228,26 @@ core::PassList Canvas::describe() const {
     for (const core::Use& use : uses) pass.uses[pass.useCount++] = use;
     return pass;
   };
+  const bool subgroups = context.device.subgroupArithmetic && (software_ || context.device.subgroupSize >= 32);
+  if (!software_) {
+    const auto stamp = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
+      core::Pass& pass = dispatch(
+          shader.name, shader,
+          {{fromHost, read}, {paths, write}, {masks, readWrite}, {counters, readWrite}, {entries, write}}, kStamps);
+      pass.condition = condition;
+      return pass;
+    };
+    stamp({"stamp, glyphs alone, 16 samples",
+           subgroups ? Spirv(vector_stamp_alone_sixteen_subgroups) : Spirv(vector_stamp_alone_sixteen)},
+          kAloneSixteen);
+    stamp({"stamp, glyphs alone", subgroups ? Spirv(vector_stamp_alone_one_subgroups) : Spirv(vector_stamp_alone_one)},
+          kAloneOne)
+        .beside = true;
+    stamp({"stamp, glyphs alone, several drawings",
+           subgroups ? Spirv(vector_stamp_alone_subgroups) : Spirv(vector_stamp_alone)},
+          kAloneDrawings)
+        .beside = true;
+  }
   // Shaders that fetch from drawings come in three forms: one need not choose among drawings at each access, two know
   // no projective items.
   const auto either = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv,
@@ -219,16 +263,9 @@ core::PassList Canvas::describe() const {
          {{paths, readWrite}, {words, readWrite}, {masks, readWrite}, {counters, readWrite}}, kPaths, kOneDrawing);
   const auto clear = [&](const core::ShaderDesc& shader, core::ResourceIndex what) {
     list.dispatch(shader.name, list.add(shader), {{params, read}, {counters, read}, {what, write}}, kClear).condition =
-        kMarked;
+        kPlaced;
   };
   if (software_) clear({"clear words", vector_clear_words}, words);
-  const auto pack = [&](const char* name, uint32_t condition) {
-    core::Pass& pass = list.dispatch(name, list.add(core::ShaderDesc{name, vector_pack}),
-                                     {{params, read}, {masks, readWrite}, {counters, readWrite}}, kBins);
-    pass.condition = condition;
-    pass.beside = true;
-  };
-  const bool subgroups = context.device.subgroupArithmetic && (software_ || context.device.subgroupSize >= 32);
   if (!software_) {
     const auto stamp = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass = dispatch(shader.name, shader,
@@ -239,22 +276,28 @@ core::PassList Canvas::describe() const {
     stamp({"stamp", subgroups ? Spirv(vector_stamp_one_subgroups) : Spirv(vector_stamp_one)}, kStampOne);
     stamp({"stamp, several drawings", subgroups ? Spirv(vector_stamp_subgroups) : Spirv(vector_stamp)}, kStampDrawings)
         .beside = true;
-    pack("pack, glyphs alone", kStampsAlone);
   }
   const std::array<Spirv, 3> mark =
       !software_  ? std::array<Spirv, 3>{vector_mark_one, vector_mark, vector_mark_projective}
       : subgroups ? std::array<Spirv, 3>{vector_mark_pieces_one_subgroups, vector_mark_pieces_subgroups,
                                          vector_mark_pieces_projective_subgroups}
                   : std::array<Spirv, 3>{vector_mark_pieces_one, vector_mark_pieces, vector_mark_pieces_projective};
-  either(
-      {"mark", "mark, several drawings", "mark, projective"}, mark,
-      {{paths, read}, {words, readWrite}, {counters, readWrite}, {chords, write}, {rowList, write}, {entries, write}},
-      kSegments, kMarkOne);
-  if (!software_) pack("pack", kMarked);
+  const std::initializer_list<core::Use> markUses = {{paths, read},   {words, readWrite}, {counters, readWrite},
+                                                     {chords, write}, {rowList, write},   {entries, write}};
+  either({"mark", "mark, several drawings", "mark, projective"}, mark, markUses, kSegments, kMarkOne);
+  if (!software_) { // the usual samples, which the compiler knows
+    core::Pass& pass = dispatch("mark, 16 samples", {"mark, 16 samples", vector_mark_sixteen}, markUses, kSegments);
+    pass.condition = kMarkSixteen;
+    pass.beside = true;
+    core::Pass& pack = list.dispatch("pack", list.add(core::ShaderDesc{"pack", vector_pack}),
+                                     {{params, read}, {masks, readWrite}, {counters, readWrite}}, kPacks);
+    pack.condition = kPlaced;
+    pack.beside = true;
+  }
   const auto allot = [&](const core::ShaderDesc& shader, uint32_t groups, bool listing) {
     core::Pass& pass = dispatch(
         shader.name, shader, {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, groups);
-    pass.condition = kMarked;
+    pass.condition = kPlaced;
     if (!listing) return;
     pass.uses[pass.useCount++] = {chords, read};
     pass.uses[pass.useCount++] = {rowList, readWrite};
@@ -305,8 +348,8 @@ core::PassList Canvas::describe() const {
             "left of tiles", list.add(core::ShaderDesc{"left of tiles", vector_fill_left}),
             {{params, read}, {paths, read}, {words, read}, {counters, read}, {rowList, read}, {entries, readWrite}},
             kFill)
-        .condition = kMarked;
-    fill({"clear entries again", vector_clear_entries}, false, kMarked, false);
+        .condition = kPlaced;
+    fill({"clear entries again", vector_clear_entries}, false, kPlaced, false);
     for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, k > 0);
   } else {
     allot({"allot", vector_allot}, kWords, false);
@@ -321,8 +364,9 @@ core::PassList Canvas::describe() const {
     const std::array<Spirv, 3> listed = {vector_fill_rows_one, vector_fill_rows, vector_fill_rows},
                                unlisted = {vector_fill_one, vector_fill, vector_fill_projective};
     // Split's barrier, which is owed where that is left out, is all of theirs.
+    fill({"fill, 16 samples", vector_fill_rows_sixteen}, true, kMarkSixteen, true);
     for (uint32_t k = 0; k < 3; ++k) fill({kFills[k], listed[k]}, true, kMarkOne + k, true);
-    for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, true);
+    for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kOneDrawing + k, true);
   }
   // By target: the view alone, rgba8, rgba16f.
   const auto addTarget = [&](core::Pass& pass, uint32_t target, uint32_t condition) {
@@ -436,6 +480,8 @@ core::PassList Canvas::describe() const {
            {vector_raster_paints_one0, vector_raster_paints_one1, vector_raster_paints_one2}, kPaintsOne);
     raster({"raster images", "raster images rgba8", "raster images rgba16f"},
            {vector_raster_images0, vector_raster_images1, vector_raster_images2}, kImages);
+    raster({"raster, glyphs alone", "raster rgba8, glyphs alone", "raster rgba16f, glyphs alone"},
+           {vector_raster_glyphs0, vector_raster_glyphs1, vector_raster_glyphs2}, kGlyphs);
     for (size_t i = first; i < list.passes.size(); ++i) list.passes[i].beside = true;
     painted(
         {"raster all, several drawings", "raster all rgba8, several drawings", "raster all rgba16f, several drawings"},

@@ -16,7 +16,7 @@ enum Groups : uint32_t {
   kRaster,
   kTiles,
   kSift,
-  kBins,
+  kPacks,
   kSplits,
   kStamps,
   kOnce,
@@ -33,7 +33,8 @@ enum Conditions : uint32_t {
   kImages = 15,
   kRichImages = 18,
   kAny = 21,
-  kOneDrawing = 24,
+  kGlyphs = 24, // small ones alone
+  kOneDrawing = 27,
   kDrawings,
   kProjective,
   kSplit,
@@ -41,13 +42,17 @@ enum Conditions : uint32_t {
   kAside,
   kAsideOne,
   kAsideImages,
+  kMarkSixteen, // samples, of one drawing
   kMarkOne,
   kMarkDrawings,
   kMarkProjective,
   kStampOne,
   kStampDrawings,
-  kMarked,
-  kStampsAlone,
+  kPlaced,
+  kAlone,
+  kAloneSixteen, // samples, of one drawing
+  kAloneOne,
+  kAloneDrawings,
   kSiftPlain
 };
 static_assert(kSiftPlain < core::kMaxConditions);

@@ -128,7 +128,7 @@ uint32_t stampTiles(const ItemRecord& source, const shader::vec4& box, const Gpg
   const auto tiles = [](float middle, float reach, uint32_t size) {
     const float side = reach + 1.1f + 2e-5f * std::abs(middle), end = static_cast<float>(size);
     const float low = std::clamp(middle - side, 0.0f, end), high = std::clamp(middle + side, 0.0f, end);
-    return static_cast<uint32_t>(std::ceil(high / shader::kTileSize)) - static_cast<uint32_t>(low / shader::kTileSize);
+    return static_cast<uint32_t>(high) / shader::kTileSize + 1 - static_cast<uint32_t>(low) / shader::kTileSize;
   };
   const uint32_t pairs = static_cast<uint32_t>(reachX + 0.95f) + 2, rows = static_cast<uint32_t>(2 * reachY + 2.5f);
   const uint32_t count = tiles(px, reachX, info.width) * tiles(py, reachY, info.height);
@@ -194,6 +194,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     if (tiles && tiles <= stampRoom_ - stampEntries) {
       to.source |= 1u << shader::kStampedBit;
       stampEntries += tiles;
+      ++stamps;
     } else {
       segments_ += glyph->segments;
     }

@@ -63,8 +63,8 @@ public:
   const core::Resident* bound[shader::kMaxSlots] = {};
   uint32_t slotCount = 0;
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
-  bool lists = false;        ///< there are shapes, scissors or clips, which shaders for one drawing do not know
-  uint32_t stampEntries = 0; ///< of small glyphs, at most; 0: there are none
+  bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
+  uint32_t stamps = 0, stampEntries = 0; ///< small glyphs, and what entries they take at most
   uint32_t sources = 0, placements = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0; ///< used
 
 private:
