@@ -55,8 +55,22 @@ GPGP_FN bool isNearerWithin(Facet a, Facet b) {
 /// Whether `a` is nearer than `b` anywhere in that box.
 GPGP_FN bool isNearerSomewhere(Facet a, Facet b) { return a.nearest < b.farthest && isNearerWithin(a, b); }
 
-/// Whether all of a triangle lies outside the edge from u to v.
-GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v, bool compact) {
+struct Corners {
+  ivec2 p0;
+  ivec2 p1;
+  ivec2 p2;
+};
+GPGP_FN Corners cornersOf(Candidate c) {
+  Corners r;
+  r.p0 = c.p0;
+  r.p1 = c.p1;
+  r.p2 = c.p2;
+  return r;
+}
+
+/// Whether all of a triangle lies outside the edge from u to v; compact: both are, and touch one pixel, so that they
+/// are near enough for 32 bits.
+GPGP_FN bool liesOutside(Corners c, ivec2 u, ivec2 v, bool compact) {
   ivec2 slope = edgeSlope(u, v);
   if (compact)
     return edgeCompact(u, slope, c.p0) <= 0 && edgeCompact(u, slope, c.p1) <= 0 && edgeCompact(u, slope, c.p2) <= 0;
@@ -65,8 +79,7 @@ GPGP_FN bool liesOutside(Candidate c, ivec2 u, ivec2 v, bool compact) {
 }
 
 /// Whether two triangles that touch one pixel have area in common on the screen: no edge has all of the other outside.
-GPGP_FN bool overlap(Candidate a, Candidate b) {
-  bool compact = isCompact(triangleOf(a)) && isCompact(triangleOf(b)); // then they are near enough for 32 bits
+GPGP_FN bool overlap(Corners a, Corners b, bool compact) {
   return !(liesOutside(b, a.p0, a.p1, compact) || liesOutside(b, a.p1, a.p2, compact) ||
            liesOutside(b, a.p2, a.p0, compact) || liesOutside(a, b.p0, b.p1, compact) ||
            liesOutside(a, b.p1, b.p2, compact) || liesOutside(a, b.p2, b.p0, compact));

@@ -20,7 +20,7 @@ uint tileCount() { return tileColumns() * tileRows() * params.cameraCount; }
 /// A tile's first pixel.
 ivec2 cornerOf(uint tile) {
   uint row = tile / tileColumns();
-  uint camera = row / tileRows();
+  uint camera = params.cameraCount == 1u ? 0u : row / tileRows();
   return ivec2(int(tile % tileColumns() * 8u), int(camera * params.height + (row - camera * tileRows()) * 8u));
 }
 /// The tile of a camera's pixel.

@@ -4,11 +4,34 @@
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "visibility/facet.h"
 #include "visibility/layout.h"
 #include "visibility/resolve.glsl"
+
+/// Of compact triangles, by invocation: corners from the pixel's first unit on, a word each. They are less than 66
+/// pixels away.
+shared uint corners[3][kBatch];
+
+uint wordOf(ivec2 corner) { return uint(corner.x & 0xffff) | uint(corner.y) << 16u; }
+void putCorners(Corners c, ivec2 first) {
+  corners[0][laneOf()] = wordOf(c.p0 - first);
+  corners[1][laneOf()] = wordOf(c.p1 - first);
+  corners[2][laneOf()] = wordOf(c.p2 - first);
+}
+ivec2 cornerAt(uint i, uint lane) {
+  int both = int(corners[i][lane]);
+  return ivec2((both << 16) >> 16, both >> 16);
+}
+Corners cornersAt(uint lane) {
+  Corners c;
+  c.p0 = cornerAt(0u, lane);
+  c.p1 = cornerAt(1u, lane);
+  c.p2 = cornerAt(2u, lane);
+  return c;
+}
 
 /// An entry, which an invocation holds, of one of the lists. These lie one behind the other, from multiples of four on.
 struct Entry {
@@ -42,56 +65,77 @@ bool isAsked(Entry own, uint reach) {
   return own.isSeen ? own.list >> own.place != 1u : orderOf(own.nearest) < reach;
 }
 
-/// Bits, by place: of the entries that ask, those that the order has wrong: a seen one, with one behind it in the order
-/// that is nearer somewhere; a hidden one, with one that is seen, before it, and farther somewhere.
-uint doubtfulOf(Entry own, bool asks) {
-  uint seen = orAll(own.isSeen ? 1u << laneOf() : 0u);
-  uint left = orAll(asks ? 1u << laneOf() : 0u) & own.list;
-  uint suspects = 0u; // by place
+/// Pairs of entries, by invocation: by their depths alone the first may be nearer somewhere, although the order says
+/// the reverse; and which of them asks.
+shared uint pairs[kBatch * 2u];
+
+/// Bits, by invocation: of the entries that ask in `count` pairs from `first` on, those that have one whose first is
+/// nearer. wide: those that are not compact.
+uint askersIn(uint first, uint count, Entry own, uint wide) {
+  sync();
+  bool any = laneOf() < count;
+  uint pair = any ? pairs[first + laneOf()] : 0u;
+  uint a = pair & 31u;
+  uint b = pair >> 5u & 31u;
+  Facet nearer = facetOfLane(own, a);
+  Facet farther = facetOfLane(own, b);
+  any = any && isNearerWithin(nearer, farther);
+  if (any) {
+    if ((wide & (1u << a | 1u << b)) == 0u) any = overlap(cornersAt(a), cornersAt(b), true);
+    else any = overlap(cornersOf(readCandidate(items[a])), cornersOf(readCandidate(items[b])), false);
+  }
+  uint askers = orAll(any ? 1u << (pair >> 10u) : 0u);
+  sync();
+  return askers;
+}
+
+/// Bits, by invocation: of the entries that ask, those that the order has wrong: a seen one, with one behind it in the
+/// order that is nearer somewhere; a hidden one, with one that is seen, before it, and farther somewhere.
+uint doubtfulOf(Entry own, bool asks, uint wide) {
+  uint seen = lanesWith(own.isSeen);
+  uint left = lanesWith(asks) & own.list;
+  uint doubtful = 0u;
+  uint count = 0u;
   for (uint turns = maxAll(uint(bitCount(left))); turns != 0u; --turns) {
     bool any = left != 0u;
-    uint lane = any ? uint(findLSB(left)) : laneOf();
+    uint asker = any ? uint(findLSB(left)) : laneOf();
     left &= left - 1u;
-    bool isSeen = (seen & (1u << lane)) != 0u;
-    uvec2 told = fromLane(uvec2(own.place, floatBitsToUint(own.isSeen ? own.farthest : own.nearest)), lane);
+    bool isSeen = (seen & (1u << asker)) != 0u;
+    uvec2 told = fromLane(uvec2(own.place, floatBitsToUint(own.isSeen ? own.farthest : own.nearest)), asker);
     float bound = uintBitsToFloat(told.y);
     bool may = any && (isSeen ? own.place > told.x && own.nearest < bound
                               : own.isSeen && own.place < told.x && bound < own.farthest);
-    if (orAll(uint(may)) == 0u) continue;
-    Facet other = facetOfLane(own, lane);
-    Facet f = facetOf(own.plane, own.box);
-    if (may && (isSeen ? isNearerWithin(f, other) : isNearerWithin(other, f))) suspects |= 1u << told.x;
-  }
-  uint doubtful = 0u;
-  while (orAll(suspects) != 0u) {
-    uint wrong = 0u;
-    if (suspects != 0u) {
-      uint place = uint(findLSB(suspects));
-      if (overlap(readCandidate(items[place]), readCandidate(items[own.place]))) wrong = 1u << place;
+    uint which = lanesWith(may);
+    if (may) {
+      uint at = count + uint(bitCount(which & ((1u << laneOf()) - 1u)));
+      pairs[at] = (isSeen ? laneOf() | asker << 5u : asker | laneOf() << 5u) | asker << 10u;
     }
-    doubtful |= orAll(wrong);
-    suspects &= (suspects - 1u) & ~doubtful;
+    count += uint(bitCount(which));
+    if (count >= kBatch) {
+      count -= kBatch;
+      doubtful |= askersIn(count, kBatch, own, wide);
+    }
   }
+  if (count != 0u) doubtful |= askersIn(0u, count, own, wide);
   return doubtful;
 }
 
-/// Whether the entry at a place has a sample at which none that may hide a part of it is nearer.
-bool isAhead(Entry own, uint place) {
-  uint lane = uint(findLSB(orAll(own.list != 0u && own.place == place ? 1u << laneOf() : 0u)));
-  uvec2 told = fromLane(uvec2(own.id, floatBitsToUint(own.farthest)), lane);
+/// Whether the entry of an invocation has a sample at which none that may hide a part of it is nearer.
+bool isAhead(Entry own, uint lane) {
+  uvec4 told = fromLane(uvec4(own.id, floatBitsToUint(own.farthest), own.place, 0u), lane);
   Facet f = facetOfLane(own, lane);
-  bool isRival = (own.list & (1u << lane)) != 0u && own.place != place && own.nearest <= uintBitsToFloat(told.y);
+  bool isRival = (own.list & (1u << lane)) != 0u && laneOf() != lane && own.nearest <= uintBitsToFloat(told.y);
   int row = int(laneOf());
-  Outline o = outlineAt(place);
+  Outline o = outlineAt(told.z);
   uvec4 rest = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
-  for (uint left = orAll(isRival ? 1u << laneOf() : 0u); left != 0u; left &= left - 1u) {
+  for (uint left = lanesWith(isRival); left != 0u; left &= left - 1u) {
     uint j = uint(findLSB(left));
     uvec2 rival = fromLane(uvec2(own.id, own.place), j);
     Crossing crossing = crossingOf(facetOfLane(own, j), f, rival.x < told.x);
     Outline other = outlineAt(rival.y);
     rest &= ~uvec4(samplesAhead(other, crossing, row), samplesAhead(other, crossing, row + 32));
   }
-  return orAll(rest.x | rest.y | rest.z | rest.w) != 0u;
+  return lanesWith((rest.x | rest.y | rest.z | rest.w) != 0u) != 0u;
 }
 
 /// Decides lists from one on: as many of `count` as fit, which it returns.
@@ -118,32 +162,33 @@ uint resolveSome(uint first, uint count) {
   own.isSeen = false;
   own.id = 0u;
   Outline o;
-  uint item = 0u;
   uint key = kFarthest;
+  bool isWide = false;
   if (isThere) {
-    item = entries[list.z - n + (lane - begin)];
+    uint item = entries[list.z - n + (lane - begin)];
     items[lane] = item;
     Candidate c = readCandidate(item);
+    isWide = !isCompact(triangleOf(c));
+    putCorners(cornersOf(c), pixel * 256);
     Footing footing = footingIn(c, pixel);
     o = outlineOf(c, pixel);
     own.id = c.id;
     key = middleKey(c, o, footing, pixel, reversed);
-    setKey(lane, key);
     Facet f = facetOf(c, footing, pixel, reversed);
     own.plane = f.plane;
     own.nearest = f.nearest;
     own.farthest = f.farthest;
     own.box = uint(f.box.x) | uint(f.box.y) << 8u | uint(f.box.z) << 16u | uint(f.box.w) << 24u;
   }
-  own.place = placeAmong(isThere, begin, n, uint(bitCount(orAll(isThere ? 1u << lane : 0u))));
-  bool moves = orAll(uint(movesIn(pixel))) != 0u;
+  setKey(lane, key);
+  own.place = placeAmong(isThere, begin, n);
+  bool moves = lanesWith(movesIn(pixel)) != 0u;
   uint nearest = kFarthest;
   if (moves)
     for (uint i = begin; i < begin + n; ++i) nearest = min(nearest, keyAt(i));
   bool isKnown = true;
   if (isThere) {
-    items[own.place] = item;
-    put(own.place, o, parallaxIn(pixel, nearest, key, own.place - begin));
+    put(own.place, o, moves ? parallaxIn(pixel, nearest, key, own.place - begin) : 0);
     isKnown = isShown(own.id);
   }
   bool asks = false;
@@ -157,12 +202,12 @@ uint resolveSome(uint first, uint count) {
     if (isOwn) asks = !isKnown && isAsked(own, reach);
   }
   // What the order has proposed, corrected.
-  uint doubtful = doubtfulOf(own, asks);
+  uint doubtful = doubtfulOf(own, asks, lanesWith(isWide));
   bool isVisible = own.isSeen;
-  for (uint left = doubtful; left != 0u; left &= left - 1u) {
-    uint place = uint(findLSB(left));
-    bool isAhead_ = isAhead(own, place);
-    if (own.place == place) isVisible = isAhead_;
+  for (; doubtful != 0u; doubtful &= doubtful - 1u) {
+    uint doubted = uint(findLSB(doubtful));
+    bool isAhead_ = isAhead(own, doubted);
+    if (lane == doubted) isVisible = isAhead_;
   }
   if (isVisible && !isKnown) show(own.id);
   sync();

@@ -40,15 +40,14 @@ void setKey(uint i, uint key) { keys[i >> 2u][i & 3u] = key; }
 uint keyAt(uint i) { return keys[i >> 2u][i & 3u]; }
 
 /// How many of `n` entries from `first` on, whose keys are there, are nearer than one of them; first: a multiple of 4.
+/// Keys up to the next multiple are kFarthest.
 uint rankOf(uint i, uint first, uint n) {
   uint key = keyAt(i);
   uint before = 0u;
-  uint quads = n / 4u;
-  for (uint j = 0u; j < quads; ++j) {
-    uvec4 other = keys[first / 4u + j];
+  for (uint j = first; j < first + n; j += 4u) {
+    uvec4 other = keys[j / 4u];
     before += uint(other.x < key) + uint(other.y < key) + uint(other.z < key) + uint(other.w < key);
   }
-  for (uint j = quads * 4u; j < n; ++j) before += uint(keyAt(first + j) < key);
   return before;
 }
 
@@ -61,14 +60,13 @@ uint rankAmongSame(uint i, uint first, uint n) {
   return before;
 }
 
-/// The place of this invocation's entry in the order of `n` from `first` on, whose items and keys are there; all: how
-/// many invocations have one.
-uint placeAmong(bool isThere, uint first, uint n, uint all_) {
+/// The place of this invocation's entry in the order of `n` from `first` on, whose items and keys are there.
+uint placeAmong(bool isThere, uint first, uint n) {
   uint lane = laneOf();
   sync();
   uint place = isThere ? first + rankOf(lane, first, n) : 0u;
   uint taken = orAll(isThere ? 1u << place : 0u);
-  if (uint(bitCount(taken)) != all_) { // some have the same
+  if (bitCount(taken) != bitCount(lanesWith(isThere))) { // some have the same
     if (isThere) place += rankAmongSame(lane, first, n);
   }
   sync();
@@ -77,10 +75,12 @@ uint placeAmong(bool isThere, uint first, uint n, uint all_) {
 
 /// Whether the record asks, too, what a move would uncover; by how many samples it moves an entry of a pixel's list
 /// against what is nearest there.
-bool movesIn(ivec2 pixel) { return params.depthScales[uint(pixel.y) / params.height].z != 0.0; }
+vec4 depthScaleIn(ivec2 pixel) {
+  return params.depthScales[params.cameraCount == 1u ? 0u : uint(pixel.y) / params.height];
+}
+bool movesIn(ivec2 pixel) { return depthScaleIn(pixel).z != 0.0; }
 int parallaxIn(ivec2 pixel, uint nearest, uint own, uint place) {
-  vec4 scale = params.depthScales[uint(pixel.y) / params.height];
-  return parallaxOf(scale, nearest, own, place, params.reversedDepth != 0u);
+  return parallaxOf(depthScaleIn(pixel), nearest, own, place, params.reversedDepth != 0u);
 }
 
 void put(uint place, Outline o, int parallax) {
@@ -125,6 +125,6 @@ Looked lookAtBatch(uint first, uint n, bool moves, inout uvec4 covered) {
   }
   Looked looked;
   looked.seen = orAll(found);
-  looked.holes = orAll(uint(!isFull(covered))) != 0u;
+  looked.holes = lanesWith(!isFull(covered)) != 0u;
   return looked;
 }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "visibility/layout.h"
@@ -62,6 +63,7 @@ uint lastKey(Rest rest) {
 /// Gets the entries up to a key, if they are not more than kBatch; returns how many there are.
 uint takeEntries(Rest rest, uint high) {
   if (laneOf() == 0u) count = 0u;
+  setKey(laneOf(), kFarthest);
   sync();
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
     uint key = depths[i];
@@ -149,7 +151,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
       break;
     }
     if (n > kBatch) more = resolveSame(rest, n, pixel, covered);
-    else more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n, n), pixel, covered);
+    else more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n), pixel, covered);
     more = more && high != rest.farthest;
     rest.low = high + 1u;
     rest.before += n;

@@ -6,6 +6,7 @@ uint laneOf() { return gl_LocalInvocationIndex; }
 
 #ifdef GPGP_SUBGROUPS
 void sync() { subgroupBarrier(); }
+uint lanesWith(bool v) { return subgroupBallot(v).x; } // bits
 uint orAll(uint v) { return subgroupOr(v); }
 uint minAll(uint v) { return subgroupMin(v); }
 uint maxAll(uint v) { return subgroupMax(v); }
@@ -33,6 +34,7 @@ uint orAll(uint v) {
   if (v != 0u) atomicOr(joined, v);
   return endJoin();
 }
+uint lanesWith(bool v) { return orAll(v ? 1u << laneOf() : 0u); }
 uint minAll(uint v) {
   beginJoin(0xffffffffu);
   atomicMin(joined, v);

@@ -79,7 +79,8 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   }
   for (size_t i = 0; i < sorted.size(); ++i) {
     const auto nearer = [&](const Sorted& a, const Sorted& b) {
-      return isNearerSomewhere(a.facet, b.facet) && overlap(a.candidate, b.candidate);
+      const bool compact = isCompact(triangleOf(a.candidate)) && isCompact(triangleOf(b.candidate));
+      return isNearerSomewhere(a.facet, b.facet) && overlap(cornersOf(a.candidate), cornersOf(b.candidate), compact);
     };
     bool doubtful = false;
     if (sorted.size() <= kBatch && seen[i])
