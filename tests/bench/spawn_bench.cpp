@@ -680,13 +680,14 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
   }
 }
 
-void searches(Session& session, const std::vector<Case>& cases, const Options& options, Kept&, Budget& budget) {
-  std::printf("\n## Searches (table 4.2): ms of the best of %u schedules, s: seconds to find it; M: with matching\n\n"
-              "| case | edges | axioms | default | OPTs (s) | OPTH (s) | OPTs,M (s) | OPTH,M (s) | default / best |\n"
-              "|---|---|---|---|---|---|---|---|---|\n",
-              options.samples);
+void searches(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
+  std::printf(
+      "\n## Searches (table 4.2): ms of the best of %u schedules, the named ones among them; s: for both searches; "
+      "M: with matching\n\n"
+      "| case | edges | axioms | default | OPTs | OPTH | s (kernels) | OPTs,M | OPTH,M | s (kernels) | "
+      "default / best |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+      options.samples);
   double longest = 0; // row
-  Kept none({}, {});  // their seconds count
   for (const Case& c : cases) {
     if (!options.wants("searches", c.name) || !budget.allows(longest, c.name)) continue;
     const auto rowBegin = Clock::now();
@@ -694,27 +695,26 @@ void searches(Session& session, const std::vector<Case>& cases, const Options& o
     double usual = std::numeric_limits<double>::quiet_NaN(), best = std::numeric_limits<double>::infinity();
     std::string columns;
     for (const bool matching : {false, true}) {
-      Kernels kernels(on.grammar, targetFor(session.device(), on.grammar.graph), matching);
-      Times times(session, kernels, {on.place()}, c.name, options.repeat, none);
-      // Named schedules are measured once for both searches, and each search's seconds hold them.
       const auto begin = Clock::now();
-      for (const char* name : spawn::kScheduleNames) kernels.add(*spawn::namedSchedule(on.grammar.graph, name));
-      bool inTime = times.measureNew(budget);
-      if (!matching) usual = times[0];
-      const double namedSeconds = secondsSince(begin);
+      Kernels kernels(on.grammar, targetFor(session.device(), on.grammar.graph), matching);
+      std::array<std::vector<size_t>, 2> met; // random, heuristic
       for (const spawn::Search search : {spawn::Search::random, spawn::Search::heuristic}) {
-        const auto searchBegin = Clock::now();
         bool complete = false;
-        std::vector<size_t> met;
         for (const spawn::Schedule& s : searchSchedules(on.grammar.graph, search, options.samples, 1, complete))
-          met.push_back(kernels.add(s));
-        inTime = inTime && times.measureNew(budget);
+          met[search == spawn::Search::heuristic].push_back(kernels.add(s));
+      }
+      Times times(session, kernels, {on.place()}, c.name, options.repeat, kept);
+      times.measureNew(budget);
+      if (!matching) usual = times[0];
+      for (const std::vector<size_t>& search : met) {
         double fastest = std::numeric_limits<double>::infinity();
-        for (const size_t kernel : met) fastest = std::fmin(fastest, times[kernel]); // without those left out
-        columns += " " + shown(fastest) + " (" + shown(namedSeconds + secondsSince(searchBegin)) +
-                   (inTime ? ") |" : ", cut) |");
+        for (const size_t kernel : search) fastest = std::fmin(fastest, times[kernel]); // without those left out
+        columns += " " + shown(fastest) + " |";
         best = std::min(best, fastest);
       }
+      columns += " " + shown(secondsSince(begin)) + " (" +
+                 (times.measured() < kernels.size() ? std::to_string(times.measured()) + " of " : "") +
+                 std::to_string(kernels.size()) + ") |";
     }
     std::printf("| %s | %zu | %u | %s |%s %.2f |\n", c.name.c_str(), on.edges, on.count, shown(usual).c_str(),
                 columns.c_str(), usual / best);
@@ -923,8 +923,8 @@ ROW is a part of a row's name. --share F takes that part of each case's axioms; 
 --exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,
 simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out and
 named below it; --tuning N (default 50) what tuning a case takes. --keep FILE: times of single kernels are written
-there as they are measured, and those that it holds are not measured again, so that `schedules`, `partitions` and
-`heuristics` go on where another run of the same program ended, on such a device.
+there as they are measured, and those that it holds are not measured again, so that `schedules`, `searches`,
+`partitions` and `heuristics` go on where another run of the same program ended, on such a device.
 )";
 
 int run(bench::Arguments arguments) {
