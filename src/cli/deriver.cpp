@@ -113,19 +113,21 @@ void Deriver::makeOutput(uint64_t elements) {
   indices_ = host::Buffer(session_.device(), elements_ * 6, kStorage, host::Memory::device, "indices");
 }
 
+Grammar Deriver::load(const std::pmr::vector<uint32_t>& kernel) {
+  std::pmr::vector<uint32_t> all(grammar_.words);
+  all.insert(all.end(), kernel.begin(), kernel.end());
+  GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+  info.label = "grammar";
+  info.data = all.data();
+  info.size = all.size() * 4;
+  return session_.take(Grammar::create(session_.context(), info), "gpgpCreateGrammar");
+}
+
 std::vector<Grammar> Deriver::prepare(std::span<const std::pmr::vector<uint32_t>> kernels) {
   std::vector<Grammar> grammars;
-  for (const auto& kernel : kernels) {
-    std::pmr::vector<uint32_t> all(grammar_.words);
-    all.insert(all.end(), kernel.begin(), kernel.end());
-    GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
-    info.label = "grammar";
-    info.data = all.data();
-    info.size = all.size() * 4;
-    grammars.push_back(session_.take(Grammar::create(session_.context(), info), "gpgpCreateGrammar"));
-  }
+  for (const auto& kernel : kernels) grammars.push_back(load(kernel));
   std::vector<GpgpResult> results(grammars.size());
-  onAllProcessors(grammars.size(), [&](size_t i) { results[i] = spawner_->prewarm(grammars[i]); });
+  onAllProcessors(grammars.size(), [&](size_t i) { results[i] = prewarm(grammars[i]); });
   for (const GpgpResult result : results) session_.check(result, "gpgpPrewarmGrammar");
   session_.upload();
   return grammars;

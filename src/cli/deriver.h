@@ -40,6 +40,9 @@ public:
   /// the interpreter.
   std::vector<Grammar> prepare(std::span<const std::pmr::vector<uint32_t>> kernels);
   Grammar prepare(const std::pmr::vector<uint32_t>& kernel);
+  /// prepare in parts: the grammar, by the context's thread; its pipelines, by any thread; then Session::upload.
+  Grammar load(const std::pmr::vector<uint32_t>& kernel);
+  GpgpResult prewarm(const Grammar& grammar) { return spawner_->prewarm(grammar); }
   /// Derives once. Where the report says that shapes were dropped, or that buffers are too small, again with more of
   /// what was short, as far as the device and the options allow.
   GpgpSpawnReport fit(const Grammar& grammar);

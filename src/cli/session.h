@@ -46,6 +46,8 @@ public:
   GpgpWorkerCreateInfo workerInfo(const char* label) const;
   /// Uploads all pending assets.
   void upload();
+  /// Keeps a GPU's clocks up for some milliseconds, for who waits for what is measured next.
+  void keepBusy() { busy_.pass(); }
   /// Runs record `repeat` times, a frame each, and waits for it; measures every one by two timestamps around all that
   /// it records, and before each of them, if there are several, another one by a timestamp after each pass. record is
   /// given the info's common part, and returns what the record function returned. The report is the last run's. A GPU

@@ -13,6 +13,8 @@ public:
   explicit BusyWork(HeadlessDevice& device);
   /// A second of work, waited for, as clocks rise in steps; nothing where there was work a moment ago.
   void warmUp();
+  /// Ten milliseconds of it, waited for, while there is nothing else to do.
+  void pass();
   /// About a millisecond of work, for the front of a command buffer whose end is timed.
   void record(VkCommandBuffer commands);
 

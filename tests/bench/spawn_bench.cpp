@@ -2,7 +2,8 @@
 //
 // Prints tables in Markdown, row by row: medians of GPU timestamps of a warm device, and ratios. The baselines, in the
 // same process: the CPU evaluator on one thread, and the default schedule. Kernels and pipelines are made on all
-// processors. Asserts nothing about time, but fails where a derivation differs from the evaluator's.
+// processors while those that are ready are measured, and their times can be kept for another run. Asserts nothing
+// about time, but fails where a derivation differs from the evaluator's.
 #include "arguments.h"
 #include "cli/axioms.h"
 #include "cli/processors.h"
@@ -12,12 +13,18 @@
 #include "spawn/graph/heuristics.h"
 
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <sstream>
+#include <thread>
 
 namespace {
 using namespace gpgp;
@@ -29,7 +36,7 @@ struct Options {
   uint32_t exhaustive = 64;
   double share = 1, seconds = 0, tuning = TuneSettings().seconds;
   bool quick = false;
-  std::string device;
+  std::string device, keep;
   std::vector<std::string> tables;
 
   bool wants(const std::string& table, const std::string& row = {}) const {
@@ -143,15 +150,25 @@ public:
     return at->second;
   }
   size_t size() const { return schedules_.size(); }
+  const BakedGraph& grammar() const { return grammar_; }
   const spawn::Schedule& schedule(size_t kernel) const { return schedules_[kernel]; }
-  /// Some from a number on, as words behind the graph.
-  std::vector<std::pmr::vector<uint32_t>> compile(size_t first, size_t count) const {
-    std::vector<std::pmr::vector<uint32_t>> words;
-    const auto part = std::span(schedules_).subspan(first, count);
-    const auto code = compileKernels(grammar_.graph, part, target_, matching_);
-    for (size_t i = 0; i < code.size(); ++i)
-      words.push_back(kernelWords(grammar_, kernelInfo(part[i], target_), code[i]));
-    return words;
+  /// As words behind the graph. Any thread.
+  std::pmr::vector<uint32_t> compile(size_t kernel) const {
+    const spawn::Schedule& schedule = schedules_[kernel];
+    const auto code = compileKernels(grammar_.graph, std::span(&schedule, 1), target_, matching_);
+    return kernelWords(grammar_, kernelInfo(schedule, target_), code[0]);
+  }
+  /// What tells it from all others, of other grammars as well.
+  std::string key(size_t kernel) const {
+    uint64_t hash = 0xcbf29ce484222325;
+    const auto add = [&](uint64_t word) { hash = (hash ^ word) * 0x100000001b3; };
+    for (const uint32_t word : grammar_.words) add(word);
+    for (const bool waits : schedules_[kernel].waits) add(waits);
+    if (matching_)
+      for (const uint32_t root : schedules_[kernel].roots) add(root);
+    char text[24];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
   }
 
 private:
@@ -160,6 +177,162 @@ private:
   bool matching_;
   std::map<std::pair<std::vector<bool>, spawn::Roots>, size_t> known_;
   std::vector<spawn::Schedule> schedules_;
+};
+
+/// A kernel's pipeline.
+struct Made {
+  size_t kernel = 0;
+  Grammar grammar;
+};
+
+/// Makes kernels on all processors, each by itself, while the caller measures those that are ready. Begins none that
+/// would probably end too late.
+class Workshop {
+public:
+  Workshop(Session& session, const Kernels& kernels, std::vector<size_t> wanted, const Budget& budget)
+      : session_(session), kernels_(kernels), wanted_(std::move(wanted)), budget_(budget),
+        deriver_(session, kernels.grammar(), {spawn::makeAxiom(1, 1, 1)}, {}) {
+    const size_t most = std::min<size_t>(wanted_.size(), std::max(1u, std::thread::hardware_concurrency()));
+    for (size_t i = 0; i < most; ++i) threads_.emplace_back([this] { work(); });
+  }
+  ~Workshop() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopped_ = true;
+    }
+    wake_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+  Workshop(const Workshop&) = delete;
+  Workshop& operator=(const Workshop&) = delete;
+
+  /// One that is ready, in about their order; nothing where none is left, or no time.
+  std::optional<Made> next() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      if (error_) std::rethrow_exception(error_);
+      if (!compiled_.empty()) { // only the context's thread, this one, makes assets
+        const auto [kernel, words] = std::move(compiled_.front());
+        compiled_.pop_front();
+        lock.unlock();
+        Grammar grammar = deriver_.load(words);
+        lock.lock();
+        loaded_.push_back({kernel, std::move(grammar)});
+        wake_.notify_one();
+      } else if (!made_.empty()) {
+        Made made = std::move(made_.front());
+        made_.pop_front();
+        ++taken_;
+        wake_.notify_one();
+        lock.unlock();
+        session_.upload();
+        return made;
+      } else if (taken_ == begun_ && !mayBegin()) {
+        return std::nullopt;
+      } else if (ready_.wait_for(lock, std::chrono::milliseconds(2)) == std::cv_status::timeout) {
+        lock.unlock();
+        session_.keepBusy();
+        lock.lock();
+      }
+    }
+  }
+  /// Seconds of processors, for each kernel taken.
+  double compiling() const { return compiling_ / double(std::max<size_t>(taken_, 1)); }
+  double pipelines() const { return pipelines_ / double(std::max<size_t>(taken_, 1)); }
+
+private:
+  bool mayBegin() const { return begun_ < wanted_.size() && budget_.allows(longest_); }
+  void work() {
+    std::unique_lock lock(mutex_);
+    const auto did = [&](double& sum, const std::function<void()>& step) {
+      lock.unlock();
+      const auto begin = Clock::now();
+      step();
+      const double seconds = secondsSince(begin);
+      lock.lock();
+      sum += seconds;
+      return seconds;
+    };
+    try {
+      while (!stopped_) {
+        if (!loaded_.empty()) {
+          Made made = std::move(loaded_.front());
+          loaded_.pop_front();
+          GpgpResult result = GPGP_SUCCESS;
+          const double seconds = did(pipelines_, [&] { result = deriver_.prewarm(made.grammar); });
+          if (result < 0) throw Failure(std::string("gpgpPrewarmGrammar: ") + gpgpResultString(result));
+          longest_ = std::max(longest_, seconds + compiling_ / double(begun_));
+          made_.push_back(std::move(made));
+          ready_.notify_one();
+        } else if (made_.size() < 2 * threads_.size() && mayBegin()) {
+          const size_t kernel = wanted_[begun_++];
+          std::pmr::vector<uint32_t> words;
+          did(compiling_, [&] { words = kernels_.compile(kernel); });
+          compiled_.push_back({kernel, std::move(words)});
+          ready_.notify_one();
+        } else {
+          wake_.wait_for(lock, std::chrono::seconds(1));
+        }
+      }
+    } catch (...) {
+      if (!lock.owns_lock()) lock.lock();
+      if (!error_) error_ = std::current_exception();
+      stopped_ = true;
+    }
+  }
+
+  Session& session_;
+  const Kernels& kernels_;
+  const std::vector<size_t> wanted_;
+  const Budget& budget_;
+  Deriver deriver_;
+  std::mutex mutex_;
+  std::condition_variable wake_, ready_; // the threads; the caller
+  std::deque<std::pair<size_t, std::pmr::vector<uint32_t>>> compiled_;
+  std::deque<Made> loaded_, made_; // without a pipeline, and with it
+  size_t begun_ = 0, taken_ = 0;
+  double compiling_ = 0, pipelines_ = 0, longest_ = 0; // seconds
+  bool stopped_ = false;
+  std::exception_ptr error_;
+  std::vector<std::thread> threads_;
+};
+
+/// Times of kernels in a file, a line each as they are measured: what another run of the same program on such a device
+/// has measured is not measured again.
+class Kept {
+public:
+  Kept(const std::string& file, const std::string& device) {
+    if (file.empty()) return;
+    const bool isNew = !std::filesystem::exists(file);
+    if (!isNew) {
+      std::istringstream lines(host::readText(file));
+      std::string line;
+      if (std::getline(lines, line); line != device) throw Failure(file + " holds times of " + line);
+      while (std::getline(lines, line))
+        if (const size_t space = line.find_last_of(' '); space != std::string::npos)
+          times_[line.substr(0, space)] = std::strtod(line.c_str() + space, nullptr);
+    }
+    file_.reset(std::fopen(file.c_str(), "a"));
+    if (!file_) throw Failure(file + " cannot be written");
+    if (isNew) std::fprintf(file_.get(), "%s\n", device.c_str());
+  }
+  std::optional<double> find(const std::string& key) const {
+    const auto at = times_.find(key);
+    return at == times_.end() ? std::nullopt : std::optional(at->second);
+  }
+  void add(const std::string& key, double milliseconds) {
+    times_[key] = milliseconds;
+    if (!file_) return;
+    std::fprintf(file_.get(), "%s %.6g\n", key.c_str(), milliseconds);
+    std::fflush(file_.get());
+  }
+
+private:
+  struct Close {
+    void operator()(FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<FILE, Close> file_;
+  std::map<std::string, double> times_;
 };
 
 /// Median milliseconds; infinity where the device's budgets are too small.
@@ -179,47 +352,108 @@ std::string shown(double milliseconds) {
   return text;
 }
 
-/// Kernels that are compiled and measured at once, with no look at the time in between.
-size_t partSize() { return std::max(4u, std::thread::hardware_concurrency()); }
+/// Numbers of axioms that kernels of a grammar are measured with.
+struct Place {
+  uint32_t axioms = 0;
+  Deriver* deriver = nullptr;
+  const spawn::Derivation* cpu = nullptr;
+};
 
-/// Times of a grammar's kernels, in the order of their numbers, as far as there is time for them.
+/// Times of a grammar's kernels, as far as there is time for them.
 class Times {
 public:
-  Times(Deriver& deriver, const Kernels& kernels, const spawn::Derivation& cpu, std::string what, uint32_t repeat)
-      : deriver_(deriver), kernels_(kernels), cpu_(cpu), what_(std::move(what)), repeat_(repeat) {}
-  /// Measures those that have been added. Whether there was time for all.
-  bool measureNew(const Budget& budget, double reserved = 0) {
-    while (times_.size() < kernels_.size()) {
-      const auto begin = Clock::now();
-      if (!budget.allows(perPart_ + reserved)) return false;
-      const auto words = kernels_.compile(times_.size(), std::min(partSize(), kernels_.size() - times_.size()));
-      for (const Grammar& prepared : deriver_.prepare(words)) {
-        const std::string name = what_ + " " + kernels_.schedule(times_.size()).name;
-        times_.push_back(timeOf(deriver_, prepared, cpu_, name, repeat_));
-      }
-      perPart_ = secondsSince(begin);
+  /// name: the grammar's, in messages.
+  Times(Session& session, const Kernels& kernels, std::vector<Place> places, std::string name, uint32_t repeat,
+        Kept& kept)
+      : session_(session), kernels_(kernels), places_(std::move(places)), name_(std::move(name)), repeat_(repeat),
+        kept_(kept) {}
+  /// Measures those that have been added, but for those that were kept. Whether there was time for all.
+  bool measureNew(const Budget& budget) {
+    std::vector<size_t> wanted;
+    for (size_t kernel = times_.size(); kernel < kernels_.size(); ++kernel) {
+      times_.emplace_back(places_.size(), std::numeric_limits<double>::quiet_NaN());
+      bool known = true;
+      for (size_t p = 0; p < places_.size(); ++p)
+        if (const auto time = kept_.find(keyOf(kernel, p)))
+          times_[kernel][p] = *time;
+        else
+          known = false;
+      if (!known) wanted.push_back(kernel);
     }
-    return true;
+    if (wanted.empty()) return true;
+    const auto begin = Clock::now();
+    Workshop workshop(session_, kernels_, wanted, budget);
+    size_t count = 0;
+    double measuring = 0;
+    for (; const auto made = workshop.next(); ++count) {
+      const auto beginMeasuring = Clock::now();
+      for (size_t p = 0; p < places_.size(); ++p) {
+        const Place& place = places_[p];
+        const double time = timeOf(*place.deriver, made->grammar, *place.cpu,
+                                   name_ + " " + kernels_.schedule(made->kernel).name, repeat_);
+        times_[made->kernel][p] = time;
+        kept_.add(keyOf(made->kernel, p), time);
+      }
+      measuring += secondsSince(beginMeasuring);
+    }
+    std::fprintf(stderr, "%s: %zu of %zu kernels in %.1f s; each: compiled %.2f s, pipeline %.2f s, measured %.3f s\n",
+                 name_.c_str(), count, wanted.size(), secondsSince(begin), workshop.compiling(), workshop.pipelines(),
+                 measuring / double(std::max<size_t>(count, 1)));
+    return count == wanted.size();
   }
-  size_t size() const { return times_.size(); }
   /// Not a number: there was no time.
-  double operator[](size_t kernel) const {
-    return kernel < times_.size() ? times_[kernel] : std::numeric_limits<double>::quiet_NaN();
+  double operator()(size_t kernel, size_t place) const {
+    return kernel < times_.size() ? times_[kernel][place] : std::numeric_limits<double>::quiet_NaN();
   }
+  double operator[](size_t kernel) const { return (*this)(kernel, 0); }
   double best() const { return (*this)[fastest()]; }
   /// A kernel's number; 0 where there are no times.
   size_t fastest() const {
-    return static_cast<size_t>(std::min_element(times_.begin(), times_.end()) - times_.begin());
+    size_t fastest = 0;
+    for (size_t kernel = 1; kernel < times_.size(); ++kernel)
+      if (std::isnan((*this)[fastest]) || (*this)[kernel] < (*this)[fastest]) fastest = kernel;
+    return fastest;
+  }
+  /// With times.
+  size_t measured() const {
+    return static_cast<size_t>(
+        std::count_if(times_.begin(), times_.end(), [](const auto& times) { return !std::isnan(times[0]); }));
   }
 
 private:
-  Deriver& deriver_;
+  std::string keyOf(size_t kernel, size_t place) const {
+    return name_ + " " + std::to_string(places_[place].axioms) + " " + kernels_.key(kernel);
+  }
+  Session& session_;
   const Kernels& kernels_;
-  const spawn::Derivation& cpu_;
-  std::string what_;
+  std::vector<Place> places_;
+  std::string name_;
   uint32_t repeat_;
-  double perPart_ = 0;
-  std::vector<double> times_;
+  Kept& kept_;
+  std::vector<std::vector<double>> times_; // by kernel
+};
+
+/// A grammar on the device with several numbers of axioms.
+class Places {
+public:
+  Places(Session& session, const Case& c, const BakedGraph& grammar, const std::vector<uint32_t>& counts) {
+    for (const uint32_t count : counts) {
+      const auto axioms = axiomsOf(c, count);
+      auto& one = all_.emplace_back(std::make_unique<One>());
+      one->cpu = evaluate(grammar, axioms).result;
+      one->deriver.emplace(session, grammar, axioms, DeriverOptions{});
+      list_.push_back({count, &*one->deriver, &one->cpu});
+    }
+  }
+  const std::vector<Place>& list() const { return list_; }
+
+private:
+  struct One {
+    spawn::Derivation cpu;
+    std::optional<Deriver> deriver;
+  };
+  std::vector<std::unique_ptr<One>> all_;
+  std::vector<Place> list_;
 };
 
 // ---------------------------------------------------------------- table 4.1
@@ -267,7 +501,7 @@ Decided decidedBy(const std::string& heuristic, const spawn::Graph& graph, const
   return decided;
 }
 
-void heuristics(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+void heuristics(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
   std::printf("\n## Heuristics (table 4.1): ms with the heuristic (H) and inverted (not H)\n\n");
   std::printf(
       "| test, edges | pairs | pairs that differ | axioms | t | p | H (deviation) | not H | H faster | not H / H |\n"
@@ -299,52 +533,32 @@ void heuristics(Session& session, const std::vector<Case>& cases, const Options&
     }
     const std::vector<uint32_t> counts =
         options.quick ? std::vector<uint32_t>{1, 16} : std::vector<uint32_t>{1, 64, 128, 256};
-    std::vector<std::unique_ptr<Deriver>> derivers;
-    std::vector<spawn::Derivation> references;
-    for (const uint32_t count : counts) {
-      const auto axioms = axiomsOf(c, count);
-      references.push_back(evaluate(grammar, axioms).result);
-      derivers.push_back(std::make_unique<Deriver>(session, grammar, axioms, DeriverOptions{}));
-    }
-    std::vector<std::vector<double>> times(counts.size());
-    size_t whole = 0; // pairs that were measured
-    double perPart = 0;
-    while (times[0].size() < kernels.size() && own.allows(perPart)) {
-      const auto begin = Clock::now();
-      const auto words = kernels.compile(times[0].size(), std::min(partSize(), kernels.size() - times[0].size()));
-      for (const Grammar& prepared : derivers[0]->prepare(words))
-        for (size_t n = 0; n < counts.size(); ++n)
-          times[n].push_back(timeOf(*derivers[n], prepared, references[n], name, options.repeat));
-      for (; whole < pairs.size() && std::max(pairs[whole][0], pairs[whole][1]) < times[0].size(); ++whole) {
-        std::fprintf(stderr, "%s pair %zu:", name, whole);
-        for (size_t n = 0; n < counts.size(); ++n)
-          std::fprintf(stderr, " %u axioms %s %s", counts[n], shown(times[n][pairs[whole][0]]).c_str(),
-                       shown(times[n][pairs[whole][1]]).c_str());
-        std::fprintf(stderr, "\n");
-      }
-      perPart = secondsSince(begin);
-    }
-    if (whole < pairs.size())
+    const Places places(session, c, grammar, counts);
+    Times times(session, kernels, places.list(), grammarName, options.repeat, kept);
+    times.measureNew(own);
+    std::erase_if(pairs, [&](const auto& pair) { return std::isnan(times[pair[0]]) || std::isnan(times[pair[1]]); });
+    if (pairs.size() < options.pairs)
       budget.allows(std::numeric_limits<double>::infinity(),
-                    std::to_string(pairs.size() - whole) + " pairs of " + name);
+                    std::to_string(options.pairs - pairs.size()) + " pairs of " + name);
     for (size_t n = 0; n < counts.size(); ++n) {
       std::vector<double> on, off, difference;
       size_t faster = 0, distinct = 0;
-      for (const auto& [a, b] : std::span(pairs).first(whole)) {
-        if (!std::isfinite(times[n][a]) || !std::isfinite(times[n][b])) continue;
-        on.push_back(times[n][a]);
-        off.push_back(times[n][b]);
-        difference.push_back(times[n][a] - times[n][b]);
+      for (const auto& [a, b] : pairs) {
+        const double with = times(a, n), inverted = times(b, n);
+        if (!std::isfinite(with) || !std::isfinite(inverted)) continue;
+        on.push_back(with);
+        off.push_back(inverted);
+        difference.push_back(with - inverted);
         distinct += a != b;
-        faster += times[n][a] < times[n][b];
+        faster += with < inverted;
       }
       const Mean h = meanOf(on), notH = meanOf(off), d = meanOf(difference);
       const double t = d.deviation > 0 ? d.mean / (d.deviation / std::sqrt(double(difference.size()))) : 0;
-      std::printf("| %s %s, %zu of %zu | %zu | %zu | %u | %.2f | %.4f | %s (%.3f) | %s (%.3f) | %.2f | %.2f |\n", name,
-                  grammarName, decided.edges.size(), edges, difference.size(), distinct, counts[n], t,
-                  pOf(t, double(std::max<size_t>(difference.size(), 2) - 1)), shown(h.mean).c_str(), h.deviation,
-                  shown(notH.mean).c_str(), notH.deviation, double(faster) / double(std::max<size_t>(distinct, 1)),
-                  notH.mean / h.mean);
+      const double p = pOf(t, double(std::max<size_t>(difference.size(), 2) - 1));
+      std::printf("| %s %s, %zu of %zu | %zu | %zu | %u | %.2f | %s%.4f | %s (%.3f) | %s (%.3f) | %.2f | %.2f |\n",
+                  name, grammarName, decided.edges.size(), edges, difference.size(), distinct, counts[n], t,
+                  p < 1e-4 ? "< " : "", std::max(p, 1e-4), shown(h.mean).c_str(), h.deviation, shown(notH.mean).c_str(),
+                  notH.deviation, double(faster) / double(std::max<size_t>(distinct, 1)), notH.mean / h.mean);
     }
   }
 }
@@ -377,6 +591,7 @@ struct OnDevice {
                    100.0 * static_cast<double>(bytes) / static_cast<double>(reference.result.terminals) /
                        sizeof(GpgpInstance));
   }
+  Place place() { return {count, &*deriver, &reference.result}; }
 };
 
 /// "0.97 yes": a ratio, and whether it is at most so much, as it is printed.
@@ -387,7 +602,7 @@ std::string judged(double ratio, double most) {
   return text;
 }
 
-void schedules(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+void schedules(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
   std::printf(
       "\n## Schedules (table 4.2): ms\n\n"
       "| case | edges | axioms | terminals | CPU | interpreter | default | SGL (groups) | RW | DGN | heuristic | "
@@ -402,15 +617,26 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
     Kernels kernels(on.grammar, targetFor(session.device(), graph));
     std::map<std::string, size_t> named;
     for (const char* name : spawn::kScheduleNames) named[name] = kernels.add(*spawn::namedSchedule(graph, name));
-    Times times(*on.deriver, kernels, on.reference.result, c.name, options.repeat);
+    Times times(session, kernels, {on.place()}, c.name, options.repeat, kept);
     times.measureNew(budget);
-    const size_t fastestNamed = times.fastest();
     double bestNamed = times.best();
 
+    double tuned = std::numeric_limits<double>::quiet_NaN(), tuningSeconds = tuned;
+    std::optional<Grammar> prepared; // tuned
+    // By turns, as clocks rise and fall by some hundredths; and the least of many kernels' times is so by luck as well.
+    const auto byTurns = [&](size_t kernel, double first) {
+      if (!std::isfinite(first) || !prepared || !std::isfinite(tuned)) return first;
+      const Grammar rival = on.deriver->prepare(kernels.compile(kernel));
+      double best = std::numeric_limits<double>::infinity();
+      for (uint32_t turn = 0; turn < kTurns; ++turn) {
+        best = std::min(best, timeOf(*on.deriver, rival, on.reference.result, c.name, options.repeat));
+        tuned = std::min(tuned, timeOf(*on.deriver, *prepared, on.reference.result, c.name, options.repeat));
+      }
+      return best;
+    };
     TuneSettings settings;
     if (options.quick) settings.samples = 6;
     settings.repeat = std::min(settings.repeat, options.repeat);
-    double tuned = std::numeric_limits<double>::quiet_NaN(), tuningSeconds = tuned;
     if (budget.allows(0)) {
       settings.seconds = std::min(options.tuning, budget.left());
       const Tuned found = tuneGrammar(session, on.grammar, on.axioms, settings);
@@ -425,14 +651,9 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
         std::fprintf(stderr, " %s %s", found.schedules[candidate.schedule].name.c_str(),
                      shown(candidate.milliseconds).c_str());
       std::fprintf(stderr, "\n");
-      const Grammar prepared = on.deriver->prepare(kernelWords(on.grammar, found.info, found.code));
-      tuned = timeOf(*on.deriver, prepared, on.reference.result, c.name + " tuned", options.repeat);
-      // By turns, as clocks rise and fall by some hundredths.
-      const Grammar rival = on.deriver->prepare(kernels.compile(fastestNamed, 1)[0]);
-      for (uint32_t turn = 0; turn < kTurns && std::isfinite(bestNamed) && std::isfinite(tuned); ++turn) {
-        bestNamed = std::min(bestNamed, timeOf(*on.deriver, rival, on.reference.result, c.name, options.repeat));
-        tuned = std::min(tuned, timeOf(*on.deriver, prepared, on.reference.result, c.name, options.repeat));
-      }
+      prepared = on.deriver->prepare(kernelWords(on.grammar, found.info, found.code));
+      tuned = timeOf(*on.deriver, *prepared, on.reference.result, c.name + " tuned", options.repeat);
+      bestNamed = byTurns(times.fastest(), bestNamed);
     }
     double exhaustive = std::numeric_limits<double>::quiet_NaN();
     bool complete = false;
@@ -441,8 +662,8 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
     if (complete && all.size() <= options.exhaustive) {
       for (const spawn::Schedule& schedule : all) kernels.add(schedule);
       const bool inTime = times.measureNew(budget);
-      exhaustive = times.best();
-      searched = (inTime ? "" : std::to_string(times.size()) + " of ") + std::to_string(kernels.size());
+      exhaustive = byTurns(times.fastest(), times.best());
+      searched = (inTime ? "" : std::to_string(times.measured()) + " of ") + std::to_string(kernels.size());
     }
     std::printf(
         "| %s | %zu | %u | %llu | %s | %s | %s | %s (%zu) | %s | %s | %s | %s | %.1f | %s | %s (%s) | %s | %.2f | "
@@ -459,11 +680,13 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
   }
 }
 
-void searches(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
-  std::printf("\n## Searches (table 4.2): ms of the best of %u schedules, s: seconds to find it; M: with matching\n\n"
-              "| case | edges | axioms | default | OPTs (s) | OPTH (s) | OPTs,M (s) | OPTH,M (s) | default / best |\n"
-              "|---|---|---|---|---|---|---|---|---|\n",
-              options.samples);
+void searches(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
+  std::printf(
+      "\n## Searches (table 4.2): ms of the best of %u schedules, the named ones among them; s: for both searches; "
+      "M: with matching\n\n"
+      "| case | edges | axioms | default | OPTs | OPTH | s (kernels) | OPTs,M | OPTH,M | s (kernels) | "
+      "default / best |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+      options.samples);
   double longest = 0; // row
   for (const Case& c : cases) {
     if (!options.wants("searches", c.name) || !budget.allows(longest, c.name)) continue;
@@ -472,27 +695,26 @@ void searches(Session& session, const std::vector<Case>& cases, const Options& o
     double usual = std::numeric_limits<double>::quiet_NaN(), best = std::numeric_limits<double>::infinity();
     std::string columns;
     for (const bool matching : {false, true}) {
-      Kernels kernels(on.grammar, targetFor(session.device(), on.grammar.graph), matching);
-      Times times(*on.deriver, kernels, on.reference.result, c.name, options.repeat);
-      // Named schedules are measured once for both searches, and each search's seconds hold them.
       const auto begin = Clock::now();
-      for (const char* name : spawn::kScheduleNames) kernels.add(*spawn::namedSchedule(on.grammar.graph, name));
-      bool inTime = times.measureNew(budget);
-      if (!matching) usual = times[0];
-      const double namedSeconds = secondsSince(begin);
+      Kernels kernels(on.grammar, targetFor(session.device(), on.grammar.graph), matching);
+      std::array<std::vector<size_t>, 2> met; // random, heuristic
       for (const spawn::Search search : {spawn::Search::random, spawn::Search::heuristic}) {
-        const auto searchBegin = Clock::now();
         bool complete = false;
-        std::vector<size_t> met;
         for (const spawn::Schedule& s : searchSchedules(on.grammar.graph, search, options.samples, 1, complete))
-          met.push_back(kernels.add(s));
-        inTime = inTime && times.measureNew(budget);
+          met[search == spawn::Search::heuristic].push_back(kernels.add(s));
+      }
+      Times times(session, kernels, {on.place()}, c.name, options.repeat, kept);
+      times.measureNew(budget);
+      if (!matching) usual = times[0];
+      for (const std::vector<size_t>& search : met) {
         double fastest = std::numeric_limits<double>::infinity();
-        for (const size_t kernel : met) fastest = std::fmin(fastest, times[kernel]); // without those left out
-        columns += " " + shown(fastest) + " (" + shown(namedSeconds + secondsSince(searchBegin)) +
-                   (inTime ? ") |" : ", cut) |");
+        for (const size_t kernel : search) fastest = std::fmin(fastest, times[kernel]); // without those left out
+        columns += " " + shown(fastest) + " |";
         best = std::min(best, fastest);
       }
+      columns += " " + shown(secondsSince(begin)) + " (" +
+                 (times.measured() < kernels.size() ? std::to_string(times.measured()) + " of " : "") +
+                 std::to_string(kernels.size()) + ") |";
     }
     std::printf("| %s | %zu | %u | %s |%s %.2f |\n", c.name.c_str(), on.edges, on.count, shown(usual).c_str(),
                 columns.c_str(), usual / best);
@@ -502,7 +724,7 @@ void searches(Session& session, const std::vector<Case>& cases, const Options& o
 
 // ---------------------------------------------------------------- figure 4.7
 
-void partitions(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+void partitions(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
   const Case& c = caseOf(cases, "menger_sponge_3");
   const BakedGraph grammar = grammarOf(c);
   const spawn::Flow flow = spawn::makeFlow(grammar.graph);
@@ -523,36 +745,23 @@ void partitions(Session& session, const std::vector<Case>& cases, const Options&
               rows.size(), kernels.size());
   for (const uint32_t count : counts) std::printf(" %u axioms |", count);
   std::printf("\n|---|---|---|%s\n", counts.size() == 1 ? "---|" : "---|---|---|");
-  std::vector<std::unique_ptr<Deriver>> derivers;
-  std::vector<spawn::Derivation> references;
-  for (const uint32_t count : counts) {
-    const auto axioms = axiomsOf(c, count);
-    references.push_back(evaluate(grammar, axioms).result);
-    derivers.push_back(std::make_unique<Deriver>(session, grammar, axioms, DeriverOptions{}));
-  }
-  std::vector<std::vector<double>> times; // by kernel; kernels have the order in which partitions come to them
-  double perPart = 0;
+  const Places places(session, c, grammar, counts);
+  Times times(session, kernels, places.list(), c.name, options.repeat, kept);
+  times.measureNew(budget);
   for (size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].kernel == times.size()) {
-      if (!budget.allows(perPart, std::to_string(rows.size() - i) + " partitions")) break;
-      const auto begin = Clock::now();
-      const auto words = kernels.compile(times.size(), std::min(partSize(), kernels.size() - times.size()));
-      for (const Grammar& prepared : derivers[0]->prepare(words)) {
-        times.emplace_back();
-        for (size_t n = 0; n < counts.size(); ++n)
-          times.back().push_back(timeOf(*derivers[n], prepared, references[n], "partition", options.repeat));
-      }
-      perPart = secondsSince(begin);
+    if (std::isnan(times[rows[i].kernel])) {
+      budget.allows(std::numeric_limits<double>::infinity(), "partition " + std::to_string(i));
+      continue;
     }
     std::printf("| %zu | %zu | %zu |", i, rows[i].groups, rows[i].kernel);
-    for (const double time : times[rows[i].kernel]) std::printf(" %s |", shown(time).c_str());
+    for (size_t n = 0; n < counts.size(); ++n) std::printf(" %s |", shown(times(rows[i].kernel, n)).c_str());
     std::printf("\n");
   }
 }
 
 // ---------------------------------------------------------------- vertices, and the city
 
-void vertices(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+void vertices(Session& session, const std::vector<Case>& cases, const Options& options, Kept&, Budget& budget) {
   std::printf(
       "\n## Vertices of 32 bytes with 32-bit indices, default schedule (city: figure 4.1)\n\n"
       "| case | axioms | terminals | vertices | triangles | bytes | ms | GB/s | CPU evaluator ms | CPU / GPU |\n"
@@ -588,7 +797,7 @@ void vertices(Session& session, const std::vector<Case>& cases, const Options& o
 
 // ---------------------------------------------------------------- bounds
 
-void bounds(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+void bounds(Session& session, const std::vector<Case>& cases, const Options& options, Kept&, Budget& budget) {
   std::printf("\n## Boxes around each bucket (GpgpSpawnInfo::bounds), default schedule: ms, by turns\n\n"
               "| case | buckets | terminals | instances | with bounds | µs more | vertices | with bounds | µs more |\n"
               "|---|---|---|---|---|---|---|---|---|\n");
@@ -627,7 +836,7 @@ void bounds(Session& session, const std::vector<Case>& cases, const Options& opt
 
 // ---------------------------------------------------------------- curves
 
-void curves(Session& session, const std::vector<Case>& cases, const Options& options, Budget& budget) {
+void curves(Session& session, const std::vector<Case>& cases, const Options& options, Kept&, Budget& budget) {
   std::printf(
       "\n## Curves: default schedule, instances; records: that the axioms are shared out to\n\n"
       "| case | axioms | records | terminals | ms | ns a terminal | GB/s | scratch MB | output MB | CPU / GPU |\n"
@@ -643,7 +852,8 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
     const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, target), code[0]));
     const VkDeviceSize range = session.device().properties().limits.maxStorageBufferRange;
     uint32_t records = 1;
-    double before = 0, work = 0; // seconds of ten times fewer: all, and what grows with their number
+    // Seconds of ten times fewer: all, and what grows with their number; ten records have ten threads.
+    double before = 0, work = 0;
     for (uint32_t count = 10; count <= (options.quick ? 100u : 10000000u); count *= 10) {
       if (!budget.allows(before + 10 * work, c.name + " from " + std::to_string(count) + " axioms on")) break;
       const auto begin = Clock::now();
@@ -660,16 +870,18 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
         return report.instancesWritten == report.terminals;
       };
       while (!fits() && records < count)
-        records *= 10; // what fits one may be too much for the next: part(0) is typical
+        records *= 10;                            // what fits one may be too much for the next: part(0) is typical
+      std::vector<Reference> references(records); // of each record on one thread, beside each other
+      const auto beginEvaluating = Clock::now();
+      onAllProcessors(records, [&](size_t i) { references[i] = evaluate(grammar, part(static_cast<uint32_t>(i))); });
+      const double evaluating = secondsSince(beginEvaluating);
       double time = 0, cpu = 0, bytes = 0;
       uint64_t terminals = 0;
       for (uint32_t i = 0; i < records; ++i) {
-        const auto axioms = part(i);
-        deriver.setAxioms(axioms);
-        const Reference reference = evaluate(grammar, axioms);
-        time += timeOf(deriver, prepared, reference.result, c.name, options.repeat);
-        cpu += reference.milliseconds;
-        terminals += reference.result.terminals;
+        deriver.setAxioms(part(i));
+        time += timeOf(deriver, prepared, references[i].result, c.name, options.repeat);
+        cpu += references[i].milliseconds;
+        terminals += references[i].result.terminals;
         bytes += static_cast<double>(deriver.bytesWritten());
       }
       if (bytes < static_cast<double>(terminals * sizeof(GpgpInstance)))
@@ -682,47 +894,38 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
                   static_cast<double>(memory.services[GPGP_SERVICE_SPAWN].deviceBytes) * 1e-6, bytes * 1e-6,
                   cpu / time);
       before = secondsSince(begin);
-      work = 1e-3 * (cpu + time * (options.repeat + 1));
+      work = evaluating / std::max(1u, std::min(10u, std::thread::hardware_concurrency() / records)) +
+             1e-3 * time * (2 * options.repeat + 1);
     }
   }
 }
 
 const char* const kUsage =
-    "spawn_bench [--device D] [--seconds N] [--tuning N] [--repeat N] [--pairs N] [--samples N] [--share F] "
-    "[--exhaustive N] "
-    "[--quick]\n"
-    "            [TABLE[:ROW]]...\n"
-    "TABLE is one of\n"
-    "  schedules   table 4.2: every case of samples/grammars/cases.txt by the interpreter, the named schedules (DGN: "
-    "rules)\n"
-    "              and what `gpgp tune` finds, in how many seconds; that against the best named schedule, and against "
-    "the\n"
-    "              best of all partitions, where there are few, all with the device's usual numbers. What was tuned to "
-    "goes\n"
-    "              to standard error. Rows: the cases' names\n"
-    "  searches    its other columns: the best that random and heuristic searches of --samples N schedules find, with "
-    "and\n"
-    "              without matching. Rows: the cases' names\n"
-    "  partitions  figure 4.7: every valid partition of the Menger sponge at 1, 16 and 256 axioms. Those that differ "
-    "only\n"
-    "              in the edges into operators that multiply have the same kernel, which is measured once\n"
-    "  vertices    cases as vertices of 32 bytes and 32-bit indices. Rows: the cases' names; `city` is figure 4.1\n"
-    "  bounds      cases as instances and as vertices, each with and without a box around each bucket. Rows: the "
-    "cases' "
-    "names\n"
-    "  curves      time and memory from 10 to 10^7 axioms; what the device does not bind at once is derived in parts, "
-    "a\n"
-    "              record each. Rows: the cases' names\n"
-    "  heuristics  table 4.1: pairs of schedules, a heuristic's edges as it says against inverted, all others random, "
-    "with\n"
-    "              a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as "
-    "published).\n"
-    "              Each pair's times go to standard error as they come\n"
-    "ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.\n"
-    "--exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,\n"
-    "simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out "
-    "and\n"
-    "named below it; --tuning N (default 50) what tuning a case takes.\n";
+    R"(spawn_bench [--device D] [--seconds N] [--tuning N] [--repeat N] [--pairs N] [--samples N] [--share F]
+            [--exhaustive N] [--keep FILE] [--quick] [TABLE[:ROW]]...
+TABLE is one of
+  schedules   table 4.2: every case of samples/grammars/cases.txt by the interpreter, the named schedules (DGN: rules)
+              and what `gpgp tune` finds, in how many seconds; that against the best named schedule, and against the
+              best of all partitions, where there are few, all with the device's usual numbers. What was tuned to goes
+              to standard error. Rows: the cases' names
+  searches    its other columns: the best that random and heuristic searches of --samples N schedules find, with and
+              without matching. Rows: the cases' names
+  partitions  figure 4.7: every valid partition of the Menger sponge at 1, 16 and 256 axioms. Those that differ only
+              in the edges into operators that multiply have the same kernel, which is measured once
+  vertices    cases as vertices of 32 bytes and 32-bit indices. Rows: the cases' names; `city` is figure 4.1
+  bounds      cases as instances and as vertices, each with and without a box around each bucket. Rows: the cases'
+              names
+  curves      time and memory from 10 to 10^7 axioms; what the device does not bind at once is derived in parts, a
+              record each. Rows: the cases' names
+  heuristics  table 4.1: pairs of schedules, a heuristic's edges as it says against inverted, all others random, with
+              a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published)
+ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.
+--exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,
+simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out and
+named below it; --tuning N (default 50) what tuning a case takes. --keep FILE: times of single kernels are written
+there as they are measured, and those that it holds are not measured again, so that `schedules`, `searches`,
+`partitions` and `heuristics` go on where another run of the same program ended, on such a device.
+)";
 
 int run(bench::Arguments arguments) {
   std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16); // a run that is ended has printed every row that it had
@@ -748,6 +951,8 @@ int run(bench::Arguments arguments) {
       options.tuning = arguments.real(1, 1e9);
     else if (word == "--device")
       options.device = arguments.value();
+    else if (word == "--keep")
+      options.keep = arguments.value();
     else if (word == "--quick")
       options.quick = true;
     else if (std::find(known.begin(), known.end(), word.substr(0, word.find(':'))) != known.end())
@@ -767,7 +972,8 @@ int run(bench::Arguments arguments) {
   Session session(common);
   std::printf("Device %s, %u processors; medians of %u derivations by GPU timestamps.\n",
               session.device().name().c_str(), std::thread::hardware_concurrency(), options.repeat);
-  using Table = void (*)(Session&, const std::vector<Case>&, const Options&, Budget&);
+  using Table = void (*)(Session&, const std::vector<Case>&, const Options&, Kept&, Budget&);
+  Kept kept(options.keep, session.device().name());
   for (const auto& [name, table] : {std::pair<const char*, Table>{"schedules", schedules},
                                     {"vertices", vertices},
                                     {"partitions", partitions},
@@ -777,7 +983,7 @@ int run(bench::Arguments arguments) {
                                     {"searches", searches}}) {
     if (!options.wants(name)) continue;
     Budget budget(options.seconds);
-    table(session, cases, options, budget);
+    table(session, cases, options, kept, budget);
     budget.print(name);
   }
   return 0;

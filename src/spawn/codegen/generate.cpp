@@ -27,9 +27,11 @@ std::string number(uint32_t value) { return std::to_string(value) + "u"; }
 class Generator {
 public:
   Generator(const Graph& graph, const std::vector<bool>& waits, const Roots& roots)
-      : graph_(graph), waits_(waits), peers_(graph.nodes.size()), row_(graph.nodes.size()),
+      : graph_(graph), waits_(waits), stops_(waits), peers_(graph.nodes.size()), row_(graph.nodes.size()),
         group_(graph.nodes.size(), kNoGroup), table_(makeTable(graph, waits)) {
     for (uint32_t n = 0; n < graph.nodes.size(); ++n) peers_[n] = {n};
+    for (const Edge& edge : graph.edges)
+      if (edge.recursive && edge.target != kNoNode) stops_[edge.target] = true;
     if (!roots.empty()) match(roots);
   }
 
@@ -39,7 +41,8 @@ public:
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
       if (table_.family[indexOf(node)]) continue;
-      if (!multiplies(node) && (node.op < kOpCompSplit || node.division != UINT32_MAX)) continue;
+      const bool byWords = node.op >= kOpCompSplit && (node.division == UINT32_MAX || stops_[indexOf(node)]);
+      if (!multiplies(node) && !byWords) continue;
       operators |= 1u << node.op;
       if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= 1u << 30;
       if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= 1u << 31;
@@ -399,7 +402,9 @@ private:
     for (const Node& node : graph_.nodes)
       for (uint32_t e = 0; e < node.edgeCount; ++e) {
         const Edge& edge = edgeOf(node, e);
-        const bool brought = isChain(indexOf(node)) && !edge.recursive;
+        // What waits for an operator that could multiply is made its child by the graph's words.
+        const bool brought =
+            isChain(indexOf(node)) && !edge.recursive && !(node.op >= kOpCompSplit && stops_[indexOf(node)]);
         if (edge.target == kNoNode || table_.family[indexOf(node)]) continue;
         if (!brought || waits_[edge.target]) nodes[edge.target] = true;
       }
@@ -435,6 +440,7 @@ private:
 
   const Graph& graph_;
   const std::vector<bool>& waits_;
+  std::vector<bool> stops_;                  // by node: shapes wait there, those that come back to it included
   std::vector<std::vector<uint32_t>> peers_; // by node: in its place in matching groups, by row
   std::vector<uint32_t> row_, group_;        // by node
   std::vector<uint32_t> matched_;

@@ -265,7 +265,8 @@ private:
                     [](const Child& c) { return c.steps.size() == 1 && c.steps[0].words[3] == 0; }))
       return;
     for (const Child& child : children) {
-      if (child.end == kEndGoesOn) table_.entered[(child.target - kHeaderSize) / kNodeSize] = true;
+      if (child.end == kEndGoesOn || child.end == kEndWaits)
+        table_.entered[((child.target & ~kEdgeRecursive) - kHeaderSize) / kNodeSize] = true;
       for (const Step& step : child.steps) {
         table_.stepOperators |= 1u << (step.words[0] & kStepOperator);
         if (step.words[3]) table_.frameFlags |= table_.words[4 * step.words[3] + kFrameFlags];

@@ -8,7 +8,7 @@ namespace gpgp::spawn {
 struct KernelTable {
   std::vector<uint32_t> words;
   std::vector<bool> family;   ///< by node: its children are a family
-  std::vector<bool> entered;  ///< by node: children of families go on there
+  std::vector<bool> entered;  ///< by node: children of families go on there, at once or when they have waited
   uint32_t stepOperators = 0; ///< bits by kOp: of families' steps
   uint32_t frameFlags = 0;    ///< of the frames behind them, all together
 };
