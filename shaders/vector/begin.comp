@@ -45,12 +45,11 @@ void main() {
   }
 #endif
   for (uint i = lane; i < header.itemCount; i += lanes) {
-    const PlacementRecord p = placementOf(i, header.sourceCount);
+    const PlacementRecord p = placementOf(i);
     items[i] = placed(sourceOf(sourceIndex(p)), p);
     if (header.itemCount <= kManyItems) continue;
     const uint step = firstItemsStep(header.segmentCount);
-    const uint end =
-        i + 1 < header.itemCount ? placementOf(i + 1, header.sourceCount).firstSegment : header.segmentCount;
+    const uint end = i + 1 < header.itemCount ? placementOf(i + 1).firstSegment : header.segmentCount;
     for (uint k = (p.firstSegment + step - 1) / step; k * step < end; ++k) firstItems[k] = i;
   }
   const uint tables = header.sourceCount * 10 + header.itemCount * 3;

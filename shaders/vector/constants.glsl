@@ -1,4 +1,4 @@
-// What the host writes for a record: sources, 10 vec4 each, then placements, 3 each, then the tables of shapes.
+// What the host writes for a record: placements, 3 vec4 each, then sources, 10 each, then the tables of shapes.
 layout(set = 0, binding = 11, std430) readonly buffer From {
   CanvasHeader hostHeader;
   SlotRecord hostSlots[kSlots];
@@ -6,7 +6,7 @@ layout(set = 0, binding = 11, std430) readonly buffer From {
 };
 
 ItemRecord sourceOf(uint i) {
-  const uint at = i * 10;
+  const uint at = hostHeader.itemCount * 3 + i * 10;
   ItemRecord item;
   item.inverse = from[at];
   item.transform = from[at + 1];
@@ -31,8 +31,8 @@ ItemRecord sourceOf(uint i) {
   return item;
 }
 
-PlacementRecord placementOf(uint i, uint sources) { // of the record
-  const uint at = sources * 10 + i * 3;
+PlacementRecord placementOf(uint i) {
+  const uint at = i * 3;
   const vec4 place = from[at];
   const uvec4 tables = floatBitsToUint(from[at + 2]);
   PlacementRecord p;

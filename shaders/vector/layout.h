@@ -181,7 +181,7 @@ struct CanvasHeader {
   uint premultiplied;            // images whose colours are, as bits
   uint binShift;                 // a bin is a square of 2^binShift tiles
   uint rowLimit;
-  uint sourceCount; // placements lie behind as many
+  uint sourceCount;
   uint glyphs, glyphLimit;
   uint shapes, shapeLimit; // needed; room for as many
   uint sources, sourceLimit;

@@ -119,7 +119,7 @@ void main() {
   if (i >= header.itemCount) return;
   const Grid g = canvasGrid();
 #if ALONE
-  const PlacementRecord placement = placementOf(i, header.sourceCount);
+  const PlacementRecord placement = placementOf(i);
   const ItemRecord item = placed(items[sourceIndex(placement)], placement);
   const Place place = placeOf(g, item);
   const uvec4 box = place.tiles;

@@ -285,10 +285,16 @@ void Worker::edgeBarrier(const Record& record, bool entry) const {
                                        images.data());
 }
 
+std::byte* Worker::constants() const {
+  const auto slot = acquire();
+  return slot ? reinterpret_cast<std::byte*>(constants_.mapped()) + *slot * passes_.constantsBytes : nullptr;
+}
+
 Result<void> Worker::record(const Record& record) {
   const auto acquired = acquire();
   if (!acquired) return acquired.error();
   const uint32_t slot = *acquired;
+  std::byte* to = constants();
   take(slot, record.info->tag, true);
 
   const DeviceTable& vk = context.device.vk;
@@ -297,10 +303,9 @@ Result<void> Worker::record(const Record& record) {
   const VkDeviceSize scratchOffset = engineScratch_ ? record.info->scratch.offset : 0;
   char* report = reports_.mapped() + slot * reportStride_;
   std::memset(report + passes_.reportBytes, 0, 4);
-  char* constants = constants_.mapped() + slot * passes_.constantsBytes;
   for (const std::span<const std::byte> part : record.constants) {
-    if (!part.empty()) std::memcpy(constants, part.data(), part.size());
-    constants += part.size();
+    if (!part.empty() && part.data() != to) std::memcpy(to, part.data(), part.size());
+    to += part.size();
   }
   for (size_t i = 0; i < passes_.resources.size(); ++i)
     if (const auto data = record.bindings[i].hostData; !data.empty())

@@ -87,6 +87,9 @@ public:
   Worker* nextWorker() const { return nextWorker_; }
 
 protected:
+  /// Where the next record's constants will lie, for parts of Record::constants to be written in place: those are not
+  /// copied. Memory that is slow to read. Null where record() has no room.
+  std::byte* constants() const;
   Worker(Context& context, Kind kind, const GpgpWorkerCreateInfo& info, GpgpService service);
   /// Takes the finished description and makes what recording needs. Call once at the end of creation.
   struct DrawShaders {

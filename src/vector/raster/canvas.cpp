@@ -102,7 +102,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   core::Record r;
   r.commandBuffer = commandBuffer;
   r.info = &info.base;
-  Gather gather(context, budgets_, tables_, info, stampRoom());
+  // Placements, of which texts have many, are written where they will lie.
+  std::byte* const place = constants();
+  auto* const placements = reinterpret_cast<shader::PlacementRecord*>(
+      place ? place + sizeof(CanvasHeader) + sizeof(Gather::slots) : nullptr);
+  if (!placements) return record(r); // which says why
+  Gather gather(context, budgets_, tables_, placements, info, stampRoom());
   for (uint32_t i = 0; i < info.itemCount; ++i)
     if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
@@ -149,10 +154,14 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     header.premultiplied |= info.images[i].premultiplied ? 1u << i : 0;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
-  r.constants = {bytes(std::span(&header, 1), 1),        bytes(gather.slots, shader::kSlots),
-                 bytes(tables_.sources, gather.sources), bytes(tables_.placements, gather.placements),
-                 bytes(tables_.shapes, gather.shapes),   bytes(tables_.paints, gather.paints),
-                 bytes(tables_.stops, gather.stops),     bytes(tables_.clips, gather.clips),
+  r.constants = {bytes(std::span(&header, 1), 1),
+                 bytes(gather.slots, shader::kSlots),
+                 std::as_bytes(std::span(placements, gather.placements)),
+                 bytes(tables_.sources, gather.sources),
+                 bytes(tables_.shapes, gather.shapes),
+                 bytes(tables_.paints, gather.paints),
+                 bytes(tables_.stops, gather.stops),
+                 bytes(tables_.clips, gather.clips),
                  bytes(tables_.layers, gather.layers)};
 
   if (view) {

@@ -13,10 +13,9 @@ using shader::kShapeSlot;
 using shader::PlacementRecord;
 
 ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
-    : sources(budgets.items, memory), placements(size_t(budgets.items) + budgets.glyphs + budgets.shapes, memory),
-      shapes(budgets.shapes, memory), paints(budgets.shapes, memory), stops(size_t(budgets.shapes) * 2, memory),
-      clips(budgets.items, memory), layers(budgets.items, memory), clipStates(budgets.items, memory),
-      groupStates(budgets.items, memory) {}
+    : sources(budgets.items, memory), shapes(budgets.shapes, memory), paints(budgets.shapes, memory),
+      stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory), layers(budgets.items, memory),
+      clipStates(budgets.items, memory), groupStates(budgets.items, memory) {}
 
 core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
   char text[256];
@@ -103,7 +102,7 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   gradients = gradients || drawing.gradients();
   images = images || drawing.images();
   groups = groups || drawing.groups();
-  tables_.placements[placements++] = {
+  placed_[placements++] = {
       0, 0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, segments_, paths_, 0, drawing.pathTable()};
   segments_ += drawing.first(paths).segments;
   paths_ += paths;
@@ -179,20 +178,19 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
       pathsDropped_ += glyph->paths;
       continue;
     }
-    PlacementRecord& to = tables_.placements[placements++];
-    to.x = from.x;
-    to.y = from.y;
-    to.size = from.size;
-    to.source = source;
-    to.color = {c[0], c[1], c[2], c[3]};
-    to.firstSegment = segments_;
-    to.firstPath = paths_;
-    to.segments = glyph->first;
-    to.paths = glyph->first + glyph->segments * static_cast<uint32_t>(sizeof(shader::SegmentRecord) / 16);
     const uint32_t tiles =
         stampable && glyph->paths == 1 ? stampTiles(tables_.sources[sourceIndex], glyph->box, from, info_) : 0;
-    if (tiles && tiles <= stampRoom_ - stampEntries) {
-      to.source |= 1u << shader::kStampedBit;
+    const bool stamped = tiles && tiles <= stampRoom_ - stampEntries;
+    placed_[placements++] = {from.x,
+                             from.y,
+                             from.size,
+                             source | uint32_t(stamped) << shader::kStampedBit,
+                             {c[0], c[1], c[2], c[3]},
+                             segments_,
+                             paths_,
+                             glyph->first,
+                             glyph->first + glyph->segments * uint32_t(sizeof(shader::SegmentRecord) / 16)};
+    if (stamped) {
       stampEntries += tiles;
       ++stamps;
     } else {
@@ -204,24 +202,19 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
   return {};
 }
 
-/// Its placement, whose colour the caller sets; null where there is no room. Its tables lie before all others.
-PlacementRecord* Gather::addShape(const shader::ShapeRecord& shape, uint32_t source) {
+/// Whether there is room. Its tables lie before all others.
+bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color) {
   full_ = full_ || shapes == budgets_.shapes || paths_ == budgets_.patches || patches_ == budgets_.patches;
   ++shapesNeeded_;
-  if (full_) return nullptr;
+  if (full_) return false;
   tables_.shapes[shapes] = shape;
-  PlacementRecord& to = tables_.placements[placements++];
-  to.x = to.y = 0;
-  to.size = 1;
-  to.source = source | kShapeSlot << shader::kSlotBit;
-  to.firstSegment = segments_;
-  to.firstPath = paths_;
-  to.segments = 0;
-  to.paths = shapes++ * static_cast<uint32_t>(sizeof shape / 16);
+  placed_[placements++] = {0,         0,      1, source | kShapeSlot << shader::kSlotBit, color,
+                           segments_, paths_, 0, shapes * uint32_t(sizeof shape / 16)};
+  ++shapes;
   segments_ += shader::shapeSegments(shape);
   ++paths_;
   ++patches_;
-  return &to;
+  return true;
 }
 
 void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint32_t source) {
@@ -243,10 +236,7 @@ void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint
         record.paint = paints;
       }
     }
-    if (PlacementRecord* to = addShape(record, source))
-      to->color = shape.color;
-    else
-      ++pathsDropped_;
+    pathsDropped_ += !addShape(record, source, shape.color);
   }
 }
 
@@ -278,11 +268,10 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
     }
     const uint32_t source = addSource(placed, 0, 0, state);
     if (source == kNone) continue;
-    if (PlacementRecord* to = addShape(clip.shape, source)) {
-      to->color = {};
-      tables_.clips[clips++] = {to->firstPath, state.chain};
-      state.chain = clips;
-    }
+    const uint32_t path = paths_;
+    if (!addShape(clip.shape, source, {})) continue;
+    tables_.clips[clips++] = {path, state.chain};
+    state.chain = clips;
   }
   return {};
 }

@@ -37,7 +37,6 @@ struct ItemTables {
     float opacity; ///< of each thing in it
   };
   std::pmr::vector<shader::ItemRecord> sources;
-  std::pmr::vector<shader::PlacementRecord> placements;
   std::pmr::vector<shader::ShapeRecord> shapes;
   std::pmr::vector<shader::PaintRecord> paints;
   std::pmr::vector<shader::StopRecord> stops;
@@ -49,10 +48,11 @@ struct ItemTables {
 
 class Gather {
 public:
-  /// `stampRoom`: how many tile entries small glyphs may take for themselves (stamp.comp).
-  Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, const GpgpCanvasInfo& info,
-         uint32_t stampRoom)
-      : context_(context), budgets_(budgets), tables_(tables), info_(info), stampRoom_(stampRoom) {}
+  /// `placed`: room for one of each item, glyph and shape of the budgets; only written. `stampRoom`: how many tile
+  /// entries small glyphs may take for themselves (stamp.comp).
+  Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
+         const GpgpCanvasInfo& info, uint32_t stampRoom)
+      : context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info), stampRoom_(stampRoom) {}
 
   /// NOT_READY where a glyph or a list's drawing is not resident.
   core::Result<void> add(uint32_t index, const ItemAsset& asset);
@@ -76,7 +76,7 @@ private:
   core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own);
   void resolveGroups(const List& list, float opacity);
   void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
-  shader::PlacementRecord* addShape(const shader::ShapeRecord& shape, uint32_t source);
+  bool addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color);
   uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
   core::Result<uint32_t> bind(const core::Resident& asset);
   core::Error wrong(GpgpResult code, const char* format, ...) const __attribute__((format(printf, 3, 4)));
@@ -85,6 +85,7 @@ private:
   core::Context& context_;
   const ItemBudgets budgets_;
   ItemTables& tables_;
+  shader::PlacementRecord* const placed_;
   const GpgpCanvasInfo& info_;
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
   uint64_t patches_ = 0;
