@@ -44,6 +44,14 @@ struct GlyphTest : CanvasTest {
     EXPECT_EQ(gpgpCreateGlyphSet(context, &info, &set), GPGP_SUCCESS) << lastMessage();
     return set;
   }
+  /// A small canvas of many drawings.
+  GpgpCanvasCreateInfo canvasOf(uint32_t drawings) const {
+    GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+    info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+    info.maxWidth = info.maxHeight = 128;
+    info.maxDrawings = drawings;
+    return info;
+  }
   std::vector<uint32_t> add(GpgpAsset set, const std::vector<GpgpGlyph>& glyphs, GpgpResult expected = GPGP_SUCCESS) {
     std::vector<uint32_t> indices(glyphs.size());
     EXPECT_EQ(gpgpAddGlyphs(set, glyphs.data(), static_cast<uint32_t>(glyphs.size()), indices.data()), expected)
@@ -156,10 +164,7 @@ TEST_F(GlyphTest, ATextEqualsItsGlyphsAsDrawings) {
 
 /// Small glyphs take passes of their own on GPUs: alone, among others, cut by scissors and by the canvas.
 TEST_F(GlyphTest, SmallGlyphsAreDrawnAsDrawingsAre) {
-  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
-  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
-  info.maxWidth = info.maxHeight = 128;
-  info.maxDrawings = 160;
+  GpgpCanvasCreateInfo info = canvasOf(160);
   canvas = worker(gpgpCreateCanvas, info);
   const Shapes shapes(1, 3);
   const GpgpAsset set = makeSet();
@@ -239,11 +244,7 @@ TEST_F(GlyphTest, SmallGlyphsAreDrawnAsDrawingsAre) {
 
 /// More small glyphs over one tile than its list has room for, in an order that shows, translucent and opaque.
 TEST_F(GlyphTest, SmallGlyphsMayLieOnTopOfEachOther) {
-  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
-  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
-  info.maxWidth = info.maxHeight = 128;
-  info.maxDrawings = 256;
-  canvas = worker(gpgpCreateCanvas, info);
+  canvas = worker(gpgpCreateCanvas, canvasOf(256));
   const Shapes shapes(1, 3);
   const GpgpAsset set = makeSet();
   const auto indices = add(set, shapes.glyphs);
