@@ -421,6 +421,15 @@ A = SubDiv(X) {
             bakeWaiting(text, op, target), axioms(7, 12, 16, 10));
 }
 
+TEST_F(SpawnTest, KernelsStartAtRulesThatDiscard) {
+  auto all = axioms(7, 12, 16, 10);
+  for (size_t i = 0; i < all.size(); ++i) all[i].rule = i % 2;
+  check("discard",
+        bakeWaiting("axiom Box A; terminal T (1, 0); A = SubDiv(X) { -1: T | -1: B }; B = Discard();", shader::kOpIf,
+                    spawn::KernelTarget::software),
+        all);
+}
+
 TEST_F(SpawnTest, WorkgroupsOfASubgroupEqualTheEvaluator) {
   // One of these sizes is a subgroup's on most devices: such workgroups know it, and hand shapes on without memory. The
   // kernel without subgroups must not mind, and a workgroup may be a part of a subgroup.
