@@ -45,14 +45,9 @@ uint runContext(inout Shape s, bool arrives) {
     if ((graphWords[s.node + kNodeOperator] & kOperatorMask) == kOpCollider) {
       registerCollider(s);
     } else {
-      const uint runsIn = graphWords[s.node + kNodeArgument2];
-      if (runsIn > phase) {
+      if (graphWords[s.node + kNodeArgument2] > phase) {
         waitForPhase(s);
         end = kEndLater;
-        break;
-      }
-      if (runsIn < phase) { // was done: the queue for later phases still has it
-        end = kEndDiscarded;
         break;
       }
       const uint tag = graphWords[s.node + kNodeArgument];

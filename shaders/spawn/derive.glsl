@@ -61,9 +61,14 @@ Shape queuedAt(uint index) {
   const uint queue = round & 1;
 #endif
   const uint start = queue * kShapePlanes * record.maxShapes + index;
-  return unpackShape(queues[start], queues[start + record.maxShapes], queues[start + 2 * record.maxShapes],
-                     queues[start + 3 * record.maxShapes], queues[start + 4 * record.maxShapes],
-                     queues[start + 5 * record.maxShapes]);
+  Shape s = unpackShape(queues[start], queues[start + record.maxShapes], queues[start + 2 * record.maxShapes],
+                        queues[start + 3 * record.maxShapes], queues[start + 4 * record.maxShapes],
+                        queues[start + 5 * record.maxShapes]);
+#ifdef GPGP_COLLIDERS
+  // Of another phase: has made its child there, or will, as it stays in the queue.
+  if (queue == 2 && graphWords[s.node + kNodeArgument2] != phase) s.made = 1;
+#endif
+  return s;
 }
 /// Behind it is room for the batch's parents.
 const uint stackRoom = stackShapes - groupSize;

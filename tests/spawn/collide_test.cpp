@@ -381,6 +381,18 @@ TEST(CollideOnGpu, EqualsTheEvaluator) {
   }
 }
 
+TEST(CollideOnGpu, ShapesWaitThroughPhases) { // of which each must see them, and none but theirs may take them
+  SpawnDevice device({.maxColliders = 100});
+  const std::string text =
+      kHead + "Query = Replicate() { Collider(1) Hit | IfCollides(1) { Third | Discard() } | Third | Fourth };"
+              "Third = Collider(2) Replicate() { IfCollides(2) { Collider(3) Hit | Collider(3) Free } | Fourth };"
+              "Fourth = IfCollides(3) { Hit | Free };";
+  EXPECT_EQ(bake(text)[shader::kHeaderPhases], 4u);
+  const auto axioms = randomBoxes(20, 3, 10, 1, 4);
+  for (const bool kernel : {false, true})
+    expectSame(device, kernel ? bakeKernel(text) : bake(text), axioms, kernel ? "kernel" : "interpreter");
+}
+
 TEST(CollideOnGpu, OrderOfAxiomsDoesNotMatter) {
   SpawnDevice device({.maxColliders = 4096});
   const auto words = bake(kThreePhases);

@@ -397,8 +397,11 @@ private:
   /// By node: whether a shape can come there that no chain has brought.
   std::vector<bool> entered() const {
     std::vector<bool> nodes = table_.entered;
-    for (const Rule& rule : graph_.rules) nodes[rule.node] = true;
-    for (const Axiom& axiom : graph_.axioms) nodes[axiom.node] = true;
+    const auto starts = [&](uint32_t node) {
+      if (node != kNoNode) nodes[node] = true; // a rule may be Discard() alone
+    };
+    for (const Rule& rule : graph_.rules) starts(rule.node);
+    for (const Axiom& axiom : graph_.axioms) starts(axiom.node);
     for (const Node& node : graph_.nodes)
       for (uint32_t e = 0; e < node.edgeCount; ++e) {
         const Edge& edge = edgeOf(node, e);
