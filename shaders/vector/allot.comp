@@ -8,6 +8,7 @@
 #define SHARING coherent
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
+#include "lanes.glsl"
 #include "scan.glsl"
 #if !SOFTWARE
 layout(set = 0, binding = 15, std430) coherent buffer Entries { uvec4 entries[]; };
@@ -30,11 +31,11 @@ void main() {
     const uint i = first + lane;
     const bool own = i < total && words[i].stamped == 0;
     const uint count = own ? bitCount(words[i].edges) : 0;
-    const uint end = scan(lane, count);
-    if (lane == 63) start = atomicAdd(counters.entries, end);
+    uint sum;
+    const uint end = sumUpTo(lane, count, sum);
+    if (lane == 63) start = atomicAdd(counters.entries, sum);
     barrier();
     if (own) words[i].firstEntry = start + end - count;
-    const uint sum = scanTotal();
     const uint clear = max(start, counters.cleared);
     if (start <= header.entryLimit && sum <= header.entryLimit - start && start + sum > clear)
       clearEntries(lane, clear, start + sum - clear);

@@ -9,6 +9,7 @@
 #include "lists.glsl"
 #define SCAN_LANES 256
 layout(local_size_x = SCAN_LANES) in;
+#include "lanes.glsl"
 #include "scan.glsl"
 shared uint start;
 
@@ -19,7 +20,8 @@ void main() {
   const uint end = header.pathWords - min(lane * each, header.pathWords), begin = end - min(each, end);
   uint count = 0;
   for (uint word = begin; word < end; ++word) count += bitCount(bins[bits + word]);
-  const uint upTo = scan(lane, count), total = scanTotal();
+  uint total;
+  const uint upTo = sumUpTo(lane, count, total);
   if (lane == 0) start = atomicAdd(counters.listed, total);
   barrier();
   if (start > header.binListLimit || total > header.binListLimit - start) return;

@@ -25,6 +25,26 @@ uint scan(uint lane, uint value) {
 }
 uint scanTotal() { return sums[SCAN_LANES - 1]; } // of the last scan
 
+// The same, with the sum of all, for values whose sum does not wrap.
+uint sumUpTo(uint lane, uint value, out uint total) {
+#if SUBGROUPS
+  const uint upTo = sumOver(value);
+  if (lane() == kLanes - 1) sums[gl_SubgroupID] = upTo;
+  barrier();
+  uint before = 0;
+  total = 0;
+  for (uint i = 0; i < gl_NumSubgroups; ++i) {
+    if (i == gl_SubgroupID) before = total;
+    total += sums[i];
+  }
+  return before + upTo;
+#else
+  const uint upTo = scan(lane, value);
+  total = scanTotal();
+  return upTo;
+#endif
+}
+
 // In how many of the first lanes a condition holds that, once false, stays false.
 uint countLanes(uint lane, bool condition) {
   const uint own = sums[lane], total = sums[SCAN_LANES - 1];

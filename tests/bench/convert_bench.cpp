@@ -1,9 +1,9 @@
 // What it costs to convert paths to CPatches, on one thread.
 //
-// Drawings (strokes to fills included, parsing not), glyphs of a font, and made paths of 10^2 to 10^5 curves in one
-// path, whose cost per curve tells whether the conversion is linear. Baseline in the same process: cairo filling the
-// same paths into a picture of 1024 x 1024 pixels, which flattens and tessellates them each time. Prints medians and
-// ratios; asserts nothing about time.
+// Drawings (strokes to fills and the outlines that are uploaded included, parsing not), glyphs of a font, and made
+// paths of 10^2 to 10^5 curves in one path, whose cost per curve tells whether the conversion is linear. Baseline in
+// the same process: cairo filling the same paths into a picture of 1024 x 1024 pixels, which flattens and tessellates
+// them each time. Prints medians and ratios; asserts nothing about time.
 #include "arguments.h"
 #include "host/files.h"
 #include "measuring.h"
@@ -95,6 +95,7 @@ void row(const char* name, int rounds, std::span<const GpgpPath> paths, double e
                           std::fprintf(stderr, "%s: %s\n", name, drawing.error().text);
                           std::exit(1);
                         }
+                        vector::makeOutlines(*drawing, memory);
                         patches = drawing->patches.size();
                         curves = drawing->curves.size();
                       });

@@ -138,7 +138,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.binWords = header.pathWords + shader::kBinHead;
   header.binListLimit = binLists();
   header.wordLimit = maxWords_;
-  header.entryLimit = maxEntries_ - gather.stampEntries;
+  header.entryLimit = maxEntries_ - gather.stampEntries();
   header.rowLimit = maxRows();
   header.samples = info.samples ? info.samples : 16;
   header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
@@ -156,7 +156,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
   r.constants = {bytes(std::span(&header, 1), 1),
                  bytes(gather.slots, shader::kSlots),
-                 std::as_bytes(std::span(placements, gather.placements)),
+                 std::as_bytes(std::span(placements, gather.placements())),
                  bytes(tables_.sources, gather.sources),
                  bytes(tables_.shapes, gather.shapes),
                  bytes(tables_.paints, gather.paints),
@@ -172,8 +172,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
   // Small glyphs are stamped; records of nothing else, in one colour each, need little more than that.
   const uint32_t tiles = header.tilesX * header.tilesY;
-  const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.stampEntries) * 3;
-  const bool alone = gather.stamps > 0 && gather.stamps == gather.placements && !gradients && !rich &&
+  const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.stampEntries()) * 3;
+  const bool alone = gather.stamps() > 0 && gather.stamps() == gather.placements() && !gradients && !rich &&
                      shader::kFirstBin + tileLists <= binsEnd();
   const uint32_t form = projective ? 2 : several ? 1 : 0;
   const bool sixteen = header.samples == 16 && !software_;
@@ -182,7 +182,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   } else {
     r.conditions[kPlaced] = r.conditions[kOneDrawing + form] = true;
     r.conditions[sixteen && form == 0 ? kMarkSixteen : kMarkOne + form] = true;
-    if (gather.stamps > 0) r.conditions[several ? kStampDrawings : kStampOne] = true;
+    if (gather.stamps() > 0) r.conditions[several ? kStampDrawings : kStampOne] = true;
   }
   const bool one = !several && !software_; // software devices have one general shader
   const uint32_t kinds[] = {alone    ? kGlyphs

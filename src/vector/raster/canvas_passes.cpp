@@ -4,6 +4,7 @@
 #include "shaders/vector_allot.spv.h"
 #include "shaders/vector_allot_rows.spv.h"
 #include "shaders/vector_allot_software.spv.h"
+#include "shaders/vector_allot_subgroups.spv.h"
 #include "shaders/vector_aside_rich.spv.h"
 #include "shaders/vector_aside_rich_images.spv.h"
 #include "shaders/vector_aside_rich_one.spv.h"
@@ -55,6 +56,7 @@
 #include "shaders/vector_mark_projective.spv.h"
 #include "shaders/vector_mark_sixteen.spv.h"
 #include "shaders/vector_pack.spv.h"
+#include "shaders/vector_pack_subgroups.spv.h"
 #include "shaders/vector_place.spv.h"
 #include "shaders/vector_place_one.spv.h"
 #include "shaders/vector_place_projective.spv.h"
@@ -289,8 +291,9 @@ core::PassList Canvas::describe() const {
     core::Pass& pass = dispatch("mark, 16 samples", {"mark, 16 samples", vector_mark_sixteen}, markUses, kSegments);
     pass.condition = kMarkSixteen;
     pass.beside = true;
-    core::Pass& pack = list.dispatch("pack", list.add(core::ShaderDesc{"pack", vector_pack}),
-                                     {{params, read}, {masks, readWrite}, {counters, readWrite}}, kPacks);
+    core::Pass& pack = list.dispatch(
+        "pack", list.add(core::ShaderDesc{"pack", subgroups ? Spirv(vector_pack_subgroups) : vector_pack}),
+        {{params, read}, {masks, readWrite}, {counters, readWrite}}, kPacks);
     pack.condition = kPlaced;
     pack.beside = true;
   }
@@ -352,7 +355,7 @@ core::PassList Canvas::describe() const {
     fill({"clear entries again", vector_clear_entries}, false, kPlaced, false);
     for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, k > 0);
   } else {
-    allot({"allot", vector_allot}, kWords, false);
+    allot({"allot", subgroups ? Spirv(vector_allot_subgroups) : vector_allot}, kWords, false);
     const auto split = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass =
           dispatch(shader.name, shader, {{paths, read}, {words, read}, {masks, readWrite}, {counters, read}}, kSplits);

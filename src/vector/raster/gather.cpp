@@ -4,6 +4,7 @@
 #include "vector/shape.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdarg>
 
 namespace gpgp::vector {
@@ -83,8 +84,8 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
                  shader::kMaxLayerDepth);
   const uint32_t source = addSource(map, opacity, firstImage, clip);
   if (source == kNone && !full_) return {}; // covers nothing
-  const uint32_t room = budgets_.patches - static_cast<uint32_t>(patches_);
-  uint32_t paths = full_ ? 0 : std::min(drawing.paths(), budgets_.patches - paths_);
+  const uint32_t room = budgets_.patches - static_cast<uint32_t>(used_.patches);
+  uint32_t paths = full_ ? 0 : std::min(drawing.paths(), budgets_.patches - used_.paths);
   if (drawing.first(paths).patches > room) { // the largest number of first paths that fits
     uint32_t low = 0, high = paths;
     while (low + 1 < high) {
@@ -102,40 +103,76 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   gradients = gradients || drawing.gradients();
   images = images || drawing.images();
   groups = groups || drawing.groups();
-  placed_[placements++] = {
-      0, 0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, segments_, paths_, 0, drawing.pathTable()};
-  segments_ += drawing.first(paths).segments;
-  paths_ += paths;
-  patches_ += drawing.first(paths).patches;
+  placed_[used_.placements++] = {
+      0, 0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, used_.segments, used_.paths, 0, drawing.pathTable()};
+  used_.segments += drawing.first(paths).segments;
+  used_.paths += paths;
+  used_.patches += drawing.first(paths).patches;
   return {};
 }
 
-namespace {
-/// How many tiles a glyph may have edges in, and at least 1, if it is one for stamp.comp: small, and no scissor cuts
-/// it; otherwise 0.
-uint32_t stampTiles(const ItemRecord& source, const shader::vec4& box, const GpgpGlyphInstance& glyph,
-                    const GpgpCanvasInfo& info) {
-  const shader::vec4& t = source.transform;
-  const float halfX = 0.5f * glyph.size * (box.z - box.x), halfY = 0.5f * glyph.size * (box.w - box.y);
-  const float reachX = std::abs(t.x) * halfX + std::abs(t.z) * halfY,
-              reachY = std::abs(t.y) * halfX + std::abs(t.w) * halfY;
-  if (!(reachX >= 0 && reachX < 128 && reachY >= 0 && reachY < 128)) return 0;
-  const float x = glyph.x + 0.5f * glyph.size * (box.x + box.z), y = glyph.y + 0.5f * glyph.size * (box.y + box.w);
-  const float px = t.x * x + t.z * y + source.offsets.z, py = t.y * x + t.w * y + source.offsets.w;
-  if (!(std::abs(px) < 1e9f && std::abs(py) < 1e9f)) return 0;
-  // Room for the margins that shaders take: placeOf in stamp.comp, place.comp.
-  const auto tiles = [](float middle, float reach, uint32_t size) {
-    const float side = reach + 1.1f + 2e-5f * std::abs(middle), end = static_cast<float>(size);
-    const float low = std::clamp(middle - side, 0.0f, end), high = std::clamp(middle + side, 0.0f, end);
-    return static_cast<uint32_t>(high) / shader::kTileSize + 1 - static_cast<uint32_t>(low) / shader::kTileSize;
+/// Some glyphs of a text, in arrays that compilers take several of at a time.
+struct GlyphBlock {
+  static constexpr size_t kMost = 64;
+  const GpgpGlyphInstance* from[kMost];
+  const GlyphSet::Glyph* glyph[kMost];
+  float x[kMost], y[kMost], reachX[kMost], reachY[kMost]; ///< their boxes: middles, and from there to the sides
+  uint32_t tiles[kMost];                                  ///< see countTiles
+  size_t count = 0;
+
+  void add(const GpgpGlyphInstance& instance, const GlyphSet::Glyph& which) {
+    from[count] = &instance;
+    glyph[count] = &which;
+    x[count] = instance.x + instance.size * which.middle.x;
+    y[count] = instance.y + instance.size * which.middle.y;
+    reachX[count] = instance.size * which.reach.x;
+    reachY[count++] = instance.size * which.reach.y;
+  }
+  void countTiles(const ItemRecord& source, const GpgpCanvasInfo& info);
+};
+
+/// How many tiles each may have edges in, if it is one for stamp.comp: small, and no scissor cuts it; otherwise 0.
+void GlyphBlock::countTiles(const ItemRecord& source, const GpgpCanvasInfo& info) {
+  const shader::vec4 map = source.transform, scissor = source.scissor;
+  const float left = source.offsets.z, top = source.offsets.w;
+  const float width = static_cast<float>(info.width), height = static_cast<float>(info.height);
+  constexpr int kSide = int(shader::kTileSize), kPairs = int(shader::kStampPairs), kTiles = int(shader::kStampTiles);
+  // With room for the margins that shaders take: placeOf in stamp.comp, place.comp.
+  const auto across = [](float middle, float reach, float end) {
+    const float side = reach + 1.1f + 2e-5f * std::abs(middle), low = middle - side, high = middle + side;
+    const float inLow = low > 0 ? low : 0, inHigh = high > 0 ? high : 0;
+    const float first = inLow < end ? inLow : end, last = inHigh < end ? inHigh : end;
+    return static_cast<int>(last) / kSide + 1 - static_cast<int>(first) / kSide;
   };
-  const uint32_t pairs = static_cast<uint32_t>(reachX + 0.95f) + 2, rows = static_cast<uint32_t>(2 * reachY + 2.5f);
-  const uint32_t count = tiles(px, reachX, info.width) * tiles(py, reachY, info.height);
-  if (pairs * rows > shader::kStampPairs || count > shader::kStampTiles) return 0;
-  const shader::vec4& scissor = source.scissor;
-  const bool cut = !(px - reachX - 1 > scissor.x && px + reachX + 1 < scissor.z && py - reachY - 1 > scissor.y &&
-                     py + reachY + 1 < scissor.w);
-  return cut ? 0 : std::max(count, 1u);
+  constexpr float kFar = 128; // has too many pairs of pixels, as have infinity and NaN
+  for (size_t k = 0; k < count; ++k) {
+    const float px = map.x * x[k] + map.z * y[k] + left, py = map.y * x[k] + map.w * y[k] + top;
+    const float farX = std::abs(map.x) * reachX[k] + std::abs(map.z) * reachY[k],
+                farY = std::abs(map.y) * reachX[k] + std::abs(map.w) * reachY[k];
+    const float sideX = farX < kFar ? farX : kFar, sideY = farY < kFar ? farY : kFar;
+    const int pairs = static_cast<int>(sideX + 0.95f) + 2, rows = static_cast<int>(2 * sideY + 2.5f);
+    const int most = across(px, sideX, width) * across(py, sideY, height);
+    const bool small = (pairs * rows <= kPairs) & (most <= kTiles) & (std::abs(px) < 1e9f) & (std::abs(py) < 1e9f);
+    const bool whole = (px - sideX - 1 > scissor.x) & (px + sideX + 1 < scissor.z) & (py - sideY - 1 > scissor.y) &
+                       (py + sideY + 1 < scissor.w);
+    tiles[k] = static_cast<uint32_t>(small & whole ? most : 0);
+  }
+}
+
+namespace {
+/// Notes, without a branch, whether a colour is doubtful: as bits, numbers from 0 to 1 are in order.
+struct Doubt {
+  uint32_t bits[4] = {};
+  void see(const float (&color)[4]) {
+    for (int k = 0; k < 4; ++k) {
+      const uint32_t number = std::bit_cast<uint32_t>(color[k]);
+      bits[k] |= number | (std::bit_cast<uint32_t>(1.0f) - number);
+    }
+  }
+  bool any() const { return (bits[0] | bits[1] | bits[2] | bits[3]) >> 31 != 0; }
+};
+bool isColor(const float (&c)[4]) {
+  return c[0] >= 0 && c[0] <= 1 && c[1] >= 0 && c[1] <= 1 && c[2] >= 0 && c[2] <= 1 && c[3] >= 0 && c[3] <= 1;
 }
 } // namespace
 
@@ -144,76 +181,103 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
   const uint64_t frame = context_.current();
   constexpr float kMost = kMaxCoordinate;
   const bool hidden = source == kNone && !full_;
-  const uint32_t sourceIndex = source;
-  bool stampable = false;
+  const ItemRecord* stamping = nullptr; // the source, if small glyphs may be stamped
   if (source != kNone) {
     ItemRecord& item = tables_.sources[source];
     item.whole = 1;
     if (!placesGlyphs(item)) return {}; // covers nothing
-    stampable = stampRoom_ && item.perspective.w == 0;
+    if (stampRoom_ && item.perspective.w == 0) stamping = &item;
     const auto slot = bind(set);
     if (!slot) return slot.error();
     source |= *slot << shader::kSlotBit;
   }
-  for (size_t i = 0; i < glyphs.size(); ++i) {
-    const GpgpGlyphInstance& from = glyphs[i];
-    if (from.glyph == GPGP_GLYPH_NONE) continue;
-    const GlyphSet::Glyph* glyph = set.glyph(from.glyph);
-    if (!glyph)
-      return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu].glyph is not, or no longer, in the set: it was evicted",
-                   i);
-    if (!(std::abs(from.x) <= kMost && std::abs(from.y) <= kMost && from.size >= 0 && from.size <= kMost))
-      return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu]: x, y or size is out of range", i);
-    const float* c = from.color;
-    if (!(c[0] >= 0 && c[0] <= 1 && c[1] >= 0 && c[1] <= 1 && c[2] >= 0 && c[2] <= 1 && c[3] >= 0 && c[3] <= 1))
-      return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu].color is out of range", i);
-    if (!set.hasArrived(glyph->upload)) return core::makeError(GPGP_NOT_READY, "a glyph is not resident");
-    glyph->use(frame);
-    if (glyph->paths == 0 || hidden) continue;
-    gradients = gradients || glyph->gradients;
-    full_ = full_ || glyphsNeeded_ >= budgets_.glyphs || glyph->paths > budgets_.patches - paths_ ||
-            glyph->patches > budgets_.patches - patches_;
-    ++glyphsNeeded_;
-    if (full_) {
-      pathsDropped_ += glyph->paths;
-      continue;
+  GlyphBlock block;
+  for (size_t i = 0; i < glyphs.size();) {
+    const size_t first = i;
+    Doubt doubt;
+    for (block.count = 0; i < glyphs.size() && block.count < GlyphBlock::kMost; ++i) {
+      const GpgpGlyphInstance& from = glyphs[i];
+      if (from.glyph == GPGP_GLYPH_NONE) continue;
+      const GlyphSet::Glyph* glyph = set.glyph(from.glyph);
+      if (!glyph)
+        return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu].glyph is not, or no longer, in the set: it was evicted",
+                     i);
+      if (!(std::abs(from.x) <= kMost && std::abs(from.y) <= kMost && from.size >= 0 && from.size <= kMost))
+        return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu]: x, y or size is out of range", i);
+      doubt.see(from.color);
+      if (!set.hasArrived(glyph->upload)) return core::makeError(GPGP_NOT_READY, "a glyph is not resident");
+      glyph->use(frame);
+      if (glyph->paths > 0 && !hidden) block.add(from, *glyph);
     }
-    const uint32_t tiles =
-        stampable && glyph->paths == 1 ? stampTiles(tables_.sources[sourceIndex], glyph->box, from, info_) : 0;
-    const bool stamped = tiles && tiles <= stampRoom_ - stampEntries;
-    placed_[placements++] = {from.x,
-                             from.y,
-                             from.size,
-                             source | uint32_t(stamped) << shader::kStampedBit,
-                             {c[0], c[1], c[2], c[3]},
-                             segments_,
-                             paths_,
-                             glyph->first,
-                             glyph->first + glyph->segments * uint32_t(sizeof(shader::SegmentRecord) / 16)};
-    if (stamped) {
-      stampEntries += tiles;
-      ++stamps;
-    } else {
-      segments_ += glyph->segments;
-    }
-    paths_ += glyph->paths;
-    patches_ += glyph->patches;
+    for (size_t k = first; k < i && doubt.any(); ++k)
+      if (glyphs[k].glyph != GPGP_GLYPH_NONE && !isColor(glyphs[k].color))
+        return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu].color is out of range", k);
+    if (stamping)
+      block.countTiles(*stamping, info_);
+    else
+      std::fill_n(block.tiles, block.count, 0u);
+    addBlock(block, source);
   }
   return {};
 }
 
+void Gather::addBlock(const GlyphBlock& block, uint32_t source) {
+  Used used = used_; // a copy, which what is placed cannot be part of
+  for (size_t k = 0; k < block.count; ++k) {
+    const GpgpGlyphInstance& from = *block.from[k];
+    const GlyphSet::Glyph& glyph = *block.glyph[k];
+    if (glyph.gradients) gradients = true;
+    if (used.glyphs >= budgets_.glyphs || glyph.paths > budgets_.patches - used.paths ||
+        glyph.patches > budgets_.patches - used.patches)
+      full_ = true;
+    ++used.glyphs;
+    if (full_) {
+      pathsDropped_ += glyph.paths;
+      continue;
+    }
+    const uint32_t tiles = block.tiles[k];
+    const bool stamped = tiles && tiles <= stampRoom_ - used.stampEntries;
+    const float* c = from.color;
+    placed_[used.placements++] = {from.x,
+                                  from.y,
+                                  from.size,
+                                  source | uint32_t(stamped) << shader::kStampedBit,
+                                  {c[0], c[1], c[2], c[3]},
+                                  used.segments,
+                                  used.paths,
+                                  glyph.first,
+                                  glyph.first + glyph.segments * uint32_t(sizeof(shader::SegmentRecord) / 16)};
+    if (stamped) {
+      used.stampEntries += tiles;
+      ++used.stamps;
+    } else {
+      used.segments += glyph.segments;
+    }
+    used.paths += glyph.paths;
+    used.patches += glyph.patches;
+  }
+  used_ = used;
+}
+
 /// Whether there is room. Its tables lie before all others.
 bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color) {
-  full_ = full_ || shapes == budgets_.shapes || paths_ == budgets_.patches || patches_ == budgets_.patches;
+  full_ = full_ || shapes == budgets_.shapes || used_.paths == budgets_.patches || used_.patches == budgets_.patches;
   ++shapesNeeded_;
   if (full_) return false;
   tables_.shapes[shapes] = shape;
-  placed_[placements++] = {0,         0,      1, source | kShapeSlot << shader::kSlotBit, color,
-                           segments_, paths_, 0, shapes * uint32_t(sizeof shape / 16)};
+  placed_[used_.placements++] = {0,
+                                 0,
+                                 1,
+                                 source | kShapeSlot << shader::kSlotBit,
+                                 color,
+                                 used_.segments,
+                                 used_.paths,
+                                 0,
+                                 shapes * uint32_t(sizeof shape / 16)};
   ++shapes;
-  segments_ += shader::shapeSegments(shape);
-  ++paths_;
-  ++patches_;
+  used_.segments += shader::shapeSegments(shape);
+  ++used_.paths;
+  ++used_.patches;
   return true;
 }
 
@@ -268,7 +332,7 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
     }
     const uint32_t source = addSource(placed, 0, 0, state);
     if (source == kNone) continue;
-    const uint32_t path = paths_;
+    const uint32_t path = used_.paths;
     if (!addShape(clip.shape, source, {})) continue;
     tables_.clips[clips++] = {path, state.chain};
     state.chain = clips;
@@ -346,12 +410,12 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
 void Gather::finish(shader::CanvasHeader& header) {
   lists = lists || shapes;
   header.sourceCount = sources;
-  header.itemCount = placements;
-  header.segmentCount = segments_;
-  header.pathCount = paths_;
-  header.patchCount = static_cast<uint32_t>(patches_);
+  header.itemCount = used_.placements;
+  header.segmentCount = used_.segments;
+  header.pathCount = used_.paths;
+  header.patchCount = static_cast<uint32_t>(used_.patches);
   header.pathsDropped = pathsDropped_;
-  header.glyphs = glyphsNeeded_;
+  header.glyphs = used_.glyphs;
   header.glyphLimit = budgets_.glyphs;
   header.shapes = std::max({shapesNeeded_, paintsNeeded_, (stopsNeeded_ + 1) / 2});
   header.shapeLimit = budgets_.shapes;

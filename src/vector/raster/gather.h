@@ -46,6 +46,8 @@ struct ItemTables {
   std::pmr::vector<GroupState> groupStates;
 };
 
+struct GlyphBlock;
+
 class Gather {
 public:
   /// `placed`: room for one of each item, glyph and shape of the budgets; only written. `stampRoom`: how many tile
@@ -64,14 +66,17 @@ public:
   uint32_t slotCount = 0;
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
   bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
-  uint32_t stamps = 0, stampEntries = 0; ///< small glyphs, and what entries they take at most
-  uint32_t sources = 0, placements = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0; ///< used
+  uint32_t stamps() const { return used_.stamps; }             ///< small glyphs
+  uint32_t stampEntries() const { return used_.stampEntries; } ///< what they take at most
+  uint32_t placements() const { return used_.placements; }
+  uint32_t sources = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0; ///< used
 
 private:
   using Chain = ItemTables::ClipState;
   core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
                                 const Chain& clip);
   core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
+  void addBlock(const GlyphBlock& block, uint32_t source);
   core::Result<void> addList(const List& list, const GpgpCanvasItem& item, const Chain& own);
   core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own);
   void resolveGroups(const List& list, float opacity);
@@ -88,10 +93,13 @@ private:
   shader::PlacementRecord* const placed_;
   const GpgpCanvasInfo& info_;
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
-  uint64_t patches_ = 0;
-  uint32_t paths_ = 0, segments_ = 0;
+  struct Used {
+    uint64_t patches = 0;
+    uint32_t paths = 0, segments = 0, placements = 0, stamps = 0, stampEntries = 0;
+    uint32_t glyphs = 0; ///< those without room, too
+  } used_;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
-  uint32_t glyphsNeeded_ = 0, shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
+  uint32_t shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
   uint32_t pathsDropped_ = 0;
   const uint32_t stampRoom_;
   bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below

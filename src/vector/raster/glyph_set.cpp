@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 
 namespace gpgp::vector {
 namespace {
@@ -169,8 +170,14 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     // Gradients are counted from the buffer's beginning, as records of their size.
     uint32_t paint = divide(block + glyph.segments * kSegmentSize + glyph.paths * kPathSize, kPaintSize);
     uint32_t stop = (paint + countPaints(glyphs.drawing, firstPath, path)) * (kPaintSize / kStopSize);
+    if (glyph.paths == 1) {
+      const shader::vec4& box = tables.outlines.boxes[firstPath];
+      glyph.middle = {0.5f * (box.x + box.z), 0.5f * (box.y + box.w)};
+      glyph.reach = {0.5f * (box.z - box.x), 0.5f * (box.w - box.y)};
+    } else {
+      glyph.reach = shader::vec2(std::numeric_limits<float>::infinity());
+    }
     for (size_t i = firstPath; i < path; ++i, to += sizeof(BoxedPath)) {
-      glyph.box = tables.outlines.boxes[i];
       BoxedPath boxed{tables.outlines.boxes[i], glyphs.drawing.paths[i]};
       if (boxed.path.paint) {
         PaintRecord record = glyphs.drawing.paints[boxed.path.paint - 1];

@@ -17,8 +17,9 @@ public:
   struct Glyph {
     uint32_t first = 0, size = 0; ///< its block, in vec4
     uint32_t segments = 0, paths = 0, patches = 0;
-    shader::vec4 box = {};   ///< of its last path
-    uint32_t generation = 0; ///< of the glyph; of the next one where there is none
+    shader::vec2 middle = {}; ///< of the path that it is
+    shader::vec2 reach = {};  ///< from there to the sides of its box; infinite where it is not one path
+    uint32_t generation = 0;  ///< of the glyph; of the next one where there is none
     bool living = false, gradients = false;
     mutable uint64_t lastUsed = 0; ///< frame
     uint64_t upload = 0;           ///< its range's number; 0: nothing to upload

@@ -6,6 +6,8 @@
 // level segments: the outlines are then closed whatever the transform, and share their vertices bit for bit.
 #include "vector/raster/segments.h"
 
+#include "vector/geometry/order.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -55,21 +57,12 @@ SegmentRecord wholeCurve(const CurveRecord& c) {
 class PathOutline {
 public:
   PathOutline(const Drawing& drawing, Outlines& outlines)
-      : drawing_(drawing), segments_(outlines.segments), rises_(segments_.get_allocator()),
-        ends_(segments_.get_allocator()) {}
+      : drawing_(drawing), segments_(outlines.segments), memory_(segments_.get_allocator().resource()), rises_(memory_),
+        counts_(memory_), ends_(memory_), sorted_(memory_) {}
 
   void run(uint32_t path, size_t firstPatch, size_t lastPatch) {
-    rises_.clear();
     ends_.clear();
-    for (size_t i = firstPatch; i < lastPatch; ++i) {
-      const PatchRecord& p = drawing_.patches[i];
-      rises_.push_back({p.left, p.top, 1});
-      rises_.push_back({p.left, p.bottom, -1});
-      rises_.push_back({p.right, p.top, -1});
-      rises_.push_back({p.right, p.bottom, 1});
-    }
-    std::sort(rises_.begin(), rises_.end(),
-              [](const Rise& a, const Rise& b) { return a.curve != b.curve ? a.curve < b.curve : a.y < b.y; });
+    sortRises(std::span(drawing_.patches).subspan(firstPatch, lastPatch - firstPatch));
     const size_t first = segments_.size();
     int side = 0;
     for (size_t i = 0; i < rises_.size();) {
@@ -83,13 +76,46 @@ public:
     }
     close(path);
     // Neighbours in the table run through the same tiles.
-    std::sort(segments_.begin() + static_cast<std::ptrdiff_t>(first), segments_.end(),
-              [](const SegmentRecord& a, const SegmentRecord& b) {
-                return a.ends.y != b.ends.y ? a.ends.y < b.ends.y : a.ends.x < b.ends.x;
-              });
+    const auto own = std::span(segments_).subspan(first);
+    const auto order = orderBy(
+        static_cast<uint32_t>(own.size()), memory_, [&own](uint32_t i) { return own[i].ends.y; },
+        [&own](uint32_t i, uint32_t k) {
+          return own[i].ends.x != own[k].ends.x ? own[i].ends.x < own[k].ends.x : i < k;
+        });
+    sorted_.clear();
+    for (const uint32_t i : order) sorted_.push_back(own[i]);
+    std::copy(sorted_.begin(), sorted_.end(), own.begin());
   }
 
 private:
+  /// By curve, then height. A path's curves lie beside each other in the table.
+  void sortRises(std::span<const PatchRecord> patches) {
+    rises_.clear();
+    if (patches.empty()) return;
+    uint32_t low = UINT32_MAX, high = 0;
+    for (const PatchRecord& p : patches) {
+      low = std::min({low, p.left, p.right});
+      high = std::max({high, p.left, p.right});
+    }
+    counts_.assign(high - low + 2, 0);
+    for (const PatchRecord& p : patches) {
+      counts_[p.left - low + 1] += 2;
+      counts_[p.right - low + 1] += 2;
+    }
+    for (size_t i = 1; i < counts_.size(); ++i) counts_[i] += counts_[i - 1];
+    rises_.resize(patches.size() * 4);
+    const auto add = [&](uint32_t curve, float y, int side) { rises_[counts_[curve - low]++] = {curve, y, side}; };
+    for (const PatchRecord& p : patches) {
+      add(p.left, p.top, 1);
+      add(p.left, p.bottom, -1);
+      add(p.right, p.top, -1);
+      add(p.right, p.bottom, 1);
+    }
+    size_t first = 0;
+    for (size_t curve = 0; curve + 1 < counts_.size(); first = counts_[curve++]) // where the next one's begin, now
+      std::sort(rises_.begin() + static_cast<std::ptrdiff_t>(first), rises_.begin() + counts_[curve],
+                [](const Rise& a, const Rise& b) { return a.y < b.y; });
+  }
   void begin(uint32_t path, uint32_t curve, float y, int side) {
     SegmentRecord s = wholeCurve(drawing_.curves[curve]);
     s.path = path;
@@ -108,11 +134,14 @@ private:
   /// Joins what ends at a height in pairs. Ends that only rounding keeps apart, at least one of them inside its curve,
   /// become one instead.
   void close(uint32_t path) {
-    std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) {
-      return a.y != b.y ? a.y < b.y : a.x != b.x ? a.x < b.x : a.segment < b.segment;
-    });
-    for (size_t i = 0; i + 1 < ends_.size(); i += 2) {
-      const End &a = ends_[i], &b = ends_[i + 1];
+    const auto order = orderBy(
+        static_cast<uint32_t>(ends_.size()), memory_, [this](uint32_t i) { return ends_[i].y; },
+        [this](uint32_t i, uint32_t k) {
+          const End &a = ends_[i], &b = ends_[k];
+          return a.x != b.x ? a.x < b.x : a.segment < b.segment;
+        });
+    for (size_t i = 0; i + 1 < order.size(); i += 2) {
+      const End &a = ends_[order[i]], &b = ends_[order[i + 1]];
       if (a.x == b.x) continue;
       if (b.x - a.x <= 1e-6f * (std::abs(a.x) + std::abs(a.y)) && (free(a) || free(b))) {
         const End &moved = free(a) ? a : b, &kept = free(a) ? b : a;
@@ -140,8 +169,11 @@ private:
 
   const Drawing& drawing_;
   std::pmr::vector<SegmentRecord>& segments_;
+  std::pmr::memory_resource* memory_;
   std::pmr::vector<Rise> rises_;
+  std::pmr::vector<uint32_t> counts_;
   std::pmr::vector<End> ends_;
+  std::pmr::vector<SegmentRecord> sorted_;
 };
 
 } // namespace
@@ -152,6 +184,7 @@ Outlines outlinesOf(const Drawing& drawing, const Outlines* base, std::span<cons
                     std::pmr::memory_resource* memory) {
   Outlines outlines(memory);
   PathOutline outline(drawing, outlines);
+  outlines.segments.reserve(drawing.patches.size());
   outlines.boxes.reserve(drawing.paths.size());
   outlines.ends.reserve(drawing.paths.size());
   size_t patch = 0;
@@ -166,13 +199,14 @@ Outlines outlinesOf(const Drawing& drawing, const Outlines* base, std::span<cons
       outlines.ends.push_back(static_cast<uint32_t>(outlines.segments.size()));
       continue;
     }
-    vec4 box{3e38f, 3e38f, -3e38f, -3e38f};
+    float left = 3e38f, top = 3e38f, right = -3e38f, bottom = -3e38f;
     for (; patch < drawing.patches.size() && drawing.patches[patch].path == path; ++patch) {
       const PatchRecord& p = drawing.patches[patch];
-      box = {std::min(box.x, p.x0), std::min(box.y, p.top), std::max(box.z, p.x1), std::max(box.w, p.bottom)};
+      left = std::min(left, p.x0), top = std::min(top, p.top);
+      right = std::max(right, p.x1), bottom = std::max(bottom, p.bottom);
     }
     outline.run(path, first, patch);
-    outlines.boxes.push_back(box);
+    outlines.boxes.push_back({left, top, right, bottom});
     outlines.ends.push_back(static_cast<uint32_t>(outlines.segments.size()));
   }
   return outlines;
