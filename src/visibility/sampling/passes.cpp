@@ -80,7 +80,7 @@ core::PassList describePasses(const Budgets& budgets, const core::Device& device
   core::PassList list(memory);
   addResources(list, budgets);
   addStandard(list, conservative);
-  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, budgets, device);
+  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, device);
   if (conservative) addConservative(list, budgets);
   if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT) addNearby(list);
   addOutputs(list);
