@@ -20,7 +20,7 @@ void main() {
   uint words = (params.triangleCount + 31u) / 32u;
   uint tiles = (params.width + 7u) / 8u * ((params.height + 7u) / 8u) * params.cameraCount;
   uint limits = params.method == kExact ? tiles * 64u : 0u;
-  uint tileWords = params.slotCapacity * 2u; // of exact sampling, two each: no candidates
+  uint tileWords = params.slotCapacity * 2u; // of exact sampling: no candidates
   bool perTriangle = params.hasSizes != 0u || params.hasExtents != 0u;
   uint count = max(max(pixels, limits), max(words, perTriangle ? params.triangleCount : 0u));
   uint stride = gl_NumWorkGroups.x * 256u;
@@ -30,7 +30,7 @@ void main() {
       ids[i] = kNoTriangle;
     }
     if (i < limits) slots[i] = kFarthest;
-    if (i < limits / 32u) slots[tileWords + i] = 0u;
+    if (i < limits / 64u * kTileWords) slots[tileWords + i] = 0u;
     if (i < words && params.accumulate == 0u) bits[i] = 0u;
     if (i < params.triangleCount && params.accumulate == 0u && params.hasSizes != 0u) sizes[i] = 0u;
     if (i < params.triangleCount && params.accumulate == 0u && params.hasExtents != 0u) {

@@ -26,6 +26,13 @@ bool mayShow(ScreenTriangle t, ivec4 bounds, uint camera) {
   return false;
 }
 
+const uint kMostTiles = 4u; // of at most 8 x 8 pixels
+
+/// One of a triangle's tiles, of which one or two lie beside each other.
+uint tileAmong(uvec3 tiles, uint i) {
+  return tiles.x + (tiles.y == 1u ? i * tileColumns() : (i >> 1u) * tileColumns() + (i & 1u));
+}
+
 void main() {
   uint count = counters.onScreenCount;
   for (uint first = gl_WorkGroupID.x * 64u; first < count; first += gl_NumWorkGroups.x * 64u) {
@@ -65,9 +72,12 @@ void main() {
       pair += firstPair;
       uint room = maxTilePairs() - min(pair, maxTilePairs());
       if (candidate < params.maxCandidates && tiles.z <= room) {
+        uint places[kMostTiles]; // all counted first: what that says is waited for once, after the candidate is written
+        for (uint i = 0u; i < kMostTiles; ++i)
+          if (i < tiles.z) places[i] = countIn(tileAmong(tiles, i), seen);
         writeCandidate(candidate, makeCandidate(t, id));
-        for (uint i = 0u; i < tiles.z; ++i)
-          enter(candidate, seen, tiles.x + i / tiles.y * tileColumns() + i % tiles.y, pair + i);
+        for (uint i = 0u; i < kMostTiles; ++i)
+          if (i < tiles.z) enter(candidate, seen, tileAmong(tiles, i), places[i], pair + i);
       } else {
         show(id);
         for (uint i = 0u; i < min(tiles.z, room); ++i) pairs[(pair + i) * kTilePairWords] = kNoTile;
