@@ -38,15 +38,12 @@ uvec2 inFront(ScreenTriangle t, uvec2 touched, ivec2 corner) {
   return touched;
 }
 
-/// Enters a candidate in no more than these pixels: where it is in front of their limits; counts it there.
-uvec2 enterIn(uint i, uvec2 within, ivec2 corner, Grid grid) {
-  ScreenTriangle t = triangleOf(readCandidate(pairs[placedAt(i)]));
-  uvec2 mask = inFront(t, touchedPixels(t, pixelBounds(t.p0, t.p1, t.p2, grid), corner) & within, corner);
+/// Keeps the pixels that a candidate is entered in, for the invocation itself, and counts it there.
+void keep(uint i, uvec2 mask) {
   pairs[i * 2u] = mask.x;
   pairs[i * 2u + 1u] = mask.y;
   for (uint left = mask.x; left != 0u; left &= left - 1u) atomicAdd(lengths[findLSB(left)], 1u);
   for (uint left = mask.y; left != 0u; left &= left - 1u) atomicAdd(lengths[32 + findLSB(left)], 1u);
-  return mask;
 }
 
 /// Sums up to each pixel.
@@ -77,14 +74,28 @@ void enterTile(uint tile, uint begin, uint middle, uint end) {
     else atomicOr(limited.y, 1u << (lane - 32u));
   }
   barrier();
-  for (uint i = begin + lane; i < middle; i += 64u) {
-    uvec2 mask = enterIn(i, uvec2(0xffffffffu), corner, grid);
-    if ((mask.x & ~unseen.x) != 0u) atomicOr(unseen.x, mask.x);
-    if ((mask.y & ~unseen.y) != 0u) atomicOr(unseen.y, mask.y);
+  for (uint i = begin + lane; i < end; i += 64u) {
+    ScreenTriangle t = triangleOf(readCandidate(pairs[placedAt(i)]));
+    uvec2 mask = touchedPixels(t, pixelBounds(t.p0, t.p1, t.p2, grid), corner);
+    if (i < middle) {
+      mask = inFront(t, mask, corner);
+      if ((mask.x & ~unseen.x) != 0u) atomicOr(unseen.x, mask.x);
+      if ((mask.y & ~unseen.y) != 0u) atomicOr(unseen.y, mask.y);
+      keep(i, mask);
+    } else {
+      pairs[i * 2u] = mask.x;
+      pairs[i * 2u + 1u] = mask.y;
+    }
   }
   barrier();
   if ((unseen.x | unseen.y) == 0u) return;
-  for (uint i = middle + lane; i < end; i += 64u) enterIn(i, unseen, corner, grid);
+  for (uint i = begin + lane; i < end; i += 64u) {
+    if (i < middle) continue;
+    uvec2 mask = uvec2(pairs[i * 2u], pairs[i * 2u + 1u]) & unseen;
+    uvec2 asked = mask & limited;
+    if ((asked.x | asked.y) != 0u) mask = inFront(triangleOf(readCandidate(pairs[placedAt(i)])), mask, corner);
+    keep(i, mask);
+  }
   barrier();
   uint n = lengths[lane];
   uvec3 own = uvec3(n, n != 0u && n <= kBatch ? 1u : 0u, n > kBatch ? 1u : 0u);
