@@ -21,8 +21,8 @@ void main() {
   }
   for (uint begin = gl_WorkGroupID.x * 256u; begin < tileCount(); begin += gl_NumWorkGroups.x * 256u) {
     uint tile = begin + lane;
-    bool open = tile < tileCount() && slots[tileWord(tile) + 1u] != 0u;
-    uint n = open ? slots[tileWord(tile)] : 0u;
+    bool open = tile < tileCount() && slots[tileWord(tile)] != 0u;
+    uint n = open ? slots[tileWord(tile)] + slots[tileWord(tile) + 1u] : 0u;
     sums[lane] = n;
     barrier();
     for (uint step = 1u; step < 256u; step *= 2u) {
@@ -33,7 +33,7 @@ void main() {
     }
     if (lane == 0u) first = atomicAdd(counters.placedCount, sums[255]);
     barrier();
-    if (tile < tileCount()) slots[tileWord(tile) + 1u] = open ? first + sums[lane] - n : kNoTile;
+    if (tile < tileCount()) slots[tileWord(tile) + 2u] = open ? first + sums[lane] - n : kNoTile;
     barrier();
   }
 }

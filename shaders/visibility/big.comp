@@ -46,7 +46,7 @@ void main() {
       barrier();
       pair += firstPair;
       if (touched) {
-        if (pair < maxTilePairs()) enter(index, seen, tile, pair);
+        if (pair < maxTilePairs()) enter(index, seen, tile, countIn(tile, seen), pair);
         else show(c.id);
       }
       barrier();

@@ -294,12 +294,15 @@ GPGP_FN int roundedColumn(float v) {
   return int(floatBitsToUint(sum) - 0x48000000u);
 }
 
-/// Which samples of a row an outline covers.
-GPGP_FN uvec2 samplesIn(Outline o, int row) {
+/// Which columns of a row an outline covers: from x to before y.
+GPGP_FN ivec2 spanIn(Outline o, int row) {
   vec2 columns = columnsOf(o, float(row));
   bool any = uint(row - o.rowBegin) < uint(o.rowEnd - o.rowBegin);
-  int end = any ? roundedColumn(columns.y) : 0;
-  return bitRange(roundedColumn(columns.x), end);
+  return ivec2(roundedColumn(columns.x), any ? roundedColumn(columns.y) : 0);
+}
+GPGP_FN uvec2 samplesIn(Outline o, int row) {
+  ivec2 span = spanIn(o, row);
+  return bitRange(span.x, span.y);
 }
 
 /// The same, with all samples that are at most so many columns and rows away, corners cut off.

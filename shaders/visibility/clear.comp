@@ -1,4 +1,4 @@
-// Empties what the other passes accumulate into: depth, ids, limits, visible bits, counters.
+// Empties what the other passes accumulate into: depth, ids, limits and counts of tiles, visible bits, counters.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -20,6 +20,7 @@ void main() {
   uint words = (params.triangleCount + 31u) / 32u;
   uint tiles = (params.width + 7u) / 8u * ((params.height + 7u) / 8u) * params.cameraCount;
   uint limits = params.method == kExact ? tiles * 64u : 0u;
+  uint tileWords = params.slotCapacity * 2u; // of exact sampling: no candidates
   bool perTriangle = params.hasSizes != 0u || params.hasExtents != 0u;
   uint count = max(max(pixels, limits), max(words, perTriangle ? params.triangleCount : 0u));
   uint stride = gl_NumWorkGroups.x * 256u;
@@ -29,6 +30,7 @@ void main() {
       ids[i] = kNoTriangle;
     }
     if (i < limits) slots[i] = kFarthest;
+    if (i < limits / 64u * kTileWords) slots[tileWords + i] = 0u;
     if (i < words && params.accumulate == 0u) bits[i] = 0u;
     if (i < params.triangleCount && params.accumulate == 0u && params.hasSizes != 0u) sizes[i] = 0u;
     if (i < params.triangleCount && params.accumulate == 0u && params.hasExtents != 0u) {

@@ -38,6 +38,14 @@ uvec2 inFront(ScreenTriangle t, uvec2 touched, ivec2 corner) {
   return touched;
 }
 
+/// Keeps the pixels that a candidate is entered in, for the invocation itself, and counts it there.
+void keep(uint i, uvec2 mask) {
+  pairs[i * 2u] = mask.x;
+  pairs[i * 2u + 1u] = mask.y;
+  for (uint left = mask.x; left != 0u; left &= left - 1u) atomicAdd(lengths[findLSB(left)], 1u);
+  for (uint left = mask.y; left != 0u; left &= left - 1u) atomicAdd(lengths[32 + findLSB(left)], 1u);
+}
+
 /// Sums up to each pixel.
 void sumUp() {
   uint lane = gl_LocalInvocationIndex;
@@ -49,7 +57,7 @@ void sumUp() {
   }
 }
 
-void enterTile(uint tile, uint begin, uint end) {
+void enterTile(uint tile, uint begin, uint middle, uint end) {
   uint lane = gl_LocalInvocationIndex;
   ivec2 corner = cornerOf(tile);
   Grid grid = gridOf(tile / (tileColumns() * tileRows()));
@@ -67,30 +75,26 @@ void enterTile(uint tile, uint begin, uint end) {
   }
   barrier();
   for (uint i = begin + lane; i < end; i += 64u) {
-    uint placed = pairs[placedAt(i)];
-    ScreenTriangle t = triangleOf(readCandidate(placed & ~kIsSeen));
+    ScreenTriangle t = triangleOf(readCandidate(pairs[placedAt(i)]));
     uvec2 mask = touchedPixels(t, pixelBounds(t.p0, t.p1, t.p2, grid), corner);
-    if ((placed & kIsSeen) == 0u) {
+    if (i < middle) {
       mask = inFront(t, mask, corner);
       if ((mask.x & ~unseen.x) != 0u) atomicOr(unseen.x, mask.x);
       if ((mask.y & ~unseen.y) != 0u) atomicOr(unseen.y, mask.y);
+      keep(i, mask);
+    } else {
+      pairs[i * 2u] = mask.x;
+      pairs[i * 2u + 1u] = mask.y;
     }
-    pairs[i * 2u] = mask.x;
-    pairs[i * 2u + 1u] = mask.y;
   }
   barrier();
   if ((unseen.x | unseen.y) == 0u) return;
   for (uint i = begin + lane; i < end; i += 64u) {
-    uint placed = pairs[placedAt(i)];
-    uvec2 mask = uvec2(pairs[i * 2u], pairs[i * 2u + 1u]);
-    if ((placed & kIsSeen) != 0u) {
-      mask &= unseen;
-      if ((mask.x | mask.y) != 0u) mask = inFront(triangleOf(readCandidate(placed & ~kIsSeen)), mask, corner);
-      pairs[i * 2u] = mask.x;
-      pairs[i * 2u + 1u] = mask.y;
-    }
-    for (; mask.x != 0u; mask.x &= mask.x - 1u) atomicAdd(lengths[findLSB(mask.x)], 1u);
-    for (; mask.y != 0u; mask.y &= mask.y - 1u) atomicAdd(lengths[32 + findLSB(mask.y)], 1u);
+    if (i < middle) continue;
+    uvec2 mask = uvec2(pairs[i * 2u], pairs[i * 2u + 1u]) & unseen;
+    uvec2 asked = mask & limited;
+    if ((asked.x | asked.y) != 0u) mask = inFront(triangleOf(readCandidate(pairs[placedAt(i)])), mask, corner);
+    keep(i, mask);
   }
   barrier();
   uint n = lengths[lane];
@@ -119,13 +123,12 @@ void enterTile(uint tile, uint begin, uint end) {
   }
   barrier();
   for (uint i = begin + lane; i < end; i += 64u) {
-    uint placed = pairs[placedAt(i)];
+    uint candidate = pairs[placedAt(i)];
     uvec2 mask = uvec2(pairs[i * 2u], pairs[i * 2u + 1u]);
-    uint candidate = placed & ~kIsSeen;
     if (fits) {
       for (; mask.x != 0u; mask.x &= mask.x - 1u) entries[atomicAdd(ends[findLSB(mask.x)], 1u)] = candidate;
       for (; mask.y != 0u; mask.y &= mask.y - 1u) entries[atomicAdd(ends[32 + findLSB(mask.y)], 1u)] = candidate;
-    } else if (placed == candidate && (mask.x | mask.y) != 0u) { // what finds no room counts as visible
+    } else if (i < middle && (mask.x | mask.y) != 0u) { // what finds no room counts as visible
       uint id = candidateId(candidate);
       atomicOr(bits[id >> 5u], 1u << (id & 31u));
       atomicAdd(counters.unresolved, 1u);
@@ -135,8 +138,9 @@ void enterTile(uint tile, uint begin, uint end) {
 
 void main() {
   for (uint tile = gl_WorkGroupID.x; tile < tileCount(); tile += gl_NumWorkGroups.x) {
-    uint begin = slots[tileWord(tile) + 1u];
-    if (begin != kNoTile) enterTile(tile, begin, begin + slots[tileWord(tile)]);
+    uint begin = slots[tileWord(tile) + 2u];
+    uint middle = begin + slots[tileWord(tile)];
+    if (begin != kNoTile) enterTile(tile, begin, middle, middle + slots[tileWord(tile) + 1u]);
     barrier();
   }
 }

@@ -112,15 +112,19 @@ GPGP_FN Crossing crossingOf(Facet a, Facet b, bool wins) {
   return c;
 }
 
-/// Which samples of a row an outline covers on a crossing's side.
-GPGP_FN uvec2 samplesAhead(Outline o, Crossing c, int row) {
+/// Which columns of a row an outline covers on a crossing's side.
+GPGP_FN ivec2 spanAhead(Outline o, Crossing c, int row) {
   vec2 columns = columnsOf(o, float(row));
   GPGP_PRECISE float at = c.start + float(row) * c.step;
   bool any = row >= o.rowBegin && row < o.rowEnd && (c.side != 0 || at < 0.0f);
   float held = clamp(at, 0.0f, 1.0f);
   if (c.side < 0) columns.y = min(columns.y, held);
   if (c.side > 0) columns.x = max(columns.x, held);
-  return bitRange(roundedColumn(columns.x), any ? roundedColumn(columns.y) : 0);
+  return ivec2(roundedColumn(columns.x), any ? roundedColumn(columns.y) : 0);
+}
+GPGP_FN uvec2 samplesAhead(Outline o, Crossing c, int row) {
+  ivec2 span = spanAhead(o, c, row);
+  return bitRange(span.x, span.y);
 }
 
 GPGP_SHADER_END

@@ -197,7 +197,8 @@ struct Surface {
   float normalZ;
 };
 GPGP_CONST uint kPairBytes = 8u;
-GPGP_CONST uint kTilePairWords = 3u;        ///< tile, candidate, the how manieth of its tile
+GPGP_CONST uint kTileWords = 3u;
+GPGP_CONST uint kTilePairWords = 3u;        ///< tile, candidate, the how manieth of its tile and kind, seen or not
 GPGP_CONST uint kNoTile = 0xffffffffu;      ///< of a pair that found no room
 GPGP_CONST uint kIsSeen = 0x80000000u;      ///< beside a candidate's number in its pairs: at some pixel's centre
 GPGP_CONST uint kQuarters = 4u;             ///< of a pixel, each of 4 x 4 samples

@@ -2,13 +2,13 @@
 // numbered in tiles of 8 x 8 of one camera, so that a tile's lists lie together. Needs `params`.
 #include "visibility/candidate.h"
 
-/// Limits (then where lists end), the lists' lengths, two words a tile (how many candidates reach over it; whether some
-/// are not seen yet, then where they lie), the big candidates.
+/// Limits (then where lists end), the lists' lengths, three words a tile (how many candidates reach over it that are
+/// not seen yet, and that are; where they lie, in this order), the big candidates.
 layout(std430, set = 0, binding = kBindSlots) buffer SlotBuffer { uint slots[]; };
 
 uint lengthAt(uint slot) { return params.slotCapacity + slot; }
-uint tileWord(uint tile) { return params.slotCapacity * 2u + tile * 2u; }
-uint bigAt(uint entry) { return params.slotCapacity * 2u + params.slotCapacity / 32u + entry * 2u; }
+uint tileWord(uint tile) { return params.slotCapacity * 2u + tile * kTileWords; }
+uint bigAt(uint entry) { return tileWord(params.slotCapacity / 64u) + entry * 2u; }
 
 /// Of candidates and tiles there is room for half as many pairs as of candidates and pixels.
 uint maxTilePairs() { return params.maxPairs / 2u; }

@@ -1,6 +1,6 @@
-// One invocation a triangle on the screen: makes candidates of those that are seen at a pixel's centre, which may hide
-// others, and of those that may be seen elsewhere, and enters them in the tiles that they reach over. Those that are
-// clipped or reach over more than 8 x 8 pixels are queued.
+// One invocation a triangle of at most 8 x 8 pixels on the screen: makes candidates of those that are seen at a pixel's
+// centre, which may hide others, and of those that may be seen elsewhere, and enters them in the tiles that they reach
+// over.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
@@ -9,12 +9,10 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 #include "visibility/tile_pairs.glsl"
 layout(local_size_x = 64) in;
 
-layout(std430, set = 0, binding = kBindQueue) buffer QueueBuffer { uint queue[]; };
+layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
 
-shared uint groupBig;
 shared uint groupCandidates;
 shared uint groupPairs;
-shared uint firstBig;
 shared uint firstCandidate;
 shared uint firstPair;
 
@@ -28,18 +26,21 @@ bool mayShow(ScreenTriangle t, ivec4 bounds, uint camera) {
   return false;
 }
 
+const uint kMostTiles = 4u; // of at most 8 x 8 pixels
+
+/// One of a triangle's tiles, of which one or two lie beside each other.
+uint tileAmong(uvec3 tiles, uint i) {
+  return tiles.x + (tiles.y == 1u ? i * tileColumns() : (i >> 1u) * tileColumns() + (i & 1u));
+}
+
 void main() {
   uint count = counters.onScreenCount;
   for (uint first = gl_WorkGroupID.x * 64u; first < count; first += gl_NumWorkGroups.x * 64u) {
     if (gl_LocalInvocationIndex == 0u) {
-      groupBig = 0u;
       groupCandidates = 0u;
       groupPairs = 0u;
     }
     barrier();
-    const uint kNone = 0xffffffffu;
-    uint number = 0u;
-    uint big = kNone;
     ScreenTriangle t;
     uint id = 0u;
     bool seen = false;
@@ -47,17 +48,11 @@ void main() {
     uint candidate = 0u;
     uint pair = 0u;
     if (first + gl_LocalInvocationIndex < count) {
-      number = queue[params.maxItems + first + gl_LocalInvocationIndex];
       uint item;
-      Fetched f = fetchNumber(number, item);
+      Fetched f = fetchNumber(queue[params.maxItems + first + gl_LocalInvocationIndex], item);
       id = f.id;
-      uint fate = classifyFetched(f, t);
-      ivec4 bounds = ivec4(0);
-      if (fate == kWhole) bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
-      bool reaches = bounds.x < bounds.z && bounds.y < bounds.w;
-      if (fate == kClipped || (reaches && (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8))) {
-        big = atomicAdd(groupBig, 1u);
-      } else if (reaches) {
+      if (classifyFetched(f, t) == kWhole) {
+        ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         seen = isSeen(id);
         if (seen || mayShow(t, bounds, f.camera)) {
           tiles = tilesOf(bounds, f.camera);
@@ -67,26 +62,22 @@ void main() {
       }
     }
     barrier();
-    if (gl_LocalInvocationIndex == 0u) {
-      if (groupBig != 0u) {
-        firstBig = atomicAdd(counters.bigQueueCount, groupBig);
-        atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
-      }
-      if (groupCandidates != 0u) {
-        firstCandidate = atomicAdd(counters.candidates, groupCandidates);
-        firstPair = atomicAdd(counters.tilePairs, groupPairs);
-      }
+    if (gl_LocalInvocationIndex == 0u && groupCandidates != 0u) {
+      firstCandidate = atomicAdd(counters.candidates, groupCandidates);
+      firstPair = atomicAdd(counters.tilePairs, groupPairs);
     }
     barrier();
-    if (big != kNone) queue[firstBig + big] = number;
     if (tiles.z != 0u) {
       candidate += firstCandidate;
       pair += firstPair;
       uint room = maxTilePairs() - min(pair, maxTilePairs());
       if (candidate < params.maxCandidates && tiles.z <= room) {
+        uint places[kMostTiles]; // all counted first: what that says is waited for once, after the candidate is written
+        for (uint i = 0u; i < kMostTiles; ++i)
+          if (i < tiles.z) places[i] = countIn(tileAmong(tiles, i), seen);
         writeCandidate(candidate, makeCandidate(t, id));
-        for (uint i = 0u; i < tiles.z; ++i)
-          enter(candidate, seen, tiles.x + i / tiles.y * tileColumns() + i % tiles.y, pair + i);
+        for (uint i = 0u; i < kMostTiles; ++i)
+          if (i < tiles.z) enter(candidate, seen, tileAmong(tiles, i), places[i], pair + i);
       } else {
         show(id);
         for (uint i = 0u; i < min(tiles.z, room); ++i) pairs[(pair + i) * kTilePairWords] = kNoTile;

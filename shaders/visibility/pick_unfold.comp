@@ -1,4 +1,5 @@
-// One invocation a queued triangle: makes it, or the pieces that clipping leaves, candidates that workgroups share.
+// One invocation a triangle on the screen that is clipped or reaches over more than 8 x 8 pixels: makes it, or the
+// pieces that clipping leaves, candidates that workgroups share.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
@@ -35,7 +36,7 @@ void main() {
   uint count = counters.bigQueueCount;
   for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
     uint item;
-    Fetched f = fetchNumber(queue[entry], item);
+    Fetched f = fetchNumber(queue[params.maxItems * 2u - 1u - entry], item);
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
     if (fate == kWhole) add(t, f.id, f.camera);

@@ -1,5 +1,5 @@
-// One invocation a pair of a candidate and a tile: puts it where the tile's candidates lie. Tiles of which all are
-// seen get none.
+// One invocation a pair of a candidate and a tile: puts it where the tile's candidates lie, those that are not seen yet
+// first. Tiles of which all are seen get none.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/layout.h"
@@ -15,7 +15,11 @@ void main() {
   for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 256u) {
     uint pair = i * kTilePairWords;
     if (pairs[pair] == kNoTile) continue;
-    uint begin = slots[tileWord(pairs[pair]) + 1u];
-    if (begin != kNoTile) pairs[placedAt(begin + pairs[pair + 2u])] = pairs[pair + 1u];
+    uint tile = tileWord(pairs[pair]);
+    uint begin = slots[tile + 2u];
+    if (begin == kNoTile) continue;
+    uint candidate = pairs[pair + 1u];
+    if (candidate >= kIsSeen) begin += slots[tile];
+    pairs[placedAt(begin + pairs[pair + 2u])] = candidate & ~kIsSeen;
   }
 }

@@ -125,17 +125,21 @@ bool isAhead(Entry own, uint lane) {
   uvec4 told = fromLane(uvec4(own.id, floatBitsToUint(own.farthest), own.place, 0u), lane);
   Facet f = facetOfLane(own, lane);
   bool isRival = (own.list & (1u << lane)) != 0u && laneOf() != lane && own.nearest <= uintBitsToFloat(told.y);
+  Crossing c = crossingOf(facetOf(own.plane, own.box), f, own.id < told.x); // each works out its own entry's
+  uvec4 hides = uvec4(floatBitsToUint(c.start), floatBitsToUint(c.step), uint(c.side), own.place);
   int row = int(laneOf());
   Outline o = outlineAt(told.z);
-  uvec4 rest = uvec4(samplesIn(o, row), samplesIn(o, row + 32));
+  uvec4 rest = samplesOf(o);
   for (uint left = lanesWith(isRival); left != 0u; left &= left - 1u) {
     uint j = uint(findLSB(left));
-    uvec2 rival = fromLane(uvec2(own.id, own.place), j);
-    Crossing crossing = crossingOf(facetOfLane(own, j), f, rival.x < told.x);
-    Outline other = outlineAt(rival.y);
-    rest &= ~uvec4(samplesAhead(other, crossing, row), samplesAhead(other, crossing, row + 32));
+    uvec4 rival = fromLane(hides, j);
+    c.start = uintBitsToFloat(rival.x);
+    c.step = uintBitsToFloat(rival.y);
+    c.side = int(rival.z);
+    Outline other = outlineAt(rival.w);
+    rest &= ~uvec4(samplesOf(spanAhead(other, c, row)), samplesOf(spanAhead(other, c, row + 32)));
   }
-  return lanesWith((rest.x | rest.y | rest.z | rest.w) != 0u) != 0u;
+  return lanesWith(!isNone(rest)) != 0u;
 }
 
 /// Decides lists from one on: as many of `count` as fit, which it returns.
@@ -194,8 +198,8 @@ uint resolveSome(uint first, uint count) {
   bool asks = false;
   for (uint left = begins; left != 0u; left &= left - 1u) {
     uint at = uint(findLSB(left));
-    uvec4 covered = uvec4(0u);
-    Looked looked = lookAtBatch(at, fromLane(uvec2(n), at).x, moves, covered);
+    uvec4 uncovered = uvec4(0xffffffffu);
+    Looked looked = lookAtBatch(at, fromLane(uvec2(n), at).x, moves, uncovered);
     bool isOwn = (own.list & (1u << at)) != 0u;
     if (isOwn) own.isSeen = (looked.seen & (1u << own.place)) != 0u;
     uint reach = maxAll(isOwn && own.isSeen ? orderOf(own.farthest) : 0u);
@@ -215,6 +219,7 @@ uint resolveSome(uint first, uint count) {
 }
 
 void main() {
+  makeColumns();
   uint lists = counters.openCount;
   for (uint first = gl_WorkGroupID.x * kListRun; first < lists; first += gl_NumWorkGroups.x * kListRun)
     for (uint done = 0u; done < min(lists - first, kListRun);)

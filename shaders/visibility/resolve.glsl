@@ -16,6 +16,20 @@ shared vec4 edges[kBatch]; // their outlines, in order: left, right
 shared vec2 thirds[kBatch];
 shared uint rows[kBatch]; // first and last; parallax; whether the third edge is a left one
 
+/// Bits: which of 32 columns lie before one, for those from 32 before the first to 64 behind it. Two reads of it are
+/// faster than what makes a mask.
+shared uint columnsBefore[97];
+
+/// Once by each workgroup; sync() follows before it is used.
+void makeColumns() {
+  for (uint i = laneOf(); i < 97u; i += kBatch) columnsBefore[i] = bitsFrom(0, clamp(int(i) - 32, 0, 32));
+}
+/// What bitRange says.
+uvec2 samplesOf(ivec2 span) {
+  return uvec2(columnsBefore[span.y + 32] & ~columnsBefore[span.x + 32],
+               columnsBefore[span.y] & ~columnsBefore[span.x]);
+}
+
 bool isShown(uint id) { return (bits[id >> 5u] & (1u << (id & 31u))) != 0u; }
 void show(uint id) {
   if (!isShown(id)) atomicOr(bits[id >> 5u], 1u << (id & 31u));
@@ -107,24 +121,41 @@ struct Looked {
   bool holes; // samples that nothing covers yet
 };
 
-bool isFull(uvec4 covered) { return (covered.x & covered.y & covered.z & covered.w) == 0xffffffffu; }
+bool isNone(uvec4 v) { return (v.x | v.y | v.z | v.w) == 0u; }
+
+/// The samples of an outline in the rows of this invocation.
+uvec4 samplesOf(Outline o) {
+  int row = int(laneOf());
+  return uvec4(samplesOf(spanIn(o, row)), samplesOf(spanIn(o, row + 32)));
+}
+
+/// Bits: places of entries that move and have a sample near that none before them covers.
+uint lookAround(uint first, uint n, uvec4 uncovered) {
+  int row = int(laneOf());
+  uint found = 0u;
+  for (uint k = first; k < first + n && !isNone(uncovered); ++k) {
+    Outline o = outlineAt(k);
+    int parallax = parallaxAt(k);
+    if (parallax != 0) {
+      uvec4 shown = uvec4(samplesAround(o, parallax, row), samplesAround(o, parallax, row + 32)) & uncovered;
+      if (!isNone(shown)) found |= 1u << k;
+    }
+    uncovered &= ~samplesOf(o);
+  }
+  return found;
+}
 
 /// Goes through `n` entries from `first` on, whose outlines are there; `moves`: some have a parallax.
-Looked lookAtBatch(uint first, uint n, bool moves, inout uvec4 covered) {
-  int row = int(laneOf());
+Looked lookAtBatch(uint first, uint n, bool moves, inout uvec4 uncovered) {
   sync();
-  uint found = 0u;
-  for (uint k = first; k < first + n && !isFull(covered); ++k) {
-    Outline o = outlineAt(k);
-    uvec4 fresh = uvec4(samplesIn(o, row), samplesIn(o, row + 32)) & ~covered;
-    uvec4 shown = fresh;
-    int parallax = moves ? parallaxAt(k) : 0;
-    if (parallax != 0) shown = uvec4(samplesAround(o, parallax, row), samplesAround(o, parallax, row + 32)) & ~covered;
-    if ((shown.x | shown.y | shown.z | shown.w) != 0u) found |= 1u << k;
-    covered |= fresh;
+  uint found = moves ? lookAround(first, n, uncovered) : 0u;
+  for (uint k = first; k < first + n && !isNone(uncovered); ++k) {
+    uvec4 own = samplesOf(outlineAt(k));
+    if (!isNone(own & uncovered)) found |= 1u << k;
+    uncovered &= ~own;
   }
   Looked looked;
   looked.seen = orAll(found);
-  looked.holes = lanesWith(!isFull(covered)) != 0u;
+  looked.holes = lanesWith(!isNone(uncovered)) != 0u;
   return looked;
 }

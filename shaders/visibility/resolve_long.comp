@@ -78,21 +78,21 @@ uint takeEntries(Rest rest, uint high) {
 }
 
 /// Goes through a batch, whose items and keys are there; false once all samples are covered.
-bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 covered) {
+bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 uncovered) {
   uint id = 0u;
   if (laneOf() < n) {
     Candidate c = readCandidate(items[laneOf()]);
     put(place, outlineOf(c, pixel), parallaxIn(pixel, rest.nearest, keyAt(laneOf()), rest.before + place));
     id = c.id;
   }
-  Looked looked = lookAtBatch(0u, n, movesIn(pixel), covered);
+  Looked looked = lookAtBatch(0u, n, movesIn(pixel), uncovered);
   if (laneOf() < n && (looked.seen & (1u << place)) != 0u) show(id);
   sync();
   return looked.holes;
 }
 
 /// Goes through more than kBatch entries of one and the same key: by number, a batch at a time.
-bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
+bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 uncovered) {
   for (uint first = 0u; first < n; first += kBatch) {
     for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
       if (depths[i] != rest.low) continue;
@@ -107,7 +107,7 @@ bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 covered) {
     }
     setKey(laneOf(), rest.low);
     sync();
-    if (!resolveBatch(rest, min(n - first, kBatch), laneOf(), pixel, covered)) return false;
+    if (!resolveBatch(rest, min(n - first, kBatch), laneOf(), pixel, uncovered)) return false;
     rest.before += kBatch;
   }
   return true;
@@ -140,7 +140,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   rest.nearest = minAll(least);
   rest.low = rest.nearest;
   rest.farthest = maxAll(most);
-  uvec4 covered = uvec4(0u);
+  uvec4 uncovered = uvec4(0xffffffffu);
   bool more = true;
   while (more) {
     uint high = lastKey(rest);
@@ -150,8 +150,8 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
       showRest(rest);
       break;
     }
-    if (n > kBatch) more = resolveSame(rest, n, pixel, covered);
-    else more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n), pixel, covered);
+    if (n > kBatch) more = resolveSame(rest, n, pixel, uncovered);
+    else more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n), pixel, uncovered);
     more = more && high != rest.farthest;
     rest.low = high + 1u;
     rest.before += n;
@@ -159,6 +159,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
 }
 
 void main() {
+  makeColumns();
   uint pixels = counters.longCount;
   for (uint i = gl_WorkGroupID.x; i < pixels; i += gl_NumWorkGroups.x) {
     uint slot = open[params.pixelCapacity - 1u - i];

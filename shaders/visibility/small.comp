@@ -1,6 +1,7 @@
 // Depth, one invocation a triangle: rejects, draws small ones at once and queues the others. Small ones that were the
 // nearest in a pixel when they were drawn are queued for ids.comp from the queue's other end: each item takes one place
-// at most, so they never meet. Exact sampling also wants a list of all that are on the screen; it follows the queue.
+// at most, so they never meet. Exact sampling also wants lists of those that are on the screen; they follow the queue:
+// those of at most 8 x 8 pixels from its front, the others and those that are clipped from its end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
@@ -15,8 +16,10 @@ shared uint groupTriangles;
 shared uint groupSkipped;
 shared uint groupWinners;
 shared uint groupOnScreen;
+shared uint groupBig;
 shared uint firstWinner;
 shared uint firstOnScreen;
+shared uint firstBig;
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) {
@@ -33,6 +36,7 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
       groupWinners = 0u;
       groupOnScreen = 0u;
+      groupBig = 0u;
     }
     barrier();
     uint end = min(entryOf(drawIndex).indexCount / 3u, params.maxItems - start.x);
@@ -40,6 +44,7 @@ void main() {
     const uint kNone = 0xffffffffu;
     uint winner = kNone;
     uint onScreen = kNone;
+    uint big = kNone;
     if (local < end) {
       Fetched f = fetchTriangle(drawIndex, local);
       ScreenTriangle t;
@@ -55,12 +60,12 @@ void main() {
         atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
       }
       if (params.method == kExact) {
-        bool reaches = fate == kClipped;
-        if (fate == kWhole) {
-          ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
-          reaches = bounds.x < bounds.z && bounds.y < bounds.w;
-        }
-        if (reaches) onScreen = atomicAdd(groupOnScreen, 1u);
+        ivec4 bounds = ivec4(0);
+        if (fate == kWhole) bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
+        bool reaches = bounds.x < bounds.z && bounds.y < bounds.w;
+        bool isBig = fate == kClipped || (reaches && (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8));
+        if (isBig) big = atomicAdd(groupBig, 1u);
+        else if (reaches) onScreen = atomicAdd(groupOnScreen, 1u);
       }
     }
     barrier();
@@ -73,11 +78,16 @@ void main() {
         firstOnScreen = atomicAdd(counters.onScreenCount, groupOnScreen);
         atomicMax(counters.onScreenArgs[0], min((firstOnScreen + groupOnScreen + 63u) / 64u, kMaxGroups));
       }
+      if (groupBig != 0u) {
+        firstBig = atomicAdd(counters.bigQueueCount, groupBig);
+        atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
+      }
     }
     barrier();
     uint number = chunk * kChunk + gl_LocalInvocationIndex;
     if (winner != kNone) queue[params.maxItems - 1u - firstWinner - winner] = number;
     if (onScreen != kNone) queue[params.maxItems + firstOnScreen + onScreen] = number;
+    if (big != kNone) queue[params.maxItems * 2u - 1u - firstBig - big] = number;
   }
   barrier();
   if (triangles != 0u) atomicAdd(groupTriangles, triangles);

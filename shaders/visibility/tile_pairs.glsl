@@ -11,10 +11,11 @@ void show(uint id) {
   atomicAdd(counters.unresolved, 1u);
 }
 
-/// Those that are seen already only hide others: a tile that has none but such needs no lists.
-void enter(uint candidate, bool seen, uint tile, uint pair) {
-  if (!seen) slots[tileWord(tile) + 1u] = 1u;
+/// Counts a candidate of a tile; the how manieth of its kind it is.
+uint countIn(uint tile, bool seen) { return atomicAdd(slots[tileWord(tile) + (seen ? 1u : 0u)], 1u); }
+
+void enter(uint candidate, bool seen, uint tile, uint place, uint pair) {
   pairs[pair * kTilePairWords] = tile;
   pairs[pair * kTilePairWords + 1u] = candidate | (seen ? kIsSeen : 0u);
-  pairs[pair * kTilePairWords + 2u] = atomicAdd(slots[tileWord(tile)], 1u);
+  pairs[pair * kTilePairWords + 2u] = place;
 }

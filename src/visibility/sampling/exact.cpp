@@ -16,7 +16,7 @@
 
 namespace gpgp::visibility {
 
-void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device) {
+void addExact(core::PassList& list, const core::Device& device) {
   using namespace shader;
   using enum core::UseKind;
   const auto addResolve = [&](const char* name, std::span<const uint32_t> spirv, size_t arguments) -> core::Pass& {
@@ -32,22 +32,23 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                                  kBindCounters, arguments);
   };
   const size_t first = list.passes.size();
-  list.fill("clear tiles", kBindSlots, 0, budgets.slots() * 8, budgets.slots() / 8);
-  fetchesTriangles(list.dispatchIndirect("pick", addShader(list, "pick", visibility_pick),
-                                         {{kBindQueue, readWrite},
-                                          {kBindSlots, readWrite},
-                                          {kBindCounters, readWrite},
-                                          {kBindBits, readWrite},
-                                          {kBindCandidates, write},
-                                          {kBindPairs, write}},
-                                         kBindCounters, offsetof(Counters, onScreenArgs)));
+  // Those that are pieces or many pixels wide beside gather: whether they are seen is asked later.
   fetchesTriangles(list.dispatchIndirect("pick unfold", addShader(list, "pick unfold", visibility_pick_unfold),
                                          {{kBindQueue, read},
                                           {kBindCounters, readWrite},
                                           {kBindBits, readWrite},
                                           {kBindCandidates, write},
                                           {kBindSlots, readWrite}},
-                                         kBindCounters, offsetof(Counters, bigUnfoldArgs)));
+                                         kBindCounters, offsetof(Counters, bigUnfoldArgs)))
+      .beside = true;
+  fetchesTriangles(list.dispatchIndirect("pick", addShader(list, "pick", visibility_pick),
+                                         {{kBindQueue, read},
+                                          {kBindSlots, readWrite},
+                                          {kBindCounters, readWrite},
+                                          {kBindBits, readWrite},
+                                          {kBindCandidates, write},
+                                          {kBindPairs, write}},
+                                         kBindCounters, offsetof(Counters, onScreenArgs)));
   list.dispatchIndirect("pick big", addShader(list, "big", visibility_big),
                         {{kBindParams, read},
                          {kBindSlots, readWrite},

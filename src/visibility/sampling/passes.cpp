@@ -43,7 +43,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("view");
   own("records", recordBytes);
   engine("pixelCounts");
-  own("limits", exact ? (budgets.slots() + kMaxBig) * 8 + budgets.slots() / 8 : 4);
+  own("limits", exact ? (budgets.slots() + kMaxBig) * 8 + budgets.slots() / 64 * shader::kTileWords * 4 : 4);
   engine("commands");
   engine("drawCountBuffer");
   engine("drawCommands");
@@ -80,7 +80,7 @@ core::PassList describePasses(const Budgets& budgets, const core::Device& device
   core::PassList list(memory);
   addResources(list, budgets);
   addStandard(list, conservative);
-  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, budgets, device);
+  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, device);
   if (conservative) addConservative(list, budgets);
   if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT) addNearby(list);
   addOutputs(list);

@@ -32,7 +32,7 @@ core::PassList describePasses(const Budgets& budgets, const core::Device& device
 
 // The parts of it.
 void addStandard(core::PassList& list, bool conservative); ///< bits of what is seen at the pixels' samples
-void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device);
+void addExact(core::PassList& list, const core::Device& device);
 void addConservative(core::PassList& list, const Budgets& budgets);
 void addNearby(core::PassList& list);
 void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes
