@@ -193,10 +193,7 @@ void push(bool own, uint place, uint count, Shape s) {
 Fan fanFor(Shape s) {
 #ifdef GPGP_TABLE
   const uint family = familyOf(s.node);
-  if (family != 0) {
-    const uint count = tableAt(family).x;
-    return Fan(count, count, 0.0f);
-  }
+  if (family != 0) return familyFan(s, family);
 #endif
   return fanOf(s);
 }
@@ -204,7 +201,7 @@ Fan fanFor(Shape s) {
 uint toChildOf(inout Shape s, Fan fan, uint index) {
 #ifdef GPGP_TABLE
   const uint family = familyOf(s.node);
-  if (family != 0) return toDescendant(s, family, index, record.maxDepth);
+  if (family != 0) return toDescendant(s, family, fan, index, record.maxDepth);
 #endif
   toChild(s, fan, index);
   return kEndGoesOn;

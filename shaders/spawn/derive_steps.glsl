@@ -59,7 +59,9 @@ void main() {
   // in more rounds.
   const uint growth = record.spread / max(count, 1);
   const bool spreads = count < record.spread && roundsLeft() > 0;
-  const uint enough = spreads ? (growth <= kGrowing * groupSize ? max(growth, kGrowth) : kGrowth) : 0xffffffffu;
+  const uint full = kGrowing * groupSize;
+  const uint grown = growth <= full ? growth : roundsLeft() == 1 ? full : kGrowth;
+  const uint enough = spreads ? max(grown, kGrowth) : 0xffffffffu;
   stackSize = 0;
   keepsRest = roundsLeft() == 0;
   keptAt = 0;
@@ -131,10 +133,10 @@ void main() {
         fan.count = 0;
         if (waits) {
           fan = fanFor(s);
-          fan.count -= s.made;
+          fan.count = min(fan.count - s.made, 0xffffffffu / groupSize); // more come later
           keepParent(s, fan);
         }
-        const uint before = sumBefore(fan.count, total); // at most groupSize * kMaxRepeat
+        const uint before = sumBefore(fan.count, total);
         childrenUpTo[lane] = before + fan.count;
 #ifdef GPGP_COLLIDERS
         const uint most = groupSize; // a batch is not left before its end, and queries are as much work as many steps

@@ -25,9 +25,8 @@ vec3 frameVector(uint row, vec3 v, vec3 size, float seed, uint flags, uint facto
   }
   return v;
 }
-void transformBy(inout Shape s, uint frame) {
+void transformBy(inout Shape s, uint frame, uint flags) {
   const uvec4 translation = tableAt(frame);
-  const uint flags = translation.w;
   const float seed = unitFloat(s.seed);
   const vec3 size = s.size;
   if (hasFrame(flags, kFrameTranslates))
@@ -49,10 +48,47 @@ void transformBy(inout Shape s, uint frame) {
     rotate(s, r);
   }
 }
+/// toPart where it is known whether some parts have a fixed length.
+void toPartBy(inout Shape s, uint axis, float remainder, bool fixedLengths, uvec4 row, vec4 part) {
+  if (!fixedLengths)
+    toPiece(s, axis, multiply(remainder, part.w), multiply(remainder, part.y), row.y);
+  else
+    toPart(s, axis, remainder, Part(part.x, part.y, part.z, part.w), row.y);
+}
+/// The fan of a shape that waits for a family's operator.
+Fan familyFan(Shape s, uint family) {
+  const uvec4 row = tableAt(family);
+#ifdef GPGP_REPEATS
+  if (row.y != 0) {
+    Fan fan = repetitionOf(component(s.size, graphWords[s.node + kNodeArgument]), graphWords[s.node + kNodeArgument2],
+                           parameter(s, 0u));
+    fan.count *= row.x;
+    return fan;
+  }
+#endif
+  return Fan(row.x, row.x, 0.0f);
+}
 /// The shape becomes a child of its family. Returns a kEnd value.
-uint toDescendant(inout Shape s, uint family, uint index, uint maxDepth) {
-  const uvec4 child = tableAt(family + 1u + index);
-  for (uint i = 0; i < child.y; ++i) {
+uint toDescendant(inout Shape s, uint family, Fan fan, uint index, uint maxDepth) {
+#ifdef GPGP_REPEATS
+  const uvec4 row = tableAt(family);
+  if (row.y != 0) {
+    const uint copy = index / row.x;
+    index -= copy * row.x;
+    toRepeat(s, graphWords[s.node + kNodeArgument], graphWords[s.node + kNodeArgument2], fan.successors, fan.extent,
+             copy);
+  }
+#endif
+  uvec4 child = tableAt(family + 1u + index);
+#if defined(GPGP_PROGRAMS) && !defined(GPGP_SOFTWARE) // there all programs would run
+  for (;;) {
+    const uint next = runProgram(s, child); // generated
+    if (next == 0u) break;
+    if (next == 0xffffffffu) return kEndDiscarded;
+    child = tableAt(next);
+  }
+#else
+  for (uint i = 0; i < (child.y & kEntrySteps); ++i) {
     GPGP_TURN;
     const uvec4 row = tableAt(child.x + kStepSize * i);
     const uint op = row.x & kStepOperator;
@@ -66,9 +102,14 @@ uint toDescendant(inout Shape s, uint family, uint index, uint maxDepth) {
       toBoxFace(s, row.y);
     } else if (isStep(op, kOpReplicate)) {
       toCopy(s, row.y);
+    } else if (isStep(op, kOpIf)) {
+      child = tableAt(row.y + chosenEdge(s, row.z));
+      i = 0xffffffffu;
+      continue;
     }
-    if (GPGP_FRAMES != 0u && row.w != 0u) transformBy(s, row.w);
+    if (GPGP_FRAMES != 0u && row.w != 0u) transformBy(s, row.w, tableAt(row.w).w);
   }
+#endif
   s.node = child.z & ~kEdgeRecursive;
   s.depth += child.z >> 31;
   return s.depth > maxDepth ? kEndUnfinished : child.w;

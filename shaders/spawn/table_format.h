@@ -25,14 +25,20 @@ GPGP_CONST uint kFrameDrawn = 1u << 15;  // some d of translation or scale is no
 GPGP_CONST uint kFrameAdded = 1u << 16;  // some c is not
 GPGP_CONST uint kFrameTurned = 1u << 17; // rotation by angles
 
-// family, of an operator that multiplies by a known number, with all such operators on static edges behind it: words of
-// its first entry: the number of children, and no more. An entry of four words for each: offset of its first step,
-// steps, target as Shape::node and kEdgeRecursive, kEnd value. step: from a shape to one of its children. Words:
-// operator and flags, number of the child, length of SubDiv's fixed parts, frame that follows or 0; SubDiv's part.
+// family, of an operator that multiplies by a known number, with all such operators and choices on static edges behind
+// it. Words of its first entry: the number of children, and 1 for a Repeat, which makes as many in each of its copies.
+// Behind a choice there are as many as most of its successors make. An entry of four words for each: offset of its
+// first step, steps and their program, target as Shape::node and kEdgeRecursive, kEnd value. step: from a shape to one
+// of its children, or as the last one a choice (kOpIf, whichever it is), which goes on with another entry. Words:
+// operator and flags, number of the child or offset of the choice's entries by edge, length of SubDiv's fixed parts or
+// the choice's node, frame that follows or 0; SubDiv's part.
 GPGP_CONST uint kStepSize = 2u;           // in four words
 GPGP_CONST uint kStepAxis = 8u;           // shift
 GPGP_CONST uint kStepWeighted = 1u << 16; // is there only where a length remains
+GPGP_CONST uint kStepFixed = 1u << 17;    // some of SubDiv's parts have a fixed length
+GPGP_CONST uint kEntryProgram = 8u;       // shift: the number of the code that takes these steps
 GPGP_CONST uint kStepOperator = 0xffu;
+GPGP_CONST uint kEntrySteps = 0xffu;
 
 GPGP_SHADER_END
 #endif

@@ -421,6 +421,34 @@ A = SubDiv(X) {
             bakeWaiting(text, op, target), axioms(7, 12, 16, 10));
 }
 
+TEST_F(SpawnTest, FamiliesGoThroughChoices) {
+  // Choices whose successors make about as many shapes, one behind another, behind a Repeat and where shapes come back;
+  // some make one fewer, and a part may have no length. The graph is uneven, so Repeats have families as well.
+  const char* const even = R"(axiom Box A;
+terminal T (1, 0);
+terminal U (1, 1);
+A = IfSizeLess(X, 0.7) { T | B };
+B = SubDiv(X) { -1: RandomRule(ShapeSeed()) { 0.5: C | 0.2: D | 0.3: Translate(0, 1, 0) C } | -1: Scale(-1, -0.9, -1) A };
+C = Replicate() { T | Rotate(0, Rand(0, 90), 0) IfSizeLess(Y, 3) { E | Scale(-0.5, -0.5, 0.2) D } };
+D = SubDiv(Y) { -1: U | 4: Translate(0, 0, 1) T | -2: Discard() };
+E = Replicate() { Scale(-1, 0.5, -1) U | If(ShapeSize(Z) - 4 < 0) { T | U } };
+)";
+  const char* const repeated = R"(axiom Box A;
+terminal T (1, 0);
+terminal U (1, 1);
+A = Repeat(X, 1.7, ADJUST_TO_FILL) RandomRule(ShapeSeed()) { 0.4: SubDiv(Z) { -1: T | 2: U } | 0.3: F | 0.3: Up };
+F = SubDiv(Y) { 1: Discard() | -1: Extrude(1) U | 20: Repeat(Z, 3, ANCHOR_TO_END) Translate(0, 0, 1) F2 };
+F2 = RandomRule(ShapeSeed()) { 0.5: CompSplit() { T | Discard() | U } | 0.5: CompSplit() { Discard() | T | U } };
+Up = Replicate() { T | Scale(-0.6, -0.6, -0.6) A2 };
+A2 = IfSizeLess(X, 0.5) { U | A };
+)";
+  for (const spawn::KernelTarget target : {spawn::KernelTarget::software, spawn::KernelTarget::subgroups}) {
+    const std::string what = ", target " + std::to_string(int(target));
+    check("even" + what, bakeWaiting(even, shader::kOpSwapSize, target), axioms(7, 12, 16, 10));
+    check("repeated" + what, bakeWaiting(repeated, shader::kOpSwapSize, target), axioms(7, 12, 16, 10));
+  }
+}
+
 TEST_F(SpawnTest, KernelsStartAtRulesThatDiscard) {
   auto all = axioms(7, 12, 16, 10);
   for (size_t i = 0; i < all.size(); ++i) all[i].rule = i % 2;

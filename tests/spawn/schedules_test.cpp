@@ -33,11 +33,18 @@ TEST(Schedules, UnevenDerivationsAreKnownByTheirGraph) {
 }
 
 TEST(Schedules, TheDefaultWaitsForSubDivsBehindSubDivsWhereThereAreMany) {
-  const auto waiting = [](const std::string& rules) {
+  // Nothing waits where few programs make all children, so that there is a rule with many.
+  const std::string many = R"(
+M = Replicate() { Translate(1, 0, 0) T | Rotate(0, 9, 0) T | Scale(1, 1, 2) T | Translate(1, 0, 0) Rotate(0, 9, 0) T |
+  Rotate(0, 9, 0) Scale(1, 1, 2) T | Translate(1, 0, 0) Scale(2, 1, 1) T | Scale(1, 1, 2) Translate(1, 0, 0) T |
+  Translate(1, 0, 0) Rotate(0, 5, 0) Scale(1, 2, 3) T | Rotate(0, 9, 0) Translate(1, 0, 0) T };)";
+  const auto waitingWith = [](const std::string& rules) {
     const spawn::Graph graph = graphOf("axiom Box A; terminal T U (1, 0);\n" + rules);
     const auto waits = spawn::namedSchedule(graph, "default")->waits;
     return std::count(waits.begin(), waits.end(), true);
   };
+  const auto waiting = [&](const std::string& rules) { return waitingWith(rules + many); };
+  EXPECT_EQ(waitingWith("A = SubDiv(Y) { 0.3: SubDiv(X) { 0.3: T | -1: U } | -1: T };"), 0);
   const std::string uneven = " B = RandomRule(ShapeSeed()) { 1: T | 2: C }; C = Repeat(X, 0.1, ADJUST_TO_FILL) ";
   const std::string twice = "SubDiv(Y) { 0.3: SubDiv(X) { 0.3: T | -1: B } | -1: T };";
   EXPECT_EQ(waiting("A = SubDiv(Y) { 0.3: SubDiv(X) { 0.3: T | -1: U } | -1: T };"), 1);

@@ -3,6 +3,7 @@
 #include "spawn/codegen/table.h"
 #include "spawn/graph/matching.h"
 #include "spawn/operators.h"
+#include "spawn/table_format.h"
 
 #include <algorithm>
 #include <array>
@@ -234,9 +235,70 @@ private:
 
   void writeTable() {
     if (std::find(table_.family.begin(), table_.family.end(), true) == table_.family.end()) return;
+    if (table_.repeats) add("#define GPGP_REPEATS\n");
+    writeChoices();
+    const bool programs = table_.programs.size() <= kMostPrograms;
+    if (programs) add("#define GPGP_PROGRAMS\nuint runProgram(inout Shape s, uvec4 child);\n");
     add("#define GPGP_TABLE\nbool isStep(uint op, uint which) { return (" + number(table_.stepOperators) +
         " & (1u << which)) != 0u && op == which; }\n#define GPGP_FRAMES " + number(table_.frameFlags) +
         "\n#include \"spawn/table.glsl\"\n");
+    if (programs) writePrograms();
+  }
+  /// What all children with the same steps do, each with its own numbers. Returns the entry that it chooses, or 0, or
+  /// ~0 where there is none.
+  void writePrograms() {
+    add("#ifndef GPGP_SOFTWARE\nuint runProgram(inout Shape s, uvec4 child) {\n  const uint at = child.x;\n"
+        "  switch (child.y >> kEntryProgram) {\n");
+    for (uint32_t p = 0; p < table_.programs.size(); ++p) {
+      add("  case " + number(p) + ": {\n");
+      bool chooses = false;
+      for (uint32_t i = 0; i < table_.programs[p].size(); ++i) {
+        const auto [op, frame] = table_.programs[p][i];
+        const std::string row = "row" + std::to_string(i), where = "at + " + number(kStepSize * i);
+        add("    const uvec4 " + row + " = tableAt(" + where + ");\n");
+        switch (op & kStepOperator) {
+        case kOpSubDiv: {
+          const uint32_t axis = (op >> kStepAxis) & 0xff;
+          add("    const float remainder" + std::to_string(i) + " = " +
+              (op & kStepFixed ? "remainderOf(" + component(axis) + ", uintBitsToFloat(" + row + ".z))"
+                               : "max(0.0f, " + component(axis) + ")") +
+              ";\n");
+          if (op & kStepWeighted) add("    if (!(remainder" + std::to_string(i) + " > 0.0f)) return 0xffffffffu;\n");
+          add("    toPartBy(s, " + number(axis) + ", remainder" + std::to_string(i) + ", " +
+              (op & kStepFixed ? "true, " : "false, ") + row + ", uintBitsToFloat(tableAt(" + where + " + 1u)));\n");
+          break;
+        }
+        case kOpCompSplit: add("    toBoxFace(s, " + row + ".y);\n"); break;
+        case kOpReplicate: add("    toCopy(s, " + row + ".y);\n"); break;
+        case kOpIf:
+          add("    return " + row + ".y + chosenEdge(s, " + row + ".z);\n");
+          chooses = true;
+          break;
+        default: break;
+        }
+        if (frame) add("    transformBy(s, " + row + ".w, " + number(frame) + ");\n");
+      }
+      add(chooses ? "  }\n" : "    break;\n  }\n");
+    }
+    add("  default: break;\n  }\n  return 0u;\n}\n#endif\n");
+  }
+  /// The edges that choices take which families go through.
+  void writeChoices() {
+    const auto matched = std::exchange(peers_, {});
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) peers_.push_back({n});
+    add("uint chosenEdge(Shape s, uint node) {\n  uint chosen = 0u;\n  switch (node) {\n");
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
+      if (!table_.chooses[n]) continue;
+      const Node& node = graph_.nodes[n];
+      add("  case " + number(offsetOf(n)) + ": {\n");
+      if (node.op == kOpRandomRule)
+        writeDraw(node);
+      else
+        add("  chosen = " + condition(node) + " ? 0u : 1u;\n");
+      add("  break;\n  }\n");
+    }
+    add("  default: break;\n  }\n  return chosen;\n}\n");
+    peers_ = matched;
   }
 
   // ---------------------------------------------------------------- chains
@@ -305,8 +367,8 @@ private:
     case kOpExtrude: return pass("extrude(s, " + parameter(node, 0) + ")");
     case kOpSwapSize: return pass("swapSizes(s, " + number(node.argument) + ")");
     case kOpSetGeometry: return pass("setGeometry(s, " + number(node.argument) + ", " + number(node.argument2) + ")");
-    case kOpIf: return writeIf(node, parameter(node, 0) + " != 0.0f");
-    case kOpIfSizeLess: return writeIf(node, component(node.argument) + " < " + parameter(node, 0));
+    case kOpIf:
+    case kOpIfSizeLess: return writeIf(node);
     case kOpRandomRule: return writeRandomRule(node);
     default: return writeFilter(node);
     }
@@ -335,21 +397,29 @@ private:
     }
     add("  s.axisX = settleFinite3(c0);\n  s.axisY = settleFinite3(c1);\n  s.axisZ = settleFinite3(c2);\n");
   }
-  void writeIf(const Node& node, const std::string& condition) {
-    add("  if (" + condition + ") { " + take(node, 0) + " } else { " + take(node, 1) + " }\n");
+  std::string condition(const Node& node) {
+    return node.op == kOpIf ? parameter(node, 0) + " != 0.0f" : component(node.argument) + " < " + parameter(node, 0);
   }
-  void writeRandomRule(const Node& node) {
+  void writeIf(const Node& node) {
+    add("  if (" + condition(node) + ") { " + take(node, 0) + " } else { " + take(node, 1) + " }\n");
+  }
+  /// The edge that RandomRule takes, as `chosen`.
+  void writeDraw(const Node& node) {
     const uint32_t count = node.edgeCount;
     add("  const float p[" + std::to_string(count) + "] = " + array(node) + ";\n");
     add("  const float first = " + parameter(node, 0) + ";\n  float total = 0.0f;\n");
     for (uint32_t i = 0; i < count; ++i) add("  total = add(total, p[" + std::to_string(i) + "]);\n");
-    add("  const float x = multiply(subtract(first, floor(first)), total);\n  float sum = 0.0f;\n  uint chosen = "
-        "0u;\n");
+    add("  const float x = multiply(subtract(first, floor(first)), total);\n  float sum = 0.0f;\n");
     for (uint32_t i = 0; i < count; ++i) {
       const std::string at = "p[" + std::to_string(i) + "]";
       add("  if (" + at + " > 0.0f && sum <= x) chosen = " + number(i) + ";\n");
       if (i + 1 < count) add("  sum = add(sum, " + at + ");\n");
     }
+  }
+  void writeRandomRule(const Node& node) {
+    const uint32_t count = node.edgeCount;
+    add("  uint chosen = 0u;\n");
+    writeDraw(node);
     add("  switch (chosen) {\n");
     for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + " break;\n");
     add("  default: " + take(node, count - 1) + " break;\n  }\n");

@@ -60,7 +60,8 @@ void markInner(const Graph& graph, uint32_t subDiv, std::vector<bool>& inner) {
 /// Shapes wait where they must, and for a SubDiv behind another one on static edges: families make every child from the
 /// start, and the outer one's pieces again for each piece of the inner one. Those are few where an axiom has only as
 /// many shapes as the grammar says, and to wait there costs more; but families that outgrow a workgroup do so as well,
-/// and only uneven derivations have large workgroups.
+/// and only uneven derivations have large workgroups. Where few programs make all children, that is quicker than to
+/// wait.
 Schedule defaultSchedule(const Graph& graph, const Flow& flow) {
   Schedule schedule{"default", 0, std::vector<bool>(graph.nodes.size()), {}};
   std::vector<bool> comesBack(graph.nodes.size()), often = reachedOften(graph);
@@ -71,6 +72,8 @@ Schedule defaultSchedule(const Graph& graph, const Flow& flow) {
     });
   }
   const bool uneven = isUneven(graph);
+  const std::vector<bool> none(graph.nodes.size());
+  if (makeTable(graph, none).programs.size() <= kMostPrograms) schedule.waits = none;
   for (uint32_t n = 0; n < graph.nodes.size(); ++n) { // a group for each node that shapes wait for, and for starts
     const Node& node = graph.nodes[n];
     schedule.waits[n] = schedule.waits[n] && (often[n] || !uneven);

@@ -12,7 +12,9 @@ namespace {
 using namespace shader;
 
 /// Children that a family on a static edge may add: more would fill workgroups with shapes of one kind, and tables.
-constexpr uint32_t kMostChildren = 64, kMostSteps = 12;
+constexpr uint32_t kMostChildren = 64, kMostSteps = 12, kMostEntries = 128;
+/// A family goes through a choice whose successors make on average this share of what most of them make.
+constexpr double kBusyShare = 0.8;
 
 /// A component: (a + d * seed) * f + c.
 struct Term {
@@ -52,16 +54,19 @@ std::optional<Term> combine(uint32_t code, const Term& a, const Term& b) {
 class TableMaker {
 public:
   TableMaker(const Graph& graph, const std::vector<bool>& waits)
-      : graph_(graph), waits_(waits), frames_(graph.nodes.size()), children_(graph.nodes.size()) {}
+      : graph_(graph), waits_(waits), frames_(graph.nodes.size()), extents_(graph.nodes.size()) {}
 
   KernelTable run() {
     const auto count = static_cast<uint32_t>(graph_.nodes.size());
     table_.family.assign(count, false);
     table_.entered.assign(count, false);
+    table_.chooses.assign(count, false);
     table_.words.assign((count + 3) / 4 * 4, 0);
     for (uint32_t n = 0; n < count; ++n) makeFrame(n);
+    // In small workgroups, which others have, the copies of a Repeat with all that is behind them are too many at once.
+    const bool uneven = isUneven(graph_);
     for (uint32_t n = 0; n < count; ++n)
-      if (multipliesByKnown(graph_.nodes[n])) makeFamily(n);
+      if (multipliesByKnown(graph_.nodes[n]) || (uneven && graph_.nodes[n].op == kOpRepeat)) makeFamily(n);
     return std::move(table_);
   }
 
@@ -174,8 +179,7 @@ private:
     if (edge.target == kNoNode) return kEndDiscarded;
     const Node& target = graph_.nodes[edge.target];
     if (target.op == kOpTerminal) return kEndTerminal;
-    if (waits_[edge.target] || edge.recursive || multiplies(target)) return kEndWaits;
-    return kEndGoesOn;
+    return waits_[edge.target] || multiplies(target) ? kEndWaits : kEndGoesOn;
   }
 
   // ---------------------------------------------------------------- families
@@ -185,28 +189,71 @@ private:
     const Node& node = graph_.nodes[index];
     for (uint32_t e = 0; e < node.edgeCount; ++e) {
       const Edge& edge = edgeOf(index, e);
-      if (edge.target == kNoNode) continue;
+      if (edge.target == kNoNode || !isPart(index, e)) continue;
       if (node.op == kOpCompSplit && e == 2)
         for (uint32_t side = 2; side < 6; ++side) call(edge, side);
       else
         call(edge, e);
     }
   }
-  /// Children of a family, those of inner families included.
-  uint32_t childrenOf(uint32_t index) {
-    if (children_[index]) return children_[index];
-    uint32_t count = 0;
-    forChildren(index, [&](const Edge& first, uint32_t) {
-      const Edge* edge = &first;
-      while (endOf(*edge) == kEndGoesOn && frames_[edge->target].row) edge = frames_[edge->target].edge;
-      count += isInner(*edge) ? childrenOf(edge->target) : 1;
-    });
-    return children_[index] = std::clamp(count, 1u, 1u << 16); // times 32 successors fits
+  /// Whether a part is there at all.
+  bool isPart(uint32_t index, uint32_t number) const {
+    const Node& node = graph_.nodes[index];
+    if (node.op != kOpSubDiv) return true;
+    const uint32_t* division = graph_.divisions.data() + node.division;
+    return ((division[kDivisionFixedParts] | division[kDivisionWeightedParts]) >> number) & 1u;
   }
-  /// A static edge to an operator of this kind. The graph has no cycle of edges that are not recursive.
+  /// A static edge to operators that are a frame.
+  bool isFrame(const Edge& edge) const {
+    return !edge.recursive && endOf(edge) == kEndGoesOn && frames_[edge.target].row;
+  }
+  const Edge& behindFrames(const Edge& first) const {
+    const Edge* edge = &first;
+    while (isFrame(*edge)) edge = frames_[edge->target].edge;
+    return *edge;
+  }
+  /// A static edge to an operator that a family goes through. The graph has no cycle of edges that are not recursive.
   bool isInner(const Edge& edge) const {
-    return edge.target != kNoNode && !edge.recursive && !waits_[edge.target] &&
-           multipliesByKnown(graph_.nodes[edge.target]);
+    if (edge.target == kNoNode || edge.recursive || waits_[edge.target]) return false;
+    const Node& node = graph_.nodes[edge.target];
+    return chooses(node) || multipliesByKnown(node);
+  }
+  static bool chooses(const Node& node) { return node.op >= kOpIf && node.op <= kOpRandomRule; }
+
+  /// What a family's part behind a node takes: children, those that only some choices make included, and entries.
+  struct Extent {
+    uint32_t children = 0, entries = 0;
+  };
+  Extent extentOf(const Edge& first) {
+    const Edge& edge = behindFrames(first);
+    if (edge.target == kNoNode) return {};
+    return isInner(edge) ? extentOf(edge.target) : Extent{1, 1};
+  }
+  Extent extentOf(uint32_t index) {
+    Extent& known = extents_[index];
+    if (known.entries) return known;
+    Extent extent;
+    const Node& node = graph_.nodes[index];
+    if (chooses(node)) {
+      uint32_t sum = 0;
+      for (uint32_t e = 0; e < node.edgeCount; ++e) {
+        const Extent branch = extentOf(edgeOf(index, e));
+        extent.children = std::max(extent.children, branch.children);
+        extent.entries += branch.entries;
+        sum += branch.children;
+      }
+      extent.entries += extent.children * (1 + node.edgeCount);
+      // Where some make far fewer, too many invocations would idle: shapes leave the family before such a choice.
+      if (kBusyShare * extent.children * node.edgeCount > sum) extent = {1, 1};
+    } else {
+      forChildren(index, [&](const Edge& edge, uint32_t) {
+        const Extent child = extentOf(edge);
+        extent.children += child.children;
+        extent.entries += child.entries;
+      });
+    }
+    // Times 32 successors fits.
+    return extents_[index] = {std::min(extent.children, 1u << 16), std::clamp(extent.entries, 1u, 1u << 20)};
   }
 
   struct Step {
@@ -218,79 +265,138 @@ private:
     step.words[0] = node.op;
     step.words[1] = number;
     if (node.op == kOpSubDiv) {
-      const uint32_t* division = graph_.divisions.data() + node.division;
       step.words[0] |= node.argument << kStepAxis;
+      const uint32_t* division = graph_.divisions.data() + node.division;
       step.words[2] = division[0];
       if ((division[kDivisionWeightedParts] >> number) & 1u) step.words[0] |= kStepWeighted;
       for (uint32_t i = 0; i < kPartSize; ++i) step.words[4 + i] = division[kDivisionParts + number * kPartSize + i];
     }
     return step;
   }
-  /// Whether a part is there at all.
-  bool isPart(uint32_t index, uint32_t number) const {
-    const Node& node = graph_.nodes[index];
-    if (node.op != kOpSubDiv) return true;
-    const uint32_t* division = graph_.divisions.data() + node.division;
-    return ((division[kDivisionFixedParts] | division[kDivisionWeightedParts]) >> number) & 1u;
-  }
 
   struct Child {
     std::vector<Step> steps;
-    uint32_t target = 0, end = 0;
+    uint32_t target = 0, end = kEndDiscarded;
+    std::vector<Child> branches; ///< by edge, where the last step chooses
   };
-  void collect(uint32_t index, std::vector<Step>& path, std::vector<Child>& children, size_t limit) {
-    forChildren(index, [&](const Edge& first, uint32_t number) {
-      if (!isPart(index, number)) return;
-      path.push_back(stepOf(index, number));
-      const size_t depth = path.size();
-      const Edge* edge = &first;
-      while (endOf(*edge) == kEndGoesOn && frames_[edge->target].row) {
-        if (path.back().words[3]) path.push_back({});
-        path.back().words[3] = frames_[edge->target].row;
-        edge = frames_[edge->target].edge;
-      }
-      if (isInner(*edge) && childrenOf(edge->target) <= limit && path.size() < kMostSteps)
-        collect(edge->target, path, children, limit / 2);
-      else if (edge->target != kNoNode)
-        children.push_back({path, offsetOf(edge->target) | (edge->recursive ? kEdgeRecursive : 0), endOf(*edge)});
-      path.resize(depth - 1);
-    });
-  }
-  void makeFamily(uint32_t index) {
-    std::vector<Child> children;
-    std::vector<Step> path;
-    collect(index, path, children, kMostChildren / 2);
-    // One that unites nothing is quicker by the graph's words.
-    if (std::all_of(children.begin(), children.end(),
-                    [](const Child& c) { return c.steps.size() == 1 && c.steps[0].words[3] == 0; }))
-      return;
-    for (const Child& child : children) {
-      if (child.end == kEndGoesOn || child.end == kEndWaits)
-        table_.entered[((child.target & ~kEdgeRecursive) - kHeaderSize) / kNodeSize] = true;
-      for (const Step& step : child.steps) {
-        table_.stepOperators |= 1u << (step.words[0] & kStepOperator);
-        if (step.words[3]) table_.frameFlags |= table_.words[4 * step.words[3] + kFrameFlags];
+  /// What an edge leads to, behind a path of so many steps. most: children that an operator may add.
+  std::vector<Child> collect(const Edge& first, std::vector<Step> path, uint32_t most, size_t depth) {
+    const Edge* edge = &first;
+    while (isFrame(*edge) && path.size() < kMostSteps) {
+      if (path.empty() || path.back().words[3]) path.emplace_back();
+      path.back().words[3] = frames_[edge->target].row;
+      edge = frames_[edge->target].edge;
+    }
+    if (edge->target == kNoNode) return {};
+    depth += path.size();
+    if (isInner(*edge) && depth < kMostSteps) {
+      const Extent extent = extentOf(edge->target);
+      const bool fits = extent.children <= most && extent.entries <= kMostEntries;
+      if (fits && chooses(graph_.nodes[edge->target])) {
+        if (extent.children > 1) return choose(edge->target, std::move(path), most, depth);
+      } else if (fits) {
+        return multiply(edge->target, path, most / 2, depth);
       }
     }
+    Child child;
+    child.steps = std::move(path);
+    child.target = offsetOf(edge->target) | (edge->recursive ? kEdgeRecursive : 0);
+    child.end = endOf(*edge);
+    return {std::move(child)};
+  }
+  std::vector<Child> multiply(uint32_t index, const std::vector<Step>& path, uint32_t most, size_t depth) {
+    std::vector<Child> children;
+    forChildren(index, [&](const Edge& edge, uint32_t number) {
+      std::vector<Step> longer = path;
+      longer.push_back(stepOf(index, number));
+      for (Child& child : collect(edge, std::move(longer), most, depth - path.size()))
+        children.push_back(std::move(child));
+    });
+    return children;
+  }
+  /// As many children as the choice that makes most; others discard those beyond theirs.
+  std::vector<Child> choose(uint32_t index, std::vector<Step> path, uint32_t most, size_t depth) {
+    table_.chooses[index] = true;
+    Step step;
+    step.words[0] = kOpIf;
+    step.words[2] = offsetOf(index);
+    path.push_back(step);
+    std::vector<Child> children;
+    const uint32_t edges = graph_.nodes[index].edgeCount;
+    for (uint32_t e = 0; e < edges; ++e) {
+      std::vector<Child> branch = collect(edgeOf(index, e), {}, most, depth + 1);
+      if (branch.size() > children.size()) children.resize(branch.size());
+      for (size_t i = 0; i < branch.size(); ++i) {
+        children[i].branches.resize(edges);
+        children[i].branches[e] = std::move(branch[i]);
+      }
+    }
+    for (Child& child : children) child.steps = path;
+    return children;
+  }
+  void makeFamily(uint32_t index) {
+    const Node& node = graph_.nodes[index];
+    const bool repeats = node.op == kOpRepeat;
+    std::vector<Child> children;
+    if (repeats)
+      children = collect(edgeOf(index, 0), {}, kMostChildren / 2, 0);
+    else
+      children = multiply(index, {}, kMostChildren / 2, 0);
+    // One that unites nothing is quicker by the graph's words.
+    const auto isAlone = [](const Child& c) { return c.steps.size() == 1 && c.steps[0].words[3] == 0; };
+    if (repeats ? children.size() < 2 : std::all_of(children.begin(), children.end(), isAlone)) return;
     const uint32_t row = here();
     table_.words[index] = row;
     table_.family[index] = true;
-    const auto add = [&](std::initializer_list<uint32_t> words) { table_.words.insert(table_.words.end(), words); };
-    add({static_cast<uint32_t>(children.size()), 0, 0, 0});
-    auto step = static_cast<uint32_t>(row + 1 + children.size());
-    for (const Child& child : children) {
-      add({step, static_cast<uint32_t>(child.steps.size()), child.target, child.end});
-      step += kStepSize * static_cast<uint32_t>(child.steps.size());
+    table_.repeats = table_.repeats || repeats;
+    table_.words.insert(table_.words.end(), {static_cast<uint32_t>(children.size()), repeats, 0, 0});
+    place(children);
+  }
+  /// The number of the code that takes these steps.
+  uint32_t programOf(const Child& child) {
+    KernelTable::Program program;
+    for (const Step& step : child.steps) {
+      const uint32_t frame = step.words[3];
+      const uint32_t flags = frame ? table_.words[4 * frame + kFrameFlags] : 0;
+      uint32_t op = step.words[0];
+      if ((op & kStepOperator) == kOpSubDiv && (step.words[2] | step.words[4] | step.words[6])) op |= kStepFixed;
+      program.push_back({op, flags});
     }
-    for (const Child& child : children)
-      for (const Step& s : child.steps) table_.words.insert(table_.words.end(), s.words.begin(), s.words.end());
+    const auto at = std::find(table_.programs.begin(), table_.programs.end(), program);
+    const auto number = static_cast<uint32_t>(at - table_.programs.begin());
+    if (at == table_.programs.end()) table_.programs.push_back(std::move(program));
+    return number;
+  }
+  /// Writes entries, then their steps and what those choose from. Returns where the entries are.
+  uint32_t place(const std::vector<Child>& children) {
+    const uint32_t at = here();
+    table_.words.resize(table_.words.size() + 4 * children.size());
+    for (size_t i = 0; i < children.size(); ++i) {
+      const Child& child = children[i];
+      if (child.end == kEndGoesOn || child.end == kEndWaits)
+        table_.entered[((child.target & ~kEdgeRecursive) - kHeaderSize) / kNodeSize] = true;
+      const uint32_t first = here();
+      const uint32_t entry[] = {first, programOf(child) << kEntryProgram | static_cast<uint32_t>(child.steps.size()),
+                                child.target, child.end};
+      std::copy_n(entry, 4, table_.words.begin() + 4 * (at + i));
+      for (const Step& step : child.steps) {
+        table_.stepOperators |= 1u << (step.words[0] & kStepOperator);
+        if (step.words[3]) table_.frameFlags |= table_.words[4 * step.words[3] + kFrameFlags];
+        table_.words.insert(table_.words.end(), step.words.begin(), step.words.end());
+      }
+      if (child.branches.empty()) continue;
+      const size_t last = table_.words.size() - 4 * kStepSize;
+      const uint32_t branches = place(child.branches);
+      table_.words[last + 1] = branches;
+    }
+    return at;
   }
 
   const Graph& graph_;
   const std::vector<bool>& waits_;
   KernelTable table_;
   std::vector<Frame> frames_;
-  std::vector<uint32_t> children_; // by node, 0: not counted yet
+  std::vector<Extent> extents_; // by node
 };
 } // namespace
 

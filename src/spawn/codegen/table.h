@@ -3,15 +3,27 @@
 #pragma once
 #include "spawn/graph/graph.h"
 
+#include <array>
+
 namespace gpgp::spawn {
 
 struct KernelTable {
+  /// Of each of a family's steps operator and flags, and its frame's flags: children with the same are made by the same
+  /// code, with other numbers.
+  using Program = std::vector<std::array<uint32_t, 2>>;
+
   std::vector<uint32_t> words;
+  std::vector<Program> programs;
   std::vector<bool> family;   ///< by node: its children are a family
+  std::vector<bool> chooses;  ///< by node: families go through this choice
   std::vector<bool> entered;  ///< by node: children of families go on there, at once or when they have waited
   uint32_t stepOperators = 0; ///< bits by kOp: of families' steps
   uint32_t frameFlags = 0;    ///< of the frames behind them, all together
+  bool repeats = false;       ///< some families are of Repeat
 };
+
+/// Programs that a kernel has code for. More are slower than a loop over the steps of all.
+constexpr size_t kMostPrograms = 8;
 
 /// Whether an operator multiplies every shape by the same number, but for parts without a length.
 bool multipliesByKnown(const Node& node);

@@ -63,6 +63,8 @@ constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
 constexpr uint32_t kSharedBytesEach = 16;
 constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 4,
                    kSoftwareRounds = 32;
+/// For few axioms: one round more would be another empty one for most.
+constexpr uint32_t kFewAxiomRounds = 3;
 
 /// What fits a kind of device.
 struct Limits {
@@ -333,14 +335,16 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 }
 
 /// All rounds but the last one only spread the work, of which a workgroup makes kGrowth times as many shapes, or in the
-/// round that is enough as many as kGrowing batches hold (shaders/spawn/derive.glsl). In uneven derivations they even
-/// it out as well, and nobody knows how much there is behind a counter, or in later phases.
+/// round that is enough, or the last but one, as many as kGrowing batches hold (shaders/spawn/derive_steps.glsl). In
+/// uneven derivations they even it out as well, and nobody knows how much there is behind a counter, or in later
+/// phases.
 uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const {
   const bool known = !info.axiomCounter.buffer && grammar.graph.phases <= 1;
   if (roundsGiven_ || context.device.software || grammar.uneven || !known) return rounds_;
   uint32_t rounds = 1;
   const uint64_t most = shader::kGrowing * fit.groupSize;
-  for (uint64_t shapes = std::max(info.axiomCount, 1u); shapes < fit.spread && rounds < rounds_; ++rounds)
+  const uint32_t mostRounds = std::min(rounds_, kFewAxiomRounds);
+  for (uint64_t shapes = std::max(info.axiomCount, 1u); shapes < fit.spread && rounds < mostRounds; ++rounds)
     shapes *= shapes * most < fit.spread ? shader::kGrowth : most;
   return rounds;
 }
