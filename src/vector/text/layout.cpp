@@ -81,7 +81,8 @@ Result<void> Layout::analyse() {
     end = begin;
     while (end < size && !ends(end)) ++end;
     if (end < size) ++end;
-    const auto level = bidiLevels(std::span(characters).subspan(begin, end - begin), given, levels_.data() + begin);
+    const auto paragraph = std::span(characters).subspan(begin, end - begin);
+    const auto level = shaping_->bidi.levels(paragraph, given, levels_.data() + begin);
     if (!level) return level.error();
     paragraphs_.push_back({begin, end, *level});
     const char* language = styles_[styleOf_[begin]].source->language;
