@@ -572,6 +572,19 @@ TEST(TextLayout, ALetterWithMarksWithoutEndIsLaidOut) { // by the square of thei
   EXPECT_GT(paper.caret(1 + 2 * kMarks).x, 0);
 }
 
+TEST(TextLayout, EachMissingCharacterIsToldOnce) { // also of a grapheme that is shaped in parts
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSansMono.ttf");
+  for (const uint32_t marks : {3u, 300u, 30000u}) {
+    std::string text = "a";
+    for (uint32_t i = 0; i < marks; ++i) text += "\u0e31";
+    Paper paper;
+    ASSERT_EQ(paper.set(textInfo(text, {font.get()}, 20)), GPGP_SUCCESS);
+    ASSERT_EQ(paper.info.missingCount, marks);
+    for (uint32_t i = 0; i < marks; ++i) ASSERT_EQ(paper.info.missing[i].offset, 1 + 3 * i);
+  }
+}
+
 TEST(TextLayout, ColoursAndInvisibleCharacters) {
   GPGP_NEEDS_FONTS();
   const FontHandle font = openFont("DejaVuSans.ttf");
