@@ -219,9 +219,9 @@ typedef struct GpgpFontFeature {
 } GpgpFontFeature;
 
 typedef struct GpgpTextStyle {
-  /** A grapheme takes the first that has all its characters; emoji the first of those in colour. White space goes with
-   *  what is before it, but for emoji in colour. What none has comes from the first with the grapheme's first
-   *  character, or the first, and is reported as missing. */
+  /** A grapheme takes the first that has all its characters; emoji the first of those in colour, and what U+FE0E wants
+   *  as text the first of the others. White space goes with what is before it, but for emoji in colour. What none has
+   *  comes from the first with the grapheme's first character, or the first, and is reported as missing. */
   const GpgpFont* fonts;
   uint32_t fontCount;
   float size;           /**< pixels an em; more than 0, at most 100000 */

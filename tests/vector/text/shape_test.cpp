@@ -292,6 +292,30 @@ TEST(TextShape, EmojiOfLatinCharactersAreInColour) {
   }
 }
 
+TEST(TextShape, PresentationIsTextOrEmojiInEitherOrderOfFonts) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle latin = openFont("NotoSans-Regular.ttf"), dejavu = openFont("DejaVuSans.ttf"),
+                   emoji = openFont("NotoColorEmoji.ttf");
+  Paper paper;
+  const auto fontOf = [&](const std::string& text, const std::vector<GpgpFont>& fonts) {
+    EXPECT_EQ(paper.set(textInfo(text, fonts, 10)), GPGP_SUCCESS);
+    EXPECT_EQ(paper.info.missingCount, 0u);
+    return paper.info.glyphs[0].font;
+  };
+  for (const std::vector<GpgpFont>& fonts : {std::vector<GpgpFont>{latin.get(), emoji.get(), dejavu.get()},
+                                             {latin.get(), dejavu.get(), emoji.get()},
+                                             {emoji.get(), dejavu.get()}})
+    for (const std::string each : {"❤", "☕", "☀", "♥", "⚡"}) {
+      SCOPED_TRACE(each);
+      EXPECT_EQ(fontOf(each + "\uFE0E", fonts), dejavu.get());
+      EXPECT_EQ(fontOf(each + "\uFE0F", fonts), emoji.get());
+    }
+  // Without a sign the character's own default counts, and what only a font in colour has is in colour.
+  const std::vector<GpgpFont> fonts = {latin.get(), emoji.get(), dejavu.get()};
+  EXPECT_EQ(fontOf("☕", fonts), emoji.get());
+  EXPECT_EQ(fontOf("☕\uFE0E", {latin.get(), emoji.get()}), emoji.get());
+}
+
 TEST(TextShape, SpacesBehindEmojiAreThoseOfText) {
   GPGP_NEEDS_FONTS();
   const FontHandle dejavu = openFont("DejaVuSans.ttf"), arabic = openFont("NotoNaskhArabic-Regular.ttf"),
