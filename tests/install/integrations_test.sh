@@ -29,6 +29,8 @@ GpgpResult frameOf(GpgpContext context, VkPhysicalDevice physicalDevice, VkDevic
 END
   block imgui 1
   block imgui 2
+  echo 'const uint32_t width = 1, height = 1;'
+  block imgui 3
   echo 'return GPGP_SUCCESS; }'
   # Without a device it says what it needs.
   echo 'int main() { try { imgui::Renderer renderer({}); } catch (const std::exception&) { return 0; } return 1; }'
