@@ -219,9 +219,9 @@ typedef struct GpgpFontFeature {
 } GpgpFontFeature;
 
 typedef struct GpgpTextStyle {
-  /** A grapheme takes the first that has all its characters; emoji the first of those in colour. White space goes with
-   *  what is before it, but for emoji in colour. What none has comes from the first with the grapheme's first
-   *  character, or the first, and is reported as missing. */
+  /** A grapheme takes the first that has all its characters; emoji the first of those in colour, and what U+FE0E wants
+   *  as text the first of the others. White space goes with what is before it, but for emoji in colour. What none has
+   *  comes from the first with the grapheme's first character, or the first, and is reported as missing. */
   const GpgpFont* fonts;
   uint32_t fontCount;
   float size;           /**< pixels an em; more than 0, at most 100000 */
@@ -282,8 +282,8 @@ typedef struct GpgpTextInfo {
   float lineHeight;     /**< pixels between lines instead; 0: the fonts' */
   float tabWidth;       /**< pixels between tab stops; 0: eight spaces */
   const char* ellipsis; /**< terminated; ends a text that was cut off, whose last line is filled up to it, with a part
-                           of a word, too; in one font and direction, whole also where it is wider than the width; NULL:
-                             "…" ("..." where no font has it) */
+                           of a word, too; in the style of what is before it, one font and direction, whole also where
+                             it is wider than the width; NULL: "…" ("..." where no font has it) */
 } GpgpTextInfo;
 #define GPGP_TEXT_INFO_INIT GPGP_INIT(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO)
 

@@ -34,7 +34,7 @@ struct RendererInfo {
   uint32_t subpass = 0;
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   bool srgbTarget = false; ///< the colour attachment encodes sRGB: ImGui's colours are then taken as linear
-  uint32_t maxWidth = 1920, maxHeight = 1080; ///< of the framebuffer, pixels
+  uint32_t maxWidth = 1920, maxHeight = 1080; ///< of the framebuffer, pixels: as large as the window may become
   uint32_t maxLayers = 4;                     ///< how often text and widgets may lie over each other
   uint32_t maxGlyphs = 8192;                  ///< of one frame
   uint32_t maxDrawings = 64;                  ///< widgets of one frame; at most 7 different drawings
@@ -79,14 +79,21 @@ public:
 
   /// After ImGui::Render, with its draw data, which is changed. Records an upload of all that the context has
   /// pending, and the canvas. NOT_READY: what is needed was not uploaded in one go: nothing of gpgp's is drawn in this
-  /// frame. An error: the same; the context's message says why. @pass outside
+  /// frame. An error: the same; the context's message says why. INVALID_ARGUMENT and no message: the framebuffer is
+  /// larger than maxWidth x maxHeight; the draw data is as it was, for resize() and another prepare, but not to be
+  /// drawn.
+  /// @pass outside
   /// @state as gpgpRecordPrepareCanvas
   GpgpResult prepare(ImDrawData& data, VkCommandBuffer commands, const GpgpFrame& frame);
+  /// A larger maxWidth or maxHeight: makes canvas and image anew. Does nothing where both are large enough; throws as
+  /// the constructor does, and all is as it was. The device must be idle as far as frames that were prepared are
+  /// concerned.
+  void resize(uint32_t maxWidth, uint32_t maxHeight);
   /// The command buffer that ImGui's renderer draws into next. The callbacks leave its state to ImGui's reset.
   void use(VkCommandBuffer commands);
 
   const FrameReport& report() const;
-  /// Canvas reports, to see exceeded budgets of the GPU: gpgpGetCanvasReport.
+  /// Canvas reports, to see exceeded budgets of the GPU: gpgpGetCanvasReport. Another one after resize().
   GpgpWorker canvas() const;
   /// Before a font is destroyed whose layouts were drawn.
   void forget(GpgpFont font);

@@ -30,6 +30,7 @@ RendererInfo checked(const RendererInfo& info) {
 
 struct Renderer::Impl {
   explicit Impl(const RendererInfo& wanted);
+  void makeCanvas(const RendererInfo& wanted);
   Piece& widget(ImDrawList& list, const ImVec2& position);
   void beginFrame();
   const float* boxOf(GpgpFont font, uint32_t glyph);
@@ -53,10 +54,10 @@ struct Renderer::Impl {
   integration::PlacedText text; // in the canvas
   List textList;                // that shows it
   std::vector<GpgpCanvasItem> items;
-  Layers layers;
+  std::unique_ptr<Layers> layers;
 };
 
-Renderer::Impl::Impl(const RendererInfo& wanted) : info(checked(wanted)), layers(wanted) {
+Renderer::Impl::Impl(const RendererInfo& wanted) : info(checked(wanted)) {
   integration::GlyphCacheInfo cacheInfo;
   cacheInfo.context = info.context;
   cacheInfo.label = "imgui";
@@ -70,19 +71,27 @@ Renderer::Impl::Impl(const RendererInfo& wanted) : info(checked(wanted)), layers
   Result<List> listMade = List::create(info.context);
   check(listMade.code(), "gpgpCreateList");
   textList = *std::move(listMade);
+  makeCanvas(wanted);
+  builder.onClose = [this](GpgpFont font) { cache.forget(font); };
+}
+
+/// With the image that it is rasterised into. Where it throws all is as it was.
+void Renderer::Impl::makeCanvas(const RendererInfo& wanted) {
+  auto newLayers = std::make_unique<Layers>(wanted);
   auto canvasInfo = init<GpgpCanvasCreateInfo>();
   canvasInfo.base.label = "imgui";
-  canvasInfo.base.queueFamily = info.queueFamily;
-  canvasInfo.maxWidth = info.maxWidth;
-  canvasInfo.maxHeight = layers.height();
-  canvasInfo.maxGlyphs = info.maxGlyphs;
+  canvasInfo.base.queueFamily = wanted.queueFamily;
+  canvasInfo.maxWidth = wanted.maxWidth;
+  canvasInfo.maxHeight = newLayers->height();
+  canvasInfo.maxGlyphs = wanted.maxGlyphs;
   canvasInfo.maxShapes = kMaxShapes;
-  canvasInfo.maxDrawings = info.maxDrawings + 2; // and one item for all glyphs, one for all pictures among them
-  Result<Canvas> made = Canvas::create(info.context, canvasInfo);
+  canvasInfo.maxDrawings = wanted.maxDrawings + 2; // and one item for all glyphs, one for all pictures among them
+  Result<Canvas> made = Canvas::create(wanted.context, canvasInfo);
   check(made.code(), "gpgpCreateCanvas");
+  check(made->prewarm(), "gpgpPrewarm");
   canvas = *std::move(made);
-  check(canvas.prewarm(), "gpgpPrewarm");
-  builder.onClose = [this](GpgpFont font) { cache.forget(font); };
+  layers = std::move(newLayers);
+  info = wanted;
 }
 
 // ---------------------------------------------------------------- widgets
@@ -187,6 +196,7 @@ GpgpResult Renderer::Impl::prepare(ImDrawData& data, VkCommandBuffer commands, c
   report = {};
   screen = {static_cast<uint32_t>(std::max(data.DisplaySize.x * data.FramebufferScale.x, 0.0f)),
             static_cast<uint32_t>(std::max(data.DisplaySize.y * data.FramebufferScale.y, 0.0f))};
+  if (screen.width > info.maxWidth || screen.height > info.maxHeight) return GPGP_ERROR_INVALID_ARGUMENT;
   PiecesInfo wanted;
   wanted.callback = onDraw;
   wanted.owner = this;
@@ -200,7 +210,6 @@ GpgpResult Renderer::Impl::prepare(ImDrawData& data, VkCommandBuffer commands, c
   collected = true;
   report.layers = pieces.layers;
   report.dropped = pieces.dropped;
-  if (screen.width > info.maxWidth || screen.height > info.maxHeight) return GPGP_ERROR_INVALID_ARGUMENT;
 
   items.clear();
   text.clear();
@@ -249,7 +258,7 @@ GpgpResult Renderer::Impl::prepare(ImDrawData& data, VkCommandBuffer commands, c
   const std::optional<GpgpCanvasImage> pictures = cache.image();
   canvasInfo.images = pictures ? &*pictures : nullptr;
   canvasInfo.imageCount = pictures ? 1 : 0;
-  canvasInfo.target = layers.target();
+  canvasInfo.target = layers->target();
   const GpgpResult result = canvas.recordPrepare(commands, frame, canvasInfo);
   ready = result == GPGP_SUCCESS;
   return result;
@@ -262,15 +271,24 @@ void Renderer::Impl::onDraw(const ImDrawList*, const ImDrawCmd* command) {
 
 void Renderer::Impl::draw(const Piece& piece) const {
   if (!ready || !target || piece.layer < 0) return;
-  layers.bind(target, screen);
+  layers->bind(target, screen);
   for (const Piece::Part& part : piece.parts) {
     const Rect shown = intersect(part.shown, piece.clip);
-    if (!shown.empty()) layers.draw(target, screen, shown, piece.layer);
+    if (!shown.empty()) layers->draw(target, screen, shown, piece.layer);
   }
 }
 
 GpgpResult Renderer::prepare(ImDrawData& data, VkCommandBuffer commands, const GpgpFrame& frame) {
   return impl_->prepare(data, commands, frame);
+}
+
+void Renderer::resize(uint32_t width, uint32_t height) {
+  RendererInfo wanted = impl_->info;
+  if (width <= wanted.maxWidth && height <= wanted.maxHeight) return;
+  wanted.maxWidth = std::max(width, wanted.maxWidth);
+  wanted.maxHeight = std::max(height, wanted.maxHeight);
+  impl_->makeCanvas(wanted);
+  impl_->ready = false;
 }
 
 void Renderer::use(VkCommandBuffer commands) { impl_->target = commands; }

@@ -151,8 +151,8 @@ int run(const Options& options) {
     info.device = device.device;
     info.queueFamily = device.family;
     info.renderPass = pass.handle();
-    info.maxWidth = swapchainInfo.maxExtent.width;
-    info.maxHeight = swapchainInfo.maxExtent.height;
+    info.maxWidth = swapchain.maxExtent().width;
+    info.maxHeight = swapchain.maxExtent().height;
     imgui::Renderer renderer(info);
     renderer.useFonts(*ImGui::GetIO().Fonts);
     Content content(context, options);

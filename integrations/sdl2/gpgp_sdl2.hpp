@@ -155,12 +155,13 @@ public:
   };
   VkFormat format() const { return format_.format; }
   VkExtent2D extent() const { return extent_; }
-  bool canBeRead() const { return canBeRead_; } ///< by Screenshot
+  VkExtent2D maxExtent() const { return info_.maxExtent; } ///< what a canvas of the window's size has to hold
+  bool canBeRead() const { return canBeRead_; }            ///< by Screenshot
   const std::vector<Image>& images() const { return images_; }
 
   /// Waits for the device and makes images of the window's size anew.
   void resize();
-  /// The next image, for the frame of this slot (of two). Nothing: the size has changed; resize() and try again.
+  /// The next image, for the frame of this slot (Frames::slot). Nothing: the size has changed; resize() and try again.
   std::optional<Acquired> acquire(uint32_t slot);
   void present(const Acquired& acquired);
 
@@ -175,7 +176,7 @@ private:
   VkExtent2D extent_{};
   bool canBeRead_ = false;
   std::vector<Image> images_;
-  VkSemaphore available_[2] = {};
+  std::vector<VkSemaphore> available_; // of each slot
 };
 
 /// One colour attachment, cleared, left to be presented.

@@ -96,7 +96,8 @@ public:
     canvasInfo.base.label = "window";
     canvasInfo.base.queueFamily = device.family;
     canvasInfo.base.queueFlags = device.queueFlags;
-    canvasInfo.maxWidth = canvasInfo.maxHeight = kMaxSide;
+    canvasInfo.maxWidth = swapchain.maxExtent().width;
+    canvasInfo.maxHeight = swapchain.maxExtent().height;
     canvas_ = take(Canvas::create(context_, canvasInfo), "gpgpCreateCanvas");
     target_ = init<GpgpTargetInfo>();
     target_.renderPass = pass_.handle();
@@ -169,7 +170,6 @@ public:
   }
 
 private:
-  static constexpr uint32_t kMaxSide = 4096;
   void makeView() {
     auto info = init<GpgpCanvasViewCreateInfo>();
     info.label = "window";

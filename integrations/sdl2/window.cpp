@@ -77,9 +77,6 @@ Swapchain::Swapchain(Device& device, const Window& window, const SwapchainInfo& 
         window.handle(),
         static_cast<int>(uint64_t{info.maxExtent.width} * static_cast<uint64_t>(width) / drawable.width),
         static_cast<int>(uint64_t{info.maxExtent.height} * static_cast<uint64_t>(height) / drawable.height));
-  VkSemaphoreCreateInfo semaphoreInfo{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
-  for (VkSemaphore& semaphore : available_)
-    check(vkCreateSemaphore(device.device, &semaphoreInfo, nullptr, &semaphore), "vkCreateSemaphore");
   resize();
 }
 
@@ -145,8 +142,14 @@ void Swapchain::resize() {
 }
 
 std::optional<Swapchain::Acquired> Swapchain::acquire(uint32_t slot) {
+  while (available_.size() <= slot) {
+    const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
+    VkSemaphore made = VK_NULL_HANDLE;
+    check(vkCreateSemaphore(device_.device, &info, nullptr, &made), "vkCreateSemaphore");
+    available_.push_back(made);
+  }
   Acquired acquired;
-  acquired.available = available_[slot % 2];
+  acquired.available = available_[slot];
   const VkResult result = vkAcquireNextImageKHR(device_.device, swapchain_, UINT64_MAX, acquired.available,
                                                 VK_NULL_HANDLE, &acquired.index);
   if (result == VK_ERROR_OUT_OF_DATE_KHR) return std::nullopt;

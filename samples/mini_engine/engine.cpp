@@ -76,11 +76,10 @@ void Engine::run(uint32_t frames) {
 void Engine::frame() {
   VkCommandBuffer commands = frames_.begin();
   if (!screen_ || !screen_->game().paused) ++step_;
-  const uint32_t number = static_cast<uint32_t>(frames_.number().current);
-  std::optional<Acquired> acquired = target_.acquire(number);
+  std::optional<Acquired> acquired = target_.acquire(frames_.slot());
   while (!acquired) {
     resize();
-    acquired = target_.acquire(number);
+    acquired = target_.acquire(frames_.slot());
   }
   gpgp_.check(gpgp_.context.advance(frames_.number()), "gpgpAdvance");
   collect();

@@ -1,5 +1,6 @@
 #include "game.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mini {
@@ -7,7 +8,7 @@ namespace mini {
 void Game::tick() {
   if (paused) return;
   ++ticks;
-  score += 7 + static_cast<uint32_t>(ticks % 5) * 3;
+  score = std::min(score + 7 + static_cast<uint32_t>(ticks % 5) * 3, kMaxScore);
 }
 
 float Game::health() const { return 0.72f + 0.10f * std::sin(static_cast<float>(ticks) * 0.05f); }

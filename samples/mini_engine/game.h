@@ -11,6 +11,8 @@ struct Under {
   uint32_t menu = UINT32_MAX, slot = UINT32_MAX;
 };
 
+constexpr uint32_t kMaxScore = 9999999; // seven digits have room
+
 struct Game {
   uint32_t score = 0, line = 0; // line: of the dialogue
   uint64_t ticks = 0;           // frames that the game went on

@@ -1,8 +1,10 @@
 // A small engine that uses all three gpgp services in one frame: a city from a grammar, a head-up display from SVG
 // drawings, and a model whose visible triangles are found and coloured.
 #include "engine.h"
+#include "game.h"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +23,7 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
                    screen.png. In a window: arrows and Enter, or the mouse
   --input LIST     for the screen, before the second frame: up, down, enter, click, or XxY, where the mouse moves to:
                    --input down,enter,134x350,click; in a window as its events; prints what happened
-  --score N        on the screen at the beginning
+  --score N        on the screen at the beginning, at most 9999999
   --stereo         the screen for two eyes, side by side, each half of the picture
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
   --decoupled      object-space shading of the model alone: what gpgp finds visible is shaded in compute, into a
@@ -84,6 +86,13 @@ bool parseInputs(const std::string& list, std::vector<mini::Input>& inputs) {
   return true;
 }
 
+/// Nothing but a number's digits.
+bool parseNumber(const char* text, uint32_t& number) {
+  const char* end = text + std::strlen(text);
+  const auto [at, error] = std::from_chars(text, end, number);
+  return at == end && error == std::errc();
+}
+
 /// False: wrong says what is.
 bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   for (int i = 1; i < argc; ++i) {
@@ -128,26 +137,24 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       options.data = value;
     else if (name == "--input" && parseInputs(value, options.inputs))
       continue;
-    else if (name == "--score" && std::sscanf(value, "%u%c", &options.score, &rest) == 1)
+    else if (name == "--score" && parseNumber(value, options.score) && options.score <= mini::kMaxScore)
       continue;
     else if (name == "--method" && (chosen = indexOf(value, {"standard", "exact", "truth", "conservative"})) >= 0 &&
              chosen != GPGP_SAMPLING_TRUTH)
       options.decoupled.method = chosen;
     else if (name == "--show" && (chosen = indexOf(value, {"shaded", "overlay", "density"})) >= 0)
       options.decoupled.show = static_cast<mini::DecoupledOptions::Show>(chosen);
-    else if (name == "--rate" && std::sscanf(value, "%u%c", &options.decoupled.rate, &rest) == 1 &&
-             options.decoupled.rate > 0)
+    else if (name == "--rate" && parseNumber(value, options.decoupled.rate) && options.decoupled.rate > 0)
       continue;
-    else if (name == "--freeze" && std::sscanf(value, "%u%c", &options.decoupled.freezeAfter, &rest) == 1)
+    else if (name == "--freeze" && parseNumber(value, options.decoupled.freezeAfter))
       continue;
-    else if (name == "--truth" && std::sscanf(value, "%u%c", &options.decoupled.truth, &rest) == 1 &&
-             options.decoupled.truth >= 2 && options.decoupled.truth <= 256 &&
-             !(options.decoupled.truth & (options.decoupled.truth - 1)))
+    else if (name == "--truth" && parseNumber(value, options.decoupled.truth) && options.decoupled.truth >= 2 &&
+             options.decoupled.truth <= 256 && !(options.decoupled.truth & (options.decoupled.truth - 1)))
       continue;
     else if (name == "--farther" && std::sscanf(value, "%f%c", &options.decoupled.farther, &rest) == 1 &&
              options.decoupled.farther >= 0.1f && options.decoupled.farther <= 8)
       continue;
-    else if (name == "--frames" && std::sscanf(value, "%u%c", &options.frames, &rest) == 1 && options.frames > 0)
+    else if (name == "--frames" && parseNumber(value, options.frames) && options.frames > 0)
       continue;
     else if (name == "--size" && std::sscanf(value, "%ux%u%c", &options.size.width, &options.size.height, &rest) == 2 &&
              options.size.width >= 64 && options.size.height >= 64 && options.size.width <= mini::kMaxExtent.width &&

@@ -43,6 +43,15 @@ std::array<float, 3> parseTriple(const std::string& text) {
   return values;
 }
 
+CLI::Validator pngFile() {
+  return {[](std::string& text) {
+            const size_t size = text.size();
+            const bool good = size > 4 && CLI::detail::to_lower(text.substr(size - 4)) == ".png";
+            return good ? std::string() : text + ": pictures are written as .png alone";
+          },
+          ""};
+}
+
 CLI::Validator within(double low, double high) {
   std::ostringstream range;
   range << low << " to " << high;

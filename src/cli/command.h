@@ -50,6 +50,8 @@ std::array<float, 3> parseTriple(const std::string& text);
 /// A callback option that holds a size.
 CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, const std::string& help);
 
+/// The name of a picture to be written: PNG is the only format.
+CLI::Validator pngFile();
 /// As CLI::Range, but what is no number is not within.
 CLI::Validator within(double low, double high);
 

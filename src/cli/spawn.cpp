@@ -386,7 +386,9 @@ Work addSpawn(CLI::App& app) {
       ->check(CLI::IsMember({"instances", "vertices"}))
       ->capture_default_str();
   command->add_flag("--sorted", options->sorted, "Instances lie by bucket, with a draw command each");
-  command->add_option("--image", options->image, "Write a picture of the result")->type_name("FILE.png");
+  command->add_option("--image", options->image, "Write a picture of the result")
+      ->check(pngFile())
+      ->type_name("FILE.png");
   command->add_option("--yaw", options->yaw, "That picture's view: degrees around the scene")->capture_default_str();
   command->add_option("--pitch", options->pitch, "Degrees above the horizon")
       ->check(within(-89.0, 89.0))

@@ -148,6 +148,7 @@ Work addText(CLI::App& app) {
       ->required();
   command->add_option("OUT", options->out, "The picture, which fits the text and a margin")
       ->required()
+      ->check(pngFile())
       ->type_name("FILE.png");
   command->add_option("--size", options->page.size, "Pixels an em")
       ->check(within(1.0, 4096.0))

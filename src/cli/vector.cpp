@@ -252,7 +252,7 @@ Work addVector(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--background", options->background, "CSS colour behind the drawing (default: transparent)")
       ->type_name("COLOUR");
-  command->add_option("-o,--out,OUT", options->out, "Write the picture")->type_name("FILE.png");
+  command->add_option("-o,--out,OUT", options->out, "Write the picture")->check(pngFile())->type_name("FILE.png");
   command->add_flag("--truth", options->truth,
                     "Compare with 256 samples a pixel, composited by winding numbers on the CPU (slow)");
   command->add_option("--stages", options->stages, "Write each stage of the conversion as SVG")->type_name("FOLDER");

@@ -96,12 +96,14 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       ->capture_default_str();
   command
       .add_option("--overlay", options.overlay, "Green standard, grey added by the method, red too much, blue missed")
+      ->check(pngFile())
       ->type_name("FILE.png");
   command.add_option("--export-ids", options.exportIds, "Visible triangles as little-endian uint32")->type_name("FILE");
   command.add_option("--repeat", options.repeat, "Sample N times and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
   command.add_option("--image", options.image, "Write a picture: the camera's view, and the same from the side")
+      ->check(pngFile())
       ->type_name("FILE.png");
   command.footer(R"(
 Examples:

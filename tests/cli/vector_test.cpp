@@ -237,6 +237,8 @@ TEST(CliVector, WrongUsage) {
   const TemporaryFile file("usage.svg", kHalves);
   expectWrongUsage({{"vector"},
                     {"vector", "no_such_file.svg"},
+                    {"vector", file.path(), "--out", "out.jpg"},
+                    {"vector", file.path(), "--out", "png"},
                     {"vector", file.path(), "--aa", "3"},
                     {"vector", file.path(), "--aa", "exact"},
                     {"vector", file.path(), "--background", "ffffff"},

@@ -115,6 +115,16 @@ TEST(Screen, ScoreChangesOnlyItsBoxAndASettledFrameConvertsNothing) {
   EXPECT_LT(orange, 120u);
 }
 
+TEST(Screen, ScoresHaveSevenDigits) {
+  for (const char* score : {"-5", "10000000", "99999999999999999999", "12x", "+7", ""}) {
+    const std::string command =
+        std::string("\"") + GPGP_MINI_ENGINE + "\" --screen --score \"" + score + "\" 2>/dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << score;
+  }
+  const Shown highest = runScreen("score-highest", "--frames 2 --size 640x360 --score 9999999");
+  EXPECT_NE(highest.text.find("score       9999999 at"), std::string::npos) << highest.text;
+}
+
 TEST(Screen, MenuIsDrivenByMouseAndKeysAndIsThereWithoutFonts) {
   // A folder of test data in which nothing was fetched.
   const fs::path data = kOut / "data";

@@ -9,7 +9,15 @@ rm -rf "$scratch"
 mkdir -p "$scratch"
 # block PAGE N: the page's Nth block of C++
 block() { awk -v n="$2" '/^```/ { inside = /^```cpp/ && ++count == n; next } inside' "$source/integrations/$1/README.md"; }
-block sdl2 1 >"$scratch/window.cpp"
+# As it is, but that it says when a frame is on its way to the window.
+block sdl2 1 | sed 's/swapchain.present(\*image);/& std::puts("shown"), std::fflush(stdout);/' >"$scratch/window.cpp"
+sed -i '1i #include <cstdio>' "$scratch/window.cpp"
+# The same in a window that is larger than a canvas is where nothing is said.
+sed 's/{"tool", 960, 540}/{"tool", 2400, 1300}/' "$scratch/window.cpp" >"$scratch/large.cpp"
+if cmp -s "$scratch/window.cpp" "$scratch/large.cpp"; then
+  echo "FAILED: the page's window has another size" >&2
+  exit 1
+fi
 {
   cat <<END
 #include <gpgp_imgui.hpp>
@@ -21,6 +29,8 @@ GpgpResult frameOf(GpgpContext context, VkPhysicalDevice physicalDevice, VkDevic
 END
   block imgui 1
   block imgui 2
+  echo 'const uint32_t width = 1, height = 1;'
+  block imgui 3
   echo 'return GPGP_SUCCESS; }'
   # Without a device it says what it needs.
   echo 'int main() { try { imgui::Renderer renderer({}); } catch (const std::exception&) { return 0; } return 1; }'
@@ -30,28 +40,36 @@ cmake_minimum_required(VERSION 3.25)
 project(tool LANGUAGES CXX)
 find_package(gpgp REQUIRED)
 add_subdirectory($source/integrations gpgp-integrations)
-foreach(program window widgets)
+foreach(program window large widgets)
   add_executable(\${program} \${program}.cpp)
   target_compile_options(\${program} PRIVATE -Wall -Werror)
 endforeach()
 target_link_libraries(window PRIVATE gpgp::sdl2)
+target_link_libraries(large PRIVATE gpgp::sdl2)
 target_link_libraries(widgets PRIVATE gpgp::imgui)
 END
 launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 "$cmake" -S "$scratch" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=None \
   -DCMAKE_CXX_COMPILER="$cxx" "${launcher[@]}"
-"$cmake" --build "$scratch/build" --target window widgets
+"$cmake" --build "$scratch/build" --target window large widgets
 "$scratch/build/widgets"
-# It goes on until its window is closed, which SDL takes a signal for, and then ends well.
-run='"$1" & sleep 10 && kill -TERM $! && wait $!'
-if ! SDL_VIDEODRIVER=x11 VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "$xvfb" -a -s "-screen 0 1280x800x24" \
-  bash -c "$run" window "$scratch/build/window" >"$scratch/window.log" 2>&1; then
-  cat "$scratch/window.log"
-  echo "FAILED: the window's program did not end well" >&2
-  exit 1
-fi
-if grep -i "validation" "$scratch/window.log"; then
-  echo "FAILED: validation messages" >&2
-  exit 1
-fi
+# They go on until their window is closed, which SDL takes a signal for, and then end well.
+run='"$1" >"$2" 2>&1 & program=$!
+  for ((i = 0; i < 1200; ++i)); do
+    if grep -q shown "$2" || ! kill -0 $program; then break; fi
+    sleep 0.1
+  done
+  sleep 1; kill -TERM $program; wait $program && grep -q shown "$2"'
+for program in window large; do
+  if ! SDL_VIDEODRIVER=x11 VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "$xvfb" -a -s "-screen 0 2600x1400x24" \
+    bash -c "$run" "$program" "$scratch/build/$program" "$scratch/$program.log"; then
+    cat "$scratch/$program.log"
+    echo "FAILED: the program of the $program window did not end well" >&2
+    exit 1
+  fi
+  if grep -i "validation" "$scratch/$program.log"; then
+    echo "FAILED: validation messages" >&2
+    exit 1
+  fi
+done

@@ -238,6 +238,9 @@ struct ImGuiTest : testing::Test {
     EXPECT_EQ(stage->device.validationMessages(), 0u);
     for (const std::string& message : stage->messages) ADD_FAILURE() << message;
     stage->messages.clear();
+    GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT; // only so many are kept
+    while (gpgpGetCanvasReport(screen.renderer->canvas(), &report) == GPGP_SUCCESS) {
+    }
   }
   inline static std::unique_ptr<Screen> gpgpScreen;
   Screen& screen = *gpgpScreen;
@@ -611,16 +614,47 @@ TEST_F(ImGuiTest, FramesMayBeEmptySkippedOrRepeated) {
   EXPECT_EQ(screen.renderer->report().glyphs, 4u);
   stage->frames.submit();
   EXPECT_EQ(at(once, 150, 150), (Color{0xc0, 0x30, 0x20}));
-  ImGui::GetIO().DisplaySize = {kWidth * 2, kHeight}; // beyond maxWidth
-  ImGui::NewFrame();
-  ui();
-  ImGui::Render();
-  commands = stage->frames.begin();
-  EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
-  EXPECT_EQ(screen.renderer->prepare(*ImGui::GetDrawData(), commands, stage->frames.number()),
-            GPGP_ERROR_INVALID_ARGUMENT);
-  stage->frames.submit();
+}
+
+/// A framebuffer beyond maxWidth or maxHeight is refused with the draw data as it was, and prepared after a resize.
+TEST_F(ImGuiTest, AFramebufferBeyondTheLimitsIsRefusedAndCanBeMadeRoomFor) {
+  const auto ui = [] { ImGui::GetForegroundDrawList()->AddText({20, 20}, IM_COL32(255, 255, 255, 255), "text"); };
+  const host::Picture before = screen.render(ui);
+  const auto sizes = [] {
+    std::vector<int> all;
+    for (int i = 0; i < ImGui::GetDrawData()->CmdListsCount; ++i) {
+      const ImDrawList& list = *ImGui::GetDrawData()->CmdLists[i];
+      all.insert(all.end(), {list.CmdBuffer.Size, list.IdxBuffer.Size, list.VtxBuffer.Size});
+    }
+    return all;
+  };
+  const auto prepare = [&] {
+    VkCommandBuffer commands = stage->frames.begin();
+    EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
+    const GpgpResult result = screen.renderer->prepare(*ImGui::GetDrawData(), commands, stage->frames.number());
+    stage->frames.submit();
+    return result;
+  };
+  std::vector<int> given;
+  for (const ImVec2 size : {ImVec2{kWidth * 2, kHeight}, ImVec2{kWidth, kHeight + 1}}) {
+    ImGui::GetIO().DisplaySize = size;
+    ImGui::NewFrame();
+    ui();
+    ImGui::Render();
+    given = sizes();
+    EXPECT_EQ(prepare(), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(sizes(), given);
+    EXPECT_EQ(screen.renderer->report().glyphs, 0u);
+  }
+  vkDeviceWaitIdle(stage->device.device);
+  EXPECT_THROW(screen.renderer->resize(1u << 30, 1), std::runtime_error);
+  EXPECT_EQ(prepare(), GPGP_ERROR_INVALID_ARGUMENT); // all is as it was
+  screen.renderer->resize(kWidth, kHeight + 1);
+  EXPECT_EQ(prepare(), GPGP_SUCCESS);
+  EXPECT_EQ(screen.renderer->report().glyphs, 4u);
+  EXPECT_NE(sizes(), given);
   ImGui::GetIO().DisplaySize = {kWidth, kHeight};
+  EXPECT_EQ(screen.render(ui).rgba, before.rgba); // smaller again
 }
 
 } // namespace

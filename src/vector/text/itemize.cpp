@@ -107,6 +107,11 @@ bool hasOtherForm(const Font& font, std::span<const char32_t> characters) {
   return false;
 }
 
+/// To be shown as text: by U+FE0E.
+bool wantsNoColor(std::span<const char32_t> grapheme) {
+  return std::find(grapheme.begin(), grapheme.end(), U'\ufe0e') != grapheme.end();
+}
+
 /// To be shown as an emoji (UTS #51): by itself, by U+FE0F, and a digit, # or * by the mark of a keycap behind that
 /// only.
 bool wantsColor(std::span<const char32_t> grapheme) {
@@ -115,7 +120,7 @@ bool wantsColor(std::span<const char32_t> grapheme) {
     return u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), property) != 0;
   };
   const auto has = [&](char32_t c) { return std::find(grapheme.begin(), grapheme.end(), c) != grapheme.end(); };
-  if (has(0xfe0e)) return false;
+  if (wantsNoColor(grapheme)) return false;
   if (is(UCHAR_EMOJI_PRESENTATION)) return true;
   return has(0xfe0f) && is(UCHAR_EMOJI) && (grapheme[0] >= 0x80 || has(0x20e3));
 }
@@ -150,9 +155,10 @@ hb_script_t Itemizer::scriptOf(std::span<const char32_t> characters) {
 
 Font* Itemizer::fontOf(std::span<const char32_t> grapheme, const Style& style) {
   const uint32_t count = style.source->fontCount;
-  if (wantsColor(grapheme))
+  const bool inColor = wantsColor(grapheme);
+  if (inColor || wantsNoColor(grapheme))
     for (uint32_t i = 0; i < count; ++i)
-      if (isColored(*style.font(i)) && hasAll(*style.font(i), grapheme)) return style.font(i);
+      if (isColored(*style.font(i)) == inColor && hasAll(*style.font(i), grapheme)) return style.font(i);
   for (uint32_t i = 0; i < count; ++i)
     if (hasAll(*style.font(i), grapheme) || (grapheme[0] >= 0x80 && hasOtherForm(*style.font(i), grapheme)) ||
         (grapheme.size() > 1 && hasOtherForm(*style.font(i), grapheme)))

@@ -34,8 +34,8 @@ struct Itemizer {
 
   /// Appends the runs of a paragraph.
   void paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) const;
-  /// The font of a grapheme in a style: the first that has all its characters, for emoji the first such in colour; else
-  /// the first that has its first character; else the first.
+  /// The font of a grapheme in a style: the first that has all its characters, for emoji the first such in colour, and
+  /// where U+FE0E wants text the first such without; else the first that has its first character; else the first.
   static Font* fontOf(std::span<const char32_t> grapheme, const Style& style);
   /// The script of the first character that has one of its own.
   static hb_script_t scriptOf(std::span<const char32_t> characters);

@@ -81,7 +81,8 @@ Result<void> Layout::analyse() {
     end = begin;
     while (end < size && !ends(end)) ++end;
     if (end < size) ++end;
-    const auto level = bidiLevels(std::span(characters).subspan(begin, end - begin), given, levels_.data() + begin);
+    const auto paragraph = std::span(characters).subspan(begin, end - begin);
+    const auto level = shaping_->bidi.levels(paragraph, given, levels_.data() + begin);
     if (!level) return level.error();
     paragraphs_.push_back({begin, end, *level});
     const char* language = styles_[styleOf_[begin]].source->language;
@@ -174,13 +175,15 @@ void Layout::shapeRuns() {
       if (glyph.safe) flags_[glyph.cluster] |= kSafe;
       if (glyph.glyph != 0 || glyph.cluster == reported) continue;
       reported = glyph.cluster;
-      const uint32_t end = nextGrapheme(glyph.cluster);
-      for (uint32_t c = glyph.cluster; c < end; ++c)
+      // The rest of the grapheme, as far as the run goes: another run of it tells its own.
+      for (uint32_t c = glyph.cluster; c < run.end && (c == glyph.cluster || !(flags_[c] & kGrapheme)); ++c)
         if (!run.font->has(text_.characters[c]) && !isIgnorable(text_.characters[c]))
           missing_.push_back({text_.byteOf[c], text_.characters[c]});
     }
   }
   std::sort(missing_.begin(), missing_.end(), [](auto& a, auto& b) { return a.offset < b.offset; });
+  const auto same = [](auto& a, auto& b) { return a.offset == b.offset; };
+  missing_.erase(std::unique(missing_.begin(), missing_.end(), same), missing_.end());
 }
 
 uint32_t Layout::runAt(uint32_t character) const {

@@ -57,6 +57,14 @@ private:
     float ascent = 0, descent = 0, height = 0, above = 0; // above: from the top to the baseline
   };
 
+  /// The largest of the fonts of a line, pixels.
+  struct Metrics {
+    float ascent = 0, descent = 0, gap = 0;
+    bool any = false;
+    void use(const Run& run, const Style& style);
+    float height(const GpgpTextInfo& info) const;
+  };
+
   Result<void> analyse();
   void shapeRuns();
   void breakLines();
@@ -71,8 +79,9 @@ private:
   uint32_t insert(const char* text, const char* otherwise, uint32_t style, uint8_t level, uint32_t at);
   float insertedWidth(const Run& run) const;
   void build(Line& line, uint32_t inserted = ~0u);
-  void metrics(Line& line) const;
-  void cutOff(Line& line);
+  Metrics metricsOf(const Line& line) const;
+  void setHeight(Line& line) const;
+  void cutOff(Line& line, double room);
   double inkWidth(uint32_t begin, uint32_t end);
   uint32_t runAt(uint32_t character) const;
   uint32_t inkEndOf(uint32_t begin, uint32_t end) const;

@@ -180,85 +180,115 @@ Layout::Line Layout::breakLine(uint32_t begin, uint8_t level) {
   return line;
 }
 
-void Layout::metrics(Line& line) const {
-  float gap = 0;
-  line.ascent = line.descent = 0;
-  bool first = true;
-  const auto use = [&](const Font& font, float size) {
-    const GpgpFontInfo& info = font.info();
-    line.ascent = first ? info.ascent * size : std::max(line.ascent, info.ascent * size);
-    line.descent = first ? info.descent * size : std::max(line.descent, info.descent * size);
-    gap = std::max(gap, info.lineGap * size);
-    first = false;
-  };
+void Layout::Metrics::use(const Run& run, const Style& style) {
+  const GpgpFontInfo& info = run.font->info();
+  const float size = style.source->size;
+  ascent = any ? std::max(ascent, info.ascent * size) : info.ascent * size;
+  descent = any ? std::max(descent, info.descent * size) : info.descent * size;
+  gap = std::max(gap, info.lineGap * size);
+  any = true;
+}
+
+float Layout::Metrics::height(const GpgpTextInfo& info) const {
+  const float natural = ascent + descent + gap;
+  return info.lineHeight > 0 ? info.lineHeight : info.lineSpacing > 0 ? natural * info.lineSpacing : natural;
+}
+
+/// Of its characters: an ellipsis or a hyphen makes no line higher, and alone it takes the place of the first.
+Layout::Metrics Layout::metricsOf(const Line& line) const {
+  Metrics metrics;
+  const auto use = [&](const Run& run) { metrics.use(run, styles_[run.style]); };
   for (uint32_t i = 0; i < line.pieceCount; ++i) {
     const Run& run = runs_[pieces_[line.firstPiece + i].run];
-    use(*run.font, styles_[run.style].source->size);
+    if (run.kind != Run::Kind::inserted) use(run);
   }
-  if (line.pieceCount == 0) {
-    const Style& style = styles_[text_.size() ? styleOf_[text_.size() - 1] : 0];
-    use(*style.font(0), style.source->size);
+  if (metrics.any) return metrics;
+  if (line.begin < text_.size()) {
+    use(runs_[runAt(line.begin)]);
+  } else {
+    Run none{};
+    none.style = text_.size() ? styleOf_[text_.size() - 1] : 0;
+    none.font = styles_[none.style].font(0);
+    use(none);
   }
-  const float natural = line.ascent + line.descent + gap;
-  line.height = info_->lineHeight > 0    ? info_->lineHeight
-                : info_->lineSpacing > 0 ? natural * info_->lineSpacing
-                                         : natural;
+  return metrics;
+}
+
+void Layout::setHeight(Line& line) const {
+  const Metrics metrics = metricsOf(line);
+  line.ascent = metrics.ascent;
+  line.descent = metrics.descent;
+  line.height = metrics.height(*info_);
   line.above = (line.height - line.ascent - line.descent) / 2 + line.ascent;
 }
 
-/// As much of the line as fits before an ellipsis, of a word that does not fit whole, too.
-void Layout::cutOff(Line& line) {
-  truncated_ = true;
+/// Fills the last line with what follows as long as the line grows no higher than `room`, and takes as much away again
+/// as the ellipsis needs, of a word that does not fit whole, too. The ellipsis has the style of what is before it.
+void Layout::cutOff(Line& line, double room) {
   const double limit = info_->width > 0 ? static_cast<double>(info_->width) + kSlack : HUGE_VAL;
-  const uint32_t begin = line.begin;
-  double x = inkWidth(begin, line.end);
+  const uint32_t begin = line.begin, size = text_.size();
+  const bool marked = !info_->ellipsis || info_->ellipsis[0];
+  Metrics metrics = metricsOf(line);
   uint32_t end = line.end;
-  while (end < text_.size() && !(flags_[end] & kHardBreak) && x <= limit) x += static_cast<double>(width_[end++]);
-  end = inkEndOf(begin, graphemeAt(end));
-  const uint32_t style = styleOf_[end > begin ? end - 1 : begin];
-  uint32_t index = ~0u;
-  double room = limit;
-  if (!info_->ellipsis || info_->ellipsis[0]) {
-    index = insert(info_->ellipsis ? info_->ellipsis : "\xe2\x80\xa6", info_->ellipsis ? nullptr : "...", style,
-                   line.level, end);
-    room -= static_cast<double>(insertedWidth(runs_[index]));
+  for (double x = inkWidth(begin, end); end < size && !(flags_[end] & kHardBreak) && x <= limit; ++end) {
+    const Run& run = runs_[runAt(end)];
+    metrics.use(run, styles_[run.style]);
+    if (static_cast<double>(metrics.height(*info_)) > room) break;
+    x += static_cast<double>(width_[end]);
   }
+  if (end == size) { // what was too much for the line may take room away: letters that are brought together
+    pieces_.resize(line.firstPiece);
+    line.end = end;
+    line.hard = true;
+    build(line);
+    if (line.ink <= limit) return setHeight(line);
+  }
+  truncated_ = true;
+  end = inkEndOf(begin, graphemeAt(end));
   const auto shorter = [&] { return inkEndOf(begin, std::max(begin, graphemeAt(end - 1))); };
-  while (end > begin && inkWidth(begin, end) > room) end = shorter();
-  for (;;) {
+  uint32_t index = ~0u;
+  for (;; end = shorter()) {
+    const uint32_t style = styleOf_[end > begin ? end - 1 : begin];
+    if (marked && (index == ~0u || runs_[index].style != style))
+      index = insert(info_->ellipsis ? info_->ellipsis : "\xe2\x80\xa6", info_->ellipsis ? nullptr : "...", style,
+                     line.level, end);
+    const double ellipsis = index == ~0u ? 0 : static_cast<double>(insertedWidth(runs_[index]));
+    if (end > begin && inkWidth(begin, end) + ellipsis > limit) continue;
     pieces_.resize(line.firstPiece);
     line.end = end;
     build(line, index);
     if (line.ink <= limit || end == begin) break;
-    end = shorter();
   }
   line.hard = true;
   for (uint32_t i = 0; index != ~0u && i < runs_[index].glyphCount; ++i)
     shaped_[runs_[index].firstGlyph + i].cluster = end;
-  metrics(line);
+  setHeight(line);
 }
 
 void Layout::breakLines() {
   const uint32_t size = text_.size();
-  float top = 0;
+  const double highest = info_->height > 0 ? static_cast<double>(info_->height) + kSlack : HUGE_VAL;
+  double top = 0;
   size_t paragraph = 0;
   uint32_t at = 0;
   do {
     while (paragraph + 1 < paragraphs_.size() && paragraphs_[paragraph].end <= at) ++paragraph;
     if (info_->maxLines && cut_.size() == info_->maxLines) break;
     Line line = breakLine(at, paragraphs_[paragraph].level);
-    metrics(line);
-    if (info_->height > 0 && !cut_.empty() &&
-        static_cast<double>(top + line.height) > static_cast<double>(info_->height) + kSlack) {
+    setHeight(line);
+    if (!cut_.empty() && top + static_cast<double>(line.height) > highest) {
       pieces_.resize(line.firstPiece);
       break;
     }
-    top += line.height;
+    top += static_cast<double>(line.height);
     cut_.push_back(line);
     at = line.end;
     if (at == size && (line.begin == size || !isNewline(text_.characters[size - 1]))) return;
   } while (true);
-  if (at < size) cutOff(cut_.back());
+  if (at == size) return;
+  Line& last = cut_.back();
+  const double own = static_cast<double>(last.height);
+  cutOff(last, std::max(highest - (top - own), own));
 }
 
 } // namespace gpgp::text

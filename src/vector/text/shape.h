@@ -43,6 +43,7 @@ public:
   void report(GpgpShaperReport& report) const;
 
   Breaks breaks;
+  Bidi bidi;
   Messages messages;
 
 private:

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <fribidi.h>
 #include <unicode/ubrk.h>
 
 namespace gpgp::text {
@@ -65,9 +66,19 @@ private:
   std::vector<std::pair<std::string, Iterator>> lines_; // by language
 };
 
-/// The embedding levels of a paragraph after UAX #9 (its line break included) and the level of the paragraph itself.
-/// direction: -1 left to right, 1 right to left, 0 by its first strong character.
-Result<uint8_t> bidiLevels(std::span<const char32_t> paragraph, int direction, uint8_t* levels);
+/// FriBidi, and the memory that it is given. It takes some of its own for each paragraph with characters from right to
+/// left or marks of direction, and for none else.
+class Bidi {
+public:
+  /// The embedding levels of a paragraph after UAX #9 (its line break included) and the level of the paragraph itself.
+  /// direction: -1 left to right, 1 right to left, 0 by its first strong character.
+  Result<uint8_t> levels(std::span<const char32_t> paragraph, int direction, uint8_t* levels);
+
+private:
+  std::vector<FriBidiCharType> types_;
+  std::vector<FriBidiBracketType> brackets_;
+  std::vector<FriBidiLevel> levels_;
+};
 
 /// Rule L2: from the levels of pieces in the order of the text to the order in which they are seen, left to right.
 void visualOrder(std::span<const uint8_t> levels, std::vector<uint32_t>& order);

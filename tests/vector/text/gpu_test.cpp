@@ -195,19 +195,21 @@ TEST_F(TextGpu, TenThousandGlyphsWhoseStringChangesEachFrame) {
   const std::vector<GpgpFont> fonts = {font.get()};
   const GpgpWorker canvas = makeCanvas(kSize, 13000);
   const GpgpAsset set = makeSet();
-  add(set, font.get(), closure(font.get(), {{' ', '~'}}));
+  const auto glyphs = closure(font.get(), {{' ', '~'}, {0x400, 0x44f}, {0x2010, 0x2026}, {0x20ac, 0x20ac}});
+  add(set, font.get(), glyphs);
   const host::Image image(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = kSize, .height = kSize});
 
   // Lines of words, of which each frame has others in another order; "ffi" and "fl" are ligatures.
   std::mt19937 random(11);
   const auto word = [&random] {
-    static const char* const kWords[] = {"office", "waffles", "score", "gold", "AVATAR", "fjord", "42", "1200", "x=y"};
-    return std::string(kWords[random() % 9]) + std::to_string(random() % 1000) + ' ';
+    static const char* const kWords[] = {"office", "waffles", "score", "gold",  "AVATAR", "fjord", "42",
+                                         "1200",   "x=y",     "don’t", "“5 €”", "wait…",  "– —",   "Золото"};
+    return std::string(kWords[random() % std::size(kWords)]) + std::to_string(random() % 1000) + ' ';
   };
   std::vector<std::string> pool;
   for (int i = 0; i < 150; ++i) {
     std::string line;
-    while (line.size() < 112) line += word();
+    while (line.size() < 128) line += word();
     pool.push_back(line);
   }
   const auto stringOf = [&] {
@@ -307,7 +309,7 @@ TEST_F(TextGpu, TenThousandGlyphsWhoseStringChangesEachFrame) {
   }
   // The last picture is the one of a set that never saw another text.
   const GpgpAsset fresh = makeSet();
-  add(fresh, font.get(), closure(font.get(), {{' ', '~'}}));
+  add(fresh, font.get(), glyphs);
   ASSERT_EQ(placer.place(
                 [&] {
                   GpgpLayoutInfo layout = GPGP_LAYOUT_INFO_INIT;

@@ -410,6 +410,122 @@ TEST(TextLayout, SpansHaveTheirStyle) {
   }
 }
 
+TEST(TextLayout, AnEllipsisHasTheStyleBeforeIt) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  const std::vector<GpgpFont> fonts = {font.get()};
+  const std::string text = "small text here BIGWORD and more";
+  GpgpTextInfo info = textInfo(text, fonts, 20);
+  GpgpTextSpan span = {16, 23, info.style};
+  span.style.size = 60;
+  span.style.color[0] = 1;
+  span.style.underline = VK_TRUE;
+  info.spans = &span;
+  info.spanCount = 1;
+  info.maxLines = 1;
+  Paper paper;
+  std::set<uint32_t> seen;
+  for (float width = 5; width < 560; width += 7) {
+    SCOPED_TRACE(width);
+    info.width = width;
+    ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+    ASSERT_TRUE(paper.info.truncated);
+    const GpgpTextLine& line = paper.info.lines[0];
+    const GpgpTextGlyph& ellipsis = paper.info.glyphs[paper.info.glyphCount - 1];
+    const uint32_t last = line.end > 0 ? line.end - 1 : 0, style = last >= 16 && last < 23;
+    EXPECT_EQ(ellipsis.span, style);
+    EXPECT_EQ(ellipsis.size, style ? 60 : 20);
+    EXPECT_EQ(ellipsis.color[0], style ? 1 : 0);
+    EXPECT_EQ(paper.info.decorationCount, line.end > 16 ? 1u : 0u);
+    EXPECT_NEAR(line.ascent, (line.end > 16 ? 60 : 20) * infoOf(font.get()).ascent, 0.01f);
+    if (line.end > 0) { // but for the ellipsis alone, which is whole
+      EXPECT_LE(line.width, width + 0.02f);
+    }
+    seen.insert(line.end <= 16 ? 0 : line.end <= 23 ? 1 : 2);
+  }
+  EXPECT_EQ(seen.size(), 3u); // cut before, within and behind the word
+  // Nothing of the line is kept: the style of its first.
+  span.begin = 0;
+  info.width = 5;
+  ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+  ASSERT_EQ(paper.info.glyphCount, 1u);
+  EXPECT_EQ(paper.info.glyphs[0].size, 60);
+}
+
+TEST(TextLayout, TheLastLineStaysWithinTheHeight) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf"), arabic = openFont("NotoNaskhArabic-Regular.ttf");
+  const std::vector<GpgpFont> fonts = {font.get(), arabic.get()};
+  Paper paper;
+  // Words that would fit the width, but are too high for what is left.
+  const std::string text = "one two three four BIGWORD and more";
+  GpgpTextInfo info = textInfo(text, fonts, 20);
+  GpgpTextSpan span = {19, 26, info.style};
+  span.style.size = 60;
+  info.spans = &span;
+  info.spanCount = 1;
+  uint32_t refused = 0;
+  for (float width = 60; width < 500; width += 9)
+    for (float height = 25; height < 130; height += 5) {
+      info.width = width;
+      info.height = height;
+      ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+      const GpgpTextLine& last = paper.info.lines[paper.info.lineCount - 1];
+      if (paper.info.lineCount > 1 || last.end <= 19) {
+        EXPECT_LE(paper.info.height, height + 0.02f) << "width " << width << ", height " << height;
+      }
+      refused += last.end <= 19;
+    }
+  EXPECT_GT(refused, 100u);
+  // The first line stays, however high, and is as high as it was.
+  info.width = 0;
+  info.height = 10;
+  ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+  EXPECT_FALSE(paper.info.truncated);
+  // A font of the chain that is higher: its letters do not come into a line that has no room for them.
+  const std::string mixed = "one two three four five six سلام سلام سلام سلام";
+  const float latin = 20 * (infoOf(font.get()).ascent + infoOf(font.get()).descent),
+              higher = 20 * (infoOf(arabic.get()).ascent + infoOf(arabic.get()).descent);
+  ASSERT_GT(higher, latin + 1);
+  info = textInfo(mixed, fonts, 20, 150);
+  uint32_t cut = 0;
+  for (float height = latin; height < 6 * latin; height += 1) {
+    info.height = height;
+    ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+    EXPECT_LE(paper.info.height, height + 0.02f);
+    cut += paper.info.truncated;
+  }
+  EXPECT_GT(cut, 50u);
+}
+
+TEST(TextLayout, TruncatedOnlyWhereSomethingIsCut) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle latin = openFont("NotoSans-Regular.ttf"), arabic = openFont("NotoNaskhArabic-Regular.ttf"),
+                   hebrew = openFont("NotoSansHebrew-Regular.ttf"),
+                   devanagari = openFont("NotoSansDevanagari-Regular.ttf");
+  const std::vector<GpgpFont> fonts = {latin.get(), arabic.get(), hebrew.get(), devanagari.get()},
+                              last = {devanagari.get()};
+  // Marks without a letter, a random search's find: as one run they are too wide, in parts they are not.
+  const std::string text = "\u0e3a\u0e39\u202c\u0e35\ufe0e\u2069\u2069\u0e3a\u2069\u0e3a\u0e39\u0e35\u0e39\u0e39\u0e38";
+  GpgpTextInfo info = textInfo(text, fonts, 16);
+  GpgpTextSpan span = {9, 45, textInfo(text, last, 37).style};
+  info.spans = &span;
+  info.spanCount = 1;
+  info.direction = GPGP_TEXT_RIGHT_TO_LEFT;
+  info.maxLines = 1;
+  info.ellipsis = "";
+  uint32_t whole = 0, cut = 0;
+  Paper paper;
+  for (float width = 60; width < 200; width += 1) {
+    info.width = width;
+    ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+    EXPECT_EQ(paper.info.truncated != 0, paper.info.lines[0].end < text.size()) << width;
+    (paper.info.truncated ? cut : whole) += 1;
+  }
+  EXPECT_GT(whole, 10u);
+  EXPECT_GT(cut, 10u);
+}
+
 TEST(TextLayout, WithoutATextThereIsNothingToAskFor) {
   Paper paper;
   EXPECT_EQ(paper.move(3, GPGP_CARET_NEXT), 0u);
@@ -454,6 +570,19 @@ TEST(TextLayout, ALetterWithMarksWithoutEndIsLaidOut) { // by the square of thei
   EXPECT_EQ(paper.move(0, GPGP_CARET_NEXT), 1 + 2 * kMarks); // still one grapheme
   EXPECT_EQ(paper.caret(1001).x, paper.caret(0).x);
   EXPECT_GT(paper.caret(1 + 2 * kMarks).x, 0);
+}
+
+TEST(TextLayout, EachMissingCharacterIsToldOnce) { // also of a grapheme that is shaped in parts
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSansMono.ttf");
+  for (const uint32_t marks : {3u, 300u, 30000u}) {
+    std::string text = "a";
+    for (uint32_t i = 0; i < marks; ++i) text += "\u0e31";
+    Paper paper;
+    ASSERT_EQ(paper.set(textInfo(text, {font.get()}, 20)), GPGP_SUCCESS);
+    ASSERT_EQ(paper.info.missingCount, marks);
+    for (uint32_t i = 0; i < marks; ++i) ASSERT_EQ(paper.info.missing[i].offset, 1 + 3 * i);
+  }
 }
 
 TEST(TextLayout, ColoursAndInvisibleCharacters) {

@@ -1,6 +1,5 @@
 // A canvas in a render texture.
 using System;
-using System.Collections.Generic;
 using System.Runtime.InteropServices;
 using UnityEngine;
 using UnityEngine.Experimental.Rendering;
@@ -11,8 +10,10 @@ namespace Gpgp
     /// <summary>Shapes, rasterised into a render texture of its own. Colours in it are premultiplied by alpha.</summary>
     public sealed class Canvas : NativeObject
     {
-        readonly List<Native.Item> items = new List<Native.Item>();
+        Native.Item[] items = new Native.Item[16];
+        int itemCount;
         readonly CommandBuffer commands = new CommandBuffer { name = "gpgp canvas" };
+        IntPtr native; // the texture's: asking for it waits for the render thread
 
         public RenderTexture Texture { get; private set; }
         public Color Background = Color.clear;
@@ -24,40 +25,50 @@ namespace Gpgp
                 enableRandomWrite = true, // gpgp writes it as a storage image
                 name = "gpgp canvas"
             };
-            Texture.Create();
+            Refresh();
             commands.IssuePluginEventAndData(Native.gpgpUnityGetEvent(), Native.gpgpUnityGetEventId(),
                                              new IntPtr(Number));
         }
 
+        /// <summary>After the texture was released and created by others, with another size for example. A texture that
+        /// Unity has lost is created again by Draw.</summary>
+        public void Refresh()
+        {
+            if (!Texture.IsCreated()) Texture.Create();
+            native = Texture.GetNativeTexturePtr();
+        }
+
         /// <summary>Begins anew; the next Add is at the bottom.</summary>
-        public void Clear() { items.Clear(); }
+        public void Clear() { itemCount = 0; }
 
         /// <summary>Puts a shape's origin at (x, y) in pixels from the upper left corner.</summary>
         public void Add(Shape shape, float x, float y, float scale = 1, float opacity = 1)
         {
-            items.Add(new Native.Item { obj = shape.Number, t0 = scale, t3 = scale, t4 = x, t5 = y, opacity = opacity });
+            if (itemCount == items.Length) Array.Resize(ref items, 2 * itemCount);
+            items[itemCount++] =
+                new Native.Item { obj = shape.Number, t0 = scale, t3 = scale, t4 = x, t5 = y, opacity = opacity };
         }
 
-        /// <summary>Once a frame in which it is to be drawn: hands the shapes over and has them recorded.</summary>
+        /// <summary>Once a frame in which it is to be drawn: hands the shapes over and has them recorded. Makes no
+        /// garbage.</summary>
         public void Draw()
         {
-            var list = items.ToArray();
-            var pinned = GCHandle.Alloc(list, GCHandleType.Pinned);
+            if (!Texture.IsCreated()) Refresh();
+            var linear = QualitySettings.activeColorSpace == ColorSpace.Linear;
+            var background = linear ? Background.linear : Background;
+            var pinned = GCHandle.Alloc(items, GCHandleType.Pinned);
             try
             {
-                var linear = QualitySettings.activeColorSpace == ColorSpace.Linear;
-                var background = linear ? Background.linear : Background;
                 var info = new Native.CanvasInfo
                 {
-                    texture = Texture.GetNativeTexturePtr(),
+                    texture = native,
                     flags = Native.Flip | (linear ? 0 : Native.EncodeSrgb),
-                    background = new[]
-                    {
-                        background.r * background.a, background.g * background.a, background.b * background.a,
-                        background.a
-                    },
-                    items = list.Length > 0 ? pinned.AddrOfPinnedObject() : IntPtr.Zero,
-                    itemCount = list.Length
+                    red = background.r * background.a,
+                    green = background.g * background.a,
+                    blue = background.b * background.a,
+                    alpha = background.a,
+                    items = itemCount > 0 ? pinned.AddrOfPinnedObject() : IntPtr.Zero,
+                    itemCount = itemCount
                 };
                 Plugin.Need(Native.gpgpUnitySetCanvas(Number, ref info), "gpgpUnitySetCanvas");
             }
@@ -69,11 +80,12 @@ namespace Gpgp
         }
 
         /// <summary>The texture goes, too.</summary>
-        public new void Dispose()
+        public override void Dispose()
         {
             base.Dispose(); // events that are under way find no canvas any more
+            if (Texture == null) return;
             commands.Release();
-            if (Texture != null) Texture.Release();
+            Texture.Release();
             Texture = null;
         }
     }

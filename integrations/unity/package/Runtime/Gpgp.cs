@@ -41,7 +41,7 @@ namespace Gpgp
         {
             public IntPtr texture;
             public uint flags;
-            [MarshalAs(UnmanagedType.ByValArray, SizeConst = 4)] public float[] background;
+            public float red, green, blue, alpha; // of the background
             public IntPtr items;
             public int itemCount;
         }
@@ -76,14 +76,17 @@ namespace Gpgp
         /// <summary>Whether Unity renders with Vulkan and the plugin was loaded on startup.</summary>
         public static bool Ready { get { return Native.gpgpUnityGetState() == 1; } }
 
-        /// <summary>Messages since the last call, oldest first.</summary>
-        public static List<string> TakeMessages()
+        static readonly byte[] bytes = new byte[1024];
+        static readonly List<string> taken = new List<string>();
+        static readonly string[] none = new string[0];
+
+        /// <summary>Messages since the last call, oldest first. No garbage where there are none.</summary>
+        public static string[] TakeMessages()
         {
-            var messages = new List<string>();
-            var bytes = new byte[1024];
+            taken.Clear();
             for (int length; (length = Native.gpgpUnityTakeMessage(bytes, bytes.Length)) > 0;)
-                messages.Add(Encoding.UTF8.GetString(bytes, 0, Math.Min(length, bytes.Length - 1)));
-            return messages;
+                taken.Add(Encoding.UTF8.GetString(bytes, 0, Math.Min(length, bytes.Length - 1)));
+            return taken.Count > 0 ? taken.ToArray() : none;
         }
 
         /// <summary>Larger canvases, or more on them. Makes pipelines: while a level loads. 0: the default.</summary>
@@ -107,7 +110,7 @@ namespace Gpgp
         {
             if (result >= 0) return result;
             var messages = TakeMessages();
-            throw new GpgpException(messages.Count > 0 ? string.Join("\n", messages) : call + " returned " + result);
+            throw new GpgpException(messages.Length > 0 ? string.Join("\n", messages) : call + " returned " + result);
         }
     }
 
@@ -118,7 +121,7 @@ namespace Gpgp
 
         internal NativeObject(int number) { Number = number; }
 
-        public void Dispose()
+        public virtual void Dispose()
         {
             if (Number > 0) Native.gpgpUnityDestroy(Number);
             Number = 0;
@@ -128,14 +131,16 @@ namespace Gpgp
     /// <summary>What a canvas shows.</summary>
     public abstract class Shape : NativeObject
     {
+        readonly float[] box = new float[4];
+
         internal Shape(int number) : base(number) { }
 
-        /// <summary>x, y, width, height: a drawing's page, a text's box. Y points down.</summary>
+        /// <summary>x, y, width, height: a drawing's page, a text's box. Y points down. The same array each time.
+        /// </summary>
         public float[] Box
         {
             get
             {
-                var box = new float[4];
                 Plugin.Need(Native.gpgpUnityGetBox(Number, box), "gpgpUnityGetBox");
                 return box;
             }
