@@ -50,6 +50,15 @@ std::array<float, 3> parseTriple(const std::string& text);
 /// A callback option that holds a size.
 CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, const std::string& help);
 
+/// Names a file, or standard input.
+constexpr const char* kStandard = "-";
+/// A check for options: a file that is there, or -.
+CLI::Validator existingInput();
+/// The bytes of a file, or of standard input.
+std::string readInput(const std::string& file);
+/// What messages call it.
+std::string inputName(const std::string& file);
+
 /// As CLI::Range, but what is no number is not within.
 CLI::Validator within(double low, double high);
 

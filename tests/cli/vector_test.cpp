@@ -36,6 +36,7 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "curves_per_patch_tiled",
                                                 "paths_dropped",
                                                 "warnings",
+                                                "messages",
                                                 "unsupported",
                                                 "parse_ms",
                                                 "convert_ms",
