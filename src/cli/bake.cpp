@@ -25,6 +25,7 @@ struct BakeOptions {
   std::vector<std::string> in, set;
   std::string out, type;
   bool kernel = true, link = false;
+  float scale = 1;
 #ifdef GPGP_CLI_TEXT
   BakeFontOptions font;
 #endif
@@ -69,11 +70,12 @@ struct Baked {
 };
 
 #ifdef GPGP_CLI_VECTOR
-Baked bakeDrawing(const std::string& text, const std::string& name) {
+Baked bakeDrawing(const std::string& text, const std::string& name, float scale) {
   GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
   source.name = name.c_str();
   source.data = text.data();
   source.size = text.size();
+  source.scale = scale;
   SvgMessages messages;
   messages.attach(source);
   Result<Blob> blob = compileSvg(source);
@@ -94,7 +96,7 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
   }
 #endif
 #ifdef GPGP_CLI_VECTOR
-  if (type == "drawing") return bakeDrawing(bytes, name);
+  if (type == "drawing") return bakeDrawing(bytes, name, options.scale);
 #endif
 #ifdef GPGP_CLI_TEXT
   if (type == "font") {
@@ -199,6 +201,15 @@ Work addBake(CLI::App& app) {
                     "is a. Files of the same name take another one as NAME=FILE");
   command->add_flag("!--no-kernel", options->kernel,
                     "Grammars run on the interpreter: smaller files, slower derivation");
+#ifdef GPGP_CLI_VECTOR
+  command
+      ->add_option(
+          "--scale", options->scale,
+          "The largest scale at which drawings are shown, in pixels per pixel of their page: strokes are off by "
+          "less than a twentieth of a pixel there")
+      ->check(within(1e-6, 1e6))
+      ->capture_default_str();
+#endif
 #ifdef GPGP_CLI_TEXT
   addBakeFontOptions(*command, options->font);
 #endif
@@ -210,6 +221,7 @@ Examples:
   gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"
   gpgp bake NotoNaskhArabic-Regular.ttf -o arabic.gpgpf --characters-file strings.txt --outline 0.1
   gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp
+  gpgp bake icon.svg --scale 40 -o icon.gpgpv        24 pixels, shown at up to 960
   cat icon.svg | gpgp bake - -o - > icon.gpgpv       bytes say what standard input is
 
 Of a font, glyphs that shaping makes of the chosen characters (ligatures, Arabic forms, alternates) are baked, too. A

@@ -51,7 +51,7 @@ std::array<float, 3> parseTriple(const std::string& text);
 CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, const std::string& help);
 
 /// Names a file, or standard input.
-constexpr const char* kStandard = "-";
+inline constexpr const char* kStandard = "-";
 /// A check for options: a file that is there, or -.
 CLI::Validator existingInput();
 /// The bytes of a file, or of standard input.

@@ -41,19 +41,43 @@ void GPGP_CALL onStage(void* userData, const char* stage, const char* svg, size_
   }
 }
 
-/// Fits the drawing into the picture as its preserveAspectRatio says.
-void fit(std::span<const char> bytes, const GpgpDrawingInfo& drawing, const Size& size, float (&transform)[6]) {
-  const auto fitted = gpgp::vector::svg::fitPage(std::as_bytes(bytes), drawing.viewport, size.width, size.height);
+/// Fits a page into the picture as its preserveAspectRatio says.
+void fit(std::span<const char> bytes, const float (&page)[4], const Size& size, float (&transform)[6]) {
+  const auto fitted = gpgp::vector::svg::fitPage(std::as_bytes(bytes), page, size.width, size.height);
   if (!fitted) throw Failure(fitted.error().text);
   const double values[6] = {fitted->a, fitted->b, fitted->c, fitted->d, fitted->e, fitted->f};
   for (size_t i = 0; i < 6; ++i) transform[i] = static_cast<float>(values[i]);
 }
 
+/// At what scale the picture shows the source; 0: at its own, or it cannot be read.
+float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource source) {
+  if (size.width == 0) return 0;
+  const auto said = gpgp::vector::svg::pageSize(std::as_bytes(bytes));
+  if (!said) return 0;
+  float page[4] = {0, 0, static_cast<float>(said->width), static_cast<float>(said->height)};
+  if (!(page[2] > 0 && page[3] > 0)) { // the ink is the page
+    source.messageFn = nullptr;
+    source.stageFn = nullptr;
+    const Result<Blob> blob = compileSvg(source);
+    if (!blob) return 0;
+    const auto drawing = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
+                                                 std::pmr::get_default_resource());
+    if (!drawing || !(drawing->viewport[2] > 0 && drawing->viewport[3] > 0)) return 0;
+    std::copy_n(drawing->viewport, 4, page);
+  }
+  float transform[6];
+  fit(bytes, page, size, transform);
+  return std::min(std::max(transform[0], transform[3]), 1e6f);
+}
+
 /// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
 double compareWithTruth(std::span<const char> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
-                        const std::array<float, 4>& background, const Size& size) {
+                        const std::array<float, 4>& background, const Size& size, float scale) {
   gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
-  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet);
+  gpgp::vector::svg::ImportDetail detail;
+  if (scale > 0) detail.scale = static_cast<double>(scale);
+  detail.strokes /= 16; // so that what strokes are off by is seen
+  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet, {}, {}, detail);
   if (!svg) throw Failure(svg.error().text);
   const gpgp::vector::svg::ImportedViews views(*svg);
   std::vector<float> pixels(painted.size());
@@ -82,6 +106,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     source.stageFn = onStage;
     source.stageUserData = &stages;
   }
+  source.scale = scaleInto(options.size, bytes, source);
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(name + ": " + (messages.count() ? messages.failure() : blob.name()));
   messages.finish();
@@ -120,7 +145,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   GpgpCanvasItem item{};
   item.drawing = drawing;
   item.opacity = 1.0f;
-  fit(bytes, facts, size, item.transform);
+  fit(bytes, facts.viewport, size, item.transform);
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);
@@ -149,7 +174,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   std::vector<uint8_t> pixels;
   if (!options.out.empty() || options.truth) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
   double psnr = 0;
-  if (options.truth) psnr = compareWithTruth(bytes, pixels, item.transform, background, size);
+  if (options.truth) psnr = compareWithTruth(bytes, pixels, item.transform, background, size, source.scale);
   if (!options.out.empty()) {
     host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
   }

@@ -75,6 +75,15 @@ TEST(CliBake, BytesSayWhatStandardInputIs) {
   EXPECT_NE(nothing.err.find("--type says what it is"), std::string::npos) << nothing.err;
 }
 
+TEST(CliBake, DrawingsForAScale) {
+  const TemporaryFile icon("scaled.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='24' height='24'>"
+                                         "<circle cx='12' cy='12' r='9' stroke='red'/></svg>");
+  const std::string one = bakedWith({icon.path()});
+  EXPECT_TRUE(one == bakedWith({icon.path(), "--scale", "1"}));
+  EXPECT_GT(bakedWith({icon.path(), "--scale", "1000"}).size(), one.size());
+  expectWrongUsage({{"bake", icon.path(), "--scale", "0", "-o", "x.gpgpv"}});
+}
+
 TEST(CliBake, SaysWhatIsNotDrawn) {
   const TemporaryFile drawing("told.svg",
                               "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>\n"
