@@ -1,6 +1,7 @@
-/* gpgp vector: paths, SVG and fonts, rasterised on the GPU from curved patches.
+/* gpgp vector: paths, SVG and fonts, rasterised on the GPU by chords of their outlines.
  *
- *   drawing (asset)    paths converted to CPatches: regions bounded by implicit curves, resolution-independent
+ *   drawing (asset)    paths converted to CPatches (disjoint regions between curves) and uploaded as the outlines of
+ *                      these; resolution-independent: chords are made for each record, within 1/32 of a pixel
  *   glyph set (asset)  many small drawings under the engine's keys, to which more are added; what text is drawn with
  *   canvas (worker)    rasterises drawings and text; sized by budgets
  *   canvas view        keeps one rasterised canvas, to be drawn inside the engine's render pass
@@ -155,6 +156,9 @@ typedef struct GpgpSvgSource {
   void* stageUserData;
   GpgpSvgImageFn imageFn; /**< optional: takes embedded images, at most GPGP_MAX_IMAGES; NULL: they are unsupported */
   void* imageUserData;
+  float scale; /**< the largest at which the drawing is shown, pixels per pixel of its page; 0: 1. There strokes are off
+                    by less than a twentieth of a pixel and arcs by less than 1e-4, and strokes that do not scale have
+                    their width */
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 
@@ -438,7 +442,7 @@ typedef struct GpgpCanvasReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t patches;          /**< transformed and binned */
+  uint32_t patches;          /**< of the paths that were drawn */
   uint32_t tileEntries;      /**< needed, at least: a record with as many may turn out to need more */
   uint32_t tileEntriesGiven; /**< maxTileEntries */
   uint32_t pathsDropped;     /**< whole paths, and of texts whole glyphs, left out where the budget did not suffice */

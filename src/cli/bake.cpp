@@ -8,14 +8,14 @@
 #ifdef GPGP_CLI_TEXT
 #include "cli/bake_font.h"
 #endif
+#ifdef GPGP_CLI_VECTOR
+#include "cli/svg_messages.h"
+#endif
 
 #include <gpgp/gpgp.hpp>
 
 #include <cctype>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
-#include <iterator>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -25,49 +25,43 @@ struct BakeOptions {
   std::vector<std::string> in, set;
   std::string out, type;
   bool kernel = true, link = false;
+  float scale = 1;
 #ifdef GPGP_CLI_TEXT
   BakeFontOptions font;
 #endif
 };
 
-const std::string kStandard = "-";
+/// What bytes are: gzip or a tag begin a drawing, fonts say so in their first four bytes, and other text is a grammar.
+/// Empty where they are none of these.
+std::string typeOfBytes(std::string_view bytes) {
+  const auto starts = [&bytes](std::string_view with) { return bytes.starts_with(with); };
+  using namespace std::string_view_literals;
+  for (const std::string_view font : {"\0\1\0\0"sv, "OTTO"sv, "ttcf"sv, "true"sv})
+    if (starts(font)) return "font";
+  for (const std::string_view drawing : {"\x1f\x8b"sv, "\xfe\xff\0<"sv, "\xff\xfe<\0"sv, "\0<"sv, "<\0"sv})
+    if (starts(drawing)) return "drawing";
+  if (bytes.find('\0') != bytes.npos) return {};
+  if (starts("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  const size_t first = bytes.find_first_not_of(" \t\r\n\f");
+  if (first == bytes.npos) return {};
+  return bytes[first] == '<' ? "drawing" : "grammar";
+}
 
-/// grammar, drawing or font: as --type says, else by the file's ending.
-std::string typeOf(const BakeOptions& options, const std::string& file) {
+/// grammar, drawing or font: as --type says, else by the file's ending, and of standard input by what it holds.
+std::string typeOf(const BakeOptions& options, const std::string& file, std::string_view bytes) {
   if (!options.type.empty()) return options.type;
+  if (file == kStandard) {
+    const std::string type = typeOfBytes(bytes);
+    if (type.empty()) throw Usage("standard input is no drawing, font or grammar; --type says what it is");
+    return type;
+  }
   std::string ending = std::filesystem::path(file).extension();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".pga") return "grammar";
   if (ending == ".svg" || ending == ".svgz") return "drawing";
   if (ending == ".ttf" || ending == ".otf" || ending == ".ttc" || ending == ".otc") return "font";
-  throw Usage(file == kStandard ? "--type says what standard input is: grammar, drawing or font"
-                                : file + ": neither .pga nor .svg nor a font; --type says what it is");
+  throw Usage(file + ": neither .pga nor .svg nor a font; --type says what it is");
 }
-
-std::string read(const std::string& file) {
-  if (file != kStandard) return host::readText(file);
-  return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
-}
-
-#ifdef GPGP_CLI_VECTOR
-Blob bakeDrawing(const std::string& text, const std::string& name) {
-  std::string error;
-  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
-  source.name = name.c_str();
-  source.data = text.data();
-  source.size = text.size();
-  source.messageUserData = &error;
-  source.messageFn = [](void* userData, const GpgpMessage* message) {
-    if (message->severity == GPGP_SEVERITY_ERROR)
-      *static_cast<std::string*>(userData) = message->text;
-    else
-      std::fprintf(stderr, "%s: %s\n", message->label, message->text);
-  };
-  Result<Blob> blob = compileSvg(source);
-  if (!blob) throw Failure(name + ": " + (error.empty() ? blob.name() : error));
-  return std::move(*blob);
-}
-#endif
 
 struct Baked {
   Blob blob;
@@ -75,21 +69,38 @@ struct Baked {
   std::string words;
 };
 
-Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& file, const std::string& type) {
-  const std::string name = file == kStandard ? "<standard input>" : file;
+#ifdef GPGP_CLI_VECTOR
+Baked bakeDrawing(const std::string& text, const std::string& name, float scale) {
+  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+  source.name = name.c_str();
+  source.data = text.data();
+  source.size = text.size();
+  source.scale = scale;
+  SvgMessages messages;
+  messages.attach(source);
+  Result<Blob> blob = compileSvg(source);
+  if (!blob) throw Failure(name + ": " + (messages.count() ? messages.failure() : blob.name()));
+  messages.finish();
+  return {std::move(*blob), {{"messages", messages.json()}}, {}};
+}
+#endif
+
+Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& file, const std::string& type,
+              const std::string& bytes) {
+  const std::string name = inputName(file);
 #ifdef GPGP_CLI_SPAWN
   if (type == "grammar") {
     const GrammarFile grammar(name);
     if (!grammar.alias.empty()) throw Usage(file + ": NAME=FILE is for --link");
-    return {compileGrammar({grammar, read(file)}, options.set, options.kernel), Json::object(), {}};
+    return {compileGrammar({grammar, bytes}, options.set, options.kernel), Json::object(), {}};
   }
 #endif
 #ifdef GPGP_CLI_VECTOR
-  if (type == "drawing") return {bakeDrawing(read(file), name), Json::object(), {}};
+  if (type == "drawing") return bakeDrawing(bytes, name, options.scale);
 #endif
 #ifdef GPGP_CLI_TEXT
   if (type == "font") {
-    BakedFont font = bakeFont(read(file), name, options.font);
+    BakedFont font = bakeFont(bytes, name, options.font);
     return {std::move(font.blob), std::move(font.json), ", " + font.words};
   }
 #endif
@@ -106,8 +117,8 @@ Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
     const GrammarFile file(argument);
     if (file.path == kStandard && file.alias.empty())
       throw Usage("standard input has no name to be linked by; NAME=- gives it one");
-    std::string text = read(file.path);
-    if (!text.starts_with("gppg") && typeOf(options, file.path) != "grammar")
+    std::string text = readInput(file.path);
+    if (!text.starts_with("gppg") && typeOf(options, file.path, text) != "grammar")
       throw Usage(file.path + " is no grammar; --link is for grammars");
     grammars.push_back({file, std::move(text)});
   }
@@ -130,16 +141,21 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
   // With several inputs, or where OUT is a folder, each gets a file of its own name there, with .gpgp behind it.
   const bool folder = options.in.size() > 1 || std::filesystem::is_directory(options.out) || options.out.ends_with('/');
   if (folder && options.out == kStandard) throw Usage("standard output takes one input");
-  std::vector<std::pair<std::string, std::string>> work; // file, type: all of them are known before any is written
+  struct Input {
+    std::string file, type, bytes; // of standard input, which tell its type
+  };
+  std::vector<Input> work; // all types are known before any file is written
   for (const std::string& file : options.in) {
     if (file == kStandard && folder) throw Usage("standard input has no name for a file in a folder; give it alone");
-    work.emplace_back(file, typeOf(options, file));
+    std::string bytes = file == kStandard ? readInput(file) : std::string();
+    std::string type = typeOf(options, file, bytes);
+    work.push_back({file, std::move(type), std::move(bytes)});
   }
   Outcome outcome{Json::object(), {}};
   Json list = Json::array();
   std::ostringstream text;
-  for (const auto& [file, type] : work) {
-    const auto [blob, facts, words] = bakeOne(options, file, type);
+  for (const auto& [file, type, input] : work) {
+    const auto [blob, facts, words] = bakeOne(options, file, type, file == kStandard ? input : readInput(file));
     const std::string_view bytes(static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size());
     if (options.out == kStandard) {
       outcome.text = bytes;
@@ -172,7 +188,9 @@ Work addBake(CLI::App& app) {
   command->add_option("-o,--out", options->out, "The file, a folder, or - for standard output")
       ->type_name("FILE|FOLDER|-")
       ->required();
-  command->add_option("--type", options->type, "What the inputs are, whatever their names")
+  command
+      ->add_option("--type", options->type,
+                   "What the inputs are, whatever their names (standard input: as its bytes say)")
       ->check(CLI::IsMember({"grammar", "drawing", "font"}));
   command
       ->add_option("--set", options->set, "Override a `var` of the grammars, with --link GRAMMAR.NAME; may be repeated")
@@ -183,6 +201,15 @@ Work addBake(CLI::App& app) {
                     "is a. Files of the same name take another one as NAME=FILE");
   command->add_flag("!--no-kernel", options->kernel,
                     "Grammars run on the interpreter: smaller files, slower derivation");
+#ifdef GPGP_CLI_VECTOR
+  command
+      ->add_option(
+          "--scale", options->scale,
+          "The largest scale at which drawings are shown, in pixels per pixel of their page: strokes are off by "
+          "less than a twentieth of a pixel there")
+      ->check(within(1e-6, 1e6))
+      ->capture_default_str();
+#endif
 #ifdef GPGP_CLI_TEXT
   addBakeFontOptions(*command, options->font);
 #endif
@@ -194,7 +221,8 @@ Examples:
   gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"
   gpgp bake NotoNaskhArabic-Regular.ttf -o arabic.gpgpf --characters-file strings.txt --outline 0.1
   gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp
-  cat tree.pga | gpgp bake - --type grammar -o - > tree.gpgp
+  gpgp bake icon.svg --scale 40 -o icon.gpgpv        24 pixels, shown at up to 960
+  cat icon.svg | gpgp bake - -o - > icon.gpgpv       bytes say what standard input is
 
 Of a font, glyphs that shaping makes of the chosen characters (ligatures, Arabic forms, alternates) are baked, too. A
 glyph's key is its number in the font, and 2^32 more for its outline. Shaping still needs the font file.

@@ -1,8 +1,12 @@
 // Options that every subcommand has, and values that CLI11 does not know.
 #include "cli/command.h"
 
+#include "host/files.h"
+
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
+#include <iterator>
 
 namespace gpgp::cli {
 
@@ -51,6 +55,17 @@ CLI::Validator pngFile() {
           },
           ""};
 }
+
+CLI::Validator existingInput() {
+  return {[](std::string& file) { return file == kStandard ? std::string() : CLI::ExistingFile(file); }, "FILE"};
+}
+
+std::string readInput(const std::string& file) {
+  if (file != kStandard) return host::readText(file);
+  return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
+}
+
+std::string inputName(const std::string& file) { return file == kStandard ? "<standard input>" : file; }
 
 CLI::Validator within(double low, double high) {
   std::ostringstream range;

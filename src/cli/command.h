@@ -52,6 +52,16 @@ CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, con
 
 /// The name of a picture to be written: PNG is the only format.
 CLI::Validator pngFile();
+
+/// Names a file, or standard input.
+inline constexpr const char* kStandard = "-";
+/// A check for options: a file that is there, or -.
+CLI::Validator existingInput();
+/// The bytes of a file, or of standard input.
+std::string readInput(const std::string& file);
+/// What messages call it.
+std::string inputName(const std::string& file);
+
 /// As CLI::Range, but what is no number is not within.
 CLI::Validator within(double low, double high);
 

@@ -2,6 +2,7 @@
 #include "cli/css_color.h"
 #include "cli/patch_tiles.h"
 #include "cli/session.h"
+#include "cli/svg_messages.h"
 #include "cli/textures.h"
 #include "cli/vector_images.h"
 #include "cli/vector_truth.h"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -28,31 +28,7 @@ struct VectorOptions {
   uint32_t repeat = 1, maxTileEntries = 0;
 };
 
-constexpr uint32_t kShownWarnings = 10;
-
-struct Messages {
-  std::string error;
-  uint32_t warnings = 0;
-  Json unsupported = Json::array();
-  bool showAll = false;
-};
-
-/// "line 3: <path> has a ..." as an object: what is named first is what it is about.
-Json unsupportedPart(const std::string& text) {
-  const size_t colon = text.find(": "), open = text.find('<'), close = text.find('>', open);
-  const bool hasLine = text.rfind("line ", 0) == 0 && colon != text.npos;
-  return {{"element", close != text.npos ? text.substr(open + 1, close - open - 1) : "style"},
-          {"line", hasLine ? Json(std::strtoul(text.c_str() + 5, nullptr, 10)) : Json()},
-          {"text", hasLine ? text.substr(colon + 2) : text}};
-}
-
-void GPGP_CALL onSvgMessage(void* userData, const GpgpMessage* message) {
-  auto* messages = static_cast<Messages*>(userData);
-  if (message->code == GPGP_ERROR_UNSUPPORTED) messages->unsupported.push_back(unsupportedPart(message->text));
-  if (message->severity == GPGP_SEVERITY_ERROR && messages->error.empty()) messages->error = message->text;
-  if (++messages->warnings > kShownWarnings && !messages->showAll) return;
-  std::fprintf(stderr, "%s: %s\n", message->label, message->text);
-}
+constexpr size_t kShownMessages = 10;
 
 struct Stages {
   std::string folder, failure;
@@ -67,19 +43,43 @@ void GPGP_CALL onStage(void* userData, const char* stage, const char* svg, size_
   }
 }
 
-/// Fits the drawing into the picture as its preserveAspectRatio says.
-void fit(std::span<const uint8_t> bytes, const GpgpDrawingInfo& drawing, const Size& size, float (&transform)[6]) {
-  const auto fitted = gpgp::vector::svg::fitPage(std::as_bytes(bytes), drawing.viewport, size.width, size.height);
+/// Fits a page into the picture as its preserveAspectRatio says.
+void fit(std::span<const char> bytes, const float (&page)[4], const Size& size, float (&transform)[6]) {
+  const auto fitted = gpgp::vector::svg::fitPage(std::as_bytes(bytes), page, size.width, size.height);
   if (!fitted) throw Failure(fitted.error().text);
   const double values[6] = {fitted->a, fitted->b, fitted->c, fitted->d, fitted->e, fitted->f};
   for (size_t i = 0; i < 6; ++i) transform[i] = static_cast<float>(values[i]);
 }
 
+/// At what scale the picture shows the source; 0: at its own, or it cannot be read.
+float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource source) {
+  if (size.width == 0) return 0;
+  const auto said = gpgp::vector::svg::pageSize(std::as_bytes(bytes));
+  if (!said) return 0;
+  float page[4] = {0, 0, static_cast<float>(said->width), static_cast<float>(said->height)};
+  if (!(page[2] > 0 && page[3] > 0)) { // the ink is the page
+    source.messageFn = nullptr;
+    source.stageFn = nullptr;
+    const Result<Blob> blob = compileSvg(source);
+    if (!blob) return 0;
+    const auto drawing = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
+                                                 std::pmr::get_default_resource());
+    if (!drawing || !(drawing->viewport[2] > 0 && drawing->viewport[3] > 0)) return 0;
+    std::copy_n(drawing->viewport, 4, page);
+  }
+  float transform[6];
+  fit(bytes, page, size, transform);
+  return std::min(std::max(transform[0], transform[3]), 1e6f);
+}
+
 /// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
-double compareWithTruth(std::span<const uint8_t> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
-                        const std::array<float, 4>& background, const Size& size) {
+double compareWithTruth(std::span<const char> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
+                        const std::array<float, 4>& background, const Size& size, float scale) {
   gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
-  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet);
+  gpgp::vector::svg::ImportDetail detail;
+  if (scale > 0) detail.scale = static_cast<double>(scale);
+  detail.strokes /= 16; // so that what strokes are off by is seen
+  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet, {}, {}, detail);
   if (!svg) throw Failure(svg.error().text);
   const gpgp::vector::svg::ImportedViews views(*svg);
   std::vector<float> pixels(painted.size());
@@ -92,15 +92,13 @@ double compareWithTruth(std::span<const uint8_t> bytes, std::span<const uint8_t>
 
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const std::array<float, 4> background = parseBackground(options.background);
-  const std::vector<uint8_t> bytes = host::readFile(options.file);
-  Messages messages;
-  messages.showAll = options.allWarnings;
+  const std::string bytes = readInput(options.file), name = inputName(options.file);
+  SvgMessages messages(options.allWarnings ? SIZE_MAX : kShownMessages);
   GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
-  source.name = options.file.c_str();
+  source.name = name.c_str();
   source.data = bytes.data();
   source.size = bytes.size();
-  source.messageFn = onSvgMessage;
-  source.messageUserData = &messages;
+  messages.attach(source);
   GpgpSvgReport converted{};
   source.report = &converted;
   VectorImages images;
@@ -110,24 +108,23 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     source.stageFn = onStage;
     source.stageUserData = &stages;
   }
+  source.scale = scaleInto(options.size, bytes, source);
   const Result<Blob> blob = compileSvg(source);
-  if (!blob) throw Failure(options.file + ": " + (messages.error.empty() ? blob.name() : messages.error));
+  if (!blob) throw Failure(name + ": " + (messages.count() ? messages.failure() : blob.name()));
+  messages.finish();
   if (options.truth && !images.pictures().empty())
-    throw Failure(options.file + ": the truth knows no images; draw it without --truth");
+    throw Failure(name + ": the truth knows no images; draw it without --truth");
   if (!stages.failure.empty()) throw Failure(stages.failure);
-  if (!options.allWarnings && messages.warnings > kShownWarnings)
-    std::fprintf(stderr, "%s: %u more; --all-warnings shows them\n", options.file.c_str(),
-                 messages.warnings - kShownWarnings);
 
   Session session(common);
   host::HeadlessDevice& device = session.device();
   GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
-  drawingInfo.label = options.file.c_str();
+  drawingInfo.label = name.c_str();
   drawingInfo.data = blob->data();
   drawingInfo.size = blob->size();
   const Drawing drawing = session.take(Drawing::create(session.context(), drawingInfo), "gpgpCreateDrawing");
   const GpgpDrawingInfo facts = session.take(drawing.info(), "gpgpGetDrawingInfo");
-  if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(options.file + ": the drawing has no extent");
+  if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(name + ": the drawing has no extent");
   Size size = options.size;
   if (size.width == 0) {
     const float shrink = std::min(1.0f, 4096.0f / std::max(facts.viewport[2], facts.viewport[3]));
@@ -150,7 +147,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   GpgpCanvasItem item{};
   item.drawing = drawing;
   item.opacity = 1.0f;
-  fit(bytes, facts, size, item.transform);
+  fit(bytes, facts.viewport, size, item.transform);
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);
@@ -185,18 +182,18 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   std::vector<uint8_t> pixels;
   if (!options.out.empty() || options.truth) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
   double psnr = 0;
-  if (options.truth) psnr = compareWithTruth(bytes, pixels, item.transform, background, size);
+  if (options.truth) psnr = compareWithTruth(bytes, pixels, item.transform, background, size, source.scale);
   if (!options.out.empty()) {
     host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
   }
   session.checkValidation();
 
   Json passes = Json::object();
-  for (const auto& [name, time] : times.passes) passes[name] = time;
+  for (const auto& [pass, time] : times.passes) passes[pass] = time;
   const PatchTiles tiles = countPatchTiles(*table, item.transform, size.width, size.height);
   Outcome outcome;
   std::ostringstream text;
-  text << options.file << ": " << facts.paths << " paths, " << facts.curves << " curves, " << facts.patches
+  text << name << ": " << facts.paths << " paths, " << facts.curves << " curves, " << facts.patches
        << " patches; parsed in " << milliseconds(converted.parseMilliseconds) << ", converted in "
        << milliseconds(convertMilliseconds) << '\n'
        << size.width << " x " << size.height << " pixels, " << samples
@@ -205,7 +202,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   if (report.pathsDropped)
     text << "budget exceeded: " << report.pathsDropped << " paths were left out; --max-tile-entries "
          << report.tileEntries << " would have held them\n";
-  if (messages.warnings) text << messages.warnings << " parts of the drawing are approximated, left out or not valid\n";
+  if (messages.count()) text << messages.count() << " parts of the drawing are approximated, left out or not valid\n";
   if (options.truth) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
@@ -221,7 +218,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"patches", facts.patches},
                   {"tile_entries_given", report.tileEntriesGiven},
                   {"paths_dropped", report.pathsDropped},
-                  {"warnings", messages.warnings},
+                  {"warnings", messages.count()},
+                  {"messages", messages.json()},
                   {"curves_per_patch", tiles.curvesPerPatch},
                   {"tile_entries", report.tileEntries},
                   {"patches_per_tile", tiles.patchesPerTile},
@@ -230,7 +228,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"convert_ms", convertMilliseconds},
                   {"gpu_ms_median", times.median()},
                   {"passes", passes},
-                  {"unsupported", messages.unsupported},
+                  {"unsupported", messages.unsupported()},
                   {"image", options.out.empty() ? Json() : Json(options.out)}};
   if (options.truth) outcome.json["psnr_db"] = psnr;
   return outcome;
@@ -241,9 +239,9 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
 Work addVector(CLI::App& app) {
   auto options = std::make_shared<VectorOptions>();
   CLI::App* command = app.add_subcommand("vector", "Rasterise an SVG on the GPU");
-  command->add_option("FILE", options->file, "SVG or gzip-compressed SVG (.svgz)")
+  command->add_option("FILE", options->file, "SVG or gzip-compressed SVG (.svgz); - is standard input")
       ->required()
-      ->check(CLI::ExistingFile);
+      ->check(existingInput());
   addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own)");
   command
       ->add_option("--aa", options->antialiasing,
@@ -266,10 +264,11 @@ Work addVector(CLI::App& app) {
 Examples:
   gpgp vector tiger.svg --out tiger.png
   gpgp vector tiger.svgz --size 2048x2048 --background white --out tiger.png
+  cat icon.svg | gpgp vector - icon.png
   gpgp vector map.svg --aa 4 --repeat 100 --json | jq .gpu_ms_median
 
 What is approximated or left out is named on standard error with its line, the first ten unless --all-warnings is given,
-and counted.)");
+counted, and listed by --json: all as messages, what is not supported as unsupported.)");
   return [options](const CommonOptions& common) { return vector(*options, common); };
 }
 

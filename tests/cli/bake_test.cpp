@@ -52,6 +52,56 @@ TEST(CliBake, ErrorsHaveAPlace) {
   gpgpFailure({"bake", "no_such_file.pga", "-o", out.path()});
 }
 
+ProcessResult shell(const std::string& line) { return runProcess({"/bin/sh", "-c", line}); }
+
+TEST(CliBake, BytesSayWhatStandardInputIs) {
+  const std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='4'><path d='M0 0H3V3Z'/></svg>";
+  const TemporaryFile drawing("piped.svg", svg), marked("marked.svg", "\xef\xbb\xbf \n" + svg),
+      grammar("piped.pga", kGrammar);
+  const std::string bake = std::string(" | ") + GPGP_CLI + " bake - -o -";
+  const auto piped = [&bake](const std::string& from) {
+    const ProcessResult result = shell(from + bake);
+    EXPECT_EQ(result.exitCode, 0) << from << result.err;
+    return result.out;
+  };
+  const std::string baked = bakedWith({drawing.path()});
+  EXPECT_TRUE(piped("cat " + drawing.path()) == baked);
+  EXPECT_TRUE(piped("gzip -c " + drawing.path()) == baked);
+  EXPECT_TRUE(piped("iconv -f UTF-8 -t UTF-16 " + drawing.path()) == baked);
+  EXPECT_TRUE(piped("cat " + marked.path()) == baked);
+  EXPECT_TRUE(piped("cat " + grammar.path()) == bakedWith({grammar.path()}));
+  const ProcessResult nothing = shell("printf 'a\\0b'" + bake); // neither text nor a kind of file that bake knows
+  EXPECT_EQ(nothing.exitCode, 2);
+  EXPECT_NE(nothing.err.find("--type says what it is"), std::string::npos) << nothing.err;
+}
+
+TEST(CliBake, DrawingsForAScale) {
+  const TemporaryFile icon("scaled.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='24' height='24'>"
+                                         "<circle cx='12' cy='12' r='9' stroke='red'/></svg>");
+  const std::string one = bakedWith({icon.path()});
+  EXPECT_TRUE(one == bakedWith({icon.path(), "--scale", "1"}));
+  EXPECT_GT(bakedWith({icon.path(), "--scale", "1000"}).size(), one.size());
+  expectWrongUsage({{"bake", icon.path(), "--scale", "0", "-o", "x.gpgpv"}});
+}
+
+TEST(CliBake, SaysWhatIsNotDrawn) {
+  const TemporaryFile drawing("told.svg",
+                              "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>\n"
+                              "<path d='M0 0H3V3Z mist'/>\n<rect width='3' height='3' filter='url(#f)'/></svg>"),
+      out("told.gpgpv");
+  const ProcessResult result = gpgp({"bake", drawing.path(), "-o", out.path(), "--json"});
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  const json told = json::parse(result.out, nullptr, false)["baked"][0]["messages"];
+  ASSERT_EQ(told.size(), 2u) << told;
+  EXPECT_EQ(told[0]["severity"], "error");
+  EXPECT_EQ(told[0]["element"], "path");
+  EXPECT_EQ(told[0]["line"], 2);
+  EXPECT_EQ(told[1]["severity"], "warning");
+  EXPECT_EQ(told[1]["line"], 3);
+  for (const json& message : told)
+    EXPECT_NE(result.err.find(message["text"].get<std::string>()), std::string::npos) << result.err;
+}
+
 TEST(CliBake, WrongUsage) {
   const TemporaryFile grammar("usage2.pga", kGrammar), text("usage2.text", kGrammar);
   expectWrongUsage({{"bake"},

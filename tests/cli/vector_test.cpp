@@ -36,6 +36,7 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "curves_per_patch_tiled",
                                                 "paths_dropped",
                                                 "warnings",
+                                                "messages",
                                                 "unsupported",
                                                 "parse_ms",
                                                 "convert_ms",
@@ -100,6 +101,47 @@ TEST(CliVector, AntialiasingOfAllKindsAgainstTheTruth) {
     EXPECT_NEAR(pixelOf(seen, 20, 5)[0], std::string_view(aa) == "1" ? 255 : 191, 1) << aa;
     EXPECT_NEAR(pixelOf(seen, 35, 5)[0], 128, 1) << "mixed as sRGB encodes";
   }
+}
+
+TEST(CliVector, StrokesAreSmoothAtTheSizeAskedFor) {
+  const std::string wave = "<path d='M1 12c2-6 4-6 5 0s3 6 5 0 3-6 5 0 3 6 6 0' fill='none' stroke='black' "
+                           "stroke-width='.5'/><ellipse cx='12' cy='12' rx='11' ry='2'/></svg>";
+  const std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' ";
+  const TemporaryFile icon("icon.svg", svg + "width='24' height='24'>" + wave),
+      large("large.svg", svg + "width='960' height='960' viewBox='0 0 24 24'>" + wave),
+      ink("ink.svg", svg + ">" + wave), picture("icon.png"), other("large.png");
+  // The picture is the one of a page of that size, and near a truth of finer strokes.
+  const json drawn = gpgpJson({"vector", icon.path(), picture.path(), "--size", "960x960", "--truth"});
+  const json whole = gpgpJson({"vector", large.path(), other.path()});
+  EXPECT_EQ(drawn["curves"], whole["curves"]);
+  EXPECT_GE(drawn["psnr_db"], 45);
+  const host::Picture one = host::readPng(picture.path()), two = host::readPng(other.path());
+  ASSERT_EQ(one.rgba.size(), two.rgba.size());
+  int worst = 0;
+  for (size_t i = 0; i < one.rgba.size(); ++i) worst = std::max(worst, std::abs(one.rgba[i] - two.rgba[i]));
+  EXPECT_LE(worst, 32); // two samples of 16
+  EXPECT_GT(drawn["curves"], gpgpJson({"vector", icon.path()})["curves"]);
+  EXPECT_GT(gpgpJson({"vector", ink.path(), "--size", "960x960"})["curves"],
+            gpgpJson({"vector", ink.path()})["curves"]);
+}
+
+TEST(CliVector, ReadsStandardInput) {
+  const TemporaryFile file("input.svg", kHalves), picture("input.png"), same("same.png");
+  const ProcessResult result = runProcess(
+      {"/bin/sh", "-c", "cat " + file.path() + " | " + GPGP_CLI + " vector - " + picture.path() + " --json"});
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out, nullptr, false)["paths"], 1);
+  gpgpJson({"vector", file.path(), same.path()});
+  EXPECT_EQ(host::readText(picture.path()), host::readText(same.path()));
+}
+
+TEST(CliVector, AFailureNamesWhatItIsAbout) {
+  const TemporaryFile page("page.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='1e9' height='1e9'>"
+                                       "<rect width='1e9' height='1e9'/></svg>");
+  const ProcessResult result = gpgp({"vector", page.path()});
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_NE(result.err.find("line 1: <svg> is wider or taller than 10000000 pixels"), std::string::npos) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }
 
 TEST(CliVector, CountsPatchesByTile) {
@@ -207,6 +249,8 @@ TEST(CliVector, WarningsAreCountedAndNotAFlood) {
             json({{"element", "path"}, {"line", 2}, {"text", "filter is not supported: <path> is drawn without it"}}));
   EXPECT_EQ(lines(some.err), 11) << some.err;
   EXPECT_EQ(lines(all.err), counted["warnings"]) << all.err;
+  EXPECT_EQ(counted["messages"].size(), counted["warnings"]);
+  EXPECT_EQ(counted["messages"][0]["severity"], "warning");
 }
 
 TEST(CliVector, BadDrawingsAreNamed) {

@@ -10,7 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace gpgp::vector;
   const auto memory = std::pmr::get_default_resource();
   (void)loadBaked(std::as_bytes(std::span(data, size)), memory); // as it came
-  // A good drawing with bytes of its tables exchanged, and the sum made right.
+  // A good drawing, with gradients, images, clips and groups that fade in each other, with bytes of its tables
+  // exchanged, and the sum made right.
   const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_CUBIC, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
   const float points[] = {0, 0, 5, 9, -3, 7, 8, 20, 12, 3};
   const GpgpGradientStop stops[] = {{0, {1, 0, 0, 1}}, {1, {0, 1, 0, 0.5f}}};
@@ -19,9 +20,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   gradient.end[0] = 9;
   gradient.stops = stops;
   gradient.stopCount = 2;
-  const GpgpPath paths[] = {{verbs, 4, points, 5, GPGP_FILL_EVEN_ODD, {0, 0, 1, 1}},
-                            {verbs, 4, points, 5, GPGP_FILL_NON_ZERO, {0, 0, 1, 1}, &gradient}};
-  const auto good = makeDrawing(paths, memory);
+  const GpgpImagePaint image{3, {20, 0, 0, 20, 0, 0}};
+  const auto path = [&](uint32_t group) {
+    return GpgpPath{verbs, 4, points, 5, GPGP_FILL_EVEN_ODD, {0, 0, 1, 1}, nullptr, nullptr, nullptr, 0, group};
+  };
+  GpgpPath paths[] = {path(0), path(1), path(2), path(3), path(0)};
+  paths[2].gradient = &gradient;
+  paths[4].image = &image;
+  const GpgpPath clips[] = {path(0), path(0), path(0)};
+  const GpgpPathGroup groups[] = {{0, 0.5f, clips, 2}, {1, 1, clips + 2, 1}, {2, 0.25f, nullptr, 0}};
+  const auto good = makeDrawing(paths, groups, memory);
   if (!good) std::abort();
   std::pmr::vector<std::byte> bytes = bake(*good, memory);
   constexpr size_t kTables = 80, kSummedFrom = 16, kSum = 8; // where in a baked drawing

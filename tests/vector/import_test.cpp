@@ -20,20 +20,25 @@ using namespace gpgp;
 using namespace gpgp::test;
 using vector::svg::Imported;
 
+struct Point2 {
+  double x, y;
+};
+
 struct Import {
   Imported drawing;
   std::vector<std::string> messages;
   std::string error; // empty: it is SVG
 };
 
-Import import(std::string_view text, const vector::svg::ImportLimits& limits = {}) {
+Import import(std::string_view text, const vector::svg::ImportLimits& limits = {}, double scale = 1) {
   Import result;
   const auto listen = [](void* user, const GpgpMessage* m) {
     static_cast<Import*>(user)->messages.push_back((m->severity == GPGP_SEVERITY_ERROR ? "E " : "W ") +
                                                    std::string(m->text));
   };
   vector::svg::Reporter reporter(listen, &result, "test.svg");
-  auto drawing = vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, limits);
+  auto drawing =
+      vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, limits, {}, {scale});
   if (drawing)
     result.drawing = std::move(*drawing);
   else
@@ -161,6 +166,215 @@ TEST(SvgImport, StrokesCoverLengthTimesWidth) {
     EXPECT_EQ(i.drawing.paths[0].rule, GPGP_FILL_NON_ZERO);
     EXPECT_NEAR(area(i.drawing.paths[0]), c.area, 0.01 * c.area) << c.element;
   }
+}
+
+/// How far points of all curves are from the nearest of some circles around (cx, cy), at most.
+double offCircles(const vector::svg::ImportedPath& path, Point2 center, std::initializer_list<double> radii) {
+  double worst = 0;
+  Point2 at{};
+  const float* p = path.points.data();
+  const auto check = [&](double x, double y) {
+    const double r = std::hypot(x - center.x, y - center.y);
+    double off = 1e30;
+    for (const double radius : radii) off = std::min(off, std::abs(r - radius));
+    worst = std::max(worst, off);
+  };
+  for (const GpgpPathVerb verb : path.verbs) {
+    const size_t points = verb == GPGP_PATH_CUBIC ? 3 : verb == GPGP_PATH_CLOSE ? 0 : 1;
+    if (verb == GPGP_PATH_CUBIC)
+      for (int i = 0; i <= 32; ++i) {
+        const double t = i / 32.0, s = 1 - t;
+        const auto on = [&](double start, size_t axis) {
+          return s * s * s * start + 3 * s * s * t * p[axis] + 3 * s * t * t * p[2 + axis] + t * t * t * p[4 + axis];
+        };
+        check(on(at.x, 0), on(at.y, 1));
+      }
+    p += 2 * points;
+    if (points) at = {p[-2], p[-1]};
+  }
+  return worst;
+}
+
+TEST(SvgImport, StrokesAndArcsFollowTheScale) {
+  const auto drawn = [](const std::string& inside, double scale) {
+    const Import icon =
+        import("<svg xmlns='http://www.w3.org/2000/svg' width='24' height='24' fill='none' stroke='black'>" + inside +
+                   "</svg>",
+               {}, scale);
+    EXPECT_EQ(icon.messages, Texts{});
+    return icon.drawing.paths.at(0);
+  };
+  // A circle of four cubics, so that only the stroke depends on the scale; it is the other's offset.
+  const std::string k = std::to_string(11 * 0.5522847498);
+  const std::string ring = "<g transform='translate(12 12)'><path stroke-width='2' d='M11 0C11 " + k + " " + k +
+                           " 11 0 11S-11 " + k + " -11 0-" + k + " -11 0-11 11-" + k + " 11 0Z'/></g>";
+  const double rough = offCircles(drawn(ring, 1), {12, 12}, {10, 12});
+  const double own = 11 * 2.73e-4; // what the four cubics are off themselves
+  EXPECT_LT(rough, 0.05 + own);
+  EXPECT_LT(offCircles(drawn(ring, 100), {12, 12}, {10, 12}), 0.05 / 100 + own);
+  const std::string circle = "<circle cx='12' cy='12' r='11' fill='black' stroke='none'/>";
+  for (const double scale : {1.0, 40.0, 1000.0})
+    EXPECT_LT(offCircles(drawn(circle, scale), {12, 12}, {11}), 1e-4 / scale + 2e-6) << scale; // and float's own
+  const std::string bow = "<path d='M1 12A11 11 0 0 1 23 12' fill='black' stroke='none'/>";
+  EXPECT_LT(offCircles(drawn(bow, 40), {12, 12}, {11}), 1e-4 / 40 + 2e-6);
+  // More exactness costs little; a page in other units is measured in its own pixels.
+  EXPECT_LT(drawn(ring, 100).verbs.size(), 8 * drawn(ring, 1).verbs.size());
+  // Lines that do not scale are as wide as they say in the pixels that are seen.
+  const auto line = drawn("<path d='M2 12H22' stroke-width='3' vector-effect='non-scaling-stroke'/>", 6);
+  float top = 1e9f, bottom = -1e9f;
+  for (size_t i = 1; i < line.points.size(); i += 2) {
+    top = std::min(top, line.points[i]);
+    bottom = std::max(bottom, line.points[i]);
+  }
+  EXPECT_FLOAT_EQ(bottom - top, 0.5f);
+}
+
+TEST(SvgImport, CompilesForAScale) {
+  const std::string text = "<svg width='24' height='24'><path d='M1 12c2-6 4-6 5 0s3 6 5 0' stroke='red'/></svg>";
+  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+  source.data = text.data();
+  source.size = text.size();
+  GpgpSvgReport report{};
+  source.report = &report;
+  const auto curves = [&](float scale) {
+    source.scale = scale;
+    GpgpBlob blob{};
+    EXPECT_EQ(gpgpCompileSvg(&source, &blob), GPGP_SUCCESS);
+    gpgpFreeBlob(&blob);
+    return report.curves;
+  };
+  EXPECT_EQ(curves(0), curves(1));
+  EXPECT_GT(curves(1000), curves(1));
+  for (const float scale : {-1.0f, 1e7f, NAN}) {
+    source.scale = scale;
+    GpgpBlob blob{};
+    EXPECT_EQ(gpgpCompileSvg(&source, &blob), GPGP_ERROR_INVALID_ARGUMENT);
+  }
+}
+
+TEST(SvgImport, StyleSheetsMoveAndShape) {
+  const auto points = [](const std::string& inside) {
+    const Import drawn = page(inside);
+    EXPECT_EQ(drawn.messages, Texts{}) << inside;
+    return drawn.drawing.paths.empty() ? Floats{} : drawn.drawing.paths[0].points;
+  };
+  const Floats square{20, 10, 30, 10, 30, 20, 20, 20};
+  const struct {
+    const char* text;
+    Floats points;
+  } cases[] = {
+      {"<rect width='10' height='10' style='transform:translate(20px,10px)'/>", square},
+      {"<style>rect { transform: translateX(20px) translateY(10px) }</style><rect width='10' height='10'/>", square},
+      {"<rect width='10' height='10' transform='scale(9)' style='transform:translate(20px,10px)'/>", square},
+      {"<g style='transform: scale(2)'><rect x='10' y='5' width='5' height='5'/></g>", square},
+      {"<rect x='20' y='-20' width='10' height='10' style='transform: rotate(90deg)'/>",
+       {20, 20, 20, 30, 10, 30, 10, 20}},
+      {"<rect x='20' y='-20' width='10' height='10' style='transform: rotate(.25turn)'/>",
+       {20, 20, 20, 30, 10, 30, 10, 20}},
+      {"<rect x='15' y='5' width='5' height='5' style='transform: scale(2); transform-origin: 10px 0'/>", square},
+      {"<rect x='35' y='30' width='5' height='5' transform='scale(2)' transform-origin='center'/>", square},
+      {"<rect x='60' y='55' width='5' height='5' transform='scale(2)' transform-origin='bottom right'/>", square},
+      {"<rect style='x:20px;y:10px;width:10px;height:10px'/>", square},
+      {"<style>rect { x: 20px; width: 10px } .a { width: 10% }</style>"
+       "<rect class='a' x='1' y='10' width='3' height='10'/>",
+       square},
+      {"<path style='d:path(\"M20 10H30V20H20Z\")'/>", square},
+      {"<clipPath id='c' style='transform:scale(2)'><path d='M0 0h9v9'/></clipPath>"
+       "<rect clip-path='url(#c)' x='20' y='10' width='10' height='10'/>",
+       square},
+      {"<svg style='x:20px;y:10px' width='50' height='50' viewBox='0 0 50 50'><path d='M0 0H10V10H0'/></svg>", square},
+  };
+  for (const auto& c : cases) {
+    const Floats drawn = points(c.text);
+    ASSERT_EQ(drawn.size(), c.points.size()) << c.text;
+    for (size_t i = 0; i < drawn.size(); ++i) EXPECT_NEAR(drawn[i], c.points[i], 1e-5) << c.text;
+  }
+  EXPECT_EQ(import("<svg style='width:60px;height:40px' viewBox='0 0 3 2'/>").drawing.width, 60);
+  const Import clipped = page("<clipPath id='c' style='transform:scale(2)'><path d='M0 0h9v9'/></clipPath>"
+                              "<rect clip-path='url(#c)' width='10' height='10'/>");
+  EXPECT_EQ(clipped.drawing.groups.at(0).clip.at(0).points, (Floats{0, 0, 18, 0, 18, 18}));
+}
+
+TEST(SvgImport, DashesByPathLength) {
+  const auto dashes = [](const std::string& attributes) {
+    const Import drawn = page("<path fill='none' stroke='red' stroke-width='4' " + attributes + "/>");
+    EXPECT_EQ(drawn.messages, Texts{});
+    const auto& verbs = drawn.drawing.paths.at(0).verbs;
+    return std::count(verbs.begin(), verbs.end(), GPGP_PATH_MOVE);
+  };
+  EXPECT_EQ(dashes("d='M0 15H50' stroke-dasharray='5' pathLength='10'"), 1);   // 25 on, 25 off
+  EXPECT_EQ(dashes("d='M0 15H50' stroke-dasharray='5' pathLength='100'"), 10); // 2.5 each
+  EXPECT_EQ(dashes("d='M0 15H50' stroke-dasharray='5' pathLength='0'"), 1);    // endless
+  EXPECT_EQ(dashes("d='M0 5H10V15H0Z' stroke-dasharray='1 1' pathLength='8'"), 4);
+  // A curve: the dash ends in its middle, by symmetry.
+  const Import curve = page("<path fill='none' stroke='red' stroke-width='1e-3' d='M10 10C30 60 70 60 90 10' "
+                            "stroke-dasharray='1' pathLength='2'/>");
+  float right = 0;
+  for (size_t i = 0; i < curve.drawing.paths.at(0).points.size(); i += 2)
+    right = std::max(right, curve.drawing.paths[0].points[i]);
+  EXPECT_NEAR(right, 50, 0.01);
+  EXPECT_EQ(page("<path stroke='red' d='M0 5H9' stroke-dasharray='5' pathLength='-1'/>").messages,
+            (Texts{"W line 2: <path> has pathLength '-1', which is not valid; ignored"}));
+}
+
+TEST(SvgImport, EntitiesOfTheFile) {
+  const std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>";
+  const auto withEntities = [](const std::string& entities, const std::string& rest) {
+    return import("<?xml version='1.0'?>\n<!-- <!DOCTYPE --><!DOCTYPE svg PUBLIC '-//W3C' 'svg.dtd' [\n" + entities +
+                  "]>\n" + rest);
+  };
+  const Import red = withEntities("<!ENTITY ns 'http://www.w3.org/2000/svg'><!-- <!ENTITY st 'fill:lime'> -->"
+                                  "<!ENTITY st \"fill:&red;;font-family:'a'\"><!ENTITY red '#FF0000'>"
+                                  "<!ENTITY st 'fill:blue'>",
+                                  "<svg xmlns='&ns;' width='9' height='9'><path d='M0 0h9v9' style='&st;'/></svg>");
+  EXPECT_EQ(red.messages, Texts{});
+  EXPECT_EQ(red.error, "");
+  const auto& color = red.drawing.paths.at(0).color;
+  EXPECT_EQ(std::vector<float>(color, color + 4), (Floats{1, 0, 0, 1}));
+  // Elements, and lines behind an entity that holds some.
+  const Import elements = withEntities("<!ENTITY one '<path d=\"M0 0h9v9\"/>\n\n'>", svg + "&one;&one;\n<text/></svg>");
+  EXPECT_EQ(elements.drawing.paths.size(), 2u);
+  EXPECT_EQ(elements.messages, (Texts{"W line 7: <text> is not supported"}));
+  // Comments, CDATA and unknown names stay.
+  EXPECT_EQ(withEntities("<!ENTITY b '<'>", svg + "<!-- &b; --><style><![CDATA[ .a { &b; } ]]></style>&c;</svg>").error,
+            "");
+  EXPECT_EQ(withEntities("<!ENTITY a '&b;'>\n<!ENTITY b '&a;'>", "\n" + svg + "&a;</svg>").error,
+            "line 6: an entity contains itself");
+  std::string bomb = "<!ENTITY e0 'aaaaaaaaaa'>", empty = "<!ENTITY e0 ''>";
+  for (int i = 1; i < 20; ++i) {
+    std::string ten;
+    for (int k = 0; k < 10; ++k) ten += "&e" + std::to_string(i - 1) + ";";
+    for (std::string* all : {&bomb, &empty}) *all += "<!ENTITY e" + std::to_string(i) + " '" + ten + "'>";
+  }
+  EXPECT_NE(withEntities(bomb, svg + "&e19;</svg>").error.find("come to more than"), std::string::npos);
+  EXPECT_EQ(withEntities(empty, svg + "&e19;</svg>").error, "");
+  EXPECT_EQ(import("<!DOCTYPE svg [<!ENTITY a 'x").error.substr(0, 4), "line");
+}
+
+TEST(SvgImport, APathOfTooManyCrossingsIsLeftOut) {
+  // 2200 lines across 2200 others.
+  std::string comb = "M0 0";
+  for (int i = 0; i < 2200; ++i) comb += i % 2 ? "V0h.04" : "V99h.04";
+  comb += "M0 0";
+  for (int i = 0; i < 2200; ++i) comb += i % 2 ? "l-99 .04" : "l99 .04";
+  const std::string text = "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>\n"
+                           "<rect width='9' height='9'/>\n<path d='" +
+                           comb + "'/>\n<circle r='9'/></svg>";
+  Texts messages;
+  GpgpSvgReport report{};
+  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+  source.data = text.data();
+  source.size = text.size();
+  source.report = &report;
+  source.messageUserData = &messages;
+  source.messageFn = [](void* user, const GpgpMessage* m) { static_cast<Texts*>(user)->push_back(m->text); };
+  GpgpBlob blob{};
+  ASSERT_EQ(gpgpCompileSvg(&source, &blob), GPGP_SUCCESS);
+  EXPECT_EQ(messages, (Texts{"line 3: <path>: the path crosses itself more than 4194304 times; not drawn"}));
+  EXPECT_EQ(report.paths, 3u); // it is empty
+  EXPECT_GE(report.patches, 2u);
+  EXPECT_LT(report.patches, 100u);
+  gpgpFreeBlob(&blob);
 }
 
 TEST(SvgImport, Colours) {
@@ -429,6 +643,15 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<rect width='1e30' height='9'/>", "E line 2: <rect> reaches beyond 10000000 pixels; not drawn"},
       {"<rect width='9' height='9' transform='turn(3)'/>",
        "E line 2: <rect> has an error in its transform, which is ignored"},
+      {"<rect width='9' height='9' style='backdrop-filter:blur(3px)'/>",
+       "W line 2: backdrop-filter is not supported: <rect> is drawn without it"},
+      {"<style>rect { rotate: 45deg; scale: none }</style>\n<rect width='9' height='9'/>",
+       "W line 3: rotate is not supported: <rect> is drawn without it"},
+      {"<rect width='9' height='9' style='transform:scale(1);transform-origin:top top'/>",
+       "W line 2: <rect> has transform-origin 'top top', which is not valid; ignored"},
+      {"<rect height='9' style='width:wide'/>", "E line 2: <rect> has width 'wide', which is no length"},
+      {"<path style='d:path(\"M0 0 x\")'/>",
+       "E line 2: <path> has an error in its path data at character 6; drawn up to there"},
       {"<style>\ng rect { fill: red }</style>", "W line 3: style selector 'g rect' is not supported"},
       {"<rect width='9' height='9' fill='blurple'/>",
        "W line 2: <rect> has fill 'blurple', which is not valid; ignored"},
@@ -506,6 +729,9 @@ TEST(SvgImport, ThePageIsWhatTheFileSays) {
   EXPECT_EQ(filled.drawing.paths.at(0).points, (Floats{0, 0, 200, 0, 200, 100}));
   EXPECT_EQ(import("<svg viewBox='0 0 30 20' width='100%'/>").drawing.width, 30);
   EXPECT_EQ(import("<svg/>").drawing.width, 0);
+  const Import wide = import("\n<svg width='1e9' height='9'><rect width='1e9' height='9'/></svg>");
+  EXPECT_EQ(wide.error, "line 2: <svg> is wider or taller than 10000000 pixels");
+  EXPECT_EQ(wide.messages, Texts{});
 }
 
 TEST(SvgImport, CompilesToADrawingWithThePage) {

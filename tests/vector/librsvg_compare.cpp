@@ -82,6 +82,9 @@ public:
     GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
     source.data = bytes.data();
     source.size = bytes.size();
+    const auto page = vector::svg::pageSize(std::as_bytes(std::span(bytes)));
+    const double longer = page ? std::max(page->width, page->height) : 0;
+    if (longer > 0) source.scale = static_cast<float>(std::min(size / longer, 1e6));
     source.messageFn = onMessage;
     source.messageUserData = &messages;
     cli::VectorImages images;
@@ -218,7 +221,9 @@ void writeReport(const Options& options, const std::vector<Compared>& worst,
     }
     vector::svg::Reporter quiet(nullptr, nullptr, "");
     const auto bytes = host::readFile(c.file);
-    const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), quiet);
+    vector::svg::ImportDetail detail;
+    if (c.transform[0] > 0) detail.scale = static_cast<double>(c.transform[0]);
+    const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), quiet, {}, {}, detail);
     const vector::svg::ImportedViews views(*svg);
     const float white[4] = {1, 1, 1, 1};
     const auto truth = cli::vectorTruth(views.paths, views.groups, c.transform, white, shown[0].width, shown[0].height,

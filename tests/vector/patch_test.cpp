@@ -505,11 +505,30 @@ TEST(Patches, PrintAsSvg) {
   const GpgpPath view = path.view();
   const auto d = vector::makeDrawing(std::span(&view, 1), heap());
   ASSERT_TRUE(d);
-  const std::pmr::string svg = vector::patchesToSvg(*d, heap());
+  const std::pmr::string svg = vector::patchesToSvg(std::span(&view, 1), *d, heap());
   size_t count = 0;
   for (size_t at = 0; (at = svg.find("<path", at)) != std::string::npos; ++at) ++count;
   EXPECT_EQ(count, d->patches.size());
   EXPECT_NE(svg.find("</svg>"), std::string::npos);
+  const auto box = [](const std::pmr::string& stage) { return stage.substr(0, stage.find('\n')); };
+  EXPECT_EQ(box(svg), box(vector::pathsToSvg(std::span(&view, 1), heap())));
+  EXPECT_EQ(box(svg), box(vector::crossingsToSvg(std::span(&view, 1), heap())));
+}
+
+TEST(Patches, BoundsOfZeroAreZero) {
+  TestPath path;
+  path.move(0, 0).line(3, 0).line(0, 3).close().move(-5, 0).line(0, 0).line(-5, -4).close();
+  const GpgpPath view = path.view();
+  for (const uint32_t verbs : {4u, 8u}) {
+    GpgpPath part = view;
+    part.verbCount = verbs;
+    part.pointCount = verbs / 4 * 3;
+    const auto d = vector::makeDrawing(std::span(&part, 1), heap());
+    ASSERT_TRUE(d);
+    for (const auto& p : d->patches)
+      for (const float v : {p.x0, p.x1}) EXPECT_TRUE(v == 0 || std::isnormal(v)) << v;
+    if (verbs == 4) EXPECT_EQ(d->bounds[0], 0.0f);
+  }
 }
 
 TEST(Baked, ComesBackTheSame) {

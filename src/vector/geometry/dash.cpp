@@ -1,6 +1,7 @@
 // Dashes: arc length by four-point Gauss-Legendre quadrature over sixteen parts of a curve, inverted by bisection.
 #include "vector/geometry/contour.h"
 #include "vector/geometry/offset.h"
+#include "vector/geometry/stroke.h"
 
 #include <algorithm>
 #include <array>
@@ -59,6 +60,32 @@ private:
 };
 
 } // namespace
+
+double lengthOf(const Shape& shape) {
+  double sum = 0;
+  Point start, at;
+  const auto add = [&](const Cubic& curve) {
+    sum += ArcLength(Segment{curve, {}, {}}).total();
+    at = curve.p[3];
+  };
+  const Point* p = shape.points.data();
+  for (const GpgpPathVerb verb : shape.verbs) {
+    if (verb == GPGP_PATH_MOVE) {
+      start = at = *p++;
+    } else if (verb == GPGP_PATH_LINE) {
+      add(Cubic::fromLine(at, *p++));
+    } else if (verb == GPGP_PATH_QUAD) {
+      add(Cubic::fromQuadratic(at, p[0], p[1]));
+      p += 2;
+    } else if (verb == GPGP_PATH_CUBIC) {
+      add({{at, p[0], p[1], p[2]}});
+      p += 3;
+    } else {
+      add(Cubic::fromLine(at, start));
+    }
+  }
+  return sum;
+}
 
 bool dash(const Contour& contour, std::span<const double> pattern, double offset, size_t maxDashes,
           std::pmr::vector<Contour>& dashes) {

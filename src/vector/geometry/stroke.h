@@ -24,6 +24,9 @@ struct StrokeLimits {
   size_t dashes = size_t(1) << 16;
 };
 
+/// How long all contours are together; closing lines count, moves do not.
+double lengthOf(const Shape& shape);
+
 /// Appends the area that a stroke covers, to be filled non-zero; overlaps never show because every part turns the same
 /// way. The outline is off by less than `tolerance`. Memory comes from where the result has its own. False, with
 /// nothing appended, where the limits are exceeded.

@@ -25,8 +25,10 @@ CurveRecord curveRecord(const Monotone& piece) {
   return r;
 }
 
-float below(double v) { return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity()); }
-float above(double v) { return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity()); }
+/// What GPUs take for 0 is 0.
+float normal(float v) { return std::abs(v) < std::numeric_limits<float>::min() ? 0.0f : v; }
+float below(double v) { return normal(std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity())); }
+float above(double v) { return normal(std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity())); }
 
 core::Error tooManyPatches() {
   return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing needs more than %u patches", shader::kEntryPatch);
@@ -34,7 +36,7 @@ core::Error tooManyPatches() {
 
 } // namespace
 
-core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
+core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional<core::Error>* tooMany) {
   // What the stages leave to each other goes at once; small paths find room here.
   alignas(std::max_align_t) std::byte room[32 << 10];
   std::pmr::monotonic_buffer_resource scratch(room, sizeof room, drawing.curves.get_allocator().resource());
@@ -44,7 +46,12 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing) {
   if (auto ok = outline(path, pieces); !ok) return ok;
   mergeCoincident(pieces);
   std::pmr::vector<Cut> cuts(memory);
-  if (auto ok = findCrossings(pieces, cuts); !ok) return ok;
+  if (auto ok = findCrossings(pieces, cuts); !ok) {
+    if (!tooMany) return ok;
+    *tooMany = ok.error();
+    pieces.clear();
+    cuts.clear();
+  }
   std::pmr::vector<Slab> slabs(memory);
   sweep(pieces, cuts, path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule, slabs);
   if (slabs.size() + drawing.patches.size() > shader::kEntryPatch) return tooManyPatches();
@@ -158,12 +165,16 @@ core::Result<void> append(const Drawing& part, Drawing& drawing) {
 
 namespace {
 
-core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, std::pmr::memory_resource* memory) {
+core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, std::pmr::memory_resource* memory,
+                              std::pmr::vector<LeftEmpty>* leftEmpty) {
   Drawing drawing(memory);
   drawing.paths.reserve(paths.size());
-  for (size_t i = 0; i < paths.size(); ++i)
-    if (auto ok = addPath(paths[i], drawing); !ok)
+  for (size_t i = 0; i < paths.size(); ++i) {
+    std::optional<core::Error> tooMany;
+    if (auto ok = addPath(paths[i], drawing, leftEmpty ? &tooMany : nullptr); !ok)
       return core::makeError(ok.error().code, "paths[%zu]: %s", first + i, ok.error().text);
+    if (tooMany) leftEmpty->push_back({0, first + i, *tooMany});
+  }
   return drawing;
 }
 
@@ -172,12 +183,14 @@ struct Batch {
   std::span<const GpgpPath> paths;
   size_t first;
   std::pmr::memory_resource* memory;
+  bool mayLeaveEmpty;
+  std::pmr::vector<LeftEmpty> leftEmpty;
   std::optional<core::Result<Drawing>> made;
 
   static void GPGP_CALL run(void* batches, uint32_t index) {
     Batch& b = static_cast<Batch*>(batches)[index];
     try {
-      b.made.emplace(convert(b.paths, b.first, b.memory));
+      b.made.emplace(convert(b.paths, b.first, b.memory, b.mayLeaveEmpty ? &b.leftEmpty : nullptr));
     } catch (...) { // bad_alloc; nothing else is thrown. An engine's job must not see it
       b.made.reset();
     }
@@ -187,7 +200,7 @@ struct Batch {
 } // namespace
 
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
-                                  const GpgpJobSystem* jobs) {
+                                  const GpgpJobSystem* jobs, std::pmr::vector<LeftEmpty>* leftEmpty) {
   constexpr uint64_t kVerbsOfBatch = 1000; // some tenths of a millisecond
   core::Result<Drawing> drawing = Drawing(memory);
   std::pmr::vector<Batch> batches(memory);
@@ -195,7 +208,8 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
     uint64_t verbs = kVerbsOfBatch;
     for (size_t i = 0; i < paths.size(); ++i) {
       if (verbs >= kVerbsOfBatch) {
-        batches.push_back({paths.subspan(i, 0), i, memory, {}});
+        batches.push_back(
+            {paths.subspan(i, 0), i, memory, leftEmpty != nullptr, std::pmr::vector<LeftEmpty>(memory), {}});
         verbs = 0;
       }
       batches.back().paths = paths.subspan(batches.back().first, i + 1 - batches.back().first);
@@ -208,9 +222,10 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
       if (!batch.made) throw std::bad_alloc();
       if (!*batch.made) return batch.made->error();
       if (auto ok = append(**batch.made, *drawing); !ok) return ok.error();
+      if (leftEmpty) leftEmpty->insert(leftEmpty->end(), batch.leftEmpty.begin(), batch.leftEmpty.end());
     }
   } else {
-    drawing = convert(paths, 0, memory);
+    drawing = convert(paths, 0, memory, leftEmpty);
     if (!drawing) return drawing;
   }
   drawing->viewport[0] = drawing->bounds[0];

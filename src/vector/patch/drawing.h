@@ -9,6 +9,7 @@
 
 #include <gpgp/vector.h>
 
+#include <optional>
 #include <string>
 
 namespace gpgp::vector {
@@ -69,20 +70,29 @@ core::Result<uint32_t> addGradient(const GpgpGradient& gradient, Drawing& drawin
 /// Checks an image paint and appends it; returns its index.
 core::Result<uint32_t> addImage(const GpgpImagePaint& image, Drawing& drawing);
 
-/// All stages for one path; appends its patches, the curves they use and its colour.
-core::Result<void> addPath(const GpgpPath& path, Drawing& drawing);
+/// All stages for one path; appends its patches, the curves they use and its colour. One that crosses itself more than
+/// kMaxCrossings times is an error; with `tooMany`, where the error goes then, it is appended without patches.
+core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional<core::Error>* tooMany = nullptr);
 
 /// Paints another drawing on top: how paths that were converted apart, or earlier, become one.
 core::Result<void> append(const Drawing& part, Drawing& drawing);
 
+/// A path that was left empty as it crosses itself too often.
+struct LeftEmpty {
+  size_t group, index; ///< 0: of the paths; else 1 + a group's index, of its clip
+  core::Error error;
+};
+
 /// The same with groups: their clips' paths come first, and paths know their clip and layer. Errors name the group.
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
-                                  std::pmr::memory_resource* memory, const GpgpJobSystem* jobs = nullptr);
+                                  std::pmr::memory_resource* memory, const GpgpJobSystem* jobs = nullptr,
+                                  std::pmr::vector<LeftEmpty>* leftEmpty = nullptr);
 
 /// The drawing of paths in painting order; the same with and without jobs, which then call the memory resource side by
-/// side. Errors name the path.
+/// side. Errors name the path; with `leftEmpty`, paths that cross themselves too often go there instead.
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
-                                  const GpgpJobSystem* jobs = nullptr);
+                                  const GpgpJobSystem* jobs = nullptr,
+                                  std::pmr::vector<LeftEmpty>* leftEmpty = nullptr);
 
 /// How many paths at the front are there for clips alone.
 uint32_t clipPaths(const Drawing& drawing);
@@ -101,10 +111,12 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
 core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory);
 
 /// The stages as SVG, for people to look at: paths as they came, filled; pieces, blue where they run down and red where
-/// up, with their ends; where pieces are cut; and the patches, outlined over their fill. Bad paths are left out.
+/// up, with their ends; where pieces are cut; and the patches, outlined over their fill. Bad paths are left out. All
+/// four show the same part of the plane, the box around the paths' points.
 std::pmr::string pathsToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
 std::pmr::string piecesToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
 std::pmr::string crossingsToSvg(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory);
-std::pmr::string patchesToSvg(const Drawing& drawing, std::pmr::memory_resource* memory);
+std::pmr::string patchesToSvg(std::span<const GpgpPath> paths, const Drawing& drawing,
+                              std::pmr::memory_resource* memory);
 
 } // namespace gpgp::vector

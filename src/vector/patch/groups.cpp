@@ -14,8 +14,8 @@ struct Nearest { // at or above a group: 1 + index; 0: none
   uint32_t clip = 0, layer = 0;
 };
 
-core::Result<void> addGroups(std::span<const GpgpPathGroup> groups, Drawing& drawing,
-                             std::pmr::vector<Nearest>& found) {
+core::Result<void> addGroups(std::span<const GpgpPathGroup> groups, Drawing& drawing, std::pmr::vector<Nearest>& found,
+                             std::pmr::vector<LeftEmpty>* leftEmpty) {
   for (uint32_t i = 0; i < groups.size(); ++i) {
     const GpgpPathGroup& g = groups[i];
     if (g.parent > i)
@@ -38,8 +38,10 @@ core::Result<void> addGroups(std::span<const GpgpPathGroup> groups, Drawing& dra
         std::fill(path.color, path.color + 4, 0.0f); // it paints nothing
         path.gradient = nullptr;
         path.image = nullptr;
-        if (auto ok = addPath(path, drawing); !ok)
+        std::optional<core::Error> tooMany;
+        if (auto ok = addPath(path, drawing, leftEmpty ? &tooMany : nullptr); !ok)
           return makeError(ok.error().code, "groups[%u].clip[%u]: %s", i, k, ok.error().text);
+        if (tooMany) leftEmpty->push_back({1 + i, k, *tooMany});
       }
     }
     if (g.opacity < 1) {
@@ -78,16 +80,17 @@ core::Result<void> checkOrder(std::span<const PathRecord> paths, std::span<const
 } // namespace
 
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
-                                  std::pmr::memory_resource* memory, const GpgpJobSystem* jobs) {
+                                  std::pmr::memory_resource* memory, const GpgpJobSystem* jobs,
+                                  std::pmr::vector<LeftEmpty>* leftEmpty) {
   for (size_t i = 0; i < paths.size(); ++i)
     if (paths[i].group > groups.size())
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "paths[%zu].group is %u; there are %zu groups", i, paths[i].group,
                        groups.size());
-  auto painted = makeDrawing(paths, memory, jobs);
+  auto painted = makeDrawing(paths, memory, jobs, leftEmpty);
   if (!painted || groups.empty()) return painted;
   core::Result<Drawing> drawing = Drawing(memory);
   std::pmr::vector<Nearest> nearest(memory);
-  if (auto ok = addGroups(groups, *drawing, nearest); !ok) return ok.error();
+  if (auto ok = addGroups(groups, *drawing, nearest, leftEmpty); !ok) return ok.error();
   for (size_t i = 0; i < paths.size(); ++i)
     if (paths[i].group) {
       painted->paths[i].clip = nearest[paths[i].group - 1].clip;

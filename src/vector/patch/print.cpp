@@ -134,12 +134,11 @@ std::pmr::string crossingsToSvg(std::span<const GpgpPath> paths, std::pmr::memor
   return out;
 }
 
-std::pmr::string patchesToSvg(const Drawing& d, std::pmr::memory_resource* memory) {
+std::pmr::string patchesToSvg(std::span<const GpgpPath> paths, const Drawing& d, std::pmr::memory_resource* memory) {
   std::pmr::string out(memory);
-  const double width = d.bounds[2] - d.bounds[0], height = d.bounds[3] - d.bounds[1];
-  append(out, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"%.9g %.9g %.9g %.9g\">\n",
-         static_cast<double>(d.bounds[0]), static_cast<double>(d.bounds[1]), width, height);
-  append(out, "<g stroke=\"#06f\" stroke-width=\"%.4g\">\n", std::max(width, height) / 2000);
+  double unit = 0;
+  open(out, paths, unit);
+  append(out, "<g stroke=\"#06f\" stroke-width=\"%.4g\">\n", unit);
   for (const PatchRecord& p : d.patches) {
     const Monotone l = monotone(d.curves[p.left]), r = monotone(d.curves[p.right]);
     const double top = p.top, bottom = p.bottom;

@@ -31,7 +31,12 @@ void Importer::cascade(pugi::xml_node node, std::string_view name, const Style& 
   LengthContext lengths = outer;
   lengths.fontSize = parent.fontSize;
   const auto apply = [&](const Setting& s) {
-    if (applyProperty(style, parent, s.name, s.value, lengths) == Applied::Invalid)
+    const Applied applied = applyProperty(style, parent, s.name, s.value, lengths);
+    if (applied == Applied::Unknown && isGeometry(s.name)) style.geometry.emplace_back(s.name, s.value);
+    if (applied == Applied::Unknown && isUnsupported(s.name, s.value))
+      reporter_.warn(document_.line(node),
+                     std::string(s.name) + " is not supported: " + element(node) + " is drawn without it");
+    if (applied == Applied::Invalid)
       reporter_.ignored(document_.line(node), element(node) + " has " + std::string(s.name) + " '" +
                                                   std::string(s.value.substr(0, 60)) +
                                                   "', which is not valid; ignored");
@@ -41,6 +46,27 @@ void Importer::cascade(pugi::xml_node node, std::string_view name, const Style& 
   lengths.fontSize = style.fontSize;
   for (const Setting& s : settings)
     if (s.name != "font-size") apply(s);
+}
+
+Affine Importer::transformOf(pugi::xml_node node, const Style& style, const LengthContext& outer) {
+  Affine own;
+  if (style.transform.empty()) return own;
+  const pugi::xml_attribute text = node.attribute("transform");
+  const size_t line = text && text.value() == style.transform ? document_.line(text, 0) : document_.line(node);
+  if (!parseTransform(style.transform, own)) {
+    reporter_.error(line, element(node) + " has an error in its transform, which is ignored");
+    return {};
+  }
+  if (style.transformOrigin.empty()) return own;
+  LengthContext lengths = outer;
+  lengths.fontSize = style.fontSize;
+  Point origin;
+  if (!parseOrigin(style.transformOrigin, lengths, origin)) {
+    reporter_.ignored(line, element(node) + " has transform-origin '" + style.transformOrigin.substr(0, 60) +
+                                "', which is not valid; ignored");
+    return own;
+  }
+  return Affine{1, 0, 0, 1, origin.x, origin.y} * own * Affine{1, 0, 0, 1, -origin.x, -origin.y};
 }
 
 std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& state, const Shape& shape,

@@ -62,9 +62,12 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
   if (name == "use") { // its x and y move its own coordinates
     LengthContext lengths = state.lengths;
     lengths.fontSize = state.style.fontSize;
-    space =
-        space *
-        Affine{1, 0, 0, 1, length(node, "x", lengths, LengthAxis::X, 0), length(node, "y", lengths, LengthAxis::Y, 0)};
+    space = space * Affine{1,
+                           0,
+                           0,
+                           1,
+                           length(node, state.style, "x", lengths, LengthAxis::X, 0),
+                           length(node, state.style, "y", lengths, LengthAxis::Y, 0)};
   }
   std::optional<Box> box; // of the element, when first asked for
   std::vector<pugi::xml_node> targets;
@@ -86,16 +89,10 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
     State inner;
     inner.style = styleOf(target, state.lengths);
     value = inner.style.clipPath;
+    inner.transform = space * transformOf(target, inner.style, state.lengths);
     inner.style = inner.style.inherited();
-    inner.transform = space;
     inner.lengths = state.lengths;
     inner.depth = state.depth;
-    if (const pugi::xml_attribute text = target.attribute("transform")) {
-      Affine own;
-      if (!parseTransform(text.value(), own))
-        reporter_.error(document_.line(text, 0), element(target) + " has an error in its transform, which is ignored");
-      inner.transform = inner.transform * own;
-    }
     if (trim(target.attribute("clipPathUnits").value()) == "objectBoundingBox") {
       if (!box) box = boxAround(node, name, state, space);
       if (box->left <= box->right)

@@ -11,27 +11,34 @@ using namespace gpgp;
 namespace {
 using vector::svg::Reporter;
 
+constexpr float kMaxScale = 1e6f;
+
 GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& reporter) {
   const auto fail = [&reporter](GpgpResult code, const char* text) { return reporter.error(text, code), code; };
   if (!source.data && source.size) return fail(GPGP_ERROR_INVALID_ARGUMENT, "data is NULL, size is not 0");
+  if (!(source.scale >= 0 && source.scale <= kMaxScale))
+    return fail(GPGP_ERROR_INVALID_ARGUMENT, "scale must be 0 to 1e6");
   using Clock = std::chrono::steady_clock;
   const auto milliseconds = [](Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
   };
   const auto begin = Clock::now();
-  const auto imported =
-      vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
-                             {source.imageFn, source.imageUserData});
+  const auto imported = vector::svg::importSvg(
+      {static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
+      {source.imageFn, source.imageUserData}, {source.scale > 0 ? static_cast<double>(source.scale) : 1});
   if (!imported) return fail(imported.error().code, imported.error().text);
   std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
   const vector::svg::ImportedViews views(*imported);
   const std::vector<GpgpPath>& paths = views.paths;
   const auto parsed = Clock::now();
-  auto drawing = vector::makeDrawing(paths, views.groups, memory, source.jobSystem);
+  std::pmr::vector<vector::LeftEmpty> leftEmpty(memory);
+  auto drawing = vector::makeDrawing(paths, views.groups, memory, source.jobSystem, &leftEmpty);
   const auto converted = Clock::now();
   if (!drawing) return fail(drawing.error().code, drawing.error().text);
-  if (imported->width > vector::kMaxCoordinate || imported->height > vector::kMaxCoordinate)
-    return fail(GPGP_ERROR_INVALID_DATA, "the page is wider or taller than 1e7 pixels");
+  for (const vector::LeftEmpty& left : leftEmpty) {
+    const auto& path = (left.group ? imported->groups[left.group - 1].clip : imported->paths)[left.index];
+    reporter.error(path.line, path.element + ": " + left.error.text + "; not drawn", GPGP_ERROR_UNSUPPORTED);
+  }
   if (imported->width > 0 && imported->height > 0) {
     const double page[4] = {0, 0, imported->width, imported->height};
     for (size_t i = 0; i < 4; ++i) drawing->viewport[i] = static_cast<float>(page[i]);
@@ -53,7 +60,7 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
     show("paths", vector::pathsToSvg(paths, memory));
     show("pieces", vector::piecesToSvg(paths, memory));
     show("crossings", vector::crossingsToSvg(paths, memory));
-    show("patches", vector::patchesToSvg(*drawing, memory));
+    show("patches", vector::patchesToSvg(paths, *drawing, memory));
   }
   return GPGP_SUCCESS;
 }

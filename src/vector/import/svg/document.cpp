@@ -1,6 +1,7 @@
-// Loading: inflate, to UTF-8, parse in place, index lines and ids. Document type definitions are skipped, so their
-// entities are never expanded.
+// Loading: inflate, to UTF-8, expand entities, parse in place, index lines and ids. No other file is ever read.
 #include "vector/import/svg/document.h"
+
+#include "vector/import/svg/entities.h"
 
 #include <algorithm>
 #include <zlib.h>
@@ -135,6 +136,7 @@ core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxB
 core::Result<void> Document::load(std::span<const std::byte> bytes) {
   if (auto ok = inflateIfNeeded(bytes, kMaxBytes, text_); !ok) return ok;
   toUtf8(text_);
+  if (auto ok = expandEntities(text_, kMaxBytes); !ok) return ok;
   size_t tags = 0, attributes = 0;
   for (size_t i = 0; i < text_.size(); ++i) {
     tags += text_[i] == '<';

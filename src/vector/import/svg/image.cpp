@@ -76,13 +76,14 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   bool hasWidth = false, hasHeight = false;
-  double w = length(node, "width", lengths, LengthAxis::X, 0, &hasWidth);
-  double h = length(node, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  double w = length(node, state.style, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  double h = length(node, state.style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
   const double pw = picture->width, ph = picture->height;
   if (!hasWidth) w = hasHeight ? h * pw / ph : pw;
   if (!hasHeight) h = w * ph / pw;
   if (!(w > 0 && h > 0)) return;
-  const double x = length(node, "x", lengths, LengthAxis::X, 0), y = length(node, "y", lengths, LengthAxis::Y, 0);
+  const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
+               y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   const Affine fitted =
       Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, node.attribute("preserveAspectRatio").value());
   // What of the picture is within its place.

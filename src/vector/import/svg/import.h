@@ -16,9 +16,12 @@
 
 namespace gpgp::vector::svg {
 
-/// Flattened strokes are off by less than this, in pixels of the drawing at its own size (1 user unit of the outermost
-/// viewport); arcs by less than a fifth of it.
-constexpr double kTolerance = 0.05;
+/// How finely strokes and arcs are made.
+struct ImportDetail {
+  double scale = 1;      ///< the largest at which the drawing is shown, pixels per pixel of the page
+  double strokes = 0.05; ///< they are off by less than this, in pixels at that scale
+  double arcs = 1e-4;    ///< likewise
+};
 
 struct ImportLimits {
   size_t depth = 200;        ///< of elements in each other, <use> included
@@ -47,6 +50,7 @@ struct ImportedPath {
   std::shared_ptr<const Gradient> gradient;    ///< instead of the colour, whose alpha still counts
   std::shared_ptr<const GpgpImagePaint> image; ///< likewise
   size_t line = 1;                             ///< of the element it comes from
+  std::string element;                         ///< "<path>"
   uint32_t group = 0;                          ///< 1 + its index in Imported::groups
 
   GpgpPath view() const {
@@ -97,12 +101,18 @@ struct ImportedViews {
   std::vector<GpgpPathGroup> groups;
 };
 
+/// The size of an SVG's page in pixels; 0: the file does not say.
+struct PageSize {
+  double width = 0, height = 0;
+};
+core::Result<PageSize> pageSize(std::span<const std::byte> bytes);
+
 /// The map from the page of an SVG (x, y, width, height) into a picture, as if the picture's size were what the
 /// outermost element asks for: the viewBox, or the page where there is none, fitted as preserveAspectRatio says.
 core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&page)[4], double width, double height);
 
 /// Errors where the bytes are no SVG at all; everything milder goes to the reporter.
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits = {},
-                                 const ImageDecoder& images = {});
+                                 const ImageDecoder& images = {}, const ImportDetail& detail = {});
 
 } // namespace gpgp::vector::svg

@@ -20,13 +20,22 @@ constexpr std::string_view kSilent[] = {
     "radialGradient", "pattern",   "clipPath",   "mask",          "filter",       "marker", "view",  "cursor",
     "font",           "font-face", "solidColor", "color-profile", "meshgradient", "hatch",  "glyph", "missing-glyph"};
 
+constexpr double kMaxReach = 1e7; // pixels
+
 } // namespace
 
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits,
-                                 const ImageDecoder& images) {
+                                 const ImageDecoder& images, const ImportDetail& detail) {
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
-  return Importer(document, reporter, limits, images).run();
+  return Importer(document, reporter, limits, images, detail).run();
+}
+
+core::Result<PageSize> pageSize(std::span<const std::byte> bytes) {
+  Document document;
+  if (auto ok = document.load(bytes); !ok) return ok.error();
+  Reporter quiet(nullptr, nullptr, "");
+  return Importer(document, quiet, {}, {}, {}).pageSize();
 }
 
 std::string Importer::element(pugi::xml_node node) const {
@@ -44,7 +53,21 @@ bool Importer::stopped(pugi::xml_node node) {
   return stopped_;
 }
 
-Imported Importer::run() {
+core::Result<Imported> Importer::run() {
+  const State state = begin();
+  if (result_.width > kMaxReach || result_.height > kMaxReach)
+    return core::makeError(GPGP_ERROR_INVALID_DATA, "line %zu: <svg> is wider or taller than 10000000 pixels",
+                           document_.line(document_.root()));
+  visit(document_.root(), state);
+  return std::move(result_);
+}
+
+PageSize Importer::pageSize() {
+  begin();
+  return {result_.width, result_.height};
+}
+
+Importer::State Importer::begin() {
   for (const pugi::xml_node node : document_.all("style")) {
     const std::string_view type = node.attribute("type").value();
     std::string text;
@@ -63,10 +86,14 @@ Imported Importer::run() {
   state.lengths.width = box ? box->width : 100;
   state.lengths.height = box ? box->height : 100;
   bool hasWidth = false, hasHeight = false;
-  double width = length(root, "width", state.lengths, LengthAxis::X, 0, &hasWidth);
-  double height = length(root, "height", state.lengths, LengthAxis::Y, 0, &hasHeight);
-  const auto isPercent = [root](const char* name) {
-    return std::string_view(root.attribute(name).value()).find('%') != std::string_view::npos;
+  Style style;
+  cascade(root, "svg", {}, state.lengths, style);
+  double width = length(root, style, "width", state.lengths, LengthAxis::X, 0, &hasWidth);
+  double height = length(root, style, "height", state.lengths, LengthAxis::Y, 0, &hasHeight);
+  const auto isPercent = [&](const char* name) {
+    const std::string* styled = style.geometryOf(name);
+    const std::string_view text = styled ? std::string_view(*styled) : root.attribute(name).value();
+    return text.find('%') != text.npos;
   };
   if (isPercent("width")) hasWidth = false;
   if (isPercent("height")) hasHeight = false;
@@ -86,8 +113,7 @@ Imported Importer::run() {
     if (hasWidth) state.lengths.width = width;
     if (hasHeight) state.lengths.height = height;
   }
-  visit(root, state);
-  return std::move(result_);
+  return state;
 }
 
 void Importer::visit(pugi::xml_node node, const State& parent, const double* useSize) {
@@ -107,12 +133,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   ++state.depth;
   cascade(node, name, parent.style, parent.lengths, state.style);
   if (!state.style.displayed) return;
-  if (const pugi::xml_attribute transform = node.attribute("transform")) {
-    Affine own;
-    if (!parseTransform(transform.value(), own))
-      reporter_.error(document_.line(transform, 0), element(node) + " has an error in its transform, which is ignored");
-    state.transform = state.transform * own;
-  }
+  state.transform = state.transform * transformOf(node, state.style, parent.lengths);
   if (!state.transform.finite()) {
     reporter_.error(document_.line(node), element(node) + " has a transform beyond all numbers; not drawn");
     return;
@@ -211,11 +232,12 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
   State moved = state;
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
-  const double x = length(node, "x", lengths, LengthAxis::X, 0), y = length(node, "y", lengths, LengthAxis::Y, 0);
+  const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
+               y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   moved.transform = moved.transform * Affine{1, 0, 0, 1, x, y};
   constexpr double unset = -1;
-  const double size[2] = {length(node, "width", lengths, LengthAxis::X, unset),
-                          length(node, "height", lengths, LengthAxis::Y, unset)};
+  const double size[2] = {length(node, state.style, "width", lengths, LengthAxis::X, unset),
+                          length(node, state.style, "height", lengths, LengthAxis::Y, unset)};
   used_.push_back(target);
   visit(target, moved, size);
   used_.pop_back();
@@ -226,9 +248,10 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
   const size_t before = result_.paths.size();
   if (node == document_.root()) return visitChildren(node, state);
   const LengthContext lengths = state.lengths;
-  const double x = length(node, "x", lengths, LengthAxis::X, 0), y = length(node, "y", lengths, LengthAxis::Y, 0);
-  double w = length(node, "width", lengths, LengthAxis::X, lengths.width);
-  double h = length(node, "height", lengths, LengthAxis::Y, lengths.height);
+  const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
+               y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
+  double w = length(node, state.style, "width", lengths, LengthAxis::X, lengths.width);
+  double h = length(node, state.style, "height", lengths, LengthAxis::Y, lengths.height);
   if (useSize && useSize[0] >= 0) w = useSize[0];
   if (useSize && useSize[1] >= 0) h = useSize[1];
   if (!(w > 0 && h > 0)) return;
@@ -323,6 +346,21 @@ void Importer::draw(pugi::xml_node node, std::string_view name, const State& sta
   if (style.strokeFirst) fill();
 }
 
+/// What a dash of length 1 is long: where the element says how long its path is, dashes are in such units.
+double Importer::dashUnit(const Shape& shape, double otherwise, pugi::xml_node node) {
+  const pugi::xml_attribute said = node.attribute("pathLength");
+  if (!said) return otherwise;
+  double length = 0;
+  Scanner s(trim(said.value()));
+  if (!s.number(length) || !s.done() || length < 0) {
+    reporter_.ignored(document_.line(said, 0), element(node) + " has pathLength '" +
+                                                   std::string(said.value()).substr(0, 60) +
+                                                   "', which is not valid; ignored");
+    return otherwise;
+  }
+  return lengthOf(shape) / length;
+}
+
 void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pugi::xml_node node) {
   const Style& style = state.style;
   Affine transform = state.transform;
@@ -335,24 +373,31 @@ void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pu
   const Shape& from = style.nonScalingStroke ? moved : shape;
   const double scale = transform.scale();
   if (!(scale > 0)) return;
+  const double shown = style.nonScalingStroke ? 1 / detail_.scale : 1; // of its width and dashes
   // In its own space, so that an uneven transform bends the stroke as it should; what is out of reach is told below.
   for (const Point& p : from.points) {
     const Point q = transform(p);
-    if (!(std::fabs(q.x) <= 1e7 && std::fabs(q.y) <= 1e7) || !(style.strokeWidth * scale <= 2e7)) {
+    if (!(std::fabs(q.x) <= 1e7 && std::fabs(q.y) <= 1e7) || !(style.strokeWidth * shown * scale <= 2e7)) {
       reporter_.error(document_.line(node), element(node) + " reaches beyond 10000000 pixels; not drawn");
       return;
     }
   }
-  StrokeStyle s{style.strokeWidth, style.cap, style.join, style.miterLimit, style.dashes, style.dashOffset};
+  std::vector<double> dashes = style.dashes;
+  const double unit = dashes.empty() ? shown : dashUnit(from, shown, node); // of dashes
+  for (double& d : dashes) d *= unit;
+  if (!(unit > 0 && std::isfinite(unit))) dashes.clear();
+  const StrokeStyle whole{style.strokeWidth * shown, style.cap, style.join, style.miterLimit, {}, 0};
+  StrokeStyle s = whole;
+  s.dashes = dashes;
+  s.dashOffset = dashes.empty() ? 0 : style.dashOffset * unit;
   Shape area;
-  const double tolerance = kTolerance / scale;
+  const double tolerance = detail_.strokes / (scale * detail_.scale);
   const auto begin = std::chrono::steady_clock::now();
   bool done = strokeShape(from, s, tolerance, {}, area);
   if (!done && !s.dashes.empty()) {
     reporter_.error(document_.line(node), element(node) + " has too many dashes; drawn without",
                     GPGP_ERROR_UNSUPPORTED);
-    s.dashes = {};
-    done = strokeShape(from, s, tolerance, {}, area);
+    done = strokeShape(from, whole, tolerance, {}, area);
   }
   result_.strokeMilliseconds +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -390,6 +435,7 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
   path.gradient = ink.gradient;
   path.image = ink.image;
   path.line = document_.line(node);
+  path.element = element(node);
   path.group = group_;
   const double linear[4] = {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b), alpha};
   for (size_t i = 0; i < 4; ++i) path.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));

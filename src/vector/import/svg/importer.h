@@ -27,9 +27,11 @@ Box boxOf(const Shape& shape);
 
 class Importer {
 public:
-  Importer(const Document& document, Reporter& reporter, const ImportLimits& limits, const ImageDecoder& images)
-      : document_(document), reporter_(reporter), limits_(limits), images_(images) {}
-  Imported run();
+  Importer(const Document& document, Reporter& reporter, const ImportLimits& limits, const ImageDecoder& images,
+           const ImportDetail& detail)
+      : document_(document), reporter_(reporter), limits_(limits), images_(images), detail_(detail) {}
+  core::Result<Imported> run();
+  PageSize pageSize();
 
 private:
   /// What an element gets from above.
@@ -44,6 +46,8 @@ private:
   };
 
   // importer.cpp
+  /// The style sheets, and the root's page with what is measured by it.
+  State begin();
   void visit(pugi::xml_node node, const State& parent, const double* useSize = nullptr);
   void visitChildren(pugi::xml_node node, const State& state);
   void visitUse(pugi::xml_node node, const State& state);
@@ -68,6 +72,7 @@ private:
   };
   void emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Ink& ink, double opacity,
             pugi::xml_node node);
+  double dashUnit(const Shape& shape, double otherwise, pugi::xml_node node);
   void stroke(const Shape& shape, const State& state, const Ink& ink, pugi::xml_node node);
   void reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style);
   bool stopped(pugi::xml_node node);
@@ -82,12 +87,15 @@ private:
 
   // shapes.cpp
   Shape shapeOf(pugi::xml_node node, std::string_view name, const State& state);
-  double length(pugi::xml_node node, const char* attribute, const LengthContext& lengths, LengthAxis axis,
-                double otherwise, bool* given = nullptr);
+  /// A length of an element: as style sheets say, else its attribute.
+  double length(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
+                LengthAxis axis, double otherwise, bool* given = nullptr);
 
   // cascade.cpp
   void cascade(pugi::xml_node node, std::string_view name, const Style& parent, const LengthContext& lengths,
                Style& style);
+  /// What the transform and transform-origin properties come to.
+  Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths);
   std::optional<Ink> resolve(const Paint& paint, const State& state, const Shape& shape, pugi::xml_node node,
                              const char* property);
 
@@ -103,6 +111,7 @@ private:
   Reporter& reporter_;
   const ImportLimits& limits_;
   const ImageDecoder& images_;
+  const ImportDetail& detail_;
   std::unordered_map<std::string_view, Picture> pictures_; // by href
   uint32_t pictureCount_ = 0;
   StyleSheet sheet_;

@@ -1,6 +1,7 @@
 // Numbers, lengths and transform lists (SVG 2, chapters 4 and 8; CSS Values 4 for units).
 #include "vector/import/svg/scanner.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -120,7 +121,48 @@ bool parseLength(std::string_view text, const LengthContext& context, LengthAxis
   return true;
 }
 
+bool parseOrigin(std::string_view text, const LengthContext& context, Point& origin) {
+  struct Word {
+    std::string_view name;
+    LengthAxis axis;
+    double part;
+  };
+  constexpr Word words[] = {{"left", LengthAxis::X, 0},
+                            {"right", LengthAxis::X, 1},
+                            {"top", LengthAxis::Y, 0},
+                            {"bottom", LengthAxis::Y, 1},
+                            {"center", LengthAxis::Diagonal, 0.5}};
+  Point p = 0.5 * Point{context.width, context.height};
+  bool swapped = false; // "top left"
+  int count = 0;
+  for (text = trim(text); !text.empty(); ++count) {
+    const size_t end = std::min(text.find_first_of(" \t\r\n\f"), text.size());
+    const std::string_view part = text.substr(0, end);
+    text = trim(text.substr(end));
+    if (count == 2) { // along z
+      double z = 0;
+      return text.empty() && parseLength(part, context, LengthAxis::X, z) && (origin = p, true);
+    }
+    bool down = (count == 1) != swapped;
+    const Word* word = std::begin(words);
+    while (word != std::end(words) && word->name != part) ++word;
+    if (word == std::end(words)) {
+      double& value = down ? p.y : p.x;
+      if (!parseLength(part, context, down ? LengthAxis::Y : LengthAxis::X, value)) return false;
+      continue;
+    }
+    if (count == 0 && word->axis == LengthAxis::Y) swapped = down = true;
+    if (word->axis != LengthAxis::Diagonal && (word->axis == LengthAxis::Y) != down) return false;
+    (down ? p.y : p.x) = word->part * (down ? context.height : context.width);
+  }
+  return count > 0 && (origin = p, true);
+}
+
 bool parseTransform(std::string_view text, Affine& transform) {
+  constexpr struct {
+    const char* name;
+    double factor;
+  } units[] = {{"deg", 1}, {"grad", 0.9}, {"rad", 180 / std::numbers::pi}, {"turn", 360}, {"px", 1}}; // as CSS has them
   Affine all;
   Scanner s(text);
   s.skipSpace();
@@ -135,7 +177,11 @@ bool parseTransform(std::string_view text, Affine& transform) {
     while (!s.done() && s.peek() != ')') {
       if (count == 6 || !s.number(v[count])) return false;
       ++count;
-      s.take("deg") || s.take("px"); // as CSS writes them
+      for (const auto& unit : units)
+        if (s.take(unit.name)) {
+          v[count - 1] *= unit.factor;
+          break;
+        }
       s.skipCommaSpace();
     }
     if (!s.take(")")) return false;
@@ -152,6 +198,13 @@ bool parseTransform(std::string_view text, Affine& transform) {
     } else if (name == "rotate" && (count == 1 || count == 3)) {
       const double c = std::cos(radians), n = std::sin(radians);
       m = {c, n, -n, c, v[1] - c * v[1] + n * v[2], v[2] - n * v[1] - c * v[2]};
+    } else if ((name == "translateX" || name == "translateY") && count == 1) {
+      (name == "translateX" ? m.e : m.f) = v[0];
+    } else if ((name == "scaleX" || name == "scaleY") && count == 1) {
+      (name == "scaleX" ? m.a : m.d) = v[0];
+    } else if (name == "skew" && (count == 1 || count == 2)) {
+      m.c = std::tan(radians);
+      m.b = std::tan(v[1] * (std::numbers::pi / 180));
     } else if (name == "skewX" && count == 1) {
       m.c = std::tan(radians);
     } else if (name == "skewY" && count == 1) {

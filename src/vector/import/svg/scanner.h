@@ -43,8 +43,12 @@ enum class LengthAxis { X, Y, Diagonal };
 /// A length with unit in user units; false where it is none.
 bool parseLength(std::string_view text, const LengthContext& context, LengthAxis axis, double& value);
 
-/// A transform list, e.g. "translate(3 4) rotate(30)"; false where it is malformed.
+/// A transform list, e.g. "translate(3 4) rotate(30)", as attributes or style sheets write it; false where it is
+/// malformed.
 bool parseTransform(std::string_view text, Affine& transform);
+
+/// The point around which a transform-origin turns things; false where it is malformed.
+bool parseOrigin(std::string_view text, const LengthContext& context, Point& origin);
 
 /// Appends path data. On an error, what came before it stays and the offset of the error is returned, otherwise npos.
 size_t parsePathData(std::string_view text, Shape& shape, double tolerance);

@@ -6,15 +6,27 @@
 
 namespace gpgp::vector::svg {
 
-double Importer::length(pugi::xml_node node, const char* name, const LengthContext& lengths, LengthAxis axis,
-                        double otherwise, bool* given) {
+namespace {
+/// The data of path("M0 0..."), with either quotes; what is not written so stays as it is.
+std::string_view insidePath(std::string_view text) {
+  Scanner s(text);
+  if (!s.take("path(") || text.back() != ')') return text;
+  text = trim(text.substr(s.offset(), text.size() - s.offset() - 1));
+  const bool quoted = text.size() > 1 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0];
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+} // namespace
+
+double Importer::length(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
+                        LengthAxis axis, double otherwise, bool* given) {
   const pugi::xml_attribute a = node.attribute(name);
+  const std::string* styled = style.geometryOf(name);
   if (given) *given = false;
-  const std::string_view text = trim(a.value());
-  if (!a || text == "auto") return otherwise;
+  const std::string_view text = trim(styled ? std::string_view(*styled) : a.value());
+  if ((!a && !styled) || text == "auto") return otherwise;
   double value = 0;
   if (!parseLength(text, lengths, axis, value)) {
-    reporter_.error(document_.line(a, 0),
+    reporter_.error(styled ? document_.line(node) : document_.line(a, 0),
                     element(node) + " has " + name + " '" + std::string(text.substr(0, 60)) + "', which is no length");
     return otherwise;
   }
@@ -26,9 +38,9 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   const double scale = state.transform.scale();
-  const double tolerance = 0.2 * kTolerance / std::clamp(std::isfinite(scale) ? scale : 1.0, 1e-9, 1e9);
+  const double tolerance = detail_.arcs / (std::clamp(std::isfinite(scale) ? scale : 1.0, 1e-9, 1e9) * detail_.scale);
   const auto along = [&](const char* attribute, LengthAxis axis, double otherwise = 0, bool* given = nullptr) {
-    return length(node, attribute, lengths, axis, otherwise, given);
+    return length(node, state.style, attribute, lengths, axis, otherwise, given);
   };
   // A size below zero is an error, one of zero draws nothing.
   const auto positive = [&](const char* attribute, double value) {
@@ -38,10 +50,13 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
   Shape shape;
   if (name == "path") {
     const pugi::xml_attribute d = node.attribute("d");
-    const size_t bad = parsePathData(d.value(), shape, tolerance);
+    const std::string* styled = state.style.geometryOf("d");
+    const std::string_view data = styled ? insidePath(*styled) : d.value();
+    const size_t bad = parsePathData(data, shape, tolerance);
     if (bad != std::string_view::npos)
-      reporter_.error(document_.line(d, bad), element(node) + " has an error in its path data at character " +
-                                                  std::to_string(bad + 1) + "; drawn up to there");
+      reporter_.error(styled ? document_.line(node) : document_.line(d, bad),
+                      element(node) + " has an error in its path data at character " + std::to_string(bad + 1) +
+                          "; drawn up to there");
   } else if (name == "rect") {
     const double w = along("width", LengthAxis::X), h = along("height", LengthAxis::Y);
     bool hasX = false, hasY = false;

@@ -184,6 +184,8 @@ const Property kProperties[] = {
     GPGP_PROPERTY("stop-opacity", stopOpacity, parseOpacity(c.value, c.style.stopOpacity)),
     GPGP_PROPERTY("clip-path", clipPath, (c.style.clipPath = c.value == "none" ? "" : c.value, true)),
     GPGP_PROPERTY("clip-rule", clipRule, choose(c.value, kRules, c.style.clipRule)),
+    GPGP_PROPERTY("transform", transform, (c.style.transform = c.value, true)),
+    GPGP_PROPERTY("transform-origin", transformOrigin, (c.style.transformOrigin = c.value, true)),
     GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
     GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
     GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = c.value != "normal", true)),
@@ -213,8 +215,30 @@ Style Style::inherited() const {
   s.stopIsCurrent = fresh.stopIsCurrent;
   s.stopOpacity = fresh.stopOpacity;
   s.clipPath.clear();
+  s.transform.clear();
+  s.transformOrigin.clear();
+  s.geometry.clear();
   s.mask = s.filter = s.blendMode = false;
   return s;
+}
+
+const std::string* Style::geometryOf(std::string_view name) const {
+  const auto found =
+      std::find_if(geometry.rbegin(), geometry.rend(), [name](const auto& set) { return set.first == name; });
+  return found == geometry.rend() ? nullptr : &found->second;
+}
+
+bool isGeometry(std::string_view name) {
+  constexpr std::string_view names[] = {"x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "d"};
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+bool isUnsupported(std::string_view name, std::string_view value) {
+  constexpr std::string_view names[] = {"translate",   "rotate",          "scale",      "transform-box",
+                                        "offset-path", "backdrop-filter", "mask-image", "perspective"};
+  constexpr std::string_view without[] = {"none", "view-box", "inherit", "initial", "unset", "auto"};
+  return std::find(std::begin(names), std::end(names), name) != std::end(names) &&
+         std::find(std::begin(without), std::end(without), trim(value)) == std::end(without);
 }
 
 bool isProperty(std::string_view name) { return findProperty(name) != nullptr; }

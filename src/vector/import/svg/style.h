@@ -5,6 +5,8 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace gpgp::vector::svg {
 
@@ -43,6 +45,10 @@ struct Style {
   bool stopIsCurrent = false;
   double stopOpacity = 1;
   std::string clipPath; ///< what it says, unless none
+  std::string transform, transformOrigin;
+  /// x, y, r, d and others that style sheets may set in place of attributes; the last of a name counts.
+  std::vector<std::pair<std::string, std::string>> geometry;
+  const std::string* geometryOf(std::string_view name) const;
   /// mask and filter where they refer to something, mix-blend-mode where it is not normal.
   bool mask = false, filter = false, blendMode = false;
 
@@ -52,6 +58,10 @@ struct Style {
 
 /// Whether an attribute of this name is a presentation property we know.
 bool isProperty(std::string_view name);
+/// Whether it is an attribute that style sheets may set as well (SVG 2, 2.5).
+bool isGeometry(std::string_view name);
+/// Whether it is a property that would change the picture, and is not supported.
+bool isUnsupported(std::string_view name, std::string_view value);
 
 enum class Applied { Yes, Unknown, Invalid };
 /// Sets one property. `parent` answers "inherit". Lengths in the value use `lengths` (its font size is the element's).
