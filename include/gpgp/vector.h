@@ -43,7 +43,9 @@ enum { GPGP_FILL_NON_ZERO = 0, GPGP_FILL_EVEN_ODD = 1 };
 typedef int32_t GpgpGradientKind;
 enum {
   GPGP_GRADIENT_LINEAR = 0, /**< along the line from `start` to `end` */
-  GPGP_GRADIENT_RADIAL = 1  /**< from the circle (start, startRadius) to the circle (end, endRadius) */
+  GPGP_GRADIENT_RADIAL = 1 /**< from the circle (start, startRadius) to the circle (end, endRadius), and on beyond both,
+                              growing or shrinking evenly: where several of these circles pass, the one furthest on
+                              paints; where none does, or the two are equal or both points, nothing is painted */
 };
 
 typedef int32_t GpgpSpread; /**< what is painted beyond the first and last stop */
@@ -59,7 +61,7 @@ typedef struct GpgpGradient {
   GpgpSpread spread;
   float transform[6]; /**< gradient space to drawing: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
   float start[2], end[2];
-  float startRadius, endRadius; /**< radial only; not negative, the first below the second */
+  float startRadius, endRadius; /**< radial only; not negative */
   const GpgpGradientStop* stops;
   uint32_t stopCount;       /**< 1 to 65536 */
   VkBool32 interpolateSrgb; /**< mix stops as sRGB encodes them, as SVG does; else linearly */

@@ -63,7 +63,8 @@ void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFill
            std::pmr::vector<Slab>& slabs);
 
 /// Checks a gradient and appends its paint and stops; returns its index. A gradient that has no area to spread over
-/// (equal ends, no radius, a transform without inverse) paints its last stop's colour, as SVG says.
+/// (equal ends, a transform without inverse) paints its last stop's colour, as SVG says; between equal circles or
+/// points nothing is painted.
 core::Result<uint32_t> addGradient(const GpgpGradient& gradient, Drawing& drawing);
 
 /// Checks an image paint and appends it; returns its index.
