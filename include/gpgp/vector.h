@@ -440,7 +440,8 @@ typedef struct GpgpCanvasReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t patches;          /**< transformed and binned */
+  uint32_t patches;          /**< needed */
+  uint32_t patchesGiven;     /**< maxPatches */
   uint32_t tileEntries;      /**< needed, at least: a record with as many may turn out to need more */
   uint32_t tileEntriesGiven; /**< maxTileEntries */
   uint32_t pathsDropped;     /**< whole paths, and of texts whole glyphs, left out where the budget did not suffice */

@@ -177,7 +177,7 @@ struct CanvasHeader {
   uint width, height, tilesX, tilesY;
   uint segmentCount, pathCount, itemCount, pathWords; // pathWords: 32 paths each
   uint wordLimit, entryLimit, samples, flags;         // entryLimit: without those of small glyphs; flags: kWrite...
-  uint pathsDropped, binsX, binCount, patchCount;
+  uint pathsDropped, binsX, binCount, patchCount;     // patchCount: needed
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
   uint premultiplied;            // images whose colours are, as bits
   uint binShift;                 // a bin is a square of 2^binShift tiles

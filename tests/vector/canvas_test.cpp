@@ -3,6 +3,7 @@
 #include "canvas_fixture.h"
 #include "cli/vector_truth.h"
 #include "host/files.h"
+#include "ui_fixture.h"
 #include "vector/import/svg/import.h"
 
 #include <bit>
@@ -268,9 +269,45 @@ TEST_F(CanvasTest, ExceededBudgetsLeaveOutWholePathsAndSayHowMany) {
   GpgpCanvasReport patches = GPGP_CANVAS_REPORT_INIT;
   raster({place(all)}, 128, 128, 4, &patches);
   EXPECT_EQ(patches.base.status, GPGP_BUDGET_EXCEEDED);
-  EXPECT_LE(patches.patches, whole.patches / 2);
-  EXPECT_GT(patches.patches, 0u);
+  EXPECT_EQ(patches.patches, whole.patches);
+  EXPECT_EQ(patches.patchesGiven, whole.patches / 2);
   EXPECT_GT(patches.pathsDropped, 0u);
+  EXPECT_LT(patches.pathsDropped, 20u);
+}
+
+// What a report says is needed is what suffices, and a patch less does not.
+TEST_F(CanvasTest, ReportsSayHowManyPatchesAreNeeded) {
+  std::vector<TestPath> shapes;
+  for (uint32_t i = 0; i < 6; ++i) shapes.push_back(randomShape(i, 60));
+  shapes.push_back(TestPath().move(1, 1).close()); // a path without patches
+  std::vector<GpgpPath> views;
+  for (const TestPath& s : shapes) views.push_back(s.view());
+  const GpgpAsset drawing = makeDrawing(views), empty = makeDrawing(std::vector<GpgpPath>(900, views.back()));
+  TestList list(context);
+  for (int i = 0; i < 4; ++i) list.add(rectangle(0, 0, 8, 8));
+  list.clip({0, 0, 40, 40}, {9, 9, 9, 9}).add(rectangle(0, 0, 50, 50)).pop();
+  GpgpDrawingInfo info = GPGP_DRAWING_INFO_INIT;
+  ASSERT_EQ(gpgpGetDrawingInfo(drawing, &info), GPGP_SUCCESS);
+  const struct {
+    std::vector<GpgpCanvasItem> items;
+    uint32_t needed;
+    std::vector<uint32_t> given;
+  } cases[] = {{{place(drawing), list.item(), place(drawing), list.item()},
+                2 * info.patches + 12,
+                {1, info.patches + 3, 2 * info.patches + 11, 2 * info.patches + 12}},
+               {{place(empty), list.item()}, 906, {1, 905, 906}}}; // and room for as many paths
+  for (const auto& c : cases) {
+    const std::string which = "case " + std::to_string(&c - cases);
+    for (const uint32_t given : c.given) {
+      makeCanvas(64, 0, given);
+      GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+      raster(c.items, 64, 64, 4, &report);
+      EXPECT_EQ(report.patches, c.needed) << which << ", given " << given;
+      EXPECT_EQ(report.patchesGiven, given) << which;
+      EXPECT_EQ(report.base.status, given < c.needed ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS) << which;
+      EXPECT_EQ(report.pathsDropped > 0, given < c.needed) << which;
+    }
+  }
 }
 
 TEST_F(CanvasTest, HardwareHasPassesThatSoftwareDevicesHaveNot) {

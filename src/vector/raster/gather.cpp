@@ -94,6 +94,7 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
     paths = low;
   }
   pathsDropped_ += drawing.paths() - paths;
+  patchesDropped_ += drawing.first(drawing.paths()).patches - drawing.first(paths).patches;
   full_ = full_ || paths < drawing.paths();
   if (paths == 0) return {};
   const auto slot = bind(drawing);
@@ -176,6 +177,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     ++glyphsNeeded_;
     if (full_) {
       pathsDropped_ += glyph->paths;
+      patchesDropped_ += glyph->patches;
       continue;
     }
     const uint32_t tiles =
@@ -206,6 +208,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
 bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color) {
   full_ = full_ || shapes == budgets_.shapes || paths_ == budgets_.patches || patches_ == budgets_.patches;
   ++shapesNeeded_;
+  patchesDropped_ += full_;
   if (full_) return false;
   tables_.shapes[shapes] = shape;
   placed_[placements++] = {0,         0,      1, source | kShapeSlot << shader::kSlotBit, color,
@@ -244,6 +247,9 @@ void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint
 Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain& own) {
   if (list.clips().size() > budgets_.items) {
     sourcesNeeded_ += static_cast<uint32_t>(list.clips().size());
+    shapesNeeded_ += static_cast<uint32_t>(list.clips().size());
+    patchesDropped_ += list.clips().size();
+    clipsDropped_ += static_cast<uint32_t>(list.clips().size());
     full_ = true;
     return {};
   }
@@ -267,9 +273,11 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
       continue;
     }
     const uint32_t source = addSource(placed, 0, 0, state);
-    if (source == kNone) continue;
     const uint32_t path = paths_;
-    if (!addShape(clip.shape, source, {})) continue;
+    if (!addShape(clip.shape, source, {})) { // as where the source found no room
+      ++clipsDropped_;
+      continue;
+    }
     tables_.clips[clips++] = {path, state.chain};
     state.chain = clips;
   }
@@ -349,7 +357,10 @@ void Gather::finish(shader::CanvasHeader& header) {
   header.itemCount = placements;
   header.segmentCount = segments_;
   header.pathCount = paths_;
-  header.patchCount = static_cast<uint32_t>(patches_);
+  // No more paths than patches fit.
+  const uint64_t needed =
+      std::max<uint64_t>(patches_ + patchesDropped_, uint64_t(paths_) + pathsDropped_ + clipsDropped_);
+  header.patchCount = static_cast<uint32_t>(std::min<uint64_t>(needed, UINT32_MAX));
   header.pathsDropped = pathsDropped_;
   header.glyphs = glyphsNeeded_;
   header.glyphLimit = budgets_.glyphs;

@@ -88,11 +88,11 @@ private:
   shader::PlacementRecord* const placed_;
   const GpgpCanvasInfo& info_;
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
-  uint64_t patches_ = 0;
+  uint64_t patches_ = 0, patchesDropped_ = 0;
   uint32_t paths_ = 0, segments_ = 0;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
   uint32_t glyphsNeeded_ = 0, shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
-  uint32_t pathsDropped_ = 0;
+  uint32_t pathsDropped_ = 0, clipsDropped_ = 0;
   const uint32_t stampRoom_;
   bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
 };
