@@ -396,8 +396,9 @@ typedef struct GpgpCanvasInfo {
   float background[4]; /**< linear, premultiplied */
   GpgpView view;       /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
   GpgpImage target;    /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
-                            Receives premultiplied linear colour; sRGB-encoded where encodeSrgb is set */
-  VkBool32 encodeSrgb;
+                            Receives premultiplied linear colour */
+  VkBool32 encodeSrgb; /**< the target receives what sRGB encodes of the straight colour, times alpha, as PNG files and
+                            2D compositors mix it */
   VkBool32 exactArea; /**< the first edge that a pixel meets, from the front, counts by its area instead of its samples:
                            fewer steps where only one edge passes, still nothing shows through where two meet */
   VkBool32 blendSrgb; /**< colours mix as sRGB encodes them, as SVG renderers do; background is then encoded too */
@@ -406,7 +407,11 @@ typedef struct GpgpCanvasInfo {
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
-/** Rasterises the items into the view, the target, or both with the same pixels.
+/** Rasterises the items into the view, the target, or both with the same pixels: each is rounded to half floats first,
+ *  unless encodeSrgb is set. What gpgpRecordDrawCanvas leaves of the view over 0 (transparent black) thus has the bits
+ *  of a target of the same format where that is R16G16B16A16_SFLOAT, and is within 1/255 of them where it is
+ *  R8G8B8A8_UNORM: blending may round in its own way. An sRGB attachment encodes premultiplied colour, so that it
+ *  equals a target with encodeSrgb only where the canvas is opaque, within 1/255, as devices encode in their own way.
  *  NOT_READY: a drawing or a glyph that is drawn is not resident, or the canvas not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */

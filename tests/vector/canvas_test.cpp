@@ -1,4 +1,4 @@
-// The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, the draw path, bad arguments, and
+// The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, bad arguments, and
 // real drawings against a truth of 256 samples a pixel made from winding numbers.
 #include "canvas_fixture.h"
 #include "cli/vector_truth.h"
@@ -746,98 +746,6 @@ TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {
   EXPECT_NEAR(raster({place(drawing)}, 64, 64, 4)[100].r, host::linearFromSrgb(0.5f), 0.001f);
   blendSrgb = false;
   EXPECT_NEAR(raster({place(drawing)}, 64, 64, 4)[100].r, 0.5f, 0.001f);
-}
-
-TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
-  GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
-  VkAttachmentDescription attachment{0,
-                                     VK_FORMAT_R8G8B8A8_UNORM,
-                                     VK_SAMPLE_COUNT_1_BIT,
-                                     VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                     VK_ATTACHMENT_STORE_OP_STORE,
-                                     VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                     VK_ATTACHMENT_STORE_OP_DONT_CARE,
-                                     VK_IMAGE_LAYOUT_UNDEFINED,
-                                     VK_IMAGE_LAYOUT_GENERAL};
-  const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-  VkSubpassDescription subpass{};
-  subpass.colorAttachmentCount = 1;
-  subpass.pColorAttachments = &reference;
-  VkRenderPassCreateInfo passInfo{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-  passInfo.attachmentCount = 1;
-  passInfo.pAttachments = &attachment;
-  passInfo.subpassCount = 1;
-  passInfo.pSubpasses = &subpass;
-  VkRenderPass pass = VK_NULL_HANDLE;
-  ASSERT_EQ(device.vk().vkCreateRenderPass(device.device(), &passInfo, nullptr, &pass), VK_SUCCESS);
-  const host::Image image(
-      device,
-      {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = 64, .height = 48, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
-  const VkImageView imageView = image.view();
-  VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  framebufferInfo.renderPass = pass;
-  framebufferInfo.attachmentCount = 1;
-  framebufferInfo.pAttachments = &imageView;
-  framebufferInfo.width = 64;
-  framebufferInfo.height = 48;
-  framebufferInfo.layers = 1;
-  VkFramebuffer framebuffer = VK_NULL_HANDLE;
-  ASSERT_EQ(device.vk().vkCreateFramebuffer(device.device(), &framebufferInfo, nullptr, &framebuffer), VK_SUCCESS);
-
-  target.renderPass = pass;
-  makeCanvas(64, 0, 0, &target);
-  const GpgpView view = makeView(64, 48);
-  TestPath square;
-  square.move(10, 10).line(40, 10).line(40, 30).line(10, 30).close();
-  square.color = {1, 0.5f, 0, 1};
-  const GpgpAsset drawing = makeDrawing({square.view()});
-  const GpgpFrame frame = advance();
-  device.submitAndWait([&](VkCommandBuffer commands) {
-    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
-    const GpgpCanvasItem item = place(drawing);
-    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-    info.width = 64;
-    info.height = 48;
-    info.items = &item;
-    info.itemCount = 1;
-    info.view = view;
-    GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
-    draw.view = view;
-    draw.target = &target;
-    draw.width = 64;
-    draw.height = 48;
-    draw.clip[0] = 2.0f / 64, draw.clip[5] = 2.0f / 48, draw.clip[10] = draw.clip[15] = 1;
-    draw.clip[12] = draw.clip[13] = -1;
-    EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_NOT_READY);
-    ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
-    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
-    begin.renderPass = pass;
-    begin.framebuffer = framebuffer;
-    begin.renderArea.extent = {64, 48};
-    VkClearValue clear{};
-    clear.color.float32[2] = 1;
-    begin.clearValueCount = 1;
-    begin.pClearValues = &clear;
-    device.vk().vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    const VkViewport viewport{0, 0, 64, 48, 0, 1};
-    const VkRect2D scissor{{0, 0}, {64, 48}};
-    device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
-    device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
-    EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
-    device.vk().vkCmdEndRenderPass(commands);
-  });
-  const auto pixels = host::downloadImage(device, image, VK_IMAGE_LAYOUT_GENERAL);
-  const auto at = [&](size_t x, size_t y) {
-    return std::vector<uint8_t>(&pixels[(y * 64 + x) * 4], &pixels[(y * 64 + x) * 4] + 3);
-  };
-  EXPECT_EQ(at(5, 5), (std::vector<uint8_t>{0, 0, 255}));
-  EXPECT_EQ(at(20, 20)[0], 255);
-  EXPECT_NEAR(at(20, 20)[1], 128, 1);
-  EXPECT_EQ(at(20, 20)[2], 0);
-  EXPECT_EQ(at(39, 29)[0], 255);
-  EXPECT_EQ(at(40, 30)[0], 0);
-  device.vk().vkDestroyFramebuffer(device.device(), framebuffer, nullptr);
-  device.vk().vkDestroyRenderPass(device.device(), pass, nullptr);
 }
 
 TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
