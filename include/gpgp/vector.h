@@ -12,6 +12,9 @@
  *   gpgpCreateGlyphSet, GpgpGlyph[] -> gpgpAddGlyphs               text, live, or
  *   gpgpCompileGlyphs (libgpgp_compiler) -> blob -> gpgpCreateGlyphSet     text, baked
  *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
+ *
+ * Colours above 1 are brighter than white: targets and attachments of float formats show them, others show white. Where
+ * colours mix as sRGB encodes them, its curve goes on.
  */
 #ifndef GPGP_VECTOR_H
 #define GPGP_VECTOR_H
@@ -53,7 +56,7 @@ enum { GPGP_SPREAD_PAD = 0, GPGP_SPREAD_REPEAT = 1, GPGP_SPREAD_REFLECT = 2 };
 
 typedef struct GpgpGradientStop {
   float offset;   /**< 0 to 1; one below its predecessor's counts as equal to it */
-  float color[4]; /**< linear RGB, straight alpha, 0 to 1 */
+  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1 */
 } GpgpGradientStop;
 
 typedef struct GpgpGradient {

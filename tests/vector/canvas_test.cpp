@@ -748,6 +748,56 @@ TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {
   EXPECT_NEAR(raster({place(drawing)}, 64, 64, 4)[100].r, 0.5f, 0.001f);
 }
 
+// Stops and shapes brighter than white, in either way of mixing; an edge mixes them with what lies behind.
+TEST_F(CanvasTest, ColorsBrighterThanWhiteReachFloatTargets) {
+  makeCanvas(32);
+  GpgpGradientStop stops[] = {{0, {8, 2, 0, 1}}, {1, {0, 2, 1000, 0.5f}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = gradient.transform[3] = 32;
+  gradient.end[0] = 1;
+  gradient.stops = stops;
+  gradient.stopCount = 2;
+  TestPath square;
+  square.move(0, 0).line(32, 0).line(32, 32).line(0, 32).close();
+  GpgpPath view = square.view();
+  view.gradient = &gradient;
+  const GpgpAsset drawing = makeDrawing({view});
+  TestList list(context);
+  list.add(rectangle(0, 0, 16.5f, 32, {10000, 4, 0.5f, 1}));
+  for (const bool encoded : {false, true}) {
+    blendSrgb = encoded;
+    const auto shapes = raster({list.item()}, 32, 32, 4), ramp = raster({place(drawing)}, 32, 32, 4);
+    EXPECT_NEAR(shapes[5].r, 10000, 10);
+    EXPECT_NEAR(shapes[5].g, 4, 0.01);
+    EXPECT_NEAR(shapes[5].b, 0.5, 0.001);
+    EXPECT_EQ(shapes[5].a, 1);
+    EXPECT_EQ(shapes[16].a, 0.5f);
+    EXPECT_NEAR(shapes[16].g, 2, 0.01);
+    for (uint32_t x = 0; x < 32; ++x) { // stops mix as light
+      const float t = (static_cast<float>(x) + 0.5f) / 32, a = 1 - t / 2;
+      EXPECT_NEAR(ramp[x].r, (1 - t) * 8 * a, 0.02f) << x;
+      EXPECT_NEAR(ramp[x].g, 2 * a, 0.01f) << x;
+      EXPECT_NEAR(ramp[x].b, t * 1000 * a, 2) << x;
+    }
+  }
+  gradient.interpolateSrgb = VK_TRUE;
+  stops[1].color[2] = 0;
+  const auto mixed = raster({place(makeDrawing({view}))}, 32, 32, 4);
+  EXPECT_GT(mixed[1].r, 6);
+  EXPECT_NEAR(mixed[16].g / mixed[16].a, 2, 0.01f);
+  for (const float bad : {-0.01f, 10001.0f, std::numeric_limits<float>::infinity()}) {
+    stops[0].color[1] = bad;
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = &view;
+    info.pathCount = 1;
+    GpgpAsset none = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &none), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(lastMessage().find("gradient.stops[0].color"), std::string::npos) << lastMessage();
+    const GpgpListShape shape = rectangle(0, 0, 4, 4, {0, bad, 0, 1});
+    EXPECT_EQ(gpgpAddShapes(list.list, &shape, 1), GPGP_ERROR_INVALID_ARGUMENT);
+  }
+}
+
 TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
   makeCanvas(64);
   TestPath square;

@@ -48,9 +48,8 @@ core::Result<void> checkContents(const Drawing& d) {
     path = p.path;
   }
   for (size_t i = 0; i < d.paths.size(); ++i)
-    for (int k = 0; k < 4; ++k)
-      if (!(d.paths[i].color[k] >= 0 && d.paths[i].color[k] <= 1))
-        return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the colour of path %zu is out of range", i);
+    if (!inColorRange(&d.paths[i].color.x))
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the colour of path %zu is out of range", i);
   for (size_t i = 0; i < d.paths.size(); ++i)
     if (d.paths[i].paint > d.paints.size() || d.paths[i].clip > d.clips.size() || d.paths[i].layer > d.layers.size() ||
         d.paths[i].flags > shader::kForeground)
@@ -89,9 +88,8 @@ core::Result<void> checkContents(const Drawing& d) {
   }
   for (size_t i = 0; i < d.stops.size(); ++i) {
     const StopRecord& s = d.stops[i];
-    bool good = s.offset >= 0 && s.offset <= 1;
-    for (int k = 0; k < 4; ++k) good = good && s.color[k] >= 0 && s.color[k] <= 1;
-    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: stop %zu is out of range", i);
+    if (!(s.offset >= 0 && s.offset <= 1 && inColorRange(&s.color.x)))
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: stop %zu is out of range", i);
   }
   for (int k = 0; k < 4; ++k)
     if (!sane(d.bounds[k]) || !sane(d.viewport[k]))

@@ -28,9 +28,10 @@ core::Result<void> checkGradient(const GpgpGradient& g) {
   if (!g.stops || g.stopCount == 0 || g.stopCount > 65536)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: %u stops; expected 1 to 65536", g.stops ? g.stopCount : 0);
   for (uint32_t i = 0; i < g.stopCount; ++i) {
-    bool good = g.stops[i].offset >= 0 && g.stops[i].offset <= 1;
-    for (const float v : g.stops[i].color) good = good && v >= 0 && v <= 1;
-    if (!good) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.stops[%u] is not within 0 to 1", i);
+    if (!(g.stops[i].offset >= 0 && g.stops[i].offset <= 1))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.stops[%u].offset is not within 0 to 1", i);
+    if (!inColorRange(g.stops[i].color))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.stops[%u].color is out of range", i);
   }
   return {};
 }
@@ -87,7 +88,7 @@ core::Result<uint32_t> addGradient(const GpgpGradient& g, Drawing& drawing) {
   for (const GpgpGradientStop& from : std::span(g.stops, g.stopCount).last(paint.stopCount)) {
     StopRecord stop{};
     for (int k = 0; k < 4; ++k)
-      stop.color[k] = k < 3 && g.interpolateSrgb ? std::clamp(encodeSrgb(from.color[k]), 0.0f, 1.0f) : from.color[k];
+      stop.color[k] = k < 3 && g.interpolateSrgb ? std::max(encodeSrgb(from.color[k]), 0.0f) : from.color[k];
     stop.offset = last = std::max(last, from.offset);
     if (nothing) stop.color = {0, 0, 0, 0};
     drawing.stops.push_back(stop);

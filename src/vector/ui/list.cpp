@@ -287,7 +287,7 @@ Result<void> List::addShape(const GpgpListShape& from) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".box holds what is no number within 1e7");
   if (!within(&from.width, 1, 0, kMaxCoordinate))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".width is %g; expected 0 to 1e7", static_cast<double>(from.width));
-  if (!within(from.color, 4, 0, 1)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".color is not within 0 to 1");
+  if (!inColorRange(from.color)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".color is out of range");
   const auto x = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v) + space.x); };
   const auto y = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v) + space.y); };
   const float scale = static_cast<float>(space.scale), width = from.width * scale;
