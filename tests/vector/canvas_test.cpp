@@ -63,6 +63,49 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
   }
 }
 
+// Only one sample of each pixel shows through the stripes on top: each lies in a row of its own.
+TEST_F(CanvasTest, MasksEqualTheTwinsBitForBit) {
+  constexpr uint32_t kSide = 64;
+  makeCanvas(kSide);
+  for (uint32_t seed = 0; seed < 2; ++seed) {
+    TestPath path = randomShape(seed, 90);
+    path.rule = seed ? GPGP_FILL_EVEN_ODD : GPGP_FILL_NON_ZERO;
+    const GpgpPath view = path.view();
+    const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+    ASSERT_TRUE(twin);
+    const GpgpCanvasItem places[] = {{nullptr, {0.6f, 0.3f, -0.4f, 0.5f, 30, -10}, 1, {}},
+                                     {nullptr, {0.5f, 0.1f, 0.2f, 0.6f, 0, 3}, 1, {0.001f, -0.003f, 0.9f}}};
+    const GpgpAsset drawing = makeDrawing({view});
+    for (GpgpCanvasItem item : places)
+      for (const uint32_t samples : {4u, 8u, 16u}) {
+        item.drawing = drawing;
+        shader::ItemRecord record{};
+        ASSERT_TRUE(vector::placeItem(item, kSide, kSide, record));
+        const Twin covers(*twin, record, kSide, kSide, samples);
+        uint32_t different = 0, covered = 0;
+        for (uint32_t k = 0; k < samples; ++k) {
+          TestPath stripes; // black, over all other rows of samples
+          const float row = 1 / static_cast<float>(samples);
+          for (uint32_t y = 0; y <= kSide; ++y) {
+            const float top = static_cast<float>(y) - 1 + static_cast<float>(k + 1) * row, bottom = top + 1 - row;
+            stripes.move(-1, top).line(kSide + 1, top).line(kSide + 1, bottom).line(-1, bottom).close();
+          }
+          const GpgpAsset cover = makeDrawing({stripes.view()});
+          const auto pixels = raster({item, place(cover)}, kSide, kSide, samples);
+          gpgpDestroyAsset(cover);
+          for (uint32_t i = 0; i < kSide * kSide; ++i) {
+            const uint32_t bit = covers.at(0, i % kSide, i / kSide).mask >> k & 1;
+            covered += bit;
+            different += pixels[i].r != static_cast<float>(bit) * row;
+          }
+        }
+        EXPECT_EQ(different, 0u) << "seed " << seed << ", samples " << samples;
+        EXPECT_GT(covered, 100 * samples) << "seed " << seed << ", samples " << samples;
+      }
+    gpgpDestroyAsset(drawing);
+  }
+}
+
 /// How much of a pixel a path covers by 64 samples, each taken back through the map in double precision.
 double projectedCoverage(const PathOracle& path, const GpgpCanvasItem& item, uint32_t x, uint32_t y) {
   const auto number = [](float v) { return static_cast<double>(v); };
