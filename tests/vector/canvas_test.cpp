@@ -337,8 +337,8 @@ TEST_F(CanvasTest, ReportsSayHowManyPatchesAreNeeded) {
     std::vector<uint32_t> given;
   } cases[] = {{{place(drawing), list.item(), place(drawing), list.item()},
                 2 * info.patches + 12,
-                {1, info.patches + 3, 2 * info.patches + 11, 2 * info.patches + 12}},
-               {{place(empty), list.item()}, 906, {1, 905, 906}}}; // and room for as many paths
+                {info.patches + 3, 2 * info.patches + 11, 2 * info.patches + 12}},
+               {{place(empty), list.item()}, 906, {905, 906}}}; // and room for as many paths
   for (const auto& c : cases) {
     const std::string which = "case " + std::to_string(&c - cases);
     for (const uint32_t given : c.given) {
