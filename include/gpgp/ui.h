@@ -113,7 +113,7 @@ typedef struct GpgpListShape {
                        room on a side, all shrink */
   float width;    /**< a line's; else 0: filled, above: only a border of this width inside the edge */
   GpgpCap cap;    /**< a line's ends */
-  float color[4]; /**< linear RGB, straight alpha, 0 to 1; multiplies image and gradient */
+  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1; multiplies image and gradient */
   const GpgpGradient* gradient; /**< NULL: none */
   const GpgpListImage* image;   /**< NULL: none; not for lines, without a gradient */
   uint64_t id;                  /**< the engine's, for gpgpHitTest; or GPGP_ID_NOT_HIT */

@@ -13,6 +13,9 @@
  *   gpgpCreateGlyphSet, GpgpGlyph[] -> gpgpAddGlyphs               text, live, or
  *   gpgpCompileGlyphs (libgpgp_compiler) -> blob -> gpgpCreateGlyphSet     text, baked
  *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
+ *
+ * Colours above 1 are brighter than white: targets and attachments of float formats show them, others show white. Where
+ * colours mix as sRGB encodes them, its curve goes on.
  */
 #ifndef GPGP_VECTOR_H
 #define GPGP_VECTOR_H
@@ -44,7 +47,9 @@ enum { GPGP_FILL_NON_ZERO = 0, GPGP_FILL_EVEN_ODD = 1 };
 typedef int32_t GpgpGradientKind;
 enum {
   GPGP_GRADIENT_LINEAR = 0, /**< along the line from `start` to `end` */
-  GPGP_GRADIENT_RADIAL = 1  /**< from the circle (start, startRadius) to the circle (end, endRadius) */
+  GPGP_GRADIENT_RADIAL = 1 /**< from the circle (start, startRadius) to the circle (end, endRadius), and on beyond both,
+                              growing or shrinking evenly: where several of these circles pass, the one furthest on
+                              paints; where none does, or the two are equal or both points, nothing is painted */
 };
 
 typedef int32_t GpgpSpread; /**< what is painted beyond the first and last stop */
@@ -52,7 +57,7 @@ enum { GPGP_SPREAD_PAD = 0, GPGP_SPREAD_REPEAT = 1, GPGP_SPREAD_REFLECT = 2 };
 
 typedef struct GpgpGradientStop {
   float offset;   /**< 0 to 1; one below its predecessor's counts as equal to it */
-  float color[4]; /**< linear RGB, straight alpha, 0 to 1 */
+  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1 */
 } GpgpGradientStop;
 
 typedef struct GpgpGradient {
@@ -60,7 +65,7 @@ typedef struct GpgpGradient {
   GpgpSpread spread;
   float transform[6]; /**< gradient space to drawing: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
   float start[2], end[2];
-  float startRadius, endRadius; /**< radial only; not negative, the first below the second */
+  float startRadius, endRadius; /**< radial only; not negative */
   const GpgpGradientStop* stops;
   uint32_t stopCount;       /**< 1 to 65536 */
   VkBool32 interpolateSrgb; /**< mix stops as sRGB encodes them, as SVG does; else linearly */
@@ -99,7 +104,7 @@ typedef struct GpgpPath {
   const float* points; /**< x, y pairs, as many as the verbs need; finite, within +-1e7 */
   uint32_t pointCount;
   GpgpFillRule fillRule;
-  float color[4];               /**< linear RGB, straight alpha, 0 to 1; with a gradient, only alpha counts */
+  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1; with a gradient, only alpha counts */
   const GpgpGradient* gradient; /**< NULL: the colour */
   const GpgpStroke* stroke;     /**< NULL: filled; otherwise the stroke is painted instead, and fillRule is not used */
   const GpgpImagePaint* image;  /**< NULL: none; else instead of the colour, whose alpha counts; without a gradient */
@@ -351,8 +356,8 @@ typedef struct GpgpGlyphInstance {
   uint32_t glyph; /**< its index in the glyph set */
   float x, y;     /**< where its 0, 0 lies, units of the text, within +-1e7 */
   float size;     /**< units of the text per em, 0 to 1e7 */
-  float color[4]; /**< linear RGB, straight alpha, 0 to 1, of the paths that take the text's colour, gradients aside;
-                       alpha multiplies every path's */
+  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1, of the paths that take the text's colour,
+                       gradients aside; alpha multiplies every path's */
 } GpgpGlyphInstance;
 
 /** Shapes, images, text and drawings in painting order (ui.h). */
@@ -398,8 +403,9 @@ typedef struct GpgpCanvasInfo {
   float background[4]; /**< linear, premultiplied */
   GpgpView view;       /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
   GpgpImage target;    /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
-                            Receives premultiplied linear colour; sRGB-encoded where encodeSrgb is set */
-  VkBool32 encodeSrgb;
+                            Receives premultiplied linear colour */
+  VkBool32 encodeSrgb; /**< the target receives what sRGB encodes of the straight colour, times alpha, as PNG files and
+                            2D compositors mix it */
   VkBool32 exactArea; /**< the first edge that a pixel meets, from the front, counts by its area instead of its samples:
                            fewer steps where only one edge passes, still nothing shows through where two meet */
   VkBool32 blendSrgb; /**< colours mix as sRGB encodes them, as SVG renderers do; background is then encoded too */
@@ -408,7 +414,11 @@ typedef struct GpgpCanvasInfo {
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
-/** Rasterises the items into the view, the target, or both with the same pixels.
+/** Rasterises the items into the view, the target, or both with the same pixels: each is rounded to half floats first,
+ *  unless encodeSrgb is set. What gpgpRecordDrawCanvas leaves of the view over 0 (transparent black) thus has the bits
+ *  of a target of the same format where that is R16G16B16A16_SFLOAT, and is within 1/255 of them where it is
+ *  R8G8B8A8_UNORM: blending may round in its own way. An sRGB attachment encodes premultiplied colour, so that it
+ *  equals a target with encodeSrgb only where the canvas is opaque, within 1/255, as devices encode in their own way.
  *  NOT_READY: a drawing or a glyph that is drawn is not resident, or the canvas not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */
@@ -442,7 +452,8 @@ typedef struct GpgpCanvasReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t patches;          /**< of the paths that were drawn */
+  uint32_t patches;          /**< needed */
+  uint32_t patchesGiven;     /**< maxPatches */
   uint32_t tileEntries;      /**< needed, at least: a record with as many may turn out to need more */
   uint32_t tileEntriesGiven; /**< maxTileEntries */
   uint32_t pathsDropped;     /**< whole paths, and of texts whole glyphs, left out where the budget did not suffice */

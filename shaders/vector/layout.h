@@ -59,21 +59,22 @@ struct LayerRecord {
 
 // A gradient. A point of the drawing is taken to gradient space (x = matrix.x dx + matrix.z dy + origin.x, y = matrix.y
 // dx + matrix.w dy + origin.y), where the ramp's place t is, for kPaintLinear, x itself; for kPaintRadial, the largest
-// t with radius(t) >= 0 at which the point lies on the circle that moves from the focus (t = 0) to the unit circle
-// around 0 (t = 1). Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture
-// coordinates, and firstStop is the image, from the item's first one on; stopCount is 0. For kPaintSlices they lead to
+// t at which the point lies on the circle around (t distance, 0) with the radius startRadius + t growth, not negative.
+// Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture coordinates, and
+// firstStop is the image, from the item's first one on; stopCount is 0. For kPaintSlices they lead to
 // the destination (place p along x, say), and `slices` is the first of two stops: between two places p and q the
 // texture coordinate is that of p plus (p - place) times a slope, before p and after q with slopes of their own; or it
 // begins anew at p after each period.
 struct PaintRecord {
   vec4 matrix;
-  vec4 origin;               // x, y; focus x, y
-  float focusRadius;         // below 1
+  vec4 origin; // x, y; of a radial one, distance and growth
+  float startRadius;
   uint kind;                 // kPaint...
   uint spread;               // kSpread...
   uint flags;                // kInterpolateSrgb
   uint firstStop, stopCount; // at least one for gradients
-  uint slices, pad1;
+  uint slices;
+  float tangent; // of the circles at t = 0 and 1 that both touch, its length squared: distance^2 - growth^2
 };
 
 // Where a ramp has which colour; offsets never fall from one stop to the next.
@@ -176,7 +177,7 @@ struct CanvasHeader {
   uint width, height, tilesX, tilesY;
   uint segmentCount, pathCount, itemCount, pathWords; // pathWords: 32 paths each
   uint wordLimit, entryLimit, samples, flags;         // entryLimit: without those of small glyphs; flags: kWrite...
-  uint pathsDropped, binsX, binCount, patchCount;
+  uint pathsDropped, binsX, binCount, patchCount;     // patchCount: needed
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
   uint premultiplied;            // images whose colours are, as bits
   uint binShift;                 // a bin is a square of 2^binShift tiles

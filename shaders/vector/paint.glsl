@@ -19,20 +19,15 @@ vec4 gradientAt(uint slot, uint paint, vec2 at) {
   const vec2 p = matrix.xy * at.x + matrix.zw * at.y + origin.xy;
   float t = p.x;
   if (kinds.y == kPaintRadial) {
-    const float radius = uintBitsToFloat(kinds.x), growth = 1.0 - radius;
-    const vec2 focus = origin.zw, q = p - focus;
-    const float a = dot(focus, focus) - growth * growth, b = dot(q, focus) - radius * growth;
-    const float c = dot(q, q) - radius * radius;
-    if (abs(a) < 1e-6) {
-      if (b == 0) return vec4(0);
-      t = -c / (2.0 * b);
-    } else {
-      const float inner = b * b - a * c;
-      if (inner < 0) return vec4(0);
-      const float root = sqrt(inner), u = (-b + root) / a, v = (-b - root) / a;
-      t = max(u, v);
-      if (radius + t * growth < 0) t = min(u, v);
-    }
+    // a t^2 - 2 b t + c = 0, whose discriminant b^2 - a c is taken so that nothing large cancels.
+    const float radius = uintBitsToFloat(kinds.x), distance = origin.z, growth = origin.w;
+    const float a = uintBitsToFloat(ramp.w), b = distance * p.x + radius * growth, c = dot(p, p) - radius * radius;
+    const float k = growth * p.x + distance * radius, inner = k * k - a * p.y * p.y;
+    if (inner < 0 || (a == 0 && b == 0)) return vec4(0);
+    const float root = sqrt(inner), w = b < 0 ? b - root : b + root;
+    const float u = w == 0 ? 0.0 : c / w, v = a == 0 ? u : w / a;
+    t = max(u, v);
+    if (radius + t * growth < 0) t = min(u, v);
     if (radius + t * growth < 0) return vec4(0);
   }
   if (kinds.z == kSpreadRepeat) t -= floor(t);

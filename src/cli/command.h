@@ -34,6 +34,7 @@ struct CommonOptions {
 struct Outcome {
   Json json;
   std::string text;
+  std::string failure; ///< what was done is not what was asked for
 };
 using Work = std::function<Outcome(const CommonOptions&)>;
 

@@ -75,12 +75,15 @@ int run(int argc, char** argv) {
     const std::string name = subcommand.app->get_name();
     try {
       const Outcome outcome = subcommand.work(subcommand.options);
-      Json object = {{"command", name}, {"ok", true}};
+      Json object = {{"command", name}, {"ok", outcome.failure.empty()}};
       object.update(outcome.json);
+      if (!outcome.failure.empty()) object["error"] = outcome.failure;
       const std::string text = subcommand.options.json ? object.dump(2) + "\n" : outcome.text;
       if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
         throw Failure("cannot write to standard output");
-      return 0;
+      if (outcome.failure.empty()) return 0;
+      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), outcome.failure.c_str());
+      return 1;
     } catch (const Usage& error) {
       std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), error.what());
       return 2;

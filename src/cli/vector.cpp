@@ -136,7 +136,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   canvasInfo.base = session.workerInfo("canvas");
   canvasInfo.maxWidth = size.width;
   canvasInfo.maxHeight = size.height;
-  canvasInfo.maxPatches = std::max(facts.patches, 1024u);
+  canvasInfo.maxPatches = std::max({facts.patches, facts.paths, 1024u});
   canvasInfo.maxTileEntries = options.maxTileEntries;
   Canvas canvas = session.take(Canvas::create(session.context(), canvasInfo), "gpgpCreateCanvas");
   session.check(canvas.prewarm(), "gpgpPrewarm");
@@ -199,13 +199,14 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
        << size.width << " x " << size.height << " pixels, " << samples
        << (area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries << " tile entries; GPU "
        << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on " << device.name() << '\n';
-  if (report.pathsDropped)
-    text << "budget exceeded: " << report.pathsDropped << " paths were left out; --max-tile-entries "
-         << report.tileEntries << " would have held them\n";
   if (messages.count()) text << messages.count() << " parts of the drawing are approximated, left out or not valid\n";
   if (options.truth) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
+  if (report.pathsDropped)
+    outcome.failure = options.file + ": " + std::to_string(report.pathsDropped) + " of " + std::to_string(facts.paths) +
+                      " paths were left out; --max-tile-entries " + std::to_string(report.tileEntries) +
+                      " would hold them, or somewhat more";
   outcome.json = {{"file", options.file},
                   {"device", device.name()},
                   {"status", statusName(report.base.status)},

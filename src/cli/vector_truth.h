@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -115,9 +116,12 @@ inline std::array<double, 4> truthOfGradient(const GpgpGradient& g, double x, do
   if (g.kind == GPGP_GRADIENT_RADIAL) {
     const double r0 = at(g.startRadius), dr = at(g.endRadius) - r0;
     const double a = ex * ex + ey * ey - dr * dr, b = u * ex + v * ey + r0 * dr, c = u * u + v * v - r0 * r0;
-    const double root = std::sqrt(std::max(b * b - a * c, 0.0));
-    t = std::max((b + root) / a, (b - root) / a);
-    if (r0 + t * dr < 0) t = std::min((b + root) / a, (b - root) / a);
+    const bool touching = std::abs(a) <= 1e-6 * (ex * ex + ey * ey + dr * dr);
+    const double root = touching ? 0 : std::sqrt(b * b - a * c); // NaN where no circle passes
+    t = -std::numeric_limits<double>::infinity();
+    for (const double place : {touching ? c / (2 * b) : (b + root) / a, touching ? c / (2 * b) : (b - root) / a})
+      if (r0 + place * dr >= 0) t = std::max(t, place);
+    if (det != 0 && !std::isfinite(t)) return {};
   }
   if (!(det != 0) || !std::isfinite(t)) t = 1;
   if (g.spread == GPGP_SPREAD_REPEAT) t -= std::floor(t);

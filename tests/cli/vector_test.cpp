@@ -144,6 +144,22 @@ TEST(CliVector, AFailureNamesWhatItIsAbout) {
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }
 
+TEST(CliVector, PathsThatAreLeftOutAreAFailure) {
+  const TemporaryFile file("budget.svg", R"(<svg xmlns="http://www.w3.org/2000/svg" width="64" height="64">
+<path d="M1 1H60V60H1Z"/><path d="M2 2H60V60H2Z"/></svg>
+)");
+  const ProcessResult run = gpgp({"vector", file.path(), "--max-tile-entries", "10", "--json"});
+  EXPECT_EQ(run.exitCode, 1);
+  EXPECT_NE(run.err.find("2 of 2 paths were left out; --max-tile-entries "), std::string::npos) << run.err;
+  const json told = json::parse(run.out);
+  EXPECT_EQ(told["ok"], false);
+  EXPECT_EQ(told["status"], "GPGP_BUDGET_EXCEEDED");
+  EXPECT_EQ(told["paths_dropped"], 2);
+  EXPECT_GT(told["tile_entries"], 10);
+  EXPECT_NE(told["error"].get<std::string>().find("left out"), std::string::npos);
+  gpgpJson({"vector", file.path(), "--max-tile-entries", "1000"});
+}
+
 TEST(CliVector, CountsPatchesByTile) {
   const TemporaryFile file("tiles.svg", R"(<svg xmlns="http://www.w3.org/2000/svg" width="32" height="32">
 <path d="M0 0 H16 V16 H0 Z"/></svg>

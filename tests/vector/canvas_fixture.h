@@ -32,7 +32,7 @@ struct Rgba {
 
 struct CanvasTest : DeviceTest {
   GpgpWorker canvas = nullptr;
-  bool exactArea = false, blendSrgb = false;
+  bool exactArea = false, blendSrgb = false, encodeSrgb = false;
   std::vector<GpgpCanvasImage> images;
 
   void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t patches = 0,
@@ -91,6 +91,7 @@ struct CanvasTest : DeviceTest {
       info.samples = samples;
       info.exactArea = exactArea;
       info.blendSrgb = blendSrgb;
+      info.encodeSrgb = encodeSrgb;
       info.images = images.data();
       info.imageCount = static_cast<uint32_t>(images.size());
       info.target = image.target({}, after);

@@ -1,8 +1,9 @@
-// The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, the draw path, bad arguments, and
+// The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, bad arguments, and
 // real drawings against a truth of 256 samples a pixel made from winding numbers.
 #include "canvas_fixture.h"
 #include "cli/vector_truth.h"
 #include "host/files.h"
+#include "ui_fixture.h"
 #include "vector/import/svg/import.h"
 
 #include <bit>
@@ -57,6 +58,49 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
           EXPECT_GT(covered, 20u) << "seed " << seed << ", transform " << &t - transforms;
         }
         exactArea = false;
+      }
+    gpgpDestroyAsset(drawing);
+  }
+}
+
+// Only one sample of each pixel shows through the stripes on top: each lies in a row of its own.
+TEST_F(CanvasTest, MasksEqualTheTwinsBitForBit) {
+  constexpr uint32_t kSide = 64;
+  makeCanvas(kSide);
+  for (uint32_t seed = 0; seed < 2; ++seed) {
+    TestPath path = randomShape(seed, 90);
+    path.rule = seed ? GPGP_FILL_EVEN_ODD : GPGP_FILL_NON_ZERO;
+    const GpgpPath view = path.view();
+    const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+    ASSERT_TRUE(twin);
+    const GpgpCanvasItem places[] = {{nullptr, {0.6f, 0.3f, -0.4f, 0.5f, 30, -10}, 1, {}},
+                                     {nullptr, {0.5f, 0.1f, 0.2f, 0.6f, 0, 3}, 1, {0.001f, -0.003f, 0.9f}}};
+    const GpgpAsset drawing = makeDrawing({view});
+    for (GpgpCanvasItem item : places)
+      for (const uint32_t samples : {4u, 8u, 16u}) {
+        item.drawing = drawing;
+        shader::ItemRecord record{};
+        ASSERT_TRUE(vector::placeItem(item, kSide, kSide, record));
+        const Twin covers(*twin, record, kSide, kSide, samples);
+        uint32_t different = 0, covered = 0;
+        for (uint32_t k = 0; k < samples; ++k) {
+          TestPath stripes; // black, over all other rows of samples
+          const float row = 1 / static_cast<float>(samples);
+          for (uint32_t y = 0; y <= kSide; ++y) {
+            const float top = static_cast<float>(y) - 1 + static_cast<float>(k + 1) * row, bottom = top + 1 - row;
+            stripes.move(-1, top).line(kSide + 1, top).line(kSide + 1, bottom).line(-1, bottom).close();
+          }
+          const GpgpAsset cover = makeDrawing({stripes.view()});
+          const auto pixels = raster({item, place(cover)}, kSide, kSide, samples);
+          gpgpDestroyAsset(cover);
+          for (uint32_t i = 0; i < kSide * kSide; ++i) {
+            const uint32_t bit = covers.at(0, i % kSide, i / kSide).mask >> k & 1;
+            covered += bit;
+            different += pixels[i].r != static_cast<float>(bit) * row;
+          }
+        }
+        EXPECT_EQ(different, 0u) << "seed " << seed << ", samples " << samples;
+        EXPECT_GT(covered, 100 * samples) << "seed " << seed << ", samples " << samples;
       }
     gpgpDestroyAsset(drawing);
   }
@@ -268,9 +312,45 @@ TEST_F(CanvasTest, ExceededBudgetsLeaveOutWholePathsAndSayHowMany) {
   GpgpCanvasReport patches = GPGP_CANVAS_REPORT_INIT;
   raster({place(all)}, 128, 128, 4, &patches);
   EXPECT_EQ(patches.base.status, GPGP_BUDGET_EXCEEDED);
-  EXPECT_LE(patches.patches, whole.patches / 2);
-  EXPECT_GT(patches.patches, 0u);
+  EXPECT_EQ(patches.patches, whole.patches);
+  EXPECT_EQ(patches.patchesGiven, whole.patches / 2);
   EXPECT_GT(patches.pathsDropped, 0u);
+  EXPECT_LT(patches.pathsDropped, 20u);
+}
+
+// What a report says is needed is what suffices, and a patch less does not.
+TEST_F(CanvasTest, ReportsSayHowManyPatchesAreNeeded) {
+  std::vector<TestPath> shapes;
+  for (uint32_t i = 0; i < 6; ++i) shapes.push_back(randomShape(i, 60));
+  shapes.push_back(TestPath().move(1, 1).close()); // a path without patches
+  std::vector<GpgpPath> views;
+  for (const TestPath& s : shapes) views.push_back(s.view());
+  const GpgpAsset drawing = makeDrawing(views), empty = makeDrawing(std::vector<GpgpPath>(900, views.back()));
+  TestList list(context);
+  for (int i = 0; i < 4; ++i) list.add(rectangle(0, 0, 8, 8));
+  list.clip({0, 0, 40, 40}, {9, 9, 9, 9}).add(rectangle(0, 0, 50, 50)).pop();
+  GpgpDrawingInfo info = GPGP_DRAWING_INFO_INIT;
+  ASSERT_EQ(gpgpGetDrawingInfo(drawing, &info), GPGP_SUCCESS);
+  const struct {
+    std::vector<GpgpCanvasItem> items;
+    uint32_t needed;
+    std::vector<uint32_t> given;
+  } cases[] = {{{place(drawing), list.item(), place(drawing), list.item()},
+                2 * info.patches + 12,
+                {info.patches + 3, 2 * info.patches + 11, 2 * info.patches + 12}},
+               {{place(empty), list.item()}, 906, {905, 906}}}; // and room for as many paths
+  for (const auto& c : cases) {
+    const std::string which = "case " + std::to_string(&c - cases);
+    for (const uint32_t given : c.given) {
+      makeCanvas(64, 0, given);
+      GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+      raster(c.items, 64, 64, 4, &report);
+      EXPECT_EQ(report.patches, c.needed) << which << ", given " << given;
+      EXPECT_EQ(report.patchesGiven, given) << which;
+      EXPECT_EQ(report.base.status, given < c.needed ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS) << which;
+      EXPECT_EQ(report.pathsDropped > 0, given < c.needed) << which;
+    }
+  }
 }
 
 TEST_F(CanvasTest, HardwareHasPassesThatSoftwareDevicesHaveNot) {
@@ -711,96 +791,54 @@ TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {
   EXPECT_NEAR(raster({place(drawing)}, 64, 64, 4)[100].r, 0.5f, 0.001f);
 }
 
-TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
-  GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
-  VkAttachmentDescription attachment{0,
-                                     VK_FORMAT_R8G8B8A8_UNORM,
-                                     VK_SAMPLE_COUNT_1_BIT,
-                                     VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                     VK_ATTACHMENT_STORE_OP_STORE,
-                                     VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                     VK_ATTACHMENT_STORE_OP_DONT_CARE,
-                                     VK_IMAGE_LAYOUT_UNDEFINED,
-                                     VK_IMAGE_LAYOUT_GENERAL};
-  const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-  VkSubpassDescription subpass{};
-  subpass.colorAttachmentCount = 1;
-  subpass.pColorAttachments = &reference;
-  VkRenderPassCreateInfo passInfo{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-  passInfo.attachmentCount = 1;
-  passInfo.pAttachments = &attachment;
-  passInfo.subpassCount = 1;
-  passInfo.pSubpasses = &subpass;
-  VkRenderPass pass = VK_NULL_HANDLE;
-  ASSERT_EQ(device.vk().vkCreateRenderPass(device.device(), &passInfo, nullptr, &pass), VK_SUCCESS);
-  const host::Image image(
-      device,
-      {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = 64, .height = 48, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
-  const VkImageView imageView = image.view();
-  VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  framebufferInfo.renderPass = pass;
-  framebufferInfo.attachmentCount = 1;
-  framebufferInfo.pAttachments = &imageView;
-  framebufferInfo.width = 64;
-  framebufferInfo.height = 48;
-  framebufferInfo.layers = 1;
-  VkFramebuffer framebuffer = VK_NULL_HANDLE;
-  ASSERT_EQ(device.vk().vkCreateFramebuffer(device.device(), &framebufferInfo, nullptr, &framebuffer), VK_SUCCESS);
-
-  target.renderPass = pass;
-  makeCanvas(64, 0, 0, &target);
-  const GpgpView view = makeView(64, 48);
+// Stops and shapes brighter than white, in either way of mixing; an edge mixes them with what lies behind.
+TEST_F(CanvasTest, ColorsBrighterThanWhiteReachFloatTargets) {
+  makeCanvas(32);
+  GpgpGradientStop stops[] = {{0, {8, 2, 0, 1}}, {1, {0, 2, 1000, 0.5f}}};
+  GpgpGradient gradient{};
+  gradient.transform[0] = gradient.transform[3] = 32;
+  gradient.end[0] = 1;
+  gradient.stops = stops;
+  gradient.stopCount = 2;
   TestPath square;
-  square.move(10, 10).line(40, 10).line(40, 30).line(10, 30).close();
-  square.color = {1, 0.5f, 0, 1};
-  const GpgpAsset drawing = makeDrawing({square.view()});
-  const GpgpFrame frame = advance();
-  device.submitAndWait([&](VkCommandBuffer commands) {
-    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
-    const GpgpCanvasItem item = place(drawing);
-    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-    info.width = 64;
-    info.height = 48;
-    info.items = &item;
-    info.itemCount = 1;
-    info.view = view;
-    GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
-    draw.view = view;
-    draw.target = &target;
-    draw.width = 64;
-    draw.height = 48;
-    draw.clip[0] = 2.0f / 64, draw.clip[5] = 2.0f / 48, draw.clip[10] = draw.clip[15] = 1;
-    draw.clip[12] = draw.clip[13] = -1;
-    EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_NOT_READY);
-    ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
-    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
-    begin.renderPass = pass;
-    begin.framebuffer = framebuffer;
-    begin.renderArea.extent = {64, 48};
-    VkClearValue clear{};
-    clear.color.float32[2] = 1;
-    begin.clearValueCount = 1;
-    begin.pClearValues = &clear;
-    device.vk().vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    const VkViewport viewport{0, 0, 64, 48, 0, 1};
-    const VkRect2D scissor{{0, 0}, {64, 48}};
-    device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
-    device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
-    EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
-    device.vk().vkCmdEndRenderPass(commands);
-  });
-  const auto pixels = host::downloadImage(device, image, VK_IMAGE_LAYOUT_GENERAL);
-  const auto at = [&](size_t x, size_t y) {
-    return std::vector<uint8_t>(&pixels[(y * 64 + x) * 4], &pixels[(y * 64 + x) * 4] + 3);
-  };
-  EXPECT_EQ(at(5, 5), (std::vector<uint8_t>{0, 0, 255}));
-  EXPECT_EQ(at(20, 20)[0], 255);
-  EXPECT_NEAR(at(20, 20)[1], 128, 1);
-  EXPECT_EQ(at(20, 20)[2], 0);
-  EXPECT_EQ(at(39, 29)[0], 255);
-  EXPECT_EQ(at(40, 30)[0], 0);
-  device.vk().vkDestroyFramebuffer(device.device(), framebuffer, nullptr);
-  device.vk().vkDestroyRenderPass(device.device(), pass, nullptr);
+  square.move(0, 0).line(32, 0).line(32, 32).line(0, 32).close();
+  GpgpPath view = square.view();
+  view.gradient = &gradient;
+  const GpgpAsset drawing = makeDrawing({view});
+  TestList list(context);
+  list.add(rectangle(0, 0, 16.5f, 32, {10000, 4, 0.5f, 1}));
+  for (const bool encoded : {false, true}) {
+    blendSrgb = encoded;
+    const auto shapes = raster({list.item()}, 32, 32, 4), ramp = raster({place(drawing)}, 32, 32, 4);
+    EXPECT_NEAR(shapes[5].r, 10000, 10);
+    EXPECT_NEAR(shapes[5].g, 4, 0.01);
+    EXPECT_NEAR(shapes[5].b, 0.5, 0.001);
+    EXPECT_EQ(shapes[5].a, 1);
+    EXPECT_EQ(shapes[16].a, 0.5f);
+    EXPECT_NEAR(shapes[16].g, 2, 0.01);
+    for (uint32_t x = 0; x < 32; ++x) { // stops mix as light
+      const float t = (static_cast<float>(x) + 0.5f) / 32, a = 1 - t / 2;
+      EXPECT_NEAR(ramp[x].r, (1 - t) * 8 * a, 0.02f) << x;
+      EXPECT_NEAR(ramp[x].g, 2 * a, 0.01f) << x;
+      EXPECT_NEAR(ramp[x].b, t * 1000 * a, 2) << x;
+    }
+  }
+  gradient.interpolateSrgb = VK_TRUE;
+  stops[1].color[2] = 0;
+  const auto mixed = raster({place(makeDrawing({view}))}, 32, 32, 4);
+  EXPECT_GT(mixed[1].r, 6);
+  EXPECT_NEAR(mixed[16].g / mixed[16].a, 2, 0.01f);
+  for (const float bad : {-0.01f, 10001.0f, std::numeric_limits<float>::infinity()}) {
+    stops[0].color[1] = bad;
+    GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+    info.paths = &view;
+    info.pathCount = 1;
+    GpgpAsset none = nullptr;
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &none), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(lastMessage().find("gradient.stops[0].color"), std::string::npos) << lastMessage();
+    const GpgpListShape shape = rectangle(0, 0, 4, 4, {0, bad, 0, 1});
+    EXPECT_EQ(gpgpAddShapes(list.list, &shape, 1), GPGP_ERROR_INVALID_ARGUMENT);
+  }
 }
 
 TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {

@@ -632,20 +632,22 @@ TEST_F(GlyphTest, CanvasBudgetsLeaveOutWholeGlyphs) {
     canvas = roomy;
     return raster({text(set, {glyphs.begin(), glyphs.begin() + static_cast<long>(count)})}, 128, 128, 4);
   };
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+  info.maxWidth = info.maxHeight = 128;
   const auto check = [&](const char* what) {
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
     const auto pixels = raster({text(set, glyphs)}, 128, 128, 4, &report);
     EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED) << what;
     EXPECT_EQ(report.glyphs, 30u) << what;
+    EXPECT_EQ(report.patches, whole.patches) << what;
+    EXPECT_EQ(report.patchesGiven, info.maxPatches ? info.maxPatches : 262144u) << what;
     EXPECT_GT(report.pathsDropped, 0u) << what;
     EXPECT_LT(report.pathsDropped, 60u) << what;
     ASSERT_EQ(report.pathsDropped % 2, 0u) << what;
     ASSERT_TRUE(same(pixels, firstOnly(30 - report.pathsDropped / 2))) << what;
   };
   // Budgets in turn, each odd enough to end within a glyph.
-  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
-  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
-  info.maxWidth = info.maxHeight = 128;
   const auto make = [&] { canvas = worker(gpgpCreateCanvas, info); };
   info.maxGlyphs = 11;
   make();
@@ -660,12 +662,18 @@ TEST_F(GlyphTest, CanvasBudgetsLeaveOutWholeGlyphs) {
   info.maxPatches = whole.patches / 2 + 1;
   make();
   check("maxPatches");
+  info.maxPatches = whole.patches;
+  make();
+  GpgpCanvasReport fits = GPGP_CANVAS_REPORT_INIT;
+  raster({text(set, glyphs)}, 128, 128, 4, &fits);
+  EXPECT_EQ(fits.base.status, GPGP_SUCCESS);
   info.maxPatches = 1; // nothing fits, which is reported as well
   make();
   GpgpCanvasReport none = GPGP_CANVAS_REPORT_INIT;
   raster({text(set, glyphs)}, 128, 128, 4, &none);
   EXPECT_EQ(none.base.status, GPGP_BUDGET_EXCEEDED);
   EXPECT_EQ(none.pathsDropped, 60u);
+  EXPECT_EQ(none.patches, whole.patches);
   EXPECT_EQ(none.glyphs, 30u);
 }
 

@@ -466,6 +466,12 @@ TEST(SvgImport, GradientsReachTheDrawing) {
   EXPECT_EQ(ends(*radial), (Floats{30, 20, 40, 20, 0.1f, 0.5f}));
   EXPECT_EQ(radial->gradient.spread, GPGP_SPREAD_REPEAT);
   EXPECT_FALSE(radial->gradient.interpolateSrgb);
+  // Neither circle needs to hold the other; without an end radius all is in the last colour.
+  const auto cone = gradient("<radialGradient id='g' href='#stops' cx='.8' r='.1' fx='.25' fr='.2'/>");
+  EXPECT_EQ(ends(*cone), (Floats{30, 20, 52, 20, 0.2f, 0.1f}));
+  const auto point = gradient("<radialGradient id='g' href='#stops' r='0' fx='.25' fr='.2'/>");
+  EXPECT_EQ(point->gradient.kind, GPGP_GRADIENT_LINEAR);
+  EXPECT_EQ(ends(*point), (Floats{40, 20, 40, 20}));
   // A line has no box to be measured by.
   EXPECT_TRUE(
       page("<linearGradient id='g'><stop/></linearGradient><path d='M0 5H9' stroke='url(#g)'/>").drawing.paths.empty());

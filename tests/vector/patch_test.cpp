@@ -527,7 +527,9 @@ TEST(Patches, BoundsOfZeroAreZero) {
     ASSERT_TRUE(d);
     for (const auto& p : d->patches)
       for (const float v : {p.x0, p.x1}) EXPECT_TRUE(v == 0 || std::isnormal(v)) << v;
-    if (verbs == 4) EXPECT_EQ(d->bounds[0], 0.0f);
+    if (verbs == 4) {
+      EXPECT_EQ(d->bounds[0], 0.0f);
+    }
   }
 }
 

@@ -22,7 +22,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 80);
 constexpr char kMagic[4] = {'G', 'P', 'V', 'D'};
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 constexpr size_t kSummedFrom = 16;
 
 bool sane(float v) { return std::abs(v) <= 4 * kMaxCoordinate; } // false for NaN
@@ -48,9 +48,8 @@ core::Result<void> checkContents(const Drawing& d) {
     path = p.path;
   }
   for (size_t i = 0; i < d.paths.size(); ++i)
-    for (int k = 0; k < 4; ++k)
-      if (!(d.paths[i].color[k] >= 0 && d.paths[i].color[k] <= 1))
-        return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the colour of path %zu is out of range", i);
+    if (!inColorRange(&d.paths[i].color.x))
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the colour of path %zu is out of range", i);
   for (size_t i = 0; i < d.paths.size(); ++i)
     if (d.paths[i].paint > d.paints.size() || d.paths[i].clip > d.clips.size() || d.paths[i].layer > d.layers.size() ||
         d.paths[i].flags > shader::kForeground)
@@ -63,7 +62,8 @@ core::Result<void> checkContents(const Drawing& d) {
     if (!image && (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu refers to what is not there", i);
     bool good = p.kind <= shader::kPaintImage && p.spread <= shader::kSpreadReflect &&
-                p.flags <= shader::kInterpolateSrgb && p.focusRadius >= 0 && p.focusRadius < 1;
+                p.flags <= shader::kInterpolateSrgb && p.startRadius >= 0 && std::isfinite(p.startRadius) &&
+                std::isfinite(p.tangent) && p.slices == 0;
     for (int k = 0; k < 4; ++k) good = good && std::isfinite(p.matrix[k]) && std::isfinite(p.origin[k]);
     if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not a gradient or an image", i);
     for (uint32_t k = 1; k < p.stopCount; ++k)
@@ -88,9 +88,8 @@ core::Result<void> checkContents(const Drawing& d) {
   }
   for (size_t i = 0; i < d.stops.size(); ++i) {
     const StopRecord& s = d.stops[i];
-    bool good = s.offset >= 0 && s.offset <= 1;
-    for (int k = 0; k < 4; ++k) good = good && s.color[k] >= 0 && s.color[k] <= 1;
-    if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: stop %zu is out of range", i);
+    if (!(s.offset >= 0 && s.offset <= 1 && inColorRange(&s.color.x)))
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: stop %zu is out of range", i);
   }
   for (int k = 0; k < 4; ++k)
     if (!sane(d.bounds[k]) || !sane(d.viewport[k]))

@@ -37,6 +37,13 @@ struct Drawing {
 };
 
 constexpr float kMaxCoordinate = 1e7f;
+constexpr float kMaxColor = 1e4f; // what becomes of it must be within what half floats hold
+
+/// Whether a straight colour has what is allowed: RGB up to kMaxColor, alpha up to 1.
+inline bool inColorRange(const float* c) {
+  return c[0] >= 0 && c[0] <= kMaxColor && c[1] >= 0 && c[1] <= kMaxColor && c[2] >= 0 && c[2] <= kMaxColor &&
+         c[3] >= 0 && c[3] <= 1;
+}
 
 /// Checks one path (verbs known, points enough, finite and within kMaxCoordinate, colour in range) and appends its
 /// monotone pieces, open contours closed by a line. The error names the verb or point.
@@ -64,7 +71,8 @@ void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFill
            std::pmr::vector<Slab>& slabs);
 
 /// Checks a gradient and appends its paint and stops; returns its index. A gradient that has no area to spread over
-/// (equal ends, no radius, a transform without inverse) paints its last stop's colour, as SVG says.
+/// (equal ends, a transform without inverse) paints its last stop's colour, as SVG says; between equal circles or
+/// points nothing is painted.
 core::Result<uint32_t> addGradient(const GpgpGradient& gradient, Drawing& drawing);
 
 /// Checks an image paint and appends it; returns its index.

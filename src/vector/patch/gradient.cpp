@@ -1,7 +1,7 @@
 // A gradient or an image as the API takes it to the paint that shaders evaluate.
 //
-// Linear: gradient space is turned, scaled and moved so that start lies at x = 0 and end at x = 1. Radial: so that the
-// end circle is the unit circle around 0; what is left of the two circles is the focus and its radius.
+// Gradient space is turned, scaled and moved so that start lies at 0 and end on the x axis: at 1 if the gradient is
+// linear; otherwise the largest of the distance between the two and of their radii becomes 1.
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -22,15 +22,16 @@ core::Result<void> checkGradient(const GpgpGradient& g) {
   for (const float v : {g.start[0], g.start[1], g.end[0], g.end[1], g.startRadius, g.endRadius})
     if (!std::isfinite(v))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: start, end or a radius is not finite");
-  if (g.kind == GPGP_GRADIENT_RADIAL && (g.startRadius < 0 || g.endRadius < 0 || g.startRadius > g.endRadius))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: radii are %g and %g; expected 0 <= start < end",
+  if (g.kind == GPGP_GRADIENT_RADIAL && (g.startRadius < 0 || g.endRadius < 0))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: radii are %g and %g; they must not be negative",
                      static_cast<double>(g.startRadius), static_cast<double>(g.endRadius));
   if (!g.stops || g.stopCount == 0 || g.stopCount > 65536)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient: %u stops; expected 1 to 65536", g.stops ? g.stopCount : 0);
   for (uint32_t i = 0; i < g.stopCount; ++i) {
-    bool good = g.stops[i].offset >= 0 && g.stops[i].offset <= 1;
-    for (const float v : g.stops[i].color) good = good && v >= 0 && v <= 1;
-    if (!good) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.stops[%u] is not within 0 to 1", i);
+    if (!(g.stops[i].offset >= 0 && g.stops[i].offset <= 1))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.stops[%u].offset is not within 0 to 1", i);
+    if (!inColorRange(g.stops[i].color))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "gradient.stops[%u].color is out of range", i);
   }
   return {};
 }
@@ -45,21 +46,21 @@ core::Result<uint32_t> addGradient(const GpgpGradient& g, Drawing& drawing) {
   paint.spread = static_cast<uint32_t>(g.spread);
   paint.flags = g.interpolateSrgb ? shader::kInterpolateSrgb : 0;
   // Gradient space to ramp: u = a x + c y + e, v = b x + d y + f.
-  const double sx = g.start[0], sy = g.start[1], ex = g.end[0], ey = g.end[1];
-  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
-  const double dx = ex - sx, dy = ey - sy, length = dx * dx + dy * dy;
-  bool spreads = true;
-  if (g.kind == GPGP_GRADIENT_LINEAR) {
-    spreads = length > 0;
-    a = dx / length, c = dy / length, b = -dy / length, d = dx / length;
-    e = -(a * sx + c * sy), f = -(b * sx + d * sy);
-  } else {
-    const double r = g.endRadius;
-    spreads = g.startRadius < g.endRadius;
-    a = d = 1 / r, e = -ex / r, f = -ey / r;
-    paint.origin.z = static_cast<float>((sx - ex) / r);
-    paint.origin.w = static_cast<float>((sy - ey) / r);
-    paint.focusRadius = std::min(static_cast<float>(g.startRadius / r), std::nextafter(1.0f, 0.0f));
+  const bool radial = g.kind == GPGP_GRADIENT_RADIAL;
+  const double sx = g.start[0], sy = g.start[1], dx = g.end[0] - sx, dy = g.end[1] - sy, distance = std::hypot(dx, dy);
+  const double radius = radial ? g.startRadius : 0, growth = radial ? g.endRadius - radius : 0;
+  const double unit = std::max({distance, radius, radius + growth});
+  const double a = (distance > 0 ? dx / distance : 1) / unit, c = (distance > 0 ? dy / distance : 0) / unit;
+  const double b = -c, d = a, e = -(a * sx + c * sy), f = -(b * sx + d * sy);
+  const auto narrow = [](double v) { return static_cast<float>(v); };
+  if (radial) {
+    const double square = distance * distance, tangent = square - growth * growth;
+    paint.startRadius = narrow(radius / unit);
+    paint.origin.z = narrow(distance / unit);
+    paint.origin.w = narrow(growth / unit);
+    // A circle that touches the other from inside does so whatever its numbers were rounded to.
+    const bool touches = std::abs(tangent) <= 1e-6 * (square + growth * growth);
+    paint.tangent = touches ? 0 : narrow(tangent / (unit * unit));
   }
   // Drawing to gradient space: the transform's inverse.
   const double t0 = g.transform[0], t1 = g.transform[1], t2 = g.transform[2], t3 = g.transform[3], t4 = g.transform[4],
@@ -67,17 +68,19 @@ core::Result<uint32_t> addGradient(const GpgpGradient& g, Drawing& drawing) {
   const double determinant = t0 * t3 - t1 * t2;
   const double i0 = t3 / determinant, i1 = -t1 / determinant, i2 = -t2 / determinant, i3 = t0 / determinant;
   const double i4 = -(i0 * t4 + i2 * t5), i5 = -(i1 * t4 + i3 * t5);
-  const auto narrow = [](double v) { return static_cast<float>(v); };
   paint.matrix = {narrow(a * i0 + c * i1), narrow(b * i0 + d * i1), narrow(a * i2 + c * i3), narrow(b * i2 + d * i3)};
   paint.origin.x = narrow(a * i4 + c * i5 + e);
   paint.origin.y = narrow(b * i4 + d * i5 + f);
+  bool spreads = true;
   for (int k = 0; k < 4; ++k) spreads = spreads && std::isfinite(paint.matrix[k]) && std::isfinite(paint.origin[k]);
-  if (!spreads) { // the last stop everywhere
+  const bool nothing = radial && growth == 0 && (radius == 0 || distance == 0);
+  if (nothing || !spreads) { // the last stop everywhere, or nothing
     paint.kind = shader::kPaintLinear;
     paint.spread = shader::kSpreadPad;
     paint.matrix = {0, 0, 0, 0};
     paint.origin = {1, 0, 0, 0};
-    paint.focusRadius = 0;
+    paint.startRadius = paint.tangent = 0;
+    spreads = false;
   }
   paint.firstStop = static_cast<uint32_t>(drawing.stops.size());
   paint.stopCount = spreads ? g.stopCount : 1;
@@ -85,8 +88,9 @@ core::Result<uint32_t> addGradient(const GpgpGradient& g, Drawing& drawing) {
   for (const GpgpGradientStop& from : std::span(g.stops, g.stopCount).last(paint.stopCount)) {
     StopRecord stop{};
     for (int k = 0; k < 4; ++k)
-      stop.color[k] = k < 3 && g.interpolateSrgb ? std::clamp(encodeSrgb(from.color[k]), 0.0f, 1.0f) : from.color[k];
+      stop.color[k] = k < 3 && g.interpolateSrgb ? std::max(encodeSrgb(from.color[k]), 0.0f) : from.color[k];
     stop.offset = last = std::max(last, from.offset);
+    if (nothing) stop.color = {0, 0, 0, 0};
     drawing.stops.push_back(stop);
   }
   drawing.paints.push_back(paint);

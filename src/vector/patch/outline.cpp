@@ -35,10 +35,12 @@ core::Result<void> checkPath(const GpgpPath& path) {
                        static_cast<unsigned long long>(i / 2), i % 2 ? 'y' : 'x', static_cast<double>(path.points[i]));
   if (!(path.scale >= 0 && std::isfinite(path.scale)))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "scale is %g", static_cast<double>(path.scale));
-  for (int i = 0; i < 4; ++i)
-    if (!(path.color[i] >= 0 && path.color[i] <= 1))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "color[%d] is %g; it must be 0 to 1", i,
-                       static_cast<double>(path.color[i]));
+  for (int i = 0; i < 4; ++i) {
+    const float most = i < 3 ? kMaxColor : 1;
+    if (!(path.color[i] >= 0 && path.color[i] <= most))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "color[%d] is %g; it must be 0 to %g", i,
+                       static_cast<double>(path.color[i]), static_cast<double>(most));
+  }
   return {};
 }
 

@@ -278,10 +278,11 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   CanvasCounters counters{};
   if (raw.header.status == GPGP_SUCCESS) std::memcpy(&counters, raw.words.data(), sizeof counters);
   report.base = raw.header;
+  const bool executed = raw.header.status == GPGP_SUCCESS;
   report.patches = counters.patches;
+  report.patchesGiven = executed ? budgets_.patches : 0;
   // Room for tile words is by maxTileEntries as well; entries were counted behind that.
   // Where the others do not fit, small glyphs count as what was put aside for them.
-  const bool executed = raw.header.status == GPGP_SUCCESS;
   const uint32_t aside = executed ? maxEntries_ - counters.entriesGiven : 0;
   report.tileEntries =
       std::max(counters.entries + (counters.entries > counters.entriesGiven ? aside : counters.stamped),

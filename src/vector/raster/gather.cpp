@@ -95,6 +95,7 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
     paths = low;
   }
   pathsDropped_ += drawing.paths() - paths;
+  patchesDropped_ += drawing.first(drawing.paths()).patches - drawing.first(paths).patches;
   full_ = full_ || paths < drawing.paths();
   if (paths == 0) return {};
   const auto slot = bind(drawing);
@@ -160,20 +161,18 @@ void GlyphBlock::countTiles(const ItemRecord& source, const GpgpCanvasInfo& info
 }
 
 namespace {
-/// Notes, without a branch, whether a colour is doubtful: as bits, numbers from 0 to 1 are in order.
+/// Notes, without a branch, whether a colour is doubtful: as bits, numbers from 0 on are in order.
 struct Doubt {
   uint32_t bits[4] = {};
   void see(const float (&color)[4]) {
+    constexpr float kMost[] = {kMaxColor, kMaxColor, kMaxColor, 1};
     for (int k = 0; k < 4; ++k) {
       const uint32_t number = std::bit_cast<uint32_t>(color[k]);
-      bits[k] |= number | (std::bit_cast<uint32_t>(1.0f) - number);
+      bits[k] |= number | (std::bit_cast<uint32_t>(kMost[k]) - number);
     }
   }
   bool any() const { return (bits[0] | bits[1] | bits[2] | bits[3]) >> 31 != 0; }
 };
-bool isColor(const float (&c)[4]) {
-  return c[0] >= 0 && c[0] <= 1 && c[1] >= 0 && c[1] <= 1 && c[2] >= 0 && c[2] <= 1 && c[3] >= 0 && c[3] <= 1;
-}
 } // namespace
 
 /// A placement for each glyph that has paths, as long as there is room. This loop is what changing text costs.
@@ -210,7 +209,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
       if (glyph->paths > 0 && !hidden) block.add(from, *glyph);
     }
     for (size_t k = first; k < i && doubt.any(); ++k)
-      if (glyphs[k].glyph != GPGP_GLYPH_NONE && !isColor(glyphs[k].color))
+      if (glyphs[k].glyph != GPGP_GLYPH_NONE && !inColorRange(glyphs[k].color))
         return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".glyphs[%zu].color is out of range", k);
     if (stamping)
       block.countTiles(*stamping, info_);
@@ -233,6 +232,7 @@ void Gather::addBlock(const GlyphBlock& block, uint32_t source) {
     ++used.glyphs;
     if (full_) {
       pathsDropped_ += glyph.paths;
+      patchesDropped_ += glyph.patches;
       continue;
     }
     const uint32_t tiles = block.tiles[k];
@@ -263,6 +263,7 @@ void Gather::addBlock(const GlyphBlock& block, uint32_t source) {
 bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color) {
   full_ = full_ || shapes == budgets_.shapes || used_.paths == budgets_.patches || used_.patches == budgets_.patches;
   ++shapesNeeded_;
+  patchesDropped_ += full_;
   if (full_) return false;
   tables_.shapes[shapes] = shape;
   placed_[used_.placements++] = {0,
@@ -308,6 +309,9 @@ void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint
 Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain& own) {
   if (list.clips().size() > budgets_.items) {
     sourcesNeeded_ += static_cast<uint32_t>(list.clips().size());
+    shapesNeeded_ += static_cast<uint32_t>(list.clips().size());
+    patchesDropped_ += list.clips().size();
+    clipsDropped_ += static_cast<uint32_t>(list.clips().size());
     full_ = true;
     return {};
   }
@@ -331,9 +335,11 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
       continue;
     }
     const uint32_t source = addSource(placed, 0, 0, state);
-    if (source == kNone) continue;
     const uint32_t path = used_.paths;
-    if (!addShape(clip.shape, source, {})) continue;
+    if (!addShape(clip.shape, source, {})) { // as where the source found no room
+      ++clipsDropped_;
+      continue;
+    }
     tables_.clips[clips++] = {path, state.chain};
     state.chain = clips;
   }
@@ -413,7 +419,10 @@ void Gather::finish(shader::CanvasHeader& header) {
   header.itemCount = used_.placements;
   header.segmentCount = used_.segments;
   header.pathCount = used_.paths;
-  header.patchCount = static_cast<uint32_t>(used_.patches);
+  // No more paths than patches fit.
+  const uint64_t needed =
+      std::max<uint64_t>(used_.patches + patchesDropped_, uint64_t(used_.paths) + pathsDropped_ + clipsDropped_);
+  header.patchCount = static_cast<uint32_t>(std::min<uint64_t>(needed, UINT32_MAX));
   header.pathsDropped = pathsDropped_;
   header.glyphs = used_.glyphs;
   header.glyphLimit = budgets_.glyphs;

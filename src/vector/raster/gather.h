@@ -100,7 +100,8 @@ private:
   } used_;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
   uint32_t shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
-  uint32_t pathsDropped_ = 0;
+  uint64_t patchesDropped_ = 0;
+  uint32_t pathsDropped_ = 0, clipsDropped_ = 0;
   const uint32_t stampRoom_;
   bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
 };

@@ -287,7 +287,7 @@ Result<void> List::addShape(const GpgpListShape& from) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".box holds what is no number within 1e7");
   if (!within(&from.width, 1, 0, kMaxCoordinate))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".width is %g; expected 0 to 1e7", static_cast<double>(from.width));
-  if (!within(from.color, 4, 0, 1)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".color is not within 0 to 1");
+  if (!inColorRange(from.color)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".color is out of range");
   const auto x = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v) + space.x); };
   const auto y = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v) + space.y); };
   const float scale = static_cast<float>(space.scale), width = from.width * scale;
@@ -369,10 +369,10 @@ Result<void> List::addText(const core::Object& glyphSet, std::span<const GpgpGly
     to.y = static_cast<float>(space.scale * static_cast<double>(to.y) + space.y);
     to.size = static_cast<float>(space.scale * static_cast<double>(to.size));
     const bool placed = within(&to.x, 2, -kMaxCoordinate, kMaxCoordinate) && within(&to.size, 1, 0, kMaxCoordinate);
-    if (!placed || !within(to.color, 4, 0, 1)) {
+    if (!placed || !inColorRange(to.color)) {
       glyphs_.resize(before);
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyphs[%zu]%s", i,
-                       placed ? ".color is not within 0 to 1" : ": x, y or size is out of range");
+                       placed ? ".color is out of range" : ": x, y or size is out of range");
     }
     to.color[3] *= state_.opacity;
     glyphs_.push_back(to);

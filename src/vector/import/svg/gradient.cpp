@@ -100,7 +100,8 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
     g.endRadius = std::max(number("r", LengthAxis::Diagonal, 50), 0.0f);
     g.start[0] = gradientAttribute(node, "fx") ? number("fx", LengthAxis::X, 50) : g.end[0];
     g.start[1] = gradientAttribute(node, "fy") ? number("fy", LengthAxis::Y, 50) : g.end[1];
-    g.startRadius = std::clamp(number("fr", LengthAxis::Diagonal, 0), 0.0f, g.endRadius);
+    g.startRadius = std::max(number("fr", LengthAxis::Diagonal, 0), 0.0f);
+    if (g.endRadius == 0) g.kind = GPGP_GRADIENT_LINEAR, std::copy_n(g.end, 2, g.start); // all in the last colour
   } else {
     g.start[0] = number("x1", LengthAxis::X, 0);
     g.start[1] = number("y1", LengthAxis::Y, 0);

@@ -1,0 +1,233 @@
+// The two ways out: the draw inside the engine's render pass, and that it gives what a storage image receives.
+#include "canvas_fixture.h"
+#include "host/files.h"
+#include "vector/import/svg/document.h"
+#include "vector/import/svg/import.h"
+
+#include <filesystem>
+#include <functional>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+
+/// An image as the only attachment of a render pass.
+struct Attachment {
+  host::HeadlessDevice& device;
+  const uint32_t width, height;
+  host::Image image;
+  VkRenderPass pass = VK_NULL_HANDLE;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
+
+  Attachment(host::HeadlessDevice& owner, VkFormat format, uint32_t w, uint32_t h)
+      : device(owner), width(w), height(h),
+        image(owner, {.format = format, .width = w, .height = h, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}) {
+    const VkAttachmentDescription attachment{0,
+                                             format,
+                                             VK_SAMPLE_COUNT_1_BIT,
+                                             VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                             VK_ATTACHMENT_STORE_OP_STORE,
+                                             VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                             VK_ATTACHMENT_STORE_OP_DONT_CARE,
+                                             VK_IMAGE_LAYOUT_UNDEFINED,
+                                             VK_IMAGE_LAYOUT_GENERAL};
+    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &reference;
+    VkRenderPassCreateInfo passInfo{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+    passInfo.attachmentCount = 1;
+    passInfo.pAttachments = &attachment;
+    passInfo.subpassCount = 1;
+    passInfo.pSubpasses = &subpass;
+    EXPECT_EQ(device.vk().vkCreateRenderPass(device.device(), &passInfo, nullptr, &pass), VK_SUCCESS);
+    const VkImageView imageView = image.view();
+    VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+    framebufferInfo.renderPass = pass;
+    framebufferInfo.attachmentCount = 1;
+    framebufferInfo.pAttachments = &imageView;
+    framebufferInfo.width = width;
+    framebufferInfo.height = height;
+    framebufferInfo.layers = 1;
+    EXPECT_EQ(device.vk().vkCreateFramebuffer(device.device(), &framebufferInfo, nullptr, &framebuffer), VK_SUCCESS);
+    target.renderPass = pass;
+    target.colorFormat = format; // by which workers are told apart where a handle comes again
+  }
+  ~Attachment() {
+    device.vk().vkDestroyFramebuffer(device.device(), framebuffer, nullptr);
+    device.vk().vkDestroyRenderPass(device.device(), pass, nullptr);
+  }
+  Attachment(const Attachment&) = delete;
+  Attachment& operator=(const Attachment&) = delete;
+
+  void render(VkCommandBuffer commands, VkClearColorValue color, const std::function<void()>& draw) const {
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea.extent = {width, height};
+    const VkClearValue clear{color};
+    begin.clearValueCount = 1;
+    begin.pClearValues = &clear;
+    device.vk().vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
+    const VkRect2D scissor{{0, 0}, {width, height}};
+    device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
+    device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+    draw();
+    device.vk().vkCmdEndRenderPass(commands);
+  }
+  /// All of a view, a pixel a pixel.
+  GpgpCanvasDrawInfo drawAll(GpgpView view) const {
+    GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
+    draw.view = view;
+    draw.target = &target;
+    draw.width = width;
+    draw.height = height;
+    draw.clip[0] = 2.0f / static_cast<float>(width), draw.clip[5] = 2.0f / static_cast<float>(height);
+    draw.clip[10] = draw.clip[15] = 1;
+    draw.clip[12] = draw.clip[13] = -1;
+    return draw;
+  }
+  std::vector<uint8_t> bytes() const { return host::downloadImage(device, image, VK_IMAGE_LAYOUT_GENERAL); }
+};
+
+TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
+  const Attachment attachment(device, VK_FORMAT_R8G8B8A8_UNORM, 64, 48);
+  makeCanvas(64, 0, 0, &attachment.target);
+  const GpgpView view = makeView(64, 48);
+  TestPath square;
+  square.move(10, 10).line(40, 10).line(40, 30).line(10, 30).close();
+  square.color = {1, 0.5f, 0, 1};
+  const GpgpAsset drawing = makeDrawing({square.view()});
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    const GpgpCanvasItem item = place(drawing);
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    info.width = 64;
+    info.height = 48;
+    info.items = &item;
+    info.itemCount = 1;
+    info.view = view;
+    const GpgpCanvasDrawInfo draw = attachment.drawAll(view);
+    EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_NOT_READY);
+    ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
+    attachment.render(commands, {{0, 0, 1, 0}}, [&] {
+      EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
+    });
+  });
+  const auto pixels = attachment.bytes();
+  const auto at = [&](size_t x, size_t y) {
+    return std::vector<uint8_t>(&pixels[(y * 64 + x) * 4], &pixels[(y * 64 + x) * 4] + 3);
+  };
+  EXPECT_EQ(at(5, 5), (std::vector<uint8_t>{0, 0, 255}));
+  EXPECT_EQ(at(20, 20)[0], 255);
+  EXPECT_NEAR(at(20, 20)[1], 128, 1);
+  EXPECT_EQ(at(20, 20)[2], 0);
+  EXPECT_EQ(at(39, 29)[0], 255);
+  EXPECT_EQ(at(40, 30)[0], 0);
+}
+
+struct TwoWays : CanvasTest {
+  static constexpr uint32_t kWidth = 160, kHeight = 120;
+  struct Mixing {
+    bool blendSrgb, exactArea, opaque;
+  };
+  /// What an attachment and a storage image hold of the same items: prepared apart, or by one record.
+  std::pair<std::vector<uint8_t>, std::vector<uint8_t>> bothWays(const std::vector<GpgpCanvasItem>& items,
+                                                                 const Attachment& attachment, GpgpView view,
+                                                                 const host::Image& direct, const Mixing& mixing,
+                                                                 bool encode, bool apart) {
+    const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+    const GpgpFrame frame = advance();
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+      GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+      info.width = kWidth;
+      info.height = kHeight;
+      info.items = items.data();
+      info.itemCount = static_cast<uint32_t>(items.size());
+      info.blendSrgb = mixing.blendSrgb;
+      info.exactArea = mixing.exactArea;
+      info.encodeSrgb = encode;
+      if (mixing.opaque)
+        info.background[0] = 0.9f, info.background[1] = 0.3f, info.background[2] = 0.05f, info.background[3] = 1;
+      info.target = direct.target({}, after);
+      if (!apart) info.view = view;
+      EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
+      if (apart) {
+        info.view = view;
+        info.target = {};
+        EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
+      }
+      const GpgpCanvasDrawInfo draw = attachment.drawAll(view);
+      attachment.render(commands, {}, [&] {
+        EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
+      });
+    });
+    advance();
+    GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+    while (gpgpGetCanvasReport(canvas, &report) == GPGP_SUCCESS) EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+    return {attachment.bytes(), host::downloadImage(device, direct, VK_IMAGE_LAYOUT_GENERAL)};
+  }
+  void compare(const char* file) {
+    const std::string path = std::string(GPGP_TEST_DATA) + "/" + file;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there: run tests/data/fetch.sh --only svg";
+    const auto svg = host::readFile(path);
+    vector::svg::Reporter reporter(nullptr, nullptr, file);
+    const auto imported = vector::svg::importSvg(std::as_bytes(std::span(svg)), reporter);
+    ASSERT_TRUE(imported) << imported.error().text;
+    const vector::svg::ImportedViews views(*imported);
+    const float scale = std::min(float(kWidth) / float(imported->width), float(kHeight) / float(imported->height));
+    TestPath veil = randomShape(7, 160); // the half of it through which what lies below shows
+    veil.color = {0.1f, 0.4f, 0.8f, 0.37f};
+    const std::vector<GpgpCanvasItem> items{place(makeDrawing(views.paths, views.groups), scale),
+                                            place(makeDrawing({veil.view()}), 0.6f)};
+    for (const VkFormat format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB}) {
+      const Attachment attachment(device, format, kWidth, kHeight);
+      makeCanvas(256, 0, 1u << 18, &attachment.target);
+      const GpgpView view = makeView(kWidth, kHeight);
+      const bool encodes = format == VK_FORMAT_R8G8B8A8_SRGB;
+      const auto image = [&](VkFormat of) {
+        return host::Image(device, {.format = of, .width = kWidth, .height = kHeight});
+      };
+      const host::Image wide = image(VK_FORMAT_R16G16B16A16_SFLOAT), narrow = image(VK_FORMAT_R8G8B8A8_UNORM);
+      for (const int k : {0, 5, 10, 15}) {
+        const Mixing mixing{(k & 1) != 0, (k & 2) != 0, (k & 4) != 0};
+        const bool apart = (k & 8) != 0;
+        const std::string where =
+            std::string(file) + ", format " + std::to_string(format) + ", mixing " + std::to_string(k);
+        const auto [drawn, stored] =
+            bothWays(items, attachment, view, format == VK_FORMAT_R8G8B8A8_UNORM ? narrow : wide, mixing, false, apart);
+        if (format == VK_FORMAT_R16G16B16A16_SFLOAT) {
+          EXPECT_EQ(drawn, stored) << where;
+        } else {
+          int worst = 0;
+          for (size_t i = 0; i < drawn.size(); ++i) {
+            double expected = stored[encodes ? 0 : i];
+            if (encodes) { // what sRGB encodes of premultiplied light
+              uint16_t half;
+              std::memcpy(&half, &stored[i * 2], 2);
+              const float light = std::clamp(fromHalf(half), 0.0f, 1.0f);
+              expected = std::round(255 * static_cast<double>(i % 4 == 3 ? light : host::srgbFromLinear(light)));
+            }
+            worst = std::max(worst, std::abs(drawn[i] - static_cast<int>(expected)));
+          }
+          EXPECT_LE(worst, 1) << where;
+        }
+        if (!encodes || !mixing.opaque) continue;
+        const auto [again, encoded] = bothWays(items, attachment, view, narrow, mixing, true, apart);
+        int worst = 0;
+        for (size_t i = 0; i < again.size(); ++i) worst = std::max(worst, std::abs(again[i] - encoded[i]));
+        EXPECT_LE(worst, 1) << where;
+      }
+    }
+  }
+};
+
+TEST_F(TwoWays, OfAPanelHaveTheSamePixels) { compare("svg/hud.svg"); }
+TEST_F(TwoWays, OfClipsAndGroupsHaveTheSamePixels) { compare("svg/clips.svg"); }
+TEST_F(TwoWays, OfTheTigerHaveTheSamePixels) { compare("fetched/svg/tiger.svgz"); }
+
+} // namespace
