@@ -26,7 +26,7 @@ void clearEntries(uint lane, uint first, uint count) {
 void main() {
   const uint lane = gl_LocalInvocationID.x;
 #if !SOFTWARE
-  const uint total = min(counters.words, header.wordLimit);
+  const uint total = min(counters.words, header.wordLimit), cleared = counters.cleared;
   for (uint first = gl_WorkGroupID.x * 64; first < total; first += gl_NumWorkGroups.x * 64) {
     const uint i = first + lane;
     const bool own = i < total && words[i].stamped == 0;
@@ -36,7 +36,7 @@ void main() {
     if (lane == 63) start = atomicAdd(counters.entries, sum);
     barrier();
     if (own) words[i].firstEntry = start + end - count;
-    const uint clear = max(start, counters.cleared);
+    const uint clear = max(start, cleared);
     if (start <= header.entryLimit && sum <= header.entryLimit - start && start + sum > clear)
       clearEntries(lane, clear, start + sum - clear);
   }

@@ -89,11 +89,8 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
               const std::string& bytes) {
   const std::string name = inputName(file);
 #ifdef GPGP_CLI_SPAWN
-  if (type == "grammar") {
-    const GrammarFile grammar(name);
-    if (!grammar.alias.empty()) throw Usage(file + ": NAME=FILE is for --link");
-    return {compileGrammar({grammar, bytes}, options.set, options.kernel), Json::object(), {}};
-  }
+  if (type == "grammar")
+    return {compileGrammar({GrammarFile(name), bytes}, options.set, options.kernel), Json::object(), {}};
 #endif
 #ifdef GPGP_CLI_VECTOR
   if (type == "drawing") return bakeDrawing(bytes, name, options.scale);
@@ -149,6 +146,9 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
     if (file == kStandard && folder) throw Usage("standard input has no name for a file in a folder; give it alone");
     std::string bytes = file == kStandard ? readInput(file) : std::string();
     std::string type = typeOf(options, file, bytes);
+#ifdef GPGP_CLI_SPAWN
+    if (type == "grammar" && !GrammarFile(file).alias.empty()) throw Usage(file + ": NAME=FILE is for --link");
+#endif
     work.push_back({file, std::move(type), std::move(bytes)});
   }
   Outcome outcome{Json::object(), {}};

@@ -459,7 +459,7 @@ TEST_F(CanvasTest, GradientsFollowTheirSpreadsAndCircles) {
 }
 
 TEST_F(CanvasTest, ImagesPaintThroughTheirTransformAndSampler) {
-  makeCanvas(64);
+  makeCanvas(72); // no other test's: lavapipe follows descriptors of images that are gone
   const uint32_t red = 0xff0000ff, green = 0xff00ff00, half = 0x80ff0000, white = 0xffffffff;
   const uint32_t first[] = {red, green, half, white}, second[] = {white, red};
   const Texture chess(device, 2, 2, first, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
@@ -793,7 +793,7 @@ TEST_F(CanvasTest, BlendsAsSrgbEncodesWhereAsked) {
 
 // Stops and shapes brighter than white, in either way of mixing; an edge mixes them with what lies behind.
 TEST_F(CanvasTest, ColorsBrighterThanWhiteReachFloatTargets) {
-  makeCanvas(32);
+  makeCanvas(64);
   GpgpGradientStop stops[] = {{0, {8, 2, 0, 1}}, {1, {0, 2, 1000, 0.5f}}};
   GpgpGradient gradient{};
   gradient.transform[0] = gradient.transform[3] = 32;

@@ -751,7 +751,7 @@ TEST_F(GlyphTest, BadArgumentsAreRefusedWithWords) {
   const auto tryAdd = [&] { return gpgpAddGlyphs(set, glyphs.data(), 2, indices); };
   GpgpPath path = shapes.paths[1];
   glyphs[1].paths = &path;
-  path.color[2] = 3;
+  path.color[2] = 20000;
   refused(tryAdd(), GPGP_ERROR_INVALID_ARGUMENT, "glyphs[1].paths[0]: ");
   EXPECT_EQ(indices[0], 5u);
   EXPECT_EQ(infoOf(set).glyphs, 0u) << "nothing is added";
