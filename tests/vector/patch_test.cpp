@@ -210,7 +210,7 @@ TEST(Patches, BadPathsAreRefusedByIndex) {
     if (kind == 3) verbs[2] = 9, words = "verbs[2]";
     if (kind == 4) view.pointCount = 2, words = "pointCount";
     if (kind == 5) verbs[0] = GPGP_PATH_LINE, words = "GPGP_PATH_MOVE";
-    if (kind == 6) view.color[1] = 1.5f, words = "color[1]";
+    if (kind == 6) view.color[1] = 20000, words = "color[1]";
     const GpgpPath both[] = {good.view(), view};
     const auto d = vector::makeDrawing(both, heap());
     ASSERT_FALSE(d) << kind;
@@ -626,7 +626,7 @@ TEST(Baked, ContentsAreCheckedBehindARightChecksum) {
   EXPECT_TRUE(refused([](Drawing& d) { d.patches[1].x0 = NAN; }));
   EXPECT_TRUE(refused([](Drawing& d) { d.curves[1].ends.w = -1; }));
   EXPECT_TRUE(refused([](Drawing& d) { d.curves[1].controls.x = INFINITY; }));
-  EXPECT_TRUE(refused([](Drawing& d) { d.paths[0].color.x = 2; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.paths[0].color.x = 20000; }));
 }
 
 } // namespace
