@@ -282,8 +282,8 @@ typedef struct GpgpTextInfo {
   float lineHeight;     /**< pixels between lines instead; 0: the fonts' */
   float tabWidth;       /**< pixels between tab stops; 0: eight spaces */
   const char* ellipsis; /**< terminated; ends a text that was cut off, whose last line is filled up to it, with a part
-                           of a word, too; in the style of what is before it, one font and direction, whole also where
-                             it is wider than the width; NULL: "…" ("..." where no font has it) */
+                             of a word, too; in the style of what is before it, one font and direction, whole also where
+                             it is wider than the width; NULL: U+2026, or three full stops where no font has that */
 } GpgpTextInfo;
 #define GPGP_TEXT_INFO_INIT GPGP_INIT(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO)
 

@@ -414,12 +414,12 @@ typedef struct GpgpCanvasInfo {
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
-/** Rasterises the items into the view, the target, or both with the same pixels. What gpgpRecordDrawCanvas leaves of
- *  the view over 0 (transparent black) is within one unit of a half's last place of a target of the same format where
- *  that is R16G16B16A16_SFLOAT, and within 1/255 where it is R8G8B8A8_UNORM: the view holds halves, and image stores
- * and attachments round in their own ways. An sRGB attachment encodes premultiplied colour, so that it equals a target
- * with encodeSrgb only where the canvas is opaque, within 1/255. NOT_READY: a drawing or a glyph that is drawn is not
- * resident, or the canvas not prewarmed.
+/** Rasterises the items into the view, the target, or both with the same pixels: what gpgpRecordDrawCanvas leaves of
+ *  the view over 0 (transparent black) is within one unit of a half's last place of a target of the same format
+ *  where that is R16G16B16A16_SFLOAT, and within 1/255 where it is R8G8B8A8_UNORM (the view holds halves, and image
+ *  stores and attachments round in their own ways). An sRGB attachment encodes premultiplied colour: it is within
+ *  1/255 of a target with encodeSrgb only where the canvas is opaque.
+ *  NOT_READY: a drawing or a glyph that is drawn is not resident, or the canvas not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,

@@ -25,11 +25,12 @@ uint scan(uint lane, uint value) {
 }
 uint scanTotal() { return sums[SCAN_LANES - 1]; } // of the last scan
 
-// The same, with the sum of all, for values whose sum does not wrap.
+// The same, with the sum of all, for values whose sum does not wrap. A barrier must lie between one call and the next.
 uint sumUpTo(uint lane, uint value, out uint total) {
 #if SUBGROUPS
   const uint upTo = sumOver(value);
-  if (lane() == kLanes - 1) sums[gl_SubgroupID] = upTo;
+  // A workgroup may be a part of a subgroup.
+  if (gl_SubgroupInvocationID == min(gl_SubgroupSize, SCAN_LANES) - 1) sums[gl_SubgroupID] = upTo;
   barrier();
   uint before = 0;
   total = 0;

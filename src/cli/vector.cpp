@@ -204,7 +204,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
   if (report.pathsDropped)
-    outcome.failure = options.file + ": " + std::to_string(report.pathsDropped) + " of " + std::to_string(facts.paths) +
+    outcome.failure = name + ": " + std::to_string(report.pathsDropped) + " of " + std::to_string(facts.paths) +
                       " paths were left out; --max-tile-entries " + std::to_string(report.tileEntries) +
                       " would hold them, or somewhat more";
   outcome.json = {{"file", options.file},

@@ -2,11 +2,7 @@
 #include "../cairo_draw.h"
 #include "canvas_fixture.h"
 #include "cli/vector_truth.h"
-#include "host/files.h"
-#include "vector/import/svg/document.h"
-#include "vector/import/svg/import.h"
-
-#include <filesystem>
+#include "fetched_svg.h"
 
 namespace {
 using namespace gpgp;
@@ -145,12 +141,8 @@ TEST_F(CairoTest, GradientsBetweenAnyTwoCircles) {
 struct DrawingBesideCairo : CairoTest, testing::WithParamInterface<const char*> {};
 
 TEST_P(DrawingBesideCairo, LooksTheSame) {
-  const std::string file = std::string(GPGP_TEST_DATA) + "/" + GetParam();
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: run tests/data/fetch.sh --only svg";
-  const auto bytes = host::readFile(file);
-  vector::svg::Reporter reporter(nullptr, nullptr, GetParam());
-  const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter);
-  ASSERT_TRUE(svg) << svg.error().text;
+  const auto svg = fetchedSvg(GetParam());
+  if (!svg) GTEST_SKIP() << GetParam() << " is not there";
   const vector::svg::ImportedViews views(*svg);
   constexpr uint32_t kSize = 384;
   const float scale = std::min(float(kSize) / float(svg->width), float(kSize) / float(svg->height));

@@ -75,6 +75,20 @@ struct CanvasTest : DeviceTest {
     return {drawing, {scale, 0, 0, scale, x, y}, 1};
   }
 
+  /// The items as the test mixes them. They must outlive it.
+  GpgpCanvasInfo infoOf(const std::vector<GpgpCanvasItem>& items, uint32_t width, uint32_t height) const {
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    info.width = width;
+    info.height = height;
+    info.items = items.data();
+    info.itemCount = static_cast<uint32_t>(items.size());
+    info.exactArea = exactArea;
+    info.blendSrgb = blendSrgb;
+    info.encodeSrgb = encodeSrgb;
+    info.images = images.data();
+    info.imageCount = static_cast<uint32_t>(images.size());
+    return info;
+  }
   /// Rasterises into a half-float image and reads it back.
   std::vector<Rgba> raster(const std::vector<GpgpCanvasItem>& items, uint32_t width, uint32_t height, uint32_t samples,
                            GpgpCanvasReport* report = nullptr) {
@@ -83,17 +97,8 @@ struct CanvasTest : DeviceTest {
     const GpgpFrame frame = advance();
     device.submitAndWait([&](VkCommandBuffer commands) {
       EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
-      GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-      info.width = width;
-      info.height = height;
-      info.items = items.data();
-      info.itemCount = static_cast<uint32_t>(items.size());
+      GpgpCanvasInfo info = infoOf(items, width, height);
       info.samples = samples;
-      info.exactArea = exactArea;
-      info.blendSrgb = blendSrgb;
-      info.encodeSrgb = encodeSrgb;
-      info.images = images.data();
-      info.imageCount = static_cast<uint32_t>(images.size());
       info.target = image.target({}, after);
       EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
     });

@@ -2,9 +2,8 @@
 // real drawings against a truth of 256 samples a pixel made from winding numbers.
 #include "canvas_fixture.h"
 #include "cli/vector_truth.h"
-#include "host/files.h"
+#include "fetched_svg.h"
 #include "ui_fixture.h"
-#include "vector/import/svg/import.h"
 
 #include <bit>
 #include <cstdlib>
@@ -899,12 +898,8 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
 struct RealDrawing : CanvasTest, testing::WithParamInterface<const char*> {};
 
 TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
-  const std::string file = std::string(GPGP_TEST_DATA) + "/" + GetParam();
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: run tests/data/fetch.sh --only svg";
-  const auto bytes = host::readFile(file);
-  vector::svg::Reporter reporter(nullptr, nullptr, GetParam());
-  const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter);
-  ASSERT_TRUE(svg) << svg.error().text;
+  const auto svg = fetchedSvg(GetParam());
+  if (!svg) GTEST_SKIP() << GetParam() << " is not there";
   const vector::svg::ImportedViews views(*svg);
   ASSERT_GT(views.paths.size(), 5u);
   const uint32_t size = 256;

@@ -2,10 +2,12 @@
 #include "oracle.h"
 #include "vector/curve.h"
 #include "vector/patch/drawing.h"
+#include "vector/raster/segments.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <ctime>
 #include <random>
 #include <thread>
@@ -543,6 +545,37 @@ TEST(Baked, ComesBackTheSame) {
   ASSERT_TRUE(back) << back.error().text;
   EXPECT_EQ(vector::bake(*back, heap()), bytes);
   EXPECT_EQ(back->patches.size(), d->patches.size());
+}
+
+TEST(Baked, CurvesFarApartMakeTheSameOutlines) {
+  const TestPath path = randomPath(5, 20, 3, 0);
+  const GpgpPath view = path.view();
+  const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(d);
+  const auto outlines = vector::makeOutlines(*d, heap());
+  ASSERT_GT(outlines.segments.size(), 20u);
+  // What a file may say that conversion never does: curves that no patch has, between those of a path.
+  Drawing apart = *d;
+  const auto half = static_cast<uint32_t>(d->curves.size() / 2);
+  constexpr uint32_t kBetween = 1u << 18;
+  apart.curves.insert(apart.curves.begin() + half, kBetween, d->curves[0]);
+  const auto moved = [&](uint32_t curve) { return curve < half ? curve : curve + kBetween; };
+  for (auto& patch : apart.patches) patch.left = moved(patch.left), patch.right = moved(patch.right);
+  const auto same = vector::makeOutlines(apart, heap());
+  ASSERT_EQ(same.segments.size(), outlines.segments.size());
+  EXPECT_EQ(std::memcmp(same.segments.data(), outlines.segments.data(),
+                        outlines.segments.size() * sizeof(outlines.segments[0])),
+            0);
+  // And in many paths: each takes time for its own patches only.
+  apart.paths.resize(1u << 16, apart.paths[0]);
+  const vector::PatchRecord whole = apart.patches[0];
+  for (uint32_t i = 1; i < apart.paths.size(); ++i) {
+    apart.patches.push_back(whole);
+    apart.patches.back().left = 0;
+    apart.patches.back().right = static_cast<uint32_t>(apart.curves.size() - 1);
+    apart.patches.back().path = i;
+  }
+  EXPECT_EQ(vector::makeOutlines(apart, heap()).ends.size(), apart.paths.size());
 }
 
 TEST(Baked, GroupsAndImagesComeBackAndAreChecked) {

@@ -1,14 +1,12 @@
 // Real drawings through the importer and the conversion: each path's patches against winding numbers.
-#include "host/files.h"
+#include "fetched_svg.h"
 #include "oracle.h"
 #include "vector/curve.h"
-#include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
 #include <random>
 
 namespace {
@@ -18,12 +16,8 @@ using namespace gpgp::test;
 struct RealPaths : testing::TestWithParam<const char*> {};
 
 TEST_P(RealPaths, PatchesAreTheInside) {
-  const std::string file = std::string(GPGP_TEST_DATA) + "/" + GetParam();
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: run tests/data/fetch.sh --only svg";
-  const auto bytes = host::readFile(file);
-  vector::svg::Reporter reporter(nullptr, nullptr, GetParam());
-  const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter);
-  ASSERT_TRUE(svg) << svg.error().text;
+  const auto svg = fetchedSvg(GetParam());
+  if (!svg) GTEST_SKIP() << GetParam() << " is not there";
   std::mt19937 random(7);
   size_t tested = 0, wrong = 0, doubled = 0, inside = 0, patches = 0, curves = 0;
   double seconds = 0;

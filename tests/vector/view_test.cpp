@@ -1,10 +1,7 @@
 // The two ways out: the draw inside the engine's render pass, and that it gives what a storage image receives.
 #include "canvas_fixture.h"
-#include "host/files.h"
-#include "vector/import/svg/document.h"
-#include "vector/import/svg/import.h"
+#include "fetched_svg.h"
 
-#include <filesystem>
 #include <functional>
 
 namespace {
@@ -131,27 +128,16 @@ TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
 
 struct TwoWays : CanvasTest {
   static constexpr uint32_t kWidth = 160, kHeight = 120;
-  struct Mixing {
-    bool blendSrgb, exactArea, opaque;
-  };
   /// What an attachment and a storage image hold of the same items: prepared apart, or by one record.
   std::pair<std::vector<uint8_t>, std::vector<uint8_t>> bothWays(const std::vector<GpgpCanvasItem>& items,
                                                                  const Attachment& attachment, GpgpView view,
-                                                                 const host::Image& direct, const Mixing& mixing,
-                                                                 bool encode, bool apart) {
+                                                                 const host::Image& direct, bool opaque, bool apart) {
     const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     const GpgpFrame frame = advance();
     device.submitAndWait([&](VkCommandBuffer commands) {
       EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
-      GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-      info.width = kWidth;
-      info.height = kHeight;
-      info.items = items.data();
-      info.itemCount = static_cast<uint32_t>(items.size());
-      info.blendSrgb = mixing.blendSrgb;
-      info.exactArea = mixing.exactArea;
-      info.encodeSrgb = encode;
-      if (mixing.opaque)
+      GpgpCanvasInfo info = infoOf(items, kWidth, kHeight);
+      if (opaque)
         info.background[0] = 0.9f, info.background[1] = 0.3f, info.background[2] = 0.05f, info.background[3] = 1;
       info.target = direct.target({}, after);
       if (!apart) info.view = view;
@@ -172,14 +158,10 @@ struct TwoWays : CanvasTest {
     return {attachment.bytes(), host::downloadImage(device, direct, VK_IMAGE_LAYOUT_GENERAL)};
   }
   void compare(const char* file) {
-    const std::string path = std::string(GPGP_TEST_DATA) + "/" + file;
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there: run tests/data/fetch.sh --only svg";
-    const auto svg = host::readFile(path);
-    vector::svg::Reporter reporter(nullptr, nullptr, file);
-    const auto imported = vector::svg::importSvg(std::as_bytes(std::span(svg)), reporter);
-    ASSERT_TRUE(imported) << imported.error().text;
-    const vector::svg::ImportedViews views(*imported);
-    const float scale = std::min(float(kWidth) / float(imported->width), float(kHeight) / float(imported->height));
+    const auto svg = fetchedSvg(file);
+    if (!svg) GTEST_SKIP() << file << " is not there";
+    const vector::svg::ImportedViews views(*svg);
+    const float scale = std::min(float(kWidth) / float(svg->width), float(kHeight) / float(svg->height));
     TestPath veil = randomShape(7, 160); // the half of it through which what lies below shows
     veil.color = {0.1f, 0.4f, 0.8f, 0.37f};
     const std::vector<GpgpCanvasItem> items{place(makeDrawing(views.paths, views.groups), scale),
@@ -194,12 +176,12 @@ struct TwoWays : CanvasTest {
       };
       const host::Image wide = image(VK_FORMAT_R16G16B16A16_SFLOAT), narrow = image(VK_FORMAT_R8G8B8A8_UNORM);
       for (const int k : {0, 5, 10, 15}) {
-        const Mixing mixing{(k & 1) != 0, (k & 2) != 0, (k & 4) != 0};
-        const bool apart = (k & 8) != 0;
+        blendSrgb = (k & 1) != 0, exactArea = (k & 2) != 0, encodeSrgb = false;
+        const bool opaque = (k & 4) != 0, apart = (k & 8) != 0;
         const std::string where =
             std::string(file) + ", format " + std::to_string(format) + ", mixing " + std::to_string(k);
         const auto [drawn, stored] =
-            bothWays(items, attachment, view, format == VK_FORMAT_R8G8B8A8_UNORM ? narrow : wide, mixing, false, apart);
+            bothWays(items, attachment, view, format == VK_FORMAT_R8G8B8A8_UNORM ? narrow : wide, opaque, apart);
         if (format == VK_FORMAT_R16G16B16A16_SFLOAT) {
           ASSERT_EQ(drawn.size(), stored.size());
           int worst = 0; // in units of the last place: none is below 0
@@ -224,8 +206,9 @@ struct TwoWays : CanvasTest {
           }
           EXPECT_LE(worst, 1) << where;
         }
-        if (!encodes || !mixing.opaque) continue;
-        const auto [again, encoded] = bothWays(items, attachment, view, narrow, mixing, true, apart);
+        if (!encodes || !opaque) continue;
+        encodeSrgb = true;
+        const auto [again, encoded] = bothWays(items, attachment, view, narrow, opaque, apart);
         int worst = 0;
         for (size_t i = 0; i < again.size(); ++i) worst = std::max(worst, std::abs(again[i] - encoded[i]));
         EXPECT_LE(worst, 1) << where;

@@ -88,7 +88,7 @@ public:
   }
 
 private:
-  /// By curve, then height. A path's curves lie beside each other in the table.
+  /// By curve, then height. A path's curves lie beside each other in the table, but a file may say otherwise.
   void sortRises(std::span<const PatchRecord> patches) {
     rises_.clear();
     if (patches.empty()) return;
@@ -97,24 +97,29 @@ private:
       low = std::min({low, p.left, p.right});
       high = std::max({high, p.left, p.right});
     }
-    counts_.assign(high - low + 2, 0);
-    for (const PatchRecord& p : patches) {
+    const bool counted = (high - low) / 8 <= patches.size();
+    counts_.assign(counted ? high - low + 2 : 0, 0);
+    for (const PatchRecord& p : counted ? patches : patches.first(0)) {
       counts_[p.left - low + 1] += 2;
       counts_[p.right - low + 1] += 2;
     }
     for (size_t i = 1; i < counts_.size(); ++i) counts_[i] += counts_[i - 1];
     rises_.resize(patches.size() * 4);
-    const auto add = [&](uint32_t curve, float y, int side) { rises_[counts_[curve - low]++] = {curve, y, side}; };
+    size_t added = 0;
+    const auto add = [&](uint32_t curve, float y, int side) {
+      rises_[counted ? counts_[curve - low]++ : added++] = {curve, y, side};
+    };
     for (const PatchRecord& p : patches) {
       add(p.left, p.top, 1);
       add(p.left, p.bottom, -1);
       add(p.right, p.top, -1);
       add(p.right, p.bottom, 1);
     }
+    const auto before = [](const Rise& a, const Rise& b) { return a.curve != b.curve ? a.curve < b.curve : a.y < b.y; };
+    if (!counted) std::sort(rises_.begin(), rises_.end(), before);
     size_t first = 0;
     for (size_t curve = 0; curve + 1 < counts_.size(); first = counts_[curve++]) // where the next one's begin, now
-      std::sort(rises_.begin() + static_cast<std::ptrdiff_t>(first), rises_.begin() + counts_[curve],
-                [](const Rise& a, const Rise& b) { return a.y < b.y; });
+      std::sort(rises_.begin() + static_cast<std::ptrdiff_t>(first), rises_.begin() + counts_[curve], before);
   }
   void begin(uint32_t path, uint32_t curve, float y, int side) {
     SegmentRecord s = wholeCurve(drawing_.curves[curve]);
