@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -25,10 +26,14 @@ CurveRecord curveRecord(const Monotone& piece) {
   return r;
 }
 
-/// What GPUs take for 0 is 0.
-float normal(float v) { return std::abs(v) < std::numeric_limits<float>::min() ? 0.0f : v; }
-float below(double v) { return normal(std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity())); }
-float above(double v) { return normal(std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity())); }
+/// The next float above. What GPUs take for 0 is 0.
+float above(double v) {
+  const float f = static_cast<float>(v);
+  const uint32_t bits = std::bit_cast<uint32_t>(f);
+  const float next = f == 0 ? 0 : std::bit_cast<float>(f > 0 ? bits + 1 : bits - 1);
+  return std::abs(next) < std::numeric_limits<float>::min() ? 0 : next;
+}
+float below(double v) { return -above(-v); }
 
 core::Error tooManyPatches() {
   return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing needs more than %u patches", shader::kEntryPatch);
@@ -169,6 +174,10 @@ core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, std
                               std::pmr::vector<LeftEmpty>* leftEmpty) {
   Drawing drawing(memory);
   drawing.paths.reserve(paths.size());
+  size_t verbs = 0;
+  for (const GpgpPath& path : paths) verbs += path.verbCount;
+  drawing.curves.reserve(verbs + verbs / 4); // what most need, so that little is copied while they grow
+  drawing.patches.reserve(verbs + verbs / 4);
   for (size_t i = 0; i < paths.size(); ++i) {
     std::optional<core::Error> tooMany;
     if (auto ok = addPath(paths[i], drawing, leftEmpty ? &tooMany : nullptr); !ok)

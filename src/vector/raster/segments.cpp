@@ -57,13 +57,90 @@ SegmentRecord wholeCurve(const CurveRecord& c) {
 class PathOutline {
 public:
   PathOutline(const Drawing& drawing, Outlines& outlines)
-      : drawing_(drawing), segments_(outlines.segments), memory_(segments_.get_allocator().resource()), rises_(memory_),
-        counts_(memory_), ends_(memory_), sorted_(memory_) {}
+      : drawing_(drawing), segments_(outlines.segments), memory_(segments_.get_allocator().resource()), uses_(memory_),
+        chains_(memory_), rises_(memory_), made_(memory_), ends_(memory_), order_(memory_) {}
 
   void run(uint32_t path, size_t firstPatch, size_t lastPatch) {
+    made_.clear();
     ends_.clear();
-    sortRises(std::span(drawing_.patches).subspan(firstPatch, lastPatch - firstPatch));
-    const size_t first = segments_.size();
+    const auto patches = std::span(drawing_.patches).subspan(firstPatch, lastPatch - firstPatch);
+    if (!followUses(path, patches)) sortRises(path, patches);
+    close(path);
+    // Neighbours in the table run through the same tiles. Closing has left all but in order.
+    const auto before = [this](uint32_t i, uint32_t k) {
+      const vec4 &a = made_[i].ends, &b = made_[k].ends;
+      return a.y != b.y ? a.y < b.y : a.x != b.x ? a.x < b.x : i < k;
+    };
+    for (size_t i = 1; i < order_.size(); ++i) {
+      const uint32_t moved = order_[i];
+      size_t at = i;
+      for (; at > 0 && before(moved, order_[at - 1]); --at) order_[at] = order_[at - 1];
+      order_[at] = moved;
+    }
+    for (const uint32_t i : order_) segments_.push_back(made_[i]);
+  }
+
+private:
+  /// Rows in which patches follow each other on one side of a curve.
+  struct Use {
+    float top, bottom;
+    int side;
+    uint32_t next; // of the curve
+  };
+  struct Chain { // a curve's uses
+    uint32_t first = kNone, last = kNone;
+  };
+  static constexpr uint32_t kNone = UINT32_MAX;
+
+  /// For patches as conversion makes them: a path's curves lie beside each other in the table, and a curve's patches
+  /// are in the order of its rows, each beginning where those before it have ended. Otherwise false, and nothing is
+  /// made.
+  bool followUses(uint32_t path, std::span<const PatchRecord> patches) {
+    uint32_t low = UINT32_MAX, high = 0;
+    for (const PatchRecord& p : patches) {
+      low = std::min(low, std::min(p.left, p.right));
+      high = std::max(high, std::max(p.left, p.right));
+    }
+    if (patches.empty()) return true;
+    if ((high - low) / 8 > patches.size()) return false;
+    uses_.clear();
+    chains_.assign(high - low + 1, Chain{});
+    const auto use = [&](uint32_t curve, const PatchRecord& p, int side) {
+      Chain& chain = chains_[curve - low];
+      const auto added = static_cast<uint32_t>(uses_.size());
+      if (chain.last == kNone) {
+        chain.first = added;
+      } else {
+        Use& before = uses_[chain.last];
+        if (before.bottom == p.top && before.side == side) {
+          before.bottom = p.bottom;
+          return true;
+        }
+        if (!(before.bottom <= p.top)) return false;
+        before.next = added;
+      }
+      chain.last = added;
+      uses_.push_back({p.top, p.bottom, side, kNone});
+      return true;
+    };
+    for (const PatchRecord& p : patches)
+      if (!use(p.left, p, 1) || !use(p.right, p, -1)) return false;
+    for (uint32_t curve = low; curve <= high; ++curve)
+      for (uint32_t i = chains_[curve - low].first; i != kNone; i = uses_[i].next) {
+        begin(path, curve, uses_[i].top, uses_[i].side);
+        end(curve, uses_[i].bottom);
+      }
+    return true;
+  }
+  /// For any patches, as a file may have them.
+  void sortRises(uint32_t path, std::span<const PatchRecord> patches) {
+    rises_.clear();
+    for (const PatchRecord& p : patches) {
+      rises_.insert(rises_.end(), {{p.left, p.top, 1}, {p.left, p.bottom, -1}, {p.right, p.top, -1}});
+      rises_.push_back({p.right, p.bottom, 1});
+    }
+    std::sort(rises_.begin(), rises_.end(),
+              [](const Rise& a, const Rise& b) { return a.curve != b.curve ? a.curve < b.curve : a.y < b.y; });
     int side = 0;
     for (size_t i = 0; i < rises_.size();) {
       const Rise at = rises_[i];
@@ -74,70 +151,24 @@ public:
       if (next & 1) begin(path, at.curve, at.y, next);
       side = next;
     }
-    close(path);
-    // Neighbours in the table run through the same tiles.
-    const auto own = std::span(segments_).subspan(first);
-    const auto order = orderBy(
-        static_cast<uint32_t>(own.size()), memory_, [&own](uint32_t i) { return own[i].ends.y; },
-        [&own](uint32_t i, uint32_t k) {
-          return own[i].ends.x != own[k].ends.x ? own[i].ends.x < own[k].ends.x : i < k;
-        });
-    sorted_.clear();
-    for (const uint32_t i : order) sorted_.push_back(own[i]);
-    std::copy(sorted_.begin(), sorted_.end(), own.begin());
-  }
-
-private:
-  /// By curve, then height. A path's curves lie beside each other in the table, but a file may say otherwise.
-  void sortRises(std::span<const PatchRecord> patches) {
-    rises_.clear();
-    if (patches.empty()) return;
-    uint32_t low = UINT32_MAX, high = 0;
-    for (const PatchRecord& p : patches) {
-      low = std::min({low, p.left, p.right});
-      high = std::max({high, p.left, p.right});
-    }
-    const bool counted = (high - low) / 8 <= patches.size();
-    counts_.assign(counted ? high - low + 2 : 0, 0);
-    for (const PatchRecord& p : counted ? patches : patches.first(0)) {
-      counts_[p.left - low + 1] += 2;
-      counts_[p.right - low + 1] += 2;
-    }
-    for (size_t i = 1; i < counts_.size(); ++i) counts_[i] += counts_[i - 1];
-    rises_.resize(patches.size() * 4);
-    size_t added = 0;
-    const auto add = [&](uint32_t curve, float y, int side) {
-      rises_[counted ? counts_[curve - low]++ : added++] = {curve, y, side};
-    };
-    for (const PatchRecord& p : patches) {
-      add(p.left, p.top, 1);
-      add(p.left, p.bottom, -1);
-      add(p.right, p.top, -1);
-      add(p.right, p.bottom, 1);
-    }
-    const auto before = [](const Rise& a, const Rise& b) { return a.curve != b.curve ? a.curve < b.curve : a.y < b.y; };
-    if (!counted) std::sort(rises_.begin(), rises_.end(), before);
-    size_t first = 0;
-    for (size_t curve = 0; curve + 1 < counts_.size(); first = counts_[curve++]) // where the next one's begin, now
-      std::sort(rises_.begin() + static_cast<std::ptrdiff_t>(first), rises_.begin() + counts_[curve], before);
   }
   void begin(uint32_t path, uint32_t curve, float y, int side) {
     SegmentRecord s = wholeCurve(drawing_.curves[curve]);
     s.path = path;
     s.side = side > 0 ? 1.0f : -1.0f;
     s.ends = {xAt(drawing_.curves[curve], y), y, 0, 0};
-    ends_.push_back({y, s.ends.x, static_cast<uint32_t>(segments_.size()), false});
-    segments_.push_back(s);
+    ends_.push_back({y, s.ends.x, static_cast<uint32_t>(made_.size()), false});
+    made_.push_back(s);
   }
   void end(uint32_t curve, float y) {
-    SegmentRecord& s = segments_.back();
+    SegmentRecord& s = made_.back();
     s.ends.z = xAt(drawing_.curves[curve], y);
     s.ends.w = y;
-    ends_.push_back({y, s.ends.z, static_cast<uint32_t>(segments_.size() - 1), true});
+    ends_.push_back({y, s.ends.z, static_cast<uint32_t>(made_.size() - 1), true});
   }
 
-  /// Joins what ends at a height in pairs. Ends that only rounding keeps apart, at least one of them inside its curve,
-  /// become one instead.
+  /// Joins what ends at a height in pairs, and lists all by where they begin. Ends that only rounding keeps apart, at
+  /// least one of them inside its curve, become one instead.
   void close(uint32_t path) {
     const auto order = orderBy(
         static_cast<uint32_t>(ends_.size()), memory_, [this](uint32_t i) { return ends_[i].y; },
@@ -145,12 +176,15 @@ private:
           const End &a = ends_[i], &b = ends_[k];
           return a.x != b.x ? a.x < b.x : a.segment < b.segment;
         });
+    order_.clear();
     for (size_t i = 0; i + 1 < order.size(); i += 2) {
       const End &a = ends_[order[i]], &b = ends_[order[i + 1]];
+      if (!a.bottom) order_.push_back(a.segment);
+      if (!b.bottom) order_.push_back(b.segment);
       if (a.x == b.x) continue;
       if (b.x - a.x <= 1e-6f * (std::abs(a.x) + std::abs(a.y)) && (free(a) || free(b))) {
         const End &moved = free(a) ? a : b, &kept = free(a) ? b : a;
-        SegmentRecord& s = segments_[moved.segment];
+        SegmentRecord& s = made_[moved.segment];
         (moved.bottom ? s.ends.z : s.ends.x) = kept.x;
         continue;
       }
@@ -162,23 +196,26 @@ private:
       s.path = path;
       // Outlines run down where the region lies right and up where it lies left, so they leave a point that a left
       // side reaches from above or a right side from below.
-      const bool arrives = (segments_[a.segment].side > 0) == a.bottom;
+      const bool arrives = (made_[a.segment].side > 0) == a.bottom;
       s.side = arrives ? 1.0f : -1.0f;
-      segments_.push_back(s);
+      order_.push_back(static_cast<uint32_t>(made_.size()));
+      made_.push_back(s);
     }
   }
   bool free(const End& e) const { // inside its curve
-    const SegmentRecord& s = segments_[e.segment];
+    const SegmentRecord& s = made_[e.segment];
     return e.bottom ? e.y < s.second.w : e.y > s.first.y;
   }
 
   const Drawing& drawing_;
   std::pmr::vector<SegmentRecord>& segments_;
   std::pmr::memory_resource* memory_;
+  std::pmr::vector<Use> uses_;
+  std::pmr::vector<Chain> chains_;
   std::pmr::vector<Rise> rises_;
-  std::pmr::vector<uint32_t> counts_;
-  std::pmr::vector<End> ends_;
-  std::pmr::vector<SegmentRecord> sorted_;
+  std::pmr::vector<SegmentRecord> made_; // of the path
+  std::pmr::vector<End> ends_;           // of these
+  std::pmr::vector<uint32_t> order_;     // in which they are kept
 };
 
 } // namespace
@@ -189,7 +226,7 @@ Outlines outlinesOf(const Drawing& drawing, const Outlines* base, std::span<cons
                     std::pmr::memory_resource* memory) {
   Outlines outlines(memory);
   PathOutline outline(drawing, outlines);
-  outlines.segments.reserve(drawing.patches.size());
+  outlines.segments.reserve(drawing.patches.size() * 3 / 2 + 4 * drawing.paths.size());
   outlines.boxes.reserve(drawing.paths.size());
   outlines.ends.reserve(drawing.paths.size());
   size_t patch = 0;
