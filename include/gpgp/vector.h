@@ -212,7 +212,7 @@ typedef struct GpgpDrawingCreateInfo {
   const void* pNext;
   const char* label;
   /* exactly one of data, filePath, paths and base: */
-  const void* data; /**< a baked drawing */
+  const void* data; /**< a baked drawing, anywhere (in a mapped file, say); read during the call only */
   size_t size;
   const char* filePath;  /**< of a baked drawing, read through the file callbacks */
   const GpgpPath* paths; /**< painted in order, the first at the bottom */
@@ -256,7 +256,8 @@ typedef struct GpgpGlyphSetCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  const void* data; /**< optional: baked glyphs that are there from the beginning; or */
+  const void* data; /**< optional: baked glyphs that are there from the beginning, anywhere; read during the call
+                         only; or */
   size_t size;
   const char* filePath;  /**< of baked glyphs, read through the file callbacks */
   uint32_t maxGlyphs;    /**< at a time, at most 262144; 0: as many as are baked, or 4096 */

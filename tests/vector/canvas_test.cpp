@@ -5,9 +5,12 @@
 #include "fetched_svg.h"
 #include "ui_fixture.h"
 
+#include <algorithm>
 #include <bit>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <sys/mman.h>
 
 namespace {
 using namespace gpgp;
@@ -893,6 +896,37 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
   none.size = 8;
   EXPECT_EQ(gpgpCreateDrawing(context, &none, &asset), GPGP_ERROR_INVALID_DATA);
   EXPECT_EQ(asset, nullptr);
+}
+
+TEST_F(CanvasTest, ABakedDrawingIsReadOutOfAMappedFile) {
+  const TestPath shape = randomShape(3, 64);
+  const GpgpPath view = shape.view();
+  const auto converted = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+  ASSERT_TRUE(converted);
+  const auto baked = vector::bake(*converted, std::pmr::get_default_resource());
+  struct File {
+    std::FILE* file = std::tmpfile();
+    ~File() { std::fclose(file); }
+  } file;
+  ASSERT_TRUE(file.file);
+  ASSERT_EQ(std::fputc('x', file.file), 'x'); // what follows is not aligned
+  ASSERT_EQ(std::fwrite(baked.data(), 1, baked.size(), file.file), baked.size());
+  ASSERT_EQ(std::fflush(file.file), 0);
+  void* mapped = mmap(nullptr, baked.size() + 1, PROT_READ, MAP_PRIVATE, fileno(file.file), 0);
+  ASSERT_NE(mapped, MAP_FAILED);
+  GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+  info.data = static_cast<const char*>(mapped) + 1;
+  info.size = baked.size();
+  GpgpAsset drawing = nullptr;
+  const GpgpResult result = gpgpCreateDrawing(context, &info, &drawing);
+  munmap(mapped, baked.size() + 1); // before it is uploaded
+  ASSERT_EQ(result, GPGP_SUCCESS) << lastMessage();
+  makeCanvas(64);
+  const auto pixels = raster({place(drawing)}, 64, 64, 16), expected = raster({place(makeDrawing({view}))}, 64, 64, 16);
+  ASSERT_EQ(pixels.size(), expected.size());
+  EXPECT_EQ(std::memcmp(pixels.data(), expected.data(), pixels.size() * sizeof(Rgba)), 0);
+  const auto inked = std::count_if(pixels.begin(), pixels.end(), [](const Rgba& p) { return p.a > 0; });
+  EXPECT_GT(inked, 100);
 }
 
 struct RealDrawing : CanvasTest, testing::WithParamInterface<const char*> {};
