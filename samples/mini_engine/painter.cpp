@@ -120,7 +120,7 @@ void Painter::number(uint32_t value, uint32_t digits, const Box& box, const Labe
   const Box place = pixels(box);
   float advance = 0; // digits differ in width; their places do not
   for (char d = '0'; d <= '9'; ++d) advance = std::max(advance, text_.layOut({&d, 1}, digit).width);
-  advance = std::round(advance);
+  advance = std::min(std::round(advance), place.width() / static_cast<float>(digits)); // never beyond the box
   float x = label.align == GPGP_TEXT_ALIGN_RIGHT ? place.right : place.left + advance * static_cast<float>(digits);
   for (uint32_t i = 0; i < digits; ++i, value /= 10) {
     x -= advance;

@@ -1,7 +1,8 @@
 // The mini-engine's game screen, as its summary and pictures show it: hit tests find the menu's items, nothing
 // between them, and the inventory's slots in perspective; a changed score changes no pixel outside of its box, nothing
 // is converted or allocated in a settled frame, without fonts the screen is there without text, both eyes see the
-// inventory in its frame, and a window's events drive the menu. Every run is validated.
+// inventory in its frame, and a window's events drive the menu. What each panel looks like is stored in pictures. Every
+// run is validated.
 #include "host/picture.h"
 
 #include <gtest/gtest.h>
@@ -113,6 +114,77 @@ TEST(Screen, ScoreChangesOnlyItsBoxAndASettledFrameConvertsNothing) {
     }
   EXPECT_GT(orange, 5u);
   EXPECT_LT(orange, 120u);
+}
+
+/// Shown so: what the inputs made of the screen, and the panels that are compared.
+struct Stored {
+  const char* name;
+  const char* inputs;
+  std::vector<Box> panels;
+};
+
+/// Of two pictures the block of 8 x 8 pixels, about a letter's size, that differs most: mean over its channels.
+struct Block {
+  double mean = 0;
+  unsigned x = 0, y = 0;
+};
+Block worstBlock(const Picture& a, const Picture& b) {
+  constexpr unsigned kSide = 8;
+  Block worst;
+  for (unsigned y = 0; y < a.height; y += kSide)
+    for (unsigned x = 0; x < a.width; x += kSide) {
+      unsigned sum = 0;
+      for (unsigned row = y; row < std::min(y + kSide, a.height); ++row)
+        for (unsigned column = x; column < std::min(x + kSide, a.width); ++column)
+          for (size_t c = 0; c < 3; ++c) {
+            const size_t at = 4 * (size_t{row} * a.width + column) + c;
+            sum += static_cast<unsigned>(std::abs(a.rgba[at] - b.rgba[at]));
+          }
+      const double mean = sum / (3.0 * kSide * kSide);
+      if (mean > worst.mean) worst = {mean, x, y};
+    }
+  return worst;
+}
+
+// Tolerance: edges of the scene around the panels move by a sample between devices, as in golden_test.cpp. A comma that
+// is missing is a difference of 4/255 in its block, a letter one of 11 to 23, shapes moved by an eighth of a pixel one
+// of 5; letters with three quarters of their blue are 0.17/255 on average.
+TEST(Screen, PanelsLookAsStored) {
+  for (const char* needed : {"fonts/Inter-roman.var.ttf", "fonts/NotoColorEmoji.ttf", "fonts/NotoSansCJK-Regular.ttc",
+                             "fonts/NotoSansArabic-Regular.ttf", "models/2CylinderEngine.glb", "svg/tiger.svgz"})
+    if (!fs::exists(std::string(GPGP_TEST_DATA) + "/fetched/" + needed))
+      GTEST_SKIP() << GPGP_TEST_DATA << "/fetched/" << needed << " is missing: run tests/data/fetch.sh";
+  const Box status = {9, 9, 143, 51}, score = {396, 9, 471, 39}, map = {399, 183, 471, 261}, menu = {9, 66, 92, 190},
+            dialogue = {113, 199, 368, 261}, inventory = {302, 42, 434, 134};
+  for (const Stored& state :
+       {Stored{"game", "", {status, score, map, menu, dialogue, inventory}},
+        Stored{"dialogue", "--input down,down,down,enter", {dialogue}},
+        Stored{"menu", "--input down,down,enter", {menu, inventory}}, // hidden: the scene behind it
+        Stored{"inventory", "--input down,enter,402x90", {inventory}}}) {
+    SCOPED_TRACE(state.name);
+    const Shown run =
+        runScreen(std::string("stored-") + state.name, std::string("--frames 2 --size 480x270 ") + state.inputs);
+    if (run.text.find("without libgpgp_text") != std::string::npos) GTEST_SKIP() << "built without text";
+    ASSERT_EQ(run.picture.width, 480u);
+    ASSERT_EQ(run.picture.height, 270u);
+    Picture panels{480, 270, std::vector<uint8_t>(run.picture.rgba.size())};
+    for (const Box& box : state.panels)
+      for (unsigned y = box[1]; y < box[3]; ++y) {
+        const auto row = static_cast<std::ptrdiff_t>(4 * (size_t{y} * 480 + box[0]));
+        std::copy_n(run.picture.rgba.begin() + row, 4 * (box[2] - box[0]), panels.rgba.begin() + row);
+      }
+    const std::string name = std::string("screen-") + state.name + ".png";
+    gpgp::host::writePng(kOut / "stored" / name, panels); // regenerate.sh takes it from here
+    EXPECT_TRUE(fs::exists(fs::path(GPGP_GOLDEN) / name)) << name;
+    if (!fs::exists(fs::path(GPGP_GOLDEN) / name)) continue;
+    const Picture stored = gpgp::host::readPng(fs::path(GPGP_GOLDEN) / name);
+    const double mean = gpgp::host::compare(panels, stored).mean;
+    const Block worst = worstBlock(panels, stored);
+    std::printf("%s: mean difference %.4f/255, at most %.2f/255 in a block, at %u,%u\n", name.c_str(), mean, worst.mean,
+                worst.x, worst.y);
+    EXPECT_LT(mean, 0.1) << (kOut / "stored" / name);
+    EXPECT_LT(worst.mean, 3.0) << (kOut / "stored" / name);
+  }
 }
 
 TEST(Screen, ScoresHaveSevenDigits) {

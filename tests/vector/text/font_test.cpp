@@ -8,7 +8,9 @@
 
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#include FT_COLOR_H
 #include FT_MULTIPLE_MASTERS_H
+#include FT_OUTLINE_H
 #include FT_TRUETYPE_TABLES_H
 #include <hb-ot.h>
 
@@ -549,6 +551,71 @@ TEST_F(TextColor, WhatIsNotSupportedIsSaid) {
   EXPECT_TRUE(circle.outline.broken);
   EXPECT_NE(log_.text.find("glyph 6"), std::string::npos) << log_.text;
 }
+
+/// Real fonts with COLR version 0: every glyph's layers and colours as FreeType reads them.
+class ColorFont : public testing::TestWithParam<const char*> {};
+
+TEST_P(ColorFont, LayersAreFreeTypes) {
+  if (!std::filesystem::exists(fontPath(GetParam()))) GTEST_SKIP() << "needs tests/data/fetch.sh --only fonts emoji";
+  FT_Library library = nullptr;
+  FT_Face face = nullptr;
+  ASSERT_EQ(FT_Init_FreeType(&library), 0);
+  ASSERT_EQ(FT_New_Face(library, fontPath(GetParam()).c_str(), 0, &face), 0);
+  FT_Color* palette = nullptr;
+  ASSERT_EQ(FT_Palette_Select(face, 0, &palette), 0);
+  const FontHandle font = openFont(GetParam());
+  EXPECT_TRUE(infoOf(font.get()).colors & GPGP_FONT_COLOR_LAYERS);
+  const auto linear = [](FT_Byte byte) {
+    const double value = byte / 255.;
+    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+  };
+  uint32_t colored = 0, foregrounds = 0;
+  size_t most = 0;
+  for (FT_UInt id = 0; id < static_cast<FT_UInt>(face->num_glyphs) && !HasFailure(); ++id) {
+    SCOPED_TRACE(id);
+    struct Layer {
+      FT_UInt glyph, color;
+    };
+    std::vector<Layer> layers;
+    Layer layer{};
+    FT_LayerIterator next{};
+    while (FT_Get_Color_Glyph_Layer(face, id, &layer.glyph, &layer.color, &next)) layers.push_back(layer);
+    if (layers.empty()) continue;
+    const Glyph glyph = glyphOf(font.get(), id);
+    EXPECT_FALSE(glyph.outline.incomplete || glyph.outline.broken);
+    ASSERT_EQ(glyph.paths.size(), layers.size());
+    for (size_t i = 0; i < layers.size(); ++i) {
+      ASSERT_EQ(FT_Load_Glyph(face, layers[i].glyph, FT_LOAD_NO_SCALE), 0);
+      FT_Outline& outline = face->glyph->outline;
+      const Shape& shape = glyph.shapes[i];
+      EXPECT_EQ(shape.contours, static_cast<uint32_t>(outline.n_contours));
+      if (outline.n_points > 0) {
+        FT_BBox box{};
+        FT_Outline_Get_CBox(&outline, &box);
+        const FT_Pos sides[4] = {box.xMin, box.yMin, box.xMax, box.yMax};
+        for (int side = 0; side < 4; ++side) // of parts that are scaled FreeType rounds each point to a unit
+          EXPECT_NEAR(shape.box[side] * face->units_per_EM, static_cast<double>(sides[side]), 0.51);
+      }
+      const bool foreground = layers[i].color == 0xffff;
+      const FT_Color color = foreground ? FT_Color{0, 0, 0, 255} : palette[layers[i].color];
+      EXPECT_EQ(glyph.foreground[i], foreground);
+      EXPECT_NEAR(glyph.paths[i].color[0], linear(color.red), 1e-5);
+      EXPECT_NEAR(glyph.paths[i].color[1], linear(color.green), 1e-5);
+      EXPECT_NEAR(glyph.paths[i].color[2], linear(color.blue), 1e-5);
+      EXPECT_NEAR(glyph.paths[i].color[3], color.alpha / 255., 1e-5);
+      foregrounds += foreground;
+    }
+    ++colored;
+    most = std::max(most, layers.size());
+  }
+  std::printf("%s: %u glyphs in colour, up to %zu layers, %u in the text's colour\n", GetParam(), colored, most,
+              foregrounds);
+  EXPECT_GT(colored, 500u);
+  EXPECT_GT(most, 30u);
+  FT_Done_Face(face);
+  FT_Done_FreeType(library);
+}
+INSTANTIATE_TEST_SUITE_P(Text, ColorFont, testing::Values("AmiriQuranColored.ttf", "../emoji/TwemojiMozilla.ttf"));
 
 TEST(TextFont, RefusesWhatIsNoFont) {
   Log log;

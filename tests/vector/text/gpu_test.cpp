@@ -16,12 +16,15 @@
 #include <gpgp/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <cairo-ft.h>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <hb.h>
 #include <random>
+#include <sstream>
+#include FT_COLOR_H
 #include FT_OUTLINE_H
 
 namespace gpgp::test {
@@ -473,9 +476,28 @@ struct Shaped {
   }
 };
 
-/// Black on white, as large as gpgp's picture: HarfBuzz's glyphs at its places, drawn by cairo. From FreeType's
-/// outlines: as unhinted paths, since cairo draws glyphs at whole pixels only, and four times as large, since it counts
-/// in 15 rows a pixel. Or from its bitmaps.
+/// What a glyph is painted of, from below: layers of COLR version 0 as FreeType reads them, or its outline in black.
+struct Layer {
+  FT_UInt glyph;
+  double color[4]; ///< sRGB, straight alpha
+};
+std::vector<Layer> layersOf(FT_Face face, uint32_t glyph) {
+  std::vector<Layer> layers;
+  FT_Color* palette = nullptr;
+  FT_LayerIterator next{};
+  FT_UInt layer = 0, entry = 0;
+  if (FT_HAS_COLOR(face) && FT_Palette_Select(face, 0, &palette) == 0 && palette)
+    while (FT_Get_Color_Glyph_Layer(face, glyph, &layer, &entry, &next)) {
+      const FT_Color color = entry == 0xffff ? FT_Color{0, 0, 0, 255} : palette[entry];
+      layers.push_back({layer, {color.red / 255., color.green / 255., color.blue / 255., color.alpha / 255.}});
+    }
+  if (layers.empty()) layers.push_back({glyph, {0, 0, 0, 1}});
+  return layers;
+}
+
+/// On white, as large as gpgp's picture: HarfBuzz's glyphs at its places, drawn by cairo. From FreeType's outlines,
+/// layer by layer: as unhinted paths, since cairo draws glyphs at whole pixels only, and four times as large, since it
+/// counts in 15 rows a pixel. Or from its bitmaps.
 host::Picture byCairo(const Sample& sample, double size, uint32_t width, uint32_t height, bool bitmaps) {
   const Face open(fontPath(sample.font), static_cast<long>(sample.face));
   const Shaped shaped(sample, size);
@@ -502,14 +524,15 @@ host::Picture byCairo(const Sample& sample, double size, uint32_t width, uint32_
     cairo_set_font_face(cairo, type);
     cairo_set_font_size(cairo, size * kLarge);
     const double em = size / open.face->units_per_EM;
-    for (const Shaped::Glyph& glyph : shaped.glyphs) {
-      EXPECT_EQ(FT_Load_Glyph(open.face, glyph.id, FT_LOAD_NO_SCALE), 0);
-      FT_BBox box{};
-      FT_Outline_Get_CBox(&open.face->glyph->outline, &box);
-      if (open.face->glyph->outline.n_points == 0) continue;
-      left = std::min(left, glyph.x + static_cast<double>(box.xMin) * em);
-      top = std::min(top, shaped.ascent + glyph.y - static_cast<double>(box.yMax) * em);
-    }
+    for (const Shaped::Glyph& glyph : shaped.glyphs)
+      for (const Layer& layer : layersOf(open.face, glyph.id)) {
+        EXPECT_EQ(FT_Load_Glyph(open.face, layer.glyph, FT_LOAD_NO_SCALE), 0);
+        FT_BBox box{};
+        FT_Outline_Get_CBox(&open.face->glyph->outline, &box);
+        if (open.face->glyph->outline.n_points == 0) continue;
+        left = std::min(left, glyph.x + static_cast<double>(box.xMin) * em);
+        top = std::min(top, shaped.ascent + glyph.y - static_cast<double>(box.yMax) * em);
+      }
   }
   const double margin = std::ceil(std::max(2.0, size / 8));
   constexpr double kNothing = 1. / 64;
@@ -530,11 +553,14 @@ host::Picture byCairo(const Sample& sample, double size, uint32_t width, uint32_
       cairo_paint(cairo);
       cairo_surface_destroy(image);
     } else {
-      const cairo_glyph_t one{glyph.id, 0, 0};
       cairo_scale(cairo, 1 / kLarge, 1 / kLarge);
-      cairo_new_path(cairo);
-      cairo_glyph_path(cairo, &one, 1);
-      cairo_fill(cairo);
+      for (const Layer& layer : layersOf(open.face, glyph.id)) {
+        const cairo_glyph_t one{layer.glyph, 0, 0};
+        cairo_set_source_rgba(cairo, layer.color[0], layer.color[1], layer.color[2], layer.color[3]);
+        cairo_new_path(cairo);
+        cairo_glyph_path(cairo, &one, 1);
+        cairo_fill(cairo);
+      }
     }
     cairo_restore(cairo);
   }
@@ -571,39 +597,60 @@ host::Picture stacked(const std::vector<host::Picture>& pictures) {
   return all;
 }
 
+/// A line as `gpgp text` draws it beside cairo's. Returns both.
+std::array<host::Picture, 2> compareToCairo(const Sample& line, double size, bool bitmaps = false) {
+  SCOPED_TRACE(line.name);
+  const TemporaryFile file("script.png");
+  std::ostringstream pixels;
+  pixels << size;
+  const json told = gpgpJson({"text", fontPath(line.font), line.text, file.path(), "--size", pixels.str(), "--language",
+                              line.language, "--background", "white"});
+  EXPECT_EQ(told["missing"], json::array());
+  const host::Picture ours = host::readPng(file.path());
+  const host::Picture theirs = byCairo(line, size, ours.width, ours.height, bitmaps);
+  const host::PictureDifference off = host::compare(ours, theirs);
+  double ink = 0, sum = 0;
+  for (size_t i = 0; i < theirs.rgba.size(); ++i) {
+    if (i % 4 == 3) continue;
+    ink += 255 - theirs.rgba[i];
+    sum += std::abs(int{ours.rgba[i]} - int{theirs.rgba[i]});
+  }
+  std::printf("%s: mean difference %.3f of 255, %.3f %% of the ink, largest %u\n", line.name,
+              sum / static_cast<double>(ours.rgba.size()) * 4 / 3, 100 * sum / ink, off.largest);
+  EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), 5);
+  EXPECT_LT(sum, 0.02 * ink);
+  EXPECT_LE(off.largest, bitmaps ? 64u : 32u);
+  return {ours, theirs};
+}
+
+void writeRows(const std::string& name, const std::vector<host::Picture>& rows) {
+  if (const char* folder = std::getenv("GPGP_TEXT_PICTURES"))
+    host::writePng(std::string(folder) + "/" + name, stacked(rows));
+}
+
 TEST(TextBesideCairo, SevenScriptsAndEmoji) {
   GPGP_NEEDS_FONTS();
   std::vector<Sample> lines = samples();
   lines[2].text = "החלון פתוח בבוקר ואנשים הולכים לאט בדרך הארוכה"; // the font has no stops
-  lines.push_back({"emoji", "NotoColorEmoji.ttf", "en", "\U0001F98A\U0001F680\u2764\uFE0F\U0001F469\u200D\U0001F4BB"});
   std::vector<host::Picture> rows;
-  for (const Sample& line : lines) {
-    SCOPED_TRACE(line.name);
-    const bool bitmaps = std::string_view(line.name) == "emoji";
-    const double size = bitmaps ? 96 : 26.5;
-    const TemporaryFile file("script.png");
-    const json told = gpgpJson({"text", fontPath(line.font), line.text, file.path(), "--size", bitmaps ? "96" : "26.5",
-                                "--language", line.language, "--background", "white"});
-    EXPECT_EQ(told["missing"], json::array());
-    const host::Picture ours = host::readPng(file.path());
-    const host::Picture theirs = byCairo(line, size, ours.width, ours.height, bitmaps);
-    const host::PictureDifference off = host::compare(ours, theirs);
-    double ink = 0, sum = 0;
-    for (size_t i = 0; i < theirs.rgba.size(); ++i) {
-      if (i % 4 == 3) continue;
-      ink += 255 - theirs.rgba[i];
-      sum += std::abs(int{ours.rgba[i]} - int{theirs.rgba[i]});
-    }
-    std::printf("%s: mean difference %.3f of 255, %.3f %% of the ink, largest %u\n", line.name,
-                sum / static_cast<double>(ours.rgba.size()) * 4 / 3, 100 * sum / ink, off.largest);
-    EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), 10);
-    EXPECT_LT(sum, 0.02 * ink);
-    EXPECT_LE(off.largest, bitmaps ? 64u : 32u);
-    rows.push_back(ours);
-    rows.push_back(theirs);
+  for (const Sample& line : lines)
+    for (host::Picture& picture : compareToCairo(line, 26.5)) rows.push_back(std::move(picture));
+  const Sample emoji{"emoji", "NotoColorEmoji.ttf", "en", "\U0001F98A\U0001F680\u2764\uFE0F\U0001F469\u200D\U0001F4BB"};
+  for (host::Picture& picture : compareToCairo(emoji, 96, true)) rows.push_back(std::move(picture));
+  writeRows("scripts.png", rows);
+}
+
+TEST(TextBesideCairo, ColourLayers) {
+  std::vector<host::Picture> rows;
+  for (const Sample& line :
+       {Sample{"Quran", "AmiriQuranColored.ttf", "ar", "ٱلۡحَمۡدُ لِلَّهِ رَبِّ ٱلۡعَٰلَمِينَ ٱلرَّحۡمَٰنِ ٱلرَّحِيمِ"},
+        Sample{"emoji", "../emoji/TwemojiMozilla.ttf", "en",
+               "🦊🚀❤️👩‍💻🇫🇷🏳️‍🌈👨‍👩‍👧‍👦🎨🍕🪴"}}) {
+    if (!std::filesystem::exists(fontPath(line.font))) continue;
+    for (host::Picture& picture : compareToCairo(line, 64)) rows.push_back(std::move(picture));
   }
-  if (const char* folder = std::getenv("GPGP_TEXT_PICTURES"))
-    host::writePng(std::string(folder) + "/scripts.png", stacked(rows));
+  if (rows.empty()) GTEST_SKIP() << "needs fonts with layers: tests/data/fetch.sh --only fonts emoji";
+  writeRows("layers.png", rows);
 }
 
 } // namespace
