@@ -19,7 +19,6 @@ fonts       | fonts-noto-color-emoji | usr/share/fonts/truetype/noto            
 fonts       | fonts-inter-variable   | usr/share/fonts/truetype/inter-vf                    | */Inter-roman.var.ttf
 fonts       | fonts-cantarell        | usr/share/fonts/opentype/cantarell                   | */Cantarell-Regular.otf
 fonts       | fonts-hosny-amiri      | usr/share/fonts/opentype/fonts-hosny-amiri           | */AmiriQuranColored.ttf
-emoji       | firefox-esr            | usr/lib/firefox-esr/fonts                            | */TwemojiMozilla.ttf
 '
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

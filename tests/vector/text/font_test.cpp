@@ -552,18 +552,17 @@ TEST_F(TextColor, WhatIsNotSupportedIsSaid) {
   EXPECT_NE(log_.text.find("glyph 6"), std::string::npos) << log_.text;
 }
 
-/// Real fonts with COLR version 0: every glyph's layers and colours as FreeType reads them.
-class ColorFont : public testing::TestWithParam<const char*> {};
-
-TEST_P(ColorFont, LayersAreFreeTypes) {
-  if (!std::filesystem::exists(fontPath(GetParam()))) GTEST_SKIP() << "needs tests/data/fetch.sh --only fonts emoji";
+/// A real font with COLR version 0: every glyph's layers and colours as FreeType reads them.
+TEST(ColorFont, LayersAreFreeTypes) {
+  constexpr const char* kFont = "AmiriQuranColored.ttf";
+  if (!std::filesystem::exists(fontPath(kFont))) GTEST_SKIP() << "needs tests/data/fetch.sh --only fonts";
   FT_Library library = nullptr;
   FT_Face face = nullptr;
   ASSERT_EQ(FT_Init_FreeType(&library), 0);
-  ASSERT_EQ(FT_New_Face(library, fontPath(GetParam()).c_str(), 0, &face), 0);
+  ASSERT_EQ(FT_New_Face(library, fontPath(kFont).c_str(), 0, &face), 0);
   FT_Color* palette = nullptr;
   ASSERT_EQ(FT_Palette_Select(face, 0, &palette), 0);
-  const FontHandle font = openFont(GetParam());
+  const FontHandle font = openFont(kFont);
   EXPECT_TRUE(infoOf(font.get()).colors & GPGP_FONT_COLOR_LAYERS);
   const auto linear = [](FT_Byte byte) {
     const double value = byte / 255.;
@@ -608,14 +607,13 @@ TEST_P(ColorFont, LayersAreFreeTypes) {
     ++colored;
     most = std::max(most, layers.size());
   }
-  std::printf("%s: %u glyphs in colour, up to %zu layers, %u in the text's colour\n", GetParam(), colored, most,
+  std::printf("%s: %u glyphs in colour, up to %zu layers, %u in the text's colour\n", kFont, colored, most,
               foregrounds);
   EXPECT_GT(colored, 500u);
   EXPECT_GT(most, 30u);
   FT_Done_Face(face);
   FT_Done_FreeType(library);
 }
-INSTANTIATE_TEST_SUITE_P(Text, ColorFont, testing::Values("AmiriQuranColored.ttf", "../emoji/TwemojiMozilla.ttf"));
 
 TEST(TextFont, RefusesWhatIsNoFont) {
   Log log;

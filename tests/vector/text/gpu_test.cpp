@@ -598,7 +598,8 @@ host::Picture stacked(const std::vector<host::Picture>& pictures) {
 }
 
 /// A line as `gpgp text` draws it beside cairo's. Returns both.
-std::array<host::Picture, 2> compareToCairo(const Sample& line, double size, bool bitmaps = false) {
+std::array<host::Picture, 2> compareToCairo(const Sample& line, double size, bool bitmaps = false,
+                                            double leastInk = 10) {
   SCOPED_TRACE(line.name);
   const TemporaryFile file("script.png");
   std::ostringstream pixels;
@@ -617,7 +618,7 @@ std::array<host::Picture, 2> compareToCairo(const Sample& line, double size, boo
   }
   std::printf("%s: mean difference %.3f of 255, %.3f %% of the ink, largest %u\n", line.name,
               sum / static_cast<double>(ours.rgba.size()) * 4 / 3, 100 * sum / ink, off.largest);
-  EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), 5);
+  EXPECT_GT(ink / static_cast<double>(theirs.rgba.size()), leastInk);
   EXPECT_LT(sum, 0.02 * ink);
   EXPECT_LE(off.largest, bitmaps ? 64u : 32u);
   return {ours, theirs};
@@ -641,16 +642,10 @@ TEST(TextBesideCairo, SevenScriptsAndEmoji) {
 }
 
 TEST(TextBesideCairo, ColourLayers) {
-  std::vector<host::Picture> rows;
-  for (const Sample& line :
-       {Sample{"Quran", "AmiriQuranColored.ttf", "ar", "ٱلۡحَمۡدُ لِلَّهِ رَبِّ ٱلۡعَٰلَمِينَ ٱلرَّحۡمَٰنِ ٱلرَّحِيمِ"},
-        Sample{"emoji", "../emoji/TwemojiMozilla.ttf", "en",
-               "🦊🚀❤️👩‍💻🇫🇷🏳️‍🌈👨‍👩‍👧‍👦🎨🍕🪴"}}) {
-    if (!std::filesystem::exists(fontPath(line.font))) continue;
-    for (host::Picture& picture : compareToCairo(line, 64)) rows.push_back(std::move(picture));
-  }
-  if (rows.empty()) GTEST_SKIP() << "needs fonts with layers: tests/data/fetch.sh --only fonts emoji";
-  writeRows("layers.png", rows);
+  const Sample line{"Quran", "AmiriQuranColored.ttf", "ar", "ٱلۡحَمۡدُ لِلَّهِ رَبِّ ٱلۡعَٰلَمِينَ ٱلرَّحۡمَٰنِ ٱلرَّحِيمِ"};
+  if (!std::filesystem::exists(fontPath(line.font))) GTEST_SKIP() << "needs tests/data/fetch.sh --only fonts";
+  const auto [ours, theirs] = compareToCairo(line, 64, false, 5); // small letters between tall marks
+  writeRows("layers.png", {ours, theirs});
 }
 
 } // namespace
