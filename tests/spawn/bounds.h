@@ -15,7 +15,8 @@ inline void expectBounds(const std::vector<GpgpSpawnBounds>& found, const std::v
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::vector<GpgpSpawnBounds> expected(found.size(),
                                         {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
-  for (const GpgpInstance& i : instances)
+  for (const GpgpInstance& i : instances) {
+    ASSERT_LT(i.bucket, expected.size());
     for (int axis = 0; axis < 3; ++axis) {
       const float* row = i.transform + axis * 4;
       const float reach = 0.5f * (std::abs(row[0]) + std::abs(row[1]) + (i.size[2] == 0 ? 0 : std::abs(row[2])));
@@ -23,6 +24,7 @@ inline void expectBounds(const std::vector<GpgpSpawnBounds>& found, const std::v
       b.min[axis] = std::min(b.min[axis], row[3] - reach);
       b.max[axis] = std::max(b.max[axis], row[3] + reach);
     }
+  }
   for (size_t bucket = 0; bucket < found.size(); ++bucket)
     for (int axis = 0; axis < 3; ++axis) {
       const float low = expected[bucket].min[axis], high = expected[bucket].max[axis];

@@ -1,5 +1,6 @@
 // The interpreter kernel against the CPU evaluator, through the C API, with validation.
 #include "../device_test.h"
+#include "api/check.h"
 #include "bounds.h"
 #include "grammars.h"
 #include "host/device.h"
@@ -13,6 +14,7 @@
 #include "spawn/graph/blob.h"
 #include "spawn/graph/heuristics.h"
 #include "spawn/graph/kernel.h"
+#include "spawn/schedule/grammar.h"
 
 #include <gtest/gtest.h>
 
@@ -22,6 +24,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -76,13 +79,36 @@ struct SpawnTest : DeviceTest {
     return grammar;
   }
 
-  /// Uploads, derives once and reads everything back.
+  /// Whether the library takes such kernels here.
+  bool takes(spawn::KernelTarget target) const {
+    const core::Device& seen = reinterpret_cast<const core::Context*>(context)->device;
+    return target == spawn::KernelTarget::any ||
+           (seen.subgroupArithmetic && (target == spawn::KernelTarget::subgroups || seen.software));
+  }
+
+  /// With pipelines of its kernels; those without a fit of their own are not left out in favour of the interpreter.
+  GpgpAsset makeReady(const std::vector<uint32_t>& words) {
+    const GpgpAsset handle = makeGrammar(words);
+    EXPECT_EQ(gpgpPrewarmGrammar(spawner, handle), GPGP_SUCCESS); // a grammar without kernels has nothing to make
+    api::Call call{"test"};
+    const auto grammar = api::resolve<spawn::Grammar>(call, handle, core::Kind::grammar, "grammar");
+    if (!grammar) return handle; // which has failed
+    for (const spawn::Kernel& kernel : (*grammar)->kernels)
+      EXPECT_TRUE((*grammar)->readyCount() || kernel.info.fit.groupSize || !takes(kernel.info.target));
+    return handle;
+  }
   Derived run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity, bool sorted,
               std::optional<uint32_t> axiomCounter = {}, bool fromHost = false) {
+    const GpgpAsset grammar = makeReady(words);
+    Derived result = derive(grammar, words[shader::kHeaderBuckets], axioms, capacity, sorted, axiomCounter, fromHost);
+    gpgpDestroyAsset(grammar);
+    return result;
+  }
+
+  /// Uploads what is not there yet, derives once and reads everything back.
+  Derived derive(GpgpAsset grammar, uint32_t buckets, const std::vector<GpgpAxiom>& axioms, uint32_t capacity,
+                 bool sorted, std::optional<uint32_t> axiomCounter = {}, bool fromHost = false) {
     Derived result;
-    const GpgpAsset grammar = makeGrammar(words);
-    EXPECT_EQ(gpgpPrewarmGrammar(spawner, grammar), GPGP_SUCCESS); // a grammar without kernels has nothing to make
-    const uint32_t buckets = words[shader::kHeaderBuckets];
     const auto axiomBuffer = host::makeBuffer(device, axioms, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     const host::Buffer instances(device, VkDeviceSize(capacity) * sizeof(GpgpInstance),
                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
@@ -128,14 +154,13 @@ struct SpawnTest : DeviceTest {
     result.draws = host::download<VkDrawIndexedIndirectCommand>(device, draws, buckets);
     if (result.report.instancesWritten == result.report.terminals)
       expectBounds(host::download<GpgpSpawnBounds>(device, bounds, buckets), result.instances);
-    gpgpDestroyAsset(grammar);
     return result;
   }
 
   static uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
   static uint64_t keyOf(const GpgpInstance& i) { return uint64_t(i.key[0]) << 32 | i.key[1]; }
 
-  /// Equal in everything that must be, bit for bit; transforms within 1e-4 of their size.
+  /// Equal in everything that must be, bit for bit; transforms within 1e-4 of the size that the axis or place has.
   static void compare(const spawn::Derivation& cpu, const Derived& gpu, const std::string& what) {
     ASSERT_EQ(gpu.report.terminals, cpu.terminals) << what;
     ASSERT_EQ(gpu.report.keyHash[0], cpu.keyHash[0]) << what;
@@ -143,6 +168,8 @@ struct SpawnTest : DeviceTest {
     EXPECT_EQ(gpu.report.depth, cpu.depth) << what;
     EXPECT_EQ(gpu.report.unfinishedShapes, cpu.unfinishedShapes) << what;
     EXPECT_EQ(gpu.report.droppedShapes, 0u) << what;
+    EXPECT_EQ(gpu.report.colliders, cpu.colliders) << what;
+    EXPECT_EQ(gpu.report.collidersKept, cpu.colliders) << what;
     EXPECT_EQ(gpu.report.base.status, cpu.unfinishedShapes ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS) << what;
     ASSERT_EQ(gpu.instances.size(), cpu.terminals) << what;
     const auto order = [](const GpgpInstance* a, const GpgpInstance* b) {
@@ -162,14 +189,19 @@ struct SpawnTest : DeviceTest {
       ASSERT_EQ(a[i]->seed, b[i]->seed) << what;
       ASSERT_EQ(bits(a[i]->attribute), bits(b[i]->attribute)) << what;
       for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(bits(a[i]->size[axis]), bits(b[i]->size[axis])) << what;
-      float largest = 1;
-      for (const float v : a[i]->transform) largest = std::max(largest, std::fabs(v));
-      for (int t = 0; t < 12; ++t) ASSERT_NEAR(a[i]->transform[t], b[i]->transform[t], 1e-4f * largest) << what;
+      ASSERT_EQ(a[i]->reserved, b[i]->reserved) << what;
+      for (int column = 0; column < 4; ++column) { // the axes, each as long as the shape, and the place
+        float largest = column == 3 ? 1 : 0;
+        for (int t = column; t < 12; t += 4) largest = std::max(largest, std::fabs(a[i]->transform[t]));
+        for (int t = column; t < 12; t += 4)
+          ASSERT_NEAR(a[i]->transform[t], b[i]->transform[t], 1e-4f * largest) << "instance " << i << " of " << what;
+      }
     }
   }
 
   /// Buckets are runs in order, and the draws say where.
   static void checkDraws(const spawn::Derivation& cpu, const Derived& gpu) {
+    ASSERT_EQ(gpu.instances.size(), cpu.terminals);
     uint32_t first = 0;
     for (size_t bucket = 0; bucket < gpu.draws.size(); ++bucket) {
       const VkDrawIndexedIndirectCommand& draw = gpu.draws[bucket];
@@ -188,10 +220,13 @@ struct SpawnTest : DeviceTest {
     const spawn::Derivation cpu = spawn::derive(words, axioms);
     ASSERT_TRUE(cpu.complete) << what;
     const uint32_t capacity = static_cast<uint32_t>(cpu.terminals) + 10;
-    const Derived sorted = run(words, axioms, capacity, true);
+    const uint32_t buckets = words[shader::kHeaderBuckets];
+    const GpgpAsset grammar = makeReady(words);
+    const Derived sorted = derive(grammar, buckets, axioms, capacity, true);
     compare(cpu, sorted, what);
     checkDraws(cpu, sorted);
-    const Derived plain = run(words, axioms, capacity, false);
+    const Derived plain = derive(grammar, buckets, axioms, capacity, false);
+    gpgpDestroyAsset(grammar);
     compare(cpu, plain, what);
     for (const VkDrawIndexedIndirectCommand& draw : plain.draws) ASSERT_EQ(draw.instanceCount, kPoison) << what;
   }
@@ -236,21 +271,48 @@ uint32_t numberFrom(const char* variable, uint32_t otherwise) {
   return value ? static_cast<uint32_t>(std::atoi(value)) : otherwise;
 }
 
-TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
-  makeSpawner({.maxColliders = 8192});
-  uint32_t checked = 0, instances = 0;
+spawn::Graph graphOf(const std::vector<uint32_t>& words) {
+  auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
+  EXPECT_TRUE(graph);
+  return std::move(*graph);
+}
+
+/// A random grammar, some axioms at its axiom line and one at the beginning of each rule.
+struct RandomCase {
+  uint32_t seed = 0;
+  std::string text, what;
+  std::vector<uint32_t> words;
+  std::vector<GpgpAxiom> all;
+  uint32_t terminals = 0;
+};
+/// The first one from this seed on that is not too large, and where there is something to see.
+RandomCase randomCase(uint32_t seed) {
   spawn::DeriveOptions options;
   options.maxShapes = 30000;
+  for (;; ++seed) {
+    RandomCase random{seed, randomGrammar(seed), "seed " + std::to_string(seed)};
+    random.what += "\n" + random.text;
+    random.words = bake(random.text);
+    const spawn::Graph graph = graphOf(random.words);
+    const uint32_t atLine = 1 + seed % 5, rules = static_cast<uint32_t>(graph.rules.size());
+    random.all = axioms(atLine + rules, 6, 9, 7);
+    for (uint32_t rule = 0; rule < rules; ++rule) random.all[atLine + rule].rule = rule;
+    const auto cpu = spawn::derive(random.words, random.all, options);
+    random.terminals = static_cast<uint32_t>(cpu.terminals);
+    if (cpu.complete && cpu.terminals >= 5 && cpu.colliders <= 8192) return random;
+  }
+}
+
+TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
+  makeSpawner({.maxColliders = 8192});
+  uint32_t instances = 0;
   const uint32_t count = numberFrom("GPGP_TEST_GRAMMARS", 200); // more for a long run, which may begin later
-  for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 0); checked < count; ++seed) {
-    const auto words = bake(randomGrammar(seed));
-    const auto all = axioms(1 + seed % 5, 6, 9, 7);
-    const auto cpu = spawn::derive(words, all, options);
-    if (!cpu.complete || cpu.terminals < 5 || cpu.colliders > 8192) continue; // too large, or nothing to see
-    check(std::string("seed ") + std::to_string(seed) + "\n" + randomGrammar(seed), words, all);
-    if (HasFatalFailure()) return;
-    instances += static_cast<uint32_t>(cpu.terminals);
-    ++checked;
+  for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 0), checked = 0; checked < count; ++seed, ++checked) {
+    const RandomCase random = randomCase(seed);
+    seed = random.seed;
+    check(random.what, random.words, random.all);
+    if (HasFailure()) return;
+    instances += random.terminals;
   }
   EXPECT_TRUE(count < 200 || instances > 100 * count) << instances; // of few, all can be small
 }
@@ -270,6 +332,27 @@ std::vector<uint32_t> bakeKernel(const std::string& text) {
   return words;
 }
 
+/// The grammar with a kernel's bytes behind it.
+std::vector<uint32_t> withKernel(std::vector<uint32_t> words, const spawn::KernelSource& source,
+                                 spawn::KernelTarget target, const spawn::Fit& fit = {}) {
+  const auto code = spawn::compileKernel(source, target);
+  EXPECT_TRUE(code) << code.error().text;
+  spawn::KernelInfo info;
+  info.target = target;
+  info.fit = fit;
+  const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
+  words.insert(words.end(), kernel.begin(), kernel.end());
+  return words;
+}
+
+/// A grammar with a kernel of the default schedule.
+std::vector<uint32_t> bakeFor(const std::string& text, spawn::KernelTarget target, const spawn::Fit& fit = {}) {
+  std::vector<uint32_t> words = bake(text);
+  const spawn::Graph graph = graphOf(words);
+  const auto source = spawn::generate(graph, spawn::namedSchedule(graph, "default")->waits);
+  return withKernel(std::move(words), source, target, fit);
+}
+
 /// How many kernels a test makes; software devices take seconds to compile one. GPGP_TEST_KERNELS=number for more.
 uint32_t kernelCount() { return numberFrom("GPGP_TEST_KERNELS", 1); }
 
@@ -287,44 +370,31 @@ TEST_F(SpawnTest, GeneratedKernelsEqualTheEvaluator) {
 }
 
 TEST_F(SpawnTest, GeneratedKernelsOfRandomGrammarsEqualTheEvaluator) {
-  const uint32_t count = kernelCount();
   makeSpawner({.maxColliders = 8192});
-  spawn::DeriveOptions options;
-  options.maxShapes = 30000;
-  for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 1000), checked = 0; checked < count; ++seed) {
-    const auto all = axioms(1 + seed % 5, 6, 9, 7);
-    const auto cpu = spawn::derive(bake(randomGrammar(seed)), all, options);
-    if (!cpu.complete || cpu.terminals < 5 || cpu.colliders > 8192) continue;
-    check(std::string("seed ") + std::to_string(seed) + "\n" + randomGrammar(seed), bakeKernel(randomGrammar(seed)),
-          all);
-    if (HasFatalFailure()) return;
-    ++checked;
+  const uint32_t count = numberFrom("GPGP_TEST_KERNELS", 3);
+  for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 1000), checked = 0; checked < count; ++seed, ++checked) {
+    const RandomCase random = randomCase(seed);
+    seed = random.seed;
+    std::vector<spawn::KernelTarget> targets; // take turns
+    for (const spawn::KernelTarget target : spawn::targetsOf(graphOf(random.words)))
+      if (takes(target)) targets.push_back(target);
+    const spawn::KernelTarget target = targets[checked % targets.size()];
+    std::cout << "kernel of seed " << seed << ", target " << int(target) << std::endl; // the last one, if it crashes
+    check(random.what, bakeFor(random.text, target), random.all);
+    if (HasFailure()) return;
   }
-}
-
-/// The grammar with a kernel's bytes behind it.
-std::vector<uint32_t> withKernel(std::vector<uint32_t> words, const spawn::KernelSource& source,
-                                 spawn::KernelTarget target) {
-  const auto code = spawn::compileKernel(source, target);
-  EXPECT_TRUE(code) << code.error().text;
-  spawn::KernelInfo info;
-  info.target = target;
-  const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
-  words.insert(words.end(), kernel.begin(), kernel.end());
-  return words;
 }
 
 /// With a kernel in which matching groups of a random partition share code.
 std::vector<uint32_t> bakeMatched(const std::string& text, uint32_t seed) {
   std::vector<uint32_t> words = bake(text);
-  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
-  EXPECT_TRUE(graph);
-  const spawn::Flow flow = spawn::makeFlow(*graph);
+  const spawn::Graph graph = graphOf(words);
+  const spawn::Flow flow = spawn::makeFlow(graph);
   std::mt19937 random(seed);
   const auto roots = seed ? spawn::randomPartition(flow, random) : spawn::singleGroups(flow);
-  const auto schedule = spawn::scheduleOf(*graph, flow, roots, "matched");
-  const spawn::KernelSource source = spawn::generate(*graph, schedule.waits, schedule.roots);
-  for (const spawn::KernelTarget target : spawn::targetsOf(*graph)) {
+  const auto schedule = spawn::scheduleOf(graph, flow, roots, "matched");
+  const spawn::KernelSource source = spawn::generate(graph, schedule.waits, schedule.roots);
+  for (const spawn::KernelTarget target : spawn::targetsOf(graph)) {
     if (seed % 2 && target == spawn::KernelTarget::software) continue; // so that theirs runs kernels of GPUs as well
     words = withKernel(std::move(words), source, target);
   }
@@ -341,18 +411,17 @@ TEST_F(SpawnTest, PartitionsOfSampleGrammarsEqualTheEvaluator) {
   for (const Sample& sample :
        {Sample{"simple_house", 12, 9, 24}, Sample{"overview", 24, 60, 24}, Sample{"tree_4_3", 1, 6, 1}}) {
     const auto words = bake(host::readText(std::string(GPGP_SAMPLE_GRAMMARS "/") + sample.name + ".pga"));
-    const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
-    ASSERT_TRUE(graph);
-    const spawn::Flow flow = spawn::makeFlow(*graph);
+    const spawn::Graph graph = graphOf(words);
+    const spawn::Flow flow = spawn::makeFlow(graph);
     const auto all = axioms(7, sample.x, sample.y, sample.z);
     const auto cpu = spawn::derive(words, all);
     ASSERT_TRUE(cpu.complete);
     ASSERT_GT(cpu.terminals, 100u);
     std::mt19937 random(7);
     for (uint32_t i = 0; i < count; ++i, ++made) {
-      const auto schedule = spawn::scheduleOf(*graph, flow, spawn::randomPartition(flow, random), "random");
-      const auto source = made / 2 % 2 ? spawn::generate(*graph, schedule.waits, schedule.roots)
-                                       : spawn::generate(*graph, schedule.waits);
+      const auto schedule = spawn::scheduleOf(graph, flow, spawn::randomPartition(flow, random), "random");
+      const auto source = made / 2 % 2 ? spawn::generate(graph, schedule.waits, schedule.roots)
+                                       : spawn::generate(graph, schedule.waits);
       const auto target = made % 2 ? spawn::KernelTarget::subgroups : spawn::KernelTarget::software;
       const auto gpu = run(withKernel(words, source, target), all, static_cast<uint32_t>(cpu.terminals), false);
       compare(cpu, gpu, std::string(sample.name) + ", kernel " + std::to_string(made));
@@ -380,27 +449,22 @@ Other = Repeat(Y, 2, ANCHOR_TO_START) Flat;
         axioms(7, 12, 16, 10));
   check("shapes", bakeMatched(ownGrammar("shapes.pga"), 0), axioms(7, 12, 16, 10));
   const uint32_t count = kernelCount();
-  spawn::DeriveOptions options;
-  options.maxShapes = 30000;
-  for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 2000), checked = 0; checked < count; ++seed) {
-    const auto all = axioms(1 + seed % 5, 6, 9, 7);
-    const auto cpu = spawn::derive(bake(randomGrammar(seed)), all, options);
-    if (!cpu.complete || cpu.terminals < 5) continue;
-    check(std::string("matched, seed ") + std::to_string(seed) + "\n" + randomGrammar(seed),
-          bakeMatched(randomGrammar(seed), seed), all);
-    if (HasFatalFailure()) return;
-    ++checked;
+  for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 2000), checked = 0; checked < count; ++seed, ++checked) {
+    const RandomCase random = randomCase(seed);
+    seed = random.seed;
+    std::cout << "matched kernel of seed " << seed << std::endl;
+    check("matched, " + random.what, bakeMatched(random.text, seed), random.all);
+    if (HasFailure()) return;
   }
 }
 
 /// A kernel for which shapes wait at all nodes of one operator.
 std::vector<uint32_t> bakeWaiting(const std::string& text, uint32_t op, spawn::KernelTarget target) {
   std::vector<uint32_t> words = bake(text);
-  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
-  EXPECT_TRUE(graph);
+  const spawn::Graph graph = graphOf(words);
   std::vector<bool> waits;
-  for (const spawn::Node& node : graph->nodes) waits.push_back(node.op == op && !spawn::multiplies(node));
-  return withKernel(std::move(words), spawn::generate(*graph, waits), target);
+  for (const spawn::Node& node : graph.nodes) waits.push_back(node.op == op && !spawn::multiplies(node));
+  return withKernel(std::move(words), spawn::generate(graph, waits), target);
 }
 
 TEST_F(SpawnTest, ShapesWaitForWhatPassesOnOne) {
@@ -462,9 +526,8 @@ TEST_F(SpawnTest, WorkgroupsOfASubgroupEqualTheEvaluator) {
   // One of these sizes is a subgroup's on most devices: such workgroups know it, and hand shapes on without memory. The
   // kernel without subgroups must not mind, and a workgroup may be a part of a subgroup.
   std::vector<uint32_t> words = bake(ownGrammar("shapes.pga"));
-  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
-  ASSERT_TRUE(graph);
-  const auto generated = spawn::generate(*graph, spawn::namedSchedule(*graph, "default")->waits);
+  const spawn::Graph graph = graphOf(words);
+  const auto generated = spawn::generate(graph, spawn::namedSchedule(graph, "default")->waits);
   using enum spawn::KernelTarget;
   for (const spawn::KernelTarget target : {software, subgroups, any}) {
     const auto code = spawn::compileKernel(generated, target);
@@ -559,10 +622,9 @@ TEST_F(SpawnTest, AxiomsOfTheCpuEqualThoseOfABuffer) {
   budgets.maxHostAxioms = 20;
   makeSpawner(budgets);
   const auto words = linked({{"building.pga", ownGrammar("building.pga")}, {"tree.pga", ownGrammar("tree.pga")}});
-  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
-  ASSERT_TRUE(graph);
+  const spawn::Graph graph = graphOf(words);
   std::vector<GpgpAxiom> all = axioms(20, 13, 19, 11);
-  for (uint32_t i = 0; i < all.size(); ++i) all[i].rule = i % spawn::startCount(*graph);
+  for (uint32_t i = 0; i < all.size(); ++i) all[i].rule = i % spawn::startCount(graph);
   for (const bool sorted : {false, true}) {
     compare(spawn::derive(words, all), run(words, all, 50000, sorted, {}, true), "20 axioms of the CPU");
     const std::vector<GpgpAxiom> some(all.begin(), all.begin() + 7);
@@ -885,22 +947,6 @@ TEST_F(SpawnTest, TheLastRoundGivesNothingAwayByChoice) {
   EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
   EXPECT_EQ(gpu.report.droppedShapes, 0u);
   EXPECT_EQ(gpu.report.terminals, 768u);
-}
-
-/// A grammar with a kernel of the default schedule.
-std::vector<uint32_t> bakeFor(const std::string& text, spawn::KernelTarget target, const spawn::Fit& fit) {
-  std::vector<uint32_t> words = bake(text);
-  const auto graph = spawn::load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
-  EXPECT_TRUE(graph);
-  const auto code =
-      spawn::compileKernel(spawn::generate(*graph, spawn::namedSchedule(*graph, "default")->waits), target);
-  EXPECT_TRUE(code) << code.error().text;
-  spawn::KernelInfo info;
-  info.target = target;
-  info.fit = fit;
-  const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
-  words.insert(words.end(), kernel.begin(), kernel.end());
-  return words;
 }
 
 TEST_F(SpawnTest, StacksThatFlowOverInTheLastRoundLoseNothing) {
