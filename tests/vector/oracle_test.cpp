@@ -241,4 +241,24 @@ TEST(Oracle, ManyCurvesInOnePath) {
   EXPECT_GT(tally.inside, 100u);
 }
 
+TEST(Oracle, DistancesAreThoseOfClosedForms) {
+  TestPath square;
+  square.move(1, 1).line(3, 1).line(3, 3).line(1, 3).close();
+  const PathOracle of(square.view());
+  EXPECT_NEAR(of.distance(2, 2), 1, 1e-12);
+  EXPECT_NEAR(of.distance(2.75, 1.5), 0.25, 1e-12);
+  EXPECT_NEAR(of.distance(0, 0), std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(of.distance(2, 7), 4, 1e-12);
+  TestPath arch; // 6 t (1 - t) high
+  arch.move(0, 0).cubic(1, 2, 2, 2, 3, 0).close();
+  EXPECT_NEAR(PathOracle(arch.view()).distance(1.5, 2), 0.5, 1e-6);
+  // In a sliver thinner than the distance all four neighbours lie outside, like the point: they do not see the edge.
+  TestPath sliver;
+  sliver.move(1e5f, 1e5f - 1).cubic(1e5f + 7, 1e5f + 8, 1e5f - 1, 1e5f + 10, 1e5f + 8, 1e5f);
+  const PathOracle thin(sliver.view());
+  const double x = 100003.25, y = 100006.53125, slack = thin.magnitude() * 1.5e-6;
+  EXPECT_TRUE(thin.certain(x, y, slack));
+  EXPECT_LT(thin.distance(x, y), slack / 20);
+}
+
 } // namespace

@@ -152,6 +152,30 @@ TEST(Patches, LoopsCuspsAndInflections) {
   expectRight(wave, 20000);
 }
 
+TEST(Patches, ControlsOnEndsKeepTheirTangents) {
+  // The last curve ends level: its part below the turn has its controls beside the end, as far as rounding goes.
+  TestPath path;
+  path.move(122, 122).cubic(9, 52, 35, 105, 13, 52).line(64, 13).cubic(0, 122, 122, 122, 122, 122);
+  expectRight(path, 20000);
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> coordinate(-99, 99);
+  const auto c = [&] { return static_cast<float>(coordinate(random)) * 1.37f; };
+  for (int i = 0; i < 60; ++i) { // curves of which a control lies on its end, level or upright towards the other one
+    TestPath some;
+    float x = c(), y = c();
+    some.move(x, y);
+    for (int k = 0; k < 6; ++k) {
+      const float a = c(), b = c(), d = c(), e = c();
+      if (k % 3 == 0) some.cubic(d, b, a, b, a, b);
+      if (k % 3 == 1) some.cubic(x, y, x, e, a, b);
+      if (k % 3 == 2) some.cubic(d, e, a, b, a, b);
+      x = a, y = b;
+    }
+    some.close();
+    expectRight(some, 2000, static_cast<uint32_t>(i));
+  }
+}
+
 TEST(Patches, CoincidentEdges) {
   TestPath twice; // two rectangles that share an edge, one in each direction; a third on top of the first
   twice.move(0, 0).line(10, 0).line(10, 10).line(0, 10).close();

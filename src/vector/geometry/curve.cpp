@@ -8,7 +8,8 @@
 
 namespace gpgp::vector {
 namespace {
-double mix(double a, double b, double t) { return (1 - t) * a + t * b; }
+/// Equal ones stay as they are: a control on its end, rounded away from it, would give the end a tangent of noise.
+double mix(double a, double b, double t) { return a == b ? a : (1 - t) * a + t * b; }
 Point mix(Point a, Point b, double t) { return {mix(a.x, b.x, t), mix(a.y, b.y, t)}; }
 
 double round32(double v) {
