@@ -56,7 +56,6 @@ uint runContext(inout Shape s, bool arrives) {
     follow(s, edgeTarget(s.node, edge));
   }
   if (end == kEndWaits && s.node == 0) end = kEndDiscarded;
-  if (end == kEndTerminal) s.axiom = axiomNumber(s.axiom);
   if (spent > 0) atomicMax(mostSpent, spent);
   return end;
 }

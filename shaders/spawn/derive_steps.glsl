@@ -187,6 +187,7 @@ void main() {
       }
 #ifdef GPGP_COLLIDERS
       if (end == kEndGoesOn) end = runContext(s, arrives);
+      if (end == kEndTerminal) s.axiom = axiomNumber(s.axiom); // also of a family's, which goes through no chain
 #else
       if (end == kEndGoesOn) end = runChain(s, arrives, record.maxDepth);
 #endif

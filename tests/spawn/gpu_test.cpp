@@ -357,7 +357,16 @@ std::vector<uint32_t> bakeFor(const std::string& text, spawn::KernelTarget targe
 uint32_t kernelCount() { return numberFrom("GPGP_TEST_KERNELS", 1); }
 
 TEST_F(SpawnTest, GeneratedKernelsEqualTheEvaluator) {
+  makeSpawner({.maxColliders = 100});
   for (const std::string& name : ownGrammarNames()) check(name, bakeKernel(ownGrammar(name)), axioms(7, 12, 16, 10));
+  // Descendants that are terminals at once, of shapes whose axiom is found by way of their collider.
+  check("behind a collider", bakeKernel(R"(axiom Box All;
+terminal Thin (1, 0);
+terminal Flat (1, 1);
+All = Collider(2) Collider(1) SubDiv(X) { -1: SubDiv(Y) { -1: Thin | -2: Flat } | -1: CompSplit() { Thin | Flat | Again } };
+Again = IfCollides(1) { Thin | SubDiv(X) { -1: SubDiv(Y) { -1: Flat | -2: Thin } | -3: Thin } };
+)"),
+        axioms(7, 12, 16, 10));
   if (!sharedGrammar("balcony.pga")) GTEST_SKIP() << "the published grammars are not in the shared data folder";
   const auto given = [](const char* name) { return bakeKernel(*sharedGrammar(name)); };
   check("menger 8000", bakeKernel(replaced(*sharedGrammar("menger_sponge_3.pga"), "0.333", "0.111")),
