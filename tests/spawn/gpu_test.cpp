@@ -367,6 +367,13 @@ All = Collider(2) Collider(1) SubDiv(X) { -1: SubDiv(Y) { -1: Thin | -2: Flat } 
 Again = IfCollides(1) { Thin | SubDiv(X) { -1: SubDiv(Y) { -1: Flat | -2: Thin } | -3: Thin } };
 )"),
         axioms(7, 12, 16, 10));
+  // Known angles beside another, and a size by where they turn an axis: NVIDIA's compiler folds their sines otherwise.
+  check("known angles", bakeKernel(R"(axiom Box All;
+terminal Thin (1, 0);
+All = Rotate(-53.28, Exp(ShapeSize(Z) * 0.352), 90)
+      SubDiv(Z) { Exp(ShapeNormal(Y) * 1.111 - ShapeRotation(X,Z)): Thin | -1: Thin };
+)"),
+        axioms(7, 6, 9, 7));
   if (!sharedGrammar("balcony.pga")) GTEST_SKIP() << "the published grammars are not in the shared data folder";
   const auto given = [](const char* name) { return bakeKernel(*sharedGrammar(name)); };
   check("menger 8000", bakeKernel(replaced(*sharedGrammar("menger_sponge_3.pga"), "0.333", "0.111")),

@@ -359,7 +359,7 @@ private:
       return;
     }
     case kOpRotate:
-      if (!areConstant(node)) return pass("rotate(s, rotationOf(" + vector(node) + "))");
+      if (!areConstant(node)) return pass("rotate(s, " + rotation(node) + ")");
       writeRotation(rotationOf(vec3(constant(node, 0), constant(node, 1), constant(node, 2))));
       add("  " + take(node, 0) + "\n");
       return;
@@ -381,6 +381,18 @@ private:
       if (!isConstant(node, i) || parameterOf(node, i).value != 0) terms += kAxes[i] + ("(" + parameter(node, i) + ")");
     }
     return terms;
+  }
+  /// Angles that are known are none for the device: NVIDIA's compiler folds sums of products of constants without the
+  /// product's rounding, although they are precise, and then rotates by something else than all others.
+  std::string rotation(const Node& node) {
+    if (!isConstant(node, 0) && !isConstant(node, 1) && !isConstant(node, 2)) return "rotationOf(" + vector(node) + ")";
+    std::string angles;
+    for (uint32_t i = 0; i < 3; ++i) {
+      const vec2 known = isConstant(node, i) ? sineCosineDegrees(constant(node, i)) : vec2(0);
+      angles += (i ? ", " : "") + (isConstant(node, i) ? "vec2(" + literal(known.x) + ", " + literal(known.y) + ")"
+                                                       : "sineCosineDegrees(" + parameter(node, i) + ")");
+    }
+    return "rotationOfAngles(" + angles + ")";
   }
   /// rotate() with known columns: zeros are left out, ones are not multiplied with.
   void writeRotation(const Rotation& rotation) {
