@@ -177,7 +177,8 @@ private:
   }
 
   /// Edges that are compared over rows no taller than noise may have been put in the wrong place, and others beside
-  /// them. Whenever two edges become neighbours they are asked again and change places where needed.
+  /// them. Whenever two edges become neighbours they are asked again and change places where needed: the one that moves
+  /// at once, the one that made room when its turn comes again.
   void repair() {
     size_t swaps = 64 + 8 * starts_.size();
     for (size_t i = 0; i < starts_.size() && swaps; ++i) {
@@ -198,15 +199,16 @@ private:
     return false;
   }
 
-  void swap(uint32_t a, uint32_t b) {
-    uint32_t &ea = edgeOf_[a], &eb = edgeOf_[b];
-    std::swap(ea, eb);
-    places_[ea] = a;
-    places_[eb] = b;
-    markDirty(ea);
-    markDirty(eb);
-    markNeighbours(a);
-    markNeighbours(b);
+  void swap(uint32_t moving, uint32_t other) {
+    uint32_t &madeRoom = edgeOf_[moving], &moved = edgeOf_[other];
+    std::swap(madeRoom, moved);
+    places_[madeRoom] = moving;
+    places_[moved] = other;
+    markDirty(moved);
+    dirty_[madeRoom] = batch_;
+    starts_.push_back(madeRoom);
+    markNeighbours(moving);
+    markNeighbours(other);
   }
 
   /// Windings from each changed place on until they agree with what was there, then the slabs around those places.
