@@ -250,6 +250,27 @@ TEST(Oracle, EdgesThatChangePlacesAtOneHeight) {
   EXPECT_GT(tally.inside, tally.tested / 50);
 }
 
+TEST(Oracle, CurvesThatLeaveACommonEndAlike) {
+  // Level at their end, with nearly the same curvature there, and further away they cross: nearly all of the search
+  // goes into rows where they run close beside each other.
+  Tally tally;
+  std::mt19937 random(23);
+  std::uniform_real_distribution<float> reach(20, 60), curvature(0.004f, 0.006f), nearly(-3e-4f, 3e-4f), ends(-20, 40);
+  for (uint32_t seed = 0; seed < 1000; ++seed) {
+    const float bend = curvature(random);
+    TestPath path;
+    for (int i = 0; i < 3; ++i) {
+      const float x = reach(random), y = bend * (1 + nearly(random)) * x * x;
+      const float endX = x + 10, endY = y + 20 + ends(random) / 2;
+      path.move(0, 0).cubic(x, 0, endX, y, endX, endY).line(-20 + ends(random), 90).close();
+    }
+    path.rule = seed & 1 ? GPGP_FILL_EVEN_ODD : GPGP_FILL_NON_ZERO;
+    judge(path.view(), 2000, seed, tally, "seed " + std::to_string(seed));
+  }
+  expectGood(tally);
+  EXPECT_GT(tally.inside, tally.tested / 10);
+}
+
 TEST(Oracle, ManyCurvesInOnePath) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> step(-3, 3);

@@ -22,7 +22,8 @@ constexpr uint32_t kLong = 4; // bands
 
 /// Looks for changes of sides between two pieces over rows in which neither has an inflection, so that each is convex
 /// or concave as a function of y: between its tangents and its chord. Where these bounds keep the pieces apart there is
-/// no change; where the slopes do, there is at most one, which bracketed Newton steps find. Everything else is halved.
+/// no change; where the slopes do, there is at most one, which bracketed Newton steps find. Everything else is halved,
+/// a bounded number of times; what is left then has the change that its ends show.
 class PairSearch {
 public:
   PairSearch(const Monotone& a, const Monotone& b) : a_(a), b_(b) {}
@@ -49,9 +50,11 @@ public:
       }
     }
     turns[count++] = y1;
+    int left = kHalvings;
     for (int i = 0; i < count; ++i) {
       const Row to = i + 1 == count ? last : row(turns[i]);
-      part(from, to, found);
+      const int share = left / (count - i);
+      left += part(from, to, found, share) - share;
       from = to;
     }
   }
@@ -75,27 +78,30 @@ private:
     return (aMax == bMin || bMax == aMin) && from.left() == to.left();
   }
 
-  template <class Found> void part(const Row& from, const Row& to, Found& found) {
+  /// Halves as often as `left` says, and returns what is left of that. Each half gets a half of it, so that rows in
+  /// which pieces run close beside each other, such as those from a common end, leave enough for the others.
+  template <class Found> int part(const Row& from, const Row& to, Found& found, int left) {
     const bool changes = from.left() != to.left();
-    if (apart(from, to)) return;
+    if (apart(from, to)) return left;
     const double height = to.y - from.y, middle = 0.5 * (from.y + to.y);
     const double fine = std::max({std::abs(from.y), std::abs(to.y), 1e-30}) * 6e-8;
-    if (budget_ == 0 || height <= fine || middle <= from.y || middle >= to.y) {
+    if (height <= fine || middle <= from.y || middle >= to.y) {
       if (changes) found(middle);
-      return;
+      return left;
     }
-    if (!changes && apart(from, to, height)) return;
+    if (!changes && apart(from, to, height)) return left;
     const auto range = [](double u, double v) { return std::pair(std::min(u, v), std::max(u, v)); };
     const auto [aLow, aHigh] = range(from.a.slope, to.a.slope);
     const auto [bLow, bHigh] = range(from.b.slope, to.b.slope);
-    if (aHigh <= bLow || bHigh <= aLow) { // the gap only grows, or only shrinks
+    const bool once = aHigh <= bLow || bHigh <= aLow; // the gap only grows, or only shrinks
+    if (once || left == 0) {
       if (changes) found(from.gap() == 0 ? from.y : cross(from, to, fine));
-      return;
+      return left;
     }
-    --budget_;
+    --left;
     const Row between = row(middle);
-    part(from, between, found);
-    part(between, to, found);
+    const int unused = part(from, between, found, left - left / 2);
+    return part(between, to, found, left / 2 + unused);
   }
 
   /// Whether bounds by tangents and chords keep the pieces on the sides that they have at the ends.
@@ -132,8 +138,8 @@ private:
     return std::clamp(y, low, high);
   }
 
+  static constexpr int kHalvings = 200;
   const Monotone &a_, &b_;
-  int budget_ = 200;
 };
 
 } // namespace
