@@ -10,16 +10,21 @@
 namespace gpgp::cli {
 namespace {
 
+constexpr uint32_t kFewAxioms = 16;
+
 /// Sizes and counts of workgroups that are worth a try. Stacks share what a spawner has by default; no two of them have
 /// the same pipeline.
-std::vector<spawn::Fit> fits(spawn::KernelTarget target, bool software, bool balances) {
+std::vector<spawn::Fit> fits(spawn::KernelTarget target, bool software, bool balances, uint32_t axioms) {
   // Workgroups are subgroups there. With another size than lavapipe's usual one the library skips these kernels, and
   // those stay that name no fit.
   if (target == spawn::KernelTarget::software) return {{8, 16, 2048, 512}, {8, 128, 2048, 512}};
   const uint32_t spread = software ? 512 : 4096;
+  using List = std::vector<uint32_t>;
+  // What comes of few axioms may be less work than to spread it, and then large workgroups have it done first.
+  const bool few = axioms <= kFewAxioms;
   std::vector<spawn::Fit> all;
-  for (const uint32_t groupSize : software ? std::vector<uint32_t>{32, 64} : std::vector<uint32_t>{32, 64, 128})
-    for (const uint32_t groups : software ? std::vector<uint32_t>{16} : std::vector<uint32_t>{1024, 2048, 4096}) {
+  for (const uint32_t groupSize : software ? List{32, 64} : few ? List{32, 64, 128, 256} : List{32, 64, 128})
+    for (const uint32_t groups : software ? List{16} : few ? List{512, 2048} : List{1024, 2048, 4096}) {
       const uint32_t stack = std::min(524288 / groups, 1024u);
       if (stack >= 2 * groupSize) all.push_back({groupSize, groups, stack, spread, 0, balances});
     }
@@ -79,7 +84,7 @@ public:
       // Two schedules are enough for the numbers: what is behind them now hardly wins by them.
       std::vector<Candidate> sizes;
       for (size_t i = 0; i < std::min<size_t>(2, all.size()); ++i)
-        for (const spawn::Fit& fit : fits(target_, software_, isUneven(grammar_.graph)))
+        for (const spawn::Fit& fit : fits(target_, software_, isUneven(grammar_.graph), axioms_))
           sizes.push_back({all[i].schedule, fit});
       addAll(all, measured(std::move(sizes), "sizes", kForSizes));
       if (const Candidate& best = all.front(); best.fit.groupSize) {
@@ -155,8 +160,9 @@ private:
     tuned_.interpreter = deriver_->measure(interpreted, repeats(tuned_.interpreter)).times.median();
   }
 
-  /// What a candidate takes, as it would be kept: with a round to spare where rounds even out the work, or may end it.
-  /// Empty ones cost time on a GPU as well.
+  /// What a candidate takes, as it would be kept: with as many rounds as the library takes, or only those that had work
+  /// then, and one to spare where rounds even out the work, or may end it. Empty ones cost time on a GPU as well, but
+  /// the fewer there are, the less each of them spreads.
   void measure(Candidate& candidate, const Grammar& prepared) {
     const GpgpSpawnReport& wanted = tuned_.report;
     const GpgpSpawnReport r = deriver_->measure(prepared, 1).report;
@@ -165,13 +171,23 @@ private:
     if (r.terminals != wanted.terminals || r.keyHash[0] != wanted.keyHash[0] || r.keyHash[1] != wanted.keyHash[1])
       throw Failure("schedule \"" + name + "\" derives something else than the interpreter: " +
                     std::to_string(r.terminals) + " terminals instead of " + std::to_string(wanted.terminals));
-    candidate.rounds = r.rounds + (software_ || candidate.fit.balances || isUneven(grammar_.graph) ? 1 : 0);
-    const uint32_t rounds = software_ ? 0 : candidate.rounds;
-    candidate.milliseconds = deriver_->measure(prepared, kFirstLook, rounds).times.median();
-    const uint32_t repeat = repeats(candidate.milliseconds);
-    if (kFirstLook < repeat && candidate.milliseconds < kHopeless * fastest_)
-      candidate.milliseconds = deriver_->measure(prepared, repeat, rounds).times.median();
-    fastest_ = std::min(fastest_, candidate.milliseconds);
+    const uint32_t enough = r.rounds + (software_ || candidate.fit.balances || isUneven(grammar_.graph) ? 1 : 0);
+    candidate.milliseconds = timeOf(prepared, 0);
+    if (software_) {
+      candidate.rounds = enough; // which spread all the same there
+    } else if (const double alone = timeOf(prepared, enough); alone < candidate.milliseconds) {
+      candidate.milliseconds = alone;
+      candidate.rounds = enough;
+    }
+  }
+  /// Milliseconds, with so many rounds; 0: as many as the library takes.
+  double timeOf(const Grammar& prepared, uint32_t rounds) {
+    double milliseconds = deriver_->measure(prepared, kFirstLook, rounds).times.median();
+    const uint32_t repeat = repeats(milliseconds);
+    if (kFirstLook < repeat && milliseconds < kHopeless * fastest_)
+      milliseconds = deriver_->measure(prepared, repeat, rounds).times.median();
+    fastest_ = std::min(fastest_, milliseconds);
+    return milliseconds;
   }
 
   /// Kernels of the candidates' schedules that have none yet.

@@ -33,7 +33,7 @@ struct Candidate {
   spawn::Fit fit;
   /// Infinite where it would drop shapes in a spawner that has room for what the interpreter needs.
   double milliseconds = std::numeric_limits<double>::infinity();
-  uint32_t rounds = 0;
+  uint32_t rounds = 0; ///< that are recorded; 0: as many as the library takes
 };
 
 struct Tuned {
