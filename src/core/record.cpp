@@ -328,6 +328,8 @@ Result<void> Worker::record(const Record& record) {
 
   beginLabel(cmd, nullptr);
   edgeBarrier(record, true);
+  // Says that the record ran, to who reads it when the frame has ended; beside the first passes it costs nothing.
+  vk.CmdFillBuffer(cmd, reports_.handle(), slot * reportStride_ + passes_.reportBytes, 4, slots_[slot].stamp);
   const GpgpTimestamps& timestamps = record.info->timestamps;
   uint32_t query = timestamps.firstQuery;
   if (timestamps.queryPool)
@@ -387,7 +389,6 @@ Result<void> Worker::record(const Record& record) {
     const VkBufferCopy region{sourceOffset, slot * reportStride_, passes_.reportBytes};
     vk.CmdCopyBuffer(cmd, source, reports_.handle(), 1, &region);
   }
-  vk.CmdFillBuffer(cmd, reports_.handle(), slot * reportStride_ + passes_.reportBytes, 4, slots_[slot].stamp);
   edgeBarrier(record, false);
   endLabel(cmd);
   return {};
