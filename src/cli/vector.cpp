@@ -93,6 +93,7 @@ double compareWithTruth(std::span<const char> bytes, std::span<const uint8_t> pa
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const std::array<float, 4> background = parseBackground(options.background);
   const std::string bytes = readInput(options.file), name = inputName(options.file);
+  if (bytes.starts_with("GPVD")) throw Failure(name + ": a baked drawing; SVG is wanted, from which it was made");
   SvgMessages messages(options.allWarnings ? SIZE_MAX : kShownMessages);
   GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
   source.name = name.c_str();

@@ -399,11 +399,19 @@ TEST(SvgImport, Colours) {
       {"class='y' id='i' fill='red'", {1, 1, 0, 1}},
       {"class='z' style='fill:red'", {1, 1, 1, 1}},
       {"fill='inherit' opacity='0.5'", {0, 0, 0, 0.5}},
+      {"style='fill:lime;/* note; */opacity:.5'", {0, 1, 0, 0.5}},
+      {"style='/* a; */fill:red'", {1, 0, 0, 1}},
+      {"style='fill:blue /* why */'", {0, 0, 1, 1}},
+      {"style='Fill:RED;OPACITY:.25'", {1, 0, 0, 0.25}},
+      {"class='u' style='fill:red'", {0, 0, 1, 1}},
+      {"class='\u00e9'", {0, 1, 1, 1}},
+      {"style='font-family:\"a;fill:red\";fill:lime'", {0, 1, 0, 1}},
   };
   for (const auto& c : cases) {
-    const Import i = page(std::string("<style>/* c */ rect.y, .x { fill: blue } #i{fill:yellow} .z{fill:white "
-                                      "!important}</style><rect width='9' height='9' ") +
-                          c.attributes + "/>");
+    const Import i =
+        page(std::string("<style>/* c */ rect.y, .x { fill: blue } #i{fill:yellow} .z{fill:white "
+                         "!important}.u{fill:blue !IMPORTANT}.\u00e9{fill:aqua}</style><rect width='9' height='9' ") +
+             c.attributes + "/>");
     ASSERT_EQ(i.drawing.paths.size(), 1u) << c.attributes;
     for (size_t k = 0; k < 4; ++k) {
       const double v = c.srgb[k], linear = k == 3 ? v : v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
@@ -437,6 +445,23 @@ TEST(SvgImport, GradientsReachTheDrawing) {
     if (g.kind == GPGP_GRADIENT_RADIAL) f.insert(f.end(), {g.startRadius, g.endRadius});
     return f;
   };
+  // Stops inherit from their gradient, and from where it stands; not from what is painted.
+  const auto ofStop = [&](const std::string& text) {
+    const Import i = page(text);
+    EXPECT_EQ(i.messages, Texts()) << text;
+    const float* c = i.drawing.paths.at(0).gradient->stops.at(0).color;
+    return std::array<float, 3>{c[0], c[1], c[2]};
+  };
+  const std::string painted = "<rect width='9' height='9' color='red' fill='url(#g)'/>",
+                    stop = "<stop stop-color='currentColor'/></linearGradient>";
+  using Rgb = std::array<float, 3>;
+  EXPECT_EQ(ofStop("<linearGradient id='g'>" + stop + painted), (Rgb{0, 0, 0}));
+  EXPECT_EQ(ofStop("<linearGradient id='g' color='lime'>" + stop + painted), (Rgb{0, 1, 0}));
+  EXPECT_EQ(ofStop("<g color='blue'><linearGradient id='g'>" + stop + "</g>" + painted), (Rgb{0, 0, 1}));
+  EXPECT_EQ(ofStop("<linearGradient id='f' color='blue'>" + stop + "<linearGradient id='g' href='#f'/>" + painted),
+            (Rgb{0, 0, 1}));
+  EXPECT_EQ(ofStop("<linearGradient id='g' stop-color='aqua'><stop stop-color='inherit'/></linearGradient>" + painted),
+            (Rgb{0, 1, 1}));
   const auto plain = gradient("<linearGradient id='g' href='#stops'/>");
   EXPECT_EQ(ends(*plain), (Floats{20, 10, 60, 10}));
   EXPECT_EQ(plain->gradient.spread, GPGP_SPREAD_PAD);
@@ -659,6 +684,17 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<path style='d:path(\"M0 0 x\")'/>",
        "E line 2: <path> has an error in its path data at character 6; drawn up to there"},
       {"<style>\ng rect { fill: red }</style>", "W line 3: style selector 'g rect' is not supported"},
+      {"<linearGradient id='g'><stop/>\n<stop offset='abc'/></linearGradient><rect width='9' height='9' "
+       "fill='url(#g)'/>",
+       "W line 3: <stop> has offset 'abc', which is not valid; ignored"},
+      {"<linearGradient id='g' spreadMethod='mirror'><stop/></linearGradient><rect width='9' height='9' "
+       "fill='url(#g)'/>",
+       "W line 2: <linearGradient> has spreadMethod 'mirror', which is not valid; ignored"},
+      {"<linearGradient id='g' gradientUnits='foo'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "W line 2: <linearGradient> has gradientUnits 'foo', which is not valid; ignored"},
+      {"<svg viewBox='0 0 9 9' preserveAspectRatio='xMidyMax'/>",
+       "W line 2: <svg> has preserveAspectRatio 'xMidyMax', which is not valid; ignored"},
+      {"<rect width='9' height='9' rx='-5'/>", "W line 2: <rect> has a negative rx; ignored"},
       {"<rect width='9' height='9' fill='blurple'/>",
        "W line 2: <rect> has fill 'blurple', which is not valid; ignored"},
   };
@@ -735,6 +771,12 @@ TEST(SvgImport, ThePageIsWhatTheFileSays) {
   EXPECT_EQ(filled.drawing.paths.at(0).points, (Floats{0, 0, 200, 0, 200, 100}));
   EXPECT_EQ(import("<svg viewBox='0 0 30 20' width='100%'/>").drawing.width, 30);
   EXPECT_EQ(import("<svg/>").drawing.width, 0);
+  const Import none = import("<svg width='0' height='-5'><path d='M0 0H10V10'/></svg>");
+  EXPECT_EQ(none.drawing.width, 0);
+  EXPECT_EQ(none.messages, (Texts{"W line 1: <svg> has no width above zero; it is ignored",
+                                  "W line 1: <svg> has no height above zero; it is ignored"}));
+  EXPECT_EQ(page("<rect width='40' height='30' rx='-5' ry='8'/>").drawing.paths.at(0).points,
+            page("<rect width='40' height='30' ry='8'/>").drawing.paths.at(0).points);
   const Import wide = import("\n<svg width='1e9' height='9'><rect width='1e9' height='9'/></svg>");
   EXPECT_EQ(wide.error, "line 2: <svg> is wider or taller than 10000000 pixels");
   EXPECT_EQ(wide.messages, Texts{});
@@ -754,6 +796,19 @@ TEST(SvgImport, CompilesToADrawingWithThePage) {
   EXPECT_EQ(drawing->paths.size(), 43u);
   EXPECT_EQ(drawing->viewport[2], 1280);
   EXPECT_EQ(drawing->viewport[3], 720);
+  // Without a page, the ink is it, to the last bit: what is 20 wide takes 20 pixels.
+  const std::string square =
+      "<svg xmlns='http://www.w3.org/2000/svg'><rect x='100' y='3' width='20' height='20'/></svg>";
+  source.data = square.data();
+  source.size = square.size();
+  ASSERT_EQ(gpgpCompileSvg(&source, &blob), GPGP_SUCCESS);
+  const auto ink =
+      vector::loadBaked({static_cast<const std::byte*>(blob.data), blob.size}, std::pmr::get_default_resource());
+  std::free(blob.data);
+  ASSERT_TRUE(ink) << ink.error().text;
+  EXPECT_EQ(Floats(ink->bounds, ink->bounds + 4), (Floats{100, 3, 120, 23}));
+  EXPECT_EQ(Floats(ink->viewport, ink->viewport + 4), (Floats{100, 3, 20, 20}));
+  source.data = text.data();
   source.size = 20;
   EXPECT_EQ(gpgpCompileSvg(&source, &blob), GPGP_ERROR_INVALID_DATA);
   source.sType = 0;

@@ -41,6 +41,12 @@ core::Error tooManyPatches() {
 
 } // namespace
 
+void addInk(const PatchRecord& patch, bool first, float (&bounds)[4]) {
+  const float box[4] = {above(patch.x0), patch.top, below(patch.x1), patch.bottom};
+  for (size_t side = 0; side < 4; ++side)
+    bounds[side] = first ? box[side] : side < 2 ? std::min(bounds[side], box[side]) : std::max(bounds[side], box[side]);
+}
+
 core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional<core::Error>* tooMany) {
   // What the stages leave to each other goes at once; small paths find room here.
   alignas(std::max_align_t) std::byte room[32 << 10];
@@ -113,14 +119,7 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
     p.x1 = above(std::max(top[1], bottom[1]));
     p.path = pathIndex;
     drawing.patches.push_back(p);
-    if (drawing.patches.size() == 1) {
-      const float first[4] = {p.x0, p.top, p.x1, p.bottom};
-      std::copy(first, first + 4, drawing.bounds);
-    }
-    drawing.bounds[0] = std::min(drawing.bounds[0], p.x0);
-    drawing.bounds[1] = std::min(drawing.bounds[1], p.top);
-    drawing.bounds[2] = std::max(drawing.bounds[2], p.x1);
-    drawing.bounds[3] = std::max(drawing.bounds[3], p.bottom);
+    addInk(p, drawing.patches.size() == 1, drawing.bounds);
   }
   PathRecord record{};
   record.color = {path.color[0], path.color[1], path.color[2], path.color[3]};

@@ -82,6 +82,9 @@ core::Result<uint32_t> addImage(const GpgpImagePaint& image, Drawing& drawing);
 /// kMaxCrossings times is an error; with `tooMany`, where the error goes then, it is appended without patches.
 core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional<core::Error>* tooMany = nullptr);
 
+/// Grows bounds by the ink of a patch, whose own box has a float's step to spare; `first`: sets them.
+void addInk(const PatchRecord& patch, bool first, float (&bounds)[4]);
+
 /// Paints another drawing on top: how paths that were converted apart, or earlier, become one.
 core::Result<void> append(const Drawing& part, Drawing& drawing);
 

@@ -84,14 +84,8 @@ core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPath
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing needs more than %u patches", shader::kEntryPatch);
   std::fill_n(drawing.bounds, 4, 0.0f);
   if (hidden == base.paths.size()) firstShown = drawing.patches.size();
-  for (size_t k = firstShown; k < drawing.patches.size(); ++k) {
-    const PatchRecord& p = drawing.patches[k];
-    const float box[4] = {p.x0, p.top, p.x1, p.bottom};
-    for (size_t side = 0; side < 4; ++side)
-      drawing.bounds[side] = k == firstShown ? box[side]
-                             : side < 2      ? std::min(drawing.bounds[side], box[side])
-                                             : std::max(drawing.bounds[side], box[side]);
-  }
+  for (size_t k = firstShown; k < drawing.patches.size(); ++k)
+    addInk(drawing.patches[k], k == firstShown, drawing.bounds);
   if (pageIsInk(base)) {
     std::copy_n(drawing.bounds, 2, drawing.viewport);
     drawing.viewport[2] = drawing.bounds[2] - drawing.bounds[0];

@@ -42,11 +42,11 @@ Box Importer::boxAround(pugi::xml_node node, std::string_view name, State state,
   return box_;
 }
 
-Style Importer::styleOf(pugi::xml_node clipPath, const LengthContext& lengths) {
-  const auto [known, isNew] = clipStyles_.try_emplace(clipPath.hash_value());
+Style Importer::styleOf(pugi::xml_node node, const LengthContext& lengths) {
+  const auto [known, isNew] = styles_.try_emplace(node.hash_value());
   if (!isNew) return known->second;
   std::vector<pugi::xml_node> above; // the innermost first
-  for (pugi::xml_node up = clipPath; up.type() == pugi::node_element && above.size() < limits_.depth; up = up.parent())
+  for (pugi::xml_node up = node; up.type() == pugi::node_element && above.size() < limits_.depth; up = up.parent())
     above.push_back(up);
   Style& style = known->second;
   for (size_t i = above.size(); i-- > 0;) {

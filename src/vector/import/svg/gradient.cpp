@@ -43,20 +43,27 @@ pugi::xml_attribute Importer::gradientAttribute(pugi::xml_node gradient, const c
   return {};
 }
 
-std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, const Style& style) {
+std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, const LengthContext& lengths) {
   std::vector<GpgpGradientStop> stops;
   for (int hops = 0; gradient && hops < 32 && stops.empty(); ++hops) {
+    const Style around = styleOf(gradient, lengths);
     for (const pugi::xml_node child : gradient.children()) {
       if (document_.name(child) != "stop") continue;
       if (++steps_ > limits_.points || stops.size() >= 65536) {
         stop(child, "more stops of gradients than are allowed");
         return stops;
       }
-      Style own = style.inherited();
-      cascade(child, "stop", style, {}, own);
+      Style own = around.inherited();
+      cascade(child, "stop", around, {}, own);
       double offset = 0;
-      Scanner s(trim(child.attribute("offset").value()));
-      if (s.number(offset) && s.take("%")) offset /= 100;
+      const pugi::xml_attribute place = child.attribute("offset");
+      Scanner s(trim(place.value()));
+      const bool isNumber = s.number(offset);
+      if (isNumber && s.take("%")) offset /= 100;
+      if (place && !(isNumber && s.done())) {
+        ignored(child, place);
+        offset = 0;
+      }
       offset = std::clamp(offset, stops.empty() ? 0.0 : static_cast<double>(stops.back().offset), 1.0);
       const Color c = own.stopIsCurrent ? own.color : own.stopColor;
       const double linear[4] = {linearFromSrgb(c.r), linearFromSrgb(c.g), linearFromSrgb(c.b), c.a * own.stopOpacity};
@@ -72,9 +79,15 @@ std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, c
 std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool radial, const State& state,
                                                      const Shape& shape) {
   auto made = std::make_shared<Gradient>();
-  made->stops = gradientStops(node, state.style);
+  made->stops = gradientStops(node, state.lengths);
   if (made->stops.empty()) return nullptr;
   const auto text = [&](const char* name) { return std::string_view(gradientAttribute(node, name).value()); };
+  const auto oneOf = [&](const char* name, std::initializer_list<std::string_view> words) {
+    const pugi::xml_attribute a = gradientAttribute(node, name);
+    if (a && std::find(words.begin(), words.end(), trim(a.value())) == words.end()) ignored(node, a);
+  };
+  oneOf("gradientUnits", {"userSpaceOnUse", "objectBoundingBox"});
+  oneOf("spreadMethod", {"pad", "reflect", "repeat"});
   const bool userSpace = trim(text("gradientUnits")) == "userSpaceOnUse";
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;

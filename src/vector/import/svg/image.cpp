@@ -84,8 +84,7 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
   if (!(w > 0 && h > 0)) return;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
-  const Affine fitted =
-      Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, node.attribute("preserveAspectRatio").value());
+  const Affine fitted = Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, aspectRatio(node));
   // What of the picture is within its place.
   const double left = std::max(x, fitted.e), top = std::max(y, fitted.f);
   const double right = std::min(x + w, fitted.e + pw * fitted.a), bottom = std::min(y + h, fitted.f + ph * fitted.d);

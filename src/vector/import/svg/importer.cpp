@@ -42,6 +42,18 @@ std::string Importer::element(pugi::xml_node node) const {
   return std::string("<") + std::string(std::string_view(node.name()).substr(0, 40)) + ">";
 }
 
+void Importer::ignored(pugi::xml_node node, pugi::xml_attribute attribute) {
+  reporter_.ignored(document_.line(attribute, 0), element(node) + " has " + attribute.name() + " '" +
+                                                      std::string(attribute.value()).substr(0, 60) +
+                                                      "', which is not valid; ignored");
+}
+
+std::string_view Importer::aspectRatio(pugi::xml_node node) {
+  const pugi::xml_attribute a = node.attribute("preserveAspectRatio");
+  if (a && !isAspectRatio(a.value())) ignored(node, a);
+  return a.value();
+}
+
 void Importer::stop(pugi::xml_node node, const std::string& why) {
   if (!stopped_) reporter_.error(document_.line(node), why + "; the rest is not drawn", GPGP_ERROR_UNSUPPORTED);
   stopped_ = true;
@@ -77,10 +89,7 @@ Importer::State Importer::begin() {
   const pugi::xml_node root = document_.root();
   const pugi::xml_attribute boxText = root.attribute("viewBox");
   const std::optional<ViewBox> box = parseViewBox(boxText.value());
-  if (boxText && !box)
-    reporter_.ignored(document_.line(boxText, 0), std::string("<svg> has viewBox '") +
-                                                      std::string(boxText.value()).substr(0, 60) +
-                                                      "', which is not valid; ignored");
+  if (boxText && !box) ignored(root, boxText);
   State state;
   // A page in percent has the size of its viewBox: there is nothing around it.
   state.lengths.width = box ? box->width : 100;
@@ -97,8 +106,13 @@ Importer::State Importer::begin() {
   };
   if (isPercent("width")) hasWidth = false;
   if (isPercent("height")) hasHeight = false;
-  if (!(width > 0)) hasWidth = false;
-  if (!(height > 0)) hasHeight = false;
+  const auto needsSize = [&](const char* name, double size, bool& has) {
+    if (has && !(size > 0))
+      reporter_.ignored(document_.line(root), element(root) + " has no " + name + " above zero; it is ignored");
+    has = has && size > 0;
+  };
+  needsSize("width", width, hasWidth);
+  needsSize("height", height, hasHeight);
   if (box && !hasWidth) width = hasHeight ? height * box->width / box->height : box->width;
   if (box && !hasHeight) height = hasWidth ? width * box->height / box->width : box->height;
   if (box || (hasWidth && hasHeight)) {
@@ -106,7 +120,7 @@ Importer::State Importer::begin() {
     result_.height = height;
   }
   if (box) {
-    state.transform = fitViewBox(*box, width, height, root.attribute("preserveAspectRatio").value());
+    state.transform = fitViewBox(*box, width, height, aspectRatio(root));
     state.lengths.width = box->width;
     state.lengths.height = box->height;
   } else {
@@ -261,13 +275,11 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
   state.lengths.height = h;
   if (const pugi::xml_attribute text = node.attribute("viewBox")) {
     if (const auto box = parseViewBox(text.value())) {
-      state.transform = state.transform * fitViewBox(*box, w, h, node.attribute("preserveAspectRatio").value());
+      state.transform = state.transform * fitViewBox(*box, w, h, aspectRatio(node));
       state.lengths.width = box->width;
       state.lengths.height = box->height;
     } else {
-      reporter_.ignored(document_.line(text, 0), element(node) + " has viewBox '" +
-                                                     std::string(text.value()).substr(0, 60) +
-                                                     "', which is not valid; ignored");
+      ignored(node, text);
     }
   }
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);

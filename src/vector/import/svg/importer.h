@@ -16,6 +16,8 @@ struct ViewBox {
   double x = 0, y = 0, width = 0, height = 0;
 };
 std::optional<ViewBox> parseViewBox(std::string_view text);
+/// Whether it is a preserveAspectRatio.
+bool isAspectRatio(std::string_view text);
 Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio);
 
 /// The smallest box around a shape's curves.
@@ -60,7 +62,8 @@ private:
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
   void clip(pugi::xml_node node, std::string_view name, State& state);
-  Style styleOf(pugi::xml_node clipPath, const LengthContext& lengths);
+  /// Of an element that others refer to: what it has from where it stands, not from them.
+  Style styleOf(pugi::xml_node node, const LengthContext& lengths);
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
   Box boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space);
   void measure(const Shape& shape, const Affine& transform);
@@ -101,11 +104,15 @@ private:
 
   // gradient.cpp
   pugi::xml_attribute gradientAttribute(pugi::xml_node gradient, const char* name) const;
-  std::vector<GpgpGradientStop> gradientStops(pugi::xml_node gradient, const Style& style);
+  std::vector<GpgpGradientStop> gradientStops(pugi::xml_node gradient, const LengthContext& lengths);
   /// Nothing where it has no stops, or no box to be measured by.
   std::shared_ptr<const Gradient> gradientOf(pugi::xml_node node, bool radial, const State& state, const Shape& shape);
 
   std::string element(pugi::xml_node node) const;
+  /// Says that an attribute has no valid value.
+  void ignored(pugi::xml_node node, pugi::xml_attribute attribute);
+  /// The node's preserveAspectRatio; says so where it is none.
+  std::string_view aspectRatio(pugi::xml_node node);
 
   const Document& document_;
   Reporter& reporter_;
@@ -127,7 +134,7 @@ private:
   Mode mode_ = Mode::Paint;
   Box box_; // of what was measured
   Affine toBox_;
-  std::unordered_map<size_t, Style> clipStyles_;
+  std::unordered_map<size_t, Style> styles_; // of what is referred to
   struct MadeClip {
     Affine transform;
     double width = 0, height = 0; // of the viewport

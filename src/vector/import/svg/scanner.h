@@ -25,7 +25,7 @@ public:
   bool flag(bool& value);
   /// Consumes `word` if it is next.
   bool take(std::string_view word);
-  /// Letters, digits, - and _.
+  /// Letters, digits, -, _ and all that is not ASCII.
   std::string_view name();
 
 private:
@@ -34,6 +34,8 @@ private:
 };
 
 std::string_view trim(std::string_view text);
+/// Equal but for the case of ASCII letters, as CSS compares its words. `word` is in small letters.
+bool isWord(std::string_view text, std::string_view word);
 
 /// What percentages and font units refer to.
 struct LengthContext {

@@ -47,6 +47,16 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
     if (value < 0) reporter_.error(document_.line(node), element(node) + " has a negative " + attribute);
     return value > 0;
   };
+  // One below zero is as if it were not there.
+  const auto radius = [&](const char* attribute, LengthAxis axis, bool* given) {
+    double value = along(attribute, axis, 0, given);
+    if (value < 0) {
+      reporter_.ignored(document_.line(node), element(node) + " has a negative " + attribute + "; ignored");
+      value = 0;
+      *given = false;
+    }
+    return value;
+  };
   Shape shape;
   if (name == "path") {
     const pugi::xml_attribute d = node.attribute("d");
@@ -60,18 +70,17 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
   } else if (name == "rect") {
     const double w = along("width", LengthAxis::X), h = along("height", LengthAxis::Y);
     bool hasX = false, hasY = false;
-    double rx = along("rx", LengthAxis::X, 0, &hasX), ry = along("ry", LengthAxis::Y, 0, &hasY);
+    double rx = radius("rx", LengthAxis::X, &hasX), ry = radius("ry", LengthAxis::Y, &hasY);
     if (!hasX) rx = ry;
     if (!hasY) ry = rx;
     if (positive("width", w) && positive("height", h))
-      shape = rectangle(along("x", LengthAxis::X), along("y", LengthAxis::Y), w, h, std::max(rx, 0.0),
-                        std::max(ry, 0.0), tolerance);
+      shape = rectangle(along("x", LengthAxis::X), along("y", LengthAxis::Y), w, h, rx, ry, tolerance);
   } else if (name == "circle") {
     const double r = along("r", LengthAxis::Diagonal);
     if (positive("r", r)) shape = ellipse(along("cx", LengthAxis::X), along("cy", LengthAxis::Y), r, r, tolerance);
   } else if (name == "ellipse") {
     bool hasX = false, hasY = false;
-    double rx = along("rx", LengthAxis::X, 0, &hasX), ry = along("ry", LengthAxis::Y, 0, &hasY);
+    double rx = radius("rx", LengthAxis::X, &hasX), ry = radius("ry", LengthAxis::Y, &hasY);
     if (!hasX) rx = ry;
     if (!hasY) ry = rx;
     if (positive("rx", rx) && positive("ry", ry))
@@ -97,6 +106,16 @@ std::optional<ViewBox> parseViewBox(std::string_view text) {
   }
   if (!s.done() || !(v[2] > 0 && v[3] > 0)) return std::nullopt;
   return ViewBox{v[0], v[1], v[2], v[3]};
+}
+
+bool isAspectRatio(std::string_view text) {
+  constexpr std::string_view aligns[] = {"none",     "xMinYMin", "xMidYMin", "xMaxYMin", "xMinYMid",
+                                         "xMidYMid", "xMaxYMid", "xMinYMax", "xMidYMax", "xMaxYMax"};
+  Scanner s(trim(text));
+  if (s.take("defer")) s.skipSpace();
+  if (std::find(std::begin(aligns), std::end(aligns), s.name()) == std::end(aligns)) return false;
+  s.skipSpace();
+  return s.done() || ((s.take("meet") || s.take("slice")) && s.done());
 }
 
 core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&page)[4], double width, double height) {

@@ -10,7 +10,7 @@ namespace {
 /// A list of lengths, an odd one doubled; "none" and all zero mean no dashes.
 bool parseDashes(std::string_view text, const LengthContext& lengths, std::vector<double>& dashes) {
   std::vector<double> read;
-  if (text != "none") {
+  if (!isWord(text, "none")) {
     while (!(text = trim(text)).empty()) {
       const size_t end = std::min(text.find_first_of(", \t\r\n\f"), text.size());
       double v = 0;
@@ -31,7 +31,7 @@ bool parseDashes(std::string_view text, const LengthContext& lengths, std::vecto
   return true;
 }
 
-bool isCurrentColor(std::string_view text) { return text == "currentColor" || text == "currentcolor"; }
+bool isCurrentColor(std::string_view text) { return isWord(text, "currentcolor"); }
 
 bool parsePaint(std::string_view text, Paint& paint) {
   Paint p;
@@ -50,7 +50,7 @@ bool parsePaint(std::string_view text, Paint& paint) {
       p.fallback = rest.kind;
       p.color = rest.color;
     }
-  } else if (text == "none" || text == "context-fill" || text == "context-stroke") {
+  } else if (isWord(text, "none") || isWord(text, "context-fill") || isWord(text, "context-stroke")) {
     p.kind = Paint::Kind::None;
   } else if (isCurrentColor(text)) {
     p.kind = Paint::Kind::Current;
@@ -88,7 +88,7 @@ bool parseFontSize(std::string_view v, const Style& parent, LengthContext length
                {"larger", parent.fontSize * 1.2},
                {"smaller", parent.fontSize / 1.2}};
   for (const auto& n : names)
-    if (v == n.name) return size = n.size, true;
+    if (isWord(v, n.name)) return size = n.size, true;
   lengths.width = lengths.height = lengths.fontSize = parent.fontSize;
   double read = 0;
   return parseLength(v, lengths, LengthAxis::X, read) && read >= 0 && (size = read, true);
@@ -100,7 +100,7 @@ template <class T> struct Word {
 };
 template <class T, size_t N> bool choose(std::string_view text, const Word<T> (&words)[N], T& value) {
   for (const auto& w : words)
-    if (w.word == text) return value = w.value, true;
+    if (isWord(text, w.word)) return value = w.value, true;
   return false;
 }
 constexpr Word<GpgpFillRule> kRules[] = {{"nonzero", GPGP_FILL_NON_ZERO}, {"evenodd", GPGP_FILL_EVEN_ODD}};
@@ -142,10 +142,10 @@ bool setPaintOrder(const Context& c) {
   return true;
 }
 bool setMarker(const Context& c, const char* name) {
-  if (c.value != "none") c.style.markers = name;
+  if (!isWord(c.value, "none")) c.style.markers = name;
   return true;
 }
-bool setRefers(const Context& c, bool& flag) { return flag = c.value != "none" && !c.value.empty(), true; }
+bool setRefers(const Context& c, bool& flag) { return flag = !isWord(c.value, "none") && !c.value.empty(), true; }
 
 struct Property {
   std::string_view name;
@@ -173,22 +173,22 @@ const Property kProperties[] = {
                   parseLength(c.value, c.lengths, LengthAxis::Diagonal, c.style.dashOffset)),
     GPGP_PROPERTY("color", color, setColor(c)),
     GPGP_PROPERTY("visibility", visible, choose(c.value, kVisibilities, c.style.visible)),
-    GPGP_PROPERTY("display", displayed, (c.style.displayed = c.value != "none", true)),
+    GPGP_PROPERTY("display", displayed, (c.style.displayed = !isWord(c.value, "none"), true)),
     GPGP_PROPERTY("overflow", overflowVisible,
-                  (c.style.overflowVisible = c.value == "visible" || c.value == "auto", true)),
+                  (c.style.overflowVisible = isWord(c.value, "visible") || isWord(c.value, "auto"), true)),
     GPGP_PROPERTY("font-size", fontSize, parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize)),
     GPGP_PROPERTY("paint-order", strokeFirst, setPaintOrder(c)),
     GPGP_PROPERTY("vector-effect", nonScalingStroke,
                   (c.style.nonScalingStroke = c.value.find("non-scaling-stroke") == 0, true)),
     GPGP_PROPERTY("stop-color", stopColor, setStopColor(c)),
     GPGP_PROPERTY("stop-opacity", stopOpacity, parseOpacity(c.value, c.style.stopOpacity)),
-    GPGP_PROPERTY("clip-path", clipPath, (c.style.clipPath = c.value == "none" ? "" : c.value, true)),
+    GPGP_PROPERTY("clip-path", clipPath, (c.style.clipPath = isWord(c.value, "none") ? "" : c.value, true)),
     GPGP_PROPERTY("clip-rule", clipRule, choose(c.value, kRules, c.style.clipRule)),
     GPGP_PROPERTY("transform", transform, (c.style.transform = c.value, true)),
     GPGP_PROPERTY("transform-origin", transformOrigin, (c.style.transformOrigin = c.value, true)),
     GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
     GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
-    GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = c.value != "normal", true)),
+    GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = !isWord(c.value, "normal"), true)),
     GPGP_PROPERTY("marker", markers, setMarker(c, "marker")),
     GPGP_PROPERTY("marker-start", markers, setMarker(c, "marker-start")),
     GPGP_PROPERTY("marker-mid", markers, setMarker(c, "marker-mid")),
@@ -248,7 +248,7 @@ Applied applyProperty(Style& style, const Style& parent, std::string_view name, 
   const Property* property = findProperty(name);
   if (!property) return Applied::Unknown;
   const Context context{style, parent, trim(value), lengths};
-  if (context.value == "inherit") {
+  if (isWord(context.value, "inherit")) {
     property->inherit(context);
     return Applied::Yes;
   }

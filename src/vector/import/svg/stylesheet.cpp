@@ -30,24 +30,46 @@ size_t blockEnd(std::string_view text, size_t at) {
   return text.size();
 }
 
+/// Separators in quotes or brackets do not count.
 template <class F> void split(std::string_view text, char separator, F&& part) {
-  while (true) {
-    const size_t end = text.find(separator);
-    part(text.substr(0, end));
-    if (end == text.npos) return;
-    text.remove_prefix(end + 1);
+  size_t begin = 0, depth = 0;
+  char quote = 0;
+  for (size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quote) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '(') {
+      ++depth;
+    } else if (c == ')') {
+      depth -= depth > 0;
+    } else if (c == separator && depth == 0) {
+      part(text.substr(begin, at - begin));
+      begin = at + 1;
+    }
   }
+  part(text.substr(begin));
+}
+
+std::string lowered(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
 }
 
 } // namespace
 
 std::vector<Declaration> parseDeclarations(std::string_view text) {
   std::vector<Declaration> declarations;
-  split(text, ';', [&declarations](std::string_view part) {
+  const std::string clean = withoutComments(text);
+  split(clean, ';', [&declarations](std::string_view part) {
     const size_t colon = part.find(':');
     if (colon == part.npos) return;
-    Declaration d{std::string(trim(part.substr(0, colon))), std::string(trim(part.substr(colon + 1))), false};
-    if (const size_t mark = d.value.rfind('!'); mark != d.value.npos && trim(d.value.substr(mark + 1)) == "important") {
+    Declaration d{lowered(trim(part.substr(0, colon))), std::string(trim(part.substr(colon + 1))), false};
+    const size_t mark = d.value.rfind('!');
+    if (mark != d.value.npos && isWord(trim(std::string_view(d.value).substr(mark + 1)), "important")) {
       d.important = true;
       d.value = trim(d.value.substr(0, mark));
     }
