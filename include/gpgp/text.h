@@ -282,8 +282,9 @@ typedef struct GpgpTextInfo {
   float lineHeight;     /**< pixels between lines instead; 0: the fonts' */
   float tabWidth;       /**< pixels between tab stops; 0: eight spaces */
   const char* ellipsis; /**< terminated; ends a text that was cut off, whose last line is filled up to it, with a part
-                             of a word, too; in the style of what is before it, one font and direction, whole also where
-                             it is wider than the width; NULL: U+2026, or three full stops where no font has that */
+                             of a word, too; in the style of what is before it, ordered as a part of its paragraph by
+                             itself, line breaks and tabs as spaces, whole also where it is wider than the width; NULL:
+                             U+2026, or three full stops where no font has that */
 } GpgpTextInfo;
 #define GPGP_TEXT_INFO_INIT GPGP_INIT(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO)
 
@@ -354,7 +355,7 @@ typedef struct GpgpLayoutInfo {
   uint32_t lineCount;
   const GpgpTextDecoration* decorations;
   uint32_t decorationCount;
-  const GpgpMissingCharacter* missing; /**< characters that no font of their style has */
+  const GpgpMissingCharacter* missing; /**< characters that no font of their style has; of an ellipsis: where it is */
   uint32_t missingCount;
   const uint32_t* invalid; /**< byte offsets where the text is not UTF-8 */
   uint32_t invalidCount;

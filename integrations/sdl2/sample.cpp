@@ -55,6 +55,8 @@ struct Line {
     std::fill_n(textInfo.style.color, 4, 1.0f);
     need(layout.set(textInfo), "gpgpSetLayoutText");
     info = take(layout.info(), "gpgpGetLayoutInfo");
+    for (uint32_t i = 0; i < info.missingCount; ++i)
+      std::fprintf(stderr, "no font has U+%04X\n", info.missing[i].character);
     integration::GlyphCacheInfo cacheInfo;
     cacheInfo.context = context;
     cacheInfo.pictureDevice.device = device.device; // for emoji that are pictures

@@ -18,6 +18,7 @@ struct TextOptions {
 };
 
 constexpr uint32_t kLargest = 16384; // pixels a side, as Size's
+constexpr uint32_t kWidest = 8192;   // of lines, so that there is room for margins and what hangs out
 
 /// "liga=0,smcp": what CSS calls font-feature-settings.
 std::vector<GpgpFontFeature> parseFeatures(const std::string& text) {
@@ -155,7 +156,7 @@ Work addText(CLI::App& app) {
       ->type_name("PX")
       ->capture_default_str();
   command->add_option("--width", options->page.width, "Lines break to fit this (default: only where the text says)")
-      ->check(within(1.0, kLargest))
+      ->check(within(1.0, kWidest))
       ->type_name("PX");
   command->add_option("--height", options->page.height, "Lines that do not fit this are cut off (default: none are)")
       ->check(within(1.0, kLargest))

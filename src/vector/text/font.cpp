@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <span>
 
 #include FT_FONT_FORMATS_H
 #include FT_MULTIPLE_MASTERS_H
@@ -51,6 +52,22 @@ std::string nameOf(hb_face_t* face, hb_ot_name_id_t id) {
   unsigned size = sizeof text;
   if (hb_ot_name_get_utf8(face, id, english, &size, text) == 0) return {};
   return std::string(text, std::min<size_t>(size, sizeof text - 1));
+}
+
+/// A table that does not lie within the file, 0 where all do. FreeType leaves such a one out, and may say that all
+/// glyphs are empty then; browsers refuse the font.
+GpgpTag cutOffTable(std::span<const unsigned char> bytes, uint32_t face) {
+  const auto number = [&](uint64_t at, int count) {
+    uint64_t value = 0;
+    for (int i = 0; i < count; ++i) value = value << 8 | (at + i < bytes.size() ? bytes[at + i] : 0);
+    return value;
+  };
+  const uint64_t start = number(0, 4) == GPGP_TAG('t', 't', 'c', 'f') ? number(12 + 4 * uint64_t(face), 4) : 0;
+  const uint64_t count = number(start + 4, 2);
+  for (uint64_t at = start + 12; at < start + 12 + 16 * count; at += 16) {
+    if (number(at + 8, 4) + number(at + 12, 4) > bytes.size()) return static_cast<GpgpTag>(number(at, 4));
+  }
+  return 0;
 }
 
 /// The size at which FreeType scales outlines: units become pixels, so that 26.6 keeps parts of a unit. Its CFF engine
@@ -105,6 +122,8 @@ Result<void> Font::openBoth(const GpgpFontCreateInfo& info) {
   const uint32_t glyphs = hb_face_get_glyph_count(open.face.get());
   if (!FT_IS_SFNT(outlines) || glyphs == 0)
     return makeError(GPGP_ERROR_UNSUPPORTED, "a font without OpenType tables (%s)", FT_Get_Font_Format(outlines));
+  if (const GpgpTag tag = cutOffTable({reinterpret_cast<const unsigned char*>(bytes), size}, info.face))
+    return makeError(GPGP_ERROR_INVALID_DATA, "its table '%s' ends beyond the file", TagText(tag).text);
   info_.face = info.face;
   info_.faceCount = faces;
   info_.glyphCount = std::min<uint32_t>(glyphs, static_cast<uint32_t>(outlines->num_glyphs));

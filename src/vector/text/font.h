@@ -85,7 +85,7 @@ public:
   float emPerShapingUnit() const { return 1.f / (kUnits * static_cast<float>(info_.unitsPerEm)); }
   bool has(char32_t character) const {
     hb_codepoint_t glyph = 0;
-    return hb_font_get_nominal_glyph(shaping(), character, &glyph) != 0;
+    return hb_font_get_nominal_glyph(shaping(), character, &glyph) != 0 && glyph < info_.glyphCount;
   }
 
   uint32_t magic = kMagic;

@@ -144,15 +144,6 @@ bool sameShaping(const Style& a, const Style& b) {
 
 } // namespace
 
-hb_script_t Itemizer::scriptOf(std::span<const char32_t> characters) {
-  for (const char32_t c : characters) {
-    UErrorCode error = U_ZERO_ERROR;
-    const UScriptCode script = uscript_getScript(static_cast<UChar32>(c), &error);
-    if (U_SUCCESS(error) && script != USCRIPT_COMMON && script != USCRIPT_INHERITED) return toHarfBuzz(script);
-  }
-  return HB_SCRIPT_COMMON;
-}
-
 Font* Itemizer::fontOf(std::span<const char32_t> grapheme, const Style& style) {
   const uint32_t count = style.source->fontCount;
   const bool inColor = wantsColor(grapheme);

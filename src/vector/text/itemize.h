@@ -37,8 +37,6 @@ struct Itemizer {
   /// The font of a grapheme in a style: the first that has all its characters, for emoji the first such in colour, and
   /// where U+FE0E wants text the first such without; else the first that has its first character; else the first.
   static Font* fontOf(std::span<const char32_t> grapheme, const Style& style);
-  /// The script of the first character that has one of its own.
-  static hb_script_t scriptOf(std::span<const char32_t> characters);
 };
 
 /// A character that leaves no mark where it is missing.

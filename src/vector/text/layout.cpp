@@ -99,21 +99,20 @@ Result<void> Layout::analyse() {
   return {};
 }
 
-uint32_t Layout::addGlyphs(const Run& run, uint32_t begin, uint32_t end) {
+uint32_t Layout::addGlyphs(const Text& text, const Run& run, uint32_t begin, uint32_t end) {
   const Style& style = styles_[run.style];
-  const bool isInserted = run.kind == Run::Kind::inserted;
   const RunRequest request{run.font,
                            run.script,
                            style.language,
                            (run.level & 1) != 0,
                            style.source->letterSpacing != 0,
                            {style.source->features, style.source->featureCount},
-                           isInserted ? inserted_.characters : text_.characters,
-                           isInserted ? 0 : begin,
-                           isInserted ? inserted_.size() : end};
+                           text.characters,
+                           begin,
+                           end};
   const auto glyphs = shaping_->shape(request);
   for (ShapedGlyph glyph : glyphs) {
-    glyph.cluster = isInserted ? begin : glyph.cluster + begin;
+    glyph.cluster += begin;
     shaped_.push_back(glyph);
   }
   return static_cast<uint32_t>(glyphs.size());
@@ -167,7 +166,7 @@ void Layout::shapeRuns() {
   for (Run& run : runs_) {
     if (run.kind != Run::Kind::text) continue;
     run.firstGlyph = static_cast<uint32_t>(shaped_.size());
-    run.glyphCount = addGlyphs(run, run.begin, run.end);
+    run.glyphCount = addGlyphs(text_, run, run.begin, run.end);
     measure(run, run.begin, run.end, run.firstGlyph, run.glyphCount);
     uint32_t reported = ~0u;
     for (uint32_t i = 0; i < run.glyphCount; ++i) {

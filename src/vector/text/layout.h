@@ -70,7 +70,7 @@ private:
   void breakLines();
   void place();
 
-  uint32_t addGlyphs(const Run& run, uint32_t begin, uint32_t end); // how many
+  uint32_t addGlyphs(const Text& text, const Run& run, uint32_t begin, uint32_t end); // how many
   void share(const Run& run, std::span<const ShapedGlyph> glyphs, uint32_t begin, uint32_t end);
   void measure(const Run& run, uint32_t begin, uint32_t end, uint32_t firstGlyph, uint32_t glyphCount);
   Piece slice(uint32_t run, uint32_t begin, uint32_t end);
@@ -100,7 +100,11 @@ private:
   Shaper* shaping_ = nullptr;
   const GpgpTextInfo* info_ = nullptr;
   std::vector<Style> styles_;
-  Text inserted_; // an ellipsis or a hyphen
+  struct { // an ellipsis or a hyphen
+    Text text;
+    std::vector<uint32_t> styleOf;
+    std::vector<uint8_t> flags, levels;
+  } inserted_;
   std::vector<UScriptCode> scripts_;
 
   Text text_;

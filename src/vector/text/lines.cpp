@@ -65,7 +65,7 @@ Layout::Piece Layout::slice(uint32_t index, uint32_t begin, uint32_t end) {
   const bool whole = (begin == run.begin || (flags_[begin] & kSafe)) && (end == run.end || (flags_[end] & kSafe));
   if (!whole) {
     piece.firstGlyph = static_cast<uint32_t>(shaped_.size());
-    piece.glyphCount = addGlyphs(run, begin, end);
+    piece.glyphCount = addGlyphs(text_, run, begin, end);
     measure(run, begin, end, piece.firstGlyph, piece.glyphCount);
     return piece;
   }
@@ -81,17 +81,34 @@ Layout::Piece Layout::slice(uint32_t index, uint32_t begin, uint32_t end) {
   return piece;
 }
 
-/// Appends the run of an ellipsis or a hyphen at a character, in one font; `otherwise`: where no font of the style has
-/// the first of it.
+/// Appends the runs of an ellipsis or a hyphen at a character, in a paragraph or among characters of a level, and
+/// returns the first; `otherwise`: where no font of the style has the first of it.
 uint32_t Layout::insert(const char* text, const char* otherwise, uint32_t style, uint8_t level, uint32_t at) {
-  inserted_.assign(text);
-  const auto font = [&] { return Itemizer::fontOf(inserted_.characters, styles_[style]); };
-  if (otherwise && !font()->has(inserted_.characters[0])) inserted_.assign(otherwise);
-  Run run{at, at, Run::Kind::inserted, level, Itemizer::scriptOf(inserted_.characters), font(), style};
-  run.firstGlyph = static_cast<uint32_t>(shaped_.size());
-  run.glyphCount = addGlyphs(run, at, at);
-  runs_.push_back(run);
-  return static_cast<uint32_t>(runs_.size()) - 1;
+  inserted_.text.assign(text);
+  auto& characters = inserted_.text.characters;
+  if (otherwise && !Itemizer::fontOf(std::span(characters).first(1), styles_[style])->has(characters[0]))
+    inserted_.text.assign(otherwise);
+  std::replace_if(
+      characters.begin(), characters.end(), [](char32_t c) { return isNewline(c) || c == '\t'; }, U' ');
+  const uint32_t size = inserted_.text.size();
+  inserted_.styleOf.assign(size, style);
+  inserted_.levels.assign(size, level);
+  inserted_.flags.assign(size_t(size) + 1, 0);
+  shaping_->breaks.graphemes(inserted_.text, inserted_.flags);
+  if (level < 2) // of a paragraph; a lack of memory leaves all in its direction
+    if (!shaping_->bidi.levels(characters, level ? 1 : -1, inserted_.levels.data()))
+      inserted_.levels.assign(size, level);
+  const uint32_t first = static_cast<uint32_t>(runs_.size());
+  Itemizer{inserted_.text, styles_, inserted_.styleOf, inserted_.flags, inserted_.levels, scripts_}.paragraph(0, size,
+                                                                                                              runs_);
+  for (Run& run : std::span(runs_).subspan(first)) {
+    run.firstGlyph = static_cast<uint32_t>(shaped_.size());
+    run.glyphCount = addGlyphs(inserted_.text, run, run.begin, run.end);
+    for (ShapedGlyph& glyph : std::span(shaped_).subspan(run.firstGlyph)) glyph.cluster = at;
+    run.begin = run.end = at;
+    run.kind = Run::Kind::inserted;
+  }
+  return first;
 }
 
 float Layout::insertedWidth(const Run& run) const {
@@ -101,7 +118,8 @@ float Layout::insertedWidth(const Run& run) const {
   return width;
 }
 
-/// A line's pieces in the order in which they are seen, and its widths. `inserted`: the index of an ellipsis' run.
+/// A line's pieces in the order in which they are seen, and its widths. `inserted`: the first run of an ellipsis, to
+/// which all behind it belong.
 void Layout::build(Line& line, uint32_t inserted) {
   line.inkEnd = inkEndOf(line.begin, line.end);
   ordered_.clear();
@@ -121,7 +139,7 @@ void Layout::build(Line& line, uint32_t inserted) {
   constexpr char32_t kSoftHyphen = 0xad;
   if (inserted == ~0u && !line.hard && line.end > line.begin && text_.characters[line.end - 1] == kSoftHyphen)
     inserted = insert("\xe2\x80\x90", "-", styleOf_[line.end - 1], ordered_.back().level, line.end - 1);
-  if (inserted != ~0u) {
+  for (; inserted < runs_.size(); ++inserted) {
     const Run& run = runs_[inserted];
     ordered_.push_back(
         {line.end, line.end, run.level, inserted, run.firstGlyph, run.glyphCount, 0, insertedWidth(run)});
@@ -252,7 +270,8 @@ void Layout::cutOff(Line& line, double room) {
     if (marked && (index == ~0u || runs_[index].style != style))
       index = insert(info_->ellipsis ? info_->ellipsis : "\xe2\x80\xa6", info_->ellipsis ? nullptr : "...", style,
                      line.level, end);
-    const double ellipsis = index == ~0u ? 0 : static_cast<double>(insertedWidth(runs_[index]));
+    double ellipsis = 0;
+    for (size_t i = index; i < runs_.size(); ++i) ellipsis += static_cast<double>(insertedWidth(runs_[i]));
     if (end > begin && inkWidth(begin, end) + ellipsis > limit) continue;
     pieces_.resize(line.firstPiece);
     line.end = end;
@@ -260,8 +279,16 @@ void Layout::cutOff(Line& line, double room) {
     if (line.ink <= limit || end == begin) break;
   }
   line.hard = true;
-  for (uint32_t i = 0; index != ~0u && i < runs_[index].glyphCount; ++i)
-    shaped_[runs_[index].firstGlyph + i].cluster = end;
+  if (index != ~0u) {
+    for (const Run& run : std::span(runs_).subspan(index))
+      for (ShapedGlyph& glyph : std::span(shaped_).subspan(run.firstGlyph, run.glyphCount)) glyph.cluster = end;
+    for (uint32_t c = 0; c < inserted_.text.size(); ++c) {
+      const char32_t character = inserted_.text.characters[c];
+      const auto has = [&](const Run& run) { return run.font->has(character); };
+      if (!isIgnorable(character) && std::none_of(runs_.begin() + index, runs_.end(), has))
+        missing_.push_back({text_.byteOf[end], character});
+    }
+  }
   setHeight(line);
 }
 

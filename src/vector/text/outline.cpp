@@ -175,8 +175,9 @@ struct Picture {
   GpgpGlyphImage image{};
 };
 
-/// The glyph's bitmap of the largest strike, nothing where it has none in colour. Leaves FreeType's size as it was.
-Picture loadPicture(Font& font, uint32_t glyph) {
+/// The glyph's bitmap of the largest strike, nothing where it has none in colour; an error where it is broken. Leaves
+/// FreeType's size as it was.
+Result<Picture> loadPicture(Font& font, uint32_t glyph) {
   Picture picture;
   OpenFont& open = font.opened();
   const FT_Face face = open.outlines.get();
@@ -185,7 +186,8 @@ Picture loadPicture(Font& font, uint32_t glyph) {
     if (face->available_sizes[i].y_ppem > face->available_sizes[strike].y_ppem) strike = i;
   if (face->num_fixed_sizes == 0 || FT_Select_Size(face, strike)) return picture;
   const FT_Bitmap_Size size = face->available_sizes[strike];
-  const bool loaded = !FT_Load_Glyph(face, glyph, FT_LOAD_COLOR | FT_LOAD_NO_HINTING);
+  const FT_Error error = FT_Load_Glyph(face, glyph, FT_LOAD_COLOR | FT_LOAD_NO_HINTING);
+  const bool loaded = !error;
   const FT_Bitmap& bitmap = face->glyph->bitmap;
   if (loaded && face->glyph->format == FT_GLYPH_FORMAT_BITMAP && bitmap.pixel_mode == FT_PIXEL_MODE_BGRA &&
       bitmap.width && bitmap.rows && size.x_ppem > 0 && size.y_ppem > 0) {
@@ -210,6 +212,8 @@ Picture loadPicture(Font& font, uint32_t glyph) {
         {left, top, left + static_cast<float>(bitmap.width) * x, top + static_cast<float>(bitmap.rows) * y}};
   }
   if (open.emPerUnit > 0) FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(1 / open.emPerUnit)), 72, 72);
+  if (error && error != FT_Err_Missing_Bitmap)
+    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u has a broken bitmap (FreeType's error %d)", glyph, error);
   return picture;
 }
 
@@ -228,7 +232,9 @@ Result<void> collect(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& p
     if (*colored) return {};
   }
   if (!plain && (colors & GPGP_FONT_COLOR_BITMAPS)) {
-    picture = loadPicture(font, info.glyph);
+    auto loaded = loadPicture(font, info.glyph);
+    if (!loaded && !scalable) return loaded.error();
+    if (loaded) picture = std::move(*loaded);
     if (!picture.pixels.empty()) return {};
   }
   if (!scalable) return {};

@@ -87,8 +87,9 @@ void Shaper::shapeNow(const RunRequest& run, uint32_t from, uint32_t to, std::ve
   const float em = run.font->emPerShapingUnit();
   glyphs.clear();
   glyphs.reserve(count);
+  const uint32_t known = run.font->info().glyphCount; // a damaged font's tables name others, too
   for (unsigned i = 0; i < count; ++i)
-    glyphs.push_back({infos[i].codepoint, infos[i].cluster - (run.begin - from),
+    glyphs.push_back({infos[i].codepoint < known ? infos[i].codepoint : 0, infos[i].cluster - (run.begin - from),
                       static_cast<float>(places[i].x_advance) * em, static_cast<float>(places[i].x_offset) * em,
                       static_cast<float>(places[i].y_offset) * em,
                       !(hb_glyph_info_get_glyph_flags(&infos[i]) & HB_GLYPH_FLAG_UNSAFE_TO_BREAK)});

@@ -817,6 +817,73 @@ TEST(TextFont, ABrokenGlyphIsDrawnAsMissing) {
   }
 }
 
+FontHandle openBytes(const std::vector<char>& bytes, Log& log, GpgpResult expected = GPGP_SUCCESS) {
+  GpgpFontCreateInfo info = GPGP_FONT_CREATE_INFO_INIT;
+  info.data = bytes.data();
+  info.size = bytes.size();
+  info.messageFn = Log::take;
+  info.messageUserData = &log;
+  GpgpFont font = nullptr;
+  EXPECT_EQ(gpgpCreateFont(&info, &font), expected) << log.text;
+  return FontHandle(font);
+}
+
+TEST(TextFont, AFontThatIsCutOffIsRefused) { // FreeType opens some, and says that their glyphs are empty
+  GPGP_NEEDS_FONTS();
+  for (const char* name : {"DejaVuSans.ttf", "Inter-roman.var.ttf", "Cantarell-Regular.otf", "AmiriQuranColored.ttf"}) {
+    if (!std::filesystem::exists(fontPath(name))) continue;
+    const std::vector<char> bytes = bytesOf(fontPath(name));
+    for (const double part : {0.05, 0.2, 0.35, 0.5, 0.7}) {
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(part));
+      std::vector<char> cut = bytes;
+      cut.resize(static_cast<size_t>(part * static_cast<double>(bytes.size())));
+      Log log;
+      openBytes(cut, log, GPGP_ERROR_INVALID_DATA);
+      EXPECT_FALSE(log.text.empty());
+    }
+  }
+}
+
+TEST(TextFont, ABrokenBitmapIsDrawnAsMissing) {
+  GPGP_NEEDS_FONTS();
+  std::vector<char> bytes = bytesOf(fontPath("NotoColorEmoji.ttf"));
+  const FontHandle whole = openFont("NotoColorEmoji.ttf");
+  uint32_t id = 0;
+  ASSERT_EQ(gpgpGetNominalGlyph(whole.get(), 0x1f600, &id), GPGP_SUCCESS);
+  const size_t pictures = tableOf(bytes, "CBDT");
+  const std::string png = "\x89PNG";
+  size_t broken = 0;
+  for (auto at = bytes.begin() + static_cast<std::ptrdiff_t>(pictures);
+       (at = std::search(at, bytes.end(), png.begin(), png.end())) != bytes.end(); ++at, ++broken)
+    *at = 0;
+  ASSERT_GT(broken, 1000u);
+  Log log;
+  const FontHandle font = openBytes(bytes, log);
+  EXPECT_FALSE(glyphOf(whole.get(), id).outline.broken);
+  EXPECT_TRUE(glyphOf(font.get(), id).outline.broken);
+  EXPECT_NE(log.text.find("glyph " + std::to_string(id) + " has a broken bitmap"), std::string::npos) << log.text;
+  uint32_t space = 0;
+  ASSERT_EQ(gpgpGetNominalGlyph(font.get(), ' ', &space), GPGP_SUCCESS);
+  EXPECT_FALSE(glyphOf(font.get(), space).outline.broken) << "has none";
+}
+
+TEST(TextFont, CharactersOfGlyphsThatAreNotThereAreMissing) {
+  GPGP_NEEDS_FONTS();
+  std::vector<char> bytes = bytesOf(fontPath("DejaVuSans.ttf"));
+  const size_t count = tableOf(bytes, "maxp") + 4;
+  bytes[count] = 0;
+  bytes[count + 1] = 32;
+  Log log;
+  const FontHandle font = openBytes(bytes, log);
+  ASSERT_EQ(infoOf(font.get()).glyphCount, 32u);
+  Paper paper;
+  ASSERT_EQ(paper.set(textInfo("!Hi", {font.get()}, 20)), GPGP_SUCCESS);
+  ASSERT_EQ(paper.info.glyphCount, 3u);
+  for (uint32_t i = 0; i < 3; ++i) EXPECT_LT(paper.info.glyphs[i].glyph, 32u);
+  ASSERT_EQ(paper.info.missingCount, 2u);
+  EXPECT_EQ(paper.info.missing[0].character, uint32_t('H'));
+}
+
 TEST(TextFont, IsSharedByThreads) {
   GPGP_NEEDS_FONTS();
   const FontHandle font = openFont("DejaVuSans.ttf");

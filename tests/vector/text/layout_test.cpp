@@ -452,6 +452,49 @@ TEST(TextLayout, AnEllipsisHasTheStyleBeforeIt) {
   EXPECT_EQ(paper.info.glyphs[0].size, 60);
 }
 
+TEST(TextLayout, AnEllipsisIsOrderedAndFindsItsFonts) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle mono = openFont("DejaVuSansMono.ttf"), sans = openFont("DejaVuSans.ttf");
+  const std::string latin = "some words that do not fit",
+                    hebrew = "\u05e9\u05dc\u05d5\u05dd \u05e2\u05d5\u05dc\u05dd \u05e9\u05dc\u05d5\u05dd";
+  Paper paper;
+  const auto xOf = [&](char32_t character, GpgpFont font) { // of its last glyph
+    uint32_t id = 0;
+    EXPECT_EQ(gpgpGetNominalGlyph(font, character, &id), GPGP_SUCCESS);
+    float x = -1;
+    for (uint32_t i = 0; i < paper.info.glyphCount; ++i)
+      if (paper.info.glyphs[i].font == font && paper.info.glyphs[i].glyph == id) x = paper.info.glyphs[i].x;
+    EXPECT_GE(x, 0) << uint32_t(character);
+    return x;
+  };
+  const auto set = [&](const std::string& text, const std::vector<GpgpFont>& fonts, const char* ellipsis) {
+    GpgpTextInfo info = textInfo(text, fonts, 20, 110);
+    info.maxLines = 1;
+    info.ellipsis = ellipsis;
+    ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+    ASSERT_TRUE(paper.info.truncated);
+    EXPECT_LE(paper.info.width, 110.02f);
+  };
+  // Numbers and Latin letters stay as they are in a line from right to left, left of it.
+  set(hebrew, {sans.get()}, " [m12]");
+  EXPECT_LT(xOf('m', sans.get()), xOf('1', sans.get()));
+  EXPECT_LT(xOf('1', sans.get()), xOf('2', sans.get()));
+  EXPECT_LT(xOf('2', sans.get()), xOf(0x5e9, sans.get()));
+  EXPECT_EQ(paper.info.missingCount, 0u);
+  // And Hebrew runs from right to left in a line from left to right.
+  set(latin, {sans.get()}, " \u05d0\u05d1");
+  EXPECT_LT(xOf(0x5d1, sans.get()), xOf(0x5d0, sans.get()));
+  EXPECT_LT(xOf('s', sans.get()), xOf(0x5d1, sans.get()));
+  // Each of its characters has the font that has it.
+  set(latin, {mono.get(), sans.get()}, "+\u05d0");
+  EXPECT_LT(xOf('+', mono.get()), xOf(0x5d0, sans.get()));
+  EXPECT_EQ(paper.info.missingCount, 0u);
+  set(latin, {mono.get()}, "\n+\u65e5");
+  ASSERT_EQ(paper.info.missingCount, 1u);
+  EXPECT_EQ(paper.info.missing[0].character, 0x65e5u);
+  EXPECT_EQ(paper.info.missing[0].offset, paper.info.lines[0].end);
+}
+
 TEST(TextLayout, TheLastLineStaysWithinTheHeight) {
   GPGP_NEEDS_FONTS();
   const FontHandle font = openFont("DejaVuSans.ttf"), arabic = openFont("NotoNaskhArabic-Regular.ttf");
