@@ -3,47 +3,63 @@
 #include "fetched_svg.h"
 
 #include <functional>
+#include <optional>
 
 namespace {
 using namespace gpgp;
 using namespace gpgp::test;
 
-/// An image as the only attachment of a render pass.
+/// An image as the attachment of a render pass, with a depth buffer where a format is given for one.
 struct Attachment {
   host::HeadlessDevice& device;
   const uint32_t width, height;
   host::Image image;
+  std::optional<host::Image> depth;
   VkRenderPass pass = VK_NULL_HANDLE;
   VkFramebuffer framebuffer = VK_NULL_HANDLE;
   GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
 
-  Attachment(host::HeadlessDevice& owner, VkFormat format, uint32_t w, uint32_t h)
+  Attachment(host::HeadlessDevice& owner, VkFormat format, uint32_t w, uint32_t h,
+             VkFormat depthFormat = VK_FORMAT_UNDEFINED)
       : device(owner), width(w), height(h),
         image(owner, {.format = format, .width = w, .height = h, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}) {
-    const VkAttachmentDescription attachment{0,
-                                             format,
-                                             VK_SAMPLE_COUNT_1_BIT,
-                                             VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                             VK_ATTACHMENT_STORE_OP_STORE,
-                                             VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                             VK_ATTACHMENT_STORE_OP_DONT_CARE,
-                                             VK_IMAGE_LAYOUT_UNDEFINED,
-                                             VK_IMAGE_LAYOUT_GENERAL};
-    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    const auto described = [](VkFormat of, VkImageLayout last) {
+      return VkAttachmentDescription{0,
+                                     of,
+                                     VK_SAMPLE_COUNT_1_BIT,
+                                     VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                     VK_ATTACHMENT_STORE_OP_STORE,
+                                     VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                     VK_ATTACHMENT_STORE_OP_DONT_CARE,
+                                     VK_IMAGE_LAYOUT_UNDEFINED,
+                                     last};
+    };
+    const VkAttachmentDescription attachments[] = {
+        described(format, VK_IMAGE_LAYOUT_GENERAL),
+        described(depthFormat, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL)};
+    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
+        depthReference{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    if (depthFormat != VK_FORMAT_UNDEFINED)
+      depth.emplace(device, host::ImageInfo{.format = depthFormat,
+                                            .width = w,
+                                            .height = h,
+                                            .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT});
+    const uint32_t count = depth ? 2 : 1;
     VkSubpassDescription subpass{};
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = &reference;
+    if (depth) subpass.pDepthStencilAttachment = &depthReference;
     VkRenderPassCreateInfo passInfo{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-    passInfo.attachmentCount = 1;
-    passInfo.pAttachments = &attachment;
+    passInfo.attachmentCount = count;
+    passInfo.pAttachments = attachments;
     passInfo.subpassCount = 1;
     passInfo.pSubpasses = &subpass;
     EXPECT_EQ(device.vk().vkCreateRenderPass(device.device(), &passInfo, nullptr, &pass), VK_SUCCESS);
-    const VkImageView imageView = image.view();
+    const VkImageView views[] = {image.view(), depth ? depth->view() : VK_NULL_HANDLE};
     VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
     framebufferInfo.renderPass = pass;
-    framebufferInfo.attachmentCount = 1;
-    framebufferInfo.pAttachments = &imageView;
+    framebufferInfo.attachmentCount = count;
+    framebufferInfo.pAttachments = views;
     framebufferInfo.width = width;
     framebufferInfo.height = height;
     framebufferInfo.layers = 1;
@@ -63,9 +79,10 @@ struct Attachment {
     begin.renderPass = pass;
     begin.framebuffer = framebuffer;
     begin.renderArea.extent = {width, height};
-    const VkClearValue clear{color};
-    begin.clearValueCount = 1;
-    begin.pClearValues = &clear;
+    VkClearValue clear[2] = {{color}, {}};
+    clear[1].depthStencil = {1, 0};
+    begin.clearValueCount = 2;
+    begin.pClearValues = clear;
     device.vk().vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
     const VkRect2D scissor{{0, 0}, {width, height}};
@@ -124,6 +141,60 @@ TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
   EXPECT_EQ(at(20, 20)[2], 0);
   EXPECT_EQ(at(39, 29)[0], 255);
   EXPECT_EQ(at(40, 30)[0], 0);
+}
+
+TEST_F(CanvasTest, TheDrawTestsDepthAndWritesNone) {
+  Attachment attachment(device, VK_FORMAT_R8G8B8A8_UNORM, 64, 48, VK_FORMAT_D32_SFLOAT);
+  attachment.target.depthFormat = VK_FORMAT_D32_SFLOAT;
+  attachment.target.depthTest = VK_TRUE;
+  attachment.target.depthCompare = VK_COMPARE_OP_LESS;
+  makeCanvas(64, 0, 0, &attachment.target);
+  const GpgpView view = makeView(64, 48);
+  TestPath all;
+  all.move(0, 0).line(64, 0).line(64, 48).line(0, 48).close();
+  all.color = {1, 1, 1, 0.5f};
+  const GpgpAsset drawing = makeDrawing({all.view()});
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    const GpgpCanvasItem item = place(drawing);
+    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+    info.width = 64;
+    info.height = 48;
+    info.items = &item;
+    info.itemCount = 1;
+    info.view = view;
+    ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
+    attachment.render(commands, {{0, 0, 0, 0}}, [&] {
+      // What is there: at the left nearer than the view, in the middle farther, at the right farther still.
+      const float depths[] = {0.25f, 0.6f, 0.9f};
+      for (int32_t i = 0; i < 3; ++i) {
+        VkClearAttachment clear{VK_IMAGE_ASPECT_DEPTH_BIT, 0, {}};
+        clear.clearValue.depthStencil = {depths[i], 0};
+        const VkClearRect part{{{20 * i, 0}, {20, 48}}, 0, 1};
+        device.vk().vkCmdClearAttachments(commands, 1, &clear, 1, &part);
+      }
+      GpgpCanvasDrawInfo draw = attachment.drawAll(view);
+      draw.clip[14] = 0.5f; // the upper half
+      draw.height = 24;
+      EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
+      draw = attachment.drawAll(view);
+      draw.clip[14] = 0.75f;
+      EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
+    });
+  });
+  const auto pixels = attachment.bytes();
+  const auto red = [&](size_t x, size_t y) { return int(pixels[(y * 64 + x) * 4]); };
+  for (const size_t y : {2u, 20u}) {
+    EXPECT_EQ(red(10, y), 0);
+    EXPECT_NEAR(red(30, y), 128, 1) << "only the first is in front";
+    EXPECT_NEAR(red(50, y), 191, 1) << "both are, and the first has left no depth";
+  }
+  for (const size_t y : {28u, 45u}) {
+    EXPECT_EQ(red(10, y), 0);
+    EXPECT_EQ(red(30, y), 0);
+    EXPECT_NEAR(red(50, y), 128, 1);
+  }
 }
 
 struct TwoWays : CanvasTest {
