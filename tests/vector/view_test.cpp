@@ -117,12 +117,8 @@ TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
   const GpgpFrame frame = advance();
   device.submitAndWait([&](VkCommandBuffer commands) {
     ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
-    const GpgpCanvasItem item = place(drawing);
-    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-    info.width = 64;
-    info.height = 48;
-    info.items = &item;
-    info.itemCount = 1;
+    const std::vector<GpgpCanvasItem> items{place(drawing)};
+    GpgpCanvasInfo info = infoOf(items, 64, 48);
     info.view = view;
     const GpgpCanvasDrawInfo draw = attachment.drawAll(view);
     EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_NOT_READY);
@@ -157,12 +153,8 @@ TEST_F(CanvasTest, TheDrawTestsDepthAndWritesNone) {
   const GpgpFrame frame = advance();
   device.submitAndWait([&](VkCommandBuffer commands) {
     ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
-    const GpgpCanvasItem item = place(drawing);
-    GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-    info.width = 64;
-    info.height = 48;
-    info.items = &item;
-    info.itemCount = 1;
+    const std::vector<GpgpCanvasItem> items{place(drawing)};
+    GpgpCanvasInfo info = infoOf(items, 64, 48);
     info.view = view;
     ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
     attachment.render(commands, {{0, 0, 0, 0}}, [&] {

@@ -187,9 +187,8 @@ Result<Picture> loadPicture(Font& font, uint32_t glyph) {
   if (face->num_fixed_sizes == 0 || FT_Select_Size(face, strike)) return picture;
   const FT_Bitmap_Size size = face->available_sizes[strike];
   const FT_Error error = FT_Load_Glyph(face, glyph, FT_LOAD_COLOR | FT_LOAD_NO_HINTING);
-  const bool loaded = !error;
   const FT_Bitmap& bitmap = face->glyph->bitmap;
-  if (loaded && face->glyph->format == FT_GLYPH_FORMAT_BITMAP && bitmap.pixel_mode == FT_PIXEL_MODE_BGRA &&
+  if (!error && face->glyph->format == FT_GLYPH_FORMAT_BITMAP && bitmap.pixel_mode == FT_PIXEL_MODE_BGRA &&
       bitmap.width && bitmap.rows && size.x_ppem > 0 && size.y_ppem > 0) {
     picture.pixels.resize(size_t(4) * bitmap.width * bitmap.rows);
     uint8_t* to = picture.pixels.data();

@@ -755,6 +755,17 @@ void breakGlyph(std::vector<char>& bytes, uint32_t glyph) {
   bytes[contours + 1] = 0x7f;
 }
 
+FontHandle openBytes(const std::vector<char>& bytes, Log& log, GpgpResult expected = GPGP_SUCCESS) {
+  GpgpFontCreateInfo info = GPGP_FONT_CREATE_INFO_INIT;
+  info.data = bytes.data();
+  info.size = bytes.size();
+  info.messageFn = Log::take;
+  info.messageUserData = &log;
+  GpgpFont font = nullptr;
+  EXPECT_EQ(gpgpCreateFont(&info, &font), expected) << log.text;
+  return FontHandle(font);
+}
+
 TEST(TextFont, ABrokenGlyphIsDrawnAsMissing) {
   GPGP_NEEDS_FONTS();
   std::vector<char> bytes = bytesOf(fontPath("DejaVuSans.ttf"));
@@ -764,16 +775,11 @@ TEST(TextFont, ABrokenGlyphIsDrawnAsMissing) {
   ASSERT_EQ(gpgpGetNominalGlyph(whole.get(), 'a', &a), GPGP_SUCCESS);
   breakGlyph(bytes, e);
   Log log;
-  GpgpFontCreateInfo open = GPGP_FONT_CREATE_INFO_INIT;
-  open.data = bytes.data();
-  open.size = bytes.size();
-  open.messageFn = Log::take;
-  open.messageUserData = &log;
   for (const bool signToo : {false, true}) {
     if (signToo) breakGlyph(bytes, 0);
-    GpgpFont raw = nullptr;
-    ASSERT_EQ(gpgpCreateFont(&open, &raw), GPGP_SUCCESS);
-    const FontHandle font(raw);
+    const FontHandle font = openBytes(bytes, log);
+    const GpgpFont raw = font.get();
+    ASSERT_TRUE(raw);
     struct Seen {
       std::vector<float> points;
       bool broken = false;
@@ -815,17 +821,6 @@ TEST(TextFont, ABrokenGlyphIsDrawnAsMissing) {
     EXPECT_EQ(paper.info.glyphCount, 6u);
     EXPECT_EQ(paper.info.missingCount, 0u);
   }
-}
-
-FontHandle openBytes(const std::vector<char>& bytes, Log& log, GpgpResult expected = GPGP_SUCCESS) {
-  GpgpFontCreateInfo info = GPGP_FONT_CREATE_INFO_INIT;
-  info.data = bytes.data();
-  info.size = bytes.size();
-  info.messageFn = Log::take;
-  info.messageUserData = &log;
-  GpgpFont font = nullptr;
-  EXPECT_EQ(gpgpCreateFont(&info, &font), expected) << log.text;
-  return FontHandle(font);
 }
 
 TEST(TextFont, AFontThatIsCutOffIsRefused) { // FreeType opens some, and says that their glyphs are empty
