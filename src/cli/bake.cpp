@@ -63,6 +63,11 @@ std::string typeOf(const BakeOptions& options, const std::string& file, std::str
   throw Usage(file + ": neither .pga nor .svg nor a font; --type says what it is");
 }
 
+/// Of the baked file.
+const char* endingOf(std::string_view type) {
+  return type == "drawing" ? ".gpgpv" : type == "font" ? ".gpgpf" : ".gpgp";
+}
+
 struct Baked {
   Blob blob;
   Json json = Json::object(); ///< what only this type tells
@@ -135,7 +140,8 @@ Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
 Outcome bake(const BakeOptions& options, const CommonOptions& common) {
   if (options.out == kStandard && common.json) throw Usage("standard output takes the baked file or --json, not both");
   if (options.link) return bakeLinked(options);
-  // With several inputs, or where OUT is a folder, each gets a file of its own name there, with .gpgp behind it.
+  // With several inputs, or where OUT is a folder, each gets a file of its own name there, with its type's ending
+  // behind it.
   const bool folder = options.in.size() > 1 || std::filesystem::is_directory(options.out) || options.out.ends_with('/');
   if (folder && options.out == kStandard) throw Usage("standard output takes one input");
   struct Input {
@@ -162,7 +168,7 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
       return outcome;
     }
     const std::string out =
-        folder ? (std::filesystem::path(options.out) / std::filesystem::path(file).filename()).string() + ".gpgp"
+        folder ? (std::filesystem::path(options.out) / std::filesystem::path(file).filename()).string() + endingOf(type)
                : options.out;
     for (const Json& other : list)
       if (other["out"] == out) throw Usage(file + ": another input goes to " + out + " as well");
@@ -220,7 +226,7 @@ Examples:
   gpgp bake old=a/house.pga new=b/house.pga --link -o houses.gpgp  their starts are old and new
   gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"
   gpgp bake NotoNaskhArabic-Regular.ttf -o arabic.gpgpf --characters-file strings.txt --outline 0.1
-  gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp
+  gpgp bake *.pga *.svg -o assets/                   one file each: assets/city.pga.gpgp, hud.svg.gpgpv
   gpgp bake icon.svg --scale 40 -o icon.gpgpv        24 pixels, shown at up to 960
   cat icon.svg | gpgp bake - -o - > icon.gpgpv       bytes say what standard input is
 

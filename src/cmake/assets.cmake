@@ -2,7 +2,8 @@
 #   [CHARACTERS_FILES files...] [OUTLINE width] [OUTPUTS variable])
 #
 # Bakes grammars (.pga), drawings (.svg, .svgz) and fonts (.ttf, .otf, .ttc, .otc) when TARGET is built, with `gpgp bake`: each file becomes
-# folder/FILE.gpgp, below the path that it has in the source folder, and is baked again when it or the command changes.
+# folder/FILE.gpgp (drawings .gpgpv, fonts .gpgpf), below the path that it has in the source folder, and is baked again when
+# it or the command changes.
 # An error in one of them fails the build, with its place.
 #
 #   DESTINATION  where the baked files go; relative to the build folder; without it: assets
@@ -69,7 +70,13 @@ function(gpgp_add_assets target)
     else()
       cmake_path(GET file FILENAME name)
     endif()
+    string(TOLOWER ${name} type)
     set(output ${arg_DESTINATION}/${name}.gpgp)
+    if(type MATCHES "\\.svgz?$")
+      string(APPEND output v)
+    elseif(type MATCHES "\\.[to]t[fc]$")
+      string(APPEND output f)
+    endif()
     if(output IN_LIST outputs)
       message(FATAL_ERROR "gpgp_add_assets: two files would become ${output}")
     endif()
@@ -80,7 +87,7 @@ function(gpgp_add_assets target)
       endforeach()
     endif()
     set(needed ${file})
-    if(file MATCHES "\\.([TtOo][Tt][FfCc])$")
+    if(type MATCHES "\\.[to]t[fc]$")
       list(APPEND own ${ofFonts})
       list(APPEND needed ${characters})
     endif()

@@ -65,7 +65,7 @@ const char* const kUsage =
     "vector_bench [--repeat N] [--least] [--size PIXELS | WxH] [--samples N] [--out FOLDER] [--shapes] [SCENE]...\n"
     "  --least   prints least times instead of medians, for machines that do other work as well\n"
     "  --shapes  draws pages as one drawing instead of a text\n"
-    "  SCENE     map contours page live drops embrace clipart botanical plan feather, or FILE.svg\n";
+    "  SCENE     map contours page live drops embrace clipart botanical plan feather panels, or FILE.svg\n";
 
 int runBench(Arguments arguments) {
   int repeat = 20;

@@ -318,10 +318,9 @@ Scene blobs(int paths, int curves) {
 }
 
 namespace {
-Scene fromSvg(const std::string& file) {
-  const auto bytes = host::readFile(file);
+Scene fromSvg(const std::string& file, std::span<const std::byte> bytes, double arcs) {
   vector::svg::Reporter reporter(nullptr, nullptr, file.c_str());
-  auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter);
+  auto svg = vector::svg::importSvg(bytes, reporter, {}, {}, {.arcs = arcs});
   if (!svg) {
     std::fprintf(stderr, "%s: %s\n", file.c_str(), svg.error().text);
     std::exit(1);
@@ -349,7 +348,43 @@ Scene fromSvg(const std::string& file) {
 }
 } // namespace
 
-Scene sceneOf(const std::string& word) {
+Scene panels(double arcs) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' width='1024' height='1024'>";
+  const auto add = [&svg](const char* form, auto... values) {
+    char text[300];
+    std::snprintf(text, sizeof text, form, values...);
+    svg += text;
+  };
+  const auto color = [&] { return static_cast<unsigned>(random() % 0xffffff); };
+  for (int i = 0; i < 16; ++i) { // windows of round corners, with what lies in them
+    const int column = i % 4, row = i / 4;
+    const double x = 8 + column * 256, y = 8 + row * 256;
+    add("<rect x='%g' y='%g' width='240' height='240' rx='12' fill='#%06x'/>", x, y, color());
+    add("<rect x='%g' y='%g' width='240' height='28' rx='12' fill='#%06x'/>", x, y, color());
+    for (int k = 0; k < 3; ++k) add("<circle cx='%g' cy='%g' r='6' fill='#%06x'/>", x + 16 + 18 * k, y + 14, color());
+    for (int k = 0; k < 6; ++k) { // buttons, and switches with their knobs
+      const double at = y + 38 + 33 * k;
+      add("<rect x='%g' y='%g' width='80' height='26' rx='5' fill='#%06x'/>", x + 10, at, color());
+      add("<rect x='%g' y='%g' width='40' height='20' rx='10' fill='#%06x'/>", x + 100, at + 3, color());
+      add("<circle cx='%g' cy='%g' r='8' fill='#%06x'/>", x + 100 + (k % 2 ? 10 : 30), at + 13, color());
+    }
+    double angle = 0; // a pie chart and a gauge
+    while (angle < 6.2) {
+      const double next = std::min(angle + 0.4 + 1.2 * unit(random), 6.2), cx = x + 192, cy = y + 80, r = 40;
+      add("<path d='M%g %gL%g %gA40 40 0 0 1 %g %gZ' fill='#%06x'/>", cx, cy, cx + r * std::cos(angle),
+          cy + r * std::sin(angle), cx + r * std::cos(next), cy + r * std::sin(next), color());
+      angle = next;
+    }
+    add("<path d='M%g %ga36 36 0 0 1 72 0h-8a28 28 0 0 0 -56 0z' fill='#%06x'/>", x + 156, y + 200, color());
+    add("<path d='M%g %gh60' stroke='#%06x' stroke-width='6' stroke-linecap='round'/>", x + 160, y + 220, color());
+  }
+  svg += "</svg>";
+  return fromSvg("panels", std::as_bytes(std::span(svg)), arcs);
+}
+
+Scene sceneOf(const std::string& word, double arcs) {
   const struct {
     const char* word;
     Scene (*make)();
@@ -358,7 +393,9 @@ Scene sceneOf(const std::string& word) {
               {"plan", townPlan}, {"feather", feather}};
   for (const auto& m : made)
     if (word == m.word) return m.make();
-  return fromSvg(word);
+  if (word == "panels") return panels(arcs);
+  const auto bytes = host::readFile(word);
+  return fromSvg(word, std::as_bytes(std::span(bytes)), arcs);
 }
 
 size_t curvesOf(const Scene& scene) {

@@ -52,11 +52,14 @@ Scene clipArt();    ///< a sheet of 691 paths, 7 000 curves (sample_v2)
 Scene botanical();  ///< 1 137 paths, 53 000 curves: leaves with toothed edges (hawaii)
 Scene townPlan();   ///< 1 922 paths, 28 000 curves: blocks, lots and roads (boston)
 Scene feather();    ///< 180 barbs, each thinner than a pixel at 12 x 14 pixels
+/// A screen of an application, 1 024 pixels a side, nearly all arcs of circles: windows and buttons with round corners,
+/// knobs, gauges, pie charts. `arcs`: how far its curves may lie from them, in pixels.
+Scene panels(double arcs = 1e-4);
 /// Random shapes that together cover about half of the page, each of `curves` cubics.
 Scene blobs(int paths, int curves);
-/// One of these (map, contours, page, live, drops, embrace, clipart, botanical, plan, feather), or a file. Ends the
-/// program where that is no SVG.
-Scene sceneOf(const std::string& word);
+/// One of these (map, contours, page, live, drops, embrace, clipart, botanical, plan, feather, panels), or a file. Ends
+/// the program where that is no SVG.
+Scene sceneOf(const std::string& word, double arcs = 1e-4);
 
 /// Of the paths as they come: neither moves nor closing lines count.
 size_t curvesOf(const Scene& scene);

@@ -45,6 +45,17 @@ TEST(CliBake, AFolderTakesOneFileEach) {
   std::filesystem::remove_all(folder.path());
 }
 
+TEST(CliBake, EndingsSayWhatIsInAFile) {
+  const std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='4'><path d='M0 0H3V3Z'/></svg>";
+  const TemporaryFile grammar("kinds.pga", kGrammar), drawing("kinds.svg", svg), folder("kinds");
+  const json result = gpgpJson({"bake", grammar.path(), drawing.path(), "--no-kernel", "-o", folder.path()});
+  ASSERT_EQ(result["baked"].size(), 2u);
+  EXPECT_EQ(result["baked"][0]["out"], folder.path() + "/gpgp_cli_test_kinds.pga.gpgp");
+  EXPECT_EQ(result["baked"][1]["out"], folder.path() + "/gpgp_cli_test_kinds.svg.gpgpv");
+  EXPECT_EQ(host::readText(result["baked"][1]["out"]), bakedWith({drawing.path()}));
+  std::filesystem::remove_all(folder.path());
+}
+
 TEST(CliBake, ErrorsHaveAPlace) {
   const TemporaryFile wrong("wrong.pga", "axiom Box A;\nA = Nothing;\n"), out("wrong.gpgp");
   EXPECT_NE(gpgpFailure({"bake", wrong.path(), "-o", out.path()}).find("wrong.pga:2:"), std::string::npos);

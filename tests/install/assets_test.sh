@@ -36,7 +36,7 @@ for file in "${baked[@]}"; do [[ -s $file ]] || fail "$file was not baked"; done
 same() { cmp "$1" <("$prefix/bin/gpgp" bake "${@:2}" -o -) || fail "$1 is not what gpgp bake makes of ${*:2}"; }
 same build/assets/tower.pga.gpgp tower.pga --no-kernel
 same build/assets/parts/tower.pga.gpgp parts/tower.pga --no-kernel
-same build/assets/hud.svg.gpgp hud.svg
+same build/assets/hud.svg.gpgpv hud.svg
 same build/small/small.pga.gpgp small.pga --set height=2
 [[ $(head -c 4 build/assets/tower.pga.gpgp) == gppg ]] || fail "no baked grammar"
 
@@ -66,10 +66,10 @@ END
     { cat log; fail "configuring fonts"; }
   wanted=(fonts/Sans.TTF --ranges U+30-39,U+20AC,U+41 --outline 0.1 --characters)
   "$cmake" --build fonts/build >log 2>&1 || { cat log; fail "building fonts"; }
-  same fonts/build/assets/Sans.TTF.gpgp "${wanted[@]}" 'Score: é'
+  same fonts/build/assets/Sans.TTF.gpgpf "${wanted[@]}" 'Score: é'
   echo 'Tore: é' >fonts/strings.txt
   "$cmake" --build fonts/build >log 2>&1 || { cat log; fail "building fonts again"; }
-  same fonts/build/assets/Sans.TTF.gpgp "${wanted[@]}" 'Tore: é'
+  same fonts/build/assets/Sans.TTF.gpgpf "${wanted[@]}" 'Tore: é'
 fi
 
 refused() { # ARGUMENTS EXPECTED

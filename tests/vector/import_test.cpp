@@ -769,6 +769,24 @@ TEST(SvgImport, ThePageIsWhatTheFileSays) {
   const Import filled = import("<svg width='200' height='100' viewBox='0 0 10 10' preserveAspectRatio='none'>"
                                "<path d='M0 0H10V10'/></svg>");
   EXPECT_EQ(filled.drawing.paths.at(0).points, (Floats{0, 0, 200, 0, 200, 100}));
+  for (const auto& [ratio, left] : std::initializer_list<std::pair<const char*, float>>{{"xMinYMin", 0},
+                                                                                        {" defer  xMaxYMin meet ", 100},
+                                                                                        {"xMidYMax slice", 0},
+                                                                                        {"none slice", 0},
+                                                                                        {"", 50},
+                                                                                        {"xMinYmid", 50},
+                                                                                        {"xMinYMid cover", 50},
+                                                                                        {"xMinYMidslice", 50},
+                                                                                        {"deferxMinYMid", 50},
+                                                                                        {"Min", 50},
+                                                                                        {"xMinYMin none", 50},
+                                                                                        {"slice", 50}})
+    EXPECT_EQ(import(std::string("<svg width='200' height='100' viewBox='0 0 10 10' preserveAspectRatio='") + ratio +
+                     "'><path d='M0 0H10V10'/></svg>")
+                  .drawing.paths.at(0)
+                  .points.at(0),
+              left)
+        << ratio;
   EXPECT_EQ(import("<svg viewBox='0 0 30 20' width='100%'/>").drawing.width, 30);
   EXPECT_EQ(import("<svg/>").drawing.width, 0);
   const Import none = import("<svg width='0' height='-5'><path d='M0 0H10V10'/></svg>");

@@ -48,10 +48,11 @@ void Importer::ignored(pugi::xml_node node, pugi::xml_attribute attribute) {
                                                       "', which is not valid; ignored");
 }
 
-std::string_view Importer::aspectRatio(pugi::xml_node node) {
+AspectRatio Importer::aspectRatio(pugi::xml_node node) {
   const pugi::xml_attribute a = node.attribute("preserveAspectRatio");
-  if (a && !isAspectRatio(a.value())) ignored(node, a);
-  return a.value();
+  const std::optional<AspectRatio> ratio = parseAspectRatio(a.value());
+  if (a && !ratio) ignored(node, a);
+  return ratio.value_or(AspectRatio{});
 }
 
 void Importer::stop(pugi::xml_node node, const std::string& why) {

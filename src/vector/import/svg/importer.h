@@ -16,9 +16,14 @@ struct ViewBox {
   double x = 0, y = 0, width = 0, height = 0;
 };
 std::optional<ViewBox> parseViewBox(std::string_view text);
-/// Whether it is a preserveAspectRatio.
-bool isAspectRatio(std::string_view text);
-Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio);
+/// A preserveAspectRatio (SVG 2, 8.6); as it is made, what counts where there is none.
+struct AspectRatio {
+  double alignX = 0.5, alignY = 0.5; ///< how much of the room that is left lies before the box
+  bool uniform = true;               ///< false: the box is stretched
+  bool slice = false;                ///< the box covers the viewport instead of lying in it
+};
+std::optional<AspectRatio> parseAspectRatio(std::string_view text);
+Affine fitViewBox(const ViewBox& box, double width, double height, const AspectRatio& ratio);
 
 /// The smallest box around a shape's curves.
 struct Box {
@@ -111,8 +116,8 @@ private:
   std::string element(pugi::xml_node node) const;
   /// Says that an attribute has no valid value.
   void ignored(pugi::xml_node node, pugi::xml_attribute attribute);
-  /// The node's preserveAspectRatio; says so where it is none.
-  std::string_view aspectRatio(pugi::xml_node node);
+  /// The node's preserveAspectRatio; one that is not valid is named and does not count.
+  AspectRatio aspectRatio(pugi::xml_node node);
 
   const Document& document_;
   Reporter& reporter_;

@@ -108,21 +108,39 @@ std::optional<ViewBox> parseViewBox(std::string_view text) {
   return ViewBox{v[0], v[1], v[2], v[3]};
 }
 
-bool isAspectRatio(std::string_view text) {
-  constexpr std::string_view aligns[] = {"none",     "xMinYMin", "xMidYMin", "xMaxYMin", "xMinYMid",
-                                         "xMidYMid", "xMaxYMid", "xMinYMax", "xMidYMax", "xMaxYMax"};
+std::optional<AspectRatio> parseAspectRatio(std::string_view text) {
   Scanner s(trim(text));
-  if (s.take("defer")) s.skipSpace();
-  if (std::find(std::begin(aligns), std::end(aligns), s.name()) == std::end(aligns)) return false;
-  s.skipSpace();
-  return s.done() || ((s.take("meet") || s.take("slice")) && s.done());
+  const auto word = [&s] {
+    const std::string_view name = s.name();
+    s.skipSpace();
+    return name;
+  };
+  std::string_view align = word();
+  if (align == "defer") align = word();
+  AspectRatio ratio;
+  if (align == "none") {
+    ratio = {0, 0, false, false};
+  } else {
+    if (align.size() != 8 || align[0] != 'x' || align[4] != 'Y') return std::nullopt;
+    constexpr std::string_view places[] = {"Min", "Mid", "Max"};
+    const auto x = std::find(std::begin(places), std::end(places), align.substr(1, 3)),
+               y = std::find(std::begin(places), std::end(places), align.substr(5));
+    if (x == std::end(places) || y == std::end(places)) return std::nullopt;
+    ratio.alignX = 0.5 * static_cast<double>(x - std::begin(places));
+    ratio.alignY = 0.5 * static_cast<double>(y - std::begin(places));
+  }
+  const std::string_view how = word();
+  if (!s.done() || !(how.empty() || how == "meet" || how == "slice")) return std::nullopt;
+  ratio.slice = how == "slice";
+  return ratio;
 }
 
 core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&page)[4], double width, double height) {
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
   const auto at = [&page](size_t i) { return static_cast<double>(page[i]); };
-  const std::string_view how = document.root().attribute("preserveAspectRatio").value();
+  const AspectRatio how =
+      parseAspectRatio(document.root().attribute("preserveAspectRatio").value()).value_or(AspectRatio{});
   const std::optional<ViewBox> box = parseViewBox(document.root().attribute("viewBox").value());
   if (!box) return fitViewBox({at(0), at(1), at(2), at(3)}, width, height, how);
   const Affine there = fitViewBox(*box, at(2), at(3), how), here = fitViewBox(*box, width, height, how);
@@ -130,26 +148,12 @@ core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&pag
   return Affine{x, 0, 0, y, here.e - x * (there.e + at(0)), here.f - y * (there.f + at(1))};
 }
 
-Affine fitViewBox(const ViewBox& box, double width, double height, std::string_view preserveAspectRatio) {
-  double sx = width / box.width, sy = height / box.height, alignX = 0.5, alignY = 0.5;
-  Scanner s(preserveAspectRatio);
-  s.skipSpace();
-  if (s.take("defer")) s.skipSpace();
-  const std::string_view align = s.name();
-  s.skipSpace();
-  const bool slice = s.take("slice");
-  if (align == "none") {
-    alignX = alignY = 0;
-  } else {
-    sx = sy = slice ? std::max(sx, sy) : std::min(sx, sy);
-    const auto has = [align](const char* part) { return align.find(part) != align.npos; };
-    if (has("xMin")) alignX = 0;
-    if (has("xMax")) alignX = 1;
-    if (has("YMin")) alignY = 0;
-    if (has("YMax")) alignY = 1;
-  }
-  return {
-      sx, 0, 0, sy, alignX * (width - box.width * sx) - box.x * sx, alignY * (height - box.height * sy) - box.y * sy};
+Affine fitViewBox(const ViewBox& box, double width, double height, const AspectRatio& ratio) {
+  double sx = width / box.width, sy = height / box.height;
+  if (ratio.uniform) sx = sy = ratio.slice ? std::max(sx, sy) : std::min(sx, sy);
+  const double e = ratio.alignX * (width - box.width * sx) - box.x * sx;
+  const double f = ratio.alignY * (height - box.height * sy) - box.y * sy;
+  return {sx, 0, 0, sy, e, f};
 }
 
 } // namespace gpgp::vector::svg

@@ -59,12 +59,10 @@ std::string lowered(std::string_view text) {
   return out;
 }
 
-} // namespace
-
-std::vector<Declaration> parseDeclarations(std::string_view text) {
+/// Of a text without comments.
+std::vector<Declaration> declarationsOf(std::string_view text) {
   std::vector<Declaration> declarations;
-  const std::string clean = withoutComments(text);
-  split(clean, ';', [&declarations](std::string_view part) {
+  split(text, ';', [&declarations](std::string_view part) {
     const size_t colon = part.find(':');
     if (colon == part.npos) return;
     Declaration d{lowered(trim(part.substr(0, colon))), std::string(trim(part.substr(colon + 1))), false};
@@ -77,6 +75,10 @@ std::vector<Declaration> parseDeclarations(std::string_view text) {
   });
   return declarations;
 }
+
+} // namespace
+
+std::vector<Declaration> parseDeclarations(std::string_view text) { return declarationsOf(withoutComments(text)); }
 
 void StyleSheet::parse(std::string_view original, size_t line, Reporter& reporter) {
   const std::string clean = withoutComments(original);
@@ -109,7 +111,7 @@ void StyleSheet::parse(std::string_view original, size_t line, Reporter& reporte
       return;
     }
     const size_t block = blocks_.size();
-    blocks_.push_back(parseDeclarations(text.substr(brace + 1, end - brace - 1)));
+    blocks_.push_back(declarationsOf(text.substr(brace + 1, end - brace - 1)));
     split(text.substr(at, brace - at), ',', [&](std::string_view selector) {
       selector = trim(selector);
       if (rules_.size() < kMaxRules && !addSelector(selector, block))
