@@ -97,6 +97,10 @@ uint64_t Deriver::mostElements() const {
   return std::min<uint64_t>(range / sizeof(SpawnedVertex), range / 6) / 4 * 4; // 6 indices of 4 bytes for 4 vertices
 }
 
+uint32_t Deriver::mostColliders() const {
+  return session_.device().isSoftware() ? kMostSoftwareColliders : kMostColliders;
+}
+
 void Deriver::makeOutput(uint64_t elements) {
   elements_ = std::min(elements, mostElements());
   if (!options_.vertices) {
@@ -183,9 +187,8 @@ GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
       maxRounds_ *= 2;
       another = true;
     }
-    const uint32_t mostColliders = session_.device().isSoftware() ? kMostSoftwareColliders : kMostColliders;
-    if (report.colliders > maxColliders_ && !options_.maxColliders && maxColliders_ < mostColliders) {
-      maxColliders_ = std::min(report.colliders, mostColliders);
+    if (report.colliders > maxColliders_ && !options_.maxColliders && maxColliders_ < mostColliders()) {
+      maxColliders_ = std::min(report.colliders, mostColliders());
       another = true;
     }
     const uint64_t wanted = options_.vertices ? report.vertices : report.terminals;

@@ -53,6 +53,7 @@ public:
 
   /// Instances or vertices that this device binds at once.
   uint64_t mostElements() const;
+  uint32_t mostColliders() const;
   uint32_t maxShapes() const { return maxShapes_; }
   uint32_t maxRounds() const { return maxRounds_; }
   /// What the last derivation took and wrote, read back.

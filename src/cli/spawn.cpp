@@ -178,6 +178,12 @@ void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph
   host::writePng(options.image, painter.picture());
 }
 
+/// What would have been enough, or that the device has no room for that.
+std::string wouldHave(const std::string& option, uint64_t wanted, uint64_t most) {
+  if (wanted <= most) return option + " " + std::to_string(wanted) + " would have";
+  return "this device takes at most " + std::to_string(most) + ": use fewer axioms";
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
@@ -243,7 +249,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
         options.out, corners, [&](uint32_t bucket) { return bucketNames[bucket]; }, colour);
   }
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
-  const bool whole = !report.droppedShapes && report.unfinishedShapes == reference.result.unfinishedShapes;
+  const bool whole = !report.droppedShapes && report.collidersKept == report.colliders &&
+                     report.unfinishedShapes == reference.result.unfinishedShapes;
   if (whole && reference.result.complete &&
       (reference.result.terminals != report.terminals ||
        std::memcmp(reference.result.keyHash, report.keyHash, sizeof report.keyHash) != 0))
@@ -288,8 +295,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     text << '\n';
   }
   if (report.collidersKept < report.colliders)
-    text << "budget exceeded: " << report.colliders - report.collidersKept << " colliders did not fit; --max-colliders "
-         << report.colliders << " would have\n";
+    text << "budget exceeded: " << report.colliders - report.collidersKept << " colliders did not fit; "
+         << wouldHave("--max-colliders", report.colliders, deriver.mostColliders()) << '\n';
   if (report.unfinishedShapes)
     text << "budget exceeded: " << report.unfinishedShapes << " shapes were not finished; raise --max-depth\n";
   if (!vertices && report.instancesWritten < report.terminals)

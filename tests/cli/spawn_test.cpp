@@ -195,6 +195,24 @@ TEST(CliSpawn, BudgetsAreReported) {
   EXPECT_EQ(tower["budget_exceeded"], true);
 }
 
+TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differs from the evaluator is no mistake
+  const TemporaryFile grammar("colliders.pga",
+                              "axiom Box S;\nterminal W F (1, 0);\n"
+                              "S = Replicate() { Collider(w) W | Scale(-0.5, -3, -0.5) IfCollides(w) { F | W } };\n");
+  const std::vector<std::string> common = {"spawn",     grammar.path(), "--schedule", "interpreter", "--axioms", "9",
+                                           "--spacing", "0.5"};
+  EXPECT_EQ(gpgpJson(common)["budget_exceeded"], false);
+  auto few = common;
+  few.insert(few.end(), {"--max-colliders", "4"});
+  const json told = gpgpJson(few);
+  EXPECT_EQ(told["budget_exceeded"], true);
+  EXPECT_EQ(told["colliders"], 9);
+  EXPECT_EQ(told["terminals"], 18);
+  const ProcessResult text = gpgp(few);
+  EXPECT_NE(text.out.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have"), std::string::npos)
+      << text.out;
+}
+
 TEST(CliSpawn, AxiomFiles) {
   const TemporaryFile grammar("rules.pga", "axiom Box One;\nterminal T (1, 0);\nOne = Replicate() { T | Two };\n"
                                            "Two = Replicate() { T | T };\n");
