@@ -403,7 +403,9 @@ Work addSpawn(CLI::App& app) {
   command->add_option("--zoom", options->zoom, "Times closer to the middle than all of the scene")
       ->check(within(0.01, 1000.0))
       ->capture_default_str();
-  command->add_option("--out", options->out, "Write what was derived as triangles")->type_name("FILE.glb");
+  command->add_option("--out", options->out, "Write what was derived as triangles")
+      ->check(glbFile())
+      ->type_name("FILE.glb");
   addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)");
   command
       ->add_option("--max-instances", options->maxInstances,

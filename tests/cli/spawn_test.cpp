@@ -365,6 +365,21 @@ TEST(CliSpawn, WritesTriangles) {
   EXPECT_EQ(model["materials"][0]["name"], "Floor");
 }
 
+TEST(CliSpawn, TrianglesThatCannotBeWrittenAreAFailure) {
+  const TemporaryFile grammar("glb.pga", kTower), folder("folder.glb"), under("under");
+  std::filesystem::create_directory(folder.path());
+  const auto spawn = [&](const std::string& out) {
+    return std::vector<std::string>{"spawn", grammar.path(), "--schedule", "interpreter", "--out", out};
+  };
+  const std::vector<std::string> wrong = {folder.path(), grammar.path() + "/x.glb", "/proc/x.glb"};
+  for (const std::string& out : wrong)
+    EXPECT_EQ(gpgpFailure(spawn(out)).substr(0, out.size() + 2), out + ": ");
+  std::filesystem::create_symlink("/dev/full", under.path() + ".glb");
+  EXPECT_NE(gpgpFailure(spawn(under.path() + ".glb")).find("No space left"), std::string::npos);
+  std::filesystem::remove(under.path() + ".glb");
+  expectWrongUsage({spawn("x.obj"), spawn(".glb"), spawn("/dev/full")});
+}
+
 /// The service's own shapes: prisms stand along Y, triangles without area are left out.
 TEST(CliSpawn, ShapesAreThoseOfTheService) {
   const auto corners = [](const char* shape, const char* size) {
