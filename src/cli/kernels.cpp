@@ -149,11 +149,29 @@ std::pmr::vector<spawn::Kernel> kernelsIn(const std::filesystem::path& file, con
   const std::string text = host::readText(file);
   const auto bytes = std::as_bytes(std::span(text.data(), text.size()));
   const size_t graphBytes = spawn::sizeOfGraph(bytes);
-  if (graphBytes != grammar.words.size() * 4 || std::memcmp(text.data(), grammar.words.data(), graphBytes) != 0)
-    throw Failure(file.string() + " is not a baking of this grammar, with the variables as they are set here");
+  const bool same =
+      graphBytes == grammar.words.size() * 4 && std::memcmp(text.data(), grammar.words.data(), graphBytes) == 0;
+  if (!same && (text.empty() || text.starts_with("gppg")))
+    if (const auto other = spawn::load(bytes.first(graphBytes), memory()); !other)
+      throw Unusable(file.string() + ": " + other.error().text);
+  if (!same) throw Failure(file.string() + " is not a baking of this grammar, with the variables as they are set here");
   auto kernels = spawn::loadKernels(bytes.subspan(graphBytes), grammar.words[shader::kHeaderChecksum], memory());
-  if (!kernels) throw Failure(file.string() + ": " + kernels.error().text);
+  if (!kernels) throw Unusable(file.string() + ": " + kernels.error().text);
   return std::move(*kernels);
+}
+
+std::pmr::vector<spawn::Kernel> storedKernels(const std::filesystem::path& file, const BakedGraph& grammar,
+                                              bool cache) {
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    return kernelsIn(file, grammar);
+  } catch (const Unusable& error) {
+    std::fprintf(stderr, "gpgp: %s; what is kept there is made anew\n", error.what());
+  } catch (const Failure& error) { // not the command's own file
+    if (!cache) throw;
+    std::fprintf(stderr, "gpgp: %s; what is kept there is made anew\n", error.what());
+  }
+  return {};
 }
 
 std::optional<spawn::Kernel> kernelFor(std::span<const spawn::Kernel> kernels, const host::HeadlessDevice& device,
@@ -176,18 +194,17 @@ bool isTunedFor(const spawn::KernelInfo& info, const host::HeadlessDevice& devic
 }
 
 void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, const spawn::KernelInfo& info,
-                std::span<const uint32_t> code) {
+                std::span<const uint32_t> code, std::span<const spawn::Kernel> others) {
   std::pmr::vector<uint32_t> all(grammar.words);
   const auto append = [&](const spawn::KernelInfo& i, std::span<const uint32_t> kernel) {
     const auto words = kernelWords(grammar, i, kernel);
     all.insert(all.end(), words.begin(), words.end());
   };
   append(info, code);
-  if (std::filesystem::exists(file))
-    for (const spawn::Kernel& other : kernelsIn(file, grammar))
-      if (other.info.vendor != info.vendor || other.info.device != info.device ||
-          std::bit_width(other.info.axioms) != std::bit_width(info.axioms))
-        append(other.info, other.code);
+  for (const spawn::Kernel& other : others)
+    if (other.info.vendor != info.vendor || other.info.device != info.device ||
+        std::bit_width(other.info.axioms) != std::bit_width(info.axioms))
+      append(other.info, other.code);
   host::writeFile(file, {reinterpret_cast<const char*>(all.data()), all.size() * 4});
 }
 

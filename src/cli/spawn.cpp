@@ -78,16 +78,16 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
   if (name == "tuned") {
     const std::filesystem::path file = tunedFile(options.grammars, grammar);
-    if (std::filesystem::exists(file))
-      if (const auto kernel = kernelFor(kernelsIn(file, grammar), session.device(), count);
-          kernel && isTunedFor(kernel->info, session.device(), count))
-        return taken(*kernel, file);
+    const auto stored = storedKernels(file, grammar, true);
+    if (const auto kernel = kernelFor(stored, session.device(), count);
+        kernel && isTunedFor(kernel->info, session.device(), count))
+      return taken(*kernel, file);
     std::fprintf(stderr, "gpgp spawn: no stored schedule for this grammar, device and number of axioms; tuning\n");
     TuneSettings settings;
     settings.matching = options.matching == "on";
     settings.heuristics = options.heuristics;
     const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
-    keepKernel(file, grammar, tuned.info, tuned.code);
+    keepKernel(file, grammar, tuned.info, tuned.code, stored);
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
     return taken({tuned.info, {tuned.code.begin(), tuned.code.end()}}, file);
   }

@@ -27,14 +27,15 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   if (options.search == "heuristic") settings.search = spawn::Search::heuristic;
   const std::filesystem::path out =
       options.out.empty() ? tunedFile(options.grammars, grammar) : std::filesystem::path(options.out);
-  if (std::filesystem::exists(out)) kernelsIn(out, grammar); // throws now rather than after the search
+  // Read now: what cannot be kept is said before the search rather than after it.
+  const auto others = storedKernels(out, grammar, options.out.empty());
   const AxiomDefaults defaults{options.size, settings.seed, grammar.starts()};
   const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
                                             ? axiomGrid(options.axioms, 0, defaults)
                                             : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
   Session session(common);
   const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
-  keepKernel(out, grammar, tuned.info, tuned.code);
+  keepKernel(out, grammar, tuned.info, tuned.code, others);
   session.checkValidation();
 
   const spawn::Schedule& schedule = tuned.schedule();
