@@ -86,6 +86,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     TuneSettings settings;
     settings.matching = options.matching == "on";
     settings.heuristics = options.heuristics;
+    settings.maxDepth = options.maxDepth;
     const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
     keepKernel(file, grammar, tuned.info, tuned.code, stored);
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());

@@ -138,6 +138,8 @@ Work addTune(CLI::App& app) {
           "software device some seconds; 0: no limit")
       ->check(within(0.0, 86400.0))
       ->capture_default_str();
+  command->add_option("--max-depth", settings.maxDepth,
+                      "Budget: how deep rules nest in themselves (0: the library's default)");
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");
   command
       ->add_option("-o,--out", options->out,

@@ -130,6 +130,24 @@ TEST(CliTune, WhatCannotBeUsedAnyMoreIsMadeAnew) {
   }
 }
 
+TEST(CliTune, DepthIsABudget) {
+  const TemporaryFile grammar("deep.pga", "axiom Box S;\nterminal T (1, 0);\n"
+                                          "S = IfSizeLess(X, 0.01) { T | SubDiv(X) { 0.01: T | -1: S } };\n");
+  const Cache cache("deep");
+  std::vector<std::string> tune = {"tune", grammar.path(), "--axioms", "1", "--seconds", "0.001"};
+  EXPECT_NE(gpgpFailure(tune).find("1 shapes were not finished: rules nest deeper than the budget; raise --max-depth"),
+            std::string::npos);
+  tune.insert(tune.end(), {"--max-depth", "200"});
+  const json tuned = gpgpJson(tune);
+  const json spawned = gpgpJson({"spawn", grammar.path(), "--schedule", "tuned", "--max-depth", "200"});
+  EXPECT_EQ(tuned["terminals"], spawned["terminals"]);
+  EXPECT_GE(spawned["terminals"], 100);
+  EXPECT_EQ(spawned["schedule_file"], tuned["out"]);
+  std::filesystem::remove(tuned["out"].get<std::string>());
+  const ProcessResult first = gpgp({"spawn", grammar.path(), "--schedule", "tuned", "--max-depth", "200"});
+  EXPECT_EQ(first.exitCode, 0) << first.err; // tunes with that depth, too
+}
+
 TEST(CliTune, FilesSayWhyTheyAreNoSchedules) {
   const TemporaryFile grammar("sum.pga", kTower), baked("sum.gpgp");
   ASSERT_EQ(gpgp({"bake", grammar.path(), "--no-kernel", "-o", baked.path()}).exitCode, 0);
