@@ -2,18 +2,16 @@
 #include "cli/axioms.h"
 #include "cli/grammar_source.h"
 #include "cli/painter.h"
+#include "cli/reference.h"
 #include "cli/triangles_gltf.h"
 #include "cli/tuner.h"
 #include "cli/unit_shapes.h"
 #include "host/files.h"
-#include "spawn/evaluator/evaluator.h"
 
 #include <gpgp/spawn.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -34,28 +32,6 @@ struct SpawnOptions {
   bool sorted = false;
   spawn::Heuristics heuristics;
 };
-
-/// What the CPU evaluator derives, on one thread, instances or vertices included, into memory that an earlier run has
-/// touched: the device's buffers are there before it starts as well.
-struct Reference {
-  spawn::Derivation result;
-  double milliseconds = 0;
-};
-
-Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
-                   bool vertices) {
-  spawn::DeriveOptions options;
-  if (maxDepth) options.maxDepth = maxDepth;
-  const auto layout = spawn::layoutOf(Deriver::layout());
-  if (vertices) options.vertices = &*layout;
-  Reference reference;
-  reference.result = spawn::derive(words, axioms, options);
-  if (!reference.result.complete) return reference;
-  const auto begin = std::chrono::steady_clock::now();
-  reference.result = spawn::derive(words, axioms, options, std::move(reference.result));
-  reference.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  return reference;
-}
 
 /// The kernel that --schedule names: none for the interpreter.
 struct Chosen {
@@ -195,7 +171,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
                                 : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
-  const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices);
+  const auto layout = spawn::layoutOf(Deriver::layout());
+  const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
   Session session(common);
   const Chosen chosen = chooseKernel(options, grammar, start, session);
 
@@ -252,11 +229,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
   const bool whole = !report.droppedShapes && report.collidersKept == report.colliders &&
                      report.unfinishedShapes == reference.result.unfinishedShapes;
-  if (whole && reference.result.complete &&
-      (reference.result.terminals != report.terminals ||
-       std::memcmp(reference.result.keyHash, report.keyHash, sizeof report.keyHash) != 0))
-    throw Failure(joined(options.grammars) +
-                  ": the device derived something else than the CPU evaluator; please report this");
+  if (whole && reference.result.complete)
+    if (const std::string what = difference(reference.result, report, instances); !what.empty())
+      throw Failure(joined(options.grammars) + ": the device derived something else than the CPU evaluator: " + what +
+                    "; please report this");
 
   Outcome outcome;
   char hash[20];
