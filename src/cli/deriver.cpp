@@ -101,6 +101,13 @@ uint32_t Deriver::mostColliders() const {
   return session_.device().isSoftware() ? kMostSoftwareColliders : kMostColliders;
 }
 
+uint32_t Deriver::mostShapes() const {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  return static_cast<uint32_t>(std::min<uint64_t>(range / (kShapeBytes * kStackFactor), kMostShapes));
+}
+
+uint32_t Deriver::mostRounds() { return kMostRounds; }
+
 void Deriver::makeOutput(uint64_t elements) {
   elements_ = std::min(elements, mostElements());
   if (!options_.vertices) {
@@ -171,19 +178,18 @@ Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repe
 
 GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
   const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
-  const uint32_t mostShapes =
-      static_cast<uint32_t>(std::min<uint64_t>(range / (kShapeBytes * kStackFactor), kMostShapes));
   for (;;) {
     const GpgpSpawnReport report = measure(grammar, 1).report;
     bool again = false, another = false; // spawner
-    if (report.droppedShapes && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes) {
+    const bool raised = report.droppedShapes && options_.raises;
+    if (raised && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes()) {
       maxShapes_ = static_cast<uint32_t>(std::min<uint64_t>(
-          std::max<uint64_t>(2 * uint64_t{maxShapes_}, std::bit_ceil(uint64_t{report.peakShapes})), mostShapes));
+          std::max<uint64_t>(2 * uint64_t{maxShapes_}, std::bit_ceil(uint64_t{report.peakShapes})), mostShapes()));
       another = true;
     }
     const bool allTaken =
         maxRounds_ == firstRounds_ ? !another : report.rounds >= maxRounds_; // the library may take fewer
-    if (report.droppedShapes && allTaken && maxRounds_ < kMostRounds) {
+    if (raised && allTaken && maxRounds_ < kMostRounds) {
       maxRounds_ *= 2;
       another = true;
     }

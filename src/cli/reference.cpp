@@ -1,8 +1,10 @@
 #include "cli/reference.h"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cstring>
+#include <set>
 
 namespace gpgp::cli {
 namespace {
@@ -37,6 +39,21 @@ Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>
   reference.result = spawn::derive(words, axioms, options, std::move(reference.result));
   reference.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return reference;
+}
+
+bool neverEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth) {
+  spawn::DeriveOptions options;
+  if (maxDepth) options.maxDepth = maxDepth;
+  options.keepInstances = false;
+  std::set<uint32_t> starts;
+  return std::any_of(axioms.begin(), axioms.end(), [&](const GpgpAxiom& axiom) {
+    return starts.insert(axiom.rule).second && !spawn::derive(words, {&axiom, 1}, options).complete;
+  });
+}
+
+std::string neverEndingText() {
+  return "one axiom alone becomes more than " + std::to_string(spawn::DeriveOptions().maxShapes / 1'000'000) +
+         " million shapes, so the derivation probably never ends";
 }
 
 std::string difference(const spawn::Derivation& reference, const GpgpSpawnReport& report,

@@ -155,10 +155,41 @@ void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph
   host::writePng(options.image, painter.picture());
 }
 
-/// What would have been enough, or that the device has no room for that.
-std::string wouldHave(const std::string& option, uint64_t wanted, uint64_t most) {
-  if (wanted <= most) return option + " " + std::to_string(wanted) + " would have";
-  return "this device takes at most " + std::to_string(most) + ": use fewer axioms";
+std::string counted(uint64_t number, const std::string& one, const std::string& many = {}) {
+  return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+/// A line for what exceeded a budget: what would have been enough, as far as the device has room for that.
+std::string exceeded(const std::string& what, const std::string& option, uint64_t wanted, uint64_t most) {
+  return "budget exceeded: " + what + " did not fit; " +
+         (wanted <= most ? option + " " + std::to_string(wanted) + " would have held all"
+                         : "this device takes " + std::to_string(most) + " at most: use fewer axioms") +
+         "\n";
+}
+
+/// All budgets that were exceeded, a line each.
+std::string exceededBudgets(const GpgpSpawnReport& report, const Deriver& deriver, bool vertices) {
+  std::string text;
+  if (report.droppedShapes && report.peakShapes > deriver.maxShapes())
+    text += exceeded(counted(report.droppedShapes, "shape") + " of a round", "--max-shapes", report.peakShapes,
+                     deriver.mostShapes());
+  else if (report.droppedShapes)
+    text += "budget exceeded: " + counted(report.droppedShapes, "shape") + " still waited after the last of " +
+            counted(report.rounds, "round") +
+            (report.rounds < Deriver::mostRounds() ? "" : ", which are as many as a record takes") + "\n";
+  if (report.collidersKept < report.colliders)
+    text += exceeded(counted(report.colliders - report.collidersKept, "collider"), "--max-colliders", report.colliders,
+                     deriver.mostColliders());
+  if (report.unfinishedShapes)
+    text += "budget exceeded: " + counted(report.unfinishedShapes, "shape") +
+            (report.unfinishedShapes == 1 ? " was" : " were") + " not finished; raise --max-depth\n";
+  if (!vertices && report.instancesWritten < report.terminals)
+    text += exceeded(counted(report.terminals - report.instancesWritten, "instance"), "--max-instances", report.terminals,
+                     deriver.mostElements());
+  if (report.verticesWritten < report.vertices)
+    text += exceeded(counted(report.vertices - report.verticesWritten, "vertex", "vertices"), "--max-instances",
+                     report.vertices, deriver.mostElements());
+  return text;
 }
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
@@ -171,8 +202,14 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
                                 : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
+  const bool endless = neverEnds(grammar.words, start, options.maxDepth);
+  if (endless && options.schedule == "tuned") throw Failure(joined(options.grammars) + ": " + neverEndingText());
+  if (endless)
+    std::fprintf(stderr, "gpgp spawn: %s: %s; budgets are not raised\n", joined(options.grammars).c_str(),
+                 neverEndingText().c_str());
   const auto layout = spawn::layoutOf(Deriver::layout());
-  const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
+  const Reference reference =
+      endless ? Reference::none() : evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
   Session session(common);
   const Chosen chosen = chooseKernel(options, grammar, start, session);
 
@@ -183,6 +220,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   deriverOptions.maxDepth = options.maxDepth;
   deriverOptions.maxColliders = options.maxColliders;
   deriverOptions.maxInstances = options.maxInstances;
+  deriverOptions.raises = !endless;
   deriverOptions.expected =
       vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals;
   Deriver deriver(session, grammar, start, deriverOptions);
@@ -265,22 +303,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   }
   text << '\n';
   if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
-  if (report.droppedShapes) {
-    text << "budget exceeded: " << report.droppedShapes << " shapes did not fit";
-    if (report.peakShapes > deriver.maxShapes())
-      text << "; --max-shapes " << report.peakShapes << " would have held that round";
-    text << '\n';
-  }
-  if (report.collidersKept < report.colliders)
-    text << "budget exceeded: " << report.colliders - report.collidersKept << " colliders did not fit; "
-         << wouldHave("--max-colliders", report.colliders, deriver.mostColliders()) << '\n';
-  if (report.unfinishedShapes)
-    text << "budget exceeded: " << report.unfinishedShapes << " shapes were not finished; raise --max-depth\n";
-  if (!vertices && report.instancesWritten < report.terminals)
-    text << "budget exceeded: " << report.terminals - report.instancesWritten
-         << " instances did not fit; --max-instances " << report.terminals << " would have\n";
-  if (report.verticesWritten < report.vertices)
-    text << "budget exceeded: " << report.vertices - report.verticesWritten << " vertices did not fit\n";
+  text << exceededBudgets(report, deriver, vertices);
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
   outcome.text = text.str();

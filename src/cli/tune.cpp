@@ -2,6 +2,7 @@
 #include "cli/axioms.h"
 #include "cli/command.h"
 #include "cli/grammar_source.h"
+#include "cli/reference.h"
 #include "cli/tuner.h"
 
 #include <cmath>
@@ -33,6 +34,8 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
                                             ? axiomGrid(options.axioms, 0, defaults)
                                             : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
+  if (neverEnds(grammar.words, axioms, settings.maxDepth))
+    throw Failure(joined(options.grammars) + ": " + neverEndingText());
   Session session(common);
   const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
   keepKernel(out, grammar, tuned.info, tuned.code, others);

@@ -195,6 +195,36 @@ TEST(CliSpawn, BudgetsAreReported) {
   EXPECT_EQ(tower["budget_exceeded"], true);
 }
 
+TEST(CliSpawn, WhatWasExceededIsNamed) {
+  const TemporaryFile grammar("named.pga", kTower), deep("named_deep.pga", "axiom Box S;\nterminal T (1, 0);\n"
+                                                                           "S = Replicate() { T | S };\n");
+  const auto said = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "spawn");
+    arguments.insert(arguments.end(), {"--schedule", "interpreter"});
+    const ProcessResult result = gpgp(arguments);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    const size_t at = result.out.find("budget exceeded: ");
+    return at == std::string::npos ? result.out : result.out.substr(at + 17);
+  };
+  EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "9"}),
+            "1 instance did not fit; --max-instances 10 would have held all\n");
+  EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "100", "--output", "vertices"}),
+            "144 vertices did not fit; --max-instances 240 would have held all\n");
+  EXPECT_EQ(said({deep.path(), "--max-depth", "7"}), "1 shape was not finished; raise --max-depth\n");
+}
+
+TEST(CliSpawn, DerivationsWithoutEndAreToldAtOnce) {
+  const TemporaryFile grammar("endless.pga", "axiom Box S;\nterminal T (1, 0);\nS = Replicate() { S | S | S | S };\n");
+  const ProcessResult result = gpgp({"spawn", grammar.path(), "--schedule", "interpreter", "--json"});
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_NE(result.err.find("one axiom alone becomes more than 100 million shapes"), std::string::npos) << result.err;
+  const json told = json::parse(result.out, nullptr, false);
+  EXPECT_EQ(told["budget_exceeded"], true);
+  EXPECT_TRUE(told["cpu_reference_ms"].is_null());
+  EXPECT_NE(gpgpFailure({"tune", grammar.path(), "--axioms", "1"}).find("probably never ends"), std::string::npos);
+  EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--max-depth", "5"})["terminals"], 0);
+}
+
 TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differs from the evaluator is no mistake
   const TemporaryFile grammar("colliders.pga",
                               "axiom Box S;\nterminal W F (1, 0);\n"
@@ -209,7 +239,7 @@ TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differ
   EXPECT_EQ(told["colliders"], 9);
   EXPECT_EQ(told["terminals"], 18);
   const ProcessResult text = gpgp(few);
-  EXPECT_NE(text.out.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have"), std::string::npos)
+  EXPECT_NE(text.out.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have held all"), std::string::npos)
       << text.out;
 }
 
