@@ -55,9 +55,14 @@ Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<
   makeSpawner();
 }
 
+uint64_t Deriver::mostAxioms(Session& session) {
+  return session.device().properties().limits.maxStorageBufferRange / sizeof(GpgpAxiom);
+}
+
 void Deriver::setAxioms(const std::vector<GpgpAxiom>& axioms) {
-  if (axioms.size() * sizeof(GpgpAxiom) > session_.device().properties().limits.maxStorageBufferRange)
-    throw Failure(std::to_string(axioms.size()) + " axioms are more than this device binds");
+  if (axioms.size() > mostAxioms(session_))
+    throw Failure(std::to_string(axioms.size()) + " axioms are more than this device binds: at most " +
+                  std::to_string(mostAxioms(session_)));
   axioms_ = host::makeBuffer(session_.device(), axioms, kStorage, "axioms");
   axiomCount_ = static_cast<uint32_t>(axioms.size());
 }

@@ -35,6 +35,8 @@ public:
   static GpgpVertexLayout layout();
   Deriver(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
           const DeriverOptions& options);
+  /// Axioms that this device binds at once.
+  static uint64_t mostAxioms(Session& session);
   void setAxioms(const std::vector<GpgpAxiom>& axioms);
 
   /// For each of the kernels, as words: the grammar on the device with its pipeline, made on all processors. No words:

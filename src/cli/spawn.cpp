@@ -27,7 +27,7 @@ struct SpawnOptions {
   std::string image, out;
   Size imageSize{1280, 720};
   float yaw = 35, pitch = 25, zoom = 1;
-  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0;
+  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
   std::string schedule = "default", output = "instances", matching = "off";
   bool sorted = false;
   spawn::Heuristics heuristics;
@@ -192,6 +192,44 @@ std::string exceededBudgets(const GpgpSpawnReport& report, const Deriver& derive
   return text;
 }
 
+/// As if it had been one record.
+void add(GpgpSpawnReport& sum, const GpgpSpawnReport& record) {
+  sum.base.status = std::max(sum.base.status, record.base.status);
+  for (const auto member :
+       {&GpgpSpawnReport::terminals, &GpgpSpawnReport::instancesWritten, &GpgpSpawnReport::droppedShapes,
+        &GpgpSpawnReport::unfinishedShapes, &GpgpSpawnReport::vertices, &GpgpSpawnReport::verticesWritten,
+        &GpgpSpawnReport::colliders, &GpgpSpawnReport::collidersKept})
+    sum.*member += record.*member;
+  for (const auto member : {&GpgpSpawnReport::peakShapes, &GpgpSpawnReport::rounds, &GpgpSpawnReport::depth})
+    sum.*member = std::max(sum.*member, record.*member);
+  for (size_t word = 0; word < std::size(sum.keyHash); ++word) sum.keyHash[word] += record.keyHash[word];
+}
+
+/// Axioms in parts of equal size, a record each.
+struct Slices {
+  const std::vector<GpgpAxiom>& axioms;
+  size_t records = 1, size = 0;
+
+  Slices(const std::vector<GpgpAxiom>& all, size_t most) : axioms(all) {
+    records = (all.size() + most - 1) / most;
+    size = (all.size() + records - 1) / records;
+  }
+  std::vector<GpgpAxiom> of(size_t record) const {
+    const size_t first = std::min(record * size, axioms.size()), end = std::min(first + size, axioms.size());
+    return {axioms.begin() + std::ptrdiff_t(first), axioms.begin() + std::ptrdiff_t(end)};
+  }
+};
+
+Slices slicesFor(const SpawnOptions& options, const std::vector<GpgpAxiom>& axioms, const spawn::Graph& graph,
+                 Session& session) {
+  uint64_t most = Deriver::mostAxioms(session);
+  if (options.slice) most = std::min<uint64_t>(most, options.slice);
+  if (axioms.size() > most && graph.phases)
+    throw Usage(counted(axioms.size(), "axiom") + " take several records of at most " + std::to_string(most) +
+                ", but colliders know only those of their record; use fewer axioms");
+  return {axioms, most};
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
@@ -202,6 +240,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
                                 : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
+  Session session(common);
+  const Slices slices = slicesFor(options, start, graph, session);
   const bool endless = neverEnds(grammar.words, start, options.maxDepth);
   if (endless && options.schedule == "tuned") throw Failure(joined(options.grammars) + ": " + neverEndingText());
   if (endless)
@@ -210,8 +250,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const auto layout = spawn::layoutOf(Deriver::layout());
   const Reference reference =
       endless ? Reference::none() : evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
-  Session session(common);
-  const Chosen chosen = chooseKernel(options, grammar, start, session);
+  const Chosen chosen = chooseKernel(options, grammar, slices.of(0), session);
 
   DeriverOptions deriverOptions;
   deriverOptions.vertices = vertices;
@@ -222,23 +261,40 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   deriverOptions.maxInstances = options.maxInstances;
   deriverOptions.raises = !endless;
   deriverOptions.expected =
-      vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals;
-  Deriver deriver(session, grammar, start, deriverOptions);
+      (vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals) /
+      slices.records;
+  Deriver deriver(session, grammar, slices.of(0), deriverOptions);
   if (options.maxInstances > deriver.mostElements())
     throw Usage("--max-instances is too large for this device: at most " + std::to_string(deriver.mostElements()));
   const Grammar prepared = deriver.prepare(chosen.words);
-  GpgpSpawnReport report = deriver.fit(prepared);
-  const auto measured = deriver.measure(prepared, options.repeat);
-  const GpuTimes& times = measured.times;
-  report = measured.report;
-  const std::vector<GpgpInstance> instances = vertices ? std::vector<GpgpInstance>() : deriver.instances();
-  const std::vector<SpawnedVertex> written = vertices ? deriver.vertices() : std::vector<SpawnedVertex>();
+  GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+  GpuTimes times;
+  uint64_t bytesWritten = 0, verticesWritten = 0;
+  std::vector<GpgpInstance> instances;
   Triangles triangles{!options.image.empty() || !options.out.empty(), std::vector<uint64_t>(graph.terminals.size())};
-  if (vertices)
-    addTriangles(triangles, written, deriver.indices());
-  else
-    addTriangles(triangles, instances);
-  const uint64_t bytesWritten = deriver.bytesWritten();
+  std::string budgets; // that the first record exceeded that exceeded any
+  for (size_t record = 0; record < slices.records; ++record) {
+    if (record) deriver.setAxioms(slices.of(record));
+    deriver.fit(prepared);
+    const auto measured = deriver.measure(prepared, options.repeat);
+    add(report, measured.report);
+    times.add(measured.times);
+    bytesWritten += deriver.bytesWritten();
+    if (budgets.empty()) {
+      budgets = exceededBudgets(measured.report, deriver, vertices);
+      if (!budgets.empty() && slices.records > 1)
+        budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
+    }
+    if (vertices) {
+      const std::vector<SpawnedVertex> written = deriver.vertices();
+      verticesWritten += written.size();
+      addTriangles(triangles, written, deriver.indices());
+    } else {
+      const std::vector<GpgpInstance> written = deriver.instances();
+      addTriangles(triangles, written);
+      instances.insert(instances.end(), written.begin(), written.end());
+    }
+  }
   session.checkValidation();
 
   std::vector<std::string> bucketNames(std::max(graph.buckets, 1u));
@@ -280,8 +336,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     passes[name] = passes.value(name, 0.0) + time;
   std::ostringstream text;
   text << report.terminals << " terminals (" << triangles.total << " triangles) from " << start.size()
-       << (start.size() == 1 ? " axiom" : " axioms") << " in " << report.rounds << " rounds on "
-       << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups << " execution groups\n";
+       << (start.size() == 1 ? " axiom" : " axioms") << " in "
+       << (slices.records > 1 ? std::to_string(slices.records) + " records of up to " : std::string()) << report.rounds
+       << " rounds on " << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups << " execution groups\n";
   for (uint32_t bucket = 0; bucket < bucketNames.size(); ++bucket) {
     bucketList.push_back({{"bucket", bucket},
                           {"name", bucketNames[bucket]},
@@ -303,7 +360,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   }
   text << '\n';
   if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
-  text << exceededBudgets(report, deriver, vertices);
+  text << budgets;
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
   outcome.text = text.str();
@@ -315,10 +372,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                   {"schedule_file", chosen.file.empty() ? Json() : Json(chosen.file.string())},
                   {"execution_groups", chosen.groups},
                   {"axioms", start.size()},
+                  {"records", slices.records},
                   {"seed", options.seed},
                   {"terminals", report.terminals},
                   {"instances", instances.size()},
-                  {"vertices", written.size()},
+                  {"vertices", verticesWritten},
                   {"triangles", triangles.total},
                   {"buckets", bucketList},
                   {"rounds", report.rounds},
@@ -416,6 +474,8 @@ Work addSpawn(CLI::App& app) {
                       "Budget: shapes that wait for a round (0: the library's default, doubled until all fit)");
   command->add_option("--max-colliders", options->maxColliders,
                       "Budget: shapes that Collider registers (0: as many as there are)");
+  command->add_option("--slice", options->slice,
+                      "Axioms of one record at most (0: as many as the device binds); budgets are those of a record");
   command->add_option("--max-depth", options->maxDepth,
                       "Budget: how deep rules nest in themselves (0: the library's default)");
   command->footer(R"(

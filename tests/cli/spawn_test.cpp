@@ -28,6 +28,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "schedule_file",
                                                 "execution_groups",
                                                 "axioms",
+                                                "records",
                                                 "seed",
                                                 "terminals",
                                                 "instances",
@@ -211,6 +212,36 @@ TEST(CliSpawn, WhatWasExceededIsNamed) {
   EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "100", "--output", "vertices"}),
             "144 vertices did not fit; --max-instances 240 would have held all\n");
   EXPECT_EQ(said({deep.path(), "--max-depth", "7"}), "1 shape was not finished; raise --max-depth\n");
+}
+
+TEST(CliSpawn, SlicesSumUp) {
+  const TemporaryFile grammar("slices.pga", kStreet), colliders("slices_colliders.pga",
+                                                                "axiom Box S;\nterminal W (1, 0);\n"
+                                                                "S = Collider(w) W;\n");
+  const auto spawn = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"spawn", grammar.path(), "--axioms", "10", "--axiom-size", "9,8,4", "--schedule",
+                               "interpreter", "--repeat", "2"});
+    return gpgpJson(more);
+  };
+  for (const char* output : {"instances", "vertices"}) {
+    const json one = spawn({"--output", output}), several = spawn({"--output", output, "--slice", "4"});
+    EXPECT_EQ(one["records"], 1);
+    EXPECT_EQ(several["records"], 3);
+    for (const char* same :
+         {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "key_hash", "bytes_written"})
+      EXPECT_EQ(one[same], several[same]) << same;
+  }
+  const json few = spawn({"--slice", "4", "--max-instances", "60"}); // of each record
+  EXPECT_EQ(few["instances"], 3 * 60);
+  EXPECT_EQ(few["budget_exceeded"], true);
+  expectWrongUsage({{"spawn", colliders.path(), "--axioms", "10", "--slice", "4"}});
+}
+
+TEST(CliSpawn, MoreAxiomsThanADeviceBinds) { // software devices bind 128 MiB
+  const TemporaryFile grammar("bound.pga", "axiom Box S;\nterminal T (1, 0);\nS = T;\n");
+  const json all = gpgpJson({"spawn", grammar.path(), "--axioms", "1500000", "--schedule", "interpreter"});
+  EXPECT_EQ(all["terminals"], 1500000);
+  EXPECT_EQ(all["budget_exceeded"], false);
 }
 
 TEST(CliSpawn, DerivationsWithoutEndAreToldAtOnce) {
