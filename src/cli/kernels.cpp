@@ -102,7 +102,7 @@ std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std:
   if (!std::filesystem::is_regular_file(nameOrFile)) return std::nullopt;
   spawn::Diagnostics diagnostics;
   const auto partition = spawn::parseGroups(host::readText(nameOrFile), graph, diagnostics);
-  if (!partition) throw Failure(spawn::format(diagnostics.sorted().at(0), nameOrFile));
+  report(diagnostics, nameOrFile);
   spawn::Roots roots(graph.nodes.size(), spawn::kNoNode);
   for (size_t n = 0; n < roots.size(); ++n)
     if (partition->groupOf[n] != spawn::kNoGroup) roots[n] = partition->groups[partition->groupOf[n]].root;

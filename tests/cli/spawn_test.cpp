@@ -181,6 +181,10 @@ TEST(CliSpawn, SchedulesFromFilesAreChecked) {
             std::string::npos);
   EXPECT_NE(gpgpFailure({"spawn", grammar.path(), "--schedule", groups.path()}).find("wrong_groups.txt:"),
             std::string::npos);
+  const TemporaryFile more("more_groups.txt", "group { 0 1000 }\ngroup { 2000 }\n");
+  const std::string graph = gpgp({"graph", grammar.path(), "--schedule", more.path()}).err;
+  const std::string spawn = gpgp({"spawn", grammar.path(), "--schedule", more.path()}).err;
+  EXPECT_EQ(graph.substr(0, graph.rfind("gpgp graph")), spawn.substr(0, spawn.rfind("gpgp spawn"))); // all of them
   expectWrongUsage({{"spawn", grammar.path(), "--schedule", "fastest"},
                     {"spawn", grammar.path(), "--matching", "yes"},
                     {"spawn", grammar.path(), "--output", "triangles"},
@@ -335,7 +339,7 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
   const TemporaryFile wrong("wrong_street.csv", "x,z,rule\n0,0,House\n"),
       broken("broken.pga", "axiom Box A;\nA = B;\n");
   EXPECT_NE(gpgpFailure({"spawn", house.path(), tree.path(), "--axiom-file", wrong.path()})
-                .find("csv:2: error: the grammar has no rule \"House\"; expected a grammar, or its rule as in " + name +
+                .find("csv:2:5: error: the grammar has no rule \"House\"; expected a grammar, or its rule as in " + name +
                       "house.House"),
             std::string::npos);
   EXPECT_NE(gpgpFailure({"spawn", house.path(), broken.path()}).find("broken.pga:2:5: error: there is no rule or term"),
@@ -384,26 +388,75 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
     const size_t name = all.find("wrong_axioms:");
     return name == std::string::npos ? all : all.substr(name + 13);
   };
-  EXPECT_EQ(error("x,z\n1,2\n\n3,four\n"), "4: error: z takes a number; \"four\" is none");
-  EXPECT_EQ(error("x,z\n1\n"), "2: error: 1 values for 2 columns");
-  EXPECT_EQ(error("x,z,seed\n1,2,-1\n"), "2: error: seed takes a whole number from 0 to 4294967295; \"-1\" is none");
-  EXPECT_EQ(error("x,y\n1,2\n"), "2: error: an axiom needs a value for z");
-  EXPECT_EQ(error("x,z,size_y\n1,2,0\n"), "2: error: sizes are above 0");
-  EXPECT_EQ(error("x,z,rule\n1,2,Other\n"), "2: error: the grammar has no rule \"Other\"");
+  EXPECT_EQ(error("x,z\n1,2\n\n3,  four\n"), "4:5: error: z takes a number; \"four\" is none");
+  EXPECT_EQ(error("x,z\n1\n"), "2:1: error: 1 values for 2 columns");
+  EXPECT_EQ(error("x,z,seed\n1,2,-1\n"), "2:5: error: seed takes a whole number from 0 to 4294967295; \"-1\" is none");
+  EXPECT_EQ(error("x,y\n1,2\n"), "2:1: error: an axiom needs a value for z");
+  EXPECT_EQ(error("x,z,size_y\n1,2,0\n"), "2:5: error: sizes are above 0");
+  EXPECT_EQ(error("x,z,rule\n1,2,Other\n"), "2:5: error: the grammar has no rule \"Other\"");
   EXPECT_EQ(error("x,z,rule,shape\n1,2,One,Quad\n"),
-            "2: error: the grammar does not start \"One\" with shape \"Quad\", only with: Box");
-  EXPECT_EQ(error("x,z,shape\n1,2,Box\n"), "2: error: a shape needs the rule that starts with it");
-  EXPECT_EQ(error("x,x\n"), "1: error: two columns are named \"x\"");
-  EXPECT_EQ(error("x,w\n").substr(0, 27), "1: error: \"w\" is no column;");
-  EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]"), "3: error: an axiom needs a position");
-  EXPECT_EQ(error("[\n{\"position\": [1, 2]}]"), "2: error: position takes three numbers, [x, y, z]");
+            "2:9: error: the grammar does not start \"One\" with shape \"Quad\", only with: Box");
+  EXPECT_EQ(error("x,z,shape\n1,2,Box\n"), "2:5: error: a shape needs the rule that starts with it");
+  EXPECT_EQ(error("x,x\n"), "1:3: error: two columns are named \"x\"");
+  EXPECT_EQ(error("x,w\n").substr(0, 29), "1:3: error: \"w\" is no column;");
+  EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]").substr(0, 36),
+            "3:2: error: an axiom needs a value f");
+  EXPECT_EQ(error("[\n{\"position\": [1, 2]}]"), "2:1: error: position takes three numbers, [x, y, z]");
   EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n5]"),
-            "2: error: expected an object with position, rotation, size, seed, rule");
-  EXPECT_EQ(error("[\n{]").substr(0, 9), "2: error:");
+            "2:1: error: expected an object with position, rotation, size, seed, rule");
+  EXPECT_EQ(error("[\n{]").substr(0, 11), "2:2: error:");
   EXPECT_NE(error("x,z\n").find("no axioms"), std::string::npos);
-  EXPECT_EQ(error("{\"position\": [1, 2, 3]}"), "1: error: expected an array of axioms, [{...}, {...}]");
+  EXPECT_EQ(error("{\"position\": [1, 2, 3]}"), "1:1: error: expected an array of axioms, [{...}, {...}]");
   EXPECT_NE(error("[{\"position\": [1, 2, 1e999]}]").find(" error: "), std::string::npos);
-  EXPECT_EQ(error("\xef\xbb\xbfx,z\n1,two\n"), "2: error: z takes a number; \"two\" is none");
+  EXPECT_EQ(error("\xef\xbb\xbfx,z\n1,two\n"), "2:3: error: z takes a number; \"two\" is none");
+  EXPECT_EQ(error("x,qx,z\n1,0,1\n"), "2:1: error: an axiom with some of qx to qw needs all 4");
+  EXPECT_EQ(error("x,z,qx,qy,qz,qw\n1,0,0,0,0,0\n"), "2:5: error: a quaternion of length 0 turns nowhere");
+  EXPECT_EQ(error("x,z,rotation,qx,qy,qz,qw\n1,0,5,0,0,0,1\n"), "2:5: error: rotation or a quaternion, not both");
+  EXPECT_EQ(error("[{\"position\": [1, 2, 3], \"transform\": [1]}]"),
+            "1:2: error: transform takes twelve numbers, the rows of a 3x4 matrix");
+  EXPECT_EQ(error("[{\"rotation\": 3, \"transform\": [1,0,0,0, 0,1,0,0, 0,0,1,0]}]"),
+            "1:2: error: rotation stands beside a whole transform");
+  EXPECT_EQ(error("x,z\n1,\x01\xff\n"), "2:3: error: z takes a number; \"\\x01\\xff\" is none");
+}
+
+TEST(CliSpawn, AxiomFilesSayAllThatIsWrong) {
+  const TemporaryFile grammar("rules3.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n"),
+      lots("all_wrong.csv", "x,z,rotation,seed\n1,2,bad,5\n3,4,0,-7\nfoo,1,2,3\n1,2\n");
+  const ProcessResult result = gpgp({"spawn", grammar.path(), "--axiom-file", lots.path()});
+  EXPECT_EQ(result.exitCode, 1);
+  for (const char* wrong : {"csv:2:5: error: ", "csv:3:7: error: ", "csv:4:1: error: ", "csv:5:1: error: "})
+    EXPECT_NE(result.err.find(wrong), std::string::npos) << wrong << result.err;
+  EXPECT_NE(result.err.find("\"bad\" is none (and 3 more)"), std::string::npos) << result.err;
+}
+
+/// The same places by angle, by quaternion and by matrix.
+TEST(CliSpawn, AxiomFilesHoldTransforms) {
+  const TemporaryFile grammar("placed.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n");
+  const auto bounds = [&](const std::string& file, const std::string& text) {
+    const TemporaryFile axioms(file, text), out("placed.glb");
+    gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--axiom-size", "2,4,6", "--axiom-file",
+              axioms.path(), "--out", out.path()});
+    const std::string bytes = host::readText(out.path());
+    uint32_t size = 0;
+    std::memcpy(&size, bytes.data() + 12, 4);
+    const json accessor = json::parse(bytes.substr(20, size))["accessors"][0];
+    std::vector<double> all = accessor["min"];
+    for (const double high : accessor["max"]) all.push_back(high);
+    return all;
+  };
+  const auto expectNear = [](const std::vector<double>& a, const std::vector<double>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-5) << i;
+  };
+  const std::vector<double> turned = {7, 1, 19, 13, 5, 21}; // 2 x 4 x 6 by 90 degrees about Y at 10, 1, 20
+  expectNear(bounds("angle.csv", "x,y,z,rotation\n10,1,20,90\n"), turned);
+  expectNear(bounds("quaternion.csv", "x,y,z,qx,qy,qz,qw\n10,1,20,0,3,0,3\n"), turned);
+  expectNear(bounds("matrix.csv", "m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23\n0,0,1,10,0,1,0,3,-1,0,0,20\n"),
+             turned);
+  expectNear(bounds("quaternion.json", "[{\"position\": [10, 1, 20], \"quaternion\": [0, 1, 0, 1]}]"), turned);
+  expectNear(bounds("matrix.json", "[{\"transform\": [0,0,1,10, 0,1,0,3, -1,0,0,20]}]"), turned);
+  // About Z it lies on its side: its own Y points to -X, and it stands along that.
+  expectNear(bounds("lying.json", "[{\"position\": [0, 0, 0], \"quaternion\": [0, 0, 1, 1]}]"), {-4, -1, -3, 0, 1, 3});
 }
 
 TEST(CliSpawn, WritesTriangles) {
