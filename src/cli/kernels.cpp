@@ -1,7 +1,5 @@
 #include "cli/kernels.h"
 
-#include "cli/command.h"
-#include "cli/grammar_source.h"
 #include "cli/processors.h"
 #include "host/files.h"
 #include "spawn/codegen/compile_kernel.h"
@@ -11,9 +9,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 namespace gpgp::cli {
 namespace {
@@ -70,11 +70,14 @@ BakedGraph bakeGraph(const std::vector<std::string>& files, const std::vector<st
     const GrammarFile file(argument);
     texts.push_back({file, host::readText(file.path)});
   }
-  const bool linked = files.size() > 1 || !texts.at(0).file.alias.empty();
+  return bakeGraph(texts, files.size() > 1 || !texts.at(0).file.alias.empty(), set);
+}
+
+BakedGraph bakeGraph(std::span<const GrammarText> texts, bool linked, const std::vector<std::string>& set) {
   const Blob blob = linked ? linkGrammars(texts, set, false) : compileGrammar(texts[0], set, false);
   const auto* bytes = static_cast<const std::byte*>(blob.data());
   auto graph = spawn::load({bytes, blob.size()}, memory());
-  if (!graph) throw Failure(joined(files) + ": " + graph.error().text);
+  if (!graph) throw Failure(texts[0].file.path + ": " + graph.error().text);
   std::pmr::vector<uint32_t> words(blob.size() / sizeof(uint32_t), memory());
   std::memcpy(words.data(), bytes, blob.size());
   return {std::move(words), std::move(*graph)};
@@ -139,6 +142,39 @@ spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, spawn::KernelTarge
 std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::KernelInfo& info,
                                        std::span<const uint32_t> code) {
   return spawn::serialize(info, code, grammar.words[shader::kHeaderChecksum], memory());
+}
+
+std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vector<std::string>& files,
+                                       const std::vector<std::string>& schedules,
+                                       const spawn::Heuristics& heuristics) {
+  std::pmr::vector<uint32_t> all(grammar.words);
+  const auto append = [&](const spawn::KernelInfo& info, std::span<const uint32_t> code) {
+    const auto words = kernelWords(grammar, info, code);
+    all.insert(all.end(), words.begin(), words.end());
+  };
+  const std::string* forAll = nullptr;
+  for (const std::string& name : schedules) {
+    const bool tuned = name == "tuned";
+    if (tuned || (!spawn::namedSchedule(grammar.graph, name) && isBaked(name))) {
+      const std::filesystem::path file = tuned ? tunedFile(files, grammar) : std::filesystem::path(name);
+      if (tuned && !std::filesystem::exists(file))
+        throw Failure(joined(files) + ": no tuned schedule is stored; `gpgp tune` finds one");
+      const auto kernels = kernelsIn(file, grammar);
+      if (kernels.empty()) throw Failure(file.string() + " holds no kernel");
+      for (const spawn::Kernel& kernel : kernels) append(kernel.info, kernel.code);
+      continue;
+    }
+    const auto schedule = scheduleFor(grammar.graph, name, heuristics);
+    if (!schedule)
+      throw Usage("--schedule takes default, sgl, rw, rules, heuristic, tuned or a file; there is no \"" + name + "\"");
+    if (forAll)
+      throw Usage("--schedule " + *forAll + " is for all devices, so " + name +
+                  " would never run; one of them, and tuned ones, go into a file");
+    forAll = &name;
+    for (const spawn::KernelTarget target : spawn::targetsOf(grammar.graph)) // the first that a device can run is taken
+      append(kernelInfo(*schedule, target), compileKernels(grammar.graph, std::span(&*schedule, 1), target, false)[0]);
+  }
+  return all;
 }
 
 bool isBaked(const std::filesystem::path& file) {
@@ -206,6 +242,16 @@ void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, co
         std::bit_width(other.info.axioms) != std::bit_width(info.axioms))
       append(other.info, other.code);
   host::writeFile(file, {reinterpret_cast<const char*>(all.data()), all.size() * 4});
+}
+
+void checkWritable(const std::filesystem::path& file) {
+  const bool there = std::filesystem::exists(file);
+  std::error_code ignored; // opening the file says what is wrong
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  errno = 0;
+  if (!std::ofstream(file, std::ios::app))
+    throw Failure(file.string() + ": " + (errno ? std::strerror(errno) : "cannot be written"));
+  if (!there) std::filesystem::remove(file, ignored);
 }
 
 std::filesystem::path tunedFile(const std::vector<std::string>& files, const BakedGraph& grammar) {

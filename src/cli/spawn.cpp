@@ -58,6 +58,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     if (const auto kernel = kernelFor(stored, session.device(), count);
         kernel && isTunedFor(kernel->info, session.device(), count))
       return taken(*kernel, file);
+    checkWritable(file);
     std::fprintf(stderr, "gpgp spawn: no stored schedule for this grammar, device and number of axioms; tuning\n");
     TuneSettings settings;
     settings.matching = options.matching == "on";
@@ -421,7 +422,7 @@ Work addSpawn(CLI::App& app) {
       ->type_name("X,Y,Z");
   command
       ->add_option("--spacing", options->spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
-      ->check(CLI::PositiveNumber);
+      ->check(within(1e-6, 1e9));
   command->add_option("--seed", options->seed, "Random seed; axiom i has seed S + i")->capture_default_str();
   addVariables(*command, options->set);
   command->add_option("--repeat", options->repeat, "Derive N times, after 0.1 s to warm up, and report the median time")

@@ -30,6 +30,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
       options.out.empty() ? tunedFile(options.grammars, grammar) : std::filesystem::path(options.out);
   // Read now: what cannot be kept is said before the search rather than after it.
   const auto others = storedKernels(out, grammar, options.out.empty());
+  checkWritable(out);
   const AxiomDefaults defaults{options.size, settings.seed, grammar.starts()};
   const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
                                             ? axiomGrid(options.axioms, 0, defaults)
@@ -63,6 +64,8 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   text << "; " << tuned.candidates << (tuned.candidates == 1 ? " candidate in " : " candidates in ")
        << std::round(tuned.seconds * 10) / 10 << " s";
   if (tuned.leftOut) text << "; " << tuned.leftOut << " were left out for lack of time";
+  if (tuned.interpreter < best.milliseconds)
+    text << "\nthe interpreter is faster than any kernel: spawn --schedule interpreter, bake --no-kernel";
   text << "\nkept: " << out.string() << '\n';
   Outcome outcome;
   outcome.text = text.str();

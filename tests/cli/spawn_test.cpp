@@ -541,11 +541,16 @@ TEST(CliSpawn, WrongUsage) {
                     {"spawn", grammar.path(), "--axioms", "0"},
                     {"spawn", grammar.path(), "--axiom-size", "1,2"},
                     {"spawn", grammar.path(), "--axiom-size", "1,2,-3"},
+                    {"spawn", grammar.path(), "--spacing", "nan"},
+                    {"spawn", grammar.path(), "--spacing", "-1"},
+                    {"spawn", grammar.path(), "--spacing", "inf"},
                     {"spawn", grammar.path(), "--axiom-file", "no_such_file.csv"},
                     {"spawn", grammar.path(), "--axioms", "3", "--axiom-file", grammar.path()},
                     {"spawn", grammar.path(), "--set", "floors"},
                     {"spawn", grammar.path(), "--set", "=3"},
                     {"spawn", grammar.path(), "--set", "floors=many"}});
+  EXPECT_NE(gpgp({"spawn", grammar.path(), "--spacing", "0"}).err.find("0 is not within 1e-06 to 1e+09"),
+            std::string::npos);
 }
 
 } // namespace

@@ -169,6 +169,7 @@ TEST(CliTune, WrongUsage) {
                     {"tune", grammar.path(), "--set", "floors"}});
   EXPECT_NE(gpgpFailure({"tune", grammar.path(), "-o", other.path()}).find("is not a baking of this grammar"),
             std::string::npos);
+  EXPECT_EQ(gpgpFailure({"tune", grammar.path(), "-o", "/proc/x"}).substr(0, 9), "/proc/x: "); // before the search
 }
 
 } // namespace
