@@ -177,8 +177,9 @@ Row rowOf(const Json& object, spawn::Place place, spawn::Diagnostics& errors) {
       else
         errors.error(place, name + " takes a " + name + "'s name");
     } else {
-      errors.error(place, quoted(name) + " is unknown; there are position, rotation, quaternion, transform, size, seed, "
-                                         "rule, shape, attribute");
+      errors.error(place, quoted(name) +
+                              " is unknown; there are position, rotation, quaternion, transform, size, seed, "
+                              "rule, shape, attribute");
     }
   }
   return row;

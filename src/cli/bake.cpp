@@ -100,8 +100,7 @@ std::string bakeGrammars(const BakeOptions& options, std::span<const GrammarText
   if (options.schedules.empty())
     return bytesOf(linked ? linkGrammars(texts, options.set, options.kernel)
                           : compileGrammar(texts[0], options.set, options.kernel));
-  const auto words =
-      withKernels(bakeGraph(texts, linked, options.set), names, options.schedules, options.heuristics);
+  const auto words = withKernels(bakeGraph(texts, linked, options.set), names, options.schedules, options.heuristics);
   return {static_cast<const char*>(static_cast<const void*>(words.data())), words.size() * 4};
 }
 #endif
@@ -224,10 +223,11 @@ Work addBake(CLI::App& app) {
                                             "Grammars run on the interpreter: smaller files, slower derivation");
 #ifdef GPGP_CLI_SPAWN
   command
-      ->add_option("--schedule", options->schedules,
-                   "Whose kernels stand behind grammars, as `gpgp spawn` takes it. default, sgl, rw, rules, heuristic or "
-                   "groups as `gpgp graph` prints them: for all devices, so one of these at most; tuned, or what `gpgp "
-                   "tune -o` made: for the devices and numbers of axioms that they were tuned for. May be repeated")
+      ->add_option(
+          "--schedule", options->schedules,
+          "Whose kernels stand behind grammars, as `gpgp spawn` takes it. default, sgl, rw, rules, heuristic or "
+          "groups as `gpgp graph` prints them: for all devices, so one of these at most; tuned, or what `gpgp "
+          "tune -o` made: for the devices and numbers of axioms that they were tuned for. May be repeated")
       ->type_name("NAME|FILE")
       ->allow_extra_args(false)
       ->excludes(noKernel);

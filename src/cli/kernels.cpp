@@ -145,8 +145,7 @@ std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::K
 }
 
 std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vector<std::string>& files,
-                                       const std::vector<std::string>& schedules,
-                                       const spawn::Heuristics& heuristics) {
+                                       const std::vector<std::string>& schedules, const spawn::Heuristics& heuristics) {
   std::pmr::vector<uint32_t> all(grammar.words);
   const auto append = [&](const spawn::KernelInfo& info, std::span<const uint32_t> code) {
     const auto words = kernelWords(grammar, info, code);

@@ -55,12 +55,11 @@ spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, spawn::KernelTarge
 std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::KernelInfo& info,
                                        std::span<const uint32_t> code);
 
-/// A grammar's words with kernels behind them, for each of --schedule's values: of a named schedule or a file with groups
-/// one for each kind of device; of a baked file, or of where tuned ones are kept, what is there. files: as tunedFile.
-/// Throws Usage and Failure.
+/// A grammar's words with kernels behind them, for each of --schedule's values: of a named schedule or a file with
+/// groups one for each kind of device; of a baked file, or of where tuned ones are kept, what is there. files: as
+/// tunedFile. Throws Usage and Failure.
 std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vector<std::string>& files,
-                                       const std::vector<std::string>& schedules,
-                                       const spawn::Heuristics& heuristics);
+                                       const std::vector<std::string>& schedules, const spawn::Heuristics& heuristics);
 
 /// Whether a file begins as baked grammars do.
 bool isBaked(const std::filesystem::path& file);
@@ -71,8 +70,8 @@ struct Unusable : Failure {
 /// The kernels of a baked file of this very graph. Throws where the file is something else; Unusable where nobody can
 /// say any more what it was.
 std::pmr::vector<spawn::Kernel> kernelsIn(const std::filesystem::path& file, const BakedGraph& grammar);
-/// The kernels in a file that keeps tuned ones. None where it is not there, and where it cannot be used, which is said on
-/// standard error: it is made anew then. Throws where it is something else, which only a cache's files cannot be.
+/// The kernels in a file that keeps tuned ones. None where it is not there, and where it cannot be used, which is said
+/// on standard error: it is made anew then. Throws where it is something else, which only a cache's files cannot be.
 std::pmr::vector<spawn::Kernel> storedKernels(const std::filesystem::path& file, const BakedGraph& grammar, bool cache);
 /// Of those, the one that the library would take for this device and number of axioms; nothing where none fits.
 std::optional<spawn::Kernel> kernelFor(std::span<const spawn::Kernel> kernels, const host::HeadlessDevice& device,

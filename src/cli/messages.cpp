@@ -11,7 +11,10 @@ size_t characterSize(std::string_view text) {
   const auto byte = [&](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : 0u; };
   const uint32_t first = byte(0);
   if (first < 0x80) return 1;
-  const size_t size = first >= 0xc2 && first < 0xe0 ? 2 : (first & 0xf0) == 0xe0 ? 3 : first >= 0xf0 && first < 0xf5 ? 4 : 0;
+  const size_t size = first >= 0xc2 && first < 0xe0   ? 2
+                      : (first & 0xf0) == 0xe0        ? 3
+                      : first >= 0xf0 && first < 0xf5 ? 4
+                                                      : 0;
   for (size_t i = 1; i < size; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
   if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0)) return 0; // too long, surrogates

@@ -26,8 +26,8 @@ struct Reference {
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
                    const spawn::VertexLayout* layout);
 
-/// Whether of one axiom alone, the first of a start, come more shapes than the evaluator takes. Larger budgets only make
-/// that last longer.
+/// Whether of one axiom alone, the first of a start, come more shapes than the evaluator takes. Larger budgets only
+/// make that last longer.
 bool neverEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth);
 /// What is said of it.
 std::string neverEndingText();

@@ -185,8 +185,8 @@ std::string exceededBudgets(const GpgpSpawnReport& report, const Deriver& derive
     text += "budget exceeded: " + counted(report.unfinishedShapes, "shape") +
             (report.unfinishedShapes == 1 ? " was" : " were") + " not finished; raise --max-depth\n";
   if (!vertices && report.instancesWritten < report.terminals)
-    text += exceeded(counted(report.terminals - report.instancesWritten, "instance"), "--max-instances", report.terminals,
-                     deriver.mostElements());
+    text += exceeded(counted(report.terminals - report.instancesWritten, "instance"), "--max-instances",
+                     report.terminals, deriver.mostElements());
   if (report.verticesWritten < report.vertices)
     text += exceeded(counted(report.vertices - report.verticesWritten, "vertex", "vertices"), "--max-instances",
                      report.vertices, deriver.mostElements());
@@ -339,7 +339,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   text << report.terminals << " terminals (" << triangles.total << " triangles) from " << start.size()
        << (start.size() == 1 ? " axiom" : " axioms") << " in "
        << (slices.records > 1 ? std::to_string(slices.records) + " records of up to " : std::string()) << report.rounds
-       << " rounds on " << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups << " execution groups\n";
+       << " rounds on " << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups
+       << " execution groups\n";
   for (uint32_t bucket = 0; bucket < bucketNames.size(); ++bucket) {
     bucketList.push_back({{"bucket", bucket},
                           {"name", bucketNames[bucket]},
@@ -411,8 +412,10 @@ Work addSpawn(CLI::App& app) {
                        "Start shapes, on a square grid; those of linked grammars in turn (default: one of each)")
           ->check(CLI::Range(1u, 10000000u));
   command
-      ->add_option("--axiom-file", options->axiomFile,
-                   "Start shapes from a file, CSV or JSON: position, rotation about Y, size, seed, rule, shape")
+      ->add_option(
+          "--axiom-file", options->axiomFile,
+          "Start shapes from a file, CSV or JSON: position, rotation about Y or quaternion, or a whole transform; "
+          "size, seed, rule, shape, attribute")
       ->check(CLI::ExistingFile)
       ->excludes(axioms);
   command
@@ -484,7 +487,8 @@ Examples:
   gpgp spawn sponge.pga                                 one axiom of 1 x 1 x 1
   gpgp spawn tower.pga --axioms 256 --axiom-size 24,34,24 --spacing 40
   gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
-  gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line
+  gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line;
+                                                        also y, qx to qw, m00 to m23, shape, attribute
   gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
   gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median

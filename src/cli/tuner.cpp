@@ -159,11 +159,10 @@ private:
       throw Failure(std::to_string(wanted.unfinishedShapes) +
                     " shapes were not finished: rules nest deeper than the budget; raise --max-depth");
     if (wanted.droppedShapes || wanted.collidersKept < wanted.colliders)
-      throw Failure(std::to_string(wanted.droppedShapes ? wanted.droppedShapes
-                                                        : wanted.colliders - wanted.collidersKept) +
-                    (wanted.droppedShapes ? " shapes" : " colliders") +
-                    " did not fit the largest budgets of this device" +
-                    (axioms_ > 1 ? "; use fewer axioms" : "; the derivation of one axiom is too large, or does not end"));
+      throw Failure(
+          std::to_string(wanted.droppedShapes ? wanted.droppedShapes : wanted.colliders - wanted.collidersKept) +
+          (wanted.droppedShapes ? " shapes" : " colliders") + " did not fit the largest budgets of this device" +
+          (axioms_ > 1 ? "; use fewer axioms" : "; the derivation of one axiom is too large, or does not end"));
     if (!wanted.terminals) throw Failure("the grammar derives nothing from these axioms");
     tuned_.interpreter = deriver_->measure(interpreted, 1).times.median();
     tuned_.interpreter = deriver_->measure(interpreted, repeats(tuned_.interpreter)).times.median();

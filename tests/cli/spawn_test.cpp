@@ -219,9 +219,9 @@ TEST(CliSpawn, WhatWasExceededIsNamed) {
 }
 
 TEST(CliSpawn, SlicesSumUp) {
-  const TemporaryFile grammar("slices.pga", kStreet), colliders("slices_colliders.pga",
-                                                                "axiom Box S;\nterminal W (1, 0);\n"
-                                                                "S = Collider(w) W;\n");
+  const TemporaryFile grammar("slices.pga", kStreet),
+      colliders("slices_colliders.pga", "axiom Box S;\nterminal W (1, 0);\n"
+                                        "S = Collider(w) W;\n");
   const auto spawn = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"spawn", grammar.path(), "--axioms", "10", "--axiom-size", "9,8,4", "--schedule",
                                "interpreter", "--repeat", "2"});
@@ -264,8 +264,8 @@ TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differ
   const TemporaryFile grammar("colliders.pga",
                               "axiom Box S;\nterminal W F (1, 0);\n"
                               "S = Replicate() { Collider(w) W | Scale(-0.5, -3, -0.5) IfCollides(w) { F | W } };\n");
-  const std::vector<std::string> common = {"spawn",     grammar.path(), "--schedule", "interpreter", "--axioms", "9",
-                                           "--spacing", "0.5"};
+  const std::vector<std::string> common = {"spawn", grammar.path(), "--schedule", "interpreter", "--axioms",
+                                           "9",     "--spacing",    "0.5"};
   EXPECT_EQ(gpgpJson(common)["budget_exceeded"], false);
   auto few = common;
   few.insert(few.end(), {"--max-colliders", "4"});
@@ -274,7 +274,8 @@ TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differ
   EXPECT_EQ(told["colliders"], 9);
   EXPECT_EQ(told["terminals"], 18);
   const ProcessResult text = gpgp(few);
-  EXPECT_NE(text.out.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have held all"), std::string::npos)
+  EXPECT_NE(text.out.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have held all"),
+            std::string::npos)
       << text.out;
 }
 
@@ -339,8 +340,8 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
   const TemporaryFile wrong("wrong_street.csv", "x,z,rule\n0,0,House\n"),
       broken("broken.pga", "axiom Box A;\nA = B;\n");
   EXPECT_NE(gpgpFailure({"spawn", house.path(), tree.path(), "--axiom-file", wrong.path()})
-                .find("csv:2:5: error: the grammar has no rule \"House\"; expected a grammar, or its rule as in " + name +
-                      "house.House"),
+                .find("csv:2:5: error: the grammar has no rule \"House\"; expected a grammar, or its rule as in " +
+                      name + "house.House"),
             std::string::npos);
   EXPECT_NE(gpgpFailure({"spawn", house.path(), broken.path()}).find("broken.pga:2:5: error: there is no rule or term"),
             std::string::npos);
@@ -486,8 +487,7 @@ TEST(CliSpawn, TrianglesThatCannotBeWrittenAreAFailure) {
     return std::vector<std::string>{"spawn", grammar.path(), "--schedule", "interpreter", "--out", out};
   };
   const std::vector<std::string> wrong = {folder.path(), grammar.path() + "/x.glb", "/proc/x.glb"};
-  for (const std::string& out : wrong)
-    EXPECT_EQ(gpgpFailure(spawn(out)).substr(0, out.size() + 2), out + ": ");
+  for (const std::string& out : wrong) EXPECT_EQ(gpgpFailure(spawn(out)).substr(0, out.size() + 2), out + ": ");
   std::filesystem::create_symlink("/dev/full", under.path() + ".glb");
   EXPECT_NE(gpgpFailure(spawn(under.path() + ".glb")).find("No space left"), std::string::npos);
   std::filesystem::remove(under.path() + ".glb");
