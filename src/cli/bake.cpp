@@ -16,16 +16,20 @@
 
 #include <cctype>
 #include <filesystem>
+#include <span>
 #include <sstream>
 
 namespace gpgp::cli {
 namespace {
 
 struct BakeOptions {
-  std::vector<std::string> in, set;
+  std::vector<std::string> in, set, schedules;
   std::string out, type;
   bool kernel = true, link = false;
   float scale = 1;
+#ifdef GPGP_CLI_SPAWN
+  spawn::Heuristics heuristics;
+#endif
 #ifdef GPGP_CLI_TEXT
   BakeFontOptions font;
 #endif
@@ -68,8 +72,12 @@ const char* endingOf(std::string_view type) {
   return type == "drawing" ? ".gpgpv" : type == "font" ? ".gpgpf" : ".gpgp";
 }
 
+std::string bytesOf(const Blob& blob) {
+  return {static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size()};
+}
+
 struct Baked {
-  Blob blob;
+  std::string bytes;
   Json json = Json::object(); ///< what only this type tells
   std::string words;
 };
@@ -86,7 +94,19 @@ Baked bakeDrawing(const std::string& text, const std::string& name, float scale)
   Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(name + ": " + (messages.count() ? messages.failure() : blob.name()));
   messages.finish();
-  return {std::move(*blob), {{"messages", messages.json()}}, {}};
+  return {bytesOf(*blob), {{"messages", messages.json()}}, {}};
+}
+#endif
+
+#ifdef GPGP_CLI_SPAWN
+/// names: of the files, as the command line has them.
+std::string bakeGrammars(const BakeOptions& options, std::span<const GrammarText> texts, bool linked,
+                         const std::vector<std::string>& names) {
+  if (options.schedules.empty())
+    return bytesOf(linked ? linkGrammars(texts, options.set, options.kernel)
+                          : compileGrammar(texts[0], options.set, options.kernel));
+  const auto words = withKernels(bakeGraph(texts, linked, options.set), names, options.schedules, options.heuristics);
+  return {static_cast<const char*>(static_cast<const void*>(words.data())), words.size() * 4};
 }
 #endif
 
@@ -94,8 +114,10 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
               const std::string& bytes) {
   const std::string name = inputName(file);
 #ifdef GPGP_CLI_SPAWN
-  if (type == "grammar")
-    return {compileGrammar({GrammarFile(name), bytes}, options.set, options.kernel), Json::object(), {}};
+  if (type == "grammar") {
+    const GrammarText text{GrammarFile(name), bytes};
+    return {bakeGrammars(options, {&text, 1}, false, {name}), Json::object(), {}};
+  }
 #endif
 #ifdef GPGP_CLI_VECTOR
   if (type == "drawing") return bakeDrawing(bytes, name, options.scale);
@@ -103,7 +125,7 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
 #ifdef GPGP_CLI_TEXT
   if (type == "font") {
     BakedFont font = bakeFont(bytes, name, options.font);
-    return {std::move(font.blob), std::move(font.json), ", " + font.words};
+    return {bytesOf(font.blob), std::move(font.json), ", " + font.words};
   }
 #endif
   throw Failure(name + ": this gpgp was built without what bakes a " + type);
@@ -124,13 +146,12 @@ Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
       throw Usage(file.path + " is no grammar; --link is for grammars");
     grammars.push_back({file, std::move(text)});
   }
-  const Blob blob = linkGrammars(grammars, options.set, options.kernel);
-  const std::string_view bytes(static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size());
-  if (options.out == kStandard) return {Json::object(), std::string(bytes)};
+  const std::string bytes = bakeGrammars(options, grammars, true, options.in);
+  if (options.out == kStandard) return {Json::object(), bytes};
   host::writeFile(options.out, bytes);
   std::ostringstream text;
-  text << joined(options.in) << ": grammar, " << blob.size() << " bytes, " << options.out << '\n';
-  const Json line = {{"in", options.in}, {"type", "grammar"}, {"out", options.out}, {"bytes", blob.size()}};
+  text << joined(options.in) << ": grammar, " << bytes.size() << " bytes, " << options.out << '\n';
+  const Json line = {{"in", options.in}, {"type", "grammar"}, {"out", options.out}, {"bytes", bytes.size()}};
   return {{{"baked", Json::array({line})}}, text.str()};
 #else
   throw Failure("this gpgp was built without what bakes a grammar");
@@ -161,8 +182,7 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
   Json list = Json::array();
   std::ostringstream text;
   for (const auto& [file, type, input] : work) {
-    const auto [blob, facts, words] = bakeOne(options, file, type, file == kStandard ? input : readInput(file));
-    const std::string_view bytes(static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size());
+    const auto [bytes, facts, words] = bakeOne(options, file, type, file == kStandard ? input : readInput(file));
     if (options.out == kStandard) {
       outcome.text = bytes;
       return outcome;
@@ -173,9 +193,9 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
     for (const Json& other : list)
       if (other["out"] == out) throw Usage(file + ": another input goes to " + out + " as well");
     host::writeFile(out, bytes);
-    list.push_back({{"in", file}, {"type", type}, {"out", out}, {"bytes", blob.size()}});
+    list.push_back({{"in", file}, {"type", type}, {"out", out}, {"bytes", bytes.size()}});
     list.back().update(facts);
-    text << file << ": " << type << words << ", " << blob.size() << " bytes, " << out << '\n';
+    text << file << ": " << type << words << ", " << bytes.size() << " bytes, " << out << '\n';
   }
   outcome.text = text.str();
   outcome.json = {{"baked", list}};
@@ -205,8 +225,20 @@ Work addBake(CLI::App& app) {
   command->add_flag("--link", options->link,
                     "The grammars, baked ones too, become one, in one file: names of a.pga are a.Name, and its start "
                     "is a. Files of the same name take another one as NAME=FILE");
-  command->add_flag("!--no-kernel", options->kernel,
-                    "Grammars run on the interpreter: smaller files, slower derivation");
+  CLI::Option* noKernel = command->add_flag("!--no-kernel", options->kernel,
+                                            "Grammars run on the interpreter: smaller files, slower derivation");
+#ifdef GPGP_CLI_SPAWN
+  command
+      ->add_option(
+          "--schedule", options->schedules,
+          "Whose kernels stand behind grammars, as `gpgp spawn` takes it. default, sgl, rw, rules, heuristic or "
+          "groups as `gpgp graph` prints them: for all devices, so one of these at most; tuned, or what `gpgp "
+          "tune -o` made: for the devices and numbers of axioms that they were tuned for. May be repeated")
+      ->type_name("NAME|FILE")
+      ->allow_extra_args(false)
+      ->excludes(noKernel);
+  addGroupSize(*command, options->heuristics);
+#endif
 #ifdef GPGP_CLI_VECTOR
   command
       ->add_option(
@@ -222,6 +254,7 @@ Work addBake(CLI::App& app) {
   command->footer(R"(
 Examples:
   gpgp bake city.pga -o city.gpgp
+  gpgp bake city.pga -o city.gpgp --schedule tuned --schedule default   tuned where it was, and else by default
   gpgp bake house.pga tree.pga lamp.pga --link -o street.gpgp      one grammar: one record derives all of them
   gpgp bake old=a/house.pga new=b/house.pga --link -o houses.gpgp  their starts are old and new
   gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"

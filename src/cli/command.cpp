@@ -47,14 +47,19 @@ std::array<float, 3> parseTriple(const std::string& text) {
   return values;
 }
 
-CLI::Validator pngFile() {
-  return {[](std::string& text) {
-            const size_t size = text.size();
-            const bool good = size > 4 && CLI::detail::to_lower(text.substr(size - 4)) == ".png";
-            return good ? std::string() : text + ": pictures are written as .png alone";
+namespace {
+CLI::Validator fileThatEnds(const std::string& ending, const std::string& what) {
+  return {[=](std::string& text) {
+            const size_t size = text.size(), end = ending.size();
+            const bool good = size > end && CLI::detail::to_lower(text.substr(size - end)) == ending;
+            return good ? std::string() : text + ": " + what + " are written as " + ending + " alone";
           },
           ""};
 }
+} // namespace
+
+CLI::Validator pngFile() { return fileThatEnds(".png", "pictures"); }
+CLI::Validator glbFile() { return fileThatEnds(".glb", "triangles"); }
 
 CLI::Validator existingInput() {
   return {[](std::string& file) { return file == kStandard ? std::string() : CLI::ExistingFile(file); }, "FILE"};

@@ -53,6 +53,8 @@ CLI::Option* addSize(CLI::App& command, const std::string& name, Size& size, con
 
 /// The name of a picture to be written: PNG is the only format.
 CLI::Validator pngFile();
+/// And of triangles: binary glTF.
+CLI::Validator glbFile();
 
 /// Names a file, or standard input.
 inline constexpr const char* kStandard = "-";

@@ -55,9 +55,14 @@ Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<
   makeSpawner();
 }
 
+uint64_t Deriver::mostAxioms(Session& session) {
+  return session.device().properties().limits.maxStorageBufferRange / sizeof(GpgpAxiom);
+}
+
 void Deriver::setAxioms(const std::vector<GpgpAxiom>& axioms) {
-  if (axioms.size() * sizeof(GpgpAxiom) > session_.device().properties().limits.maxStorageBufferRange)
-    throw Failure(std::to_string(axioms.size()) + " axioms are more than this device binds");
+  if (axioms.size() > mostAxioms(session_))
+    throw Failure(std::to_string(axioms.size()) + " axioms are more than this device binds: at most " +
+                  std::to_string(mostAxioms(session_)));
   axioms_ = host::makeBuffer(session_.device(), axioms, kStorage, "axioms");
   axiomCount_ = static_cast<uint32_t>(axioms.size());
 }
@@ -96,6 +101,17 @@ uint64_t Deriver::mostElements() const {
   if (!options_.vertices) return std::min<uint64_t>(range / sizeof(GpgpInstance), 1u << 30);
   return std::min<uint64_t>(range / sizeof(SpawnedVertex), range / 6) / 4 * 4; // 6 indices of 4 bytes for 4 vertices
 }
+
+uint32_t Deriver::mostColliders() const {
+  return session_.device().isSoftware() ? kMostSoftwareColliders : kMostColliders;
+}
+
+uint32_t Deriver::mostShapes() const {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  return static_cast<uint32_t>(std::min<uint64_t>(range / (kShapeBytes * kStackFactor), kMostShapes));
+}
+
+uint32_t Deriver::mostRounds() { return kMostRounds; }
 
 void Deriver::makeOutput(uint64_t elements) {
   elements_ = std::min(elements, mostElements());
@@ -167,25 +183,23 @@ Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repe
 
 GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
   const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
-  const uint32_t mostShapes =
-      static_cast<uint32_t>(std::min<uint64_t>(range / (kShapeBytes * kStackFactor), kMostShapes));
   for (;;) {
     const GpgpSpawnReport report = measure(grammar, 1).report;
     bool again = false, another = false; // spawner
-    if (report.droppedShapes && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes) {
+    const bool raised = report.droppedShapes && options_.raises;
+    if (raised && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes()) {
       maxShapes_ = static_cast<uint32_t>(std::min<uint64_t>(
-          std::max<uint64_t>(2 * uint64_t{maxShapes_}, std::bit_ceil(uint64_t{report.peakShapes})), mostShapes));
+          std::max<uint64_t>(2 * uint64_t{maxShapes_}, std::bit_ceil(uint64_t{report.peakShapes})), mostShapes()));
       another = true;
     }
     const bool allTaken =
         maxRounds_ == firstRounds_ ? !another : report.rounds >= maxRounds_; // the library may take fewer
-    if (report.droppedShapes && allTaken && maxRounds_ < kMostRounds) {
+    if (raised && allTaken && maxRounds_ < kMostRounds) {
       maxRounds_ *= 2;
       another = true;
     }
-    const uint32_t mostColliders = session_.device().isSoftware() ? kMostSoftwareColliders : kMostColliders;
-    if (report.colliders > maxColliders_ && !options_.maxColliders && maxColliders_ < mostColliders) {
-      maxColliders_ = std::min(report.colliders, mostColliders);
+    if (report.colliders > maxColliders_ && !options_.maxColliders && maxColliders_ < mostColliders()) {
+      maxColliders_ = std::min(report.colliders, mostColliders());
       another = true;
     }
     const uint64_t wanted = options_.vertices ? report.vertices : report.terminals;

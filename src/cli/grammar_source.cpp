@@ -1,5 +1,6 @@
 #include "cli/grammar_source.h"
 
+#include "cli/messages.h"
 #include "spawn/language/build_graph.h"
 
 #include <cmath>
@@ -50,7 +51,7 @@ struct Errors {
              : message->severity == GPGP_SEVERITY_WARNING ? "warning: "
                                                           : "")
          << message->text;
-    std::fprintf(stderr, "%s\n", line.str().c_str());
+    std::fprintf(stderr, "%s\n", printable(line.str()).c_str());
     if (message->severity != GPGP_SEVERITY_ERROR) return;
     if (all->count++ == 0) all->first = line.str();
   }
@@ -130,6 +131,18 @@ void addVariables(CLI::App& command, std::vector<std::string>& set) {
   command.add_option("--set", set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
+}
+
+void report(const spawn::Diagnostics& diagnostics, const std::string& file) {
+  std::string first;
+  for (const spawn::Diagnostic& d : diagnostics.sorted()) {
+    const std::string line = spawn::format(d, file);
+    std::fprintf(stderr, "%s\n", printable(line).c_str());
+    if (first.empty() && d.severity == GPGP_SEVERITY_ERROR) first = line;
+  }
+  if (!diagnostics.hasErrors()) return;
+  const size_t more = diagnostics.errorCount() - 1;
+  throw Failure(first + (more ? " (and " + std::to_string(more) + " more)" : std::string()));
 }
 
 Blob compileGrammar(const GrammarText& grammar, const std::vector<std::string>& set, bool kernel) {

@@ -1,6 +1,7 @@
 // Grammars to a baked grammar, for the subcommands: every message goes to standard error, the first error is thrown.
 #pragma once
 #include "cli/command.h"
+#include "spawn/language/diagnostics.h"
 
 #include <gpgp/gpgp.hpp>
 
@@ -25,6 +26,9 @@ struct GrammarText {
   GrammarFile file;
   std::string text; ///< or the bytes of a baked grammar
 };
+
+/// Prints all messages about a file; throws Failure with the first error, where there were any.
+void report(const spawn::Diagnostics& diagnostics, const std::string& file);
 
 /// set holds NAME=VALUE, as --set takes them. Throws Usage and Failure.
 Blob compileGrammar(const GrammarText& grammar, const std::vector<std::string>& set, bool kernel);

@@ -24,19 +24,6 @@ struct GraphOptions {
   uint64_t limit = 1000000;
 };
 
-/// Prints all messages; throws where there were errors.
-void report(const spawn::Diagnostics& diagnostics, const std::string& file) {
-  std::string first;
-  for (const spawn::Diagnostic& d : diagnostics.sorted()) {
-    const std::string line = spawn::format(d, file);
-    std::fprintf(stderr, "%s\n", line.c_str());
-    if (first.empty() && d.severity == GPGP_SEVERITY_ERROR) first = line;
-  }
-  const size_t more = diagnostics.errorCount() - 1;
-  if (diagnostics.hasErrors())
-    throw Failure(first + (more ? std::string(" (and ").append(std::to_string(more)).append(" more)") : std::string()));
-}
-
 std::optional<spawn::Partition> schedule(const GraphOptions& options, const spawn::Graph& graph,
                                          const spawn::Flow& flow) {
   const std::string& name = options.schedule;

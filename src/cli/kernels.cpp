@@ -1,7 +1,5 @@
 #include "cli/kernels.h"
 
-#include "cli/command.h"
-#include "cli/grammar_source.h"
 #include "cli/processors.h"
 #include "host/files.h"
 #include "spawn/codegen/compile_kernel.h"
@@ -11,9 +9,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 namespace gpgp::cli {
 namespace {
@@ -70,11 +70,14 @@ BakedGraph bakeGraph(const std::vector<std::string>& files, const std::vector<st
     const GrammarFile file(argument);
     texts.push_back({file, host::readText(file.path)});
   }
-  const bool linked = files.size() > 1 || !texts.at(0).file.alias.empty();
+  return bakeGraph(texts, files.size() > 1 || !texts.at(0).file.alias.empty(), set);
+}
+
+BakedGraph bakeGraph(std::span<const GrammarText> texts, bool linked, const std::vector<std::string>& set) {
   const Blob blob = linked ? linkGrammars(texts, set, false) : compileGrammar(texts[0], set, false);
   const auto* bytes = static_cast<const std::byte*>(blob.data());
   auto graph = spawn::load({bytes, blob.size()}, memory());
-  if (!graph) throw Failure(joined(files) + ": " + graph.error().text);
+  if (!graph) throw Failure(texts[0].file.path + ": " + graph.error().text);
   std::pmr::vector<uint32_t> words(blob.size() / sizeof(uint32_t), memory());
   std::memcpy(words.data(), bytes, blob.size());
   return {std::move(words), std::move(*graph)};
@@ -102,7 +105,7 @@ std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std:
   if (!std::filesystem::is_regular_file(nameOrFile)) return std::nullopt;
   spawn::Diagnostics diagnostics;
   const auto partition = spawn::parseGroups(host::readText(nameOrFile), graph, diagnostics);
-  if (!partition) throw Failure(spawn::format(diagnostics.sorted().at(0), nameOrFile));
+  report(diagnostics, nameOrFile);
   spawn::Roots roots(graph.nodes.size(), spawn::kNoNode);
   for (size_t n = 0; n < roots.size(); ++n)
     if (partition->groupOf[n] != spawn::kNoGroup) roots[n] = partition->groups[partition->groupOf[n]].root;
@@ -141,6 +144,38 @@ std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::K
   return spawn::serialize(info, code, grammar.words[shader::kHeaderChecksum], memory());
 }
 
+std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vector<std::string>& files,
+                                       const std::vector<std::string>& schedules, const spawn::Heuristics& heuristics) {
+  std::pmr::vector<uint32_t> all(grammar.words);
+  const auto append = [&](const spawn::KernelInfo& info, std::span<const uint32_t> code) {
+    const auto words = kernelWords(grammar, info, code);
+    all.insert(all.end(), words.begin(), words.end());
+  };
+  const std::string* forAll = nullptr;
+  for (const std::string& name : schedules) {
+    const bool tuned = name == "tuned";
+    if (tuned || (!spawn::namedSchedule(grammar.graph, name) && isBaked(name))) {
+      const std::filesystem::path file = tuned ? tunedFile(files, grammar) : std::filesystem::path(name);
+      if (tuned && !std::filesystem::exists(file))
+        throw Failure(joined(files) + ": no tuned schedule is stored; `gpgp tune` finds one");
+      const auto kernels = kernelsIn(file, grammar);
+      if (kernels.empty()) throw Failure(file.string() + " holds no kernel");
+      for (const spawn::Kernel& kernel : kernels) append(kernel.info, kernel.code);
+      continue;
+    }
+    const auto schedule = scheduleFor(grammar.graph, name, heuristics);
+    if (!schedule)
+      throw Usage("--schedule takes default, sgl, rw, rules, heuristic, tuned or a file; there is no \"" + name + "\"");
+    if (forAll)
+      throw Usage("--schedule " + *forAll + " is for all devices, so " + name +
+                  " would never run; one of them, and tuned ones, go into a file");
+    forAll = &name;
+    for (const spawn::KernelTarget target : spawn::targetsOf(grammar.graph)) // the first that a device can run is taken
+      append(kernelInfo(*schedule, target), compileKernels(grammar.graph, std::span(&*schedule, 1), target, false)[0]);
+  }
+  return all;
+}
+
 bool isBaked(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file) && host::readText(file).starts_with("gppg");
 }
@@ -149,11 +184,29 @@ std::pmr::vector<spawn::Kernel> kernelsIn(const std::filesystem::path& file, con
   const std::string text = host::readText(file);
   const auto bytes = std::as_bytes(std::span(text.data(), text.size()));
   const size_t graphBytes = spawn::sizeOfGraph(bytes);
-  if (graphBytes != grammar.words.size() * 4 || std::memcmp(text.data(), grammar.words.data(), graphBytes) != 0)
-    throw Failure(file.string() + " is not a baking of this grammar, with the variables as they are set here");
+  const bool same =
+      graphBytes == grammar.words.size() * 4 && std::memcmp(text.data(), grammar.words.data(), graphBytes) == 0;
+  if (!same && (text.empty() || text.starts_with("gppg")))
+    if (const auto other = spawn::load(bytes.first(graphBytes), memory()); !other)
+      throw Unusable(file.string() + ": " + other.error().text);
+  if (!same) throw Failure(file.string() + " is not a baking of this grammar, with the variables as they are set here");
   auto kernels = spawn::loadKernels(bytes.subspan(graphBytes), grammar.words[shader::kHeaderChecksum], memory());
-  if (!kernels) throw Failure(file.string() + ": " + kernels.error().text);
+  if (!kernels) throw Unusable(file.string() + ": " + kernels.error().text);
   return std::move(*kernels);
+}
+
+std::pmr::vector<spawn::Kernel> storedKernels(const std::filesystem::path& file, const BakedGraph& grammar,
+                                              bool cache) {
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    return kernelsIn(file, grammar);
+  } catch (const Unusable& error) {
+    std::fprintf(stderr, "gpgp: %s; what is kept there is made anew\n", error.what());
+  } catch (const Failure& error) { // not the command's own file
+    if (!cache) throw;
+    std::fprintf(stderr, "gpgp: %s; what is kept there is made anew\n", error.what());
+  }
+  return {};
 }
 
 std::optional<spawn::Kernel> kernelFor(std::span<const spawn::Kernel> kernels, const host::HeadlessDevice& device,
@@ -176,19 +229,28 @@ bool isTunedFor(const spawn::KernelInfo& info, const host::HeadlessDevice& devic
 }
 
 void keepKernel(const std::filesystem::path& file, const BakedGraph& grammar, const spawn::KernelInfo& info,
-                std::span<const uint32_t> code) {
+                std::span<const uint32_t> code, std::span<const spawn::Kernel> others) {
   std::pmr::vector<uint32_t> all(grammar.words);
   const auto append = [&](const spawn::KernelInfo& i, std::span<const uint32_t> kernel) {
     const auto words = kernelWords(grammar, i, kernel);
     all.insert(all.end(), words.begin(), words.end());
   };
   append(info, code);
-  if (std::filesystem::exists(file))
-    for (const spawn::Kernel& other : kernelsIn(file, grammar))
-      if (other.info.vendor != info.vendor || other.info.device != info.device ||
-          std::bit_width(other.info.axioms) != std::bit_width(info.axioms))
-        append(other.info, other.code);
+  for (const spawn::Kernel& other : others)
+    if (other.info.vendor != info.vendor || other.info.device != info.device ||
+        std::bit_width(other.info.axioms) != std::bit_width(info.axioms))
+      append(other.info, other.code);
   host::writeFile(file, {reinterpret_cast<const char*>(all.data()), all.size() * 4});
+}
+
+void checkWritable(const std::filesystem::path& file) {
+  const bool there = std::filesystem::exists(file);
+  std::error_code ignored; // opening the file says what is wrong
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  errno = 0;
+  if (!std::ofstream(file, std::ios::app))
+    throw Failure(file.string() + ": " + (errno ? std::strerror(errno) : "cannot be written"));
+  if (!there) std::filesystem::remove(file, ignored);
 }
 
 std::filesystem::path tunedFile(const std::vector<std::string>& files, const BakedGraph& grammar) {

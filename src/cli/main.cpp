@@ -1,5 +1,6 @@
 // The `gpgp` command: what the library does, from the command line. One file per subcommand.
 #include "cli/command.h"
+#include "cli/messages.h"
 
 #include <gpgp/core.h>
 
@@ -85,13 +86,14 @@ int run(int argc, char** argv) {
       std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), outcome.failure.c_str());
       return 1;
     } catch (const Usage& error) {
-      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), error.what());
+      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), printable(error.what()).c_str());
       return 2;
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), error.what());
+      const std::string text = printable(error.what());
+      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), text.c_str());
       if (subcommand.options.json) {
-        const Json object = {{"command", name}, {"ok", false}, {"error", error.what()}};
-        std::printf("%s\n", object.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+        const Json object = {{"command", name}, {"ok", false}, {"error", text}};
+        std::printf("%s\n", object.dump(2).c_str());
       }
       return 1;
     }

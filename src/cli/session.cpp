@@ -34,6 +34,12 @@ struct QueryPool {
 
 } // namespace
 
+void GpuTimes::add(const GpuTimes& other) {
+  totals.resize(std::max(totals.size(), other.totals.size()));
+  for (size_t i = 0; i < other.totals.size(); ++i) totals[i] += other.totals[i];
+  passes.insert(passes.end(), other.passes.begin(), other.passes.end());
+}
+
 double GpuTimes::median() const { return medianOf(totals); }
 double GpuTimes::least() const { return totals.empty() ? 0.0 : *std::min_element(totals.begin(), totals.end()); }
 

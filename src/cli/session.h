@@ -16,6 +16,8 @@ namespace gpgp::cli {
 struct GpuTimes {
   std::vector<double> totals;                         ///< of whole records, one per repeat
   std::vector<std::pair<std::string, double>> passes; ///< median of each pass, in order
+  /// Of another record that is run behind each of these.
+  void add(const GpuTimes& other);
   double median() const;
   double least() const;
   Json json() const;

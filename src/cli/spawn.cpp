@@ -2,18 +2,16 @@
 #include "cli/axioms.h"
 #include "cli/grammar_source.h"
 #include "cli/painter.h"
+#include "cli/reference.h"
 #include "cli/triangles_gltf.h"
 #include "cli/tuner.h"
 #include "cli/unit_shapes.h"
 #include "host/files.h"
-#include "spawn/evaluator/evaluator.h"
 
 #include <gpgp/spawn.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -29,33 +27,11 @@ struct SpawnOptions {
   std::string image, out;
   Size imageSize{1280, 720};
   float yaw = 35, pitch = 25, zoom = 1;
-  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0;
+  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
   std::string schedule = "default", output = "instances", matching = "off";
   bool sorted = false;
   spawn::Heuristics heuristics;
 };
-
-/// What the CPU evaluator derives, on one thread, instances or vertices included, into memory that an earlier run has
-/// touched: the device's buffers are there before it starts as well.
-struct Reference {
-  spawn::Derivation result;
-  double milliseconds = 0;
-};
-
-Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
-                   bool vertices) {
-  spawn::DeriveOptions options;
-  if (maxDepth) options.maxDepth = maxDepth;
-  const auto layout = spawn::layoutOf(Deriver::layout());
-  if (vertices) options.vertices = &*layout;
-  Reference reference;
-  reference.result = spawn::derive(words, axioms, options);
-  if (!reference.result.complete) return reference;
-  const auto begin = std::chrono::steady_clock::now();
-  reference.result = spawn::derive(words, axioms, options, std::move(reference.result));
-  reference.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  return reference;
-}
 
 /// The kernel that --schedule names: none for the interpreter.
 struct Chosen {
@@ -78,16 +54,18 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
   if (name == "tuned") {
     const std::filesystem::path file = tunedFile(options.grammars, grammar);
-    if (std::filesystem::exists(file))
-      if (const auto kernel = kernelFor(kernelsIn(file, grammar), session.device(), count);
-          kernel && isTunedFor(kernel->info, session.device(), count))
-        return taken(*kernel, file);
+    const auto stored = storedKernels(file, grammar, true);
+    if (const auto kernel = kernelFor(stored, session.device(), count);
+        kernel && isTunedFor(kernel->info, session.device(), count))
+      return taken(*kernel, file);
+    checkWritable(file);
     std::fprintf(stderr, "gpgp spawn: no stored schedule for this grammar, device and number of axioms; tuning\n");
     TuneSettings settings;
     settings.matching = options.matching == "on";
     settings.heuristics = options.heuristics;
+    settings.maxDepth = options.maxDepth;
     const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
-    keepKernel(file, grammar, tuned.info, tuned.code);
+    keepKernel(file, grammar, tuned.info, tuned.code, stored);
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
     return taken({tuned.info, {tuned.code.begin(), tuned.code.end()}}, file);
   }
@@ -178,6 +156,81 @@ void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph
   host::writePng(options.image, painter.picture());
 }
 
+std::string counted(uint64_t number, const std::string& one, const std::string& many = {}) {
+  return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+/// A line for what exceeded a budget: what would have been enough, as far as the device has room for that.
+std::string exceeded(const std::string& what, const std::string& option, uint64_t wanted, uint64_t most) {
+  return "budget exceeded: " + what + " did not fit; " +
+         (wanted <= most ? option + " " + std::to_string(wanted) + " would have held all"
+                         : "this device takes " + std::to_string(most) + " at most: use fewer axioms") +
+         "\n";
+}
+
+/// All budgets that were exceeded, a line each.
+std::string exceededBudgets(const GpgpSpawnReport& report, const Deriver& deriver, bool vertices) {
+  std::string text;
+  if (report.droppedShapes && report.peakShapes > deriver.maxShapes())
+    text += exceeded(counted(report.droppedShapes, "shape") + " of a round", "--max-shapes", report.peakShapes,
+                     deriver.mostShapes());
+  else if (report.droppedShapes)
+    text += "budget exceeded: " + counted(report.droppedShapes, "shape") + " still waited after the last of " +
+            counted(report.rounds, "round") +
+            (report.rounds < Deriver::mostRounds() ? "" : ", which are as many as a record takes") + "\n";
+  if (report.collidersKept < report.colliders)
+    text += exceeded(counted(report.colliders - report.collidersKept, "collider"), "--max-colliders", report.colliders,
+                     deriver.mostColliders());
+  if (report.unfinishedShapes)
+    text += "budget exceeded: " + counted(report.unfinishedShapes, "shape") +
+            (report.unfinishedShapes == 1 ? " was" : " were") + " not finished; raise --max-depth\n";
+  if (!vertices && report.instancesWritten < report.terminals)
+    text += exceeded(counted(report.terminals - report.instancesWritten, "instance"), "--max-instances",
+                     report.terminals, deriver.mostElements());
+  if (report.verticesWritten < report.vertices)
+    text += exceeded(counted(report.vertices - report.verticesWritten, "vertex", "vertices"), "--max-instances",
+                     report.vertices, deriver.mostElements());
+  return text;
+}
+
+/// As if it had been one record.
+void add(GpgpSpawnReport& sum, const GpgpSpawnReport& record) {
+  sum.base.status = std::max(sum.base.status, record.base.status);
+  for (const auto member :
+       {&GpgpSpawnReport::terminals, &GpgpSpawnReport::instancesWritten, &GpgpSpawnReport::droppedShapes,
+        &GpgpSpawnReport::unfinishedShapes, &GpgpSpawnReport::vertices, &GpgpSpawnReport::verticesWritten,
+        &GpgpSpawnReport::colliders, &GpgpSpawnReport::collidersKept})
+    sum.*member += record.*member;
+  for (const auto member : {&GpgpSpawnReport::peakShapes, &GpgpSpawnReport::rounds, &GpgpSpawnReport::depth})
+    sum.*member = std::max(sum.*member, record.*member);
+  for (size_t word = 0; word < std::size(sum.keyHash); ++word) sum.keyHash[word] += record.keyHash[word];
+}
+
+/// Axioms in parts of equal size, a record each.
+struct Slices {
+  const std::vector<GpgpAxiom>& axioms;
+  size_t records = 1, size = 0;
+
+  Slices(const std::vector<GpgpAxiom>& all, size_t most) : axioms(all) {
+    records = (all.size() + most - 1) / most;
+    size = (all.size() + records - 1) / records;
+  }
+  std::vector<GpgpAxiom> of(size_t record) const {
+    const size_t first = std::min(record * size, axioms.size()), end = std::min(first + size, axioms.size());
+    return {axioms.begin() + std::ptrdiff_t(first), axioms.begin() + std::ptrdiff_t(end)};
+  }
+};
+
+Slices slicesFor(const SpawnOptions& options, const std::vector<GpgpAxiom>& axioms, const spawn::Graph& graph,
+                 Session& session) {
+  uint64_t most = Deriver::mostAxioms(session);
+  if (options.slice) most = std::min<uint64_t>(most, options.slice);
+  if (axioms.size() > most && graph.phases)
+    throw Usage(counted(axioms.size(), "axiom") + " take several records of at most " + std::to_string(most) +
+                ", but colliders know only those of their record; use fewer axioms");
+  return {axioms, most};
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
@@ -188,9 +241,17 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
                                 : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
-  const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices);
   Session session(common);
-  const Chosen chosen = chooseKernel(options, grammar, start, session);
+  const Slices slices = slicesFor(options, start, graph, session);
+  const bool endless = neverEnds(grammar.words, start, options.maxDepth);
+  if (endless && options.schedule == "tuned") throw Failure(joined(options.grammars) + ": " + neverEndingText());
+  if (endless)
+    std::fprintf(stderr, "gpgp spawn: %s: %s; budgets are not raised\n", joined(options.grammars).c_str(),
+                 neverEndingText().c_str());
+  const auto layout = spawn::layoutOf(Deriver::layout());
+  const Reference reference =
+      endless ? Reference::none() : evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
+  const Chosen chosen = chooseKernel(options, grammar, slices.of(0), session);
 
   DeriverOptions deriverOptions;
   deriverOptions.vertices = vertices;
@@ -199,24 +260,42 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   deriverOptions.maxDepth = options.maxDepth;
   deriverOptions.maxColliders = options.maxColliders;
   deriverOptions.maxInstances = options.maxInstances;
+  deriverOptions.raises = !endless;
   deriverOptions.expected =
-      vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals;
-  Deriver deriver(session, grammar, start, deriverOptions);
+      (vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals) /
+      slices.records;
+  Deriver deriver(session, grammar, slices.of(0), deriverOptions);
   if (options.maxInstances > deriver.mostElements())
     throw Usage("--max-instances is too large for this device: at most " + std::to_string(deriver.mostElements()));
   const Grammar prepared = deriver.prepare(chosen.words);
-  GpgpSpawnReport report = deriver.fit(prepared);
-  const auto measured = deriver.measure(prepared, options.repeat);
-  const GpuTimes& times = measured.times;
-  report = measured.report;
-  const std::vector<GpgpInstance> instances = vertices ? std::vector<GpgpInstance>() : deriver.instances();
-  const std::vector<SpawnedVertex> written = vertices ? deriver.vertices() : std::vector<SpawnedVertex>();
+  GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+  GpuTimes times;
+  uint64_t bytesWritten = 0, verticesWritten = 0;
+  std::vector<GpgpInstance> instances;
   Triangles triangles{!options.image.empty() || !options.out.empty(), std::vector<uint64_t>(graph.terminals.size())};
-  if (vertices)
-    addTriangles(triangles, written, deriver.indices());
-  else
-    addTriangles(triangles, instances);
-  const uint64_t bytesWritten = deriver.bytesWritten();
+  std::string budgets; // that the first record exceeded that exceeded any
+  for (size_t record = 0; record < slices.records; ++record) {
+    if (record) deriver.setAxioms(slices.of(record));
+    deriver.fit(prepared);
+    const auto measured = deriver.measure(prepared, options.repeat);
+    add(report, measured.report);
+    times.add(measured.times);
+    bytesWritten += deriver.bytesWritten();
+    if (budgets.empty()) {
+      budgets = exceededBudgets(measured.report, deriver, vertices);
+      if (!budgets.empty() && slices.records > 1)
+        budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
+    }
+    if (vertices) {
+      const std::vector<SpawnedVertex> written = deriver.vertices();
+      verticesWritten += written.size();
+      addTriangles(triangles, written, deriver.indices());
+    } else {
+      const std::vector<GpgpInstance> written = deriver.instances();
+      addTriangles(triangles, written);
+      instances.insert(instances.end(), written.begin(), written.end());
+    }
+  }
   session.checkValidation();
 
   std::vector<std::string> bucketNames(std::max(graph.buckets, 1u));
@@ -243,12 +322,12 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
         options.out, corners, [&](uint32_t bucket) { return bucketNames[bucket]; }, colour);
   }
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
-  const bool whole = !report.droppedShapes && report.unfinishedShapes == reference.result.unfinishedShapes;
-  if (whole && reference.result.complete &&
-      (reference.result.terminals != report.terminals ||
-       std::memcmp(reference.result.keyHash, report.keyHash, sizeof report.keyHash) != 0))
-    throw Failure(joined(options.grammars) +
-                  ": the device derived something else than the CPU evaluator; please report this");
+  const bool whole = !report.droppedShapes && report.collidersKept == report.colliders &&
+                     report.unfinishedShapes == reference.result.unfinishedShapes;
+  if (whole && reference.result.complete)
+    if (const std::string what = difference(reference.result, report, instances); !what.empty())
+      throw Failure(joined(options.grammars) + ": the device derived something else than the CPU evaluator: " + what +
+                    "; please report this");
 
   Outcome outcome;
   char hash[20];
@@ -258,8 +337,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     passes[name] = passes.value(name, 0.0) + time;
   std::ostringstream text;
   text << report.terminals << " terminals (" << triangles.total << " triangles) from " << start.size()
-       << (start.size() == 1 ? " axiom" : " axioms") << " in " << report.rounds << " rounds on "
-       << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups << " execution groups\n";
+       << (start.size() == 1 ? " axiom" : " axioms") << " in "
+       << (slices.records > 1 ? std::to_string(slices.records) + " records of up to " : std::string()) << report.rounds
+       << " rounds on " << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups
+       << " execution groups\n";
   for (uint32_t bucket = 0; bucket < bucketNames.size(); ++bucket) {
     bucketList.push_back({{"bucket", bucket},
                           {"name", bucketNames[bucket]},
@@ -281,22 +362,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   }
   text << '\n';
   if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
-  if (report.droppedShapes) {
-    text << "budget exceeded: " << report.droppedShapes << " shapes did not fit";
-    if (report.peakShapes > deriver.maxShapes())
-      text << "; --max-shapes " << report.peakShapes << " would have held that round";
-    text << '\n';
-  }
-  if (report.collidersKept < report.colliders)
-    text << "budget exceeded: " << report.colliders - report.collidersKept << " colliders did not fit; --max-colliders "
-         << report.colliders << " would have\n";
-  if (report.unfinishedShapes)
-    text << "budget exceeded: " << report.unfinishedShapes << " shapes were not finished; raise --max-depth\n";
-  if (!vertices && report.instancesWritten < report.terminals)
-    text << "budget exceeded: " << report.terminals - report.instancesWritten
-         << " instances did not fit; --max-instances " << report.terminals << " would have\n";
-  if (report.verticesWritten < report.vertices)
-    text << "budget exceeded: " << report.vertices - report.verticesWritten << " vertices did not fit\n";
+  text << budgets;
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
   outcome.text = text.str();
@@ -308,10 +374,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                   {"schedule_file", chosen.file.empty() ? Json() : Json(chosen.file.string())},
                   {"execution_groups", chosen.groups},
                   {"axioms", start.size()},
+                  {"records", slices.records},
                   {"seed", options.seed},
                   {"terminals", report.terminals},
                   {"instances", instances.size()},
-                  {"vertices", written.size()},
+                  {"vertices", verticesWritten},
                   {"triangles", triangles.total},
                   {"buckets", bucketList},
                   {"rounds", report.rounds},
@@ -345,8 +412,10 @@ Work addSpawn(CLI::App& app) {
                        "Start shapes, on a square grid; those of linked grammars in turn (default: one of each)")
           ->check(CLI::Range(1u, 10000000u));
   command
-      ->add_option("--axiom-file", options->axiomFile,
-                   "Start shapes from a file, CSV or JSON: position, rotation about Y, size, seed, rule, shape")
+      ->add_option(
+          "--axiom-file", options->axiomFile,
+          "Start shapes from a file, CSV or JSON: position, rotation about Y or quaternion, or a whole transform; "
+          "size, seed, rule, shape, attribute")
       ->check(CLI::ExistingFile)
       ->excludes(axioms);
   command
@@ -356,7 +425,7 @@ Work addSpawn(CLI::App& app) {
       ->type_name("X,Y,Z");
   command
       ->add_option("--spacing", options->spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
-      ->check(CLI::PositiveNumber);
+      ->check(within(1e-6, 1e9));
   command->add_option("--seed", options->seed, "Random seed; axiom i has seed S + i")->capture_default_str();
   addVariables(*command, options->set);
   command->add_option("--repeat", options->repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
@@ -396,7 +465,9 @@ Work addSpawn(CLI::App& app) {
   command->add_option("--zoom", options->zoom, "Times closer to the middle than all of the scene")
       ->check(within(0.01, 1000.0))
       ->capture_default_str();
-  command->add_option("--out", options->out, "Write what was derived as triangles")->type_name("FILE.glb");
+  command->add_option("--out", options->out, "Write what was derived as triangles")
+      ->check(glbFile())
+      ->type_name("FILE.glb");
   addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)");
   command
       ->add_option("--max-instances", options->maxInstances,
@@ -407,6 +478,8 @@ Work addSpawn(CLI::App& app) {
                       "Budget: shapes that wait for a round (0: the library's default, doubled until all fit)");
   command->add_option("--max-colliders", options->maxColliders,
                       "Budget: shapes that Collider registers (0: as many as there are)");
+  command->add_option("--slice", options->slice,
+                      "Axioms of one record at most (0: as many as the device binds); budgets are those of a record");
   command->add_option("--max-depth", options->maxDepth,
                       "Budget: how deep rules nest in themselves (0: the library's default)");
   command->footer(R"(
@@ -414,7 +487,8 @@ Examples:
   gpgp spawn sponge.pga                                 one axiom of 1 x 1 x 1
   gpgp spawn tower.pga --axioms 256 --axiom-size 24,34,24 --spacing 40
   gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
-  gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line
+  gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line;
+                                                        also y, qx to qw, m00 to m23, shape, attribute
   gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
   gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median

@@ -5,8 +5,10 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 namespace gpgp::cli {
 
@@ -64,12 +66,15 @@ void writeGlb(const std::filesystem::path& file, const std::vector<std::vector<g
     scene.nodes.push_back(index);
   }
   if (file.has_parent_path()) {
-    std::error_code ignored; // the writer says what is wrong
+    std::error_code ignored; // opening the file says what is wrong
     std::filesystem::create_directories(file.parent_path(), ignored);
   }
+  // Through a stream of our own: what the writer returns does not say whether all bytes arrived.
+  errno = 0;
+  std::ofstream stream(file, std::ios::binary);
   tinygltf::TinyGLTF writer;
-  if (!writer.WriteGltfSceneToFile(&model, file.string(), false, true, false, true))
-    throw Failure(file.string() + ": cannot be written");
+  if (!stream || !writer.WriteGltfSceneToStream(&model, stream, false, true) || !stream.flush())
+    throw Failure(file.string() + ": " + (errno ? std::strerror(errno) : "cannot be written"));
 }
 
 } // namespace gpgp::cli

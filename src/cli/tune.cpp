@@ -2,6 +2,7 @@
 #include "cli/axioms.h"
 #include "cli/command.h"
 #include "cli/grammar_source.h"
+#include "cli/reference.h"
 #include "cli/tuner.h"
 
 #include <cmath>
@@ -27,14 +28,18 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   if (options.search == "heuristic") settings.search = spawn::Search::heuristic;
   const std::filesystem::path out =
       options.out.empty() ? tunedFile(options.grammars, grammar) : std::filesystem::path(options.out);
-  if (std::filesystem::exists(out)) kernelsIn(out, grammar); // throws now rather than after the search
+  // Read now: what cannot be kept is said before the search rather than after it.
+  const auto others = storedKernels(out, grammar, options.out.empty());
+  checkWritable(out);
   const AxiomDefaults defaults{options.size, settings.seed, grammar.starts()};
   const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
                                             ? axiomGrid(options.axioms, 0, defaults)
                                             : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
+  if (neverEnds(grammar.words, axioms, settings.maxDepth))
+    throw Failure(joined(options.grammars) + ": " + neverEndingText());
   Session session(common);
   const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
-  keepKernel(out, grammar, tuned.info, tuned.code);
+  keepKernel(out, grammar, tuned.info, tuned.code, others);
   session.checkValidation();
 
   const spawn::Schedule& schedule = tuned.schedule();
@@ -59,6 +64,8 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   text << "; " << tuned.candidates << (tuned.candidates == 1 ? " candidate in " : " candidates in ")
        << std::round(tuned.seconds * 10) / 10 << " s";
   if (tuned.leftOut) text << "; " << tuned.leftOut << " were left out for lack of time";
+  if (tuned.interpreter < best.milliseconds)
+    text << "\nthe interpreter is faster than any kernel: spawn --schedule interpreter, bake --no-kernel";
   text << "\nkept: " << out.string() << '\n';
   Outcome outcome;
   outcome.text = text.str();
@@ -137,6 +144,8 @@ Work addTune(CLI::App& app) {
           "software device some seconds; 0: no limit")
       ->check(within(0.0, 86400.0))
       ->capture_default_str();
+  command->add_option("--max-depth", settings.maxDepth,
+                      "Budget: how deep rules nest in themselves (0: the library's default)");
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");
   command
       ->add_option("-o,--out", options->out,

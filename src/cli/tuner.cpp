@@ -66,7 +66,9 @@ public:
       : session_(session), grammar_(grammar), settings_(settings), axioms_(static_cast<uint32_t>(axioms.size())),
         target_(targetFor(session.device(), grammar.graph)), software_(session.device().isSoftware()) {
     findSchedules();
-    deriver_.emplace(session, grammar, axioms, DeriverOptions{});
+    DeriverOptions options;
+    options.maxDepth = settings.maxDepth;
+    deriver_.emplace(session, grammar, axioms, options);
   }
 
   Tuned run() {
@@ -153,8 +155,14 @@ private:
   void measureInterpreter() {
     const Grammar interpreted = deriver_->prepare(std::pmr::vector<uint32_t>());
     const GpgpSpawnReport& wanted = tuned_.report = deriver_->fit(interpreted);
-    if (wanted.droppedShapes || wanted.unfinishedShapes)
-      throw Failure("the derivation exceeds the budgets; use fewer axioms");
+    if (wanted.unfinishedShapes)
+      throw Failure(std::to_string(wanted.unfinishedShapes) +
+                    " shapes were not finished: rules nest deeper than the budget; raise --max-depth");
+    if (wanted.droppedShapes || wanted.collidersKept < wanted.colliders)
+      throw Failure(
+          std::to_string(wanted.droppedShapes ? wanted.droppedShapes : wanted.colliders - wanted.collidersKept) +
+          (wanted.droppedShapes ? " shapes" : " colliders") + " did not fit the largest budgets of this device" +
+          (axioms_ > 1 ? "; use fewer axioms" : "; the derivation of one axiom is too large, or does not end"));
     if (!wanted.terminals) throw Failure("the grammar derives nothing from these axioms");
     tuned_.interpreter = deriver_->measure(interpreted, 1).times.median();
     tuned_.interpreter = deriver_->measure(interpreted, repeats(tuned_.interpreter)).times.median();

@@ -36,6 +36,37 @@ TEST(CliBake, TheSameInputGivesTheSameBytes) {
   EXPECT_TRUE(graph == once.substr(0, graph.size())); // kernels lie behind the graph
 }
 
+TEST(CliBake, SchedulesAreChosen) {
+  const TemporaryFile grammar("chosen.pga", kGrammar), tuned("chosen_tuned.gpgp"), both("chosen_both.gpgp"),
+      groups("chosen_groups.txt");
+  const std::string usual = bakedWith({grammar.path()});
+  EXPECT_TRUE(usual == bakedWith({grammar.path(), "--schedule", "default"}));
+  const auto scheduleOf = [&](const std::string& file) {
+    return gpgpJson({"spawn", grammar.path(), "--schedule", file, "--axioms", "2"})["schedule"];
+  };
+  ASSERT_EQ(gpgp({"graph", grammar.path(), "--schedule", "sgl", "-o", groups.path()}).exitCode, 0);
+  for (const std::string& schedule : {std::string("rw"), groups.path()}) {
+    ASSERT_EQ(gpgp({"bake", grammar.path(), "--schedule", schedule, "-o", both.path()}).exitCode, 0);
+    EXPECT_EQ(scheduleOf(both.path()), schedule == "rw" ? "rw" : "gpgp_cli_test_chosen_groups");
+  }
+  // Tuned where it was, and for all others what else is named.
+  const json found = gpgpJson({"tune", grammar.path(), "--axioms", "2", "--seconds", "0.001", "-o", tuned.path()});
+  gpgpJson({"bake", grammar.path(), "--schedule", tuned.path(), "--schedule", "rw", "-o", both.path()});
+  EXPECT_EQ(scheduleOf(both.path()), found["best"]["schedule"]);
+  EXPECT_GT(std::filesystem::file_size(both.path()), std::filesystem::file_size(tuned.path()));
+  EXPECT_EQ(gpgpJson({"spawn", both.path(), "--axioms", "2"})["terminals"], 4);
+  const json linked =
+      gpgpJson({"bake", "a=" + grammar.path(), "--link", "--schedule", "rw", "-o", both.path()})["baked"][0];
+  EXPECT_EQ(linked["bytes"], std::filesystem::file_size(both.path()));
+  const std::vector<std::string> bake = {"bake", grammar.path(), "-o", both.path(), "--schedule"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), bake.begin(), bake.end());
+    return more;
+  };
+  expectWrongUsage({with({"rw", "--schedule", "sgl"}), with({"fastest"}), with({"rw", "--no-kernel"})});
+  EXPECT_NE(gpgpFailure(with({"tuned", "--set", "n=77"})).find("no tuned schedule is stored"), std::string::npos);
+}
+
 TEST(CliBake, AFolderTakesOneFileEach) {
   const TemporaryFile one("one.pga", kGrammar), two("two.pga", kGrammar), folder("baked");
   const json result = gpgpJson({"bake", one.path(), two.path(), "--no-kernel", "-o", folder.path()});

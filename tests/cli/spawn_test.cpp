@@ -28,6 +28,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "schedule_file",
                                                 "execution_groups",
                                                 "axioms",
+                                                "records",
                                                 "seed",
                                                 "terminals",
                                                 "instances",
@@ -180,6 +181,10 @@ TEST(CliSpawn, SchedulesFromFilesAreChecked) {
             std::string::npos);
   EXPECT_NE(gpgpFailure({"spawn", grammar.path(), "--schedule", groups.path()}).find("wrong_groups.txt:"),
             std::string::npos);
+  const TemporaryFile more("more_groups.txt", "group { 0 1000 }\ngroup { 2000 }\n");
+  const std::string graph = gpgp({"graph", grammar.path(), "--schedule", more.path()}).err;
+  const std::string spawn = gpgp({"spawn", grammar.path(), "--schedule", more.path()}).err;
+  EXPECT_EQ(graph.substr(0, graph.rfind("gpgp graph")), spawn.substr(0, spawn.rfind("gpgp spawn"))); // all of them
   expectWrongUsage({{"spawn", grammar.path(), "--schedule", "fastest"},
                     {"spawn", grammar.path(), "--matching", "yes"},
                     {"spawn", grammar.path(), "--output", "triangles"},
@@ -193,6 +198,85 @@ TEST(CliSpawn, BudgetsAreReported) {
   EXPECT_EQ(tower["terminals"], 10);
   EXPECT_EQ(tower["instances"], 4);
   EXPECT_EQ(tower["budget_exceeded"], true);
+}
+
+TEST(CliSpawn, WhatWasExceededIsNamed) {
+  const TemporaryFile grammar("named.pga", kTower), deep("named_deep.pga", "axiom Box S;\nterminal T (1, 0);\n"
+                                                                           "S = Replicate() { T | S };\n");
+  const auto said = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "spawn");
+    arguments.insert(arguments.end(), {"--schedule", "interpreter"});
+    const ProcessResult result = gpgp(arguments);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    const size_t at = result.out.find("budget exceeded: ");
+    return at == std::string::npos ? result.out : result.out.substr(at + 17);
+  };
+  EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "9"}),
+            "1 instance did not fit; --max-instances 10 would have held all\n");
+  EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "100", "--output", "vertices"}),
+            "144 vertices did not fit; --max-instances 240 would have held all\n");
+  EXPECT_EQ(said({deep.path(), "--max-depth", "7"}), "1 shape was not finished; raise --max-depth\n");
+}
+
+TEST(CliSpawn, SlicesSumUp) {
+  const TemporaryFile grammar("slices.pga", kStreet),
+      colliders("slices_colliders.pga", "axiom Box S;\nterminal W (1, 0);\n"
+                                        "S = Collider(w) W;\n");
+  const auto spawn = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"spawn", grammar.path(), "--axioms", "10", "--axiom-size", "9,8,4", "--schedule",
+                               "interpreter", "--repeat", "2"});
+    return gpgpJson(more);
+  };
+  for (const char* output : {"instances", "vertices"}) {
+    const json one = spawn({"--output", output}), several = spawn({"--output", output, "--slice", "4"});
+    EXPECT_EQ(one["records"], 1);
+    EXPECT_EQ(several["records"], 3);
+    for (const char* same :
+         {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "key_hash", "bytes_written"})
+      EXPECT_EQ(one[same], several[same]) << same;
+  }
+  const json few = spawn({"--slice", "4", "--max-instances", "60"}); // of each record
+  EXPECT_EQ(few["instances"], 3 * 60);
+  EXPECT_EQ(few["budget_exceeded"], true);
+  expectWrongUsage({{"spawn", colliders.path(), "--axioms", "10", "--slice", "4"}});
+}
+
+TEST(CliSpawn, MoreAxiomsThanADeviceBinds) { // software devices bind 128 MiB
+  const TemporaryFile grammar("bound.pga", "axiom Box S;\nterminal T (1, 0);\nS = T;\n");
+  const json all = gpgpJson({"spawn", grammar.path(), "--axioms", "1500000", "--schedule", "interpreter"});
+  EXPECT_EQ(all["terminals"], 1500000);
+  EXPECT_EQ(all["budget_exceeded"], false);
+}
+
+TEST(CliSpawn, DerivationsWithoutEndAreToldAtOnce) {
+  const TemporaryFile grammar("endless.pga", "axiom Box S;\nterminal T (1, 0);\nS = Replicate() { S | S | S | S };\n");
+  const ProcessResult result = gpgp({"spawn", grammar.path(), "--schedule", "interpreter", "--json"});
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_NE(result.err.find("one axiom alone becomes more than 100 million shapes"), std::string::npos) << result.err;
+  const json told = json::parse(result.out, nullptr, false);
+  EXPECT_EQ(told["budget_exceeded"], true);
+  EXPECT_TRUE(told["cpu_reference_ms"].is_null());
+  EXPECT_NE(gpgpFailure({"tune", grammar.path(), "--axioms", "1"}).find("probably never ends"), std::string::npos);
+  EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--max-depth", "5"})["terminals"], 0);
+}
+
+TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differs from the evaluator is no mistake
+  const TemporaryFile grammar("colliders.pga",
+                              "axiom Box S;\nterminal W F (1, 0);\n"
+                              "S = Replicate() { Collider(w) W | Scale(-0.5, -3, -0.5) IfCollides(w) { F | W } };\n");
+  const std::vector<std::string> common = {"spawn", grammar.path(), "--schedule", "interpreter", "--axioms",
+                                           "9",     "--spacing",    "0.5"};
+  EXPECT_EQ(gpgpJson(common)["budget_exceeded"], false);
+  auto few = common;
+  few.insert(few.end(), {"--max-colliders", "4"});
+  const json told = gpgpJson(few);
+  EXPECT_EQ(told["budget_exceeded"], true);
+  EXPECT_EQ(told["colliders"], 9);
+  EXPECT_EQ(told["terminals"], 18);
+  const ProcessResult text = gpgp(few);
+  EXPECT_NE(text.out.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have held all"),
+            std::string::npos)
+      << text.out;
 }
 
 TEST(CliSpawn, AxiomFiles) {
@@ -256,8 +340,8 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
   const TemporaryFile wrong("wrong_street.csv", "x,z,rule\n0,0,House\n"),
       broken("broken.pga", "axiom Box A;\nA = B;\n");
   EXPECT_NE(gpgpFailure({"spawn", house.path(), tree.path(), "--axiom-file", wrong.path()})
-                .find("csv:2: error: the grammar has no rule \"House\"; expected a grammar, or its rule as in " + name +
-                      "house.House"),
+                .find("csv:2:5: error: the grammar has no rule \"House\"; expected a grammar, or its rule as in " +
+                      name + "house.House"),
             std::string::npos);
   EXPECT_NE(gpgpFailure({"spawn", house.path(), broken.path()}).find("broken.pga:2:5: error: there is no rule or term"),
             std::string::npos);
@@ -305,26 +389,75 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
     const size_t name = all.find("wrong_axioms:");
     return name == std::string::npos ? all : all.substr(name + 13);
   };
-  EXPECT_EQ(error("x,z\n1,2\n\n3,four\n"), "4: error: z takes a number; \"four\" is none");
-  EXPECT_EQ(error("x,z\n1\n"), "2: error: 1 values for 2 columns");
-  EXPECT_EQ(error("x,z,seed\n1,2,-1\n"), "2: error: seed takes a whole number from 0 to 4294967295; \"-1\" is none");
-  EXPECT_EQ(error("x,y\n1,2\n"), "2: error: an axiom needs a value for z");
-  EXPECT_EQ(error("x,z,size_y\n1,2,0\n"), "2: error: sizes are above 0");
-  EXPECT_EQ(error("x,z,rule\n1,2,Other\n"), "2: error: the grammar has no rule \"Other\"");
+  EXPECT_EQ(error("x,z\n1,2\n\n3,  four\n"), "4:5: error: z takes a number; \"four\" is none");
+  EXPECT_EQ(error("x,z\n1\n"), "2:1: error: 1 values for 2 columns");
+  EXPECT_EQ(error("x,z,seed\n1,2,-1\n"), "2:5: error: seed takes a whole number from 0 to 4294967295; \"-1\" is none");
+  EXPECT_EQ(error("x,y\n1,2\n"), "2:1: error: an axiom needs a value for z");
+  EXPECT_EQ(error("x,z,size_y\n1,2,0\n"), "2:5: error: sizes are above 0");
+  EXPECT_EQ(error("x,z,rule\n1,2,Other\n"), "2:5: error: the grammar has no rule \"Other\"");
   EXPECT_EQ(error("x,z,rule,shape\n1,2,One,Quad\n"),
-            "2: error: the grammar does not start \"One\" with shape \"Quad\", only with: Box");
-  EXPECT_EQ(error("x,z,shape\n1,2,Box\n"), "2: error: a shape needs the rule that starts with it");
-  EXPECT_EQ(error("x,x\n"), "1: error: two columns are named \"x\"");
-  EXPECT_EQ(error("x,w\n").substr(0, 27), "1: error: \"w\" is no column;");
-  EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]"), "3: error: an axiom needs a position");
-  EXPECT_EQ(error("[\n{\"position\": [1, 2]}]"), "2: error: position takes three numbers, [x, y, z]");
+            "2:9: error: the grammar does not start \"One\" with shape \"Quad\", only with: Box");
+  EXPECT_EQ(error("x,z,shape\n1,2,Box\n"), "2:5: error: a shape needs the rule that starts with it");
+  EXPECT_EQ(error("x,x\n"), "1:3: error: two columns are named \"x\"");
+  EXPECT_EQ(error("x,w\n").substr(0, 29), "1:3: error: \"w\" is no column;");
+  EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]").substr(0, 36),
+            "3:2: error: an axiom needs a value f");
+  EXPECT_EQ(error("[\n{\"position\": [1, 2]}]"), "2:1: error: position takes three numbers, [x, y, z]");
   EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n5]"),
-            "2: error: expected an object with position, rotation, size, seed, rule");
-  EXPECT_EQ(error("[\n{]").substr(0, 9), "2: error:");
+            "2:1: error: expected an object with position, rotation, size, seed, rule");
+  EXPECT_EQ(error("[\n{]").substr(0, 11), "2:2: error:");
   EXPECT_NE(error("x,z\n").find("no axioms"), std::string::npos);
-  EXPECT_EQ(error("{\"position\": [1, 2, 3]}"), "1: error: expected an array of axioms, [{...}, {...}]");
+  EXPECT_EQ(error("{\"position\": [1, 2, 3]}"), "1:1: error: expected an array of axioms, [{...}, {...}]");
   EXPECT_NE(error("[{\"position\": [1, 2, 1e999]}]").find(" error: "), std::string::npos);
-  EXPECT_EQ(error("\xef\xbb\xbfx,z\n1,two\n"), "2: error: z takes a number; \"two\" is none");
+  EXPECT_EQ(error("\xef\xbb\xbfx,z\n1,two\n"), "2:3: error: z takes a number; \"two\" is none");
+  EXPECT_EQ(error("x,qx,z\n1,0,1\n"), "2:1: error: an axiom with some of qx to qw needs all 4");
+  EXPECT_EQ(error("x,z,qx,qy,qz,qw\n1,0,0,0,0,0\n"), "2:5: error: a quaternion of length 0 turns nowhere");
+  EXPECT_EQ(error("x,z,rotation,qx,qy,qz,qw\n1,0,5,0,0,0,1\n"), "2:5: error: rotation or a quaternion, not both");
+  EXPECT_EQ(error("[{\"position\": [1, 2, 3], \"transform\": [1]}]"),
+            "1:2: error: transform takes twelve numbers, the rows of a 3x4 matrix");
+  EXPECT_EQ(error("[{\"rotation\": 3, \"transform\": [1,0,0,0, 0,1,0,0, 0,0,1,0]}]"),
+            "1:2: error: rotation stands beside a whole transform");
+  EXPECT_EQ(error("x,z\n1,\x01\xff\n"), "2:3: error: z takes a number; \"\\x01\\xff\" is none");
+}
+
+TEST(CliSpawn, AxiomFilesSayAllThatIsWrong) {
+  const TemporaryFile grammar("rules3.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n"),
+      lots("all_wrong.csv", "x,z,rotation,seed\n1,2,bad,5\n3,4,0,-7\nfoo,1,2,3\n1,2\n");
+  const ProcessResult result = gpgp({"spawn", grammar.path(), "--axiom-file", lots.path()});
+  EXPECT_EQ(result.exitCode, 1);
+  for (const char* wrong : {"csv:2:5: error: ", "csv:3:7: error: ", "csv:4:1: error: ", "csv:5:1: error: "})
+    EXPECT_NE(result.err.find(wrong), std::string::npos) << wrong << result.err;
+  EXPECT_NE(result.err.find("\"bad\" is none (and 3 more)"), std::string::npos) << result.err;
+}
+
+/// The same places by angle, by quaternion and by matrix.
+TEST(CliSpawn, AxiomFilesHoldTransforms) {
+  const TemporaryFile grammar("placed.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n");
+  const auto bounds = [&](const std::string& file, const std::string& text) {
+    const TemporaryFile axioms(file, text), out("placed.glb");
+    gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--axiom-size", "2,4,6", "--axiom-file",
+              axioms.path(), "--out", out.path()});
+    const std::string bytes = host::readText(out.path());
+    uint32_t size = 0;
+    std::memcpy(&size, bytes.data() + 12, 4);
+    const json accessor = json::parse(bytes.substr(20, size))["accessors"][0];
+    std::vector<double> all = accessor["min"];
+    for (const double high : accessor["max"]) all.push_back(high);
+    return all;
+  };
+  const auto expectNear = [](const std::vector<double>& a, const std::vector<double>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-5) << i;
+  };
+  const std::vector<double> turned = {7, 1, 19, 13, 5, 21}; // 2 x 4 x 6 by 90 degrees about Y at 10, 1, 20
+  expectNear(bounds("angle.csv", "x,y,z,rotation\n10,1,20,90\n"), turned);
+  expectNear(bounds("quaternion.csv", "x,y,z,qx,qy,qz,qw\n10,1,20,0,3,0,3\n"), turned);
+  expectNear(bounds("matrix.csv", "m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23\n0,0,1,10,0,1,0,3,-1,0,0,20\n"),
+             turned);
+  expectNear(bounds("quaternion.json", "[{\"position\": [10, 1, 20], \"quaternion\": [0, 1, 0, 1]}]"), turned);
+  expectNear(bounds("matrix.json", "[{\"transform\": [0,0,1,10, 0,1,0,3, -1,0,0,20]}]"), turned);
+  // About Z it lies on its side: its own Y points to -X, and it stands along that.
+  expectNear(bounds("lying.json", "[{\"position\": [0, 0, 0], \"quaternion\": [0, 0, 1, 1]}]"), {-4, -1, -3, 0, 1, 3});
 }
 
 TEST(CliSpawn, WritesTriangles) {
@@ -345,6 +478,20 @@ TEST(CliSpawn, WritesTriangles) {
   EXPECT_EQ(model["accessors"][0]["min"], (json{-2.0, 0.0, -2.0}));
   EXPECT_EQ(model["accessors"][0]["max"], (json{2.0, 10.0, 2.0}));
   EXPECT_EQ(model["materials"][0]["name"], "Floor");
+}
+
+TEST(CliSpawn, TrianglesThatCannotBeWrittenAreAFailure) {
+  const TemporaryFile grammar("glb.pga", kTower), folder("folder.glb"), under("under");
+  std::filesystem::create_directory(folder.path());
+  const auto spawn = [&](const std::string& out) {
+    return std::vector<std::string>{"spawn", grammar.path(), "--schedule", "interpreter", "--out", out};
+  };
+  const std::vector<std::string> wrong = {folder.path(), grammar.path() + "/x.glb", "/proc/x.glb"};
+  for (const std::string& out : wrong) EXPECT_EQ(gpgpFailure(spawn(out)).substr(0, out.size() + 2), out + ": ");
+  std::filesystem::create_symlink("/dev/full", under.path() + ".glb");
+  EXPECT_NE(gpgpFailure(spawn(under.path() + ".glb")).find("No space left"), std::string::npos);
+  std::filesystem::remove(under.path() + ".glb");
+  expectWrongUsage({spawn("x.obj"), spawn(".glb"), spawn("/dev/full")});
 }
 
 /// The service's own shapes: prisms stand along Y, triangles without area are left out.
@@ -394,11 +541,16 @@ TEST(CliSpawn, WrongUsage) {
                     {"spawn", grammar.path(), "--axioms", "0"},
                     {"spawn", grammar.path(), "--axiom-size", "1,2"},
                     {"spawn", grammar.path(), "--axiom-size", "1,2,-3"},
+                    {"spawn", grammar.path(), "--spacing", "nan"},
+                    {"spawn", grammar.path(), "--spacing", "-1"},
+                    {"spawn", grammar.path(), "--spacing", "inf"},
                     {"spawn", grammar.path(), "--axiom-file", "no_such_file.csv"},
                     {"spawn", grammar.path(), "--axioms", "3", "--axiom-file", grammar.path()},
                     {"spawn", grammar.path(), "--set", "floors"},
                     {"spawn", grammar.path(), "--set", "=3"},
                     {"spawn", grammar.path(), "--set", "floors=many"}});
+  EXPECT_NE(gpgp({"spawn", grammar.path(), "--spacing", "0"}).err.find("0 is not within 1e-06 to 1e+09"),
+            std::string::npos);
 }
 
 } // namespace

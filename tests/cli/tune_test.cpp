@@ -3,7 +3,9 @@
 #include "run.h"
 
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <optional>
 
 namespace gpgp::test {
 namespace {
@@ -14,6 +16,33 @@ terminal Wall Roof (1, 0);
 Tower = Repeat(Y, floors, ADJUST_TO_FILL) Floor;
 Floor = IfSizeLess(X, 2) { Roof | SubDiv(X) { -1: Scale(-0.5, -1, -1) Floor | -1: Translate(0, 1, 0) Wall } };
 )";
+
+/// Tuned schedules in a folder of the test's own.
+class Cache {
+public:
+  explicit Cache(const std::string& name)
+      : folder_(std::filesystem::path(testing::TempDir()) / ("gpgp_cli_test_cache_" + name)) {
+    std::filesystem::remove_all(folder_); // of a run that was ended
+    std::filesystem::create_directories(folder_);
+    if (const char* before = std::getenv("XDG_CACHE_HOME")) before_ = before;
+    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+  }
+  ~Cache() {
+    if (before_)
+      setenv("XDG_CACHE_HOME", before_->c_str(), 1);
+    else
+      unsetenv("XDG_CACHE_HOME");
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Cache(const Cache&) = delete;
+  Cache& operator=(const Cache&) = delete;
+  std::filesystem::path gpgp() const { return folder_ / "gpgp"; }
+
+private:
+  std::filesystem::path folder_;
+  std::optional<std::string> before_;
+};
 
 TEST(CliTune, FindsAScheduleAndBakesIt) {
   const TemporaryFile grammar("tune.pga", kTower), baked("tune.gpgpg");
@@ -48,19 +77,13 @@ TEST(CliTune, KeepsToItsTime) {
 }
 
 TEST(CliTune, TunedSchedulesAreKept) {
-  // In a cache of the test's own.
   const TemporaryFile grammar("kept.pga", kTower);
-  const std::filesystem::path cache = std::filesystem::path(testing::TempDir()) / "gpgp_cli_test_tuned_cache";
-  std::filesystem::remove_all(cache); // of a run that was ended
-  std::filesystem::create_directories(cache);
-  const char* before = std::getenv("XDG_CACHE_HOME");
-  const std::string old = before ? before : "";
-  setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+  const Cache cache("kept");
   const json tuned =
       gpgpJson({"tune", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--samples", "5", "--repeat", "3",
                 "--schedules-only", "--matching", "on", "--search", "random", "--set", "floors=1"});
   EXPECT_EQ(tuned["matching"], true);
-  EXPECT_EQ(std::filesystem::path(tuned["out"].get<std::string>()).parent_path(), cache / "gpgp");
+  EXPECT_EQ(std::filesystem::path(tuned["out"].get<std::string>()).parent_path(), cache.gpgp());
   const std::vector<std::string> spawn = {"spawn",      grammar.path(), "--axiom-size", "8,4,1",
                                           "--schedule", "tuned",        "--set",        "floors=1"};
   auto two = spawn; // 2 and 3 are of one class
@@ -70,11 +93,70 @@ TEST(CliTune, TunedSchedulesAreKept) {
   EXPECT_EQ(found["schedule"], tuned["best"]["schedule"]);
   EXPECT_EQ(found["execution_groups"], tuned["best"]["execution_groups"]);
   EXPECT_EQ(found["terminals"], 2 * 4 * 3);
-  if (before)
-    setenv("XDG_CACHE_HOME", old.c_str(), 1);
-  else
-    unsetenv("XDG_CACHE_HOME");
-  std::filesystem::remove_all(cache);
+}
+
+TEST(CliTune, WhatCannotBeUsedAnyMoreIsMadeAnew) {
+  const TemporaryFile grammar("stale.pga", "axiom Box S;\nterminal T (1, 0);\nS = T;\n"), baked("stale.gpgpg");
+  const Cache cache("stale");
+  const std::vector<std::string> tune = {"tune", grammar.path(), "--axioms", "1", "--seconds", "0.001"},
+                                 spawn = {"spawn", grammar.path(), "--schedule", "tuned"};
+  const std::string kept = gpgpJson(tune)["out"];
+  const std::string whole = host::readText(kept);
+  std::string oldKernel = whole, oldGraph = whole;
+  uint32_t graphWords = 0;
+  std::memcpy(&graphWords, whole.data() + 8, 4);
+  --oldKernel.at(4 * graphWords + 4); // versions stand behind what the bytes are
+  --oldGraph.at(4);
+  for (const std::string& broken :
+       {std::string(), std::string("gp"), whole.substr(0, whole.size() / 2), oldKernel, oldGraph}) {
+    for (const auto& command : {tune, spawn}) {
+      host::writeFile(kept, broken);
+      const ProcessResult result = gpgp(command);
+      EXPECT_EQ(result.exitCode, 0) << result.err;
+      EXPECT_NE(result.err.find(kept), std::string::npos);
+      EXPECT_NE(result.err.find("; what is kept there is made anew"), std::string::npos) << result.err;
+      EXPECT_EQ(gpgpJson(spawn)["schedule_file"], kept); // without a word
+    }
+    // In a file that was named, only what can be nothing else is replaced.
+    host::writeFile(baked.path(), broken);
+    auto named = tune;
+    named.insert(named.end(), {"-o", baked.path()});
+    if (broken == "gp") {
+      EXPECT_NE(gpgpFailure(named).find("is not a baking of this grammar"), std::string::npos);
+    } else {
+      EXPECT_EQ(gpgp(named).exitCode, 0);
+      EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--schedule", baked.path()})["terminals"], 1);
+    }
+  }
+}
+
+TEST(CliTune, DepthIsABudget) {
+  const TemporaryFile grammar("deep.pga", "axiom Box S;\nterminal T (1, 0);\n"
+                                          "S = IfSizeLess(X, 0.01) { T | SubDiv(X) { 0.01: T | -1: S } };\n");
+  const Cache cache("deep");
+  std::vector<std::string> tune = {"tune", grammar.path(), "--axioms", "1", "--seconds", "0.001"};
+  EXPECT_NE(gpgpFailure(tune).find("1 shapes were not finished: rules nest deeper than the budget; raise --max-depth"),
+            std::string::npos);
+  tune.insert(tune.end(), {"--max-depth", "200"});
+  const json tuned = gpgpJson(tune);
+  const json spawned = gpgpJson({"spawn", grammar.path(), "--schedule", "tuned", "--max-depth", "200"});
+  EXPECT_EQ(tuned["terminals"], spawned["terminals"]);
+  EXPECT_GE(spawned["terminals"], 100);
+  EXPECT_EQ(spawned["schedule_file"], tuned["out"]);
+  std::filesystem::remove(tuned["out"].get<std::string>());
+  const ProcessResult first = gpgp({"spawn", grammar.path(), "--schedule", "tuned", "--max-depth", "200"});
+  EXPECT_EQ(first.exitCode, 0) << first.err; // tunes with that depth, too
+}
+
+TEST(CliTune, FilesSayWhyTheyAreNoSchedules) {
+  const TemporaryFile grammar("sum.pga", kTower), baked("sum.gpgp");
+  ASSERT_EQ(gpgp({"bake", grammar.path(), "--no-kernel", "-o", baked.path()}).exitCode, 0);
+  std::string bytes = host::readText(baked.path());
+  ++bytes.back();
+  host::writeFile(baked.path(), bytes);
+  for (const auto& command : {std::vector<std::string>{"spawn", grammar.path(), "--schedule", baked.path()},
+                              std::vector<std::string>{"spawn", baked.path()}})
+    EXPECT_NE(gpgpFailure(command).find("its checksum is wrong"), std::string::npos);
 }
 
 TEST(CliTune, WrongUsage) {
@@ -87,6 +169,7 @@ TEST(CliTune, WrongUsage) {
                     {"tune", grammar.path(), "--set", "floors"}});
   EXPECT_NE(gpgpFailure({"tune", grammar.path(), "-o", other.path()}).find("is not a baking of this grammar"),
             std::string::npos);
+  EXPECT_EQ(gpgpFailure({"tune", grammar.path(), "-o", "/proc/x"}).substr(0, 9), "/proc/x: "); // before the search
 }
 
 } // namespace
