@@ -21,6 +21,7 @@ layout(set = 0, binding = 12, std430) writeonly buffer Indices { uint indices[];
 layout(set = 0, binding = 13, std430) writeonly buffer Needed { uint neededCounts[]; };
 layout(set = 0, binding = 16, std430) buffer Order { uint order[]; }; // see order.comp
 layout(set = 0, binding = 17, std430) readonly buffer AxiomCounter { uint axiomCounter; };
+layout(set = 0, binding = 20, std430) writeonly buffer Report { SpawnState report; }; // where the host reads it
 /// Where in order[] the record is that comes at a place.
 uint orderedAt(uint place) { return 3 * record.maxTerminals + place; }
 /// Where in order[] it says how many quads come before a place, up to that behind the last record.

@@ -51,8 +51,10 @@ void stackBarrier() {
 Shape axiomAt(uint index) {
   const uvec4 a = axioms[index * 6 + 3];
   const uvec4 b = axioms[index * 6 + 4];
-  if (startWords(b.y) == 0) atomicAdd(state.droppedShapes, 1);
-  return axiomShape(unpackVector(a), a.w, b.x, b.y, uintBitsToFloat(b.z), index);
+  Shape s = axiomShape(unpackVector(a), a.w, b.x, b.y, uintBitsToFloat(b.z), index);
+  // Never so many: it is 0, but the answer goes where all answers go that way (isLast).
+  if (startWords(b.y) == 0) s.depth |= atomicAdd(state.droppedShapes, 1) >> 31;
+  return s;
 }
 Shape queuedAt(uint index) {
 #ifdef GPGP_COLLIDERS
@@ -280,9 +282,18 @@ void emit(bool own, uint place, uint count, uint first, Shape s) {
   writeInstance(target, words);
 }
 
+/// One more workgroup has finished. answers: of the device, to all that it has counted, which must be there before: it
+/// waits for them, as what it adds depends on them for all that a compiler knows, and that is microseconds less than a
+/// fence for all of its memory. Returns whether it is the round's last one.
+bool isLast(uint answers) {
+  const uint one = 1 + (answers & (record.reports >> 1));
+  return atomicAdd(rounds[round].finished, one) + 1 == gl_NumWorkGroups.x;
+}
+
 /// All has been derived, or nothing more can be: says how many instances there are. What workgroups have counted was
-/// answered before they said that they have finished.
-void reportInstances() {
+/// answered before they said that they have finished. Those of one subgroup write the report as well; where they are
+/// larger, it is copied when they are through, which is no slower there.
+void reportAll() {
   if (round + 1 == record.rounds) {
     const uint left = atomicAdd(rounds[round + 1].shapes, 0);
     atomicMax(state.peakShapes, left);
@@ -290,26 +301,32 @@ void reportInstances() {
   }
   const uint terminals = atomicAdd(state.terminals, 0);
   const uint written = min(terminals, record.instanceCapacity);
+  const uint exceeded = written < terminals ? 1 : 0;
   state.instancesWritten = written;
-  state.exceeded = written < terminals ? 1 : 0;
+  state.exceeded = exceeded;
   if (record.writeCount != 0) instanceCount = written;
   if (record.drawCapacity > 0 && graphWords[kHeaderBuckets] > 0) {
     draws[1] = written;
     draws[4] = 0;
   }
+  if (oneSubgroup)
+    report = SpawnState(terminals, written, atomicAdd(state.peakShapes, 0), atomicAdd(state.droppedShapes, 0),
+                        atomicAdd(state.unfinishedShapes, 0), atomicAdd(state.rounds, 0), atomicAdd(state.keyHashX, 0),
+                        atomicAdd(state.keyHashY, 0), atomicAdd(state.depth, 0), 0, 0, exceeded,
+                        atomicAdd(state.colliders, 0), 0, 0, 0);
 }
 
 /// The first thing that a round does. needed: shapes that wait for it; count: that are there.
 void startRound(uint needed, uint count) {
   if (gl_GlobalInvocationID.x == 0) {
 #ifdef GPGP_COLLIDERS
-    if (count > 0) state.rounds += 1; // rounds follow each other
+    if (count > 0) atomicAdd(state.rounds, 1); // rounds follow each other
 #else
-    if (count > 0) state.rounds = round + 1;
+    if (count > 0) atomicMax(state.rounds, round + 1);
 #endif
-    if (round > 0) state.peakShapes = max(state.peakShapes, needed);
+    if (round > 0) atomicMax(state.peakShapes, needed);
     if (needed > count) atomicAdd(state.droppedShapes, needed - count);
-    if (round == 0 && count == 0 && record.reports != 0) reportInstances();
+    if (round == 0 && count == 0 && record.reports != 0) reportAll();
   }
 }
 

@@ -86,12 +86,12 @@ uint axiomsTaken() {
 }
 
 /// The last workgroup of a round leaves to the next one what nobody took, as all have made their turns; axioms stay
-/// where they are. If nothing is left, the derivation is over.
-void leaveRest(uint queued, uint axiomsThere) {
+/// where they are. If nothing is left, the derivation is over. answers: see isLast.
+void leaveRest(uint queued, uint axiomsThere, uint answers) {
   const uint lane = laneIndex();
   if (stackSize > 0) giveAway();
   uint last = 0;
-  if (lane == 0) last = atomicAdd(rounds[round].finished, 1) + 1 == gl_NumWorkGroups.x ? 1 : 0;
+  if (lane == 0 && isLast(answers)) last = 1;
   if (fromFirst(last) == 0) return;
   uint first = 0;
   if (lane == 0) first = min(atomicAdd(rounds[round].taken, 0), queued);
@@ -116,7 +116,7 @@ void leaveRest(uint queued, uint axiomsThere) {
   }
   if (record.reports != 0 && (round + 1 == record.rounds ||
                               (axiomsLeft == 0 && atomicAdd(rounds[round + 1].shapes, 0) == 0)))
-    reportInstances();
+    reportAll();
 }
 
 void main() {
@@ -127,7 +127,7 @@ void main() {
   const uint count = queued + axiomsThere - min(round == 0 ? 0 : axiomsTaken(), axiomsThere);
   startRound(round == 0 ? axioms0 : rounds[round].shapes, round == 0 ? axiomsThere : queued);
   if (count == 0) return;
-  if (gl_GlobalInvocationID.x == 0) state.rounds = round + 1;
+  if (gl_GlobalInvocationID.x == 0) atomicMax(state.rounds, round + 1);
   const uint share = clamp(count / (4 * gl_NumWorkGroups.x), 1, groupSize);
   const bool spreads = count < record.spread && roundsLeft() > 0;
   const uint enough = spreads ? min(kGrowth * groupSize, kMostWaiting) : kMostWaiting;
@@ -194,15 +194,14 @@ void main() {
 
   keepsRest = false;
   if (lane == 0 && keptShapes > 0) atomicAdd(rounds[round + 1].shapes, keptShapes);
-  leaveRest(queued, axiomsThere);
-  if (unfinished > 0) atomicAdd(state.unfinishedShapes, unfinished);
   hash = uvec2(subgroupAdd(hash.x), subgroupAdd(hash.y));
   depth = subgroupMax(depth);
+  unfinished = subgroupAdd(unfinished);
+  uint answers = 0;
   if (lane == 0) {
-    if ((hash.x | hash.y) != 0) {
-      atomicAdd(state.keyHashX, hash.x);
-      atomicAdd(state.keyHashY, hash.y);
-    }
-    atomicMax(state.depth, depth);
+    answers = atomicMax(state.depth, depth);
+    if ((hash.x | hash.y) != 0) answers |= atomicAdd(state.keyHashX, hash.x) | atomicAdd(state.keyHashY, hash.y);
+    if (unfinished > 0) answers |= atomicAdd(state.unfinishedShapes, unfinished);
   }
+  leaveRest(queued, axiomsThere, answers);
 }

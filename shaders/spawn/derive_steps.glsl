@@ -9,14 +9,15 @@ shared uint childrenUpTo[groupSize]; // of the batch's parents: inclusive sums
 shared uint hashX;
 shared uint hashY;
 shared uint deepest;
+shared uint unfinishedShapes;
 
 /// The last workgroup of a round leaves the shapes to the next one that nobody took, as all have run out of steps; and
-/// if nothing is left, the derivation is over.
-void leaveRest(uint count) {
+/// if nothing is left, the derivation is over. answers: see isLast.
+void leaveRest(uint count, uint answers) {
   const uint lane = laneIndex();
   if (stackSize > 0) giveAway();
   uint last = 0;
-  if (lane == 0) last = atomicAdd(rounds[round].finished, 1) + 1 == gl_NumWorkGroups.x ? 1 : 0;
+  if (lane == 0 && isLast(answers)) last = 1;
   if (fromFirst(last) == 0) return;
   for (;;) {
     uint first = 0;
@@ -36,7 +37,33 @@ void leaveRest(uint count) {
   if (stackSize > 0) giveAway();
   if (lane == 0 && record.reports != 0 &&
       (round + 1 == record.rounds || atomicAdd(rounds[round + 1].shapes, 0) == 0))
-    reportInstances();
+    reportAll();
+}
+
+/// What the workgroup's invocations have counted to the record's counters. Returns their answers, to the first one.
+uint addCounts(uvec2 hash, uint depth, uint unfinished) {
+#ifdef GPGP_SUBGROUPS
+  hash = uvec2(subgroupAdd(hash.x), subgroupAdd(hash.y));
+  depth = subgroupMax(depth);
+  unfinished = subgroupAdd(unfinished);
+  const bool adds = subgroupElect();
+#else
+  const bool adds = true;
+#endif
+  if (adds) {
+    atomicAdd(hashX, hash.x);
+    atomicAdd(hashY, hash.y);
+    atomicMax(deepest, depth);
+    atomicAdd(unfinishedShapes, unfinished);
+  }
+  barrier();
+  uint answers = 0;
+  if (laneIndex() == 0) {
+    answers = atomicMax(state.depth, deepest);
+    if ((hashX | hashY) != 0) answers |= atomicAdd(state.keyHashX, hashX) | atomicAdd(state.keyHashY, hashY);
+    if (unfinishedShapes > 0) answers |= atomicAdd(state.unfinishedShapes, unfinishedShapes);
+  }
+  return answers;
 }
 
 void main() {
@@ -71,6 +98,7 @@ void main() {
     hashX = 0;
     hashY = 0;
     deepest = 0;
+    unfinishedShapes = 0;
 #ifdef GPGP_COLLIDERS
     mostSpent = 0;
 #endif
@@ -218,20 +246,9 @@ void main() {
   uint rest; // what there were no steps left for goes over
   const uint place = ranksOf(waits, false, rest);
   push(waits, place, rest, s);
-  leaveRest(count);
 
-  if (hash != uvec2(0)) {
-    atomicAdd(hashX, hash.x);
-    atomicAdd(hashY, hash.y);
-  }
-  atomicMax(deepest, depth);
-  if (unfinished > 0) atomicAdd(state.unfinishedShapes, unfinished);
-  barrier();
-  if (lane == 0) {
-    if ((hashX | hashY) != 0) {
-      atomicAdd(state.keyHashX, hashX);
-      atomicAdd(state.keyHashY, hashY);
-    }
-    atomicMax(state.depth, deepest);
-  }
+  uint answers = 0;
+  if (oneSubgroup) answers = addCounts(hash, depth, unfinished);
+  leaveRest(count, answers);
+  if (!oneSubgroup) addCounts(hash, depth, unfinished);
 }

@@ -5,7 +5,7 @@
 
 GPGP_SHADER_BEGIN
 
-/// Counters of one record, cleared at its start. The first words are the report.
+/// Counters of one record, cleared at its start, and its report.
 struct SpawnState {
   uint terminals; // derived, those that did not fit included
   uint instancesWritten;
@@ -24,8 +24,6 @@ struct SpawnState {
   uint levels;    // bit set of those that colliders are linked in
   uint reserved;
 };
-GPGP_CONST uint kSpawnReportWords = 13u;
-
 // What a workgroup's shapes should grow to in a round that spreads work.
 GPGP_CONST uint kGrowing = 2u; // batches at most,
 GPGP_CONST uint kGrowth = 16u; // or else, and at least, so many times

@@ -18,7 +18,7 @@ std::vector<spawn::Fit> fits(spawn::KernelTarget target, bool software, bool bal
   // Workgroups are subgroups there. With another size than lavapipe's usual one the library skips these kernels, and
   // those stay that name no fit.
   if (target == spawn::KernelTarget::software) return {{8, 16, 2048, 512}, {8, 128, 2048, 512}};
-  const uint32_t spread = software ? 512 : 4096;
+  const uint32_t spread = software ? 512 : balances ? 4096 : 2048;
   using List = std::vector<uint32_t>;
   // What comes of few axioms may be less work than to spread it, and then large workgroups have it done first.
   const bool few = axioms <= kFewAxioms;
@@ -34,7 +34,7 @@ std::vector<spawn::Fit> fits(spawn::KernelTarget target, bool software, bool bal
 std::vector<spawn::Fit> variants(const spawn::Fit& fit, bool software) {
   std::vector<spawn::Fit> all;
   for (const uint32_t spread :
-       software ? std::vector<uint32_t>{64, 512} : std::vector<uint32_t>{256, 1024, 4096, 16384})
+       software ? std::vector<uint32_t>{64, 512} : std::vector<uint32_t>{256, 1024, 2048, 4096, 16384})
     for (const uint32_t balances : {0, 1}) {
       if (spread == fit.spread && balances == fit.balances) continue;
       all.push_back(fit);

@@ -24,6 +24,7 @@ enum class ResourceKind : uint8_t {
   scratch,   ///< part of the scratch buffer, contents undefined between records
   constants, ///< written by the CPU with each record, read by shaders
   uniforms,  ///< the same as a uniform block, for what is small and every invocation reads
+  report,    ///< a record's report where the host reads it, for passes that write it themselves (Record::reports)
 };
 
 struct Resource {
@@ -88,7 +89,8 @@ struct PassList {
   std::pmr::vector<Resource> resources;
   std::pmr::vector<ShaderDesc> shaders;
   std::pmr::vector<Pass> passes;
-  ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end
+  ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end,
+                                     ///< unless passes write it to a resource of kind report
   uint32_t reportBytes = 0;
   uint32_t groupCounts = 0; ///< how many workgroup counts a record gives
 

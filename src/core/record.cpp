@@ -184,7 +184,7 @@ void Worker::take(uint32_t slot, uint64_t tag, bool report) {
 }
 
 void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
-                              VkDeviceSize scratchOffset) const {
+                              VkDeviceSize scratchOffset, bool reports) const {
   std::array<VkWriteDescriptorSet, kMaxResources> writes;
   std::array<VkDescriptorBufferInfo, kMaxResources> buffers;
   std::array<VkDescriptorImageInfo, kMaxResources> images;
@@ -214,6 +214,8 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
         buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[i], std::max<VkDeviceSize>(resource.bytes, 4)};
     } else if (resource.kind == ResourceKind::constants || resource.kind == ResourceKind::uniforms) {
       buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i], resource.bytes};
+    } else if (resource.kind == ResourceKind::report) {
+      if (reports) buffers[i] = {reports_.handle(), slot * reportStride_, passes_.reportBytes};
     } else if (!binding.hostData.empty()) {
       buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i],
                     binding.hostData.size()};
@@ -311,7 +313,7 @@ Result<void> Worker::record(const Record& record) {
     if (const auto data = record.bindings[i].hostData; !data.empty())
       std::memcpy(constants_.mapped() + slot * passes_.constantsBytes + passes_.scratchOffsets[i], data.data(),
                   data.size());
-  writeDescriptors(slot, record.bindings, scratch, scratchOffset);
+  writeDescriptors(slot, record.bindings, scratch, scratchOffset, record.reports);
 
   // Where a buffer resource lies, for transfers and indirect arguments.
   const auto place = [&](ResourceIndex i) -> std::pair<VkBuffer, VkDeviceSize> {
@@ -382,7 +384,7 @@ Result<void> Worker::record(const Record& record) {
       vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
   }
 
-  if (passes_.reportBytes) {
+  if (passes_.reportBytes && !record.reports) {
     const VkMemoryBarrier counted{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, VK_ACCESS_TRANSFER_READ_BIT};
     vk.CmdPipelineBarrier(cmd, kWorkStages, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &counted, 0, nullptr, 0, nullptr);
     const auto [source, sourceOffset] = place(passes_.report);
@@ -407,7 +409,7 @@ Result<void> Worker::recordDraw(const DrawRecord& record) {
   take(slot, 0, false);
 
   const DeviceTable& vk = context.device.vk;
-  writeDescriptors(slot, record.bindings, scratch_.handle(), 0);
+  writeDescriptors(slot, record.bindings, scratch_.handle(), 0, false);
   beginLabel(record.commandBuffer, "draw");
   vk.CmdBindPipeline(record.commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
   vk.CmdBindDescriptorSets(record.commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &sets_[slot], 0,

@@ -149,9 +149,11 @@ Result<void> Worker::init(PassList passes, const DrawShaders* draw) {
                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryPlace::constants);
   if (!constants) return constants.error();
   constants_ = std::move(*constants);
-  reportStride_ = (passes_.reportBytes + kStampBytes + 63) / 64 * 64;
-  auto reports = Buffer::create(device, context.gpu(), service_, "reports", reportStride_ * slotCount,
-                                VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::readBack);
+  const VkDeviceSize reportAlignment = std::max<VkDeviceSize>(64, device.limits.minStorageBufferOffsetAlignment);
+  reportStride_ = (passes_.reportBytes + kStampBytes + reportAlignment - 1) / reportAlignment * reportAlignment;
+  auto reports =
+      Buffer::create(device, context.gpu(), service_, "reports", reportStride_ * slotCount,
+                     VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryPlace::readBack);
   if (!reports) return reports.error();
   reports_ = std::move(*reports);
 

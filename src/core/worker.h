@@ -36,6 +36,7 @@ struct Record {
   std::array<std::span<const std::byte>, 9> constants = {}; ///< for the first constants resource, in a row
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
   VkPipeline replacement = VK_NULL_HANDLE;
+  bool reports = false; ///< its passes write the whole report to the resource of that kind: nothing is copied
 };
 
 struct DrawRecord {
@@ -117,7 +118,7 @@ private:
   Result<uint32_t> acquire() const;
   void take(uint32_t slot, uint64_t tag, bool report);
   void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
-                        VkDeviceSize scratchOffset) const;
+                        VkDeviceSize scratchOffset, bool reports) const;
   Result<VkPipeline> createDrawPipeline(const GpgpTargetInfo& target) const;
   Result<VkShaderModule> createModule(const ShaderDesc& shader) const;
   void beginLabel(VkCommandBuffer commandBuffer, const char* pass) const;

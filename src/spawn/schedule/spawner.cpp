@@ -43,7 +43,8 @@ enum : core::ResourceIndex {
   kOrder,
   kAxiomCounter,
   kBounds,
-  kBoundKeys
+  kBoundKeys,
+  kReport
 };
 
 // Workgroup counts of a record.
@@ -63,8 +64,8 @@ constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
 constexpr uint32_t kSharedBytesEach = 16;
 constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 4,
                    kSoftwareRounds = 32;
-/// For few axioms: one round more would be another empty one for most.
-constexpr uint32_t kFewAxiomRounds = 3;
+/// Where it is known how much there is to begin with: one round more would be another empty one for most.
+constexpr uint32_t kKnownRounds = 3;
 
 /// What fits a kind of device.
 struct Limits {
@@ -74,7 +75,7 @@ struct Limits {
   uint32_t expandGroups; // workgroups at most
 };
 /// Software devices end a shader's loops silently after 65 535 iterations in all, so workgroups give up early there.
-constexpr Limits kHardware{{32, 2048, 256, 4096}, {128, 1024, 512, 4096, 0, 1}, 16384, 2048},
+constexpr Limits kHardware{{32, 2048, 256, 2048}, {128, 1024, 512, 4096, 0, 1}, 16384, 2048},
     kSoftware{{64, 16, 1024, 512}, {64, 16, 1024, 512}, 256, 64};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
 
@@ -101,8 +102,15 @@ constexpr uint32_t kLeastBatches = 16, kBatchGroups = 64, kBatchAxioms = 512, kB
 /// The interpreter, for grammars with colliders or without.
 KernelInfo interpreterFor(const core::Device& device, bool colliders) {
   KernelInfo info;
-  info.target = takesBatches(device) && !colliders ? KernelTarget::software : KernelTarget::any;
+  info.target = takesBatches(device) && !colliders ? KernelTarget::software
+                : device.subgroupArithmetic        ? KernelTarget::subgroups
+                                                   : KernelTarget::any;
   return info;
+}
+/// Whether a kernel's workgroups are one subgroup each and know of it (shaders/spawn/derive.glsl). Those write the
+/// report.
+bool isOneSubgroup(const core::Device& device, KernelTarget target, const Fit& fit) {
+  return target != KernelTarget::any && fit.groupSize == device.subgroupSize;
 }
 
 /// Queries of an invocation that look at every collider stay below that many iterations.
@@ -189,6 +197,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.add({"axiomCounter", buffer, 0, true});
   list.add({"bounds", buffer, 0, true});
   list.add({"bound keys", scratch, sizeof(uint32_t) * shader::kMaxBuckets * shader::kBoundWords});
+  list.add({"report", core::ResourceKind::report});
 
   const auto interpreter = [&](bool colliders, std::span<const uint32_t> spirv) {
     const Fit fit = fitOf(context.device, interpreterFor(context.device, colliders), false);
@@ -213,10 +222,10 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
   list.fill("clear bounds", kBoundKeys, 0).condition = kBounded;
   if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
-  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},      {kInstances, write},     {kDraws, readWrite},
-                     {kQueues, readWrite},    {kStacks, readWrite}, {kRecords, write},       {kCounters, readWrite},
-                     {kBuckets, readWrite},   {kConstants, read},   {kColliders, readWrite}, {kColliderCells, read},
-                     {kCount, write},         {kAxiomCounter, read}};
+  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},       {kInstances, write},     {kDraws, readWrite},
+                     {kQueues, readWrite},    {kStacks, readWrite},  {kRecords, write},       {kCounters, readWrite},
+                     {kBuckets, readWrite},   {kConstants, read},    {kColliders, readWrite}, {kColliderCells, read},
+                     {kCount, write},         {kAxiomCounter, read}, {kReport, write}};
   for (uint32_t phase = 0; phase < phases; ++phase) {
     const uint32_t first = phase * spawner->phaseStride();
     if (phase == 0)
@@ -329,7 +338,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
          kBoundGroups);
   bounds("write bounds", 1, {{kGraph, read}, {kBoundKeys, read}, {kBounds, write}}, kOneGroup);
   list.report = kCounters;
-  list.reportBytes = 4 * shader::kSpawnReportWords;
+  list.reportBytes = sizeof(shader::SpawnState);
   if (auto ok = spawner->init(std::move(list)); !ok) return ok.error();
   return spawner;
 }
@@ -340,10 +349,11 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 /// phases.
 uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const {
   const bool known = !info.axiomCounter.buffer && grammar.graph.phases <= 1;
-  if (roundsGiven_ || context.device.software || grammar.uneven || !known) return rounds_;
+  if (roundsGiven_ || context.device.software || !known) return rounds_;
+  const uint32_t mostRounds = std::min(rounds_, kKnownRounds);
+  if (grammar.uneven) return mostRounds;
   uint32_t rounds = 1;
   const uint64_t most = shader::kGrowing * fit.groupSize;
-  const uint32_t mostRounds = std::min(rounds_, kFewAxiomRounds);
   for (uint64_t shapes = std::max(info.axiomCount, 1u); shapes < fit.spread && rounds < mostRounds; ++rounds)
     shapes *= shapes * most < fit.spread ? shader::kGrowth : most;
   return rounds;
@@ -447,6 +457,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
   record.levels = rounds;
+  record.reports =
+      constants.reports && isOneSubgroup(context.device, (kernel ? kernel->info : interpreter).target, fit);
   record.constants[0] = std::as_bytes(std::span(&constants, 1));
   if (kernel) {
     record.replacedShader = derive_;
