@@ -13,8 +13,6 @@
 namespace gpgp::vector {
 using shader::ItemRecord;
 using shader::PaintRecord;
-using shader::StopRecord;
-using shader::uvec2;
 using shader::vec2;
 using shader::vec3;
 using shader::vec4;
