@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <cstring>
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <glm/integer.hpp>
 #include <glm/mat3x3.hpp>
@@ -61,6 +62,7 @@ using glm::mat4;
 using glm::max;
 using glm::min;
 using glm::mix;
+using glm::pow;
 using glm::sign;
 using glm::uvec2;
 using glm::uvec3;

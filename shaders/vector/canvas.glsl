@@ -8,6 +8,7 @@
 #endif
 #include "edge.h"
 #include "shape.h"
+#include "tiles.h"
 
 #ifndef SHARING // coherent, in passes whose last workgroup reads what the others wrote
 #define SHARING
@@ -140,14 +141,7 @@ Grid canvasGrid() { return Grid(SAMPLES, int(header.height * SAMPLES), int(heade
 uint bitsOf(uint bin) { return kFirstBin + bin * header.binWords + kBinHead; }
 uint binOf(uvec2 tile) { return (tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift); }
 uint clipRecord(uint clip) { return slots[kShapeSlot].clips + clip - 1; } // its vec4
-// Tiles of a box of pixels: left, top, right and bottom, exclusive; zeros where it has none.
-uvec4 tilesIn(vec2 low, vec2 high) {
-  const vec2 tiles = vec2(header.tilesX, header.tilesY);
-  const vec2 from = clamp(floor(low / float(kTileSize)), vec2(0), tiles);
-  const vec2 to = clamp(ceil(high / float(kTileSize)), vec2(0), tiles);
-  return from.x < to.x && from.y < to.y ? uvec4(from, to) : uvec4(0);
-}
-int tileOf(int column) { return column >> findMSB(kTileSize); } // of column -1: -1
+vec2 canvasTiles() { return vec2(header.tilesX, header.tilesY); }
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
 uint coverageOf(PlacedPath p, uvec2 tile) {

@@ -6,8 +6,9 @@
 // area; what lies behind is scaled to what that leaves.
 // PAINTS: whether there are gradients. RICH: whether there are groups and projective items. IMAGES: whether there are
 // images. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
-#include "color.glsl"
-#include "convert.glsl"
+#include "color.h"
+#include "composite.h"
+#include "entry.h"
 #if PAINTS
 #include "paint.glsl"
 #endif
@@ -83,10 +84,7 @@ void leaveLayer() {
   alive = outerAlive[depth];
   soft = true;
   if ((header.flags & kExactArea) == 0) return;
-  const float whole = (sumPast * outerScale[depth] + sumLight * scale) * share + outerGap[depth] * past + gap;
-  const float counted = (sumPast + sumLight) * share;
-  if (counted > 0) scale = whole / counted;
-  gap = counted > 0 ? 0.0 : whole;
+  joinLight(sumPast, outerScale[depth], outerGap[depth], past, sumLight, share, scale, gap);
 }
 
 uvec4 fetchLayer(uint slot, uint layer) { return floatBitsToUint(fetch(slot, slots[slot].layers + layer - 1)); }
@@ -166,22 +164,6 @@ uint fetchAhead(uint code) {
   return any & header.zero;
 }
 
-// Samples of pixel x of a tile's row that change sides at or left of it.
-uint foldRow(uvec4 row, uint x) {
-  const uint lower = (x & 1) != 0 ? ~0u : 0xffffu; // of the pair that the pixel is in
-  uint sum = row.x & (x < 2 ? lower : ~0u);
-  sum ^= row.y & (x < 2 ? 0 : x < 4 ? lower : ~0u);
-  sum ^= row.z & (x < 4 ? 0 : x < 6 ? lower : ~0u);
-  sum ^= row.w & (x < 6 ? 0 : lower);
-  return (sum ^ sum >> 16) & 0xffffu;
-}
-
-int differenceAt(uvec4 row, uint x) {
-  const uint pair = x < 4 ? (x < 2 ? row.x : row.y) : (x < 6 ? row.z : row.w);
-  const int low = int(pair << 16) >> 16;
-  return (x & 1) != 0 ? (int(pair) - low) >> 16 : low;
-}
-
 // A row of pixels of an entry: samples that change sides, and areas.
 struct Edge {
   uvec4 samples, areas;
@@ -203,22 +185,6 @@ uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
 #endif
 
 #if RICH
-// Where a path and its clips, or two paths of a clip, both have an edge, samples alone count.
-void combine(inout uint mask, inout int difference, uint other, int otherDifference, bool join) {
-  if ((other == 0 || other == all) && otherDifference == 0) {
-    if ((other == all) != join) return;
-    mask = other;
-    difference = 0;
-  } else if ((mask == 0 || mask == all) && difference == 0) {
-    if ((mask == all) == join) return;
-    mask = other;
-    difference = otherDifference;
-  } else {
-    mask = join ? mask | other : mask & other;
-    difference = 0;
-  }
-}
-
 void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout int difference) {
   while (clip != 0) {
     const uvec4 record = floatBitsToUint(fetch(item.slot, slots[item.slot].clips + clip - 1));
@@ -229,9 +195,9 @@ void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout u
       if (code == 0) continue;
       int otherDifference;
       const uint other = maskOf(code, fetchEdge(code, at.y, area), at.x, area, otherDifference);
-      combine(shown, shownDifference, other, otherDifference, true);
+      combine(shown, shownDifference, other, otherDifference, true, all);
     }
-    combine(mask, difference, shown, shownDifference, false);
+    combine(mask, difference, shown, shownDifference, false, all);
     clip = record.z;
   }
 }
@@ -244,7 +210,7 @@ void clipItem(uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout
     int otherDifference = 0;
     const uint other =
         code == 0 ? 0 : maskOf(code, fetchEdge(code, at.y, area), at.x, area, otherDifference);
-    combine(mask, difference, other, otherDifference, false);
+    combine(mask, difference, other, otherDifference, false, all);
     clip = record.y;
   }
 }
@@ -260,7 +226,7 @@ void applyClips(uint index, uint clip, uvec2 tile, uvec2 at, bool area, inout ui
     clipBy(item, clip & ~kItemGrouped, tile, at, area, clipMask, clipDifference);
     if ((clip & kItemGrouped) != 0) clipItem(item.clip, tile, at, area, clipMask, clipDifference);
   }
-  combine(mask, difference, clipMask, area ? clipDifference : 0, false);
+  combine(mask, difference, clipMask, area ? clipDifference : 0, false, all);
 }
 #endif
 
@@ -312,16 +278,12 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
     first = false;
     // All before covered the pixel evenly, so one sample speaks for all.
     const float covered = float(bitCount(mask)) * share;
-    const float area = clamp(covered + float(difference) * share * (1.0 / 256.0), 0.0, 1.0);
-    const float left = 1.0 - source.a * covered;
 #if EARLY
     const float light = through[0];
 #else
     const float light = soft ? through[0] : 1.0;
 #endif
-    weight = light * area;
-    if (left > 0) scale = (1.0 - source.a * area) / left;
-    else gap = light - weight;
+    weight = firstEdge(covered, difference, share, light, source.a, scale, gap);
   } else {
     const uint hit = mask & alive;
     weight = float(bitCount(hit));
@@ -347,13 +309,12 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
   }
 }
 
-#include "targets.glsl"
 #if SOFTWARE // writes the view or the image, as both would convert for both
 vec4 storedColor(vec4 color) {
 #if TARGET
-  return targetColor(color);
+  return targetColor(color, header.flags);
 #else
-  return linearColor(color);
+  return linearColor(color, header.flags);
 #endif
 }
 void storeColor(uvec2 pixel, vec4 stored) {
@@ -374,7 +335,9 @@ void storePixel(uvec2 pixel, vec4 linear, vec4 target) {
   imageStore(image, ivec2(pixel), target);
 #endif
 }
-void storePixel(uvec2 pixel, vec4 color) { storePixel(pixel, linearColor(color), targetColor(color)); }
+void storePixel(uvec2 pixel, vec4 color) {
+  storePixel(pixel, linearColor(color, header.flags), targetColor(color, header.flags));
+}
 #endif
 
 // What is left of the light reaches the background.

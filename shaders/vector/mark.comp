@@ -20,28 +20,15 @@ uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(b
 
 void takeChord(Grid g, PlacedPath p, Chord c) {
   const int tileRows = int(kTileSize * g.samples);
-  const int inRow = int(wordsInRow(p));
+  const int inRow = int(wordsInRow(p)), left = int(p.left);
   const int tileRowEnd = min(c.last / tileRows + 1, int(p.bottom));
   for (int row = max(c.first / tileRows, int(p.top)); row < tileRowEnd; ++row) {
-    const int begin = row * tileRows, end = begin + tileRows;
-    const int first = max(c.first, begin), last = min(c.last, end);
-    const bool meets = first < last;
-    if (!meets && (c.first == begin || c.last <= begin)) continue;
-    int from = 0, to = 0, low = int(p.right), high = -1; // tiles at either end of the rows, tiles met
-    if (meets) {
-      from = tileOf(crossingOf(g, c, first) >> 8);
-      to = tileOf(crossingOf(g, c, last - 1) >> 8);
-      low = min(from, to);
-      high = max(from, to);
-    }
+    const TileSpan span = tilesMet(g, c, row);
     const int firstWord = int(p.firstWord) + (row - int(p.top)) * inRow;
-    if (meets && first == begin)
-      for (int word = max(from + 1 - int(p.left), 0) / 32; word < inRow; ++word)
-        atomicXor(words[firstWord + word].inside, bitsFrom(from + 1 - int(p.left) - word * 32));
-    if (c.first > begin) from = tileOf(columnOf(g, topEnd(c)));
-    if (c.last < end) to = tileOf(columnOf(g, lastEnd(c)));
-    low = clamp(min(low, min(from, to) + 1) - int(p.left), 0, int(p.right - p.left));
-    high = min(max(high, max(from, to)), int(p.right) - 1) - int(p.left);
+    if (span.turned != kNoTile)
+      for (int word = max(span.turned - left, 0) / 32; word < inRow; ++word)
+        atomicXor(words[firstWord + word].inside, bitsFrom(span.turned - left - word * 32));
+    const int low = clamp(span.low - left, 0, int(p.right) - left), high = min(span.high, int(p.right) - 1) - left;
     for (int word = low / 32; word <= high / 32 && low <= high; ++word)
       atomicOr(words[firstWord + word].edges, bitsFrom(low - word * 32) & ~bitsFrom(high + 1 - word * 32));
   }

@@ -7,7 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define SHARING coherent
 #include "canvas.glsl"
-#include "color.glsl"
+#include "color.h"
 layout(local_size_x = 64) in;
 #include "scan.glsl"
 shared bool last;
@@ -26,11 +26,6 @@ void setBins(uint which, uvec4 box, uint x, uint y, uint step) {
       atomicOr(bins[bits + path / 32], 1u << (path & 31));
       if (which != path) bins[bits - kBinHead + kBinGrouped] = 1;
     }
-}
-
-vec2 cornerOf(vec4 box, vec4 frame, uint corner) { // of the box, which lies in a frame
-  const vec2 at = vec2((corner & 1) != 0 ? box.z : box.x, (corner & 2) != 0 ? box.w : box.y);
-  return frame.xy + at.x * frame.zw + at.y * vec2(-frame.w, frame.z);
 }
 
 uint wordsOf(PlacedPath p) {
@@ -68,46 +63,16 @@ void main() {
     }
     const uint paint = rest.x;
     PlacedPath p;
-    p.left = p.top = p.right = p.bottom = 0;
-    if (box.x <= box.z) {
-      vec2 a = vec2(3e38), b = vec2(-3e38);
-      for (uint corner = 0; corner < 4; ++corner) {
-        const vec2 here = cornerOf(box, frame, corner);
-#if PROJECTIVE
-        if (projects(item)) { // where a side of the box passes behind the eye, the cut takes the corner's place
-          const uint next = (0x8du >> corner * 2) & 3; // around the box
-          const vec2 there = cornerOf(box, frame, next);
-          const float near = item.perspective.w;
-          const float dh = depthOf(item, here.x, here.y), dt = depthOf(item, there.x, there.y);
-          if ((dh < near) != (dt < near)) {
-            const vec2 cut = mix(here, there, divide(near - dh, dt - dh));
-            const vec2 at = toPixel(item, cut.x, cut.y);
-            a = min(a, at);
-            b = max(b, at);
-          }
-          if (dh < near) continue;
-        }
-#endif
-        const vec2 at = toPixel(item, here.x, here.y);
-        a = min(a, at);
-        b = max(b, at);
-      }
-      const vec2 margin = 1.0 + 1e-5 * max(abs(a), abs(b)); // far more than rounding
-#if SCISSORS
-      a = max(a, item.scissor.xy);
-      b = min(b, item.scissor.zw);
-#endif
-      const uvec4 tiles = tilesIn(a - margin, b + margin);
-      p.left = tiles.x;
-      p.top = tiles.y;
-      p.right = tiles.z;
-      p.bottom = tiles.w;
-    }
+    const uvec4 tiles = tileBox(item, box, frame, canvasTiles());
+    p.left = tiles.x;
+    p.top = tiles.y;
+    p.right = tiles.z;
+    p.bottom = tiles.w;
     const float alpha = color.a * item.color.a;
     p.item = itemIndex;
     p.paint = paint == 0 ? 0 : slots[item.slot].paints + (paint - 1) * 4 + 1;
     p.group = ((rest.y | rest.z) == 0 ? 0 : path + 2 + 1) | ((item.clip | item.layer) == 0 ? 0 : kItemGrouped);
-    p.color = blended(color.rgb, alpha);
+    p.color = blended(color.rgb, alpha, header.flags);
     if (p.paint != 0 && !shaped) p.color = vec4(alpha);
     const uint count = wordsOf(p);
     p.firstWord = count == 0 ? 0 : atomicAdd(counters.words, count);

@@ -9,9 +9,7 @@
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
 #include "lists.glsl"
-#include "color.glsl"
-#include "convert.glsl"
-#include "targets.glsl"
+#include "color.h"
 // lavapipe ends all loops of a shader after 65 535 turns, of which invocations that run together (8) take as many as
 // all of them where they differ. Tiles of rows that would take more are crowded.
 const uint kMaxSteps = 6000;
@@ -150,8 +148,8 @@ void main() {
       }
       bins[list] = kSolidTile;
       sum += header.background * through;
-      binVectors[list / 4 + 1] = floatBitsToUint(linearColor(sum));
-      binVectors[list / 4 + 2] = floatBitsToUint(targetColor(sum));
+      binVectors[list / 4 + 1] = floatBitsToUint(linearColor(sum, header.flags));
+      binVectors[list / 4 + 2] = floatBitsToUint(targetColor(sum, header.flags));
     }
   }
 }

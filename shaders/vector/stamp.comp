@@ -14,7 +14,7 @@
 #include "canvas.glsl"
 #include "run.glsl"
 #if ALONE
-#include "color.glsl"
+#include "color.h"
 #include "constants.glsl"
 #include "lists.glsl"
 #include "placement.h"
@@ -49,7 +49,7 @@ Place placeOf(Grid g, ItemRecord item) {
   const vec2 rounding = 1e-5 * max(abs(low), abs(high)), margin = 0.25 + rounding; // far more than rounding
   const uint left = uint(max(low.x - margin.x, 0.0)) / 2;
   const uint last = (uint(clamp(high.x + margin.x, 0.0, float(g.columns))) + 1) / 2; // it has the pixel right of all
-  const uvec4 tiles = box.x <= box.z ? tilesIn(low - 1.0 - rounding, high + 1.0 + rounding) : uvec4(0);
+  const uvec4 tiles = box.x <= box.z ? tilesIn(low - 1.0 - rounding, high + 1.0 + rounding, canvasTiles()) : uvec4(0);
   return Place(left, max(last, left) + 1 - left, uint(max(low.y - margin.y, 0.0)), tiles);
 }
 
@@ -128,7 +128,7 @@ void main() {
   const bool foreground = (floatBitsToUint(fetch(item.slot, item.paths + 2)).w & kForeground) != 0;
   const float alpha = ink.a * item.color.a;
   if (alpha <= 0) return;
-  if (lane == 0) paths[item.firstPath].color = blended(foreground ? item.color.rgb : ink.rgb, alpha);
+  if (lane == 0) paths[item.firstPath].color = blended(foreground ? item.color.rgb : ink.rgb, alpha, header.flags);
 #else
   const ItemRecord item = items[i];
   if (item.stamped == 0) return;

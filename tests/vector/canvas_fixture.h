@@ -5,10 +5,10 @@
 #include "host/memory.h"
 #include "host/picture.h"
 #include "oracle.h"
-#include "vector/edge.h"
 #include "vector/patch/drawing.h"
 #include "vector/raster/place.h"
 #include "vector/raster/segments.h"
+#include "vector/twin/twin.h"
 
 #include <gpgp/vector.h>
 #include <gtest/gtest.h>
@@ -181,59 +181,20 @@ struct Texture {
   }
 };
 
-/// The CPU twin: the samples that each path of a drawing covers, pixel by pixel, and by how much each pixel's area
-/// differs from them (1/256 of a sample). No tiles: every chord turns over all samples right of it in its rows.
+/// The samples that each path of a drawing covers, pixel by pixel, as the CPU twin has them.
 struct Twin {
-  struct Pixel {
-    uint32_t mask = 0;
-    int difference = 0;
-  };
   Twin(const vector::Drawing& drawing, const shader::ItemRecord& item, uint32_t w, uint32_t h, uint32_t n)
-      : width(w), height(h), paths(drawing.paths.size(), std::vector<Pixel>(size_t(w) * h)) {
+      : width(w), paths(drawing.paths.size(), std::vector<vector::TwinCoverage>(size_t(w) * h)) {
     const vector::Outlines outlines = vector::makeOutlines(drawing, std::pmr::get_default_resource());
     const shader::Grid grid{n, static_cast<int>(h * n), static_cast<int>(w)};
-    for (const shader::SegmentRecord& segment : outlines.segments) {
-      const uint32_t chords = shader::chordCount(grid, item, segment);
-      const float step = shader::chordStep(chords);
-      for (uint32_t i = 0; i < chords; ++i) {
-        shader::Chord chord;
-        if (!shader::chordOf(grid, item, segment, i, chords, step, chord)) continue;
-        for (int row = chord.first; row < chord.last;) row = turn(paths[segment.path], grid, chord, row);
-      }
-    }
-    for (auto& path : paths)
-      for (uint32_t y = 0; y < h; ++y)
-        for (uint32_t x = 1; x < w; ++x) path[y * w + x].mask ^= path[y * w + x - 1].mask;
+    for (const shader::SegmentRecord& segment : outlines.segments)
+      vector::coverSegment(grid, item, segment, paths[segment.path]);
+    for (auto& path : paths) vector::closeCoverage(grid, path);
   }
-  const Pixel& at(size_t path, uint32_t x, uint32_t y) const { return paths[path][y * width + x]; }
+  const vector::TwinCoverage& at(size_t path, uint32_t x, uint32_t y) const { return paths[path][y * width + x]; }
 
-  uint32_t width, height;
-  std::vector<std::vector<Pixel>> paths;
-
-private:
-  /// The rows of one pixel from `row` on; returns the row behind them.
-  int turn(std::vector<Pixel>& path, const shader::Grid& grid, const shader::Chord& chord, int row) const {
-    const int n = static_cast<int>(grid.samples), first = shader::crossingOf(grid, chord, row), column = first >> 8;
-    const int rowOfPixels = row / n;
-    Pixel* pixel = &path[static_cast<uint32_t>(rowOfPixels) * width];
-    int last = first;
-    uint32_t rows = 0, missed = 0;
-    for (; row < chord.last && row / n == rowOfPixels; ++row) {
-      const int x = shader::crossingOf(grid, chord, row);
-      if (x >> 8 != column) break;
-      last = x;
-      ++rows;
-      const uint32_t bit = static_cast<uint32_t>(row % n);
-      const float sample = (static_cast<float>(shader::sampleColumn(bit, grid.samples)) + 0.5f) / static_cast<float>(n);
-      const bool covered = static_cast<float>(x & 255) <= 256 * sample;
-      missed += !covered;
-      const int turned = column < 0 ? 0 : covered ? column : column + 1;
-      if (turned < grid.columns) pixel[turned].mask ^= 1u << bit;
-    }
-    if (column >= 0 && column < grid.columns)
-      pixel[column].difference += (chord.side > 0 ? 1 : -1) * shader::areaOf(rows, missed, first, last);
-    return row;
-  }
+  uint32_t width;
+  std::vector<std::vector<vector::TwinCoverage>> paths;
 };
 
 } // namespace gpgp::test

@@ -47,7 +47,7 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
           size_t different = 0, covered = 0;
           for (uint32_t y = 0; y < 90; ++y)
             for (uint32_t x = 0; x < 100; ++x) {
-              const Twin::Pixel& pixel = covers.at(0, x, y);
+              const vector::TwinCoverage& pixel = covers.at(0, x, y);
               float expected = static_cast<float>(std::popcount(pixel.mask)) / static_cast<float>(samples);
               if (area)
                 expected = std::clamp(

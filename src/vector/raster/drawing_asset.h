@@ -8,6 +8,13 @@
 namespace gpgp::vector {
 
 /// A drawing's tables in one buffer: segments, paths with their boxes, paints, stops, clips, layers.
+struct DrawingTables {
+  std::pmr::vector<std::byte> bytes;
+  uint32_t paths;           ///< where BoxedPaths begin, in vec4
+  shader::SlotRecord slots; ///< and the other tables
+};
+DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std::pmr::memory_resource* memory);
+
 class DrawingAsset final : public core::Resident {
 public:
   /// What edited drawings are made from.
