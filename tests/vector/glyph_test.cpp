@@ -976,8 +976,8 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       EXPECT_LE(std::abs(sum) / n, 2.0) << size << ": as much ink as FreeType";
       EXPECT_LE(reference / n, 0.4) << size << ": the curves are what FreeType comes to without its rounding";
       if (area) {
-        EXPECT_LE(fromFine / n, 2.0) << size << ": the pixels of FreeType's rasteriser where it does not round points";
-        EXPECT_LE(fromTruth / n, 2.0) << size << ": the pixels of the curves themselves";
+        EXPECT_LE(fromFine / n, 1.5) << size << ": the pixels of FreeType's rasteriser where it does not round points";
+        EXPECT_LE(fromTruth / n, 1.5) << size << ": the pixels of the curves themselves";
         EXPECT_LT(fromTruth, freeType) << size << ": nearer to the curves than FreeType at this size";
         EXPECT_LE(fromRows / m, 0.4) << size << ": without curves all that is off comes of 16 rows a pixel";
       }
