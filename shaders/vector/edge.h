@@ -3,8 +3,9 @@
 // A segment is a part of a curve on the boundary of a path's filled region: the region lies on one side of it, nothing
 // on the other. Segments of a path form closed outlines, so a sample is inside where an odd number of them lies left of
 // it in its row. A segment's curve is cut into equal steps of its parameter, as many as keep the chords within
-// kFlatness of it; chords that reach beyond the segment's ends are clipped to those. Everything that borders shares its
-// vertices bit for bit: consecutive chords, segments that meet, and paths that have a curve in common.
+// kFlatness of it; between the curve's ends they begin a little outside of it, so that they leave as much area on one
+// side of it as on the other. Chords that reach beyond the segment's ends are clipped to those. Everything that borders
+// shares its vertices bit for bit: consecutive chords, segments that meet, and paths that have a curve in common.
 //
 // A projective item's lines stay lines, so its chords need no other form; its curves take as many chords as the largest
 // magnification along them asks for. What lies behind the eye is cut off along a line of the drawing that is seen past
@@ -190,7 +191,8 @@ GPGP_FN bool mayMatter(Grid g, ItemRecord item, SegmentRecord s) {
   return left && bottom >= -1.0f && top * float(g.samples) <= float(g.rows) + 1.0f;
 }
 
-// A segment's curve at step i of n in the drawing; `step` is chordStep(n).
+// Where chord i of n begins in the drawing, and the one before it ends; `step` is chordStep(n). A chord across a curve
+// with second derivative p lies p step^2 / 12 inside of it on average, so chords begin as far outside.
 GPGP_FN vec2 curvePoint(SegmentRecord s, uint i, uint n, float step) {
   if (i == 0u) return vec2(s.first.x, s.first.y);
   if (i >= n) return vec2(s.second.z, s.second.w);
@@ -210,8 +212,11 @@ GPGP_FN vec2 curvePoint(SegmentRecord s, uint i, uint n, float step) {
   GPGP_PRECISE float dy = by - ay;
   GPGP_PRECISE float ex = (cx - bx) - dx;
   GPGP_PRECISE float ey = (cy - by) - dy;
-  GPGP_PRECISE float x = s.first.x + t * (3.0f * ax + t * (3.0f * dx + t * ex));
-  GPGP_PRECISE float y = s.first.y + t * (3.0f * ay + t * (3.0f * dy + t * ey));
+  GPGP_PRECISE float tex = t * ex;
+  GPGP_PRECISE float tey = t * ey;
+  GPGP_PRECISE float twelfth = 0.5f * step * step; // of the second derivative, which is 6 (d + t e)
+  GPGP_PRECISE float x = s.first.x + (t * (3.0f * ax + t * (3.0f * dx + tex)) - twelfth * (dx + tex));
+  GPGP_PRECISE float y = s.first.y + (t * (3.0f * ay + t * (3.0f * dy + tey)) - twelfth * (dy + tey));
   return vec2(x, y);
 }
 
@@ -318,13 +323,23 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
   vec2 a = curvePoint(s, i, n, step);
   vec2 b = curvePoint(s, i + 1u, n, step);
 #endif
+  // What lies beyond the segment's ends becomes these, also where chords turn back a little, as they may where the
+  // curve is all but level: so they stay connected.
   if (s.ends.y > s.first.y) { // begins below its curve's begin
-    if (b.y <= s.ends.y) return false;
-    if (a.y <= s.ends.y) a = vec2(s.ends.x, s.ends.y);
+    const bool above = a.y <= s.ends.y;
+    if (above && b.y <= s.ends.y) return false;
+    if (above)
+      a = vec2(s.ends.x, s.ends.y);
+    else if (b.y <= s.ends.y)
+      b = vec2(s.ends.x, s.ends.y);
   }
   if (s.ends.w < s.second.w) {
-    if (a.y >= s.ends.w) return false;
-    if (b.y >= s.ends.w) b = vec2(s.ends.z, s.ends.w);
+    const bool below = b.y >= s.ends.w;
+    if (below && a.y >= s.ends.w) return false;
+    if (below)
+      b = vec2(s.ends.z, s.ends.w);
+    else if (a.y >= s.ends.w)
+      a = vec2(s.ends.z, s.ends.w);
   }
 #if PROJECTIVE
   if (projects(item)) {

@@ -37,7 +37,8 @@ protected:
   /// Queues a range, of whole 16 bytes; returns its number, from 1 on.
   uint64_t queue(VkDeviceSize offset, VkDeviceSize size);
   /// Whether the copies of the range and of all before it are recorded.
-  bool hasArrived(uint64_t number) const { return number <= arrived_.load(std::memory_order_acquire); }
+  bool hasArrived(uint64_t number) const { return number <= arrived(); }
+  uint64_t arrived() const { return arrived_.load(std::memory_order_acquire); } ///< the last one of which that is so
   /// Whether they are known to have run. (context)
   bool hasSettled(uint64_t number) const { return number < firstNumber_; }
 

@@ -10,11 +10,53 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <sys/mman.h>
 
 namespace {
 using namespace gpgp;
 using namespace gpgp::test;
+
+/// Curves that are level somewhere and run down everywhere else, cut near there: their chords turn back a little.
+TEST(Chords, MeetEachRowOfTheirSegmentOnce) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0, 1);
+  const shader::Grid grid{16, 16 * 64, 64};
+  const GpgpCanvasItem here{nullptr, {1, 0, 0, 1, 0, 0}, 1};
+  shader::ItemRecord item{};
+  ASSERT_TRUE(vector::placeItem(here, 64, 64, item));
+  uint32_t cut = 0, back = 0;
+  for (int i = 0; i < 200000; ++i) {
+    // y = top + size ((t - level)^3 + level^3)
+    const float level = unit(random), size = 40 * unit(random), top = 1 + 8 * unit(random);
+    const float c1 = 3 * level * level * size, c2 = -3 * level * size;
+    const auto y = [&](float t) { return top + t * (c1 + t * (c2 + t * size)); };
+    const auto x = [&] { return 60 * unit(random); };
+    shader::SegmentRecord s{};
+    s.first = {x(), top, x(), top + c1 / 3};
+    s.second = {x(), top + (2 * c1 + c2) / 3, x(), top + c1 + c2 + size};
+    s.side = 1;
+    const float begin = std::clamp(level + 0.2f * (unit(random) - 0.5f), 0.0f, 1.0f);
+    const float end = std::min(begin + unit(random), 1.0f);
+    s.ends = {30, std::clamp(y(begin), top, s.second.w), 31, std::clamp(y(end), top, s.second.w)};
+    if (!(s.ends.y < s.ends.w)) continue;
+    ++cut;
+    const uint32_t n = shader::chordCount(grid, item, s);
+    std::vector<int> met(static_cast<size_t>(grid.rows), 0);
+    for (uint32_t k = 0; k < n; ++k) {
+      shader::Chord chord;
+      if (!shader::chordOf(grid, item, s, k, n, shader::chordStep(n), chord)) continue;
+      back += chord.side < 0 && chord.first < chord.last;
+      for (int row = chord.first; row < chord.last; ++row) met[static_cast<size_t>(row)] += chord.side > 0 ? 1 : -1;
+    }
+    for (int row = 0; row < grid.rows; ++row)
+      ASSERT_EQ(met[static_cast<size_t>(row)],
+                row >= shader::rowOf(grid, s.ends.y) && row < shader::rowOf(grid, s.ends.w) ? 1 : 0)
+          << "curve " << i << ", row " << row;
+  }
+  EXPECT_GT(cut, 150000u);
+  EXPECT_GT(back, 0u);
+}
 
 TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
   makeCanvas(128);

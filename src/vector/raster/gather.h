@@ -46,8 +46,6 @@ struct ItemTables {
   std::pmr::vector<GroupState> groupStates;
 };
 
-struct GlyphBlock;
-
 class Gather {
 public:
   /// `placed`: room for one of each item, glyph and shape of the budgets; only written. `stampRoom`: how many tile
@@ -75,8 +73,11 @@ private:
   using Chain = ItemTables::ClipState;
   core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
                                 const Chain& clip);
+  struct Block;
+  class Stamping;
   core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
-  void addBlock(const GlyphBlock& block, uint32_t source);
+  void addBlock(const Block& block, uint32_t source);
+  core::Result<void> checkInstances(std::span<const GpgpGlyphInstance> glyphs, size_t first, size_t end) const;
   core::Result<void> addList(const List& list, const GpgpCanvasItem& item, const Chain& own);
   core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own);
   void resolveGroups(const List& list, float opacity);

@@ -19,7 +19,7 @@ public:
     uint32_t segments = 0, paths = 0, patches = 0;
     shader::vec2 middle = {}; ///< of the path that it is
     shader::vec2 reach = {};  ///< from there to the sides of its box; infinite where it is not one path
-    uint32_t generation = 0;  ///< of the glyph; of the next one where there is none
+    uint16_t generation = 0;  ///< of the glyph; of the next one where there is none
     bool living = false, gradients = false;
     mutable uint64_t lastUsed = 0; ///< frame
     uint64_t upload = 0;           ///< its range's number; 0: nothing to upload
@@ -37,14 +37,16 @@ public:
   uint32_t indexOf(uint64_t key); ///< GPGP_GLYPH_NONE where there is none; counts as a use
   void getInfo(GpgpGlyphSetInfo& info) const;
 
-  /// Null where the index is not, or no longer, one of the set's.
-  const Glyph* glyph(uint32_t index) const {
+  std::span<const Glyph> table() const { return glyphs_; }
+  /// Of a table. Null where the index is not, or no longer, one of the set's.
+  static const Glyph* find(std::span<const Glyph> table, uint32_t index) {
     const uint32_t place = index & (kMaxGlyphs - 1);
-    if (place >= glyphs_.size()) return nullptr;
-    const Glyph& found = glyphs_[place];
+    if (place >= table.size()) return nullptr;
+    const Glyph& found = table[place];
     return found.living && found.generation == index >> kPlaceBits ? &found : nullptr;
   }
-  using Resident::hasArrived;
+  const Glyph* glyph(uint32_t index) const { return find(glyphs_, index); }
+  using Resident::arrived;
   /// Its segments, its BoxedPaths, and, at the next multiple of their size, its gradients' records and stops.
   std::span<const std::byte> block(const Glyph& glyph) const {
     return Resident::bytes().subspan(size_t(glyph.first) * 16, size_t(glyph.size) * 16);
