@@ -71,6 +71,8 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
+/// In GLSL it may round once or twice: only where the product is exact.
+inline float fma(float a, float b, float c) { return a * b + c; }
 inline uint floatBitsToUint(float v) {
   uint u;
   std::memcpy(&u, &v, sizeof u);

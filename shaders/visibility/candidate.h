@@ -225,24 +225,33 @@ GPGP_FN uvec2 bitRange(int first, int end) {
 }
 
 /// A candidate within a pixel. Each edge is a line, at x + r * y of the pixel's width in row r of 64. It covers the
-/// samples from the greater of its left edges to before the lesser of its right ones, both rounded to columns, in rows
-/// rowBegin to rowEnd - 1; the third edge is one of them. A sample that an edge meets lies right of it.
+/// samples from the greater of its left edges to before the lesser of its right ones, both rounded to columns; the
+/// third edge is one of them. A sample that an edge meets lies right of it. In rows above and below the triangle the
+/// edges have crossed, so that nothing is covered; a horizontal edge is a third line that leaves nothing of the rows
+/// outside.
 struct Outline {
   vec2 left;
   vec2 right;
   vec2 third;
   bool isThirdLeft;
-  int rowBegin;
-  int rowEnd;
+  int rowBegin; ///< rows that it lies in: from this one
+  int rowEnd;   ///< to before this one
 };
 
 GPGP_CONST float kNoEdge = -1e30f;
 GPGP_CONST float kColumn = 0.015625f; ///< in widths; a power of two, so that what is multiplied by it stays exact
 
+/// 18 of a step's 24 bits, so that its product with a row of 64 is exact: added to something, it is rounded once.
+GPGP_FN float stepOf(float v) { return uintBitsToFloat(floatBitsToUint(v) & ~63u); }
+
 /// Adds an edge. Its line is computed from its upper corner, so that both triangles at an edge have the same one, and
 /// neither share a sample nor leave one out.
 GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2 first) {
-  if (u.y == v.y) return;
+  if (u.y == v.y) { // those above it are outside, or those below it
+    o.third = vec2(float(u.y - first.y - 2), -4.0f);
+    o.isThirdLeft = u.x < v.x;
+    return;
+  }
   ivec2 top = (u.y < v.y ? u : v) - first;
   GPGP_PRECISE float start = (float(top.x - 2) + float(2 - top.y) * slope) * 0.25f + 0.498046875f;
   bool isLeft = u.y > v.y; // upwards: bounds from the left, as the triangle is clockwise as seen
@@ -251,7 +260,7 @@ GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2
     o.third = before;
     o.isThirdLeft = isLeft;
   }
-  vec2 line = vec2(start * kColumn, slope * kColumn);
+  vec2 line = vec2(start * kColumn, stepOf(slope * kColumn));
   if (isLeft)
     o.left = line;
   else
@@ -273,12 +282,9 @@ GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
   return o;
 }
 
-/// From where to where an outline reaches in a row, in widths: x to before y, once rounded. Clamping to 0 to 1 costs
-/// nothing where a sum is made.
-GPGP_FN vec2 columnsOf(Outline o, float row) {
-  GPGP_PRECISE float left = o.left.x + row * o.left.y;
-  GPGP_PRECISE float right = o.right.x + row * o.right.y;
-  GPGP_PRECISE float third = o.third.x + row * o.third.y;
+/// From where to where an outline reaches in a row that its edges cross there, in widths: x to before y, once rounded.
+/// Clamping to 0 to 1 costs nothing where a sum is made.
+GPGP_FN vec2 columnsBetween(Outline o, float left, float right, float third) {
   vec2 columns = vec2(clamp(left, 0.0f, 1.0f), clamp(right, 0.0f, 1.0f));
   float held = clamp(third, 0.0f, 1.0f);
   if (o.isThirdLeft)
@@ -286,6 +292,14 @@ GPGP_FN vec2 columnsOf(Outline o, float row) {
   else
     columns.y = min(columns.y, held);
   return columns;
+}
+
+/// The same in one of the 64 rows.
+GPGP_FN vec2 columnsOf(Outline o, float row) {
+  GPGP_PRECISE float left = fma(row, o.left.y, o.left.x);
+  GPGP_PRECISE float right = fma(row, o.right.y, o.right.x);
+  GPGP_PRECISE float third = fma(row, o.third.y, o.third.x);
+  return columnsBetween(o, left, right, third);
 }
 
 /// The column nearest to 0 to 1: a large number leaves its sum with v no bits below. Conversions are slow.
@@ -297,8 +311,7 @@ GPGP_FN int roundedColumn(float v) {
 /// Which columns of a row an outline covers: from x to before y.
 GPGP_FN ivec2 spanIn(Outline o, int row) {
   vec2 columns = columnsOf(o, float(row));
-  bool any = uint(row - o.rowBegin) < uint(o.rowEnd - o.rowBegin);
-  return ivec2(roundedColumn(columns.x), any ? roundedColumn(columns.y) : 0);
+  return ivec2(roundedColumn(columns.x), roundedColumn(columns.y));
 }
 GPGP_FN uvec2 samplesIn(Outline o, int row) {
   ivec2 span = spanIn(o, row);
@@ -324,7 +337,10 @@ GPGP_FN uvec2 samplesAround(Outline o, int reach, int row) {
 GPGP_FN uint middleKey(Candidate c, Outline outline, Footing f, ivec2 pixel, bool reversed) {
   ivec2 first = pixel * 256;
   GPGP_PRECISE float row = float(f.middle.y - first.y - 2) * 0.25f;
-  vec2 columns = columnsOf(outline, row);
+  GPGP_PRECISE float left = outline.left.x + row * outline.left.y;
+  GPGP_PRECISE float right = outline.right.x + row * outline.right.y;
+  GPGP_PRECISE float third = outline.third.x + row * outline.third.y;
+  vec2 columns = columnsBetween(outline, left, right, third);
   int column = f.middle.x;
   if (columns.x < columns.y) {
     GPGP_PRECISE float x = (columns.x + columns.y) * 128.0f;

@@ -102,11 +102,11 @@ GPGP_FN Crossing crossingOf(Facet a, Facet b, bool wins) {
     GPGP_PRECISE float start = ahead.x * inverse + 0.498046875f; // samples on the line lie right of it, as in addEdge
     GPGP_PRECISE float step = ahead.z * inverse;
     c.start = start * kColumn;
-    c.step = step * kColumn;
+    c.step = stepOf(step * kColumn);
     c.side = ahead.y > 0.0f ? -1 : 1;
   } else {
     c.start = ahead.x == 0.0f && ahead.z == 0.0f && wins ? -1.0f : ahead.x;
-    c.step = ahead.z;
+    c.step = stepOf(ahead.z);
     c.side = 0;
   }
   return c;
@@ -115,8 +115,8 @@ GPGP_FN Crossing crossingOf(Facet a, Facet b, bool wins) {
 /// Which columns of a row an outline covers on a crossing's side.
 GPGP_FN ivec2 spanAhead(Outline o, Crossing c, int row) {
   vec2 columns = columnsOf(o, float(row));
-  GPGP_PRECISE float at = c.start + float(row) * c.step;
-  bool any = row >= o.rowBegin && row < o.rowEnd && (c.side != 0 || at < 0.0f);
+  GPGP_PRECISE float at = fma(float(row), c.step, c.start);
+  bool any = c.side != 0 || at < 0.0f;
   float held = clamp(at, 0.0f, 1.0f);
   if (c.side < 0) columns.y = min(columns.y, held);
   if (c.side > 0) columns.x = max(columns.x, held);

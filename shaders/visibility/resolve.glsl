@@ -13,8 +13,8 @@ layout(std430, set = 0, binding = kBindEntries) readonly buffer EntryBuffer { ui
 shared uint items[kBatch]; // candidates of a batch
 shared uvec4 keys[kBatch / 4u];
 shared vec4 edges[kBatch]; // their outlines, in order: left, right
-shared vec2 thirds[kBatch];
-shared uint rows[kBatch]; // first and last; parallax; whether the third edge is a left one
+shared uvec2 thirds[kBatch]; // as bits; the last one says whether it is a left one
+shared uint rows[kBatch];    // first and last; parallax
 
 /// Bits: which of 32 columns lie before one, for those from 32 before the first to 64 behind it. Two reads of it are
 /// faster than what makes a mask.
@@ -99,17 +99,18 @@ int parallaxIn(ivec2 pixel, uint nearest, uint own, uint place) {
 
 void put(uint place, Outline o, int parallax) {
   edges[place] = vec4(o.left, o.right);
-  thirds[place] = o.third;
-  rows[place] = uint(o.rowBegin) | uint(o.rowEnd) << 8u | uint(parallax) << 16u | uint(o.isThirdLeft) << 24u;
+  thirds[place] = floatBitsToUint(o.third) | uvec2(0u, o.isThirdLeft ? 1u : 0u); // a step's last bits are zero
+  rows[place] = uint(o.rowBegin) | uint(o.rowEnd) << 8u | uint(parallax) << 16u;
 }
-int parallaxAt(uint place) { return int(rows[place] >> 16u & 255u); }
+int parallaxAt(uint place) { return int(rows[place] >> 16u); }
 
 Outline outlineAt(uint place) {
   Outline o;
   o.left = edges[place].xy;
   o.right = edges[place].zw;
-  o.third = thirds[place];
-  o.isThirdLeft = rows[place] >= 1u << 24u;
+  uvec2 third = thirds[place];
+  o.third = uintBitsToFloat(third & uvec2(0xffffffffu, ~1u));
+  o.isThirdLeft = (third.y & 1u) != 0u;
   o.rowBegin = int(rows[place] & 255u);
   o.rowEnd = int(rows[place] >> 8u & 255u);
   return o;

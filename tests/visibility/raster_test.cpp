@@ -1,7 +1,9 @@
 // The rasteriser on one triangle: coverage against a direct evaluation, the fast forms against the exact one, and edges
 // shared by triangles.
-#include "visibility/raster.h"
+#include "visibility/candidate.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -99,6 +101,50 @@ TEST(Raster, CompactAndBlockFormsEqualTheExactOne) {
       ASSERT_FALSE(any);
     }
   }
+}
+
+/// Which samples of a pixel's row a triangle covers.
+std::uint64_t samplesOfRow(const ScreenTriangle& t, ivec2 pixel, int row) {
+  const uvec2 half = samplesIn(outlineOf(makeCandidate(t, 0), pixel), row);
+  return std::uint64_t(half.y) << 32 | half.x;
+}
+
+// Floats decide them: each end of a row may be a sample off. Rows that the triangle does not reach have none, and two
+// triangles share none. Corners often lie on samples, and edges are often horizontal.
+TEST(Raster, RowsOfSamplesAreTheTriangleButForTheirEnds) {
+  Random random(7);
+  const Grid viewport = middleGrid(ivec2(64, 64), 8);
+  const ivec2 pixel(31, 33);
+  int covered = 0, wrong = 0;
+  for (int n = 0; n < 6000; ++n) {
+    const int reach = n % 3 == 0 ? 200 : n % 3 == 1 ? 2000 : 200000, step = n % 2 ? 1 : 4;
+    const auto corner = [&] {
+      const ivec2 from(random(-reach, reach) / step, random(-reach, reach) / step);
+      return pixel * 256 + ivec2(2, 2) + from * step + ivec2(128, 128) / step * step;
+    };
+    ivec2 a = corner(), b = corner(), c = corner();
+    const ivec2 d = corner();
+    if (n % 5 == 0) b.y = a.y;
+    if (!orient(a, b, c) || area(b, a, d) <= 0) continue;
+    const ScreenTriangle t = makeTriangle(a, b, c, 0, 0, 0, viewport);
+    const ScreenTriangle beside = makeTriangle(b, a, d, 0, 0, 0, viewport);
+    for (int row = 0; row < 64; ++row) {
+      std::uint64_t exact = 0;
+      for (int column = 0; column < 64; ++column)
+        if (coversWide(t, pixel * 256 + ivec2(column, row) * 4 + ivec2(2, 2))) exact |= std::uint64_t(1) << column;
+      const std::uint64_t samples = samplesOfRow(t, pixel, row);
+      ASSERT_LE(std::popcount(samples ^ exact), 2) << n << ": " << row;
+      ASSERT_EQ(samples & samplesOfRow(beside, pixel, row), 0u) << n << ": " << row;
+      const int y = pixel.y * 256 + row * 4 + 2;
+      if (y < std::min({a.y, b.y, c.y}) || y > std::max({a.y, b.y, c.y})) {
+        ASSERT_EQ(samples, 0u) << n << ": " << row;
+      }
+      covered += std::popcount(exact);
+      wrong += std::popcount(samples ^ exact);
+    }
+  }
+  EXPECT_GT(covered, 1000000);
+  EXPECT_LT(wrong, covered / 1000);
 }
 
 TEST(Raster, DepthIsTheMixOfTheCornersDepths) {
