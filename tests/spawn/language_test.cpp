@@ -45,6 +45,109 @@ TEST(Language, ReportsAllErrorsInOrder) {
                       "8:22: error: there is no rule or terminal 'Q'"}));
 }
 
+// What was meant by a missing ';' is clear where another statement begins: it is the only error.
+TEST(Language, MissingSemicolonsSwallowNothing) {
+  EXPECT_EQ(messagesOf("var a = 1\nvar b = 2;\naxiom Box A;\nterminal T (1,0);\nA = Translate(a,b,0) T;"),
+            Messages{"2:1: error: expected ';' after the variable, found 'var'"});
+  EXPECT_EQ(messagesOf("axiom Box A\nterminal T (1,0);\nA = T;"),
+            Messages{"2:1: error: expected ';' after the axiom, found 'terminal'"});
+  EXPECT_EQ(messagesOf("axiom Box A;\nterminal T (1,0)\nterminal U (1,1);\nA = Replicate() { T | U };"),
+            Messages{"3:1: error: expected ';' after the terminal, found 'terminal'"});
+  EXPECT_EQ(
+      messagesOf("terminal T (1,0)\naxiom DynamicPolygon { (0,0),(1,0),(0,1) } A\nvar c = 1\nA = Translate(c,0,0) T;"),
+      (Messages{"2:1: error: expected ';' after the terminal, found 'axiom'",
+                "3:1: error: expected ';' after the axiom, found 'var'",
+                "4:1: error: expected ';' after the variable, found 'A'"}));
+  EXPECT_EQ(messagesOf("axiom Box A;\nterminal T\nterminal U (1,1);\nA = Replicate() { T | U };"),
+            Messages{"3:1: error: expected '(' with kind and index after the names of terminals, found 'terminal'"});
+  EXPECT_EQ(ofRules("A = Replicate() { T | B\nB =\nC = Translate(1,0,0)\n2D = T"),
+            (Messages{"4:1: error: expected '|' or '}' after a successor, found 'B'",
+                      "5:1: error: expected an operator, a rule or a terminal, found 'C'",
+                      "5:5: error: Translate needs a successor; shapes end in a terminal or Discard()",
+                      "6:1: error: expected ';' at the end of the rule, found '2D'",
+                      "6:7: error: expected ';' at the end of the rule, found the end of the file"}));
+  // Rules, terminals and vars may be called so.
+  EXPECT_EQ(messagesOf("axiom Box axiom; terminal terminal var (1,0);\naxiom = Replicate() { terminal | var };"),
+            Messages{});
+}
+
+TEST(Language, AnErrorHidesNoOtherOne) {
+  EXPECT_EQ(ofRules("A = SubDiv(X) { 1: T | -1: U | -1 V | 2 2: T | : T | -1: W };\nV = ;\nB = Q;"),
+            (Messages{"3:28: error: there is no rule or terminal 'U'",
+                      "3:35: error: expected ':' between a value and its successor, found 'V'",
+                      "3:41: error: expected ':' between a value and its successor, found '2'",
+                      "3:48: error: expected a value, found ':'", "3:58: error: there is no rule or terminal 'W'",
+                      "4:5: error: expected an operator, a rule or a terminal, found ';'",
+                      "5:5: error: there is no rule or terminal 'Q'"}));
+  EXPECT_EQ(
+      ofRules("A = Rotate(1, , 2) Scale(1 2, x, Rand(1)) Repeat(W, q, FILL) Foo(zz, zz + 1) Nope;"),
+      (Messages{"3:15: error: expected a value, found ','",
+                "3:28: error: expected ',' or ')' after an argument, found '2'",
+                "3:31: error: there is no var 'x'; expected a value", "3:34: error: Rand takes 2 arguments, found 1",
+                "3:50: error: expected an axis: X, Y or Z", "3:53: error: there is no var 'q'; expected a value",
+                "3:56: error: expected ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END",
+                "3:62: error: there is no operator 'Foo'", "3:70: error: there is no var 'zz'; expected a value",
+                "3:78: error: there is no rule or terminal 'Nope'"}));
+  EXPECT_EQ(
+      ofRules("A = If(Exp(a = 1)) { U | Translate(b,0 T };\nB = Translate(c,0,0) Scale(1,1 W;\nC = V;"),
+      (Messages{"3:14: error: expected ',' or ')' after an argument, found '='",
+                "3:22: error: there is no rule or terminal 'U'", "3:36: error: there is no var 'b'; expected a value",
+                "3:40: error: expected ',' or ')' after an argument, found 'T'",
+                "4:15: error: there is no var 'c'; expected a value",
+                "4:32: error: expected ',' or ')' after an argument, found 'W'",
+                "5:5: error: there is no rule or terminal 'V'"}));
+  // Parentheses and braces within what is wrong are passed by.
+  EXPECT_EQ(ofRules("A = Replicate() { Translate(1 (2),(3),4) T | T { U | V } | W };"),
+            (Messages{"3:31: error: expected ',' or ')' after an argument, found '('",
+                      "3:48: error: expected '|' or '}' after a successor, found '{'",
+                      "3:60: error: there is no rule or terminal 'W'"}));
+}
+
+TEST(Language, WrongCountsHideNoArguments) {
+  EXPECT_EQ(ofRules("A = Translate(nosuch, 1) T;"),
+            (Messages{"3:5: error: Translate takes 3 arguments, found 2",
+                      "3:15: error: there is no var 'nosuch'; expected a value"}));
+  EXPECT_EQ(ofRules("A = Repeat(X, ADJUST_TO_FILL) T;"), Messages{"3:5: error: Repeat takes 3 arguments, found 2"});
+  EXPECT_EQ(ofRules("A = Discard(Unknown3) { Unknown4 };"),
+            (Messages{"3:5: error: Discard() takes neither arguments nor successors",
+                      "3:13: error: there is no var 'Unknown3'; expected a value",
+                      "3:25: error: there is no rule or terminal 'Unknown4'"}));
+  EXPECT_EQ(ofRules("A = Translate(ShapeRotation(Q, R), Rand(a,b,c), Sin(d + 1)) T;").size(), 8u);
+  EXPECT_EQ(ofRules("A = SetAsDynamicConvexPolygon((p,0),1,(0,q)) T;"),
+            (Messages{"3:32: error: there is no var 'p'; expected a value", "3:37: error: expected a corner as (x, y)",
+                      "3:42: error: there is no var 'q'; expected a value"}));
+}
+
+TEST(Language, TheOrderOfCollidersIsCheckedBesideOtherErrors) {
+  EXPECT_EQ(ofRules("A = IfCollides(w) { M | Nope };\nM = Collider(w) T;"),
+            (Messages{"3:5: error: IfCollides(w) waits for all of Collider(w) in line 4, which comes after it",
+                      "3:25: error: there is no rule or terminal 'Nope'"}));
+  // Tags with an error are nobody's.
+  EXPECT_EQ(ofRules("A = IfCollides(0.5) { M | T };\nM = Collider(-1) T;"),
+            (Messages{"3:16: error: a tag is a name or a whole number from 0",
+                      "4:14: error: a tag is a name or a whole number from 0"}));
+}
+
+TEST(Language, ProbabilitiesBeyondAHundredPercentAreToldOf) {
+  EXPECT_EQ(ofRules("A = 120%: T 90%: T else: T;"),
+            Messages{"3:1: warning: these probabilities add up to 210%; expected at most 100%: each counts as its "
+                     "share of the sum, and nothing is left for 'else'"});
+  EXPECT_EQ(ofRules("A = 33.4%: T 33.3%: T 33.3%: T;"), Messages{});
+  std::string many = "A = ";
+  for (int i = 0; i < 33; ++i) many += "1%: T ";
+  EXPECT_EQ(ofRules(many + ";"), Messages{"3:1: error: a rule takes at most 32 alternatives, found 33"});
+}
+
+TEST(Language, TheLastTerminalLineHasItsPlace) {
+  std::string lines = "axiom Box A;\n";
+  for (int i = 0; i < 1024; ++i) lines += "terminal T" + std::to_string(i) + " (1,0);\n";
+  EXPECT_EQ(messagesOf(lines + "A = T0;"), Messages{});
+  EXPECT_EQ(messagesOf(lines + "terminal U (1,0); terminal V (1,0);\nA = T0;"),
+            Messages{"1026:1: error: more than 1024 terminal lines"});
+  EXPECT_EQ(messagesOf(lines + "A = Generate();"),
+            Messages{"1026:5: error: Generate() is a terminal line more than the 1024 that a grammar can have"});
+}
+
 struct Case {
   const char* rules;
   const char* message;

@@ -16,8 +16,10 @@ public:
   ContextCheck(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts)
       : graph_(graph), places_(places), parts_(parts) {}
 
-  void run() {
+  void checkOrder() {
     if (graph_.phases == kNoPhases) refusePhases();
+  }
+  void checkEffect() {
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       const Node& node = graph_.nodes[n];
       const uint32_t other = node.op == kOpCollider ? kOpIfCollides : kOpCollider;
@@ -91,8 +93,12 @@ private:
 };
 } // namespace
 
-void checkContext(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts) {
-  ContextCheck(graph, places, parts).run();
+void checkOrder(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts) {
+  ContextCheck(graph, places, parts).checkOrder();
+}
+
+void checkEffect(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts) {
+  ContextCheck(graph, places, parts).checkEffect();
 }
 
 } // namespace gpgp::spawn
