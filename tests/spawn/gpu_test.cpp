@@ -1004,6 +1004,21 @@ TEST_F(SpawnTest, WorkgroupsThatGiveUpLoseNothing) {
   check("many", words, {makeAxiom(300, 1, 1, 1, 1), makeAxiom(5, 90, 1, 2, 2), makeAxiom(1, 1000, 1, 3, 3)});
 }
 
+TEST_F(SpawnTest, RepeatsOfTooManyCopiesAreDroppedAndCounted) {
+  const std::string text =
+      "axiom Box A; terminal T (1,0); A = SubDiv(X) { 1: Repeat(Y,0.0000001,ANCHOR_TO_END) T | -1: "
+      "Repeat(Y,0.5,ADJUST_TO_FILL) Repeat(Z,Exp(ShapeSeed()/5000000),ADJUST_TO_FILL) T | 1: T };";
+  const std::vector<GpgpAxiom> axioms{makeAxiom(3, 1, 1, 5, 1), makeAxiom(3, 1, 1, 6, 2)};
+  for (const bool kernel : {false, true}) {
+    const auto words = kernel ? bakeKernel(text) : bake(text);
+    const Derived gpu = run(words, axioms, 100, true);
+    EXPECT_EQ(gpu.report.terminals, 2u);
+    EXPECT_EQ(gpu.report.droppedShapes, 6u);
+    EXPECT_EQ(gpu.report.droppedShapes, spawn::derive(words, axioms).droppedShapes);
+    EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  }
+}
+
 TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {
   const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | B }; B = Replicate() { T | T | T };");
   std::vector<GpgpAxiom> all(4, makeAxiom(1, 1, 1));
