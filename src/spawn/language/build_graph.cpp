@@ -131,6 +131,12 @@ private:
 
   void buildRule(size_t index) {
     const RuleDefinition& rule = tree_.rules[index];
+    const size_t first = graph_.nodes.size();
+    buildBody(index, rule);
+    for (size_t n = first; n < graph_.nodes.size(); ++n)
+      if (graph_.nodes[n].op != kOpTerminal) graph_.nodes[n].priority = rule.priority; // rules share their terminals
+  }
+  void buildBody(size_t index, const RuleDefinition& rule) {
     if (rule.alternatives.empty()) {
       ruleTargets_[index] = buildSuccessor(rule.body);
       return;
@@ -528,10 +534,12 @@ public:
     for (size_t i = firstNode_; i < graph_.nodes.size() && places_[i].part == number_; ++i) {
       const Node& node = graph_.nodes[i];
       if (node.shapes == 0) continue;
+      warnOfEnds(node, places_[i].place);
+      tellOfPolygons(node, places_[i].place);
       uint32_t fitting = node.shapes;
       for (uint32_t s = 0; s < kShapeCount; ++s) {
         if (node.op == kOpExtrude && !isPolygon(s)) fitting &= ~(1u << s);
-        if (node.op == kOpCompSplit && !isPrism(s)) fitting &= ~(1u << s);
+        if (node.op == kOpCompSplit && isPolygon(s)) fitting &= ~(1u << s);
       }
       if (fitting == 0)
         diagnostics_.warning(places_[i].place, std::string(operatorName(node.op)) + " has no effect here: only " +
@@ -540,6 +548,34 @@ public:
   }
 
 private:
+  /// Types that come from axioms, and of which an operator makes nothing that goes on.
+  void warnOfEnds(const Node& node, Place place) {
+    uint32_t ending = 0;
+    bool leads = false;
+    for (uint32_t s = 0; s < kShapeCount; ++s) {
+      if (!(node.axiomShapes >> s & 1)) continue;
+      bool goesOn = false;
+      for (uint32_t e = 0; e < node.edgeCount; ++e) {
+        const bool kept = graph_.edges[node.firstEdge + e].target != kNoNode;
+        leads = leads || kept;
+        goesOn = goesOn || (kept && outputOf(node, e, s) != 0);
+      }
+      if (!goesOn) ending |= 1u << s;
+    }
+    if (ending && leads)
+      diagnostics_.warning(place, std::string(operatorName(node.op)) + " passes on nothing of " + list(ending) +
+                                      ", which can arrive: such shapes end here");
+  }
+
+  /// Instances have no polygons: a mesh stands for whatever shape it is.
+  void tellOfPolygons(const Node& node, Place place) {
+    constexpr uint32_t kDynamic = 15u << kShapeDynamicConvexPolygon;
+    if (node.op != kOpTerminal || graph_.terminals[node.argument].kind != 1 || !(node.axiomShapes & kDynamic)) return;
+    diagnostics_.info(place, std::string("instances of '") + graph_.nameAt(graph_.terminals[node.argument].name) +
+                                 "' do not say the corners of " + list(node.axiomShapes & kDynamic) +
+                                 ": its mesh must have them, or a spawner for vertices write them");
+  }
+
   static std::string list(uint32_t shapes) {
     std::string text;
     for (uint32_t s = 0; s < kShapeCount; ++s)

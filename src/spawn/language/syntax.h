@@ -78,6 +78,7 @@ struct RuleDefinition {
   std::string name;
   Successor body;                   ///< where alternatives is empty
   std::vector<Branch> alternatives; ///< 20%: A 30%: B else: C
+  uint32_t priority = 0;            ///< of its operators
 };
 
 /// Statements with a syntax error are kept as far as they were read, so that what is right or wrong in them is known.
