@@ -558,6 +558,10 @@ public:
     gpgpAddRule(get(), name, to.name, to.op);
     return *this;
   }
+  GrammarBuilder& priority(const char* rule, uint32_t priority) noexcept {
+    gpgpSetRulePriority(get(), rule, priority);
+    return *this;
+  }
   Value variable(const char* name, const Value& value) noexcept {
     return own(gpgpAddVariable(get(), name, value.get()));
   }

@@ -26,7 +26,12 @@ typedef struct GpgpAxiom {
 #define GPGP_AXIOM_DEFAULT_RULE 0xffffffffu
 
 /** What a terminal becomes. 96 bytes, std430. The mesh's unit shape spans [-0.5, 0.5] on each axis; the transform
- *  includes the shape's size. Polygons face +Z and have size[2] 0; their transform keeps 1 metre for that axis. */
+ *  includes the shape's size. Polygons face +Z and have size[2] 0; their transform keeps 1 metre for that axis.
+ *  An instance has no corners: what mesh stands for a dynamic shape follows from its terminal, or it is written as
+ *  vertices (GpgpSpawnerCreateInfo::vertices), which have them; compiling tells of such terminals.
+ *  What made it: bucket says the terminal line, terminal the name that a rule uses, and so the rule where each rule has
+ * a terminal of its own; several may share a line, and its mesh. Rules in between leave no trace but in key: a graph
+ * has operators, and one that several rules share belongs to none. */
 typedef struct GpgpInstance {
   float transform[12]; /**< rows of a 3x4 matrix, unit shape to world */
   uint32_t bucket;     /**< GpgpGrammarTerminal::bucket of its terminal: which draw */
@@ -37,7 +42,7 @@ typedef struct GpgpInstance {
   float attribute;     /**< custom attribute of the shape */
   uint32_t key[2];     /**< path key: the same on every device and schedule */
   float size[3];       /**< of the shape, metres */
-  uint32_t reserved;
+  uint32_t reserved;   /**< 0 */
 } GpgpInstance;
 
 typedef uint32_t GpgpShape;
@@ -102,8 +107,9 @@ typedef struct GpgpGrammarSource {
 } GpgpGrammarSource;
 #define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
 
-/** Compiles PGA-shape text (.pga), what a builder holds, or a baked grammar, to a baked grammar. In libgpgp_compiler. A
- *  pure function of its input. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY.
+/** Compiles text, what a builder holds, or a baked grammar, to a baked grammar. Text is PGA-shape (.pga), or an
+ * operator graph as gpgp graph prints it, which has no variables any more. In libgpgp_compiler. A pure function of its
+ * input. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY.
  *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
@@ -305,11 +311,11 @@ typedef struct GpgpSpawnReport {
   uint32_t peakShapes;       /**< the most shapes that waited for a round, those that did not fit included: a
                                   maxShapes that would have been enough for them */
   uint32_t droppedShapes;    /**< shapes that did not fit maxShapes or were left after maxRounds, and axioms whose
-                                  rule does not exist or that axiomCounter counts beyond axiomCount; what lay below
-                                  them is not known */
+                                  rule does not exist or that axiomCounter counts beyond axiomCount, and shapes of
+                                  which a Repeat would make more than 2^20; what lay below them is not known */
   uint32_t unfinishedShapes; /**< shapes deeper than maxDepth */
   uint32_t rounds;           /**< rounds that had work */
-  uint32_t keyHash[2];       /**< order-free hash of (path key, bucket, shape) over all terminals */
+  uint32_t keyHash[2];       /**< order-free hash of (path key, terminal, shape) over all terminals */
   uint32_t depth;            /**< how deep rules nested in themselves */
   uint32_t vertices;         /**< that the terminals have; 6 indices for each 4 of them */
   uint32_t verticesWritten;  /**< <= vertices; less only with BUDGET_EXCEEDED, and where the record only counts */

@@ -150,6 +150,13 @@ GPGP_API void GPGP_CALL gpgpAddTerminal(GpgpGrammarBuilder builder, const char* 
 GPGP_API void GPGP_CALL gpgpAddRule(GpgpGrammarBuilder builder, const char* name, const char* successor,
                                     GpgpGrammarOperator op);
 
+/** Gives a rule a priority, at most 65535; rules without have 0. It concerns shapes that take notice of others: what
+ *  rules of a priority do with Collider and IfCollides comes after all of what rules of higher ones do with them. So an
+ *  IfCollides does not see colliders of lower priorities, and waits for no Collider of its tag there. It holds for the
+ *  operators of the rule itself, not for the rules that they lead to, and across linked grammars. See docs/spawn.md,
+ *  Colliders. In libgpgp_compiler. @threads handle @lifetime call */
+GPGP_API void GPGP_CALL gpgpSetRulePriority(GpgpGrammarBuilder builder, const char* rule, uint32_t priority);
+
 /** Adds a start: a shape and the rule or terminal that it goes to. The first one is the default, for the others see
  *  gpgpGetGrammarStarts. Only dynamic shapes have corners. In libgpgp_compiler. @threads handle @lifetime call */
 GPGP_API void GPGP_CALL gpgpAddAxiom(GpgpGrammarBuilder builder, GpgpShape shape, const GpgpGrammarValue* corners,

@@ -41,15 +41,15 @@ uint runContext(inout Shape s, bool arrives) {
     end = runChain(s, arrives && chains == 0, record.maxDepth);
     if (end != kEndContext) break;
     end = kEndWaits;
+    if (graphWords[s.node + kNodeArgument2] > phase) {
+      waitForPhase(s);
+      end = kEndLater;
+      break;
+    }
     uint edge = 0;
     if ((graphWords[s.node + kNodeOperator] & kOperatorMask) == kOpCollider) {
       registerCollider(s);
     } else {
-      if (graphWords[s.node + kNodeArgument2] > phase) {
-        waitForPhase(s);
-        end = kEndLater;
-        break;
-      }
       const uint tag = graphWords[s.node + kNodeArgument];
       if (!collidesWithAny(boxOfShape(s), tag, s.axiom, spent)) edge = 1;
     }

@@ -39,7 +39,7 @@ void writeTerminals(uint least, inout uvec2 hash) {
     Shape s;
     if (lane < count) {
       s = stackedAt(stackShapes - 1 - terminalCount - lane);
-      hash += terminalHash(s.key, graphWords[s.node + kNodeArgument2], shapeType(s));
+      hash += terminalHash(s.key, graphWords[s.node + kNodeArgument], shapeType(s));
     }
     uint first = 0;
     if (lane == 0) first = atomicAdd(state.terminals, count);
@@ -168,6 +168,7 @@ void main() {
       fan.count = 0;
       if (end == kEndWaits) {
         fan = fanFor(parent);
+        if (fan.extent < 0.0f) atomicAdd(state.droppedShapes, 1);
         fan.count -= parent.made;
       }
       const uint turns = min(subgroupMax(fan.count), kMostTurns);

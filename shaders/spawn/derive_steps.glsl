@@ -161,6 +161,7 @@ void main() {
         fan.count = 0;
         if (waits) {
           fan = fanFor(s);
+          if (fan.extent < 0.0f) atomicAdd(state.droppedShapes, 1);
           fan.count = min(fan.count - s.made, 0xffffffffu / groupSize); // more come later
           keepParent(s, fan);
         }
@@ -237,7 +238,7 @@ void main() {
       waits = end == kEndWaits;
       waiting = leaving >> 16;
     }
-    if (end == kEndTerminal) hash += terminalHash(s.key, graphWords[s.node + kNodeArgument2], shapeType(s));
+    if (end == kEndTerminal) hash += terminalHash(s.key, graphWords[s.node + kNodeArgument], shapeType(s));
     emit(end == kEndTerminal, places & 0xffffu, terminals, firstTerminal, s);
   }
 

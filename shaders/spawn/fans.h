@@ -94,7 +94,10 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
   if (isOperator(op, kOpRepeat)) {
     fan = repetitionOf(component(s.size, graphWords[s.node + kNodeArgument]), graphWords[s.node + kNodeArgument2],
                        parameter(GPGP_G s, 0u));
-    if (edgeTarget(GPGP_G s.node, 0u) == 0u) fan.count = 0u;
+    if (edgeTarget(GPGP_G s.node, 0u) == 0u) {
+      fan.count = 0u;
+      fan.extent = 0.0f;
+    }
     return fan;
   }
   const uint count = graphWords[s.node + kNodeEdgeCount];

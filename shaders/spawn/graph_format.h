@@ -49,7 +49,7 @@ GPGP_CONST uint kSectionAxioms = 11u;
 GPGP_CONST uint kSectionCount = 12u;
 
 // node: eight words
-GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter
+GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, and its priority << kNodePriority
 GPGP_CONST uint kNodeArgument = 1u;
 GPGP_CONST uint kNodeArgument2 = 2u;
 GPGP_CONST uint kNodeParameters = 3u; // offset of the first
@@ -61,6 +61,8 @@ GPGP_CONST uint kNodeSize = 8u;
 GPGP_CONST uint kOperatorMask = 0xffu;
 /// The node could multiply shapes, but at most one of its successors is not discarded: it passes on one shape or none.
 GPGP_CONST uint kNodeFilter = 0x100u;
+GPGP_CONST uint kNodePriority = 16u;
+GPGP_CONST uint kMaxPriority = 0xffffu;
 
 // edge: target, multiplicity, count
 GPGP_CONST uint kEdgeTarget = 0u; // offset of a node, 0: discard; and kEdgeRecursive
@@ -119,7 +121,7 @@ GPGP_CONST uint kOpSetGeometry = 6u; // argument: GpgpShape, argument2: polygon
 GPGP_CONST uint kOpIf = 7u;
 GPGP_CONST uint kOpIfSizeLess = 8u;  // argument: axis
 GPGP_CONST uint kOpRandomRule = 9u;  // parameters: chance, then one probability an edge
-GPGP_CONST uint kOpCollider = 10u;   // argument: tag
+GPGP_CONST uint kOpCollider = 10u;   // argument: tag, argument2: the phase that it waits for
 GPGP_CONST uint kOpIfCollides = 11u; // argument: tag, argument2: the phase that it runs in
 GPGP_CONST uint kOpCompSplit = 12u;  // edges: top, bottom, sides; what follows may multiply shapes, too
 GPGP_CONST uint kOpSubDiv = 13u;     // argument: axis, argument2: division or 0; one parameter an edge

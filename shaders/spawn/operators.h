@@ -111,17 +111,20 @@ struct Fan {
   uint count;      // children
   uint successors; // bit i: successor i takes part; 0: the operator passes on one shape, and the only child is the
                    // shape itself, which has not passed it yet. Repeat: the children
-  float extent;    // SubDiv: what weights share; Repeat: the length of a copy
+  float extent;    // SubDiv: what weights share; Repeat: the length of a copy, negative where there would be too many
 };
 
-/// How many times Repeat's extent fits. A part in ten thousand of a copy is taken for rounding.
+/// How many times Repeat's extent fits. A part in ten thousand of a copy is taken for rounding. Where it fits more than
+/// kMaxRepeat times there is no copy: the shape is dropped, which whoever asks counts.
 GPGP_FN Fan repetitionOf(float size, uint mode, float wanted) {
   Fan r;
   r.extent = wanted < 0.0f ? multiply(size, -wanted) : wanted;
   r.count = 0u;
   if (r.extent > 0.0f && size > 0.0f) {
-    const float fits = min(divide(size, r.extent), float(kMaxRepeat));
-    if (mode == kRepeatAdjustToFill) {
+    const float fits = divide(size, r.extent);
+    if (fits > float(kMaxRepeat)) {
+      r.extent = -1.0f;
+    } else if (mode == kRepeatAdjustToFill) {
       r.count = uint(floor(add(fits, 1.0e-4f)));
       if (r.count > 0u) r.extent = divide(size, float(r.count));
     } else {
@@ -262,7 +265,7 @@ GPGP_CONST uint kEndTerminal = 1u;   // shape.node is the terminal's node
 GPGP_CONST uint kEndWaits = 2u;      // the shape waits for shape.node
 GPGP_CONST uint kEndUnfinished = 3u; // deeper than allowed
 GPGP_CONST uint kEndContext = 4u;    // at a Collider or IfCollides, which needs more than the shape and the graph
-GPGP_CONST uint kEndLater = 5u;      // at an IfCollides of a later phase
+GPGP_CONST uint kEndLater = 5u;      // at a Collider or IfCollides of a later phase
 GPGP_CONST uint kEndGoesOn = 6u;     // it has not: another operator of the chain follows
 
 GPGP_SHADER_END

@@ -138,8 +138,8 @@ GPGP_FN vec4 instanceRow(Shape s, vec4 axiomRow) {
   return row;
 }
 
-/// A terminal's contribution to the order-free hash of a derivation.
-GPGP_FN uvec2 terminalHash(uvec2 key, uint bucket, uint shape) { return childKey(key, bucket * 32u + shape); }
+/// A terminal shape's contribution to the order-free hash of a derivation. terminal: its number, as rules name it.
+GPGP_FN uvec2 terminalHash(uvec2 key, uint terminal, uint shape) { return childKey(key, terminal * 32u + shape); }
 
 GPGP_SHADER_END
 #endif

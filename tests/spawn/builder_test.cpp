@@ -182,6 +182,7 @@ TEST(GrammarBuilder, ReportsEveryErrorByTheNameOfItsPlace) {
   g.rule("Foreign", g.extrude(GrammarValue({70000, 0}, g), "Wall"));
   gpgpAddExpression(g, 50, values[0], values[0]);
   g.variable("X", 1);
+  g.priority("Nobody", 1).priority("One", 65536).priority("Two", 65535);
   EXPECT_EQ(
       messagesOf(g),
       (Messages{
@@ -217,6 +218,8 @@ TEST(GrammarBuilder, ReportsEveryErrorByTheNameOfItsPlace) {
           "error: rule 'Null', Rotate: values is NULL, valueCount is 3",
           "error: rule 'Kind', an operator: there is no kind of operator 77",
           "error: rule 'Foreign', Extrude, value 1: there is no value 70000 in this builder",
+          "error: priority of 'Nobody': there is no rule 'Nobody'",
+          "error: priority of 'One': a priority is at most 65535, found 65536",
       }));
 }
 

@@ -289,6 +289,22 @@ TEST(Operators, StartRulesAndUnknownRules) {
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).droppedShapes, 1u);
 }
 
+TEST(Operators, RepeatsOfTooManyCopiesAreDroppedAndCounted) {
+  const GpgpAxiom axiom = makeAxiom(1, 1, 1);
+  for (const char* mode : {"ADJUST_TO_FILL", "ANCHOR_TO_START", "ANCHOR_TO_END"}) {
+    const auto of = [&](const char* extent, const char* successor) {
+      const std::string rule = std::string("A = Repeat(X,") + extent + "," + mode + ") " + successor + ";";
+      return derive(bake("axiom Box A; terminal T (1,0); " + rule), std::span(&axiom, 1));
+    };
+    const spawn::Derivation most = of("-0.00000095367431640625", "T"), more = of("-0.00000095", "T"); // 2^-20
+    EXPECT_EQ(most.terminals, 1048576u) << mode;
+    EXPECT_EQ(most.droppedShapes, 0u) << mode;
+    EXPECT_EQ(more.terminals, 0u) << mode;
+    EXPECT_EQ(more.droppedShapes, 1u) << mode;
+    EXPECT_EQ(of("-0.00000095", "Discard()").droppedShapes, 0u) << mode;
+  }
+}
+
 TEST(Operators, EndlessGrammarsStop) {
   const auto chain = derived("A = Translate(1,0,0) A;", makeAxiom(1, 1, 1));
   EXPECT_EQ(chain.terminals, 0u);

@@ -167,10 +167,11 @@ struct SpawnTest : DeviceTest {
     ASSERT_EQ(gpu.report.keyHash[1], cpu.keyHash[1]) << what;
     EXPECT_EQ(gpu.report.depth, cpu.depth) << what;
     EXPECT_EQ(gpu.report.unfinishedShapes, cpu.unfinishedShapes) << what;
-    EXPECT_EQ(gpu.report.droppedShapes, 0u) << what;
+    EXPECT_EQ(gpu.report.droppedShapes, cpu.droppedShapes) << what;
     EXPECT_EQ(gpu.report.colliders, cpu.colliders) << what;
     EXPECT_EQ(gpu.report.collidersKept, cpu.colliders) << what;
-    EXPECT_EQ(gpu.report.base.status, cpu.unfinishedShapes ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS) << what;
+    EXPECT_EQ(gpu.report.base.status, cpu.unfinishedShapes || cpu.droppedShapes ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS)
+        << what;
     ASSERT_EQ(gpu.instances.size(), cpu.terminals) << what;
     const auto order = [](const GpgpInstance* a, const GpgpInstance* b) {
       return std::pair(keyOf(*a), a->axiomId) < std::pair(keyOf(*b), b->axiomId);
@@ -1002,6 +1003,21 @@ TEST_F(SpawnTest, WorkgroupsThatGiveUpLoseNothing) {
   const auto words = bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) Replicate() { T | T | B };"
                           "B = Repeat(Y,0.01,ADJUST_TO_FILL) T;");
   check("many", words, {makeAxiom(300, 1, 1, 1, 1), makeAxiom(5, 90, 1, 2, 2), makeAxiom(1, 1000, 1, 3, 3)});
+}
+
+TEST_F(SpawnTest, RepeatsOfTooManyCopiesAreDroppedAndCounted) {
+  const std::string text =
+      "axiom Box A; terminal T (1,0); A = SubDiv(X) { 1: Repeat(Y,0.0000001,ANCHOR_TO_END) T | -1: "
+      "Repeat(Y,0.5,ADJUST_TO_FILL) Repeat(Z,Exp(ShapeSeed()/5000000),ADJUST_TO_FILL) T | 1: T };";
+  const std::vector<GpgpAxiom> axioms{makeAxiom(3, 1, 1, 5, 1), makeAxiom(3, 1, 1, 6, 2)};
+  for (const bool kernel : {false, true}) {
+    const auto words = kernel ? bakeKernel(text) : bake(text);
+    const Derived gpu = run(words, axioms, 100, true);
+    EXPECT_EQ(gpu.report.terminals, 2u);
+    EXPECT_EQ(gpu.report.droppedShapes, 6u);
+    EXPECT_EQ(gpu.report.droppedShapes, spawn::derive(words, axioms).droppedShapes);
+    EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  }
 }
 
 TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {

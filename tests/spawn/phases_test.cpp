@@ -150,6 +150,47 @@ TEST(Phases, OfCollidersAreTheLeast) {
   check(ofRules("A = Replicate() { Collider(1) Collider(2) T | IfCollides(1) { T | IfCollides(2) { T | U } } };"), 3);
 }
 
+TEST(Phases, OfPrioritiesAreTheLeast) {
+  uint32_t ordered = 0, several = 0, impossible = 0;
+  for (uint32_t seed = 0; seed < 6000; ++seed) {
+    Graph graph = compiled(randomGrammar(seed));
+    if (graph.phases == 0) continue;
+    std::mt19937 random(seed);
+    for (Node& node : graph.nodes) node.priority = static_cast<uint32_t>(random() % 3);
+    analyse(graph);
+    std::vector<uint32_t> all(graph.nodes.size());
+    for (uint32_t n = 0; n < all.size(); ++n) all[n] = n;
+    const auto phases = phasesOfNodes(makeFlow(graph, all));
+    if (graph.phases == kNoPhases) {
+      EXPECT_TRUE(!phases || phases->count > shader::kMaxPhases) << seed;
+      ++impossible;
+      continue;
+    }
+    ASSERT_TRUE(phases) << seed;
+    EXPECT_EQ(graph.phases, phases->count) << seed;
+    uint32_t before = 0; // the first phase in which a collider may come
+    for (const Dependency& d : dependenciesOf(graph)) {
+      const Node &source = graph.nodes[d.source], &target = graph.nodes[d.target];
+      if (source.priority == target.priority || target.op != shader::kOpCollider) continue;
+      EXPECT_GT(target.argument2, phases->phaseOf[d.source]) << seed; // it waits for all of them
+      before = std::max(before, target.argument2);
+    }
+    for (uint32_t n = 0; n < graph.nodes.size(); ++n) {
+      if (graph.nodes[n].op == shader::kOpIfCollides) {
+        EXPECT_EQ(graph.nodes[n].argument2, phases->phaseOf[n]) << seed;
+      }
+      if (graph.nodes[n].op == shader::kOpCollider) {
+        EXPECT_LE(graph.nodes[n].argument2, phases->phaseOf[n]) << seed;
+      }
+    }
+    ++ordered;
+    several += before > 0;
+  }
+  EXPECT_GT(ordered, 100u);
+  EXPECT_GT(several, 20u);
+  EXPECT_GT(impossible, 20u);
+}
+
 TEST(Phases, CollidersThatWaitForEachOtherAreAnErrorWithBothPlaces) {
   const std::string head = "axiom Box A; terminal T (1,0); terminal U (1,1);\n";
   const auto messages = [&](const std::string& rules) {

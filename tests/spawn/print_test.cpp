@@ -104,7 +104,40 @@ TEST(Print, TagsAreNumbersAndNames) {
   EXPECT_EQ(parsed(text).graph.phases, 2u);
   EXPECT_EQ(errorsOf("axiom Box -> 0\n0 IfCollides(7) { / -> 1 | / -> Discard }\n1 Collider(7) { 1 -> 0 }\n"),
             Messages{"1:1: error: there is no order of phases in which every Collider is before each IfCollides of its "
-                     "tag"});
+                     "tag, and higher priorities are before lower ones"});
+}
+
+TEST(Print, PrioritiesComeBack) {
+  const std::string text = "axiom Box -> 0\n"
+                           "terminal T (1, 0) bucket 0\n"
+                           "0 Replicate() priority 3 { 1 -> 1 | 1 -> 2 }\n"
+                           "1 IfCollides(a) priority 65535 { / -> 3 | / -> 4 }\n"
+                           "2 IfCollides(b) priority 1 { / -> 3 | / -> 5 }\n"
+                           "3 T\n"
+                           "4 Collider(b) priority 65535 { 1 -> 3 }\n"
+                           "5 Collider(a) priority 1 { 1 -> 3 }\n";
+  const Graph graph = parsed(text).graph;
+  EXPECT_EQ(graph.phases, 2u);
+  EXPECT_EQ(printGraph(graph), text);
+  const auto words = serialize(graph, std::pmr::new_delete_resource());
+  const auto back = load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
+  ASSERT_TRUE(back);
+  EXPECT_EQ(printGraph(*back), text);
+  EXPECT_EQ(errorsOf(replaced(text, "65535", "65536")), Messages{"4:26: error: a priority is at most 65535"});
+}
+
+TEST(Print, MultiplicitiesOfFacesAreThoseOfTheShapesThatArrive) {
+  const auto faces = [](const std::string& axioms) {
+    const std::string printed = printGraph(compiled(axioms + "terminal T (1,0); A = CompSplit() T;"));
+    const Graph back = parsed(printed).graph;
+    EXPECT_EQ(printGraph(back), printed);
+    return printed.substr(printed.find("CompSplit"));
+  };
+  EXPECT_EQ(faces("axiom Box A; axiom Prism5 A;"), "CompSplit() { 1 -> 1 | 1 -> 1 | n -> 1 }\n1 T\n");
+  EXPECT_EQ(faces("axiom Quad A;"), "CompSplit() { 1 -> 1 | 0 -> 1 | 0 -> 1 }\n1 T\n");
+  EXPECT_EQ(faces("axiom Sphere A;"), "CompSplit() { 0 -> 1 | 0 -> 1 | 0 -> 1 }\n1 T\n");
+  EXPECT_EQ(faces("axiom Quad A; axiom Box A;"), "CompSplit() { 1 -> 1 | / -> 1 | * -> 1 }\n1 T\n");
+  EXPECT_EQ(faces("axiom Sphere A; axiom Box A;"), "CompSplit() { / -> 1 | / -> 1 | * -> 1 }\n1 T\n");
 }
 
 TEST(Print, LinkedGrammarsComeBack) {

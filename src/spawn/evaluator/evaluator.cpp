@@ -163,14 +163,17 @@ private:
       case kOpExtrude: extrude(s, value(step, s, 0)); break;
       case kOpSwapSize: swapSizes(s, step.argument); break;
       case kOpSetGeometry: setGeometry(s, step.argument, step.argument2); break;
-      case kOpCollider: context_.add(s, step.argument); break;
+      case kOpCollider:
       case kOpIfCollides:
         if (step.argument2 > context_.phase()) {
           s.node = step.node;
           context_.wait(s, step.argument2);
           return kEndLater;
         }
-        way = context_.collides(s, step.argument) ? 0 : 1;
+        if (step.op == kOpCollider)
+          context_.add(s, step.argument);
+        else
+          way = context_.collides(s, step.argument) ? 0 : 1;
         break;
       case kOpIf: way = value(step, s, 0) != 0 ? 0 : 1; break;
       case kOpIfSizeLess: way = component(s.size, step.argument) < value(step, s, 0) ? 0 : 1; break;
@@ -194,8 +197,9 @@ private:
     return wait(frame);
   }
   /// For its children to be made, if it has any.
-  uint32_t wait(Frame& frame) const {
+  uint32_t wait(Frame& frame) {
     frame.fan = fanOf(frame);
+    if (frame.fan.extent < 0) ++out_.droppedShapes;
     frame.made = 0;
     frame.left = frame.fan.successors;
     return frame.fan.count ? kEndWaits : kEndDiscarded;
@@ -213,7 +217,7 @@ private:
     case kOpSubDiv: return divide(frame);
     case kOpRepeat:
       fan = repetitionOf(component(s.size, step.argument), step.argument2, value(step, s, 0));
-      if (!step.successors) fan.count = 0;
+      if (!step.successors) return {0, 0, 0};
       return fan;
     case kOpCompSplit: {
       const Faces faces = facesOf(words_, s.geometry, step.successors);
@@ -305,7 +309,7 @@ private:
     const Shape& shape = frame.shape;
     const GpgpAxiom& axiom = axioms_[context_.axiomNumber(shape.axiom)];
     const uint32_t bucket = frame.step->argument2, type = shapeType(shape);
-    const uvec2 hash = terminalHash(shape.key, bucket, type);
+    const uvec2 hash = terminalHash(shape.key, frame.step->argument, type);
     out_.keyHash[0] += hash.x;
     out_.keyHash[1] += hash.y;
     ++out_.buckets[bucket];

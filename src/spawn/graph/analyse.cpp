@@ -8,6 +8,7 @@
 #include "spawn/graph/longest_paths.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 namespace gpgp::spawn {
@@ -16,24 +17,11 @@ using namespace shader;
 
 constexpr uint32_t bit(uint32_t shape) { return 1u << (shape & 31u); }
 
-template <class F> uint32_t mapShapes(uint32_t shapes, F&& f) {
+uint32_t outgoing(const Node& node, uint32_t edge, uint32_t shapes) {
   uint32_t result = 0;
   for (uint32_t s = 0; s < kShapeCount; ++s)
-    if (shapes & bit(s)) result |= f(s);
+    if (shapes & bit(s)) result |= outputOf(node, edge, s);
   return result;
-}
-
-uint32_t outgoing(const Node& node, uint32_t edge) {
-  switch (node.op) {
-  case kOpExtrude: return mapShapes(node.shapes, [](uint32_t s) { return bit(isPolygon(s) ? prismOf(s) : s); });
-  case kOpSetGeometry: return bit(node.argument);
-  case kOpCompSplit:
-    if (edge == 2) return mapShapes(node.shapes, [](uint32_t s) { return isPrism(s) ? bit(kShapeQuad) : 0u; });
-    return mapShapes(node.shapes, [edge](uint32_t s) {
-      return isPrism(s) ? bit(polygonOf(s)) : s != kShapeSphere && edge == 0 ? bit(s) : 0u;
-    });
-  default: return node.shapes;
-  }
 }
 
 uint32_t multiplicityOf(uint32_t op) {
@@ -75,50 +63,112 @@ void divide(Graph& graph, Node& node) {
   }
 }
 
-/// The phase of each IfCollides: no Collider with its tag can still be reached. Other operators run as soon as a shape
-/// comes to them, so that only these wait. A derivation may start with any rule: all nodes count.
+/// The phase of each IfCollides: no Collider of its tag and priority can still be reached, and none with a higher
+/// priority; and of each Collider: no operator of theirs with a higher priority can. Other operators run as soon as a
+/// shape comes to them, so that only these wait. A derivation may start with any rule: all nodes count.
 void assignPhases(Graph& graph) {
   const auto memory = graph.nodes.get_allocator().resource();
+  const uint32_t nodes = static_cast<uint32_t>(graph.nodes.size());
   graph.phases = 0;
-  std::pmr::map<uint32_t, uint32_t> tags(memory); // of Colliders, to numbers
-  for (Node& node : graph.nodes) {
+  // Places beside the nodes: of each tag in each priority between its Colliders and IfCollides, and of each priority
+  // between its nodes and those of the next lower one. What comes after a place is one phase further.
+  std::pmr::map<uint32_t, std::pmr::vector<uint32_t>, std::greater<>> levels(memory); // nodes by priority
+  std::pmr::map<uint32_t, uint32_t> behind(memory),
+      before(memory); // places by priority; the highest has none before it
+  std::pmr::map<std::pair<uint32_t, uint32_t>, uint32_t> tags(memory);
+  std::pmr::vector<std::pmr::vector<uint32_t>> after(memory);
+  const auto addPlace = [&] {
+    after.emplace_back();
+    return nodes + static_cast<uint32_t>(after.size()) - 1;
+  };
+  for (uint32_t n = 0; n < nodes; ++n) {
+    const Node& node = graph.nodes[n];
     if (!isContext(node.op)) continue;
     graph.phases = 1;
-    node.argument2 = 0;
-    if (node.op == kOpCollider) tags.try_emplace(node.argument, static_cast<uint32_t>(tags.size()));
+    levels[node.priority].push_back(n);
+    if (node.op != kOpCollider) continue;
+    const auto [tag, isNew] = tags.try_emplace({node.argument, node.priority}, 0);
+    if (isNew) tag->second = addPlace();
   }
   if (graph.phases == 0) return;
-  // A tag is a place between its Colliders and its IfCollides, which are one phase further.
-  const uint32_t nodes = static_cast<uint32_t>(graph.nodes.size());
-  std::pmr::vector<std::pmr::vector<uint32_t>> waiting(tags.size(), memory);
   for (uint32_t n = 0; n < nodes; ++n) {
-    const auto tag = tags.find(graph.nodes[n].argument);
-    if (graph.nodes[n].op == kOpIfCollides && tag != tags.end()) waiting[tag->second].push_back(n);
+    const auto tag = tags.find({graph.nodes[n].argument, graph.nodes[n].priority});
+    if (graph.nodes[n].op == kOpIfCollides && tag != tags.end()) after[tag->second - nodes].push_back(n);
   }
-  std::pmr::vector<uint32_t> phaseOf(nodes + tags.size(), 0, memory);
+  uint32_t higher = 0;
+  for (const auto& [priority, level] : levels) {
+    if (higher) before[priority] = higher;
+    if (higher) after[higher - nodes] = level;
+    higher = behind[priority] = addPlace();
+  }
+  std::pmr::vector<uint32_t> phaseOf(nodes + after.size(), 0, memory);
   const bool ordered = longestPaths(phaseOf, kMaxPhases - 1, [&](uint32_t place, auto&& reach) {
     if (place >= nodes) {
-      for (const uint32_t n : waiting[place - nodes]) reach(n, 1);
+      for (const uint32_t n : after[place - nodes]) reach(n, 1);
       return;
     }
     const Node& node = graph.nodes[place];
     for (uint32_t e = 0; e < node.edgeCount; ++e)
       if (graph.edges[node.firstEdge + e].target != kNoNode) reach(graph.edges[node.firstEdge + e].target, 0);
-    if (node.op == kOpCollider) reach(nodes + tags.at(node.argument), 0);
+    if (!isContext(node.op)) return;
+    reach(behind.at(node.priority), 0);
+    if (node.op == kOpCollider) reach(tags.at({node.argument, node.priority}), 0);
   });
   for (uint32_t n = 0; n < nodes; ++n) {
+    Node& node = graph.nodes[n];
     graph.phases = std::max(graph.phases, phaseOf[n] + 1);
-    if (graph.nodes[n].op == kOpIfCollides) graph.nodes[n].argument2 = phaseOf[n];
+    if (node.op == kOpIfCollides) node.argument2 = phaseOf[n];
+    if (node.op != kOpCollider) continue;
+    const auto place = before.find(node.priority);
+    node.argument2 = place == before.end() ? 0 : phaseOf[place->second] + 1;
   }
   if (!ordered) graph.phases = kNoPhases;
 }
+
+/// What flows from arrivals on; shapes: the field of a node that keeps it.
+class ShapeFlow {
+public:
+  ShapeFlow(Graph& graph, uint32_t Node::*shapes)
+      : graph_(graph), shapes_(shapes), changed_(graph.nodes.get_allocator().resource()) {
+    for (Node& node : graph.nodes) node.*shapes = 0;
+  }
+  void arrive(uint32_t node, uint32_t shapes) {
+    if (node == kNoNode || (graph_.nodes[node].*shapes_ | shapes) == graph_.nodes[node].*shapes_) return;
+    graph_.nodes[node].*shapes_ |= shapes;
+    changed_.push_back(node);
+  }
+  void run() {
+    while (!changed_.empty()) {
+      const Node node = graph_.nodes[changed_.back()];
+      changed_.pop_back();
+      for (uint32_t e = 0; e < node.edgeCount; ++e)
+        arrive(graph_.edges[node.firstEdge + e].target, outgoing(node, e, node.*shapes_));
+    }
+  }
+
+private:
+  Graph& graph_;
+  uint32_t Node::*shapes_;
+  std::pmr::vector<uint32_t> changed_; // nodes whose outgoing types must be worked out
+};
 } // namespace
+
+uint32_t outputOf(const Node& node, uint32_t edge, uint32_t shape) {
+  switch (node.op) {
+  case kOpExtrude: return bit(isPolygon(shape) ? prismOf(shape) : shape);
+  case kOpSetGeometry: return bit(node.argument);
+  case kOpCompSplit:
+    if (edge == 2) return isPrism(shape) ? bit(kShapeQuad) : 0u;
+    if (isPrism(shape)) return bit(polygonOf(shape));
+    return shape != kShapeSphere && edge == 0 ? bit(shape) : 0u;
+  default: return bit(shape);
+  }
+}
 
 void analyse(Graph& graph) {
   const auto memory = graph.nodes.get_allocator().resource();
   graph.divisions.clear();
   for (Node& node : graph.nodes) {
-    node.shapes = 0;
     divide(graph, node);
     uint32_t kept = 0;
     for (uint32_t e = 0; e < node.edgeCount; ++e) {
@@ -129,23 +179,17 @@ void analyse(Graph& graph) {
     }
     node.filter = node.op >= kOpCompSplit && kept <= 1;
   }
-  std::pmr::vector<uint32_t> changed(memory); // nodes whose outgoing types must be worked out
-  const auto arrive = [&](uint32_t node, uint32_t shapes) {
-    if (node == kNoNode || (graph.nodes[node].shapes | shapes) == graph.nodes[node].shapes) return;
-    graph.nodes[node].shapes |= shapes;
-    changed.push_back(node);
-  };
-  for (const Axiom& axiom : graph.axioms) arrive(axiom.node, bit(axiom.shape));
-  for (const Rule& rule : graph.rules) arrive(rule.node, bit(graph.axioms[rule.axiom].shape));
-  while (!changed.empty()) {
-    const Node node = graph.nodes[changed.back()];
-    changed.pop_back();
-    for (uint32_t e = 0; e < node.edgeCount; ++e) {
-      Edge& edge = graph.edges[node.firstEdge + e];
-      edge.shapes = outgoing(node, e);
-      arrive(edge.target, edge.shapes);
-    }
+  ShapeFlow fromAxioms(graph, &Node::axiomShapes), all(graph, &Node::shapes);
+  for (const Axiom& axiom : graph.axioms) {
+    fromAxioms.arrive(axiom.node, bit(axiom.shape));
+    all.arrive(axiom.node, bit(axiom.shape));
   }
+  for (const Rule& rule : graph.rules) all.arrive(rule.node, bit(graph.axioms[rule.axiom].shape));
+  fromAxioms.run();
+  all.run();
+  for (const Node& node : graph.nodes)
+    for (uint32_t e = 0; e < node.edgeCount; ++e)
+      graph.edges[node.firstEdge + e].shapes = outgoing(node, e, node.shapes);
 
   // Edges that close a cycle, depth first with an explicit stack: a graph may be deep.
   struct Visit {

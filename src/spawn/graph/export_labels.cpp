@@ -19,6 +19,20 @@ std::string attributeText(uint32_t code) {
   return std::string(name) + axisText(code - first) + ")";
 }
 
+/// Along an edge of CompSplit, of the types that arrive from axioms, or else from any start.
+const char* facesText(const Node& node, uint32_t slot) {
+  const uint32_t arriving = node.axiomShapes ? node.axiomShapes : node.shapes;
+  bool some = false, all = true;
+  for (uint32_t s = 0; s < kShapeCount; ++s) {
+    if (!(arriving >> s & 1)) continue;
+    const bool has = outputOf(node, slot, s) != 0;
+    some = some || has;
+    all = all && has;
+  }
+  if (all) return slot == 2 ? "n" : "1";
+  return !some ? "0" : slot == 2 ? "*" : "/";
+}
+
 std::string programText(const Graph& graph, uint32_t at) {
   std::vector<std::string> stack;
   bool isLeaf = true;
@@ -109,7 +123,7 @@ const char* multiplicityText(const Graph& graph, const Node& node, uint32_t slot
   switch (graph.edges[node.firstEdge + slot].multiplicity) {
   case kMultiplicityOptional: return "/";
   case kMultiplicityAny: return "*";
-  case kMultiplicityFixed: return slot == 2 ? "n" : "1";
+  case kMultiplicityFixed: return facesText(node, slot);
   default: return "1";
   }
 }

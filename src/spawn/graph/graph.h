@@ -33,8 +33,10 @@ struct Node {
   uint32_t firstParameter = 0, parameterCount = 0;
   uint32_t firstEdge = 0, edgeCount = 0;
   uint32_t shapes = 0;            ///< bit set of the shape types that can arrive, from axioms or as a start rule
+  uint32_t axiomShapes = 0;       ///< those of them that come from axioms
   uint32_t division = UINT32_MAX; ///< in Graph::divisions
   bool filter = false;            ///< could multiply shapes, but passes on at most one
+  uint32_t priority = 0;          ///< of its rule, at most kMaxPriority: see dependenciesOf()
 };
 
 struct Polygon {
@@ -105,6 +107,10 @@ void addRegularPolygons(Graph& graph);
 /// Adds a polygon and its mirror image; corners counter-clockwise, at most kMaxCorners. Returns the first one's number,
 /// or kNoPolygon where it crosses itself.
 uint32_t addPolygon(Graph& graph, const float* corners, uint32_t count);
+
+/// The input-output relation of an operator (thesis 4.1): the type, as a bit, of what a shape of a type becomes along
+/// an edge; 0 where nothing comes of it there.
+uint32_t outputOf(const Node& node, uint32_t edge, uint32_t shape);
 
 /// Fills in what follows from nodes and edges: multiplicities, the shape types on nodes and edges, filters, recursion,
 /// phases.

@@ -7,6 +7,7 @@
 #include "spawn/graph/partition.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 namespace gpgp::spawn {
@@ -53,11 +54,21 @@ std::string nodeText(uint32_t node) { return "node " + std::to_string(node); }
 
 std::vector<Dependency> dependenciesOf(const Graph& graph) {
   std::vector<Dependency> result;
-  for (uint32_t source = 0; source < graph.nodes.size(); ++source)
-    for (uint32_t target = 0; graph.nodes[source].op == shader::kOpCollider && target < graph.nodes.size(); ++target)
-      if (graph.nodes[target].op == shader::kOpIfCollides &&
-          graph.nodes[target].argument == graph.nodes[source].argument)
-        result.push_back({source, target});
+  std::map<uint32_t, std::vector<uint32_t>> levels; // by priority
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n)
+    if (isContext(graph.nodes[n].op)) levels[graph.nodes[n].priority].push_back(n);
+  for (auto level = levels.begin(); level != levels.end(); ++level) {
+    const auto higher = std::next(level);
+    for (const uint32_t target : level->second) {
+      const Node& node = graph.nodes[target];
+      for (const uint32_t source : level->second)
+        if (node.op == shader::kOpIfCollides && graph.nodes[source].op == shader::kOpCollider &&
+            graph.nodes[source].argument == node.argument)
+          result.push_back({source, target});
+      if (higher == levels.end()) continue;
+      for (const uint32_t source : higher->second) result.push_back({source, target});
+    }
+  }
   return result;
 }
 

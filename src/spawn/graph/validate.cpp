@@ -110,6 +110,7 @@ Result<void> checkNode(const Graph& graph, uint32_t index) {
     return makeError(GPGP_ERROR_INVALID_DATA, "node %u (%s): %s", index, operatorName(node.op), what);
   };
   if (node.op >= kOpCount) return bad("unknown operator");
+  if (node.priority > kMaxPriority) return bad("its priority is too high");
   if (node.parameterCount > graph.parameters.size() ||
       node.firstParameter > graph.parameters.size() - node.parameterCount)
     return bad("parameters out of range");

@@ -89,10 +89,12 @@ private:
   void defineTerminals() {
     for (const TerminalDefinition& line : tree_.terminals) {
       const uint32_t bucket = graph_.buckets++;
-      if (bucket == kMaxBuckets)
+      if (bucket == kMaxBuckets) // the others are as wrong
         diagnostics_.error(line.place, "more than " + std::to_string(kMaxBuckets) + " terminal lines");
       uint32_t kind = 1, index = 0;
-      if (line.broken) {
+      const bool broken = line.broken || std::any_of(line.arguments.begin(), line.arguments.end(),
+                                                     [](const auto& a) { return a.kind == ExpressionKind::broken; });
+      if (broken) {
         // was reported
       } else if (line.arguments.size() < 2) {
         diagnostics_.error(line.place,
@@ -129,7 +131,12 @@ private:
 
   void buildRule(size_t index) {
     const RuleDefinition& rule = tree_.rules[index];
-    if (rule.broken) return;
+    const size_t first = graph_.nodes.size();
+    buildBody(index, rule);
+    for (size_t n = first; n < graph_.nodes.size(); ++n)
+      if (graph_.nodes[n].op != kOpTerminal) graph_.nodes[n].priority = rule.priority; // rules share their terminals
+  }
+  void buildBody(size_t index, const RuleDefinition& rule) {
     if (rule.alternatives.empty()) {
       ruleTargets_[index] = buildSuccessor(rule.body);
       return;
@@ -138,12 +145,19 @@ private:
     float given = 0;
     std::vector<Parameter> parameters{{kParameterAttribute, kCodeSeed}};
     for (const Branch& branch : rule.alternatives) {
-      const float p =
-          branch.isElse ? std::max(0.0f, 100.0f - given) : expressions_.constant(*branch.label, "a probability");
+      const bool isGiven = !branch.isElse && branch.label;
+      const float p = isGiven ? expressions_.constant(*branch.label, "a probability") : std::max(0.0f, 100.0f - given);
       if (p < 0) diagnostics_.error(branch.label->place, "a probability must not be negative");
-      given += p;
+      if (isGiven) given += p;
       parameters.push_back({kParameterConstant, floatBitsToUint(settle(p))});
     }
+    if (given > 100.001f) // 3 * 33.34 is a slip as well, but not those of adding floats
+      diagnostics_.warning(rule.place, "these probabilities add up to " + numberText(given) +
+                                           "%; expected at most 100%: each counts as its share of the sum" +
+                                           (rule.alternatives.back().isElse ? ", and nothing is left for 'else'" : ""));
+    if (rule.alternatives.size() > kMaxSuccessors)
+      diagnostics_.error(rule.place, "a rule takes at most " + std::to_string(kMaxSuccessors) +
+                                         " alternatives, found " + std::to_string(rule.alternatives.size()));
     ruleTargets_[index] = {addNode(rule.place, kOpRandomRule, parameters, rule.alternatives), std::nullopt};
   }
 
@@ -166,6 +180,7 @@ private:
 
   Target buildSuccessor(const Successor& successor) {
     if (successor.call) return buildCall(*successor.call);
+    if (successor.name.empty()) return {}; // was reported
     const auto it = names_.find(successor.name);
     if (it == names_.end()) {
       diagnostics_.error(successor.place, isOperatorName(successor.name)
@@ -201,6 +216,7 @@ private:
     bool labels;           ///< value: successor
   };
   static constexpr uint32_t kMany = UINT32_MAX;
+  static constexpr float kLargestTag = 16777216;
   static constexpr uint32_t kSetGeometry = kOpSetGeometry;
   static constexpr Spelling kSpellings[] = {
       {"Translate", kOpTranslate, "vvv", 1, false},
@@ -236,8 +252,13 @@ private:
     if (call.name == "Discard" || call.name == "Generate") {
       if (!call.arguments.empty() || !call.branches.empty())
         diagnostics_.error(call.place, call.name + "() takes neither arguments nor successors");
+      checkNames(call, false);
+      for (const Branch& branch : call.branches) buildSuccessor(branch.successor);
       if (call.name == "Discard") return {};
       if (!generate_) { // a terminal without a name of its own
+        if (graph_.buckets == kMaxBuckets)
+          diagnostics_.error(call.place, "Generate() is a terminal line more than the " + std::to_string(kMaxBuckets) +
+                                             " that a grammar can have");
         generate_ = static_cast<uint32_t>(graph_.terminals.size());
         graph_.terminals.push_back({addOwnName("Generate"), 0, 0, graph_.buckets++});
       }
@@ -248,8 +269,25 @@ private:
       diagnostics_.error(call.place, "'" + call.name + "' is no operator; expected no '(' after it");
     else
       diagnostics_.error(call.place, "there is no operator '" + call.name + "'");
+    checkNames(call, true);
     for (const Branch& branch : call.branches) buildSuccessor(branch.successor);
     return {};
+  }
+
+  /// Where it is not known what arguments and labels are for: only what can have no meaning is reported. mayBeTags:
+  /// a name alone may be one.
+  void checkNames(const Call& call, bool mayBeTags) {
+    const auto check = [&](const Expression& e) {
+      const bool name = e.kind == ExpressionKind::name;
+      if (name && (mayBeTags || isAxis(e.name) || modeNamed(e.name))) return;
+      if (e.kind == ExpressionKind::pair)
+        for (const Expression& part : e.arguments) expressions_.parameter(part);
+      else
+        expressions_.parameter(e);
+    };
+    for (const Expression& argument : call.arguments) check(argument);
+    for (const Branch& branch : call.branches)
+      if (branch.label) expressions_.parameter(*branch.label);
   }
 
   uint32_t buildOperator(const Call& call, const Spelling& spelling) {
@@ -257,8 +295,14 @@ private:
     std::vector<Parameter> parameters;
     uint32_t argument = 0, argument2 = 0, axes = 0;
     if (call.arguments.size() != arguments.size()) {
-      diagnostics_.error(call.place, call.name + " takes " + count(arguments.size(), "argument") + ", found " +
-                                         std::to_string(call.arguments.size()));
+      const bool broken = call.broken || std::any_of(call.arguments.begin(), call.arguments.end(),
+                                                     [](const auto& a) { return a.kind == ExpressionKind::broken; });
+      if (!broken)
+        diagnostics_.error(call.place, call.name + " takes " + count(arguments.size(), "argument") + ", found " +
+                                           std::to_string(call.arguments.size()));
+      Call alone;
+      alone.arguments = call.arguments;
+      checkNames(alone, arguments.find('t') != std::string::npos);
     } else {
       for (size_t i = 0; i < arguments.size(); ++i) {
         if (arguments[i] == 'a') {
@@ -288,7 +332,9 @@ private:
   void checkBranches(const Call& call, const Spelling& spelling) {
     const size_t found = call.branches.size();
     const bool comp = spelling.op == kOpCompSplit;
-    if (found == 0) {
+    if (call.broken) {
+      // was reported; how many there are is not known
+    } else if (found == 0) {
       diagnostics_.error(call.place, call.name + " needs a successor; shapes end in a terminal or Discard()");
     } else if (call.form == SuccessorForm::chain &&
                (spelling.labels || (spelling.branches > 1 && !comp && spelling.branches != kMany))) {
@@ -304,6 +350,8 @@ private:
     for (const Branch& branch : call.branches) {
       if (branch.isElse)
         diagnostics_.error(branch.successor.place, "'else' has no meaning in " + call.name);
+      else if (branch.successor.name.empty() && !branch.successor.call)
+        continue; // was reported
       else if (spelling.labels && !branch.label && call.form == SuccessorForm::braces)
         diagnostics_.error(branch.successor.place, "expected a value before the successor of " + call.name);
       else if (!spelling.labels && branch.label)
@@ -318,18 +366,26 @@ private:
       if (isNew) tag->second = kTagName | addName(graph_, expression.name);
       return tag->second;
     }
+    const size_t errors = diagnostics_.errorCount();
     const float value = expressions_.constant(expression, "a tag");
-    if (value >= 0 && value <= 16777216.0f && value == floor(value)) return static_cast<uint32_t>(value);
-    diagnostics_.error(expression.place, "a tag is a name or a whole number from 0");
-    return 0;
+    if (expression.kind != ExpressionKind::broken && value >= 0 && value <= kLargestTag && value == floor(value) &&
+        diagnostics_.errorCount() == errors)
+      return static_cast<uint32_t>(value);
+    if (expression.kind != ExpressionKind::broken && diagnostics_.errorCount() == errors)
+      diagnostics_.error(expression.place, "a tag is a name or a whole number from 0");
+    return static_cast<uint32_t>(kLargestTag) + ++wrongTags_; // which no other one has
   }
 
+  static bool isAxis(const std::string& name) { return name == "X" || name == "Y" || name == "Z"; }
+  static std::optional<uint32_t> modeNamed(const std::string& name) {
+    for (uint32_t mode = 0; mode <= kRepeatAnchorToEnd; ++mode)
+      if (name == repeatModeText(mode)) return mode;
+    return std::nullopt;
+  }
   uint32_t modeOf(const Expression& expression) {
-    if (expression.kind == ExpressionKind::name) {
-      if (expression.name == "ADJUST_TO_FILL") return kRepeatAdjustToFill;
-      if (expression.name == "ANCHOR_TO_START") return kRepeatAnchorToStart;
-      if (expression.name == "ANCHOR_TO_END") return kRepeatAnchorToEnd;
-    }
+    if (expression.kind == ExpressionKind::broken) return 0;
+    if (expression.kind == ExpressionKind::name)
+      if (const auto mode = modeNamed(expression.name)) return *mode;
     diagnostics_.error(expression.place, "expected ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END");
     return 0;
   }
@@ -352,15 +408,20 @@ private:
   uint32_t buildPolygon(Place place, const std::vector<Expression>& corners, bool convex) {
     std::vector<std::array<float, 2>> points;
     const size_t errors = diagnostics_.errorCount();
+    bool isWhole = true;
     for (const Expression& corner : corners) {
+      if (corner.kind == ExpressionKind::broken) {
+        isWhole = false;
+        continue;
+      }
       if (corner.kind != ExpressionKind::pair) {
         diagnostics_.error(corner.place, "expected a corner as (x, y)");
-        return 0;
+        continue;
       }
       points.push_back({expressions_.constant(corner.arguments[0], "a corner"),
                         expressions_.constant(corner.arguments[1], "a corner")});
     }
-    if (diagnostics_.errorCount() > errors) return 0;
+    if (diagnostics_.errorCount() > errors || !isWhole) return 0;
     if (points.size() < 3 || points.size() > kMaxCorners) {
       diagnostics_.error(place, "expected 3 to " + std::to_string(kMaxCorners) + " corners, found " +
                                     std::to_string(points.size()));
@@ -473,10 +534,12 @@ public:
     for (size_t i = firstNode_; i < graph_.nodes.size() && places_[i].part == number_; ++i) {
       const Node& node = graph_.nodes[i];
       if (node.shapes == 0) continue;
+      warnOfEnds(node, places_[i].place);
+      tellOfPolygons(node, places_[i].place);
       uint32_t fitting = node.shapes;
       for (uint32_t s = 0; s < kShapeCount; ++s) {
         if (node.op == kOpExtrude && !isPolygon(s)) fitting &= ~(1u << s);
-        if (node.op == kOpCompSplit && !isPrism(s)) fitting &= ~(1u << s);
+        if (node.op == kOpCompSplit && isPolygon(s)) fitting &= ~(1u << s);
       }
       if (fitting == 0)
         diagnostics_.warning(places_[i].place, std::string(operatorName(node.op)) + " has no effect here: only " +
@@ -485,6 +548,34 @@ public:
   }
 
 private:
+  /// Types that come from axioms, and of which an operator makes nothing that goes on.
+  void warnOfEnds(const Node& node, Place place) {
+    uint32_t ending = 0;
+    bool leads = false;
+    for (uint32_t s = 0; s < kShapeCount; ++s) {
+      if (!(node.axiomShapes >> s & 1)) continue;
+      bool goesOn = false;
+      for (uint32_t e = 0; e < node.edgeCount; ++e) {
+        const bool kept = graph_.edges[node.firstEdge + e].target != kNoNode;
+        leads = leads || kept;
+        goesOn = goesOn || (kept && outputOf(node, e, s) != 0);
+      }
+      if (!goesOn) ending |= 1u << s;
+    }
+    if (ending && leads)
+      diagnostics_.warning(place, std::string(operatorName(node.op)) + " passes on nothing of " + list(ending) +
+                                      ", which can arrive: such shapes end here");
+  }
+
+  /// Instances have no polygons: a mesh stands for whatever shape it is.
+  void tellOfPolygons(const Node& node, Place place) {
+    constexpr uint32_t kDynamic = 15u << kShapeDynamicConvexPolygon;
+    if (node.op != kOpTerminal || graph_.terminals[node.argument].kind != 1 || !(node.axiomShapes & kDynamic)) return;
+    diagnostics_.info(place, std::string("instances of '") + graph_.nameAt(graph_.terminals[node.argument].name) +
+                                 "' do not say the corners of " + list(node.axiomShapes & kDynamic) +
+                                 ": its mesh must have them, or a spawner for vertices write them");
+  }
+
   static std::string list(uint32_t shapes) {
     std::string text;
     for (uint32_t s = 0; s < kShapeCount; ++s)
@@ -508,6 +599,7 @@ private:
   std::map<uint32_t, uint32_t> terminalNodes_;
   std::vector<bool> usedRules_;
   std::optional<uint32_t> generate_;
+  uint32_t wrongTags_ = 0;
 };
 } // namespace
 
@@ -534,10 +626,13 @@ Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* 
       builders.emplace_back(part, graph, places, tags, number).run();
     places.resize(graph.nodes.size(), {number, {}});
   }
-  if (std::any_of(parts.begin(), parts.end(), [](const GrammarPart& p) { return p.diagnostics->hasErrors(); }))
-    return graph;
+  const bool failed =
+      std::any_of(parts.begin(), parts.end(), [](const GrammarPart& p) { return p.diagnostics->hasErrors(); });
+  if (failed && graph.axioms.empty()) return graph; // analyse() needs one
   analyse(graph);
-  checkContext(graph, places, parts);
+  checkOrder(graph, places, parts);
+  if (failed) return graph; // what is missing may be what has an effect
+  checkEffect(graph, places, parts);
   for (Builder& builder : builders) builder.warn();
   return graph;
 }

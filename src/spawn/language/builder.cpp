@@ -84,6 +84,11 @@ struct GpgpGrammarBuilder_T {
     std::string name;
     Successor successor;
   };
+  struct Priority {
+    uint32_t statement = 0;
+    std::string rule;
+    uint32_t priority = 0;
+  };
   struct Axiom {
     uint32_t statement = 0;
     GpgpShape shape = 0;
@@ -97,6 +102,7 @@ struct GpgpGrammarBuilder_T {
   std::vector<Terminal> terminals;
   std::vector<Rule> rules;
   std::vector<Axiom> axioms;
+  std::vector<Priority> priorities;
   std::vector<std::string> problems; ///< of calls that added nothing
   uint32_t statements = 0;
   bool outOfMemory = false;
@@ -169,6 +175,19 @@ public:
       const std::string where = "rule " + quoted(rule.name);
       made.place = place(where);
       made.body = successor(rule.successor, where);
+    }
+    for (const auto& priority : builder_.priorities) {
+      begin(priority.statement);
+      const Place at = place("priority of " + quoted(priority.rule));
+      const auto rule = std::find_if(tree.rules.begin(), tree.rules.end(),
+                                     [&](const RuleDefinition& r) { return r.name == priority.rule; });
+      if (rule == tree.rules.end())
+        diagnostics_.error(at, "there is no rule " + quoted(priority.rule));
+      else if (priority.priority > gpgp::shader::kMaxPriority)
+        diagnostics_.error(at, "a priority is at most " + std::to_string(gpgp::shader::kMaxPriority) + ", found " +
+                                   std::to_string(priority.priority));
+      else
+        rule->priority = priority.priority;
     }
     for (const auto& axiom : builder_.axioms) addAxiom(axiom, tree);
     if (builder_.axioms.empty()) {
@@ -457,6 +476,14 @@ void GPGP_CALL gpgpAddRule(GpgpGrammarBuilder builder, const char* name, const c
     if (!builder->checkName(name, "gpgpAddRule")) return 0;
     GpgpGrammarBuilder_T::Rule made{builder->statements++, name, GpgpGrammarBuilder_T::successorOf({}, successor, op)};
     builder->rules.push_back(std::move(made));
+    return 0;
+  });
+}
+
+void GPGP_CALL gpgpSetRulePriority(GpgpGrammarBuilder builder, const char* rule, uint32_t priority) {
+  guarded(builder, 0, [&] {
+    if (builder->checkName(rule, "gpgpSetRulePriority"))
+      builder->priorities.push_back({builder->statements++, rule, priority});
     return 0;
   });
 }

@@ -16,13 +16,17 @@ public:
   ContextCheck(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts)
       : graph_(graph), places_(places), parts_(parts) {}
 
-  void run() {
+  void checkOrder() {
     if (graph_.phases == kNoPhases) refusePhases();
+  }
+  void checkEffect() {
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       const Node& node = graph_.nodes[n];
-      const uint32_t other = node.op == kOpCollider ? kOpIfCollides : kOpCollider;
+      const bool collider = node.op == kOpCollider;
+      const uint32_t other = collider ? kOpIfCollides : kOpCollider;
       if (!isContext(node.op) || std::any_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const Node& o) {
-            return o.op == other && o.argument == node.argument;
+            return o.op == other && o.argument == node.argument &&
+                   (collider ? node.priority >= o.priority : o.priority >= node.priority);
           }))
         continue;
       warn(n, other);
@@ -40,10 +44,26 @@ private:
 
   void warn(uint32_t n, uint32_t other) {
     const std::string tag = std::string("(").append(tagText(graph_, graph_.nodes[n].argument)).append(")");
+    const bool is = std::any_of(graph_.nodes.begin(), graph_.nodes.end(),
+                                [&](const Node& o) { return o.op == other && o.argument == graph_.nodes[n].argument; });
+    const char* priority = !is                    ? ""
+                           : other == kOpCollider ? " of its priority or a higher one"
+                                                  : " of its priority or a lower one";
     diagnosticsOf(n).warning(places_[n].place, operatorName(graph_.nodes[n].op) + tag + " has no effect: there is no " +
-                                                   operatorName(other) + tag);
+                                                   operatorName(other) + tag + priority);
+  }
+  std::string named(uint32_t n) const {
+    const Node& node = graph_.nodes[n];
+    return operatorName(node.op) + ("(" + tagText(graph_, node.argument)) + ") of priority " +
+           std::to_string(node.priority);
   }
   void refuse(const Dependency& d) {
+    if (graph_.nodes[d.source].priority > graph_.nodes[d.target].priority) {
+      diagnosticsOf(d.target).error(places_[d.target].place, named(d.target) + " waits for " + named(d.source) +
+                                                                 " in " + where(d.source, d.target) +
+                                                                 ", which comes after it");
+      return;
+    }
     const std::string tag = std::string("(").append(tagText(graph_, graph_.nodes[d.target].argument)).append(")");
     diagnosticsOf(d.target).error(places_[d.target].place, "IfCollides" + tag + " waits for all of Collider" + tag +
                                                                " in " + where(d.source, d.target) +
@@ -54,7 +74,7 @@ private:
     const std::vector<Dependency> dependencies = dependenciesOf(graph_);
     bool found = false;
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
-      if (graph_.nodes[n].op != kOpIfCollides) continue;
+      if (!isContext(graph_.nodes[n].op)) continue;
       std::vector<bool> reached(graph_.nodes.size());
       std::vector<uint32_t> open{n};
       const auto reach = [&](uint32_t node) {
@@ -91,8 +111,12 @@ private:
 };
 } // namespace
 
-void checkContext(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts) {
-  ContextCheck(graph, places, parts).run();
+void checkOrder(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts) {
+  ContextCheck(graph, places, parts).checkOrder();
+}
+
+void checkEffect(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts) {
+  ContextCheck(graph, places, parts).checkEffect();
 }
 
 } // namespace gpgp::spawn

@@ -10,8 +10,10 @@ struct NodePlace {
   Place place;
 };
 
-/// Reports, where it was written, each IfCollides that must wait for what comes after it, and operators with a tag that
-/// no other one has. The graph is analysed; places: by node.
-void checkContext(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts);
+/// Reports, where it was written, each IfCollides that must wait for what comes after it. The graph is analysed, and
+/// may be one with errors; places: by node.
+void checkOrder(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts);
+/// Warns of operators with a tag that no other one has.
+void checkEffect(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts);
 
 } // namespace gpgp::spawn

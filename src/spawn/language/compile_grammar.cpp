@@ -6,6 +6,7 @@
 #include "spawn/graph/kernel.h"
 #include "spawn/language/build_graph.h"
 #include "spawn/language/builder.h"
+#include "spawn/language/print.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -73,6 +74,16 @@ std::optional<spawn::Graph> load(const GpgpGrammarSource& source, spawn::Diagnos
   return std::move(*graph);
 }
 
+/// The graph of a printed form; groups in it are no part of a grammar.
+std::optional<spawn::Graph> read(const GpgpGrammarSource& source, std::string_view text,
+                                 spawn::Diagnostics& diagnostics) {
+  auto printed = spawn::parseGraph(text, diagnostics, std::pmr::new_delete_resource());
+  if (source.variableCount) diagnostics.error({}, "a printed graph has no var that could be set");
+  if (!printed) return std::nullopt;
+  diagnostics.name({}, "the printed graph");
+  return std::move(printed->graph);
+}
+
 /// A graph with a kernel behind it, where one is wanted.
 GpgpResult bake(const GpgpGrammarSource& first, const spawn::Graph& graph, bool kernel, GpgpBlob* blob) {
   std::pmr::memory_resource* memory = graph.nodes.get_allocator().resource();
@@ -114,11 +125,13 @@ GpgpResult compile(std::span<const GpgpGrammarSource> sources, bool linked, Gpgp
       auto& [diagnostics, tree, baked] = inputs[i];
       const std::string file = source.name ? source.name : "", alias = source.alias ? source.alias : "";
       const std::string name = linked ? spawn::linkedName(alias.empty() ? file : alias) : std::string();
+      const std::string_view text(source.text ? source.text : "", source.text ? source.size : 0);
       if (source.baked)
         tree.brokenAxiom = !(baked = load(source, diagnostics)); // was reported
+      else if (spawn::isPrinted(text))
+        tree.brokenAxiom = !(baked = read(source, text, diagnostics));
       else
-        tree = source.builder ? spawn::treeOf(*source.builder, diagnostics)
-                              : spawn::parse({source.text ? source.text : "", source.size}, diagnostics);
+        tree = source.builder ? spawn::treeOf(*source.builder, diagnostics) : spawn::parse(text, diagnostics);
       if (linked && !alias.empty() && alias != name)
         diagnostics.error({}, "the alias '" + alias + "' is no name; expected letters, digits and _, not digits alone");
       const auto [other, isNew] = files.try_emplace(name, file);

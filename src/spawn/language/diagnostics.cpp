@@ -20,7 +20,10 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
 
 std::string format(const Diagnostic& diagnostic, const std::string& file) {
   return file + ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column) +
-         (diagnostic.severity == GPGP_SEVERITY_ERROR ? ": error: " : ": warning: ") + diagnostic.text;
+         (diagnostic.severity == GPGP_SEVERITY_ERROR     ? ": error: "
+          : diagnostic.severity == GPGP_SEVERITY_WARNING ? ": warning: "
+                                                         : ": note: ") +
+         diagnostic.text;
 }
 
 } // namespace gpgp::spawn

@@ -28,6 +28,7 @@ public:
     add(place, GPGP_SEVERITY_ERROR, std::move(text));
   }
   void warning(Place place, std::string text) { add(place, GPGP_SEVERITY_WARNING, std::move(text)); }
+  void info(Place place, std::string text) { add(place, GPGP_SEVERITY_INFO, std::move(text)); }
   bool hasErrors() const { return errors_ > 0; }
   size_t errorCount() const { return errors_; }
   /// Names a place of what is no text: messages then call it by that name.

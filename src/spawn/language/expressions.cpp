@@ -12,6 +12,12 @@ using namespace shader;
 std::string plural(size_t count, const char* noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
+
+/// Whether all arguments could be read.
+bool isWhole(const Expression& e) {
+  return std::none_of(e.arguments.begin(), e.arguments.end(),
+                      [](const Expression& a) { return a.kind == ExpressionKind::broken; });
+}
 } // namespace
 
 std::optional<uint32_t> axisOf(const Expression& expression, Diagnostics& diagnostics) {
@@ -20,7 +26,7 @@ std::optional<uint32_t> axisOf(const Expression& expression, Diagnostics& diagno
     if (expression.name == "Y") return 1;
     if (expression.name == "Z") return 2;
   }
-  diagnostics.error(expression.place, "expected an axis: X, Y or Z");
+  if (expression.kind != ExpressionKind::broken) diagnostics.error(expression.place, "expected an axis: X, Y or Z");
   return std::nullopt;
 }
 
@@ -35,16 +41,19 @@ ExpressionCompiler::Code ExpressionCompiler::number(float value) const {
 
 ExpressionCompiler::Code ExpressionCompiler::attribute(const Expression& expression, uint32_t code, uint32_t axes) {
   if (expression.arguments.size() != axes) {
+    if (!isWhole(expression)) return number(0);
     const char* wanted = axes == 0 ? "no argument" : axes == 1 ? "an axis" : "an axis and a component";
     diagnostics_.error(expression.place, expression.name + " takes " + wanted + ", found " +
                                              plural(expression.arguments.size(), "argument"));
     return number(0);
   }
+  bool known = true;
   for (uint32_t i = 0; i < axes; ++i) {
     const auto axis = axisOf(expression.arguments[i], diagnostics_);
-    if (!axis) return number(0);
-    code += axes == 2 && i == 0 ? 3 * *axis : *axis;
+    known = known && axis;
+    code += (axes == 2 && i == 0 ? 3 : 1) * axis.value_or(0);
   }
+  if (!known) return number(0);
   Code result;
   result.words = {code};
   result.stack = 1;
@@ -69,8 +78,10 @@ ExpressionCompiler::Code ExpressionCompiler::join(Place place, uint32_t op, Code
 ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
   const auto wants = [&](size_t count) {
     if (e.arguments.size() == count) return true;
-    diagnostics_.error(e.place, e.name + " takes " + plural(count, "argument") + ", found " +
-                                    std::to_string(e.arguments.size()));
+    if (isWhole(e))
+      diagnostics_.error(e.place, e.name + " takes " + plural(count, "argument") + ", found " +
+                                      std::to_string(e.arguments.size()));
+    for (const Expression& argument : e.arguments) compile(argument);
     return false;
   };
   if (e.name == "Exp") return wants(1) ? compile(e.arguments[0]) : number(0);
@@ -88,6 +99,8 @@ ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
   diagnostics_.error(e.place, "'" + e.name +
                                   "' is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, "
                                   "ShapeNormal, ShapeSeed or ShapeCustomAttribute");
+  for (const Expression& argument : e.arguments)
+    if (argument.kind != ExpressionKind::name) compile(argument); // a name may be an axis
   return number(0);
 }
 
@@ -102,6 +115,7 @@ ExpressionCompiler::Code ExpressionCompiler::compile(const Expression& e) {
   }
   case ExpressionKind::pair: diagnostics_.error(e.place, "expected one value, found a pair (x, y)"); return number(0);
   case ExpressionKind::call: return call(e);
+  case ExpressionKind::broken: return number(0);
   case ExpressionKind::binary: break;
   }
   Code left = compile(e.arguments[0]);

@@ -1,4 +1,8 @@
 // Recursive descent over the tokens of a PGA-shape file.
+//
+// A syntax error ends what it stands in: an argument up to its ',' or ')', a successor up to its '|' or '}', or the
+// statement up to its ';' or to where another one begins. What was read before stays in the tree, where it is checked
+// as the rest is, and what was not is marked, so that nobody reports that it is missing.
 #include "spawn/graph_format.h"
 #include "spawn/language/lexer.h"
 #include "spawn/language/syntax.h"
@@ -7,7 +11,7 @@ namespace gpgp::spawn {
 namespace {
 constexpr int kMaxExpression = 64; // of expressions, and of operands in a row
 
-struct SyntaxError {}; // was reported; the statement is given up
+struct SyntaxError {}; // was reported
 
 class Parser {
 public:
@@ -20,11 +24,10 @@ public:
       try {
         statement(tree);
       } catch (const SyntaxError&) {
-        // On to the next statement: after a ';', or where a rule begins because a ';' is missing.
-        while (peek().kind != TokenKind::end && !(peek().kind == TokenKind::name && peek(1).kind == TokenKind::arrow) &&
-               next().kind != TokenKind::semicolon) {
+        while (peek().kind != TokenKind::end && !atStatement() && next().kind != TokenKind::semicolon) {
         }
       }
+      parens_ = braces_ = 0;
     }
     return tree;
   }
@@ -34,6 +37,10 @@ private:
   const Token& next() {
     const Token& token = peek();
     if (at_ + 1 < tokens_.size()) ++at_;
+    if (token.kind == TokenKind::open) ++parens_;
+    if (token.kind == TokenKind::close) --parens_;
+    if (token.kind == TokenKind::openBrace) ++braces_;
+    if (token.kind == TokenKind::closeBrace) --braces_;
     return token;
   }
   bool accept(TokenKind kind) {
@@ -59,6 +66,35 @@ private:
   bool isName(const char* text, size_t ahead = 0) const {
     return peek(ahead).kind == TokenKind::name && peek(ahead).text == text;
   }
+  bool isNameOrNumber(size_t ahead = 0) const {
+    return peek(ahead).kind == TokenKind::name || peek(ahead).kind == TokenKind::number;
+  }
+
+  /// Whether a statement begins here, although no ';' may stand before it.
+  bool atStatement() const {
+    const TokenKind third = peek(2).kind;
+    if (isNameOrNumber() && peek(1).kind == TokenKind::arrow) return true;
+    if (!isNameOrNumber(1)) return false;
+    if (isName("var")) return third == TokenKind::arrow;
+    if (isName("axiom")) return third == TokenKind::openBrace || isNameOrNumber(2);
+    return isName("terminal") && (third == TokenKind::open || third == TokenKind::comma || isNameOrNumber(2));
+  }
+  /// And on a line of its own: within parentheses and braces '=' may be a wrong '=='.
+  bool atStatementLine() const { return at_ > 0 && peek().place.line > tokens_[at_ - 1].place.line && atStatement(); }
+
+  /// From an error in a list on to the separator or end that belongs to the list. False where the statement ends first.
+  bool skipTo(TokenKind separator, TokenKind end, int parens, int braces) {
+    for (;; next()) {
+      const TokenKind kind = peek().kind;
+      const bool brace = kind == TokenKind::bar || kind == TokenKind::openBrace || kind == TokenKind::closeBrace;
+      if (kind == TokenKind::end || kind == TokenKind::semicolon || atStatementLine()) return false;
+      if (end == TokenKind::close && brace) return false;
+      const bool inside = end == TokenKind::close ? parens_ > parens : braces_ > braces;
+      if (!inside && (kind == separator || kind == end)) break;
+    }
+    parens_ = parens;
+    return true;
+  }
 
   struct Nested {
     Nested(Parser& parser, int& level, int limit) : depth(level) {
@@ -83,12 +119,10 @@ private:
     RuleDefinition& rule = tree.rules.emplace_back();
     rule.place = place;
     rule.name = std::move(name);
-    rule.broken = true;
     if (peek().kind == TokenKind::number && peek(1).kind == TokenKind::percent)
-      rule.alternatives = alternatives();
+      alternatives(rule.alternatives);
     else
-      rule.body = successor();
-    rule.broken = false;
+      successor(rule.body);
     expect(TokenKind::semicolon, "';' at the end of the rule");
   }
 
@@ -101,6 +135,7 @@ private:
     VariableDefinition& variable = tree.variables.emplace_back();
     variable.place = place;
     variable.name = std::move(name);
+    variable.value.kind = ExpressionKind::broken;
     variable.value = expression();
     expect(TokenKind::semicolon, "';' after the variable");
   }
@@ -131,21 +166,28 @@ private:
       const Place place = peek().place;
       terminal.names.emplace_back(place, expectName("the name of a terminal"));
       accept(TokenKind::comma);
-    } while (peek().kind == TokenKind::name || peek().kind == TokenKind::number);
+    } while (isNameOrNumber() && !atStatementLine());
     expect(TokenKind::open, "'(' with kind and index after the names of terminals");
-    terminal.arguments = arguments();
+    arguments(terminal.arguments);
     terminal.broken = false;
     expect(TokenKind::semicolon, "';' after the terminal");
   }
 
   /// Up to ')' ; '(' was taken.
-  std::vector<Expression> arguments() {
-    std::vector<Expression> result;
-    if (accept(TokenKind::close)) return result;
-    do result.push_back(expression());
-    while (accept(TokenKind::comma));
-    expect(TokenKind::close, "',' or ')' after an argument");
-    return result;
+  void arguments(std::vector<Expression>& result) {
+    if (accept(TokenKind::close)) return;
+    const int parens = parens_, braces = braces_;
+    do {
+      Expression& argument = result.emplace_back();
+      argument.kind = ExpressionKind::broken;
+      try {
+        Expression value = expression();
+        if (peek().kind != TokenKind::comma && peek().kind != TokenKind::close) fail("',' or ')' after an argument");
+        argument = std::move(value);
+      } catch (const SyntaxError&) {
+        if (!skipTo(TokenKind::comma, TokenKind::close, parens, braces)) throw;
+      }
+    } while (next().kind == TokenKind::comma);
   }
 
   Expression corner() {
@@ -158,34 +200,45 @@ private:
     return pair;
   }
 
-  Successor successor() {
+  void successor(Successor& result) {
     const Nested nested(*this, depth_, kMaxNesting);
-    Successor result;
     result.place = peek().place;
+    if (atStatement()) fail("an operator, a rule or a terminal");
     std::string name = expectName("an operator, a rule or a terminal");
     if (!accept(TokenKind::open)) {
       result.name = std::move(name);
-      return result;
+      return;
     }
-    auto call = std::make_shared<Call>();
-    call->place = result.place;
-    call->name = std::move(name);
-    call->arguments = arguments();
+    result.call = std::make_shared<Call>();
+    Call& call = *result.call;
+    call.place = result.place;
+    call.name = std::move(name);
+    call.broken = true;
+    arguments(call.arguments);
     if (accept(TokenKind::openBrace)) {
-      call->form = SuccessorForm::braces;
-      do call->branches.push_back(branch());
-      while (accept(TokenKind::bar));
-      expect(TokenKind::closeBrace, "'|' or '}' after a successor");
-    } else if (peek().kind == TokenKind::name || peek().kind == TokenKind::number) {
-      call->form = SuccessorForm::chain;
-      call->branches.push_back({std::nullopt, false, successor()});
+      call.form = SuccessorForm::braces;
+      branches(call.branches);
+    } else if (isNameOrNumber() && !atStatement()) {
+      call.form = SuccessorForm::chain;
+      successor(call.branches.emplace_back().successor);
     }
-    result.call = std::move(call);
-    return result;
+    call.broken = false;
   }
 
-  Branch branch() {
-    Branch result;
+  /// Up to '}' ; '{' was taken.
+  void branches(std::vector<Branch>& result) {
+    const int parens = parens_, braces = braces_;
+    do {
+      try {
+        branch(result.emplace_back());
+        if (peek().kind != TokenKind::bar && peek().kind != TokenKind::closeBrace) fail("'|' or '}' after a successor");
+      } catch (const SyntaxError&) {
+        if (!skipTo(TokenKind::bar, TokenKind::closeBrace, parens, braces)) throw;
+      }
+    } while (next().kind == TokenKind::bar);
+  }
+
+  void branch(Branch& result) {
     // A label is an expression before a colon. A name alone may be a successor.
     const bool name = peek().kind == TokenKind::name;
     const bool labelCall = isName("Rand") || isName("Exp") || peek().text.substr(0, 5) == "Shape";
@@ -200,15 +253,13 @@ private:
         expect(TokenKind::colon, "':' between a value and its successor");
       }
     }
-    result.successor = successor();
-    return result;
+    successor(result.successor);
   }
 
   /// 20%: A 30%: B else: C
-  std::vector<Branch> alternatives() {
-    std::vector<Branch> result;
+  void alternatives(std::vector<Branch>& result) {
     for (;;) {
-      Branch branch;
+      Branch& branch = result.emplace_back();
       if (isName("else")) {
         next();
         branch.isElse = true;
@@ -217,11 +268,9 @@ private:
         expect(TokenKind::percent, "'%' after a probability");
       }
       expect(TokenKind::colon, "':' after a probability");
-      branch.successor = successor();
-      const bool last = branch.isElse;
-      result.push_back(std::move(branch));
+      successor(branch.successor);
       accept(TokenKind::bar);
-      if (last || (!isName("else") && peek().kind != TokenKind::number)) return result;
+      if (branch.isElse || (!isName("else") && peek().kind != TokenKind::number) || atStatement()) return;
     }
   }
 
@@ -310,7 +359,7 @@ private:
     result.kind = ExpressionKind::name;
     if (accept(TokenKind::open)) {
       result.kind = ExpressionKind::call;
-      result.arguments = arguments();
+      arguments(result.arguments);
     }
     return result;
   }
@@ -318,6 +367,7 @@ private:
   Diagnostics& diagnostics_;
   std::vector<Token> tokens_;
   size_t at_ = 0;
+  int parens_ = 0, braces_ = 0; // open ones of the statement
   int depth_ = 0, expressionDepth_ = 0;
 };
 } // namespace

@@ -6,9 +6,10 @@
 //   polygon 12 { (0,0.5) (-0.5,0) (0.5,0) } corners of Dynamic... shapes; 13 is its mirror image
 //   rule A -> 0                             or Discard
 //   rule B(1) -> 2                          starts with the shape of axiom 1, counted from 0
-//   0 SubDiv(X) { -1: / -> 1 | 2: / -> 2 }  a node with its edges: value, multiplicity (1, n, / or *), target
+//   0 SubDiv(X) { -1: / -> 1 | 2: / -> 2 }  a node with its edges: value, multiplicity (1, 0, n, / or *), target
 //   1 Wall
 //   2 Translate(0,(ShapeSize(Y) * 1.5),0) { 1 -> 0 }
+//   3 Collider(w) priority 2 { 1 -> 1 }     of a rule with a priority
 //   group { 0 2 }                           execution groups, all or none of them; the root first
 //   group { 1 }
 //
@@ -31,6 +32,9 @@ struct PrintedGraph {
   Graph graph;
   std::optional<Partition> partition; ///< valid
 };
+
+/// Whether text begins as the printed form does, with an axiom line and its arrow, which no PGA-shape text has.
+bool isPrinted(std::string_view text);
 
 /// Nothing where there was an error; all are reported with their places.
 std::optional<PrintedGraph> parseGraph(std::string_view text, Diagnostics& diagnostics,

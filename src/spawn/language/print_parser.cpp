@@ -42,7 +42,8 @@ public:
     checkMultiplicities();
     if (graph_.phases == kNoPhases)
       diagnostics_.error({},
-                         "there is no order of phases in which every Collider is before each IfCollides of its tag");
+                         "there is no order of phases in which every Collider is before each IfCollides of its tag, "
+                         "and higher priorities are before lower ones");
     if (auto ok = validate(graph_); !ok) diagnostics_.error({}, ok.error().text);
     if (diagnostics_.hasErrors()) return std::nullopt;
     return std::move(graph_);
@@ -268,6 +269,13 @@ private:
     node.firstParameter = static_cast<uint32_t>(graph_.parameters.size());
     node.firstEdge = static_cast<uint32_t>(graph_.edges.size());
     arguments(node);
+    if (isName("priority")) {
+      ++at_;
+      const Token& number = now();
+      node.priority = whole("a priority");
+      if (node.priority > kMaxPriority)
+        diagnostics_.error(number.place, std::string("a priority is at most ") + std::to_string(kMaxPriority));
+    }
     if (is(TokenKind::openBrace)) edges(node);
     node.parameterCount = static_cast<uint32_t>(graph_.parameters.size()) - node.firstParameter;
     node.edgeCount = static_cast<uint32_t>(graph_.edges.size()) - node.firstEdge;
@@ -450,6 +458,16 @@ private:
   std::vector<GroupLine> groups_;
 };
 } // namespace
+
+bool isPrinted(std::string_view text) {
+  Diagnostics ignored;
+  const std::vector<Token> tokens = tokenize(text, ignored, true);
+  const auto is = [&](size_t at, TokenKind kind) { return at < tokens.size() && tokens[at].kind == kind; };
+  const size_t shape = is(2, TokenKind::colon) ? 3 : 1; // behind a name
+  const bool polygon = is(shape + 1, TokenKind::open) && is(shape + 2, TokenKind::number);
+  const size_t arrow = polygon ? shape + 4 : shape + 1;
+  return tokens[0].text == "axiom" && is(shape, TokenKind::name) && is(arrow, TokenKind::arrow);
+}
 
 std::optional<PrintedGraph> parseGraph(std::string_view text, Diagnostics& diagnostics,
                                        std::pmr::memory_resource* memory) {

@@ -11,9 +11,10 @@ namespace gpgp::spawn {
 
 constexpr int kMaxNesting = 200; ///< of operators written in place: bounds the stack
 
-enum class ExpressionKind { number, name, call, binary, pair };
+enum class ExpressionKind { number, name, call, binary, pair, broken };
 
-/// number; name; name(arguments); left op right; (x, y)
+/// number; name; name(arguments); left op right; (x, y). Broken: what was written has a syntax error, which was
+/// reported.
 struct Expression {
   ExpressionKind kind = ExpressionKind::number;
   Place place;
@@ -28,7 +29,7 @@ struct Call;
 /// What a shape goes to: a rule or terminal by name, or an operator written in place.
 struct Successor {
   Place place;
-  std::string name; ///< empty: call
+  std::string name; ///< empty: call; without either there was a syntax error
   std::shared_ptr<Call> call;
 };
 
@@ -47,6 +48,7 @@ struct Call {
   std::vector<Expression> arguments;
   SuccessorForm form = SuccessorForm::none;
   std::vector<Branch> branches;
+  bool broken = false; ///< a syntax error followed; arguments or successors are missing
 };
 
 struct VariableDefinition {
@@ -76,10 +78,10 @@ struct RuleDefinition {
   std::string name;
   Successor body;                   ///< where alternatives is empty
   std::vector<Branch> alternatives; ///< 20%: A 30%: B else: C
-  bool broken = false;
+  uint32_t priority = 0;            ///< of its operators
 };
 
-/// Statements with a syntax error are kept as far as their names were read, so that uses of the names are no errors.
+/// Statements with a syntax error are kept as far as they were read, so that what is right or wrong in them is known.
 struct SyntaxTree {
   std::vector<VariableDefinition> variables;
   std::vector<AxiomDefinition> axioms;
@@ -88,7 +90,7 @@ struct SyntaxTree {
   bool brokenAxiom = false;
 };
 
-/// Parses a file. Errors are reported and parsing goes on after the statement's ';', so that all are found.
+/// Parses a file. Errors are reported and parsing goes on where what they stand in ends, so that all are found.
 SyntaxTree parse(std::string_view text, Diagnostics& diagnostics);
 
 } // namespace gpgp::spawn
