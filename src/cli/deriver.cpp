@@ -111,8 +111,6 @@ uint32_t Deriver::mostShapes() const {
   return static_cast<uint32_t>(std::min<uint64_t>(range / (kShapeBytes * kStackFactor), kMostShapes));
 }
 
-uint32_t Deriver::mostRounds() { return kMostRounds; }
-
 void Deriver::makeOutput(uint64_t elements) {
   elements_ = std::min(elements, mostElements());
   if (!options_.vertices) {
@@ -186,15 +184,14 @@ GpgpSpawnReport Deriver::fit(const Grammar& grammar) {
   for (;;) {
     const GpgpSpawnReport report = measure(grammar, 1).report;
     bool again = false, another = false; // spawner
-    const bool raised = report.droppedShapes && options_.raises;
-    if (raised && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes()) {
+    if (report.droppedShapes && !options_.maxShapes && report.peakShapes > maxShapes_ && maxShapes_ < mostShapes()) {
       maxShapes_ = static_cast<uint32_t>(std::min<uint64_t>(
           std::max<uint64_t>(2 * uint64_t{maxShapes_}, std::bit_ceil(uint64_t{report.peakShapes})), mostShapes()));
       another = true;
     }
     const bool allTaken =
         maxRounds_ == firstRounds_ ? !another : report.rounds >= maxRounds_; // the library may take fewer
-    if (raised && allTaken && maxRounds_ < kMostRounds) {
+    if (report.droppedShapes && allTaken && maxRounds_ < kMostRounds) {
       maxRounds_ *= 2;
       another = true;
     }

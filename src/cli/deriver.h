@@ -16,7 +16,6 @@ struct DeriverOptions {
   uint32_t maxColliders = 0; ///< 0: as many as there are
   uint64_t expected = 0;     ///< instances or vertices, where that is known: spares a second try
   uint32_t maxInstances = 0; ///< 0: as many as there are, as far as the device binds them
-  bool raises = true;        ///< shapes and rounds are raised where they were too few
 };
 
 /// A vertex of `--output vertices`: position R32G32B32_SFLOAT, normal R8G8B8A8_SNORM, uv R32G32_SFLOAT, terminal and
@@ -58,7 +57,6 @@ public:
   uint64_t mostElements() const;
   uint32_t mostColliders() const;
   uint32_t mostShapes() const;
-  static uint32_t mostRounds();
   uint32_t maxShapes() const { return maxShapes_; }
   uint32_t maxRounds() const { return maxRounds_; }
   /// What the last derivation took and wrote, read back.

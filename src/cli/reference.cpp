@@ -1,5 +1,7 @@
 #include "cli/reference.h"
 
+#include "cli/command.h"
+
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -41,19 +43,16 @@ Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>
   return reference;
 }
 
-bool neverEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth) {
+void checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
+                     const std::string& grammar) {
   spawn::DeriveOptions options;
   if (maxDepth) options.maxDepth = maxDepth;
   options.keepInstances = false;
   std::set<uint32_t> starts;
-  return std::any_of(axioms.begin(), axioms.end(), [&](const GpgpAxiom& axiom) {
-    return starts.insert(axiom.rule).second && !spawn::derive(words, {&axiom, 1}, options).complete;
-  });
-}
-
-std::string neverEndingText() {
-  return "one axiom alone becomes more than " + std::to_string(spawn::DeriveOptions().maxShapes / 1'000'000) +
-         " million shapes, so the derivation probably never ends";
+  for (const GpgpAxiom& axiom : axioms)
+    if (starts.insert(axiom.rule).second && !spawn::derive(words, {&axiom, 1}, options).complete)
+      throw Failure(grammar + ": one axiom alone becomes more than " + std::to_string(options.maxShapes / 1'000'000) +
+                    " million shapes, so the derivation probably never ends; --max-depth bounds how deep rules nest");
 }
 
 std::string difference(const spawn::Derivation& reference, const GpgpSpawnReport& report,

@@ -13,24 +13,16 @@ namespace gpgp::cli {
 struct Reference {
   spawn::Derivation result;
   double milliseconds = 0;
-
-  /// Where there is no use in waiting for it.
-  static Reference none() {
-    Reference reference;
-    reference.result.complete = false;
-    return reference;
-  }
 };
 
 /// layout: of vertices, if any. Throws nothing: result.complete says whether the evaluator came to an end.
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
                    const spawn::VertexLayout* layout);
 
-/// Whether of one axiom alone, the first of a start, come more shapes than the evaluator takes. Larger budgets only
-/// make that last longer.
-bool neverEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth);
-/// What is said of it.
-std::string neverEndingText();
+/// Throws Failure where of one axiom alone, the first of a start, come more shapes than the evaluator takes: probably
+/// without end, and larger budgets would only make that last longer.
+void checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
+                     const std::string& grammar);
 
 /// Empty where both derived the same, else what they differ in: counts, the hash of keys, or, where the instances are
 /// at hand, anything of them that is equal bit for bit on every device. Those are all fields but the transform, whose

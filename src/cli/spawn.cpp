@@ -176,8 +176,7 @@ std::string exceededBudgets(const GpgpSpawnReport& report, const Deriver& derive
                      deriver.mostShapes());
   else if (report.droppedShapes)
     text += "budget exceeded: " + counted(report.droppedShapes, "shape") + " still waited after the last of " +
-            counted(report.rounds, "round") +
-            (report.rounds < Deriver::mostRounds() ? "" : ", which are as many as a record takes") + "\n";
+            counted(report.rounds, "round") + ", which are as many as a record takes\n";
   if (report.collidersKept < report.colliders)
     text += exceeded(counted(report.colliders - report.collidersKept, "collider"), "--max-colliders", report.colliders,
                      deriver.mostColliders());
@@ -243,14 +242,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                                 : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
   Session session(common);
   const Slices slices = slicesFor(options, start, graph, session);
-  const bool endless = neverEnds(grammar.words, start, options.maxDepth);
-  if (endless && options.schedule == "tuned") throw Failure(joined(options.grammars) + ": " + neverEndingText());
-  if (endless)
-    std::fprintf(stderr, "gpgp spawn: %s: %s; budgets are not raised\n", joined(options.grammars).c_str(),
-                 neverEndingText().c_str());
+  checkThatItEnds(grammar.words, start, options.maxDepth, joined(options.grammars));
   const auto layout = spawn::layoutOf(Deriver::layout());
-  const Reference reference =
-      endless ? Reference::none() : evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
+  const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
   const Chosen chosen = chooseKernel(options, grammar, slices.of(0), session);
 
   DeriverOptions deriverOptions;
@@ -260,7 +254,6 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   deriverOptions.maxDepth = options.maxDepth;
   deriverOptions.maxColliders = options.maxColliders;
   deriverOptions.maxInstances = options.maxInstances;
-  deriverOptions.raises = !endless;
   deriverOptions.expected =
       (vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals) /
       slices.records;

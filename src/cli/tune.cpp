@@ -35,8 +35,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
                                             ? axiomGrid(options.axioms, 0, defaults)
                                             : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
-  if (neverEnds(grammar.words, axioms, settings.maxDepth))
-    throw Failure(joined(options.grammars) + ": " + neverEndingText());
+  checkThatItEnds(grammar.words, axioms, settings.maxDepth, joined(options.grammars));
   Session session(common);
   const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
   keepKernel(out, grammar, tuned.info, tuned.code, others);

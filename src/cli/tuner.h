@@ -24,8 +24,8 @@ struct TuneSettings {
   uint32_t samples = 32;      ///< schedules at most, the named ones included
   uint32_t repeat = 15, seed = 1;
   uint32_t maxDepth = 0; ///< as DeriverOptions
-  double seconds = 50; ///< nothing is begun that would probably take longer; 0: no limit. The interpreter and one
-                       ///< schedule are always measured
+  double seconds = 50;   ///< nothing is begun that would probably take longer; 0: no limit. The interpreter and one
+                         ///< schedule are always measured
 };
 
 /// A schedule with numbers, and what it took.

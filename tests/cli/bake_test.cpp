@@ -42,7 +42,8 @@ TEST(CliBake, SchedulesAreChosen) {
   const std::string usual = bakedWith({grammar.path()});
   EXPECT_TRUE(usual == bakedWith({grammar.path(), "--schedule", "default"}));
   const auto scheduleOf = [&](const std::string& file) {
-    return gpgpJson({"spawn", grammar.path(), "--schedule", file, "--axioms", "2"})["schedule"];
+    return gpgpJson(
+        {"spawn", grammar.path(), "--schedule", file, "--axioms", "2", "--axiom-size", "4,1,1"})["schedule"];
   };
   ASSERT_EQ(gpgp({"graph", grammar.path(), "--schedule", "sgl", "-o", groups.path()}).exitCode, 0);
   for (const std::string& schedule : {std::string("rw"), groups.path()}) {
@@ -50,11 +51,12 @@ TEST(CliBake, SchedulesAreChosen) {
     EXPECT_EQ(scheduleOf(both.path()), schedule == "rw" ? "rw" : "gpgp_cli_test_chosen_groups");
   }
   // Tuned where it was, and for all others what else is named.
-  const json found = gpgpJson({"tune", grammar.path(), "--axioms", "2", "--seconds", "0.001", "-o", tuned.path()});
+  const json found = gpgpJson(
+      {"tune", grammar.path(), "--axioms", "2", "--axiom-size", "4,1,1", "--seconds", "0.001", "-o", tuned.path()});
   gpgpJson({"bake", grammar.path(), "--schedule", tuned.path(), "--schedule", "rw", "-o", both.path()});
   EXPECT_EQ(scheduleOf(both.path()), found["best"]["schedule"]);
   EXPECT_GT(std::filesystem::file_size(both.path()), std::filesystem::file_size(tuned.path()));
-  EXPECT_EQ(gpgpJson({"spawn", both.path(), "--axioms", "2"})["terminals"], 4);
+  EXPECT_EQ(gpgpJson({"spawn", both.path(), "--axioms", "2", "--axiom-size", "4,1,1"})["terminals"], 4);
   const json linked =
       gpgpJson({"bake", "a=" + grammar.path(), "--link", "--schedule", "rw", "-o", both.path()})["baked"][0];
   EXPECT_EQ(linked["bytes"], std::filesystem::file_size(both.path()));

@@ -49,7 +49,7 @@ TEST(CliReference, OrderDoesNotCountAndEverythingElseDoes) {
   EXPECT_EQ(cli::difference(cpu, report, instances), "");
   const std::vector<std::function<void(GpgpInstance&)>> changes = {
       [](GpgpInstance& i) { ++i.terminal; }, [](GpgpInstance& i) { ++i.axiomId; },
-      [](GpgpInstance& i) { ++i.seed; },     [](GpgpInstance& i) { i.size[2] *= 2; },
+      [](GpgpInstance& i) { ++i.seed; },     [](GpgpInstance& i) { i.size[2] += 1; },
       [](GpgpInstance& i) { ++i.key[1]; },   [](GpgpInstance& i) { i.attribute = -1; }};
   for (const auto& change : changes) {
     auto changed = cpu.instances;
