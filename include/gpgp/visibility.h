@@ -38,18 +38,20 @@ typedef struct GpgpSamplerCreateInfo {
   const void* pNext;
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel and camera
-                                     (conservative: 56) */
+                                     (conservative: 52; exact: 16 and a fifth) */
   uint32_t maxCameras;          /**< of one record, at most 128; 0: 1 */
-  uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 48 bytes each */
+  uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 52 bytes each */
   uint32_t maxTriangles;        /**< of one record, all draws and cameras together; 0: 4194304. What is beyond is not
-                                     sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle */
+                                     sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle
+                                     (exact: 8, or 4 a pair if that is more), and 4 for each 64 */
   uint32_t methods;             /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
-  uint32_t maxSamples;    /**< per pixel in each direction, a power of two up to 64; 0: 1. Scratch: 8 bytes each */
+  uint32_t maxSamples;    /**< per pixel in each direction, a power of two up to 64; 0: 1. Scratch: the 8 bytes a pixel
+                               for each of its samples */
   uint32_t maxCandidates; /**< exact: triangles that may be seen, and those that may hide them; 0: a quarter
                                of maxTriangles, at least 65536. Scratch: 64 bytes each */
   uint32_t maxPairs;      /**< exact: of a candidate and a pixel; 0: 4 each and 4 a pixel, as far as the device
-                               binds them; and half as many of a candidate and 8 x 8 pixels. Scratch: 24 bytes
-                               each */
+                               binds them; and half as many of a candidate and 8 x 8 pixels. Scratch: 8 bytes
+                               each, and see maxTriangles */
 } GpgpSamplerCreateInfo;
 #define GPGP_SAMPLER_CREATE_INFO_INIT GPGP_INIT(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO)
 
@@ -229,7 +231,8 @@ typedef struct GpgpSampleInfo {
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
- *  (conservative: the earlier draw).
+ *  (conservative: the earlier draw). Exact: but for pixels where more than 256 candidates have exactly one depth: there
+ *  they and all candidates of the pixel behind them count as visible, and the report says so (`unresolved`).
  *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
  *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
  *  NOT_READY: geometry set or view not resident, or sampler not prewarmed.
@@ -276,9 +279,13 @@ typedef struct GpgpSampleReport {
   uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set; instances beyond `draws` */
   uint32_t neededCandidates; /**< exact: at least, where there is too little room */
   uint32_t neededPairs;
-  uint32_t unresolved;          /**< exact: triangles and pairs without room; the triangles are reported visible */
-  uint32_t neededDraws;         /**< of one camera */
-  uint32_t draws;               /**< of them sampled, and with drawCommands written */
+  uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible. For
+                             want of room: neededCandidates or neededPairs then exceed the budgets. Or whatever the
+                             budgets: where more than 256 candidates have exactly one depth in a pixel, those and all
+                             behind them there; and what more than 2^20 parts of candidates of over 8 x 8 pixels
+                             leave no place for */
+  uint32_t neededDraws; /**< of one camera */
+  uint32_t draws;       /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */
   uint32_t drawTriangles;       /**< of them written */
   uint32_t truth;               /**< of metrics, as all that follows: triangles in the truth */
@@ -292,9 +299,10 @@ typedef struct GpgpSampleReport {
 #define GPGP_SAMPLE_REPORT_INIT GPGP_INIT(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT)
 
 /** The oldest report not yet taken. NOT_READY: none. BUDGET_EXCEEDED in base.status: maxTriangles (neededTriangles says
- *  how many there are), maxDraws or drawCommands (neededDraws), the list (visible says how many) or the lists by draw
- *  (neededDrawTriangles). What is written is valid, and whole triangles. Of several cameras all but visible, listed,
- *  appeared, disappeared and draws are sums. @threads handle */
+ *  how many there are), maxDraws or drawCommands (neededDraws), the list (visible says how many), the lists by draw
+ *  (neededDrawTriangles), or anything `unresolved`, which larger budgets do not always help. What is written is valid,
+ *  and whole triangles. Of several cameras all but visible, listed, appeared, disappeared and draws are sums.
+ *  @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetSampleReport(GpgpWorker sampler, GpgpSampleReport* report);
 
 #ifdef __cplusplus

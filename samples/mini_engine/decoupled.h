@@ -50,6 +50,7 @@ public:
   };
   const Times& times();
   const GpgpSampleReport& shadingReport() const { return shading_; }
+  uint32_t shadings() const { return stamp_; }
   /// Against the truth, once all its slices are there.
   const std::optional<GpgpSampleReport>& truthReport() const { return truth_; }
   bool allWell() const { return well_ && misses_.displays > 0; }

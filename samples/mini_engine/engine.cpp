@@ -225,8 +225,8 @@ void Engine::printSummary() const {
   if (decoupled_) {
     const GpgpSampleReport& shading = decoupled_->shadingReport();
     const Decoupled::Misses& misses = decoupled_->misses();
-    std::printf("shading     %s: %u of %u triangles\n", gpgpResultString(shading.base.status), shading.visible,
-                sight_.model().triangleCount);
+    std::printf("shading     %s: %u of %u triangles, %u times\n", gpgpResultString(shading.base.status),
+                shading.visible, sight_.model().triangleCount, decoupled_->shadings());
     std::printf("display     %u displays, %.3f %% of the model's pixels without shading, at most %.3f %%\n",
                 misses.displays, 100 * misses.pixels / std::max(misses.displays, 1u), 100 * misses.worst);
     if (const auto& truth = decoupled_->truthReport())

@@ -22,7 +22,8 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --screen         a game's screen instead: crest, score, map, dialogue, menu, an inventory that hangs in the world;
                    screen.png. In a window: arrows and Enter, or the mouse
   --input LIST     for the screen, before the second frame: up, down, enter, click, or XxY, where the mouse moves to:
-                   --input down,enter,134x350,click; in a window as its events; prints what happened
+                   --input down,enter,134x350,click; in a window as its events; prints what happened. For --decoupled
+                   its keys: --input f,3
   --score N        on the screen at the beginning, at most 9999999
   --stereo         the screen for two eyes, side by side, each half of the picture
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
@@ -65,7 +66,7 @@ int indexOf(const char* name, std::initializer_list<const char*> names) {
   return -1;
 }
 
-/// "down,enter,640x360,click"
+/// "down,enter,640x360,click", or keys: "f,3"
 bool parseInputs(const std::string& list, std::vector<mini::Input>& inputs) {
   for (size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
     end = list.find(',', begin);
@@ -76,6 +77,8 @@ bool parseInputs(const std::string& list, std::vector<mini::Input>& inputs) {
     if (named >= 0)
       input.kind = std::array{mini::Input::up, mini::Input::down, mini::Input::enter,
                               mini::Input::click}[static_cast<size_t>(named)];
+    else if (token.size() == 1)
+      input.character = token[0];
     else if (std::sscanf(token.c_str(), "%fx%f%c", &input.x, &input.y, &rest) == 2 && std::isfinite(input.x) &&
              std::isfinite(input.y))
       input.kind = mini::Input::move;
@@ -166,8 +169,10 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   wrong.clear();
   if (options.screen && options.decoupled.on) wrong = "--screen beside --decoupled";
   if (options.frames == 1 && !options.inputs.empty()) wrong = "--input with --frames 1: it comes before the second";
-  if (!options.screen && (!options.inputs.empty() || options.score || options.stereo))
-    wrong = "--input, --score or --stereo without --screen";
+  if (!options.screen && (options.score || options.stereo)) wrong = "--score or --stereo without --screen";
+  for (const mini::Input& input : options.inputs)
+    if (input.kind == mini::Input::key ? !options.decoupled.on || options.path : !options.screen)
+      wrong = "--input: keys are for --decoupled without --path or --table, all else for --screen";
   return wrong.empty();
 }
 

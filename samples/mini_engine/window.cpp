@@ -59,7 +59,11 @@ public:
         event.button.y = pointer_.y;
       } else {
         event.type = SDL_KEYDOWN;
-        event.key.keysym.sym = input.kind == Input::up ? SDLK_UP : input.kind == Input::down ? SDLK_DOWN : SDLK_RETURN;
+        SDL_Keycode& key = event.key.keysym.sym;
+        key = SDLK_RETURN;
+        if (input.kind == Input::key) key = input.character;
+        if (input.kind == Input::up) key = SDLK_UP;
+        if (input.kind == Input::down) key = SDLK_DOWN;
       }
       if (SDL_PushEvent(&event) != 1) throw std::runtime_error(std::string("no room for an event: ") + SDL_GetError());
     }

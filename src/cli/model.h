@@ -4,6 +4,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -21,10 +22,13 @@ struct Model {
 /// Throws std::runtime_error with the file's name, and the line for .obj.
 Model loadModel(const std::filesystem::path& file);
 
-/// Copies side by side, a tenth of the model's size apart, numbered one after the other.
-void repeatInGrid(Model& model, uint32_t columns, uint32_t rows, const glm::vec3& size);
+/// Copies side by side, a tenth of the model's size apart, numbered one after the other. Throws std::runtime_error with
+/// what they need where a device that binds mostBytes of a buffer, or memory, has no room for them.
+void repeatInGrid(Model& model, uint32_t columns, uint32_t rows, const glm::vec3& size, uint64_t mostBytes);
 
-/// World-space corners of each triangle in its number's order.
+/// World-space corners of a draw's triangle.
+std::array<glm::vec3, 3> worldCorners(const Model& model, const GpgpVisibilityDraw& draw, uint32_t triangle);
+/// Those of each triangle in its number's order.
 std::vector<glm::vec3> worldCorners(const Model& model);
 
 } // namespace gpgp::cli

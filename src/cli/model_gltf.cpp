@@ -96,12 +96,12 @@ glm::mat4 localTransform(const tinygltf::Node& node) {
 
 } // namespace
 
-Model loadGltf(const std::filesystem::path& file) {
+Model loadGltf(const std::filesystem::path& file, bool binary) {
   tinygltf::TinyGLTF loader;
   tinygltf::Model gltf;
   std::string error, warning;
-  const bool loaded = file.extension() == ".glb" ? loader.LoadBinaryFromFile(&gltf, &error, &warning, file.string())
-                                                 : loader.LoadASCIIFromFile(&gltf, &error, &warning, file.string());
+  const bool loaded = binary ? loader.LoadBinaryFromFile(&gltf, &error, &warning, file.string())
+                             : loader.LoadASCIIFromFile(&gltf, &error, &warning, file.string());
   if (!loaded) fail(file.string() + ": " + (error.empty() ? "is no glTF 2 file" : error));
 
   Model model;
@@ -110,21 +110,25 @@ Model loadGltf(const std::filesystem::path& file) {
     struct Visit {
       int node;
       glm::mat4 parent;
-      size_t depth;
     };
     std::vector<Visit> stack;
+    std::vector<bool> reached(gltf.nodes.size());
     const size_t scene = gltf.defaultScene < 0 ? 0 : static_cast<size_t>(gltf.defaultScene);
     if (scene < gltf.scenes.size())
-      for (const int node : gltf.scenes[scene].nodes) stack.push_back({node, glm::mat4(1.0f), 0});
+      for (const int node : gltf.scenes[scene].nodes) stack.push_back({node, glm::mat4(1.0f)});
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
-      // A tree is never deeper than it has nodes; more means that a node is its own ancestor.
-      if (visit.node < 0 || static_cast<size_t>(visit.node) >= gltf.nodes.size() || visit.depth > gltf.nodes.size())
-        fail("the nodes are no tree");
-      const tinygltf::Node& node = gltf.nodes[static_cast<size_t>(visit.node)];
+      const auto index = static_cast<size_t>(visit.node);
+      if (visit.node < 0 || index >= gltf.nodes.size())
+        fail("there is no node " + std::to_string(visit.node) + ", which the scene or a node names");
+      const tinygltf::Node& node = gltf.nodes[index];
+      if (reached[index]) // glTF 2.0, 3.5.2; a few nodes with two ways to each could be visited without end
+        fail("node " + std::to_string(index) + (node.name.empty() ? "" : " (" + node.name + ")") +
+             " has two parents or is its own ancestor; the nodes of a glTF are a strict tree");
+      reached[index] = true;
       const glm::mat4 world = visit.parent * localTransform(node);
-      for (const int child : node.children) stack.push_back({child, world, visit.depth + 1});
+      for (const int child : node.children) stack.push_back({child, world});
       if (node.mesh < 0 || static_cast<size_t>(node.mesh) >= gltf.meshes.size()) continue;
       auto [known, isNew] = meshes.try_emplace(node.mesh);
       if (isNew)

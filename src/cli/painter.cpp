@@ -40,8 +40,8 @@ glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, 
   return projection * view;
 }
 
-Painter::Painter(uint32_t width, uint32_t height)
-    : width_(width), height_(height), depth_(size_t{width} * height * 4, 1.0f),
+Painter::Painter(uint32_t width, uint32_t height, bool reversed)
+    : reversed_(reversed), width_(width), height_(height), depth_(size_t{width} * height * 4, reversed ? 0.0f : 1.0f),
       colour_(size_t{width} * height * 4, glm::vec3(0.97f)) {}
 
 namespace {
@@ -104,36 +104,58 @@ bool Painter::lit(const glm::vec3& point, float tolerance) const {
 
 void Painter::triangle(const glm::mat4& viewProjection, std::span<const glm::vec3, 3> corners,
                        const glm::vec3& colour) {
+  const glm::vec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const float length = glm::length(cross);
+  if (!(length > 0)) return;
+  std::array<Corner, 3> whole;
+  std::array<float, 3> inside; // how far behind the near plane
+  for (size_t i = 0; i < 3; ++i) {
+    const glm::vec4 clip = viewProjection * glm::vec4(corners[i], 1.0f);
+    whole[i] = {clip, corners[i]};
+    inside[i] = reversed_ ? clip.w - clip.z : clip.z;
+  }
+  std::array<Corner, 4> cut; // as Sutherland and Hodgman do
+  size_t count = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t next = (i + 1) % 3;
+    if (inside[i] >= 0) cut[count++] = whole[i];
+    if ((inside[i] >= 0) == (inside[next] >= 0)) continue;
+    // From the inner to the outer corner, so that neighbours cut their edge at the same point.
+    const size_t from = inside[i] >= 0 ? i : next, to = inside[i] >= 0 ? next : i;
+    const float t = inside[from] / (inside[from] - inside[to]);
+    cut[count++] = {glm::mix(whole[from].clip, whole[to].clip, t), glm::mix(whole[from].world, whole[to].world, t)};
+  }
+  for (size_t i = 2; i < count; ++i) piece({cut[0], cut[i - 1], cut[i]}, cross / length, colour);
+}
+
+void Painter::piece(const std::array<Corner, 3>& corners, const glm::vec3& front, const glm::vec3& colour) {
   const uint32_t width = width_ * 2, height = height_ * 2;
   std::array<glm::vec3, 3> p;
   glm::vec3 inverseW;
   for (int i = 0; i < 3; ++i) {
-    const glm::vec4 clip = viewProjection * glm::vec4(corners[static_cast<size_t>(i)], 1.0f);
-    if (!(clip.w > 1e-6f)) return;
+    const glm::vec4& clip = corners[static_cast<size_t>(i)].clip;
+    if (!(clip.w > 0)) return;
     inverseW[i] = 1.0f / clip.w;
-    p[static_cast<size_t>(i)] =
-        glm::vec3((clip.x / clip.w * 0.5f + 0.5f) * static_cast<float>(width),
-                  (clip.y / clip.w * 0.5f + 0.5f) * static_cast<float>(height), clip.z / clip.w);
+    p[static_cast<size_t>(i)] = glm::vec3((clip.x / clip.w * 0.5f + 0.5f) * static_cast<float>(width),
+                                          (clip.y / clip.w * 0.5f + 0.5f) * static_cast<float>(height),
+                                          (reversed_ ? -clip.z : clip.z) / clip.w); // nearer ones are smaller
   }
   const float area = edge(p[0], p[1], p[2].x, p[2].y);
   if (!(std::abs(area) > 1e-9f)) return;
-  const glm::vec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const float length = glm::length(cross);
-  if (!(length > 0)) return;
-  const glm::vec3 normal = cross / (area < 0 ? length : -length); // of the side that is seen
+  const glm::vec3 normal = area < 0 ? front : -front; // of the side that is seen
   const float toSun = std::max(glm::dot(normal, kToSun), 0.0f);
   const float sky = 0.5f + 0.12f * normal.y + 0.05f * normal.x, sun = 0.5f * toSun;
   const float tolerance = sunPixel_ * (1.5f + 1.5f * std::sqrt(1.0f - toSun * toSun) / std::max(toSun, 0.1f));
   fill(p, area, width, height, [&](uint32_t x, uint32_t y, const glm::vec3& weights) {
     const float z = glm::dot(weights, glm::vec3(p[0].z, p[1].z, p[2].z));
     const size_t index = size_t{y} * width + x;
-    if (z < 0 || z >= depth_[index]) return;
+    if (z >= depth_[index]) return;
     depth_[index] = z;
     bool sunny = toSun > 0;
     if (sunny && !sunDepth_.empty()) {
       glm::vec3 w = weights * inverseW;
       w /= w.x + w.y + w.z;
-      sunny = lit(corners[0] * w.x + corners[1] * w.y + corners[2] * w.z, tolerance);
+      sunny = lit(corners[0].world * w.x + corners[1].world * w.y + corners[2].world * w.z, tolerance);
     }
     colour_[index] = colour * (sunny ? sky + sun : sky);
   });

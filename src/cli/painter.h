@@ -5,6 +5,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <span>
 
 namespace gpgp::cli {
@@ -24,16 +25,24 @@ glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, 
 
 class Painter {
 public:
-  Painter(uint32_t width, uint32_t height);
+  /// reversed: the cameras' near is 1.
+  Painter(uint32_t width, uint32_t height, bool reversed = false);
   /// For shadows: first the bounds of what casts them, then each triangle that does, then the picture's triangles.
   void sun(const Bounds& bounds);
   void shadow(std::span<const glm::vec3, 3> corners);
-  /// Corners in world space, colour as sRGB 0 to 1. Triangles that reach behind the eye are left out.
+  /// Corners in world space, colour as sRGB 0 to 1. What lies before the near plane is cut off.
   void triangle(const glm::mat4& viewProjection, std::span<const glm::vec3, 3> corners, const glm::vec3& colour);
   host::Picture picture() const;
 
 private:
+  struct Corner {
+    glm::vec4 clip;
+    glm::vec3 world;
+  };
+  /// front: the normal of the side whose corners are counter-clockwise.
+  void piece(const std::array<Corner, 3>& corners, const glm::vec3& front, const glm::vec3& colour);
   bool lit(const glm::vec3& point, float tolerance) const;
+  bool reversed_;
   uint32_t width_, height_; // of the picture; the buffers have twice as many pixels each way
   std::vector<float> depth_;
   std::vector<glm::vec3> colour_;

@@ -36,14 +36,22 @@ Sampler SampledModel::sampler(GpgpSamplingMethod method, uint32_t maxSamples) {
   info.maxTriangles = model_.triangleCount;
   info.methods = 1u << method;
   info.maxSamples = maxSamples;
-  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
-  info.maxCandidates =
-      static_cast<uint32_t>(std::min<uint64_t>({std::max(model_.triangleCount, 65536u), 1u << 24, range / 80}));
-  info.maxPairs =
-      static_cast<uint32_t>(std::min<uint64_t>(uint64_t{info.maxWidth} * info.maxHeight * 24 + (1u << 20), range / 20));
+  info.maxCandidates = maxCandidates();
+  info.maxPairs = maxPairs();
   Sampler made = session_.take(Sampler::create(session_.context(), info), "gpgpCreateSampler");
   session_.check(made.prewarm(), "gpgpPrewarm");
   return made;
+}
+
+uint32_t SampledModel::maxCandidates() const {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  return static_cast<uint32_t>(std::min<uint64_t>({std::max(model_.triangleCount, 65536u), 1u << 24, range / 80}));
+}
+
+uint32_t SampledModel::maxPairs() const {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  const uint64_t pixels = uint64_t{options_.size.width} * options_.size.height;
+  return static_cast<uint32_t>(std::min<uint64_t>(pixels * 24 + (1u << 20), range / 20));
 }
 
 Measured<GpgpSampleReport> SampledModel::sample(Sampler& sampler, const Step& step) {

@@ -13,6 +13,9 @@ public:
   SampledModel(Session& session, const VisibilityOptions& options, const Model& model);
 
   Sampler sampler(GpgpSamplingMethod method, uint32_t maxSamples);
+  /// Of the exact method's samplers.
+  uint32_t maxCandidates() const;
+  uint32_t maxPairs() const;
 
   struct Step {
     GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;

@@ -27,12 +27,17 @@ View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Siz
 
 View readView(const std::string& file) {
   std::istringstream text(host::readText(file));
-  View view;
-  for (int i = 0; i < 16; ++i)
-    if (!(text >> view.camera[i / 4][i % 4]))
-      throw Failure(file + ": number " + std::to_string(i + 1) + " of 16 is missing");
-  float reversed = 0;
-  if (text >> reversed) view.reversed = reversed != 0;
+  std::vector<float> numbers;
+  for (std::string word; text >> word;) {
+    char* end = nullptr;
+    numbers.push_back(std::strtof(word.c_str(), &end));
+    if (*end || !std::isfinite(numbers.back()))
+      throw Failure(file + ": word " + std::to_string(numbers.size()) + ", '" + word + "', is no finite number");
+  }
+  if (numbers.size() < 16 || numbers.size() > 17)
+    throw Failure(file + ": holds " + std::to_string(numbers.size()) + " numbers; a camera is 16, or 17");
+  const View view{glm::make_mat4(numbers.data()), numbers.size() == 17 && numbers[16] != 0};
+  if (glm::determinant(glm::dmat4(view.camera)) == 0) throw Failure(file + ": the matrix has no inverse");
   return view;
 }
 
@@ -47,8 +52,9 @@ Cell::Cell(const std::string& spec) {
     info.columns = columns;
     info.rows = rows;
     info.skip = skip;
-  } else if (std::sscanf(spec.c_str(), "%f:%u%c", &radius, &count, &rest) == 2 && radius > 0 && count > 0 &&
-             count <= 4096) {
+  } else if (std::sscanf(spec.c_str(), "%f:%u%c", &radius, &count, &rest) == 2) {
+    if (!(radius > 0 && std::isfinite(radius)) || count < 1 || count > 4096)
+      throw Usage("--cell: the radius is finite and above 0, and there are 1 to 4096 points");
     // Corners of a square round the middle, then of its inside: a grid as square as the number allows.
     const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<float>(count))));
     for (uint32_t i = 0; i < count && side > 1; ++i) {
@@ -68,13 +74,16 @@ std::vector<View> viewsOf(const Cell& cell, const View& view, const glm::vec3& c
   info.height = height;
   const glm::mat4& m = view.camera;
   info.distance = m[0][3] * centre.x + m[1][3] * centre.y + m[2][3] * centre.z + m[3][3];
+  if (info.columns && !(info.distance > 0 && std::isfinite(info.distance)))
+    throw Failure("--cell: the middle of the scene does not lie before the camera, and so the pixels of a grid have no "
+                  "size there; give RADIUS:POINTS");
   info.points = cell.points.data();
   info.pointCount = static_cast<uint32_t>(cell.points.size() / 3);
   uint32_t count = 0;
   GpgpResult result = gpgpGetViewCellCameras(&info, &count, nullptr);
   std::vector<GpgpCamera> cameras(count);
   if (result == GPGP_SUCCESS) result = gpgpGetViewCellCameras(&info, &count, cameras.data());
-  if (result != GPGP_SUCCESS) throw Failure("no view cell can be made of this camera: it looks away from the scene");
+  if (result != GPGP_SUCCESS) throw Failure("the camera has no direction across or along its view");
   std::vector<View> views;
   for (const GpgpCamera& camera : cameras) views.push_back({glm::make_mat4(camera.viewProjection), view.reversed});
   return views;

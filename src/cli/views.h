@@ -16,7 +16,8 @@ struct View {
 /// the bounding sphere away.
 View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Size size);
 
-/// 16 numbers, column-major, world to clip; a 17th that is not 0: near is 1.
+/// 16 numbers, column-major, world to clip; a 17th that is not 0: near is 1. Throws Failure where the file holds
+/// anything else, or a matrix without inverse.
 View readView(const std::string& file);
 
 /// A view cell, but for its camera: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units; none: one view.

@@ -32,23 +32,53 @@ void writeIds(const std::string& path, const std::vector<uint32_t>& found, uint3
   if (!file.flush()) throw Failure(path + ": cannot be written");
 }
 
+/// Of the triangles that can be sampled: those with finite corners below 2^100.
 Bounds boundsOf(const Model& model) {
   Bounds bounds;
-  for (const glm::vec3& corner : worldCorners(model)) bounds.add(corner);
+  const auto isModerate = [](const glm::vec3& p) {
+    return std::abs(p.x) < 0x1p100f && std::abs(p.y) < 0x1p100f && std::abs(p.z) < 0x1p100f;
+  };
+  for (const GpgpVisibilityDraw& draw : model.draws)
+    for (uint32_t t = 0; t < model.meshes[draw.mesh].indexCount / 3; ++t) {
+      const std::array<glm::vec3, 3> corners = worldCorners(model, draw, t);
+      if (std::all_of(corners.begin(), corners.end(), isModerate))
+        for (const glm::vec3& corner : corners) bounds.add(corner);
+    }
   return bounds;
+}
+
+/// Camera k: the file's, the orbit's, or one that sees everything.
+View viewOf(const VisibilityOptions& options, const Bounds& bounds, uint32_t k) {
+  if (!options.camera.empty()) return readView(options.camera);
+  if (!(bounds.low.x <= bounds.high.x)) throw Failure(options.model + ": no triangle has finite corners below 2^100");
+  // A camera's numbers are products of two lengths.
+  const glm::vec3 most = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+  if (const float reach = std::max({most.x, most.y, most.z}); reach > 1e18f) {
+    std::ostringstream text;
+    text << options.model << ": positions reach " << reach << ", which is too far for a camera that sees them all ("
+         << "1e18); give --camera";
+    throw Failure(text.str());
+  }
+  if (options.orbit) return orbitView(bounds, k, options.orbit, options.distance, options.size);
+  return {viewAll(bounds, options.yaw, options.pitch, options.size.width, options.size.height)};
 }
 
 /// Averages over the cameras, but for what says otherwise.
 struct Figures {
   double truth = 0, visible = 0, coverage = 0, overestimation = 0, coverageArea = 0, overestimationArea = 0;
+  double facing = 0, listed = 0, coveredPixels = 0;   ///< of a cell's last view
   std::vector<std::pair<std::string, double>> passes; ///< milliseconds of all views of a cell
   double milliseconds = 0;                            ///< the same of whole records, median over the cameras
   GpuTimes times;                                     ///< the last view's
-  GpgpSampleReport report{};                          ///< the last view's
-  std::vector<uint32_t> found;                        ///< the last camera's
+  GpgpResult status = GPGP_SUCCESS;                   ///< of all records the worst
+  /// Of all records the largest; the unresolved ones of all.
+  uint32_t neededCandidates = 0, neededPairs = 0, skippedTriangles = 0, skippedDraws = 0;
+  uint64_t unresolved = 0;
+  uint32_t maxCandidates = 0, maxPairs = 0; ///< given
+  std::vector<uint32_t> found, first;       ///< of all cameras together; of the first one
 
-  /// Of one camera of `cameras`.
-  void add(const GpgpSampleReport& metrics, uint32_t cameras) {
+  /// Metrics of one camera of `cameras`.
+  void addMetrics(const GpgpSampleReport& metrics, uint32_t cameras) {
     truth += metrics.truth / static_cast<double>(cameras);
     // A camera that could see nothing has missed nothing.
     coverage += (metrics.truth ? static_cast<double>(metrics.coverage) : 1.0) / cameras;
@@ -56,12 +86,32 @@ struct Figures {
     coverageArea += (metrics.truth ? static_cast<double>(metrics.coverageArea) : 1.0) / cameras;
     overestimationArea += static_cast<double>(metrics.overestimationArea) / cameras;
   }
-  void add(const std::vector<std::pair<std::string, double>>& each, uint32_t cameras) {
-    if (passes.size() < each.size()) passes.clear();
-    for (size_t p = 0; p < each.size(); ++p) {
-      if (passes.size() <= p) passes.emplace_back(each[p].first, 0.0);
-      passes[p].second += each[p].second / cameras;
+  /// A record of a view.
+  void add(const Measured<GpgpSampleReport>& measured, uint32_t cameras) {
+    times = measured.times;
+    if (passes.size() < times.passes.size()) passes.clear();
+    for (size_t p = 0; p < times.passes.size(); ++p) {
+      if (passes.size() <= p) passes.emplace_back(times.passes[p].first, 0.0);
+      passes[p].second += times.passes[p].second / cameras;
     }
+    const GpgpSampleReport& report = measured.report;
+    if (status == GPGP_SUCCESS) status = report.base.status;
+    neededCandidates = std::max(neededCandidates, report.neededCandidates);
+    neededPairs = std::max(neededPairs, report.neededPairs);
+    skippedTriangles = std::max(skippedTriangles, report.skippedTriangles);
+    skippedDraws = std::max(skippedDraws, report.skippedDraws);
+    unresolved += report.unresolved;
+  }
+  /// What a camera's last record of `cameras` found.
+  void add(const GpgpSampleReport& last, std::vector<uint32_t> bits, uint32_t cameras) {
+    facing += last.triangles / static_cast<double>(cameras);
+    listed += last.listed / static_cast<double>(cameras);
+    coveredPixels += last.coveredPixels / static_cast<double>(cameras);
+    visible += countOf(bits) / static_cast<double>(cameras);
+    if (found.empty())
+      found = first = std::move(bits);
+    else
+      for (size_t i = 0; i < found.size(); ++i) found[i] |= bits[i];
   }
 };
 
@@ -72,31 +122,31 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
   SampledModel scene(session, options, model);
   Sampler sampler = scene.sampler(method, method == GPGP_SAMPLING_STANDARD ? options.samples : 1);
   Figures figures;
+  figures.maxCandidates = scene.maxCandidates();
+  figures.maxPairs = scene.maxPairs();
   std::vector<double> totals;
   const uint32_t cameras = options.cameras();
   for (uint32_t k = 0; k < cameras; ++k) {
-    const View view = !options.camera.empty() ? readView(options.camera)
-                      : options.orbit
-                          ? orbitView(bounds, k, options.orbit, options.distance, options.size)
-                          : View{viewAll(bounds, options.yaw, options.pitch, options.size.width, options.size.height)};
+    const View view = viewOf(options, bounds, k);
     const std::vector<View> views = viewsOf(cell, view, bounds.centre(), options.size.height);
     double total = 0;
+    GpgpSampleReport last{};
     for (size_t v = 0; v < views.size(); ++v) {
       SampledModel::Step step;
       step.method = method;
       step.view = views[v];
       step.samples = options.samples;
+      if (k == 0 && v == 0) scene.sample(sampler, step); // not counted: pipelines and memory are used the first time
       step.repeat = options.repeat;
       step.accumulate = v > 0;
       const auto measured = scene.sample(sampler, step);
-      figures.times = measured.times;
-      figures.report = measured.report;
-      figures.add(measured.times.passes, cameras);
+      figures.add(measured, cameras);
+      last = measured.report;
       total += measured.times.median();
     }
     totals.push_back(total);
-    figures.found = scene.bits();
-    figures.visible += static_cast<double>(countOf(figures.found)) / cameras;
+    const std::vector<uint32_t> found = scene.bits();
+    figures.add(last, found, cameras);
 
     const bool overlay = !options.overlay.empty() && k == 0;
     std::vector<uint32_t> standard, truth;
@@ -110,16 +160,36 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     if (options.truth) {
       truth = scene.truth(views, options.truth);
       const std::vector<uint32_t> areas = scene.sizes();
-      GpgpSampleReport metrics = scene.compare(sampler, figures.found, truth, areas, {});
-      if (metrics.falsePositives && options.recheck > options.truth)
-        metrics = scene.compare(sampler, figures.found, truth, areas, scene.truth(views, options.recheck));
-      figures.add(metrics, cameras);
+      GpgpSampleReport metrics = scene.compare(sampler, found, truth, areas, {});
+      if (metrics.falsePositives && options.recheck > options.truth) {
+        const std::vector<uint32_t> finer = scene.truth(views, options.recheck);
+        metrics = scene.compare(sampler, found, truth, areas, finer);
+        for (size_t i = 0; i < truth.size(); ++i) truth[i] |= found[i] & finer[i]; // as the metrics count them
+      }
+      figures.addMetrics(metrics, cameras);
     }
-    if (overlay) paintOverlay(options, corners, view.camera, figures.found, standard, truth);
+    if (overlay) paintOverlay(options, corners, view, found, standard, truth);
   }
   std::sort(totals.begin(), totals.end());
   figures.milliseconds = totals[totals.size() / 2];
   return figures;
+}
+
+/// What went wrong without failing, for people.
+std::string remarks(const Model& model, const Figures& figures) {
+  std::ostringstream text;
+  if (figures.neededCandidates > figures.maxCandidates || figures.neededPairs > figures.maxPairs)
+    text << "budget exceeded: " << figures.neededCandidates << " candidates and " << figures.neededPairs
+         << " pairs or more need room, which " << figures.maxCandidates << " and " << figures.maxPairs << " have; "
+         << figures.unresolved << " found none, and their triangles count as visible\n";
+  else if (figures.unresolved)
+    text << "not decided: " << figures.unresolved
+         << " triangles count as visible, because more than 256 of one depth meet in a pixel; no budget changes that\n";
+  if (figures.skippedTriangles)
+    text << figures.skippedTriangles << " triangles skipped: a coordinate is not finite or reaches 2^100\n";
+  if (figures.skippedDraws) text << figures.skippedDraws << " draws skipped: they have no mesh\n";
+  if (model.leftOut) text << model.leftOut << " primitives are no triangles and were left out\n";
+  return text.str();
 }
 
 Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Figures& figures,
@@ -128,10 +198,11 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
   Outcome outcome;
   std::ostringstream text;
   text.precision(4);
+  const char* first = options.cameras() > 1 ? "first " : "";
   text << options.model << ": " << model.triangleCount << " triangles in " << model.draws.size() << " draws\n"
        << figures.visible << " visible (" << share << " %)";
   if (options.sampling() == GPGP_SAMPLING_STANDARD)
-    text << ", " << figures.report.coveredPixels << " of " << uint64_t{options.size.width} * options.size.height
+    text << ", " << std::llround(figures.coveredPixels) << " of " << uint64_t{options.size.width} * options.size.height
          << " pixels covered";
   text << "; GPU " << milliseconds(figures.milliseconds) << " (median of " << figures.times.totals.size() << ") on "
        << device << '\n';
@@ -139,31 +210,28 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
     text << "truth " << figures.truth << ": coverage " << 100 * figures.coverage << " %, overestimation "
          << 100 * figures.overestimation << " %; by area " << 100 * figures.coverageArea << " %, "
          << 100 * figures.overestimationArea << " %\n";
-  if (figures.report.listed < figures.report.visible)
-    text << "budget exceeded: " << figures.report.visible - figures.report.listed << " not listed\n";
-  if (figures.report.unresolved)
-    text << "budget exceeded: " << figures.report.unresolved << " without room count as visible\n";
-  if (model.leftOut) text << model.leftOut << " primitives are no triangles and were left out\n";
+  text << remarks(model, figures);
   if (!options.image.empty())
-    text << "picture: " << options.image << " (left: from the camera; right: from the side)\n";
+    text << "picture: " << options.image << " (left: from the " << first << "camera; right: from the side)\n";
   if (!options.overlay.empty())
-    text << "overlay: " << options.overlay << " (green standard, grey added, red too much, blue missed)\n";
+    text << "overlay: " << options.overlay << " (from the " << first
+         << "camera: green standard, grey added, red too much, blue missed)\n";
   outcome.text = text.str();
   const auto measured = [&](double value) { return options.truth ? Json(value) : Json(); };
   Json passTimes = Json::object();
   for (const auto& [name, time] : figures.passes) passTimes[name] = time;
   outcome.json = {{"model", options.model},
                   {"device", device},
-                  {"status", statusName(figures.report.base.status)},
+                  {"status", statusName(figures.status)},
                   {"method", options.method},
                   {"width", options.size.width},
                   {"height", options.size.height},
                   {"draws", model.draws.size()},
                   {"triangles", model.triangleCount},
-                  {"facing", figures.report.triangles},
+                  {"facing", std::llround(figures.facing)},
                   {"visible", std::llround(figures.visible)},
-                  {"listed", figures.report.listed},
-                  {"coveredPixels", figures.report.coveredPixels},
+                  {"listed", std::llround(figures.listed)},
+                  {"coveredPixels", std::llround(figures.coveredPixels)},
                   {"gpuMilliseconds", figures.times.json()},
                   {"image", options.image.empty() ? Json() : Json(options.image)},
                   {"cameras", options.cameras()},
@@ -172,32 +240,34 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"overestimation", measured(figures.overestimation)},
                   {"coverage_area", measured(figures.coverageArea)},
                   {"overestimation_area", measured(figures.overestimationArea)},
-                  {"neededCandidates", figures.report.neededCandidates},
-                  {"neededPairs", figures.report.neededPairs},
-                  {"unresolved", figures.report.unresolved},
+                  {"neededCandidates", figures.neededCandidates},
+                  {"neededPairs", figures.neededPairs},
+                  {"unresolved", figures.unresolved},
+                  {"skippedTriangles", figures.skippedTriangles},
+                  {"skippedDraws", figures.skippedDraws},
+                  {"leftOut", model.leftOut},
                   {"gpu_ms_median", figures.milliseconds},
                   {"passes", passTimes}};
   return outcome;
 }
 
 Outcome visibility(const VisibilityOptions& options, const CommonOptions& common) {
-  if (options.method == "cell" && options.cell.empty()) throw Usage("--method cell needs --cell SPEC");
   const Cell cell(options.cell);
   Model model = loadModel(options.model);
   if (options.twoSided)
     for (GpgpVisibilityDraw& draw : model.draws) draw.flags |= GPGP_DRAW_TWO_SIDED;
+  Session session(common);
   Bounds bounds = boundsOf(model);
   if (options.grid.width * options.grid.height > 1) {
-    repeatInGrid(model, options.grid.width, options.grid.height, bounds.high - bounds.low);
+    repeatInGrid(model, options.grid.width, options.grid.height, bounds.high - bounds.low,
+                 session.device().properties().limits.maxStorageBufferRange);
     bounds = boundsOf(model);
   }
   const bool paints = !options.image.empty() || !options.overlay.empty();
   const std::vector<glm::vec3> corners = paints ? worldCorners(model) : std::vector<glm::vec3>();
-
-  Session session(common);
   const Figures figures = measure(session, options, cell, model, bounds, corners);
   if (!options.exportIds.empty()) writeIds(options.exportIds, figures.found, model.triangleCount);
-  if (!options.image.empty()) paintSeen(options, corners, bounds, figures.found);
+  if (!options.image.empty()) paintSeen(options, corners, viewOf(options, bounds, 0), bounds, figures.first);
   session.checkValidation();
   return outcomeOf(options, model, figures, session.device().name());
 }
@@ -207,14 +277,6 @@ Work addVisibility(CLI::App& app) {
   auto options = std::make_shared<VisibilityOptions>();
   CLI::App* command = app.add_subcommand("visibility", "Sample which triangles of a model a camera sees");
   addVisibilityOptions(*command, *options);
-  command->footer(R"(
-Examples:
-  gpgp visibility engine.glb
-  gpgp visibility bunny.obj --yaw 90 --image seen.png
-  gpgp visibility engine.glb --size 1920x1080 --repeat 100 --json | jq .visible
-  gpgp visibility engine.glb --method exact --orbit 8 --truth 64 --overlay seen.png
-
-The camera looks at the middle of the model from far enough to see all of it.)");
   return [options](const CommonOptions& common) { return visibility(*options, common); };
 }
 

@@ -46,65 +46,96 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       ->required()
       ->check(CLI::ExistingFile);
   addSize(command, "--size", options.size, "Viewport in pixels (default 1280x720)");
-  command.add_option("--yaw", options.yaw, "Degrees around the model")->capture_default_str();
-  command.add_option("--pitch", options.pitch, "Degrees above the horizon")
-      ->check(within(-89.0, 89.0))
-      ->capture_default_str();
+  CLI::Option* yaw =
+      command.add_option("--yaw", options.yaw, "Degrees around the model of the camera that sees all of it")
+          ->capture_default_str();
+  CLI::Option* pitch = command.add_option("--pitch", options.pitch, "Degrees above the horizon of the same")
+                           ->check(within(-89.0, 89.0))
+                           ->capture_default_str();
   command.add_flag("--two-sided", options.twoSided, "Back faces count as well");
   command
       .add_option_function<std::string>(
           "--grid", [&options](const std::string& text) { options.grid = parseSize(text); },
           "NxM copies of the model side by side")
       ->type_name("NxM");
-  command
-      .add_option("--orbit", options.orbit, "N cameras on a circle 20 degrees above the horizon; results are averages")
-      ->check(CLI::Range(1u, 4096u));
+  CLI::Option* orbit = command
+                           .add_option("--orbit", options.orbit,
+                                       "N cameras on a circle 20 degrees above the horizon; results are averages")
+                           ->check(CLI::Range(1u, 4096u))
+                           ->excludes(yaw)
+                           ->excludes(pitch);
   command.add_option("--distance", options.distance, "Of the orbit's cameras, in radii of the bounding sphere")
       ->check(within(0.01, 1e6))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(orbit);
   command.add_option("--camera", options.camera, "16 numbers, world to clip, column-major; a 17th not 0: near is 1")
-      ->check(CLI::ExistingFile);
+      ->check(CLI::ExistingFile)
+      ->excludes(orbit)
+      ->excludes(yaw)
+      ->excludes(pitch);
   command.add_option("--method", options.method, "standard, conservative, exact or cell (exact over a view cell)")
       ->check(CLI::IsMember({"standard", "conservative", "exact", "cell"}))
       ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--epsilon", [&options](const std::string& text) { parseEpsilon(text, options); },
-          "Conservative: static and dynamic epsilon, in units along the view (default 0.05,0.05)")
-      ->type_name("ABS,DYN");
-  command
-      .add_option_function<std::string>(
-          "--heuristics", [&options](const std::string& text) { options.heuristics = parseHeuristics(text); },
-          "Conservative: of in-circle, depth, front (depth, but what lies in front is kept), none (default "
-          "in-circle,depth)")
-      ->type_name("LIST");
-  command.add_option("--resolution", options.resolution, "Conservative: factor of the viewport's size")
-      ->check(within(0.25, 1.0))
-      ->capture_default_str();
-  command.add_option("--refinements", options.refinements, "Conservative: at most N passes that close gaps")
-      ->check(CLI::Range(0u, 4u))
-      ->capture_default_str();
-  command.add_option("--samples", options.samples, "Standard: N x N samples a pixel")
-      ->check(CLI::IsMember({1u, 2u, 4u, 8u}))
-      ->capture_default_str();
+  const std::vector<CLI::Option*> conservative = {
+      command
+          .add_option_function<std::string>(
+              "--epsilon", [&options](const std::string& text) { parseEpsilon(text, options); },
+              "Conservative: static and dynamic epsilon, in units along the view (default 0.05,0.05)")
+          ->type_name("ABS,DYN"),
+      command
+          .add_option_function<std::string>(
+              "--heuristics", [&options](const std::string& text) { options.heuristics = parseHeuristics(text); },
+              "Conservative: of in-circle, depth, front (depth, but what lies in front is kept), none (default "
+              "in-circle,depth)")
+          ->type_name("LIST"),
+      command.add_option("--resolution", options.resolution, "Conservative: factor of the viewport's size")
+          ->check(within(0.25, 1.0))
+          ->capture_default_str(),
+      command.add_option("--refinements", options.refinements, "Conservative: at most N passes that close gaps")
+          ->check(CLI::Range(0u, 4u))
+          ->capture_default_str()};
+  const CLI::Option* samples = command.add_option("--samples", options.samples, "Standard: N x N samples a pixel")
+                                   ->check(CLI::IsMember({1u, 2u, 4u, 8u}))
+                                   ->capture_default_str();
   command.add_option("--cell", options.cell,
                      "View cell: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units");
-  command.add_option("--truth", options.truth, "Measure against N x N + 1 samples a pixel")
-      ->check(CLI::IsMember({1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 256u}));
-  command.add_option("--recheck", options.recheck, "Sample claimed false positives again at N x N; 0: do not")
-      ->check(CLI::IsMember({0u, 64u, 128u, 256u}))
-      ->capture_default_str();
+  CLI::Option* truth = command.add_option("--truth", options.truth, "Measure against N x N + 1 samples a pixel")
+                           ->check(CLI::IsMember({1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 256u}));
+  const CLI::Option* recheck =
+      command.add_option("--recheck", options.recheck, "Sample claimed false positives again at N x N; 0: do not")
+          ->check(CLI::IsMember({0u, 64u, 128u, 256u}))
+          ->capture_default_str()
+          ->needs(truth);
   command
-      .add_option("--overlay", options.overlay, "Green standard, grey added by the method, red too much, blue missed")
+      .add_option("--overlay", options.overlay,
+                  "From the first camera: green standard, grey added by the method, red too much, blue missed")
       ->check(pngFile())
       ->type_name("FILE.png");
-  command.add_option("--export-ids", options.exportIds, "Visible triangles as little-endian uint32")->type_name("FILE");
-  command.add_option("--repeat", options.repeat, "Sample N times and report the median time")
+  command
+      .add_option("--export-ids", options.exportIds,
+                  "Triangles that any of the cameras sees as little-endian uint32, ascending")
+      ->type_name("FILE");
+  command
+      .add_option("--repeat", options.repeat,
+                  "Sample N times and report the median time; a first time before them is not counted")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
-  command.add_option("--image", options.image, "Write a picture: the camera's view, and the same from the side")
+  command
+      .add_option("--image", options.image, "Write a picture: what the first camera sees, from there and from the side")
       ->check(pngFile())
       ->type_name("FILE.png");
+  // What would have no effect is an error: who gives it expects one.
+  command.callback([&options, conservative, samples, recheck] {
+    for (const CLI::Option* option : conservative)
+      if (option->count() && options.method != "conservative")
+        throw CLI::ValidationError(option->get_name(), "belongs to --method conservative");
+    if (samples->count() && options.method != "standard")
+      throw CLI::ValidationError(samples->get_name(), "belongs to --method standard");
+    if (options.method == "cell" && options.cell.empty())
+      throw CLI::ValidationError("--method cell", "needs --cell SPEC");
+    if (recheck->count() && options.recheck && options.recheck <= options.truth)
+      throw CLI::ValidationError(recheck->get_name(), "has to be finer than --truth");
+  });
   command.footer(R"(
 Examples:
   gpgp visibility engine.glb
@@ -112,7 +143,7 @@ Examples:
   gpgp visibility engine.glb --size 1920x1080 --repeat 100 --json | jq .visible
   gpgp visibility engine.glb --method exact --orbit 8 --truth 64 --overlay seen.png
 
-The camera looks at the middle of the model from far enough to see all of it.)");
+Without --camera and --orbit the camera looks at the middle of the model from far enough to see all of it.)");
 }
 
 } // namespace gpgp::cli

@@ -4,16 +4,16 @@
 
 namespace gpgp::cli {
 
-void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const Bounds& bounds,
-               const std::vector<uint32_t>& bits) {
+void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
+               const Bounds& bounds, const std::vector<uint32_t>& bits) {
   const uint32_t width = options.size.width, height = options.size.height;
   host::Picture both{width * 2, height, std::vector<uint8_t>(size_t{width} * height * 8)};
   for (uint32_t side = 0; side < 2; ++side) {
-    const glm::mat4 camera =
-        viewAll(bounds, options.yaw + 110.0f * static_cast<float>(side), options.pitch, width, height);
-    Painter painter(width, height);
+    const View from =
+        side == 0 ? view : View{viewAll(bounds, options.yaw + 110.0f, options.pitch, width, height), false};
+    Painter painter(width, height, from.reversed);
     for (size_t t = 0; t < corners.size() / 3; ++t) {
-      painter.triangle(camera, std::span<const glm::vec3, 3>(&corners[t * 3], 3),
+      painter.triangle(from.camera, std::span<const glm::vec3, 3>(&corners[t * 3], 3),
                        isSet(bits, t) ? glm::vec3(0.95f, 0.55f, 0.15f) : glm::vec3(0.62f));
     }
     const host::Picture half = painter.picture();
@@ -23,10 +23,10 @@ void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& c
   host::writePng(options.image, both);
 }
 
-void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const glm::mat4& camera,
+void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
                   const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
                   const std::vector<uint32_t>& truth) {
-  Painter painter(options.size.width, options.size.height);
+  Painter painter(options.size.width, options.size.height, view.reversed);
   for (size_t t = 0; t < corners.size() / 3; ++t) {
     const bool isFound = isSet(found, t), isTrue = truth.empty() ? isFound : isSet(truth, t);
     if (!isFound && !isTrue) continue;
@@ -37,7 +37,7 @@ void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>
       colour = {0.1f, 0.2f, 0.95f};
     else if (isSet(standard, t))
       colour = {0.2f, 0.75f, 0.25f};
-    painter.triangle(camera, std::span<const glm::vec3, 3>(&corners[t * 3], 3), colour);
+    painter.triangle(view.camera, std::span<const glm::vec3, 3>(&corners[t * 3], 3), colour);
   }
   host::writePng(options.overlay, painter.picture());
 }

@@ -1,6 +1,6 @@
 // The pictures of `gpgp visibility`: what was seen, and how that compares with standard sampling and a truth.
 #pragma once
-#include "cli/painter.h"
+#include "cli/views.h"
 #include "cli/visibility_options.h"
 
 #include <vector>
@@ -9,13 +9,13 @@ namespace gpgp::cli {
 
 inline bool isSet(const std::vector<uint32_t>& bits, size_t i) { return bits[i / 32] >> i % 32 & 1u; }
 
-/// options.image: what the camera saw, from the camera and from the side: seen triangles orange, all others grey.
-void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const Bounds& bounds,
-               const std::vector<uint32_t>& bits);
+/// options.image: what a camera saw, from there and from the side: seen triangles orange, all others grey.
+void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
+               const Bounds& bounds, const std::vector<uint32_t>& bits);
 
 /// options.overlay, figure 6.2: green standard, grey only what the method adds, red false positive, blue false
 /// negative. truth may be empty.
-void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const glm::mat4& camera,
+void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
                   const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
                   const std::vector<uint32_t>& truth);
 

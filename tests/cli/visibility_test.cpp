@@ -50,6 +50,9 @@ TEST(CliVisibility, SeesWhatIsInFront) {
                                                 "neededCandidates",
                                                 "neededPairs",
                                                 "unresolved",
+                                                "skippedTriangles",
+                                                "skippedDraws",
+                                                "leftOut",
                                                 "gpu_ms_median",
                                                 "passes"}));
   EXPECT_TRUE(front["coverage"].is_null()) << "no truth was asked for";
@@ -122,10 +125,87 @@ TEST(CliVisibility, BadModelsAreNamed) {
   EXPECT_NE(gpgpFailure({"visibility", noGlb.path()}).find("no.glb"), std::string::npos);
   const TemporaryFile unknown("model.xyz", "?");
   EXPECT_NE(gpgpFailure({"visibility", unknown.path()}).find(".glb"), std::string::npos);
+  const TemporaryFile goesOn("goes_on.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n2 \\\n4\n");
+  EXPECT_NE(gpgpFailure({"visibility", goesOn.path()}).find("goes_on.obj:4:"), std::string::npos);
+  const TemporaryFile far("far.obj", "v 1e30 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_NE(gpgpFailure({"visibility", far.path()}).find("positions reach 1e+30"), std::string::npos);
+  const TemporaryFile tooFar("too_far.obj", "v 2e30 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_NE(gpgpFailure({"visibility", tooFar.path()}).find("no triangle has finite corners"), std::string::npos);
+}
+
+/// A glTF of one mesh: a triangle, and where asked for a strip, too.
+std::string gltf(const std::string& nodes, bool strip = false) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes +
+         R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}})" +
+         (strip ? R"(,{"attributes":{"POSITION":0},"mode":5})" : "") +
+         R"(]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+         R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":)"
+         R"("data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
+}
+
+TEST(CliVisibility, NodesAreATree) {
+  const TemporaryFile tree("tree.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":0,"translation":[3,0,0]})"));
+  EXPECT_EQ(gpgpJson({"visibility", tree.path(), "--yaw", "0", "--size", "32x32"})["visible"], 2);
+  // With two ways to each of forty nodes, one after the other, there would be 2^40 triangles.
+  std::string nodes;
+  for (int i = 1; i <= 40; ++i)
+    nodes += R"({"name":"joint","children":[)" + std::to_string(i) + "," + std::to_string(i) + "]},";
+  const TemporaryFile doubled("doubled.gltf", gltf(nodes + R"({"mesh":0})"));
+  const std::string failure = gpgpFailure({"visibility", doubled.path()});
+  EXPECT_NE(failure.find("node 40 has two parents"), std::string::npos) << failure;
+  const TemporaryFile cycle("cycle.gltf", gltf(R"({"name":"root","mesh":0,"children":[0]})"));
+  EXPECT_NE(gpgpFailure({"visibility", cycle.path()}).find("node 0 (root)"), std::string::npos);
+  const TemporaryFile none("none.gltf", gltf(R"({"children":[7]})"));
+  EXPECT_NE(gpgpFailure({"visibility", none.path()}).find("no node 7"), std::string::npos);
+}
+
+TEST(CliVisibility, WhatIsSkippedIsSaid) {
+  const TemporaryFile strip("strip.gltf", gltf(R"({"mesh":0})", true));
+  const json seen = gpgpJson({"visibility", strip.path(), "--yaw", "0", "--size", "32x32"});
+  EXPECT_EQ(seen["visible"], 1);
+  EXPECT_EQ(seen["leftOut"], 1);
+  EXPECT_EQ(seen["skippedTriangles"], 0);
+  EXPECT_NE(gpgp({"visibility", strip.path(), "--size", "32x32"}).out.find("1 primitives are no triangles"),
+            std::string::npos);
+  // Reaches 2^100; the camera sees the other one.
+  const TemporaryFile far("one_far.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 2e30 0\nf 1 2 3\nf 1 2 4\n");
+  const json one = gpgpJson({"visibility", far.path(), "--yaw", "0", "--size", "32x32"});
+  EXPECT_EQ(one["visible"], 1);
+  EXPECT_EQ(one["skippedTriangles"], 1);
+  EXPECT_EQ(one["skippedDraws"], 0);
+  EXPECT_NE(gpgp({"visibility", far.path(), "--size", "32x32"}).out.find("1 triangles skipped"), std::string::npos);
+}
+
+TEST(CliVisibility, NamesAndLinesOfModels) {
+  const TemporaryFile upper("UPPER.OBJ", "v -1 -1 0\r\nv 1 -1 0\r\nv 0 \\\r\n1 0\r\nf 1 \\\r\n  2 3 # all\r\n");
+  EXPECT_EQ(gpgpJson({"visibility", upper.path(), "--yaw", "0", "--size", "32x32"})["visible"], 1);
+  const TemporaryFile noBinary("UPPER.GLB", "glTF but not really");
+  EXPECT_NE(gpgpFailure({"visibility", noBinary.path()}).find("UPPER.GLB"), std::string::npos);
 }
 
 TEST(CliVisibility, WrongUsage) {
-  const TemporaryFile model("usage.obj", kTwoSquares);
+  const TemporaryFile model("usage.obj", kTwoSquares), camera("usage.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  // What would have no effect.
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{"--method", "exact", "--samples", "4"},
+                                             {"--method", "exact", "--epsilon", "1,1"},
+                                             {"--method", "exact", "--heuristics", "depth"},
+                                             {"--method", "exact", "--resolution", "0.5"},
+                                             {"--refinements", "2"},
+                                             {"--method", "conservative", "--samples", "4"},
+                                             {"--method", "cell"},
+                                             {"--distance", "3"},
+                                             {"--orbit", "2", "--yaw", "10"},
+                                             {"--orbit", "2", "--pitch", "10"},
+                                             {"--camera", camera.path(), "--yaw", "10"},
+                                             {"--camera", camera.path(), "--pitch", "10"},
+                                             {"--camera", camera.path(), "--orbit", "2"},
+                                             {"--recheck", "64"},
+                                             {"--truth", "64", "--recheck", "64"}}) {
+    std::vector<std::string> arguments{"visibility", model.path()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expectWrongUsage({arguments});
+  }
   expectWrongUsage({{"visibility"},
                     {"visibility", "no_such_file.obj"},
                     {"visibility", model.path(), "--size", "0x5"},

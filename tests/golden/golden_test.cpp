@@ -108,4 +108,52 @@ TEST(DecoupledShading, FrozenShadingShowsWhatTheMethodAdds) {
   EXPECT_GT(green, 1000u);
 }
 
+/// The last display of decoupled shading, and how often it shaded.
+std::pair<Picture, unsigned> shown(const std::string& arguments) {
+  const std::filesystem::path out = GPGP_GOLDEN_OUT "-decoupled";
+  const std::string text = outputOf("--decoupled --validate --out \"" + out.string() + "\" " + arguments);
+  EXPECT_NE(text.find("validation  0 messages"), std::string::npos) << text;
+  unsigned shadings = 0;
+  const size_t at = text.find(" triangles, ");
+  EXPECT_TRUE(at != std::string::npos && std::sscanf(text.c_str() + at, " triangles, %u times", &shadings) == 1)
+      << text;
+  return {gpgp::host::readPng(out / "shaded.png"), shadings};
+}
+
+size_t count(const Picture& picture, bool (*isSo)(int, int, int)) {
+  size_t n = 0;
+  for (size_t i = 0; i < picture.rgba.size(); i += 4)
+    n += isSo(picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]);
+  return n;
+}
+bool isMagenta(int r, int g, int b) { return r > 150 && b > 150 && g < 90; }
+
+TEST(DecoupledShading, TheKeyFreezesAndMovesOn) {
+  const std::string run = "--frames 9 --rate 4 --size 320x180 ";
+  const auto [always, three] = shown(run);
+  EXPECT_EQ(three, 3u) << "frames 0, 4 and 8";
+  const auto [frozen, once] = shown(run + "--input f");
+  EXPECT_EQ(once, 1u);
+  EXPECT_EQ(frozen.rgba, shown(run + "--freeze 1").first.rgba) << "as if it was said before";
+  EXPECT_GT(count(frozen, isMagenta), count(always, isMagenta)) << "walked round what was shaded";
+  const auto [again, threeAgain] = shown(run + "--input f,f");
+  EXPECT_EQ(threeAgain, 3u);
+  EXPECT_EQ(again.rgba, always.rgba);
+}
+
+// Figure 6.1. Colours go by area: three times as many pixels each way make triangles less red, by half of the scale.
+TEST(DecoupledShading, DensityIsByArea) {
+  const std::string run = "--frames 2 --show density ";
+  const auto isRed = [](int r, int g, int b) { return r > g + 40 && r > b + 40; };
+  const auto isBlue = [](int r, int g, int b) { return b > r + 90 && b > g + 90; };
+  const Picture small = shown(run + "--size 160x90").first, large = shown(run + "--size 480x270").first;
+  const double pixels = 160 * 90;
+  const double smallRed = static_cast<double>(count(small, isRed)) / pixels;
+  const double largeRed = static_cast<double>(count(large, isRed)) / pixels / 9;
+  EXPECT_GT(smallRed, 0.02);
+  EXPECT_LT(largeRed, smallRed * 0.75);
+  EXPECT_GT(count(large, isBlue), count(small, isBlue) * 9 + 100);
+  EXPECT_EQ(large.rgba, shown("--frames 2 --size 480x270 --input 3").first.rgba) << "the key 3 shows the same";
+}
+
 } // namespace

@@ -1,0 +1,307 @@
+// `gpgp visibility` from many cameras, with each method, and its overlay.
+#include "files.h"
+#include "host/picture.h"
+#include "run.h"
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+namespace gpgp::test {
+namespace {
+
+using Args = std::vector<std::string>;
+using Ids = std::set<uint32_t>;
+
+Args operator+(Args args, const Args& more) {
+  args.insert(args.end(), more.begin(), more.end());
+  return args;
+}
+
+/// As --camera reads it.
+std::string textOf(const glm::dmat4& camera, bool reversed = false) {
+  std::ostringstream text;
+  text.precision(9);
+  for (int i = 0; i < 16; ++i) text << camera[i / 4][i % 4] << ' ';
+  if (reversed) text << 1;
+  return text.str();
+}
+
+/// Runs and reads what --export-ids wrote.
+Ids idsOf(const Args& args) {
+  const TemporaryFile file("views.ids");
+  gpgpJson(args + Args{"--export-ids", file.path()});
+  const std::string bytes = host::readText(file.path());
+  EXPECT_EQ(bytes.size() % 4, 0u);
+  Ids ids;
+  uint32_t last = 0;
+  for (size_t i = 0; i + 4 <= bytes.size(); i += 4) {
+    const auto byte = [&](size_t b) { return uint32_t{static_cast<unsigned char>(bytes[i + b])}; };
+    const uint32_t id = byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
+    EXPECT_TRUE(ids.empty() || id > last) << "ascending";
+    last = id;
+    ids.insert(id);
+  }
+  return ids;
+}
+
+/// Those that are in one of both only.
+size_t differenceOf(const Ids& a, const Ids& b) {
+  Ids both;
+  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::inserter(both, both.end()));
+  return both.size();
+}
+
+/// A ball of radius 1 round (5, 2, -3), so finely cut that each change of the camera changes what pixels' centres see.
+std::string ball() {
+  constexpr int kAround = 96, kUp = 48;
+  std::ostringstream obj;
+  for (int j = 0; j <= kUp; ++j)
+    for (int i = 0; i < kAround; ++i) {
+      const double pi = std::acos(-1.0), turn = 2 * pi * i / kAround, rise = pi * j / kUp - pi / 2;
+      obj << "v " << 5 + std::cos(rise) * std::sin(turn) << ' ' << 2 + std::sin(rise) << ' '
+          << -3 + std::cos(rise) * std::cos(turn) << '\n';
+    }
+  for (int j = 0; j < kUp; ++j)
+    for (int i = 0; i < kAround; ++i) {
+      const int a = j * kAround + i + 1, b = j * kAround + (i + 1) % kAround + 1;
+      obj << "f " << a << ' ' << b << ' ' << b + kAround << ' ' << a + kAround << '\n';
+    }
+  return obj.str();
+}
+
+/// What the issue says of camera k of n: at the scene's centre, elevation 20 degrees, 60 degrees vertical field of
+/// view, from so many radii of the sphere round the bounds.
+glm::dmat4 orbitCamera(int k, int n, double radii, double elevation = 20, double field = 60) {
+  const double turn = 2 * std::acos(-1.0) * k / n, rise = glm::radians(elevation);
+  const glm::dvec3 centre(5, 2, -3);
+  const glm::dvec3 eye =
+      centre + radii * std::sqrt(3.0) *
+                   glm::dvec3(std::cos(rise) * std::sin(turn), std::sin(rise), std::cos(rise) * std::cos(turn));
+  glm::dmat4 projection = glm::perspectiveRH_ZO(glm::radians(field), 96.0 / 64.0, 0.25, 40.0);
+  projection[1][1] *= -1;
+  return projection * glm::lookAtRH(eye, centre, glm::dvec3(0, 1, 0));
+}
+
+TEST(CliVisibilityViews, OrbitIsWhereItIsStated) {
+  const TemporaryFile model("ball.obj", ball());
+  const Args plain{"visibility", model.path(), "--size", "96x64"};
+  const auto from = [&](const std::vector<glm::dmat4>& cameras) {
+    Ids all;
+    for (const glm::dmat4& camera : cameras) {
+      const TemporaryFile file("orbit_camera.txt", textOf(camera));
+      all.merge(idsOf(plain + Args{"--camera", file.path()}));
+    }
+    return all;
+  };
+  const Ids orbit = idsOf(plain + Args{"--orbit", "2", "--distance", "1.7"});
+  ASSERT_GT(orbit.size(), 1000u);
+  const size_t most = orbit.size() / 50; // centres that lie on an edge, but for rounding
+  EXPECT_LE(differenceOf(orbit, from({orbitCamera(0, 2, 1.7), orbitCamera(1, 2, 1.7)})), most);
+  EXPECT_GT(differenceOf(orbit, from({orbitCamera(0, 2, 1.73), orbitCamera(1, 2, 1.73)})), 5 * most);
+  EXPECT_GT(differenceOf(orbit, from({orbitCamera(0, 2, 1.7, 21), orbitCamera(1, 2, 1.7, 21)})), 5 * most);
+  EXPECT_GT(differenceOf(orbit, from({orbitCamera(0, 2, 1.7, 20, 61), orbitCamera(1, 2, 1.7, 20, 61)})), 5 * most);
+  EXPECT_GT(differenceOf(orbit, from({orbitCamera(0, 2, 1.7), orbitCamera(1, 3, 1.7)})), 5 * most);
+  const Ids fromTwo = idsOf(plain + Args{"--orbit", "1"});
+  EXPECT_LE(differenceOf(fromTwo, from({orbitCamera(0, 1, 2)})), fromTwo.size() / 50)
+      << "two radii where none is given";
+}
+
+// Two squares back to back: each camera sees one.
+TEST(CliVisibilityViews, OrbitAveragesFiguresAndUnitesIds) {
+  const TemporaryFile model("back_to_back.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
+                                                "f 1 2 3 4\nf 4 3 2 1\nf 4 3 2\n");
+  const Args args{"visibility", model.path(), "--size", "64x48", "--orbit", "2", "--method", "exact"};
+  const json seen = gpgpJson(args);
+  EXPECT_EQ(seen["cameras"], 2);
+  EXPECT_EQ(seen["triangles"], 5);
+  EXPECT_EQ(idsOf(args), (Ids{0, 1, 2, 3})) << "of identical triangles the lower number is seen";
+  EXPECT_EQ(seen["visible"], 2);
+  EXPECT_EQ(seen["facing"], 3) << "two from the front, three from behind, rounded";
+}
+
+// Of one depth are more than a pixel's list can sort. Seen from behind they are back faces.
+TEST(CliVisibilityViews, WhatOneCameraExceedsIsReported) {
+  std::string stack = "v -1 -1 -1\nv 1 1 1\nv -0.004 -0.003 0\nv 0.004 -0.003 0\nv 0.001 0.005 0\n";
+  for (int i = 0; i < 600; ++i) stack += "f 3 4 5\n";
+  const TemporaryFile model("stack.obj", stack);
+  Args args{"visibility", model.path(), "--size", "32x32", "--method", "exact", "--orbit"};
+  const json first = gpgpJson(args + Args{"1"});
+  ASSERT_EQ(first["status"], "GPGP_BUDGET_EXCEEDED");
+  EXPECT_EQ(first["visible"], 600) << "not decided";
+  const json both = gpgpJson(args + Args{"2"});
+  EXPECT_EQ(both["visible"], 300) << "the second camera sees none";
+  for (const char* key : {"status", "unresolved", "neededCandidates", "neededPairs"})
+    EXPECT_EQ(both[key], first[key]) << key;
+  const ProcessResult text = gpgp(args + Args{"2"});
+  EXPECT_NE(text.out.find("no budget changes that"), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("budget exceeded"), std::string::npos) << text.out;
+}
+
+TEST(CliVisibilityViews, GridIsCopiesSideBySide) {
+  const TemporaryFile model("tile.obj", "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n");
+  // Straight down on 0 to 2.1 by 0 to 3.2, a hundred pixels for 1.
+  glm::dmat4 camera(0);
+  camera[0] = {2 / 2.1, 0, 0, 0};
+  camera[2] = {0, 2 / 3.2, 0, 0};
+  camera[1] = {0, 0, -0.1, 0};
+  camera[3] = {-1, -1, 0.5, 1};
+  const TemporaryFile file("down.txt", textOf(camera));
+  const Args args{"visibility", model.path(), "--size", "210x320", "--camera", file.path(), "--grid"};
+  const json seen = gpgpJson(args + Args{"2x3"});
+  EXPECT_EQ(seen["triangles"], 12);
+  EXPECT_EQ(seen["draws"], 6);
+  EXPECT_EQ(seen["visible"], 12);
+  EXPECT_NEAR(seen["coveredPixels"].get<double>(), 6 * 100 * 100, 300) << "a tenth apart";
+  EXPECT_NEAR(gpgpJson(args + Args{"3x1"})["coveredPixels"].get<double>(), 2 * 100 * 100, 200) << "columns go right";
+  const std::string failure = gpgpFailure({"visibility", model.path(), "--grid", "16384x16384"});
+  EXPECT_NE(failure.find("536870912 triangles"), std::string::npos) << failure;
+  EXPECT_NE(failure.find("the device binds at most"), std::string::npos) << failure;
+}
+
+/// Looks from (0, 0, 3) along -z; sees so far to each side at distance 1: at z = 0 just a square of 2 x 2, without
+/// more.
+glm::dmat4 plainCamera(double half = 1.0 / 3.0) {
+  glm::dmat4 projection = glm::perspectiveRH_ZO(2 * std::atan(half), 1.0, 1.0, 10.0);
+  projection[1][1] *= -1;
+  return projection * glm::lookAtRH(glm::dvec3(0, 0, 3), glm::dvec3(0), glm::dvec3(0, 1, 0));
+}
+
+// A square, and one that it hides from the middle.
+constexpr const char* kHidden = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
+                                "v -0.5 -0.5 -1\nv 0.5 -0.5 -1\nv 0.5 0.5 -1\nv -0.5 0.5 -1\nf 5 6 7 8\n";
+
+TEST(CliVisibilityViews, CellsSeeRoundWhatHides) {
+  const TemporaryFile model("hidden.obj", kHidden), camera("hidden.txt", textOf(plainCamera(2)));
+  const Args args{"visibility", model.path(), "--size", "32x32", "--camera", camera.path()};
+  EXPECT_EQ(idsOf(args), (Ids{0, 1}));
+  EXPECT_EQ(idsOf(args + Args{"--method", "exact"}), (Ids{0, 1}));
+  // At z = 3 the inner corner at 0.5 is seen past the outer edge at 1 from 2.5 on.
+  EXPECT_EQ(idsOf(args + Args{"--method", "cell", "--cell", "2.2:9"}), (Ids{0, 1}));
+  EXPECT_EQ(idsOf(args + Args{"--method", "cell", "--cell", "3.5:9"}), (Ids{0, 1, 2, 3}));
+  EXPECT_EQ(idsOf(args + Args{"--method", "standard", "--cell", "3.5:9"}), (Ids{0, 1, 2, 3})) << "any method";
+  // The scene's middle is 3.5 away, where a pixel is 7/16: view points lie 3 1/2 and 7 1/2 of them to each side.
+  EXPECT_EQ(idsOf(args + Args{"--method", "cell", "--cell", "8x8/7"}), (Ids{0, 1}));
+  EXPECT_EQ(idsOf(args + Args{"--method", "cell", "--cell", "16x16/15"}), (Ids{0, 1, 2, 3}));
+}
+
+/// Pixels of a picture that are so coloured.
+size_t count(const host::Picture& picture, const std::function<bool(int, int, int)>& isSo) {
+  size_t n = 0;
+  for (size_t i = 0; i < picture.rgba.size(); i += 4)
+    if (isSo(picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2])) ++n;
+  return n;
+}
+bool isGreen(int r, int g, int b) { return g > 2 * r && g > 2 * b; }
+bool isBackground(int r, int g, int b) { return r > 240 && g > 240 && b > 240; }
+
+/// A sheet, and before it, between the centres of two columns of pixels, a strip 0.8 of a pixel wide and 20 high.
+/// (Pixels are 1/16 there.)
+std::string strip() {
+  std::ostringstream obj;
+  obj << "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+  for (const double y : {-10.0, 10.0})
+    for (const double x : {0.6, 1.4}) obj << "v " << x / 16 << ' ' << y / 16 << " 0.0001\n";
+  obj << "f 5 6 8 7\n";
+  return obj.str();
+}
+
+TEST(CliVisibilityViews, MethodsAndOverlay) {
+  const TemporaryFile model("strip.obj", strip()), camera("strip.txt", textOf(plainCamera())), png("strip.png");
+  const Args args{"visibility", model.path(), "--size", "32x32", "--camera", camera.path()};
+  EXPECT_EQ(idsOf(args), (Ids{0, 1}));
+  EXPECT_EQ(idsOf(args + Args{"--samples", "8"}), (Ids{0, 1, 2, 3}));
+  EXPECT_EQ(idsOf(args + Args{"--method", "exact"}), (Ids{0, 1, 2, 3}));
+  // Each pixel has a half of the strip, whose colour is mixed with the sheet's green.
+  const auto overlay = [&](const Args& more, json& figures) {
+    figures = gpgpJson(args + more + Args{"--overlay", png.path()});
+    return host::readPng(png.path());
+  };
+  json figures;
+  const host::Picture missed = overlay({"--truth", "64"}, figures);
+  EXPECT_EQ(figures["coverage"], 0.5);
+  EXPECT_EQ(count(missed, [](int r, int g, int b) { return b > g && g > r; }), 40u) << "blue: missed, two by 20";
+  EXPECT_EQ(count(missed, isGreen), 32u * 32 - 40);
+
+  const host::Picture added = overlay({"--method", "exact", "--truth", "64"}, figures);
+  EXPECT_EQ(figures["coverage"], 1.0);
+  EXPECT_EQ(figures["overestimation"], 0.0);
+  EXPECT_EQ(count(added, isGreen), 32u * 32 - 40);
+  EXPECT_EQ(count(added, [](int r, int g, int b) { return !isGreen(r, g, b) && std::abs(r - b) < 20 && g > r; }), 40u)
+      << "grey: the method's alone";
+
+  // One sample a pixel does not find the strip, 64 x 64 do: without them it is too much, with them it is not.
+  const auto isRed = [](int r, int g, int b) { return r > g && g > b; };
+  const host::Picture tooMuch = overlay({"--method", "exact", "--truth", "1", "--recheck", "0"}, figures);
+  EXPECT_EQ(figures["overestimation"], 1.0);
+  EXPECT_EQ(count(tooMuch, isRed), 40u);
+  const host::Picture checked = overlay({"--method", "exact", "--truth", "1", "--recheck", "64"}, figures);
+  EXPECT_EQ(figures["overestimation"], 0.0);
+  EXPECT_EQ(figures["truth"], 4);
+  EXPECT_EQ(checked.rgba, added.rgba) << "the overlay is of what the figures count";
+}
+
+// A floor from behind the eye to far before it: half of the picture.
+TEST(CliVisibilityViews, OverlayOfWhatReachesBehindTheEye) {
+  const TemporaryFile model("floor.obj", "v -500 0 500\nv 500 0 500\nv 500 0 -500\nv -500 0 -500\nf 1 2 3 4\n");
+  glm::dmat4 projection = glm::perspectiveRH_ZO(1.0, 2.0, 0.1, 2000.0);
+  projection[1][1] *= -1;
+  const glm::dmat4 view = glm::lookAtRH(glm::dvec3(0, 1, 0), glm::dvec3(0, 1, -1), glm::dvec3(0, 1, 0));
+  const TemporaryFile camera("floor.txt", textOf(projection * view)), overlay("floor.png"), image("floor_image.png");
+  gpgpJson({"visibility", model.path(), "--size", "64x32", "--camera", camera.path(), "--overlay", overlay.path(),
+            "--image", image.path()});
+  const host::Picture picture = host::readPng(overlay.path());
+  EXPECT_EQ(count(picture, isGreen), 64u * 16);
+  EXPECT_EQ(count(picture, isBackground), 64u * 16);
+  for (size_t y = 0; y < 32; ++y)
+    EXPECT_EQ(picture.rgba[y * 64 * 4] > 240, y < 16) << "the floor is below, in row " << y;
+  const host::Picture both = host::readPng(image.path());
+  ASSERT_EQ(both.width, 128u);
+  EXPECT_TRUE(isBackground(both.rgba[8 * 512], both.rgba[8 * 512 + 1], both.rgba[8 * 512 + 2]));
+  EXPECT_FALSE(isBackground(both.rgba[24 * 512], both.rgba[24 * 512 + 1], both.rgba[24 * 512 + 2]))
+      << "the image's left half is from the camera";
+}
+
+TEST(CliVisibilityViews, ReversedDepth) {
+  const TemporaryFile model("reversed.obj", kHidden), overlay("reversed.png"), image("reversed_image.png");
+  glm::dmat4 flip(1.0); // depth d becomes 1 - d
+  flip[2][2] = -1;
+  flip[3][2] = 1;
+  const TemporaryFile camera("reversed.txt", textOf(flip * plainCamera(), true));
+  const Args args{"visibility", model.path(), "--size", "32x32", "--camera", camera.path()};
+  EXPECT_EQ(idsOf(args + Args{"--image", image.path(), "--overlay", overlay.path()}), (Ids{0, 1}));
+  const host::Picture both = host::readPng(image.path());
+  for (size_t y = 0; y < 32; ++y)
+    for (size_t x = 0; x < 32; ++x) {
+      const uint8_t* pixel = &both.rgba[(y * 64 + x) * 4];
+      ASSERT_GT(pixel[0], pixel[2] + 60) << "the nearer one is orange and hides the grey one, " << x << ", " << y;
+    }
+  EXPECT_EQ(count(host::readPng(overlay.path()), isGreen), 32u * 32);
+}
+
+TEST(CliVisibilityViews, WhatIsWrongWithCameras) {
+  const TemporaryFile model("wrong_cameras.obj", kHidden);
+  const std::string good = textOf(plainCamera());
+  const auto failure = [&](const std::string& contents, const Args& more = {}) {
+    const TemporaryFile camera("wrong.txt", contents);
+    return gpgpFailure(Args{"visibility", model.path(), "--size", "32x32", "--camera", camera.path()} + more);
+  };
+  EXPECT_NE(failure("0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0").find("no inverse"), std::string::npos);
+  EXPECT_NE(failure("1 2 3").find("3 numbers"), std::string::npos);
+  EXPECT_NE(failure(good + " reversed").find("word 17, 'reversed'"), std::string::npos);
+  EXPECT_NE(failure(good + " 1 1").find("18 numbers"), std::string::npos);
+  EXPECT_NE(failure(good + " nan").find("no finite number"), std::string::npos);
+  const glm::dmat4 away = plainCamera() * glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 20));
+  EXPECT_NE(failure(textOf(away), {"--cell", "2x2"}).find("does not lie before the camera"), std::string::npos);
+  expectWrongUsage({{"visibility", model.path(), "--cell", "inf:4"},
+                    {"visibility", model.path(), "--cell", "0:4"},
+                    {"visibility", model.path(), "--cell", "1:0"},
+                    {"visibility", model.path(), "--cell", "65x1"},
+                    {"visibility", model.path(), "--cell", "2"}});
+}
+
+} // namespace
+} // namespace gpgp::test
