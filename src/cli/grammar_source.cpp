@@ -49,7 +49,7 @@ struct Errors {
     line << message->file << ':' << message->line << ':' << message->column << ": "
          << (message->severity == GPGP_SEVERITY_ERROR     ? "error: "
              : message->severity == GPGP_SEVERITY_WARNING ? "warning: "
-                                                          : "")
+                                                          : "note: ")
          << message->text;
     std::fprintf(stderr, "%s\n", printable(line.str()).c_str());
     if (message->severity != GPGP_SEVERITY_ERROR) return;
