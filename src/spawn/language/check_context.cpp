@@ -54,7 +54,7 @@ private:
   }
   std::string named(uint32_t n) const {
     const Node& node = graph_.nodes[n];
-    return operatorName(node.op) + ("(" + tagText(graph_, node.argument)) + ") of priority " +
+    return std::string(operatorName(node.op)).append("(").append(tagText(graph_, node.argument)) + ") of priority " +
            std::to_string(node.priority);
   }
   void refuse(const Dependency& d) {
