@@ -512,6 +512,9 @@ TEST(SvgImport, WhatIsNotShownIsNoPath) {
     EXPECT_TRUE(page(std::string("<rect width='9' height='9' ") + a + "/>").drawing.paths.empty()) << a;
   EXPECT_EQ(page("<g visibility='hidden'><rect width='9' height='9' visibility='visible'/></g>").drawing.paths.size(),
             1u);
+  // A gradient without stops paints nothing, though a fallback is named: that is for what is not there.
+  EXPECT_TRUE(page("<linearGradient id='g'/><rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.empty());
+  EXPECT_EQ(page("<rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.size(), 1u);
 }
 
 TEST(SvgImport, GroupsFadeAndClip) {
@@ -645,7 +648,13 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<rect width='9' height='9' filter='url(#c)'/>",
        "W line 2: filter is not supported: <rect> is drawn without it"},
       {"<linearGradient id='g'/>\n<rect width='9' height='9' fill='url(#g)'/>",
-       "W line 3: <rect> fill refers to a gradient without stops or extent; it is not painted"},
+       "W line 3: <rect> fill refers to a gradient without stops; it is not painted"},
+      {"<linearGradient id='g'><stop/></linearGradient>\n<path d='M0 0h9' stroke='url(#g) red'/>",
+       "W line 3: <path> stroke refers to a gradient without extent; its fallback is used"},
+      {"<path d='M0 0h9v9' stroke='red' style='stroke-linejoin: arcs'/>",
+       "W line 2: stroke-linejoin 'arcs' is not supported: <path> has miters instead"},
+      {"<path d='M0 0h9v9' stroke='red' stroke-linejoin='miter-clip'/>",
+       "W line 2: stroke-linejoin 'miter-clip' is not supported: <path> has miters instead"},
       {"<linearGradient id='g' x1='a'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
        "E line 2: <linearGradient> has x1 'a', which is no length"},
       {"<pattern id='p'/><rect width='9' height='9' fill='url(#p) red'/>",

@@ -316,6 +316,48 @@ TEST(Patches, CostGrowsAboutLinearly) {
   EXPECT_LT(large / small, 32) << small << " s, then " << large << " s";
 }
 
+/// n strips that lie aslant beside each other.
+TestPath hatching(int n) {
+  TestPath path;
+  for (int i = 0; i < n; ++i) {
+    const float x = static_cast<float>(100.0 * i / n), wide = static_cast<float>(50.0 / n);
+    path.move(x, 0).line(x + 100, 200).line(x + 100 + wide, 200).line(x + wide, 0).close();
+  }
+  return path;
+}
+
+TEST(Patches, ManyCurvesBesideEachOtherAreToldApart) {
+  TestPath path = hatching(100);
+  expectRight(path, 4000);
+  for (int i = 0; i < 100; ++i) { // waves, which turn, and rings across both
+    const float y = static_cast<float>(i) * 0.5f, r = static_cast<float>(i + 1) * 0.7f;
+    path.move(0, y).cubic(60, y + 120, 140, y - 40, 200, y + 100).line(200, y + 100.25f);
+    path.cubic(140, y - 39.75f, 60, y + 120.25f, 0, y + 0.25f).close();
+    path.move(100 - r, 80).cubic(100 - r, 80 - r, 100 + r, 80 - r, 100 + r, 80);
+    path.cubic(100 + r, 80 + r, 100 - r, 80 + r, 100 - r, 80).close();
+  }
+  expectRight(path, 3000);
+}
+
+TEST(Patches, HatchingCostsAboutAsMuchAsItHasLines) {
+  // Boxes of slanted lines overlap all over: comparing all that do takes 256 times the time for 16 times the lines.
+  const auto measure = [](int n) {
+    const TestPath path = hatching(n);
+    const GpgpPath view = path.view();
+    const std::clock_t start = std::clock();
+    const auto d = vector::makeDrawing(std::span(&view, 1), heap());
+    EXPECT_TRUE(d);
+    EXPECT_EQ(d->patches.size(), static_cast<size_t>(n));
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  double small = 1e30, large = 1e30; // the best of a few
+  for (int i = 0; i < 5; ++i) {
+    small = std::min(small, measure(500));
+    large = std::min(large, measure(8000));
+  }
+  EXPECT_LT(large / small, 48) << small << " s, then " << large << " s";
+}
+
 /// The largest distance of a drawing's curved edges from the circle around 0, after the map that makes it one.
 double offCircle(const vector::Drawing& d, double radius, double turn, double ratio) {
   double off = 0;

@@ -5,6 +5,7 @@
 // where tangents and chords bound them. The work per pair is bounded, so coincident curves cannot stall it: what is
 // undecided then differs by less than float distance anyway.
 #include "vector/patch/drawing.h"
+#include "vector/patch/strips.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,18 @@ struct BandEntry {
   double top, bottom, xMin, xMax;
 };
 constexpr uint32_t kLong = 4; // bands
+
+/// Whether more boxes overlap in x than comparing them takes little time for. Of entries in the order of xMin.
+bool crowded(const std::pmr::vector<BandEntry>& entries) {
+  if (entries.size() <= 2 * kCrowd) return false;
+  size_t overlaps = 0;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const auto end = std::upper_bound(entries.begin() + static_cast<ptrdiff_t>(i), entries.end(), entries[i].xMax,
+                                      [](double x, const BandEntry& e) { return x < e.xMin; });
+    overlaps += static_cast<size_t>(end - entries.begin()) - i - 1;
+  }
+  return overlaps > kCrowd * entries.size();
+}
 
 /// Looks for changes of sides between two pieces over rows in which neither has an inflection, so that each is convex
 /// or concave as a function of y: between its tangents and its chord. Where these bounds keep the pieces apart there is
@@ -112,15 +125,7 @@ private:
     const auto& r0 = aLeft ? from.b : from.a;
     const auto& r1 = aLeft ? to.b : to.a;
     if (!(l0.x <= r0.x && l1.x <= r1.x)) return false;
-    // By how much a piece bulges beyond its chord to one side: no more than where its end tangents meet.
-    const auto bulge = [height](const Monotone::Place& p, const Monotone::Place& q, double side) {
-      const double chord = (q.x - p.x) / height, u = side * (p.slope - chord), v = side * (chord - q.slope);
-      if (!(u > 0 && v > 0)) return 0.0; // to the other side, or straight
-      if (!(u < 1e30)) return v < 1e30 ? v * height : 1e30;
-      if (!(v < 1e30)) return u * height;
-      return u * v / (u + v) * height;
-    };
-    const double out = bulge(l0, l1, 1) + bulge(r0, r1, -1);
+    const double out = bulge(l0, l1, height, 1) + bulge(r0, r1, height, -1);
     return out < std::min(r0.x - l0.x, r1.x - l1.x) || (out == 0 && (r0.x > l0.x || r1.x > l1.x));
   }
 
@@ -186,8 +191,30 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
   std::frexp(std::max({std::abs(top), std::abs(bottom), 1e-30}), &exponent);
   const double grid = std::ldexp(1.0, exponent - 24);
 
+  size_t crossings = 0, compared = 0;
+  /// False where that has become too much.
+  const auto compare = [&](uint32_t l, uint32_t r, double from, double to) {
+    // The same way round in every band: a meeting exactly on a band's border counts for one of the two.
+    if (l > r) std::swap(l, r);
+    const Monotone &lp = pieces[l], &rp = pieces[r];
+    if (++compared > kMaxCompared) return false;
+    if (sideByHull(lp, rp) != 0) return true;
+    PairSearch(lp, rp).run(from, to, [&](double y) {
+      const float cut = static_cast<float>(std::round(y / grid) * grid);
+      ++crossings;
+      for (const uint32_t piece : {l, r})
+        if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back({piece, cut});
+    });
+    return crossings <= kMaxCrossings;
+  };
+  const auto tooMuch = [&] {
+    return crossings > kMaxCrossings
+               ? core::makeError(GPGP_ERROR_UNSUPPORTED, "the path crosses itself more than %zu times", kMaxCrossings)
+               : core::makeError(GPGP_ERROR_UNSUPPORTED, "more than %zu pairs of the path's curves run close together",
+                                 kMaxCompared);
+  };
+
   std::pmr::vector<BandEntry> entries(memory);
-  size_t crossings = 0;
   for (uint32_t b = 0; b < bands; ++b) {
     const double y0 = bandTop(b), y1 = b + 1 == bands ? bottom : bandTop(b + 1);
     entries.clear();
@@ -207,29 +234,23 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
     std::sort(entries.begin(), entries.end(), [](const BandEntry& l, const BandEntry& r) {
       return l.xMin != r.xMin ? l.xMin < r.xMin : l.piece < r.piece;
     });
+    if (crowded(entries)) {
+      cuts.clear();
+      crossings = compared = 0;
+      if (!Strips(pieces, memory, compare).run(top, bottom)) return tooMuch();
+      break;
+    }
     for (size_t i = 0; i < entries.size(); ++i) {
       const double reach = entries[i].xMax;
       for (size_t j = i + 1; j < entries.size() && entries[j].xMin <= reach; ++j) {
-        // The same way round in every band: a meeting exactly on a band's border counts for one of the two.
-        if (entries[i].top >= entries[j].bottom || entries[j].top >= entries[i].bottom) continue;
-        const bool inOrder = entries[i].piece < entries[j].piece;
-        const BandEntry &l = entries[inOrder ? i : j], &r = entries[inOrder ? j : i];
+        const BandEntry &l = entries[i], &r = entries[j];
         double from = std::max(l.top, r.top), to = std::min(l.bottom, r.bottom);
+        if (!(from < to)) continue;
         if (l.isLong || r.isLong)
           from = std::max(from, y0), to = std::min(to, y1);
         else if (std::max(l.firstBand, r.firstBand) != b)
           continue; // two short ones meet once, in the first band that they share
-        if (!(from < to)) continue;
-        const Monotone &lp = pieces[l.piece], &rp = pieces[r.piece];
-        if (sideByHull(lp, rp) != 0) continue;
-        PairSearch(lp, rp).run(from, to, [&](double y) {
-          const float cut = static_cast<float>(std::round(y / grid) * grid);
-          ++crossings;
-          for (const uint32_t piece : {l.piece, r.piece})
-            if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back({piece, cut});
-        });
-        if (crossings > kMaxCrossings)
-          return core::makeError(GPGP_ERROR_UNSUPPORTED, "the path crosses itself more than %zu times", kMaxCrossings);
+        if (from < to && !compare(l.piece, r.piece, from, to)) return tooMuch();
       }
     }
   }

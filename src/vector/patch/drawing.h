@@ -56,8 +56,10 @@ struct Cut {
 };
 /// All heights at which two pieces change sides, both pieces named. Cost near linear for drawings whose pieces are
 /// short against the whole: pieces are dealt into horizontal bands of about their own height, and within a band only
-/// those whose x ranges overlap are compared. UNSUPPORTED where a path has more than kMaxCrossings.
-constexpr size_t kMaxCrossings = size_t(1) << 22;
+/// those whose x ranges overlap are compared; where that would be too many, strips (strips.h) find who is near.
+/// UNSUPPORTED where a path has more than kMaxCrossings, or more pairs to compare than kMaxCompared, as many curves
+/// that coincide all but exactly have.
+constexpr size_t kMaxCrossings = size_t(1) << 22, kMaxCompared = size_t(1) << 26;
 core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vector<Cut>& cuts);
 
 /// A patch before it has a place in a table: pieces left and right, rows.

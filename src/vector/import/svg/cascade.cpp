@@ -36,6 +36,9 @@ void Importer::cascade(pugi::xml_node node, std::string_view name, const Style& 
     if (applied == Applied::Unknown && isUnsupported(s.name, s.value))
       reporter_.warn(document_.line(node),
                      std::string(s.name) + " is not supported: " + element(node) + " is drawn without it");
+    if (s.name == "stroke-linejoin" && (isWord(trim(s.value), "miter-clip") || isWord(trim(s.value), "arcs")))
+      reporter_.warn(document_.line(node), "stroke-linejoin '" + std::string(trim(s.value)) +
+                                               "' is not supported: " + element(node) + " has miters instead");
     if (applied == Applied::Invalid)
       reporter_.ignored(document_.line(node), element(node) + " has " + std::string(s.name) + " '" +
                                                   std::string(s.value.substr(0, 60)) +
@@ -84,7 +87,11 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& 
   if (name == "linearGradient" || name == "radialGradient") {
     if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
       return Ink{{0, 0, 0, 1}, std::move(gradient)};
-    reporter_.ignored(document_.line(node), who + " refers to a gradient without stops or extent; " + instead);
+    if (gradientStops(target, state.lengths).empty()) { // is there, so that the fallback does not count
+      reporter_.ignored(document_.line(node), who + " refers to a gradient without stops; it is not painted");
+      return std::nullopt;
+    }
+    reporter_.ignored(document_.line(node), who + " refers to a gradient without extent; " + instead);
     return plain(paint.fallback);
   }
   const std::string shown = std::string("'") + paint.reference.substr(0, 60) + "'";
