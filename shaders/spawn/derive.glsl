@@ -266,10 +266,10 @@ void emit(bool own, uint place, uint count, uint first, Shape s) {
     const uint axiom = s.axiom * 6;
     for (uint row = 0; row < 3; ++row)
       words[row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
-    words[3] = uvec4(graphWords[s.node + kNodeArgument2], shapeType(s), axioms[axiom + 4].x,
-                     graphWords[s.node + kNodeArgument]);
+    const uvec4 terminal = graphRows[s.node / 4];
+    words[3] = uvec4(terminal[kNodeArgument2], shapeType(s), axioms[axiom + 4].x, terminal[kNodeArgument]);
     words[4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
-    words[5] = packPlane(s.size, 0);
+    words[5] = packPlane(s.size, terminal[kNodeRule]);
   }
   uint target = fromFirst(first) + place;
   if (record.regions != 0 && own) {

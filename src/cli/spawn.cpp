@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -297,7 +298,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     name += (name.empty() ? "" : ", ") + std::string(graph.nameAt(terminal.name));
   }
   std::vector<uint64_t> bucketInstances(bucketNames.size()), bucketTriangles(bucketNames.size());
-  for (const GpgpInstance& instance : instances) ++bucketInstances.at(instance.bucket);
+  std::map<uint32_t, uint64_t> ruleInstances;
+  for (const GpgpInstance& instance : instances) {
+    ++bucketInstances.at(instance.bucket);
+    ++ruleInstances[instance.rule];
+  }
   for (size_t terminal = 0; terminal < triangles.counts.size(); ++terminal)
     bucketTriangles[graph.terminals[terminal].bucket] += triangles.counts[terminal];
   if (!options.image.empty()) paint(options, triangles, graph);
@@ -325,7 +330,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   Outcome outcome;
   char hash[20];
   std::snprintf(hash, sizeof hash, "%08x%08x", report.keyHash[1], report.keyHash[0]);
-  Json bucketList = Json::array(), passes = Json::object();
+  Json bucketList = Json::array(), ruleList = Json::array(), passes = Json::object();
+  for (const auto& [rule, count] : ruleInstances)
+    ruleList.push_back({{"rule", rule == GPGP_NO_RULE ? Json() : Json(graph.nameAt(graph.rules.at(rule).name))},
+                        {"instances", count}});
   for (const auto& [name, time] : times.passes) // rounds of derivation have the same name
     passes[name] = passes.value(name, 0.0) + time;
   std::ostringstream text;
@@ -374,6 +382,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                   {"vertices", verticesWritten},
                   {"triangles", triangles.total},
                   {"buckets", bucketList},
+                  {"rules", ruleList},
                   {"rounds", report.rounds},
                   {"peak_shapes", report.peakShapes},
                   {"max_shapes", deriver.maxShapes()},

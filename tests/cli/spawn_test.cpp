@@ -35,6 +35,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "vertices",
                                                 "triangles",
                                                 "buckets",
+                                                "rules",
                                                 "rounds",
                                                 "peak_shapes",
                                                 "max_shapes",
@@ -62,6 +63,7 @@ TEST(CliSpawn, CountsTerminals) {
   ASSERT_EQ(tower["buckets"].size(), 1u);
   EXPECT_EQ(tower["buckets"][0]["name"], "Floor");
   EXPECT_EQ(tower["buckets"][0]["instances"], 30);
+  EXPECT_EQ(tower["rules"], json::array({{{"rule", "Tower"}, {"instances", 30}}}));
   EXPECT_EQ(tower["key_hash"].get<std::string>().size(), 16u);
   EXPECT_EQ(host::readPng(picture.path()).width, 96u);
   const json again = gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "4,10,4"});
@@ -232,7 +234,7 @@ TEST(CliSpawn, SlicesSumUp) {
     EXPECT_EQ(one["records"], 1);
     EXPECT_EQ(several["records"], 3);
     for (const char* same :
-         {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "key_hash", "bytes_written"})
+         {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "rules", "key_hash", "bytes_written"})
       EXPECT_EQ(one[same], several[same]) << same;
   }
   const json few = spawn({"--slice", "4", "--max-instances", "60"}); // of each record

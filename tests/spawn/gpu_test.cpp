@@ -147,7 +147,7 @@ struct SpawnTest : DeviceTest {
     const auto all = host::download<GpgpInstance>(device, instances, capacity);
     result.instances.assign(all.begin(), all.begin() + std::min(result.count, capacity));
     for (size_t i = result.count; i < all.size(); ++i) // nothing beyond the count is touched
-      if (all[i].bucket != kPoison || all[i].reserved != kPoison) {
+      if (all[i].bucket != kPoison || all[i].rule != kPoison) {
         ADD_FAILURE() << "instance " << i << " of " << result.count << " was written";
         break;
       }
@@ -190,7 +190,7 @@ struct SpawnTest : DeviceTest {
       ASSERT_EQ(a[i]->seed, b[i]->seed) << what;
       ASSERT_EQ(bits(a[i]->attribute), bits(b[i]->attribute)) << what;
       for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(bits(a[i]->size[axis]), bits(b[i]->size[axis])) << what;
-      ASSERT_EQ(a[i]->reserved, b[i]->reserved) << what;
+      ASSERT_EQ(a[i]->rule, b[i]->rule) << what;
       for (int column = 0; column < 4; ++column) { // the axes, each as long as the shape, and the place
         float largest = column == 3 ? 1 : 0;
         for (int t = column; t < 12; t += 4) largest = std::max(largest, std::fabs(a[i]->transform[t]));
@@ -803,6 +803,7 @@ void expectInOrder(const std::vector<GpgpInstance>& cpu, const std::vector<GpgpI
     ASSERT_EQ(cpu[i].bucket, gpu[i].bucket) << i;
     ASSERT_EQ(cpu[i].axiomId, gpu[i].axiomId) << i;
     ASSERT_EQ(cpu[i].seed, gpu[i].seed) << i;
+    ASSERT_EQ(cpu[i].rule, gpu[i].rule) << i;
     ASSERT_EQ(std::memcmp(cpu[i].size, gpu[i].size, sizeof cpu[i].size), 0) << i;
   }
 }

@@ -132,9 +132,11 @@ private:
   void buildRule(size_t index) {
     const RuleDefinition& rule = tree_.rules[index];
     const size_t first = graph_.nodes.size();
+    rule_ = static_cast<uint32_t>(firstRule_ + index);
     buildBody(index, rule);
+    rule_ = kNoRule;
     for (size_t n = first; n < graph_.nodes.size(); ++n)
-      if (graph_.nodes[n].op != kOpTerminal) graph_.nodes[n].priority = rule.priority; // rules share their terminals
+      if (graph_.nodes[n].op != kOpTerminal) graph_.nodes[n].priority = rule.priority;
   }
   void buildBody(size_t index, const RuleDefinition& rule) {
     if (rule.alternatives.empty()) {
@@ -196,10 +198,12 @@ private:
     return {terminalNode(static_cast<uint32_t>(it->second.index), successor.place), std::nullopt};
   }
 
+  /// A rule has one for each of its terminals, which says whose it is.
   uint32_t terminalNode(uint32_t terminal, Place place) {
-    const auto [it, isNew] = terminalNodes_.try_emplace(terminal, static_cast<uint32_t>(graph_.nodes.size()));
+    const auto [it, isNew] = terminalNodes_.try_emplace({rule_, terminal}, static_cast<uint32_t>(graph_.nodes.size()));
     if (isNew) {
       graph_.nodes.push_back({kOpTerminal, terminal, graph_.terminals[terminal].bucket});
+      graph_.nodes.back().rule = rule_;
       places_.push_back({number_, place});
     }
     return it->second;
@@ -596,7 +600,8 @@ private:
   std::map<std::string, Name> names_;
   std::vector<Target> ruleTargets_;
   std::vector<std::pair<uint32_t, size_t>> ruleEdges_;
-  std::map<uint32_t, uint32_t> terminalNodes_;
+  uint32_t rule_ = kNoRule;                                         // whose body is being built
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> terminalNodes_; // by rule and terminal
   std::vector<bool> usedRules_;
   std::optional<uint32_t> generate_;
   uint32_t wrongTags_ = 0;
