@@ -189,6 +189,7 @@ GPGP_CONST uint kShapeDynamicRightPrism = 15u;
 GPGP_CONST uint kShapeSphere = 16u;
 GPGP_CONST uint kShapeCount = 17u;
 
+GPGP_CONST uint kDynamicShapes = 0xf000u; // bits
 GPGP_CONST uint kPolygonShapes = 0x303fu; // bits: triangle to octagon, the two dynamic ones
 GPGP_FN bool isPolygon(uint shape) { return ((kPolygonShapes >> shape) & 1u) != 0u; }
 GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape != kShapeSphere; }
