@@ -231,6 +231,13 @@ Slices slicesFor(const SpawnOptions& options, const std::vector<GpgpAxiom>& axio
   return {axioms, most};
 }
 
+/// Whether terminals can be shapes with corners of their own, which instances do not say.
+bool hasDynamicTerminals(const spawn::Graph& graph) {
+  return std::any_of(graph.nodes.begin(), graph.nodes.end(), [](const spawn::Node& node) {
+    return node.op == shader::kOpTerminal && (node.shapes & shader::kDynamicShapes);
+  });
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
@@ -266,6 +273,15 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   GpuTimes times;
   uint64_t bytesWritten = 0, verticesWritten = 0;
   std::vector<GpgpInstance> instances;
+  // Of shapes whose corners instances do not say, what is drawn and counted is derived once more, as vertices.
+  std::optional<Deriver> asVertices;
+  if (!vertices && hasDynamicTerminals(graph)) {
+    deriverOptions.vertices = true;
+    deriverOptions.sorted = false;
+    deriverOptions.maxInstances = 0;
+    deriverOptions.expected = 0;
+    asVertices.emplace(session, grammar, slices.of(0), deriverOptions);
+  }
   Triangles triangles{!options.image.empty() || !options.out.empty(), std::vector<uint64_t>(graph.terminals.size())};
   std::string budgets; // that the first record exceeded that exceeded any
   for (size_t record = 0; record < slices.records; ++record) {
@@ -286,7 +302,13 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       addTriangles(triangles, written, deriver.indices());
     } else {
       const std::vector<GpgpInstance> written = deriver.instances();
-      addTriangles(triangles, written);
+      if (asVertices) {
+        if (record) asVertices->setAxioms(slices.of(record));
+        asVertices->fit(prepared);
+        addTriangles(triangles, asVertices->vertices(), asVertices->indices());
+      } else {
+        addTriangles(triangles, written);
+      }
       instances.insert(instances.end(), written.begin(), written.end());
     }
   }
