@@ -317,7 +317,7 @@ typedef struct GpgpSpawnReport {
                                   which a Repeat would make more than 2^20; what lay below them is not known */
   uint32_t unfinishedShapes; /**< shapes deeper than maxDepth */
   uint32_t rounds;           /**< rounds that had work */
-  uint32_t keyHash[2];       /**< order-free hash of (path key, terminal, shape) over all terminals */
+  uint32_t keyHash[2];       /**< order-free hash of (path key, terminal, rule, shape) over all terminals */
   uint32_t depth;            /**< how deep rules nested in themselves */
   uint32_t vertices;         /**< that the terminals have; 6 indices for each 4 of them */
   uint32_t verticesWritten;  /**< <= vertices; less only with BUDGET_EXCEEDED, and where the record only counts */

@@ -230,6 +230,11 @@ void keep(bool own, uint place, uint first, Shape s) {
   }
 }
 
+uvec2 hashOfTerminal(Shape s) {
+  const uvec4 terminal = graphRows[s.node / 4];
+  return terminalHash(s.key, terminal[kNodeArgument], terminal[kNodeRule], shapeType(s));
+}
+
 const uint kNowhere = 0xffffffffu;
 /// Everybody writes an instance, or nowhere. Neighbours write theirs together, one after the other, so that the halves
 /// of each sector of 32 bytes, which is what memory takes at once, come together.

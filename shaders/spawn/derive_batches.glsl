@@ -39,7 +39,7 @@ void writeTerminals(uint least, inout uvec2 hash) {
     Shape s;
     if (lane < count) {
       s = stackedAt(stackShapes - 1 - terminalCount - lane);
-      hash += terminalHash(s.key, graphWords[s.node + kNodeArgument], shapeType(s));
+      hash += hashOfTerminal(s);
     }
     uint first = 0;
     if (lane == 0) first = atomicAdd(state.terminals, count);

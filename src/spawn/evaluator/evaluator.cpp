@@ -309,7 +309,8 @@ private:
     const Shape& shape = frame.shape;
     const GpgpAxiom& axiom = axioms_[context_.axiomNumber(shape.axiom)];
     const uint32_t bucket = frame.step->argument2, type = shapeType(shape);
-    const uvec2 hash = terminalHash(shape.key, frame.step->argument, type);
+    const uint32_t rule = words_[frame.step->node + kNodeRule];
+    const uvec2 hash = terminalHash(shape.key, frame.step->argument, rule, type);
     out_.keyHash[0] += hash.x;
     out_.keyHash[1] += hash.y;
     ++out_.buckets[bucket];
@@ -333,7 +334,7 @@ private:
     instance.size[0] = shape.size.x;
     instance.size[1] = shape.size.y;
     instance.size[2] = shape.size.z;
-    instance.rule = words_[frame.step->node + kNodeRule];
+    instance.rule = rule;
     if (options_.vertices) emitVertices(out_, words_, shape, instance, *options_.vertices);
   }
 
