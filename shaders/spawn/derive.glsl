@@ -127,8 +127,6 @@ void giveAway() {
       atomicAdd(rounds[round + 1].shapes, count); // dropped
     } else {
       atomicMax(rounds[round + 1].groupsX, min(min(base + count, record.maxShapes), record.maxGroups));
-      rounds[round + 1].groupsY = 1;
-      rounds[round + 1].groupsZ = 1;
     }
   }
 #ifdef GPGP_SOFTWARE // turns count
@@ -324,6 +322,8 @@ void reportAll() {
 /// The first thing that a round does. needed: shapes that wait for it; count: that are there.
 void startRound(uint needed, uint count) {
   if (gl_GlobalInvocationID.x == 0) {
+    rounds[round + 1].groupsY = 1; // of its dispatch; groupsX stays 0 where nothing goes over
+    rounds[round + 1].groupsZ = 1;
 #ifdef GPGP_COLLIDERS
     if (count > 0) atomicAdd(state.rounds, 1); // rounds follow each other
 #else

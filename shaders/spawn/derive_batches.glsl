@@ -109,11 +109,7 @@ void leaveRest(uint queued, uint axiomsThere, uint answers) {
   if (lane != 0) return;
   if (until < queued) atomicAdd(state.droppedShapes, queued - until);
   if (axiomsLeft > 0 && roundsLeft() == 0) atomicAdd(rounds[round + 1].shapes, axiomsLeft); // dropped
-  if (axiomsLeft > 0 && roundsLeft() > 0) {
-    rounds[round + 1].groupsX = record.maxGroups;
-    rounds[round + 1].groupsY = 1;
-    rounds[round + 1].groupsZ = 1;
-  }
+  if (axiomsLeft > 0 && roundsLeft() > 0) atomicMax(rounds[round + 1].groupsX, record.maxGroups);
   if (record.reports != 0 && (round + 1 == record.rounds ||
                               (axiomsLeft == 0 && atomicAdd(rounds[round + 1].shapes, 0) == 0)))
     reportAll();
