@@ -29,9 +29,8 @@ typedef struct GpgpAxiom {
  *  includes the shape's size. Polygons face +Z and have size[2] 0; their transform keeps 1 metre for that axis.
  *  An instance has no corners: what mesh stands for a dynamic shape follows from its terminal, or it is written as
  *  vertices (GpgpSpawnerCreateInfo::vertices), which have them; compiling tells of such terminals.
- *  What made it: bucket says the terminal line, terminal the name that a rule uses, and so the rule where each rule has
- * a terminal of its own; several may share a line, and its mesh. Rules in between leave no trace but in key: a graph
- * has operators, and one that several rules share belongs to none. */
+ *  What made it: bucket says the terminal line, terminal the name that a rule uses, rule the rule that uses it: whose
+ *  body ends in that terminal. Rules that the derivation passed before leave no trace but in key. */
 typedef struct GpgpInstance {
   float transform[12]; /**< rows of a 3x4 matrix, unit shape to world */
   uint32_t bucket;     /**< GpgpGrammarTerminal::bucket of its terminal: which draw */
@@ -42,8 +41,10 @@ typedef struct GpgpInstance {
   float attribute;     /**< custom attribute of the shape */
   uint32_t key[2];     /**< path key: the same on every device and schedule */
   float size[3];       /**< of the shape, metres */
-  uint32_t reserved;   /**< 0 */
+  uint32_t rule;       /**< in whose body the terminal stands, by its place in gpgpGetGrammarStarts, which has its name;
+                            GPGP_NO_RULE: in none, as an axiom line names it */
 } GpgpInstance;
+#define GPGP_NO_RULE 0xffffffffu
 
 typedef uint32_t GpgpShape;
 enum {
@@ -179,7 +180,8 @@ enum {
   GPGP_VERTEX_BUCKET = 3,   /**< GpgpGrammarTerminal::bucket of the terminal */
   GPGP_VERTEX_AXIOM_ID = 4, /**< GpgpAxiom::id */
   GPGP_VERTEX_TERMINAL = 5, /**< index as in gpgpGetGrammarTerminals */
-  GPGP_VERTEX_SEED = 6      /**< of the shape */
+  GPGP_VERTEX_SEED = 6,     /**< of the shape */
+  GPGP_VERTEX_RULE = 7      /**< GpgpInstance::rule */
 };
 
 typedef struct GpgpVertexAttribute {
@@ -315,7 +317,7 @@ typedef struct GpgpSpawnReport {
                                   which a Repeat would make more than 2^20; what lay below them is not known */
   uint32_t unfinishedShapes; /**< shapes deeper than maxDepth */
   uint32_t rounds;           /**< rounds that had work */
-  uint32_t keyHash[2];       /**< order-free hash of (path key, terminal, shape) over all terminals */
+  uint32_t keyHash[2];       /**< order-free hash of (path key, terminal, rule, shape) over all terminals */
   uint32_t depth;            /**< how deep rules nested in themselves */
   uint32_t vertices;         /**< that the terminals have; 6 indices for each 4 of them */
   uint32_t verticesWritten;  /**< <= vertices; less only with BUDGET_EXCEEDED, and where the record only counts */

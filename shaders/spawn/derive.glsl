@@ -127,8 +127,6 @@ void giveAway() {
       atomicAdd(rounds[round + 1].shapes, count); // dropped
     } else {
       atomicMax(rounds[round + 1].groupsX, min(min(base + count, record.maxShapes), record.maxGroups));
-      rounds[round + 1].groupsY = 1;
-      rounds[round + 1].groupsZ = 1;
     }
   }
 #ifdef GPGP_SOFTWARE // turns count
@@ -230,6 +228,11 @@ void keep(bool own, uint place, uint first, Shape s) {
   }
 }
 
+uvec2 hashOfTerminal(Shape s) {
+  const uvec4 terminal = graphRows[s.node / 4];
+  return terminalHash(s.key, terminal[kNodeArgument], terminal[kNodeRule], shapeType(s));
+}
+
 const uint kNowhere = 0xffffffffu;
 /// Everybody writes an instance, or nowhere. Neighbours write theirs together, one after the other, so that the halves
 /// of each sector of 32 bytes, which is what memory takes at once, come together.
@@ -266,10 +269,10 @@ void emit(bool own, uint place, uint count, uint first, Shape s) {
     const uint axiom = s.axiom * 6;
     for (uint row = 0; row < 3; ++row)
       words[row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
-    words[3] = uvec4(graphWords[s.node + kNodeArgument2], shapeType(s), axioms[axiom + 4].x,
-                     graphWords[s.node + kNodeArgument]);
+    const uvec4 terminal = graphRows[s.node / 4];
+    words[3] = uvec4(terminal[kNodeArgument2], shapeType(s), axioms[axiom + 4].x, terminal[kNodeArgument]);
     words[4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
-    words[5] = packPlane(s.size, 0);
+    words[5] = packPlane(s.size, terminal[kNodeRule]);
   }
   uint target = fromFirst(first) + place;
   if (record.regions != 0 && own) {
@@ -319,6 +322,8 @@ void reportAll() {
 /// The first thing that a round does. needed: shapes that wait for it; count: that are there.
 void startRound(uint needed, uint count) {
   if (gl_GlobalInvocationID.x == 0) {
+    rounds[round + 1].groupsY = 1; // of its dispatch; groupsX stays 0 where nothing goes over
+    rounds[round + 1].groupsZ = 1;
 #ifdef GPGP_COLLIDERS
     if (count > 0) atomicAdd(state.rounds, 1); // rounds follow each other
 #else

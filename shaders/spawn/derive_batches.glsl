@@ -39,7 +39,7 @@ void writeTerminals(uint least, inout uvec2 hash) {
     Shape s;
     if (lane < count) {
       s = stackedAt(stackShapes - 1 - terminalCount - lane);
-      hash += terminalHash(s.key, graphWords[s.node + kNodeArgument], shapeType(s));
+      hash += hashOfTerminal(s);
     }
     uint first = 0;
     if (lane == 0) first = atomicAdd(state.terminals, count);
@@ -109,11 +109,7 @@ void leaveRest(uint queued, uint axiomsThere, uint answers) {
   if (lane != 0) return;
   if (until < queued) atomicAdd(state.droppedShapes, queued - until);
   if (axiomsLeft > 0 && roundsLeft() == 0) atomicAdd(rounds[round + 1].shapes, axiomsLeft); // dropped
-  if (axiomsLeft > 0 && roundsLeft() > 0) {
-    rounds[round + 1].groupsX = record.maxGroups;
-    rounds[round + 1].groupsY = 1;
-    rounds[round + 1].groupsZ = 1;
-  }
+  if (axiomsLeft > 0 && roundsLeft() > 0) atomicMax(rounds[round + 1].groupsX, record.maxGroups);
   if (record.reports != 0 && (round + 1 == record.rounds ||
                               (axiomsLeft == 0 && atomicAdd(rounds[round + 1].shapes, 0) == 0)))
     reportAll();

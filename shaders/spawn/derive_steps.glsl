@@ -238,7 +238,7 @@ void main() {
       waits = end == kEndWaits;
       waiting = leaving >> 16;
     }
-    if (end == kEndTerminal) hash += terminalHash(s.key, graphWords[s.node + kNodeArgument], shapeType(s));
+    if (end == kEndTerminal) hash += hashOfTerminal(s);
     emit(end == kEndTerminal, places & 0xffffu, terminals, firstTerminal, s);
   }
 

@@ -23,15 +23,15 @@ void main() {
     const Shape s = unpackShape(records[i], records[i + record.maxTerminals], records[i + 2 * record.maxTerminals],
                                 records[i + 3 * record.maxTerminals], records[i + 4 * record.maxTerminals],
                                 records[i + 5 * record.maxTerminals]);
-    const uint terminal = graphWords[s.node + kNodeArgument];
-    const uint bucket = graphWords[s.node + kNodeArgument2];
+    const uvec4 terminal = graphRows[s.node / 4];
+    const uint bucket = terminal[kNodeArgument2];
     const uint place = placeOf(at, bucket);
     if (place >= record.instanceCapacity) continue;
     const uint axiom = s.axiom * 6;
     for (uint row = 0; row < 3; ++row)
       instances[place * 6 + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
-    instances[place * 6 + 3] = uvec4(bucket, shapeType(s), axioms[axiom + 4].x, terminal);
+    instances[place * 6 + 3] = uvec4(bucket, shapeType(s), axioms[axiom + 4].x, terminal[kNodeArgument]);
     instances[place * 6 + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
-    instances[place * 6 + 5] = packPlane(s.size, 0);
+    instances[place * 6 + 5] = packPlane(s.size, terminal[kNodeRule]);
   }
 }

@@ -36,6 +36,13 @@ layout(constant_id = 8) const uint attribute7 = kNoAttribute;
 
 #include "spawn/lanes.glsl"
 
+// Rules of terminals take room only where a vertex has them. Sums, as the compiler takes no || of such constants.
+#define GPGP_IS_RULE(described) ((((described) >> 8) & 0xffu) == kVertexRule ? 1u : 0u)
+const bool kRules = GPGP_IS_RULE(attribute0) + GPGP_IS_RULE(attribute1) + GPGP_IS_RULE(attribute2) +
+                        GPGP_IS_RULE(attribute3) + GPGP_IS_RULE(attribute4) + GPGP_IS_RULE(attribute5) +
+                        GPGP_IS_RULE(attribute6) + GPGP_IS_RULE(attribute7) > 0u;
+shared uint rules[kRules ? groupSize : 1];
+
 const uint kNoPlace = 0xffffffffu;
 const uint kMirrored = 1u << 31;
 // Records: rows of unit shape to world; numbers of attributes; geometry, and whether the axiom mirrors.
@@ -107,6 +114,7 @@ uint stageRecords(uint at, bool own, uint lane) {
     rows[3 * lane + 1] = row1;
     rows[3 * lane + 2] = row2;
     numbers[lane] = uvec4(bucket, axioms[axiom + 4].x, graphWords[s.node + kNodeArgument], s.seed);
+    if (kRules) rules[lane] = graphWords[s.node + kNodeRule];
     geometries[lane] = s.geometry | (isMirrored(row0, row1, row2) ? kMirrored : 0);
   }
   barrier();
@@ -124,7 +132,7 @@ uint ownerOf(uint quad, out uint own) {
 
 uint words[kMaxVertexWords]; // of the invocation's vertex
 
-void putAttribute(uint described, vec3 position, vec3 normal, vec2 uv, uvec4 ofRecord) {
+void putAttribute(uint described, vec3 position, vec3 normal, vec2 uv, uvec4 ofRecord, uint rule) {
   if (described == kNoAttribute) return;
   const uint semantic = attributeSemantic(described);
   const uint format = attributeFormat(described);
@@ -137,6 +145,7 @@ void putAttribute(uint described, vec3 position, vec3 normal, vec2 uv, uvec4 ofR
   if (semantic == kVertexBucket + 1) number = ofRecord.y;
   if (semantic == kVertexBucket + 2) number = ofRecord.z;
   if (semantic == kVertexBucket + 3) number = ofRecord.w;
+  if (semantic == kVertexRule) number = rule;
   const uvec4 all = attributeValue(format, value, number);
   const uint at = attributeOffset(described);
   words[at] = all.x;
@@ -151,18 +160,19 @@ void makeVertex(uint owner, uint quad, uint corner) {
   const vec4 row1 = rows[3 * owner + 1];
   const vec4 row2 = rows[3 * owner + 2];
   const uvec4 ofRecord = numbers[owner];
+  const uint rule = kRules ? rules[owner] : 0;
   const MeshVertex v = meshVertex(geometry, quad, mirrored ? mirroredCorner(corner) : corner);
   const vec3 position = meshPosition(row0, row1, row2, v.position);
   const vec3 normal = meshNormal(row0, row1, row2, v, mirrored);
   for (uint i = 0; i < kMaxVertexWords; ++i) words[i] = 0; // what no attribute covers
-  putAttribute(attribute0, position, normal, v.uv, ofRecord);
-  putAttribute(attribute1, position, normal, v.uv, ofRecord);
-  putAttribute(attribute2, position, normal, v.uv, ofRecord);
-  putAttribute(attribute3, position, normal, v.uv, ofRecord);
-  putAttribute(attribute4, position, normal, v.uv, ofRecord);
-  putAttribute(attribute5, position, normal, v.uv, ofRecord);
-  putAttribute(attribute6, position, normal, v.uv, ofRecord);
-  putAttribute(attribute7, position, normal, v.uv, ofRecord);
+  putAttribute(attribute0, position, normal, v.uv, ofRecord, rule);
+  putAttribute(attribute1, position, normal, v.uv, ofRecord, rule);
+  putAttribute(attribute2, position, normal, v.uv, ofRecord, rule);
+  putAttribute(attribute3, position, normal, v.uv, ofRecord, rule);
+  putAttribute(attribute4, position, normal, v.uv, ofRecord, rule);
+  putAttribute(attribute5, position, normal, v.uv, ofRecord, rule);
+  putAttribute(attribute6, position, normal, v.uv, ofRecord, rule);
+  putAttribute(attribute7, position, normal, v.uv, ofRecord, rule);
 }
 
 void main() {

@@ -20,7 +20,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 4u;
+GPGP_CONST uint kGraphVersion = 5u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -48,17 +48,19 @@ GPGP_CONST uint kSectionQuads = 10u;
 GPGP_CONST uint kSectionAxioms = 11u;
 GPGP_CONST uint kSectionCount = 12u;
 
-// node: eight words
+// node: eight words. What a terminal says lies in the first four, which are read at once.
 GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, and its priority << kNodePriority
 GPGP_CONST uint kNodeArgument = 1u;
 GPGP_CONST uint kNodeArgument2 = 2u;
-GPGP_CONST uint kNodeParameters = 3u; // offset of the first
+GPGP_CONST uint kNodeParameters = 3u; // offset of the first; of a terminal: kNodeRule
+GPGP_CONST uint kNodeRule = 3u;       // in whose body the terminal stands, or kNoRule: an axiom line names it
 GPGP_CONST uint kNodeParameterCount = 4u;
 GPGP_CONST uint kNodeEdges = 5u; // offset of the first
 GPGP_CONST uint kNodeEdgeCount = 6u;
 GPGP_CONST uint kNodeShapes = 7u; // bit set of the GpgpShape values that can arrive
 GPGP_CONST uint kNodeSize = 8u;
 GPGP_CONST uint kOperatorMask = 0xffu;
+GPGP_CONST uint kNoRule = 0xffffffffu;
 /// The node could multiply shapes, but at most one of its successors is not discarded: it passes on one shape or none.
 GPGP_CONST uint kNodeFilter = 0x100u;
 GPGP_CONST uint kNodePriority = 16u;
@@ -111,7 +113,8 @@ GPGP_CONST uint kRuleSize = 3u;
 GPGP_CONST uint kAxiomSize = 3u;
 
 // operators
-GPGP_CONST uint kOpTerminal = 0u; // argument: terminal, argument2: bucket
+GPGP_CONST uint kOpTerminal =
+    0u; // argument: terminal, argument2: bucket; each rule has nodes of its own for its terminals
 GPGP_CONST uint kOpTranslate = 1u;
 GPGP_CONST uint kOpRotate = 2u;
 GPGP_CONST uint kOpScale = 3u;
@@ -186,6 +189,7 @@ GPGP_CONST uint kShapeDynamicRightPrism = 15u;
 GPGP_CONST uint kShapeSphere = 16u;
 GPGP_CONST uint kShapeCount = 17u;
 
+GPGP_CONST uint kDynamicShapes = 0xf000u; // bits
 GPGP_CONST uint kPolygonShapes = 0x303fu; // bits: triangle to octagon, the two dynamic ones
 GPGP_FN bool isPolygon(uint shape) { return ((kPolygonShapes >> shape) & 1u) != 0u; }
 GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape != kShapeSphere; }

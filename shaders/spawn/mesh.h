@@ -189,7 +189,8 @@ GPGP_CONST uint kVertexPosition = 0u;
 GPGP_CONST uint kVertexNormal = 1u;
 GPGP_CONST uint kVertexUv = 2u;
 GPGP_CONST uint kVertexBucket = 3u; // from here on numbers
-GPGP_CONST uint kVertexSemantics = 7u;
+GPGP_CONST uint kVertexRule = 7u;
+GPGP_CONST uint kVertexSemantics = 8u;
 // Formats.
 GPGP_CONST uint kVertexFloat3 = 0u;
 GPGP_CONST uint kVertexFloat2 = 1u;

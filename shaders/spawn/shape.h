@@ -138,8 +138,11 @@ GPGP_FN vec4 instanceRow(Shape s, vec4 axiomRow) {
   return row;
 }
 
-/// A terminal shape's contribution to the order-free hash of a derivation. terminal: its number, as rules name it.
-GPGP_FN uvec2 terminalHash(uvec2 key, uint terminal, uint shape) { return childKey(key, terminal * 32u + shape); }
+/// A terminal shape's contribution to the order-free hash of a derivation. terminal: its number, as rules name it;
+/// rule: whose body it ended. Up to 8192 terminals, no two pairs of them are one number.
+GPGP_FN uvec2 terminalHash(uvec2 key, uint terminal, uint rule, uint shape) {
+  return childKey(key, (rule * 8192u + terminal) * 32u + shape);
+}
 
 GPGP_SHADER_END
 #endif

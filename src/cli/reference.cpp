@@ -16,9 +16,9 @@ uint64_t hashOf(std::span<const GpgpInstance> instances) {
   uint64_t sum = 0;
   for (const GpgpInstance& i : instances) {
     uint64_t hash = 0;
-    for (const uint32_t word :
-         {i.bucket, i.shape, i.axiomId, i.terminal, i.seed, std::bit_cast<uint32_t>(i.attribute), i.key[0], i.key[1],
-          std::bit_cast<uint32_t>(i.size[0]), std::bit_cast<uint32_t>(i.size[1]), std::bit_cast<uint32_t>(i.size[2])}) {
+    for (const uint32_t word : {i.bucket, i.shape, i.axiomId, i.terminal, i.seed, std::bit_cast<uint32_t>(i.attribute),
+                                i.key[0], i.key[1], i.rule, std::bit_cast<uint32_t>(i.size[0]),
+                                std::bit_cast<uint32_t>(i.size[1]), std::bit_cast<uint32_t>(i.size[2])}) {
       hash = (hash ^ word) * 0x9e3779b97f4a7c15;
       hash ^= hash >> 32;
     }
@@ -62,7 +62,7 @@ std::string difference(const spawn::Derivation& reference, const GpgpSpawnReport
   if (std::memcmp(reference.keyHash, report.keyHash, sizeof report.keyHash) != 0)
     return "as many terminals, but with other path keys, buckets or shapes";
   if (instances.size() == reference.instances.size() && hashOf(instances) != hashOf(reference.instances))
-    return "the same path keys, but with other terminals, sizes, seeds or attributes";
+    return "the same path keys, but with other terminals, rules, sizes, seeds or attributes";
   return {};
 }
 

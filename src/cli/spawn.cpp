@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -230,6 +231,13 @@ Slices slicesFor(const SpawnOptions& options, const std::vector<GpgpAxiom>& axio
   return {axioms, most};
 }
 
+/// Whether terminals can be shapes with corners of their own, which instances do not say.
+bool hasDynamicTerminals(const spawn::Graph& graph) {
+  return std::any_of(graph.nodes.begin(), graph.nodes.end(), [](const spawn::Node& node) {
+    return node.op == shader::kOpTerminal && (node.shapes & shader::kDynamicShapes);
+  });
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
@@ -265,6 +273,15 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   GpuTimes times;
   uint64_t bytesWritten = 0, verticesWritten = 0;
   std::vector<GpgpInstance> instances;
+  // Of shapes whose corners instances do not say, what is drawn and counted is derived once more, as vertices.
+  std::optional<Deriver> asVertices;
+  if (!vertices && hasDynamicTerminals(graph)) {
+    deriverOptions.vertices = true;
+    deriverOptions.sorted = false;
+    deriverOptions.maxInstances = 0;
+    deriverOptions.expected = 0;
+    asVertices.emplace(session, grammar, slices.of(0), deriverOptions);
+  }
   Triangles triangles{!options.image.empty() || !options.out.empty(), std::vector<uint64_t>(graph.terminals.size())};
   std::string budgets; // that the first record exceeded that exceeded any
   for (size_t record = 0; record < slices.records; ++record) {
@@ -285,7 +302,13 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       addTriangles(triangles, written, deriver.indices());
     } else {
       const std::vector<GpgpInstance> written = deriver.instances();
-      addTriangles(triangles, written);
+      if (asVertices) {
+        if (record) asVertices->setAxioms(slices.of(record));
+        asVertices->fit(prepared);
+        addTriangles(triangles, asVertices->vertices(), asVertices->indices());
+      } else {
+        addTriangles(triangles, written);
+      }
       instances.insert(instances.end(), written.begin(), written.end());
     }
   }
@@ -297,7 +320,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     name += (name.empty() ? "" : ", ") + std::string(graph.nameAt(terminal.name));
   }
   std::vector<uint64_t> bucketInstances(bucketNames.size()), bucketTriangles(bucketNames.size());
-  for (const GpgpInstance& instance : instances) ++bucketInstances.at(instance.bucket);
+  std::map<uint32_t, uint64_t> ruleInstances;
+  for (const GpgpInstance& instance : instances) {
+    ++bucketInstances.at(instance.bucket);
+    ++ruleInstances[instance.rule];
+  }
   for (size_t terminal = 0; terminal < triangles.counts.size(); ++terminal)
     bucketTriangles[graph.terminals[terminal].bucket] += triangles.counts[terminal];
   if (!options.image.empty()) paint(options, triangles, graph);
@@ -325,7 +352,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   Outcome outcome;
   char hash[20];
   std::snprintf(hash, sizeof hash, "%08x%08x", report.keyHash[1], report.keyHash[0]);
-  Json bucketList = Json::array(), passes = Json::object();
+  Json bucketList = Json::array(), ruleList = Json::array(), passes = Json::object();
+  for (const auto& [rule, count] : ruleInstances)
+    ruleList.push_back({{"rule", rule == GPGP_NO_RULE ? Json() : Json(graph.nameAt(graph.rules.at(rule).name))},
+                        {"instances", count}});
   for (const auto& [name, time] : times.passes) // rounds of derivation have the same name
     passes[name] = passes.value(name, 0.0) + time;
   std::ostringstream text;
@@ -374,6 +404,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                   {"vertices", verticesWritten},
                   {"triangles", triangles.total},
                   {"buckets", bucketList},
+                  {"rules", ruleList},
                   {"rounds", report.rounds},
                   {"peak_shapes", report.peakShapes},
                   {"max_shapes", deriver.maxShapes()},

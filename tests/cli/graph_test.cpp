@@ -1,6 +1,9 @@
 // `gpgp graph` on a sponge whose schedules are published.
 #include "files.h"
+#include "host/files.h"
 #include "run.h"
+
+#include <filesystem>
 
 namespace gpgp::test {
 namespace {
@@ -46,6 +49,16 @@ TEST(CliGraph, PrintedSchedulesAreRead) {
   gpgpJson({"graph", grammar.path(), "--schedule", "rules", "--format", "svg", "-o", picture.path()});
   EXPECT_EQ(host::readText(picture.path()).substr(0, 5), "<svg ");
   EXPECT_EQ(gpgp({"graph", grammar.path(), "--format", "dot"}).out.substr(0, 8), "digraph ");
+}
+
+TEST(CliGraph, PrintsTheGraphsOfTheTestData) { // where the fuzzer of the printed form begins
+  const std::filesystem::path data = GPGP_TEST_DATA;
+  const auto printed = [&](const std::filesystem::path& grammar, const char* schedule) {
+    const auto wanted = data / "graphs" / grammar.stem().concat(".graph");
+    EXPECT_EQ(gpgp({"graph", grammar.string(), "--schedule", schedule}).out, host::readText(wanted)) << wanted;
+  };
+  printed(std::filesystem::path(GPGP_SAMPLE_GRAMMARS) / "overview.pga", "rules");
+  for (const char* name : {"shapes.pga", "sponge.pga", "tree.pga"}) printed(data / "grammars" / name, "heuristic");
 }
 
 TEST(CliGraph, ErrorsHaveAPlace) {

@@ -50,7 +50,8 @@ TEST(CliReference, OrderDoesNotCountAndEverythingElseDoes) {
   const std::vector<std::function<void(GpgpInstance&)>> changes = {
       [](GpgpInstance& i) { ++i.terminal; }, [](GpgpInstance& i) { ++i.axiomId; },
       [](GpgpInstance& i) { ++i.seed; },     [](GpgpInstance& i) { i.size[2] += 1; },
-      [](GpgpInstance& i) { ++i.key[1]; },   [](GpgpInstance& i) { i.attribute = -1; }};
+      [](GpgpInstance& i) { ++i.key[1]; },   [](GpgpInstance& i) { i.attribute = -1; },
+      [](GpgpInstance& i) { ++i.rule; }};
   for (const auto& change : changes) {
     auto changed = cpu.instances;
     change(changed[3]);

@@ -4,6 +4,9 @@
 #include "host/picture.h"
 #include "run.h"
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <map>
 
 namespace gpgp::test {
@@ -35,6 +38,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "vertices",
                                                 "triangles",
                                                 "buckets",
+                                                "rules",
                                                 "rounds",
                                                 "peak_shapes",
                                                 "max_shapes",
@@ -62,12 +66,46 @@ TEST(CliSpawn, CountsTerminals) {
   ASSERT_EQ(tower["buckets"].size(), 1u);
   EXPECT_EQ(tower["buckets"][0]["name"], "Floor");
   EXPECT_EQ(tower["buckets"][0]["instances"], 30);
+  EXPECT_EQ(tower["rules"], json::array({{{"rule", "Tower"}, {"instances", 30}}}));
   EXPECT_EQ(tower["key_hash"].get<std::string>().size(), 16u);
   EXPECT_EQ(host::readPng(picture.path()).width, 96u);
   const json again = gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "4,10,4"});
   EXPECT_EQ(again["key_hash"], tower["key_hash"]);
   const json otherSeed = gpgpJson({"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "4,10,4", "--seed", "9"});
   EXPECT_NE(otherSeed["key_hash"], tower["key_hash"]);
+}
+
+/// Of a binary glTF file that has nothing but positions, in an order of their own.
+std::vector<std::array<float, 9>> trianglesOf(const std::string& file) {
+  const std::string text = host::readText(file);
+  uint32_t json = 0;
+  std::memcpy(&json, text.data() + 12, 4);
+  const size_t begin = 20 + json + 8; // behind the headers of the file and of both chunks
+  std::vector<std::array<float, 9>> triangles((text.size() - begin) / 36);
+  std::memcpy(triangles.data(), text.data() + begin, triangles.size() * 36);
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+TEST(CliSpawn, InstancesWithCornersOfTheirOwnAreDrawnWithThem) {
+  const TemporaryFile grammar("corners.pga",
+                              "axiom Box S;\nterminal T (0, 0);\n"
+                              "S = Repeat(X, 2, ADJUST_TO_FILL) SetAsDynamicConcaveRightPrism((-0.5,-0.5),(0.5,-0.5),"
+                              "(0.5,0),(0,0),(0,0.5),(-0.5,0.5)) T;\n"),
+      instances("corners_instances.glb"), vertices("corners_vertices.glb");
+  const auto spawn = [&](std::vector<std::string> more) {
+    more.insert(more.begin(),
+                {"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "8,2,2", "--slice", "2", "--validate"});
+    return gpgpJson(more);
+  };
+  const json one = spawn({"--out", instances.path()}), two = spawn({"--out", vertices.path(), "--output", "vertices"});
+  EXPECT_EQ(one["instances"], 12);
+  EXPECT_EQ(one["triangles"], 12 * (2 * 4 + 6 * 2)); // an L's two ends and six sides
+  EXPECT_EQ(one["triangles"], two["triangles"]);
+  EXPECT_EQ(one["bytes_written"], 12 * 96); // of the instances alone
+  const auto triangles = trianglesOf(instances.path());
+  EXPECT_EQ(triangles.size(), one["triangles"]);
+  EXPECT_EQ(triangles, trianglesOf(vertices.path()));
 }
 
 constexpr const char* kStreet = R"(axiom Box Street;
@@ -201,7 +239,7 @@ TEST(CliSpawn, BudgetsAreReported) {
 }
 
 TEST(CliSpawn, WhatWasExceededIsNamed) {
-  const TemporaryFile grammar("named.pga", kTower), deep("named_deep.pga", "axiom Box S;\nterminal T (1, 0);\n"
+  const TemporaryFile grammar("named.pga", kTower), deep("named_deep.pga", "axiom Box S;\nterminal T (0, 0);\n"
                                                                            "S = Replicate() { T | S };\n");
   const auto said = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "spawn");
@@ -232,7 +270,7 @@ TEST(CliSpawn, SlicesSumUp) {
     EXPECT_EQ(one["records"], 1);
     EXPECT_EQ(several["records"], 3);
     for (const char* same :
-         {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "key_hash", "bytes_written"})
+         {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "rules", "key_hash", "bytes_written"})
       EXPECT_EQ(one[same], several[same]) << same;
   }
   const json few = spawn({"--slice", "4", "--max-instances", "60"}); // of each record

@@ -289,6 +289,36 @@ TEST(Operators, StartRulesAndUnknownRules) {
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).droppedShapes, 1u);
 }
 
+TEST(Operators, InstancesNameTheRuleWhoseBodyEnded) {
+  const std::string text = "axiom Box A; axiom Box T; terminal T U (1,0);"
+                           "A = Replicate() { T | B | C | D | Generate() | Replicate() { U | T } };" // two T, one rule
+                           "B = T; C = B;" // C has no terminal of its own
+                           "D --> 50%: Scale(1,1,1) T else: Replicate() { T | Generate() };";
+  const auto rulesOf = [](const std::vector<uint32_t>& words, const std::vector<uint32_t>& starts) {
+    std::vector<GpgpAxiom> all;
+    for (const uint32_t start : starts) {
+      all.push_back(makeAxiom(1, 1, 1, start));
+      all.back().rule = start;
+    }
+    std::vector<uint32_t> rules;
+    for (const GpgpInstance& i : derive(words, all).instances) rules.push_back(i.rule);
+    return rules;
+  };
+  const uint32_t A = 0, B = 1, C = 2, D = 3, line = 5;
+  const auto words = bake(text);
+  auto found = rulesOf(words, {A});
+  ASSERT_GE(found.size(), 7u); // D is one terminal or two
+  ASSERT_LE(found.size(), 8u);
+  for (size_t i = 3; i + 3 < found.size(); ++i) EXPECT_EQ(found[i], D);
+  found.erase(found.begin() + 4, found.end() - 3);
+  EXPECT_EQ(found, (std::vector<uint32_t>{A, B, B, D, A, A, A}));
+  EXPECT_EQ(rulesOf(words, {B, C, line}), (std::vector<uint32_t>{B, B, GPGP_NO_RULE}));
+  // Linked grammars count on.
+  const std::string first = "axiom Box X; terminal V (1,0); Y = V; X = Replicate() { V | Y };";
+  const auto both = linked({{"first", first}, {"second", text}});
+  EXPECT_EQ(rulesOf(both, {1, 2 + B, 2 + C, 2 + 4 + 2}), (std::vector<uint32_t>{1, 0, 2 + B, 2 + B, GPGP_NO_RULE}));
+}
+
 TEST(Operators, RepeatsOfTooManyCopiesAreDroppedAndCounted) {
   const GpgpAxiom axiom = makeAxiom(1, 1, 1);
   for (const char* mode : {"ADJUST_TO_FILL", "ANCHOR_TO_START", "ANCHOR_TO_END"}) {

@@ -147,7 +147,7 @@ struct SpawnTest : DeviceTest {
     const auto all = host::download<GpgpInstance>(device, instances, capacity);
     result.instances.assign(all.begin(), all.begin() + std::min(result.count, capacity));
     for (size_t i = result.count; i < all.size(); ++i) // nothing beyond the count is touched
-      if (all[i].bucket != kPoison || all[i].reserved != kPoison) {
+      if (all[i].bucket != kPoison || all[i].rule != kPoison) {
         ADD_FAILURE() << "instance " << i << " of " << result.count << " was written";
         break;
       }
@@ -190,7 +190,7 @@ struct SpawnTest : DeviceTest {
       ASSERT_EQ(a[i]->seed, b[i]->seed) << what;
       ASSERT_EQ(bits(a[i]->attribute), bits(b[i]->attribute)) << what;
       for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(bits(a[i]->size[axis]), bits(b[i]->size[axis])) << what;
-      ASSERT_EQ(a[i]->reserved, b[i]->reserved) << what;
+      ASSERT_EQ(a[i]->rule, b[i]->rule) << what;
       for (int column = 0; column < 4; ++column) { // the axes, each as long as the shape, and the place
         float largest = column == 3 ? 1 : 0;
         for (int t = column; t < 12; t += 4) largest = std::max(largest, std::fabs(a[i]->transform[t]));
@@ -316,6 +316,70 @@ TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
     instances += random.terminals;
   }
   EXPECT_TRUE(count < 200 || instances > 100 * count) << instances; // of few, all can be small
+}
+
+/// What `gpgp tune` stores is a baked grammar with kernels behind its graph. Each here is made of a graph with another
+/// height than the stored one's, so that instances say who derived them.
+TEST_F(SpawnTest, StoredSchedulesServeTheirDeviceAndNumberOfAxioms) {
+  const std::string text = "var h = 1; axiom Box A; terminal T (1, 0);"
+                           "A = Replicate() { Translate(0, h, 0) T | Translate(0, h, 0) T };";
+  const auto words = bake(text);
+  const uint32_t vendor = device.properties().vendorID, model = device.properties().deviceID;
+  struct Stored {
+    float height;
+    uint32_t vendor, device, axioms;
+  };
+  std::map<float, std::vector<uint32_t>> codes; // by height: compiling takes seconds
+  const auto stored = [&](const std::vector<Stored>& kernels) {
+    std::vector<uint32_t> all = words;
+    for (const Stored& s : kernels) {
+      const spawn::Graph graph = graphOf(bake(text, {{"h", s.height}}));
+      spawn::KernelInfo info;
+      for (const spawn::KernelTarget target : spawn::targetsOf(graph))
+        if (takes(target)) {
+          info.target = target;
+          break;
+        }
+      info.vendor = s.vendor;
+      info.device = s.device;
+      info.axioms = s.axioms;
+      const auto waits = spawn::namedSchedule(graph, "sgl")->waits;
+      if (codes[s.height].empty()) codes[s.height] = *spawn::compileKernel(spawn::generate(graph, waits), info.target);
+      const auto kernel =
+          spawn::serialize(info, codes[s.height], words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
+      all.insert(all.end(), kernel.begin(), kernel.end());
+    }
+    return all;
+  };
+  const auto heightsOf = [&](GpgpAsset grammar, std::initializer_list<uint32_t> numbers) {
+    std::vector<float> heights;
+    for (const uint32_t number : numbers) {
+      const std::vector<GpgpAxiom> all(number, makeAxiom(1, 1, 1));
+      const Derived derived = derive(grammar, 1, all, 2 * number, false);
+      EXPECT_EQ(derived.instances.size(), 2 * number);
+      for (const GpgpInstance& i : derived.instances) EXPECT_EQ(i.transform[7], derived.instances[0].transform[7]);
+      heights.push_back(derived.instances.empty() ? 0 : derived.instances[0].transform[7]);
+    }
+    return heights;
+  };
+  const std::vector<Stored> others = {{3, vendor + 1, model, 4}, {3, vendor, model + 1, 4}},
+                            own = {{2, vendor, model, 4}, {3, vendor, model, 1000}}, any = {{7, 0, 0, 0}};
+  const auto joined = [](std::vector<Stored> a, const std::vector<Stored>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  const GpgpAsset tuned = makeGrammar(stored(joined(any, joined(others, own))));
+  EXPECT_EQ(heightsOf(tuned, {4}), std::vector<float>{1}); // the interpreter, until there are pipelines
+  EXPECT_EQ(gpgpPrewarmGrammar(spawner, tuned), GPGP_SUCCESS);
+  EXPECT_EQ(heightsOf(tuned, {4, 5, 2, 100, 1000}), (std::vector<float>{2, 2, 2, 3, 3}));
+  gpgpDestroyAsset(tuned);
+  const GpgpAsset forAny = makeReady(stored(joined(others, any)));
+  EXPECT_EQ(heightsOf(forAny, {4, 1000}), (std::vector<float>{7, 7}));
+  gpgpDestroyAsset(forAny);
+  const GpgpAsset forOthers = makeGrammar(stored(others));
+  EXPECT_EQ(gpgpPrewarmGrammar(spawner, forOthers), GPGP_SUCCESS);
+  EXPECT_EQ(heightsOf(forOthers, {4}), std::vector<float>{1});
+  gpgpDestroyAsset(forOthers);
 }
 
 /// With a kernel behind the graph.
@@ -803,6 +867,7 @@ void expectInOrder(const std::vector<GpgpInstance>& cpu, const std::vector<GpgpI
     ASSERT_EQ(cpu[i].bucket, gpu[i].bucket) << i;
     ASSERT_EQ(cpu[i].axiomId, gpu[i].axiomId) << i;
     ASSERT_EQ(cpu[i].seed, gpu[i].seed) << i;
+    ASSERT_EQ(cpu[i].rule, gpu[i].rule) << i;
     ASSERT_EQ(std::memcmp(cpu[i].size, gpu[i].size, sizeof cpu[i].size), 0) << i;
   }
 }

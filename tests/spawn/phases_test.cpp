@@ -88,7 +88,7 @@ TEST(Phases, GroupsMayWaitForEachOtherWhereNodesDoNot) {
 
 TEST(Phases, AreAsFewAsPossible) {
   uint32_t feasible = 0, infeasible = 0, many = 0;
-  for (uint32_t seed = 0; seed < 3000; ++seed) {
+  for (uint32_t seed = 0; seed < 4000; ++seed) {
     const Graph graph = compiled(randomGrammar(seed));
     std::mt19937 random(seed);
     Flow flow = makeFlow(graph);

@@ -61,14 +61,15 @@ TEST(Print, ReadsAsARuleSet) {
                            "polygon 12 { (0,0.5) (-0.5,0) (0.5,0) }\n"
                            "rule A -> 0\n"
                            "rule B -> 3\n"
-                           "rule C -> 4\n"
+                           "rule C -> 5\n"
                            "0 SubDiv(X) { -1: / -> 1 | 2: / -> 2 | 1: / -> Discard }\n"
-                           "1 T\n"
+                           "1 T in A\n"
                            "2 Translate(0,(ShapeSize(Y) * 1.5),0.1) { 1 -> 0 }\n"
-                           "3 CompSplit() { 1 -> 1 | 1 -> 1 | n -> 1 }\n"
-                           "4 SetGeometry(DynamicConvexPolygon,12) { 1 -> 5 }\n"
-                           "5 Repeat(X,Rand(1,2),ANCHOR_TO_END) { * -> 6 }\n"
-                           "6 U\n";
+                           "3 CompSplit() { 1 -> 4 | 1 -> 4 | n -> 4 }\n"
+                           "4 T in B\n"
+                           "5 SetGeometry(DynamicConvexPolygon,12) { 1 -> 6 }\n"
+                           "6 Repeat(X,Rand(1,2),ANCHOR_TO_END) { * -> 7 }\n"
+                           "7 U in C\n";
   EXPECT_EQ(printGraph(graph), text);
   expectSame(parsed(text).graph, graph);
   EXPECT_FALSE(parsed(text).partition);
@@ -96,9 +97,9 @@ TEST(Print, TagsAreNumbersAndNames) {
                            "0 Collider(wall) { 1 -> 1 }\n"
                            "1 Collider(3) { 1 -> 2 }\n"
                            "2 IfCollides(wall) { / -> 3 | / -> 4 }\n"
-                           "3 T\n"
+                           "3 T in A\n"
                            "4 IfCollides(3) { / -> 3 | / -> 5 }\n"
-                           "5 U\n";
+                           "5 U in A\n";
   EXPECT_EQ(printGraph(graph), text);
   expectSame(parsed(text).graph, graph);
   EXPECT_EQ(parsed(text).graph.phases, 2u);
@@ -133,11 +134,11 @@ TEST(Print, MultiplicitiesOfFacesAreThoseOfTheShapesThatArrive) {
     EXPECT_EQ(printGraph(back), printed);
     return printed.substr(printed.find("CompSplit"));
   };
-  EXPECT_EQ(faces("axiom Box A; axiom Prism5 A;"), "CompSplit() { 1 -> 1 | 1 -> 1 | n -> 1 }\n1 T\n");
-  EXPECT_EQ(faces("axiom Quad A;"), "CompSplit() { 1 -> 1 | 0 -> 1 | 0 -> 1 }\n1 T\n");
-  EXPECT_EQ(faces("axiom Sphere A;"), "CompSplit() { 0 -> 1 | 0 -> 1 | 0 -> 1 }\n1 T\n");
-  EXPECT_EQ(faces("axiom Quad A; axiom Box A;"), "CompSplit() { 1 -> 1 | / -> 1 | * -> 1 }\n1 T\n");
-  EXPECT_EQ(faces("axiom Sphere A; axiom Box A;"), "CompSplit() { / -> 1 | / -> 1 | * -> 1 }\n1 T\n");
+  EXPECT_EQ(faces("axiom Box A; axiom Prism5 A;"), "CompSplit() { 1 -> 1 | 1 -> 1 | n -> 1 }\n1 T in A\n");
+  EXPECT_EQ(faces("axiom Quad A;"), "CompSplit() { 1 -> 1 | 0 -> 1 | 0 -> 1 }\n1 T in A\n");
+  EXPECT_EQ(faces("axiom Sphere A;"), "CompSplit() { 0 -> 1 | 0 -> 1 | 0 -> 1 }\n1 T in A\n");
+  EXPECT_EQ(faces("axiom Quad A; axiom Box A;"), "CompSplit() { 1 -> 1 | / -> 1 | * -> 1 }\n1 T in A\n");
+  EXPECT_EQ(faces("axiom Sphere A; axiom Box A;"), "CompSplit() { / -> 1 | / -> 1 | * -> 1 }\n1 T in A\n");
 }
 
 TEST(Print, LinkedGrammarsComeBack) {
@@ -147,20 +148,21 @@ TEST(Print, LinkedGrammarsComeBack) {
   const auto graph = load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource());
   ASSERT_TRUE(graph);
   const std::string text = "axiom _3: Box -> 0\n"
-                           "axiom _3.T: Quad -> 1\n"
-                           "axiom 2e5: DynamicPolygon(12) -> 2\n"
+                           "axiom _3.T: Quad -> 2\n"
+                           "axiom 2e5: DynamicPolygon(12) -> 3\n"
                            "terminal _3.T (1, 0) bucket 0\n"
                            "terminal 2e5.7 (1, 0) bucket 1\n"
                            "polygon 12 { (0,0.5) (-0.5,0) (0.5,0) }\n"
                            "rule _3.A -> 0\n"
-                           "rule 2e5.5(2) -> 2\n"
+                           "rule 2e5.5(2) -> 3\n"
                            "0 Translate(0.5,1.5,1e+09) { 1 -> 1 }\n"
-                           "1 _3.T\n"
-                           "2 2e5.7\n";
+                           "1 _3.T in _3.A\n"
+                           "2 _3.T\n"
+                           "3 2e5.7 in 2e5.5\n";
   EXPECT_EQ(printGraph(*graph), text);
   expectSame(parsed(text).graph, *graph);
   EXPECT_EQ(printGraph(parsed(text).graph), text);
-  EXPECT_EQ(makeFlow(*graph).starts, (std::vector<uint32_t>{0, 1, 2}));
+  EXPECT_EQ(makeFlow(*graph).starts, (std::vector<uint32_t>{0, 2, 3}));
 }
 
 TEST(Print, LongSumsComeBack) { // as long as the language allows
@@ -211,6 +213,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, PrintError,
     testing::Values(Case{"1 T", {"3:1: error: expected node 0, found '1'"}},
                     Case{"0 Q", {"3:3: error: there is no operator or terminal 'Q'"}},
+                    Case{"0 T in B\nrule A -> 0", {"3:8: error: there is no rule 'B'"}},
+                    Case{"0 T in\n1 T", {"4:1: error: expected a rule's name, found '1'"}},
                     Case{"0 Translate(1,0) { 1 -> Discard }", {"3:16: error: expected ',', found ')'"}},
                     Case{"0 Translate(1,0,W) { 1 -> Discard }", {"3:18: error: expected '(', found ')'"}},
                     Case{"0 Translate(1,0,0) { 1 -> 5 }", {"3:27: error: there is no node 5"}},

@@ -250,7 +250,7 @@ const GpgpVertexLayout* stable(const GpgpVertexLayout& layout) {
     if (std::memcmp(&known, &layout, sizeof layout) == 0) return &known;
   return &all.emplace_back(layout);
 }
-/// 48 bytes with all semantics, or parts of it in small formats.
+/// 48 bytes with all semantics but the rule, or parts of it in small formats.
 VertexFormat wideVertex() {
   VertexFormat v{};
   v.indexType = VK_INDEX_TYPE_UINT32;
@@ -263,6 +263,13 @@ VertexFormat wideVertex() {
   v.attributes[4] = {GPGP_VERTEX_AXIOM_ID, VK_FORMAT_R32_UINT, 36};
   v.attributes[5] = {GPGP_VERTEX_TERMINAL, VK_FORMAT_R32_UINT, 40};
   v.attributes[6] = {GPGP_VERTEX_SEED, VK_FORMAT_R32_UINT, 44};
+  return v;
+}
+/// 60 bytes, which are staged, with all semantics.
+VertexFormat fullVertex() {
+  VertexFormat v = wideVertex();
+  v.stride = 60;
+  v.attributes[v.attributeCount++] = {GPGP_VERTEX_RULE, VK_FORMAT_R32_UINT, 52};
   return v;
 }
 /// 28 bytes, four of which no attribute covers.
@@ -545,7 +552,7 @@ void checkAll(VerticesTest& test, const std::string& what, const std::vector<uin
 
 TEST_F(VerticesTest, OwnGrammarsEqualTheEvaluator) {
   for (const std::string& name : ownGrammarNames()) {
-    checkAll(*this, name, bake(ownGrammar(name)), axioms(3, 12, 16, 10), wideVertex());
+    checkAll(*this, name, bake(ownGrammar(name)), axioms(3, 12, 16, 10), fullVertex());
     if (HasFatalFailure()) return;
   }
 }
@@ -611,7 +618,10 @@ std::vector<uint32_t> bakeWithKernel(const std::string& name) {
 }
 
 TEST_F(VerticesTest, GeneratedKernelsWriteTheSame) {
-  checkAll(*this, "building", bakeWithKernel("building.pga"), axioms(5, 12, 16, 10), wideVertex());
+  VertexFormat layout = fullVertex();
+  checkAll(*this, "building", bakeWithKernel("building.pga"), axioms(5, 12, 16, 10), layout);
+  layout.stride = 64; // which is not staged
+  checkAll(*this, "building", bakeWithKernel("building.pga"), axioms(5, 12, 16, 10), layout);
 }
 
 TEST_F(VerticesTest, WithCollidersToo) {
@@ -1147,8 +1157,8 @@ TEST_F(VerticesTest, BadLayoutsAreRefusedWithAReason) {
   EXPECT_EQ(refusedLayout([](auto& v) { v.stride = 46; }),
             "vertices->stride is 46; it must be a multiple of 4, at most 64");
   EXPECT_EQ(refusedLayout([](auto& v) { v.attributeCount = 9; }), "vertices->attributeCount is 9; it must be 1 to 8");
-  EXPECT_EQ(refusedLayout([](auto& v) { v.attributes[1].semantic = 7; }),
-            "vertices->attributes[1].semantic is unknown (7)");
+  EXPECT_EQ(refusedLayout([](auto& v) { v.attributes[1].semantic = 8; }),
+            "vertices->attributes[1].semantic is unknown (8)");
   EXPECT_EQ(refusedLayout([](auto& v) { v.attributes[3].format = VK_FORMAT_R32G32_SFLOAT; }),
             "vertices->attributes[3].format (103) is not one for its semantic");
   EXPECT_EQ(

@@ -16,7 +16,7 @@ using namespace shader;
                                     const GpgpInstance& instance, const VertexLayout& layout) {
   const float* t = instance.transform;
   const vec4 rows[3] = {{t[0], t[1], t[2], t[3]}, {t[4], t[5], t[6], t[7]}, {t[8], t[9], t[10], t[11]}};
-  const uint32_t numbers[4] = {instance.bucket, instance.axiomId, instance.terminal, instance.seed};
+  const uint32_t numbers[5] = {instance.bucket, instance.axiomId, instance.terminal, instance.seed, instance.rule};
   const bool mirrored = isMirrored(rows[0], rows[1], rows[2]);
   const uint32_t quads = meshQuads(words, shape.geometry);
   out.quads.push_back(quads);
@@ -309,7 +309,8 @@ private:
     const Shape& shape = frame.shape;
     const GpgpAxiom& axiom = axioms_[context_.axiomNumber(shape.axiom)];
     const uint32_t bucket = frame.step->argument2, type = shapeType(shape);
-    const uvec2 hash = terminalHash(shape.key, frame.step->argument, type);
+    const uint32_t rule = words_[frame.step->node + kNodeRule];
+    const uvec2 hash = terminalHash(shape.key, frame.step->argument, rule, type);
     out_.keyHash[0] += hash.x;
     out_.keyHash[1] += hash.y;
     ++out_.buckets[bucket];
@@ -333,7 +334,7 @@ private:
     instance.size[0] = shape.size.x;
     instance.size[1] = shape.size.y;
     instance.size[2] = shape.size.z;
-    instance.reserved = 0;
+    instance.rule = rule;
     if (options_.vertices) emitVertices(out_, words_, shape, instance, *options_.vertices);
   }
 

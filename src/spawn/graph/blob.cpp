@@ -66,8 +66,8 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   for (const Node& n : graph.nodes)
     words.insert(words.end(), {n.op | (n.filter ? kNodeFilter : 0u) | n.priority << kNodePriority, n.argument,
                                n.division == UINT32_MAX ? n.argument2 : at(kSectionDivisions, n.division),
-                               at(kSectionParameters, n.firstParameter), n.parameterCount,
-                               at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
+                               n.op == kOpTerminal ? n.rule : at(kSectionParameters, n.firstParameter),
+                               n.parameterCount, at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
   for (const Edge& e : graph.edges)
     words.insert(words.end(), {nodeAt(e.target) | (e.recursive ? kEdgeRecursive : 0u), e.multiplicity, e.shapes});
   for (const Parameter& p : graph.parameters)
@@ -132,9 +132,11 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
     const uint32_t* w = entry(kSectionNodes, i);
     const uint32_t op = w[kNodeOperator] & (kNodeFilter - 1);
     graph.nodes.push_back({op, w[kNodeArgument], op == kOpSubDiv ? 0 : w[kNodeArgument2],
-                           indexOf(kSectionParameters, w[kNodeParameters], 1), w[kNodeParameterCount],
-                           indexOf(kSectionEdges, w[kNodeEdges], 1), w[kNodeEdgeCount], w[kNodeShapes]});
+                           op == kOpTerminal ? 0 : indexOf(kSectionParameters, w[kNodeParameters], 1),
+                           w[kNodeParameterCount], indexOf(kSectionEdges, w[kNodeEdges], 1), w[kNodeEdgeCount],
+                           w[kNodeShapes]});
     graph.nodes.back().priority = w[kNodeOperator] >> kNodePriority;
+    if (op == kOpTerminal) graph.nodes.back().rule = w[kNodeRule];
   }
   graph.edges.reserve(counts[kSectionEdges]);
   for (uint32_t i = 0; i < counts[kSectionEdges]; ++i) {

@@ -32,11 +32,12 @@ struct Node {
   uint32_t argument = 0, argument2 = 0;
   uint32_t firstParameter = 0, parameterCount = 0;
   uint32_t firstEdge = 0, edgeCount = 0;
-  uint32_t shapes = 0;            ///< bit set of the shape types that can arrive, from axioms or as a start rule
-  uint32_t axiomShapes = 0;       ///< those of them that come from axioms
-  uint32_t division = UINT32_MAX; ///< in Graph::divisions
-  bool filter = false;            ///< could multiply shapes, but passes on at most one
-  uint32_t priority = 0;          ///< of its rule, at most kMaxPriority: see dependenciesOf()
+  uint32_t shapes = 0;             ///< bit set of the shape types that can arrive, from axioms or as a start rule
+  uint32_t axiomShapes = 0;        ///< those of them that come from axioms
+  uint32_t division = UINT32_MAX;  ///< in Graph::divisions
+  bool filter = false;             ///< could multiply shapes, but passes on at most one
+  uint32_t priority = 0;           ///< of its rule, at most kMaxPriority: see dependenciesOf()
+  uint32_t rule = shader::kNoRule; ///< of a terminal: in whose body it stands
 };
 
 struct Polygon {

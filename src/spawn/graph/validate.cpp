@@ -130,6 +130,7 @@ Result<void> checkNode(const Graph& graph, uint32_t index) {
   case kOpTerminal:
     if (node.argument >= graph.terminals.size()) return bad("unknown terminal");
     if (node.argument2 != graph.terminals[node.argument].bucket) return bad("wrong bucket");
+    if (node.rule != kNoRule && node.rule >= graph.rules.size()) return bad("unknown rule");
     break;
   case kOpIfSizeLess:
   case kOpSubDiv:

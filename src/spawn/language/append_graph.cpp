@@ -53,7 +53,7 @@ void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags&
   const uint32_t firstNode = sizeOf(graph.nodes), firstEdge = sizeOf(graph.edges),
                  firstParameter = sizeOf(graph.parameters), firstCode = sizeOf(graph.code),
                  firstPolygon = sizeOf(graph.polygons) - kRegularPolygons, firstTerminal = sizeOf(graph.terminals),
-                 firstAxiom = sizeOf(graph.axioms), firstBucket = graph.buckets;
+                 firstRule = sizeOf(graph.rules), firstAxiom = sizeOf(graph.axioms), firstBucket = graph.buckets;
   const auto node = [&](uint32_t n) { return n == kNoNode ? kNoNode : firstNode + n; };
   const auto polygon = [&](uint32_t p) { return p < kRegularPolygons ? p : firstPolygon + p; };
   const Names names = appendNames(part, name, graph, tags);
@@ -70,6 +70,7 @@ void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags&
     if (n.op == kOpTerminal) {
       n.argument += firstTerminal;
       n.argument2 += firstBucket;
+      if (n.rule != kNoRule) n.rule += firstRule;
     }
     graph.nodes.push_back(n);
   }

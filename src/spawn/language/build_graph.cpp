@@ -4,8 +4,10 @@
 #include "spawn/graph/export_labels.h"
 #include "spawn/language/append_graph.h"
 #include "spawn/language/check_context.h"
+#include "spawn/language/check_shapes.h"
 #include "spawn/language/expressions.h"
 #include "spawn/language/lexer.h"
+#include "spawn/language/spellings.h"
 
 #include <algorithm>
 #include <array>
@@ -28,8 +30,7 @@ class Builder {
 public:
   Builder(const GrammarPart& part, Graph& graph, std::vector<NodePlace>& places, Tags& tags, uint32_t number)
       : part_(part), tree_(*part.tree), diagnostics_(*part.diagnostics), graph_(graph), places_(places), tags_(tags),
-        number_(number), firstNode_(graph.nodes.size()), firstRule_(graph.rules.size()),
-        expressions_(variables_, graph_, diagnostics_) {}
+        number_(number), firstRule_(graph.rules.size()), expressions_(variables_, graph_, diagnostics_) {}
 
   void run() {
     defineVariables(part_.overrides);
@@ -132,9 +133,11 @@ private:
   void buildRule(size_t index) {
     const RuleDefinition& rule = tree_.rules[index];
     const size_t first = graph_.nodes.size();
+    rule_ = static_cast<uint32_t>(firstRule_ + index);
     buildBody(index, rule);
+    rule_ = kNoRule;
     for (size_t n = first; n < graph_.nodes.size(); ++n)
-      if (graph_.nodes[n].op != kOpTerminal) graph_.nodes[n].priority = rule.priority; // rules share their terminals
+      if (graph_.nodes[n].op != kOpTerminal) graph_.nodes[n].priority = rule.priority;
   }
   void buildBody(size_t index, const RuleDefinition& rule) {
     if (rule.alternatives.empty()) {
@@ -196,55 +199,18 @@ private:
     return {terminalNode(static_cast<uint32_t>(it->second.index), successor.place), std::nullopt};
   }
 
+  /// A rule has one for each of its terminals, which says whose it is.
   uint32_t terminalNode(uint32_t terminal, Place place) {
-    const auto [it, isNew] = terminalNodes_.try_emplace(terminal, static_cast<uint32_t>(graph_.nodes.size()));
+    const auto [it, isNew] = terminalNodes_.try_emplace({rule_, terminal}, static_cast<uint32_t>(graph_.nodes.size()));
     if (isNew) {
       graph_.nodes.push_back({kOpTerminal, terminal, graph_.terminals[terminal].bucket});
+      graph_.nodes.back().rule = rule_;
       places_.push_back({number_, place});
     }
     return it->second;
   }
 
   // ---------------------------------------------------------------- operators
-
-  /// How an operator is written. Parameters: axes and modes come first, then values.
-  struct Spelling {
-    const char* name;
-    uint32_t op;
-    const char* arguments; ///< one letter each: a axis, m mode, t tag, v value
-    uint32_t branches;     ///< 1: one successor, 2 or 3: exactly, kMany: any number
-    bool labels;           ///< value: successor
-  };
-  static constexpr uint32_t kMany = UINT32_MAX;
-  static constexpr float kLargestTag = 16777216;
-  static constexpr uint32_t kSetGeometry = kOpSetGeometry;
-  static constexpr Spelling kSpellings[] = {
-      {"Translate", kOpTranslate, "vvv", 1, false},
-      {"Rotate", kOpRotate, "vvv", 1, false},
-      {"Scale", kOpScale, "vvv", 1, false},
-      {"Extrude", kOpExtrude, "v", 1, false},
-      {"SwapSize", kOpSwapSize, "aaa", 1, false},
-      {"Collider", kOpCollider, "t", 1, false},
-      {"IfCollides", kOpIfCollides, "t", 2, false},
-      {"CompSplit", kOpCompSplit, "", 3, false},
-      {"SubDiv", kOpSubDiv, "a", kMany, true},
-      {"Repeat", kOpRepeat, "avm", 1, false},
-      {"If", kOpIf, "v", 2, false},
-      {"IfSizeLess", kOpIfSizeLess, "av", 2, false},
-      {"RandomRule", kOpRandomRule, "v", kMany, true},
-      {"Replicate", kOpReplicate, "", kMany, false},
-  };
-  static constexpr std::array<const char*, 6> kOtherOperators{"Discard",
-                                                              "Generate",
-                                                              "SetAsDynamicConvexPolygon",
-                                                              "SetAsDynamicConcavePolygon",
-                                                              "SetAsDynamicConvexRightPrism",
-                                                              "SetAsDynamicConcaveRightPrism"};
-  static bool isOperatorName(const std::string& name) {
-    return std::any_of(std::begin(kSpellings), std::end(kSpellings),
-                       [&](const Spelling& s) { return name == s.name; }) ||
-           std::any_of(kOtherOperators.begin(), kOtherOperators.end(), [&](const char* s) { return name == s; });
-  }
 
   Target buildCall(const Call& call) {
     for (const Spelling& spelling : kSpellings)
@@ -359,6 +325,7 @@ private:
     }
   }
 
+  static constexpr float kLargestTag = 16777216;
   /// A name, unless it is a var, or a whole number.
   uint32_t tagOf(const Expression& expression) {
     if (expression.kind == ExpressionKind::name && !variables_.count(expression.name)) {
@@ -396,7 +363,7 @@ private:
     uint32_t shape = prism ? kShapeDynamicRightPrism : kShapeDynamicPolygon;
     if (convex) shape = prism ? kShapeDynamicConvexRightPrism : kShapeDynamicConvexPolygon;
     if (!isOperatorName(call.name)) diagnostics_.error(call.place, "there is no operator '" + call.name + "'");
-    checkBranches(call, {call.name.c_str(), kSetGeometry, "", 1, false});
+    checkBranches(call, {call.name.c_str(), kOpSetGeometry, "", 1, false});
     const uint32_t polygon = buildPolygon(call.place, call.arguments, convex);
     const uint32_t node = addNode(call.place, kOpSetGeometry, {}, call.branches);
     graph_.nodes[node].argument = shape;
@@ -525,64 +492,15 @@ private:
   }
 
 public:
-  /// Once all is built and analysed: what has no effect.
-  void warn() {
+  /// Once all is built.
+  void warnOfUnusedRules() {
     usedRules_.resize(tree_.rules.size());
     for (size_t i = 0; i < tree_.rules.size(); ++i)
       if (!usedRules_[i])
         diagnostics_.warning(tree_.rules[i].place, "rule '" + tree_.rules[i].name + "' is never used");
-    for (size_t i = firstNode_; i < graph_.nodes.size() && places_[i].part == number_; ++i) {
-      const Node& node = graph_.nodes[i];
-      if (node.shapes == 0) continue;
-      warnOfEnds(node, places_[i].place);
-      tellOfPolygons(node, places_[i].place);
-      uint32_t fitting = node.shapes;
-      for (uint32_t s = 0; s < kShapeCount; ++s) {
-        if (node.op == kOpExtrude && !isPolygon(s)) fitting &= ~(1u << s);
-        if (node.op == kOpCompSplit && isPolygon(s)) fitting &= ~(1u << s);
-      }
-      if (fitting == 0)
-        diagnostics_.warning(places_[i].place, std::string(operatorName(node.op)) + " has no effect here: only " +
-                                                   list(node.shapes) + " arrives");
-    }
   }
 
 private:
-  /// Types that come from axioms, and of which an operator makes nothing that goes on.
-  void warnOfEnds(const Node& node, Place place) {
-    uint32_t ending = 0;
-    bool leads = false;
-    for (uint32_t s = 0; s < kShapeCount; ++s) {
-      if (!(node.axiomShapes >> s & 1)) continue;
-      bool goesOn = false;
-      for (uint32_t e = 0; e < node.edgeCount; ++e) {
-        const bool kept = graph_.edges[node.firstEdge + e].target != kNoNode;
-        leads = leads || kept;
-        goesOn = goesOn || (kept && outputOf(node, e, s) != 0);
-      }
-      if (!goesOn) ending |= 1u << s;
-    }
-    if (ending && leads)
-      diagnostics_.warning(place, std::string(operatorName(node.op)) + " passes on nothing of " + list(ending) +
-                                      ", which can arrive: such shapes end here");
-  }
-
-  /// Instances have no polygons: a mesh stands for whatever shape it is.
-  void tellOfPolygons(const Node& node, Place place) {
-    constexpr uint32_t kDynamic = 15u << kShapeDynamicConvexPolygon;
-    if (node.op != kOpTerminal || graph_.terminals[node.argument].kind != 1 || !(node.axiomShapes & kDynamic)) return;
-    diagnostics_.info(place, std::string("instances of '") + graph_.nameAt(graph_.terminals[node.argument].name) +
-                                 "' do not say the corners of " + list(node.axiomShapes & kDynamic) +
-                                 ": its mesh must have them, or a spawner for vertices write them");
-  }
-
-  static std::string list(uint32_t shapes) {
-    std::string text;
-    for (uint32_t s = 0; s < kShapeCount; ++s)
-      if (shapes >> s & 1) text += (text.empty() ? "" : ", ") + std::string(shapeName(s));
-    return text;
-  }
-
   const GrammarPart& part_;
   const SyntaxTree& tree_;
   Diagnostics& diagnostics_;
@@ -590,13 +508,14 @@ private:
   std::vector<NodePlace>& places_; // by node
   Tags& tags_;
   const uint32_t number_; // of the part
-  const size_t firstNode_, firstRule_;
+  const size_t firstRule_;
   std::map<std::string, float> variables_;
   ExpressionCompiler expressions_;
   std::map<std::string, Name> names_;
   std::vector<Target> ruleTargets_;
   std::vector<std::pair<uint32_t, size_t>> ruleEdges_;
-  std::map<uint32_t, uint32_t> terminalNodes_;
+  uint32_t rule_ = kNoRule;                                         // whose body is being built
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> terminalNodes_; // by rule and terminal
   std::vector<bool> usedRules_;
   std::optional<uint32_t> generate_;
   uint32_t wrongTags_ = 0;
@@ -633,7 +552,8 @@ Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* 
   checkOrder(graph, places, parts);
   if (failed) return graph; // what is missing may be what has an effect
   checkEffect(graph, places, parts);
-  for (Builder& builder : builders) builder.warn();
+  checkShapes(graph, places, parts);
+  for (Builder& builder : builders) builder.warnOfUnusedRules();
   return graph;
 }
 

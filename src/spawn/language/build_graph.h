@@ -19,6 +19,12 @@ struct GrammarPart {
   std::string file; ///< for messages of other parts
 };
 
+/// Where a node was written.
+struct NodePlace {
+  uint32_t part = 0; ///< of the grammars
+  Place place;
+};
+
 /// What a linked grammar is called: its file's name without folders and without what follows the first point, in
 /// characters that names have. Digits alone would look like a number: they get a _ before them.
 std::string linkedName(std::string_view file);

@@ -4,12 +4,6 @@
 
 namespace gpgp::spawn {
 
-/// Where a node was written.
-struct NodePlace {
-  uint32_t part = 0; ///< of the grammars
-  Place place;
-};
-
 /// Reports, where it was written, each IfCollides that must wait for what comes after it. The graph is analysed, and
 /// may be one with errors; places: by node.
 void checkOrder(const Graph& graph, std::span<const NodePlace> places, std::span<const GrammarPart> parts);

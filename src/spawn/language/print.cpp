@@ -36,6 +36,7 @@ std::string printGraph(const Graph& graph) {
   for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
     const Node& node = graph.nodes[i];
     out << i << ' ' << nodeText(graph, node);
+    if (node.rule != kNoRule) out << " in " << graph.nameAt(graph.rules[node.rule].name);
     if (node.priority) out << " priority " << node.priority;
     for (uint32_t e = 0; e < node.edgeCount; ++e) {
       const std::string value = edgeValueText(graph, node, e);

@@ -80,6 +80,11 @@ private:
     Place place;
     std::vector<std::pair<Place, uint32_t>> nodes;
   };
+  struct TerminalNode {
+    Token terminal;
+    uint32_t node;
+    std::optional<Token> rule; ///< in whose body it stands
+  };
   /// A value as code; what kind of parameter it makes depends on how it is written.
   struct Value {
     std::vector<uint32_t> words;
@@ -226,7 +231,9 @@ private:
 
   void rule() {
     Rule rule;
-    rule.name = addName(name("a rule's name"));
+    const std::string text = name("a rule's name");
+    rules_.try_emplace(text, static_cast<uint32_t>(graph_.rules.size()));
+    rule.name = addName(text);
     if (accept(TokenKind::open)) {
       axioms_.push_back(now());
       rule.axiom = whole("an axiom's number");
@@ -263,7 +270,10 @@ private:
     while (node.op < kOpCount && name != operatorName(node.op)) ++node.op;
     if (node.op == kOpCount) {
       node.op = kOpTerminal;
-      terminalNodes_.emplace_back(word, static_cast<uint32_t>(graph_.nodes.size() - 1));
+      terminalNodes_.push_back({word, static_cast<uint32_t>(graph_.nodes.size() - 1), {}});
+      if (!isName("in")) return;
+      ++at_;
+      terminalNodes_.back().rule = expect(TokenKind::name, "a rule's name");
       return;
     }
     node.firstParameter = static_cast<uint32_t>(graph_.parameters.size());
@@ -423,7 +433,7 @@ private:
     for (const Token& axiom : axioms_)
       if (axiom.number >= static_cast<float>(axiomPlaces_.size()))
         diagnostics_.error(axiom.place, std::string("there is no axiom ") + describe(axiom));
-    for (const auto& [word, n] : terminalNodes_) {
+    for (const auto& [word, n, ruleWord] : terminalNodes_) {
       const auto found = terminals_.find(std::string(word.text));
       if (found == terminals_.end()) {
         diagnostics_.error(word.place, std::string("there is no operator or terminal ") + describe(word));
@@ -431,6 +441,12 @@ private:
       }
       graph_.nodes[n].argument = found->second;
       graph_.nodes[n].argument2 = graph_.terminals[found->second].bucket;
+      if (!ruleWord) continue;
+      const auto rule = rules_.find(std::string(ruleWord->text));
+      if (rule == rules_.end())
+        diagnostics_.error(ruleWord->place, std::string("there is no rule ") + describe(*ruleWord));
+      else
+        graph_.nodes[n].rule = rule->second;
     }
   }
 
@@ -449,11 +465,11 @@ private:
   size_t at_ = 0;
   Graph graph_;
   std::vector<Place> axiomPlaces_;
-  std::vector<Token> axioms_;                             // named by rules
-  std::vector<std::pair<Token, uint32_t>> terminalNodes_; // with the node
+  std::vector<Token> axioms_; // named by rules
+  std::vector<TerminalNode> terminalNodes_;
   std::vector<std::pair<Place, uint32_t>> targets_;
   std::vector<Token> multiplicities_; // by edge
-  std::map<std::string, uint32_t> terminals_, tags_;
+  std::map<std::string, uint32_t> terminals_, rules_, tags_;
   std::map<std::vector<uint32_t>, uint32_t> programs_;
   std::vector<GroupLine> groups_;
 };

@@ -5,8 +5,8 @@ namespace {
 using namespace shader;
 
 static_assert(GPGP_VERTEX_POSITION == kVertexPosition && GPGP_VERTEX_NORMAL == kVertexNormal &&
-              GPGP_VERTEX_UV == kVertexUv && GPGP_VERTEX_BUCKET == kVertexBucket &&
-              GPGP_VERTEX_SEED == kVertexSemantics - 1 && GPGP_MAX_VERTEX_ATTRIBUTES == kMaxVertexAttributes);
+              GPGP_VERTEX_UV == kVertexUv && GPGP_VERTEX_BUCKET == kVertexBucket && GPGP_VERTEX_RULE == kVertexRule &&
+              kVertexRule == kVertexSemantics - 1 && GPGP_MAX_VERTEX_ATTRIBUTES == kMaxVertexAttributes);
 
 constexpr uint32_t kUnknown = UINT32_MAX;
 uint32_t formatOf(VkFormat format) {
