@@ -1,4 +1,4 @@
-// A workgroup a cluster, an invocation a triangle of it: its box, and the directions in which its triangles face. So once
+// A workgroup a cluster, an invocation a triangle of it: its box, and the directions in which its triangles face. Once
 // a mesh, however many draws there are of it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
