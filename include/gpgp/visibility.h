@@ -33,6 +33,14 @@ typedef struct GpgpGeometrySetCreateInfo {
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext context, const GpgpGeometrySetCreateInfo* info,
                                                     GpgpAsset* geometrySet);
 
+/** An order of a mesh's triangles in which those that follow one another face one way and lie near each other, so that
+ *  clusters of them (GpgpSampleInfo::clusters) are left out where they face away: of closed meshes nearly half.
+ *  order[i], of indexCount / 3: the number of the triangle that is to be the i-th. For when meshes are built; an engine
+ *  that keeps data by triangle number moves it likewise. positions: three floats each, positionStride bytes apart.
+ *  Errors: INVALID_ARGUMENT (an index out of range is in the message). @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpOrderTriangles(const float* positions, uint32_t positionStride, uint32_t vertexCount,
+                                                 const uint32_t* indices, uint32_t indexCount, uint32_t* order);
+
 typedef struct GpgpSamplerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
@@ -40,10 +48,10 @@ typedef struct GpgpSamplerCreateInfo {
   uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel and camera
                                      (conservative: 52; exact: 16 and a fifth) */
   uint32_t maxCameras;          /**< of one record, at most 128; 0: 1 */
-  uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 52 bytes each */
+  uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 56 bytes each */
   uint32_t maxTriangles;        /**< of one record, all draws and cameras together; 0: 4194304. What is beyond is not
                                      sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle
-                                     (exact: 8, or 4 a pair if that is more), and 4 for each 64 */
+                                     (exact: 8, or 4 a pair if that is more), and 8 for each 64 */
   uint32_t methods;             /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
   uint32_t maxSamples;    /**< per pixel in each direction, a power of two up to 64; 0: 1. Scratch: the 8 bytes a pixel
                                for each of its samples */
@@ -195,6 +203,13 @@ typedef struct GpgpSampleInfo {
   uint32_t positionStride; /**< bytes, a multiple of a number's size; 0: three numbers */
   GpgpBuffer indices;      /**< STORAGE usage; size a multiple of 4 for UINT16 too */
   VkIndexType indexType;   /**< UINT16 or UINT32 */
+  GpgpBuffer clusters;     /**< optional, not with commands: 48 bytes for each 64 triangles that follow one another in a
+                                mesh, the last ones of a mesh too; STORAGE usage. The record writes into it where they
+                                are and how they face, and reads none of those that are out of sight or face away. What
+                                is found is the same. Worth it where meshes are of more than a few such clusters: see
+                                gpgpOrderTriangles */
+  VkBool32 keepClusters;   /**< clusters hold what an earlier record wrote there, of this geometry set, these positions
+                                and indices. FALSE where any of them may have changed */
   GpgpBuffer draws;        /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
   uint32_t drawCount;
   GpgpBuffer commands;    /**< optional: the engine's VkDrawIndexedIndirectCommand[commandCount]; STORAGE usage. Then

@@ -3,3 +3,7 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 
 uint chunkCount() { return min(counters.chunks, chunkCapacity()); }
 uint findChunk(uint chunk) { return table[chunkAt(chunk)]; }
+
+/// Those that may be in sight, in any order: where there are no clusters, all.
+uint keptCount() { return params.clusterCount != 0u ? counters.keptCount : chunkCount(); }
+uint keptChunk(uint i) { return params.clusterCount != 0u ? table[keptAt(i)] : i; }

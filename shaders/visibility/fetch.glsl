@@ -7,6 +7,7 @@
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 #include "visibility/grid.glsl"
+#include "visibility/cameras.glsl"
 
 layout(std430, set = 0, binding = kBindPositions) readonly buffer PositionBuffer { uint positions[]; };
 layout(std430, set = 0, binding = kBindIndices) readonly buffer IndexBuffer { uint indices[]; };
@@ -82,11 +83,6 @@ bool fetchVertex(DrawEntry e, uint index, out vec3 position) {
     else position = vec3(snormToFloat(v.x), snormToFloat(v.y), snormToFloat(v.z));
   }
   return isModerate(position.x) && isModerate(position.y) && isModerate(position.z);
-}
-
-mat4 viewProjection(uint camera) {
-  return mat4(params.viewProjection[camera * 4u], params.viewProjection[camera * 4u + 1u],
-              params.viewProjection[camera * 4u + 2u], params.viewProjection[camera * 4u + 3u]);
 }
 
 /// The number of a draw's triangle; false where there is none, or none below triangleCount.

@@ -69,6 +69,7 @@ GPGP_CONST int kBindSurfaces = kBindRecords;   // conservative, once ids are dra
 GPGP_CONST int kBindGaps = kBindPairs;         // conservative: words per pixel
 GPGP_CONST int kBindTiles = kBindRecords;      // nearby, once ids are drawn
 GPGP_CONST int kBindNumbers = kBindMeshes;     // with commands, which need no meshes: triangles' numbers
+GPGP_CONST int kBindClusters = kBindCommands;  // without commands
 GPGP_CONST int kBindTruth = kBindPositions;    // of records that measure, which have no geometry
 GPGP_CONST int kBindTruthCounts = kBindIndices;
 GPGP_CONST int kBindRecheck = kBindDraws;
@@ -93,7 +94,7 @@ struct Draw {
 
 /// One draw of a camera. Lies in the draw table, whose regions hold, for each of `maxEntries`: first item and first
 /// chunk; this; of an indirect command the first entry, item and chunk; the visible triangles and their place. Behind
-/// them the entry of each chunk.
+/// them the entry of each chunk, and with clusters the chunks that are kept.
 struct DrawEntry {
   uint draw; // in GpgpVisibilityDraw[]
   uint camera;
@@ -165,6 +166,10 @@ struct Params {
   uint metricBuffers; // kHas... of a record that measures
   uint numberCount;   // triangles' numbers that are there; with hasNumbers
   uint hasNumbers;    // 1: triangles have the numbers of their place among the indices
+  uint clusterCount;  // of all meshes; 0: chunks are not tested
+  uint reserved0;     // a uniform block is a multiple of 16 bytes
+  uint reserved1;
+  uint reserved2;
 };
 GPGP_CONST uint kHasTruthCounts = 1u;
 GPGP_CONST uint kHasRecheck = 2u;
@@ -255,8 +260,10 @@ struct Counters {
   uint onScreenArgs[3];
   uint longCount; // pixels with lists of more than kBatch
   uint longArgs[3];
+  uint keptCount; // chunks that may be in sight
+  uint keptArgs[3];
 };
-GPGP_CONST uint kCounterWords = 77u;
+GPGP_CONST uint kCounterWords = 81u;
 GPGP_CONST uint kReportWords = 24u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
@@ -267,7 +274,7 @@ GPGP_FN uvec3 listGroups(uint listed) {
 
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
-static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == kMaxCameras * 80 + 48 * 4 &&
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == kMaxCameras * 80 + 52 * 4 &&
               sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Surface) == 20 &&
               sizeof(Counters) == 4 * kCounterWords);
 #endif

@@ -9,11 +9,12 @@ layout(local_size_x = 64) in; // kChunk
 layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
 
 void main() {
-  uint chunks = chunkCount();
-  for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
+  uint kept = keptCount();
+  for (uint i = gl_WorkGroupID.x; i < kept; i += gl_NumWorkGroups.x) {
+    uint chunk = keptChunk(i);
     uint entry = findChunk(chunk);
     uvec2 start = startOf(entry);
-    if (start.x >= params.maxItems) break; // and so does all that follows
+    if (start.x >= params.maxItems) continue;
     uint end = min(entryOf(entry).indexCount / 3u, params.maxItems - start.x);
     uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
     if (local >= end) continue;

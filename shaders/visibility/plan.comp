@@ -130,6 +130,9 @@ void main() {
     counters.smallArgs[0] = min(all_.z, kMaxGroups);
     counters.smallArgs[1] = 1u;
     counters.smallArgs[2] = 1u;
+    counters.keptArgs[0] = params.clusterCount != 0u ? 0u : counters.smallArgs[0];
+    counters.keptArgs[1] = 1u;
+    counters.keptArgs[2] = 1u;
     counters.unfoldArgs[1] = 1u;
     counters.unfoldArgs[2] = 1u;
     counters.mediumArgs[1] = 1u;

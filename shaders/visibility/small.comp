@@ -26,13 +26,14 @@ void main() {
     groupTriangles = 0u;
     groupSkipped = 0u;
   }
-  uint chunks = chunkCount();
+  uint kept = keptCount();
   uint triangles = 0u;
   uint skipped = 0u;
-  for (uint chunk = gl_WorkGroupID.x; chunk < chunks; chunk += gl_NumWorkGroups.x) {
+  for (uint i = gl_WorkGroupID.x; i < kept; i += gl_NumWorkGroups.x) {
+    uint chunk = keptChunk(i);
     uint drawIndex = findChunk(chunk);
     uvec2 start = startOf(drawIndex);
-    if (start.x >= params.maxItems) break; // and so does all that follows
+    if (start.x >= params.maxItems) continue;
     if (gl_LocalInvocationIndex == 0u) {
       groupWinners = 0u;
       groupOnScreen = 0u;

@@ -9,6 +9,9 @@ uint chunkStart(uint entry) { return table[entry * 2u + 1u]; }
 uint chunkAt(uint chunk) { return params.maxEntries * kTableWords + chunk; }
 uint chunkCapacity() { return params.maxItems / kChunk + params.maxEntries + 1u; }
 
+/// Where the number of a chunk that may be in sight is.
+uint keptAt(uint i) { return chunkAt(chunkCapacity()) + i; }
+
 DrawEntry entryOf(uint entry) {
   uint at = params.maxEntries * kTableEntries + entry * kEntryWords;
   DrawEntry e;

@@ -1,6 +1,7 @@
 // The C functions of visibility.h.
 #include "api/check.h"
 #include "visibility/sampling/sampler.h"
+#include "visibility/triangle_order.h"
 #include "visibility/view_cell.h"
 
 #include <algorithm>
@@ -27,13 +28,31 @@ GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext handle, const GpgpGeometr
       if (mesh.firstIndex > UINT32_MAX - mesh.indexCount)
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u]: firstIndex + indexCount exceeds 32 bits", i);
     }
-    if (uint64_t(info->meshCount) * sizeof(GpgpMesh) > (*context)->device.limits.maxStorageBufferRange)
+    if (uint64_t(info->meshCount) * (sizeof(GpgpMesh) + 4) > (*context)->device.limits.maxStorageBufferRange)
       return makeError(GPGP_ERROR_UNSUPPORTED, "meshCount is %u, but this device binds at most %u bytes",
                        info->meshCount, (*context)->device.limits.maxStorageBufferRange);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = GeometrySet::create(**context, *info);
     if (!made) return made.error();
     *geometrySet = adopt<GpgpAsset>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpOrderTriangles(const float* positions, uint32_t positionStride, uint32_t vertexCount,
+                                        const uint32_t* indices, uint32_t indexCount, uint32_t* order) {
+  return guarded("gpgpOrderTriangles", [&](Call&) -> Result<void> {
+    if (indexCount % 3)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indexCount is %u; expected a multiple of 3", indexCount);
+    if (indexCount && (!positions || !indices || !order))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positions, indices or order is NULL");
+    if (positionStride < 12)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positionStride is %u; expected 12 or more", positionStride);
+    for (uint32_t i = 0; i < indexCount; ++i)
+      if (indices[i] >= vertexCount)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indices[%u] is %u; there are %u vertices", i, indices[i],
+                         vertexCount);
+    orderTriangles(positions, positionStride, {indices, indexCount}, {order, indexCount / 3});
     return {};
   });
 }

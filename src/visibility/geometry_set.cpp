@@ -1,6 +1,8 @@
 // What creation copies: a mesh table as bytes to upload, or a size to clear.
 #include "visibility/geometry_set.h"
 
+#include "visibility/layout.h"
+
 #include <cstring>
 #include <utility>
 
@@ -10,9 +12,16 @@ core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& conte
                                                             const GpgpGeometrySetCreateInfo& info) {
   auto set = core::makeUnique<GeometrySet>(context.host(), context, info.label);
   set->meshCount_ = info.meshCount;
-  // The table as the engine wrote it: GpgpMesh is what the shaders read. An empty one still needs a buffer to bind.
-  std::pmr::vector<std::byte> bytes(size_t(info.meshCount) * sizeof(GpgpMesh), &context.host());
-  if (info.meshCount) std::memcpy(bytes.data(), info.meshes, bytes.size());
+  // The table as the engine wrote it: GpgpMesh is what the shaders read. Behind it each mesh's first cluster. An empty
+  // one still needs a buffer to bind.
+  const size_t table = size_t(info.meshCount) * sizeof(GpgpMesh);
+  std::pmr::vector<std::byte> bytes(table + size_t(info.meshCount) * 4, &context.host());
+  if (info.meshCount) std::memcpy(bytes.data(), info.meshes, table);
+  for (uint32_t i = 0; i < info.meshCount; ++i) {
+    std::memcpy(bytes.data() + table + size_t(i) * 4, &set->clusterCount_, 4);
+    const uint32_t triangles = info.meshes[i].indexCount / 3;
+    set->clusterCount_ += triangles / shader::kChunk + (triangles % shader::kChunk != 0);
+  }
   if (auto ok = set->makeResident(GPGP_SERVICE_VISIBILITY, std::move(bytes), sizeof(GpgpMesh)); !ok) return ok.error();
   return set;
 }

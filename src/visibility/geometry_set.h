@@ -11,9 +11,10 @@ public:
   static core::Result<core::Unique<GeometrySet>> create(core::Context& context, const GpgpGeometrySetCreateInfo& info);
   GeometrySet(core::Context& owner, const char* name) : Resident(owner, core::Kind::geometrySet, name) {}
   uint32_t meshCount() const { return meshCount_; }
+  uint32_t clusterCount() const { return clusterCount_; } ///< of 64 triangles, of all meshes
 
 private:
-  uint32_t meshCount_ = 0;
+  uint32_t meshCount_ = 0, clusterCount_ = 0;
 };
 
 /// One bit per triangle, zero until the camera's first record.

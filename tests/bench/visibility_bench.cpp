@@ -20,6 +20,7 @@ using namespace gpgp::test;
 
 struct Options {
   uint32_t width = 160, height = 90, truth = 64, recheck = 0;
+  bool clusters = false, newClusters = false, order = false;
   bool passes = false, exactOnly = false, figures = false, tables = false, views = false, walk = false;
   FigureOptions figure;
   uint32_t crop[4] = {}; ///< width, height, left, top
@@ -90,6 +91,23 @@ Scene makeScene(const std::string& name, uint32_t width, uint32_t height) {
     std::exit(2);
   }
   return scene;
+}
+
+/// The scene's meshes as an engine may build them (gpgpOrderTriangles).
+void orderTriangles(Scene& scene) {
+  for (const shader::Mesh& mesh : scene.meshes) {
+    const std::vector<uint32_t> indices(scene.indices.begin() + mesh.firstIndex,
+                                        scene.indices.begin() + mesh.firstIndex + mesh.indexCount);
+    std::vector<uint32_t> order(indices.size() / 3);
+    const uint32_t floats = scene.params.positionStride ? scene.params.positionStride / 4 : 3;
+    const float* positions = scene.positions.data() + size_t(mesh.vertexOffset) * floats;
+    const size_t vertices = scene.positions.size() / floats - mesh.vertexOffset;
+    expect(gpgpOrderTriangles(positions, floats * 4, static_cast<uint32_t>(vertices), indices.data(), mesh.indexCount,
+                              order.data()),
+           "order");
+    for (size_t i = 0; i < order.size(); ++i)
+      std::copy_n(&indices[size_t(order[i]) * 3], 3, &scene.indices[mesh.firstIndex + i * 3]);
+  }
 }
 
 bool benchScene(Runner& runner, const std::string& name, const Options& options) {
@@ -174,9 +192,12 @@ void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
 
 const char* const kUsage =
     "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] "
-    "[--passes] [--exact] [SCENE]...\n"
+    "[--passes] [--exact] [--order] [--clusters] [SCENE]...\n"
     "  --crop   a window of that picture, whose pixels are as small as the picture's\n"
     "  --exact  without the thesis's method\n"
+    "  --order, --clusters, --new-clusters\n"
+    "           triangles in an order for clusters; clusters that are out of sight are left out;\n"
+    "           and clusters are made by each record\n"
     "visibility_bench --figures [--grid N] [--cell N] [--tables] [...]\n"
     "  the thesis's figures 6.9 to 6.14 and table 6.1 as numbers (and the above)\n"
     "visibility_bench --walk [--cell N] [--passes] [--small DIVISOR/VIEWS/REACH/MOST]... [...]\n"
@@ -224,6 +245,12 @@ int runBench(bench::Arguments arguments) {
       options.passes = true;
     } else if (arg == "--exact") {
       options.exactOnly = true;
+    } else if (arg == "--clusters") {
+      options.clusters = true;
+    } else if (arg == "--new-clusters") {
+      options.clusters = options.newClusters = true;
+    } else if (arg == "--order") {
+      options.order = true;
     } else if (arg == "--figures") {
       options.figures = true;
     } else if (arg == "--views") {
@@ -260,7 +287,9 @@ int runBench(bench::Arguments arguments) {
     expect(context.code(), "context");
     Scene scene = makeScene(name, options.width, options.height);
     if (const uint32_t* c = options.crop; c[0]) scene = cropped(scene, c[2], c[3], c[0], c[1], 1.0f);
+    if (options.order) orderTriangles(scene);
     Runner runner(device, *context, scene);
+    if (options.clusters) runner.useClusters(options.newClusters);
     const std::string title = std::filesystem::path(name).stem().string();
     if (options.views) {
       benchViews(runner, title, options.figure.repeat);

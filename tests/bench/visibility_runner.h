@@ -63,6 +63,17 @@ public:
     camera_.reversedDepth = scene.params.reversedDepth;
   }
 
+  /// Records of draws leave out clusters that are out of sight; each makes them again, or only the first.
+  void useClusters(bool again) {
+    VkDeviceSize clusters = 1;
+    for (const shader::Mesh& mesh : scene_.meshes) clusters += (mesh.indexCount / 3 + 63) / 64;
+    clusters_ = {device_, clusters * 48, kStorage};
+    Sampler standard = sampler(GPGP_SAMPLING_STANDARD_BIT, 1);
+    keepClusters_ = false;
+    record(standard, {}, {}, bits_);
+    keepClusters_ = !again;
+  }
+
   uint32_t triangles() const { return scene_.params.triangleCount; }
   const GpgpCamera& camera() const { return camera_; }
   host::Buffer makeBits() { return {device_, VkDeviceSize(std::max((triangles() + 31) / 32, 1u)) * 4, kStorage}; }
@@ -288,6 +299,10 @@ private:
     info.positions = positions_.range();
     info.indices = indices_.range();
     info.indexType = VK_INDEX_TYPE_UINT32;
+    if (clusters_.handle() && !sampling.lists) {
+      info.clusters = clusters_.range();
+      info.keepClusters = keepClusters_;
+    }
     info.draws = draws_.range();
     info.drawCount = static_cast<uint32_t>(scene_.draws.size());
     info.triangleCount = triangles();
@@ -323,6 +338,8 @@ private:
   host::FrameRing frames_;
   host::BusyWork busy_;
   host::Buffer positions_, indices_, draws_, bits_;
+  host::Buffer clusters_;
+  bool keepClusters_ = false;
   GeometrySet geometry_;
 };
 

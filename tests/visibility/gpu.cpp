@@ -2,6 +2,7 @@
 #include "gpu.h"
 
 #include "api/check.h"
+#include "visibility/cluster.h"
 
 #include <algorithm>
 #include <array>
@@ -193,6 +194,14 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
     host::fill(device, scratch, kPoison);
     info.base.scratch = toHost(scratch);
   }
+  host::Buffer clusters;
+  if (options.clusters) {
+    VkDeviceSize needed = 1;
+    for (const shader::Mesh& mesh : scene.meshes) needed += (mesh.indexCount / 3 + 63) / 64;
+    clusters = host::Buffer(device, needed * shader::kClusterBytes, kStorage);
+    host::fill(device, clusters, kPoison);
+    info.clusters = clusters.range();
+  }
   const GpgpFrame f = advance();
   device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
     EXPECT_EQ(gpgpRecordPrepareVisibility(handle, cmd, &f, &info), GPGP_SUCCESS)
@@ -232,6 +241,8 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
     const auto& offsets = worker->passes().scratchOffsets;
     result.depth = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindDepth]);
     result.ids = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindIds]);
+    const auto counters = host::download<shader::Counters>(device, scratch, 1, offsets[shader::kBindCounters])[0];
+    result.chunks = counters.chunks, result.keptChunks = counters.keptCount;
   }
   return result;
 }

@@ -21,6 +21,7 @@ struct GpuOptions {
   uint32_t refinements = 0;
   uint32_t width = 0, height = 0; ///< 0: the scene's
   float resolution = 0, reach = 0;
+  bool clusters = false;                                          ///< makes and uses them
   bool byDraw = true;                                             ///< lists by draw, commands, sizes
   uint32_t drawTriangles = UINT32_MAX, drawCommands = UINT32_MAX; ///< their budgets
 };
@@ -31,6 +32,7 @@ struct GpuResult {
   std::vector<uint32_t> extents;
   std::vector<uint32_t> bits, list, count; ///< list: as much as was written, sorted
   std::vector<uint32_t> depth, ids;        ///< from the scratch buffer
+  uint32_t chunks = 0, keptChunks = 0;     ///< likewise
   GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
 };
 

@@ -2,8 +2,10 @@
 // them.
 #include "visibility/layout.h"
 
+#include "visibility/cluster.h"
 #include "visibility/sampling/budgets.h"
 
+#include "shaders/visibility_chunks.spv.h"
 #include "shaders/visibility_finish.spv.h"
 #include "shaders/visibility_large.spv.h"
 #include "shaders/visibility_plan.spv.h"
@@ -43,7 +45,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 50u);
+    EXPECT_EQ(offsets.size(), 54u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -60,12 +62,13 @@ TEST(Layout, ParamsAgree) {
     EXPECT_OFFSET(offsets, Params, epsilonDynamic);
     EXPECT_OFFSET(offsets, Params, depthScales);
     EXPECT_OFFSET(offsets, Params, hasNumbers);
+    EXPECT_OFFSET(offsets, Params, clusterCount);
   }
 }
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 49u);
+    EXPECT_EQ(offsets.size(), 51u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);
@@ -80,6 +83,7 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, winnerArgs);
     EXPECT_OFFSET(offsets, Counters, onScreenArgs);
     EXPECT_OFFSET(offsets, Counters, longArgs);
+    EXPECT_OFFSET(offsets, Counters, keptArgs);
   }
   EXPECT_EQ(offsetof(shader::Counters, foundArea) + 8, shader::kReportWords * 4);
 }
@@ -93,6 +97,9 @@ TEST(Layout, TheEnginesStructsAreTheShaders) {
   const auto mesh = offsetsOf(visibility_plan, "Mesh");
   EXPECT_EQ(mesh.at("firstIndex"), offsetof(GpgpMesh, firstIndex));
   EXPECT_EQ(mesh.at("indexCount"), offsetof(GpgpMesh, indexCount));
+  const auto cluster = offsetsOf(visibility_chunks, "Cluster");
+  EXPECT_EQ(cluster.at("axis"), offsetof(shader::Cluster, axis));
+  EXPECT_EQ(cluster.at("whole"), offsetof(shader::Cluster, whole));
   EXPECT_EQ(mesh.at("vertexOffset"), offsetof(GpgpMesh, vertexOffset));
   EXPECT_EQ(sizeof(GpgpTriangleSize), 12u);
 }

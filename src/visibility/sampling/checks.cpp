@@ -114,6 +114,8 @@ Result<void> checkInput(const GpgpSampleInfo& info) {
           !ok)
         return ok;
   }
+  if (info.clusters.buffer && info.commands.buffer)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "clusters and commands are given; clusters are of meshes");
   if (info.triangleNumbers.buffer && !info.commands.buffer)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleNumbers is given, but commands is not");
   if (info.triangleNumbers.buffer)

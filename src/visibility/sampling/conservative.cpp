@@ -36,7 +36,7 @@ void addConservative(core::PassList& list, const Budgets& budgets) {
           .level = level;
     };
     addFill("clear overlap", kBindCounters, 0, offsetof(Counters, overlapCount), 8);
-    addPass(sweep.smallName, sweep.small, offsetof(Counters, smallArgs));
+    addPass(sweep.smallName, sweep.small, offsetof(Counters, keptArgs));
     addPass(sweep.bigName, sweep.big, offsetof(Counters, overlapArgs));
   };
   addSweep(makeSweep(0, "overlap", "overlap big"));

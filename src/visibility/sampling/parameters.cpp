@@ -100,6 +100,7 @@ Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const Ge
     params.commandWords = (info.commandStride ? info.commandStride : kCommandBytes) / 4;
     params.entryCount = budgets.maxDraws / cameras * cameras;
   }
+  if (info.clusters.buffer && info.drawCount) params.clusterCount = geometry.clusterCount();
   if (params.hasCommands && info.triangleNumbers.buffer) {
     params.hasNumbers = 1;
     params.numberCount = static_cast<uint32_t>(std::min<VkDeviceSize>(info.triangleNumbers.size / 4, UINT32_MAX));

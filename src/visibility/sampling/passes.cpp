@@ -32,7 +32,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("indices");
   engine("draws");
   engine("geometrySet");
-  own("draw table", VkDeviceSize(budgets.maxDraws) * shader::kTableWords * 4 + budgets.chunks() * 4);
+  own("draw table", VkDeviceSize(budgets.maxDraws) * shader::kTableWords * 4 + budgets.chunks() * 8);
   own("queue", exact ? std::max(queueBytes * 2, VkDeviceSize(budgets.maxPairs) * 4) : queueBytes);
   own("depth", pixelBytes);
   own("ids", pixelBytes);

@@ -14,10 +14,11 @@ namespace gpgp::visibility {
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3, kTileGroups = 4,
-                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7, kScreenTileGroups = 8, kAllotGroups = 9;
+                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7, kScreenTileGroups = 8, kAllotGroups = 9,
+                   kClusterGroups = 10;
 // Conditions of a record.
 constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
-                   kIfMeasuring = 6, kIfNearby = 7;
+                   kIfMeasuring = 6, kIfNearby = 7, kIfClusters = 8;
 
 constexpr uint32_t kMaxBig = 1 << 20; ///< entries for candidates of more than 8 x 8 pixels
 constexpr uint32_t kMaxRefinements = 4;

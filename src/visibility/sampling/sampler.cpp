@@ -1,6 +1,7 @@
 // A record: what is bound, how many workgroups run, and which passes.
 #include "visibility/sampling/sampler.h"
 
+#include "visibility/cluster.h"
 #include "visibility/nearby.h"
 #include "visibility/sampling/checks.h"
 #include "visibility/sampling/parameters.h"
@@ -26,6 +27,10 @@ void setBindings(core::Record& record, const GpgpSampleInfo& info, const shader:
     bind(shader::kBindDraws, info.draws);
   }
   if (params.hasCommands) bind(shader::kBindCommands, info.commands);
+  if (params.clusterCount) {
+    bind(shader::kBindClusters, info.clusters);
+    record.bindings[shader::kBindClusters].name = "clusters";
+  }
   if (params.hasDrawCount) bind(shader::kBindCommandCount, info.drawCountBuffer);
   if (info.drawCommands.buffer) bind(shader::kBindDrawCommands, info.drawCommands);
   if (params.hasDrawIndices) bind(shader::kBindDrawIndices, info.drawIndices);
@@ -59,6 +64,7 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
   record.groups[kAllotGroups] = {groupsOf256(slots / 64), 1, 1};
   record.groups[kEntryGroups] = {groupsOf256(params.entryCount), 1, 1};
   record.groups[kChunkGroups] = {groupsOf256(budgets.chunks()), 1, 1};
+  record.groups[kClusterGroups] = {std::min(params.clusterCount, shader::kMaxGroups), 1, 1};
   const uint32_t side = shader::tileSide(params.width, params.height, 0);
   record.groups[kScreenTileGroups] = {(params.width + side - 1) / side, shader::kMaxTiles * params.cameraCount, 1};
   record.groups[kEachPixelGroups] = {groupsOf256(uint64_t(params.width) * rows), 1, 1};
@@ -78,6 +84,11 @@ Result<core::Unique<Sampler>> Sampler::create(core::Context& context, const Gpgp
 Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInfo& info, const GeometrySet& geometry,
                               const CameraView* view) {
   if (auto ok = checkSampleInfo(info, budgets_, view); !ok) return ok;
+  if (info.clusters.buffer)
+    if (auto ok = checkSize("clusters", info.clusters, uint64_t(geometry.clusterCount()) * shader::kClusterBytes,
+                            "the geometry set");
+        !ok)
+      return ok;
   const shader::Params params = parametersOf(info, budgets_, geometry, view);
   core::Record record;
   record.commandBuffer = commandBuffer;
@@ -90,6 +101,7 @@ Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInf
   record.conditions[kIfNearby] = params.method == shader::kNearby;
   record.conditions[kIfExact] = params.method == shader::kExact;
   record.conditions[kIfCommands] = params.hasCommands != 0;
+  record.conditions[kIfClusters] = params.clusterCount && !info.keepClusters;
   record.conditions[kIfDraws] = info.drawCommands.buffer || params.hasDrawIndices || params.hasDrawTriangles;
   record.conditions[kIfExtents] = params.hasExtents != 0;
   record.constants[0] = std::as_bytes(std::span(&params, 1));

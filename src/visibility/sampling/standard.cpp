@@ -3,6 +3,7 @@
 
 #include "shaders/visibility_chunks.spv.h"
 #include "shaders/visibility_clear.spv.h"
+#include "shaders/visibility_clusters.spv.h"
 #include "shaders/visibility_expand.spv.h"
 #include "shaders/visibility_gather.spv.h"
 #include "shaders/visibility_ids.spv.h"
@@ -31,6 +32,9 @@ void addStandard(core::PassList& list, bool conservative) {
                  {kBindSlots, readWrite},
                  {kBindExtents, write}},
                 kClearGroups);
+  fetchesTriangles(list.dispatch("clusters", addShader(list, "clusters", visibility_clusters), {{kBindClusters, write}},
+                                 kClusterGroups))
+      .condition = kIfClusters;
   list.dispatch("plan", addShader(list, "plan", visibility_plan),
                 {{kBindParams, read},
                  {kBindDraws, read},
@@ -49,7 +53,13 @@ void addStandard(core::PassList& list, bool conservative) {
                 kEntryGroups)
       .condition = kIfCommands;
   list.dispatch("chunks", addShader(list, "chunks", visibility_chunks),
-                {{kBindParams, read}, {kBindTable, readWrite}, {kBindCounters, read}}, kChunkGroups);
+                {{kBindParams, read},
+                 {kBindDraws, read},
+                 {kBindMeshes, read},
+                 {kBindClusters, read},
+                 {kBindTable, readWrite},
+                 {kBindCounters, readWrite}},
+                kChunkGroups);
 
   const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
                                    {"ids small", "ids medium", "ids large", "ids left"}};
@@ -76,7 +86,7 @@ void addStandard(core::PassList& list, bool conservative) {
                                    kBindCounters, arguments);
     };
     if (phase == 0) {
-      addMaking(names[0][0], addShader(list, "small", visibility_small), write, offsetof(Counters, smallArgs));
+      addMaking(names[0][0], addShader(list, "small", visibility_small), write, offsetof(Counters, keptArgs));
       fetchesTriangles(
           list.dispatchIndirect("unfold", addShader(list, "unfold", visibility_unfold),
                                 {{kBindQueue, readWrite}, {kBindRecords, write}, {kBindCounters, readWrite}},
