@@ -185,7 +185,7 @@ TEST_F(ArgumentsTest, PassesAreThoseOfTheDocumentation) {
   ASSERT_EQ(gpgpGetPasses(sampler, &passes, nullptr), GPGP_SUCCESS);
   std::vector<const char*> names(passes);
   ASSERT_EQ(gpgpGetPasses(sampler, &passes, names.data()), GPGP_SUCCESS);
-  ASSERT_EQ(passes, 22u);
+  ASSERT_EQ(passes, 23u);
   std::ifstream file(GPGP_TEST_DATA "/../../docs/visibility.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   size_t at = 0;
