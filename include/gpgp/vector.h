@@ -310,6 +310,15 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphSetInfo(GpgpAsset glyphSet, GpgpGlyphS
 
 /* ---------------------------------------------------------------- canvas */
 
+/** Bits: what a canvas's records write. */
+typedef uint64_t GpgpCanvasTargets;
+/** The view alone: GpgpCanvasInfo::target is NULL. */
+#define GPGP_CANVAS_TARGET_VIEW ((GpgpCanvasTargets)1)
+/** A target in R8G8B8A8_UNORM, with or without a view. */
+#define GPGP_CANVAS_TARGET_RGBA8 ((GpgpCanvasTargets)2)
+/** A target in R16G16B16A16_SFLOAT, with or without a view. */
+#define GPGP_CANVAS_TARGET_RGBA16F ((GpgpCanvasTargets)4)
+
 typedef struct GpgpCanvasCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
@@ -329,6 +338,8 @@ typedef struct GpgpCanvasCreateInfo {
   uint32_t maxShapes;      /**< of all lists in one record, their clips that are not scissors included (ui.h); as many
                                 of them with an image or gradient, and twice as many stops; 592 bytes each, 240 of them
                                 once more for every record in flight; 0: 1024, at most 1048576 */
+  GpgpCanvasTargets targets; /**< what records will write; 0: any. Pipelines are made for these alone: with one, half
+                                as many, in half the time */
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 

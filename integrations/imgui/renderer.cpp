@@ -85,6 +85,7 @@ void Renderer::Impl::makeCanvas(const RendererInfo& wanted) {
   canvasInfo.maxHeight = newLayers->height();
   canvasInfo.maxGlyphs = wanted.maxGlyphs;
   canvasInfo.maxShapes = kMaxShapes;
+  canvasInfo.targets = wanted.srgbTarget ? GPGP_CANVAS_TARGET_RGBA16F : GPGP_CANVAS_TARGET_RGBA8; // as Layers::format
   canvasInfo.maxDrawings = wanted.maxDrawings + 2; // and one item for all glyphs, one for all pictures among them
   Result<Canvas> made = Canvas::create(wanted.context, canvasInfo);
   check(made.code(), "gpgpCreateCanvas");

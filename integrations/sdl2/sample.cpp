@@ -100,6 +100,7 @@ public:
     canvasInfo.base.queueFlags = device.queueFlags;
     canvasInfo.maxWidth = swapchain.maxExtent().width;
     canvasInfo.maxHeight = swapchain.maxExtent().height;
+    canvasInfo.targets = GPGP_CANVAS_TARGET_VIEW;
     canvas_ = take(Canvas::create(context_, canvasInfo), "gpgpCreateCanvas");
     target_ = init<GpgpTargetInfo>();
     target_.renderPass = pass_.handle();

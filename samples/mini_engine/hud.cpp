@@ -31,6 +31,7 @@ Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFi
   info.base = gpgp.worker("hud canvas");
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
+  info.targets = GPGP_CANVAS_TARGET_VIEW;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
   target_ = gpgp::init<GpgpTargetInfo>();
   target_.renderPass = forward.renderPass();

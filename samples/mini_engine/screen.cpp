@@ -37,6 +37,7 @@ Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::st
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
   info.maxGlyphs = 2048;
+  info.targets = GPGP_CANVAS_TARGET_VIEW;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
   for (Layer* layer : {&world_, &front_}) {
     auto list = gpgp::init<GpgpListCreateInfo>();

@@ -166,6 +166,8 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxGlyphs is %u; at most 1048576", info->maxGlyphs);
     if (info->maxShapes > 1u << 20)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes is %u; at most 1048576", info->maxShapes);
+    if (info->targets & ~(GPGP_CANVAS_TARGET_VIEW | GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets has unknown bits");
     auto made = Canvas::create(**context, *info);
     if (!made) return made.error();
     *canvas = adopt<GpgpWorker>(**context, std::move(*made));

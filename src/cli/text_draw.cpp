@@ -165,6 +165,7 @@ private:
     info.maxTileEntries = canvasFor_.entries;
     info.maxGlyphs = std::max(canvasFor_.glyphs, 1u);
     info.maxShapes = std::max(canvasFor_.shapes, 1u);
+    info.targets = GPGP_CANVAS_TARGET_RGBA8;
     canvas_ = session_.take(Canvas::create(session_.context(), info), "gpgpCreateCanvas");
     session_.check(canvas_.prewarm(), "gpgpPrewarm");
     session_.upload();

@@ -139,6 +139,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   canvasInfo.maxHeight = size.height;
   canvasInfo.maxPatches = std::max({facts.patches, facts.paths, 1024u});
   canvasInfo.maxTileEntries = options.maxTileEntries;
+  canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
   Canvas canvas = session.take(Canvas::create(session.context(), canvasInfo), "gpgpCreateCanvas");
   session.check(canvas.prewarm(), "gpgpPrewarm");
   session.upload();

@@ -196,6 +196,7 @@ public:
     info.maxDrawings = 5;
     info.maxGlyphs = 10;
     info.maxShapes = 2;
+    info.targets = GPGP_CANVAS_TARGET_VIEW | GPGP_CANVAS_TARGET_RGBA8;
     return gpgpCreateCanvas(context, &info, &worker);
   }
   GpgpResult createView(GpgpContext context) override {

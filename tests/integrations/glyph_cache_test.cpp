@@ -25,6 +25,7 @@ struct GlyphCacheTest : testing::Test {
     Stage() : test::Stage(VK_FORMAT_R8G8B8A8_UNORM, kSide, kSide, VK_IMAGE_USAGE_STORAGE_BIT) {
       auto canvasInfo = init<GpgpCanvasCreateInfo>();
       canvasInfo.base.queueFamily = device.family;
+      canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
       canvas = *Canvas::create(context, canvasInfo);
       EXPECT_EQ(canvas.prewarm(), GPGP_SUCCESS);
     }

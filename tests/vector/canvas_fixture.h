@@ -34,6 +34,7 @@ struct CanvasTest : DeviceTest {
   GpgpWorker canvas = nullptr;
   bool exactArea = false, blendSrgb = false, encodeSrgb = false;
   std::vector<GpgpCanvasImage> images;
+  GpgpCanvasTargets canvasTargets = GPGP_CANVAS_TARGET_RGBA16F; ///< of the canvases that are made
 
   void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t patches = 0,
                   const GpgpTargetInfo* target = nullptr) {
@@ -42,6 +43,7 @@ struct CanvasTest : DeviceTest {
     info.maxWidth = info.maxHeight = size;
     info.maxTileEntries = entries;
     info.maxPatches = patches ? patches : 65536;
+    info.targets = canvasTargets;
     canvas = worker(gpgpCreateCanvas, info, target);
   }
   GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths) {

@@ -431,6 +431,7 @@ TEST_F(CanvasTest, AThousandInstancesOfOneDrawingInOneRecord) {
   info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
   info.maxWidth = info.maxHeight = 256;
   info.maxDrawings = 1024;
+  info.targets = canvasTargets;
   ASSERT_EQ(gpgpCreateCanvas(context, &info, &canvas), GPGP_SUCCESS) << lastMessage();
   ASSERT_EQ(gpgpPrewarm(canvas, nullptr), GPGP_SUCCESS);
   TestPath square, dot;
@@ -557,6 +558,7 @@ TEST_F(CanvasTest, ImagesPaintThroughTheirTransformAndSampler) {
 }
 
 TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
+  canvasTargets = 0;
   makeCanvas(64);
   const uint32_t texel[] = {0xffffffff};
   const Texture white(device, 1, 1, texel, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
@@ -886,6 +888,7 @@ TEST_F(CanvasTest, ColorsBrighterThanWhiteReachFloatTargets) {
 }
 
 TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
+  canvasTargets = 0;
   makeCanvas(64);
   TestPath square;
   square.move(1, 1).line(4, 1).line(4, 3).close();

@@ -50,6 +50,7 @@ struct GlyphTest : CanvasTest {
     info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
     info.maxWidth = info.maxHeight = 128;
     info.maxDrawings = drawings;
+    info.targets = canvasTargets;
     return info;
   }
   std::vector<uint32_t> add(GpgpAsset set, const std::vector<GpgpGlyph>& glyphs, GpgpResult expected = GPGP_SUCCESS) {
@@ -635,6 +636,7 @@ TEST_F(GlyphTest, CanvasBudgetsLeaveOutWholeGlyphs) {
   GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
   info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
   info.maxWidth = info.maxHeight = 128;
+  info.targets = canvasTargets;
   const auto check = [&](const char* what) {
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
     const auto pixels = raster({text(set, glyphs)}, 128, 128, 4, &report);

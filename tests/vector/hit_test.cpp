@@ -197,6 +197,7 @@ TEST_F(CanvasTest, ListsBeyondBudgetsLeaveOutTheLastAndSayHowMany) {
   info.maxPatches = 4096;
   info.maxShapes = 5;
   info.maxDrawings = 3;
+  info.targets = canvasTargets;
   canvas = worker(gpgpCreateCanvas, info);
   TestList list(context);
   for (int i = 0; i < 8; ++i) list.add(rectangle(static_cast<float>(i) * 8, 0, static_cast<float>(i) * 8 + 8, 64));
@@ -236,6 +237,7 @@ TEST_F(CanvasTest, ListsBeyondBudgetsLeaveOutTheLastAndSayHowMany) {
 }
 
 TEST_F(CanvasTest, WrongCallsOfListsSayWhatIsWrong) {
+  canvasTargets = 0;
   makeCanvas(128);
   TestList list(context);
   const auto refused = [&](GpgpResult result, const char* words, GpgpResult code = GPGP_ERROR_INVALID_ARGUMENT) {

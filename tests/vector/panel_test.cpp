@@ -122,6 +122,7 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
     GTEST_SKIP() << "the device has no dynamic rendering or no multiview";
   // lavapipe of Mesa 22.3 leaves view 1 of a multiview pass as it was cleared; there, the eyes' own passes are judged.
   const bool judgesMultiview = device.properties().deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+  canvasTargets = GPGP_CANVAS_TARGET_VIEW;
   makeCanvas(128);
   TestList list(context);
   fillWindow(list);
@@ -239,6 +240,7 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
 }
 /// A panel that turns about its upright middle until its edge is all that is seen, reaching past the eye in some.
 TEST_F(CanvasTest, PanelsSeenNearlyEdgeOnCoverWhatRaysSay) {
+  canvasTargets = 0;
   makeCanvas(128);
   TestList list(context);
   fillWindow(list);

@@ -57,6 +57,7 @@ struct TwinTest : CanvasTest {
     info.maxDrawings = kItems;
     info.maxGlyphs = kGlyphs;
     info.maxShapes = kShapes;
+    info.targets = GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F;
     canvas = worker(gpgpCreateCanvas, info);
     VkDeviceSize bytes = 0;
     ASSERT_EQ(gpgpGetScratchSize(canvas, &bytes, nullptr, nullptr), GPGP_SUCCESS);

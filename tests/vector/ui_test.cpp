@@ -74,6 +74,7 @@ TEST_F(CanvasTest, DenseRecordsLoseNothing) {
   info.maxWidth = info.maxHeight = 256;
   info.maxShapes = kSquares + kDeep;
   info.maxTileEntries = 200000;
+  info.targets = canvasTargets;
   ASSERT_EQ(gpgpCreateCanvas(context, &info, &canvas), GPGP_SUCCESS) << lastMessage();
   ASSERT_EQ(gpgpPrewarm(canvas, nullptr), GPGP_SUCCESS);
   GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;

@@ -108,6 +108,7 @@ struct Attachment {
 
 TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
   const Attachment attachment(device, VK_FORMAT_R8G8B8A8_UNORM, 64, 48);
+  canvasTargets = GPGP_CANVAS_TARGET_VIEW;
   makeCanvas(64, 0, 0, &attachment.target);
   const GpgpView view = makeView(64, 48);
   TestPath square;
@@ -144,6 +145,7 @@ TEST_F(CanvasTest, TheDrawTestsDepthAndWritesNone) {
   attachment.target.depthFormat = VK_FORMAT_D32_SFLOAT;
   attachment.target.depthTest = VK_TRUE;
   attachment.target.depthCompare = VK_COMPARE_OP_LESS;
+  canvasTargets = GPGP_CANVAS_TARGET_VIEW;
   makeCanvas(64, 0, 0, &attachment.target);
   const GpgpView view = makeView(64, 48);
   TestPath all;
@@ -231,6 +233,7 @@ struct TwoWays : CanvasTest {
                                             place(makeDrawing({veil.view()}), 0.6f)};
     for (const VkFormat format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB}) {
       const Attachment attachment(device, format, kWidth, kHeight);
+      canvasTargets = 0;
       makeCanvas(256, 0, 1u << 18, &attachment.target);
       const GpgpView view = makeView(kWidth, kHeight);
       const bool encodes = format == VK_FORMAT_R8G8B8A8_SRGB;
@@ -279,6 +282,51 @@ struct TwoWays : CanvasTest {
     }
   }
 };
+
+/// Of the three pipelines that each pass has, those that no record needs are not made, and records that would need them
+/// are refused.
+TEST_F(CanvasTest, WritesOnlyTheTargetsItWasMadeFor) {
+  TestPath square;
+  square.move(0, 0).line(4, 0).line(4, 4).line(0, 4).close();
+  const std::vector<GpgpCanvasItem> items{place(makeDrawing({square.view()}))};
+  const GpgpView view = makeView(64, 64);
+  const host::Image narrow(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = 64, .height = 64});
+  const host::Image wide(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = 64, .height = 64});
+  const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+  const std::pair<GpgpCanvasTargets, const host::Image*> ways[] = {
+      {GPGP_CANVAS_TARGET_VIEW, nullptr}, {GPGP_CANVAS_TARGET_RGBA8, &narrow}, {GPGP_CANVAS_TARGET_RGBA16F, &wide}};
+  const auto passCount = [&](GpgpCanvasTargets wanted) {
+    canvasTargets = wanted;
+    makeCanvas(56);
+    uint32_t count = 0;
+    EXPECT_EQ(gpgpGetPasses(canvas, &count, nullptr), GPGP_SUCCESS);
+    return count;
+  };
+  const uint32_t all = passCount(0);
+  for (const auto& [made, own] : ways) {
+    EXPECT_LT(passCount(made), all * 3 / 4);
+    for (const auto& [written, image] : ways) {
+      const GpgpFrame frame = advance();
+      device.submitAndWait([&](VkCommandBuffer commands) {
+        EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+        GpgpCanvasInfo info = infoOf(items, 56, 56);
+        info.view = view;
+        if (image) info.target = image->target({}, after);
+        const bool may = made == written;
+        EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), may ? GPGP_SUCCESS : GPGP_ERROR_INVALID_ARGUMENT);
+        if (!may) {
+          EXPECT_NE(lastMessage().find("GpgpCanvasCreateInfo::targets"), std::string::npos) << lastMessage();
+        }
+      });
+    }
+  }
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+  info.targets = 8;
+  GpgpWorker none = nullptr;
+  EXPECT_EQ(gpgpCreateCanvas(context, &info, &none), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(none, nullptr);
+}
 
 TEST_F(TwoWays, OfAPanelHaveTheSamePixels) { compare("svg/hud.svg"); }
 TEST_F(TwoWays, OfClipsAndGroupsHaveTheSamePixels) { compare("svg/clips.svg"); }

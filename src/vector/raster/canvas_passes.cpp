@@ -371,13 +371,14 @@ core::PassList Canvas::describe() const {
     for (uint32_t k = 0; k < 3; ++k) fill({kFills[k], listed[k]}, true, kMarkOne + k, true);
     for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kOneDrawing + k, true);
   }
-  // By target: the view alone, rgba8, rgba16f.
+  // By target: the view alone, rgba8, rgba16f; those alone that the canvas writes.
   const auto addTarget = [&](core::Pass& pass, uint32_t target, uint32_t condition) {
     if (target != kNoImage) pass.uses[pass.useCount++] = {target == kHasImage8 ? image8 : image16, write};
     pass.condition = condition + target;
   };
   const auto raster = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition) {
     for (uint32_t t = 0; t < 3; ++t) {
+      if (!writes(t)) continue;
       core::Pass& pass = dispatch(
           names[t], {names[t], spirv[t]},
           {{paths, read}, {words, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}}, kRaster);
@@ -404,6 +405,7 @@ core::PassList Canvas::describe() const {
   const auto painted = [&](std::array<const char*, 3> names, std::array<Spirv, 3> spirv, uint32_t condition,
                            VkDeviceSize arguments) {
     for (uint32_t t = 0; t < 3; ++t) {
+      if (!writes(t)) continue;
       core::Pass& pass = tilesOf({names[t], spirv[t]}, condition, arguments);
       pass.uses[pass.useCount++] = {view, write};
       if (!software_) pass.uses[pass.useCount++] = {aside, read};
@@ -422,15 +424,16 @@ core::PassList Canvas::describe() const {
     const std::array<const char*, 3> solid = {"solid tiles", "solid tiles rgba8", "solid tiles rgba16f"};
     const std::array<Spirv, 3> shaders = {vector_tiles_solid0, vector_tiles_solid1, vector_tiles_solid2};
     for (uint32_t t = 0; t < 3; ++t)
-      addTarget(dispatch(solid[t], {solid[t], shaders[t]}, {{masks, read}, {view, write}}, kTiles), t, kAny);
+      if (writes(t)) addTarget(dispatch(solid[t], {solid[t], shaders[t]}, {{masks, read}, {view, write}}, kTiles), t, kAny);
     const std::array<const char*, 3> byRows = {"raster rows", "raster rows rgba8", "raster rows rgba16f"};
     const std::array<Spirv, 3> rowShaders = {vector_tiles_rows0, vector_tiles_rows1, vector_tiles_rows2};
     for (uint32_t t = 0; t < 3; ++t)
-      addTarget(list.dispatchIndirect(
-                    byRows[t], list.add(core::ShaderDesc{byRows[t], rowShaders[t]}),
-                    {{params, read}, {paths, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}},
-                    counters, offsetof(CanvasCounters, tilesX)),
-                t, kAny);
+      if (writes(t))
+        addTarget(list.dispatchIndirect(
+                      byRows[t], list.add(core::ShaderDesc{byRows[t], rowShaders[t]}),
+                      {{params, read}, {paths, read}, {masks, read}, {entries, read}, {counters, read}, {view, write}},
+                      counters, offsetof(CanvasCounters, tilesX)),
+                  t, kAny);
     painted({"raster", "raster rgba8", "raster rgba16f"}, {vector_tiles0, vector_tiles1, vector_tiles2}, kPlain,
             shader::kPaintedArguments);
     painted({"raster gradients, several drawings", "raster gradients rgba8, several drawings",

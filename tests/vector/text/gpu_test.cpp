@@ -92,6 +92,7 @@ struct TextGpu : testing::Test {
     info.maxPatches = 1u << 20;
     info.maxTileEntries = 1u << 18;
     info.maxGlyphs = maxGlyphs;
+    info.targets = GPGP_CANVAS_TARGET_RGBA8;
     GpgpWorker made = nullptr;
     EXPECT_EQ(gpgpCreateCanvas(context, &info, &made), GPGP_SUCCESS) << message;
     const GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
