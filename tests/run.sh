@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and runs all tests: release, then again under AddressSanitizer and
-# UndefinedBehaviorSanitizer, then a build of all but the tests with the second compiler. Works as root or through sudo, asks nothing, can be
-# run again. Ends with a summary; exits 1 where anything failed.
+# UndefinedBehaviorSanitizer, then a build of all but the tests with the second compiler. Works as root or through sudo,
+# asks nothing, can be run again. Ends with a summary; exits 1 where anything failed.
 #
 #   tests/run.sh            everything
 #   tests/run.sh --quick    release only

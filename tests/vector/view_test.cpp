@@ -313,7 +313,8 @@ TEST_F(CanvasTest, WritesOnlyTheTargetsItWasMadeFor) {
         info.view = view;
         if (image) info.target = image->target({}, after);
         const bool may = made == written;
-        EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), may ? GPGP_SUCCESS : GPGP_ERROR_INVALID_ARGUMENT);
+        EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info),
+                  may ? GPGP_SUCCESS : GPGP_ERROR_INVALID_ARGUMENT);
         if (!may) {
           EXPECT_NE(lastMessage().find("GpgpCanvasCreateInfo::targets"), std::string::npos) << lastMessage();
         }

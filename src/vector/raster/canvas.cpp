@@ -30,12 +30,12 @@ std::array<uint32_t, 3> spread(uint32_t groups) { return {divide(groups, 8), 8, 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Worker(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
-      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072),
-      maxWords_(std::max(maxEntries_, 65536u)), targets_(info.targets ? info.targets : ~GpgpCanvasTargets(0)),
-      budgets_{info.maxDrawings ? info.maxDrawings : 64,
-                                                         info.maxGlyphs ? info.maxGlyphs : 1024,
-                                                         info.maxShapes ? info.maxShapes : 1024,
-                                                         info.maxPatches ? info.maxPatches : 262144},
+      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072), maxWords_(std::max(maxEntries_, 65536u)),
+      targets_(info.targets ? info.targets : ~GpgpCanvasTargets(0)), budgets_{info.maxDrawings ? info.maxDrawings : 64,
+                                                                              info.maxGlyphs ? info.maxGlyphs : 1024,
+                                                                              info.maxShapes ? info.maxShapes : 1024,
+                                                                              info.maxPatches ? info.maxPatches
+                                                                                              : 262144},
       software_(owner.device.software), assets_(budgets_.items, &owner.host()), tables_(budgets_, &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {

@@ -424,7 +424,8 @@ core::PassList Canvas::describe() const {
     const std::array<const char*, 3> solid = {"solid tiles", "solid tiles rgba8", "solid tiles rgba16f"};
     const std::array<Spirv, 3> shaders = {vector_tiles_solid0, vector_tiles_solid1, vector_tiles_solid2};
     for (uint32_t t = 0; t < 3; ++t)
-      if (writes(t)) addTarget(dispatch(solid[t], {solid[t], shaders[t]}, {{masks, read}, {view, write}}, kTiles), t, kAny);
+      if (writes(t))
+        addTarget(dispatch(solid[t], {solid[t], shaders[t]}, {{masks, read}, {view, write}}, kTiles), t, kAny);
     const std::array<const char*, 3> byRows = {"raster rows", "raster rows rgba8", "raster rows rgba16f"};
     const std::array<Spirv, 3> rowShaders = {vector_tiles_rows0, vector_tiles_rows1, vector_tiles_rows2};
     for (uint32_t t = 0; t < 3; ++t)
