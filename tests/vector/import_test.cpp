@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -391,7 +392,9 @@ TEST(SvgImport, Colours) {
       {"fill='hsl(120 100% 25% / 50%)'", {0, 0.5, 0, 0.5}},
       {"fill='hsla(0.5turn,100%,50%,.25)'", {0, 1, 1, 0.25}},
       {"fill='hsl(200grad,100%,50%)'", {0, 1, 1, 1}},
+      {"fill='hsl(120 100 25)'", {0, 0.5, 0, 1}}, // numbers are percentages
       {"fill='hwb(0 20% 40%)'", {0.6, 0.2, 0.2, 1}},
+      {"fill='hwb(0 20 40)'", {0.6, 0.2, 0.2, 1}},
       {"fill='hwb(90deg 60% 60%)'", {0.5, 0.5, 0.5, 1}},
       {"color='blue' fill='currentColor'", {0, 0, 1, 1}},
       {"fill='red' style='fill: lime'", {0, 1, 0, 1}},
@@ -417,6 +420,71 @@ TEST(SvgImport, Colours) {
       const double v = c.srgb[k], linear = k == 3 ? v : v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
       EXPECT_NEAR(i.drawing.paths[0].color[k], linear, 1e-6) << c.attributes << " " << k;
     }
+  }
+}
+
+TEST(SvgImport, WordsThatEveryPropertyTakes) {
+  const struct {
+    const char* attributes;
+    std::array<float, 4> linear;
+  } cases[] = {
+      {"style='fill:initial'", {0, 0, 0, 1}},
+      {"style='fill:unset'", {1, 0, 0, 1}},
+      {"fill='Revert'", {1, 0, 0, 1}},
+      {"style='fill:revert-layer'", {1, 0, 0, 1}},
+      {"style='fill:currentColor;color:unset'", {0, 0, 1, 1}},
+      {"style='fill:currentColor;color:initial'", {0, 0, 0, 1}},
+      {"style='fill-opacity:initial'", {1, 0, 0, 1}},
+      {"style='opacity:0.5;opacity:unset'", {1, 0, 0, 1}}, // is not inherited
+      {"style='opacity:0.5;opacity:initial'", {1, 0, 0, 1}},
+      {"style='opacity:inherit;clip-path:unset;transform:initial'", {1, 0, 0, 0.5f}},
+  };
+  for (const auto& c : cases) {
+    const bool faint = std::string(c.attributes).find("fill-opacity") != std::string::npos;
+    const Import i =
+        page(std::string("<g fill='red' color='blue' opacity='0.5'") + (faint ? " fill-opacity='.25'" : "") +
+             "><rect width='9' height='9' " + c.attributes + "/><rect width='1' height='1'/></g>");
+    EXPECT_EQ(i.messages, Texts()) << c.attributes;
+    ASSERT_EQ(i.drawing.paths.size(), 2u) << c.attributes;
+    for (size_t k = 0; k < 4; ++k) EXPECT_EQ(i.drawing.paths[0].color[k], c.linear[k]) << c.attributes << " " << k;
+  }
+  const std::string gradient = "<linearGradient id='g'><stop/></linearGradient>",
+                    rect = "<rect width='9' height='9' color-interpolation='linearRGB' fill='url(#g)'/>";
+  const auto mixesLinear = [&](const std::string& text) {
+    return !page(text).drawing.paths.at(0).gradient->gradient.interpolateSrgb;
+  };
+  EXPECT_FALSE(mixesLinear(gradient + rect)); // what is painted does not say
+  EXPECT_TRUE(mixesLinear("<g style='color-interpolation:linearRGB'>" + gradient + "</g>" + rect));
+  EXPECT_FALSE(mixesLinear("<g style='color-interpolation:linearRGB'>"
+                           "<linearGradient id='g' style='color-interpolation:auto'><stop/></linearGradient></g>" +
+                           rect));
+  const std::string stop =
+      "<linearGradient id='g' style='stop-color:currentColor' color='aqua'><stop style='stop-color:";
+  for (const auto& [word, linear] : std::map<std::string, std::array<float, 3>>{
+           {"inherit", {0, 1, 1}}, {"initial", {0, 0, 0}}, {"unset", {0, 0, 0}}}) {
+    const Import i = page(stop + word + "'/></linearGradient><rect width='9' height='9' fill='url(#g)'/>");
+    ASSERT_EQ(i.drawing.paths.size(), 1u);
+    for (size_t k = 0; k < 3; ++k) EXPECT_EQ(i.drawing.paths[0].gradient->stops.at(0).color[k], linear[k]) << word;
+  }
+}
+
+TEST(SvgImport, ElementsForOtherReadersAreLeftOut) {
+  const std::pair<const char*, bool> cases[] = {{"", true},
+                                                {"systemLanguage='en'", true},
+                                                {"systemLanguage='de, EN-us'", true},
+                                                {"systemLanguage='de,fr'", false},
+                                                {"systemLanguage='sven'", false},
+                                                {"systemLanguage=''", false},
+                                                {"requiredExtensions='http://example.org/more'", false},
+                                                {"requiredExtensions=' '", true}};
+  for (const auto& [attributes, shown] : cases) {
+    const std::string rect = std::string("<rect width='9' height='9' ") + attributes + "/>";
+    const std::string other = "<rect width='5' height='5'/><rect width='6' height='6'/>";
+    const Import alone = page(rect), within = page("<switch>" + rect + other + "</switch>");
+    EXPECT_EQ(alone.messages, Texts());
+    EXPECT_EQ(alone.drawing.paths.size(), shown ? 1u : 0u) << attributes;
+    ASSERT_EQ(within.drawing.paths.size(), 1u) << attributes;
+    EXPECT_EQ(within.drawing.paths[0].points[2], shown ? 9 : 5) << attributes;
   }
 }
 

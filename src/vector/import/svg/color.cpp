@@ -202,6 +202,8 @@ bool parseFunction(std::string_view text, Color& color) {
       v[count] /= 100;
     else if (count < 3 && !byHue)
       v[count] /= 255;
+    else if (count < 3 && count > 0)
+      v[count] /= 100; // numbers are percentages
     if (byHue && count == 0) {
       if (s.take("grad")) v[0] *= 0.9;
       if (s.take("rad")) v[0] *= 57.29577951308232;

@@ -65,7 +65,7 @@ std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, c
         offset = 0;
       }
       offset = std::clamp(offset, stops.empty() ? 0.0 : static_cast<double>(stops.back().offset), 1.0);
-      const Color c = own.stopIsCurrent ? own.color : own.stopColor;
+      const Color c = own.stopColor.isCurrent ? own.color : own.stopColor.color;
       const double linear[4] = {linearFromSrgb(c.r), linearFromSrgb(c.g), linearFromSrgb(c.b), c.a * own.stopOpacity};
       GpgpGradientStop stop{static_cast<float>(offset), {}};
       for (size_t i = 0; i < 4; ++i) stop.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));
@@ -123,7 +123,7 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
   }
   const std::string_view spread = trim(text("spreadMethod"));
   g.spread = spread == "reflect" ? GPGP_SPREAD_REFLECT : spread == "repeat" ? GPGP_SPREAD_REPEAT : GPGP_SPREAD_PAD;
-  g.interpolateSrgb = trim(text("color-interpolation")) != "linearRGB";
+  g.interpolateSrgb = !styleOf(node, state.lengths).mixesLinear;
   Affine map = state.transform;
   if (!userSpace) {
     const Box box = boxOf(shape);

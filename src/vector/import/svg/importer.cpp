@@ -22,6 +22,19 @@ constexpr std::string_view kSilent[] = {
 
 constexpr double kMaxReach = 1e7; // pixels
 
+/// Whether an element's conditions hold (SVG 2, 5.7): no extension is known, and the reader's language is English.
+bool isFor(pugi::xml_node node) {
+  if (!trim(node.attribute("requiredExtensions").value()).empty()) return false;
+  const pugi::xml_attribute languages = node.attribute("systemLanguage");
+  for (std::string_view rest = languages.value(); !rest.empty();) {
+    const size_t end = std::min(rest.find(','), rest.size());
+    const std::string_view tag = trim(rest.substr(0, end));
+    if (isWord(tag.substr(0, tag.find('-')), "en")) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return !languages;
+}
+
 } // namespace
 
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits,
@@ -133,7 +146,7 @@ Importer::State Importer::begin() {
 
 void Importer::visit(pugi::xml_node node, const State& parent, const double* useSize) {
   const std::string_view name = document_.name(node);
-  if (name.empty() || stopped(node)) return;
+  if (name.empty() || stopped(node) || !isFor(node)) return;
   const bool isSymbol = name == "symbol" && useSize;
   if (oneOf(name, kSilent) && !isSymbol) return;
   if (parent.depth >= limits_.depth) {
@@ -220,10 +233,7 @@ void Importer::visitSwitch(pugi::xml_node node, const State& state) {
   for (const pugi::xml_node child : node.children()) {
     const std::string_view name = document_.name(child);
     if (name.empty() || name == "foreignObject" || oneOf(name, kSilent)) continue;
-    if (!trim(child.attribute("requiredExtensions").value()).empty()) continue;
-    const pugi::xml_attribute language = child.attribute("systemLanguage");
-    if (language && std::string_view(language.value()).find("en") == std::string_view::npos) continue;
-    return visit(child, state);
+    if (isFor(child)) return visit(child, state);
   }
 }
 

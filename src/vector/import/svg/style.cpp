@@ -110,6 +110,7 @@ constexpr Word<Join> kJoins[] = {{"miter", Join::Miter},
                                  {"bevel", Join::Bevel},
                                  {"miter-clip", Join::Miter},
                                  {"arcs", Join::Miter}};
+constexpr Word<bool> kInterpolations[] = {{"auto", false}, {"srgb", false}, {"linearrgb", true}};
 constexpr Word<bool> kVisibilities[] = {{"visible", true}, {"hidden", false}, {"collapse", false}};
 
 struct Context {
@@ -133,8 +134,9 @@ bool setColor(const Context& c) {
   return parseColor(c.value, c.style.color);
 }
 bool setStopColor(const Context& c) {
-  c.style.stopIsCurrent = isCurrentColor(c.value);
-  return c.style.stopIsCurrent || parseColor(c.value, c.style.stopColor);
+  Style::StopColor& stop = c.style.stopColor;
+  stop.isCurrent = isCurrentColor(c.value);
+  return stop.isCurrent || parseColor(c.value, stop.color);
 }
 bool setPaintOrder(const Context& c) {
   const size_t fill = c.value.find("fill"), stroke = c.value.find("stroke");
@@ -150,12 +152,12 @@ bool setRefers(const Context& c, bool& flag) { return flag = !isWord(c.value, "n
 struct Property {
   std::string_view name;
   bool (*set)(const Context&);
-  void (*inherit)(const Context&);
+  void (*take)(Style& to, const Style& from);
 };
 
 #define GPGP_PROPERTY(name, member, setter)                                                                            \
   {                                                                                                                    \
-    name, [](const Context& c) { return setter; }, [](const Context& c) { c.style.member = c.parent.member; }          \
+    name, [](const Context& c) { return setter; }, [](Style& to, const Style& from) { to.member = from.member; }       \
   }
 const Property kProperties[] = {
     GPGP_PROPERTY("fill", fill, parsePaint(c.value, c.style.fill)),
@@ -173,6 +175,7 @@ const Property kProperties[] = {
                   parseLength(c.value, c.lengths, LengthAxis::Diagonal, c.style.dashOffset)),
     GPGP_PROPERTY("color", color, setColor(c)),
     GPGP_PROPERTY("visibility", visible, choose(c.value, kVisibilities, c.style.visible)),
+    GPGP_PROPERTY("color-interpolation", mixesLinear, choose(c.value, kInterpolations, c.style.mixesLinear)),
     GPGP_PROPERTY("display", displayed, (c.style.displayed = !isWord(c.value, "none"), true)),
     GPGP_PROPERTY("overflow", overflowVisible,
                   (c.style.overflowVisible = isWord(c.value, "visible") || isWord(c.value, "auto"), true)),
@@ -212,7 +215,6 @@ Style Style::inherited() const {
   s.nonScalingStroke = fresh.nonScalingStroke;
   s.overflowVisible = fresh.overflowVisible;
   s.stopColor = fresh.stopColor;
-  s.stopIsCurrent = fresh.stopIsCurrent;
   s.stopOpacity = fresh.stopOpacity;
   s.clipPath.clear();
   s.transform.clear();
@@ -236,7 +238,7 @@ bool isGeometry(std::string_view name) {
 bool isUnsupported(std::string_view name, std::string_view value) {
   constexpr std::string_view names[] = {"translate",   "rotate",          "scale",      "transform-box",
                                         "offset-path", "backdrop-filter", "mask-image", "perspective"};
-  constexpr std::string_view without[] = {"none", "view-box", "inherit", "initial", "unset", "auto"};
+  constexpr std::string_view without[] = {"none", "view-box", "inherit", "initial", "unset", "revert", "auto"};
   return std::find(std::begin(names), std::end(names), name) != std::end(names) &&
          std::find(std::begin(without), std::end(without), trim(value)) == std::end(without);
 }
@@ -248,10 +250,14 @@ Applied applyProperty(Style& style, const Style& parent, std::string_view name, 
   const Property* property = findProperty(name);
   if (!property) return Applied::Unknown;
   const Context context{style, parent, trim(value), lengths};
-  if (isWord(context.value, "inherit")) {
-    property->inherit(context);
+  const auto takeFrom = [&](const Style& other) {
+    property->take(style, other);
     return Applied::Yes;
-  }
+  };
+  if (isWord(context.value, "inherit")) return takeFrom(parent);
+  if (isWord(context.value, "initial")) return takeFrom({});
+  for (const std::string_view word : {"unset", "revert", "revert-layer"}) // there are no other style sheets
+    if (isWord(context.value, word)) return takeFrom(parent.inherited());
   return property->set(context) ? Applied::Yes : Applied::Invalid;
 }
 

@@ -35,14 +35,16 @@ struct Style {
   Join join = Join::Miter;
   std::vector<double> dashes;
   Color color;
-  bool visible = true, strokeFirst = false;
+  bool visible = true, strokeFirst = false, mixesLinear = false; ///< the last: of its gradient's stops
   double fontSize = 16;
   std::string markers; ///< the property that asks for some
   // not inherited
   double opacity = 1;
   bool displayed = true, nonScalingStroke = false, overflowVisible = false;
-  Color stopColor;
-  bool stopIsCurrent = false;
+  struct StopColor {
+    Color color;
+    bool isCurrent = false; ///< whatever `color` of the stop says
+  } stopColor;
   double stopOpacity = 1;
   std::string clipPath; ///< what it says, unless none
   std::string transform, transformOrigin;
@@ -64,7 +66,8 @@ bool isGeometry(std::string_view name);
 bool isUnsupported(std::string_view name, std::string_view value);
 
 enum class Applied { Yes, Unknown, Invalid };
-/// Sets one property. `parent` answers "inherit". Lengths in the value use `lengths` (its font size is the element's).
+/// Sets one property. `parent` answers "inherit" and "unset". Lengths in the value use `lengths` (its font size is the
+/// element's).
 Applied applyProperty(Style& style, const Style& parent, std::string_view name, std::string_view value,
                       const LengthContext& lengths);
 
