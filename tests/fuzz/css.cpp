@@ -13,7 +13,7 @@ using namespace gpgp::vector::svg;
 void check(const Style& style) {
   for (const double part : {style.fillOpacity, style.strokeOpacity, style.opacity, style.stopOpacity})
     if (!(part >= 0 && part <= 1)) std::abort();
-  for (const Color& c : {style.fill.color, style.stroke.color, style.color, style.stopColor})
+  for (const Color& c : {style.fill.color, style.stroke.color, style.color, style.stopColor.color})
     for (const double part : {c.r, c.g, c.b, c.a})
       if (!(part >= 0 && part <= 1)) std::abort();
   if (!(style.strokeWidth >= 0 && style.miterLimit >= 1 && style.fontSize >= 0)) std::abort();
@@ -37,7 +37,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     (void)isUnsupported(d.name, d.value);
     check(style);
   };
-  for (const Declaration* d : sheet.match("path", "a", "a b st0 st1", work)) apply(*d);
+  Document document;
+  constexpr std::string_view kDrawing =
+      "<svg><g id='b' class='a st0'/><g id='c' x='1'><path id='a' class='a b st0 st1' d='M0 0' "
+      "style='fill:red'/></g></svg>";
+  if (!document.load(std::as_bytes(std::span(kDrawing)))) std::abort();
+  for (const Declaration* d : sheet.match(document, document.find("#a"), work, 1 << 20)) apply(*d);
   for (const Declaration& d : parseDeclarations(text)) apply(d);
   for (const char* name : {"fill", "stroke", "opacity", "stroke-width", "stroke-dasharray", "stroke-miterlimit",
                            "font-size", "stop-color", "paint-order", "clip-path", "marker"})

@@ -468,6 +468,65 @@ TEST(SvgImport, WordsThatEveryPropertyTakes) {
   }
 }
 
+TEST(SvgImport, Selectors) {
+  // Of the last <rect>: whether each selector means it.
+  const std::string drawing =
+      "<g id='a' class='p'><g class='q r'><circle r='1'/><path d='M0 0'/>"
+      "<rect id='x' class='s t' data-kind='one two' lang='en-GB' width='9' height='9'/></g></g>";
+  const std::pair<const char*, bool> cases[] = {{"g rect", true},
+                                                {"g > rect", true},
+                                                {"#a rect", true},
+                                                {"#a > rect", false},
+                                                {"#a>.q>rect", true},
+                                                {".p .q .s", true},
+                                                {".q .p .s", false},
+                                                {"svg g *", true},
+                                                {"svg > g > g > *", true},
+                                                {"svg > g > *.s", false},
+                                                {"path + rect", true},
+                                                {"circle + rect", false},
+                                                {"circle ~ rect", true},
+                                                {"circle ~ path + .t", true},
+                                                {"rect ~ rect", false},
+                                                {".p path ~ rect", true},
+                                                {"g g > circle ~ .s.t", true},
+                                                {"[width]", true},
+                                                {"[height=\"9\"]", true},
+                                                {"rect[height='8']", false},
+                                                {"[data-kind~=two]", true},
+                                                {"[data-kind~=tw]", false},
+                                                {"[lang|=en]", true},
+                                                {"[lang|=e]", false},
+                                                {"[data-kind^=one]", true},
+                                                {"[data-kind^=two]", false},
+                                                {"[data-kind$='two']", true},
+                                                {"[data-kind$=one]", false},
+                                                {"[data-kind*='e t']", true},
+                                                {"[data-kind*='']", false},
+                                                {"[ lang = 'en-GB' ]", true},
+                                                {"[lang][width].s#x", true},
+                                                {".p[class] > [class~=r] > rect", true},
+                                                {"g:hover", false}};
+  for (const auto& [selector, fits] : cases) {
+    const Import i = page("<style>" + std::string(selector) + " { fill: red }</style>" + drawing);
+    ASSERT_EQ(i.drawing.paths.size(), 2u) << selector;
+    EXPECT_EQ(i.drawing.paths[1].color[0], fits ? 1 : 0) << selector;
+  }
+  // All compounds count together, ids before classes before types, then the order.
+  for (const auto& [rules, red] : std::map<std::string, bool>{{"g rect{fill:red} rect{fill:blue}", true},
+                                                              {"rect{fill:blue} g rect{fill:red}", true},
+                                                              {".s{fill:blue} .q rect{fill:red}", true},
+                                                              {"#x{fill:red} .p .q .s.t[lang]{fill:blue}", true},
+                                                              {"#a rect{fill:blue} #x{fill:red}", false},
+                                                              {"[lang]{fill:blue} .s{fill:red}", true},
+                                                              {".p rect{fill:red} .q rect{fill:blue}", false},
+                                                              {"g g rect{fill:red} g > rect{fill:blue}", true}}) {
+    const Import i = page("<style>" + rules + "</style>" + drawing);
+    EXPECT_EQ(i.drawing.paths.at(1).color[0], red ? 1 : 0) << rules;
+    EXPECT_EQ(i.messages, Texts()) << rules;
+  }
+}
+
 TEST(SvgImport, ElementsForOtherReadersAreLeftOut) {
   const std::pair<const char*, bool> cases[] = {{"", true},
                                                 {"systemLanguage='en'", true},
@@ -760,7 +819,15 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<rect height='9' style='width:wide'/>", "E line 2: <rect> has width 'wide', which is no length"},
       {"<path style='d:path(\"M0 0 x\")'/>",
        "E line 2: <path> has an error in its path data at character 6; drawn up to there"},
-      {"<style>\ng rect { fill: red }</style>", "W line 3: style selector 'g rect' is not supported"},
+      {"<style>\ng rect:hover { fill: red }</style>", "W line 3: style selector 'g rect:hover' is not supported"},
+      {"<style>\ng > {fill:red}</style>", "W line 3: style selector 'g >' is not supported"},
+      {"<style>\n> g {fill:red}</style>", "W line 3: style selector '> g' is not supported"},
+      {"<style>\nsvg|g {fill:red}</style>", "W line 3: style selector 'svg|g' is not supported"},
+      {"<style>\n[a=] {fill:red}</style>", "W line 3: style selector '[a=]' is not supported"},
+      {"<style>\n[a b] {fill:red}</style>", "W line 3: style selector '[a b]' is not supported"},
+      {"<style>\n. {fill:red}</style>", "W line 3: style selector '.' is not supported"},
+      {"<style>\n[a {fill:red}</style>", "W line 3: style selector '[a' is not supported"},
+      {"<style>\na[b=\"c] {fill:red}</style>", "W line 3: style selector 'a[b=\"c]' is not supported"},
       {"<linearGradient id='g'><stop/>\n<stop offset='abc'/></linearGradient><rect width='9' height='9' "
        "fill='url(#g)'/>",
        "W line 3: <stop> has offset 'abc', which is not valid; ignored"},

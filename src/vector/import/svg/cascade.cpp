@@ -7,8 +7,7 @@
 
 namespace gpgp::vector::svg {
 
-void Importer::cascade(pugi::xml_node node, std::string_view name, const Style& parent, const LengthContext& outer,
-                       Style& style) {
+void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthContext& outer, Style& style) {
   struct Setting {
     std::string_view name, value;
   };
@@ -17,7 +16,7 @@ void Importer::cascade(pugi::xml_node node, std::string_view name, const Style& 
     if (isProperty(a.name())) settings.push_back({a.name(), a.value()});
   std::vector<const Declaration*> declared;
   if (!sheet_.empty() && work_ < limits_.matches) {
-    declared = sheet_.match(name, node.attribute("id").value(), node.attribute("class").value(), work_);
+    declared = sheet_.match(document_, node, work_, limits_.matches);
     if (work_ >= limits_.matches)
       reporter_.error(document_.line(node), "the style sheets ask for too much; from here on they are left out",
                       GPGP_ERROR_UNSUPPORTED);

@@ -52,7 +52,7 @@ Style Importer::styleOf(pugi::xml_node node, const LengthContext& lengths) {
   for (size_t i = above.size(); i-- > 0;) {
     const Style parent = style;
     style = parent.inherited();
-    cascade(above[i], document_.name(above[i]), parent, lengths, style);
+    cascade(above[i], parent, lengths, style);
   }
   return style;
 }

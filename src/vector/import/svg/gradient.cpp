@@ -54,7 +54,7 @@ std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, c
         return stops;
       }
       Style own = around.inherited();
-      cascade(child, "stop", around, {}, own);
+      cascade(child, around, {}, own);
       double offset = 0;
       const pugi::xml_attribute place = child.attribute("offset");
       Scanner s(trim(place.value()));

@@ -110,7 +110,7 @@ Importer::State Importer::begin() {
   state.lengths.height = box ? box->height : 100;
   bool hasWidth = false, hasHeight = false;
   Style style;
-  cascade(root, "svg", {}, state.lengths, style);
+  cascade(root, {}, state.lengths, style);
   double width = length(root, style, "width", state.lengths, LengthAxis::X, 0, &hasWidth);
   double height = length(root, style, "height", state.lengths, LengthAxis::Y, 0, &hasHeight);
   const auto isPercent = [&](const char* name) {
@@ -159,7 +159,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   State state = parent;
   state.style = parent.style.inherited();
   ++state.depth;
-  cascade(node, name, parent.style, parent.lengths, state.style);
+  cascade(node, parent.style, parent.lengths, state.style);
   if (!state.style.displayed) return;
   state.transform = state.transform * transformOf(node, state.style, parent.lengths);
   if (!state.transform.finite()) {

@@ -100,8 +100,7 @@ private:
                 LengthAxis axis, double otherwise, bool* given = nullptr);
 
   // cascade.cpp
-  void cascade(pugi::xml_node node, std::string_view name, const Style& parent, const LengthContext& lengths,
-               Style& style);
+  void cascade(pugi::xml_node node, const Style& parent, const LengthContext& lengths, Style& style);
   /// What the transform and transform-origin properties come to.
   Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths);
   std::optional<Ink> resolve(const Paint& paint, const State& state, const Shape& shape, pugi::xml_node node,

@@ -76,6 +76,17 @@ std::vector<Declaration> declarationsOf(std::string_view text) {
   return declarations;
 }
 
+/// At most 64 of them.
+std::vector<std::string_view> wordsOf(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (!(text = trim(text)).empty() && words.size() < 64) {
+    const size_t end = std::min(text.find_first_of(" \t\r\n\f"), text.size());
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return words;
+}
+
 } // namespace
 
 std::vector<Declaration> parseDeclarations(std::string_view text) { return declarationsOf(withoutComments(text)); }
@@ -93,12 +104,12 @@ void StyleSheet::parse(std::string_view original, size_t line, Reporter& reporte
     line += static_cast<size_t>(
         std::count(text.begin() + static_cast<ptrdiff_t>(counted), text.begin() + static_cast<ptrdiff_t>(at), '\n'));
     counted = at;
-    const size_t brace = std::min(text.find('{', at), text.size()),
-                 semicolon = std::min(text.find(';', at), text.size());
+    const size_t brace = std::min(text.find('{', at), text.size());
     if (text.substr(at, 1) == "@") {
       Scanner name(text.substr(at + 1));
       reporter.warn(line, std::string("style rule @") + std::string(name.name().substr(0, 40)) + " is not supported");
-      at = semicolon < brace ? semicolon + 1 : blockEnd(text, std::min(brace + 1, text.size())) + 1;
+      const size_t semicolon = text.substr(0, brace).find(';', at); // before its block, or there is none
+      at = semicolon != text.npos ? semicolon + 1 : blockEnd(text, std::min(brace + 1, text.size())) + 1;
       continue;
     }
     if (brace == text.size()) {
@@ -123,63 +134,163 @@ void StyleSheet::parse(std::string_view original, size_t line, Reporter& reporte
 }
 
 bool StyleSheet::addSelector(std::string_view selector, size_t block) {
+  constexpr uint32_t kMaxParts = 64, kMaxCompounds = 16;
   Rule rule;
   rule.block = block;
   Scanner s(selector);
-  if (!s.take("*")) rule.type = s.name();
-  if (!rule.type.empty()) rule.specificity += 1;
-  while (!s.done()) {
-    const bool id = s.take("#");
-    if (!id && !s.take(".")) return false;
-    const std::string_view name = s.name();
-    if (name.empty() || (id && !rule.id.empty()) || rule.classes.size() > 64) return false;
-    rule.specificity += id ? 1u << 16 : 1u << 8;
-    if (id)
-      rule.id = name;
-    else
-      rule.classes.emplace_back(name);
+  uint32_t ids = 0, parts = 0, types = 0; // parts: classes and attributes
+  for (char combinator = 0;;) {
+    Compound compound;
+    compound.combinator = combinator;
+    const size_t begin = s.offset();
+    if (!s.take("*")) compound.type = s.name();
+    types += !compound.type.empty();
+    while (!s.done()) {
+      if (s.take("#")) {
+        const std::string_view name = s.name();
+        if (name.empty() || !compound.id.empty()) return false;
+        compound.id = name;
+        ++ids;
+      } else if (s.take(".")) {
+        compound.classes.emplace_back(s.name());
+        if (compound.classes.back().empty() || ++parts > kMaxParts) return false;
+      } else if (s.take("[")) {
+        AttributeTest test;
+        s.skipSpace();
+        test.name = s.name();
+        s.skipSpace();
+        if (!s.take("]")) {
+          if (std::string_view("~|^$*").find(s.peek()) != std::string_view::npos) {
+            test.how = s.peek();
+            s.advance();
+          } else {
+            test.how = '=';
+          }
+          if (!s.take("=")) return false;
+          s.skipSpace();
+          if (const char quote = s.peek(); quote == '"' || quote == '\'') {
+            s.advance();
+            for (; !s.done() && s.peek() != quote; s.advance()) test.value += s.peek();
+            if (s.done()) return false;
+            s.advance();
+          } else {
+            test.value = s.name();
+            if (test.value.empty()) return false;
+          }
+          s.skipSpace();
+          if (!s.take("]")) return false;
+        }
+        if (test.name.empty() || ++parts > kMaxParts) return false;
+        compound.attributes.push_back(std::move(test));
+      } else {
+        break;
+      }
+    }
+    if (s.offset() == begin || rule.compounds.size() == kMaxCompounds) return false;
+    rule.compounds.push_back(std::move(compound));
+    if (s.done()) break;
+    const size_t end = s.offset();
+    s.skipSpace();
+    combinator = s.offset() > end ? ' ' : 0;
+    if (std::string_view(">+~").find(s.peek()) != std::string_view::npos) {
+      combinator = s.peek();
+      s.advance();
+      s.skipSpace();
+    }
+    if (combinator == 0) return false;
   }
-  if (selector.empty()) return false;
+  rule.specificity = ids << 16 | parts << 8 | types;
+  const Compound& own = rule.compounds.back();
   std::string key = "*";
-  if (!rule.id.empty())
-    key.assign(1, '#').append(rule.id);
-  else if (!rule.classes.empty())
-    key.assign(1, '.').append(rule.classes[0]);
-  else if (!rule.type.empty())
-    key = rule.type;
+  if (!own.id.empty())
+    key.assign(1, '#').append(own.id);
+  else if (!own.classes.empty())
+    key.assign(1, '.').append(own.classes[0]);
+  else if (!own.type.empty())
+    key = own.type;
   byKey_[key].push_back(rules_.size());
   rules_.push_back(std::move(rule));
   return true;
 }
 
-std::vector<const Declaration*> StyleSheet::match(std::string_view type, std::string_view id, std::string_view classes,
-                                                  size_t& work) const {
+bool StyleSheet::AttributeTest::fits(std::string_view is) const {
+  const bool found = !value.empty() && is.find(value) != std::string_view::npos;
+  switch (how) {
+  case '=': return is == value;
+  case '~': {
+    const auto words = wordsOf(is);
+    return std::find(words.begin(), words.end(), value) != words.end();
+  }
+  case '|': return is.substr(0, value.size()) == value && (is.size() == value.size() || is[value.size()] == '-');
+  case '^': return found && is.substr(0, value.size()) == value;
+  case '$': return found && is.substr(is.size() - value.size()) == value;
+  case '*': return found;
+  default: return true;
+  }
+}
+
+/// Counts what it compares; beyond `most` nothing fits.
+struct StyleSheet::Matching {
+  const Document& document;
+  size_t& work;
+  size_t most;
+
+  pugi::xml_attribute attribute(pugi::xml_node node, std::string_view name) {
+    for (const pugi::xml_attribute a : node.attributes()) {
+      ++work;
+      if (a.name() == name) return a;
+    }
+    return {};
+  }
+  bool fits(const Compound& compound, pugi::xml_node node) {
+    if (++work >= most || (!compound.type.empty() && document.name(node) != compound.type)) return false;
+    if (!compound.id.empty() && attribute(node, "id").value() != compound.id) return false;
+    if (!compound.classes.empty()) {
+      const auto names = wordsOf(attribute(node, "class").value());
+      work += names.size() * compound.classes.size();
+      for (const std::string& name : compound.classes)
+        if (std::find(names.begin(), names.end(), name) == names.end()) return false;
+    }
+    return std::all_of(compound.attributes.begin(), compound.attributes.end(), [&](const AttributeTest& test) {
+      const pugi::xml_attribute a = attribute(node, test.name);
+      return a && test.fits(a.value());
+    });
+  }
+  /// Whether the compounds up to `last` fit, the last the element.
+  bool fits(const Rule& rule, size_t last, pugi::xml_node node) {
+    if (!fits(rule.compounds[last], node)) return false;
+    const char combinator = rule.compounds[last].combinator;
+    if (combinator == 0) return true;
+    const bool up = combinator == ' ' || combinator == '>', once = combinator == '>' || combinator == '+';
+    while ((node = up ? node.parent() : node.previous_sibling()) && work < most) {
+      ++work;
+      if (node.type() != pugi::node_element) continue;
+      if (fits(rule, last - 1, node)) return true;
+      if (once) return false;
+    }
+    return false;
+  }
+};
+
+std::vector<const Declaration*> StyleSheet::match(const Document& document, pugi::xml_node node, size_t& work,
+                                                  size_t most) const {
   std::vector<const Declaration*> declarations;
   if (rules_.empty()) return declarations;
-  std::vector<std::string_view> names;
-  while (!(classes = trim(classes)).empty() && names.size() < 64) {
-    const size_t end = std::min(classes.find_first_of(" \t\r\n\f"), classes.size());
-    names.push_back(classes.substr(0, end));
-    classes.remove_prefix(end);
-  }
+  Matching matching{document, work, most};
   std::vector<size_t> found;
   const auto collect = [&](const std::string& key) {
     const auto at = byKey_.find(key);
     if (at == byKey_.end()) return;
-    for (const size_t index : at->second) {
-      const Rule& rule = rules_[index];
-      ++work;
-      const bool fits = (rule.type.empty() || rule.type == type) && (rule.id.empty() || rule.id == id) &&
-                        std::all_of(rule.classes.begin(), rule.classes.end(), [&names](const std::string& c) {
-                          return std::find(names.begin(), names.end(), c) != names.end();
-                        });
-      if (fits) found.push_back(index);
-    }
+    for (const size_t index : at->second)
+      if (matching.fits(rules_[index], rules_[index].compounds.size() - 1, node)) found.push_back(index);
   };
   collect("*");
-  collect(std::string(type));
+  collect(std::string(document.name(node)));
+  std::vector<std::string_view> names = wordsOf(node.attribute("class").value());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   for (const std::string_view name : names) collect(std::string(1, '.').append(name));
-  if (!id.empty()) collect(std::string(1, '#').append(id));
+  if (const std::string_view id = node.attribute("id").value(); !id.empty()) collect(std::string(1, '#').append(id));
   std::sort(found.begin(), found.end(), [this](size_t a, size_t b) {
     return rules_[a].specificity != rules_[b].specificity ? rules_[a].specificity < rules_[b].specificity : a < b;
   });

@@ -1,5 +1,7 @@
-// Style sheets: simple selectors (type, .class, #id, * and compounds of them, comma lists) with their declarations.
+// Style sheets: rules' selectors (Selectors 3 without pseudo-classes, pseudo-elements, namespaces and escapes) with
+// their declarations.
 #pragma once
+#include "vector/import/svg/document.h"
 #include "vector/import/svg/reporter.h"
 
 #include <string>
@@ -23,19 +25,32 @@ public:
   /// Appends the rules of a <style> element whose text begins in `line`. What is not supported is reported.
   void parse(std::string_view text, size_t line, Reporter& reporter);
 
-  /// What applies to an element, weakest first. `work` grows by the selectors compared.
-  std::vector<const Declaration*> match(std::string_view type, std::string_view id, std::string_view classes,
-                                        size_t& work) const;
+  /// What applies to an element, weakest first. `work` grows by what is compared; beyond `most` nothing matches.
+  std::vector<const Declaration*> match(const Document& document, pugi::xml_node node, size_t& work, size_t most) const;
   bool empty() const { return rules_.empty(); }
 
 private:
-  struct Rule {
+  /// [name], or with a value compared by =, ~ (one of the words), | (it, or it and a hyphen), ^ (begins), $ (ends), *.
+  struct AttributeTest {
+    std::string name, value;
+    char how = 0;
+    bool fits(std::string_view is) const;
+  };
+  /// What one element has to be, and where it stands: below that of the compound before (a space), its child (>), after
+  /// it (~) or next to it (+); 0: there is none before.
+  struct Compound {
+    char combinator = 0;
     std::string type, id;
     std::vector<std::string> classes;
+    std::vector<AttributeTest> attributes;
+  };
+  struct Rule {
+    std::vector<Compound> compounds; ///< the last is of the element itself
     uint32_t specificity = 0;
     size_t block = 0;
   };
   bool addSelector(std::string_view selector, size_t block);
+  struct Matching;
 
   std::vector<Rule> rules_;
   std::vector<std::vector<Declaration>> blocks_;
