@@ -1,8 +1,6 @@
 // A rule is found by its most telling part (id, else first class, else type), so that a match costs little.
 #include "vector/import/svg/stylesheet.h"
 
-#include "vector/import/svg/scanner.h"
-
 #include <algorithm>
 
 namespace gpgp::vector::svg {
@@ -133,60 +131,61 @@ void StyleSheet::parse(std::string_view original, size_t line, Reporter& reporte
   }
 }
 
+/// Behind "[", up to and with "]".
+bool StyleSheet::AttributeTest::parse(Scanner& s) {
+  s.skipSpace();
+  name = s.name();
+  s.skipSpace();
+  if (name.empty() || s.take("]")) return !name.empty();
+  how = s.peek();
+  if (how != '=') s.advance();
+  if (std::string_view("=~|^$*").find(how) == std::string_view::npos || !s.take("=")) return false;
+  s.skipSpace();
+  if (const char quote = s.peek(); quote == '"' || quote == '\'') {
+    for (s.advance(); !s.done() && s.peek() != quote; s.advance()) value += s.peek();
+    if (s.done()) return false;
+    s.advance();
+  } else {
+    value = s.name();
+    if (value.empty()) return false;
+  }
+  s.skipSpace();
+  return s.take("]");
+}
+
+bool StyleSheet::Compound::parse(Scanner& s) {
+  const size_t begin = s.offset();
+  if (!s.take("*")) type = s.name();
+  for (;;) {
+    if (s.take("#")) {
+      if (!id.empty()) return false;
+      id = s.name();
+      if (id.empty()) return false;
+    } else if (s.take(".")) {
+      classes.emplace_back(s.name());
+      if (classes.back().empty()) return false;
+    } else if (s.take("[")) {
+      if (!attributes.emplace_back().parse(s)) return false;
+    } else {
+      return s.offset() > begin;
+    }
+  }
+}
+
 bool StyleSheet::addSelector(std::string_view selector, size_t block) {
-  constexpr uint32_t kMaxParts = 64, kMaxCompounds = 16;
+  constexpr size_t kMaxCompounds = 16, kMaxParts = 64; // classes and attributes
   Rule rule;
   rule.block = block;
+  size_t ids = 0, parts = 0, types = 0;
   Scanner s(selector);
-  uint32_t ids = 0, parts = 0, types = 0; // parts: classes and attributes
   for (char combinator = 0;;) {
     Compound compound;
     compound.combinator = combinator;
-    const size_t begin = s.offset();
-    if (!s.take("*")) compound.type = s.name();
+    if (!compound.parse(s) || rule.compounds.size() == kMaxCompounds) return false;
+    ids += !compound.id.empty();
     types += !compound.type.empty();
-    while (!s.done()) {
-      if (s.take("#")) {
-        const std::string_view name = s.name();
-        if (name.empty() || !compound.id.empty()) return false;
-        compound.id = name;
-        ++ids;
-      } else if (s.take(".")) {
-        compound.classes.emplace_back(s.name());
-        if (compound.classes.back().empty() || ++parts > kMaxParts) return false;
-      } else if (s.take("[")) {
-        AttributeTest test;
-        s.skipSpace();
-        test.name = s.name();
-        s.skipSpace();
-        if (!s.take("]")) {
-          if (std::string_view("~|^$*").find(s.peek()) != std::string_view::npos) {
-            test.how = s.peek();
-            s.advance();
-          } else {
-            test.how = '=';
-          }
-          if (!s.take("=")) return false;
-          s.skipSpace();
-          if (const char quote = s.peek(); quote == '"' || quote == '\'') {
-            s.advance();
-            for (; !s.done() && s.peek() != quote; s.advance()) test.value += s.peek();
-            if (s.done()) return false;
-            s.advance();
-          } else {
-            test.value = s.name();
-            if (test.value.empty()) return false;
-          }
-          s.skipSpace();
-          if (!s.take("]")) return false;
-        }
-        if (test.name.empty() || ++parts > kMaxParts) return false;
-        compound.attributes.push_back(std::move(test));
-      } else {
-        break;
-      }
-    }
-    if (s.offset() == begin || rule.compounds.size() == kMaxCompounds) return false;
+    parts += compound.classes.size() + compound.attributes.size();
+    if (parts > kMaxParts) return false;
     rule.compounds.push_back(std::move(compound));
     if (s.done()) break;
     const size_t end = s.offset();
@@ -199,7 +198,7 @@ bool StyleSheet::addSelector(std::string_view selector, size_t block) {
     }
     if (combinator == 0) return false;
   }
-  rule.specificity = ids << 16 | parts << 8 | types;
+  rule.specificity = static_cast<uint32_t>(ids << 16 | parts << 8 | types);
   const Compound& own = rule.compounds.back();
   std::string key = "*";
   if (!own.id.empty())
@@ -238,7 +237,9 @@ struct StyleSheet::Matching {
   pugi::xml_attribute attribute(pugi::xml_node node, std::string_view name) {
     for (const pugi::xml_attribute a : node.attributes()) {
       ++work;
-      if (a.name() == name) return a;
+      if (a.name() != name) continue;
+      work += std::string_view(a.value()).size() / 16; // which will be looked through
+      return a;
     }
     return {};
   }

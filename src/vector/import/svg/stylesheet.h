@@ -3,6 +3,7 @@
 #pragma once
 #include "vector/import/svg/document.h"
 #include "vector/import/svg/reporter.h"
+#include "vector/import/svg/scanner.h"
 
 #include <string>
 #include <string_view>
@@ -34,6 +35,7 @@ private:
   struct AttributeTest {
     std::string name, value;
     char how = 0;
+    bool parse(Scanner& s);
     bool fits(std::string_view is) const;
   };
   /// What one element has to be, and where it stands: below that of the compound before (a space), its child (>), after
@@ -43,6 +45,7 @@ private:
     std::string type, id;
     std::vector<std::string> classes;
     std::vector<AttributeTest> attributes;
+    bool parse(Scanner& s);
   };
   struct Rule {
     std::vector<Compound> compounds; ///< the last is of the element itself
