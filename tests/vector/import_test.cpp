@@ -999,6 +999,24 @@ TEST(SvgImport, HostileInputIsBounded) {
   const Import many = import("<svg>" + copies + "</svg>", limits);
   EXPECT_EQ(many.messages, (Texts{"E line 1: more than 10000 elements; the rest is not drawn"}));
   EXPECT_LE(many.drawing.paths.size(), 10000u);
+  // Selectors that compare much: ways through what lies above, all that lies before, long values.
+  vector::svg::ImportLimits few;
+  few.matches = 20000;
+  const auto times = [](size_t count, const std::string& text) {
+    std::string all;
+    for (size_t i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  for (const std::string& drawing : {"<style>p " + times(8, "g ") + "rect{fill:red}</style>" + times(24, "<g>") +
+                                         "<rect/><rect/>" + times(24, "</g>"),
+                                     "<style>path ~ rect ~ rect{fill:red}</style>" + times(400, "<rect/>"),
+                                     "<style>[d*=zz]{fill:red}</style><path d='" + times(400000, "M") + "'/><rect/>"}) {
+    const Import i = import("<svg>" + drawing + "</svg>", few);
+    EXPECT_NE(std::find(i.messages.begin(), i.messages.end(),
+                        "E line 1: the style sheets ask for too much; from here on they are left out"),
+              i.messages.end())
+        << drawing.substr(0, 60);
+  }
   EXPECT_EQ(page("<path d='M0 0H90' stroke='red' stroke-dasharray='1e-9'/>").messages,
             (Texts{"E line 2: <path> has too many dashes; drawn without"}));
   EXPECT_EQ(import("<!DOCTYPE svg [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;&a;'>]><svg>&b;</svg>").error, "");
