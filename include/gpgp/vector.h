@@ -312,11 +312,11 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphSetInfo(GpgpAsset glyphSet, GpgpGlyphS
 
 /** Bits: what a canvas's records write. */
 typedef uint64_t GpgpCanvasTargets;
-/** The view alone: GpgpCanvasInfo::target is NULL. */
+/** A view, alone or with a target. */
 #define GPGP_CANVAS_TARGET_VIEW ((GpgpCanvasTargets)1)
-/** A target in R8G8B8A8_UNORM, with or without a view. */
+/** A target in R8G8B8A8_UNORM. */
 #define GPGP_CANVAS_TARGET_RGBA8 ((GpgpCanvasTargets)2)
-/** A target in R16G16B16A16_SFLOAT, with or without a view. */
+/** A target in R16G16B16A16_SFLOAT. */
 #define GPGP_CANVAS_TARGET_RGBA16F ((GpgpCanvasTargets)4)
 
 typedef struct GpgpCanvasCreateInfo {

@@ -20,11 +20,11 @@ using shader::CanvasHeader;
 
 /// As many workgroups, in rows (canvas.glsl, groupIndex).
 std::array<uint32_t, 3> rows(uint32_t groups) { return {std::min(groups, 32768u), divide(groups, 32768), 1}; }
+std::array<uint32_t, 3> spread(uint32_t groups) { return {divide(groups, 8), 8, 1}; } // for software devices
 uint32_t targetOf(const GpgpCanvasInfo& info) {
   if (!info.target.view) return kNoImage;
   return info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT ? kHasImage16 : kHasImage8;
 }
-std::array<uint32_t, 3> spread(uint32_t groups) { return {divide(groups, 8), 8, 1}; } // for software devices
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
@@ -70,10 +70,13 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the target is %u x %u, the canvas %u x %u", info.target.width,
                        info.target.height, info.width, info.height);
   }
-  if (!writes(targetOf(info)))
+  const uint32_t target = targetOf(info);
+  if ((view && !writes(kNoImage)) || !writes(target))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "the canvas was made without targets for records that write %s (GpgpCanvasCreateInfo::targets)",
-                     std::array{"a view alone", "R8G8B8A8_UNORM", "R16G16B16A16_SFLOAT"}[targetOf(info)]);
+                     view && !writes(kNoImage) ? "a view"
+                     : target == kHasImage8    ? "R8G8B8A8_UNORM"
+                                               : "R16G16B16A16_SFLOAT");
   if (info.imageCount > shader::kMaxImages)
     return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a record paints with at most %u (GPGP_MAX_IMAGES)",
                      info.imageCount, shader::kMaxImages);
