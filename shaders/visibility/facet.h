@@ -32,28 +32,35 @@ GPGP_FN Facet facetOf(Candidate c, Footing box, ivec2 pixel, bool reversed) {
   return f;
 }
 
+/// Whether a facet's box has one of the given columns and one of the given rows of samples; each as 64 bits.
+GPGP_FN bool reaches(Facet f, uvec2 columns, uvec2 rows) {
+  uvec2 ownColumns = bitRange(f.box.x >> 2, (f.box.z >> 2) + 1) & columns;
+  uvec2 ownRows = bitRange(f.box.y >> 2, (f.box.w >> 2) + 1) & rows;
+  return (ownColumns.x | ownColumns.y) != 0u && (ownRows.x | ownRows.y) != 0u;
+}
+
 /// A number whose order is a float's.
 GPGP_FN uint orderOf(float v) {
   uint bits = floatBitsToUint(v);
   return (bits >> 31u) != 0u ? ~bits : bits | 0x80000000u;
 }
 
-/// Whether the plane of `a` is nearer than that of `b` anywhere in the box that both are in.
-GPGP_FN bool isNearerWithin(Facet a, Facet b) {
+/// By how much the plane of `a` is nearer than that of `b` at most, in the box that both are in; below 0: nowhere.
+GPGP_FN float leadWithin(Facet a, Facet b) {
   ivec2 low = max(ivec2(a.box.x, a.box.y), ivec2(b.box.x, b.box.y));
   ivec2 high = min(ivec2(a.box.z, a.box.w), ivec2(b.box.z, b.box.w));
-  if (low.x > high.x || low.y > high.y) return false;
+  if (low.x > high.x || low.y > high.y) return -1.0f;
   GPGP_PRECISE vec3 behind = b.plane - a.plane;
   GPGP_PRECISE float column = (float(low.x + high.x) * 0.5f - 2.0f) * 0.25f;
   GPGP_PRECISE float row = (float(low.y + high.y) * 0.5f - 2.0f) * 0.25f;
   GPGP_PRECISE float atMiddle = behind.x + behind.y * column + behind.z * row;
   GPGP_PRECISE float most = atMiddle + abs(behind.y) * float(high.x - low.x + 1) * 0.125f +
                             abs(behind.z) * float(high.y - low.y + 1) * 0.125f;
-  return most > 0.0f;
+  return most;
 }
 
 /// Whether `a` is nearer than `b` anywhere in that box.
-GPGP_FN bool isNearerSomewhere(Facet a, Facet b) { return a.nearest < b.farthest && isNearerWithin(a, b); }
+GPGP_FN bool isNearerSomewhere(Facet a, Facet b) { return a.nearest < b.farthest && leadWithin(a, b) > 0.0f; }
 
 struct Corners {
   ivec2 p0;

@@ -7,7 +7,7 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "visibility/layout.h"
-#include "visibility/resolve.glsl"
+#include "visibility/planes.glsl"
 
 /// Keys lie as the entries do. Each invocation reads only those that it wrote.
 layout(std430, set = 0, binding = kBindKeys) buffer KeyBuffer { uint depths[]; };
@@ -25,7 +25,9 @@ struct Rest {
   uint before; // how many that are
   uint nearest;
   uint farthest;
+  uint turns; // of loops, so far
 };
+uint turnsOf(Rest rest) { return (rest.end - rest.begin + kBatch - 1u) / kBatch; } // through the whole list
 
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
@@ -38,11 +40,12 @@ uint binsOfBatch() {
 }
 
 /// The farthest key up to which entries are decided next: at most kBatch, or those that have one and the same key.
-uint lastKey(Rest rest) {
+uint lastKey(inout Rest rest) {
   uint lane = laneOf();
   uint high = rest.farthest;
   while (true) {
     uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
+    rest.turns += turnsOf(rest);
     bins[lane] = 0u;
     bins[lane + kBatch] = 0u;
     sync();
@@ -77,18 +80,46 @@ uint takeEntries(Rest rest, uint high) {
   return count;
 }
 
+/// Whether an entry's box may hold one of the open samples.
+bool reachesOpen(Facet f, uvec4 uncovered) {
+  uvec2 columns = uvec2(orAll(uncovered.x | uncovered.z), orAll(uncovered.y | uncovered.w));
+  uvec2 rows = uvec2(lanesWith((uncovered.x | uncovered.y) != 0u), lanesWith((uncovered.z | uncovered.w) != 0u));
+  return reaches(f, columns, rows);
+}
+
 /// Goes through a batch, whose items and keys are there; false once all samples are covered.
 bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 uncovered) {
-  uint id = 0u;
-  if (laneOf() < n) {
+  Entry own = noEntry();
+  own.place = place;
+  bool isThere = laneOf() < n;
+  bool isKnown = true;
+  bool isWide = false;
+  Facet f = facetOf(vec3(0.0), 0u);
+  if (isThere) {
     Candidate c = readCandidate(items[laneOf()]);
+    own.id = c.id;
+    isKnown = isShown(c.id);
+    isWide = !isCompact(triangleOf(c));
+    putCorners(cornersOf(c), pixel * 256);
     put(place, outlineOf(c, pixel), parallaxIn(pixel, rest.nearest, keyAt(laneOf()), rest.before + place));
-    id = c.id;
+    f = facetOf(c, footingIn(c, pixel), pixel, params.reversedDepth != 0u);
+    setFacet(own, f);
   }
+  uvec4 open_ = uncovered;
+  bool decides = reachesOpen(f, open_);
+  if (isThere && decides) own.list = bitsFrom(0, int(n));
   Looked looked = lookAtBatch(0u, n, movesIn(pixel), uncovered);
-  if (laneOf() < n && (looked.seen & (1u << place)) != 0u) show(id);
+  own.isSeen = isThere && (looked.seen & (1u << place)) != 0u;
+  uint reach = maxAll(own.isSeen ? orderOf(own.farthest) : 0u);
+  bool asks = own.list != 0u && !isKnown && isAsked(own, reach);
+  if (decide(own, asks, isWide, open_) && !isKnown) show(own.id);
   sync();
   return looked.holes;
+}
+
+/// The turns that `n` entries of one and the same key may take.
+uint turnsOfSame(Rest rest, uint n) {
+  return (n + kBatch - 1u) / kBatch * (turnsOf(rest) + min(turnsOf(rest), n) * (rest.end - rest.begin));
 }
 
 /// Goes through more than kBatch entries of one and the same key: by number, a batch at a time.
@@ -113,7 +144,8 @@ bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 uncovered) {
   return true;
 }
 
-/// A pixel with more than kSorted entries of one and the same depth shows those that are left.
+/// A pixel with more than kSorted entries of one and the same depth, or that would take too long, shows those that are
+/// left.
 void showRest(Rest rest) {
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
     uint id = candidateId(entries[i]);
@@ -140,13 +172,16 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   rest.nearest = minAll(least);
   rest.low = rest.nearest;
   rest.farthest = maxAll(most);
+  rest.turns = turnsOf(rest);
   uvec4 uncovered = uvec4(0xffffffffu);
   bool more = true;
   while (more) {
     uint high = lastKey(rest);
     sync();
     uint n = takeEntries(rest, high);
-    if (n > kSorted) {
+    rest.turns += turnsOf(rest) + kBatchTurns;
+    if (n > kBatch && n <= kSorted) rest.turns += turnsOfSame(rest, n);
+    if (n > kSorted || rest.turns > kMostTurns) {
       showRest(rest);
       break;
     }

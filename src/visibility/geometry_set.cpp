@@ -3,6 +3,7 @@
 
 #include "visibility/layout.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -17,11 +18,15 @@ core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& conte
   const size_t table = size_t(info.meshCount) * sizeof(GpgpMesh);
   std::pmr::vector<std::byte> bytes(table + size_t(info.meshCount) * 4, &context.host());
   if (info.meshCount) std::memcpy(bytes.data(), info.meshes, table);
+  uint64_t clusters = 0;
   for (uint32_t i = 0; i < info.meshCount; ++i) {
-    std::memcpy(bytes.data() + table + size_t(i) * 4, &set->clusterCount_, 4);
+    const auto first = static_cast<uint32_t>(clusters);
+    std::memcpy(bytes.data() + table + size_t(i) * 4, &first, 4);
     const uint32_t triangles = info.meshes[i].indexCount / 3;
-    set->clusterCount_ += triangles / shader::kChunk + (triangles % shader::kChunk != 0);
+    clusters += triangles / shader::kChunk + (triangles % shader::kChunk != 0);
   }
+  // No buffer holds so many clusters: a record that names one for them is refused.
+  set->clusterCount_ = static_cast<uint32_t>(std::min<uint64_t>(clusters, UINT32_MAX));
   if (auto ok = set->makeResident(GPGP_SERVICE_VISIBILITY, std::move(bytes), sizeof(GpgpMesh)); !ok) return ok.error();
   return set;
 }

@@ -41,6 +41,8 @@ std::vector<std::pair<std::string, Scene>> smallScenes() {
   Scene fronts = houseFronts();
   setWalkingCamera(fronts, {12, 26, 60}, {0, 8, -20}, 1920, 1080, true);
   scenes.emplace_back("fronts", cropped(fronts, 900, 480, 96, 64));
+  setWalkingCamera(fronts, {12, 26, 60}, {0, 8, -20}, 240, 135, true); // lists of more than a batch
+  scenes.emplace_back("far fronts", cropped(fronts, 104, 56, 24, 16));
   return scenes;
 }
 
@@ -51,10 +53,10 @@ TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
     const TwinResult exact = sampleExactOnCpu(scene.input());
     const Compared c = compare(exact.bits, truth.bits);
     EXPECT_GT(c.truth, 500u) << name;
-    // With the order by one depth each alone the fronts have 99.46 % and 0.68 %.
-    EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : 0.99)) << name;
+    // With the order by one depth each alone the fronts have 99.46 % and 0.68 %, the far ones 96.59 % and 0.73 %.
+    EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : name == "far fronts" ? 0.997 : 0.99)) << name;
     // The colonnade's far columns are tens of slivers a pixel that interleave in depth.
-    EXPECT_LE(c.extra, c.truth * (name == "colonnade" ? 0.03 : name == "fronts" ? 0.004 : 0.01)) << name;
+    EXPECT_LE(c.extra, c.truth * (name == "colonnade" ? 0.01 : name == "city" ? 0.001 : 0.005)) << name;
     const TwinResult standard = sampleOnCpu(scene.input());
     EXPECT_LT(compare(standard.bits, truth.bits).found, c.truth * 0.8) << name; // or the scene tests nothing
     uint32_t counted = 0;
@@ -80,15 +82,35 @@ TEST_F(VisibilityGpuTest, ExactOfTrianglesThroughAllPlanesEqualsTheTwin) {
   }
 }
 
-// A sheet that faces the camera: some seventy triangles in each pixel, all of exactly one depth.
+// Scenes in so few pixels that most have lists of several batches, and some more than are decided.
+TEST_F(VisibilityGpuTest, ExactOfManyTrianglesInAPixelEqualsTheTwin) {
+  std::vector<Scene> scenes = {foliage(4000), colonnadeWithWires(0.4f), houseFronts()};
+  setWalkingCamera(scenes[0], {1, 1.7f, 7}, {0, 1.5f, 0}, 12, 7, true);
+  setWalkingCamera(scenes[1], {0.3f, 1.7f, 3}, {0, 1.5f, -10}, 16, 9, false);
+  setWalkingCamera(scenes[2], {12, 26, 60}, {0, 8, -20}, 12, 7, true);
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    Scene& scene = scenes[i];
+    const TwinResult twin = sampleExactOnCpu(scene.input());
+    EXPECT_GT(twin.counters.pairs, shader::kBatch * scene.params.width * scene.params.height);
+    const GpuResult gpu = sample(scene, {.method = GPGP_SAMPLING_EXACT});
+    expectEqual(gpu, twin, std::to_string(i));
+    EXPECT_EQ(gpu.report.unresolved > 0, i == 1); // a pixel's list of 4 305, most of the columns
+  }
+}
+
+// A sheet that faces the camera: some seventy triangles in each pixel, all of exactly one depth; and some four hundred.
 TEST_F(VisibilityGpuTest, ExactOfManyTrianglesOfOneDepthEqualsTheTwin) {
-  Scene scene = sheet(5, 48, 0.3f);
-  scene.addDraw(0);
-  scene.setCamera(perspective(1.0f, 1.0f, 0.05f, 10.0f) * lookAt({0, 0, 1.8f}, {0, 0, 0}), 8, 8);
-  const TwinResult twin = sampleExactOnCpu(scene.input());
-  EXPECT_GT(twin.counters.pairs, 64u * 8 * 8); // more than two batches a pixel
-  EXPECT_GT(twin.counters.visible, sampleOnCpu(scene.input()).counters.visible * 8);
-  expectEqual(sample(scene, {.method = GPGP_SAMPLING_EXACT}), twin, "sheet");
+  for (const uint32_t cells : {48u, 128u}) { // so many more are not sorted, and shown
+    Scene scene = sheet(5, cells, 0.3f);
+    scene.addDraw(0);
+    scene.setCamera(perspective(1.0f, 1.0f, 0.05f, 10.0f) * lookAt({0, 0, 1.8f}, {0, 0, 0}), 8, 8);
+    const TwinResult twin = sampleExactOnCpu(scene.input());
+    EXPECT_GT(twin.counters.pairs, (cells == 48 ? 64u : shader::kSorted) * 8 * 8); // more than two batches a pixel
+    EXPECT_GT(twin.counters.visible, sampleOnCpu(scene.input()).counters.visible * 8);
+    const GpuResult gpu = sample(scene, {.method = GPGP_SAMPLING_EXACT});
+    expectEqual(gpu, twin, "sheet of " + std::to_string(cells));
+    EXPECT_EQ(gpu.report.unresolved > 0, cells == 128);
+  }
 }
 
 TEST_F(VisibilityGpuTest, TruthEqualsTheTwinSliceBySlice) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 #include <tuple>
 
 namespace gpgp::visibility {
@@ -24,22 +25,36 @@ void clearLists(TwinResult& out) {
   out.counters.appeared = out.counters.disappeared = 0;
 }
 
-/// One of a short list's, in its order.
+/// An entry of a list, in its order.
 struct Sorted {
   const Candidate& candidate;
+  uint32_t key;
   Outline outline;
   Facet facet;
 };
+/// Entries of a list that are decided together.
+using Batch = std::span<const Sorted>;
+/// Samples of a pixel, by row.
+using Samples = std::array<uvec2, 64>;
 
-/// Whether an entry has a sample at which none of the others is nearer.
-bool isAhead(const std::vector<Sorted>& list, size_t place) {
-  const Sorted& own = list[place];
+/// Whether an entry has one of the samples at which none of the others is nearer.
+bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vector<bool>& decides) {
+  const Sorted& own = batch[place];
+  std::vector<std::pair<const Sorted*, Crossing>> rivals;
+  for (size_t j = 0; j < batch.size(); ++j) {
+    const Sorted& other = batch[j];
+    if (j == place || !decides[j] || other.facet.nearest > own.facet.farthest) continue;
+    if (leadWithin(other.facet, own.facet) < 0) continue;
+    const bool compact = isCompact(triangleOf(own.candidate)) && isCompact(triangleOf(other.candidate));
+    if (compact && !overlap(cornersOf(other.candidate), cornersOf(own.candidate), true)) continue;
+    rivals.emplace_back(&other, crossingOf(other.facet, own.facet, other.candidate.id < own.candidate.id));
+  }
   for (int row = 0; row < 64; ++row) {
+    const uvec2 open = samples[static_cast<size_t>(row)];
     uvec2 rest = samplesIn(own.outline, row);
-    for (size_t j = 0; j < list.size(); ++j) {
-      if (j == place || list[j].facet.nearest > own.facet.farthest) continue;
-      const bool wins = list[j].candidate.id < own.candidate.id;
-      const uvec2 ahead = samplesAhead(list[j].outline, crossingOf(list[j].facet, own.facet, wins), row);
+    rest.x &= open.x, rest.y &= open.y;
+    for (const auto& [rival, crossing] : rivals) {
+      const uvec2 ahead = samplesAhead(rival->outline, crossing, row);
       rest.x &= ~ahead.x, rest.y &= ~ahead.y;
     }
     if (rest.x | rest.y) return true;
@@ -47,10 +62,73 @@ bool isAhead(const std::vector<Sorted>& list, size_t place) {
   return false;
 }
 
-/// Front to back: those with a sample that nothing before them covers become visible. In a short list, what the order
-/// by one depth each may have wrong is decided by planes.
+/// How many entries of a list have a key up to one.
+size_t countUpTo(Batch list, uint32_t key) {
+  const auto isBefore = [](uint32_t value, const Sorted& s) { return value < s.key; };
+  return static_cast<size_t>(std::upper_bound(list.begin(), list.end(), key, isBefore) - list.begin());
+}
+
+/// The farthest key up to which entries are decided together, of those that are not nearer than `low`: at most kBatch,
+/// or those that have one and the same key. Counts the passes through the list.
+uint32_t lastKey(Batch list, uint32_t low, uint32_t& passes) {
+  uint32_t high = list.back().key;
+  while (true) {
+    ++passes;
+    const uint32_t range = high - low, shift = std::max<uint32_t>(std::bit_width(range), 6) - 6;
+    const auto endOf = [&](uint32_t bins) { return std::min(low + (uint64_t(bins) << shift) - 1, uint64_t(high)); };
+    uint32_t fitting = 0;
+    while (fitting < 64 && countUpTo(list, static_cast<uint32_t>(endOf(fitting + 1))) <= kBatch) ++fitting;
+    if (fitting == 64) return high;
+    high = static_cast<uint32_t>(endOf(std::max(fitting, 1u)));
+    if (fitting != 0 || shift == 0) return high;
+  }
+}
+
+/// Decides a part of a list, `before` entries of which come before it: those with a sample that nothing before them
+/// covers become visible, and what the order by one depth each may have wrong is decided by planes.
+void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, vec4 depthScale, bool reversed,
+                  std::vector<uint32_t>& bits) {
+  const Samples atFirst = open;
+  uvec2 columns(0, 0), rows(0, 0);
+  for (uint32_t row = 0; row < 64; ++row) {
+    columns.x |= open[row].x, columns.y |= open[row].y;
+    if (open[row].x | open[row].y) (row < 32 ? rows.x : rows.y) |= 1u << (row & 31);
+  }
+  std::vector<bool> seen(batch.size()), decides(batch.size());
+  bool holes = true;
+  for (size_t i = 0; i < batch.size(); ++i) {
+    decides[i] = reaches(batch[i].facet, columns, rows);
+    if (!holes) continue;
+    holes = false;
+    const int parallax = parallaxOf(depthScale, nearest, batch[i].key, static_cast<uint32_t>(before + i), reversed);
+    for (int row = 0; row < 64; ++row) {
+      uvec2& rest = open[static_cast<size_t>(row)];
+      const uvec2 own = samplesIn(batch[i].outline, row);
+      const uvec2 shown = parallax ? samplesAround(batch[i].outline, parallax, row) : own;
+      if ((shown.x & rest.x) | (shown.y & rest.y)) seen[i] = true;
+      rest.x &= ~own.x, rest.y &= ~own.y;
+      holes = holes || (rest.x | rest.y);
+    }
+  }
+  const auto nearer = [&](const Sorted& a, const Sorted& b) {
+    const bool compact = isCompact(triangleOf(a.candidate)) && isCompact(triangleOf(b.candidate));
+    return isNearerSomewhere(a.facet, b.facet) && overlap(cornersOf(a.candidate), cornersOf(b.candidate), compact);
+  };
+  for (size_t i = 0; i < batch.size(); ++i) {
+    bool doubtful = false;
+    for (size_t j = 0; decides[i] && j < batch.size() && !doubtful; ++j) {
+      if (!decides[j] || (seen[i] ? j <= i : j >= i || !seen[j])) continue;
+      doubtful = seen[i] ? nearer(batch[j], batch[i]) : nearer(batch[i], batch[j]);
+    }
+    const uint32_t id = batch[i].candidate.id;
+    if (doubtful ? isAhead(batch, i, atFirst, decides) : seen[i]) bits[id / 32] |= 1u << (id % 32);
+  }
+}
+
+/// Decides a list, front to back until all samples are covered.
 void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed, vec4 depthScale,
              std::vector<uint32_t>& bits) {
+  if (list.empty()) return;
   const auto rank = [&](const Entry& e) {
     const Candidate& c = candidates[e.candidate];
     return std::tuple(e.key, c.id, c.p1.x, c.p1.y);
@@ -60,35 +138,35 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   for (const Entry& entry : list) {
     const Candidate& c = candidates[entry.candidate];
     const ScreenTriangle t = triangleOf(c);
-    sorted.push_back({c, outlineOf(c, pixel), facetOf(c, footingOf(t, isCompact(t), pixel), pixel, reversed)});
+    sorted.push_back(
+        {c, entry.key, outlineOf(c, pixel), facetOf(c, footingOf(t, isCompact(t), pixel), pixel, reversed)});
   }
-  std::array<uvec2, 64> covered{};
-  std::vector<bool> seen(sorted.size());
-  size_t stop = 0;
-  for (bool holes = true; holes && stop < sorted.size(); ++stop) {
-    holes = false;
-    const int parallax = parallaxOf(depthScale, list[0].key, list[stop].key, static_cast<uint32_t>(stop), reversed);
-    for (int row = 0; row < 64; ++row) {
-      uvec2& mask = covered[static_cast<size_t>(row)];
-      const uvec2 own = samplesIn(sorted[stop].outline, row);
-      const uvec2 shown = parallax ? samplesAround(sorted[stop].outline, parallax, row) : own;
-      if ((shown.x & ~mask.x) | (shown.y & ~mask.y)) seen[stop] = true;
-      mask |= own;
-      holes = holes || (mask.x & mask.y) != ~0u;
+  Samples open;
+  open.fill(uvec2(~0u, ~0u));
+  const auto isOpen = [&] { return std::any_of(open.begin(), open.end(), [](uvec2 row) { return row.x | row.y; }); };
+  const auto take = [&](size_t first, size_t count) {
+    if (isOpen())
+      resolveBatch(Batch(sorted).subspan(first, count), sorted.front().key, first, open, depthScale, reversed, bits);
+  };
+  if (sorted.size() <= kBatch) return take(0, sorted.size());
+  uint32_t low = sorted.front().key;
+  const auto size = static_cast<uint32_t>(sorted.size()), pass = (size + kBatch - 1) / kBatch;
+  uint32_t turns = pass;
+  for (size_t first = 0; first < sorted.size() && isOpen();) {
+    const Batch rest = Batch(sorted).subspan(first);
+    uint32_t passes = 1;
+    const uint32_t high = lastKey(rest, low, passes);
+    const size_t end = first + countUpTo(rest, high);
+    const auto n = static_cast<uint32_t>(end - first);
+    turns += passes * pass + kBatchTurns;
+    if (n > kBatch && n <= kSorted) turns += (n + kBatch - 1) / kBatch * (pass + std::min(pass, n) * size);
+    if (n > kSorted || turns > kMostTurns) {
+      for (const Sorted& entry : rest) bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
+      return;
     }
-  }
-  for (size_t i = 0; i < sorted.size(); ++i) {
-    const auto nearer = [&](const Sorted& a, const Sorted& b) {
-      const bool compact = isCompact(triangleOf(a.candidate)) && isCompact(triangleOf(b.candidate));
-      return isNearerSomewhere(a.facet, b.facet) && overlap(cornersOf(a.candidate), cornersOf(b.candidate), compact);
-    };
-    bool doubtful = false;
-    if (sorted.size() <= kBatch && seen[i])
-      for (size_t j = i + 1; j < sorted.size() && !doubtful; ++j) doubtful = nearer(sorted[j], sorted[i]);
-    else if (sorted.size() <= kBatch)
-      for (size_t j = 0; j < i && !doubtful; ++j) doubtful = seen[j] && nearer(sorted[i], sorted[j]);
-    const uint32_t id = sorted[i].candidate.id;
-    if (doubtful ? isAhead(sorted, i) : seen[i]) bits[id / 32] |= 1u << (id % 32);
+    for (; first < end; first += std::min<size_t>(end - first, kBatch))
+      take(first, std::min<size_t>(end - first, kBatch));
+    low = high + 1;
   }
 }
 } // namespace
