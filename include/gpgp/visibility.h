@@ -247,9 +247,9 @@ typedef struct GpgpSampleInfo {
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
  *  (conservative: the earlier draw). Exact: but for pixels where more than 256 candidates have exactly one depth, or
- *  thousands are seen: there they, or what is left, and all behind count as visible, which the report says (`unresolved`).
- *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
- *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
+ * too many are seen: there they, or what is left, and all behind count as visible, and the report says so
+ * (`unresolved`). Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach
+ * 2^100, are skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
  *  NOT_READY: geometry set or view not resident, or sampler not prewarmed.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
@@ -297,7 +297,7 @@ typedef struct GpgpSampleReport {
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible. For
                              want of room: neededCandidates or neededPairs then exceed the budgets. Or whatever the
                              budgets: where more than 256 candidates have exactly one depth in a pixel, those and all
-                             behind them there; what a list of more than some 2 000 leaves after a bounded time; and
+                             behind them there; what a list of more than about 1 500 leaves after a bounded time; and
                              what more than 2^20 parts of candidates of over 8 x 8 pixels leave no place for */
   uint32_t neededDraws; /**< of one camera */
   uint32_t draws;       /**< of them sampled, and with drawCommands written */

@@ -117,9 +117,12 @@ bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 uncove
   return looked.holes;
 }
 
-/// The turns that `n` entries of one and the same key may take.
-uint turnsOfSame(Rest rest, uint n) {
-  return (n + kBatch - 1u) / kBatch * (turnsOf(rest) + min(turnsOf(rest), n) * (rest.end - rest.begin));
+/// The turns that deciding `n` entries may take: each may be doubtful, and all others hide it; more than kBatch, but at
+/// most kSorted, have one and the same key.
+uint turnsOfBatch(Rest rest, uint n) {
+  if (n <= kBatch) return n * (n + 3u) + 64u;
+  uint size = min(rest.end - rest.begin, 65535u); // more is too much anyway
+  return (n + kBatch - 1u) / kBatch * (kBatch * (kBatch + 3u) + 64u + turnsOf(rest) + min(turnsOf(rest), n) * size);
 }
 
 /// Goes through more than kBatch entries of one and the same key: by number, a batch at a time.
@@ -179,8 +182,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
     uint high = lastKey(rest);
     sync();
     uint n = takeEntries(rest, high);
-    rest.turns += turnsOf(rest) + kBatchTurns;
-    if (n > kBatch && n <= kSorted) rest.turns += turnsOfSame(rest, n);
+    rest.turns += turnsOf(rest) + turnsOfBatch(rest, min(n, kSorted));
     if (n > kSorted || rest.turns > kMostTurns) {
       showRest(rest);
       break;

@@ -184,7 +184,8 @@ std::string remarks(const Model& model, const Figures& figures) {
          << figures.unresolved << " found none, and their triangles count as visible\n";
   else if (figures.unresolved)
     text << "not decided: " << figures.unresolved
-         << " triangles count as visible, because more than 256 of one depth or thousands meet in a pixel; no budget changes that\n";
+         << " triangles count as visible, because too many meet in a pixel, or have one depth there; no budget changes "
+            "that\n";
   if (figures.skippedTriangles)
     text << figures.skippedTriangles << " triangles skipped: a coordinate is not finite or reaches 2^100\n";
   if (figures.skippedDraws) text << figures.skippedDraws << " draws skipped: they have no mesh\n";

@@ -94,7 +94,9 @@ TEST_F(VisibilityGpuTest, ExactOfManyTrianglesInAPixelEqualsTheTwin) {
     EXPECT_GT(twin.counters.pairs, shader::kBatch * scene.params.width * scene.params.height);
     const GpuResult gpu = sample(scene, {.method = GPGP_SAMPLING_EXACT});
     expectEqual(gpu, twin, std::to_string(i));
-    EXPECT_EQ(gpu.report.unresolved > 0, i == 1); // a pixel's list of 4 305, most of the columns
+    if (i == 1) {
+      EXPECT_GT(gpu.report.unresolved, 0u); // a pixel's list of 4 305, most of the columns
+    }
   }
 }
 

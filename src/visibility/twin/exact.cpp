@@ -125,6 +125,13 @@ void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, v
   }
 }
 
+/// What the GPU counts for deciding `n` entries of a list.
+uint32_t turnsOfBatch(uint32_t size, uint32_t n) {
+  if (n <= kBatch) return n * (n + 3) + 64;
+  const uint32_t pass = (size + kBatch - 1) / kBatch;
+  return (n + kBatch - 1) / kBatch * (kBatch * (kBatch + 3) + 64 + pass + std::min(pass, n) * std::min(size, 65535u));
+}
+
 /// Decides a list, front to back until all samples are covered.
 void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed, vec4 depthScale,
              std::vector<uint32_t>& bits) {
@@ -158,8 +165,7 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
     const uint32_t high = lastKey(rest, low, passes);
     const size_t end = first + countUpTo(rest, high);
     const auto n = static_cast<uint32_t>(end - first);
-    turns += passes * pass + kBatchTurns;
-    if (n > kBatch && n <= kSorted) turns += (n + kBatch - 1) / kBatch * (pass + std::min(pass, n) * size);
+    turns += passes * pass + turnsOfBatch(size, std::min(n, kSorted));
     if (n > kSorted || turns > kMostTurns) {
       for (const Sorted& entry : rest) bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
       return;
