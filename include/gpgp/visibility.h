@@ -247,9 +247,9 @@ typedef struct GpgpSampleInfo {
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
  *  (conservative: the earlier draw). Exact: but for pixels where more than 256 candidates have exactly one depth, or
- * too many are seen: there they, or what is left, and all behind count as visible, and the report says so
- * (`unresolved`). Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach
- * 2^100, are skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
+ *  too many are seen: there they, or what is left, and all behind count as visible, which `unresolved` says.
+ *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
+ *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
  *  NOT_READY: geometry set or view not resident, or sampler not prewarmed.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */

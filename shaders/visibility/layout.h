@@ -27,10 +27,7 @@ GPGP_CONST uint kNearby = 4u;              ///< GPGP_SAMPLING_NEARBY
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
 GPGP_CONST uint kListRun = 8u;             ///< lists of at most so many that a workgroup is given
 GPGP_CONST uint kSorted = 256u;            ///< entries of a pixel's list that are sorted together
-/// Turns of loops after which what is left of a list is shown, so that every list is decided in bounded time; lavapipe
-/// ends a shader's loops silently after 65 535.
-GPGP_CONST uint kMostTurns = 60000u;
-GPGP_CONST uint kNoRecord = 0x80000000u; ///< flag of a queued item whose triangles found no record
+GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 
 /// Formats of positions.
 GPGP_CONST uint kFloats = 0u;

@@ -8,6 +8,7 @@
 #endif
 #include "visibility/layout.h"
 #include "visibility/planes.glsl"
+#include "visibility/turns.h"
 
 /// Keys lie as the entries do. Each invocation reads only those that it wrote.
 layout(std430, set = 0, binding = kBindKeys) buffer KeyBuffer { uint depths[]; };
@@ -27,7 +28,7 @@ struct Rest {
   uint farthest;
   uint turns; // of loops, so far
 };
-uint turnsOf(Rest rest) { return (rest.end - rest.begin + kBatch - 1u) / kBatch; } // through the whole list
+uint sizeOf(Rest rest) { return rest.end - rest.begin; } // of the whole list
 
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
@@ -45,7 +46,7 @@ uint lastKey(inout Rest rest) {
   uint high = rest.farthest;
   while (true) {
     uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
-    rest.turns += turnsOf(rest);
+    rest.turns += turnsThrough(sizeOf(rest));
     bins[lane] = 0u;
     bins[lane + kBatch] = 0u;
     sync();
@@ -117,14 +118,6 @@ bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 uncove
   return looked.holes;
 }
 
-/// The turns that deciding `n` entries may take: each may be doubtful, and all others hide it; more than kBatch, but at
-/// most kSorted, have one and the same key.
-uint turnsOfBatch(Rest rest, uint n) {
-  if (n <= kBatch) return n * (n + 3u) + 64u;
-  uint size = min(rest.end - rest.begin, 65535u); // more is too much anyway
-  return (n + kBatch - 1u) / kBatch * (kBatch * (kBatch + 3u) + 64u + turnsOf(rest) + min(turnsOf(rest), n) * size);
-}
-
 /// Goes through more than kBatch entries of one and the same key: by number, a batch at a time.
 bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 uncovered) {
   for (uint first = 0u; first < n; first += kBatch) {
@@ -175,14 +168,14 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   rest.nearest = minAll(least);
   rest.low = rest.nearest;
   rest.farthest = maxAll(most);
-  rest.turns = turnsOf(rest);
+  rest.turns = turnsThrough(sizeOf(rest));
   uvec4 uncovered = uvec4(0xffffffffu);
   bool more = true;
   while (more) {
     uint high = lastKey(rest);
     sync();
     uint n = takeEntries(rest, high);
-    rest.turns += turnsOf(rest) + turnsOfBatch(rest, min(n, kSorted));
+    rest.turns += turnsThrough(sizeOf(rest)) + turnsOfEntries(sizeOf(rest), min(n, kSorted));
     if (n > kSorted || rest.turns > kMostTurns) {
       showRest(rest);
       break;

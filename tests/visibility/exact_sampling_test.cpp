@@ -56,7 +56,11 @@ TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
     // With the order by one depth each alone the fronts have 99.46 % and 0.68 %, the far ones 96.59 % and 0.73 %.
     EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : name == "far fronts" ? 0.997 : 0.99)) << name;
     // The colonnade's far columns are tens of slivers a pixel that interleave in depth.
-    EXPECT_LE(c.extra, c.truth * (name == "colonnade" ? 0.01 : name == "city" ? 0.001 : 0.005)) << name;
+    EXPECT_LE(c.extra, c.truth * (name == "colonnade" ? 0.01
+                                  : name == "city"    ? 0.001
+                                  : name == "fronts"  ? 0.004
+                                                      : 0.005))
+        << name;
     const TwinResult standard = sampleOnCpu(scene.input());
     EXPECT_LT(compare(standard.bits, truth.bits).found, c.truth * 0.8) << name; // or the scene tests nothing
     uint32_t counted = 0;
@@ -97,6 +101,37 @@ TEST_F(VisibilityGpuTest, ExactOfManyTrianglesInAPixelEqualsTheTwin) {
     if (i == 1) {
       EXPECT_GT(gpu.report.unresolved, 0u); // a pixel's list of 4 305, most of the columns
     }
+  }
+}
+
+/// One pixel in `bands` of four units, from near to far. In each 32 triangles whose planes are tangent to one arch, so
+/// that each is nearest somewhere, and all are doubtful.
+Scene fan(int bands) {
+  Scene scene;
+  constexpr double kStep = 6, kBend = 0.003 / 65536;
+  for (int band = 0; band < bands; ++band)
+    for (int i = 0; i < 32; ++i) {
+      const double touch = kStep * (i + 0.5), from = touch - 100;
+      for (const auto& [x, y] : {std::pair(0, 1), {256, 1}, {0, 5}}) {
+        const double z = 0.5 + 0.49 * (band + 0.5) / 63 - kBend * from * (from + 2 * (x - touch));
+        scene.indices.push_back(scene.addVertex(static_cast<float>(x) / 128 - 1,
+                                                static_cast<float>(4 * band + y) / 128 - 1, static_cast<float>(z)));
+      }
+    }
+  scene.addDraw(scene.addMesh(0), glm::mat4(1.0f), shader::kTwoSided);
+  scene.setCamera(glm::mat4(1.0f), 1, 1);
+  return scene;
+}
+
+// Every batch takes as many turns as it may, so that lists end where a device's limit on loops would have ended them.
+TEST_F(VisibilityGpuTest, ExactOfManyDoubtfulTrianglesShowsAllOfThem) {
+  for (const int bands : {40, 63}) {
+    Scene scene = fan(bands);
+    const TwinResult twin = sampleExactOnCpu(scene.input());
+    EXPECT_EQ(twin.counters.visible, scene.params.triangleCount);
+    const GpuResult gpu = sample(scene, {.method = GPGP_SAMPLING_EXACT});
+    expectEqual(gpu, twin, std::to_string(bands));
+    EXPECT_EQ(gpu.report.unresolved > 0, bands == 63);
   }
 }
 

@@ -1,6 +1,7 @@
 // Exact and truth sampling in plain loops.
 #include "visibility/facet.h"
 #include "visibility/nearby.h"
+#include "visibility/turns.h"
 #include "visibility/twin/twin.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vecto
   for (size_t j = 0; j < batch.size(); ++j) {
     const Sorted& other = batch[j];
     if (j == place || !decides[j] || other.facet.nearest > own.facet.farthest) continue;
-    if (leadWithin(other.facet, own.facet) < 0) continue;
+    if (!(leadWithin(other.facet, own.facet) >= 0)) continue;
     const bool compact = isCompact(triangleOf(own.candidate)) && isCompact(triangleOf(other.candidate));
     if (compact && !overlap(cornersOf(other.candidate), cornersOf(own.candidate), true)) continue;
     rivals.emplace_back(&other, crossingOf(other.facet, own.facet, other.candidate.id < own.candidate.id));
@@ -125,13 +126,6 @@ void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, v
   }
 }
 
-/// What the GPU counts for deciding `n` entries of a list.
-uint32_t turnsOfBatch(uint32_t size, uint32_t n) {
-  if (n <= kBatch) return n * (n + 3) + 64;
-  const uint32_t pass = (size + kBatch - 1) / kBatch;
-  return (n + kBatch - 1) / kBatch * (kBatch * (kBatch + 3) + 64 + pass + std::min(pass, n) * std::min(size, 65535u));
-}
-
 /// Decides a list, front to back until all samples are covered.
 void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed, vec4 depthScale,
              std::vector<uint32_t>& bits) {
@@ -157,20 +151,20 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   };
   if (sorted.size() <= kBatch) return take(0, sorted.size());
   uint32_t low = sorted.front().key;
-  const auto size = static_cast<uint32_t>(sorted.size()), pass = (size + kBatch - 1) / kBatch;
-  uint32_t turns = pass;
+  const auto size = static_cast<uint32_t>(sorted.size());
+  uint32_t turns = turnsThrough(size);
   for (size_t first = 0; first < sorted.size() && isOpen();) {
     const Batch rest = Batch(sorted).subspan(first);
     uint32_t passes = 1;
     const uint32_t high = lastKey(rest, low, passes);
     const size_t end = first + countUpTo(rest, high);
     const auto n = static_cast<uint32_t>(end - first);
-    turns += passes * pass + turnsOfBatch(size, std::min(n, kSorted));
+    turns += passes * turnsThrough(size) + turnsOfEntries(size, std::min(n, kSorted));
     if (n > kSorted || turns > kMostTurns) {
       for (const Sorted& entry : rest) bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
       return;
     }
-    for (; first < end; first += std::min<size_t>(end - first, kBatch))
+    for (; first < end; first = std::min<size_t>(first + kBatch, end))
       take(first, std::min<size_t>(end - first, kBatch));
     low = high + 1;
   }

@@ -1,0 +1,27 @@
+// How long a pixel's list may take to decide. Counted in turns of loops, the same on every device, so that what is
+// shown undecided is the same as well.
+#ifndef GPGP_SHADERS_VISIBILITY_TURNS_H
+#define GPGP_SHADERS_VISIBILITY_TURNS_H
+#include "visibility/layout.h"
+
+GPGP_SHADER_BEGIN
+
+/// After so many, what is left of a list is shown. Lavapipe ends a shader's loops silently after 65 535.
+GPGP_CONST uint kMostTurns = 60000u;
+
+/// To go once through a list, an invocation an entry.
+GPGP_FN uint turnsThrough(uint size) { return (size + kBatch - 1u) / kBatch; }
+
+/// At most, to decide a batch: each entry may be doubtful, and all others may hide it.
+GPGP_FN uint turnsOfBatch(uint n) { return n * (n + 3u) + 64u; }
+
+/// The same for up to kSorted entries of a list. More than kBatch have one and the same key: they are ranked, a batch
+/// at a time, each among all.
+GPGP_FN uint turnsOfEntries(uint size, uint n) {
+  if (n <= kBatch) return turnsOfBatch(n);
+  uint ranking = min(turnsThrough(size), n) * min(size, 65535u); // more is too much anyway
+  return turnsThrough(n) * (turnsOfBatch(kBatch) + turnsThrough(size) + ranking);
+}
+
+GPGP_SHADER_END
+#endif
