@@ -117,6 +117,8 @@ Verdict judge(const Shape& shape, const StrokeStyle& style, double tolerance, in
     const bool inside = oracle.inside(p.x, p.y);
     ++v.tested;
     v.inside += inside;
+    if (inside == (d < h)) continue;
+    if (v.wrong++ == 0) v.first = p;
   }
   return v;
 }
