@@ -47,7 +47,9 @@ step() {
 buildPreset() {
   configure "$1" -DGPGP_BUILD_TESTS="${2:-ON}" && cmake --build --preset "$1" --parallel "$(jobCount)"
 }
-# Most of the tests' time is the software device's compiler, which takes one processor.
+# Most of the tests' time is the software device's compiler, which takes one processor. What it compiled is kept for the
+# tests that follow, wherever the home folder is and whether or not it can be written to.
+export MESA_SHADER_CACHE_DIR=$PWD/build
 testPreset() { ctest --preset "$1" --parallel "$(jobCount)"; }
 buildAndTest() {
   if step "build $1 (build/$1)" buildPreset "$1"; then step "tests, $1" testPreset "$1" || true; fi

@@ -184,6 +184,8 @@ TEST(Stroke, DegenerateCurves) {
       {"no chord", of(Point{50, 20}, Point{50, 90}, Point{50, 90}, Point{50, 20})},
       {"hairpin", of(Point{20, 50}, Point{90, 50}, Point{90, 50.5}, Point{20, 50.5})},
       {"collinear", of(Point{20, 20}, Point{40, 40}, Point{60, 60}, Point{80, 80})},
+      {"two bends beside the slowest point", of(Point{20, 20}, Point{185, 20}, Point{15, 22}, Point{180, 20})},
+      {"two bends, straight between", of(Point{20, 45}, Point{180, 45}, Point{20, 46}, Point{180, 45})},
   };
   for (const auto& [name, shape] : shapes)
     for (const double width : {1.0, 7.0, 40.0}) {
@@ -192,6 +194,28 @@ TEST(Stroke, DegenerateCurves) {
                              << v.first.y;
       EXPECT_GT(v.tested, 700u);
     }
+}
+
+// Handles that overlap on all but one line: the curvature peaks once or twice beside where the curve is slowest.
+TEST(Stroke, NearCuspsAreTheNeighbourhoodOfThePath) {
+  size_t tested = 0;
+  for (uint32_t seed = 0; seed < 300; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const double angle = 2 * std::numbers::pi * unit(random);
+    const Point along{std::cos(angle), std::sin(angle)}, across{-along.y, along.x};
+    const auto aside = [&] { return (random() % 2 ? 1 : -1) * (random() % 4 ? std::pow(10, 4 * unit(random) - 3) : 0); };
+    const double ahead = 110 * unit(random) + 30, back = ahead * unit(random) - 20 * unit(random);
+    Shape shape;
+    shape.move({0, 0});
+    shape.cubic(ahead * along + aside() * across, back * along + aside() * across, 100 * along + aside() * across);
+    const double width = std::pow(10, 1.8 * unit(random));
+    const Verdict v = judge(shape, {width, Cap::Round, Join::Round, 4, {}, 0}, 0.03, 400, seed, kAll);
+    EXPECT_EQ(v.wrong, 0u) << "of " << v.tested << ", seed " << seed << ", width " << width << ", first at "
+                           << v.first.x << " " << v.first.y;
+    tested += v.tested;
+  }
+  EXPECT_GT(tested, 60000u);
 }
 
 TEST(Stroke, DashesFollowTheArcLength) {

@@ -30,6 +30,30 @@ struct Polynomial {
   Point second(double t) const { return 6 * t * a + 2 * b; }
 };
 
+/// Over a range [from, to] of a cubic, in Bernstein form: its derivative, and what of it the curvature is made of. The
+/// coefficients bound the values.
+struct Hodograph {
+  Point c1[3];
+  double turn[3]; // c' x c''
+  double speed2[5];
+  Hodograph(const Polynomial& c, double from, double to) {
+    c1[0] = c.first(from);
+    c1[1] = 3 * from * to * c.a + (from + to) * c.b + c.c;
+    c1[2] = c.first(to);
+    const double range = to - from;
+    turn[0] = 2 * cross(c1[0], c1[1]) / range;
+    turn[1] = cross(c1[0], c1[2]) / range;
+    turn[2] = 2 * cross(c1[1], c1[2]) / range;
+    speed2[0] = dot(c1[0], c1[0]);
+    speed2[1] = dot(c1[0], c1[1]);
+    speed2[2] = (dot(c1[0], c1[2]) + 2 * dot(c1[1], c1[1])) / 3;
+    speed2[3] = dot(c1[1], c1[2]);
+    speed2[4] = dot(c1[2], c1[2]);
+  }
+  double slowest() const { return std::sqrt(std::max(*std::min_element(speed2, speed2 + 5), 0.0)); }
+  double fastest() const { return std::sqrt(*std::max_element(speed2, speed2 + 5)); }
+};
+
 /// Parameters inside (0, 1) where the speed is least, at most two: sign changes of c' . c'' from below, found among
 /// eight steps, which a cubic polynomial in t that matters here does not outrun.
 int slowest(const Polynomial& c, double parameters[2]) {
@@ -64,44 +88,16 @@ public:
       : curve_(curve), c_(curve), s_(distance), tolerance_(tolerance), chain_(chain), before_(chain.size()) {}
 
   void run() {
-    Frame from = frame(0);
     const Frame last = frame(1);
-    if (mayFold()) {
-      // Between these the curve bends one way and its curvature does not peak.
-      double cuts[6] = {0, 1};
-      int count = 2;
-      double more[2];
-      for (int i = slowest(c_, more); i-- > 0;) cuts[count++] = more[i];
-      for (int i = rootsInside(3 * cross(c_.b, c_.a), 3 * cross(c_.c, c_.a), cross(c_.c, c_.b), more); i-- > 0;)
-        cuts[count++] = more[i];
-      std::sort(cuts, cuts + count);
-      Frame fold = from, before = from;
-      const auto finish = [&](const Frame& end) {
-        if (turning(fold.t, end.t) * std::abs(s_) < 0.5 * tolerance_) return; // too small to be seen
-        if (fold.t > from.t) part(from, fold, false, 0);
-        part(fold, end, true, 0);
-        from = end;
-      };
-      for (int i = 1; i < count; ++i)
-        for (int k = 1; k <= 4; ++k) {
-          const Frame next = frame(cuts[i - 1] + 0.25 * k * (cuts[i] - cuts[i - 1]));
-          const bool folded = before.growth < 0;
-          if (folded != (next.growth < 0)) {
-            const Frame at = root(before.t, next.t, folded);
-            if (folded)
-              finish(at);
-            else
-              fold = at;
-          }
-          before = next;
-        }
-      if (before.growth < 0) finish(last);
-    }
-    if (from.t < 1) part(from, last, false, 0);
+    from_ = fold_ = frame(0);
+    findFolds(from_, last, 0);
+    if (folded_) finish(last);
+    if (from_.t < 1) part(from_, last, false, 0);
   }
 
 private:
   static constexpr int kMaxDepth = 24;
+  static constexpr int kFoldDepth = 14;
   static constexpr size_t kMaxPieces = 512; // however wild the curve
   struct Frame {
     double t;
@@ -128,21 +124,37 @@ private:
     return f;
   }
 
-  /// Whether the curve turns within the distance somewhere, or nearly.
-  bool mayFold() const {
-    // Cheap first: on a curve that turns little, and whose speed changes little, the curvature is bounded by the
-    // control polygon's.
-    const auto near = [this](double t) {
-      const Point d = c_.first(t), dd = c_.second(t);
-      const double speed2 = dot(d, d);
-      return s_ * cross(d, dd) > 0.8 * speed2 * std::sqrt(speed2);
-    };
-    for (int i = 0; i <= 4; ++i)
-      if (near(i / 4.0)) return true;
-    double slow[2];
-    for (int i = slowest(c_, slow); i-- > 0;)
-      if (near(slow[i])) return true;
-    return false;
+  /// Finds where the curve turns within the distance, from left to right: halves until the coefficients say that it
+  /// does or does not, or until the offset moves by less than the tolerance, whichever way it runs.
+  void findFolds(const Frame& from, const Frame& to, int depth) {
+    const Hodograph h(c_, from.t, to.t);
+    const auto [low, high] = std::minmax({s_ * h.turn[0], s_ * h.turn[1], s_ * h.turn[2]});
+    const double slow = h.slowest(), fast = h.fastest(), slow3 = slow * slow * slow, fast3 = fast * fast * fast;
+    bool folds = false, decided = true;
+    if (!(high < slow3 || high <= 0) && !(folds = low > fast3)) {
+      const double most = std::max(fast3 - low, high - slow3) * (to.t - from.t); // movement times least speed^2
+      if (depth < kFoldDepth && !(most < 0.1 * tolerance_ * slow * slow)) {
+        const Frame middle = frame(0.5 * (from.t + to.t));
+        findFolds(from, middle, depth + 1);
+        return findFolds(middle, to, depth + 1);
+      }
+      folds = to.growth < 0;
+      decided = false;
+    }
+    if (folds == folded_) return;
+    const Frame at = decided ? from : root(from.t, to.t, folded_);
+    if (folded_)
+      finish(at);
+    else
+      fold_ = at;
+    folded_ = folds;
+  }
+  /// Of what runs backwards.
+  void finish(const Frame& end) {
+    if (turning(fold_.t, end.t) * std::abs(s_) < 0.5 * tolerance_) return; // too small to be seen
+    if (fold_.t > from_.t) part(from_, fold_, false, 0);
+    part(fold_, end, true, 0);
+    from_ = end;
   }
 
   /// Where the growth changes its sign.
@@ -173,7 +185,7 @@ private:
     for (int i = 0; i < 3; ++i) inner[i] = frame(from.t + (i + 1) * step);
     // What runs backwards is hidden by the ribbon before and after it but for the ends of short curves.
     Cubic fitted;
-    bool good = fit(from, inner, to, backwards, fitted);
+    bool good = !hides(from, to) && fit(from, inner, to, backwards, fitted);
     Point centre;
     if (backwards) good = centreOf(from, to, centre) && good;
     if (!good && depth < kMaxDepth) {
@@ -191,6 +203,18 @@ private:
     } else {
       chain_.push_back(fitted);
     }
+  }
+
+  /// Whether the curve may turn to and fro, or far, where it is so slow that samples pass over it.
+  bool hides(const Frame& from, const Frame& to) const {
+    const Hodograph h(c_, from.t, to.t);
+    if (h.slowest() * 8 > h.fastest()) return false;
+    const Point* q = h.c1;
+    const auto angle = [](Point a, Point b) { return std::atan2(cross(a, b), dot(a, b)); };
+    // No direction varies more than the polygon's.
+    const double first = angle(q[0], q[1]), second = angle(q[1], q[2]), net = angle(from.tangent, to.tangent);
+    const double sum = std::abs(first) + std::abs(second), excess = sum - std::abs(net);
+    return sum > 1.8 || excess * excess * std::abs(s_) > 8 * tolerance_;
   }
 
   void line(Point a, Point b) {
@@ -283,6 +307,8 @@ private:
   const double s_, tolerance_;
   std::pmr::vector<Cubic>& chain_;
   const size_t before_;
+  Frame from_{}, fold_{}; // what lies before these is done; where a fold began
+  bool folded_ = false;
 };
 
 } // namespace
