@@ -423,6 +423,105 @@ TEST(SvgImport, Colours) {
   }
 }
 
+TEST(SvgImport, StyleSheetsAreReadAsCss) {
+  const std::pair<const char*, bool> cases[] = {
+      {".a/*x*/.b {fill:red}", true}, // a comment is nothing between selectors' parts
+      {".a/*x*/ .b {fill:red}", false},
+      {".a/*x*/b {fill:red}", false},
+      {"g/**/>/**/rect/**/ {fill:red}", true},
+      {"g/**/ rect/*,*/.a {fill:red}", true},
+      {"/*{*/ rect[/*]*/width/**/=/**/'9'/**/] {fill:red}", true},
+      {"rect {fill/*;*/:/*}*/red}", true},
+      {"rect {fill:re/**/d}", false},
+      {"rect {stroke-dasharray:1px/**/2px;fill:red}", true},
+      {"p {content:\"}\"} rect {fill:red}", true},
+      {"p {content:'/*'} rect {fill:red} /* ' */", true},
+      {"p {content:'\\'}'} rect {fill:red}", true},
+      {"p {content:\\}} rect {fill:red}", true},
+      {"p {content:[}]} rect {fill:red}", true},
+      {"p {content:(}{})} rect {fill:red}", true},
+      {"p {content:\"unclosed\n;x:y} rect {fill:red}", true}, // a string ends with its line
+      {"p {mask:url(it's}) none} rect {fill:red}", true},
+      {"p {mask:url( \"'}\" )} rect {fill:red}", true},
+      {"p {mask:url(//a/*.css)} rect {fill:red} /* */", true},
+      {"[title='{'] {fill:blue} rect {fill:red}", true},
+      {"@import url(a;b);rect {fill:red}", true},
+      {"@media print { rect {fill:blue} p[a='}'] {} } rect {fill:red}", true},
+      {"rect {--x:{a;fill:blue};fill:red}", true},
+      {"rect {fill:blue;--x:{a;fill:red}}", false},
+  };
+  for (const auto& [sheet, red] : cases) {
+    const Import i =
+        page("<style><![CDATA[" + std::string(sheet) + "]]></style><g><rect class='a b' width='9' height='9'/></g>");
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << sheet;
+    EXPECT_EQ(i.drawing.paths[0].color[0], red ? 1 : 0) << sheet;
+  }
+  EXPECT_EQ(page("<style>/* a\n */\n/* b */ g:hover/* c */ {}</style>").messages,
+            (Texts{"W line 4: style selector 'g:hover' is not supported"}));
+}
+
+TEST(SvgImport, StyleSheetsForOtherMediaAreLeftOut) {
+  const struct {
+    const char* media;
+    bool counts;
+    Texts messages;
+  } cases[] = {
+      {"", true, {}},
+      {" ", true, {}},
+      {"all", true, {}},
+      {"print, Screen", true, {}},
+      {"print", false, {}},
+      {"print, speech", false, {}},
+      {"screen and (color)",
+       false,
+       {"W line 2: media 'screen and (color)' is not supported: <style> does not count for it"}},
+  };
+  for (const auto& c : cases) {
+    const Import i =
+        page(std::string("<style media='") + c.media + "'>rect {fill:red}</style><rect width='9' height='9'/>");
+    EXPECT_EQ(i.drawing.paths.at(0).color[0], c.counts ? 1 : 0) << c.media;
+    EXPECT_EQ(i.messages, c.messages) << c.media;
+  }
+}
+
+TEST(SvgImport, UnitsAndFontSizes) {
+  const std::pair<const char*, float> widths[] = {
+      {"<rect height='9' width='4PX'/>", 4},
+      {"<rect height='9' style='width:1In'/>", 96},
+      {"<rect height='9' style='width:101.6q'/>", 96},
+      {"<rect height='9' width='2EM' font-size='5'/>", 10},
+      {"<rect height='9' width='2em' style='font:20px serif'/>", 40},
+      {"<rect height='9' width='2ex' style='font:italic BOLD 10PX/1.5 a, \"b c\"'/>", 10},
+      {"<rect height='9' width='1em' style='font: 700 12px / normal serif'/>", 12},
+      {"<g font-size='30'><rect height='9' width='1em' style='font:50% serif'/></g>", 15},
+      {"<g font-size='30'><rect height='9' width='1em' style='font:caption'/></g>", 16},
+      {"<g font-size='30'><rect height='9' width='1em' style='font:initial'/></g>", 16},
+      {"<rect height='9' width='1em' style='font:20px serif;font-size:30px'/>", 30},
+      {"<rect height='9' width='1em' style='font-size:30px;font:20px serif'/>", 20},
+      {"<rect height='9' width='1em' font='20px serif'/>", 16}, // is no attribute
+      {"<svg font-size='20' width='2em' height='9' overflow='visible'><rect height='9' width='100%'/></svg>", 40},
+      {"<rect height='9' width='4' style='transform:SCALEX(2) translateX(0PX) rotate(360DEG)'/>", 8},
+  };
+  for (const auto& [text, width] : widths) {
+    const Import i = page(text);
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << text;
+    EXPECT_FLOAT_EQ(i.drawing.paths[0].points[2], width) << text;
+    EXPECT_EQ(i.messages, Texts{}) << text;
+  }
+  for (const char* font : {"20px", "serif", "20 serif", "20px/ serif", "fancy 20px serif", "-1px serif", "/20px serif"})
+    EXPECT_EQ(page(std::string("<g style='font:") + font + "'/>").messages,
+              Texts{std::string("W line 2: <g> has font '") + font + "', which is not valid; ignored"});
+  EXPECT_EQ(import("<svg font-size='20' width='2em' height='1em'/>").drawing.width, 40);
+  EXPECT_TRUE(page("<linearGradient id='g'><stop/></linearGradient><rect width='9' height='9' fill='URL(#g)'/>")
+                  .drawing.paths.at(0)
+                  .gradient);
+  EXPECT_EQ(page("<clipPath id='c'/><rect width='9' height='9' clip-path='Url(#c)'/>").drawing.groups.size(), 1u);
+  EXPECT_EQ(page("<rect x='45' width='10' height='9' transform='scale(2)' style='transform-origin:Center TOP'/>")
+                .drawing.paths.at(0)
+                .points.at(0),
+            40);
+}
+
 TEST(SvgImport, WordsThatEveryPropertyTakes) {
   const struct {
     const char* attributes;
@@ -819,6 +918,22 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<rect height='9' style='width:wide'/>", "E line 2: <rect> has width 'wide', which is no length"},
       {"<path style='d:path(\"M0 0 x\")'/>",
        "E line 2: <path> has an error in its path data at character 6; drawn up to there"},
+      {"<rect height='9' style='width:calc(1px + 2px)'/>",
+       "W line 2: <rect> has width 'calc(1px + 2px)', which is not supported; ignored"},
+      {"<rect height='9' width='5VW'/>", "W line 2: <rect> has width '5VW', which is not supported; ignored"},
+      {"<rect width='9' height='9' fill='VAR(--a, red)'/>",
+       "W line 2: <rect> has fill 'VAR(--a, red)', which is not supported; ignored"},
+      {"<rect width='9' height='9' fill='color-mix(in lab, red, blue)'/>",
+       "W line 2: <rect> has fill 'color-mix(in lab, red, blue)', which is not supported; ignored"},
+      {"<rect width='9' height='9' fill='lab'/>", "W line 2: <rect> has fill 'lab', which is not valid; ignored"},
+      {"<rect width='9' height='9' stroke-width='3zw'/>",
+       "W line 2: <rect> has stroke-width '3zw', which is not valid; ignored"},
+      {"<rect width='9' height='9' style='transform:translateZ(0)'/>",
+       "W line 2: <rect> has transform 'translateZ(0)', which is not supported; ignored"},
+      {"<rect width='9' height='9' style='transform:scale(1);transform-origin:1vw'/>",
+       "W line 2: <rect> has transform-origin '1vw', which is not supported; ignored"},
+      {"<linearGradient id='g' x1='env(a)'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "W line 2: <linearGradient> has x1 'env(a)', which is not supported; ignored"},
       {"<style>\ng rect:hover { fill: red }</style>", "W line 3: style selector 'g rect:hover' is not supported"},
       {"<style>\ng > {fill:red}</style>", "W line 3: style selector 'g >' is not supported"},
       {"<style>\n> g {fill:red}</style>", "W line 3: style selector '> g' is not supported"},
@@ -826,8 +941,8 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<style>\n[a=] {fill:red}</style>", "W line 3: style selector '[a=]' is not supported"},
       {"<style>\n[a b] {fill:red}</style>", "W line 3: style selector '[a b]' is not supported"},
       {"<style>\n. {fill:red}</style>", "W line 3: style selector '.' is not supported"},
-      {"<style>\n[a {fill:red}</style>", "W line 3: style selector '[a' is not supported"},
-      {"<style>\na[b=\"c] {fill:red}</style>", "W line 3: style selector 'a[b=\"c]' is not supported"},
+      {"<style>\n[a {fill:red}</style>", "E line 3: style rule without a block"},
+      {"<style>\na[b=\"c] {fill:red}</style>", "E line 3: style rule without a block"},
       {"<linearGradient id='g'><stop/>\n<stop offset='abc'/></linearGradient><rect width='9' height='9' "
        "fill='url(#g)'/>",
        "W line 3: <stop> has offset 'abc', which is not valid; ignored"},
@@ -1010,7 +1125,8 @@ TEST(SvgImport, HostileInputIsBounded) {
   for (const std::string& drawing : {"<style>p " + times(8, "g ") + "rect{fill:red}</style>" + times(24, "<g>") +
                                          "<rect/><rect/>" + times(24, "</g>"),
                                      "<style>path ~ rect ~ rect{fill:red}</style>" + times(400, "<rect/>"),
-                                     "<style>[d*=zz]{fill:red}</style><path d='" + times(400000, "M") + "'/><rect/>"}) {
+                                     "<style>[d*=zz]{fill:red}</style><path d='" + times(400000, "M") + "'/><rect/>",
+                                     "<style>rect{font:" + times(40000, "a") + "}</style>" + times(9, "<rect/>")}) {
     const Import i = import("<svg>" + drawing + "</svg>", few);
     EXPECT_NE(std::find(i.messages.begin(), i.messages.end(),
                         "E line 1: the style sheets ask for too much; from here on they are left out"),

@@ -99,8 +99,7 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
     const pugi::xml_attribute a = gradientAttribute(node, name);
     double value = percent / 100 * whole;
     if (a && !parseLength(trim(a.value()), lengths, axis, value)) {
-      reporter_.error(document_.line(a, 0), element(node) + " has " + name + " '" +
-                                                std::string(a.value()).substr(0, 60) + "', which is no length");
+      noLength(node, document_.line(a, 0), name, a.value());
       value = percent / 100 * whole;
     }
     return static_cast<float>(value);

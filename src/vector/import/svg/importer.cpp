@@ -9,10 +9,6 @@
 namespace gpgp::vector::svg {
 namespace {
 
-template <size_t N> bool oneOf(std::string_view name, const std::string_view (&names)[N]) {
-  return std::find(std::begin(names), std::end(names), name) != std::end(names);
-}
-
 constexpr std::string_view kShapes[] = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"};
 /// Drawn only where something refers to them, or never.
 constexpr std::string_view kSilent[] = {
@@ -51,14 +47,24 @@ core::Result<PageSize> pageSize(std::span<const std::byte> bytes) {
   return Importer(document, quiet, {}, {}, {}).pageSize();
 }
 
+/// "<rect> has x 'wide', which is ".
+std::string Importer::valueOf(pugi::xml_node node, std::string_view name, std::string_view value) const {
+  return element(node) + " has " + std::string(name) + " '" + std::string(value.substr(0, 60)) + "', which is ";
+}
+
 std::string Importer::element(pugi::xml_node node) const {
   return std::string("<") + std::string(std::string_view(node.name()).substr(0, 40)) + ">";
 }
 
-void Importer::ignored(pugi::xml_node node, pugi::xml_attribute attribute) {
-  reporter_.ignored(document_.line(attribute, 0), element(node) + " has " + attribute.name() + " '" +
-                                                      std::string(attribute.value()).substr(0, 60) +
-                                                      "', which is not valid; ignored");
+void Importer::ignored(pugi::xml_node node, size_t line, std::string_view name, std::string_view value) {
+  const std::string text = valueOf(node, name, value);
+  hasUnsupported(value) ? reporter_.warn(line, text + "not supported; ignored")
+                        : reporter_.ignored(line, text + "not valid; ignored");
+}
+
+void Importer::noLength(pugi::xml_node node, size_t line, std::string_view name, std::string_view value) {
+  hasUnsupported(value) ? ignored(node, line, name, value)
+                        : reporter_.error(line, valueOf(node, name, value) + "no length");
 }
 
 AspectRatio Importer::aspectRatio(pugi::xml_node node) {
@@ -93,9 +99,28 @@ PageSize Importer::pageSize() {
   return {result_.width, result_.height};
 }
 
+bool Importer::isForScreen(pugi::xml_node node) {
+  const pugi::xml_attribute media = node.attribute("media");
+  bool others = false;
+  for (std::string_view rest = media.value(); !rest.empty();) {
+    const size_t end = std::min(rest.find(','), rest.size());
+    const std::string_view medium = trim(rest.substr(0, end));
+    if (isWord(medium, "all") || isWord(medium, "screen")) return true;
+    Scanner s(medium);
+    s.name();
+    if (!s.done())
+      reporter_.warn(document_.line(media, 0), "media '" + std::string(medium.substr(0, 60)) +
+                                                   "' is not supported: " + element(node) + " does not count for it");
+    others |= !medium.empty();
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return !others;
+}
+
 Importer::State Importer::begin() {
   for (const pugi::xml_node node : document_.all("style")) {
     const std::string_view type = node.attribute("type").value();
+    if (!isForScreen(node)) continue;
     std::string text;
     for (const pugi::xml_node part : node.children()) text += part.value();
     if (type.empty() || type == "text/css") sheet_.parse(text, document_.line(node), reporter_);
@@ -111,8 +136,10 @@ Importer::State Importer::begin() {
   bool hasWidth = false, hasHeight = false;
   Style style;
   cascade(root, {}, state.lengths, style);
-  double width = length(root, style, "width", state.lengths, LengthAxis::X, 0, &hasWidth);
-  double height = length(root, style, "height", state.lengths, LengthAxis::Y, 0, &hasHeight);
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = style.fontSize;
+  double width = length(root, style, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  double height = length(root, style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
   const auto isPercent = [&](const char* name) {
     const std::string* styled = style.geometryOf(name);
     const std::string_view text = styled ? std::string_view(*styled) : root.attribute(name).value();
@@ -272,7 +299,8 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
 void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
   const size_t before = result_.paths.size();
   if (node == document_.root()) return visitChildren(node, state);
-  const LengthContext lengths = state.lengths;
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   double w = length(node, state.style, "width", lengths, LengthAxis::X, lengths.width);
@@ -376,9 +404,7 @@ double Importer::dashUnit(const Shape& shape, double otherwise, pugi::xml_node n
   double length = 0;
   Scanner s(trim(said.value()));
   if (!s.number(length) || !s.done() || length < 0) {
-    reporter_.ignored(document_.line(said, 0), element(node) + " has pathLength '" +
-                                                   std::string(said.value()).substr(0, 60) +
-                                                   "', which is not valid; ignored");
+    ignored(node, said);
     return otherwise;
   }
   return lengthOf(shape) / length;

@@ -53,6 +53,8 @@ private:
   };
 
   // importer.cpp
+  /// Whether a style sheet's media are ours.
+  bool isForScreen(pugi::xml_node node);
   /// The style sheets, and the root's page with what is measured by it.
   State begin();
   void visit(pugi::xml_node node, const State& parent, const double* useSize = nullptr);
@@ -113,8 +115,14 @@ private:
   std::shared_ptr<const Gradient> gradientOf(pugi::xml_node node, bool radial, const State& state, const Shape& shape);
 
   std::string element(pugi::xml_node node) const;
-  /// Says that an attribute has no valid value.
-  void ignored(pugi::xml_node node, pugi::xml_attribute attribute);
+  std::string valueOf(pugi::xml_node node, std::string_view name, std::string_view value) const;
+  /// Says that a value does not count, for it is not valid, or not supported.
+  void ignored(pugi::xml_node node, size_t line, std::string_view name, std::string_view value);
+  void ignored(pugi::xml_node node, pugi::xml_attribute attribute) {
+    ignored(node, document_.line(attribute, 0), attribute.name(), attribute.value());
+  }
+  /// What is no length.
+  void noLength(pugi::xml_node node, size_t line, std::string_view name, std::string_view value);
   /// The node's preserveAspectRatio; one that is not valid is named and does not count.
   AspectRatio aspectRatio(pugi::xml_node node);
 

@@ -26,8 +26,7 @@ double Importer::length(pugi::xml_node node, const Style& style, const char* nam
   if ((!a && !styled) || text == "auto") return otherwise;
   double value = 0;
   if (!parseLength(text, lengths, axis, value)) {
-    reporter_.error(styled ? document_.line(node) : document_.line(a, 0),
-                    element(node) + " has " + name + " '" + std::string(text.substr(0, 60)) + "', which is no length");
+    noLength(node, styled ? document_.line(node) : document_.line(a, 0), name, text);
     return otherwise;
   }
   if (given) *given = true;
