@@ -522,6 +522,41 @@ TEST(SvgImport, UnitsAndFontSizes) {
             40);
 }
 
+TEST(SvgImport, NamespacesCountNotPrefixes) {
+  const std::string svg = "='http://www.w3.org/2000/svg'", xlink = "='http://www.w3.org/1999/xlink'",
+                    r = "rect width='9' height='9'", use = "<defs><rect id='r' width='9' height='9'/></defs><use ";
+  const std::pair<std::string, size_t> cases[] = {
+      // and how many paths are drawn
+      {"<s:" + r + " xmlns:s" + svg + "/>", 1},
+      {"<g xmlns:s" + svg + "><s:g><s:" + r + "/></s:g></g>", 1},
+      {"<g xmlns:s" + svg + "/><s:" + r + "/>", 0}, // declared elsewhere
+      {"<g xmlns:s" + svg + "><g xmlns:s='foo'><s:" + r + "/></g><s:" + r + "/></g>", 1},
+      {"<" + r + " xmlns='foo'/>", 0},
+      {"<" + r + " xmlns=''/>", 0},
+      {"<g xmlns='foo'><" + r + "/><" + r + " xmlns" + svg + "/></g><" + r + "/>", 1}, // nor is what is inside
+      {"<svg:" + r + "/>", 0},
+      {"<a:" + r + " xmlns:a='foo'/>", 0},
+      {use + "xl:href='#r' xmlns:xl" + xlink + "/>", 1},
+      {use + "xlink:href='#r' xmlns:xlink" + xlink + "/>", 1},
+      {use + "xlink:href='#r'/>", 1}, // as some files have it
+  };
+  for (const auto& [text, count] : cases) {
+    const Import i = page(text);
+    EXPECT_EQ(i.drawing.paths.size(), count) << text;
+    EXPECT_EQ(i.messages, Texts{}) << text;
+  }
+  for (const std::string other : {"xlink:href='#r' xmlns:xlink='foo'", "xl:href='#r'"})
+    EXPECT_EQ(page(use + other + "/>").messages, (Texts{"E line 2: <use> refers to '', which is not there"})) << other;
+  const std::string inside = "<s:style>rect {fill:red}</s:style>\n<s:rect width='a' height='9'/><rect/>";
+  const Import prefixed = import("<s:svg xmlns:s" + svg + ">" + inside + "<s:" + r + "/></s:svg>");
+  EXPECT_EQ(prefixed.messages, (Texts{"E line 2: <rect> has width 'a', which is no length"}));
+  ASSERT_EQ(prefixed.drawing.paths.size(), 1u);
+  EXPECT_EQ(prefixed.drawing.paths[0].color[0], 1);
+  EXPECT_EQ(import("<s:svg>" + inside + "<s:" + r + "/></s:svg>").drawing.paths.size(), 1u);
+  EXPECT_EQ(import("\n<svg xmlns='foo'/>").error, "line 2: the outermost element is in another namespace than SVG's");
+  EXPECT_EQ(import("<svg xmlns=''><" + r + "/></svg>").drawing.paths.size(), 1u);
+}
+
 TEST(SvgImport, WordsThatEveryPropertyTakes) {
   const struct {
     const char* attributes;
