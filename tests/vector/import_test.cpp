@@ -1085,13 +1085,51 @@ TEST(SvgImport, ThePageIsWhatTheFileSays) {
   EXPECT_EQ(import("<svg/>").drawing.width, 0);
   const Import none = import("<svg width='0' height='-5'><path d='M0 0H10V10'/></svg>");
   EXPECT_EQ(none.drawing.width, 0);
-  EXPECT_EQ(none.messages, (Texts{"W line 1: <svg> has no width above zero; it is ignored",
-                                  "W line 1: <svg> has no height above zero; it is ignored"}));
+  EXPECT_EQ(none.messages, (Texts{"E line 1: <svg> has a negative height; ignored",
+                                  "W line 1: <svg> has a width, height or viewBox of zero; not drawn"}));
   EXPECT_EQ(page("<rect width='40' height='30' rx='-5' ry='8'/>").drawing.paths.at(0).points,
             page("<rect width='40' height='30' ry='8'/>").drawing.paths.at(0).points);
   const Import wide = import("\n<svg width='1e9' height='9'><rect width='1e9' height='9'/></svg>");
   EXPECT_EQ(wide.error, "line 2: <svg> is wider or taller than 10000000 pixels");
   EXPECT_EQ(wide.messages, Texts{});
+}
+
+TEST(SvgImport, ASizeOfZeroDrawsNothing) {
+  const std::string line = "<path d='M0 0H9V9'/>", symbol = "<symbol id='s'>" + line + "</symbol><use href='#s' ";
+  const struct {
+    std::string text;
+    const char* element; // in line 1
+  } cases[] = {
+      {"<svg viewBox='0 0 0 0'>" + line + "</svg>", "<svg>"},
+      {"<svg width='10' height='10' viewBox='0 0 9 0'>" + line + "</svg>", "<svg>"},
+      {"<svg width='10' height='0'>" + line + "</svg>", "<svg>"},
+      {"<svg width='0%' height='10' viewBox='0 0 9 9'>" + line + "</svg>", "<svg>"},
+      {"<svg><svg viewBox='0 0 0 0'>" + line + "</svg></svg>", "<svg>"},
+      {"<svg><svg width='0'>" + line + "</svg></svg>", "<svg>"},
+      {"<svg>" + symbol + "height='0'/></svg>", "<symbol>"},
+      {"<svg><symbol id='s' viewBox='1 1 0 1'>" + line + "</symbol><use href='#s'/></svg>", "<symbol>"},
+  };
+  for (const auto& c : cases) {
+    const Import i = import(c.text);
+    EXPECT_TRUE(i.drawing.paths.empty()) << c.text;
+    EXPECT_EQ(i.messages,
+              (Texts{std::string("W line 1: ") + c.element + " has a width, height or viewBox of zero; not drawn"}))
+        << c.text;
+  }
+  const std::pair<std::string, const char*> negative[] = {
+      {"<svg width='-1' height='50'>" + line + "</svg>", "E line 1: <svg> has a negative width; ignored"},
+      {"<svg height='-5%'>" + line + "</svg>", "E line 1: <svg> has a negative height; ignored"},
+      {"<svg viewBox='0 0 -1 0'>" + line + "</svg>",
+       "W line 1: <svg> has viewBox '0 0 -1 0', which is not valid; ignored"},
+      {"<svg><svg width='-1'>" + line + "</svg></svg>", "E line 1: <svg> has a negative width; ignored"},
+      {"<svg>" + symbol + "height='-1'/></svg>", "E line 1: <use> has a negative height; ignored"},
+  };
+  for (const auto& [text, message] : negative) {
+    const Import i = import(text);
+    EXPECT_EQ(i.drawing.paths.size(), 1u) << text;
+    EXPECT_EQ(i.messages, Texts{message}) << text;
+  }
+  EXPECT_EQ(import("<svg width='8' height='6' viewBox='0 0 0 0'/>").drawing.width, 8);
 }
 
 TEST(SvgImport, CompilesToADrawingWithThePage) {

@@ -90,7 +90,7 @@ core::Result<Imported> Importer::run() {
   if (result_.width > kMaxReach || result_.height > kMaxReach)
     return core::makeError(GPGP_ERROR_INVALID_DATA, "line %zu: <svg> is wider or taller than 10000000 pixels",
                            document_.line(document_.root()));
-  visit(document_.root(), state);
+  if (!empty_) visit(document_.root(), state);
   return std::move(result_);
 }
 
@@ -138,8 +138,9 @@ Importer::State Importer::begin() {
   cascade(root, {}, state.lengths, style);
   LengthContext lengths = state.lengths;
   lengths.fontSize = style.fontSize;
-  double width = length(root, style, "width", lengths, LengthAxis::X, 0, &hasWidth);
-  double height = length(root, style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  double width = extent(root, style, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  double height = extent(root, style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  empty_ = !hasExtent(root, hasWidth ? width : 1, hasHeight ? height : 1, box);
   const auto isPercent = [&](const char* name) {
     const std::string* styled = style.geometryOf(name);
     const std::string_view text = styled ? std::string_view(*styled) : root.attribute(name).value();
@@ -147,13 +148,10 @@ Importer::State Importer::begin() {
   };
   if (isPercent("width")) hasWidth = false;
   if (isPercent("height")) hasHeight = false;
-  const auto needsSize = [&](const char* name, double size, bool& has) {
-    if (has && !(size > 0))
-      reporter_.ignored(document_.line(root), element(root) + " has no " + name + " above zero; it is ignored");
-    has = has && size > 0;
-  };
-  needsSize("width", width, hasWidth);
-  needsSize("height", height, hasHeight);
+  if (empty_) {
+    if (hasWidth && hasHeight) result_.width = width, result_.height = height;
+    return state;
+  }
   if (box && !hasWidth) width = hasHeight ? height * box->width / box->height : box->width;
   if (box && !hasHeight) height = hasWidth ? width * box->height / box->width : box->height;
   if (box || (hasWidth && hasHeight)) {
@@ -288,11 +286,17 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   moved.transform = moved.transform * Affine{1, 0, 0, 1, x, y};
   constexpr double unset = -1;
-  const double size[2] = {length(node, state.style, "width", lengths, LengthAxis::X, unset),
-                          length(node, state.style, "height", lengths, LengthAxis::Y, unset)};
+  const double size[2] = {extent(node, state.style, "width", lengths, LengthAxis::X, unset),
+                          extent(node, state.style, "height", lengths, LengthAxis::Y, unset)};
   used_.push_back(target);
   visit(target, moved, size);
   used_.pop_back();
+}
+
+bool Importer::hasExtent(pugi::xml_node node, double width, double height, const std::optional<ViewBox>& box) {
+  if (width > 0 && height > 0 && (!box || (box->width > 0 && box->height > 0))) return true;
+  reporter_.ignored(document_.line(node), element(node) + " has a width, height or viewBox of zero; not drawn");
+  return false;
 }
 
 /// <svg> inside another, or <symbol>: its own coordinates, and a clip where something reaches beyond its edge.
@@ -303,23 +307,22 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
   lengths.fontSize = state.style.fontSize;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
-  double w = length(node, state.style, "width", lengths, LengthAxis::X, lengths.width);
-  double h = length(node, state.style, "height", lengths, LengthAxis::Y, lengths.height);
+  double w = extent(node, state.style, "width", lengths, LengthAxis::X, lengths.width);
+  double h = extent(node, state.style, "height", lengths, LengthAxis::Y, lengths.height);
   if (useSize && useSize[0] >= 0) w = useSize[0];
   if (useSize && useSize[1] >= 0) h = useSize[1];
-  if (!(w > 0 && h > 0)) return;
+  const pugi::xml_attribute text = node.attribute("viewBox");
+  const std::optional<ViewBox> box = parseViewBox(text.value());
+  if (text && !box) ignored(node, text);
+  if (!hasExtent(node, w, h, box)) return;
   state.transform = state.transform * Affine{1, 0, 0, 1, x, y};
   const Affine frame = state.transform;
   state.lengths.width = w;
   state.lengths.height = h;
-  if (const pugi::xml_attribute text = node.attribute("viewBox")) {
-    if (const auto box = parseViewBox(text.value())) {
-      state.transform = state.transform * fitViewBox(*box, w, h, aspectRatio(node));
-      state.lengths.width = box->width;
-      state.lengths.height = box->height;
-    } else {
-      ignored(node, text);
-    }
+  if (box) {
+    state.transform = state.transform * fitViewBox(*box, w, h, aspectRatio(node));
+    state.lengths.width = box->width;
+    state.lengths.height = box->height;
   }
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
   Shape edge = rectangle(0, 0, w, h, 0, 0, 1);

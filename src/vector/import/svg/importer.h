@@ -11,10 +11,10 @@
 
 namespace gpgp::vector::svg {
 
-/// The map from a viewBox into a viewport of the given size (SVG 2, 8.2); nothing where the box has no area.
 struct ViewBox {
   double x = 0, y = 0, width = 0, height = 0;
 };
+/// Nothing where it is malformed or negative; sizes of zero mean that nothing is drawn (SVG 2, 8.6).
 std::optional<ViewBox> parseViewBox(std::string_view text);
 /// A preserveAspectRatio (SVG 2, 8.6); as it is made, what counts where there is none.
 struct AspectRatio {
@@ -23,6 +23,7 @@ struct AspectRatio {
   bool slice = false;                ///< the box covers the viewport instead of lying in it
 };
 std::optional<AspectRatio> parseAspectRatio(std::string_view text);
+/// The map from a viewBox that is not empty into a viewport of the given size (SVG 2, 8.2).
 Affine fitViewBox(const ViewBox& box, double width, double height, const AspectRatio& ratio);
 
 /// The smallest box around a shape's curves.
@@ -62,6 +63,8 @@ private:
   void visitUse(pugi::xml_node node, const State& state);
   void visitSwitch(pugi::xml_node node, const State& state);
   void visitViewport(pugi::xml_node node, State& state, const double* useSize);
+  /// False where a size of zero keeps the element from being drawn, which is said.
+  bool hasExtent(pugi::xml_node node, double width, double height, const std::optional<ViewBox>& box);
   /// What is inside of an element whose own properties are in the state.
   void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
@@ -100,6 +103,9 @@ private:
   /// A length of an element: as style sheets say, else its attribute.
   double length(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
                 LengthAxis axis, double otherwise, bool* given = nullptr);
+  /// The same of a width or height, which is said and does not count where it is negative.
+  double extent(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
+                LengthAxis axis, double otherwise, bool* given = nullptr);
 
   // cascade.cpp
   void cascade(pugi::xml_node node, const Style& parent, const LengthContext& lengths, Style& style);
@@ -137,7 +143,7 @@ private:
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, empty_ = false; ///< the last: the root has a size of zero
   enum class Mode {
     Paint,
     Clip,   // shapes alone count
