@@ -5,6 +5,7 @@
 #include "vector/patch/drawing.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -1171,6 +1172,34 @@ TEST(SvgImport, NoSvgIsAnError) {
   EXPECT_EQ(import("<html/>").error, "line 1: the outermost element is <html>, not <svg>");
   EXPECT_EQ(import("<svg>\n<g>\n</svg>").error.substr(0, 6), "line 3");
   EXPECT_EQ(import("\x1f\x8b\x08").error, "the gzip data is truncated");
+}
+
+std::string gzip(std::string text) {
+  z_stream z{};
+  EXPECT_EQ(deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string out(deflateBound(&z, text.size()), '\0');
+  z.next_in = reinterpret_cast<Bytef*>(text.data());
+  z.avail_in = static_cast<uInt>(text.size());
+  z.next_out = reinterpret_cast<Bytef*>(out.data());
+  z.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(deflate(&z, Z_FINISH), Z_STREAM_END);
+  out.resize(z.total_out);
+  deflateEnd(&z);
+  return out;
+}
+
+TEST(SvgImport, GzipOfSeveralMembers) {
+  const std::string all = gzip("<svg><rect width='9'") + gzip("") + gzip(" height='9'/></svg>");
+  const Import whole = import(all);
+  EXPECT_EQ(whole.error, "");
+  EXPECT_EQ(whole.drawing.paths.size(), 1u);
+  EXPECT_EQ(import(all + std::string(9, '\0')).error, "");
+  for (const std::string& rest :
+       {std::string("x"), std::string("\x1f"), std::string("\0\0y", 3), std::string("<svg/>")})
+    EXPECT_EQ(import(all + rest).error, "something else follows the gzip data");
+  EXPECT_EQ(import(all + "\x1f\x8b").error, "the gzip data is truncated");
+  EXPECT_EQ(import(all.substr(0, all.size() - 9)).error, "the gzip data is truncated");
+  EXPECT_EQ(import(all + "\x1f\x8b\x01" + all).error, "the gzip data is damaged");
 }
 
 TEST(SvgImport, HostileInputIsBounded) {

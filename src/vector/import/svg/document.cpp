@@ -121,24 +121,29 @@ core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxB
   z_stream& z = inflater.stream;
   z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(begin)); // zlib only reads it
   z.avail_in = static_cast<uInt>(bytes.size());
-  int status = Z_OK;
-  while (status != Z_STREAM_END) {
-    const size_t had = out.size();
-    if (had >= maxBytes)
-      return makeError(GPGP_ERROR_INVALID_DATA, "the file inflates to more than %zu bytes", maxBytes);
-    out.resize(std::min(std::max(had * 2, size_t{65536}), maxBytes));
-    z.next_out = reinterpret_cast<Bytef*>(out.data() + had);
-    z.avail_out = static_cast<uInt>(out.size() - had);
-    status = inflate(&z, Z_NO_FLUSH);
-    out.resize(out.size() - z.avail_out);
+  for (;;) {
+    if (z.avail_out == 0) {
+      const size_t had = out.size();
+      if (had >= maxBytes)
+        return makeError(GPGP_ERROR_INVALID_DATA, "the file inflates to more than %zu bytes", maxBytes);
+      out.resize(std::min(std::max(had * 2, size_t{65536}), maxBytes));
+      z.next_out = reinterpret_cast<Bytef*>(out.data() + had);
+      z.avail_out = static_cast<uInt>(out.size() - had);
+    }
+    const int status = inflate(&z, Z_NO_FLUSH);
     if (status == Z_MEM_ERROR) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
     if (status != Z_OK && status != Z_STREAM_END)
       return makeError(GPGP_ERROR_INVALID_DATA,
                        z.avail_in == 0 ? "the gzip data is truncated" : "the gzip data is damaged");
     if (status == Z_OK && z.avail_in == 0 && z.avail_out != 0)
       return makeError(GPGP_ERROR_INVALID_DATA, "the gzip data is truncated");
+    if (status != Z_STREAM_END) continue;
+    while (z.avail_in && *z.next_in == 0) ++z.next_in, --z.avail_in; // fills blocks of tapes
+    if (!z.avail_in) return out.resize(out.size() - z.avail_out), core::Result<void>();
+    if (z.avail_in < 2 || z.next_in[0] != 0x1f || z.next_in[1] != 0x8b)
+      return makeError(GPGP_ERROR_INVALID_DATA, "something else follows the gzip data");
+    inflateReset(&z); // the next member
   }
-  return {};
 }
 
 core::Result<void> Document::load(std::span<const std::byte> bytes) {

@@ -12,7 +12,8 @@
 
 namespace gpgp::vector::svg {
 
-/// Inflates gzip; other bytes come out as they are. Errors: damaged or truncated data, more than `maxBytes`.
+/// Inflates gzip, all its members; other bytes come out as they are. Errors: damaged or truncated data, bytes behind it
+/// that are not zero, more than `maxBytes`.
 core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxBytes, std::string& out);
 
 class Document {
