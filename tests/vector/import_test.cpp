@@ -777,6 +777,10 @@ TEST(SvgImport, WhatIsNotShownIsNoPath) {
   // A gradient without stops paints nothing, though a fallback is named: that is for what is not there.
   EXPECT_TRUE(page("<linearGradient id='g'/><rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.empty());
   EXPECT_EQ(page("<rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.size(), 1u);
+  // One that refers to itself is not there.
+  EXPECT_EQ(
+      page("<linearGradient id='g' href='#g'/><rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.size(),
+      1u);
 }
 
 TEST(SvgImport, GroupsFadeAndClip) {
@@ -968,6 +972,16 @@ TEST(SvgImport, MessagesNameElementAndLine) {
        "W line 2: <rect> has transform 'translateZ(0)', which is not supported; ignored"},
       {"<rect width='9' height='9' style='transform:scale(1);transform-origin:1vw'/>",
        "W line 2: <rect> has transform-origin '1vw', which is not supported; ignored"},
+      {"<radialGradient id='g' r='-1'><stop/></radialGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "E line 2: <radialGradient> has a negative r; ignored"},
+      {"<radialGradient id='g' fr='-1'><stop/></radialGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "E line 2: <radialGradient> has a negative fr; ignored"},
+      {"<linearGradient id='g' gradientTransform='scale(0)'><stop/></linearGradient>\n<rect width='9' height='9' "
+       "fill='url(#g)'/>",
+       "W line 3: <rect> fill refers to a gradient without extent; it is not painted"},
+      {"<linearGradient id='g' href='#h'/><linearGradient id='h' href='#g'/>\n<rect width='9' height='9' "
+       "fill='url(#g) red'/>",
+       "W line 3: <rect> fill refers to a gradient that refers to itself; its fallback is used"},
       {"<linearGradient id='g' x1='env(a)'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
        "W line 2: <linearGradient> has x1 'env(a)', which is not supported; ignored"},
       {"<style>\ng rect:hover { fill: red }</style>", "W line 3: style selector 'g rect:hover' is not supported"},

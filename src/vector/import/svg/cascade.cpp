@@ -86,6 +86,10 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& 
   if (name == "linearGradient" || name == "radialGradient") {
     if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
       return Ink{{0, 0, 0, 1}, std::move(gradient)};
+    if (isCyclic(target)) {
+      reporter_.ignored(document_.line(node), who + " refers to a gradient that refers to itself; " + instead);
+      return plain(paint.fallback);
+    }
     if (gradientStops(target, state.lengths).empty()) { // is there, so that the fallback does not count
       reporter_.ignored(document_.line(node), who + " refers to a gradient without stops; it is not painted");
       return std::nullopt;

@@ -116,6 +116,8 @@ private:
 
   // gradient.cpp
   pugi::xml_attribute gradientAttribute(pugi::xml_node gradient, const char* name) const;
+  /// Whether following its references leads to one for the second time.
+  bool isCyclic(pugi::xml_node gradient) const;
   std::vector<GpgpGradientStop> gradientStops(pugi::xml_node gradient, const LengthContext& lengths);
   /// Nothing where it has no stops, or no box to be measured by.
   std::shared_ptr<const Gradient> gradientOf(pugi::xml_node node, bool radial, const State& state, const Shape& shape);
