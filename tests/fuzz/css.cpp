@@ -35,6 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto apply = [&](const Declaration& d) {
     if (applyProperty(style, parent, d.name, d.value, {}) == Applied::Unknown && isProperty(d.name)) std::abort();
     (void)isUnsupported(d.name, d.value);
+    (void)hasUnsupported(d.value);
     check(style);
   };
   Document document;
@@ -45,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   for (const Declaration* d : sheet.match(document, document.find("#a"), work, 1 << 20)) apply(*d);
   for (const Declaration& d : parseDeclarations(text)) apply(d);
   for (const char* name : {"fill", "stroke", "opacity", "stroke-width", "stroke-dasharray", "stroke-miterlimit",
-                           "font-size", "stop-color", "paint-order", "clip-path", "marker"})
+                           "font-size", "font", "stop-color", "paint-order", "clip-path", "marker"})
     apply({name, std::string(text), false});
   check(style.inherited());
   std::string expanded(text);

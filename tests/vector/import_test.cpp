@@ -5,6 +5,7 @@
 #include "vector/patch/drawing.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -423,6 +424,140 @@ TEST(SvgImport, Colours) {
   }
 }
 
+TEST(SvgImport, StyleSheetsAreReadAsCss) {
+  const std::pair<const char*, bool> cases[] = {
+      {".a/*x*/.b {fill:red}", true}, // a comment is nothing between selectors' parts
+      {".a/*x*/ .b {fill:red}", false},
+      {".a/*x*/b {fill:red}", false},
+      {"g/**/>/**/rect/**/ {fill:red}", true},
+      {"g/**/ rect/*,*/.a {fill:red}", true},
+      {"/*{*/ rect[/*]*/width/**/=/**/'9'/**/] {fill:red}", true},
+      {"rect {fill/*;*/:/*}*/red}", true},
+      {"rect {fill:re/**/d}", false},
+      {"rect {stroke-dasharray:1px/**/2px;fill:red}", true},
+      {"p {content:\"}\"} rect {fill:red}", true},
+      {"p {content:'/*'} rect {fill:red} /* ' */", true},
+      {"p {content:'\\'}'} rect {fill:red}", true},
+      {"p {content:\\}} rect {fill:red}", true},
+      {"p {content:[}]} rect {fill:red}", true},
+      {"p {content:(}{})} rect {fill:red}", true},
+      {"p {content:\"unclosed\n;x:y} rect {fill:red}", true}, // a string ends with its line
+      {"p {mask:url(it's}) none} rect {fill:red}", true},
+      {"p {mask:url( \"'}\" )} rect {fill:red}", true},
+      {"p {mask:url(//a/*.css)} rect {fill:red} /* */", true},
+      {"[title='{'] {fill:blue} rect {fill:red}", true},
+      {"@import url(a;b);rect {fill:red}", true},
+      {"@media print { rect {fill:blue} p[a='}'] {} } rect {fill:red}", true},
+      {"rect {--x:{a;fill:blue};fill:red}", true},
+      {"rect {fill:blue;--x:{a;fill:red}}", false},
+  };
+  for (const auto& [sheet, red] : cases) {
+    const Import i =
+        page("<style><![CDATA[" + std::string(sheet) + "]]></style><g><rect class='a b' width='9' height='9'/></g>");
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << sheet;
+    EXPECT_EQ(i.drawing.paths[0].color[0], red ? 1 : 0) << sheet;
+  }
+  EXPECT_EQ(page("<style>/* a\n */\n/* b */ g:hover/* c */ {}</style>").messages,
+            (Texts{"W line 4: style selector 'g:hover' is not supported"}));
+}
+
+TEST(SvgImport, StyleSheetsForOtherMediaAreLeftOut) {
+  const struct {
+    const char* media;
+    bool counts;
+    Texts messages;
+  } cases[] = {
+      {"", true, {}},
+      {" ", true, {}},
+      {"all", true, {}},
+      {"print, Screen", true, {}},
+      {"print", false, {}},
+      {"print, speech", false, {}},
+      {"screen and (color)",
+       false,
+       {"W line 2: media 'screen and (color)' is not supported: <style> does not count for it"}},
+  };
+  for (const auto& c : cases) {
+    const Import i =
+        page(std::string("<style media='") + c.media + "'>rect {fill:red}</style><rect width='9' height='9'/>");
+    EXPECT_EQ(i.drawing.paths.at(0).color[0], c.counts ? 1 : 0) << c.media;
+    EXPECT_EQ(i.messages, c.messages) << c.media;
+  }
+}
+
+TEST(SvgImport, UnitsAndFontSizes) {
+  const std::pair<const char*, float> widths[] = {
+      {"<rect height='9' width='4PX'/>", 4},
+      {"<rect height='9' style='width:1In'/>", 96},
+      {"<rect height='9' style='width:101.6q'/>", 96},
+      {"<rect height='9' width='2EM' font-size='5'/>", 10},
+      {"<rect height='9' width='2em' style='font:20px serif'/>", 40},
+      {"<rect height='9' width='2ex' style='font:italic BOLD 10PX/1.5 a, \"b c\"'/>", 10},
+      {"<rect height='9' width='1em' style='font: 700 12px / normal serif'/>", 12},
+      {"<g font-size='30'><rect height='9' width='1em' style='font:50% serif'/></g>", 15},
+      {"<g font-size='30'><rect height='9' width='1em' style='font:caption'/></g>", 16},
+      {"<g font-size='30'><rect height='9' width='1em' style='font:initial'/></g>", 16},
+      {"<rect height='9' width='1em' style='font:20px serif;font-size:30px'/>", 30},
+      {"<rect height='9' width='1em' style='font-size:30px;font:20px serif'/>", 20},
+      {"<rect height='9' width='1em' font='20px serif'/>", 16}, // is no attribute
+      {"<svg font-size='20' width='2em' height='9' overflow='visible'><rect height='9' width='100%'/></svg>", 40},
+      {"<rect height='9' width='4' style='transform:SCALEX(2) translateX(0PX) rotate(360DEG)'/>", 8},
+  };
+  for (const auto& [text, width] : widths) {
+    const Import i = page(text);
+    ASSERT_EQ(i.drawing.paths.size(), 1u) << text;
+    EXPECT_FLOAT_EQ(i.drawing.paths[0].points[2], width) << text;
+    EXPECT_EQ(i.messages, Texts{}) << text;
+  }
+  for (const char* font : {"20px", "serif", "20 serif", "20px/ serif", "fancy 20px serif", "-1px serif", "/20px serif"})
+    EXPECT_EQ(page(std::string("<g style='font:") + font + "'/>").messages,
+              Texts{std::string("W line 2: <g> has font '") + font + "', which is not valid; ignored"});
+  EXPECT_EQ(import("<svg font-size='20' width='2em' height='1em'/>").drawing.width, 40);
+  EXPECT_TRUE(page("<linearGradient id='g'><stop/></linearGradient><rect width='9' height='9' fill='URL(#g)'/>")
+                  .drawing.paths.at(0)
+                  .gradient);
+  EXPECT_EQ(page("<clipPath id='c'/><rect width='9' height='9' clip-path='Url(#c)'/>").drawing.groups.size(), 1u);
+  EXPECT_EQ(page("<rect x='45' width='10' height='9' transform='scale(2)' style='transform-origin:Center TOP'/>")
+                .drawing.paths.at(0)
+                .points.at(0),
+            40);
+}
+
+TEST(SvgImport, NamespacesCountNotPrefixes) {
+  const std::string svg = "='http://www.w3.org/2000/svg'", xlink = "='http://www.w3.org/1999/xlink'",
+                    r = "rect width='9' height='9'", use = "<defs><rect id='r' width='9' height='9'/></defs><use ";
+  const std::pair<std::string, size_t> cases[] = {
+      // and how many paths are drawn
+      {"<s:" + r + " xmlns:s" + svg + "/>", 1},
+      {"<g xmlns:s" + svg + "><s:g><s:" + r + "/></s:g></g>", 1},
+      {"<g xmlns:s" + svg + "/><s:" + r + "/>", 0}, // declared elsewhere
+      {"<g xmlns:s" + svg + "><g xmlns:s='foo'><s:" + r + "/></g><s:" + r + "/></g>", 1},
+      {"<" + r + " xmlns='foo'/>", 0},
+      {"<" + r + " xmlns=''/>", 0},
+      {"<g xmlns='foo'><" + r + "/><" + r + " xmlns" + svg + "/></g><" + r + "/>", 1}, // nor is what is inside
+      {"<svg:" + r + "/>", 0},
+      {"<a:" + r + " xmlns:a='foo'/>", 0},
+      {use + "xl:href='#r' xmlns:xl" + xlink + "/>", 1},
+      {use + "xlink:href='#r' xmlns:xlink" + xlink + "/>", 1},
+      {use + "xlink:href='#r'/>", 1}, // as some files have it
+  };
+  for (const auto& [text, count] : cases) {
+    const Import i = page(text);
+    EXPECT_EQ(i.drawing.paths.size(), count) << text;
+    EXPECT_EQ(i.messages, Texts{}) << text;
+  }
+  for (const std::string other : {"xlink:href='#r' xmlns:xlink='foo'", "xl:href='#r'"})
+    EXPECT_EQ(page(use + other + "/>").messages, (Texts{"E line 2: <use> refers to '', which is not there"})) << other;
+  const std::string inside = "<s:style>rect {fill:red}</s:style>\n<s:rect width='a' height='9'/><rect/>";
+  const Import prefixed = import("<s:svg xmlns:s" + svg + ">" + inside + "<s:" + r + "/></s:svg>");
+  EXPECT_EQ(prefixed.messages, (Texts{"E line 2: <rect> has width 'a', which is no length"}));
+  ASSERT_EQ(prefixed.drawing.paths.size(), 1u);
+  EXPECT_EQ(prefixed.drawing.paths[0].color[0], 1);
+  EXPECT_EQ(import("<s:svg>" + inside + "<s:" + r + "/></s:svg>").drawing.paths.size(), 1u);
+  EXPECT_EQ(import("\n<svg xmlns='foo'/>").error, "line 2: the outermost element is in another namespace than SVG's");
+  EXPECT_EQ(import("<svg xmlns=''><" + r + "/></svg>").drawing.paths.size(), 1u);
+}
+
 TEST(SvgImport, WordsThatEveryPropertyTakes) {
   const struct {
     const char* attributes;
@@ -642,6 +777,10 @@ TEST(SvgImport, WhatIsNotShownIsNoPath) {
   // A gradient without stops paints nothing, though a fallback is named: that is for what is not there.
   EXPECT_TRUE(page("<linearGradient id='g'/><rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.empty());
   EXPECT_EQ(page("<rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.size(), 1u);
+  // One that refers to itself is not there.
+  EXPECT_EQ(
+      page("<linearGradient id='g' href='#g'/><rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.size(),
+      1u);
 }
 
 TEST(SvgImport, GroupsFadeAndClip) {
@@ -819,6 +958,32 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<rect height='9' style='width:wide'/>", "E line 2: <rect> has width 'wide', which is no length"},
       {"<path style='d:path(\"M0 0 x\")'/>",
        "E line 2: <path> has an error in its path data at character 6; drawn up to there"},
+      {"<rect height='9' style='width:calc(1px + 2px)'/>",
+       "W line 2: <rect> has width 'calc(1px + 2px)', which is not supported; ignored"},
+      {"<rect height='9' width='5VW'/>", "W line 2: <rect> has width '5VW', which is not supported; ignored"},
+      {"<rect width='9' height='9' fill='VAR(--a, red)'/>",
+       "W line 2: <rect> has fill 'VAR(--a, red)', which is not supported; ignored"},
+      {"<rect width='9' height='9' fill='color-mix(in lab, red, blue)'/>",
+       "W line 2: <rect> has fill 'color-mix(in lab, red, blue)', which is not supported; ignored"},
+      {"<rect width='9' height='9' fill='lab'/>", "W line 2: <rect> has fill 'lab', which is not valid; ignored"},
+      {"<rect width='9' height='9' stroke-width='3zw'/>",
+       "W line 2: <rect> has stroke-width '3zw', which is not valid; ignored"},
+      {"<rect width='9' height='9' style='transform:translateZ(0)'/>",
+       "W line 2: <rect> has transform 'translateZ(0)', which is not supported; ignored"},
+      {"<rect width='9' height='9' style='transform:scale(1);transform-origin:1vw'/>",
+       "W line 2: <rect> has transform-origin '1vw', which is not supported; ignored"},
+      {"<radialGradient id='g' r='-1'><stop/></radialGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "E line 2: <radialGradient> has a negative r; ignored"},
+      {"<radialGradient id='g' fr='-1'><stop/></radialGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "E line 2: <radialGradient> has a negative fr; ignored"},
+      {"<linearGradient id='g' gradientTransform='scale(0)'><stop/></linearGradient>\n<rect width='9' height='9' "
+       "fill='url(#g)'/>",
+       "W line 3: <rect> fill refers to a gradient without extent; it is not painted"},
+      {"<linearGradient id='g' href='#h'/><linearGradient id='h' href='#g'/>\n<rect width='9' height='9' "
+       "fill='url(#g) red'/>",
+       "W line 3: <rect> fill refers to a gradient that refers to itself; its fallback is used"},
+      {"<linearGradient id='g' x1='env(a)'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "W line 2: <linearGradient> has x1 'env(a)', which is not supported; ignored"},
       {"<style>\ng rect:hover { fill: red }</style>", "W line 3: style selector 'g rect:hover' is not supported"},
       {"<style>\ng > {fill:red}</style>", "W line 3: style selector 'g >' is not supported"},
       {"<style>\n> g {fill:red}</style>", "W line 3: style selector '> g' is not supported"},
@@ -826,8 +991,8 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<style>\n[a=] {fill:red}</style>", "W line 3: style selector '[a=]' is not supported"},
       {"<style>\n[a b] {fill:red}</style>", "W line 3: style selector '[a b]' is not supported"},
       {"<style>\n. {fill:red}</style>", "W line 3: style selector '.' is not supported"},
-      {"<style>\n[a {fill:red}</style>", "W line 3: style selector '[a' is not supported"},
-      {"<style>\na[b=\"c] {fill:red}</style>", "W line 3: style selector 'a[b=\"c]' is not supported"},
+      {"<style>\n[a {fill:red}</style>", "E line 3: style rule without a block"},
+      {"<style>\na[b=\"c] {fill:red}</style>", "E line 3: style rule without a block"},
       {"<linearGradient id='g'><stop/>\n<stop offset='abc'/></linearGradient><rect width='9' height='9' "
        "fill='url(#g)'/>",
        "W line 3: <stop> has offset 'abc', which is not valid; ignored"},
@@ -935,13 +1100,51 @@ TEST(SvgImport, ThePageIsWhatTheFileSays) {
   EXPECT_EQ(import("<svg/>").drawing.width, 0);
   const Import none = import("<svg width='0' height='-5'><path d='M0 0H10V10'/></svg>");
   EXPECT_EQ(none.drawing.width, 0);
-  EXPECT_EQ(none.messages, (Texts{"W line 1: <svg> has no width above zero; it is ignored",
-                                  "W line 1: <svg> has no height above zero; it is ignored"}));
+  EXPECT_EQ(none.messages, (Texts{"E line 1: <svg> has a negative height; ignored",
+                                  "W line 1: <svg> has a width, height or viewBox of zero; not drawn"}));
   EXPECT_EQ(page("<rect width='40' height='30' rx='-5' ry='8'/>").drawing.paths.at(0).points,
             page("<rect width='40' height='30' ry='8'/>").drawing.paths.at(0).points);
   const Import wide = import("\n<svg width='1e9' height='9'><rect width='1e9' height='9'/></svg>");
   EXPECT_EQ(wide.error, "line 2: <svg> is wider or taller than 10000000 pixels");
   EXPECT_EQ(wide.messages, Texts{});
+}
+
+TEST(SvgImport, ASizeOfZeroDrawsNothing) {
+  const std::string line = "<path d='M0 0H9V9'/>", symbol = "<symbol id='s'>" + line + "</symbol><use href='#s' ";
+  const struct {
+    std::string text;
+    const char* element; // in line 1
+  } cases[] = {
+      {"<svg viewBox='0 0 0 0'>" + line + "</svg>", "<svg>"},
+      {"<svg width='10' height='10' viewBox='0 0 9 0'>" + line + "</svg>", "<svg>"},
+      {"<svg width='10' height='0'>" + line + "</svg>", "<svg>"},
+      {"<svg width='0%' height='10' viewBox='0 0 9 9'>" + line + "</svg>", "<svg>"},
+      {"<svg><svg viewBox='0 0 0 0'>" + line + "</svg></svg>", "<svg>"},
+      {"<svg><svg width='0'>" + line + "</svg></svg>", "<svg>"},
+      {"<svg>" + symbol + "height='0'/></svg>", "<symbol>"},
+      {"<svg><symbol id='s' viewBox='1 1 0 1'>" + line + "</symbol><use href='#s'/></svg>", "<symbol>"},
+  };
+  for (const auto& c : cases) {
+    const Import i = import(c.text);
+    EXPECT_TRUE(i.drawing.paths.empty()) << c.text;
+    EXPECT_EQ(i.messages,
+              (Texts{std::string("W line 1: ") + c.element + " has a width, height or viewBox of zero; not drawn"}))
+        << c.text;
+  }
+  const std::pair<std::string, const char*> negative[] = {
+      {"<svg width='-1' height='50'>" + line + "</svg>", "E line 1: <svg> has a negative width; ignored"},
+      {"<svg height='-5%'>" + line + "</svg>", "E line 1: <svg> has a negative height; ignored"},
+      {"<svg viewBox='0 0 -1 0'>" + line + "</svg>",
+       "W line 1: <svg> has viewBox '0 0 -1 0', which is not valid; ignored"},
+      {"<svg><svg width='-1'>" + line + "</svg></svg>", "E line 1: <svg> has a negative width; ignored"},
+      {"<svg>" + symbol + "height='-1'/></svg>", "E line 1: <use> has a negative height; ignored"},
+  };
+  for (const auto& [text, message] : negative) {
+    const Import i = import(text);
+    EXPECT_EQ(i.drawing.paths.size(), 1u) << text;
+    EXPECT_EQ(i.messages, Texts{message}) << text;
+  }
+  EXPECT_EQ(import("<svg width='8' height='6' viewBox='0 0 0 0'/>").drawing.width, 8);
 }
 
 TEST(SvgImport, CompilesToADrawingWithThePage) {
@@ -985,6 +1188,34 @@ TEST(SvgImport, NoSvgIsAnError) {
   EXPECT_EQ(import("\x1f\x8b\x08").error, "the gzip data is truncated");
 }
 
+std::string gzip(std::string text) {
+  z_stream z{};
+  EXPECT_EQ(deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string out(deflateBound(&z, text.size()), '\0');
+  z.next_in = reinterpret_cast<Bytef*>(text.data());
+  z.avail_in = static_cast<uInt>(text.size());
+  z.next_out = reinterpret_cast<Bytef*>(out.data());
+  z.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(deflate(&z, Z_FINISH), Z_STREAM_END);
+  out.resize(z.total_out);
+  deflateEnd(&z);
+  return out;
+}
+
+TEST(SvgImport, GzipOfSeveralMembers) {
+  const std::string all = gzip("<svg><rect width='9'") + gzip("") + gzip(" height='9'/></svg>");
+  const Import whole = import(all);
+  EXPECT_EQ(whole.error, "");
+  EXPECT_EQ(whole.drawing.paths.size(), 1u);
+  EXPECT_EQ(import(all + std::string(9, '\0')).error, "");
+  for (const std::string& rest :
+       {std::string("x"), std::string("\x1f"), std::string("\0\0y", 3), std::string("<svg/>")})
+    EXPECT_EQ(import(all + rest).error, "something else follows the gzip data");
+  EXPECT_EQ(import(all + "\x1f\x8b").error, "the gzip data is truncated");
+  EXPECT_EQ(import(all.substr(0, all.size() - 9)).error, "the gzip data is truncated");
+  EXPECT_EQ(import(all + "\x1f\x8b\x01" + all).error, "the gzip data is damaged");
+}
+
 TEST(SvgImport, HostileInputIsBounded) {
   std::string deep, copies = "<g id='c0'><rect width='1' height='1'/></g>";
   for (int i = 0; i < 100000; ++i) deep += "<g>";
@@ -1010,7 +1241,8 @@ TEST(SvgImport, HostileInputIsBounded) {
   for (const std::string& drawing : {"<style>p " + times(8, "g ") + "rect{fill:red}</style>" + times(24, "<g>") +
                                          "<rect/><rect/>" + times(24, "</g>"),
                                      "<style>path ~ rect ~ rect{fill:red}</style>" + times(400, "<rect/>"),
-                                     "<style>[d*=zz]{fill:red}</style><path d='" + times(400000, "M") + "'/><rect/>"}) {
+                                     "<style>[d*=zz]{fill:red}</style><path d='" + times(400000, "M") + "'/><rect/>",
+                                     "<style>rect{font:" + times(40000, "a") + "}</style>" + times(9, "<rect/>")}) {
     const Import i = import("<svg>" + drawing + "</svg>", few);
     EXPECT_NE(std::find(i.messages.begin(), i.messages.end(),
                         "E line 1: the style sheets ask for too much; from here on they are left out"),

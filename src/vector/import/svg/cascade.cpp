@@ -13,7 +13,7 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
   };
   std::vector<Setting> settings;
   for (const pugi::xml_attribute a : node.attributes())
-    if (isProperty(a.name())) settings.push_back({a.name(), a.value()});
+    if (isProperty(a.name()) && std::string_view(a.name()) != "font") settings.push_back({a.name(), a.value()});
   std::vector<const Declaration*> declared;
   if (!sheet_.empty() && work_ < limits_.matches) {
     declared = sheet_.match(document_, node, work_, limits_.matches);
@@ -38,16 +38,14 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
     if (s.name == "stroke-linejoin" && (isWord(trim(s.value), "miter-clip") || isWord(trim(s.value), "arcs")))
       reporter_.warn(document_.line(node), "stroke-linejoin '" + std::string(trim(s.value)) +
                                                "' is not supported: " + element(node) + " has miters instead");
-    if (applied == Applied::Invalid)
-      reporter_.ignored(document_.line(node), element(node) + " has " + std::string(s.name) + " '" +
-                                                  std::string(s.value.substr(0, 60)) +
-                                                  "', which is not valid; ignored");
+    if (applied == Applied::Invalid) ignored(node, document_.line(node), s.name, s.value);
   };
+  const auto setsSize = [](const Setting& s) { return s.name == "font-size" || s.name == "font"; };
   for (const Setting& s : settings) // lengths in em need it
-    if (s.name == "font-size") apply(s);
+    if (setsSize(s)) apply(s);
   lengths.fontSize = style.fontSize;
   for (const Setting& s : settings)
-    if (s.name != "font-size") apply(s);
+    if (!setsSize(s)) apply(s);
 }
 
 Affine Importer::transformOf(pugi::xml_node node, const Style& style, const LengthContext& outer) {
@@ -56,7 +54,10 @@ Affine Importer::transformOf(pugi::xml_node node, const Style& style, const Leng
   const pugi::xml_attribute text = node.attribute("transform");
   const size_t line = text && text.value() == style.transform ? document_.line(text, 0) : document_.line(node);
   if (!parseTransform(style.transform, own)) {
-    reporter_.error(line, element(node) + " has an error in its transform, which is ignored");
+    if (hasUnsupported(style.transform))
+      ignored(node, line, "transform", style.transform);
+    else
+      reporter_.error(line, element(node) + " has an error in its transform, which is ignored");
     return {};
   }
   if (style.transformOrigin.empty()) return own;
@@ -64,8 +65,7 @@ Affine Importer::transformOf(pugi::xml_node node, const Style& style, const Leng
   lengths.fontSize = style.fontSize;
   Point origin;
   if (!parseOrigin(style.transformOrigin, lengths, origin)) {
-    reporter_.ignored(line, element(node) + " has transform-origin '" + style.transformOrigin.substr(0, 60) +
-                                "', which is not valid; ignored");
+    ignored(node, line, "transform-origin", style.transformOrigin);
     return own;
   }
   return Affine{1, 0, 0, 1, origin.x, origin.y} * own * Affine{1, 0, 0, 1, -origin.x, -origin.y};
@@ -86,6 +86,10 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& 
   if (name == "linearGradient" || name == "radialGradient") {
     if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
       return Ink{{0, 0, 0, 1}, std::move(gradient)};
+    if (isCyclic(target)) {
+      reporter_.ignored(document_.line(node), who + " refers to a gradient that refers to itself; " + instead);
+      return plain(paint.fallback);
+    }
     if (gradientStops(target, state.lengths).empty()) { // is there, so that the fallback does not count
       reporter_.ignored(document_.line(node), who + " refers to a gradient without stops; it is not painted");
       return std::nullopt;

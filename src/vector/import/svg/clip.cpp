@@ -8,7 +8,7 @@ namespace gpgp::vector::svg {
 namespace {
 /// "#id" of url(#id), with or without quotes; empty where it is something else.
 std::string referenceOf(std::string_view text) {
-  if (text.substr(0, 4) != "url(" || text.back() != ')') return {};
+  if (!isWord(text.substr(0, 4), "url(") || text.back() != ')') return {};
   text = trim(text.substr(4, text.size() - 5));
   if (text.size() > 1 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front())
     text = text.substr(1, text.size() - 2);

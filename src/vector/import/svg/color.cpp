@@ -239,9 +239,7 @@ bool parseColor(std::string_view text, Color& color) {
   text = trim(text);
   if (text.empty() || text.size() > 128) return false;
   if (text[0] == '#') return parseHex(text.substr(1), color);
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 0x20);
+  const std::string lower = lowered(text);
   if (lower == "transparent") {
     color = {0, 0, 0, 0};
     return true;

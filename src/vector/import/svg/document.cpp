@@ -89,11 +89,19 @@ std::string_view localName(std::string_view name) {
   return colon == name.npos ? name : name.substr(colon + 1);
 }
 
-/// The element after `node` in the file's order, inside `root`.
-pugi::xml_node following(pugi::xml_node node, pugi::xml_node root) {
-  if (node.first_child()) return node.first_child();
-  while (node && node != root && !node.next_sibling()) node = node.parent();
-  return node && node != root ? node.next_sibling() : pugi::xml_node();
+/// The node after `node` in the file's order, inside `root`; `depth` follows.
+pugi::xml_node following(pugi::xml_node node, pugi::xml_node root, size_t& depth) {
+  if (node.first_child()) return ++depth, node.first_child();
+  for (; node != root && !node.next_sibling(); --depth) node = node.parent();
+  return node != root ? node.next_sibling() : pugi::xml_node();
+}
+
+enum class Space { Other, Svg, XLink };
+
+Space spaceOf(std::string_view uri) {
+  const auto has = [uri](std::string_view part) { return uri.find(part) != uri.npos; };
+  if (has("w3.org/2000/svg") || has("&ns_svg;")) return Space::Svg;
+  return has("w3.org/1999/xlink") || has("&ns_xlink;") ? Space::XLink : Space::Other;
 }
 } // namespace
 
@@ -113,24 +121,29 @@ core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxB
   z_stream& z = inflater.stream;
   z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(begin)); // zlib only reads it
   z.avail_in = static_cast<uInt>(bytes.size());
-  int status = Z_OK;
-  while (status != Z_STREAM_END) {
-    const size_t had = out.size();
-    if (had >= maxBytes)
-      return makeError(GPGP_ERROR_INVALID_DATA, "the file inflates to more than %zu bytes", maxBytes);
-    out.resize(std::min(std::max(had * 2, size_t{65536}), maxBytes));
-    z.next_out = reinterpret_cast<Bytef*>(out.data() + had);
-    z.avail_out = static_cast<uInt>(out.size() - had);
-    status = inflate(&z, Z_NO_FLUSH);
-    out.resize(out.size() - z.avail_out);
+  for (;;) {
+    if (z.avail_out == 0) {
+      const size_t had = out.size();
+      if (had >= maxBytes)
+        return makeError(GPGP_ERROR_INVALID_DATA, "the file inflates to more than %zu bytes", maxBytes);
+      out.resize(std::min(std::max(had * 2, size_t{65536}), maxBytes));
+      z.next_out = reinterpret_cast<Bytef*>(out.data() + had);
+      z.avail_out = static_cast<uInt>(out.size() - had);
+    }
+    const int status = inflate(&z, Z_NO_FLUSH);
     if (status == Z_MEM_ERROR) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
     if (status != Z_OK && status != Z_STREAM_END)
       return makeError(GPGP_ERROR_INVALID_DATA,
                        z.avail_in == 0 ? "the gzip data is truncated" : "the gzip data is damaged");
     if (status == Z_OK && z.avail_in == 0 && z.avail_out != 0)
       return makeError(GPGP_ERROR_INVALID_DATA, "the gzip data is truncated");
+    if (status != Z_STREAM_END) continue;
+    while (z.avail_in && *z.next_in == 0) ++z.next_in, --z.avail_in; // fills blocks of tapes
+    if (!z.avail_in) return out.resize(out.size() - z.avail_out), core::Result<void>();
+    if (z.avail_in < 2 || z.next_in[0] != 0x1f || z.next_in[1] != 0x8b)
+      return makeError(GPGP_ERROR_INVALID_DATA, "something else follows the gzip data");
+    inflateReset(&z); // the next member
   }
-  return {};
 }
 
 core::Result<void> Document::load(std::span<const std::byte> bytes) {
@@ -152,16 +165,65 @@ core::Result<void> Document::load(std::span<const std::byte> bytes) {
     return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: not well-formed XML (%s)",
                      lineAt(static_cast<size_t>(std::max<ptrdiff_t>(parsed.offset, 0))), parsed.description());
   const pugi::xml_node top = tree_.document_element();
-  const std::string_view topName = top.name();
-  if (localName(topName) != "svg")
+  if (localName(top.name()) != "svg")
     return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: the outermost element is <%.60s>, not <svg>", line(top),
                      top.name());
-  prefix_ = topName.substr(0, topName.size() - 3);
   root_ = top;
-  for (pugi::xml_node n = root_; n; n = following(n, root_))
+  const auto rootAt = static_cast<size_t>(std::max<ptrdiff_t>(top.offset_debug(), 0));
+  resolveNamespaces();
+  if (name(root_).empty())
+    return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: the outermost element is in another namespace than SVG's",
+                     lineAt(rootAt));
+  size_t depth = 0;
+  for (pugi::xml_node n = root_; n; n = following(n, root_, depth))
     if (const pugi::xml_attribute id = n.attribute("id"); id && n.type() == pugi::node_element)
       ids_.try_emplace(id.value(), n);
   return {};
+}
+
+/// SVG's elements get their local names, others none; XLink's href is called xlink:href.
+void Document::resolveNamespaces() {
+  const std::string top = root_.name();
+  std::unordered_map<std::string_view, Space> spaces{
+      // of prefixes; some files declare none
+      {std::string_view(top).substr(0, top.size() - std::min<size_t>(top.size(), 4)), Space::Svg},
+      {"xlink", Space::XLink}};
+  struct Hidden {
+    size_t depth;
+    std::string_view prefix;
+    Space space;
+  };
+  std::vector<Hidden> hidden; // by the declarations around
+  size_t depth = 0;
+  for (pugi::xml_node n = root_; n; n = following(n, root_, depth)) {
+    for (; !hidden.empty() && hidden.back().depth >= depth; hidden.pop_back())
+      spaces[hidden.back().prefix] = hidden.back().space;
+    if (n.type() != pugi::node_element) continue;
+    for (const pugi::xml_attribute a : n.attributes()) {
+      const std::string_view name = a.name(), uri = a.value();
+      if (name != "xmlns" && name.substr(0, 6) != "xmlns:") continue;
+      if (n == root_ && uri.empty()) continue; // as if it were not there
+      Space& space = spaces[name.substr(std::min<size_t>(name.size(), 6))];
+      hidden.push_back({depth, name.substr(std::min<size_t>(name.size(), 6)), space});
+      space = spaceOf(uri);
+    }
+    const auto spaceIn = [&spaces](std::string_view name) {
+      const size_t colon = name.find(':');
+      const auto found = spaces.find(name.substr(0, colon == name.npos ? 0 : colon));
+      return found == spaces.end() ? Space::Other : found->second;
+    };
+    for (pugi::xml_attribute a = n.first_attribute(), next; a; a = next) {
+      next = a.next_attribute();
+      const std::string_view name = a.name();
+      if (name.find(':') == name.npos || localName(name) != "href") continue;
+      if (spaceIn(name) != Space::XLink)
+        n.remove_attribute(a);
+      else if (name != "xlink:href")
+        a.set_name("xlink:href");
+    }
+    const std::string local(spaceIn(n.name()) == Space::Svg ? localName(n.name()) : std::string_view());
+    if (local != n.name()) n.set_name(local.c_str());
+  }
 }
 
 size_t Document::lineAt(size_t offset) const {
@@ -183,15 +245,7 @@ size_t Document::line(pugi::xml_attribute attribute, size_t offset) const {
 
 std::string_view Document::name(pugi::xml_node node) const {
   if (node.type() != pugi::node_element) return {};
-  std::string_view name = node.name();
-  if (name.substr(0, prefix_.size()) != prefix_) return {};
-  name.remove_prefix(prefix_.size());
-  if (name.find(':') != name.npos) return {};
-  const std::string_view space = node.attribute("xmlns").value();
-  if (prefix_.empty() && !space.empty() && space.find("w3.org/2000/svg") == space.npos &&
-      space.find("&ns_svg;") == space.npos)
-    return {};
-  return name;
+  return node.name();
 }
 
 pugi::xml_node Document::find(std::string_view reference) const {
@@ -202,7 +256,8 @@ pugi::xml_node Document::find(std::string_view reference) const {
 
 std::vector<pugi::xml_node> Document::all(std::string_view wanted) const {
   std::vector<pugi::xml_node> found;
-  for (pugi::xml_node n = root_; n; n = following(n, root_))
+  size_t depth = 0;
+  for (pugi::xml_node n = root_; n; n = following(n, root_, depth))
     if (name(n) == wanted) found.push_back(n);
   return found;
 }

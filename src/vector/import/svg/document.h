@@ -12,7 +12,8 @@
 
 namespace gpgp::vector::svg {
 
-/// Inflates gzip; other bytes come out as they are. Errors: damaged or truncated data, more than `maxBytes`.
+/// Inflates gzip, all its members; other bytes come out as they are. Errors: damaged or truncated data, bytes behind it
+/// that are not zero, more than `maxBytes`.
 core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxBytes, std::string& out);
 
 class Document {
@@ -29,7 +30,7 @@ public:
   size_t line(pugi::xml_node node) const;
   /// Of the character `offset` in an attribute's value.
   size_t line(pugi::xml_attribute attribute, size_t offset) const;
-  /// The element's name without SVG's prefix; empty for other namespaces and for what is no element.
+  /// The element's name without its prefix; empty for other namespaces than SVG's and for what is no element.
   std::string_view name(pugi::xml_node node) const;
   /// The element a reference such as "#id" means; empty where there is none in this file.
   pugi::xml_node find(std::string_view reference) const;
@@ -38,16 +39,16 @@ public:
 
 private:
   size_t lineAt(size_t offset) const;
+  void resolveNamespaces();
 
   std::string text_; // the tree points into it
   pugi::xml_document tree_;
   pugi::xml_node root_;
-  std::string prefix_;
   std::vector<size_t> newlines_;
   std::unordered_map<std::string_view, pugi::xml_node> ids_;
 };
 
-/// href, or xlink:href as it was called before.
+/// href, or XLink's as it was called before.
 pugi::xml_attribute hrefOf(pugi::xml_node node);
 
 } // namespace gpgp::vector::svg

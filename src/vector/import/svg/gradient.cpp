@@ -43,6 +43,15 @@ pugi::xml_attribute Importer::gradientAttribute(pugi::xml_node gradient, const c
   return {};
 }
 
+bool Importer::isCyclic(pugi::xml_node gradient) const {
+  std::vector<pugi::xml_node> seen;
+  for (; gradient && seen.size() < 32; gradient = document_.find(trim(hrefOf(gradient).value()))) {
+    if (std::find(seen.begin(), seen.end(), gradient) != seen.end()) return true;
+    seen.push_back(gradient);
+  }
+  return false;
+}
+
 std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, const LengthContext& lengths) {
   std::vector<GpgpGradientStop> stops;
   for (int hops = 0; gradient && hops < 32 && stops.empty(); ++hops) {
@@ -99,8 +108,11 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
     const pugi::xml_attribute a = gradientAttribute(node, name);
     double value = percent / 100 * whole;
     if (a && !parseLength(trim(a.value()), lengths, axis, value)) {
-      reporter_.error(document_.line(a, 0), element(node) + " has " + name + " '" +
-                                                std::string(a.value()).substr(0, 60) + "', which is no length");
+      noLength(node, document_.line(a, 0), name, a.value());
+      value = percent / 100 * whole;
+    }
+    if (value < 0 && axis == LengthAxis::Diagonal) { // a radius
+      reporter_.error(document_.line(a, 0), element(node) + " has a negative " + name + "; ignored");
       value = percent / 100 * whole;
     }
     return static_cast<float>(value);
@@ -110,10 +122,10 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
   if (radial) {
     g.end[0] = number("cx", LengthAxis::X, 50);
     g.end[1] = number("cy", LengthAxis::Y, 50);
-    g.endRadius = std::max(number("r", LengthAxis::Diagonal, 50), 0.0f);
+    g.endRadius = number("r", LengthAxis::Diagonal, 50);
     g.start[0] = gradientAttribute(node, "fx") ? number("fx", LengthAxis::X, 50) : g.end[0];
     g.start[1] = gradientAttribute(node, "fy") ? number("fy", LengthAxis::Y, 50) : g.end[1];
-    g.startRadius = std::max(number("fr", LengthAxis::Diagonal, 0), 0.0f);
+    g.startRadius = number("fr", LengthAxis::Diagonal, 0);
     if (g.endRadius == 0) g.kind = GPGP_GRADIENT_LINEAR, std::copy_n(g.end, 2, g.start); // all in the last colour
   } else {
     g.start[0] = number("x1", LengthAxis::X, 0);
@@ -133,10 +145,12 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
   }
   if (const pugi::xml_attribute a = gradientAttribute(node, "gradientTransform")) {
     Affine own;
-    if (parseTransform(a.value(), own))
+    if (parseTransform(a.value(), own)) {
+      if (own.a * own.d == own.b * own.c) return nullptr; // it has no extent
       map = map * own;
-    else
+    } else {
       reporter_.error(document_.line(a, 0), element(node) + " has an error in its gradientTransform, which is ignored");
+    }
   }
   const double to[6] = {map.a, map.b, map.c, map.d, map.e, map.f};
   bool finite = true;

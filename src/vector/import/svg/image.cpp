@@ -76,8 +76,8 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   bool hasWidth = false, hasHeight = false;
-  double w = length(node, state.style, "width", lengths, LengthAxis::X, 0, &hasWidth);
-  double h = length(node, state.style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  double w = extent(node, state.style, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  double h = extent(node, state.style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
   const double pw = picture->width, ph = picture->height;
   if (!hasWidth) w = hasHeight ? h * pw / ph : pw;
   if (!hasHeight) h = w * ph / pw;

@@ -9,10 +9,6 @@
 namespace gpgp::vector::svg {
 namespace {
 
-template <size_t N> bool oneOf(std::string_view name, const std::string_view (&names)[N]) {
-  return std::find(std::begin(names), std::end(names), name) != std::end(names);
-}
-
 constexpr std::string_view kShapes[] = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"};
 /// Drawn only where something refers to them, or never.
 constexpr std::string_view kSilent[] = {
@@ -51,14 +47,24 @@ core::Result<PageSize> pageSize(std::span<const std::byte> bytes) {
   return Importer(document, quiet, {}, {}, {}).pageSize();
 }
 
+/// "<rect> has x 'wide', which is ".
+std::string Importer::valueOf(pugi::xml_node node, std::string_view name, std::string_view value) const {
+  return element(node) + " has " + std::string(name) + " '" + std::string(value.substr(0, 60)) + "', which is ";
+}
+
 std::string Importer::element(pugi::xml_node node) const {
   return std::string("<") + std::string(std::string_view(node.name()).substr(0, 40)) + ">";
 }
 
-void Importer::ignored(pugi::xml_node node, pugi::xml_attribute attribute) {
-  reporter_.ignored(document_.line(attribute, 0), element(node) + " has " + attribute.name() + " '" +
-                                                      std::string(attribute.value()).substr(0, 60) +
-                                                      "', which is not valid; ignored");
+void Importer::ignored(pugi::xml_node node, size_t line, std::string_view name, std::string_view value) {
+  const std::string text = valueOf(node, name, value);
+  hasUnsupported(value) ? reporter_.warn(line, text + "not supported; ignored")
+                        : reporter_.ignored(line, text + "not valid; ignored");
+}
+
+void Importer::noLength(pugi::xml_node node, size_t line, std::string_view name, std::string_view value) {
+  hasUnsupported(value) ? ignored(node, line, name, value)
+                        : reporter_.error(line, valueOf(node, name, value) + "no length");
 }
 
 AspectRatio Importer::aspectRatio(pugi::xml_node node) {
@@ -84,7 +90,7 @@ core::Result<Imported> Importer::run() {
   if (result_.width > kMaxReach || result_.height > kMaxReach)
     return core::makeError(GPGP_ERROR_INVALID_DATA, "line %zu: <svg> is wider or taller than 10000000 pixels",
                            document_.line(document_.root()));
-  visit(document_.root(), state);
+  if (!empty_) visit(document_.root(), state);
   return std::move(result_);
 }
 
@@ -93,9 +99,28 @@ PageSize Importer::pageSize() {
   return {result_.width, result_.height};
 }
 
+bool Importer::isForScreen(pugi::xml_node node) {
+  const pugi::xml_attribute media = node.attribute("media");
+  bool others = false;
+  for (std::string_view rest = media.value(); !rest.empty();) {
+    const size_t end = std::min(rest.find(','), rest.size());
+    const std::string_view medium = trim(rest.substr(0, end));
+    if (isWord(medium, "all") || isWord(medium, "screen")) return true;
+    Scanner s(medium);
+    s.name();
+    if (!s.done())
+      reporter_.warn(document_.line(media, 0), "media '" + std::string(medium.substr(0, 60)) +
+                                                   "' is not supported: " + element(node) + " does not count for it");
+    others |= !medium.empty();
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return !others;
+}
+
 Importer::State Importer::begin() {
   for (const pugi::xml_node node : document_.all("style")) {
     const std::string_view type = node.attribute("type").value();
+    if (!isForScreen(node)) continue;
     std::string text;
     for (const pugi::xml_node part : node.children()) text += part.value();
     if (type.empty() || type == "text/css") sheet_.parse(text, document_.line(node), reporter_);
@@ -111,8 +136,11 @@ Importer::State Importer::begin() {
   bool hasWidth = false, hasHeight = false;
   Style style;
   cascade(root, {}, state.lengths, style);
-  double width = length(root, style, "width", state.lengths, LengthAxis::X, 0, &hasWidth);
-  double height = length(root, style, "height", state.lengths, LengthAxis::Y, 0, &hasHeight);
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = style.fontSize;
+  double width = extent(root, style, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  double height = extent(root, style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  empty_ = !hasExtent(root, hasWidth ? width : 1, hasHeight ? height : 1, box);
   const auto isPercent = [&](const char* name) {
     const std::string* styled = style.geometryOf(name);
     const std::string_view text = styled ? std::string_view(*styled) : root.attribute(name).value();
@@ -120,13 +148,10 @@ Importer::State Importer::begin() {
   };
   if (isPercent("width")) hasWidth = false;
   if (isPercent("height")) hasHeight = false;
-  const auto needsSize = [&](const char* name, double size, bool& has) {
-    if (has && !(size > 0))
-      reporter_.ignored(document_.line(root), element(root) + " has no " + name + " above zero; it is ignored");
-    has = has && size > 0;
-  };
-  needsSize("width", width, hasWidth);
-  needsSize("height", height, hasHeight);
+  if (empty_) {
+    if (hasWidth && hasHeight) result_.width = width, result_.height = height;
+    return state;
+  }
   if (box && !hasWidth) width = hasHeight ? height * box->width / box->height : box->width;
   if (box && !hasHeight) height = hasWidth ? width * box->height / box->width : box->height;
   if (box || (hasWidth && hasHeight)) {
@@ -261,37 +286,43 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   moved.transform = moved.transform * Affine{1, 0, 0, 1, x, y};
   constexpr double unset = -1;
-  const double size[2] = {length(node, state.style, "width", lengths, LengthAxis::X, unset),
-                          length(node, state.style, "height", lengths, LengthAxis::Y, unset)};
+  const double size[2] = {extent(node, state.style, "width", lengths, LengthAxis::X, unset),
+                          extent(node, state.style, "height", lengths, LengthAxis::Y, unset)};
   used_.push_back(target);
   visit(target, moved, size);
   used_.pop_back();
+}
+
+bool Importer::hasExtent(pugi::xml_node node, double width, double height, const std::optional<ViewBox>& box) {
+  if (width > 0 && height > 0 && (!box || (box->width > 0 && box->height > 0))) return true;
+  reporter_.ignored(document_.line(node), element(node) + " has a width, height or viewBox of zero; not drawn");
+  return false;
 }
 
 /// <svg> inside another, or <symbol>: its own coordinates, and a clip where something reaches beyond its edge.
 void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
   const size_t before = result_.paths.size();
   if (node == document_.root()) return visitChildren(node, state);
-  const LengthContext lengths = state.lengths;
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
-  double w = length(node, state.style, "width", lengths, LengthAxis::X, lengths.width);
-  double h = length(node, state.style, "height", lengths, LengthAxis::Y, lengths.height);
+  double w = extent(node, state.style, "width", lengths, LengthAxis::X, lengths.width);
+  double h = extent(node, state.style, "height", lengths, LengthAxis::Y, lengths.height);
   if (useSize && useSize[0] >= 0) w = useSize[0];
   if (useSize && useSize[1] >= 0) h = useSize[1];
-  if (!(w > 0 && h > 0)) return;
+  const pugi::xml_attribute text = node.attribute("viewBox");
+  const std::optional<ViewBox> box = parseViewBox(text.value());
+  if (text && !box) ignored(node, text);
+  if (!hasExtent(node, w, h, box)) return;
   state.transform = state.transform * Affine{1, 0, 0, 1, x, y};
   const Affine frame = state.transform;
   state.lengths.width = w;
   state.lengths.height = h;
-  if (const pugi::xml_attribute text = node.attribute("viewBox")) {
-    if (const auto box = parseViewBox(text.value())) {
-      state.transform = state.transform * fitViewBox(*box, w, h, aspectRatio(node));
-      state.lengths.width = box->width;
-      state.lengths.height = box->height;
-    } else {
-      ignored(node, text);
-    }
+  if (box) {
+    state.transform = state.transform * fitViewBox(*box, w, h, aspectRatio(node));
+    state.lengths.width = box->width;
+    state.lengths.height = box->height;
   }
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
   Shape edge = rectangle(0, 0, w, h, 0, 0, 1);
@@ -376,9 +407,7 @@ double Importer::dashUnit(const Shape& shape, double otherwise, pugi::xml_node n
   double length = 0;
   Scanner s(trim(said.value()));
   if (!s.number(length) || !s.done() || length < 0) {
-    reporter_.ignored(document_.line(said, 0), element(node) + " has pathLength '" +
-                                                   std::string(said.value()).substr(0, 60) +
-                                                   "', which is not valid; ignored");
+    ignored(node, said);
     return otherwise;
   }
   return lengthOf(shape) / length;

@@ -11,10 +11,10 @@
 
 namespace gpgp::vector::svg {
 
-/// The map from a viewBox into a viewport of the given size (SVG 2, 8.2); nothing where the box has no area.
 struct ViewBox {
   double x = 0, y = 0, width = 0, height = 0;
 };
+/// Nothing where it is malformed or negative; sizes of zero mean that nothing is drawn (SVG 2, 8.6).
 std::optional<ViewBox> parseViewBox(std::string_view text);
 /// A preserveAspectRatio (SVG 2, 8.6); as it is made, what counts where there is none.
 struct AspectRatio {
@@ -23,6 +23,7 @@ struct AspectRatio {
   bool slice = false;                ///< the box covers the viewport instead of lying in it
 };
 std::optional<AspectRatio> parseAspectRatio(std::string_view text);
+/// The map from a viewBox that is not empty into a viewport of the given size (SVG 2, 8.2).
 Affine fitViewBox(const ViewBox& box, double width, double height, const AspectRatio& ratio);
 
 /// The smallest box around a shape's curves.
@@ -53,6 +54,8 @@ private:
   };
 
   // importer.cpp
+  /// Whether a style sheet's media are ours.
+  bool isForScreen(pugi::xml_node node);
   /// The style sheets, and the root's page with what is measured by it.
   State begin();
   void visit(pugi::xml_node node, const State& parent, const double* useSize = nullptr);
@@ -60,6 +63,8 @@ private:
   void visitUse(pugi::xml_node node, const State& state);
   void visitSwitch(pugi::xml_node node, const State& state);
   void visitViewport(pugi::xml_node node, State& state, const double* useSize);
+  /// False where a size of zero keeps the element from being drawn, which is said.
+  bool hasExtent(pugi::xml_node node, double width, double height, const std::optional<ViewBox>& box);
   /// What is inside of an element whose own properties are in the state.
   void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
@@ -98,6 +103,9 @@ private:
   /// A length of an element: as style sheets say, else its attribute.
   double length(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
                 LengthAxis axis, double otherwise, bool* given = nullptr);
+  /// The same of a width or height, which is said and does not count where it is negative.
+  double extent(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
+                LengthAxis axis, double otherwise, bool* given = nullptr);
 
   // cascade.cpp
   void cascade(pugi::xml_node node, const Style& parent, const LengthContext& lengths, Style& style);
@@ -108,13 +116,21 @@ private:
 
   // gradient.cpp
   pugi::xml_attribute gradientAttribute(pugi::xml_node gradient, const char* name) const;
+  /// Whether following its references leads to one for the second time.
+  bool isCyclic(pugi::xml_node gradient) const;
   std::vector<GpgpGradientStop> gradientStops(pugi::xml_node gradient, const LengthContext& lengths);
   /// Nothing where it has no stops, or no box to be measured by.
   std::shared_ptr<const Gradient> gradientOf(pugi::xml_node node, bool radial, const State& state, const Shape& shape);
 
   std::string element(pugi::xml_node node) const;
-  /// Says that an attribute has no valid value.
-  void ignored(pugi::xml_node node, pugi::xml_attribute attribute);
+  std::string valueOf(pugi::xml_node node, std::string_view name, std::string_view value) const;
+  /// Says that a value does not count, for it is not valid, or not supported.
+  void ignored(pugi::xml_node node, size_t line, std::string_view name, std::string_view value);
+  void ignored(pugi::xml_node node, pugi::xml_attribute attribute) {
+    ignored(node, document_.line(attribute, 0), attribute.name(), attribute.value());
+  }
+  /// What is no length.
+  void noLength(pugi::xml_node node, size_t line, std::string_view name, std::string_view value);
   /// The node's preserveAspectRatio; one that is not valid is named and does not count.
   AspectRatio aspectRatio(pugi::xml_node node);
 
@@ -129,7 +145,7 @@ private:
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, empty_ = false; ///< the last: the root has a size of zero
   enum class Mode {
     Paint,
     Clip,   // shapes alone count

@@ -22,6 +22,13 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
+std::string lowered(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
 bool isWord(std::string_view text, std::string_view word) {
   return std::equal(text.begin(), text.end(), word.begin(), word.end(),
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
@@ -94,7 +101,8 @@ std::string_view Scanner::name() {
 }
 
 bool parseLength(std::string_view text, const LengthContext& context, LengthAxis axis, double& value) {
-  Scanner s(trim(text));
+  text = trim(text);
+  Scanner s(text);
   double v = 0;
   if (!s.number(v)) return false;
   const double diagonal = std::sqrt((context.width * context.width + context.height * context.height) / 2);
@@ -111,15 +119,15 @@ bool parseLength(std::string_view text, const LengthContext& context, LengthAxis
                {"rem", 16},
                {"ex", context.fontSize / 2},
                {"ch", context.fontSize / 2},
-               {"Q", 96 / 101.6},
+               {"q", 96 / 101.6},
                {"%", (axis == LengthAxis::X   ? context.width
                       : axis == LengthAxis::Y ? context.height
                                               : diagonal) /
                          100}};
   if (!s.done()) {
     const auto* unit = std::begin(units);
-    while (unit != std::end(units) && !s.take(unit->name)) ++unit;
-    if (unit == std::end(units) || !s.done()) return false;
+    while (unit != std::end(units) && !isWord(text.substr(s.offset()), unit->name)) ++unit;
+    if (unit == std::end(units)) return false;
     v *= unit->factor;
   }
   if (!std::isfinite(v)) return false;
@@ -151,7 +159,7 @@ bool parseOrigin(std::string_view text, const LengthContext& context, Point& ori
     }
     bool down = (count == 1) != swapped;
     const Word* word = std::begin(words);
-    while (word != std::end(words) && word->name != part) ++word;
+    while (word != std::end(words) && !isWord(part, word->name)) ++word;
     if (word == std::end(words)) {
       double& value = down ? p.y : p.x;
       if (!parseLength(part, context, down ? LengthAxis::Y : LengthAxis::X, value)) return false;
@@ -170,7 +178,8 @@ bool parseTransform(std::string_view text, Affine& transform) {
     double factor;
   } units[] = {{"deg", 1}, {"grad", 0.9}, {"rad", 180 / std::numbers::pi}, {"turn", 360}, {"px", 1}}; // as CSS has them
   Affine all;
-  Scanner s(text);
+  const std::string lower = lowered(text);
+  Scanner s(lower);
   s.skipSpace();
   if (s.take("none")) return s.skipSpace(), s.done();
   while (!s.done()) {
@@ -204,16 +213,16 @@ bool parseTransform(std::string_view text, Affine& transform) {
     } else if (name == "rotate" && (count == 1 || count == 3)) {
       const double c = std::cos(radians), n = std::sin(radians);
       m = {c, n, -n, c, v[1] - c * v[1] + n * v[2], v[2] - n * v[1] - c * v[2]};
-    } else if ((name == "translateX" || name == "translateY") && count == 1) {
-      (name == "translateX" ? m.e : m.f) = v[0];
-    } else if ((name == "scaleX" || name == "scaleY") && count == 1) {
-      (name == "scaleX" ? m.a : m.d) = v[0];
+    } else if ((name == "translatex" || name == "translatey") && count == 1) {
+      (name == "translatex" ? m.e : m.f) = v[0];
+    } else if ((name == "scalex" || name == "scaley") && count == 1) {
+      (name == "scalex" ? m.a : m.d) = v[0];
     } else if (name == "skew" && (count == 1 || count == 2)) {
       m.c = std::tan(radians);
       m.b = std::tan(v[1] * (std::numbers::pi / 180));
-    } else if (name == "skewX" && count == 1) {
+    } else if (name == "skewx" && count == 1) {
       m.c = std::tan(radians);
-    } else if (name == "skewY" && count == 1) {
+    } else if (name == "skewy" && count == 1) {
       m.b = std::tan(radians);
     } else {
       return false;

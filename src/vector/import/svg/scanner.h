@@ -4,6 +4,8 @@
 #pragma once
 #include "vector/geometry/shape.h"
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -34,6 +36,11 @@ private:
 };
 
 std::string_view trim(std::string_view text);
+template <size_t N> bool oneOf(std::string_view name, const std::string_view (&names)[N]) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+/// With small letters for ASCII's capitals.
+std::string lowered(std::string_view text);
 /// Equal but for the case of ASCII letters, as CSS compares its words. `word` is in small letters.
 bool isWord(std::string_view text, std::string_view word);
 

@@ -26,12 +26,21 @@ double Importer::length(pugi::xml_node node, const Style& style, const char* nam
   if ((!a && !styled) || text == "auto") return otherwise;
   double value = 0;
   if (!parseLength(text, lengths, axis, value)) {
-    reporter_.error(styled ? document_.line(node) : document_.line(a, 0),
-                    element(node) + " has " + name + " '" + std::string(text.substr(0, 60)) + "', which is no length");
+    noLength(node, styled ? document_.line(node) : document_.line(a, 0), name, text);
     return otherwise;
   }
   if (given) *given = true;
   return value;
+}
+
+double Importer::extent(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
+                        LengthAxis axis, double otherwise, bool* given) {
+  bool has = false;
+  const double value = length(node, style, name, lengths, axis, otherwise, &has);
+  const bool negative = has && value < 0;
+  if (negative) reporter_.error(document_.line(node), element(node) + " has a negative " + name + "; ignored");
+  if (given) *given = has && !negative;
+  return negative ? otherwise : value;
 }
 
 Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State& state) {
@@ -104,7 +113,7 @@ std::optional<ViewBox> parseViewBox(std::string_view text) {
     if (!s.number(n)) return std::nullopt;
     s.skipCommaSpace();
   }
-  if (!s.done() || !(v[2] > 0 && v[3] > 0)) return std::nullopt;
+  if (!s.done() || !(v[2] >= 0 && v[3] >= 0)) return std::nullopt;
   return ViewBox{v[0], v[1], v[2], v[3]};
 }
 
@@ -142,7 +151,7 @@ core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&pag
   const AspectRatio how =
       parseAspectRatio(document.root().attribute("preserveAspectRatio").value()).value_or(AspectRatio{});
   const std::optional<ViewBox> box = parseViewBox(document.root().attribute("viewBox").value());
-  if (!box) return fitViewBox({at(0), at(1), at(2), at(3)}, width, height, how);
+  if (!box || !(box->width > 0 && box->height > 0)) return fitViewBox({at(0), at(1), at(2), at(3)}, width, height, how);
   const Affine there = fitViewBox(*box, at(2), at(3), how), here = fitViewBox(*box, width, height, how);
   const double x = here.a / there.a, y = here.d / there.d;
   return Affine{x, 0, 0, y, here.e - x * (there.e + at(0)), here.f - y * (there.f + at(1))};

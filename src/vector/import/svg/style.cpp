@@ -35,7 +35,8 @@ bool isCurrentColor(std::string_view text) { return isWord(text, "currentcolor")
 
 bool parsePaint(std::string_view text, Paint& paint) {
   Paint p;
-  if (text.substr(0, 4) == "url(") {
+  const auto isUrl = [](std::string_view value) { return isWord(value.substr(0, 4), "url("); };
+  if (isUrl(text)) {
     const size_t end = text.find(')');
     if (end == text.npos) return false;
     std::string_view target = trim(text.substr(4, end - 4));
@@ -45,7 +46,7 @@ bool parsePaint(std::string_view text, Paint& paint) {
     text = trim(text.substr(end + 1));
     if (!text.empty()) {
       Paint rest;
-      if (text.substr(0, 4) == "url(" || !parsePaint(text, rest)) return false;
+      if (isUrl(text) || !parsePaint(text, rest)) return false;
       p.hasFallback = true;
       p.fallback = rest.kind;
       p.color = rest.color;
@@ -92,6 +93,35 @@ bool parseFontSize(std::string_view v, const Style& parent, LengthContext length
   lengths.width = lengths.height = lengths.fontSize = parent.fontSize;
   double read = 0;
   return parseLength(v, lengths, LengthAxis::X, read) && read >= 0 && (size = read, true);
+}
+
+/// What is before the size, the size, what may be a line's height, and families.
+bool parseFont(std::string_view text, const Style& parent, const LengthContext& lengths, double& size) {
+  constexpr std::string_view systems[] = {"caption", "icon", "menu", "message-box", "small-caption", "status-bar"};
+  constexpr std::string_view before[] = {
+      "normal",         "italic",        "oblique",         "small-caps",      "bold",
+      "bolder",         "lighter",       "ultra-condensed", "extra-condensed", "condensed",
+      "semi-condensed", "semi-expanded", "expanded",        "extra-expanded",  "ultra-expanded"};
+  const std::string lower = lowered(text);
+  if (oneOf(lower, systems)) return size = Style{}.fontSize, true;
+  std::string_view rest = lower;
+  const auto word = [&rest] { return rest.substr(0, rest.find_first_of(" \t\r\n\f/")); };
+  double weight = 0;
+  const auto isWeight = [&](std::string_view number) {
+    return parseLength(number, lengths, LengthAxis::X, weight) && weight >= 1 && weight <= 1000 &&
+           number.find_first_not_of("+.0123456789") == number.npos;
+  };
+  for (int i = 0; i < 4 && (oneOf(word(), before) || isWeight(word())); ++i) rest = trim(rest.substr(word().size()));
+  double read = 0;
+  if (!parseFontSize(word(), parent, lengths, read)) return false;
+  rest = trim(rest.substr(word().size()));
+  if (rest.substr(0, 1) == "/") {
+    rest = trim(rest.substr(1));
+    double height = 0;
+    if (word() != "normal" && !parseLength(word(), lengths, LengthAxis::X, height)) return false;
+    rest = trim(rest.substr(word().size()));
+  }
+  return !rest.empty() && (size = read, true);
 }
 
 template <class T> struct Word {
@@ -180,6 +210,7 @@ const Property kProperties[] = {
     GPGP_PROPERTY("overflow", overflowVisible,
                   (c.style.overflowVisible = isWord(c.value, "visible") || isWord(c.value, "auto"), true)),
     GPGP_PROPERTY("font-size", fontSize, parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize)),
+    GPGP_PROPERTY("font", fontSize, parseFont(c.value, c.parent, c.lengths, c.style.fontSize)),
     GPGP_PROPERTY("paint-order", strokeFirst, setPaintOrder(c)),
     GPGP_PROPERTY("vector-effect", nonScalingStroke,
                   (c.style.nonScalingStroke = c.value.find("non-scaling-stroke") == 0, true)),
@@ -232,15 +263,36 @@ const std::string* Style::geometryOf(std::string_view name) const {
 
 bool isGeometry(std::string_view name) {
   constexpr std::string_view names[] = {"x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "d"};
-  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+  return oneOf(name, names);
 }
 
 bool isUnsupported(std::string_view name, std::string_view value) {
   constexpr std::string_view names[] = {"translate",   "rotate",          "scale",      "transform-box",
                                         "offset-path", "backdrop-filter", "mask-image", "perspective"};
   constexpr std::string_view without[] = {"none", "view-box", "inherit", "initial", "unset", "revert", "auto"};
-  return std::find(std::begin(names), std::end(names), name) != std::end(names) &&
-         std::find(std::begin(without), std::end(without), trim(value)) == std::end(without);
+  return oneOf(name, names) && !oneOf(trim(value), without);
+}
+
+bool hasUnsupported(std::string_view value) {
+  constexpr std::string_view functions[] = {
+      "var",      "env",     "attr",      "calc",       "min",         "max",         "clamp",      "round",   "mod",
+      "rem",      "sin",     "cos",       "tan",        "asin",        "acos",        "atan",       "atan2",   "pow",
+      "sqrt",     "hypot",   "log",       "exp",        "abs",         "sign",        "lab",        "lch",     "oklab",
+      "oklch",    "color",   "color-mix", "light-dark", "device-cmyk", "translate3d", "translatez", "scale3d", "scalez",
+      "rotate3d", "rotatex", "rotatey",   "rotatez",    "matrix3d",    "perspective"};
+  constexpr std::string_view units[] = {
+      "vw",  "vh",  "vi",    "vb",    "vmin",  "vmax", "svw", "svh",  "svi", "svb",   "svmin", "svmax", "lvw",
+      "lvh", "lvi", "lvb",   "lvmin", "lvmax", "dvw",  "dvh", "dvi",  "dvb", "dvmin", "dvmax", "cqw",   "cqh",
+      "cqi", "cqb", "cqmin", "cqmax", "lh",    "rlh",  "cap", "rcap", "ic",  "ric",   "rex",   "rch"};
+  const std::string lower = lowered(value.substr(0, 1024)); // enough for what people write
+  for (Scanner s(lower); !s.done();) {
+    double number = 0;
+    const bool isNumber = s.number(number);
+    const std::string_view name = s.name();
+    if (isNumber ? oneOf(name, units) : s.peek() == '(' && oneOf(name, functions)) return true;
+    if (!isNumber && name.empty()) s.advance();
+  }
+  return false;
 }
 
 bool isProperty(std::string_view name) { return findProperty(name) != nullptr; }

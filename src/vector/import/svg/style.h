@@ -65,6 +65,9 @@ bool isGeometry(std::string_view name);
 /// Whether it is a property that would change the picture, and is not supported.
 bool isUnsupported(std::string_view name, std::string_view value);
 
+/// Whether a value that is not understood has functions or units of CSS that are not supported.
+bool hasUnsupported(std::string_view value);
+
 enum class Applied { Yes, Unknown, Invalid };
 /// Sets one property. `parent` answers "inherit" and "unset". Lengths in the value use `lengths` (its font size is the
 /// element's).

@@ -6,72 +6,79 @@
 namespace gpgp::vector::svg {
 namespace {
 
-/// Comments become spaces, newlines stay, so that lines can be counted.
+/// Behind the comment, the string or the escape that begins at `at`, else behind the character. A string ends with its
+/// line; of url(...) without quotes only the closing bracket is left.
+size_t pastToken(std::string_view text, size_t at) {
+  const char c = text[at];
+  const auto behind = [&](size_t found, size_t length) {
+    return found == text.npos ? text.size() : std::min(found + length, text.size());
+  };
+  const auto to = [&](std::string_view marks) { // the next of them that is not escaped
+    for (++at; at < text.size() && marks.find(text[at]) == marks.npos; ++at) at += text[at] == '\\';
+    return std::min(at, text.size());
+  };
+  if (text.substr(at, 2) == "/*") return behind(text.find("*/", at + 2), 2);
+  if (c == '\\') return behind(at, 2);
+  if (c == '"') return behind(to("\"\n"), 1);
+  if (c == '\'') return behind(to("'\n"), 1);
+  if (c == '(' && at >= 3 && isWord(text.substr(at - 3, 3), "url")) {
+    const size_t inside = text.find_first_not_of(" \t\r\n\f", at + 1);
+    if (inside != text.npos && text[inside] != '"' && text[inside] != '\'') return to(")");
+  }
+  return at + 1;
+}
+
+/// The first of `marks` from `at` on that is in no comment, string or brackets; the text's size where there is none.
+size_t findOutside(std::string_view text, size_t at, std::string_view marks) {
+  std::string open; // what closes the brackets around
+  for (; at < text.size(); at = pastToken(text, at)) {
+    const char c = text[at];
+    if (open.empty() && marks.find(c) != marks.npos) return at;
+    if (!open.empty() && c == open.back())
+      open.pop_back();
+    else if (c == '(' || c == '[' || c == '{')
+      open.push_back(c == '(' ? ')' : c == '[' ? ']' : '}');
+  }
+  return text.size();
+}
+
+/// Comments become spaces, as they are between the parts of a value.
 std::string withoutComments(std::string_view text) {
   std::string out(text);
-  for (size_t at = 0; (at = out.find("/*", at)) != out.npos;) {
-    const size_t close = out.find("*/", at + 2), end = close == out.npos ? out.size() : close + 2;
-    std::replace_if(
-        out.begin() + static_cast<ptrdiff_t>(at), out.begin() + static_cast<ptrdiff_t>(end),
-        [](char c) { return c != '\n'; }, ' ');
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = pastToken(text, at);
+    if (text.substr(at, 2) == "/*")
+      std::fill(out.begin() + static_cast<ptrdiff_t>(at), out.begin() + static_cast<ptrdiff_t>(end), ' ');
     at = end;
   }
   return out;
 }
 
-/// The end of a block that begins after its brace, nested ones skipped.
-size_t blockEnd(std::string_view text, size_t at) {
-  for (size_t depth = 1; at < text.size(); ++at) {
-    depth += text[at] == '{';
-    if (text[at] == '}' && --depth == 0) return at;
-  }
-  return text.size();
+/// Behind spaces and comments.
+size_t pastSpace(std::string_view text, size_t at) {
+  while (at < text.size() && (trim(text.substr(at, 1)).empty() || text.substr(at, 2) == "/*")) at = pastToken(text, at);
+  return at;
 }
 
-/// Separators in quotes or brackets do not count.
+/// The same inside a selector; whether there was a space, which a comment is not.
+bool skipSpace(Scanner& s, bool spaces = true) {
+  bool skipped = false;
+  for (;;) {
+    const size_t at = s.offset();
+    if (spaces) s.skipSpace();
+    skipped |= s.offset() > at;
+    if (!s.take("/*")) return skipped;
+    while (!s.done() && !s.take("*/")) s.advance();
+  }
+}
+
+/// Separators in comments, strings and brackets do not count.
 template <class F> void split(std::string_view text, char separator, F&& part) {
-  size_t begin = 0, depth = 0;
-  char quote = 0;
-  for (size_t at = 0; at < text.size(); ++at) {
-    const char c = text[at];
-    if (quote) {
-      if (c == quote) quote = 0;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '(') {
-      ++depth;
-    } else if (c == ')') {
-      depth -= depth > 0;
-    } else if (c == separator && depth == 0) {
-      part(text.substr(begin, at - begin));
-      begin = at + 1;
-    }
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = findOutside(text, begin, {&separator, 1});
+    part(text.substr(begin, end - begin));
+    begin = end + 1;
   }
-  part(text.substr(begin));
-}
-
-std::string lowered(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
-/// Of a text without comments.
-std::vector<Declaration> declarationsOf(std::string_view text) {
-  std::vector<Declaration> declarations;
-  split(text, ';', [&declarations](std::string_view part) {
-    const size_t colon = part.find(':');
-    if (colon == part.npos) return;
-    Declaration d{lowered(trim(part.substr(0, colon))), std::string(trim(part.substr(colon + 1))), false};
-    const size_t mark = d.value.rfind('!');
-    if (mark != d.value.npos && isWord(trim(std::string_view(d.value).substr(mark + 1)), "important")) {
-      d.important = true;
-      d.value = trim(d.value.substr(0, mark));
-    }
-    declarations.push_back(std::move(d));
-  });
-  return declarations;
 }
 
 /// At most 64 of them.
@@ -87,45 +94,54 @@ std::vector<std::string_view> wordsOf(std::string_view text) {
 
 } // namespace
 
-std::vector<Declaration> parseDeclarations(std::string_view text) { return declarationsOf(withoutComments(text)); }
+std::vector<Declaration> parseDeclarations(std::string_view original) {
+  const std::string text = withoutComments(original);
+  std::vector<Declaration> declarations;
+  split(text, ';', [&declarations](std::string_view part) {
+    const size_t colon = part.find(':');
+    if (colon == part.npos) return;
+    Declaration d{lowered(trim(part.substr(0, colon))), std::string(trim(part.substr(colon + 1))), false};
+    const size_t mark = d.value.rfind('!');
+    if (mark != d.value.npos && isWord(trim(std::string_view(d.value).substr(mark + 1)), "important")) {
+      d.important = true;
+      d.value = trim(d.value.substr(0, mark));
+    }
+    declarations.push_back(std::move(d));
+  });
+  return declarations;
+}
 
-void StyleSheet::parse(std::string_view original, size_t line, Reporter& reporter) {
-  const std::string clean = withoutComments(original);
-  const std::string_view text = clean;
+void StyleSheet::parse(std::string_view text, size_t line, Reporter& reporter) {
   size_t counted = 0; // newlines before it are in `line`
   for (size_t at = 0; at < text.size();) {
-    while (at < text.size() && trim(text.substr(at, 1)).empty()) ++at;
+    at = pastSpace(text, at);
     if (text.substr(at, 4) == "<!--") at += 4;
     if (text.substr(at, 3) == "-->") at += 3;
+    at = pastSpace(text, at);
     if (at >= text.size()) return;
-    while (at < text.size() && trim(text.substr(at, 1)).empty()) ++at;
     line += static_cast<size_t>(
         std::count(text.begin() + static_cast<ptrdiff_t>(counted), text.begin() + static_cast<ptrdiff_t>(at), '\n'));
     counted = at;
-    const size_t brace = std::min(text.find('{', at), text.size());
-    if (text.substr(at, 1) == "@") {
+    const bool isAt = text[at] == '@';
+    const size_t brace = findOutside(text, at, isAt ? ";{" : "{"); // or the end of a rule without a block
+    const size_t end = brace < text.size() && text[brace] == ';' ? brace : findOutside(text, brace + 1, "}");
+    if (isAt) {
       Scanner name(text.substr(at + 1));
       reporter.warn(line, std::string("style rule @") + std::string(name.name().substr(0, 40)) + " is not supported");
-      const size_t semicolon = text.substr(0, brace).find(';', at); // before its block, or there is none
-      at = semicolon != text.npos ? semicolon + 1 : blockEnd(text, std::min(brace + 1, text.size())) + 1;
+      at = end + 1;
       continue;
     }
-    if (brace == text.size()) {
-      if (!trim(text.substr(at)).empty()) reporter.error(line, "style rule without a block");
-      return;
-    }
-    const size_t end = blockEnd(text, brace + 1);
+    if (brace == text.size()) return reporter.error(line, "style rule without a block");
     if (rules_.size() >= kMaxRules) {
       reporter.error(line, "more than 65536 style rules; the rest are left out", GPGP_ERROR_UNSUPPORTED);
       return;
     }
     const size_t block = blocks_.size();
-    blocks_.push_back(declarationsOf(text.substr(brace + 1, end - brace - 1)));
+    blocks_.push_back(parseDeclarations(text.substr(brace + 1, end - brace - 1)));
     split(text.substr(at, brace - at), ',', [&](std::string_view selector) {
-      selector = trim(selector);
       if (rules_.size() < kMaxRules && !addSelector(selector, block))
-        reporter.warn(line,
-                      std::string("style selector '") + std::string(selector.substr(0, 60)) + "' is not supported");
+        reporter.warn(line, "style selector '" + std::string(trim(withoutComments(selector)).substr(0, 60)) +
+                                "' is not supported");
     });
     at = end + 1;
   }
@@ -133,14 +149,14 @@ void StyleSheet::parse(std::string_view original, size_t line, Reporter& reporte
 
 /// Behind "[", up to and with "]".
 bool StyleSheet::AttributeTest::parse(Scanner& s) {
-  s.skipSpace();
+  skipSpace(s);
   name = s.name();
-  s.skipSpace();
+  skipSpace(s);
   if (name.empty() || s.take("]")) return !name.empty();
   how = s.peek();
   if (how != '=') s.advance();
   if (std::string_view("=~|^$*").find(how) == std::string_view::npos || !s.take("=")) return false;
-  s.skipSpace();
+  skipSpace(s);
   if (const char quote = s.peek(); quote == '"' || quote == '\'') {
     for (s.advance(); !s.done() && s.peek() != quote; s.advance()) value += s.peek();
     if (s.done()) return false;
@@ -149,7 +165,7 @@ bool StyleSheet::AttributeTest::parse(Scanner& s) {
     value = s.name();
     if (value.empty()) return false;
   }
-  s.skipSpace();
+  skipSpace(s);
   return s.take("]");
 }
 
@@ -157,6 +173,7 @@ bool StyleSheet::Compound::parse(Scanner& s) {
   const size_t begin = s.offset();
   if (!s.take("*")) type = s.name();
   for (;;) {
+    skipSpace(s, false);
     if (s.take("#")) {
       if (!id.empty()) return false;
       id = s.name();
@@ -178,6 +195,7 @@ bool StyleSheet::addSelector(std::string_view selector, size_t block) {
   rule.block = block;
   size_t ids = 0, parts = 0, types = 0;
   Scanner s(selector);
+  skipSpace(s);
   for (char combinator = 0;;) {
     Compound compound;
     compound.combinator = combinator;
@@ -187,14 +205,12 @@ bool StyleSheet::addSelector(std::string_view selector, size_t block) {
     parts += compound.classes.size() + compound.attributes.size();
     if (parts > kMaxParts) return false;
     rule.compounds.push_back(std::move(compound));
+    combinator = skipSpace(s) ? ' ' : 0;
     if (s.done()) break;
-    const size_t end = s.offset();
-    s.skipSpace();
-    combinator = s.offset() > end ? ' ' : 0;
     if (std::string_view(">+~").find(s.peek()) != std::string_view::npos) {
       combinator = s.peek();
       s.advance();
-      s.skipSpace();
+      skipSpace(s);
     }
     if (combinator == 0) return false;
   }
@@ -297,7 +313,7 @@ std::vector<const Declaration*> StyleSheet::match(const Document& document, pugi
   });
   for (const size_t index : found)
     for (const Declaration& d : blocks_[rules_[index].block]) {
-      ++work;
+      if ((work += 1 + d.value.size() / 16) >= most) return declarations; // a value will be looked through
       declarations.push_back(&d);
     }
   return declarations;
