@@ -204,7 +204,9 @@ TEST(Stroke, NearCuspsAreTheNeighbourhoodOfThePath) {
     std::uniform_real_distribution<double> unit(0, 1);
     const double angle = 2 * std::numbers::pi * unit(random);
     const Point along{std::cos(angle), std::sin(angle)}, across{-along.y, along.x};
-    const auto aside = [&] { return (random() % 2 ? 1 : -1) * (random() % 4 ? std::pow(10, 4 * unit(random) - 3) : 0); };
+    const auto aside = [&] {
+      return (random() % 2 ? 1 : -1) * (random() % 4 ? std::pow(10, 4 * unit(random) - 3) : 0);
+    };
     const double ahead = 110 * unit(random) + 30, back = ahead * unit(random) - 20 * unit(random);
     Shape shape;
     shape.move({0, 0});

@@ -210,11 +210,13 @@ private:
     const Hodograph h(c_, from.t, to.t);
     if (h.slowest() * 8 > h.fastest()) return false;
     const Point* q = h.c1;
-    const auto angle = [](Point a, Point b) { return std::atan2(cross(a, b), dot(a, b)); };
+    const auto angle = [](Point a, Point b) {
+      return a == Point{} || b == Point{} ? 0.0 : std::atan2(cross(a, b), dot(a, b)); // a control on an end
+    };
     // No direction varies more than the polygon's.
     const double first = angle(q[0], q[1]), second = angle(q[1], q[2]), net = angle(from.tangent, to.tangent);
     const double sum = std::abs(first) + std::abs(second), excess = sum - std::abs(net);
-    return sum > 1.8 || excess * excess * std::abs(s_) > 8 * tolerance_;
+    return sum > 3.2 || excess * excess * std::abs(s_) > 8 * tolerance_;
   }
 
   void line(Point a, Point b) {
