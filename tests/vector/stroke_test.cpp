@@ -180,6 +180,8 @@ TEST(Stroke, DegenerateCurves) {
       {"controls on ends", of(Point{20, 20}, Point{20, 20}, Point{80, 60}, Point{80, 60})},
       {"first control on end", of(Point{20, 20}, Point{20, 20}, Point{80, 20}, Point{60, 80})},
       {"control all but on the end", of(Point{20, 20}, Point{20, 20.001}, Point{80, 20}, Point{60, 80})},
+      {"controls a rounding from ends",
+       of(Point{20, 20}, Point{20.000001, 20.000001}, Point{80, 60.00001}, Point{80, 60})},
       {"closed on itself", of(Point{50, 20}, Point{120, 90}, Point{-20, 90}, Point{50, 20})},
       {"no chord", of(Point{50, 20}, Point{50, 90}, Point{50, 90}, Point{50, 20})},
       {"hairpin", of(Point{20, 50}, Point{90, 50}, Point{90, 50.5}, Point{20, 50.5})},
@@ -218,6 +220,23 @@ TEST(Stroke, NearCuspsAreTheNeighbourhoodOfThePath) {
     tested += v.tested;
   }
   EXPECT_GT(tested, 60000u);
+}
+
+// Bounds are what users fit drawings by.
+TEST(Stroke, ControlsARoundingFromEndsReachNoFartherThanTheStroke) {
+  for (int k = 4; k <= 9; ++k)
+    for (const double side : {1.0, -1.0}) {
+      const double off = std::pow(10, -k);
+      Shape shape;
+      shape.move({20, 20});
+      shape.cubic({20 + off, 20 - off * side}, {80 - off, 60 - off * side}, {80, 60});
+      Shape stroked;
+      ASSERT_TRUE(vector::strokeShape(shape, {3, Cap::Butt, Join::Miter, 4, {}, 0}, 0.01, {}, stroked));
+      for (const Point& p : stroked.points) {
+        EXPECT_TRUE(p.x > 15 && p.x < 85) << k << ": " << p.x;
+        EXPECT_TRUE(p.y > 15 && p.y < 65) << k << ": " << p.y;
+      }
+    }
 }
 
 TEST(Stroke, DashesFollowTheArcLength) {

@@ -15,6 +15,13 @@ Point unit(Point p) {
   return l > 0 ? Point{p.x / l, p.y / l} : Point{};
 }
 
+/// Points nearer to each other coincide but for rounding.
+double coincidentIn(const Cubic& curve) {
+  double size = 0;
+  for (int i = 1; i < 4; ++i) size = std::max(size, length(curve.p[i] - curve.p[0]));
+  return 1e-6 * size;
+}
+
 /// A cubic by its coefficients.
 struct Polynomial {
   Point a, b, c, d; // ((a t + b) t + c) t + d
@@ -192,6 +199,7 @@ private:
       part(from, inner[1], backwards, depth + 1);
       return part(inner[1], to, backwards, depth + 1);
     }
+    if (!good) fitted = Cubic::fromLine(from.offset, to.offset);
     if (backwards) {
       line(from.offset, centre);
       line(centre, to.offset);
@@ -317,10 +325,9 @@ private:
 
 Point startTangent(const Cubic& curve) {
   const Point* p = curve.p;
-  double size = 0;
-  for (int i = 1; i < 4; ++i) size = std::max(size, length(p[i] - p[0]));
+  const double coincident = coincidentIn(curve);
   for (int i = 1; i < 4; ++i)
-    if (const Point d = p[i] - p[0]; length(d) > 1e-6 * size) return unit(d);
+    if (const Point d = p[i] - p[0]; length(d) > coincident) return unit(d);
   return {};
 }
 Point endTangent(const Cubic& curve) {
@@ -347,7 +354,11 @@ int sharpTurns(const Cubic& curve, double reach, double parameters[4]) {
 void appendOffset(const Cubic& curve, double distance, Point start, Point end, double tolerance,
                   std::pmr::vector<Cubic>& chain) {
   const size_t first = chain.size();
-  Offset(curve, distance, tolerance, chain).run();
+  Cubic exact = curve;
+  const double coincident = coincidentIn(curve);
+  if (length(exact.p[1] - exact.p[0]) <= coincident) exact.p[1] = exact.p[0];
+  if (length(exact.p[2] - exact.p[3]) <= coincident) exact.p[2] = exact.p[3];
+  Offset(exact, distance, tolerance, chain).run();
   if (chain.size() == first) {
     if (!(start == end)) chain.push_back(Cubic::fromLine(start, end));
     return;
