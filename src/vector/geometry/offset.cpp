@@ -137,8 +137,9 @@ private:
     const Hodograph h(c_, from.t, to.t);
     const auto [low, high] = std::minmax({s_ * h.turn[0], s_ * h.turn[1], s_ * h.turn[2]});
     const double slow = h.slowest(), fast = h.fastest(), slow3 = slow * slow * slow, fast3 = fast * fast * fast;
-    bool folds = false, decided = true;
-    if (!(high < slow3 || high <= 0) && !(folds = low > fast3)) {
+    bool folds = low > fast3;
+    const bool decided = folds || high < slow3 || high <= 0;
+    if (!decided) {
       const double most = std::max(fast3 - low, high - slow3) * (to.t - from.t); // movement times least speed^2
       if (depth < kFoldDepth && !(most < 0.1 * tolerance_ * slow * slow)) {
         const Frame middle = frame(0.5 * (from.t + to.t));
@@ -146,7 +147,6 @@ private:
         return findFolds(middle, to, depth + 1);
       }
       folds = to.growth < 0;
-      decided = false;
     }
     if (folds == folded_) return;
     const Frame at = decided ? from : root(from.t, to.t, folded_);

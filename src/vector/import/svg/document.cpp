@@ -88,6 +88,10 @@ std::string_view localName(std::string_view name) {
   const size_t colon = name.find(':');
   return colon == name.npos ? name : name.substr(colon + 1);
 }
+std::string_view prefixOf(std::string_view name) {
+  const size_t colon = name.find(':');
+  return name.substr(0, colon == name.npos ? 0 : colon);
+}
 
 /// The node after `node` in the file's order, inside `root`; `depth` follows.
 pugi::xml_node following(pugi::xml_node node, pugi::xml_node root, size_t& depth) {
@@ -184,10 +188,9 @@ core::Result<void> Document::load(std::span<const std::byte> bytes) {
 /// SVG's elements get their local names, others none; XLink's href is called xlink:href.
 void Document::resolveNamespaces() {
   const std::string top = root_.name();
-  std::unordered_map<std::string_view, Space> spaces{
-      // of prefixes; some files declare none
-      {std::string_view(top).substr(0, top.size() - std::min<size_t>(top.size(), 4)), Space::Svg},
-      {"xlink", Space::XLink}};
+  std::unordered_map<std::string_view, Space> spaces{// of prefixes; some files declare none
+                                                     {prefixOf(top), Space::Svg},
+                                                     {"xlink", Space::XLink}};
   struct Hidden {
     size_t depth;
     std::string_view prefix;
@@ -202,14 +205,14 @@ void Document::resolveNamespaces() {
     for (const pugi::xml_attribute a : n.attributes()) {
       const std::string_view name = a.name(), uri = a.value();
       if (name != "xmlns" && name.substr(0, 6) != "xmlns:") continue;
-      if (n == root_ && uri.empty()) continue; // as if it were not there
-      Space& space = spaces[name.substr(std::min<size_t>(name.size(), 6))];
-      hidden.push_back({depth, name.substr(std::min<size_t>(name.size(), 6)), space});
+      if (n == root_ && uri.empty()) continue;                                       // as if it were not there
+      const std::string_view prefix = name.substr(std::min<size_t>(name.size(), 6)); // none: the default
+      Space& space = spaces[prefix];
+      hidden.push_back({depth, prefix, space});
       space = spaceOf(uri);
     }
     const auto spaceIn = [&spaces](std::string_view name) {
-      const size_t colon = name.find(':');
-      const auto found = spaces.find(name.substr(0, colon == name.npos ? 0 : colon));
+      const auto found = spaces.find(prefixOf(name));
       return found == spaces.end() ? Space::Other : found->second;
     };
     for (pugi::xml_attribute a = n.first_attribute(), next; a; a = next) {
