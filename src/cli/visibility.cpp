@@ -254,6 +254,9 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
 
 Outcome visibility(const VisibilityOptions& options, const CommonOptions& common) {
   const Cell cell(options.cell);
+  if (options.needlessSamples)
+    std::fprintf(stderr, "gpgp visibility: note: --samples changes nothing here; the exact method decides at points of "
+                         "each triangle's own\n");
   Model model = loadModel(options.model);
   if (options.twoSided)
     for (GpgpVisibilityDraw& draw : model.draws) draw.flags |= GPGP_DRAW_TWO_SIDED;

@@ -94,9 +94,10 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       command.add_option("--refinements", options.refinements, "Conservative: at most N passes that close gaps")
           ->check(CLI::Range(0u, 4u))
           ->capture_default_str()};
-  const CLI::Option* samples = command.add_option("--samples", options.samples, "Standard: N x N samples a pixel")
-                                   ->check(CLI::IsMember({1u, 2u, 4u, 8u}))
-                                   ->capture_default_str();
+  const CLI::Option* samples =
+      command.add_option("--samples", options.samples, "Standard: N x N samples a pixel (exact has points of its own)")
+          ->check(CLI::IsMember({1u, 2u, 4u, 8u}))
+          ->capture_default_str();
   command.add_option("--cell", options.cell,
                      "View cell: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units");
   CLI::Option* truth = command.add_option("--truth", options.truth, "Measure against N x N + 1 samples a pixel")
@@ -129,8 +130,9 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
     for (const CLI::Option* option : conservative)
       if (option->count() && options.method != "conservative")
         throw CLI::ValidationError(option->get_name(), "belongs to --method conservative");
-    if (samples->count() && options.method != "standard")
+    if (samples->count() && options.method == "conservative")
       throw CLI::ValidationError(samples->get_name(), "belongs to --method standard");
+    options.needlessSamples = samples->count() && options.sampling() == GPGP_SAMPLING_EXACT;
     if (options.method == "cell" && options.cell.empty())
       throw CLI::ValidationError("--method cell", "needs --cell SPEC");
     if (recheck->count() && options.recheck && options.recheck <= options.truth)

@@ -199,6 +199,15 @@ TEST(CliVector, FitsIntoASizeAndLeavesTheRestClear) {
   EXPECT_EQ(seen.rgba[(20 * 40 + 5) * 4 + 3], 255) << "the drawing stands in the middle";
 }
 
+TEST(CliVector, APageTooLargeIsShrunkAndThatIsSaid) {
+  const TemporaryFile file("large.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='1e6' height='1000'>"
+                                        "<path d='M0 0 H1e6 V1000 H0 Z'/></svg>");
+  EXPECT_EQ(gpgpJson({"vector", file.path()})["width"], 4096);
+  EXPECT_NE(gpgp({"vector", file.path()}).out.find("4096 x 5 pixels (shrunk to them; --size makes more), "),
+            std::string::npos);
+  EXPECT_NE(gpgp({"vector", file.path(), "--size", "8x8"}).out.find("8 x 8 pixels, "), std::string::npos);
+}
+
 TEST(CliVector, EmbeddedImagesArePainted) {
   // Two pixels, red and blue, in a place of 20 x 20: fitted into its width, in the middle.
   const std::string png = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAA"

@@ -183,12 +183,20 @@ TEST(CliVisibility, NamesAndLinesOfModels) {
   EXPECT_NE(gpgpFailure({"visibility", noBinary.path()}).find("UPPER.GLB"), std::string::npos);
 }
 
+TEST(CliVisibility, ExactNeedsNoNumberOfSamples) {
+  const TemporaryFile model("needless.obj", kTwoSquares);
+  const ProcessResult with =
+      gpgp({"visibility", model.path(), "--method", "exact", "--samples", "8", "--size", "64x64"});
+  EXPECT_EQ(with.exitCode, 0) << with.err;
+  EXPECT_NE(with.err.find("note: --samples changes nothing here"), std::string::npos) << with.err;
+  EXPECT_EQ(gpgp({"visibility", model.path(), "--method", "exact", "--size", "64x64"}).err, "");
+}
+
 TEST(CliVisibility, WrongUsage) {
   const TemporaryFile model("usage.obj", kTwoSquares), camera("usage.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   // What would have no effect.
   for (const std::vector<std::string>& more :
-       std::vector<std::vector<std::string>>{{"--method", "exact", "--samples", "4"},
-                                             {"--method", "exact", "--epsilon", "1,1"},
+       std::vector<std::vector<std::string>>{{"--method", "exact", "--epsilon", "1,1"},
                                              {"--method", "exact", "--heuristics", "depth"},
                                              {"--method", "exact", "--resolution", "0.5"},
                                              {"--refinements", "2"},

@@ -181,7 +181,7 @@ FakeUnity::FakeUnity(const std::string& library, const FakeUnityOptions& options
 FakeUnity::~FakeUnity() {
   shutdown();
   destroyDevice();
-  symbol<void (*)()>("UnityPluginUnload")();
+  unload();
   dlclose(library_);
   host = nullptr;
 }
@@ -237,6 +237,8 @@ void FakeUnity::replaceDevice() {
 }
 
 void FakeUnity::loadAgain() { symbol<void (*)(IUnityInterfaces*)>("UnityPluginLoad")(&Interfaces::table().registry); }
+
+void FakeUnity::unload() { symbol<void (*)()>("UnityPluginUnload")(); }
 
 void FakeUnity::shutdown() {
   if (!initialized_ && options_.preload) return;

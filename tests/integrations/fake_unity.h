@@ -63,6 +63,7 @@ public:
   /// The renderer goes, its device, too, and comes back with another. Textures are gone.
   void replaceDevice();
   void loadAgain(); ///< UnityPluginLoad, though it is loaded
+  void unload();    ///< UnityPluginUnload; the library stays in memory
   std::vector<uint8_t> read(FakeTexture& texture);
   /// Work of the test's own, submitted and waited for.
   void submit(const std::function<void(VkCommandBuffer)>& record);

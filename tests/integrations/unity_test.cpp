@@ -439,6 +439,13 @@ TEST_F(UnityTest, LoadedTooLateOrWithoutVulkanItStaysOff) {
   const int32_t canvas = script->createCanvas();
   frame(canvas);
   TearDown();
+  start();
+  EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
+  unity->unload(); // it does not see any more what becomes of its device, which may be destroyed and another made there
+  unity->loadAgain();
+  EXPECT_EQ(script->getState(), GPGP_ERROR_MISSING_FEATURE);
+  expectMessage(script->messages(), "on startup");
+  TearDown();
   start({.renderer = kUnityGfxRendererOpenGLCore});
   EXPECT_EQ(script->getState(), GPGP_UNITY_OFF);
   EXPECT_LT(script->createDrawing(kSvg, sizeof kSvg - 1, 0), 0);

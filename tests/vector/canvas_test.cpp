@@ -426,11 +426,11 @@ TEST_F(CanvasTest, TooFewTileWordsLeaveOutTheLastPaths) {
   for (const Rgba& p : pixels) ASSERT_NEAR(p.a, expected, 0.002f);
 }
 
-TEST_F(CanvasTest, AThousandInstancesOfOneDrawingInOneRecord) {
+TEST_F(CanvasTest, ThousandsOfInstancesOfOneDrawingInOneRecord) {
   GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
   info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
-  info.maxWidth = info.maxHeight = 256;
-  info.maxDrawings = 1024;
+  info.maxWidth = info.maxHeight = 512;
+  info.maxDrawings = 4096;
   info.targets = canvasTargets;
   ASSERT_EQ(gpgpCreateCanvas(context, &info, &canvas), GPGP_SUCCESS) << lastMessage();
   ASSERT_EQ(gpgpPrewarm(canvas, nullptr), GPGP_SUCCESS);
@@ -441,17 +441,17 @@ TEST_F(CanvasTest, AThousandInstancesOfOneDrawingInOneRecord) {
   dot.color = {1, 0, 0, 1};
   const GpgpAsset drawing = makeDrawing({square.view(), dot.view()});
   std::vector<GpgpCanvasItem> items;
-  for (int i = 0; i < 1024; ++i) // turned by quarters: all look alike
+  for (int i = 0; i < 4096; ++i) // turned by quarters: all look alike
     items.push_back(
-        i % 2 ? place(drawing, 1, static_cast<float>(i % 32 * 8), static_cast<float>(i / 32 * 8))
+        i % 2 ? place(drawing, 1, static_cast<float>(i % 64 * 8), static_cast<float>(i / 64 * 8))
               : GpgpCanvasItem{
-                    drawing, {0, 1, -1, 0, static_cast<float>(i % 32 * 8 + 4), static_cast<float>(i / 32 * 8)}, 1});
-  const auto pixels = raster(items, 256, 256, 16);
-  for (size_t y = 0; y < 256; ++y)
-    for (size_t x = 0; x < 256; ++x) {
+                    drawing, {0, 1, -1, 0, static_cast<float>(i % 64 * 8 + 4), static_cast<float>(i / 64 * 8)}, 1});
+  const auto pixels = raster(items, 512, 512, 16);
+  for (size_t y = 0; y < 512; ++y)
+    for (size_t x = 0; x < 512; ++x) {
       const size_t u = x % 8, v = y % 8;
       const bool in = u < 4 && v<4, red = u> 0 && u < 3 && v > 0 && v < 3;
-      const Rgba& p = pixels[y * 256 + x];
+      const Rgba& p = pixels[y * 512 + x];
       ASSERT_EQ(p.a, in ? 1.0f : 0.0f) << x << " " << y;
       ASSERT_EQ(p.r, red ? 1.0f : 0.0f) << x << " " << y;
     }

@@ -43,6 +43,8 @@ Plugin::~Plugin() {
   if (vulkan2_) vulkan2_->RemoveInterceptInitialization(intercept);
   const std::scoped_lock lock(mutex_);
   stop();
+  // The library may stay in memory, and another device come to lie where this one did.
+  hookedDevice().device = VK_NULL_HANDLE;
 }
 
 void Plugin::onMessage(void* user, const GpgpMessage* message) {
