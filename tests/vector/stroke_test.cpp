@@ -222,6 +222,35 @@ TEST(Stroke, NearCuspsAreTheNeighbourhoodOfThePath) {
   EXPECT_GT(tested, 60000u);
 }
 
+// Handles of length zero are what drawing programs leave at points that were never dragged. The curvature is infinite
+// there.
+TEST(Stroke, ControlsOnEndsTakeNoMoreCurvesThanOthers) {
+  size_t tested = 0, points[2] = {0, 0};
+  for (uint32_t seed = 0; seed < 300; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> c(0, 100);
+    Point p[4];
+    for (Point& at : p) at = {c(random), c(random)};
+    if (seed % 3 != 1) p[2] = p[3];
+    if (seed % 3 != 0) p[1] = p[0];
+    const double width = std::pow(10, 1.6 * c(random) / 100);
+    for (const bool reversed : {false, true}) {
+      if (reversed) std::reverse(p, p + 4);
+      Shape shape, stroked;
+      shape.move(p[0]);
+      shape.cubic(p[1], p[2], p[3]);
+      ASSERT_TRUE(vector::strokeShape(shape, {width, Cap::Butt, Join::Round, 4, {}, 0}, 0.03, {}, stroked));
+      points[reversed] += stroked.points.size();
+      const Verdict v = judge(shape, {width, Cap::Round, Join::Round, 4, {}, 0}, 0.03, 200, seed, kAll);
+      EXPECT_EQ(v.wrong, 0u) << "of " << v.tested << ", seed " << seed << ", width " << width << ", first at "
+                             << v.first.x << " " << v.first.y;
+      tested += v.tested;
+    }
+  }
+  for (const size_t all : points) EXPECT_LT(all, size_t{300 * 26}); // rounding taken for turns: over 50 each
+  EXPECT_GT(tested, 40000u);
+}
+
 // Bounds are what users fit drawings by.
 TEST(Stroke, ControlsARoundingFromEndsReachNoFartherThanTheStroke) {
   for (int k = 4; k <= 9; ++k)

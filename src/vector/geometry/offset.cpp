@@ -41,16 +41,25 @@ struct Polynomial {
 /// coefficients bound the values.
 struct Hodograph {
   Point c1[3];
-  double turn[3]; // c' x c''
+  double turn[5]; // c' x c'', a quadratic polynomial, with as many coefficients as the other
   double speed2[5];
-  Hodograph(const Polynomial& c, double from, double to) {
-    c1[0] = c.first(from);
-    c1[1] = 3 * from * to * c.a + (from + to) * c.b + c.c;
-    c1[2] = c.first(to);
+  /// From the controls, so that the derivative is zero where a control lies on its end.
+  Hodograph(const Cubic& curve, double from, double to) {
+    const Point* p = curve.p;
+    const Point d0 = 3 * (p[1] - p[0]), d1 = 3 * (p[2] - p[1]), d2 = 3 * (p[3] - p[2]);
+    const auto blossom = [&](double s, double t) {
+      return (1 - s) * (1 - t) * d0 + ((1 - s) * t + s * (1 - t)) * d1 + s * t * d2;
+    };
+    c1[0] = blossom(from, from);
+    c1[1] = blossom(from, to);
+    c1[2] = blossom(to, to);
     const double range = to - from;
     turn[0] = 2 * cross(c1[0], c1[1]) / range;
-    turn[1] = cross(c1[0], c1[2]) / range;
-    turn[2] = 2 * cross(c1[1], c1[2]) / range;
+    turn[4] = 2 * cross(c1[1], c1[2]) / range;
+    const double middle = cross(c1[0], c1[2]) / range;
+    turn[1] = (turn[0] + middle) / 2;
+    turn[2] = (turn[0] + 4 * middle + turn[4]) / 6;
+    turn[3] = (middle + turn[4]) / 2;
     speed2[0] = dot(c1[0], c1[0]);
     speed2[1] = dot(c1[0], c1[1]);
     speed2[2] = (dot(c1[0], c1[2]) + 2 * dot(c1[1], c1[1])) / 3;
@@ -97,7 +106,10 @@ public:
   void run() {
     const Frame last = frame(1);
     from_ = fold_ = frame(0);
-    findFolds(from_, last, 0);
+    const Point* p = curve_.p;
+    const double end = 1 - straightStart(Polynomial({{p[3], p[2], p[1], p[0]}, false}));
+    begin_ = straightStart(c_);
+    if (begin_ < end) findFolds(begin_, end, 0);
     if (folded_) finish(last);
     if (from_.t < 1) part(from_, last, false, 0);
   }
@@ -131,25 +143,43 @@ private:
     return f;
   }
 
+  /// Up to which parameter a curve whose first control lies on its start turns too little to be seen. As it starts with
+  /// an infinite curvature, it turns within the distance there, and no coefficients say how far.
+  double straightStart(const Polynomial& c) const {
+    if (!(c.c == Point{})) return 0;
+    const Point direction = 2 * c.b, change = 3 * c.a; // c' is t (direction + t change)
+    const double most = 0.1 * tolerance_ / std::abs(s_);
+    const double side = std::abs(cross(direction, change)) - most * dot(direction, change);
+    const double ahead = most * dot(direction, direction);
+    return ahead < side ? ahead / side : 1;
+  }
+
   /// Finds where the curve turns within the distance, from left to right: halves until the coefficients say that it
   /// does or does not, or until the offset moves by less than the tolerance, whichever way it runs.
-  void findFolds(const Frame& from, const Frame& to, int depth) {
-    const Hodograph h(c_, from.t, to.t);
-    const auto [low, high] = std::minmax({s_ * h.turn[0], s_ * h.turn[1], s_ * h.turn[2]});
-    const double slow = h.slowest(), fast = h.fastest(), slow3 = slow * slow * slow, fast3 = fast * fast * fast;
-    bool folds = low > fast3;
-    const bool decided = folds || high < slow3 || high <= 0;
+  void findFolds(double from, double to, int depth) {
+    const Hodograph h(curve_, from, to);
+    const double slow = h.slowest(), fast = h.fastest();
+    double low = 1e300, high = -1e300; // bound distance * c' x c'' - |c'|^3, a factor of which by its own bounds
+    bool turnsAway = true;
+    for (int i = 0; i < 5; ++i) {
+      const double turn = s_ * h.turn[i];
+      low = std::min(low, turn - fast * h.speed2[i]);
+      high = std::max(high, turn - slow * h.speed2[i]);
+      turnsAway = turnsAway && turn <= 0;
+    }
+    bool folds = low > 0;
+    const bool decided = folds || high < 0 || turnsAway;
     if (!decided) {
-      const double most = std::max(fast3 - low, high - slow3) * (to.t - from.t); // movement times least speed^2
+      const double most = std::max(-low, high) * (to - from); // movement times least speed^2
       if (depth < kFoldDepth && !(most < 0.1 * tolerance_ * slow * slow)) {
-        const Frame middle = frame(0.5 * (from.t + to.t));
+        const double middle = 0.5 * (from + to);
         findFolds(from, middle, depth + 1);
         return findFolds(middle, to, depth + 1);
       }
-      folds = to.growth < 0;
+      folds = frame(to).growth < 0;
     }
     if (folds == folded_) return;
-    const Frame at = decided ? from : root(from.t, to.t, folded_);
+    const Frame at = decided ? frame(from > begin_ ? from : 0) : root(from, to, folded_);
     if (folded_)
       finish(at);
     else
@@ -215,9 +245,11 @@ private:
 
   /// Whether the curve may turn to and fro, or far, where it is so slow that samples pass over it.
   bool hides(const Frame& from, const Frame& to) const {
-    const Hodograph h(c_, from.t, to.t);
+    const Hodograph h(curve_, from.t, to.t);
     if (h.slowest() * 8 > h.fastest()) return false;
     const Point* q = h.c1;
+    const double bends[2] = {cross(q[0], q[1]), cross(q[1], q[2])};
+    if (bends[0] * bends[1] >= 0 && dot(q[0], q[1]) > 0 && dot(q[1], q[2]) > 0) return false; // one way, and not far
     const auto angle = [](Point a, Point b) {
       return a == Point{} || b == Point{} ? 0.0 : std::atan2(cross(a, b), dot(a, b)); // a control on an end
     };
@@ -318,6 +350,7 @@ private:
   std::pmr::vector<Cubic>& chain_;
   const size_t before_;
   Frame from_{}, fold_{}; // what lies before these is done; where a fold began
+  double begin_ = 0;      // where it is looked at first
   bool folded_ = false;
 };
 
