@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (strokeShape(shape, style, 0.05, {}, area)) convert(area);
   }
   Affine transform;
-  if (parseTransform(text, transform) && transform.finite() && !std::isfinite(transform.scale())) std::abort();
+  if (parseTransform(text, {}, transform) && transform.finite() && !std::isfinite(transform.scale())) std::abort();
   double value = 0;
   if (parseLength(text, {}, LengthAxis::Diagonal, value) && !std::isfinite(value)) std::abort();
   Point origin;

@@ -53,7 +53,9 @@ Affine Importer::transformOf(pugi::xml_node node, const Style& style, const Leng
   if (style.transform.empty()) return own;
   const pugi::xml_attribute text = node.attribute("transform");
   const size_t line = text && text.value() == style.transform ? document_.line(text, 0) : document_.line(node);
-  if (!parseTransform(style.transform, own)) {
+  LengthContext lengths = outer;
+  lengths.fontSize = style.fontSize;
+  if (!parseTransform(style.transform, lengths, own)) {
     if (hasUnsupported(style.transform))
       ignored(node, line, "transform", style.transform);
     else
@@ -61,8 +63,6 @@ Affine Importer::transformOf(pugi::xml_node node, const Style& style, const Leng
     return {};
   }
   if (style.transformOrigin.empty()) return own;
-  LengthContext lengths = outer;
-  lengths.fontSize = style.fontSize;
   Point origin;
   if (!parseOrigin(style.transformOrigin, lengths, origin)) {
     ignored(node, line, "transform-origin", style.transformOrigin);

@@ -145,7 +145,7 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
   }
   if (const pugi::xml_attribute a = gradientAttribute(node, "gradientTransform")) {
     Affine own;
-    if (parseTransform(a.value(), own)) {
+    if (parseTransform(a.value(), state.lengths, own)) {
       if (own.a * own.d == own.b * own.c) return nullptr; // it has no extent
       map = map * own;
     } else {

@@ -172,7 +172,7 @@ bool parseOrigin(std::string_view text, const LengthContext& context, Point& ori
   return count > 0 && (origin = p, true);
 }
 
-bool parseTransform(std::string_view text, Affine& transform) {
+bool parseTransform(std::string_view text, const LengthContext& context, Affine& transform) {
   constexpr struct {
     const char* name;
     double factor;
@@ -187,16 +187,23 @@ bool parseTransform(std::string_view text, Affine& transform) {
     s.skipSpace();
     if (!s.take("(")) return false;
     double v[6] = {};
+    const bool moves = name.starts_with("translate");
     int count = 0;
     s.skipSpace();
     while (!s.done() && s.peek() != ')') {
+      const size_t start = s.offset();
       if (count == 6 || !s.number(v[count])) return false;
-      ++count;
+      if (moves && (s.peek() == '%' || (s.peek() >= 'a' && s.peek() <= 'z'))) {
+        if (!s.take("%")) s.name();
+        const LengthAxis axis = count == 1 || name == "translatey" ? LengthAxis::Y : LengthAxis::X;
+        if (!parseLength(lower.substr(start, s.offset() - start), context, axis, v[count])) return false;
+      }
       for (const auto& unit : units)
         if (s.take(unit.name)) {
-          v[count - 1] *= unit.factor;
+          v[count] *= unit.factor;
           break;
         }
+      ++count;
       s.skipCommaSpace();
     }
     if (!s.take(")")) return false;

@@ -54,7 +54,7 @@ bool parseLength(std::string_view text, const LengthContext& context, LengthAxis
 
 /// A transform list, e.g. "translate(3 4) rotate(30)", as attributes or style sheets write it; false where it is
 /// malformed.
-bool parseTransform(std::string_view text, Affine& transform);
+bool parseTransform(std::string_view text, const LengthContext& context, Affine& transform);
 
 /// The point around which a transform-origin turns things; false where it is malformed.
 bool parseOrigin(std::string_view text, const LengthContext& context, Point& origin);

@@ -111,7 +111,17 @@ bool parseFont(std::string_view text, const Style& parent, const LengthContext& 
     return parseLength(number, lengths, LengthAxis::X, weight) && weight >= 1 && weight <= 1000 &&
            number.find_first_not_of("+.0123456789") == number.npos;
   };
-  for (int i = 0; i < 4 && (oneOf(word(), before) || isWeight(word())); ++i) rest = trim(rest.substr(word().size()));
+  const auto isAngle = [](std::string_view angle) {
+    constexpr std::string_view units[] = {"deg", "grad", "rad", "turn"};
+    Scanner s(angle);
+    double number = 0;
+    return s.number(number) && oneOf(s.name(), units) && s.done();
+  };
+  for (int i = 0; i < 4 && (oneOf(word(), before) || isWeight(word())); ++i) {
+    const bool slanted = word() == "oblique";
+    rest = trim(rest.substr(word().size()));
+    if (slanted && isAngle(word())) rest = trim(rest.substr(word().size()));
+  }
   double read = 0;
   if (!parseFontSize(word(), parent, lengths, read)) return false;
   rest = trim(rest.substr(word().size()));
@@ -285,6 +295,7 @@ bool hasUnsupported(std::string_view value) {
       "lvh", "lvi", "lvb",   "lvmin", "lvmax", "dvw",  "dvh", "dvi",  "dvb", "dvmin", "dvmax", "cqw",   "cqh",
       "cqi", "cqb", "cqmin", "cqmax", "lh",    "rlh",  "cap", "rcap", "ic",  "ric",   "rex",   "rch"};
   const std::string lower = lowered(value.substr(0, 1024)); // enough for what people write
+  if (lower.find("(from ") != lower.npos || lower.find("( from ") != lower.npos) return true; // a colour of another one
   for (Scanner s(lower); !s.done();) {
     double number = 0;
     const bool isNumber = s.number(number);
