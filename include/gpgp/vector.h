@@ -91,7 +91,8 @@ typedef struct GpgpStroke {
   GpgpCap cap;
   GpgpJoin join;
   float miterLimit;    /**< miters longer than this many widths become bevels; at least 1, or 0: 4 */
-  const float* dashes; /**< lengths on, off, on, ...; an odd number of them counts twice; NULL: none */
+  const float* dashes; /**< lengths on, off, on, ...; an odd number of them counts twice; NULL: none. A path of more
+                            than 65536 dashes is UNSUPPORTED; SVG's are drawn without, and a message says so */
   uint32_t dashCount;
   float dashOffset; /**< where in the pattern the path begins */
   float scale;      /**< the largest at which the drawing is shown, pixels per drawing unit; 0: 1 */
@@ -233,7 +234,9 @@ typedef struct GpgpDrawingCreateInfo {
 /** Checks a baked drawing, or converts paths to CPatches, and queues the result for upload. For paths that change from
  *  frame to frame, make each frame's drawing from the last one's, draw the last one until the new one is resident, and
  *  destroy it then.
- *  Errors: INVALID_DATA, INVALID_ARGUMENT (path index in the message), INVALID_HANDLE, IO, OUT_OF_..._MEMORY.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT (path index in the message), INVALID_HANDLE, IO, UNSUPPORTED (more patches
+ *  than a drawing holds, 2^29; more than 2^21 points or 65536 dashes in a stroke; a path that crosses itself millions
+ * of times), OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
                                                 GpgpAsset* drawing);

@@ -246,8 +246,8 @@ typedef struct GpgpSampleInfo {
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
- *  (conservative: the earlier draw). Exact: but for pixels where more than 256 candidates have exactly one depth, or
- *  too many are seen: there they, or what is left, and all behind count as visible, which `unresolved` says.
+ *  (conservative: the earlier draw). Exact: but for pixels where more than about 1 300 candidates
+ *  do not cover the pixel: there what is left, and all behind, counts as visible, which `unresolved` says.
  *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
  *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
  *  NOT_READY: geometry set or view not resident, or sampler not prewarmed.
@@ -296,8 +296,7 @@ typedef struct GpgpSampleReport {
   uint32_t neededPairs;
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible. For
                              want of room: neededCandidates or neededPairs then exceed the budgets. Or whatever the
-                             budgets: where more than 256 candidates have exactly one depth in a pixel, those and all
-                             behind them there; what a list of more than about 1 500 leaves after a bounded time; and
+                             budgets: what a pixel's list of more than about 1 300 leaves after a bounded time; and
                              what more than 2^20 parts of candidates of over 8 x 8 pixels leave no place for */
   uint32_t neededDraws; /**< of one camera */
   uint32_t draws;       /**< of them sampled, and with drawCommands written */

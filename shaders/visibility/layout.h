@@ -26,7 +26,6 @@ GPGP_CONST uint kConservative = 3u;        ///< GPGP_SAMPLING_CONSERVATIVE
 GPGP_CONST uint kNearby = 4u;              ///< GPGP_SAMPLING_NEARBY
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
 GPGP_CONST uint kListRun = 8u;             ///< lists of at most so many that a workgroup is given
-GPGP_CONST uint kSorted = 256u;            ///< entries of a pixel's list that are sorted together
 GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 
 /// Formats of positions.

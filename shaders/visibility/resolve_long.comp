@@ -27,8 +27,21 @@ struct Rest {
   uint nearest;
   uint farthest;
   uint turns; // of loops, so far
+  bool byNumber; // entries of one and the same depth are divided by their triangles' numbers, which low and farthest are
+  uint depth;    // that one
 };
 uint sizeOf(Rest rest) { return rest.end - rest.begin; } // of the whole list
+
+/// Whether an entry lies in a range of the keys by which the rest is divided just now.
+bool isWithin(Rest rest, uint i, uint low, uint high) {
+  uint key = depths[i];
+  if (rest.byNumber) {
+    if (key != rest.depth) return false;
+    key = candidateId(entries[i]);
+  }
+  return key >= low && key <= high;
+}
+uint keyOf(Rest rest, uint i) { return rest.byNumber ? candidateId(entries[i]) : depths[i]; }
 
 /// How many of the first bins hold at most kBatch entries together.
 uint binsOfBatch() {
@@ -51,8 +64,7 @@ uint lastKey(inout Rest rest) {
     bins[lane + kBatch] = 0u;
     sync();
     for (uint i = rest.begin + lane; i < rest.end; i += kBatch) {
-      uint key = depths[i];
-      if (key >= rest.low && key <= high) atomicAdd(bins[(key - rest.low) >> shift], 1u);
+      if (isWithin(rest, i, rest.low, high)) atomicAdd(bins[(keyOf(rest, i) - rest.low) >> shift], 1u);
     }
     sync();
     uint fitting = binsOfBatch();
@@ -70,12 +82,11 @@ uint takeEntries(Rest rest, uint high) {
   setKey(laneOf(), kFarthest);
   sync();
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-    uint key = depths[i];
-    if (key < rest.low || key > high) continue;
+    if (!isWithin(rest, i, rest.low, high)) continue;
     uint at = atomicAdd(count, 1u);
     if (at >= kBatch) continue;
     items[at] = entries[i];
-    setKey(at, key);
+    setKey(at, depths[i]);
   }
   sync();
   return count;
@@ -118,34 +129,30 @@ bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 uncove
   return looked.holes;
 }
 
-/// Goes through more than kBatch entries of one and the same key: by number, a batch at a time.
-bool resolveSame(Rest rest, uint n, ivec2 pixel, inout uvec4 uncovered) {
-  for (uint first = 0u; first < n; first += kBatch) {
-    for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-      if (depths[i] != rest.low) continue;
-      uint place = 0u;
-      for (uint j = rest.begin; j < rest.end; ++j) {
-        if (j == i) continue;
-        Candidate c = readCandidate(entries[j]);
-        uint key = middleKey(c, outlineOf(c, pixel), footingIn(c, pixel), pixel, params.reversedDepth != 0u);
-        if (key == rest.low && precedes(entries[j], entries[i], j < i)) ++place;
-      }
-      if (place - first < kBatch) items[place - first] = entries[i];
-    }
-    setKey(laneOf(), rest.low);
-    sync();
-    if (!resolveBatch(rest, min(n - first, kBatch), laneOf(), pixel, uncovered)) return false;
-    rest.before += kBatch;
+/// Divides entries of one and the same depth by their triangles' numbers.
+void goByNumber(inout Rest rest) {
+  uint least = 0xffffffffu;
+  uint most = 0u;
+  for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
+    if (depths[i] != rest.low) continue;
+    uint id = candidateId(entries[i]);
+    least = min(least, id);
+    most = max(most, id);
   }
-  return true;
+  rest.turns += turnsThrough(sizeOf(rest));
+  rest.byNumber = true;
+  rest.depth = rest.low;
+  rest.low = minAll(least);
+  rest.farthest = maxAll(most);
 }
 
-/// A pixel with more than kSorted entries of one and the same depth, or that would take too long, shows those that are
-/// left.
+/// A pixel that would take too long shows those that are left.
 void showRest(Rest rest) {
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
     uint id = candidateId(entries[i]);
-    if (depths[i] < rest.low || isShown(id)) continue;
+    bool isLeft = rest.byNumber ? depths[i] > rest.depth || isWithin(rest, i, rest.low, rest.farthest)
+                                : depths[i] >= rest.low;
+    if (!isLeft || isShown(id)) continue;
     show(id);
     atomicAdd(counters.unresolved, 1u);
   }
@@ -167,24 +174,35 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   rest.before = 0u;
   rest.nearest = minAll(least);
   rest.low = rest.nearest;
-  rest.farthest = maxAll(most);
+  uint farthest = maxAll(most);
+  rest.farthest = farthest;
   rest.turns = turnsThrough(sizeOf(rest));
+  rest.byNumber = false;
+  rest.depth = 0u;
   uvec4 uncovered = uvec4(0xffffffffu);
   bool more = true;
   while (more) {
     uint high = lastKey(rest);
     sync();
     uint n = takeEntries(rest, high);
-    rest.turns += turnsThrough(sizeOf(rest)) + turnsOfEntries(sizeOf(rest), min(n, kSorted));
-    if (n > kSorted || rest.turns > kMostTurns) {
+    rest.turns += turnsThrough(sizeOf(rest));
+    if (n > kBatch && !rest.byNumber) {
+      goByNumber(rest);
+      continue;
+    }
+    rest.turns += turnsOfBatch(min(n, kBatch));
+    if (n > kBatch || rest.turns > kMostTurns) {
       showRest(rest);
       break;
     }
-    if (n > kBatch) more = resolveSame(rest, n, pixel, uncovered);
-    else more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n), pixel, uncovered);
-    more = more && high != rest.farthest;
-    rest.low = high + 1u;
+    more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n), pixel, uncovered);
     rest.before += n;
+    rest.low = high + 1u;
+    if (high != rest.farthest) continue;
+    more = more && rest.byNumber && rest.depth != farthest;
+    rest.low = rest.depth + 1u;
+    rest.farthest = farthest;
+    rest.byNumber = false;
   }
 }
 

@@ -15,13 +15,5 @@ GPGP_FN uint turnsThrough(uint size) { return (size + kBatch - 1u) / kBatch; }
 /// At most, to decide a batch: each entry may be doubtful, and all others may hide it.
 GPGP_FN uint turnsOfBatch(uint n) { return n * (n + 3u) + 64u; }
 
-/// The same for up to kSorted entries of a list. More than kBatch have one and the same key: they are ranked, a batch
-/// at a time, each among all.
-GPGP_FN uint turnsOfEntries(uint size, uint n) {
-  if (n <= kBatch) return turnsOfBatch(n);
-  uint ranking = min(turnsThrough(size), n) * min(size, 65535u); // more is too much anyway
-  return turnsThrough(n) * (turnsOfBatch(kBatch) + turnsThrough(size) + ranking);
-}
-
 GPGP_SHADER_END
 #endif

@@ -254,6 +254,18 @@ TEST(SvgImport, CompilesForAScale) {
   }
 }
 
+TEST(SvgImport, ASelectorThatIsNotValidTakesItsRuleWithIt) {
+  const auto colour = [](const std::string& sheet) {
+    const Import drawn = page("<style>rect { fill: #0f0 } " + sheet + "</style><rect width='9' height='9'/>");
+    const auto& c = drawn.drawing.paths.at(0).color;
+    return c[0] > 0 ? 'r' : c[1] > 0 ? 'g' : 'b';
+  };
+  EXPECT_EQ(colour("rect, a { fill: #f00 }"), 'r');
+  EXPECT_EQ(colour("rect, a:hover { fill: #f00 }"), 'r');
+  EXPECT_EQ(colour("rect, { fill: #f00 }"), 'g');
+  EXPECT_EQ(colour("rect, a > { fill: #f00 } rect { fill: #00f }"), 'b');
+}
+
 TEST(SvgImport, StyleSheetsMoveAndShape) {
   const auto points = [](const std::string& inside) {
     const Import drawn = page(inside);
@@ -989,12 +1001,37 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<linearGradient id='g' x1='env(a)'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
        "W line 2: <linearGradient> has x1 'env(a)', which is not supported; ignored"},
       {"<style>\ng rect:hover { fill: red }</style>", "W line 3: style selector 'g rect:hover' is not supported"},
-      {"<style>\ng > {fill:red}</style>", "W line 3: style selector 'g >' is not supported"},
-      {"<style>\n> g {fill:red}</style>", "W line 3: style selector '> g' is not supported"},
+      {"<style>\ng > {fill:red}</style>", "W line 3: style selector 'g >' is not valid; its rule is ignored"},
+      {"<style>\n> g {fill:red}</style>", "W line 3: style selector '> g' is not valid; its rule is ignored"},
+      {"<style>\ng,{fill:red}</style>", "W line 3: style selector '' is not valid; its rule is ignored"},
+      {"<rect width='9' height='9' style='fill red;'/>",
+       "W line 2: <rect> has the declaration 'fill red', which is not valid; ignored"},
+      {"<rect width='9' height='9' shape-rendering='crispEdges'/>",
+       "W line 2: shape-rendering is not supported: <rect> is drawn without it"},
+      {"<g image-rendering='pixelated'/>", "W line 2: image-rendering is not supported: <g> is drawn without it"},
+      {"<svg width='9' height='9' style='clip: rect(1px 2px 3px 4px)'/>",
+       "W line 2: clip is not supported: <svg> is drawn without it"},
+      {"<symbol id='s' refX='5'><path d='M0 0h9v9'/></symbol>\n<use href='#s'/>",
+       "W line 2: refX is not supported: <symbol> is drawn without it"},
+      {"<path id='p' d='M0 0h9v9'/><use href='#p'>\n<animate/></use>", "W line 3: <animate> is not supported"},
+      {"<linearGradient id='g'><stop/>\n<animate/></linearGradient><path fill='url(#g)' d='M0 0h9v9'/>",
+       "W line 3: <animate> is not supported"},
+      {"<linearGradient id='g'><stop>\n<animate/></stop></linearGradient><path fill='url(#g)' d='M0 0h9v9'/>",
+       "W line 3: <animate> is not supported"},
+      {"<path fill='url(other.svg#g)' d='M0 0h9v9'/>",
+       "W line 2: <path> fill refers to another file, 'other.svg#g', which is not supported; it is not painted"},
+      {"<linearGradient id='g' href='other.svg#g'><stop/></linearGradient>\n<path fill='url(#g)' d='M0 0h9v9'/>",
+       "W line 3: <path> fill refers to a gradient that refers to another file, 'other.svg#g', which is not supported"},
+      {"<linearGradient id='g' href='#g'><stop/></linearGradient>\n<path fill='url(#g)' d='M0 0h9v9'/>",
+       "W line 3: <path> fill refers to a gradient that refers to itself; it is not painted"},
+      {"<path fill='CanvasText' d='M0 0h9v9'/>",
+       "W line 2: <path> has fill 'CanvasText', which is not supported; ignored"},
       {"<style>\nsvg|g {fill:red}</style>", "W line 3: style selector 'svg|g' is not supported"},
-      {"<style>\n[a=] {fill:red}</style>", "W line 3: style selector '[a=]' is not supported"},
-      {"<style>\n[a b] {fill:red}</style>", "W line 3: style selector '[a b]' is not supported"},
-      {"<style>\n. {fill:red}</style>", "W line 3: style selector '.' is not supported"},
+      {"<style>\n[a='b' i] {fill:red}</style>", "W line 3: style selector '[a='b' i]' is not supported"},
+      {"<style>\n[x|a] {fill:red}</style>", "W line 3: style selector '[x|a]' is not supported"},
+      {"<style>\n[a=] {fill:red}</style>", "W line 3: style selector '[a=]' is not valid; its rule is ignored"},
+      {"<style>\n[a b] {fill:red}</style>", "W line 3: style selector '[a b]' is not valid; its rule is ignored"},
+      {"<style>\n. {fill:red}</style>", "W line 3: style selector '.' is not valid; its rule is ignored"},
       {"<style>\n[a {fill:red}</style>", "E line 3: style rule without a block"},
       {"<style>\na[b=\"c] {fill:red}</style>", "E line 3: style rule without a block"},
       {"<linearGradient id='g'><stop/>\n<stop offset='abc'/></linearGradient><rect width='9' height='9' "
@@ -1254,7 +1291,7 @@ TEST(SvgImport, HostileInputIsBounded) {
         << drawing.substr(0, 60);
   }
   EXPECT_EQ(page("<path d='M0 0H90' stroke='red' stroke-dasharray='1e-9'/>").messages,
-            (Texts{"E line 2: <path> has too many dashes; drawn without"}));
+            (Texts{"E line 2: <path> has too many dashes (more than 65536); drawn without"}));
   EXPECT_EQ(import("<!DOCTYPE svg [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;&a;'>]><svg>&b;</svg>").error, "");
 }
 

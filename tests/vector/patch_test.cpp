@@ -476,6 +476,35 @@ TEST(Patches, StrokesAreFilled) {
   EXPECT_EQ(std::string(refused.error().text), "paths[0]: stroke.width is -1");
 }
 
+TEST(Patches, AContourGoesOnAtItsStartAfterAClose) {
+  const float arc[] = {5, 5, 0, 1, 60, 60};
+  const auto drawing = [&](bool moves, bool strokes) {
+    TestPath path;
+    const auto goOn = [&] {
+      if (moves) path.move(10, 10);
+    };
+    path.move(10, 10).line(50, 10).line(50, 40).close();
+    goOn();
+    path.line(10, 80).line(30, 80).close();
+    goOn();
+    path.verbs.push_back(GPGP_PATH_ARC);
+    path.points.insert(path.points.end(), std::begin(arc), std::end(arc));
+    path.move(100, 10).line(120, 30);
+    GpgpPath view = path.view();
+    const GpgpStroke stroke{4, GPGP_CAP_BUTT, GPGP_JOIN_MITER, 0, nullptr, 0, 0, 0};
+    if (strokes) view.stroke = &stroke;
+    return vector::makeDrawing(std::span(&view, 1), heap());
+  };
+  for (const bool strokes : {false, true}) {
+    const auto said = drawing(true, strokes), left = drawing(false, strokes);
+    ASSERT_TRUE(said && left);
+    ASSERT_GT(said->patches.size(), 4u);
+    ASSERT_EQ(left->patches.size(), said->patches.size()) << strokes;
+    ASSERT_EQ(left->curves.size(), said->curves.size()) << strokes;
+    EXPECT_EQ(std::memcmp(left->curves.data(), said->curves.data(), said->curves.size() * sizeof said->curves[0]), 0);
+  }
+}
+
 TEST(Patches, JobsChangeNothing) {
   std::vector<TestPath> shapes;
   for (uint32_t seed = 0; seed < 60; ++seed) shapes.push_back(randomPath(seed, 60, 3, 0));

@@ -458,6 +458,11 @@ TEST(Stroke, ContoursWithoutLengthShowTheirCaps) {
   EXPECT_NEAR(area(dot, {8, Cap::Round, Join::Miter, 4, {}, 0}), 16 * std::numbers::pi, 0.3);
   EXPECT_NEAR(area(dot, {8, Cap::Square, Join::Miter, 4, {}, 0}), 64, 0.3);
   EXPECT_EQ(area(alone, {8, Cap::Square, Join::Miter, 4, {}, 0}), 0);
+  const double pattern[] = {3, 2}; // at 0 and 7 a dash, at 4 a gap
+  for (const double offset : {0.0, 7.0, 4.0})
+    EXPECT_NEAR(area(dot, {8, Cap::Square, Join::Miter, 4, pattern, offset}), offset == 4 ? 0 : 64, 0.3) << offset;
+  EXPECT_EQ(area(dot, {8, Cap::Butt, Join::Miter, 4, pattern, 0}), 0);
+  EXPECT_EQ(area(alone, {8, Cap::Square, Join::Miter, 4, pattern, 0}), 0);
 }
 
 TEST(Stroke, LimitsAreKept) {

@@ -109,6 +109,10 @@ bool dash(const Contour& contour, std::span<const double> pattern, double offset
   }
   left = pattern[slot] - left;
   const bool startsOn = slot % 2 == 0;
+  if (contour.segments.empty()) { // no length: a dash that has none either
+    if (startsOn) dashes.push_back(contour);
+    return true;
+  }
 
   Contour current(memory);
   bool on = false;
@@ -118,7 +122,7 @@ bool dash(const Contour& contour, std::span<const double> pattern, double offset
     current.direction = direction;
     on = true;
   };
-  if (startsOn && !contour.segments.empty()) start(contour.segments[0].curve.p[0], contour.segments[0].in);
+  if (startsOn) start(contour.segments[0].curve.p[0], contour.segments[0].in);
   for (size_t i = 0; i < contour.segments.size(); ++i) {
     const Segment& s = contour.segments[i];
     const double l = lengths[i].total();

@@ -205,7 +205,6 @@ bool strokeShape(const Shape& shape, const StrokeStyle& style, double tolerance,
   contoursOf(shape, tiny, std::max(std::min(0.1 * tolerance, 0.05 * style.width), tiny), contours);
   if (!style.dashes.empty()) {
     for (const Contour& contour : contours) {
-      if (contour.segments.empty()) continue;
       if (dashes.size() >= limits.dashes ||
           !dash(contour, style.dashes, style.dashOffset, limits.dashes - dashes.size(), dashes))
         return false;

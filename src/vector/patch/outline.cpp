@@ -54,6 +54,7 @@ core::Result<void> shapeOf(const GpgpPath& path, Shape& shape) {
   const double scale = path.scale > 0 ? static_cast<double>(path.scale) : 1;
   const float* next = path.points;
   Point at, start;
+  bool closed = false;
   const auto take = [&next] {
     const Point p{next[0], next[1]};
     next += 2;
@@ -61,6 +62,8 @@ core::Result<void> shapeOf(const GpgpPath& path, Shape& shape) {
   };
   for (uint32_t i = 0; i < path.verbCount; ++i) {
     const GpgpPathVerb verb = path.verbs[i];
+    if (closed && verb != GPGP_PATH_MOVE) shape.move(start);
+    closed = verb == GPGP_PATH_CLOSE;
     if (verb == GPGP_PATH_ARC) {
       const Point radii = take(), form = take(), end = take();
       if (!(form.y == 0 || form.y == 1 || form.y == 2 || form.y == 3))

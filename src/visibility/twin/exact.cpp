@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <functional>
 #include <span>
 #include <tuple>
 
@@ -63,22 +64,27 @@ bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vecto
   return false;
 }
 
+/// By what a list is divided: the depth, or among entries of one depth the triangle's number.
+using KeyOf = uint32_t (*)(const Sorted&);
+uint32_t depthOf(const Sorted& s) { return s.key; }
+uint32_t idOf(const Sorted& s) { return s.candidate.id; }
+
 /// How many entries of a list have a key up to one.
-size_t countUpTo(Batch list, uint32_t key) {
-  const auto isBefore = [](uint32_t value, const Sorted& s) { return value < s.key; };
+size_t countUpTo(Batch list, KeyOf keyOf, uint32_t key) {
+  const auto isBefore = [keyOf](uint32_t value, const Sorted& s) { return value < keyOf(s); };
   return static_cast<size_t>(std::upper_bound(list.begin(), list.end(), key, isBefore) - list.begin());
 }
 
 /// The farthest key up to which entries are decided together, of those that are not nearer than `low`: at most kBatch,
 /// or those that have one and the same key. Counts the passes through the list.
-uint32_t lastKey(Batch list, uint32_t low, uint32_t& passes) {
-  uint32_t high = list.back().key;
+uint32_t lastKey(Batch list, KeyOf keyOf, uint32_t low, uint32_t& passes) {
+  uint32_t high = keyOf(list.back());
   while (true) {
     ++passes;
     const uint32_t range = high - low, shift = std::max<uint32_t>(std::bit_width(range), 6) - 6;
     const auto endOf = [&](uint32_t bins) { return std::min(low + (uint64_t(bins) << shift) - 1, uint64_t(high)); };
     uint32_t fitting = 0;
-    while (fitting < 64 && countUpTo(list, static_cast<uint32_t>(endOf(fitting + 1))) <= kBatch) ++fitting;
+    while (fitting < 64 && countUpTo(list, keyOf, static_cast<uint32_t>(endOf(fitting + 1))) <= kBatch) ++fitting;
     if (fitting == 64) return high;
     high = static_cast<uint32_t>(endOf(std::max(fitting, 1u)));
     if (fitting != 0 || shift == 0) return high;
@@ -150,24 +156,34 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
       resolveBatch(Batch(sorted).subspan(first, count), sorted.front().key, first, open, depthScale, reversed, bits);
   };
   if (sorted.size() <= kBatch) return take(0, sorted.size());
-  uint32_t low = sorted.front().key;
   const auto size = static_cast<uint32_t>(sorted.size());
   uint32_t turns = turnsThrough(size);
-  for (size_t first = 0; first < sorted.size() && isOpen();) {
-    const Batch rest = Batch(sorted).subspan(first);
-    uint32_t passes = 1;
-    const uint32_t high = lastKey(rest, low, passes);
-    const size_t end = first + countUpTo(rest, high);
-    const auto n = static_cast<uint32_t>(end - first);
-    turns += passes * turnsThrough(size) + turnsOfEntries(size, std::min(n, kSorted));
-    if (n > kSorted || turns > kMostTurns) {
-      for (const Sorted& entry : rest) bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
-      return;
+  // Decides entries from `first` on; false where that takes too long, and what is left is shown.
+  const std::function<bool(size_t, Batch, KeyOf)> decide = [&](size_t first, Batch rest, KeyOf keyOf) {
+    for (uint32_t low = keyOf(rest.front()); !rest.empty() && isOpen();) {
+      uint32_t passes = 1;
+      const uint32_t high = lastKey(rest, keyOf, low, passes);
+      const auto n = static_cast<uint32_t>(countUpTo(rest, keyOf, high));
+      turns += passes * turnsThrough(size);
+      if (n > kBatch && keyOf == depthOf) {
+        turns += turnsThrough(size);
+        if (!decide(first, rest.first(n), idOf)) return false;
+      } else {
+        turns += turnsOfBatch(std::min(n, kBatch));
+        if (n > kBatch || turns > kMostTurns) {
+          for (const Sorted& entry : Batch(sorted).subspan(first))
+            bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
+          return false;
+        }
+        take(first, n);
+      }
+      first += n;
+      rest = rest.subspan(n);
+      low = high + 1;
     }
-    for (; first < end; first = std::min<size_t>(first + kBatch, end))
-      take(first, std::min<size_t>(end - first, kBatch));
-    low = high + 1;
-  }
+    return true;
+  };
+  decide(0, sorted, depthOf);
 }
 } // namespace
 

@@ -13,7 +13,7 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
   };
   std::vector<Setting> settings;
   for (const pugi::xml_attribute a : node.attributes())
-    if (isProperty(a.name()) && std::string_view(a.name()) != "font") settings.push_back({a.name(), a.value()});
+    if (isPresentationAttribute(a.name())) settings.push_back({a.name(), a.value()});
   std::vector<const Declaration*> declared;
   if (!sheet_.empty() && work_ < limits_.matches) {
     declared = sheet_.match(document_, node, work_, limits_.matches);
@@ -30,6 +30,7 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
   LengthContext lengths = outer;
   lengths.fontSize = parent.fontSize;
   const auto apply = [&](const Setting& s) {
+    if (s.name.empty()) return ignored(node, document_.line(node), "the declaration", s.value);
     const Applied applied = applyProperty(style, parent, s.name, s.value, lengths);
     if (applied == Applied::Unknown && isGeometry(s.name)) style.geometry.emplace_back(s.name, s.value);
     if (applied == Applied::Unknown && isUnsupported(s.name, s.value))
@@ -84,12 +85,15 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& 
   const std::string who = element(node) + " " + property;
   const std::string instead = paint.hasFallback ? "its fallback is used" : "it is not painted";
   if (name == "linearGradient" || name == "radialGradient") {
-    if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
-      return Ink{{0, 0, 0, 1}, std::move(gradient)};
     if (isCyclic(target)) {
       reporter_.ignored(document_.line(node), who + " refers to a gradient that refers to itself; " + instead);
       return plain(paint.fallback);
     }
+    if (const std::string_view file = otherFileOf(target); !file.empty())
+      reporter_.warn(document_.line(node), who + " refers to a gradient that refers to another file, '" +
+                                               std::string(file.substr(0, 60)) + "', which is not supported");
+    if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
+      return Ink{{0, 0, 0, 1}, std::move(gradient)};
     if (gradientStops(target, state.lengths).empty()) { // is there, so that the fallback does not count
       reporter_.ignored(document_.line(node), who + " refers to a gradient without stops; it is not painted");
       return std::nullopt;
@@ -98,7 +102,10 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& 
     return plain(paint.fallback);
   }
   const std::string shown = std::string("'") + paint.reference.substr(0, 60) + "'";
-  if (name.empty())
+  if (!paint.reference.starts_with('#'))
+    reporter_.warn(document_.line(node),
+                   who + " refers to another file, " + shown + ", which is not supported; " + instead);
+  else if (name.empty())
     reporter_.ignored(document_.line(node), who + " refers to " + shown + ", which is not there; " + instead);
   else
     reporter_.warn(document_.line(node),

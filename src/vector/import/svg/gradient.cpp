@@ -52,16 +52,27 @@ bool Importer::isCyclic(pugi::xml_node gradient) const {
   return false;
 }
 
+std::string_view Importer::otherFileOf(pugi::xml_node gradient) const {
+  for (int hops = 0; gradient && hops < 32; ++hops) {
+    const std::string_view href = trim(hrefOf(gradient).value());
+    if (!href.empty() && !href.starts_with('#')) return href;
+    gradient = document_.find(href);
+  }
+  return {};
+}
+
 std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, const LengthContext& lengths) {
   std::vector<GpgpGradientStop> stops;
   for (int hops = 0; gradient && hops < 32 && stops.empty(); ++hops) {
     const Style around = styleOf(gradient, lengths);
+    reportChildren(gradient);
     for (const pugi::xml_node child : gradient.children()) {
       if (document_.name(child) != "stop") continue;
       if (++steps_ > limits_.points || stops.size() >= 65536) {
         stop(child, "more stops of gradients than are allowed");
         return stops;
       }
+      reportChildren(child);
       Style own = around.inherited();
       cascade(child, around, {}, own);
       double offset = 0;

@@ -263,6 +263,7 @@ void Importer::visitSwitch(pugi::xml_node node, const State& state) {
 }
 
 void Importer::visitUse(pugi::xml_node node, const State& state) {
+  reportChildren(node);
   const pugi::xml_attribute href = hrefOf(node);
   const pugi::xml_node target = document_.find(trim(href.value()));
   const size_t line = document_.line(node);
@@ -303,6 +304,10 @@ bool Importer::hasExtent(pugi::xml_node node, double width, double height, const
 void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
   const size_t before = result_.paths.size();
   if (node == document_.root()) return visitChildren(node, state);
+  for (const char* name : {"refX", "refY"})
+    if (node.attribute(name))
+      reporter_.warn(document_.line(node),
+                     std::string(name) + " is not supported: " + element(node) + " is drawn without it");
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
@@ -374,10 +379,15 @@ void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, con
                      std::string(f.what) + " is not supported: " + element(node) + " is drawn without it");
 }
 
-void Importer::draw(pugi::xml_node node, std::string_view name, const State& state) {
-  for (const pugi::xml_node child : node.children()) // animations
+/// Animations, mostly.
+void Importer::reportChildren(pugi::xml_node node) {
+  for (const pugi::xml_node child : node.children())
     if (const std::string_view inner = document_.name(child); !inner.empty() && !oneOf(inner, kSilent))
       reporter_.warn(document_.line(child), element(child) + " is not supported");
+}
+
+void Importer::draw(pugi::xml_node node, std::string_view name, const State& state) {
+  reportChildren(node);
   const Style& style = state.style;
   if (!style.visible && mode_ != Mode::Measure) return;
   const Shape shape = shapeOf(node, name, state);
@@ -447,7 +457,7 @@ void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pu
   const auto begin = std::chrono::steady_clock::now();
   bool done = strokeShape(from, s, tolerance, {}, area);
   if (!done && !s.dashes.empty()) {
-    reporter_.error(document_.line(node), element(node) + " has too many dashes; drawn without",
+    reporter_.error(document_.line(node), element(node) + " has too many dashes (more than 65536); drawn without",
                     GPGP_ERROR_UNSUPPORTED);
     done = strokeShape(from, whole, tolerance, {}, area);
   }

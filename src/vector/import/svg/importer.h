@@ -67,6 +67,7 @@ private:
   bool hasExtent(pugi::xml_node node, double width, double height, const std::optional<ViewBox>& box);
   /// What is inside of an element whose own properties are in the state.
   void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
+  void reportChildren(pugi::xml_node node);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
 
   // clip.cpp
@@ -118,6 +119,8 @@ private:
   pugi::xml_attribute gradientAttribute(pugi::xml_node gradient, const char* name) const;
   /// Whether following its references leads to one for the second time.
   bool isCyclic(pugi::xml_node gradient) const;
+  /// What is not in this document along its references, or nothing.
+  std::string_view otherFileOf(pugi::xml_node gradient) const;
   std::vector<GpgpGradientStop> gradientStops(pugi::xml_node gradient, const LengthContext& lengths);
   /// Nothing where it has no stops, or no box to be measured by.
   std::shared_ptr<const Gradient> gradientOf(pugi::xml_node node, bool radial, const State& state, const Shape& shape);

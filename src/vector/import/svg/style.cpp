@@ -276,11 +276,20 @@ bool isGeometry(std::string_view name) {
   return oneOf(name, names);
 }
 
+bool isPresentationAttribute(std::string_view name) {
+  constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"};
+  return (findProperty(name) && name != "font") || oneOf(name, unsupported);
+}
+
 bool isUnsupported(std::string_view name, std::string_view value) {
-  constexpr std::string_view names[] = {"translate",   "rotate",          "scale",      "transform-box",
-                                        "offset-path", "backdrop-filter", "mask-image", "perspective"};
-  constexpr std::string_view without[] = {"none", "view-box", "inherit", "initial", "unset", "revert", "auto"};
-  return oneOf(name, names) && !oneOf(trim(value), without);
+  constexpr std::string_view names[] = {"translate",   "rotate",          "scale",           "transform-box",
+                                        "offset-path", "backdrop-filter", "mask-image",      "perspective",
+                                        "clip",        "shape-rendering", "image-rendering", "zoom",
+                                        "all"};
+  constexpr std::string_view without[] = {
+      "none",   "view-box",        "inherit",      "initial", "unset", "revert", "auto", "geometricprecision",
+      "smooth", "optimizequality", "high-quality", "normal",  "1",     "100%"};
+  return oneOf(name, names) && !oneOf(lowered(trim(value)), without);
 }
 
 bool hasUnsupported(std::string_view value) {
@@ -295,6 +304,11 @@ bool hasUnsupported(std::string_view value) {
       "lvh", "lvi", "lvb",   "lvmin", "lvmax", "dvw",  "dvh", "dvi",  "dvb", "dvmin", "dvmax", "cqw",   "cqh",
       "cqi", "cqb", "cqmin", "cqmax", "lh",    "rlh",  "cap", "rcap", "ic",  "ric",   "rex",   "rch"};
   const std::string lower = lowered(value.substr(0, 1024)); // enough for what people write
+  constexpr std::string_view systemColors[] = {
+      "accentcolor", "accentcolortext", "activetext",   "buttonborder",     "buttonface", "buttontext",    "canvas",
+      "canvastext",  "field",           "fieldtext",    "graytext",         "highlight",  "highlighttext", "linktext",
+      "mark",        "marktext",        "selecteditem", "selecteditemtext", "visitedtext"};
+  if (oneOf(trim(lower), systemColors)) return true;
   if (lower.find("(from ") != lower.npos || lower.find("( from ") != lower.npos) return true; // a colour of another one
   for (Scanner s(lower); !s.done();) {
     double number = 0;
@@ -305,8 +319,6 @@ bool hasUnsupported(std::string_view value) {
   }
   return false;
 }
-
-bool isProperty(std::string_view name) { return findProperty(name) != nullptr; }
 
 Applied applyProperty(Style& style, const Style& parent, std::string_view name, std::string_view value,
                       const LengthContext& lengths) {

@@ -58,8 +58,8 @@ struct Style {
   Style inherited() const;
 };
 
-/// Whether an attribute of this name is a presentation property we know.
-bool isProperty(std::string_view name);
+/// Whether an attribute of this name sets a property, supported or not.
+bool isPresentationAttribute(std::string_view name);
 /// Whether it is an attribute that style sheets may set as well (SVG 2, 2.5).
 bool isGeometry(std::string_view name);
 /// Whether it is a property that would change the picture, and is not supported.

@@ -99,7 +99,10 @@ std::vector<Declaration> parseDeclarations(std::string_view original) {
   std::vector<Declaration> declarations;
   split(text, ';', [&declarations](std::string_view part) {
     const size_t colon = part.find(':');
-    if (colon == part.npos) return;
+    if (colon == part.npos) {
+      if (part = trim(part); !part.empty()) declarations.push_back({"", std::string(part), false});
+      return;
+    }
     Declaration d{lowered(trim(part.substr(0, colon))), std::string(trim(part.substr(colon + 1))), false};
     const size_t mark = d.value.rfind('!');
     if (mark != d.value.npos && isWord(trim(std::string_view(d.value).substr(mark + 1)), "important")) {
@@ -138,11 +141,22 @@ void StyleSheet::parse(std::string_view text, size_t line, Reporter& reporter) {
     }
     const size_t block = blocks_.size();
     blocks_.push_back(parseDeclarations(text.substr(brace + 1, end - brace - 1)));
+    std::vector<Rule> rules;
+    bool valid = true;
     split(text.substr(at, brace - at), ',', [&](std::string_view selector) {
-      if (rules_.size() < kMaxRules && !addSelector(selector, block))
-        reporter.warn(line, "style selector '" + std::string(trim(withoutComments(selector)).substr(0, 60)) +
-                                "' is not supported");
+      if (rules_.size() + rules.size() >= kMaxRules) return;
+      Rule rule;
+      rule.block = block;
+      const Selector read = readSelector(selector, rule);
+      if (read == Selector::Read) return rules.push_back(std::move(rule));
+      const std::string said =
+          "style selector '" + std::string(trim(withoutComments(selector)).substr(0, 60)) + "' is ";
+      if (read == Selector::Unsupported) return reporter.warn(line, said + "not supported");
+      valid = false; // and with it all of the rule
+      reporter.ignored(line, said + "not valid; its rule is ignored");
     });
+    if (valid)
+      for (Rule& rule : rules) add(std::move(rule));
     at = end + 1;
   }
 }
@@ -154,6 +168,9 @@ bool StyleSheet::AttributeTest::parse(Scanner& s) {
   skipSpace(s);
   if (name.empty() || s.take("]")) return !name.empty();
   how = s.peek();
+  Scanner ahead = s;
+  ahead.advance();
+  if (how == '|' && ahead.peek() != '=') return false; // a namespace
   if (how != '=') s.advance();
   if (std::string_view("=~|^$*").find(how) == std::string_view::npos || !s.take("=")) return false;
   skipSpace(s);
@@ -189,21 +206,25 @@ bool StyleSheet::Compound::parse(Scanner& s) {
   }
 }
 
-bool StyleSheet::addSelector(std::string_view selector, size_t block) {
+StyleSheet::Selector StyleSheet::readSelector(std::string_view text, Rule& rule) const {
   constexpr size_t kMaxCompounds = 16, kMaxParts = 64; // classes and attributes
-  Rule rule;
-  rule.block = block;
   size_t ids = 0, parts = 0, types = 0;
-  Scanner s(selector);
+  Scanner s(text);
   skipSpace(s);
+  // Pseudo-classes, namespaces and how attributes' letters compare are valid, whether or not they are known.
+  const auto failed = [&s] {
+    return std::string_view(":|iIsS").find(s.peek()) != std::string_view::npos && !s.done() ? Selector::Unsupported
+                                                                                            : Selector::Invalid;
+  };
   for (char combinator = 0;;) {
     Compound compound;
     compound.combinator = combinator;
-    if (!compound.parse(s) || rule.compounds.size() == kMaxCompounds) return false;
+    if (!compound.parse(s)) return failed();
+    if (rule.compounds.size() == kMaxCompounds) return Selector::Unsupported;
     ids += !compound.id.empty();
     types += !compound.type.empty();
     parts += compound.classes.size() + compound.attributes.size();
-    if (parts > kMaxParts) return false;
+    if (parts > kMaxParts) return Selector::Unsupported;
     rule.compounds.push_back(std::move(compound));
     combinator = skipSpace(s) ? ' ' : 0;
     if (s.done()) break;
@@ -212,9 +233,13 @@ bool StyleSheet::addSelector(std::string_view selector, size_t block) {
       s.advance();
       skipSpace(s);
     }
-    if (combinator == 0) return false;
+    if (combinator == 0) return failed();
   }
   rule.specificity = static_cast<uint32_t>(ids << 16 | parts << 8 | types);
+  return Selector::Read;
+}
+
+void StyleSheet::add(Rule rule) {
   const Compound& own = rule.compounds.back();
   std::string key = "*";
   if (!own.id.empty())
@@ -225,7 +250,6 @@ bool StyleSheet::addSelector(std::string_view selector, size_t block) {
     key = own.type;
   byKey_[key].push_back(rules_.size());
   rules_.push_back(std::move(rule));
-  return true;
 }
 
 bool StyleSheet::AttributeTest::fits(std::string_view is) const {

@@ -52,7 +52,9 @@ private:
     uint32_t specificity = 0;
     size_t block = 0;
   };
-  bool addSelector(std::string_view selector, size_t block);
+  enum class Selector { Read, Unsupported, Invalid };
+  Selector readSelector(std::string_view text, Rule& rule) const;
+  void add(Rule rule);
   struct Matching;
 
   std::vector<Rule> rules_;
