@@ -27,7 +27,7 @@ struct Rest {
   uint nearest;
   uint farthest;
   uint turns; // of loops, so far
-  bool byNumber; // entries of one and the same depth are divided by their triangles' numbers, which low and farthest are
+  bool byNumber; // of one depth, divided by their triangles' numbers: low and farthest are such
   uint depth;    // that one
 };
 uint sizeOf(Rest rest) { return rest.end - rest.begin; } // of the whole list
