@@ -133,11 +133,11 @@ TEST(CliVisibility, BadModelsAreNamed) {
   EXPECT_NE(gpgpFailure({"visibility", tooFar.path()}).find("no triangle has finite corners"), std::string::npos);
 }
 
-/// A glTF of one mesh: a triangle, and where asked for a strip, too.
-std::string gltf(const std::string& nodes, bool strip = false) {
+/// A glTF of one mesh: a triangle, and where asked for lines, too.
+std::string gltf(const std::string& nodes, bool lines = false) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes +
          R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}})" +
-         (strip ? R"(,{"attributes":{"POSITION":0},"mode":5})" : "") +
+         (lines ? R"(,{"attributes":{"POSITION":0},"mode":3})" : "") +
          R"(]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
          R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":)"
          R"("data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
@@ -160,12 +160,12 @@ TEST(CliVisibility, NodesAreATree) {
 }
 
 TEST(CliVisibility, WhatIsSkippedIsSaid) {
-  const TemporaryFile strip("strip.gltf", gltf(R"({"mesh":0})", true));
-  const json seen = gpgpJson({"visibility", strip.path(), "--yaw", "0", "--size", "32x32"});
+  const TemporaryFile lines("lines.gltf", gltf(R"({"mesh":0})", true));
+  const json seen = gpgpJson({"visibility", lines.path(), "--yaw", "0", "--size", "32x32"});
   EXPECT_EQ(seen["visible"], 1);
   EXPECT_EQ(seen["leftOut"], 1);
   EXPECT_EQ(seen["skippedTriangles"], 0);
-  EXPECT_NE(gpgp({"visibility", strip.path(), "--size", "32x32"}).out.find("1 primitives are no triangles"),
+  EXPECT_NE(gpgp({"visibility", lines.path(), "--size", "32x32"}).out.find("1 primitives are no triangles"),
             std::string::npos);
   // Reaches 2^100; the camera sees the other one.
   const TemporaryFile far("one_far.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 2e30 0\nf 1 2 3\nf 1 2 4\n");
