@@ -168,7 +168,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       }
       figures.addMetrics(metrics, cameras);
     }
-    if (overlay) paintOverlay(options, corners, view, found, standard, truth);
+    if (overlay) paintOverlay(options, corners, view, views.size() > 1, found, standard, truth);
   }
   std::sort(totals.begin(), totals.end());
   figures.milliseconds = totals[totals.size() / 2];
