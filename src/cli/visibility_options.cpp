@@ -17,10 +17,11 @@ void parseEpsilon(const std::string& text, VisibilityOptions& options) {
   options.epsilonDynamic = values[1];
 }
 
-/// Names of heuristics, or "none".
+/// Names of heuristics, or "none" alone.
 uint32_t parseHeuristics(const std::string& text) {
+  if (text == "none") return 0;
   uint32_t heuristics = 0;
-  std::istringstream names(text);
+  std::istringstream names(text + ','); // nothing, or nothing behind a comma, is a name that there is not
   for (std::string name; std::getline(names, name, ',');) {
     if (name == "in-circle")
       heuristics |= GPGP_HEURISTIC_IN_CIRCLE;
@@ -28,8 +29,9 @@ uint32_t parseHeuristics(const std::string& text) {
       heuristics |= GPGP_HEURISTIC_DEPTH;
     else if (name == "front")
       heuristics |= GPGP_HEURISTIC_DEPTH | GPGP_HEURISTIC_KEEP_FRONT;
-    else if (name != "none")
-      throw CLI::ValidationError("--heuristics", "'" + name + "' is none of in-circle, depth, front, none");
+    else
+      throw CLI::ValidationError("--heuristics",
+                                 "'" + name + "' is none of in-circle, depth, front; none stands alone");
   }
   return heuristics;
 }
