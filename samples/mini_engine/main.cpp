@@ -54,6 +54,7 @@ struct Options {
   std::vector<mini::Input> inputs;
   bool window = false, validate = false, watch = false, path = false, table = false;
   mini::DecoupledOptions decoupled;
+  std::string ofDecoupled; // the last option that belongs to --decoupled
 };
 
 /// Its place among the names; -1: it is none of them.
@@ -132,6 +133,8 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
     const char* value = argv[++i];
     char rest = 0;
     int chosen = -1;
+    if (indexOf(name.c_str(), {"--method", "--show", "--rate", "--freeze", "--truth", "--farther"}) >= 0)
+      options.ofDecoupled = name;
     if (name == "--out")
       options.out = value;
     else if (name == "--device")
@@ -167,6 +170,7 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       return false;
   }
   wrong.clear();
+  if (!options.ofDecoupled.empty() && !options.decoupled.on) wrong = options.ofDecoupled + " without --decoupled";
   if (options.screen && options.decoupled.on) wrong = "--screen beside --decoupled";
   if (options.frames == 1 && !options.inputs.empty()) wrong = "--input with --frames 1: it comes before the second";
   if (!options.screen && (options.score || options.stereo)) wrong = "--score or --stereo without --screen";

@@ -11,7 +11,7 @@
 
 namespace gpgp::cli {
 
-void addDraw(Model& model, const GpgpMesh& mesh, const Rows& rows) {
+void addDraw(Model& model, const GpgpMesh& mesh, const Rows& rows, uint32_t flags) {
   if (mesh.indexCount == 0) return;
   const auto same = [&mesh](const GpgpMesh& other) { return other.firstIndex == mesh.firstIndex; };
   auto known = std::find_if(model.meshes.begin(), model.meshes.end(), same);
@@ -20,6 +20,7 @@ void addDraw(Model& model, const GpgpMesh& mesh, const Rows& rows) {
   std::copy(rows.begin(), rows.end(), draw.transform);
   draw.mesh = static_cast<uint32_t>(known - model.meshes.begin());
   draw.firstTriangle = model.triangleCount;
+  draw.flags = flags;
   model.triangleCount += mesh.indexCount / 3;
   model.draws.push_back(draw);
 }
@@ -39,7 +40,8 @@ Model loadModel(const std::filesystem::path& file) {
 }
 
 void repeatInGrid(Model& model, uint32_t columns, uint32_t rows, const glm::vec3& size, uint64_t mostBytes) {
-  const glm::vec3 step = size * 1.1f;
+  const float largest = std::max({size.x, size.y, size.z}); // for flat models, whose copies would lie in one place
+  const glm::vec3 step(1.1f * (size.x > 0 ? size.x : largest), 0, 1.1f * (size.z > 0 ? size.z : largest));
   const std::vector<GpgpVisibilityDraw> one = std::move(model.draws);
   const uint32_t triangles = model.triangleCount;
   const uint64_t copies = uint64_t{columns} * rows, allTriangles = copies * triangles, allDraws = copies * one.size();

@@ -22,8 +22,9 @@ struct Model {
 /// Throws std::runtime_error with the file's name, and the line for .obj.
 Model loadModel(const std::filesystem::path& file);
 
-/// Copies side by side, a tenth of the model's size apart, numbered one after the other. Throws std::runtime_error with
-/// what they need where a device that binds mostBytes of a buffer, or memory, has no room for them.
+/// Copies side by side, a tenth of the model's size apart (of its largest where it is flat), numbered one after the
+/// other. Throws std::runtime_error with what they need where a device that binds mostBytes of a buffer, or memory, has
+/// no room for them.
 void repeatInGrid(Model& model, uint32_t columns, uint32_t rows, const glm::vec3& size, uint64_t mostBytes);
 
 /// World-space corners of a draw's triangle.

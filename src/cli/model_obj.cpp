@@ -1,9 +1,12 @@
-// Wavefront OBJ: vertices and faces (polygons as fans); everything else in the file is of no use here and passed over.
+// Wavefront OBJ: vertices and faces; everything else in the file is of no use here and passed over.
 //
 // Not by tinyobjloader: it reads a number that is none as 0, checks indices after the whole file, negative ones not at
 // all, and knows no lines that go on. What is wrong in a file is to be said with its line.
+#include "cli/ear_clipping.h"
 #include "cli/model_formats.h"
 #include "host/files.h"
+
+#include <glm/vec3.hpp>
 
 #include <cmath>
 #include <cstdlib>
@@ -22,13 +25,23 @@ const char* skipBlanks(const char* at) {
   return at;
 }
 
+bool isEndOfWord(char c) { return c == 0 || c == ' ' || c == '\t' || c == '#'; }
+
+/// Reads the texture's and the normal's number of a face's corner, which may be missing, and moves to the word's end;
+/// false: something else is there.
+bool skipOtherNumbers(char*& at) {
+  for (int i = 0; i < 2 && *at == '/'; ++i)
+    if (++at; *at == '-' || (*at >= '0' && *at <= '9')) std::strtoll(at, &at, 10);
+  return isEndOfWord(*at);
+}
+
 } // namespace
 
 Model loadObj(const std::filesystem::path& file) {
   const std::string text = host::readText(file);
   Model model;
   size_t lineNumber = 0;
-  for (size_t begin = 0, lines = 0; begin < text.size();) {
+  for (size_t begin = text.rfind("\xef\xbb\xbf", 0) == 0 ? 3 : 0, lines = 0; begin < text.size();) {
     lineNumber = lines + 1; // where it begins
     std::string line;       // ends in 0, so that the number readers stop there
     for (bool goesOn = true; goesOn && begin < text.size(); ++lines) {
@@ -45,7 +58,8 @@ Model loadObj(const std::filesystem::path& file) {
       ++at;
       for (int axis = 0; axis < 3; ++axis, at = next) {
         const float value = std::strtof(at, &next);
-        if (next == at || !std::isfinite(value)) fail(file, lineNumber, "a vertex needs three numbers");
+        if (next == at || !isEndOfWord(*next) || !std::isfinite(value))
+          fail(file, lineNumber, "a vertex needs three numbers");
         model.positions.push_back(value);
       }
     } else if (at[0] == 'f' && (at[1] == ' ' || at[1] == '\t')) {
@@ -54,13 +68,17 @@ Model loadObj(const std::filesystem::path& file) {
       for (at = skipBlanks(at + 1); *at && *at != '#'; at = skipBlanks(next)) {
         const long long number = std::strtoll(at, &next, 10);
         const long long index = number < 0 ? vertexCount + number : number - 1;
-        if (next == at || index < 0 || index >= vertexCount) fail(file, lineNumber, "a face names no vertex above it");
+        const bool isNumber = next != at && skipOtherNumbers(next);
+        if (!isNumber || index < 0 || index >= vertexCount) fail(file, lineNumber, "a face names no vertex above it");
         corners.push_back(static_cast<uint32_t>(index));
-        while (*next && *next != ' ' && *next != '\t') ++next; // texture and normal indices
       }
       if (corners.size() < 3) fail(file, lineNumber, "a face needs three vertices");
-      for (size_t i = 1; i + 1 < corners.size(); ++i)
-        model.indices.insert(model.indices.end(), {corners[0], corners[i], corners[i + 1]});
+      std::vector<glm::dvec3> outline;
+      for (const uint32_t corner : corners) {
+        const float* p = &model.positions[size_t{corner} * 3];
+        outline.emplace_back(p[0], p[1], p[2]);
+      }
+      for (const size_t corner : clipEars(outline)) model.indices.push_back(corners[corner]);
     }
   }
   addDraw(model, {0, static_cast<uint32_t>(model.indices.size()), 0}, kIdentityRows);

@@ -1,6 +1,7 @@
 // A context on a headless device; every subcommand's work is one record, repeated and measured.
 #include "cli/session.h"
 
+#include "cli/median.h"
 #include "cli/processors.h"
 #include "cli/progress.h"
 
@@ -9,13 +10,6 @@
 
 namespace gpgp::cli {
 namespace {
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Destroys the query pool on every way out.
 struct QueryPool {

@@ -147,13 +147,13 @@ void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph
   painter.sun(bounds);
   for (const auto& corners : all.corners) painter.shadow(corners);
   for (size_t i = 0; i < all.corners.size(); ++i)
-    painter.triangle(camera, all.corners[i], paletteColour(graph.terminals[all.terminals[i]].index));
+    painter.triangle(camera, {all.corners[i], paletteColour(graph.terminals[all.terminals[i]].index)});
   const glm::vec3 extent = bounds.high - bounds.low;
   const float margin = 0.15f * std::max({extent.x, extent.y, extent.z});
   const glm::vec3 a(bounds.low.x - margin, bounds.low.y, bounds.low.z - margin), ground(0.80f, 0.82f, 0.76f);
   const glm::vec3 b(a.x, a.y, bounds.high.z + margin), c(bounds.high.x + margin, a.y, b.z), d(c.x, a.y, a.z);
-  painter.triangle(camera, std::array{a, b, c}, ground);
-  painter.triangle(camera, std::array{a, c, d}, ground);
+  painter.triangle(camera, {{a, b, c}, ground});
+  painter.triangle(camera, {{a, c, d}, ground});
   host::writePng(options.image, painter.picture());
 }
 

@@ -15,7 +15,7 @@ namespace gpgp::cli {
 
 View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Size size) {
   const float turn = glm::radians(360.0f) * static_cast<float>(k) / static_cast<float>(n), rise = glm::radians(20.0f);
-  const float radius = std::max(glm::length(bounds.high - bounds.low) * 0.5f, 1e-6f);
+  const float radius = bounds.radius();
   const glm::vec3 back(std::cos(rise) * std::sin(turn), std::sin(rise), std::cos(rise) * std::cos(turn));
   const glm::mat4 view = glm::lookAtRH(bounds.centre() + back * (distance * radius), bounds.centre(), {0, 1, 0});
   glm::mat4 projection =
@@ -45,14 +45,15 @@ Cell::Cell(const std::string& spec) {
   uint32_t columns = 0, rows = 0, skip = 1, count = 0;
   float radius = 0;
   char rest = 0;
-  if (std::sscanf(spec.c_str(), "%ux%u/%u%c", &columns, &rows, &skip, &rest) == 3 ||
-      (skip = 1, std::sscanf(spec.c_str(), "%ux%u%c", &columns, &rows, &rest) == 2)) {
-    if (columns < 1 || rows < 1 || columns > 64 || rows > 64 || skip < 1)
-      throw Usage("--cell: 1x1 to 64x64, and a skip of at least 1");
+  // Few digits, so that nothing overflows; what is negative is read as a large number.
+  if (std::sscanf(spec.c_str(), "%4ux%4u/%5u%c", &columns, &rows, &skip, &rest) == 3 ||
+      (skip = 1, std::sscanf(spec.c_str(), "%4ux%4u%c", &columns, &rows, &rest) == 2)) {
+    if (columns < 1 || rows < 1 || columns > 64 || rows > 64 || skip < 1 || skip > 16384)
+      throw Usage("--cell: 1x1 to 64x64, and a skip of 1 to 16384");
     info.columns = columns;
     info.rows = rows;
     info.skip = skip;
-  } else if (std::sscanf(spec.c_str(), "%f:%u%c", &radius, &count, &rest) == 2) {
+  } else if (std::sscanf(spec.c_str(), "%f:%4u%c", &radius, &count, &rest) == 2) {
     if (!(radius > 0 && std::isfinite(radius)) || count < 1 || count > 4096)
       throw Usage("--cell: the radius is finite and above 0, and there are 1 to 4096 points");
     // Corners of a square round the middle, then of its inside: a grid as square as the number allows.

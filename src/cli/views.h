@@ -13,7 +13,7 @@ struct View {
 };
 
 /// Camera k of n on a circle 20 degrees above the horizon, 60 degrees of vertical field of view, `distance` radii of
-/// the bounding sphere away.
+/// the bounds away.
 View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Size size);
 
 /// 16 numbers, column-major, world to clip; a 17th that is not 0: near is 1. Throws Failure where the file holds

@@ -1,4 +1,5 @@
 // `gpgp visibility`: samples which triangles of a model one camera sees.
+#include "cli/median.h"
 #include "cli/sampled_model.h"
 #include "cli/visibility_pictures.h"
 
@@ -63,9 +64,37 @@ View viewOf(const VisibilityOptions& options, const Bounds& bounds, uint32_t k) 
   return {viewAll(bounds, options.yaw, options.pitch, options.size.width, options.size.height)};
 }
 
+/// A share's average over the cameras that have one: of nothing there is none.
+struct Share {
+  double sum = 0;
+  uint32_t cameras = 0;
+
+  void add(double value) {
+    sum += value;
+    ++cameras;
+  }
+  Json json() const { return cameras ? Json(sum / cameras) : Json(); }
+  std::string text() const {
+    std::ostringstream text;
+    text.precision(4);
+    if (cameras)
+      text << 100 * sum / cameras << " %";
+    else
+      text << '-';
+    return text.str();
+  }
+};
+
+/// Errors are worse than anything else.
+GpgpResult worse(GpgpResult a, GpgpResult b) {
+  const auto badness = [](GpgpResult result) { return result < 0 ? 1000 - int{result} : int{result}; };
+  return badness(a) < badness(b) ? b : a;
+}
+
 /// Averages over the cameras, but for what says otherwise.
 struct Figures {
-  double truth = 0, visible = 0, coverage = 0, overestimation = 0, coverageArea = 0, overestimationArea = 0;
+  double truth = 0, visible = 0;
+  Share coverage, overestimation, coverageArea, overestimationArea;
   double facing = 0, listed = 0, coveredPixels = 0;   ///< of a cell's last view
   std::vector<std::pair<std::string, double>> passes; ///< milliseconds of all views of a cell
   double milliseconds = 0;                            ///< the same of whole records, median over the cameras
@@ -77,14 +106,17 @@ struct Figures {
   uint32_t maxCandidates = 0, maxPairs = 0; ///< given
   std::vector<uint32_t> found, first;       ///< of all cameras together; of the first one
 
-  /// Metrics of one camera of `cameras`.
-  void addMetrics(const GpgpSampleReport& metrics, uint32_t cameras) {
+  /// Metrics of one camera of `cameras`; areas of the truth's triangles, in samples.
+  void addMetrics(const GpgpSampleReport& metrics, const std::vector<uint32_t>& areas, uint32_t cameras) {
     truth += metrics.truth / static_cast<double>(cameras);
-    // A camera that could see nothing has missed nothing.
-    coverage += (metrics.truth ? static_cast<double>(metrics.coverage) : 1.0) / cameras;
-    overestimation += static_cast<double>(metrics.overestimation) / cameras;
-    coverageArea += (metrics.truth ? static_cast<double>(metrics.coverageArea) : 1.0) / cameras;
-    overestimationArea += static_cast<double>(metrics.overestimationArea) / cameras;
+    if (metrics.truth) {
+      coverage.add(metrics.coverage);
+      overestimation.add(metrics.overestimation);
+    }
+    if (std::any_of(areas.begin(), areas.end(), [](uint32_t area) { return area > 0; })) {
+      coverageArea.add(metrics.coverageArea);
+      overestimationArea.add(metrics.overestimationArea);
+    }
   }
   /// A record of a view.
   void add(const Measured<GpgpSampleReport>& measured, uint32_t cameras) {
@@ -95,7 +127,7 @@ struct Figures {
       passes[p].second += times.passes[p].second / cameras;
     }
     const GpgpSampleReport& report = measured.report;
-    if (status == GPGP_SUCCESS) status = report.base.status;
+    status = worse(status, report.base.status);
     neededCandidates = std::max(neededCandidates, report.neededCandidates);
     neededPairs = std::max(neededPairs, report.neededPairs);
     skippedTriangles = std::max(skippedTriangles, report.skippedTriangles);
@@ -166,12 +198,11 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
         metrics = scene.compare(sampler, found, truth, areas, finer);
         for (size_t i = 0; i < truth.size(); ++i) truth[i] |= found[i] & finer[i]; // as the metrics count them
       }
-      figures.addMetrics(metrics, cameras);
+      figures.addMetrics(metrics, areas, cameras);
     }
-    if (overlay) paintOverlay(options, corners, view, found, standard, truth);
+    if (overlay) paintOverlay(options, corners, view, views.size() > 1, found, standard, truth);
   }
-  std::sort(totals.begin(), totals.end());
-  figures.milliseconds = totals[totals.size() / 2];
+  figures.milliseconds = medianOf(totals);
   return figures;
 }
 
@@ -208,9 +239,9 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
   text << "; GPU " << milliseconds(figures.milliseconds) << " (median of " << figures.times.totals.size() << ") on "
        << device << '\n';
   if (options.truth)
-    text << "truth " << figures.truth << ": coverage " << 100 * figures.coverage << " %, overestimation "
-         << 100 * figures.overestimation << " %; by area " << 100 * figures.coverageArea << " %, "
-         << 100 * figures.overestimationArea << " %\n";
+    text << "truth " << figures.truth << ": coverage " << figures.coverage.text() << ", overestimation "
+         << figures.overestimation.text() << "; by area " << figures.coverageArea.text() << ", "
+         << figures.overestimationArea.text() << '\n';
   text << remarks(model, figures);
   if (!options.image.empty())
     text << "picture: " << options.image << " (left: from the " << first << "camera; right: from the side)\n";
@@ -218,7 +249,6 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
     text << "overlay: " << options.overlay << " (from the " << first
          << "camera: green standard, grey added, red too much, blue missed)\n";
   outcome.text = text.str();
-  const auto measured = [&](double value) { return options.truth ? Json(value) : Json(); };
   Json passTimes = Json::object();
   for (const auto& [name, time] : figures.passes) passTimes[name] = time;
   outcome.json = {{"model", options.model},
@@ -237,10 +267,10 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"image", options.image.empty() ? Json() : Json(options.image)},
                   {"cameras", options.cameras()},
                   {"truth", options.truth ? Json(std::llround(figures.truth)) : Json()},
-                  {"coverage", measured(figures.coverage)},
-                  {"overestimation", measured(figures.overestimation)},
-                  {"coverage_area", measured(figures.coverageArea)},
-                  {"overestimation_area", measured(figures.overestimationArea)},
+                  {"coverage", figures.coverage.json()},
+                  {"overestimation", figures.overestimation.json()},
+                  {"coverage_area", figures.coverageArea.json()},
+                  {"overestimation_area", figures.overestimationArea.json()},
                   {"neededCandidates", figures.neededCandidates},
                   {"neededPairs", figures.neededPairs},
                   {"unresolved", figures.unresolved},

@@ -17,10 +17,11 @@ void parseEpsilon(const std::string& text, VisibilityOptions& options) {
   options.epsilonDynamic = values[1];
 }
 
-/// Names of heuristics, or "none".
+/// Names of heuristics, or "none" alone.
 uint32_t parseHeuristics(const std::string& text) {
+  if (text == "none") return 0;
   uint32_t heuristics = 0;
-  std::istringstream names(text);
+  std::istringstream names(text + ','); // nothing, or nothing behind a comma, is a name that there is not
   for (std::string name; std::getline(names, name, ',');) {
     if (name == "in-circle")
       heuristics |= GPGP_HEURISTIC_IN_CIRCLE;
@@ -28,8 +29,9 @@ uint32_t parseHeuristics(const std::string& text) {
       heuristics |= GPGP_HEURISTIC_DEPTH;
     else if (name == "front")
       heuristics |= GPGP_HEURISTIC_DEPTH | GPGP_HEURISTIC_KEEP_FRONT;
-    else if (name != "none")
-      throw CLI::ValidationError("--heuristics", "'" + name + "' is none of in-circle, depth, front, none");
+    else
+      throw CLI::ValidationError("--heuristics",
+                                 "'" + name + "' is none of in-circle, depth, front; none stands alone");
   }
   return heuristics;
 }
@@ -56,7 +58,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
   command
       .add_option_function<std::string>(
           "--grid", [&options](const std::string& text) { options.grid = parseSize(text); },
-          "NxM copies of the model side by side")
+          "NxM copies of the model side by side, along X and Z")
       ->type_name("NxM");
   CLI::Option* orbit = command
                            .add_option("--orbit", options.orbit,
@@ -64,7 +66,9 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
                            ->check(CLI::Range(1u, 4096u))
                            ->excludes(yaw)
                            ->excludes(pitch);
-  command.add_option("--distance", options.distance, "Of the orbit's cameras, in radii of the bounding sphere")
+  command
+      .add_option("--distance", options.distance,
+                  "Of the orbit's cameras from the middle of the bounding box, in halves of its diagonal")
       ->check(within(0.01, 1e6))
       ->capture_default_str()
       ->needs(orbit);
@@ -108,8 +112,10 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
           ->capture_default_str()
           ->needs(truth);
   command
-      .add_option("--overlay", options.overlay,
-                  "From the first camera: green standard, grey added by the method, red too much, blue missed")
+      .add_option(
+          "--overlay", options.overlay,
+          "From the first camera, three pixels each way for one of the viewport's, the middle one at its centre: "
+          "green standard, grey added by the method, red too much, blue missed")
       ->check(pngFile())
       ->type_name("FILE.png");
   command

@@ -1,6 +1,7 @@
 #include "cli/visibility_pictures.h"
 
 #include <algorithm>
+#include <array>
 
 namespace gpgp::cli {
 
@@ -13,8 +14,8 @@ void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& c
         side == 0 ? view : View{viewAll(bounds, options.yaw + 110.0f, options.pitch, width, height), false};
     Painter painter(width, height, from.reversed);
     for (size_t t = 0; t < corners.size() / 3; ++t) {
-      painter.triangle(from.camera, std::span<const glm::vec3, 3>(&corners[t * 3], 3),
-                       isSet(bits, t) ? glm::vec3(0.95f, 0.55f, 0.15f) : glm::vec3(0.62f));
+      painter.triangle(from.camera, {{corners[t * 3], corners[t * 3 + 1], corners[t * 3 + 2]},
+                                     isSet(bits, t) ? glm::vec3(0.95f, 0.55f, 0.15f) : glm::vec3(0.62f)});
     }
     const host::Picture half = painter.picture();
     for (uint32_t y = 0; y < height; ++y)
@@ -24,21 +25,30 @@ void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& c
 }
 
 void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
-                  const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
+                  bool ofCell, const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
                   const std::vector<uint32_t>& truth) {
-  Painter painter(options.size.width, options.size.height, view.reversed);
-  for (size_t t = 0; t < corners.size() / 3; ++t) {
+  constexpr std::array<glm::vec3, 4> kColours = {glm::vec3(0.2f, 0.75f, 0.25f), glm::vec3(0.6f),
+                                                 glm::vec3(0.1f, 0.2f, 0.95f), glm::vec3(0.9f, 0.1f, 0.1f)};
+  const size_t count = corners.size() / 3;
+  const auto classOf = [&](size_t t) -> uint8_t {
     const bool isFound = isSet(found, t), isTrue = truth.empty() ? isFound : isSet(truth, t);
-    if (!isFound && !isTrue) continue;
-    glm::vec3 colour(0.6f);
-    if (isFound && !isTrue)
-      colour = {0.9f, 0.1f, 0.1f};
-    else if (!isFound)
-      colour = {0.1f, 0.2f, 0.95f};
-    else if (isSet(standard, t))
-      colour = {0.2f, 0.75f, 0.25f};
-    painter.triangle(view.camera, std::span<const glm::vec3, 3>(&corners[t * 3], 3), colour);
-  }
+    return !isTrue ? 3 : !isFound ? 2 : isSet(standard, t) ? 0 : 1;
+  };
+  // Three points a pixel each way, so that triangles below a pixel are seen, the pixel's centre among them, where
+  // standard sampling looks; what they miss all the same is marked.
+  Painter painter(options.size.width, options.size.height, view.reversed, Painter::Style::magnified);
+  for (const bool marks : {false, true})
+    for (size_t t = 0; t < count; ++t) {
+      if (!isSet(found, t) && (truth.empty() || !isSet(truth, t))) continue;
+      const Painter::Triangle triangle{{corners[t * 3], corners[t * 3 + 1], corners[t * 3 + 2]},
+                                       kColours[classOf(t)],
+                                       classOf(t),
+                                       static_cast<uint32_t>(t)};
+      if (marks)
+        painter.mark(view.camera, triangle, !ofCell);
+      else
+        painter.triangle(view.camera, triangle);
+    }
   host::writePng(options.overlay, painter.picture());
 }
 

@@ -13,10 +13,11 @@ inline bool isSet(const std::vector<uint32_t>& bits, size_t i) { return bits[i /
 void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
                const Bounds& bounds, const std::vector<uint32_t>& bits);
 
-/// options.overlay, figure 6.2: green standard, grey only what the method adds, red false positive, blue false
-/// negative. truth may be empty.
+/// options.overlay, figure 6.2, three pixels each way for one of the viewport's: green standard, grey only what the
+/// method adds, red false positive, blue false negative. truth may be empty. ofCell: what they hold is of more views
+/// than this one.
 void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
-                  const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
+                  bool ofCell, const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
                   const std::vector<uint32_t>& truth);
 
 } // namespace gpgp::cli

@@ -1,4 +1,5 @@
 // `gpgp visibility` on models whose visible triangles are known.
+#include "cli/median.h"
 #include "files.h"
 #include "host/files.h"
 #include "host/picture.h"
@@ -133,11 +134,11 @@ TEST(CliVisibility, BadModelsAreNamed) {
   EXPECT_NE(gpgpFailure({"visibility", tooFar.path()}).find("no triangle has finite corners"), std::string::npos);
 }
 
-/// A glTF of one mesh: a triangle, and where asked for a strip, too.
-std::string gltf(const std::string& nodes, bool strip = false) {
+/// A glTF of one mesh: a triangle, and where asked for lines, too.
+std::string gltf(const std::string& nodes, bool lines = false) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes +
          R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}})" +
-         (strip ? R"(,{"attributes":{"POSITION":0},"mode":5})" : "") +
+         (lines ? R"(,{"attributes":{"POSITION":0},"mode":3})" : "") +
          R"(]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
          R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":)"
          R"("data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
@@ -160,12 +161,12 @@ TEST(CliVisibility, NodesAreATree) {
 }
 
 TEST(CliVisibility, WhatIsSkippedIsSaid) {
-  const TemporaryFile strip("strip.gltf", gltf(R"({"mesh":0})", true));
-  const json seen = gpgpJson({"visibility", strip.path(), "--yaw", "0", "--size", "32x32"});
+  const TemporaryFile lines("lines.gltf", gltf(R"({"mesh":0})", true));
+  const json seen = gpgpJson({"visibility", lines.path(), "--yaw", "0", "--size", "32x32"});
   EXPECT_EQ(seen["visible"], 1);
   EXPECT_EQ(seen["leftOut"], 1);
   EXPECT_EQ(seen["skippedTriangles"], 0);
-  EXPECT_NE(gpgp({"visibility", strip.path(), "--size", "32x32"}).out.find("1 primitives are no triangles"),
+  EXPECT_NE(gpgp({"visibility", lines.path(), "--size", "32x32"}).out.find("1 primitives are no triangles"),
             std::string::npos);
   // Reaches 2^100; the camera sees the other one.
   const TemporaryFile far("one_far.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 2e30 0\nf 1 2 3\nf 1 2 4\n");
@@ -181,6 +182,48 @@ TEST(CliVisibility, NamesAndLinesOfModels) {
   EXPECT_EQ(gpgpJson({"visibility", upper.path(), "--yaw", "0", "--size", "32x32"})["visible"], 1);
   const TemporaryFile noBinary("UPPER.GLB", "glTF but not really");
   EXPECT_NE(gpgpFailure({"visibility", noBinary.path()}).find("UPPER.GLB"), std::string::npos);
+}
+
+// The truth's only sample, the pixel's centre, does not see the triangle.
+TEST(CliVisibility, SharesOfNothingAreNone) {
+  const TemporaryFile model("corner.obj", "v -0.9 -0.9 0.5\nv -0.8 -0.9 0.5\nv -0.9 -0.8 0.5\nf 1 2 3\n"),
+      camera("corner.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  const std::vector<std::string> args{"visibility", model.path(), "--camera",    camera.path(), "--size", "1x1",
+                                      "--method",   "exact",      "--two-sided", "--truth",     "1",      "--recheck"};
+  const auto with = [&](const std::string& recheck) {
+    std::vector<std::string> all = args;
+    all.push_back(recheck);
+    return all;
+  };
+  const json none = gpgpJson(with("0"));
+  EXPECT_EQ(none["visible"], 1);
+  EXPECT_EQ(none["truth"], 0);
+  for (const char* key : {"coverage", "overestimation", "coverage_area", "overestimation_area"})
+    EXPECT_TRUE(none[key].is_null()) << key;
+  EXPECT_NE(gpgp(with("0")).out.find("coverage -, overestimation -"), std::string::npos);
+  const json rechecked = gpgpJson(with("64"));
+  EXPECT_EQ(rechecked["coverage"], 1.0);
+  EXPECT_EQ(rechecked["overestimation"], 0.0);
+  EXPECT_TRUE(rechecked["coverage_area"].is_null()) << "no sample of the truth shows anything";
+
+  // From behind there is nothing to see, which does not count.
+  const TemporaryFile sliver("one_side.obj", "v -0.01 -0.9 0\nv 0.01 -0.9 0\nv 0 0.9 0\nf 1 2 3\n"
+                                             "v -2 -2 -0.01\nv 2 -2 -0.01\nv 0 2 -0.01\nf 4 5 6\n");
+  const auto orbit = [&](const std::string& cameras) {
+    return gpgpJson(
+        {"visibility", sliver.path(), "--size", "32x32", "--truth", "64", "--recheck", "0", "--orbit", cameras});
+  };
+  const json one = orbit("1"), two = orbit("2");
+  EXPECT_LT(one["coverage"], 1.0);
+  EXPECT_EQ(two["coverage"], one["coverage"]);
+  EXPECT_EQ(two["coverage_area"], one["coverage_area"]);
+}
+
+TEST(CliVisibility, MediansAreInTheMiddle) {
+  EXPECT_EQ(cli::medianOf({}), 0.0);
+  EXPECT_EQ(cli::medianOf({5, 1, 3}), 3.0);
+  EXPECT_EQ(cli::medianOf({7, 1}), 4.0);
+  EXPECT_EQ(cli::medianOf({4, 1, 9, 2}), 3.0);
 }
 
 TEST(CliVisibility, ExactNeedsNoNumberOfSamples) {
@@ -223,7 +266,10 @@ TEST(CliVisibility, WrongUsage) {
                     {"visibility", model.path(), "--pitch", "90"},
                     {"visibility", model.path(), "--epsilon", "1"},
                     {"visibility", model.path(), "--epsilon", "1,-1"},
-                    {"visibility", model.path(), "--heuristics", "depth,luck"},
+                    {"visibility", model.path(), "--method", "conservative", "--heuristics", "depth,luck"},
+                    {"visibility", model.path(), "--method", "conservative", "--heuristics", ""},
+                    {"visibility", model.path(), "--method", "conservative", "--heuristics", "depth,none"},
+                    {"visibility", model.path(), "--method", "conservative", "--heuristics", "depth,"},
                     {"visibility", model.path(), "--resolution", "0.2"},
                     {"visibility", model.path(), "--refinements", "5"},
                     {"visibility", model.path(), "--repeat", "0"}});

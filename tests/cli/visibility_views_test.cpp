@@ -162,6 +162,41 @@ TEST(CliVisibilityViews, GridIsCopiesSideBySide) {
   EXPECT_NE(failure.find("the device binds at most"), std::string::npos) << failure;
 }
 
+TEST(CliVisibilityViews, GridsOfFlatModels) {
+  const TemporaryFile model("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const json rows = gpgpJson({"visibility", model.path(), "--size", "64x64", "--yaw", "60", "--grid", "2x3"});
+  EXPECT_EQ(rows["triangles"], 6);
+  EXPECT_EQ(rows["visible"], 6) << "of copies in one place the first is seen";
+}
+
+/// Pixels of a picture that are so coloured.
+size_t count(const host::Picture& picture, const std::function<bool(int, int, int)>& isSo) {
+  size_t n = 0;
+  for (size_t i = 0; i < picture.rgba.size(); i += 4)
+    if (isSo(picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2])) ++n;
+  return n;
+}
+
+TEST(CliVisibilityViews, SizesAreOfNoImportance) {
+  const auto seen = [](const std::string& size, const Args& more) {
+    const TemporaryFile model("size.obj", "v 0 0 0\nv " + size + " 0 0\nv " + size + ' ' + size + " 0\nv 0 " + size +
+                                              " 0\nf 1 2 3 4\n"),
+        image("size.png");
+    const json figures = gpgpJson(Args{"visibility", model.path(), "--size", "32x32", "--image", image.path()} + more);
+    const host::Picture picture = host::readPng(image.path());
+    return std::pair(figures["coveredPixels"].get<int>(), count(picture, [](int r, int, int b) { return r > b + 60; }));
+  };
+  for (const Args& more : {Args{}, Args{"--yaw", "0", "--pitch", "0"}, Args{"--orbit", "1"}}) {
+    const auto [pixels, orange] = seen("1", more);
+    EXPECT_GT(pixels, 100);
+    for (const char* size : {"1e-12", "1e-6", "1e12"}) {
+      const auto [otherPixels, otherOrange] = seen(size, more);
+      EXPECT_NEAR(otherPixels, pixels, 4) << size;
+      EXPECT_NEAR(static_cast<double>(otherOrange), static_cast<double>(orange), 6) << size;
+    }
+  }
+}
+
 /// Looks from (0, 0, 3) along -z; sees so far to each side at distance 1: at z = 0 just a square of 2 x 2, without
 /// more.
 glm::dmat4 plainCamera(double half = 1.0 / 3.0) {
@@ -188,14 +223,10 @@ TEST(CliVisibilityViews, CellsSeeRoundWhatHides) {
   EXPECT_EQ(idsOf(args + Args{"--method", "cell", "--cell", "16x16/15"}), (Ids{0, 1, 2, 3}));
 }
 
-/// Pixels of a picture that are so coloured.
-size_t count(const host::Picture& picture, const std::function<bool(int, int, int)>& isSo) {
-  size_t n = 0;
-  for (size_t i = 0; i < picture.rgba.size(); i += 4)
-    if (isSo(picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2])) ++n;
-  return n;
-}
 bool isGreen(int r, int g, int b) { return g > 2 * r && g > 2 * b; }
+bool isBlue(int r, int g, int b) { return b > 2 * r && b > 2 * g; }
+bool isRed(int r, int g, int b) { return r > 2 * g && r > 2 * b; }
+bool isGrey(int r, int g, int b) { return r == g && g == b && r < 230; }
 bool isBackground(int r, int g, int b) { return r > 240 && g > 240 && b > 240; }
 
 /// A sheet, and before it, between the centres of two columns of pixels, a strip 0.8 of a pixel wide and 20 high.
@@ -215,33 +246,111 @@ TEST(CliVisibilityViews, MethodsAndOverlay) {
   EXPECT_EQ(idsOf(args), (Ids{0, 1}));
   EXPECT_EQ(idsOf(args + Args{"--samples", "8"}), (Ids{0, 1, 2, 3}));
   EXPECT_EQ(idsOf(args + Args{"--method", "exact"}), (Ids{0, 1, 2, 3}));
-  // Each pixel has a half of the strip, whose colour is mixed with the sheet's green.
+  // Of each row of an overlay's pixels, three for one of the viewport, the strip has two.
+  constexpr uint32_t kAll = 96 * 96, kStrip = 2 * 60;
   const auto overlay = [&](const Args& more, json& figures) {
     figures = gpgpJson(args + more + Args{"--overlay", png.path()});
     return host::readPng(png.path());
   };
   json figures;
   const host::Picture missed = overlay({"--truth", "64"}, figures);
+  EXPECT_EQ(missed.width, 96u);
+  EXPECT_EQ(missed.height, 96u);
   EXPECT_EQ(figures["coverage"], 0.5);
-  EXPECT_EQ(count(missed, [](int r, int g, int b) { return b > g && g > r; }), 40u) << "blue: missed, two by 20";
-  EXPECT_EQ(count(missed, isGreen), 32u * 32 - 40);
+  EXPECT_EQ(count(missed, isBlue), kStrip) << "missed";
+  EXPECT_EQ(count(missed, isGreen), kAll - kStrip);
 
   const host::Picture added = overlay({"--method", "exact", "--truth", "64"}, figures);
   EXPECT_EQ(figures["coverage"], 1.0);
   EXPECT_EQ(figures["overestimation"], 0.0);
-  EXPECT_EQ(count(added, isGreen), 32u * 32 - 40);
-  EXPECT_EQ(count(added, [](int r, int g, int b) { return !isGreen(r, g, b) && std::abs(r - b) < 20 && g > r; }), 40u)
-      << "grey: the method's alone";
+  EXPECT_EQ(count(added, isGreen), kAll - kStrip);
+  EXPECT_EQ(count(added, isGrey), kStrip) << "the method's alone";
 
   // One sample a pixel does not find the strip, 64 x 64 do: without them it is too much, with them it is not.
-  const auto isRed = [](int r, int g, int b) { return r > g && g > b; };
   const host::Picture tooMuch = overlay({"--method", "exact", "--truth", "1", "--recheck", "0"}, figures);
   EXPECT_EQ(figures["overestimation"], 1.0);
-  EXPECT_EQ(count(tooMuch, isRed), 40u);
+  EXPECT_EQ(count(tooMuch, isRed), kStrip);
   const host::Picture checked = overlay({"--method", "exact", "--truth", "1", "--recheck", "64"}, figures);
   EXPECT_EQ(figures["overestimation"], 0.0);
   EXPECT_EQ(figures["truth"], 4);
   EXPECT_EQ(checked.rgba, added.rgba) << "the overlay is of what the figures count";
+}
+
+/// Wires a tenth of a pixel wide before a wall, as many as rows of 16; between the points of a magnified picture.
+std::string wires() {
+  std::ostringstream obj;
+  obj << "v -2 -2 -0.1\nv 2 -2 -0.1\nv 2 2 -0.1\nv -2 2 -0.1\nf 1 2 3 4\n";
+  for (int i = 0; i < 16; ++i) {
+    const double y = -1 + (i + 0.05) / 8;
+    obj << "v -1 " << y << " 0\nv 1 " << y << " 0\nv 1 " << y + 0.0125 << " 0\nv -1 " << y + 0.0125 << " 0\n"
+        << "f -4 -3 -2 -1\n";
+  }
+  return obj.str();
+}
+
+TEST(CliVisibilityViews, OverlaysShowWhatIsBelowAPixel) {
+  const TemporaryFile png("below.png"), thin("wires.obj", wires()), plain("plain.txt", textOf(plainCamera()));
+  const auto overlay = [&](const TemporaryFile& model, const Args& more, json& figures) {
+    figures = gpgpJson(Args{"visibility", model.path(), "--size", "16x16", "--overlay", png.path()} + more);
+    return host::readPng(png.path());
+  };
+  json figures;
+  const Args wall{"--camera", plain.path(), "--truth", "16"};
+  const host::Picture missed = overlay(thin, wall, figures);
+  EXPECT_EQ(figures["visible"], 2);
+  EXPECT_EQ(figures["truth"], 34);
+  EXPECT_EQ(count(missed, isBlue), 16u * 48) << "each wire is a line of its pixels";
+  EXPECT_EQ(count(missed, isGreen), 48u * 48 - 16 * 48);
+  const host::Picture added = overlay(thin, wall + Args{"--method", "exact"}, figures);
+  EXPECT_EQ(figures["visible"], 34);
+  EXPECT_EQ(count(added, isGrey), 16u * 48);
+  EXPECT_EQ(count(added, isGreen), 48u * 48 - 16 * 48);
+
+  // Some twenty triangles a pixel: the centres show what standard sampling finds, all else what it misses.
+  const TemporaryFile round("below_ball.obj", ball());
+  const host::Picture small = overlay(round, {"--orbit", "1", "--truth", "4", "--recheck", "0"}, figures);
+  size_t centres = 0;
+  for (size_t y = 1; y < 48; y += 3)
+    for (size_t x = 1; x < 48; x += 3) {
+      const uint8_t* pixel = &small.rgba[(y * 48 + x) * 4];
+      centres += isGreen(pixel[0], pixel[1], pixel[2]);
+    }
+  EXPECT_NEAR(static_cast<double>(centres), figures["coveredPixels"].get<double>(), 2);
+  EXPECT_GT(count(small, isBlue), 4 * centres);
+}
+
+// A speck beside the centre of a pixel of a wall, which is hit by none of a picture's points.
+TEST(CliVisibilityViews, OverlaysMarkSpecks) {
+  const auto speck = [](double x, double y) { // in pixels from the middle
+    std::ostringstream obj;
+    obj << "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+    for (const auto& [dx, dy] : {std::pair(0.0, 0.0), std::pair(0.06, 0.0), std::pair(0.0, 0.06)})
+      obj << "v " << (x + dx) / 8 << ' ' << (y + dy) / 8 << " 0.0001\n";
+    obj << "f 5 6 7\n";
+    return obj.str();
+  };
+  const TemporaryFile camera("speck.txt", textOf(plainCamera())), png("speck.png");
+  for (const auto& [x, y, column, row] :
+       {std::tuple(0.55, 0.52, 26u, 22u), std::tuple(0.42, 0.52, 24u, 22u), std::tuple(0.02, 0.02, 24u, 23u)}) {
+    const TemporaryFile model("speck.obj", speck(x, y));
+    const json figures = gpgpJson({"visibility", model.path(), "--size", "16x16", "--camera", camera.path(), "--truth",
+                                   "64", "--overlay", png.path()});
+    ASSERT_EQ(figures["truth"], 3);
+    const host::Picture picture = host::readPng(png.path());
+    EXPECT_EQ(count(picture, isBlue), 1u);
+    EXPECT_EQ(count(picture, isGreen), 48u * 48 - 1);
+    const uint8_t* pixel = &picture.rgba[(row * 48 + column) * 4];
+    EXPECT_TRUE(isBlue(pixel[0], pixel[1], pixel[2])) << "at " << column << ", " << row;
+  }
+}
+
+TEST(CliVisibilityViews, OverlaysOfCellsShowNothingThroughWalls) {
+  const TemporaryFile model("cell_overlay.obj", kHidden), camera("cell_overlay.txt", textOf(plainCamera(2))),
+      png("cell_overlay.png");
+  const json figures = gpgpJson({"visibility", model.path(), "--size", "32x32", "--camera", camera.path(), "--method",
+                                 "cell", "--cell", "3.5:9", "--overlay", png.path()});
+  EXPECT_EQ(figures["visible"], 4);
+  EXPECT_EQ(count(host::readPng(png.path()), isGrey), 0u) << "the hidden square is seen from beside alone";
 }
 
 // A floor from behind the eye to far before it: half of the picture.
@@ -254,10 +363,10 @@ TEST(CliVisibilityViews, OverlayOfWhatReachesBehindTheEye) {
   gpgpJson({"visibility", model.path(), "--size", "64x32", "--camera", camera.path(), "--overlay", overlay.path(),
             "--image", image.path()});
   const host::Picture picture = host::readPng(overlay.path());
-  EXPECT_EQ(count(picture, isGreen), 64u * 16);
-  EXPECT_EQ(count(picture, isBackground), 64u * 16);
-  for (size_t y = 0; y < 32; ++y)
-    EXPECT_EQ(picture.rgba[y * 64 * 4] > 240, y < 16) << "the floor is below, in row " << y;
+  EXPECT_EQ(count(picture, isGreen), 192u * 48);
+  EXPECT_EQ(count(picture, isBackground), 192u * 48);
+  for (size_t y = 0; y < 96; ++y)
+    EXPECT_EQ(picture.rgba[y * 192 * 4] > 240, y < 48) << "the floor is below, in row " << y;
   const host::Picture both = host::readPng(image.path());
   ASSERT_EQ(both.width, 128u);
   EXPECT_TRUE(isBackground(both.rgba[8 * 512], both.rgba[8 * 512 + 1], both.rgba[8 * 512 + 2]));
@@ -279,7 +388,7 @@ TEST(CliVisibilityViews, ReversedDepth) {
       const uint8_t* pixel = &both.rgba[(y * 64 + x) * 4];
       ASSERT_GT(pixel[0], pixel[2] + 60) << "the nearer one is orange and hides the grey one, " << x << ", " << y;
     }
-  EXPECT_EQ(count(host::readPng(overlay.path()), isGreen), 32u * 32);
+  EXPECT_EQ(count(host::readPng(overlay.path()), isGreen), 96u * 96);
 }
 
 TEST(CliVisibilityViews, WhatIsWrongWithCameras) {
@@ -300,6 +409,9 @@ TEST(CliVisibilityViews, WhatIsWrongWithCameras) {
                     {"visibility", model.path(), "--cell", "0:4"},
                     {"visibility", model.path(), "--cell", "1:0"},
                     {"visibility", model.path(), "--cell", "65x1"},
+                    {"visibility", model.path(), "--cell", "2x2/0"},
+                    {"visibility", model.path(), "--cell", "2x2/-1"},
+                    {"visibility", model.path(), "--cell", "4294967297x1"},
                     {"visibility", model.path(), "--cell", "2"}});
 }
 

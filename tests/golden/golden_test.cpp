@@ -156,4 +156,12 @@ TEST(DecoupledShading, DensityIsByArea) {
   EXPECT_EQ(large.rgba, shown("--frames 2 --size 480x270 --input 3").first.rgba) << "the key 3 shows the same";
 }
 
+// What would have no effect.
+TEST(DecoupledShading, ItsOptionsBelongToIt) {
+  for (const char* options : {"--show density", "--method exact", "--rate 2", "--freeze 1", "--truth 4", "--farther 2"})
+    EXPECT_NE(
+        std::system((std::string("\"") + GPGP_MINI_ENGINE + "\" " + options + " 2> /dev/null > /dev/null").c_str()), 0)
+        << options;
+}
+
 } // namespace
