@@ -152,9 +152,9 @@ void showRest(Rest rest) {
     uint id = candidateId(entries[i]);
     bool isLeft = rest.byNumber ? depths[i] > rest.depth || isWithin(rest, i, rest.low, rest.farthest)
                                 : depths[i] >= rest.low;
-    if (!isLeft || isShown(id)) continue;
+    if (!isLeft) continue;
+    atomicAdd(counters.unresolved, 1u); // whoever else shows it, in whatever order
     show(id);
-    atomicAdd(counters.unresolved, 1u);
   }
 }
 
