@@ -392,7 +392,9 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
   EXPECT_EQ(twice["axioms"], 2);
   EXPECT_EQ(gpgpJson({"graph", "other=" + house.path()})["nodes"], gpgpJson({"graph", house.path()})["nodes"]);
   EXPECT_NE(gpgpFailure({"graph", bakedHouse.path(), tree.path(), "--set", name + "house.n=4"})
-                .find("house.gpgp:1:1: error: a baked grammar has no var that could be set"),
+                .find("house.gpgp: error: a baked grammar has no var 'n' that could be set; they were set when it was "
+                      "baked (--set " +
+                      name + "house.n=4)"),
             std::string::npos);
   expectWrongUsage({{"spawn", house.path(), tree.path(), "--set", "n=4"},
                     {"spawn", house.path(), tree.path(), "--set", "other.n=4"},
@@ -584,6 +586,12 @@ TEST(CliSpawn, WrongUsage) {
                     {"spawn", grammar.path(), "--set", "floors"},
                     {"spawn", grammar.path(), "--set", "=3"},
                     {"spawn", grammar.path(), "--set", "floors=many"}});
+  // but not those that are not in the text
+  const TemporaryFile tower("placeless.pga", kTower), without("without.pga", "terminal T (1, 0);\n");
+  EXPECT_EQ(gpgpFailure({"spawn", tower.path(), "--set", "zz=1"}),
+            tower.path() + ": error: there is no var 'zz' that could be set (--set zz=1)");
+  EXPECT_EQ(gpgpFailure({"spawn", without.path()}),
+            without.path() + ": error: there is no axiom; expected a line as: axiom Box Start;");
   EXPECT_NE(gpgp({"spawn", grammar.path(), "--spacing", "0"}).err.find("0 is not within 1e-06 to 1e+09"),
             std::string::npos);
 }
