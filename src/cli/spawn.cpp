@@ -458,10 +458,11 @@ Work addSpawn(CLI::App& app) {
   command
       ->add_option(
           "--schedule", options->schedule,
-          "How the derivation runs. sgl: as few execution groups as possible; rw: one an operator; rules: one a "
-          "rule; heuristic: the thesis's H1 to H3; default: few groups, but for a SubDiv behind another; interpreter: "
-          "no "
-          "kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
+          "How the derivation runs. sgl: as few execution groups as possible (with colliders: as a bounded search "
+          "finds); rw: one an operator; rules: one a "
+          "rule; heuristic: the thesis's H1 to H3; default: few groups, but for a SubDiv behind another "
+          "(execution_groups: of the partition with dynamic edges there); interpreter: "
+          "no kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
           "many axioms, tuning first where it is not stored yet (in $XDG_CACHE_HOME/gpgp or ~/.cache/gpgp); "
           "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
       ->type_name("NAME|FILE")
