@@ -89,6 +89,17 @@ TEST(Schedules, GroupsOfTheDefaultAreThoseOfItsPartition) {
   EXPECT_EQ(spawn::namedSchedule(one, "default")->groups, spawn::namedSchedule(one, "sgl")->groups);
 }
 
+TEST(Schedules, LongChainsAreNamedWhereShapesEnter) { // as each name inlines the chain to its end
+  std::string rules = "axiom Box A; terminal T (1,0); A = ";
+  for (int i = 0; i < 150; ++i) rules += "Translate(1,0,0) ";
+  const spawn::Graph graph = graphOf(rules + "T;");
+  const std::string text = spawn::generate(graph, spawn::namedSchedule(graph, "default")->waits).functions;
+  size_t named = 0;
+  for (size_t at = text.find("uint runChain("); (at = text.find("end = chain", at)) != std::string::npos; ++at) ++named;
+  EXPECT_GE(named, 1u);
+  EXPECT_LE(named, 30u);
+}
+
 TEST(Schedules, TheNamedOnesAreOrdered) {
   // Rewriting waits wherever a shape can arrive.
   for (const std::string& name : ownGrammarNames()) {
