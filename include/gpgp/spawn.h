@@ -71,7 +71,8 @@ enum {
 
 typedef struct GpgpCompileMessage {
   const char* file;
-  uint32_t line, column; /**< from 1; 0 for a builder: its text begins with the place, by name */
+  uint32_t line, column; /**< from 1; 0 where text is not about a place in the source, and for a builder: its text
+                            begins with the place, by name */
   GpgpSeverity severity;
   const char* text;
 } GpgpCompileMessage;
@@ -103,8 +104,8 @@ typedef struct GpgpGrammarSource {
   void* messageUserData;
   GpgpCompileFlags flags;
   GpgpGrammarBuilder builder; /**< instead of text, which then is NULL; read during the call */
-  const void* baked; /**< instead of text: a baked grammar, as it stands in a file. It has no variables any more, and
-                          kernels in it are left out. @lifetime call */
+  const void* baked; /**< instead of text: a baked grammar, as it stands in a file; all of it is checked. It has no
+                          variables any more, and kernels in it are left out. @lifetime call */
 } GpgpGrammarSource;
 #define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
 
@@ -137,8 +138,8 @@ typedef struct GpgpGrammarCreateInfo {
 } GpgpGrammarCreateInfo;
 #define GPGP_GRAMMAR_CREATE_INFO_INIT GPGP_INIT(GpgpGrammarCreateInfo, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO)
 
-/** Checks a baked grammar (magic, version, checksum, every index) and queues it for upload.
- *  Errors: INVALID_DATA, IO, OUT_OF_..._MEMORY. @threads context @lifetime call */
+/** Checks a baked grammar (magic, version, checksums, every index, the kernels behind it, nothing else there) and
+ * queues it for upload. Errors: INVALID_DATA, IO, OUT_OF_..._MEMORY. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext context, const GpgpGrammarCreateInfo* info,
                                                 GpgpAsset* grammar);
 

@@ -197,7 +197,7 @@ std::vector<Row> readJson(const std::string& text, spawn::Diagnostics& errors) {
     return {};
   }
   if (!all.is_array()) {
-    errors.error({}, "expected an array of axioms, [{...}, {...}]");
+    errors.error(placeOf(text, text.find('{')), "expected an array of axioms, [{...}, {...}]");
     return {};
   }
   const std::vector<spawn::Place> places = placesOfValues(text);

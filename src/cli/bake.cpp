@@ -181,8 +181,9 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
   Outcome outcome{Json::object(), {}};
   Json list = Json::array();
   std::ostringstream text;
+  std::vector<std::pair<std::string, std::string>> files; // and their bytes: all are made before any is written
   for (const auto& [file, type, input] : work) {
-    const auto [bytes, facts, words] = bakeOne(options, file, type, file == kStandard ? input : readInput(file));
+    auto [bytes, facts, words] = bakeOne(options, file, type, file == kStandard ? input : readInput(file));
     if (options.out == kStandard) {
       outcome.text = bytes;
       return outcome;
@@ -192,11 +193,12 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
                : options.out;
     for (const Json& other : list)
       if (other["out"] == out) throw Usage(file + ": another input goes to " + out + " as well");
-    host::writeFile(out, bytes);
     list.push_back({{"in", file}, {"type", type}, {"out", out}, {"bytes", bytes.size()}});
     list.back().update(facts);
     text << file << ": " << type << words << ", " << bytes.size() << " bytes, " << out << '\n';
+    files.emplace_back(out, std::move(bytes));
   }
+  for (const auto& [out, bytes] : files) host::writeFile(out, bytes);
   outcome.text = text.str();
   outcome.json = {{"baked", list}};
   return outcome;

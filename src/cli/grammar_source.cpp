@@ -16,12 +16,14 @@ struct Assignment {
   std::string grammar; ///< empty: the only one
   std::string name;
   float value = 0;
+  std::string text; ///< all of it
 };
 
 Assignment parseAssignment(const std::string& text, bool linked) {
   const size_t equals = text.find('=');
   char* end = nullptr;
   Assignment result;
+  result.text = text;
   result.value = equals == std::string::npos ? 0.0f : std::strtof(text.c_str() + equals + 1, &end);
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size() || *end != 0 ||
       !std::isfinite(result.value))
@@ -40,17 +42,23 @@ Assignment parseAssignment(const std::string& text, bool linked) {
 std::string nameOf(const GrammarFile& file) { return file.alias.empty() ? spawn::linkedName(file.path) : file.alias; }
 
 struct Errors {
+  std::span<const Assignment> assignments;
   std::string first;
   uint32_t count = 0;
 
   static void GPGP_CALL print(void* userData, const GpgpCompileMessage* message) {
     auto* all = static_cast<Errors*>(userData);
     std::ostringstream line;
-    line << message->file << ':' << message->line << ':' << message->column << ": "
+    line << message->file << ':';
+    if (message->line) line << message->line << ':' << message->column << ':';
+    line << ' '
          << (message->severity == GPGP_SEVERITY_ERROR     ? "error: "
              : message->severity == GPGP_SEVERITY_WARNING ? "warning: "
                                                           : "note: ")
          << message->text;
+    for (const Assignment& a : all->assignments) // the place of what the command line says
+      if (!message->line && std::string_view(message->text).find("var '" + a.name + "'") != std::string_view::npos)
+        line << " (--set " << a.text << ')';
     std::fprintf(stderr, "%s\n", printable(line.str()).c_str());
     if (message->severity != GPGP_SEVERITY_ERROR) return;
     if (all->count++ == 0) all->first = line.str();
@@ -59,6 +67,7 @@ struct Errors {
 
 Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vector<std::string>& set, bool kernel) {
   std::vector<Assignment> assignments;
+  assignments.reserve(set.size());
   for (const std::string& text : set) assignments.push_back(parseAssignment(text, linked));
   std::vector<std::vector<GpgpVariable>> variables(grammars.size());
   for (const Assignment& a : assignments) {
@@ -74,7 +83,7 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
     throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"; there are " +
                 names);
   }
-  Errors errors;
+  Errors errors{assignments, {}, 0};
   std::vector<GpgpGrammarSource> sources;
   for (size_t i = 0; i < grammars.size(); ++i) {
     GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;

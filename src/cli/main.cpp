@@ -4,6 +4,7 @@
 
 #include <gpgp/core.h>
 
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <vector>
@@ -104,6 +105,9 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+#ifdef SIGXFSZ
+  std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is an error like a full disk, and cleaned up after
+#endif
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {

@@ -6,7 +6,6 @@
 #include <bit>
 #include <chrono>
 #include <cstring>
-#include <set>
 
 namespace gpgp::cli {
 namespace {
@@ -29,30 +28,36 @@ uint64_t hashOf(std::span<const GpgpInstance> instances) {
 
 } // namespace
 
+spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
+                                  const std::string& grammar) {
+  spawn::DeriveOptions options;
+  if (maxDepth) options.maxDepth = maxDepth;
+  options.keepInstances = false;
+  spawn::Derivation all = spawn::derive(words, axioms, options);
+  if (all.complete) return all;
+  if (axioms.size() > 1 && spawn::derive(words, axioms.subspan(all.lastAxiom, 1), options).complete) return all;
+  const std::string many = "more than " + std::to_string(options.maxShapes / 1'000'000) + " million shapes";
+  throw Failure(grammar + ": " +
+                (axioms.size() > 1
+                     ? "axiom " + std::to_string(all.lastAxiom + 1) + " of " + std::to_string(axioms.size())
+                     : std::string("one axiom")) +
+                " alone becomes " + many +
+                ": it is too large, or the derivation never ends; --max-depth bounds how deep rules nest");
+}
+
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
-                   const spawn::VertexLayout* layout) {
+                   const spawn::VertexLayout* layout, const std::string& grammar) {
+  spawn::Derivation memory = checkThatItEnds(words, axioms, maxDepth, grammar);
+  if (!memory.complete) return {std::move(memory), 0};
+  memory.instances.resize(memory.terminals);
   spawn::DeriveOptions options;
   if (maxDepth) options.maxDepth = maxDepth;
   options.vertices = layout;
   Reference reference;
-  reference.result = spawn::derive(words, axioms, options);
-  if (!reference.result.complete) return reference;
   const auto begin = std::chrono::steady_clock::now();
-  reference.result = spawn::derive(words, axioms, options, std::move(reference.result));
+  reference.result = spawn::derive(words, axioms, options, std::move(memory));
   reference.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return reference;
-}
-
-void checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
-                     const std::string& grammar) {
-  spawn::DeriveOptions options;
-  if (maxDepth) options.maxDepth = maxDepth;
-  options.keepInstances = false;
-  std::set<uint32_t> starts;
-  for (const GpgpAxiom& axiom : axioms)
-    if (starts.insert(axiom.rule).second && !spawn::derive(words, {&axiom, 1}, options).complete)
-      throw Failure(grammar + ": one axiom alone becomes more than " + std::to_string(options.maxShapes / 1'000'000) +
-                    " million shapes, so the derivation probably never ends; --max-depth bounds how deep rules nest");
 }
 
 std::string difference(const spawn::Derivation& reference, const GpgpSpawnReport& report,

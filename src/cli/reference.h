@@ -8,21 +8,22 @@
 
 namespace gpgp::cli {
 
-/// Of one thread, instances or vertices included, into memory that an earlier run has touched: the device's buffers are
-/// there before it starts as well.
+/// Counts what becomes of all axioms; not complete where that are more shapes than the evaluator takes. Throws Failure
+/// where one axiom alone is that many: it may never end, and larger budgets of the device would only make it last
+/// longer. Axioms behind the place where the evaluator gives up are not looked at. grammar: its name.
+spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
+                                  const std::string& grammar);
+
+/// Of one thread, instances or vertices included, into memory that was touched before: the device's buffers are there
+/// before it starts as well.
 struct Reference {
   spawn::Derivation result;
   double milliseconds = 0;
 };
 
-/// layout: of vertices, if any. Throws nothing: result.complete says whether the evaluator came to an end.
+/// What checkThatItEnds() lets pass; only counts where that is not complete. layout: of vertices, if any.
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
-                   const spawn::VertexLayout* layout);
-
-/// Throws Failure where of one axiom alone, the first of a start, come more shapes than the evaluator takes: probably
-/// without end, and larger budgets would only make that last longer.
-void checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
-                     const std::string& grammar);
+                   const spawn::VertexLayout* layout, const std::string& grammar);
 
 /// Empty where both derived the same, else what they differ in: counts, the hash of keys, or, where the instances are
 /// at hand, anything of them that is equal bit for bit on every device. Those are all fields but the transform, whose

@@ -169,14 +169,18 @@ std::string exceeded(const std::string& what, const std::string& option, uint64_
          "\n";
 }
 
-/// All budgets that were exceeded, a line each.
-std::string exceededBudgets(const GpgpSpawnReport& report, const Deriver& deriver, bool vertices) {
+/// All budgets that were exceeded, a line each. tooMany: of the dropped shapes, those that no budget can save.
+std::string exceededBudgets(const GpgpSpawnReport& report, uint32_t tooMany, const Deriver& deriver, bool vertices) {
   std::string text;
-  if (report.droppedShapes && report.peakShapes > deriver.maxShapes())
-    text += exceeded(counted(report.droppedShapes, "shape") + " of a round", "--max-shapes", report.peakShapes,
-                     deriver.mostShapes());
-  else if (report.droppedShapes)
-    text += "budget exceeded: " + counted(report.droppedShapes, "shape") + " still waited after the last of " +
+  if (tooMany)
+    text += "budget exceeded: " + counted(tooMany, "shape") + (tooMany == 1 ? " was" : " were") +
+            " dropped, as a Repeat makes at most 1048576 copies of one\n";
+  const uint32_t waiting = report.droppedShapes - std::min(report.droppedShapes, tooMany);
+  if (waiting && report.peakShapes > deriver.maxShapes())
+    text +=
+        exceeded(counted(waiting, "shape") + " of a round", "--max-shapes", report.peakShapes, deriver.mostShapes());
+  else if (waiting)
+    text += "budget exceeded: " + counted(waiting, "shape") + " still waited after the last of " +
             counted(report.rounds, "round") + ", which are as many as a record takes\n";
   if (report.collidersKept < report.colliders)
     text += exceeded(counted(report.colliders - report.collidersKept, "collider"), "--max-colliders", report.colliders,
@@ -250,9 +254,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                                 : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
   Session session(common);
   const Slices slices = slicesFor(options, start, graph, session);
-  checkThatItEnds(grammar.words, start, options.maxDepth, joined(options.grammars));
   const auto layout = spawn::layoutOf(Deriver::layout());
-  const Reference reference = evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr);
+  const Reference reference =
+      evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr, joined(options.grammars));
   const Chosen chosen = chooseKernel(options, grammar, slices.of(0), session);
 
   DeriverOptions deriverOptions;
@@ -292,7 +296,12 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     times.add(measured.times);
     bytesWritten += deriver.bytesWritten();
     if (budgets.empty()) {
-      budgets = exceededBudgets(measured.report, deriver, vertices);
+      const uint32_t tooMany = // the report does not tell them from those that still waited
+          measured.report.droppedShapes && reference.result.droppedShapes
+              ? checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars))
+                    .droppedShapes
+              : 0;
+      budgets = exceededBudgets(measured.report, tooMany, deriver, vertices);
       if (!budgets.empty() && slices.records > 1)
         budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
     }
@@ -458,10 +467,11 @@ Work addSpawn(CLI::App& app) {
   command
       ->add_option(
           "--schedule", options->schedule,
-          "How the derivation runs. sgl: as few execution groups as possible; rw: one an operator; rules: one a "
-          "rule; heuristic: the thesis's H1 to H3; default: few groups, but for a SubDiv behind another; interpreter: "
-          "no "
-          "kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
+          "How the derivation runs. sgl: as few execution groups as possible (with colliders: as a bounded search "
+          "finds); rw: one an operator; rules: one a "
+          "rule; heuristic: the thesis's H1 to H3; default: few groups, but for a SubDiv behind another "
+          "(execution_groups: of the partition with dynamic edges there); interpreter: "
+          "no kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
           "many axioms, tuning first where it is not stored yet (in $XDG_CACHE_HOME/gpgp or ~/.cache/gpgp); "
           "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
       ->type_name("NAME|FILE")

@@ -1,14 +1,14 @@
 #include "cli/triangles_gltf.h"
 
 #include "cli/command.h"
+#include "host/files.h"
 
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 
 namespace gpgp::cli {
 
@@ -65,16 +65,11 @@ void writeGlb(const std::filesystem::path& file, const std::vector<std::vector<g
     node.mesh = index;
     scene.nodes.push_back(index);
   }
-  if (file.has_parent_path()) {
-    std::error_code ignored; // opening the file says what is wrong
-    std::filesystem::create_directories(file.parent_path(), ignored);
-  }
-  // Through a stream of our own: what the writer returns does not say whether all bytes arrived.
-  errno = 0;
-  std::ofstream stream(file, std::ios::binary);
+  std::ostringstream stream;
   tinygltf::TinyGLTF writer;
-  if (!stream || !writer.WriteGltfSceneToStream(&model, stream, false, true) || !stream.flush())
-    throw Failure(file.string() + ": " + (errno ? std::strerror(errno) : "cannot be written"));
+  if (!writer.WriteGltfSceneToStream(&model, stream, false, true))
+    throw Failure(file.string() + ": cannot be written as glTF");
+  host::writeFile(file, stream.view());
 }
 
 } // namespace gpgp::cli

@@ -2,12 +2,12 @@
 #include "cli/median.h"
 #include "cli/sampled_model.h"
 #include "cli/visibility_pictures.h"
+#include "host/files.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -24,13 +24,11 @@ void writeIds(const std::string& path, const std::vector<uint32_t>& found, uint3
   std::vector<uint32_t> ids;
   for (size_t i = 0; i < triangles; ++i)
     if (isSet(found, i)) ids.push_back(static_cast<uint32_t>(i));
-  std::ofstream file(path, std::ios::binary);
-  for (const uint32_t id : ids) {
-    const std::array<char, 4> bytes{static_cast<char>(id), static_cast<char>(id >> 8), static_cast<char>(id >> 16),
-                                    static_cast<char>(id >> 24)};
-    file.write(bytes.data(), 4);
-  }
-  if (!file.flush()) throw Failure(path + ": cannot be written");
+  std::string bytes;
+  for (const uint32_t id : ids)
+    bytes.append(
+        {static_cast<char>(id), static_cast<char>(id >> 8), static_cast<char>(id >> 16), static_cast<char>(id >> 24)});
+  host::writeFile(path, bytes);
 }
 
 /// Of the triangles that can be sampled: those with finite corners below 2^100.

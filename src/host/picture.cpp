@@ -1,6 +1,8 @@
 // PNG in and out, the sRGB transfer function, and a plain comparison.
 #include "host/picture.h"
 
+#include "host/files.h"
+
 #include <png.h>
 
 #include <algorithm>
@@ -12,14 +14,16 @@ namespace gpgp::host {
 void writePng(const std::filesystem::path& file, const Picture& picture) {
   if (picture.rgba.size() != size_t{picture.width} * picture.height * 4 || picture.rgba.empty())
     throw std::runtime_error(file.string() + ": a picture's size and its pixels do not agree");
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = picture.width;
   image.height = picture.height;
   image.format = PNG_FORMAT_RGBA;
-  if (!png_image_write_to_file(&image, file.c_str(), 0, picture.rgba.data(), 0, nullptr))
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string bytes(size, '\0');
+  if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgba.data(), 0, nullptr))
     throw std::runtime_error(file.string() + ": " + image.message);
+  writeFile(file, {bytes.data(), size});
 }
 
 Picture readPng(const std::filesystem::path& file) {

@@ -8,6 +8,8 @@ namespace {
 constexpr const char* kGrammar = "axiom Box A;\nterminal T (1, 0);\nvar n = 2;\n"
                                  "A = Repeat(X, n, ADJUST_TO_FILL) T;\n";
 
+ProcessResult shell(const std::string& line) { return runProcess({"/bin/sh", "-c", line}); }
+
 std::string bakedWith(std::vector<std::string> arguments) {
   const TemporaryFile out("baked.gpgp");
   arguments.insert(arguments.begin(), "bake");
@@ -78,6 +80,20 @@ TEST(CliBake, AFolderTakesOneFileEach) {
   std::filesystem::remove_all(folder.path());
 }
 
+TEST(CliBake, WhatFailsLeavesNothingBehind) {
+  const TemporaryFile one("whole.pga", kGrammar), wrong("not_whole.pga", "axiom Box A;\nA = Nothing;\n"),
+      folder("whole");
+  gpgpFailure({"bake", one.path(), wrong.path(), "--no-kernel", "-o", folder.path()});
+  EXPECT_FALSE(std::filesystem::exists(folder.path())); // not even what could be baked
+  const TemporaryFile out("whole.gpgp", "good");
+  const auto limited = shell("ulimit -f 4; '" GPGP_CLI "' bake '" + one.path() + "' -o '" + out.path() + "'");
+  EXPECT_EQ(limited.exitCode, 1);
+  EXPECT_NE(limited.err.find(out.path() + ": File too large"), std::string::npos) << limited.err;
+  EXPECT_EQ(host::readText(out.path()), "good");
+  const auto piped = shell("'" GPGP_CLI "' bake '" + one.path() + "' --no-kernel -o /dev/stdout | cat");
+  EXPECT_EQ(piped.out.substr(0, 4), "gppg");
+}
+
 TEST(CliBake, EndingsSayWhatIsInAFile) {
   const std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='4'><path d='M0 0H3V3Z'/></svg>";
   const TemporaryFile grammar("kinds.pga", kGrammar), drawing("kinds.svg", svg), folder("kinds");
@@ -95,8 +111,6 @@ TEST(CliBake, ErrorsHaveAPlace) {
   EXPECT_FALSE(std::filesystem::exists(out.path()));
   gpgpFailure({"bake", "no_such_file.pga", "-o", out.path()});
 }
-
-ProcessResult shell(const std::string& line) { return runProcess({"/bin/sh", "-c", line}); }
 
 TEST(CliBake, BytesSayWhatStandardInputIs) {
   const std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='4'><path d='M0 0H3V3Z'/></svg>";

@@ -39,7 +39,7 @@ TEST(CliReference, OrderDoesNotCountAndEverythingElseDoes) {
   GpgpAxiom axiom = spawn::makeAxiom(0, 0, 0);
   axiom.size[0] = 5;
   axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
-  const spawn::Derivation cpu = cli::evaluate(words, {axiom}, 0, nullptr).result;
+  const spawn::Derivation cpu = cli::evaluate(words, {axiom}, 0, nullptr, "grammar").result;
   ASSERT_EQ(cpu.instances.size(), 5u);
   const GpgpSpawnReport report = reportOf(cpu);
   std::vector<GpgpInstance> instances = cpu.instances;
@@ -70,8 +70,8 @@ TEST(CliReference, TheOtherBranchIsADifference) {
   const auto one = bake(branches(1)), two = bake(branches(0));
   GpgpAxiom axiom = spawn::makeAxiom(0, 0, 0);
   axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
-  const spawn::Derivation cpu = cli::evaluate(one, {axiom}, 0, nullptr).result,
-                          wrong = cli::evaluate(two, {axiom}, 0, nullptr).result;
+  const spawn::Derivation cpu = cli::evaluate(one, {axiom}, 0, nullptr, "grammar").result,
+                          wrong = cli::evaluate(two, {axiom}, 0, nullptr, "grammar").result;
   EXPECT_NE(cli::difference(cpu, reportOf(wrong), wrong.instances), "");
 }
 

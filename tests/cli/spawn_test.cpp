@@ -254,6 +254,10 @@ TEST(CliSpawn, WhatWasExceededIsNamed) {
   EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "100", "--output", "vertices"}),
             "144 vertices did not fit; --max-instances 240 would have held all\n");
   EXPECT_EQ(said({deep.path(), "--max-depth", "7"}), "1 shape was not finished; raise --max-depth\n");
+  const TemporaryFile thin("thin.pga", "axiom Box S;\nterminal T (1, 0);\nS = Repeat(X, 1e-9, ADJUST_TO_FILL) T;\n");
+  EXPECT_EQ(said({thin.path()}), "1 shape was dropped, as a Repeat makes at most 1048576 copies of one\n");
+  EXPECT_EQ(said({thin.path(), "--axioms", "4", "--slice", "2"}),
+            "2 shapes were dropped, as a Repeat makes at most 1048576 copies of one\n");
 }
 
 TEST(CliSpawn, SlicesSumUp) {
@@ -293,6 +297,17 @@ TEST(CliSpawn, DerivationsWithoutEndAreToldAtOnce) {
                               std::vector<std::string>{"tune", grammar.path(), "--axioms", "1", "-o", out.path()}})
     EXPECT_NE(gpgpFailure(command).find("one axiom alone becomes more than 100 million shapes"), std::string::npos);
   EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--max-depth", "5"})["terminals"], 0);
+  // Whichever axiom it is.
+  const TemporaryFile large("large.pga", "axiom Box S;\nterminal T (1, 0);\n"
+                                         "S = Repeat(X, 1, ADJUST_TO_FILL) Repeat(Y, 1, ADJUST_TO_FILL) T;\n"),
+      second("second.csv", "x,z,size_x,size_y\n0,0,1,1\n5,0,1000000,1000000\n0,0,1,1\n");
+  const auto refused = [&](const std::string& axioms) {
+    const std::string error = gpgpFailure({"spawn", large.path(), "--axiom-file", axioms});
+    EXPECT_EQ(error, gpgpFailure({"tune", large.path(), "--axiom-file", axioms, "-o", out.path()}));
+    return error;
+  };
+  EXPECT_NE(refused(second.path()).find(": axiom 2 of 3 alone becomes more than 100 million shapes"),
+            std::string::npos);
 }
 
 TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differs from the evaluator is no mistake
@@ -392,7 +407,9 @@ TEST(CliSpawn, SeveralGrammarsAreLinked) {
   EXPECT_EQ(twice["axioms"], 2);
   EXPECT_EQ(gpgpJson({"graph", "other=" + house.path()})["nodes"], gpgpJson({"graph", house.path()})["nodes"]);
   EXPECT_NE(gpgpFailure({"graph", bakedHouse.path(), tree.path(), "--set", name + "house.n=4"})
-                .find("house.gpgp:1:1: error: a baked grammar has no var that could be set"),
+                .find("house.gpgp: error: a baked grammar has no var 'n' that could be set; they were set when it was "
+                      "baked (--set " +
+                      name + "house.n=4)"),
             std::string::npos);
   expectWrongUsage({{"spawn", house.path(), tree.path(), "--set", "n=4"},
                     {"spawn", house.path(), tree.path(), "--set", "other.n=4"},
@@ -567,6 +584,12 @@ TEST(CliSpawn, ShapesAreThoseOfTheService) {
 TEST(CliSpawn, ErrorsHaveAPlace) {
   const TemporaryFile grammar("wrong.pga", "axiom Box A;\nterminal T (1, 0);\nA = Nonsense(X) T;\n");
   EXPECT_NE(gpgpFailure({"spawn", grammar.path()}).find("wrong.pga:3:"), std::string::npos);
+  // but not those that are not in the text
+  const TemporaryFile tower("placeless.pga", kTower), without("without.pga", "terminal T (1, 0);\n");
+  EXPECT_EQ(gpgpFailure({"spawn", tower.path(), "--set", "zz=1"}),
+            tower.path() + ": error: there is no var 'zz' that could be set (--set zz=1)");
+  EXPECT_EQ(gpgpFailure({"spawn", without.path()}),
+            without.path() + ":1:1: error: there is no axiom; expected a line as: axiom Box Start;");
 }
 
 TEST(CliSpawn, WrongUsage) {

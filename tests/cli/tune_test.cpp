@@ -153,6 +153,21 @@ TEST(CliTune, FilesSayWhyTheyAreNoSchedules) {
   for (const auto& command : {std::vector<std::string>{"spawn", grammar.path(), "--schedule", baked.path()},
                               std::vector<std::string>{"spawn", baked.path()}})
     EXPECT_NE(gpgpFailure(command).find("its checksum is wrong"), std::string::npos);
+  // and so is what stands behind the graph, whoever reads it
+  ASSERT_EQ(gpgp({"bake", grammar.path(), "-o", baked.path()}).exitCode, 0);
+  bytes = host::readText(baked.path());
+  std::string flipped = bytes;
+  flipped[bytes.size() / 2] ^= 1;
+  const TemporaryFile out("sum_again.gpgp");
+  for (const auto& [damaged, why] :
+       {std::pair(bytes.substr(0, 4096), "cut"), {flipped, "checksum"}, {bytes + "behind it", "size"}}) {
+    host::writeFile(baked.path(), damaged);
+    for (const auto& command :
+         {std::vector<std::string>{"spawn", baked.path()}, std::vector<std::string>{"graph", baked.path()},
+          std::vector<std::string>{"bake", "--link", baked.path(), "-o", out.path()}})
+      EXPECT_NE(gpgpFailure(command).find(why), std::string::npos) << why << " by " << command[0];
+  }
+  EXPECT_FALSE(std::filesystem::exists(out.path()));
 }
 
 TEST(CliTune, WrongUsage) {

@@ -8,7 +8,9 @@
 #include "host/select.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <numeric>
 
 namespace gpgp::host {
@@ -170,6 +172,48 @@ TEST(HostFiles, RoundTripAndErrors) {
   std::filesystem::remove(file);
   EXPECT_THROW(readFile(file), std::runtime_error);
   EXPECT_THROW(readFile(testing::TempDir()), std::runtime_error);
+}
+
+TEST(HostFiles, AreReplacedWhole) {
+  namespace fs = std::filesystem;
+  const fs::path folder = scratchFile("replaced"), file = folder / "file", link = folder / "link",
+                 other = folder / "other";
+  fs::remove_all(folder);
+  const auto count = [&] { return std::distance(fs::directory_iterator(folder), fs::directory_iterator()); };
+  writeFile(file, "one"); // makes the folder
+  const fs::perms usual = fs::status(file).permissions(), own = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(file, own);
+  fs::create_symlink("file", link);
+  writeFile(link, "two");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(readText(file), "two");
+  EXPECT_EQ(fs::status(file).permissions(), own);
+  fs::create_hard_link(file, other);
+  writeFile(other, "three");
+  EXPECT_EQ(readText(file), "three");
+  fs::remove(other);
+  fs::remove(file);
+  writeFile(link, "four"); // makes what it leads to
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(readText(file), "four");
+  EXPECT_EQ(fs::status(file).permissions(), usual);
+  writeFile(file, "five");
+  EXPECT_EQ(count(), 2);
+  // What does not fit leaves all as it was, nothing beside it.
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit small{4096, limit.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(writeFile(file, std::string(10000, 'x')), std::runtime_error);
+  EXPECT_THROW(writeFile(folder / "new", std::string(10000, 'x')), std::runtime_error);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(readText(file), "five");
+  EXPECT_EQ(count(), 2);
+  EXPECT_THROW(writeFile("/dev/full", "six"), std::runtime_error);
+  writeFile("/dev/null", "seven");
+  fs::remove_all(folder);
 }
 
 } // namespace

@@ -36,11 +36,15 @@ std::vector<std::string> ownGrammarNames() {
   return names;
 }
 
+std::string messageOf(const spawn::Diagnostic& diagnostic) {
+  return spawn::format(diagnostic, "").substr(diagnostic.place.line ? 1 : 2);
+}
+
 std::vector<std::string> messagesOf(const std::string& text, const std::vector<GpgpVariable>& variables) {
   spawn::Diagnostics diagnostics;
   spawn::compile(text, variables, diagnostics, std::pmr::new_delete_resource());
   std::vector<std::string> result;
-  for (const spawn::Diagnostic& d : diagnostics.sorted()) result.push_back(spawn::format(d, "").substr(1));
+  for (const spawn::Diagnostic& d : diagnostics.sorted()) result.push_back(messageOf(d));
   return result;
 }
 

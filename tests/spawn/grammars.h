@@ -33,6 +33,8 @@ GrammarFile bakedFile(const GrammarFile& file, GpgpCompileFlags flags = 0);
 std::string textOf(const std::string& path);
 
 /// The messages of compiling, as "line:column: error: text".
+/// line:column: error: text, or error: text
+std::string messageOf(const spawn::Diagnostic& diagnostic);
 std::vector<std::string> messagesOf(const std::string& text, const std::vector<GpgpVariable>& variables = {});
 
 /// In text, the first `from` becomes `to`; throws where there is none.

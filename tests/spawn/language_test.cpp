@@ -139,6 +139,35 @@ TEST(Language, ProbabilitiesBeyondAHundredPercentAreToldOf) {
   EXPECT_EQ(ofRules(many + ";"), Messages{"3:1: error: a rule takes at most 32 alternatives, found 33"});
 }
 
+TEST(Language, AlternativesMayEndInACall) {
+  for (const char* rules :
+       {"A = 20%: Discard() else: T;", "A = 20%: Discard() 30%: T else: T;", "A = 20%: T 30%: Generate() else: T;",
+        "A = 20%: Discard() | 30%: Discard() | else: T;", "A = 20%: Replicate() { T | T } 80%: Generate();",
+        "A = 20%: 12 30%: 12 else: 12; 12 = Discard();", "A = 20%: else else: T; else = T;"})
+    EXPECT_EQ(ofRules(rules), Messages{}) << rules;
+  // and elsewhere a name behind a call is its successor, whatever it is called
+  EXPECT_EQ(ofRules("A = Translate(1,0,0) else; else = Scale(1,1,1) 12; 12 = T;"), Messages{});
+  EXPECT_EQ(ofRules("A = 20%: Translate(1,0,0) else: T;"),
+            Messages{"3:10: error: Translate needs a successor; shapes end in a terminal or Discard()"});
+}
+
+TEST(Language, ProbabilitiesThatMeanNothingAreErrors) {
+  EXPECT_EQ(ofRules("A = RandomRule(ShapeSeed()) { -1: T | 2: T };"),
+            Messages{"3:31: error: a probability must not be negative"});
+  EXPECT_EQ(messagesOf("var v = 1; axiom Box A; terminal T (1,0); A = RandomRule(0) { 1: T | v - 2: T };"),
+            Messages{"1:72: error: a probability must not be negative"});
+  const Messages allZero{"3:5: error: these probabilities are all 0; expected one that is more"};
+  EXPECT_EQ(ofRules("A = RandomRule(ShapeSeed()) { 0: T | 0: T };"), allZero);
+  EXPECT_EQ(ofRules("A = RandomRule(ShapeSeed()) { 0: T | ShapeSize(X): T };"), Messages{});
+  EXPECT_EQ(ofRules("A = 0%: T 0%: T;"),
+            Messages{"3:1: error: these probabilities are all 0; expected one that is more"});
+  EXPECT_EQ(ofRules("A = 0%: T else: T;"), Messages{});
+  // What could not be read is not 0.
+  EXPECT_EQ(ofRules("A = RandomRule(0) { w: T | 0: T };"),
+            Messages{"3:21: error: there is no var 'w'; expected a value"});
+  EXPECT_EQ(ofRules("A = RandomRule(0) { };").size(), 1u);
+}
+
 TEST(Language, TheLastTerminalLineHasItsPlace) {
   std::string lines = "axiom Box A;\n";
   for (int i = 0; i < 1024; ++i) lines += "terminal T" + std::to_string(i) + " (1,0);\n";
@@ -265,7 +294,7 @@ TEST(Language, VariablesCanBeSet) {
   const GpgpVariable set{"h", 5}, unknown{"k", 5};
   EXPECT_EQ(bake(text), bake(replaced(text, "h = 2", "h = 2")));
   EXPECT_EQ(bake(text, {set}), bake(replaced(text, "h = 2", "h = 5")));
-  EXPECT_EQ(messagesOf(text, {unknown}), Messages{"1:1: error: there is no var 'k' that could be set"});
+  EXPECT_EQ(messagesOf(text, {unknown}), Messages{"error: there is no var 'k' that could be set"});
 }
 
 TEST(Language, DeepNestingIsAnErrorNotACrash) {

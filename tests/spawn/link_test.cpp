@@ -185,7 +185,7 @@ TEST(Link, VariablesAreEachGrammarsOwn) {
   const auto words = linked({{"a.pga", kTree, {}}, {"b.pga", kTree, {four}}});
   EXPECT_EQ(words, linked({{"a.pga", kTree}, {"b.pga", replaced(kTree, "n = 2", "n = 4")}}));
   EXPECT_EQ(linkMessages({{"a.pga", kHouse, {four}}, {"b.pga", kTree, {four}}}),
-            Messages{"a.pga:1:1: error: there is no var 'n' that could be set"});
+            Messages{"a.pga: error: there is no var 'n' that could be set"});
 }
 
 TEST(Link, ErrorsHaveThePlaceInTheirFile) {
@@ -195,10 +195,10 @@ TEST(Link, ErrorsHaveThePlaceInTheirFile) {
   EXPECT_EQ(linkMessages({{"a.pga", "terminal T (1,0);"}, {"b.pga", kTree}}),
             Messages{"a.pga:1:1: error: there is no axiom; expected a line as: axiom Box Start;"});
   EXPECT_EQ(linkMessages({{"a.pga", kHouse}, {"b/a.other", kTree}}),
-            Messages{"b/a.other:1:1: error: 'a' is also the name of a.pga; expected another file name, or an alias: "
+            Messages{"b/a.other: error: 'a' is also the name of a.pga; expected another file name, or an alias: "
                      "linked grammars are told apart by them"});
   EXPECT_EQ(linkMessages({{"folder/", kHouse}}),
-            Messages{"folder/:1:1: error: this grammar has no name; expected one, as of a file: what it is linked with "
+            Messages{"folder/: error: this grammar has no name; expected one, as of a file: what it is linked with "
                      "calls it so"});
   std::string many = "axiom Box A; A = T0;";
   for (int i = 0; i < 600; ++i) many.append("\nterminal T").append(std::to_string(i)).append(" (1,0);");
@@ -214,11 +214,11 @@ TEST(Link, AliasesTellFilesOfOneNameApart) {
   const auto words = linked({{"a/x.pga", kHouse}, {"b/x.pga", kTree, {}, "tree"}});
   EXPECT_EQ(words, linked({{"x.pga", kHouse}, {"tree.pga", kTree}}));
   EXPECT_EQ(linkMessages({{"a/x.pga", kHouse}, {"b/y.pga", kTree, {}, "x"}}),
-            Messages{"b/y.pga:1:1: error: 'x' is also the name of a/x.pga; expected another file name, or an alias: "
+            Messages{"b/y.pga: error: 'x' is also the name of a/x.pga; expected another file name, or an alias: "
                      "linked grammars are told apart by them"});
   for (const char* wrong : {"two words", "42", "a.b", "é"})
     EXPECT_EQ(linkMessages({{"a/x.pga", kHouse}, {"b/x.pga", kTree, {}, wrong}}),
-              Messages{std::string("b/x.pga:1:1: error: the alias '") + wrong +
+              Messages{std::string("b/x.pga: error: the alias '") + wrong +
                        "' is no name; expected letters, digits and _, not digits alone"});
 }
 
@@ -252,10 +252,24 @@ TEST(Link, BakedGrammarsLinkAsTheirTextDoes) { // and in all tests of linked tex
   set.variables = {{"n", 5}};
   cut.text.pop_back();
   EXPECT_EQ(linkMessages({files[0], set}),
-            Messages{"tree.pga:1:1: error: a baked grammar has no var that could be set; they were set when it was "
-                     "baked"});
+            Messages{"tree.pga: error: a baked grammar has no var 'n' that could be set; they were set when it "
+                     "was baked"});
   EXPECT_EQ(linkMessages({files[0], cut}),
-            Messages{"tree.pga:1:1: error: not a baked grammar: its size is not one that grammars have"});
+            Messages{"tree.pga: error: not a baked grammar: its size is not one that grammars have"});
+  // Kernels behind the graph are left out, but not unchecked.
+  const std::string whole = files[0].text;
+  const auto housed = [&](const std::string& baked) {
+    files[0].text = baked;
+    return linkMessages({files[0], files[1]});
+  };
+  std::string flipped = whole;
+  flipped[flipped.size() - 9] ^= 1;
+  EXPECT_EQ(housed(whole), Messages{});
+  EXPECT_EQ(housed(whole.substr(0, whole.size() - 4)).size(), 1u);
+  EXPECT_NE(housed(whole.substr(0, whole.size() - 4)).at(0).find("of the baked grammar: it was cut"),
+            std::string::npos);
+  EXPECT_NE(housed(flipped).at(0).find("its checksum is wrong"), std::string::npos);
+  EXPECT_NE(housed(whole + "tail").at(0).find("what follows is no kernel"), std::string::npos);
 }
 
 TEST(Link, NeedsSources) {
@@ -312,13 +326,12 @@ TEST(Link, TagsAreCommon) {
                 "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in line 3 of a.pga, which comes "
                 "after it"}));
   EXPECT_EQ(linked({bakedFile({"wall.pga", wall}), bakedFile({"plant.pga", plant})}), words);
-  EXPECT_EQ(
-      linkMessages({bakedFile({"a.pga", circle}),
-                    {"b.pga", replaced(replaced(circle, "(one)", "(two)"), "Collider(two)", "Collider(one)")}}),
-      (Messages{"a.pga:1:1: error: IfCollides(one) waits for all of Collider(one) in line 3 of b.pga, which comes "
-                "after it",
-                "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in the baked grammar of a.pga, "
-                "which comes after it"}));
+  EXPECT_EQ(linkMessages({bakedFile({"a.pga", circle}),
+                          {"b.pga", replaced(replaced(circle, "(one)", "(two)"), "Collider(two)", "Collider(one)")}}),
+            (Messages{"a.pga: error: IfCollides(one) waits for all of Collider(one) in line 3 of b.pga, which comes "
+                      "after it",
+                      "b.pga:2:5: error: IfCollides(two) waits for all of Collider(two) in the baked grammar of a.pga, "
+                      "which comes after it"}));
 }
 
 /// A start derives what the same file does with its shape and rule in the only axiom line.

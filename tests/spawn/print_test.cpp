@@ -21,7 +21,7 @@ Messages errorsOf(const std::string& text) {
   Diagnostics diagnostics;
   const auto printed = parseGraph(text, diagnostics, std::pmr::new_delete_resource());
   Messages messages;
-  for (const Diagnostic& d : diagnostics.sorted()) messages.push_back(format(d, "").substr(1));
+  for (const Diagnostic& d : diagnostics.sorted()) messages.push_back(messageOf(d));
   EXPECT_EQ(printed.has_value(), messages.empty());
   return messages;
 }
@@ -104,7 +104,7 @@ TEST(Print, TagsAreNumbersAndNames) {
   expectSame(parsed(text).graph, graph);
   EXPECT_EQ(parsed(text).graph.phases, 2u);
   EXPECT_EQ(errorsOf("axiom Box -> 0\n0 IfCollides(7) { / -> 1 | / -> Discard }\n1 Collider(7) { 1 -> 0 }\n"),
-            Messages{"1:1: error: there is no order of phases in which every Collider is before each IfCollides of its "
+            Messages{"error: there is no order of phases in which every Collider is before each IfCollides of its "
                      "tag, and higher priorities are before lower ones"});
 }
 
@@ -230,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"0 Extrude(1) { 1 -> 1 }\n1 Extrude(1) }\n2 R\n", // one error a statement, then it goes on
                          {"4:14: error: expected a node's number, axiom, terminal, polygon, rule or group, found '}'",
                           "5:3: error: there is no operator or terminal 'R'"}},
-                    Case{"0 Extrude(1)\n", {"1:1: error: node 0 (Extrude): wrong number of successors"}},
+                    Case{"0 Extrude(1)\n", {"error: node 0 (Extrude): wrong number of successors"}},
                     Case{"0 T\naxiom Box -> 0\n", {}},
                     Case{"0 T\nrule A(1) -> 0\n", {"4:8: error: there is no axiom '1'"}},
                     Case{"0 T\naxiom a: -> 0\n", {"4:10: error: expected a shape, found '->'"}},

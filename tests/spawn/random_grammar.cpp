@@ -111,7 +111,7 @@ private:
              std::string(") ") + successor(depth - 1);
     case 8: return std::string("If(") + condition() + ")" + list(2, depth, 0, 0, false);
     case 9: return std::string("IfSizeLess(") + axis() + "," + value(0.5, 4) + ")" + list(2, depth, 0, 0, false);
-    case 10: return std::string("RandomRule(") + value(-1, 3) + ")" + list(1 + below(4), depth, -0.2, 1, true);
+    case 10: return std::string("RandomRule(") + value(-1, 3) + ")" + list(1 + below(4), depth, 0.01, 1, true);
     case 11: return std::string("Replicate()") + list(1 + below(3), depth, 0, 0, false);
     case 12: return std::string("SwapSize(") + axis() + "," + axis() + "," + axis() + ") " + successor(depth - 1);
     case 13:

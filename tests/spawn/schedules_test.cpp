@@ -74,13 +74,39 @@ TEST(Schedules, RootsWaitButForTerminals) {
   }
 }
 
+TEST(Schedules, GroupsOfTheDefaultAreThoseOfItsPartition) {
+  // Shapes wait at the Repeat; what it and Replicate lead to is a third group, though no shape waits for it.
+  const spawn::Graph graph = graphOf("axiom Box A; terminal T (1,0); A = Replicate() { S | R };\n"
+                                     "R = Repeat(Y, 1, ADJUST_TO_FILL) S; S = Scale(1,1,1) T;");
+  const spawn::Flow flow = spawn::makeFlow(graph);
+  std::vector<uint32_t> groupOf(graph.nodes.size());
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n)
+    groupOf[n] = graph.nodes[n].op == shader::kOpReplicate ? 0 : graph.nodes[n].op == shader::kOpRepeat ? 1 : 2;
+  ASSERT_FALSE(spawn::violation(flow, groupOf));
+  EXPECT_EQ(spawn::namedSchedule(graph, "default")->groups, spawn::partitionOfGroups(flow, groupOf).groups.size());
+  // Where nothing waits it is one, as that of sgl.
+  const spawn::Graph one = graphOf("axiom Box A; terminal T (1,0); A = Scale(1,1,1) T;");
+  EXPECT_EQ(spawn::namedSchedule(one, "default")->groups, spawn::namedSchedule(one, "sgl")->groups);
+}
+
+TEST(Schedules, LongChainsAreNamedWhereShapesEnter) { // as each name inlines the chain to its end
+  std::string rules = "axiom Box A; terminal T (1,0); A = ";
+  for (int i = 0; i < 150; ++i) rules += "Translate(1,0,0) ";
+  const spawn::Graph graph = graphOf(rules + "T;");
+  const std::string text = spawn::generate(graph, spawn::namedSchedule(graph, "default")->waits).functions;
+  size_t named = 0;
+  for (size_t at = text.find("uint runChain("); (at = text.find("end = chain", at)) != std::string::npos; ++at) ++named;
+  EXPECT_GE(named, 1u);
+  EXPECT_LE(named, 30u);
+}
+
 TEST(Schedules, TheNamedOnesAreOrdered) {
   // Rewriting waits wherever a shape can arrive.
   for (const std::string& name : ownGrammarNames()) {
     const spawn::Graph graph = graphOf(ownGrammar(name));
     const auto most = *spawn::namedSchedule(graph, "rw");
     const spawn::Flow flow = spawn::makeFlow(graph);
-    for (const char* other : {"sgl", "rules", "heuristic"}) {
+    for (const char* other : {"sgl", "rules", "heuristic", "default"}) {
       const auto schedule = *spawn::namedSchedule(graph, other);
       EXPECT_LE(spawn::namedSchedule(graph, "sgl")->groups, schedule.groups) << name;
       EXPECT_GE(most.groups, schedule.groups) << name;

@@ -25,11 +25,13 @@ std::string literal(float value) {
 }
 std::string number(uint32_t value) { return std::to_string(value) + "u"; }
 
+constexpr uint32_t kLongChain = 24; // operators
+
 class Generator {
 public:
   Generator(const Graph& graph, const std::vector<bool>& waits, const Roots& roots)
       : graph_(graph), waits_(waits), stops_(waits), peers_(graph.nodes.size()), row_(graph.nodes.size()),
-        group_(graph.nodes.size(), kNoGroup), table_(makeTable(graph, waits)) {
+        group_(graph.nodes.size(), kNoGroup), length_(graph.nodes.size()), table_(makeTable(graph, waits)) {
     for (uint32_t n = 0; n < graph.nodes.size(); ++n) peers_[n] = {n};
     for (const Edge& edge : graph.edges)
       if (edge.recursive && edge.target != kNoNode) stops_[edge.target] = true;
@@ -342,6 +344,10 @@ private:
         continue;
       }
       stack.pop_back();
+      length_[node] = 1;
+      for (uint32_t i = 0; i < n.edgeCount; ++i) // terminals and what multiplies have none
+        if (const Edge& e = edgeOf(n, i); e.target != kNoNode && !e.recursive && !waits_[e.target])
+          length_[node] = std::min(length_[node] + length_[peers_[e.target][0]], kLongChain + 1);
       add("uint chain" + std::to_string(node) + "(inout Shape s, uint maxDepth, uint row) { // " + operatorName(n.op) +
           "\n  uint end = kEndDiscarded;\n");
       writeOperator(n);
@@ -496,7 +502,9 @@ private:
     return nodes;
   }
   /// A shape comes from an operator that multiplies (arrives), or has waited for this one. Software devices run every
-  /// chain that is named here, so there only those are that a shape can come to.
+  /// chain that is named here, so there only those are that a shape can come to; and so it is with long ones
+  /// everywhere, as what is named is inlined to its end: with all of them, code would grow with the square of a chain's
+  /// length.
   void writeRunChain() {
     add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n"
         "  uint end = s.node == 0u ? kEndDiscarded : kEndUnfinished;\n"
@@ -511,6 +519,7 @@ private:
             ": end = " + (waits_[n] ? "arrives ? kEndWaits : kEndContext" : "kEndContext") + "; break;\n");
       if (!isChain(n) || peers_[n][0] != n) continue;
       const bool entry = std::any_of(peers_[n].begin(), peers_[n].end(), isEntry);
+      if (!entry && length_[n] > kLongChain) continue;
       if (!entry) add("#ifndef GPGP_SOFTWARE\n");
       for (const uint32_t peer : peers_[n]) add("  case " + number(offsetOf(peer)) + ":");
       const std::string row =
@@ -528,6 +537,7 @@ private:
   std::vector<bool> stops_;                  // by node: shapes wait there, those that come back to it included
   std::vector<std::vector<uint32_t>> peers_; // by node: in its place in matching groups, by row
   std::vector<uint32_t> row_, group_;        // by node
+  std::vector<uint32_t> length_;             // by node: of its chain and those that it calls, in operators
   std::vector<uint32_t> matched_;
   KernelTable table_;
   std::map<std::vector<uint32_t>, uint32_t> columns_; // to where they begin in the table

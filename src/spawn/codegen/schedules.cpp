@@ -74,25 +74,22 @@ Schedule defaultSchedule(const Graph& graph, const Flow& flow) {
   const bool uneven = isUneven(graph);
   const std::vector<bool> none(graph.nodes.size());
   if (makeTable(graph, none).programs.size() <= kMostPrograms) schedule.waits = none;
-  for (uint32_t n = 0; n < graph.nodes.size(); ++n) { // a group for each node that shapes wait for, and for starts
+  std::vector<bool> isStatic(graph.edges.size());
+  for (uint32_t n = 0; n < graph.nodes.size(); ++n) {
     const Node& node = graph.nodes[n];
     schedule.waits[n] = schedule.waits[n] && (often[n] || !uneven);
     const bool waits = multiplies(node) && (schedule.waits[n] || comesBack[n] || !multipliesByKnown(node));
-    const bool starts = std::find(flow.starts.begin(), flow.starts.end(), n) != flow.starts.end();
-    schedule.groups += flow.rank[n] != kNoNode && (waits || starts);
+    for (const Link& link : flow.in[n]) isStatic[link.edge] = !waits;
   }
+  schedule.groups = groupCount(flow, realise(flow, isStatic));
   return schedule;
 }
 } // namespace
 
 Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, std::string name) {
-  Schedule schedule{std::move(name), 0, std::vector<bool>(graph.nodes.size()), roots};
-  for (size_t n = 0; n < roots.size(); ++n) {
-    if (flow.rank[n] == kNoNode || roots[n] != n) continue;
-    ++schedule.groups;
-    // What ends at a terminal is through: it needs no queue to be written.
-    if (graph.nodes[n].op != shader::kOpTerminal) schedule.waits[n] = true;
-  }
+  Schedule schedule{std::move(name), groupCount(flow, roots), std::vector<bool>(graph.nodes.size()), roots};
+  for (const uint32_t n : flow.order) // what ends at a terminal is through: it needs no queue to be written
+    schedule.waits[n] = roots[n] == n && graph.nodes[n].op != shader::kOpTerminal;
   // The start is where axioms arrive; nothing waits for it but shapes that come back to it.
   return schedule;
 }

@@ -11,7 +11,8 @@ namespace gpgp::spawn {
 
 struct Schedule {
   std::string name;
-  size_t groups = 0;       ///< execution groups
+  size_t groups = 0;       ///< execution groups of its partition; of "default", of the one with as many static edges as
+                           ///< can be where shapes wait where it lets them
   std::vector<bool> waits; ///< by node
   Roots roots;             ///< of the partition; empty for "default", which is none
 };

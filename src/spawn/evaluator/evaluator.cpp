@@ -88,6 +88,7 @@ private:
     for (;;) {
       if (++shapes > maxShapes) {
         out_.complete = false;
+        out_.lastAxiom = frame->shape.axiom;
         break;
       }
       const uint32_t result = runChain(*frame);

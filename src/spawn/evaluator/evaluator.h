@@ -32,7 +32,8 @@ struct Derivation {
   uint64_t colliders = 0; ///< that Collider registered
   uint32_t depth = 0;     ///< the most recursive edges on a path
   uint32_t keyHash[2] = {0, 0};
-  bool complete = true; ///< false: maxShapes was reached
+  bool complete = true;   ///< false: maxShapes was reached
+  uint32_t lastAxiom = 0; ///< then: by number, whose shape would have been one too many
 };
 
 /// Derives axioms with a baked grammar's words, which load() has accepted. memory: an earlier result that is no longer

@@ -75,8 +75,6 @@ private:
 };
 } // namespace
 
-Roots coarsestPartition(const Flow& flow) { return PartitionEnumerator(flow).roots(); }
-
 Roots realise(const Flow& flow, const std::vector<bool>& isStatic) {
   Roots roots = singleGroups(flow);
   for (const uint32_t n : flow.order)

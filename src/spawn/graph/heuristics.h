@@ -6,8 +6,9 @@
 
 namespace gpgp::spawn {
 
-/// SGL: the coarsest valid partition. Without dependencies every valid partition splits its groups further, so none has
-/// fewer; with them, no group can join another.
+/// SGL: the coarsest valid partition. Without dependencies every valid partition splits its groups further; with them
+/// (colliders) none has fewer groups where the graph is small, and else the fewest that a bounded search finds, of
+/// which none can join another (coarsest.cpp).
 Roots coarsestPartition(const Flow& flow);
 
 /// DGN: a group for each rule as written: the nodes that its node leads to without passing another rule's node. What

@@ -67,4 +67,15 @@ core::Result<std::pmr::vector<Kernel>> loadKernels(std::span<const std::byte> by
   return kernels;
 }
 
+core::Result<Baked> loadBaked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory) {
+  const size_t graphBytes = sizeOfGraph(bytes);
+  auto graph = load(bytes.first(graphBytes), memory);
+  if (!graph) return graph.error();
+  uint32_t graphChecksum = 0;
+  std::memcpy(&graphChecksum, bytes.data() + 4 * shader::kHeaderChecksum, 4);
+  auto kernels = loadKernels(bytes.subspan(graphBytes), graphChecksum, memory);
+  if (!kernels) return kernels.error();
+  return Baked{std::move(*graph), std::move(*kernels)};
+}
+
 } // namespace gpgp::spawn

@@ -3,7 +3,7 @@
 // A baked grammar is the graph's words (blob.h), then any number of kernels, each with a header, a checksum of its own
 // and the checksum of the graph that it was made for. A grammar without kernels is complete: the interpreter runs it.
 #pragma once
-#include "core/result.h"
+#include "spawn/graph/graph.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -56,5 +56,13 @@ std::pmr::vector<uint32_t> serialize(const KernelInfo& info, std::span<const uin
 /// The kernels behind a graph. Damaged ones, and ones for another graph, are an error.
 core::Result<std::pmr::vector<Kernel>> loadKernels(std::span<const std::byte> bytes, uint32_t graphChecksum,
                                                    std::pmr::memory_resource* memory);
+
+/// A whole baked grammar.
+struct Baked {
+  Graph graph;
+  std::pmr::vector<Kernel> kernels;
+};
+/// Checks every byte: the graph as load() does (blob.h), and that only whole kernels for it follow.
+core::Result<Baked> loadBaked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory);
 
 } // namespace gpgp::spawn

@@ -137,6 +137,11 @@ void join(const Flow& flow, Roots& roots, uint32_t root) {
     if (roots[n] == root) roots[n] = group;
 }
 
+size_t groupCount(const Flow& flow, const Roots& roots) {
+  return static_cast<size_t>(
+      std::count_if(flow.order.begin(), flow.order.end(), [&](uint32_t n) { return roots[n] == n; }));
+}
+
 Partition makePartition(const Flow& flow, const Roots& roots) {
   Partition partition;
   partition.groupOf.assign(flow.rank.size(), kNoGroup);
@@ -246,24 +251,23 @@ std::optional<Violation> violation(const Flow& flow, std::span<const uint32_t> g
   return std::nullopt;
 }
 
-PartitionEnumerator::PartitionEnumerator(const Flow& flow) : flow_(flow), roots_(singleGroups(flow)) { fill(0); }
-
-/// With all nodes before it decided.
-bool PartitionEnumerator::mayBelong(size_t index) const {
-  const uint32_t n = flow_.order[index];
-  if (flow_.mustRoot[n] || flow_.in[n].empty()) return false;
-  const uint32_t group = roots_[flow_.in[n][0].source];
-  for (const Link& link : flow_.in[n])
-    if (roots_[link.source] != group) return false;
-  for (const uint32_t other : flow_.at[n])
-    if (flow_.rank[other] < index && roots_[other] == group) return false;
+bool mayBelong(const Flow& flow, const Roots& roots, size_t place) {
+  const uint32_t n = flow.order[place];
+  if (flow.mustRoot[n] || flow.in[n].empty()) return false;
+  const uint32_t group = roots[flow.in[n][0].source];
+  for (const Link& link : flow.in[n])
+    if (roots[link.source] != group) return false;
+  for (const uint32_t other : flow.at[n])
+    if (flow.rank[other] < place && roots[other] == group) return false;
   return true;
 }
+
+PartitionEnumerator::PartitionEnumerator(const Flow& flow) : flow_(flow), roots_(singleGroups(flow)) { fill(0); }
 
 void PartitionEnumerator::fill(size_t from) {
   for (size_t i = from; i < flow_.order.size(); ++i) {
     const uint32_t n = flow_.order[i];
-    roots_[n] = mayBelong(i) ? roots_[flow_.in[n][0].source] : n;
+    roots_[n] = mayBelong(flow_, roots_, i) ? roots_[flow_.in[n][0].source] : n;
   }
 }
 

@@ -83,6 +83,7 @@ bool canJoin(const Flow& flow, const Roots& roots, uint32_t root);
 /// Does it. Only where canJoin().
 void join(const Flow& flow, Roots& roots, uint32_t root);
 
+size_t groupCount(const Flow& flow, const Roots& roots);
 /// The partition of valid roots.
 Partition makePartition(const Flow& flow, const Roots& roots);
 
@@ -96,8 +97,11 @@ std::optional<Violation> violation(const Flow& flow, std::span<const uint32_t> g
 /// The partition of any valid group numbers; their order is lost.
 Partition partitionOfGroups(const Flow& flow, std::span<const uint32_t> groupOf);
 
-/// All valid partitions, one after the other, each once: the coarsest first, the finest last. The time for each is at
-/// most linear in the graph.
+/// May a node belong to the group that its edges come from? With all nodes before its place in the order decided.
+bool mayBelong(const Flow& flow, const Roots& roots, size_t place);
+
+/// All valid partitions, one after the other, each once: where there are no dependencies the coarsest first; the finest
+/// last. The time for each is at most linear in the graph.
 class PartitionEnumerator {
 public:
   explicit PartitionEnumerator(const Flow& flow);
@@ -107,7 +111,6 @@ public:
 
 private:
   void fill(size_t from);
-  bool mayBelong(size_t index) const;
   const Flow& flow_;
   Roots roots_;
 };

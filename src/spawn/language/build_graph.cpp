@@ -145,12 +145,12 @@ private:
       return;
     }
     // 20%: A else: B is RandomRule(ShapeSeed()) with probabilities
+    const size_t errors = diagnostics_.errorCount();
     float given = 0;
     std::vector<Parameter> parameters{{kParameterAttribute, kCodeSeed}};
     for (const Branch& branch : rule.alternatives) {
       const bool isGiven = !branch.isElse && branch.label;
       const float p = isGiven ? expressions_.constant(*branch.label, "a probability") : std::max(0.0f, 100.0f - given);
-      if (p < 0) diagnostics_.error(branch.label->place, "a probability must not be negative");
       if (isGiven) given += p;
       parameters.push_back({kParameterConstant, floatBitsToUint(settle(p))});
     }
@@ -161,7 +161,23 @@ private:
     if (rule.alternatives.size() > kMaxSuccessors)
       diagnostics_.error(rule.place, "a rule takes at most " + std::to_string(kMaxSuccessors) +
                                          " alternatives, found " + std::to_string(rule.alternatives.size()));
+    checkChances(rule.place, rule.alternatives, std::span(parameters).subspan(1), errors);
     ruleTargets_[index] = {addNode(rule.place, kOpRandomRule, parameters, rule.alternatives), std::nullopt};
+  }
+
+  /// Of numbers that are known. errors: how many there were before anything of this was read; what is not whole may
+  /// be 0 for that.
+  void checkChances(Place place, const std::vector<Branch>& branches, std::span<const Parameter> chances,
+                    size_t errors) {
+    bool any = false;
+    for (size_t i = 0; i < branches.size(); ++i) {
+      const bool known = branches[i].label && chances[i].kind == kParameterConstant;
+      const float chance = uintBitsToFloat(chances[i].value);
+      if (known && chance < 0) diagnostics_.error(branches[i].label->place, "a probability must not be negative");
+      any = any || !known || chance > 0;
+    }
+    if (!any && diagnostics_.errorCount() == errors)
+      diagnostics_.error(place, "these probabilities are all 0; expected one that is more");
   }
 
   /// A rule that is only a name leads to what the name leads to.
@@ -260,6 +276,7 @@ private:
     const std::string arguments = spelling.arguments;
     std::vector<Parameter> parameters;
     uint32_t argument = 0, argument2 = 0, axes = 0;
+    const size_t errors = diagnostics_.errorCount();
     if (call.arguments.size() != arguments.size()) {
       const bool broken = call.broken || std::any_of(call.arguments.begin(), call.arguments.end(),
                                                      [](const auto& a) { return a.kind == ExpressionKind::broken; });
@@ -286,6 +303,8 @@ private:
     if (spelling.labels)
       for (const Branch& branch : call.branches)
         parameters.push_back(branch.label ? expressions_.parameter(*branch.label) : Parameter{});
+    if (spelling.op == kOpRandomRule && !call.broken)
+      checkChances(call.place, call.branches, std::span(parameters).last(call.branches.size()), errors);
     std::vector<Branch> branches = call.branches;
     if (spelling.op == kOpCompSplit && call.form == SuccessorForm::chain && branches.size() == 1)
       branches.assign(3, branches[0]); // all faces alike
@@ -441,7 +460,7 @@ private:
   /// Each axiom line is a start; rules start with the shape of the first line that names them, else of the first line.
   void buildAxioms() {
     if (tree_.axioms.empty()) {
-      if (!tree_.brokenAxiom) diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box Start;");
+      if (!tree_.brokenAxiom) diagnostics_.error({1, 1}, "there is no axiom; expected a line as: axiom Box Start;");
       return;
     }
     const uint32_t first = static_cast<uint32_t>(graph_.axioms.size());

@@ -206,7 +206,7 @@ private:
     return op.kind < kOperatorNames.size() ? kOperatorNames[op.kind] : "an operator";
   }
 
-  /// Places sort as the statements were added; line 1 is the grammar as a whole.
+  /// Places sort as the statements were added; before them is the grammar as a whole.
   void begin(uint32_t statement) {
     line_ = statement + 2;
     column_ = 0;

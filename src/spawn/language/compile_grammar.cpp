@@ -22,8 +22,7 @@ void report(const GpgpGrammarSource& source, uint32_t line, uint32_t column, Gpg
 }
 
 GpgpResult fail(const GpgpGrammarSource& source, GpgpResult result, const char* text) {
-  const uint32_t first = source.builder ? 0 : 1;
-  report(source, first, first, GPGP_SEVERITY_ERROR, text);
+  report(source, 0, 0, GPGP_SEVERITY_ERROR, text);
   return result;
 }
 
@@ -60,25 +59,28 @@ struct Input {
   std::optional<spawn::Graph> baked;
 };
 
-/// The graph of a baked grammar; what is behind it serves this graph alone.
+/// The graph of a baked grammar; kernels behind it serve this graph alone, but must be whole, as all of the file must.
 std::optional<spawn::Graph> load(const GpgpGrammarSource& source, spawn::Diagnostics& diagnostics) {
   const std::span bytes(static_cast<const std::byte*>(source.baked), source.size);
-  auto graph = spawn::load(bytes.first(spawn::sizeOfGraph(bytes)), std::pmr::new_delete_resource());
+  auto graph = spawn::loadBaked(bytes, std::pmr::new_delete_resource());
   if (!graph) {
     diagnostics.error({}, graph.error().text);
     return std::nullopt;
   }
   if (source.variableCount)
-    diagnostics.error({}, "a baked grammar has no var that could be set; they were set when it was baked");
+    diagnostics.error({}, std::string("a baked grammar has no var '") + source.variables[0].name +
+                              "' that could be set; they were set when it was baked");
   diagnostics.name({}, "the baked grammar"); // in messages of others
-  return std::move(*graph);
+  return std::move(graph->graph);
 }
 
 /// The graph of a printed form; groups in it are no part of a grammar.
 std::optional<spawn::Graph> read(const GpgpGrammarSource& source, std::string_view text,
                                  spawn::Diagnostics& diagnostics) {
   auto printed = spawn::parseGraph(text, diagnostics, std::pmr::new_delete_resource());
-  if (source.variableCount) diagnostics.error({}, "a printed graph has no var that could be set");
+  if (source.variableCount)
+    diagnostics.error({},
+                      std::string("a printed graph has no var '") + source.variables[0].name + "' that could be set");
   if (!printed) return std::nullopt;
   diagnostics.name({}, "the printed graph");
   return std::move(printed->graph);

@@ -19,7 +19,10 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
 }
 
 std::string format(const Diagnostic& diagnostic, const std::string& file) {
-  return file + ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column) +
+  const auto& [line, column] = diagnostic.place;
+  std::string place;
+  if (line) place.append(":").append(std::to_string(line)).append(":").append(std::to_string(column));
+  return file + place +
          (diagnostic.severity == GPGP_SEVERITY_ERROR     ? ": error: "
           : diagnostic.severity == GPGP_SEVERITY_WARNING ? ": warning: "
                                                          : ": note: ") +

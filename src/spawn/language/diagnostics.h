@@ -10,7 +10,7 @@
 namespace gpgp::spawn {
 
 struct Place {
-  uint32_t line = 1, column = 1; ///< from 1; columns count bytes
+  uint32_t line = 0, column = 0; ///< from 1; columns count bytes. 0: the grammar as a whole, no place in its text
 };
 
 struct Diagnostic {
@@ -48,7 +48,7 @@ private:
   size_t errors_ = 0;
 };
 
-/// file:line:column: error: text
+/// file:line:column: error: text, or file: error: text
 std::string format(const Diagnostic& diagnostic, const std::string& file);
 
 } // namespace gpgp::spawn

@@ -156,7 +156,7 @@ private:
   Diagnostics& diagnostics_;
   bool qualified_;
   size_t at_ = 0;
-  Place place_;
+  Place place_{1, 1};
 };
 } // namespace
 

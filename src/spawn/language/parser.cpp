@@ -82,6 +82,12 @@ private:
   /// And on a line of its own: within parentheses and braces '=' may be a wrong '=='.
   bool atStatementLine() const { return at_ > 0 && peek().place.line > tokens_[at_ - 1].place.line && atStatement(); }
 
+  /// 30%: or else: , behind the alternative before it.
+  bool atAlternative() const {
+    return (isName("else") && peek(1).kind == TokenKind::colon) ||
+           (peek().kind == TokenKind::number && peek(1).kind == TokenKind::percent);
+  }
+
   /// From an error in a list on to the separator or end that belongs to the list. False where the statement ends first.
   bool skipTo(TokenKind separator, TokenKind end, int parens, int braces) {
     for (;; next()) {
@@ -218,7 +224,7 @@ private:
     if (accept(TokenKind::openBrace)) {
       call.form = SuccessorForm::braces;
       branches(call.branches);
-    } else if (isNameOrNumber() && !atStatement()) {
+    } else if (isNameOrNumber() && !atStatement() && !atAlternative()) {
       call.form = SuccessorForm::chain;
       successor(call.branches.emplace_back().successor);
     }

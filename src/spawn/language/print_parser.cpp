@@ -35,7 +35,7 @@ public:
   bool hasGraph() const { return !axiomPlaces_.empty() || !graph_.nodes.empty(); }
 
   std::optional<Graph> takeGraph() {
-    if (axiomPlaces_.empty()) diagnostics_.error({}, "there is no axiom; expected a line as: axiom Box -> 0");
+    if (axiomPlaces_.empty()) diagnostics_.error({1, 1}, "there is no axiom; expected a line as: axiom Box -> 0");
     finish();
     if (diagnostics_.hasErrors()) return std::nullopt;
     analyse(graph_);
@@ -505,7 +505,7 @@ std::optional<Partition> parseGroups(std::string_view text, const Graph& graph, 
   }
   auto partition = parser.partitionOf(graph);
   if (!partition && !diagnostics.hasErrors())
-    diagnostics.error({}, "there are no groups; expected lines as: group { 0 1 2 }");
+    diagnostics.error({1, 1}, "there are no groups; expected lines as: group { 0 1 2 }");
   return partition;
 }
 

@@ -7,17 +7,13 @@ namespace gpgp::spawn {
 
 core::Result<core::Unique<Grammar>> Grammar::create(core::Context& context, const char* label,
                                                     std::span<const std::byte> bytes) {
-  const size_t graphBytes = sizeOfGraph(bytes);
-  auto graph = load(bytes.first(graphBytes), &context.host());
-  if (!graph) return graph.error();
-  uint32_t graphChecksum = 0;
-  std::memcpy(&graphChecksum, bytes.data() + 4 * shader::kHeaderChecksum, 4);
-  auto kernels = loadKernels(bytes.subspan(graphBytes), graphChecksum, &context.host());
-  if (!kernels) return kernels.error();
-  auto grammar = core::makeUnique<Grammar>(context.host(), context, label, std::move(*graph), std::move(*kernels));
+  auto baked = loadBaked(bytes, &context.host());
+  if (!baked) return baked.error();
+  auto grammar =
+      core::makeUnique<Grammar>(context.host(), context, label, std::move(baked->graph), std::move(baked->kernels));
   // Kernels read their tables four words at a time.
-  std::pmr::vector<std::byte> words(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(graphBytes),
-                                    &context.host());
+  const auto graphBytes = static_cast<std::ptrdiff_t>(sizeOfGraph(bytes));
+  std::pmr::vector<std::byte> words(bytes.begin(), bytes.begin() + graphBytes, &context.host());
   for (const Kernel& kernel : grammar->kernels) {
     words.resize((words.size() + 15) / 16 * 16);
     grammar->tables_.push_back(static_cast<uint32_t>(words.size() / 16));
