@@ -43,7 +43,7 @@ template <class Container> Container readAll(const std::filesystem::path& file) 
 
 bool write(const std::filesystem::path& file, const char* mode, std::string_view bytes) {
   File handle(std::fopen(file.c_str(), mode));
-  return handle && std::fwrite(bytes.data(), 1, bytes.size(), handle.get()) == bytes.size() &&
+  return handle && (bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), handle.get()) == bytes.size()) &&
          std::fclose(handle.release()) == 0;
 }
 
