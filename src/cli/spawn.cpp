@@ -174,7 +174,7 @@ std::string exceededBudgets(const GpgpSpawnReport& report, uint32_t tooMany, con
   std::string text;
   if (tooMany)
     text += "budget exceeded: " + counted(tooMany, "shape") + (tooMany == 1 ? " was" : " were") +
-            " dropped, as a Repeat makes at most 1048576 copies of one\n";
+            " dropped, as a Repeat makes at most " + std::to_string(shader::kMaxRepeat) + " copies of one\n";
   const uint32_t waiting = report.droppedShapes - std::min(report.droppedShapes, tooMany);
   if (waiting && report.peakShapes > deriver.maxShapes())
     text +=

@@ -457,7 +457,9 @@ void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pu
   const auto begin = std::chrono::steady_clock::now();
   bool done = strokeShape(from, s, tolerance, {}, area);
   if (!done && !s.dashes.empty()) {
-    reporter_.error(document_.line(node), element(node) + " has too many dashes (more than 65536); drawn without",
+    reporter_.error(document_.line(node),
+                    element(node) + " has too many dashes (more than " + std::to_string(StrokeLimits{}.dashes) +
+                        "); drawn without",
                     GPGP_ERROR_UNSUPPORTED);
     done = strokeShape(from, whole, tolerance, {}, area);
   }
