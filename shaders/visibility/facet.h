@@ -75,21 +75,17 @@ GPGP_FN Corners cornersOf(Candidate c) {
   return r;
 }
 
-/// Whether all of a triangle lies outside the edge from u to v; compact: both are, and touch one pixel, so that they
-/// are near enough for 32 bits.
-GPGP_FN bool liesOutside(Corners c, ivec2 u, ivec2 v, bool compact) {
+/// Whether all of a compact triangle lies outside the edge from u to v of another one, and both touch one pixel.
+GPGP_FN bool liesOutside(Corners c, ivec2 u, ivec2 v) {
   ivec2 slope = edgeSlope(u, v);
-  if (compact)
-    return edgeCompact(u, slope, c.p0) <= 0 && edgeCompact(u, slope, c.p1) <= 0 && edgeCompact(u, slope, c.p2) <= 0;
-  return wideSign(edgeWide(u, slope, c.p0)) <= 0 && wideSign(edgeWide(u, slope, c.p1)) <= 0 &&
-         wideSign(edgeWide(u, slope, c.p2)) <= 0;
+  return edgeCompact(u, slope, c.p0) <= 0 && edgeCompact(u, slope, c.p1) <= 0 && edgeCompact(u, slope, c.p2) <= 0;
 }
 
-/// Whether two triangles that touch one pixel have area in common on the screen: no edge has all of the other outside.
-GPGP_FN bool overlap(Corners a, Corners b, bool compact) {
-  return !(liesOutside(b, a.p0, a.p1, compact) || liesOutside(b, a.p1, a.p2, compact) ||
-           liesOutside(b, a.p2, a.p0, compact) || liesOutside(a, b.p0, b.p1, compact) ||
-           liesOutside(a, b.p1, b.p2, compact) || liesOutside(a, b.p2, b.p0, compact));
+/// Whether two compact triangles that touch one pixel have area in common on the screen: no edge has all of the other
+/// outside. Larger ones are not asked: what that takes is more than what it saves.
+GPGP_FN bool overlap(Corners a, Corners b) {
+  return !(liesOutside(b, a.p0, a.p1) || liesOutside(b, a.p1, a.p2) || liesOutside(b, a.p2, a.p0) ||
+           liesOutside(a, b.p0, b.p1) || liesOutside(a, b.p1, b.p2) || liesOutside(a, b.p2, b.p0));
 }
 
 /// Where one facet is nearer than another: in row r, left (side -1) or right (side 1) of start + r * step, in widths of

@@ -87,10 +87,7 @@ uint askersIn(uint first, uint count, Entry own, uint wide) {
   Facet nearer = facetOfLane(own, a);
   Facet farther = facetOfLane(own, b);
   any = any && leadWithin(nearer, farther) > 0.0;
-  if (any) {
-    if ((wide & (1u << a | 1u << b)) == 0u) any = overlap(cornersAt(a), cornersAt(b), true);
-    else any = overlap(cornersOf(readCandidate(items[a])), cornersOf(readCandidate(items[b])), false);
-  }
+  if (any && (wide & (1u << a | 1u << b)) == 0u) any = overlap(cornersAt(a), cornersAt(b));
   uint askers = orAll(any ? 1u << (pair >> 10u) : 0u);
   sync();
   return askers;
@@ -136,7 +133,7 @@ bool isAhead(Entry own, uint lane, uint wide, uvec4 open_) {
   bool isRival = (own.list & (1u << lane)) != 0u && laneOf() != lane && own.nearest <= uintBitsToFloat(told.y);
   if (isRival) isRival = leadWithin(mine, its) >= 0.0;
   if (isRival && (wide & (1u << laneOf() | 1u << lane)) == 0u)
-    isRival = overlap(cornersAt(laneOf()), cornersAt(lane), true);
+    isRival = overlap(cornersAt(laneOf()), cornersAt(lane));
   Crossing c = crossingOf(mine, its, own.id < told.x); // each works out its own entry's
   uvec4 hides = uvec4(floatBitsToUint(c.start), floatBitsToUint(c.step), uint(c.side), own.place);
   int row = int(laneOf());

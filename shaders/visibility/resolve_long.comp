@@ -206,11 +206,19 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   }
 }
 
+/// Which of all long lists is decided as the i-th. Pixels beside each other, whose lists lie so, too, have triangles in
+/// common: where they are decided long after one another, the later one need not ask about what the earlier one shows.
+uint turnOf(uint i, uint lists) {
+  const uint phases = 64u;
+  uint each = lists / phases;
+  return i < each * phases ? (i % each) * phases + i / each : i;
+}
+
 void main() {
   makeColumns();
   uint pixels = counters.longCount;
   for (uint i = gl_WorkGroupID.x; i < pixels; i += gl_NumWorkGroups.x) {
-    uint slot = open[params.pixelCapacity - 1u - i];
+    uint slot = open[params.pixelCapacity - 1u - turnOf(i, pixels)];
     uint end = slots[slot];
     resolveLong(end - slots[lengthAt(slot)], end, pixelOf(slot));
     sync();

@@ -48,7 +48,7 @@ bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vecto
     if (j == place || !decides[j] || other.facet.nearest > own.facet.farthest) continue;
     if (!(leadWithin(other.facet, own.facet) >= 0)) continue;
     const bool compact = isCompact(triangleOf(own.candidate)) && isCompact(triangleOf(other.candidate));
-    if (compact && !overlap(cornersOf(other.candidate), cornersOf(own.candidate), true)) continue;
+    if (compact && !overlap(cornersOf(other.candidate), cornersOf(own.candidate))) continue;
     rivals.emplace_back(&other, crossingOf(other.facet, own.facet, other.candidate.id < own.candidate.id));
   }
   for (int row = 0; row < 64; ++row) {
@@ -119,7 +119,7 @@ void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, v
   }
   const auto nearer = [&](const Sorted& a, const Sorted& b) {
     const bool compact = isCompact(triangleOf(a.candidate)) && isCompact(triangleOf(b.candidate));
-    return isNearerSomewhere(a.facet, b.facet) && overlap(cornersOf(a.candidate), cornersOf(b.candidate), compact);
+    return isNearerSomewhere(a.facet, b.facet) && (!compact || overlap(cornersOf(a.candidate), cornersOf(b.candidate)));
   };
   for (size_t i = 0; i < batch.size(); ++i) {
     bool doubtful = false;
