@@ -29,10 +29,11 @@ static void GPGP_CALL onMessage(void* user, const GpgpMessage* message) {
   fprintf(stderr, "%s: %s\n", message->function, message->text);
 }
 
-/* Errors in the grammar come with their place. */
+/* Errors in the grammar come with their place, where they have one. */
 static void GPGP_CALL onCompileMessage(void* user, const GpgpCompileMessage* message) {
   (void)user;
-  fprintf(stderr, "%s:%u:%u: %s\n", message->file, message->line, message->column, message->text);
+  if (message->line) fprintf(stderr, "%s:%u:%u: ", message->file, message->line, message->column);
+  fprintf(stderr, "%s\n", message->text);
 }
 
 /* A buffer that both sides can reach, mapped for good. A real engine keeps the instances in device memory. */

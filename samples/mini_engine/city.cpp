@@ -46,7 +46,8 @@ glm::vec4 materialOf(const std::string& name, uint32_t index) {
 }
 
 void GPGP_CALL onCompileMessage(void*, const GpgpCompileMessage* message) {
-  std::fprintf(stderr, "%s:%u:%u: %s\n", message->file, message->line, message->column, message->text);
+  if (message->line) std::fprintf(stderr, "%s:%u:%u: ", message->file, message->line, message->column);
+  std::fprintf(stderr, "%s\n", message->text);
 }
 
 } // namespace

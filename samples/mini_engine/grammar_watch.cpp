@@ -100,9 +100,10 @@ bool GrammarWatch::compile(const std::vector<std::string>& texts, GpgpCompileFla
   source.flags = flags;
   source.messageUserData = &messages;
   source.messageFn = [](void* user, const GpgpCompileMessage* m) {
+    std::string place = m->file;
+    if (m->line) place += ':' + std::to_string(m->line) + ':' + std::to_string(m->column);
     static_cast<std::vector<std::string>*>(user)->push_back(
-        std::string(m->file) + ":" + std::to_string(m->line) + ":" + std::to_string(m->column) +
-        (m->severity == GPGP_SEVERITY_ERROR ? ": error: " : ": warning: ") + m->text);
+        place + (m->severity == GPGP_SEVERITY_ERROR ? ": error: " : ": warning: ") + m->text);
   };
   std::vector<GpgpGrammarSource> sources(texts.size(), source);
   for (size_t i = 0; i < texts.size(); ++i) {

@@ -185,13 +185,13 @@ struct Made {
   Grammar grammar;
 };
 
-/// Makes kernels on all processors, each by itself, while the caller measures those that are ready. Begins none that
-/// would probably end too late.
+/// Makes kernels on all processors, each by itself, while the caller measures those that are ready; for a device that
+/// needs the processors itself, while the caller waits. Begins none that would probably end too late.
 class Workshop {
 public:
   Workshop(Session& session, const Kernels& kernels, std::vector<size_t> wanted, const Budget& budget)
       : session_(session), kernels_(kernels), wanted_(std::move(wanted)), budget_(budget),
-        deriver_(session, kernels.grammar(), {spawn::makeAxiom(1, 1, 1)}, {}) {
+        deriver_(session, kernels.grammar(), {spawn::makeAxiom(1, 1, 1)}, {}), alone_(session.device().isSoftware()) {
     const size_t most = std::min<size_t>(wanted_.size(), std::max(1u, std::thread::hardware_concurrency()));
     for (size_t i = 0; i < most; ++i) threads_.emplace_back([this] { work(); });
   }
@@ -209,8 +209,11 @@ public:
   /// One that is ready, in about their order; nothing where none is left, or no time.
   std::optional<Made> next() {
     std::unique_lock lock(mutex_);
+    mayWork_ = true;
+    wake_.notify_all();
     for (;;) {
       if (error_) std::rethrow_exception(error_);
+      if (alone_ && !made_.empty()) mayWork_ = false;
       if (!compiled_.empty()) { // only the context's thread, this one, makes assets
         const auto [kernel, words] = std::move(compiled_.front());
         compiled_.pop_front();
@@ -219,7 +222,7 @@ public:
         lock.lock();
         loaded_.push_back({kernel, std::move(grammar)});
         wake_.notify_one();
-      } else if (!made_.empty()) {
+      } else if (!made_.empty() && (mayWork_ || busy_ == 0)) {
         Made made = std::move(made_.front());
         made_.pop_front();
         ++taken_;
@@ -245,17 +248,19 @@ private:
   void work() {
     std::unique_lock lock(mutex_);
     const auto did = [&](double& sum, const std::function<void()>& step) {
+      ++busy_;
       lock.unlock();
       const auto begin = Clock::now();
       step();
       const double seconds = secondsSince(begin);
       lock.lock();
+      --busy_;
       sum += seconds;
       return seconds;
     };
     try {
       while (!stopped_) {
-        if (!loaded_.empty()) {
+        if (mayWork_ && !loaded_.empty()) {
           Made made = std::move(loaded_.front());
           loaded_.pop_front();
           GpgpResult result = GPGP_SUCCESS;
@@ -264,7 +269,7 @@ private:
           longest_ = std::max(longest_, seconds + compiling_ / double(begun_));
           made_.push_back(std::move(made));
           ready_.notify_one();
-        } else if (made_.size() < 2 * threads_.size() && mayBegin()) {
+        } else if (mayWork_ && made_.size() < 2 * threads_.size() && mayBegin()) {
           const size_t kernel = wanted_[begun_++];
           std::pmr::vector<uint32_t> words;
           did(compiling_, [&] { words = kernels_.compile(kernel); });
@@ -290,6 +295,9 @@ private:
   std::condition_variable wake_, ready_; // the threads; the caller
   std::deque<std::pair<size_t, std::pmr::vector<uint32_t>>> compiled_;
   std::deque<Made> loaded_, made_; // without a pipeline, and with it
+  const bool alone_;               // nothing is made while the caller measures
+  bool mayWork_ = true;            // make something
+  size_t busy_ = 0;                // threads that do
   size_t begun_ = 0, taken_ = 0;
   double compiling_ = 0, pipelines_ = 0, longest_ = 0; // seconds
   bool stopped_ = false;
