@@ -223,8 +223,8 @@ typedef struct GpgpSpawnerCreateInfo {
   uint32_t maxDepth;      /**< how deep rules may nest in themselves; 0: 64. Deeper shapes are counted, not derived */
   uint32_t maxRounds;     /**< rounds of derivation that are recorded, a pass each. Few are needed: workgroups derive by
                              themselves, and rounds only share work out again. 0: at most 4, or 32 on software devices,
-                             and fewer where the number of axioms says that fewer spread them over the device. What is
-                             left is counted */
+                             and fewer where the number of axioms, or a tuned kernel, says that fewer are enough. What
+                             is left is counted */
   uint32_t maxColliders;  /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
                                grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
                                devices */

@@ -179,11 +179,10 @@ private:
     if (r.terminals != wanted.terminals || r.keyHash[0] != wanted.keyHash[0] || r.keyHash[1] != wanted.keyHash[1])
       throw Failure("schedule \"" + name + "\" derives something else than the interpreter: " +
                     std::to_string(r.terminals) + " terminals instead of " + std::to_string(wanted.terminals));
-    const uint32_t enough = r.rounds + (software_ || candidate.fit.balances || isUneven(grammar_.graph) ? 1 : 0);
     candidate.milliseconds = timeOf(prepared, 0);
-    if (software_) {
-      candidate.rounds = enough; // which spread all the same there
-    } else if (const double alone = timeOf(prepared, enough); alone < candidate.milliseconds) {
+    if (software_) return; // whose rounds are short, and as many as axioms of other sizes may need
+    const uint32_t enough = r.rounds + (candidate.fit.balances || isUneven(grammar_.graph) ? 1 : 0);
+    if (const double alone = timeOf(prepared, enough); alone < candidate.milliseconds) {
       candidate.milliseconds = alone;
       candidate.rounds = enough;
     }

@@ -959,9 +959,9 @@ TEST_F(SpawnTest, FewerTerminalRecordsAreReported) {
 }
 
 /// Of an axiom, two terminals for each unit of its length.
-std::vector<uint32_t> bakePairs() {
-  return bake("axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };");
-}
+constexpr const char* kPairs =
+    "axiom Box A; terminal T (1,0); A = Repeat(X,1,ADJUST_TO_FILL) B; B = Replicate() { T | T };";
+std::vector<uint32_t> bakePairs() { return bake(kPairs); }
 
 TEST_F(SpawnTest, ShapesThatDoNotFitAreCounted) {
   // Few axioms of many shapes: workgroups give work away, more than the queue holds. 32 and 128 copies are whole steps
@@ -1020,6 +1020,16 @@ TEST_F(SpawnTest, RoundsThatAreMissingAreReported) {
   EXPECT_EQ(gpu.report.rounds, 1u);
   EXPECT_GT(gpu.report.droppedShapes, 0u);
   EXPECT_LT(gpu.report.terminals, 1200000u);
+}
+
+TEST_F(SpawnTest, RoundsCountedForSmallAxiomsLoseNothingOfLargeOnes) {
+  makeSpawner({});
+  for (const spawn::KernelTarget target : spawn::targetsOf(graphOf(bakePairs()))) {
+    if (!takes(target)) continue;
+    const Derived gpu = run(bakeFor(kPairs, target, {.rounds = 1}), {makeAxiom(20000, 1, 1)}, 1000, true);
+    EXPECT_EQ(gpu.report.droppedShapes, 0u) << int(target);
+    EXPECT_EQ(gpu.report.terminals, 40000u) << int(target);
+  }
 }
 
 TEST_F(SpawnTest, TheLastRoundGivesNothingAwayByChoice) {

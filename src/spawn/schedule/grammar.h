@@ -34,7 +34,7 @@ public:
   }
   /// Adds one. Calls for the same grammar come one after the other.
   void add(const Ready& ready);
-  static constexpr uint32_t kMaxReady = 16;
+  static constexpr uint32_t kMaxReady = 40; ///< more than axiomCount has classes, by bits, and one for any
   uint32_t readyCount() const { return readyCount_.load(std::memory_order_acquire); }
 
   const Graph graph;

@@ -373,11 +373,14 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const KernelInfo interpreter = interpreterFor(context.device, grammar.graph.phases > 0);
   Fit fit = kernel ? kernel->info.fit : fitOf(context.device, interpreter, false);
   if (!kernel && grammar.uneven) fit.balances = limits.uneven.balances;
-  // Rounds were counted for a number of axioms; for more of them, or far fewer, nothing is known.
-  const bool counted = fit.rounds && (!kernel || kernel->info.axioms == 0 ||
-                                      (info.axiomCount <= kernel->info.axioms &&
-                                       std::bit_width(info.axiomCount) == std::bit_width(kernel->info.axioms)));
-  const uint32_t rounds = counted ? std::min(fit.rounds, rounds_) : roundsFor(info, grammar, fit);
+  // Rounds were counted for a number of axioms: for more of them, or far fewer, nothing is known. Larger ones may
+  // become more shapes than workgroups of one round can end, but not than all that a second one has.
+  const bool counted = fit.rounds && !roundsGiven_ && !context.device.software &&
+                       (!kernel || kernel->info.axioms == 0 ||
+                        (info.axiomCount <= kernel->info.axioms &&
+                         std::bit_width(info.axiomCount) == std::bit_width(kernel->info.axioms)));
+  uint32_t rounds = roundsFor(info, grammar, fit);
+  if (counted) rounds = std::clamp(fit.rounds, std::min(rounds, 2u), rounds_);
   const bool batches = (kernel ? kernel->info : interpreter).target == KernelTarget::software;
   uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
   if (batches) maxGroups = std::clamp(info.axiomCount / kBatchAxioms, std::min(kBatchGroups, maxGroups), maxGroups);
