@@ -268,7 +268,8 @@ Examples:
 Of a font, glyphs that shaping makes of the chosen characters (ligatures, Arabic forms, alternates) are baked, too. A
 glyph's key is its number in the font, and 2^32 more for its outline. Shaping still needs the font file.
 
-A baked file depends on its input and this command's version alone, so it can be made on any machine and cached.)");
+A baked file depends on its input and this command's version alone (with --schedule tuned, also on what was tuned here), so it
+can be made on any machine and cached.)");
   return [options](const CommonOptions& common) { return bake(*options, common); };
 }
 

@@ -42,6 +42,11 @@ struct Chosen {
   size_t groups = 0;
 };
 
+/// --matching on is wrong for what has no code for groups of its own.
+void matchesNothing(const SpawnOptions& options, const char* what) {
+  if (options.matching == "on") throw Usage(std::string("--matching on changes nothing of ") + what);
+}
+
 Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
                     Session& session) {
   const std::string& name = options.schedule;
@@ -51,8 +56,10 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     info.vendor = info.device = 0; // it is the only one here
     return Chosen{kernelWords(grammar, info, kernel.code), info.schedule, file, info.groups};
   };
-  if (name == "interpreter")
+  if (name == "interpreter") {
+    matchesNothing(options, "the interpreter");
     return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
+  }
   if (name == "tuned") {
     const std::filesystem::path file = tunedFile(options.grammars, grammar);
     const auto stored = storedKernels(file, grammar, true);
@@ -76,11 +83,13 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     if (!schedule)
       throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
                   name + "\"");
+    if (schedule->roots.empty()) matchesNothing(options, "the default schedule, which is no partition");
     const auto code = compileKernels(grammar.graph, std::span(&*schedule, 1), target, options.matching == "on");
     return {kernelWords(grammar, kernelInfo(*schedule, target), code[0]), schedule->name, {}, schedule->groups};
   }
   const auto kernel = kernelFor(kernelsIn(name, grammar), session.device(), count);
   if (!kernel) throw Failure(name + " holds no kernel that is for this device");
+  matchesNothing(options, "kernels that are baked");
   return taken(*kernel, name);
 }
 
@@ -312,6 +321,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     } else {
       const std::vector<GpgpInstance> written = deriver.instances();
       if (asVertices) {
+        if (written.size() < measured.report.terminals)
+          throw Usage("--max-instances " + std::to_string(options.maxInstances) + " is less than the " +
+                      std::to_string(measured.report.terminals) +
+                      " instances, of which some have corners of their own, that instances do not say: what would be "
+                      "drawn is not known; --output vertices says it");
         if (record) asVertices->setAxioms(slices.of(record));
         asVertices->fit(prepared);
         addTriangles(triangles, asVertices->vertices(), asVertices->indices());
@@ -458,6 +472,7 @@ Work addSpawn(CLI::App& app) {
       ->type_name("X,Y,Z");
   command
       ->add_option("--spacing", options->spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
+      ->excludes("--axiom-file")
       ->check(within(1e-6, 1e9));
   command->add_option("--seed", options->seed, "Random seed; axiom i has seed S + i")->capture_default_str();
   addVariables(*command, options->set);
@@ -478,8 +493,10 @@ Work addSpawn(CLI::App& app) {
       ->capture_default_str();
   addGroupSize(*command, options->heuristics);
   command
-      ->add_option("--matching", options->matching,
-                   "Execution groups that differ in parameters only share one piece of code; not for baked kernels")
+      ->add_option(
+          "--matching", options->matching,
+          "Execution groups that differ in parameters only share one piece of code; not for baked kernels, nor "
+          "for the default, which is no partition")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   command
@@ -489,20 +506,25 @@ Work addSpawn(CLI::App& app) {
       ->check(CLI::IsMember({"instances", "vertices"}))
       ->capture_default_str();
   command->add_flag("--sorted", options->sorted, "Instances lie by bucket, with a draw command each");
-  command->add_option("--image", options->image, "Write a picture of the result")
-      ->check(pngFile())
-      ->type_name("FILE.png");
-  command->add_option("--yaw", options->yaw, "That picture's view: degrees around the scene")->capture_default_str();
+  CLI::Option* image = command->add_option("--image", options->image, "Write a picture of the result")
+                           ->check(pngFile())
+                           ->type_name("FILE.png");
+  command->add_option("--yaw", options->yaw, "That picture's view: degrees around the scene")
+      ->needs(image)
+      ->check(within(-36000.0, 36000.0))
+      ->capture_default_str();
   command->add_option("--pitch", options->pitch, "Degrees above the horizon")
+      ->needs(image)
       ->check(within(-89.0, 89.0))
       ->capture_default_str();
   command->add_option("--zoom", options->zoom, "Times closer to the middle than all of the scene")
+      ->needs(image)
       ->check(within(0.01, 1000.0))
       ->capture_default_str();
   command->add_option("--out", options->out, "Write what was derived as triangles")
       ->check(glbFile())
       ->type_name("FILE.glb");
-  addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)");
+  addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)")->needs(image);
   command
       ->add_option("--max-instances", options->maxInstances,
                    "Budget: instances or vertices written (0: as many as there are, as far as the device binds them)")

@@ -62,6 +62,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
          << best.fit.spread << " shapes" << (best.fit.balances ? " and to idle workgroups" : "");
   text << "; " << tuned.candidates << (tuned.candidates == 1 ? " candidate in " : " candidates in ")
        << std::round(tuned.seconds * 10) / 10 << " s";
+  if (options.search == "exhaustive" && !tuned.complete) text << ", not of all partitions (--samples, --seconds)";
   if (tuned.leftOut) text << "; " << tuned.leftOut << " were left out for lack of time";
   if (tuned.interpreter < best.milliseconds)
     text << "\nthe interpreter is faster than any kernel: spawn --schedule interpreter, bake --no-kernel";

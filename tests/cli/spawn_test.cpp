@@ -229,6 +229,21 @@ TEST(CliSpawn, SchedulesFromFilesAreChecked) {
                     {"spawn", grammar.path(), "--output", "vertices", "--sorted"}});
 }
 
+TEST(CliSpawn, WhatHasNoEffectIsWrong) {
+  const TemporaryFile grammar("effect.pga", kTower), axioms("effect.csv", "x,z\n0,0\n"),
+      dynamic("effect_dynamic.pga",
+              "axiom Box S;\nterminal T (0, 0);\n"
+              "S = Replicate() { P | P };\nP = SetAsDynamicConvexPolygon((0,0.5),(-0.5,-0.5),(0.5,-0.5)) T;\n");
+  expectWrongUsage({{"spawn", grammar.path(), "--matching", "on"},
+                    {"spawn", grammar.path(), "--matching", "on", "--schedule", "interpreter"},
+                    {"spawn", grammar.path(), "--axiom-file", axioms.path(), "--spacing", "3"},
+                    {"spawn", grammar.path(), "--yaw", "3"},
+                    {"spawn", grammar.path(), "--image-size", "32x32"},
+                    {"spawn", dynamic.path(), "--schedule", "interpreter", "--max-instances", "1"}});
+  const json both = gpgpJson({"spawn", dynamic.path(), "--schedule", "interpreter", "--max-instances", "2"});
+  EXPECT_EQ(both["triangles"], 2);
+}
+
 TEST(CliSpawn, BudgetsAreReported) {
   const TemporaryFile grammar("budget.pga", kTower);
   const json tower = gpgpJson({"spawn", grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "4"});
