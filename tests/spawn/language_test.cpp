@@ -46,6 +46,23 @@ TEST(Language, ReportsAllErrorsInOrder) {
                       "8:22: error: there is no rule or terminal 'Q'"}));
 }
 
+TEST(Language, WarningsHideNoErrorsAndWhatIsLeftOutIsCounted) {
+  std::string doubtful = "A = T;\n", wrong;
+  for (int i = 0; i < 1005; ++i) doubtful += "R" + std::to_string(i) + " = 60%: T 60%: T;\n";
+  for (int i = 0; i < 1500; ++i) wrong += "B = $\n";
+  const Messages both = ofRules(doubtful + "Z = Nowhere;");
+  ASSERT_EQ(both.size(), 1002u);
+  EXPECT_EQ(both[1000], "1009:5: error: there is no rule or terminal 'Nowhere'");
+  EXPECT_EQ(both[1001], "warning: 5 more warnings are left out");
+
+  spawn::Diagnostics diagnostics;
+  spawn::compile(wrong, {}, diagnostics, std::pmr::new_delete_resource());
+  const std::vector<spawn::Diagnostic> errors = diagnostics.sorted();
+  ASSERT_EQ(errors.size(), 1001u);
+  EXPECT_EQ(1000 + errors[1000].leftOut, diagnostics.errorCount());
+  EXPECT_EQ(messageOf(errors[1000]), "error: " + std::to_string(errors[1000].leftOut) + " more errors are left out");
+}
+
 // What was meant by a missing ';' is clear where another statement begins: it is the only error.
 TEST(Language, MissingSemicolonsSwallowNothing) {
   EXPECT_EQ(messagesOf("var a = 1\nvar b = 2;\naxiom Box A;\nterminal T (1,0);\nA = Translate(a,b,0) T;"),
