@@ -410,8 +410,13 @@ TEST(CompileGrammar, ReadsThePrintedForm) {
     const std::string alone = spawn::printGraph(*graphOf(again));
     EXPECT_EQ(spawn::printGraph(*graphOf(compiled(alone))), spawn::printGraph(*graphOf(words))) << name;
   }
-  for (const char* text : {"axiom Box A\nA -> T;", "axiom -> T;", "axiom Box A; A -> T;", "", "->", "axiom Box"})
+  for (const char* text : {"axiom Box A\nA -> T;", "axiom -> T;", "axiom Box A; A -> T;", "", "->", "axiom Box",
+                           "axiom Box -> A;", "axiom Box -> 5;", "axiom Box(5) -> A;", "axiom Box -> Discard;"})
     EXPECT_FALSE(spawn::isPrinted(text)) << text;
+  for (const char* text : {"axiom Box -> Discard", "axiom 5: Box(12) -> 0", "axiom 2e5: Box -> 10\n"})
+    EXPECT_TRUE(spawn::isPrinted(text)) << text;
+  EXPECT_EQ(linkMessages({{"a.pga", "axiom Box -> A; terminal T (1,0); A = T;"}}),
+            Messages{"a.pga:1:11: error: expected the name of the rule that the axiom starts with, found '->'"});
   EXPECT_EQ(linkMessages({{"a.txt", "axiom Box -> 0\n0 Translate(1,0) { 1 -> Discard }\n1 Q"}}),
             (Messages{"a.txt:2:16: error: expected ',', found ')'",
                       "a.txt:3:3: error: there is no operator or terminal 'Q'"}));

@@ -31,6 +31,7 @@ std::vector<std::string> namesOf(const Graph& graph) {
   std::vector<std::string> names;
   for (const Terminal& t : graph.terminals) names.emplace_back(graph.nameAt(t.name));
   for (const Rule& r : graph.rules) names.emplace_back(graph.nameAt(r.name));
+  for (const Axiom& a : graph.axioms) names.emplace_back(graph.nameAt(a.name));
   for (const Node& n : graph.nodes)
     if (isContext(n.op) && n.argument & shader::kTagName)
       names.emplace_back(graph.nameAt(n.argument & ~shader::kTagName));
@@ -163,6 +164,39 @@ TEST(Print, LinkedGrammarsComeBack) {
   expectSame(parsed(text).graph, *graph);
   EXPECT_EQ(printGraph(parsed(text).graph), text);
   EXPECT_EQ(makeFlow(*graph).starts, (std::vector<uint32_t>{0, 2, 3}));
+}
+
+TEST(Print, NamesLikeNumbersAndOperatorsComeBack) {
+  const Graph graph =
+      compiled("axiom Box 1; axiom Quad 2e5; terminal 2, 2e5, SetGeometry, in, 3rd (1,0);"
+               "1 = SubDiv(X) { 1: 2 | 1: 2e5 | 1: SetGeometry | 1: in | 1: 3rd | 1: rule | 1: priority };"
+               "rule = Collider(priority) SetGeometry; priority = IfCollides(priority) { Extrude(1) 2 | in };");
+  const std::string text = printGraph(graph);
+  EXPECT_EQ(text.substr(0, text.find("terminal in")), "axiom 1: Box -> 0\n"
+                                                      "axiom 2e5: Quad -> 12\n"
+                                                      "terminal 2 (1, 0) bucket 0\n"
+                                                      "terminal 2e5 (1, 0) bucket 0\n"
+                                                      "terminal SetGeometry (1, 0) bucket 0\n");
+  EXPECT_NE(text.find("\n1 2 in 1\n2 2e5 in 1\n3 SetGeometry in 1\n4 in in 1\n5 3rd in 1\n"), std::string::npos)
+      << text;
+  expectSame(parsed(text).graph, graph);
+}
+
+TEST(Print, TheOnlyAxiomKeepsItsName) {
+  const auto expectPrinted = [](const Graph& graph, const std::string& axiom) {
+    const std::string text = printGraph(graph);
+    EXPECT_EQ(text.substr(0, text.find('\n')), axiom);
+    expectSame(parsed(text).graph, graph);
+  };
+  expectPrinted(compiled("axiom Box T; terminal T (1,0);"), "axiom T: Box -> 0");
+  expectPrinted(compiled("axiom Box A; terminal T (1,0); A = T;"), "axiom Box -> 0"); // of the first rule there
+  expectPrinted(compiled("axiom Box B; terminal T (1,0); A = T; B = A;"), "axiom B: Box -> 0");
+  expectPrinted(compiled("axiom Box A; A = Discard();"), "axiom Box -> Discard");
+  const auto words = linked({{"house.pga", "axiom Box A; terminal T (1,0); A = T;"}});
+  expectPrinted(*load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource()), "axiom house: Box -> 0");
+  // Names that nobody gave are none.
+  EXPECT_EQ(printGraph(parsed("axiom Box -> 0\naxiom Quad -> 0\n0 Extrude(1) { 1 -> Discard }\n").graph),
+            "axiom Box -> 0\naxiom Quad -> 0\n0 Extrude(1) { 1 -> Discard }\n");
 }
 
 TEST(Print, LongSumsComeBack) { // as long as the language allows
