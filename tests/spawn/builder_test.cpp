@@ -251,6 +251,8 @@ TEST(GrammarBuilder, AnAxiomIsNeededAndItsShapeMustExist) {
   const GpgpGrammarValue number = GPGP_GRAMMAR_NUMBER(1);
   gpgpAddAxiom(g, GPGP_SHAPE_DYNAMIC_POLYGON, &number, 1, "T");
   expectMore(", corner 1: expected a corner as (x, y)");
+  g.axiom(GPGP_SHAPE_DYNAMIC_POLYGON, {g.corner(0, 0.5), g.corner(-0.5, -0.75), g.corner(0.5, 0)}, "T");
+  expectMore(", corner 2: x and y of a corner are from -0.5 to 0.5");
 }
 
 TEST(GrammarBuilder, VariablesThatAreSetMustExist) {

@@ -245,32 +245,32 @@ class PrintError : public testing::TestWithParam<Case> {};
 TEST_P(PrintError, HasItsPlace) { EXPECT_EQ(errorsOf(std::string(kHead) + GetParam().text), GetParam().messages); }
 INSTANTIATE_TEST_SUITE_P(
     All, PrintError,
-    testing::Values(Case{"1 T", {"3:1: error: expected node 0, found '1'"}},
-                    Case{"0 Q", {"3:3: error: there is no operator or terminal 'Q'"}},
-                    Case{"0 T in B\nrule A -> 0", {"3:8: error: there is no rule 'B'"}},
-                    Case{"0 T in\n1 T", {"4:1: error: expected a rule's name, found '1'"}},
-                    Case{"0 Translate(1,0) { 1 -> Discard }", {"3:16: error: expected ',', found ')'"}},
-                    Case{"0 Translate(1,0,W) { 1 -> Discard }", {"3:18: error: expected '(', found ')'"}},
-                    Case{"0 Translate(1,0,0) { 1 -> 5 }", {"3:27: error: there is no node 5"}},
-                    Case{"0 Translate(1,0,0) { 2 -> Discard }",
-                         {"3:22: error: the multiplicity of this edge of Translate is 1, found '2'"}},
-                    Case{"0 Translate(1,0,0) { x -> Discard }",
-                         {"3:22: error: expected a multiplicity: 1, n, / or *, found 'x'"}},
-                    Case{"0 If((1 < 2) { / -> Discard | / -> Discard }", {"3:14: error: expected ')', found '{'"}},
-                    Case{"0 If((1 2)) { / -> Discard | / -> Discard }",
-                         {"3:9: error: expected an operator as in (1 + 2), found '2'"}},
-                    Case{"0 IfSizeLess(V,1) { / -> Discard | / -> Discard }",
-                         {"3:14: error: expected an axis: X, Y or Z, found 'V'"}},
-                    Case{"0 Extrude(1) { 1 -> 1 }\n1 Extrude(1) }\n2 R\n", // one error a statement, then it goes on
-                         {"4:14: error: expected a node's number, axiom, terminal, polygon, rule or group, found '}'",
-                          "5:3: error: there is no operator or terminal 'R'"}},
-                    Case{"0 Extrude(1)\n", {"error: node 0 (Extrude): wrong number of successors"}},
-                    Case{"0 T\naxiom Box -> 0\n", {}},
-                    Case{"0 T\nrule A(1) -> 0\n", {"4:8: error: there is no axiom '1'"}},
-                    Case{"0 T\naxiom a: -> 0\n", {"4:10: error: expected a shape, found '->'"}},
-                    Case{"0 T\nterminal T (1, 1) bucket 1\n", {"4:10: error: terminal 'T' is defined twice"}},
-                    Case{"0 T\npolygon 14 { (0,0) (1,0) (0,1) }\n", {"4:9: error: expected polygon 12, found '14'"}},
-                    Case{"0 T\nrule A = 1.5\n", {"4:10: error: expected a node's number or Discard, found '1.5'"}}));
+    testing::Values(
+        Case{"1 T", {"3:1: error: expected node 0, found '1'"}},
+        Case{"0 Q", {"3:3: error: there is no operator or terminal 'Q'"}},
+        Case{"0 T in B\nrule A -> 0", {"3:8: error: there is no rule 'B'"}},
+        Case{"0 T in\n1 T", {"4:1: error: expected a rule's name, found '1'"}},
+        Case{"0 Translate(1,0) { 1 -> Discard }", {"3:16: error: expected ',', found ')'"}},
+        Case{"0 Translate(1,0,W) { 1 -> Discard }", {"3:18: error: expected '(', found ')'"}},
+        Case{"0 Translate(1,0,0) { 1 -> 5 }", {"3:27: error: there is no node 5"}},
+        Case{"0 Translate(1,0,0) { 2 -> Discard }",
+             {"3:22: error: the multiplicity of this edge of Translate is 1, found '2'"}},
+        Case{"0 Translate(1,0,0) { x -> Discard }", {"3:22: error: expected a multiplicity: 1, n, / or *, found 'x'"}},
+        Case{"0 If((1 < 2) { / -> Discard | / -> Discard }", {"3:14: error: expected ')', found '{'"}},
+        Case{"0 If((1 2)) { / -> Discard | / -> Discard }",
+             {"3:9: error: expected an operator as in (1 + 2), found '2'"}},
+        Case{"0 IfSizeLess(V,1) { / -> Discard | / -> Discard }",
+             {"3:14: error: expected an axis: X, Y or Z, found 'V'"}},
+        Case{"0 Extrude(1) { 1 -> 1 }\n1 Extrude(1) }\n2 R\n", // one error a statement, then it goes on
+             {"4:14: error: expected a node's number, axiom, terminal, polygon, rule or group, found '}'",
+              "5:3: error: there is no operator or terminal 'R'"}},
+        Case{"0 Extrude(1)\n", {"error: node 0 (Extrude): wrong number of successors"}},
+        Case{"0 T\naxiom Box -> 0\n", {}}, Case{"0 T\nrule A(1) -> 0\n", {"4:8: error: there is no axiom '1'"}},
+        Case{"0 T\naxiom a: -> 0\n", {"4:10: error: expected a shape, found '->'"}},
+        Case{"0 T\nterminal T (1, 1) bucket 1\n", {"4:10: error: terminal 'T' is defined twice"}},
+        Case{"0 T\npolygon 14 { (0,0) (0.5,0) (0,0.5) }\n", {"4:9: error: expected polygon 12, found '14'"}},
+        Case{"0 T\npolygon 12 { (0,0) (1,0) (0,0.5) }\n", {"4:20: error: x and y of a corner are from -0.5 to 0.5"}},
+        Case{"0 T\nrule A = 1.5\n", {"4:10: error: expected a node's number or Discard, found '1.5'"}}));
 
 class GroupError : public testing::TestWithParam<Case> {};
 TEST_P(GroupError, HasItsPlace) {

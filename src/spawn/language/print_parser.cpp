@@ -217,11 +217,12 @@ private:
     expect(TokenKind::openBrace, "'{'");
     std::vector<float> corners;
     while (!is(TokenKind::closeBrace)) {
-      expect(TokenKind::open, "a corner as (x,y)");
+      const Place place = expect(TokenKind::open, "a corner as (x,y)").place;
       corners.push_back(number());
       expect(TokenKind::comma, "','");
       corners.push_back(number());
       expect(TokenKind::close, "')'");
+      if (!isCorner(corners[corners.size() - 2], corners.back())) diagnostics_.error(place, kExpectedCorner);
     }
     ++at_;
     if (index != graph_.polygons.size())
