@@ -75,6 +75,7 @@ typedef struct GpgpCompileMessage {
                             begins with the place, by name */
   GpgpSeverity severity;
   const char* text;
+  uint32_t leftOut; /**< 0; in a last message: how many more of this severity there were, as text says */
 } GpgpCompileMessage;
 typedef void(GPGP_CALL* GpgpCompileMessageFn)(void* userData, const GpgpCompileMessage* message);
 
@@ -100,7 +101,8 @@ typedef struct GpgpGrammarSource {
   size_t size;       /**< bytes of text or baked */
   const GpgpVariable* variables;
   uint32_t variableCount;
-  GpgpCompileMessageFn messageFn; /**< every error of the file, in order */
+  GpgpCompileMessageFn messageFn; /**< every error, warning and note of the file, in order of their places; of each at
+                                       most 1000, and then how many were left out */
   void* messageUserData;
   GpgpCompileFlags flags;
   GpgpGrammarBuilder builder; /**< instead of text, which then is NULL; read during the call */

@@ -69,8 +69,8 @@ typedef struct GpgpGrammarValue {
 GPGP_API GpgpGrammarValue GPGP_CALL gpgpAddVariable(GpgpGrammarBuilder builder, const char* name,
                                                     GpgpGrammarValue value);
 
-/** Returns what stands for a tag of Collider and IfCollides by that name. In libgpgp_compiler.
- *  @threads handle @lifetime call */
+/** Returns what stands for a tag of Collider and IfCollides by that name, which is no number: numbers are tags
+ *  themselves. In libgpgp_compiler. @threads handle @lifetime call */
 GPGP_API GpgpGrammarValue GPGP_CALL gpgpAddTag(GpgpGrammarBuilder builder, const char* name);
 
 typedef uint32_t GpgpExpressionKind;

@@ -20,6 +20,7 @@ namespace {
 struct Cell {
   std::string text;
   spawn::Place place;
+  bool isWrong = false; ///< which was reported
 };
 
 struct Row {
@@ -141,20 +142,15 @@ std::vector<spawn::Place> placesOfValues(const std::string& text) {
 
 Row rowOf(const Json& object, spawn::Place place, spawn::Diagnostics& errors) {
   Row row{place, {}};
-  if (!object.is_object()) {
-    errors.error(place, "expected an object with position, rotation, size, seed, rule");
-    return row;
-  }
   const auto number = [&](const std::string& name, const Json& value, std::string_view key) {
-    if (value.is_number())
-      row.cells[std::string(key)] = {value.dump(), place};
-    else
-      errors.error(place, name + " takes numbers");
+    row.cells[std::string(key)] = {value.dump(), place, !value.is_number()};
+    if (!value.is_number()) errors.error(place, name + " takes numbers");
   };
   const auto list = [&](const std::string& name, const Json& values, std::span<const std::string_view> names,
                         const char* text) {
     if (!values.is_array() || values.size() != names.size()) {
       errors.error(place, name + " takes " + text);
+      for (const std::string_view key : names) row.cells[std::string(key)] = {{}, place, true};
       return;
     }
     for (size_t i = 0; i < names.size(); ++i) number(name, values[i], names[i]);
@@ -172,10 +168,8 @@ Row rowOf(const Json& object, spawn::Place place, spawn::Diagnostics& errors) {
     } else if (name == "rotation" || name == "seed" || name == "attribute") {
       number(name, value, name);
     } else if (name == "rule" || name == "shape") {
-      if (value.is_string())
-        row.cells[name] = {value.get<std::string>(), place};
-      else
-        errors.error(place, name + " takes a " + name + "'s name");
+      row.cells[name] = {value.is_string() ? value.get<std::string>() : std::string(), place, !value.is_string()};
+      if (!value.is_string()) errors.error(place, name + " takes a " + name + "'s name");
     } else {
       errors.error(place, quoted(name) +
                               " is unknown; there are position, rotation, quaternion, transform, size, seed, "
@@ -203,9 +197,10 @@ std::vector<Row> readJson(const std::string& text, spawn::Diagnostics& errors) {
   const std::vector<spawn::Place> places = placesOfValues(text);
   std::vector<Row> rows;
   for (size_t i = 0; i < all.size(); ++i) {
-    const size_t before = errors.errorCount();
-    Row row = rowOf(all[i], places[i], errors);
-    if (errors.errorCount() == before) rows.push_back(std::move(row)); // of others not all is known
+    if (all[i].is_object())
+      rows.push_back(rowOf(all[i], places[i], errors));
+    else
+      errors.error(places[i], "expected an object with position, rotation, size, seed, rule");
   }
   return rows;
 }
@@ -235,10 +230,10 @@ public:
       if (placed && has(name)) errors_.error(placeOf(name), std::string(name) + " stands beside a whole transform");
     for (const char* needed : {"x", "z"})
       if (!placed && !has(needed)) errors_.error(row_.place, std::string("an axiom needs a value for ") + needed);
-    if (has("seed")) axiom.seed = seed();
-    if (has("rule"))
+    if (isRead("seed")) axiom.seed = seed();
+    if (isRead("rule"))
       axiom.rule = rule();
-    else if (has("shape"))
+    else if (has("shape") && !has("rule"))
       errors_.error(placeOf("shape"), "a shape needs the rule that starts with it");
     axiom.attribute = number("attribute", axiom.attribute);
     return axiom;
@@ -246,6 +241,7 @@ public:
 
 private:
   bool has(std::string_view name) const { return row_.cells.find(name) != row_.cells.end(); }
+  bool isRead(std::string_view name) const { return has(name) && !row_.cells.find(name)->second.isWrong; }
   spawn::Place placeOf(std::string_view name) const {
     const auto found = row_.cells.find(name);
     return found == row_.cells.end() ? row_.place : found->second.place;
@@ -253,7 +249,7 @@ private:
   const std::string& textOf(std::string_view name) const { return row_.cells.find(name)->second.text; }
 
   float number(std::string_view name, float otherwise) {
-    if (!has(name)) return otherwise;
+    if (!isRead(name)) return otherwise;
     const std::string& text = textOf(name);
     float value = 0;
     const char* end = text.data() + text.size();
@@ -286,7 +282,7 @@ private:
   void turn(GpgpAxiom& axiom, const std::array<float, 3>& size) {
     double q[4], length = 0;
     for (size_t i = 0; i < 4; ++i) {
-      q[i] = static_cast<double>(number(kQuaternion[i], 0));
+      q[i] = static_cast<double>(number(kQuaternion[i], 1)); // what is wrong was reported: no length of 0 besides
       length += q[i] * q[i];
     }
     if (!(length > 0)) {

@@ -61,7 +61,8 @@ struct Errors {
         line << " (--set " << a.text << ')';
     std::fprintf(stderr, "%s\n", printable(line.str()).c_str());
     if (message->severity != GPGP_SEVERITY_ERROR) return;
-    if (all->count++ == 0) all->first = line.str();
+    if (all->count == 0) all->first = line.str();
+    all->count += message->leftOut ? message->leftOut : 1;
   }
 };
 

@@ -34,6 +34,7 @@ std::optional<spawn::Partition> schedule(const GraphOptions& options, const spaw
   if (name == "heuristic") return makePartition(flow, heuristicPartition(graph, flow, options.heuristics));
   if (!std::filesystem::exists(name))
     throw Usage("--schedule takes sgl, rw, rules, heuristic or a file with groups; there is no \"" + name + "\"");
+  if (isBaked(name)) throw Failure(name + " is a baked grammar; expected groups, as gpgp graph prints them");
   spawn::Diagnostics diagnostics;
   auto partition = parseGroups(host::readText(name), graph, diagnostics);
   report(diagnostics, name);

@@ -68,6 +68,19 @@ TEST(CliGraph, ErrorsHaveAPlace) {
       groups("groups.txt", "group { 0 1 2 3 5 6 }\ngroup { 4 7 }\n");
   EXPECT_NE(gpgpFailure({"graph", grammar.path(), "--schedule", groups.path()}).find("groups.txt:2:11: error: "),
             std::string::npos);
+  const TemporaryFile baked("groups.gpgp");
+  ASSERT_EQ(gpgp({"bake", grammar.path(), "--no-kernel", "-o", baked.path()}).exitCode, 0);
+  EXPECT_EQ(gpgpFailure({"graph", grammar.path(), "--schedule", baked.path()}),
+            baked.path() + " is a baked grammar; expected groups, as gpgp graph prints them");
+}
+
+TEST(CliGraph, NumbersOfErrorsAreThoseOfTheFile) {
+  std::string rules = "axiom Box A;\nterminal T (1, 0);\nA = T;\n";
+  for (int i = 0; i < 1500; ++i) rules += "R" + std::to_string(i) + " = Nowhere;\n";
+  const TemporaryFile wrong("many_errors.pga", rules);
+  const std::string errors = gpgp({"graph", wrong.path()}).err;
+  EXPECT_NE(errors.find(": error: 500 more errors are left out\n"), std::string::npos);
+  EXPECT_NE(errors.find("'Nowhere' (and 1499 more)"), std::string::npos);
 }
 
 TEST(CliGraph, WrongUsage) {

@@ -480,8 +480,7 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
   EXPECT_EQ(error("x,qx,z\n1,0,1\n"), "2:1: error: an axiom with some of qx to qw needs all 4");
   EXPECT_EQ(error("x,z,qx,qy,qz,qw\n1,0,0,0,0,0\n"), "2:5: error: a quaternion of length 0 turns nowhere");
   EXPECT_EQ(error("x,z,rotation,qx,qy,qz,qw\n1,0,5,0,0,0,1\n"), "2:5: error: rotation or a quaternion, not both");
-  EXPECT_EQ(error("[{\"position\": [1, 2, 3], \"transform\": [1]}]"),
-            "1:2: error: transform takes twelve numbers, the rows of a 3x4 matrix");
+  EXPECT_EQ(error("[{\"transform\": [1]}]"), "1:2: error: transform takes twelve numbers, the rows of a 3x4 matrix");
   EXPECT_EQ(error("[{\"rotation\": 3, \"transform\": [1,0,0,0, 0,1,0,0, 0,0,1,0]}]"),
             "1:2: error: rotation stands beside a whole transform");
   EXPECT_EQ(error("x,z\n1,\x01\xff\n"), "2:3: error: z takes a number; \"\\x01\\xff\" is none");
@@ -495,6 +494,15 @@ TEST(CliSpawn, AxiomFilesSayAllThatIsWrong) {
   for (const char* wrong : {"csv:2:5: error: ", "csv:3:7: error: ", "csv:4:1: error: ", "csv:5:1: error: "})
     EXPECT_NE(result.err.find(wrong), std::string::npos) << wrong << result.err;
   EXPECT_NE(result.err.find("\"bad\" is none (and 3 more)"), std::string::npos) << result.err;
+  const TemporaryFile members("all_wrong.json",
+                              "[{\"position\": [1, 2], \"quaternion\": [0, 0, 0, \"w\"], \"seed\": 1.5,"
+                              "\"rule\": \"Other\"},\n {\"position\": 5, \"rule\": 5, \"shape\": 5},\n5]");
+  const std::string errors = gpgp({"spawn", grammar.path(), "--axiom-file", members.path()}).err;
+  for (const char* wrong : {":1:2: error: position takes three numbers", ":1:2: error: quaternion takes numbers",
+                            ":1:2: error: seed takes a whole number", ":1:2: error: the grammar has no rule \"Other\"",
+                            ":2:2: error: position takes", ":2:2: error: rule takes", ":2:2: error: shape takes",
+                            ":3:1: error: expected an object", "(and 7 more)"})
+    EXPECT_NE(errors.find(wrong), std::string::npos) << wrong << '\n' << errors;
 }
 
 /// The same places by angle, by quaternion and by matrix.

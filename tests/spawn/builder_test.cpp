@@ -251,6 +251,8 @@ TEST(GrammarBuilder, AnAxiomIsNeededAndItsShapeMustExist) {
   const GpgpGrammarValue number = GPGP_GRAMMAR_NUMBER(1);
   gpgpAddAxiom(g, GPGP_SHAPE_DYNAMIC_POLYGON, &number, 1, "T");
   expectMore(", corner 1: expected a corner as (x, y)");
+  g.axiom(GPGP_SHAPE_DYNAMIC_POLYGON, {g.corner(0, 0.5), g.corner(-0.5, -0.75), g.corner(0.5, 0)}, "T");
+  expectMore(", corner 2: x and y of a corner are from -0.5 to 0.5");
 }
 
 TEST(GrammarBuilder, VariablesThatAreSetMustExist) {
@@ -275,6 +277,19 @@ TEST(GrammarBuilder, DepthAndSizeAreBounded) {
   ASSERT_FALSE(messages.empty());
   EXPECT_EQ(
       std::count(messages.begin(), messages.end(), "error: rule 'A', Translate: this is nested more than 200 deep"), 1);
+  for (const uint32_t count : {200u, 201u, 50000u}) { // each is added before what it leads to
+    GrammarBuilder forward = empty();
+    forward.axiom(GPGP_SHAPE_BOX, "A").terminal("T", 1, 0);
+    forward.rule("A", GrammarOperator{1});
+    for (uint32_t i = 1; i < count; ++i) forward.translate(1, 0, 0, GrammarOperator{i + 1});
+    forward.translate(1, 0, 0, "T");
+    EXPECT_EQ(messagesOf(forward),
+              count > 200 ? Messages{"error: rule 'A', Translate: this is nested more than 200 deep"} : Messages{});
+  }
+  GrammarBuilder circle = empty();
+  circle.axiom(GPGP_SHAPE_BOX, "A").rule("A", circle.translate(1, 0, 0, GrammarOperator{1}));
+  EXPECT_EQ(messagesOf(circle), Messages{"error: rule 'A', Translate, Translate: this operator is already used "
+                                         "elsewhere; what is shared must be a rule"});
   GrammarBuilder wide = empty();
   wide.axiom(GPGP_SHAPE_BOX, "A").terminal("T", 1, 0);
   GrammarValue sum = wide.shapeSize(Axis::x);
@@ -282,6 +297,28 @@ TEST(GrammarBuilder, DepthAndSizeAreBounded) {
   wide.rule("A", wide.translate(sum, 0, 0, "T"));
   EXPECT_EQ(messagesOf(wide)[0],
             "error: gpgpAddExpression: the expression has more than 1024 values; expected a shorter one");
+}
+
+TEST(GrammarBuilder, ValuesAreMadeOfEarlierOnes) {
+  GrammarBuilder g = empty();
+  const GpgpGrammarValue first = gpgpAddTag(g, "tag");
+  const GpgpGrammarValue later = {first.id + 1, 0};
+  g.axiom(GPGP_SHAPE_BOX, "A").terminal("T", 1, 0);
+  const GpgpGrammarValue itself = gpgpAddExpression(g, GPGP_EXPRESSION_ADD, later, GPGP_GRAMMAR_NUMBER(1));
+  g.rule("A", g.extrude(GrammarValue(itself, g), "T"));
+  EXPECT_EQ(messagesOf(g),
+            Messages{"error: gpgpAddExpression: there is no value " + std::to_string(later.id) + " in this builder"});
+}
+
+TEST(GrammarBuilder, NumbersAreNoNamesOfTags) { // as they are none in text
+  for (const char* name : {"5", "2e5"}) {
+    GrammarBuilder g = empty();
+    g.axiom(GPGP_SHAPE_BOX, "A").terminal("T", 1, 0);
+    gpgpAddTag(g, name);
+    g.rule("A", "T");
+    EXPECT_EQ(messagesOf(g), Messages{std::string("error: gpgpAddTag: '") + name +
+                                      "' is a number; expected a name, or a number as the tag"});
+  }
 }
 
 TEST(GrammarBuilder, TakesNullAndNoOtherSource) {

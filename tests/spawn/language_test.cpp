@@ -46,6 +46,23 @@ TEST(Language, ReportsAllErrorsInOrder) {
                       "8:22: error: there is no rule or terminal 'Q'"}));
 }
 
+TEST(Language, WarningsHideNoErrorsAndWhatIsLeftOutIsCounted) {
+  std::string doubtful = "A = T;\n", wrong;
+  for (int i = 0; i < 1005; ++i) doubtful += "R" + std::to_string(i) + " = 60%: T 60%: T;\n";
+  for (int i = 0; i < 1500; ++i) wrong += "B = $\n";
+  const Messages both = ofRules(doubtful + "Z = Nowhere;");
+  ASSERT_EQ(both.size(), 1002u);
+  EXPECT_EQ(both[1000], "1009:5: error: there is no rule or terminal 'Nowhere'");
+  EXPECT_EQ(both[1001], "warning: 5 more warnings are left out");
+
+  spawn::Diagnostics diagnostics;
+  spawn::compile(wrong, {}, diagnostics, std::pmr::new_delete_resource());
+  const std::vector<spawn::Diagnostic> errors = diagnostics.sorted();
+  ASSERT_EQ(errors.size(), 1001u);
+  EXPECT_EQ(1000 + errors[1000].leftOut, diagnostics.errorCount());
+  EXPECT_EQ(messageOf(errors[1000]), "error: " + std::to_string(errors[1000].leftOut) + " more errors are left out");
+}
+
 // What was meant by a missing ';' is clear where another statement begins: it is the only error.
 TEST(Language, MissingSemicolonsSwallowNothing) {
   EXPECT_EQ(messagesOf("var a = 1\nvar b = 2;\naxiom Box A;\nterminal T (1,0);\nA = Translate(a,b,0) T;"),
@@ -54,11 +71,11 @@ TEST(Language, MissingSemicolonsSwallowNothing) {
             Messages{"2:1: error: expected ';' after the axiom, found 'terminal'"});
   EXPECT_EQ(messagesOf("axiom Box A;\nterminal T (1,0)\nterminal U (1,1);\nA = Replicate() { T | U };"),
             Messages{"3:1: error: expected ';' after the terminal, found 'terminal'"});
-  EXPECT_EQ(
-      messagesOf("terminal T (1,0)\naxiom DynamicPolygon { (0,0),(1,0),(0,1) } A\nvar c = 1\nA = Translate(c,0,0) T;"),
-      (Messages{"2:1: error: expected ';' after the terminal, found 'axiom'",
-                "3:1: error: expected ';' after the axiom, found 'var'",
-                "4:1: error: expected ';' after the variable, found 'A'"}));
+  EXPECT_EQ(messagesOf(
+                "terminal T (1,0)\naxiom DynamicPolygon { (0,0),(.5,0),(0,.5) } A\nvar c = 1\nA = Translate(c,0,0) T;"),
+            (Messages{"2:1: error: expected ';' after the terminal, found 'axiom'",
+                      "3:1: error: expected ';' after the axiom, found 'var'",
+                      "4:1: error: expected ';' after the variable, found 'A'"}));
   EXPECT_EQ(messagesOf("axiom Box A;\nterminal T\nterminal U (1,1);\nA = Replicate() { T | U };"),
             Messages{"3:1: error: expected '(' with kind and index after the names of terminals, found 'terminal'"});
   EXPECT_EQ(ofRules("A = Replicate() { T | B\nB =\nC = Translate(1,0,0)\n2D = T"),
@@ -232,14 +249,21 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"A = T; terminal U (2,0);", "3:20: error: a terminal's kind is 0 (triangles) or 1 (an instanced mesh)"},
         Case{"A = T; terminal U (1,0.5);", "3:22: error: a terminal's index is a whole number from 0"},
         Case{"A = T; terminal U (1);", "3:8: error: a terminal needs (kind, index), found 1 value"},
-        Case{"A = SetAsDynamicConvexPolygon((0,0),(1,0)) T;", "3:5: error: expected 3 to 4096 corners, found 2"},
-        Case{"A = SetAsDynamicConvexPolygon((0,0),(1,0),(2,0)) T;", "3:5: error: the polygon has no area"},
-        Case{"A = SetAsDynamicConvexPolygon((0,0),(2,0),(1,1),(1,3)) T;", "3:5: error: the polygon is not convex"},
-        Case{"A = SetAsDynamicConcavePolygon((0,0),(2,2),(2,0),(0,1)) T;", "3:5: error: the polygon crosses itself"},
-        Case{"A = SetAsDynamicConvexPolygon((0,5),(-3,-4),(5,2),(-5,2),(3,-4)) T;",
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(.5,0)) T;", "3:5: error: expected 3 to 4096 corners, found 2"},
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(.2,0),(.4,0)) T;", "3:5: error: the polygon has no area"},
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(.2,0),(.1,.1),(.1,.3)) T;", "3:5: error: the polygon is not convex"},
+        Case{"A = SetAsDynamicConcavePolygon((0,0),(.2,.2),(.2,0),(0,.1)) T;",
              "3:5: error: the polygon crosses itself"},
-        Case{"A = SetAsDynamicConvexPolygon((0,0),(ShapeSize(X),0),(1,1)) T;",
+        Case{"A = SetAsDynamicConvexPolygon((0,.5),(-.3,-.4),(.5,.2),(-.5,.2),(.3,-.4)) T;",
+             "3:5: error: the polygon crosses itself"},
+        Case{"A = SetAsDynamicConvexPolygon((0,0),(ShapeSize(X),0),(.5,.5)) T;",
              "3:38: error: a corner must not depend on the shape"},
+        Case{"A = SetAsDynamicConvexPolygon((0,.5),(-.5,-Exp(0.25*2)),(5,-.5)) T;",
+             "3:57: error: x and y of a corner are from -0.5 to 0.5"},
+        Case{"A = T; axiom DynamicPolygon { (0,.5),(-.5,0),(0,-.6) } A;",
+             "3:46: error: x and y of a corner are from -0.5 to 0.5"},
+        Case{"A = T; terminal U (1, 0, 3.5, 7);",
+             "3:26: warning: a terminal has (kind, index); values behind them have no effect"},
         Case{"A = Discard() T;", "3:5: error: Discard() takes neither arguments nor successors"},
         Case{"A = $ T;", "3:5: error: '$' has no meaning here"},
         Case{"A = T; x", "3:9: error: expected '-->' or '=' after the name of a rule, found the end of the file"},
@@ -277,12 +301,12 @@ TEST(Language, WarnsOfTypesThatEnd) {
   EXPECT_EQ(of("axiom Quad A;", faces), Messages{"2:5: warning: CompSplit has no effect here: only Quad arrives"});
   // Nobody has said that a derivation should start at B, though it may.
   EXPECT_EQ(messagesOf("axiom Sphere A; terminal T (0,0);"
-                       "A = SetAsDynamicConvexRightPrism((0,0),(1,0),(0,1)) B; B = CompSplit() Extrude(1) T;"),
+                       "A = SetAsDynamicConvexRightPrism((0,0),(.5,0),(0,.5)) B; B = CompSplit() Extrude(1) T;"),
             Messages{});
 }
 
 TEST(Language, TellsWhereInstancesHaveNoCorners) {
-  const std::string rule = "A = Replicate() { T | SetAsDynamicConvexPolygon((0,0),(1,0),(0,1)) T };";
+  const std::string rule = "A = Replicate() { T | SetAsDynamicConvexPolygon((0,0),(.5,0),(0,.5)) T };";
   EXPECT_EQ(messagesOf("axiom Box A; terminal T (1,0);\n" + rule),
             Messages{"2:19: note: instances of 'T' do not say the corners of DynamicConvexPolygon: its mesh must have "
                      "them, or a spawner for vertices write them"});
@@ -393,8 +417,13 @@ TEST(CompileGrammar, ReadsThePrintedForm) {
     const std::string alone = spawn::printGraph(*graphOf(again));
     EXPECT_EQ(spawn::printGraph(*graphOf(compiled(alone))), spawn::printGraph(*graphOf(words))) << name;
   }
-  for (const char* text : {"axiom Box A\nA -> T;", "axiom -> T;", "axiom Box A; A -> T;", "", "->", "axiom Box"})
+  for (const char* text : {"axiom Box A\nA -> T;", "axiom -> T;", "axiom Box A; A -> T;", "", "->", "axiom Box",
+                           "axiom Box -> A;", "axiom Box -> 5;", "axiom Box(5) -> A;", "axiom Box -> Discard;"})
     EXPECT_FALSE(spawn::isPrinted(text)) << text;
+  for (const char* text : {"axiom Box -> Discard", "axiom 5: Box(12) -> 0", "axiom 2e5: Box -> 10\n"})
+    EXPECT_TRUE(spawn::isPrinted(text)) << text;
+  EXPECT_EQ(linkMessages({{"a.pga", "axiom Box -> A; terminal T (1,0); A = T;"}}),
+            Messages{"a.pga:1:11: error: expected the name of the rule that the axiom starts with, found '->'"});
   EXPECT_EQ(linkMessages({{"a.txt", "axiom Box -> 0\n0 Translate(1,0) { 1 -> Discard }\n1 Q"}}),
             (Messages{"a.txt:2:16: error: expected ',', found ')'",
                       "a.txt:3:3: error: there is no operator or terminal 'Q'"}));

@@ -31,6 +31,7 @@ std::vector<std::string> namesOf(const Graph& graph) {
   std::vector<std::string> names;
   for (const Terminal& t : graph.terminals) names.emplace_back(graph.nameAt(t.name));
   for (const Rule& r : graph.rules) names.emplace_back(graph.nameAt(r.name));
+  for (const Axiom& a : graph.axioms) names.emplace_back(graph.nameAt(a.name));
   for (const Node& n : graph.nodes)
     if (isContext(n.op) && n.argument & shader::kTagName)
       names.emplace_back(graph.nameAt(n.argument & ~shader::kTagName));
@@ -165,6 +166,39 @@ TEST(Print, LinkedGrammarsComeBack) {
   EXPECT_EQ(makeFlow(*graph).starts, (std::vector<uint32_t>{0, 2, 3}));
 }
 
+TEST(Print, NamesLikeNumbersAndOperatorsComeBack) {
+  const Graph graph =
+      compiled("axiom Box 1; axiom Quad 2e5; terminal 2, 2e5, SetGeometry, in, 3rd (1,0);"
+               "1 = SubDiv(X) { 1: 2 | 1: 2e5 | 1: SetGeometry | 1: in | 1: 3rd | 1: rule | 1: priority };"
+               "rule = Collider(priority) SetGeometry; priority = IfCollides(priority) { Extrude(1) 2 | in };");
+  const std::string text = printGraph(graph);
+  EXPECT_EQ(text.substr(0, text.find("terminal in")), "axiom 1: Box -> 0\n"
+                                                      "axiom 2e5: Quad -> 12\n"
+                                                      "terminal 2 (1, 0) bucket 0\n"
+                                                      "terminal 2e5 (1, 0) bucket 0\n"
+                                                      "terminal SetGeometry (1, 0) bucket 0\n");
+  EXPECT_NE(text.find("\n1 2 in 1\n2 2e5 in 1\n3 SetGeometry in 1\n4 in in 1\n5 3rd in 1\n"), std::string::npos)
+      << text;
+  expectSame(parsed(text).graph, graph);
+}
+
+TEST(Print, TheOnlyAxiomKeepsItsName) {
+  const auto expectPrinted = [](const Graph& graph, const std::string& axiom) {
+    const std::string text = printGraph(graph);
+    EXPECT_EQ(text.substr(0, text.find('\n')), axiom);
+    expectSame(parsed(text).graph, graph);
+  };
+  expectPrinted(compiled("axiom Box T; terminal T (1,0);"), "axiom T: Box -> 0");
+  expectPrinted(compiled("axiom Box A; terminal T (1,0); A = T;"), "axiom Box -> 0"); // of the first rule there
+  expectPrinted(compiled("axiom Box B; terminal T (1,0); A = T; B = A;"), "axiom B: Box -> 0");
+  expectPrinted(compiled("axiom Box A; A = Discard();"), "axiom Box -> Discard");
+  const auto words = linked({{"house.pga", "axiom Box A; terminal T (1,0); A = T;"}});
+  expectPrinted(*load(std::as_bytes(std::span(words)), std::pmr::new_delete_resource()), "axiom house: Box -> 0");
+  // Names that nobody gave are none.
+  EXPECT_EQ(printGraph(parsed("axiom Box -> 0\naxiom Quad -> 0\n0 Extrude(1) { 1 -> Discard }\n").graph),
+            "axiom Box -> 0\naxiom Quad -> 0\n0 Extrude(1) { 1 -> Discard }\n");
+}
+
 TEST(Print, LongSumsComeBack) { // as long as the language allows
   std::string sum = "ShapeSize(X)", nested = "ShapeSeed()";
   for (int i = 0; i < 60; ++i) sum += " + ShapePos(Y) * 2";
@@ -211,32 +245,32 @@ class PrintError : public testing::TestWithParam<Case> {};
 TEST_P(PrintError, HasItsPlace) { EXPECT_EQ(errorsOf(std::string(kHead) + GetParam().text), GetParam().messages); }
 INSTANTIATE_TEST_SUITE_P(
     All, PrintError,
-    testing::Values(Case{"1 T", {"3:1: error: expected node 0, found '1'"}},
-                    Case{"0 Q", {"3:3: error: there is no operator or terminal 'Q'"}},
-                    Case{"0 T in B\nrule A -> 0", {"3:8: error: there is no rule 'B'"}},
-                    Case{"0 T in\n1 T", {"4:1: error: expected a rule's name, found '1'"}},
-                    Case{"0 Translate(1,0) { 1 -> Discard }", {"3:16: error: expected ',', found ')'"}},
-                    Case{"0 Translate(1,0,W) { 1 -> Discard }", {"3:18: error: expected '(', found ')'"}},
-                    Case{"0 Translate(1,0,0) { 1 -> 5 }", {"3:27: error: there is no node 5"}},
-                    Case{"0 Translate(1,0,0) { 2 -> Discard }",
-                         {"3:22: error: the multiplicity of this edge of Translate is 1, found '2'"}},
-                    Case{"0 Translate(1,0,0) { x -> Discard }",
-                         {"3:22: error: expected a multiplicity: 1, n, / or *, found 'x'"}},
-                    Case{"0 If((1 < 2) { / -> Discard | / -> Discard }", {"3:14: error: expected ')', found '{'"}},
-                    Case{"0 If((1 2)) { / -> Discard | / -> Discard }",
-                         {"3:9: error: expected an operator as in (1 + 2), found '2'"}},
-                    Case{"0 IfSizeLess(V,1) { / -> Discard | / -> Discard }",
-                         {"3:14: error: expected an axis: X, Y or Z, found 'V'"}},
-                    Case{"0 Extrude(1) { 1 -> 1 }\n1 Extrude(1) }\n2 R\n", // one error a statement, then it goes on
-                         {"4:14: error: expected a node's number, axiom, terminal, polygon, rule or group, found '}'",
-                          "5:3: error: there is no operator or terminal 'R'"}},
-                    Case{"0 Extrude(1)\n", {"error: node 0 (Extrude): wrong number of successors"}},
-                    Case{"0 T\naxiom Box -> 0\n", {}},
-                    Case{"0 T\nrule A(1) -> 0\n", {"4:8: error: there is no axiom '1'"}},
-                    Case{"0 T\naxiom a: -> 0\n", {"4:10: error: expected a shape, found '->'"}},
-                    Case{"0 T\nterminal T (1, 1) bucket 1\n", {"4:10: error: terminal 'T' is defined twice"}},
-                    Case{"0 T\npolygon 14 { (0,0) (1,0) (0,1) }\n", {"4:9: error: expected polygon 12, found '14'"}},
-                    Case{"0 T\nrule A = 1.5\n", {"4:10: error: expected a node's number or Discard, found '1.5'"}}));
+    testing::Values(
+        Case{"1 T", {"3:1: error: expected node 0, found '1'"}},
+        Case{"0 Q", {"3:3: error: there is no operator or terminal 'Q'"}},
+        Case{"0 T in B\nrule A -> 0", {"3:8: error: there is no rule 'B'"}},
+        Case{"0 T in\n1 T", {"4:1: error: expected a rule's name, found '1'"}},
+        Case{"0 Translate(1,0) { 1 -> Discard }", {"3:16: error: expected ',', found ')'"}},
+        Case{"0 Translate(1,0,W) { 1 -> Discard }", {"3:18: error: expected '(', found ')'"}},
+        Case{"0 Translate(1,0,0) { 1 -> 5 }", {"3:27: error: there is no node 5"}},
+        Case{"0 Translate(1,0,0) { 2 -> Discard }",
+             {"3:22: error: the multiplicity of this edge of Translate is 1, found '2'"}},
+        Case{"0 Translate(1,0,0) { x -> Discard }", {"3:22: error: expected a multiplicity: 1, n, / or *, found 'x'"}},
+        Case{"0 If((1 < 2) { / -> Discard | / -> Discard }", {"3:14: error: expected ')', found '{'"}},
+        Case{"0 If((1 2)) { / -> Discard | / -> Discard }",
+             {"3:9: error: expected an operator as in (1 + 2), found '2'"}},
+        Case{"0 IfSizeLess(V,1) { / -> Discard | / -> Discard }",
+             {"3:14: error: expected an axis: X, Y or Z, found 'V'"}},
+        Case{"0 Extrude(1) { 1 -> 1 }\n1 Extrude(1) }\n2 R\n", // one error a statement, then it goes on
+             {"4:14: error: expected a node's number, axiom, terminal, polygon, rule or group, found '}'",
+              "5:3: error: there is no operator or terminal 'R'"}},
+        Case{"0 Extrude(1)\n", {"error: node 0 (Extrude): wrong number of successors"}},
+        Case{"0 T\naxiom Box -> 0\n", {}}, Case{"0 T\nrule A(1) -> 0\n", {"4:8: error: there is no axiom '1'"}},
+        Case{"0 T\naxiom a: -> 0\n", {"4:10: error: expected a shape, found '->'"}},
+        Case{"0 T\nterminal T (1, 1) bucket 1\n", {"4:10: error: terminal 'T' is defined twice"}},
+        Case{"0 T\npolygon 14 { (0,0) (0.5,0) (0,0.5) }\n", {"4:9: error: expected polygon 12, found '14'"}},
+        Case{"0 T\npolygon 12 { (0,0) (1,0) (0,0.5) }\n", {"4:20: error: x and y of a corner are from -0.5 to 0.5"}},
+        Case{"0 T\nrule A = 1.5\n", {"4:10: error: expected a node's number or Discard, found '1.5'"}}));
 
 class GroupError : public testing::TestWithParam<Case> {};
 TEST_P(GroupError, HasItsPlace) {

@@ -62,9 +62,16 @@ std::string numberText(float value) {
   return {text.data(), end};
 }
 
+std::string usualName(const Graph& graph, const Axiom& axiom) {
+  for (const Rule& rule : graph.rules)
+    if (rule.node == axiom.node) return graph.nameAt(rule.name);
+  return {};
+}
+
 std::string axiomText(const Graph& graph, const Axiom& axiom) {
-  const std::string name = graph.axioms.size() > 1 ? graph.nameAt(axiom.name) + std::string(": ") : std::string();
-  return name + shapeName(axiom.shape);
+  const std::string name = graph.nameAt(axiom.name);
+  const bool isGiven = graph.axioms.size() > 1 || name != usualName(graph, axiom);
+  return (isGiven && !name.empty() ? name + ": " : std::string()) + shapeName(axiom.shape);
 }
 
 uint32_t usualPolygon(uint32_t shape) {

@@ -21,7 +21,9 @@ const char* multiplicityText(const Graph& graph, const Node& node, uint32_t slot
 
 /// The polygon that an axiom of this shape has unless another is named.
 uint32_t usualPolygon(uint32_t shape);
-/// An axiom's shape; behind its name, as in house: Box, where there are several axioms.
+/// The name that the only axiom has unless another is given: of the first rule that leads where it leads; else none.
+std::string usualName(const Graph& graph, const Axiom& axiom);
+/// An axiom's shape; behind its name, as in house: Box, where there are several axioms or it is not the usual one.
 std::string axiomText(const Graph& graph, const Axiom& axiom);
 
 const char* axisText(uint32_t axis);

@@ -105,6 +105,9 @@ inline Start startAt(const Graph& graph, uint32_t start) {
 /// The six pairs of regular polygons that every graph begins with. A polygon with n corners spans [-0.5, 0.5] on both
 /// axes; its number is 2 (n - 3).
 void addRegularPolygons(Graph& graph);
+/// Whether shapes have room for this corner: what bounds them relies on it.
+inline bool isCorner(float x, float y) { return x >= -0.5f && x <= 0.5f && y >= -0.5f && y <= 0.5f; }
+constexpr const char* kExpectedCorner = "x and y of a corner are from -0.5 to 0.5";
 /// Adds a polygon and its mirror image; corners counter-clockwise, at most kMaxCorners. Returns the first one's number,
 /// or kNoPolygon where it crosses itself.
 uint32_t addPolygon(Graph& graph, const float* corners, uint32_t count);

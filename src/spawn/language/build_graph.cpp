@@ -105,6 +105,9 @@ private:
         index = integer(line.arguments[1], 1 << 24, "a terminal's index is a whole number from 0");
         for (size_t i = 2; i < line.arguments.size(); ++i)
           expressions_.constant(line.arguments[i], "a terminal's value");
+        if (line.arguments.size() > 2)
+          diagnostics_.warning(line.arguments[2].place,
+                               "a terminal has (kind, index); values behind them have no effect");
       }
       for (const auto& [place, name] : line.names) {
         const size_t terminal = graph_.terminals.size();
@@ -404,8 +407,9 @@ private:
         diagnostics_.error(corner.place, "expected a corner as (x, y)");
         continue;
       }
-      points.push_back({expressions_.constant(corner.arguments[0], "a corner"),
-                        expressions_.constant(corner.arguments[1], "a corner")});
+      const auto& [x, y] = points.emplace_back(std::array{expressions_.constant(corner.arguments[0], "a corner"),
+                                                          expressions_.constant(corner.arguments[1], "a corner")});
+      if (!isCorner(x, y)) diagnostics_.error(corner.place, kExpectedCorner);
     }
     if (diagnostics_.errorCount() > errors || !isWhole) return 0;
     if (points.size() < 3 || points.size() > kMaxCorners) {

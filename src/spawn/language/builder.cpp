@@ -10,6 +10,7 @@
 #include <cmath>
 #include <iterator>
 #include <new>
+#include <utility>
 
 using namespace gpgp::spawn;
 
@@ -46,6 +47,12 @@ constexpr const char* kAxes[] = {"X", "Y", "Z"};
 constexpr const char* kModes[] = {"ADJUST_TO_FILL", "ANCHOR_TO_START", "ANCHOR_TO_END"};
 
 std::string quoted(const std::string& name) { return "'" + name + "'"; }
+
+/// Whether text would say the number, as 5 or 2e5.
+bool isNumber(std::string_view name) {
+  Diagnostics ignored;
+  return tokenize(name, ignored).front().kind == TokenKind::number;
+}
 } // namespace
 
 struct GpgpGrammarBuilder_T {
@@ -72,7 +79,6 @@ struct GpgpGrammarBuilder_T {
     std::string problem;
     std::vector<GpgpGrammarValue> values;
     std::vector<Successor> successors;
-    int depth = 1;
   };
   struct Terminal {
     uint32_t statement = 0;
@@ -107,9 +113,11 @@ struct GpgpGrammarBuilder_T {
   uint32_t statements = 0;
   bool outOfMemory = false;
 
+  /// 0: there is no such value, so that expressions are made of earlier ones.
   uint32_t sizeOf(GpgpGrammarValue value) const {
-    const size_t index = size_t(value.id) - kFirstOwn;
-    return value.id >= kFirstOwn && index < values.size() ? values[index].size : 1;
+    if (value.id < kFirstOwn) return 1;
+    const size_t index = value.id - kFirstOwn;
+    return index < values.size() ? values[index].size : 0;
   }
   GpgpGrammarValue own() const { return {static_cast<GpgpGrammarValueId>(kFirstOwn + values.size() - 1), 0}; }
 
@@ -175,6 +183,8 @@ public:
       const std::string where = "rule " + quoted(rule.name);
       made.place = place(where);
       made.body = successor(rule.successor, where);
+      if (std::exchange(tooDeep_, false))
+        diagnostics_.error(made.body.place, "this is nested more than " + std::to_string(kMaxNesting) + " deep");
     }
     for (const auto& priority : builder_.priorities) {
       begin(priority.statement);
@@ -194,7 +204,7 @@ public:
       tree.brokenAxiom = true;
       diagnostics_.error({}, "there is no axiom; expected gpgpAddAxiom");
     }
-    for (size_t i = 0; i < used_.size(); ++i)
+    for (size_t i = 0; i < used_.size() && !diagnostics_.hasErrors(); ++i) // else what is wrong may be what uses it
       if (!used_[i])
         diagnostics_.warning({}, "operator " + std::to_string(i + 1) + " (" + nameOf(builder_.operators[i]) +
                                      ") is used nowhere");
@@ -300,15 +310,18 @@ private:
       problem = "there is no operator " + std::to_string(from.op) + " in this builder";
     else if (problem.empty() && used_[from.op - 1])
       problem = "this operator is already used elsewhere; what is shared must be a rule";
-    else if (problem.empty() && op->depth > kMaxNesting)
-      problem = "this is nested more than " + std::to_string(kMaxNesting) + " deep";
     else if (problem.empty())
       problem = op->problem;
     if (op) used_[from.op - 1] = true;
-    if (problem.empty())
-      call(*op, *result.call);
-    else
+    if (!problem.empty()) {
       diagnostics_.error(result.place, problem);
+    } else if (depth_ == kMaxNesting) {
+      tooDeep_ = true; // which is said of the whole
+    } else {
+      ++depth_;
+      call(*op, *result.call);
+      --depth_;
+    }
     return result;
   }
 
@@ -358,6 +371,8 @@ private:
   Diagnostics& diagnostics_;
   std::vector<bool> used_;
   uint32_t line_ = 1, column_ = 0;
+  int depth_ = 0; // of operators in each other
+  bool tooDeep_ = false;
 };
 
 /// Runs what adds to a builder. Memory that is not there is found again when the builder is compiled.
@@ -404,7 +419,10 @@ GpgpGrammarValue GPGP_CALL gpgpAddVariable(GpgpGrammarBuilder builder, const cha
 
 GpgpGrammarValue GPGP_CALL gpgpAddTag(GpgpGrammarBuilder builder, const char* name) {
   return guarded(builder, GpgpGrammarValue{}, [&]() -> GpgpGrammarValue {
-    if (!builder->checkName(name, "gpgpAddTag")) return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
+    if (!builder->checkName(name, "gpgpAddTag") ||
+        !builder->check(!isNumber(name), "gpgpAddTag",
+                        quoted(name) + " is a number; expected a name, or a number as the tag"))
+      return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
     builder->values.emplace_back().name = name;
     return builder->own();
   });
@@ -413,6 +431,10 @@ GpgpGrammarValue GPGP_CALL gpgpAddTag(GpgpGrammarBuilder builder, const char* na
 GpgpGrammarValue GPGP_CALL gpgpAddExpression(GpgpGrammarBuilder builder, GpgpExpressionKind kind, GpgpGrammarValue left,
                                              GpgpGrammarValue right) {
   return guarded(builder, GpgpGrammarValue{}, [&]() -> GpgpGrammarValue {
+    for (const GpgpGrammarValue value : {left, right})
+      if (!builder->check(builder->sizeOf(value) != 0, "gpgpAddExpression",
+                          "there is no value " + std::to_string(value.id) + " in this builder"))
+        return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
     const uint32_t size = 1 + builder->sizeOf(left) + builder->sizeOf(right);
     if (!builder->check(kind <= GPGP_EXPRESSION_CORNER, "gpgpAddExpression",
                         "there is no kind of expression " + std::to_string(kind)) ||
@@ -445,8 +467,6 @@ GpgpGrammarOperator GPGP_CALL gpgpAddOperator(GpgpGrammarBuilder builder, GpgpOp
     for (uint32_t i = 0; i < successorCount; ++i) {
       const GpgpGrammarSuccessor& from = successors[i];
       made.successors.push_back(GpgpGrammarBuilder_T::successorOf(from.value, from.name, from.op));
-      if (from.op && from.op <= builder->operators.size())
-        made.depth = std::max(made.depth, builder->operators[from.op - 1].depth + 1);
     }
     builder->operators.push_back(std::move(made));
     return static_cast<GpgpGrammarOperator>(builder->operators.size());

@@ -15,24 +15,25 @@
 using namespace gpgp;
 
 namespace {
-void report(const GpgpGrammarSource& source, uint32_t line, uint32_t column, GpgpSeverity severity, const char* text) {
+void report(const GpgpGrammarSource& source, spawn::Place place, GpgpSeverity severity, const char* text,
+            uint32_t leftOut = 0) {
   if (!source.messageFn) return;
-  const GpgpCompileMessage message{source.name ? source.name : "", line, column, severity, text};
+  const GpgpCompileMessage message{source.name ? source.name : "", place.line, place.column, severity, text, leftOut};
   source.messageFn(source.messageUserData, &message);
 }
 
 GpgpResult fail(const GpgpGrammarSource& source, GpgpResult result, const char* text) {
-  report(source, 0, 0, GPGP_SEVERITY_ERROR, text);
+  report(source, {}, GPGP_SEVERITY_ERROR, text);
   return result;
 }
 
 void report(const GpgpGrammarSource& source, const spawn::Diagnostics& diagnostics) {
   for (const spawn::Diagnostic& d : diagnostics.sorted()) {
     if (!source.builder) {
-      report(source, d.place.line, d.place.column, d.severity, d.text.c_str());
+      report(source, d.place, d.severity, d.text.c_str(), d.leftOut);
     } else { // places have names instead
       const std::string place = diagnostics.isNamed(d.place) ? diagnostics.where(d.place) + ": " : std::string();
-      report(source, 0, 0, d.severity, (place + d.text).c_str());
+      report(source, {}, d.severity, (place + d.text).c_str(), d.leftOut);
     }
   }
 }

@@ -15,6 +15,16 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
   });
+  constexpr const char* kNouns[] = {"note", "warning", "error"};
+  for (GpgpSeverity severity = GPGP_SEVERITY_ERROR; severity >= GPGP_SEVERITY_INFO; --severity) {
+    const uint32_t leftOut = counts_[severity] - std::min(counts_[severity], kLimit);
+    if (leftOut)
+      result.push_back(
+          {{},
+           severity,
+           std::to_string(leftOut) + " more " + kNouns[severity] + (leftOut == 1 ? " is" : "s are") + " left out",
+           leftOut});
+  }
   return result;
 }
 

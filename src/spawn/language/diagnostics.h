@@ -17,35 +17,33 @@ struct Diagnostic {
   Place place;
   GpgpSeverity severity = GPGP_SEVERITY_ERROR;
   std::string text;
+  uint32_t leftOut = 0; ///< how many more of its severity there were, where text says that
 };
 
 class Diagnostics {
 public:
-  static constexpr size_t kLimit = 1000; ///< further messages would only be noise
+  static constexpr uint32_t kLimit = 1000; ///< of each severity; further messages would only be noise
 
-  void error(Place place, std::string text) {
-    ++errors_;
-    add(place, GPGP_SEVERITY_ERROR, std::move(text));
-  }
+  void error(Place place, std::string text) { add(place, GPGP_SEVERITY_ERROR, std::move(text)); }
   void warning(Place place, std::string text) { add(place, GPGP_SEVERITY_WARNING, std::move(text)); }
   void info(Place place, std::string text) { add(place, GPGP_SEVERITY_INFO, std::move(text)); }
-  bool hasErrors() const { return errors_ > 0; }
-  size_t errorCount() const { return errors_; }
+  bool hasErrors() const { return errorCount() > 0; }
+  size_t errorCount() const { return counts_[GPGP_SEVERITY_ERROR]; }
   /// Names a place of what is no text: messages then call it by that name.
   void name(Place place, std::string text) { names_[{place.line, place.column}] = std::move(text); }
   /// The name of a place, else "line 3".
   std::string where(Place place) const;
   bool isNamed(Place place) const { return names_.count({place.line, place.column}) != 0; }
-  /// In the order of places.
+  /// In the order of places; behind them how many were left out.
   std::vector<Diagnostic> sorted() const;
 
 private:
   void add(Place place, GpgpSeverity severity, std::string text) {
-    if (all_.size() < kLimit) all_.push_back({place, severity, std::move(text)});
+    if (counts_[severity]++ < kLimit) all_.push_back({place, severity, std::move(text)});
   }
   std::vector<Diagnostic> all_;
   std::map<std::pair<uint32_t, uint32_t>, std::string> names_;
-  size_t errors_ = 0;
+  uint32_t counts_[GPGP_SEVERITY_ERROR + 1] = {}; ///< by severity, those that were left out as well
 };
 
 /// file:line:column: error: text, or file: error: text

@@ -1,7 +1,8 @@
 // The printed form of operator graphs: text that people read and edit, and that gives the same graph back.
 //
 //   axiom Box -> 0                          the start shape and the node where it goes; a polygon's number in ( )
-//   axiom house: Box -> 0                   with its name, where there are several; the first is the default
+//   axiom house: Box -> 0                   with its name, where there are several (the first is the default) or it is
+//                                           not that of the first rule that leads to this node
 //   terminal Wall (1, 4) bucket 2           kind, index, bucket
 //   polygon 12 { (0,0.5) (-0.5,0) (0.5,0) } corners of Dynamic... shapes; 13 is its mirror image
 //   rule A -> 0                             or Discard
@@ -13,7 +14,9 @@
 //   group { 0 2 }                           execution groups, all or none of them; the root first
 //   group { 1 }
 //
-// Comments are those of the language. Multiplicities follow from operators; ones that do not fit are errors.
+// Names may be digits alone, as in the language, but not where a line begins: nodes' numbers begin it. A terminal may
+// have an operator's name, as no ( follows it there. Comments are those of the language. Multiplicities follow from
+// operators; ones that do not fit are errors.
 #pragma once
 #include "spawn/graph/partition.h"
 #include "spawn/language/diagnostics.h"
@@ -33,7 +36,8 @@ struct PrintedGraph {
   std::optional<Partition> partition; ///< valid
 };
 
-/// Whether text begins as the printed form does, with an axiom line and its arrow, which no PGA-shape text has.
+/// Whether text begins as the printed form does, with an axiom line, its arrow and a node's number or Discard, which no
+/// PGA-shape text has.
 bool isPrinted(std::string_view text);
 
 /// Nothing where there was an error; all are reported with their places.

@@ -118,7 +118,12 @@ private:
       fail(token, std::string("expected ") + what + ", found " + describe(token));
     return value;
   }
-  std::string name(const char* what) { return std::string(expect(TokenKind::name, what).text); }
+  /// Names may be digits alone, or 2e5; but a number that begins a line is a node's.
+  const Token& name(const char* what) {
+    const bool number = is(TokenKind::number) && at_ && now().place.line == tokens_[at_ - 1].place.line &&
+                        std::all_of(now().text.begin(), now().text.end(), isNameCharacter);
+    return expect(number ? TokenKind::number : TokenKind::name, what);
+  }
   float number() {
     const bool negative = accept(TokenKind::minus);
     const Token& token = expect(TokenKind::number, "a number");
@@ -188,7 +193,7 @@ private:
   }
 
   void terminal() {
-    const Token& token = expect(TokenKind::name, "a terminal's name");
+    const Token& token = name("a terminal's name");
     Terminal terminal;
     if (!terminals_.try_emplace(std::string(token.text), static_cast<uint32_t>(graph_.terminals.size())).second)
       fail(token, std::string("terminal ") + describe(token) + " is defined twice");
@@ -212,11 +217,12 @@ private:
     expect(TokenKind::openBrace, "'{'");
     std::vector<float> corners;
     while (!is(TokenKind::closeBrace)) {
-      expect(TokenKind::open, "a corner as (x,y)");
+      const Place place = expect(TokenKind::open, "a corner as (x,y)").place;
       corners.push_back(number());
       expect(TokenKind::comma, "','");
       corners.push_back(number());
       expect(TokenKind::close, "')'");
+      if (!isCorner(corners[corners.size() - 2], corners.back())) diagnostics_.error(place, kExpectedCorner);
     }
     ++at_;
     if (index != graph_.polygons.size())
@@ -231,7 +237,7 @@ private:
 
   void rule() {
     Rule rule;
-    const std::string text = name("a rule's name");
+    const std::string text(name("a rule's name").text);
     rules_.try_emplace(text, static_cast<uint32_t>(graph_.rules.size()));
     rule.name = addName(text);
     if (accept(TokenKind::open)) {
@@ -264,16 +270,17 @@ private:
                                           describe(token));
     // The node is kept as far as it was read: the numbers of those that follow stay right.
     Node& node = graph_.nodes.emplace_back();
-    const Token& word = expect(TokenKind::name, "an operator or a terminal");
-    const std::string name(word.text);
+    const Token& word = name("an operator or a terminal");
     node.op = kOpTerminal + 1;
-    while (node.op < kOpCount && name != operatorName(node.op)) ++node.op;
-    if (node.op == kOpCount) {
+    while (node.op < kOpCount && word.text != operatorName(node.op)) ++node.op;
+    const bool terminal =
+        !is(TokenKind::open) && terminals_.count(std::string(word.text)) != 0; // of an operator's name
+    if (node.op == kOpCount || terminal) {
       node.op = kOpTerminal;
       terminalNodes_.push_back({word, static_cast<uint32_t>(graph_.nodes.size() - 1), {}});
       if (!isName("in")) return;
       ++at_;
-      terminalNodes_.back().rule = expect(TokenKind::name, "a rule's name");
+      terminalNodes_.back().rule = name("a rule's name");
       return;
     }
     node.firstParameter = static_cast<uint32_t>(graph_.parameters.size());
@@ -321,7 +328,7 @@ private:
 
   uint32_t tag() {
     if (!is(TokenKind::name)) return whole("a tag: a name or a number");
-    const auto [tag, isNew] = tags_.try_emplace(name("a tag"));
+    const auto [tag, isNew] = tags_.try_emplace(std::string(name("a tag").text));
     if (isNew) tag->second = kTagName | addName(tag->first);
     return tag->second;
   }
@@ -433,6 +440,8 @@ private:
     for (const Token& axiom : axioms_)
       if (axiom.number >= static_cast<float>(axiomPlaces_.size()))
         diagnostics_.error(axiom.place, std::string("there is no axiom ") + describe(axiom));
+    for (Axiom& axiom : graph_.axioms)
+      if (!*graph_.nameAt(axiom.name)) axiom.name = addName(usualName(graph_, axiom));
     for (const auto& [word, n, ruleWord] : terminalNodes_) {
       const auto found = terminals_.find(std::string(word.text));
       if (found == terminals_.end()) {
@@ -482,7 +491,10 @@ bool isPrinted(std::string_view text) {
   const size_t shape = is(2, TokenKind::colon) ? 3 : 1; // behind a name
   const bool polygon = is(shape + 1, TokenKind::open) && is(shape + 2, TokenKind::number);
   const size_t arrow = polygon ? shape + 4 : shape + 1;
-  return tokens[0].text == "axiom" && is(shape, TokenKind::name) && is(arrow, TokenKind::arrow);
+  const bool target =
+      is(arrow + 1, TokenKind::number) || (is(arrow + 1, TokenKind::name) && tokens[arrow + 1].text == "Discard");
+  return tokens[0].text == "axiom" && is(shape, TokenKind::name) && is(arrow, TokenKind::arrow) && target &&
+         !is(arrow + 2, TokenKind::semicolon);
 }
 
 std::optional<PrintedGraph> parseGraph(std::string_view text, Diagnostics& diagnostics,
