@@ -202,11 +202,9 @@ Result<void> validate(const Graph& graph) {
         return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has a quad with a corner out of range", i);
   }
   if (graph.vertices.size() % 2) return makeError(GPGP_ERROR_INVALID_DATA, "half a vertex");
-  for (const float v : graph.vertices) {
-    uint32_t bits;
-    std::memcpy(&bits, &v, 4);
-    if (!isSettled(bits)) return makeError(GPGP_ERROR_INVALID_DATA, "a vertex is not a usable number");
-  }
+  for (size_t i = 0; i < graph.vertices.size(); i += 2)
+    if (!isCorner(graph.vertices[i], graph.vertices[i + 1])) // no NaN is
+      return makeError(GPGP_ERROR_INVALID_DATA, "corner %zu is not from -0.5 to 0.5", i / 2);
   if (graph.buckets > kMaxBuckets)
     return makeError(GPGP_ERROR_INVALID_DATA, "%u terminal lines; at most %u", graph.buckets, kMaxBuckets);
   for (const Terminal& terminal : graph.terminals)
