@@ -169,7 +169,7 @@ Row rowOf(const Json& object, spawn::Place place, spawn::Diagnostics& errors) {
       number(name, value, name);
     } else if (name == "rule" || name == "shape") {
       row.cells[name] = {value.is_string() ? value.get<std::string>() : std::string(), place, !value.is_string()};
-      if (!value.is_string()) errors.error(place, name + " takes a " + name + "'s name");
+      if (!value.is_string()) errors.error(place, std::string(name).append(" takes a ").append(name).append("'s name"));
     } else {
       errors.error(place, quoted(name) +
                               " is unknown; there are position, rotation, quaternion, transform, size, seed, "
