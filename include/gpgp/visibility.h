@@ -84,7 +84,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const Gp
                                                    GpgpView* view);
 
 /** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. Draws may share triangle numbers: the bit is
- *  then set if any of them is visible. A transform that mirrors does not turn front faces into back faces. */
+ *  then set if any of them is visible. A transform that mirrors, by a determinant of at
+ *  most -2^-126, does not turn front faces into back faces. */
 typedef struct GpgpVisibilityDraw {
   float transform[12];    /**< rows of a 3x4 matrix, object to world */
   uint32_t mesh;          /**< index in the geometry set */
@@ -205,9 +206,9 @@ typedef struct GpgpSampleInfo {
   VkIndexType indexType;   /**< UINT16 or UINT32 */
   GpgpBuffer clusters;     /**< optional, not with commands: 48 bytes for each 64 triangles that follow one another in a
                                 mesh, the last ones of a mesh too; STORAGE usage. The record writes into it where they
-                                are and how they face, and reads none of those that are out of sight or face away. What
-                                is found is the same. Worth it where meshes are of more than a few such clusters: see
-                                gpgpOrderTriangles */
+                                are and how they face (with draws; without any it has no positions), and reads none of
+                                those that are out of sight or face away. What is found is the same. Worth it where
+                                meshes are of more than a few such clusters: see gpgpOrderTriangles */
   VkBool32 keepClusters;   /**< clusters hold what an earlier record wrote there, of this geometry set, these positions
                                 and indices. FALSE where any of them may have changed */
   GpgpBuffer draws;        /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
@@ -227,7 +228,7 @@ typedef struct GpgpSampleInfo {
   uint32_t triangleCount;     /**< of all draws: one past the last triangle number; at most 2^31 */
   GpgpBuffer visibleBits;     /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
   GpgpBuffer pixelCounts;     /**< out, optional: uint32_t per triangle: samples that show it (exact: centres);
-                                   truth: at most 2^32 - 1 */
+                                   truth: at most 2^32 - 1; with a resolution below 1, of that smaller picture */
   GpgpBuffer visibleList;   /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
                                  budget */
   GpgpBuffer visibleCount;  /**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
@@ -241,7 +242,7 @@ typedef struct GpgpSampleInfo {
   GpgpBuffer drawTriangles; /**< out, optional: uint32_t triangle number per triangle in drawIndices: of a command's
                                  primitive i [firstIndex / 3 + i]; its size is the budget */
   GpgpBuffer triangleSizes; /**< out, optional: GpgpTriangleSize per triangle: of visible ones, the largest of all
-                                 cameras and draws; 0 for others */
+                                 cameras and draws, in pixels of width and height times resolution; 0 for others */
 } GpgpSampleInfo;
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 

@@ -30,6 +30,7 @@ void main() {
     barrier();
     uint word = base + lane;
     uint now = word < words ? bits[word] : 0u;
+    if (word + 1u == words) now &= 0xffffffffu >> (words * 32u - params.triangleCount); // what was there may have more
     uint place = now != 0u ? atomicAdd(groupVisible, uint(bitCount(now))) : 0u;
     if (word < params.viewWords) {
       uint before = viewBits[word];

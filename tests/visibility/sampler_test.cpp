@@ -226,16 +226,33 @@ TEST_F(VisibilityGpuTest, NoDrawsNoBuffersNothingVisible) {
   host::Buffer count(device, 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   info.visibleCount = count.range();
   info.indexType = VK_INDEX_TYPE_UINT32;
-  const GpgpFrame f = advance();
-  device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-    ASSERT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), GPGP_SUCCESS) << messages.back();
-  });
-  advance();
+  info.refinements = UINT32_MAX; // of another method
   GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
-  ASSERT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+  const auto record = [&] {
+    const GpgpFrame f = advance();
+    device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
+      ASSERT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), GPGP_SUCCESS) << messages.back();
+    });
+    advance();
+    ASSERT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+  };
+  record();
   EXPECT_EQ(report.base.status, GPGP_SUCCESS);
   EXPECT_EQ(report.coveredPixels, 0u);
   EXPECT_EQ(host::download<uint32_t>(device, count, 4), (std::vector<uint32_t>{0, 0, 1, 1}));
+  // Commands whose instances are all beyond the draws; bits of no triangle.
+  const host::Buffer commands =
+      host::makeBuffer(device, std::vector<uint32_t>{3, 3, 0, 0, 0}, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "commands");
+  const host::Buffer bits =
+      host::makeBuffer(device, std::vector<uint32_t>{~0u}, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "bits");
+  info.commands = commands.range();
+  info.commandCount = 1;
+  info.visibleBits = bits.range();
+  info.triangleCount = 10;
+  info.accumulate = VK_TRUE;
+  record();
+  EXPECT_EQ(report.skippedDraws, 3u);
+  EXPECT_EQ(report.visible, 10u);
 }
 
 TEST_F(VisibilityGpuTest, AViewTellsWhatAppearedAndDisappeared) {

@@ -6,8 +6,12 @@
 
 namespace gpgp::visibility {
 namespace {
-// At most, for four cameras, and at most a quarter of all triangles.
+// At most, for four cameras, and no more than a quarter of all triangles unless that is fewer than a quarter of these:
+// a few triangles seen through many cameras are many.
 constexpr uint32_t kMediumRecords = 65536, kLargeRecords = 32768;
+uint32_t recordsOf(uint32_t maxTriangles, uint32_t most, uint32_t shares) {
+  return std::clamp(maxTriangles / 4, most / 4, most * shares);
+}
 } // namespace
 
 Budgets::Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits& limits)
@@ -26,8 +30,8 @@ Budgets::Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits
 
 uint64_t Budgets::chunks() const { return uint64_t(maxTriangles) / shader::kChunk + maxDraws + 1; }
 uint64_t Budgets::slots() const { return slotsOf(maxWidth, maxHeight) * maxCameras; }
-uint32_t Budgets::mediumRecords() const { return std::clamp(maxTriangles / 4, 1u, kMediumRecords * recordShares); }
-uint32_t Budgets::largeRecords() const { return std::clamp(maxTriangles / 4, 1u, kLargeRecords * recordShares); }
+uint32_t Budgets::mediumRecords() const { return recordsOf(maxTriangles, kMediumRecords, recordShares); }
+uint32_t Budgets::largeRecords() const { return recordsOf(maxTriangles, kLargeRecords, recordShares); }
 
 uint64_t slotsOf(uint32_t width, uint32_t height) { return uint64_t((width + 7) / 8) * ((height + 7) / 8) * 64; }
 

@@ -92,7 +92,7 @@ Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const Ge
   params.triangleCount = info.triangleCount;
   params.maxItems = budgets.maxTriangles;
   params.maxEntries = budgets.maxDraws;
-  params.hasCommands = info.commands.buffer && info.drawCount ? 1 : 0;
+  params.hasCommands = info.commands.buffer ? 1 : 0;
   params.hasDrawCount = info.drawCountBuffer.buffer ? 1 : 0;
   params.entryCount = info.drawCount * cameras;
   if (params.hasCommands) {

@@ -95,7 +95,7 @@ Result<void> Sampler::prepare(VkCommandBuffer commandBuffer, const GpgpSampleInf
   record.info = &info.base;
   setBindings(record, info, params, geometry, view);
   setGroups(record, params, budgets_);
-  record.levels = info.refinements + 1;
+  record.levels = params.method == shader::kConservative ? info.refinements + 1 : 1;
   record.conditions[kIfSampling] = true;
   record.conditions[kIfConservative] = params.method == shader::kConservative;
   record.conditions[kIfNearby] = params.method == shader::kNearby;

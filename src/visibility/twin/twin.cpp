@@ -228,8 +228,11 @@ void gather(const TwinInput& in, TwinResult& out) {
 void finish(const TwinInput& in, TwinResult& out) {
   const Params& params = in.params;
   Counters& counters = out.counters;
+  const auto isTriangle = [&](size_t word) { // of a word's bits
+    return word + 1 == out.bits.size() ? ~0u >> (out.bits.size() * 32 - params.triangleCount) : ~0u;
+  };
   for (size_t word = 0; word < out.bits.size(); ++word)
-    for (uint32_t rest = out.bits[word]; rest; rest &= rest - 1)
+    for (uint32_t rest = out.bits[word] & isTriangle(word); rest; rest &= rest - 1)
       out.list.push_back(static_cast<uint32_t>(word * 32) + static_cast<uint32_t>(std::countr_zero(rest)));
   listDraws(in, out);
   counters.visible = static_cast<uint32_t>(out.list.size());
