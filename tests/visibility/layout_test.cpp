@@ -137,7 +137,7 @@ TEST(Budgets, RecordsGrowWithTheCamerasAsFarAsTheDeviceBindsThem) {
   EXPECT_GT(medium, 8 * 65536u);
   EXPECT_LE((uint64_t(medium) + large) * visibility::kRecordBytes, limits.maxStorageBufferRange);
   info.maxTriangles = 40;
-  EXPECT_EQ(recordsFor(128), std::pair(10u, 10u));
+  EXPECT_EQ(recordsFor(128), std::pair(16384u, 8192u)); // few triangles are many through so many cameras
 }
 
 } // namespace
