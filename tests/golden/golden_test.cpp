@@ -166,7 +166,9 @@ TEST(DecoupledShading, OverlaysWaitForTheirTruth) {
   const auto [next, twice] = shown(run + "--show overlay --frames 9");
   EXPECT_EQ(twice, 2u);
   EXPECT_EQ(count(next, isBlue), 0u) << "of the second shading no truth is known";
-  EXPECT_NE(outputOf("--decoupled --show overlay --size 64x64").find("truth       12 of 65 slices"), std::string::npos);
+  EXPECT_NE(outputOf("--decoupled --show overlay --size 64x64 --out \"" GPGP_GOLDEN_OUT "-short\"")
+                .find("truth       12 of 65 slices"),
+            std::string::npos);
 }
 
 TEST(DecoupledShading, OverlaysOfWhatIsFrozen) {
@@ -178,7 +180,7 @@ TEST(DecoupledShading, OverlaysOfWhatIsFrozen) {
 }
 
 TEST(DecoupledShading, PathsShadeFromTheirFirstFrameOn) {
-  const std::string text = outputOf("--path --freeze 0 --frames 2 --size 160x90");
+  const std::string text = outputOf("--path --freeze 0 --frames 2 --size 160x90 --out \"" GPGP_GOLDEN_OUT "-path\"");
   const auto shaded = [&](const char* name) {
     unsigned displays = 0, triangles = 0;
     const size_t at = text.find(std::string("path        ") + name);
