@@ -182,24 +182,36 @@ void Decoupled::shade(VkCommandBuffer commands) {
           VK_PIPELINE_STAGE_VERTEX_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
 }
 
-/// A few slices a frame of what is truly visible from where it was shaded.
-void Decoupled::sampleTruth(VkCommandBuffer commands, const GpgpFrame& frame, VkExtent2D extent) {
-  const uint32_t side = std::max(options_.truth / kTruthPerRecord, 1u), slices = side * side + 1;
-  if (truthSlice_ > slices) return;
-  for (uint32_t i = 0; i < kTruthSlicesPerFrame && truthSlice_ < slices; ++i, ++truthSlice_)
-    sample(commands, frame, GPGP_SAMPLING_TRUTH, shadingCamera_, extent, truthBits_, tagOther, truthSlice_);
-  if (truthSlice_ < slices) return;
-  compare(commands, frame, truthBits_, tagTruth);
-  ++truthSlice_;
+std::pair<uint32_t, uint32_t> Decoupled::truthSlices() const {
+  if (!showsOverlay()) return {0, 0};
+  const uint32_t side = std::max(options_.truth / kTruthPerRecord, 1u);
+  return {truthSlice_, side * side + 1};
+}
+
+/// Of what was shaded last.
+bool Decoupled::isTruthKnown() const { return overlaid_ == stamp_ && truthSlice_ == truthSlices().second; }
+
+/// What standard sampling finds from where it was shaded, and a few slices a frame of what is truly visible from there.
+void Decoupled::sampleTruth(VkCommandBuffer commands, const GpgpFrame& frame) {
+  if (overlaid_ != stamp_) {
+    sample(commands, frame, GPGP_SAMPLING_STANDARD, shadingCamera_, shadingExtent_, standard_, tagOther);
+    overlaid_ = stamp_;
+    truthSlice_ = 0;
+  }
+  if (isTruthKnown()) return;
+  for (uint32_t i = 0; i < kTruthSlicesPerFrame && !isTruthKnown(); ++i, ++truthSlice_)
+    sample(commands, frame, GPGP_SAMPLING_TRUTH, shadingCamera_, shadingExtent_, truthBits_, tagOther, truthSlice_);
+  if (isTruthKnown()) compare(commands, frame, truthBits_, tagTruth);
 }
 
 void Decoupled::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Camera& shading, const Camera& display,
                         VkExtent2D extent) {
-  if (step_ >= options_.freezeAfter && stamp_) frozen_ = true;
+  if (step_ >= options_.freezeAfter && step_) frozen_ = true;
   slot_ = static_cast<uint32_t>(frame.current % kSlots);
   readStamps(slot_); // the engine has waited for the frame that used it last
   if (queries_) vkCmdResetQueryPool(commands, queries_, slot_ * kStamps, kStamps);
-  const bool shades = stamp_ == 0 || (!frozen_ && step_ % options_.rate == 0);
+  const bool waits = showsOverlay() && !isTruthKnown();
+  const bool shades = stamp_ == 0 || (!frozen_ && !waits && step_ % options_.rate == 0);
   shades_[slot_] = shades;
   stamp(commands, 0);
   if (shades) {
@@ -210,10 +222,6 @@ void Decoupled::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const 
     stamp(commands, 1);
     shade(commands);
     stamp(commands, 2);
-    if (options_.show == DecoupledOptions::overlay) {
-      sample(commands, frame, GPGP_SAMPLING_STANDARD, shading, extent, standard_, tagOther);
-      truthSlice_ = 0;
-    }
   }
   if (!shades) {
     stamp(commands, 1);
@@ -221,15 +229,17 @@ void Decoupled::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const 
   }
   sample(commands, frame, GPGP_SAMPLING_STANDARD, display, extent, display_, tagDisplay);
   compare(commands, frame, display_, tagMisses);
-  if (options_.show == DecoupledOptions::overlay) sampleTruth(commands, frame, shadingExtent_);
+  if (showsOverlay()) sampleTruth(commands, frame);
   ++step_;
 }
 
 void Decoupled::draw(VkCommandBuffer commands, const Camera& display) {
+  constexpr uint32_t kOverlayWithoutTruth = 3; // of shaded.vert
   struct {
     glm::mat4 viewProjection;
     uint32_t draw, firstIndex, vertexOffset, stamp, show;
   } push{display.viewProjection, 0, 0, 0, stamp_, static_cast<uint32_t>(options_.show)};
+  if (showsOverlay() && !isTruthKnown()) push.show = kOverlayWithoutTruth;
   stamp(commands, 3);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, displayPipeline_.handle);
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, displayPipeline_.layout, 0, 1, &displaySet_.handle,
@@ -269,7 +279,6 @@ void Decoupled::key(char key) {
     options_.method = options_.method == GPGP_SAMPLING_EXACT ? GPGP_SAMPLING_STANDARD : GPGP_SAMPLING_EXACT;
   if (key < '1' || key > '3') return;
   options_.show = static_cast<DecoupledOptions::Show>(key - '1');
-  if (options_.show == DecoupledOptions::overlay && frozen_) frozen_ = false; // standard sampling has to be made, too
 }
 
 void Decoupled::restart(GpgpSamplingMethod method, float resolution, float epsilon) {

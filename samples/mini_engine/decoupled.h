@@ -8,6 +8,7 @@
 #include "scene.h"
 
 #include <optional>
+#include <utility>
 
 namespace mini {
 
@@ -19,6 +20,7 @@ struct DecoupledOptions {
   uint32_t freezeAfter = UINT32_MAX;     ///< frames after which shading stops
   uint32_t truth = 16;                   ///< overlay: N x N samples a pixel
   float farther = 1;                     ///< how many times farther away than the display's camera the shading's is
+  /// An overlay's shading waits for the truth of the one before it.
   enum Show { shaded, overlay, density } show = shaded;
 };
 
@@ -51,8 +53,10 @@ public:
   const Times& times();
   const GpgpSampleReport& shadingReport() const { return shading_; }
   uint32_t shadings() const { return stamp_; }
-  /// Against the truth, once all its slices are there.
+  /// Against the last truth of which all slices are there; false positives are not sampled again.
   const std::optional<GpgpSampleReport>& truthReport() const { return truth_; }
+  /// An overlay's slices that are there, and how many there will be; 0 of 0: none is shown.
+  std::pair<uint32_t, uint32_t> truthSlices() const;
   bool allWell() const { return well_ && misses_.displays > 0; }
 
 private:
@@ -63,7 +67,9 @@ private:
   void shade(VkCommandBuffer commands);
   void stamp(VkCommandBuffer commands, uint32_t query);
   void readStamps(uint32_t slot);
-  void sampleTruth(VkCommandBuffer commands, const GpgpFrame& frame, VkExtent2D extent);
+  bool showsOverlay() const { return options_.show == DecoupledOptions::overlay; }
+  bool isTruthKnown() const;
+  void sampleTruth(VkCommandBuffer commands, const GpgpFrame& frame);
 
   Device& device_;
   Gpgp& gpgp_;
@@ -79,7 +85,8 @@ private:
   Pipeline displayPipeline_;
   Camera shadingCamera_;
   VkExtent2D shadingExtent_{};
-  uint32_t step_ = 0, stamp_ = 0, truthSlice_ = 0;
+  uint32_t step_ = 0, stamp_ = 0;
+  uint32_t overlaid_ = 0, truthSlice_ = 0; ///< the shading that the overlay is of, and its next slice
   bool frozen_ = false, well_ = true;
   static constexpr uint32_t kSlots = 2, kStamps = 5; ///< frames in flight; stamps of a frame
   VkQueryPool queries_ = VK_NULL_HANDLE;

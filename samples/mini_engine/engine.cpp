@@ -230,8 +230,13 @@ void Engine::printSummary() const {
     std::printf("display     %u displays, %.3f %% of the model's pixels without shading, at most %.3f %%\n",
                 misses.displays, 100 * misses.pixels / std::max(misses.displays, 1u), 100 * misses.worst);
     if (const auto& truth = decoupled_->truthReport())
-      std::printf("truth       %u triangles: coverage %.2f %%, overestimation %.2f %%\n", truth->truth,
-                  100 * static_cast<double>(truth->coverage), 100 * static_cast<double>(truth->overestimation));
+      std::printf("truth       %u triangles: coverage %.2f %%, overestimation %.2f %% (not sampled again)\n",
+                  truth->truth, 100 * static_cast<double>(truth->coverage),
+                  100 * static_cast<double>(truth->overestimation));
+    else if (const auto [slices, all] = decoupled_->truthSlices(); all)
+      std::printf(
+          "truth       %u of %u slices sampled: the overlay lacks red and blue; more --frames make the others\n",
+          slices, all);
     return;
   }
   line("spawn", spawn.base);

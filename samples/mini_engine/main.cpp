@@ -36,7 +36,8 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --show WHAT      decoupled: shaded (magenta: nothing was shaded); overlay (green: standard sampling finds it, too,
                    grey: the method alone, red: not in the truth, blue: missed); density (red: a pixel and less,
                    blue: 64). 1, 2, 3 in a window
-  --truth N        decoupled overlay: N x N samples a pixel (default 16), a few slices a frame
+  --truth N        decoupled overlay: N x N samples a pixel (default 16), a few slices a frame; shading waits
+                   for them, so that 16 x 16 need 17 frames
   --path           decoupled: the same path with standard and exact sampling; prints what displays missed, and times
   --table          the path with all configurations of the thesis's table 6.1, too
   --data FOLDER    test data (default: the source tree's)
@@ -54,7 +55,8 @@ struct Options {
   std::vector<mini::Input> inputs;
   bool window = false, validate = false, watch = false, path = false, table = false;
   mini::DecoupledOptions decoupled;
-  std::string ofDecoupled; // the last option that belongs to --decoupled
+  bool method = false, truth = false; // given
+  std::string ofDecoupled;            // the last option that belongs to --decoupled
 };
 
 /// Its place among the names; -1: it is none of them.
@@ -135,6 +137,8 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
     int chosen = -1;
     if (indexOf(name.c_str(), {"--method", "--show", "--rate", "--freeze", "--truth", "--farther"}) >= 0)
       options.ofDecoupled = name;
+    options.method = options.method || name == "--method";
+    options.truth = options.truth || name == "--truth";
     if (name == "--out")
       options.out = value;
     else if (name == "--device")
@@ -171,6 +175,17 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   }
   wrong.clear();
   if (!options.ofDecoupled.empty() && !options.decoupled.on) wrong = options.ofDecoupled + " without --decoupled";
+  const bool overlay = options.decoupled.show == mini::DecoupledOptions::overlay;
+  if (options.path && options.method) wrong = "--method beside --path or --table, which choose methods";
+  if (options.path && overlay) wrong = "--show overlay beside --path or --table: shading would wait for the truth";
+  if (options.watch && options.decoupled.on) wrong = "--watch beside --decoupled, which shows no city";
+  bool showsOverlay = overlay || (options.window && !options.path);
+  for (const mini::Input& input : options.inputs)
+    if (input.kind == mini::Input::key && options.decoupled.on) {
+      if (!std::strchr("fm123", input.character)) wrong = std::string("--input: there is no key ") + input.character;
+      showsOverlay = showsOverlay || input.character == '2';
+    }
+  if (options.truth && !showsOverlay) wrong = "--truth without an overlay";
   if (options.screen && options.decoupled.on) wrong = "--screen beside --decoupled";
   if (options.frames == 1 && !options.inputs.empty()) wrong = "--input with --frames 1: it comes before the second";
   if (!options.screen && (options.score || options.stereo)) wrong = "--score or --stereo without --screen";

@@ -79,12 +79,12 @@ std::vector<double> numbersOf(const tinygltf::Model& gltf, const tinygltf::Acces
       numbers[to * components + c] =
           numberAt(from.first + i * from.step + c * each, accessor.componentType, accessor.normalized);
   };
-  if (accessor.bufferView >= 0 || !accessor.sparse.isSparse) {
+  if (accessor.bufferView >= 0) {
     const Elements from = elementsOf(gltf, accessor.bufferView, accessor.byteOffset, accessor.count, size);
     numbers.resize(accessor.count * components);
     for (size_t i = 0; i < accessor.count; ++i) copy(from, i, i);
-  } else { // all of them 0: no bytes bound their number
-    if (accessor.count > kMostVertices) fail("a sparse accessor has more elements than a buffer holds");
+  } else { // all of them 0 (3.6.2.3): no bytes bound their number
+    if (accessor.count > kMostVertices) fail("an accessor without buffer view has more elements than a buffer holds");
     numbers.resize(accessor.count * components);
   }
   if (!accessor.sparse.isSparse) return numbers;
@@ -163,6 +163,8 @@ Part addPrimitive(Model& model, const tinygltf::Model& gltf, const tinygltf::Pri
   const std::vector<double> positions = positionsOf(gltf, position->second);
   for (const double coordinate : positions) model.positions.push_back(static_cast<float>(coordinate));
   const std::vector<uint32_t> corners = indicesOf(gltf, primitive.indices, positions.size() / 3);
+  if (isList && corners.size() % 3)
+    fail("a list of triangles has " + std::to_string(corners.size()) + " corners, which is no multiple of 3");
   const size_t triangles = isList ? corners.size() / 3 : std::max<size_t>(corners.size(), 2) - 2;
   for (size_t t = 0; t < triangles; ++t) { // glTF 2.0, 3.7.2.1
     const std::array<size_t, 3> list{3 * t, 3 * t + 1, 3 * t + 2}, fan{t + 1, t + 2, 0};
@@ -212,6 +214,10 @@ void checkHeader(const tinygltf::Model& gltf, bool loaded) {
 
 Model loadGltf(const std::filesystem::path& file, bool binary) {
   tinygltf::TinyGLTF loader;
+  // Images are not looked at, and what cannot be decoded does no harm.
+  loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
+                           void*) { return true; },
+                        nullptr);
   tinygltf::Model gltf;
   std::string error, warning;
   const bool loaded = binary ? loader.LoadBinaryFromFile(&gltf, &error, &warning, file.string())

@@ -54,10 +54,12 @@ Cell::Cell(const std::string& spec) {
     info.rows = rows;
     info.skip = skip;
   } else if (std::sscanf(spec.c_str(), "%f:%4u%c", &radius, &count, &rest) == 2) {
-    if (!(radius > 0 && std::isfinite(radius)) || count < 1 || count > 4096)
-      throw Usage("--cell: the radius is finite and above 0, and there are 1 to 4096 points");
-    // Corners of a square round the middle, then of its inside: a grid as square as the number allows.
-    const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<float>(count))));
+    const auto side = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<float>(count))));
+    if (!(radius > 0 && radius <= kMostReach) || count < 1 || count > 4096 || side * side != count)
+      throw Usage(
+          "--cell: the radius is above 0 and at most 1e18, and there are 1, 4, 9, 16 or another square number of "
+          "points up to 4096");
+    // A square grid, from corner to corner; the middle is always there.
     for (uint32_t i = 0; i < count && side > 1; ++i) {
       const float x = static_cast<float>(i % side) / static_cast<float>(side - 1) * 2 - 1;
       const float y = static_cast<float>(i / side) / static_cast<float>(side - 1) * 2 - 1;

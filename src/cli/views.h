@@ -7,6 +7,9 @@
 
 namespace gpgp::cli {
 
+/// Of positions and moves, from the origin: a camera's numbers are products of two lengths.
+constexpr float kMostReach = 1e18f;
+
 struct View {
   glm::mat4 camera{1.0f};
   bool reversed = false;
@@ -20,7 +23,8 @@ View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Siz
 /// anything else, or a matrix without inverse.
 View readView(const std::string& file);
 
-/// A view cell, but for its camera: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units; none: one view.
+/// A view cell, but for its camera: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units, a square number of
+/// them; none: one view.
 struct Cell {
   GpgpViewCellInfo info = GPGP_VIEW_CELL_INFO_INIT;
   std::vector<float> points;

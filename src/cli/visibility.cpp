@@ -50,12 +50,11 @@ Bounds boundsOf(const Model& model) {
 View viewOf(const VisibilityOptions& options, const Bounds& bounds, uint32_t k) {
   if (!options.camera.empty()) return readView(options.camera);
   if (!(bounds.low.x <= bounds.high.x)) throw Failure(options.model + ": no triangle has finite corners below 2^100");
-  // A camera's numbers are products of two lengths.
   const glm::vec3 most = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
-  if (const float reach = std::max({most.x, most.y, most.z}); reach > 1e18f) {
+  if (const float reach = std::max({most.x, most.y, most.z}); reach > kMostReach) {
     std::ostringstream text;
     text << options.model << ": positions reach " << reach << ", which is too far for a camera that sees them all ("
-         << "1e18); give --camera";
+         << kMostReach << "); give --camera";
     throw Failure(text.str());
   }
   if (options.orbit) return orbitView(bounds, k, options.orbit, options.distance, options.size);
@@ -232,8 +231,9 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
   text << options.model << ": " << model.triangleCount << " triangles in " << model.draws.size() << " draws\n"
        << figures.visible << " visible (" << share << " %)";
   if (options.sampling() == GPGP_SAMPLING_STANDARD)
-    text << ", " << std::llround(figures.coveredPixels) << " of " << uint64_t{options.size.width} * options.size.height
-         << " pixels covered";
+    text << ", " << std::llround(figures.coveredPixels) << " of "
+         << uint64_t{options.size.width} * options.size.height * options.samples * options.samples
+         << (options.samples > 1 ? " samples covered" : " pixels covered");
   text << "; GPU " << milliseconds(figures.milliseconds) << " (median of " << figures.times.totals.size() << ") on "
        << device << '\n';
   if (options.truth)
@@ -248,7 +248,8 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
          << "camera: green standard, grey added, red too much, blue missed)\n";
   outcome.text = text.str();
   Json passTimes = Json::object();
-  for (const auto& [name, time] : figures.passes) passTimes[name] = time;
+  for (const auto& [name, time] : figures.passes) // a pass may be there several times
+    passTimes[name] = passTimes.value(name, 0.0) + time;
   outcome.json = {{"model", options.model},
                   {"device", device},
                   {"status", statusName(figures.status)},

@@ -50,6 +50,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
   addSize(command, "--size", options.size, "Viewport in pixels (default 1280x720)");
   CLI::Option* yaw =
       command.add_option("--yaw", options.yaw, "Degrees around the model of the camera that sees all of it")
+          ->check(within(-1e6, 1e6))
           ->capture_default_str();
   CLI::Option* pitch = command.add_option("--pitch", options.pitch, "Degrees above the horizon of the same")
                            ->check(within(-89.0, 89.0))
@@ -102,8 +103,9 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       command.add_option("--samples", options.samples, "Standard: N x N samples a pixel (exact has points of its own)")
           ->check(CLI::IsMember({1u, 2u, 4u, 8u}))
           ->capture_default_str();
-  command.add_option("--cell", options.cell,
-                     "View cell: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units");
+  command.add_option(
+      "--cell", options.cell,
+      "View cell: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units, a square number of points");
   CLI::Option* truth = command.add_option("--truth", options.truth, "Measure against N x N + 1 samples a pixel")
                            ->check(CLI::IsMember({1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 256u}));
   const CLI::Option* recheck =

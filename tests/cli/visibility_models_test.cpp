@@ -98,6 +98,38 @@ TEST(CliVisibilityModels, SparseAccessorsReplace) {
             std::string::npos);
 }
 
+TEST(CliVisibilityModels, AccessorsWithoutBufferViewAreZeros) {
+  const json seen = Gltf([](json& gltf) {
+                      gltf["accessors"].push_back({{"componentType", 5126}, {"count", 4}, {"type", "VEC3"}});
+                      gltf["meshes"][0]["primitives"].push_back(primitive(gltf));
+                      gltf["meshes"][0]["primitives"][1]["attributes"]["POSITION"] = 2;
+                    }).seen();
+  EXPECT_EQ(seen["triangles"], 2);
+  EXPECT_EQ(seen["visible"], 1) << "the other is a point";
+  EXPECT_NE(Gltf([](json& gltf) {
+              gltf["accessors"][0].erase("bufferView");
+              gltf["accessors"][0]["count"] = 4000000000u;
+            })
+                .failure()
+                .find("more elements than a buffer holds"),
+            std::string::npos);
+}
+
+TEST(CliVisibilityModels, ImagesAreNotLookedAt) {
+  for (const json& image :
+       {json{{"uri", "data:image/webp;base64,UklGRgAAAABXRUJQ"}}, json{{"uri", "missing.png"}},
+        json{{"uri", "data:image/ktx2;base64,q0tUWCAyMLsNChoK"}}, json{{"uri", "data:image/png;base64,iVBORw0KGgo="}},
+        json{{"bufferView", 1}, {"mimeType", "image/ktx2"}}}) {
+    const Gltf model([&image](json& gltf) {
+      gltf["images"] = {image};
+      gltf["textures"] = json::parse(R"([{"source": 0}])");
+      gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
+      primitive(gltf)["material"] = 0;
+    });
+    EXPECT_EQ(model.seen()["visible"], 1) << image;
+  }
+}
+
 TEST(CliVisibilityModels, StripsAndFans) {
   const auto mode = [](int number) {
     return Gltf([number](json& gltf) {
@@ -171,6 +203,7 @@ TEST(CliVisibilityModels, BrokenGltfIsNamed) {
        },
        "too many or too few numbers"},
       {[](json& gltf) { primitive(gltf)["material"] = 0; }, "no material"},
+      {[](json& gltf) { primitive(gltf).erase("indices"); }, "4 corners, which is no multiple of 3"},
       {[](json& gltf) { gltf["bufferViews"][0]["byteLength"] = 47; }, "beyond buffer view 0"},
       {[](json& gltf) { gltf["accessors"][1]["count"] = 5; }, "beyond buffer view 1"},
       {[](json& gltf) { gltf["accessors"][1]["count"] = 4000000000u; }, "beyond buffer view 1"},

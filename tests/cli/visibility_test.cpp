@@ -5,8 +5,12 @@
 #include "host/picture.h"
 #include "run.h"
 
+#include <map>
+
 namespace gpgp::test {
 namespace {
+
+using Args = std::vector<std::string>;
 
 // A square, and a second one behind it that it hides wholly from the front.
 constexpr const char* kTwoSquares = R"(# comment
@@ -235,6 +239,27 @@ TEST(CliVisibility, ExactNeedsNoNumberOfSamples) {
   EXPECT_EQ(gpgp({"visibility", model.path(), "--method", "exact", "--size", "64x64"}).err, "");
 }
 
+TEST(CliVisibility, PassesOfOneNameAddUp) {
+  const TemporaryFile model("passes.obj", kTwoSquares);
+  const json seen =
+      gpgpJson({"visibility", model.path(), "--method", "conservative", "--refinements", "2", "--size", "64x64"});
+  std::map<std::string, double> sums;
+  for (const json& pass : seen["gpuMilliseconds"]["passes"])
+    sums[pass["name"].get<std::string>()] += pass["milliseconds"].get<double>();
+  EXPECT_LT(sums.size(), seen["gpuMilliseconds"]["passes"].size()) << "a refinement's passes are there twice";
+  ASSERT_EQ(seen["passes"].size(), sums.size());
+  for (const auto& [name, sum] : sums) EXPECT_DOUBLE_EQ(seen["passes"].value(name, -1.0), sum) << name;
+}
+
+TEST(CliVisibility, SamplesAreNotPixels) {
+  const TemporaryFile model("samples.obj", kTwoSquares);
+  const Args args{"visibility", model.path(), "--size", "64x48"};
+  EXPECT_NE(gpgp(args).out.find(" of 3072 pixels covered"), std::string::npos);
+  const Args eight{"visibility", model.path(), "--size", "64x48", "--samples", "8"};
+  EXPECT_NE(gpgp(eight).out.find(" of 196608 samples covered"), std::string::npos);
+  EXPECT_NEAR(gpgpJson(eight)["coveredPixels"].get<double>() / 64, gpgpJson(args)["coveredPixels"].get<double>(), 150);
+}
+
 TEST(CliVisibility, WrongUsage) {
   const TemporaryFile model("usage.obj", kTwoSquares), camera("usage.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   // What would have no effect.
@@ -264,6 +289,9 @@ TEST(CliVisibility, WrongUsage) {
                     {"visibility", model.path(), "--size", "-4x4"},
                     {"visibility", model.path(), "--size", "64x64x64"},
                     {"visibility", model.path(), "--pitch", "90"},
+                    {"visibility", model.path(), "--pitch", "nan"},
+                    {"visibility", model.path(), "--yaw", "nan"},
+                    {"visibility", model.path(), "--yaw", "inf"},
                     {"visibility", model.path(), "--epsilon", "1"},
                     {"visibility", model.path(), "--epsilon", "1,-1"},
                     {"visibility", model.path(), "--method", "conservative", "--heuristics", "depth,luck"},

@@ -406,7 +406,10 @@ TEST(CliVisibilityViews, WhatIsWrongWithCameras) {
   const glm::dmat4 away = plainCamera() * glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 20));
   EXPECT_NE(failure(textOf(away), {"--cell", "2x2"}).find("does not lie before the camera"), std::string::npos);
   expectWrongUsage({{"visibility", model.path(), "--cell", "inf:4"},
+                    {"visibility", model.path(), "--cell", "1e38:4"},
+                    {"visibility", model.path(), "--cell", "nan:4"},
                     {"visibility", model.path(), "--cell", "0:4"},
+                    {"visibility", model.path(), "--cell", "1:5"},
                     {"visibility", model.path(), "--cell", "1:0"},
                     {"visibility", model.path(), "--cell", "65x1"},
                     {"visibility", model.path(), "--cell", "2x2/0"},

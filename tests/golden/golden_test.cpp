@@ -126,6 +126,8 @@ size_t count(const Picture& picture, bool (*isSo)(int, int, int)) {
     n += isSo(picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]);
   return n;
 }
+bool isGreen(int r, int g, int b) { return g > r + 90 && g > b + 90; }
+bool isBlue(int r, int g, int b) { return b > r + 90 && b > g + 90; }
 bool isMagenta(int r, int g, int b) { return r > 150 && b > 150 && g < 90; }
 
 TEST(DecoupledShading, TheKeyFreezesAndMovesOn) {
@@ -145,7 +147,6 @@ TEST(DecoupledShading, TheKeyFreezesAndMovesOn) {
 TEST(DecoupledShading, DensityIsByArea) {
   const std::string run = "--frames 2 --show density ";
   const auto isRed = [](int r, int g, int b) { return r > g + 40 && r > b + 40; };
-  const auto isBlue = [](int r, int g, int b) { return b > r + 90 && b > g + 90; };
   const Picture small = shown(run + "--size 160x90").first, large = shown(run + "--size 480x270").first;
   const double pixels = 160 * 90;
   const double smallRed = static_cast<double>(count(small, isRed)) / pixels;
@@ -156,9 +157,46 @@ TEST(DecoupledShading, DensityIsByArea) {
   EXPECT_EQ(large.rgba, shown("--frames 2 --size 480x270 --input 3").first.rgba) << "the key 3 shows the same";
 }
 
+// 17 slices are there after 5 frames; the next multiple of the rate is frame 8.
+TEST(DecoupledShading, OverlaysWaitForTheirTruth) {
+  const std::string run = "--method standard --truth 8 --rate 4 --size 320x180 ";
+  const auto [known, once] = shown(run + "--show overlay --frames 8");
+  EXPECT_EQ(once, 1u);
+  EXPECT_GT(count(known, isBlue), 0u) << "what standard sampling missed";
+  const auto [next, twice] = shown(run + "--show overlay --frames 9");
+  EXPECT_EQ(twice, 2u);
+  EXPECT_EQ(count(next, isBlue), 0u) << "of the second shading no truth is known";
+  EXPECT_NE(outputOf("--decoupled --show overlay --size 64x64 --out \"" GPGP_GOLDEN_OUT "-short\"")
+                .find("truth       12 of 65 slices"),
+            std::string::npos);
+}
+
+TEST(DecoupledShading, OverlaysOfWhatIsFrozen) {
+  for (const char* options : {"--freeze 1 --input 2", "--freeze 0 --input 2", "--input 2,f", "--input f,2"}) {
+    const auto [picture, once] = shown(std::string("--truth 2 --frames 4 --size 320x180 ") + options);
+    EXPECT_EQ(once, 1u) << options;
+    EXPECT_GT(count(picture, isGreen), 1000u) << options;
+  }
+}
+
+TEST(DecoupledShading, PathsShadeFromTheirFirstFrameOn) {
+  const std::string text = outputOf("--path --freeze 0 --frames 2 --size 160x90 --out \"" GPGP_GOLDEN_OUT "-path\"");
+  const auto shaded = [&](const char* name) {
+    unsigned displays = 0, triangles = 0;
+    const size_t at = text.find(std::string("path        ") + name);
+    EXPECT_TRUE(at != std::string::npos &&
+                std::sscanf(text.c_str() + at + 30, "%u displays, %u", &displays, &triangles) == 2)
+        << text;
+    return triangles;
+  };
+  EXPECT_GT(shaded("exact"), shaded("standard"));
+}
+
 // What would have no effect.
 TEST(DecoupledShading, ItsOptionsBelongToIt) {
-  for (const char* options : {"--show density", "--method exact", "--rate 2", "--freeze 1", "--truth 4", "--farther 2"})
+  for (const char* options : {"--show density", "--method exact", "--rate 2", "--freeze 1", "--truth 4", "--farther 2",
+                              "--decoupled --truth 4", "--decoupled --input x", "--decoupled --watch",
+                              "--path --method conservative", "--path --show overlay", "--path --truth 4"})
     EXPECT_NE(
         std::system((std::string("\"") + GPGP_MINI_ENGINE + "\" " + options + " 2> /dev/null > /dev/null").c_str()), 0)
         << options;

@@ -14,7 +14,7 @@ layout(push_constant) uniform Push {
   mat4 viewProjection;
   uint draw, firstIndex, vertexOffset, stamp, show;
 } push;
-const uint kShaded = 0u, kOverlay = 1u; // else density
+const uint kShaded = 0u, kOverlay = 1u, kOverlayWithoutTruth = 3u; // else density
 
 layout(location = 0) out vec3 colour;
 
@@ -22,8 +22,10 @@ bool has(uint word, uint triangle) { return (word >> (triangle & 31u) & 1u) != 0
 
 vec3 overlay(uint triangle) {
   uint word = triangle >> 5;
-  if (has(falsePositives[word], triangle)) return vec3(0.80, 0.02, 0.02);
-  if (has(falseNegatives[word], triangle)) return vec3(0.02, 0.06, 0.90);
+  if (push.show == kOverlay) {
+    if (has(falsePositives[word], triangle)) return vec3(0.80, 0.02, 0.02);
+    if (has(falseNegatives[word], triangle)) return vec3(0.02, 0.06, 0.90);
+  }
   return has(standard[word], triangle) ? vec3(0.05, 0.55, 0.08) : vec3(0.35);
 }
 
@@ -47,8 +49,8 @@ void main() {
   }
   uint word = triangle >> 5;
   bool shown = has(found[word], triangle);
-  if (push.show == kOverlay) {
-    shown = shown || has(falseNegatives[word], triangle);
+  if (push.show == kOverlay || push.show == kOverlayWithoutTruth) {
+    shown = shown || (push.show == kOverlay && has(falseNegatives[word], triangle));
     colour = overlay(triangle);
   } else {
     colour = density(sizes[triangle * 3u]);
