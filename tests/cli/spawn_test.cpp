@@ -166,14 +166,14 @@ TEST(CliSpawn, TheHeuristicsGroupSizeIsSet) {
 TEST(CliSpawn, WritesVertices) {
   const TemporaryFile grammar("vertices.pga", kStreet), picture("vertices.png"), out("vertices.glb");
   const std::vector<std::string> common = {"spawn",        grammar.path(), "--axioms",   "2",
-                                           "--axiom-size", "9,8,4",        "--schedule", "interpreter",
-                                           "--image-size", "96x64"};
+                                           "--axiom-size", "9,8,4",        "--schedule", "interpreter"};
   const auto derive = [&](std::vector<std::string> more) {
     more.insert(more.begin(), common.begin(), common.end());
     return gpgpJson(more);
   };
   const json instances = derive({});
-  const json vertices = derive({"--output", "vertices", "--validate", "--image", picture.path(), "--out", out.path()});
+  const json vertices = derive(
+      {"--output", "vertices", "--validate", "--image", picture.path(), "--image-size", "96x64", "--out", out.path()});
   EXPECT_EQ(vertices["terminals"], instances["terminals"]);
   EXPECT_EQ(vertices["key_hash"], instances["key_hash"]);
   EXPECT_EQ(vertices["instances"], 0);
