@@ -84,8 +84,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const Gp
                                                    GpgpView* view);
 
 /** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. Draws may share triangle numbers: the bit is
- *  then set if any of them is visible. A transform that mirrors, by a determinant of at
- *  most -2^-126, does not turn front faces into back faces. */
+ *  then set if any of them is visible. A transform that mirrors, by a determinant of at most -2^-126, does not turn
+ *  front faces into back faces. */
 typedef struct GpgpVisibilityDraw {
   float transform[12];    /**< rows of a 3x4 matrix, object to world */
   uint32_t mesh;          /**< index in the geometry set */

@@ -322,10 +322,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       const std::vector<GpgpInstance> written = deriver.instances();
       if (asVertices) {
         if (written.size() < measured.report.terminals)
-          throw Usage("--max-instances " + std::to_string(options.maxInstances) + " is less than the " +
-                      std::to_string(measured.report.terminals) +
-                      " instances, of which some have corners of their own, that instances do not say: what would be "
-                      "drawn is not known; --output vertices says it");
+          throw Usage("of " + std::to_string(measured.report.terminals) + " instances " +
+                      std::to_string(written.size()) +
+                      " were written, and some have corners of their own, that instances do not say: what they would "
+                      "draw is not known; raise --max-instances, or --output vertices says it");
         if (record) asVertices->setAxioms(slices.of(record));
         asVertices->fit(prepared);
         addTriangles(triangles, asVertices->vertices(), asVertices->indices());

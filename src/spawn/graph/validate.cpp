@@ -1,8 +1,6 @@
 // Checks of an operator graph, so that the interpreter needs none.
 #include "spawn/graph/graph.h"
 
-#include <cstring>
-
 namespace gpgp::spawn {
 namespace {
 using core::makeError;

@@ -39,6 +39,12 @@ using Batch = std::span<const Sorted>;
 /// Samples of a pixel, by row.
 using Samples = std::array<uvec2, 64>;
 
+/// Whether two entries may have area in common; only compact ones are asked.
+bool mayOverlap(const Sorted& a, const Sorted& b) {
+  const bool compact = isCompact(triangleOf(a.candidate)) && isCompact(triangleOf(b.candidate));
+  return !compact || overlap(cornersOf(a.candidate), cornersOf(b.candidate));
+}
+
 /// Whether an entry has one of the samples at which none of the others is nearer.
 bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vector<bool>& decides) {
   const Sorted& own = batch[place];
@@ -46,9 +52,7 @@ bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vecto
   for (size_t j = 0; j < batch.size(); ++j) {
     const Sorted& other = batch[j];
     if (j == place || !decides[j] || other.facet.nearest > own.facet.farthest) continue;
-    if (!(leadWithin(other.facet, own.facet) >= 0)) continue;
-    const bool compact = isCompact(triangleOf(own.candidate)) && isCompact(triangleOf(other.candidate));
-    if (compact && !overlap(cornersOf(other.candidate), cornersOf(own.candidate))) continue;
+    if (!(leadWithin(other.facet, own.facet) >= 0) || !mayOverlap(other, own)) continue;
     rivals.emplace_back(&other, crossingOf(other.facet, own.facet, other.candidate.id < own.candidate.id));
   }
   for (int row = 0; row < 64; ++row) {
@@ -117,9 +121,8 @@ void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, v
       holes = holes || (rest.x | rest.y);
     }
   }
-  const auto nearer = [&](const Sorted& a, const Sorted& b) {
-    const bool compact = isCompact(triangleOf(a.candidate)) && isCompact(triangleOf(b.candidate));
-    return isNearerSomewhere(a.facet, b.facet) && (!compact || overlap(cornersOf(a.candidate), cornersOf(b.candidate)));
+  const auto nearer = [](const Sorted& a, const Sorted& b) {
+    return isNearerSomewhere(a.facet, b.facet) && mayOverlap(a, b);
   };
   for (size_t i = 0; i < batch.size(); ++i) {
     bool doubtful = false;
