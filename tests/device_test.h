@@ -36,6 +36,7 @@ struct AsHardware {
 struct SharedDevice {
   host::HeadlessDevice device{host::DeviceOptions{.validation = true}};
   GpgpContext context = nullptr;
+  GpgpFeatures features = 0;
   std::vector<std::string> messages; ///< of the context: "function: text"
   std::map<std::string, GpgpWorker> workers;
   uint64_t frame = 0;
@@ -47,6 +48,8 @@ struct SharedDevice {
       AsHardware::real = info.getInstanceProcAddr;
       info.getInstanceProcAddr = &AsHardware::lookUp;
     }
+    if (std::getenv("GPGP_TEST_PLAIN")) info.features = 0; // as on devices that offer nothing optional
+    features = info.features;
     info.messageUserData = &messages;
     info.messageFn = [](void* user, const GpgpMessage* m) {
       static_cast<std::vector<std::string>*>(user)->push_back(std::string(m->function) + ": " + m->text);
@@ -66,6 +69,7 @@ struct DeviceTest : testing::Test {
 
   host::HeadlessDevice& device = suiteDevice->device;
   const GpgpContext context = suiteDevice->context;
+  const GpgpFeatures contextFeatures = suiteDevice->features; ///< of the context
   std::vector<std::string>& messages = suiteDevice->messages;
 
   void SetUp() override { messages.clear(); }

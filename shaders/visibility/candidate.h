@@ -156,6 +156,9 @@ GPGP_FN bool fillsPixel(ScreenTriangle t, ivec2 pixel, Grid grid) {
          fillsEdge(t.p0, edgeSlope(t.p0, t.p1), pixel, grid);
 }
 
+/// Whether a triangle is large enough to: around a square there is none of less than twice its area.
+GPGP_FN bool mayFillPixel(ScreenTriangle t) { return t.inverseArea < 3.85e-6f; } // a little more than 1 / (4 * 256^2)
+
 /// The key of what a triangle that fills a pixel hides for certain, from its depth at the centre.
 GPGP_FN uint fillKey(ScreenTriangle t, float z, bool reversed) {
   vec2 slope = depthSlope(t);

@@ -6,7 +6,7 @@
 layout(local_size_x = 256) in;
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
-layout(std430, set = 0, binding = kBindIds) readonly buffer IdBuffer { uint ids[]; };
+layout(std430, set = 0, binding = kBindSamples) readonly buffer SampleBuffer { uint samples[]; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindSizes) buffer SizeBuffer { uint sizes[]; };
@@ -28,23 +28,23 @@ void note(uint id, uint count, bool known) {
 void main() {
   if (gl_LocalInvocationIndex == 0u) groupCovered = 0u;
   barrier();
-  uint samples = params.width * params.height * params.cameraCount * (1u << (16u - 2u * params.gridShift));
+  uint sampleCount = params.width * params.height * params.cameraCount * (1u << (16u - 2u * params.gridShift));
   uint stride = gl_NumWorkGroups.x * 256u;
   uint covered = 0u;
-  for (uint first = gl_GlobalInvocationID.x * 8u; first < samples; first += stride * 8u) {
-    uint end = min(first + 8u, samples);
+  for (uint first = gl_GlobalInvocationID.x * 8u; first < sampleCount; first += stride * 8u) {
+    uint end = min(first + 8u, sampleCount);
     uint before = kNoTriangle;
     uint count = 0u;
     bool known = false; // the neighbour to the left sets the bit
     for (uint i = first; i < end; ++i) {
-      uint id = ids[i];
+      uint id = samples[idAt(i)];
       if (id != kNoTriangle) ++covered;
       if (i != first && id == before) {
         ++count;
         continue;
       }
       note(before, count, known);
-      known = i == first && first != 0u && ids[first - 1u] == id;
+      known = i == first && first != 0u && samples[idAt(first - 1u)] == id;
       before = id;
       count = 1u;
     }

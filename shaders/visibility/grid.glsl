@@ -10,7 +10,7 @@ Grid gridOf(uint camera) {
   return g;
 }
 
-/// What the id buffer holds: surfaces.comp needs to know which draw's triangle it is.
+/// Which number is drawn: surfaces.comp needs to know which draw's triangle it is.
 uint drawnId(uint id, uint item) { return params.method == kConservative ? item : id; }
 
 /// For what does not depend on the camera.

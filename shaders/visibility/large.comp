@@ -1,6 +1,10 @@
 // Large triangles and pieces of clipped ones: a workgroup a slice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef GPGP_INT64_ATOMICS
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#endif
 #include "visibility/triangle.h"
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };

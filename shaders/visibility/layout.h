@@ -7,8 +7,8 @@
 
 GPGP_SHADER_BEGIN
 
-GPGP_CONST uint kNoTriangle = 0xffffffffu; ///< in the id buffer: nothing
-GPGP_CONST uint kFarthest = 0xffffffffu;   ///< in the depth buffer: nothing
+GPGP_CONST uint kNoTriangle = 0xffffffffu; ///< in a sample: nothing
+GPGP_CONST uint kFarthest = 0xffffffffu;   ///< in a sample: nothing
 GPGP_CONST uint kTwoSided = 1u;            ///< GPGP_DRAW_TWO_SIDED
 GPGP_CONST uint kClockwise = 2u;           ///< GPGP_DRAW_CLOCKWISE
 GPGP_CONST uint kMaxCameras = 128u;        ///< of one record
@@ -42,25 +42,24 @@ GPGP_CONST int kBindDraws = 3;
 GPGP_CONST int kBindMeshes = 4;
 GPGP_CONST int kBindTable = 5;
 GPGP_CONST int kBindQueue = 6;
-GPGP_CONST int kBindDepth = 7;
-GPGP_CONST int kBindIds = 8;
-GPGP_CONST int kBindCounters = 9;
-GPGP_CONST int kBindBits = 10;
-GPGP_CONST int kBindList = 11;
-GPGP_CONST int kBindCount = 12;
-GPGP_CONST int kBindView = 13;
-GPGP_CONST int kBindRecords = 14;
-GPGP_CONST int kBindSizes = 15;
+GPGP_CONST int kBindSamples = 7;
+GPGP_CONST int kBindCounters = 8;
+GPGP_CONST int kBindBits = 9;
+GPGP_CONST int kBindList = 10;
+GPGP_CONST int kBindCount = 11;
+GPGP_CONST int kBindView = 12;
+GPGP_CONST int kBindRecords = 13;
+GPGP_CONST int kBindSizes = 14;
 GPGP_CONST int kBindSlots =
-    16; // words per pixel: limits (then where its list ends), list lengths; tiles; big candidates
-GPGP_CONST int kBindCommands = 17;
-GPGP_CONST int kBindCommandCount = 18;
-GPGP_CONST int kBindDrawCommands = 19;
-GPGP_CONST int kBindDrawIndices = 20;
-GPGP_CONST int kBindDrawTriangles = 21;
-GPGP_CONST int kBindExtents = 22;
-GPGP_CONST int kBindPairs = 23;      // a tile and a candidate each, then which of its pixels; by tile: candidates
-GPGP_CONST int kBindOpen = kBindIds; // exact, once ids are gathered: pixels with lists
+    15; // words per pixel: limits (then where its list ends), list lengths; tiles; big candidates
+GPGP_CONST int kBindCommands = 16;
+GPGP_CONST int kBindCommandCount = 17;
+GPGP_CONST int kBindDrawCommands = 18;
+GPGP_CONST int kBindDrawIndices = 19;
+GPGP_CONST int kBindDrawTriangles = 20;
+GPGP_CONST int kBindExtents = 21;
+GPGP_CONST int kBindPairs = 22;          // a tile and a candidate each, then which of its pixels; by tile: candidates
+GPGP_CONST int kBindOpen = kBindSamples; // exact, once ids are gathered: pixels with lists
 GPGP_CONST int kBindCandidates = kBindRecords; // exact, once ids are drawn
 GPGP_CONST int kBindEntries = kBindQueue;      // exact, once all pairs are there: candidates in lists
 GPGP_CONST int kBindKeys = kBindPairs;         // exact, once lists have their places: depths of long ones' entries
@@ -74,6 +73,12 @@ GPGP_CONST int kBindTruthCounts = kBindIndices;
 GPGP_CONST int kBindRecheck = kBindDraws;
 GPGP_CONST int kBindFalsePositives = kBindList;
 GPGP_CONST int kBindFalseNegatives = kBindCount;
+
+/// Words of a sample: which triangle it shows and the key of its depth, together a number of 64 bits whose least value
+/// is the nearest one, and of those the lowest number.
+GPGP_CONST uint kSampleWords = 2u;
+GPGP_FN uint idAt(uint sample_) { return sample_ * kSampleWords; }
+GPGP_FN uint depthAt(uint sample_) { return sample_ * kSampleWords + 1u; }
 
 /// GpgpMesh
 struct Mesh {
@@ -119,7 +124,7 @@ struct Params {
 #endif
   uint cameraCount;
   uint width;
-  uint height; // of each camera; they lie one below the other in the buffers of depth and ids
+  uint height; // of each camera; they lie one below the other in the buffer of samples
   uint reversedDepth;
   uint drawCount;
   uint hasDrawCount; // 1: the buffer of the command count holds the number of draws, or of commands

@@ -1,6 +1,10 @@
 // What found no record: each workgroup makes the triangle again, piece by piece. Slower, and rare.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef GPGP_INT64_ATOMICS
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#endif
 #include "visibility/fetch.glsl"
 #include "visibility/pixels.glsl"
 layout(local_size_x = 64) in;

@@ -8,7 +8,7 @@ const uint kNearest = 2u; // how near those that are not visible come where they
                           // each quarter of a pixel
 const uint kTake = 3u;    // the nearest of them in a quarter becomes visible
 
-layout(std430, set = 0, binding = kBindIds) readonly buffer IdBuffer { uint ids[]; };
+layout(std430, set = 0, binding = kBindSamples) readonly buffer SampleBuffer { uint samples[]; };
 layout(std430, set = 0, binding = kBindSurfaces) readonly buffer SurfaceBuffer { Surface surfaces[]; };
 layout(std430, set = 0, binding = kBindGaps) buffer GapBuffer { uint gaps[]; }; // pixels' samples, then nearest depths
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
@@ -37,7 +37,7 @@ void visit(Visitor v, ScreenTriangle t, bool compact, vec3 depths, ivec2 pixel) 
   if (kPhase == kAccept) {
     if (!touches(t, compact, pixel)) return;
     if ((params.heuristics & kDepths) != 0u) {
-      if (ids[at] == kNoTriangle) {
+      if (samples[idAt(at)] == kNoTriangle) {
         if ((params.heuristics & kKeepFront) == 0u) return;
       } else {
         if (!depthsInPixel(t, depths, pixel, v.perspective, reversed, nearest, farthest)) return;

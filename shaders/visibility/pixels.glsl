@@ -1,29 +1,41 @@
-// The buffers that rasterising writes, and what a covered pixel does in each of the two phases.
+// The samples that rasterising writes, and what a covered one does in each of the two phases.
 //
-// Depth first: the nearest key of each pixel. Then ids: among the triangles at exactly that depth the lowest number.
-// Minima do not depend on order, so the result is the same whichever thread comes first. Both phases compute depth by
-// the same function, so equality is exact. For exact sampling, a triangle seen at the centre of a pixel that it fills
-// limits that pixel.
+// Depth first: the nearest key of each sample. Then ids: among the triangles at exactly that depth the lowest number.
+// With atomics of 64 bits the first phase does both at once, and there is no second one. Minima do not depend on order,
+// so the result is the same whichever thread comes first. Both phases compute depth by the same function, so equality
+// is exact.
 #include "visibility/grid.glsl"
 #include "visibility/lists.glsl"
 layout(constant_id = 0) const uint kPhase = 0u; // 0: depth, 1: ids
 
-layout(std430, set = 0, binding = kBindDepth) buffer DepthBuffer { uint depths[]; };
-layout(std430, set = 0, binding = kBindIds) buffer IdBuffer { uint ids[]; };
+layout(std430, set = 0, binding = kBindSamples) buffer SampleBuffer { uint samples[]; };
+#ifdef GPGP_INT64_ATOMICS
+layout(std430, set = 0, binding = kBindSamples) buffer WholeSampleBuffer { uint64_t wholeSamples[]; };
+#endif
 
-/// True where it is the nearest so far, or is seen.
+/// For exact sampling: a triangle that fills a pixel limits it. What is limited nearer already is not asked.
+void limitPixel(ScreenTriangle t, ivec2 pixel, float z, uint key) {
+  if (params.method != kExact || !mayFillPixel(t)) return;
+  uint slot = slotOf(pixel);
+  if (slots[slot] >= key && fillsPixel(t, pixel, grid()))
+    atomicMin(slots[slot], fillKey(t, z, params.reversedDepth != 0u));
+}
+
+/// True where it is the nearest so far and has to be drawn again.
 bool coverPixel(ScreenTriangle t, ivec2 pixel, float z, uint id) {
   uint at = uint(pixel.y) * (params.width << (8u - params.gridShift)) + uint(pixel.x);
-  bool reversed = params.reversedDepth != 0u;
-  uint key = depthKey(z, reversed);
-  if (kPhase == 0u) {
-    // Depths only come nearer: what was read before others wrote is not nearer than what is there.
-    if (depths[at] < key) return false;
-    return atomicMin(depths[at], key) >= key;
+  uint key = depthKey(z, params.reversedDepth != 0u);
+  if (kPhase == 1u) {
+    if (samples[depthAt(at)] == key) atomicMin(samples[idAt(at)], id);
+    return false;
   }
-  if (depths[at] != key) return false;
-  atomicMin(ids[at], id);
-  if (params.method == kExact && fillsPixel(t, pixel, grid()))
-    atomicMin(slots[slotOf(pixel)], fillKey(t, z, reversed));
-  return true;
+  limitPixel(t, pixel, z, key);
+  // Depths only come nearer: what was read before others wrote is not nearer than what is there.
+  if (samples[depthAt(at)] < key) return false;
+#ifdef GPGP_INT64_ATOMICS
+  atomicMin(wholeSamples[at], packUint2x32(uvec2(id, key)));
+  return false;
+#else
+  return atomicMin(samples[depthAt(at)], key) >= key;
+#endif
 }

@@ -4,6 +4,10 @@
 // those of at most 8 x 8 pixels from its front, the others and those that are clipped from its end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef GPGP_INT64_ATOMICS
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#endif
 #include "visibility/fetch.glsl"
 #include "visibility/chunks.glsl"
 #include "visibility/pixels.glsl"
@@ -54,7 +58,7 @@ void main() {
       if (fate == kWhole) ++triangles;
       bool empty = fate == kWhole && isEmpty(t);
       if (fate == kWhole && !empty && isSmall(t)) {
-        if (drawSmall(t, f.id)) winner = atomicAdd(groupWinners, 1u);
+        if (drawSmall(t, drawnId(f.id, start.x + local))) winner = atomicAdd(groupWinners, 1u);
       } else if (fate == kClipped || (fate == kWhole && !empty)) {
         uint entry = atomicAdd(counters.queueCount, 1u);
         queue[entry] = start.x + local;

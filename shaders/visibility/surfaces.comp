@@ -6,16 +6,16 @@
 #include "visibility/conservative.h"
 layout(local_size_x = 256) in;
 
-layout(std430, set = 0, binding = kBindIds) buffer IdBuffer { uint ids[]; };
+layout(std430, set = 0, binding = kBindSamples) buffer SampleBuffer { uint samples[]; };
 layout(std430, set = 0, binding = kBindSurfaces) writeonly buffer SurfaceBuffer { Surface surfaces[]; };
 
 void main() {
   uint pixels = params.width * params.height * params.cameraCount;
   for (uint at = gl_GlobalInvocationID.x; at < pixels; at += gl_NumWorkGroups.x * 256u) {
-    uint item = ids[at];
+    uint item = samples[idAt(at)];
     if (item == kNoTriangle) continue;
     Fetched f = fetchItem(item);
-    ids[at] = f.id;
+    samples[idAt(at)] = f.id;
     ivec2 pixel = ivec2(int(at % params.width), int(at / params.width));
     bool perspective = isPerspective(viewProjection(f.camera));
     bool reversed = params.reversedDepth != 0u;

@@ -6,7 +6,7 @@
 layout(local_size_x = 256) in;
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
-layout(std430, set = 0, binding = kBindDepth) readonly buffer DepthBuffer { uint depths[]; };
+layout(std430, set = 0, binding = kBindSamples) readonly buffer SampleBuffer { uint samples[]; };
 layout(std430, set = 0, binding = kBindTiles) writeonly buffer TileBuffer { Tile tiles[]; };
 
 // Keys, the largest tile's first.
@@ -39,7 +39,7 @@ void main() {
     uvec2 at = uvec2(i % side, i / side);
     uvec2 pixel = first + at;
     if (pixel.x >= params.width || pixel.y >= params.height) continue;
-    uint key = depths[(camera * params.height + pixel.y) * params.width + pixel.x];
+    uint key = samples[depthAt((camera * params.height + pixel.y) * params.width + pixel.x)];
     uint place = 17u + at.y / smallest * 16u + at.x / smallest;
     atomicMin(nearest[place], key);
     atomicMax(farthest[place], key);

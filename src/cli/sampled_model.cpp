@@ -118,7 +118,7 @@ GpgpSampleReport SampledModel::compare(Sampler& sampler, const std::vector<uint3
 std::vector<uint32_t> SampledModel::truth(const std::vector<View>& views, uint32_t samples) {
   uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
   const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
-  while (perRecord > 1 && uint64_t{options_.size.width} * options_.size.height * perRecord * perRecord * 4 > range)
+  while (perRecord > 1 && uint64_t{options_.size.width} * options_.size.height * perRecord * perRecord * 8 > range)
     perRecord /= 2;
   Sampler worker = sampler(GPGP_SAMPLING_TRUTH, perRecord);
   const uint32_t slices = samples / perRecord * (samples / perRecord) + 1;

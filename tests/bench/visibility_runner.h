@@ -224,7 +224,7 @@ public:
       uint32_t samples, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
       const host::Buffer* counts = nullptr, const std::function<void(size_t)>& told = [](size_t) {}) {
     uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
-    while (perRecord > 1 && uint64_t(scene_.params.width) * scene_.params.height * perRecord * perRecord * 4 >
+    while (perRecord > 1 && uint64_t(scene_.params.width) * scene_.params.height * perRecord * perRecord * 8 >
                                 device_.properties().limits.maxStorageBufferRange)
       perRecord /= 2;
     Sampler worker = sampler(GPGP_SAMPLING_TRUTH_BIT, perRecord);

@@ -239,8 +239,14 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
     const size_t pixels =
         size_t(scene.params.width) * scene.params.height * scene.params.cameraCount * samples * samples;
     const auto& offsets = worker->passes().scratchOffsets;
-    result.depth = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindDepth]);
-    result.ids = host::download<uint32_t>(device, scratch, pixels, offsets[shader::kBindIds]);
+    if (options.method != GPGP_SAMPLING_EXACT) { // there lists take their place
+      const auto texels =
+          host::download<uint32_t>(device, scratch, pixels * shader::kSampleWords, offsets[shader::kBindSamples]);
+      for (uint32_t i = 0; i < pixels; ++i) {
+        result.ids.push_back(texels[shader::idAt(i)]);
+        result.depth.push_back(texels[shader::depthAt(i)]);
+      }
+    }
     const auto counters = host::download<shader::Counters>(device, scratch, 1, offsets[shader::kBindCounters])[0];
     result.chunks = counters.chunks, result.keptChunks = counters.keptCount;
   }
@@ -250,7 +256,7 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
 void expectEqual(const GpuResult& gpu, const visibility::TwinResult& twin, const std::string& what) {
   size_t differentIds = 0, differentDepths = 0;
   for (size_t i = 0; i < gpu.ids.size(); ++i) {
-    if (!twin.ids.empty()) differentIds += gpu.ids[i] != twin.ids[i]; // exact sampling has none
+    differentIds += gpu.ids[i] != twin.ids[i];
     differentDepths += gpu.depth[i] != twin.depth[i];
   }
   EXPECT_EQ(differentIds, 0u) << what;

@@ -28,7 +28,7 @@ void addConservative(core::PassList& list, const Budgets& budgets) {
       fetchesTriangles(list.dispatchIndirect(name, shader,
                                              {{kBindCounters, readWrite},
                                               {kBindQueue, readWrite},
-                                              {kBindIds, read},
+                                              {kBindSamples, read},
                                               {kBindSurfaces, read},
                                               {kBindGaps, readWrite},
                                               {kBindBits, readWrite}},

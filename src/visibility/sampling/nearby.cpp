@@ -12,7 +12,7 @@ void addNearby(core::PassList& list) {
   using namespace shader;
   using enum core::UseKind;
   list.dispatch("tiles", addShader(list, "tiles", visibility_tiles),
-                {{kBindParams, read}, {kBindDepth, read}, {kBindTiles, write}}, kScreenTileGroups)
+                {{kBindParams, read}, {kBindSamples, read}, {kBindTiles, write}}, kScreenTileGroups)
       .condition = kIfNearby;
   fetchesTriangles(list.dispatchIndirect("nearby", addShader(list, "nearby", visibility_nearby),
                                          {{kBindCounters, readWrite}, {kBindTiles, read}, {kBindBits, readWrite}},

@@ -16,7 +16,6 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   using enum ResourceKind;
   const bool exact = budgets.methods & GPGP_SAMPLING_EXACT_BIT;
   const bool conservative = budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT;
-  const VkDeviceSize pixelBytes = budgets.pixels() * budgets.maxSamples * budgets.maxSamples * 4;
   const VkDeviceSize pairBytes = VkDeviceSize(budgets.maxPairs) * shader::kPairBytes;
   const VkDeviceSize queueBytes = VkDeviceSize(budgets.maxTriangles) * 4;
   VkDeviceSize recordBytes = VkDeviceSize(budgets.mediumRecords() + budgets.largeRecords()) * kRecordBytes;
@@ -34,8 +33,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("geometrySet");
   own("draw table", VkDeviceSize(budgets.maxDraws) * shader::kTableWords * 4 + budgets.chunks() * 8);
   own("queue", exact ? std::max(queueBytes * 2, VkDeviceSize(budgets.maxPairs) * 4) : queueBytes);
-  own("depth", pixelBytes);
-  own("ids", pixelBytes);
+  own("samples", budgets.pixels() * budgets.maxSamples * budgets.maxSamples * shader::kSampleWords * 4);
   own("counters", sizeof(shader::Counters));
   engine("visibleBits");
   engine("visibleList");
@@ -79,7 +77,7 @@ core::PassList describePasses(const Budgets& budgets, const core::Device& device
   const bool conservative = budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT;
   core::PassList list(memory);
   addResources(list, budgets);
-  addStandard(list, conservative);
+  addStandard(list, budgets, device);
   if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, device);
   if (conservative) addConservative(list, budgets);
   if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT) addNearby(list);

@@ -32,7 +32,8 @@ inline uint32_t groupsOf256(uint64_t items) {
 core::PassList describePasses(const Budgets& budgets, const core::Device& device, std::pmr::memory_resource* memory);
 
 // The parts of it.
-void addStandard(core::PassList& list, bool conservative); ///< bits of what is seen at the pixels' samples
+/// Bits of what is seen at the pixels' samples.
+void addStandard(core::PassList& list, const Budgets& budgets, const core::Device& device);
 void addExact(core::PassList& list, const core::Device& device);
 void addConservative(core::PassList& list, const Budgets& budgets);
 void addNearby(core::PassList& list);

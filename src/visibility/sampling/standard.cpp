@@ -1,4 +1,5 @@
-// Chapter 6, method "standard" (6.1.1), in compute: two phases draw depth, then ids, and a pass gathers the bits.
+// Chapter 6, method "standard" (6.1.1), in compute: two phases draw depth, then ids, and a pass gathers the bits. With
+// atomics of 64 bits the first phase draws both.
 #include "visibility/sampling/passes.h"
 
 #include "shaders/visibility_chunks.spv.h"
@@ -8,10 +9,14 @@
 #include "shaders/visibility_gather.spv.h"
 #include "shaders/visibility_ids.spv.h"
 #include "shaders/visibility_large.spv.h"
+#include "shaders/visibility_large_int64.spv.h"
 #include "shaders/visibility_left.spv.h"
+#include "shaders/visibility_left_int64.spv.h"
 #include "shaders/visibility_medium.spv.h"
+#include "shaders/visibility_medium_int64.spv.h"
 #include "shaders/visibility_plan.spv.h"
 #include "shaders/visibility_small.spv.h"
+#include "shaders/visibility_small_int64.spv.h"
 #include "shaders/visibility_surfaces.spv.h"
 #include "shaders/visibility_unfold.spv.h"
 
@@ -19,13 +24,16 @@
 
 namespace gpgp::visibility {
 
-void addStandard(core::PassList& list, bool conservative) {
+void addStandard(core::PassList& list, const Budgets& budgets, const core::Device& device) {
   using namespace shader;
   using enum core::UseKind;
+  const bool single = device.has(GPGP_FEATURE_BUFFER_INT64_ATOMICS);
+  const auto choose = [&](std::span<const uint32_t> whole, std::span<const uint32_t> others) {
+    return single ? whole : others;
+  };
   list.dispatch("clear", addShader(list, "clear", visibility_clear),
                 {{kBindParams, read},
-                 {kBindDepth, write},
-                 {kBindIds, write},
+                 {kBindSamples, write},
                  {kBindCounters, write},
                  {kBindBits, write},
                  {kBindSizes, write},
@@ -63,30 +71,27 @@ void addStandard(core::PassList& list, bool conservative) {
 
   const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
                                    {"ids small", "ids medium", "ids large", "ids left"}};
-  for (uint32_t phase = 0; phase < 2; ++phase) {
+  for (uint32_t phase = 0; phase < (single ? 1 : 2); ++phase) {
     // Draws triangles that it makes itself, or those that have a record.
     const auto addMaking = [&](const char* name, uint32_t shader, core::UseKind queue,
                                size_t arguments) -> core::Pass& {
-      return fetchesTriangles(list.dispatchIndirect(name, shader,
-                                                    {{kBindQueue, queue},
-                                                     {kBindDepth, readWrite},
-                                                     {kBindIds, readWrite},
-                                                     {kBindSlots, readWrite},
-                                                     {kBindCounters, readWrite}},
-                                                    kBindCounters, arguments));
+      return fetchesTriangles(list.dispatchIndirect(
+          name, shader,
+          {{kBindQueue, queue}, {kBindSamples, readWrite}, {kBindSlots, readWrite}, {kBindCounters, readWrite}},
+          kBindCounters, arguments));
     };
     const auto addRecorded = [&](const char* name, uint32_t shader, size_t arguments) -> core::Pass& {
       return list.dispatchIndirect(name, shader,
                                    {{kBindParams, read},
                                     {kBindRecords, read},
-                                    {kBindDepth, readWrite},
-                                    {kBindIds, readWrite},
+                                    {kBindSamples, readWrite},
                                     {kBindSlots, readWrite},
                                     {kBindCounters, read}},
                                    kBindCounters, arguments);
     };
     if (phase == 0) {
-      addMaking(names[0][0], addShader(list, "small", visibility_small), write, offsetof(Counters, keptArgs));
+      addMaking(names[0][0], addShader(list, "small", choose(visibility_small_int64, visibility_small)), write,
+                offsetof(Counters, keptArgs));
       fetchesTriangles(
           list.dispatchIndirect("unfold", addShader(list, "unfold", visibility_unfold),
                                 {{kBindQueue, readWrite}, {kBindRecords, write}, {kBindCounters, readWrite}},
@@ -95,20 +100,23 @@ void addStandard(core::PassList& list, bool conservative) {
       addMaking(names[1][0], addShader(list, "ids", visibility_ids, 1), read, offsetof(Counters, winnerArgs));
     }
     // Minima do not depend on order: what draws goes beside what draws. Ids of all need the depth of all.
-    addRecorded(names[phase][1], addShader(list, "medium", visibility_medium, phase), offsetof(Counters, mediumArgs))
+    addRecorded(names[phase][1], addShader(list, "medium", choose(visibility_medium_int64, visibility_medium), phase),
+                offsetof(Counters, mediumArgs))
         .beside = phase == 1;
-    addRecorded(names[phase][2], addShader(list, "large", visibility_large, phase), offsetof(Counters, largeArgs))
+    addRecorded(names[phase][2], addShader(list, "large", choose(visibility_large_int64, visibility_large), phase),
+                offsetof(Counters, largeArgs))
         .beside = true;
-    addMaking(names[phase][3], addShader(list, "left", visibility_left, phase), read, offsetof(Counters, leftArgs))
+    addMaking(names[phase][3], addShader(list, "left", choose(visibility_left_int64, visibility_left), phase), read,
+              offsetof(Counters, leftArgs))
         .beside = true;
   }
-  if (conservative)
+  if (budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT)
     fetchesTriangles(list.dispatch("surfaces", addShader(list, "surfaces", visibility_surfaces),
-                                   {{kBindIds, readWrite}, {kBindRecords, write}}, kEachPixelGroups))
+                                   {{kBindSamples, readWrite}, {kBindRecords, write}}, kEachPixelGroups))
         .condition = kIfConservative;
   list.dispatch("gather", addShader(list, "gather", visibility_gather),
                 {{kBindParams, read},
-                 {kBindIds, read},
+                 {kBindSamples, read},
                  {kBindCounters, readWrite},
                  {kBindBits, readWrite},
                  {kBindSizes, readWrite}},

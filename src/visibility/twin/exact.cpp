@@ -224,10 +224,9 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
     for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
       for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
         const ivec2 pixel(x, y), point = samplePoint(pixel, grid);
-        if (!coversWide(piece.triangle, point) || !fillsPixel(piece.triangle, pixel, grid)) continue;
-        const float z = depthWide(piece.triangle, point);
-        if (depthKey(z, reversed) == out.depth[at(pixel)])
-          limits[at(pixel)] = std::min(limits[at(pixel)], fillKey(piece.triangle, z, reversed));
+        if (coversWide(piece.triangle, point) && fillsPixel(piece.triangle, pixel, grid))
+          limits[at(pixel)] =
+              std::min(limits[at(pixel)], fillKey(piece.triangle, depthWide(piece.triangle, point), reversed));
       }
 
   std::vector<Candidate> candidates;
