@@ -34,7 +34,7 @@ void drawLarge(ScreenTriangle t, uint id, uint slice, uint slices) {
       ivec3 edges = blockEdges[i] + ivec3(s0.x, s1.x, s2.x) * inBlock.x + ivec3(s0.y, s1.y, s2.y) * inBlock.y;
       bool inside = edges.x >= 0 && edges.y >= 0 && edges.z >= 0;
       if (inside && pixel.x < t.bounds.z && pixel.y < t.bounds.w)
-        coverPixel(t, pixel, depthWide(t, samplePoint(pixel, grid())), id);
+        coverPixel(t, false, pixel, depthWide(t, samplePoint(pixel, grid())), id);
     }
     barrier();
   }

@@ -156,6 +156,15 @@ GPGP_FN bool fillsPixel(ScreenTriangle t, ivec2 pixel, Grid grid) {
          fillsEdge(t.p0, edgeSlope(t.p0, t.p1), pixel, grid);
 }
 
+/// The same for compact triangles and pixels in their bounds.
+GPGP_FN bool fillsEdgeCompact(ivec2 u, ivec2 slope, ivec2 centre) {
+  return (edgeCompact(u, slope, centre) - edgeBias(slope)) >> 8 >= (abs(slope.x) + abs(slope.y) + 1) >> 1;
+}
+GPGP_FN bool fillsPixelCompact(ScreenTriangle t, ivec2 centre) {
+  return fillsEdgeCompact(t.p1, edgeSlope(t.p1, t.p2), centre) &&
+         fillsEdgeCompact(t.p2, edgeSlope(t.p2, t.p0), centre) && fillsEdgeCompact(t.p0, edgeSlope(t.p0, t.p1), centre);
+}
+
 /// Whether a triangle is large enough to: around a square there is none of less than twice its area.
 GPGP_FN bool mayFillPixel(ScreenTriangle t) { return t.inverseArea < 3.85e-6f; } // a little more than 1 / (4 * 256^2)
 

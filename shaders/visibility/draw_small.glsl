@@ -5,7 +5,7 @@ bool drawSmall(ScreenTriangle t, uint id) {
   for (int y = t.bounds.y; y < t.bounds.w; ++y)
     for (int x = t.bounds.x; x < t.bounds.z; ++x) {
       float z;
-      if (coversCompact(t, samplePoint(ivec2(x, y), grid()), z) && coverPixel(t, ivec2(x, y), z, id)) won = true;
+      if (coversCompact(t, samplePoint(ivec2(x, y), grid()), z) && coverPixel(t, true, ivec2(x, y), z, id)) won = true;
     }
   return won;
 }

@@ -27,12 +27,15 @@ shared uvec3 first;
 uvec2 inFront(ScreenTriangle t, uvec2 touched, ivec2 corner) {
   bool reversed = params.reversedDepth != 0u;
   uint nearest = depthKey(reversed ? t.zMax : t.zMin, reversed);
+  uint farthest = depthKey(reversed ? t.zMin : t.zMax, reversed);
   for (uvec2 left = touched & limited; (left.x | left.y) != 0u;) {
     int bit = lowestBit(left);
     uvec2 one = bit < 32 ? uvec2(1u << bit, 0u) : uvec2(0u, 1u << (bit - 32));
     left &= ~one;
-    bool hidden = nearest > limits[bit];
-    if (!hidden) hidden = nearestKey(t, isCompact(t), corner + ivec2(bit & 7, bit >> 3), reversed) > limits[bit];
+    uint limit = limits[bit];
+    bool hidden = nearest > limit;
+    if (!hidden && farthest > limit)
+      hidden = nearestKey(t, isCompact(t), corner + ivec2(bit & 7, bit >> 3), reversed) > limit;
     if (hidden) touched &= ~one;
   }
   return touched;

@@ -15,7 +15,7 @@ GPGP_CONST uint kMaxCameras = 128u;        ///< of one record
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
-GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle that found no record
+GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle that has no record
 GPGP_CONST uint kMaxSlices = 256u;         ///< records, a workgroup each, that share one large triangle at most
 GPGP_CONST uint kSliceBlocks = 64u;        ///< blocks of 8 x 8 pixels that one workgroup is given at least
 GPGP_CONST uint kSliceTiles = 64u;         ///< the same of exact sampling's tiles: one an invocation
@@ -253,8 +253,10 @@ struct Counters {
   uint bigArgs[3];
   uint tilePairs; // of a candidate and a tile: asked for
   uint placeArgs[3];
-  uint overlapCount; // conservative: triangles of more than 8 x 8 pixels, or clipped
+  uint overlapCount; // conservative: triangles of more than 8 x 8 pixels
   uint overlapArgs[3];
+  uint wideCount; // of more than 64 blocks of 8 x 8 pixels, or clipped
+  uint wideArgs[3];
   uint placedCount; // pairs of tiles that have their place
   uint openCount;   // pixels with lists of at most kBatch
   uint openArgs[3];
@@ -267,7 +269,7 @@ struct Counters {
   uint keptCount; // chunks that may be in sight
   uint keptArgs[3];
 };
-GPGP_CONST uint kCounterWords = 81u;
+GPGP_CONST uint kCounterWords = 85u;
 GPGP_CONST uint kReportWords = 24u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.

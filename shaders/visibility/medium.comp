@@ -24,7 +24,7 @@ void main() {
     for (int i = int(gl_LocalInvocationIndex); i < pixels; i += 64) {
       ivec2 pixel = t.bounds.xy + ivec2(i % width, i / width);
       float z;
-      if (coversCompact(t, samplePoint(pixel, grid()), z)) coverPixel(t, pixel, z, id);
+      if (coversCompact(t, samplePoint(pixel, grid()), z)) coverPixel(t, true, pixel, z, id);
     }
   }
 }

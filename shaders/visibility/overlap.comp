@@ -1,4 +1,5 @@
-// One invocation a triangle: rejects, visits the pixels of those of at most 8 x 8 pixels, and queues the others.
+// One invocation a triangle: rejects, visits the pixels of those of at most 8 x 8 pixels, and queues the others: those
+// of more than 64 such blocks, and those that are clipped, from the queue's end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
@@ -22,11 +23,14 @@ void main() {
     if (!f.valid || !isAsked(f.id)) continue;
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
-    bool queued = fate == kClipped;
+    bool wide = fate == kClipped;
+    bool queued = wide;
     if (fate == kWhole) {
       ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
       if (bounds.x >= bounds.z || bounds.y >= bounds.w || tooLarge(t)) continue;
-      queued = bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8;
+      uvec2 blocks = uvec2(bounds.zw - bounds.xy + 7) / 8u;
+      queued = blocks.x * blocks.y > 1u;
+      wide = blocks.x * blocks.y > 64u;
       if (!queued) {
         Visitor v;
         v.id = f.id;
@@ -37,7 +41,11 @@ void main() {
           for (int x = bounds.x; x < bounds.z; ++x) visit(v, t, true, depths, ivec2(x, y));
       }
     }
-    if (queued) {
+    if (wide) {
+      uint place = atomicAdd(counters.wideCount, 1u);
+      queue[params.maxItems - 1u - place] = start.x + local;
+      atomicMax(counters.wideArgs[0], min(place + 1u, kMaxGroups));
+    } else if (queued) {
       uint place = atomicAdd(counters.overlapCount, 1u);
       queue[place] = start.x + local;
       atomicMax(counters.overlapArgs[0], min(place + 1u, kMaxGroups));

@@ -1,5 +1,6 @@
-// The queued triangles, clipped where needed: kLargeSplit workgroups share one. They look at 64 blocks of 8 x 8 pixels
-// at a time, a block an invocation, and then at those that the triangle may touch, a pixel an invocation.
+// The queued triangles, clipped where needed: a workgroup each, or kLargeSplit that share a wide one. They look at 64
+// blocks of 8 x 8 pixels at a time, a block an invocation, and then at those that the triangle may touch, a pixel an
+// invocation.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/fetch.glsl"
@@ -8,6 +9,8 @@ layout(std430, set = 0, binding = kBindCounters) readonly buffer CounterBuffer {
 layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
+
+layout(constant_id = 1) const bool kWide = false;
 
 shared Visitor visitor;
 shared ScreenPolygon polygon;
@@ -58,7 +61,7 @@ void visitAll() {
   ivec2 inBlock = ivec2(int(gl_LocalInvocationIndex & 7u), int(gl_LocalInvocationIndex >> 3u));
   uint columns = uint(bounds.z - bounds.x + 7) / 8u;
   uint blocks = columns * (uint(bounds.w - bounds.y + 7) / 8u);
-  for (uint first = gl_WorkGroupID.y * 64u; first < blocks; first += kLargeSplit * 64u) {
+  for (uint first = gl_WorkGroupID.y * 64u; first < blocks; first += gl_NumWorkGroups.y * 64u) {
     if (gl_LocalInvocationIndex == 0u) blockCount = 0u;
     barrier();
     uint block = first + gl_LocalInvocationIndex;
@@ -79,10 +82,10 @@ void visitAll() {
 }
 
 void main() {
-  uint count = counters.overlapCount;
+  uint count = kWide ? counters.wideCount : counters.overlapCount;
   for (uint entry = gl_WorkGroupID.x; entry < count; entry += gl_NumWorkGroups.x) {
     barrier();
-    if (gl_LocalInvocationIndex == 0u) makeAgain(queue[entry]);
+    if (gl_LocalInvocationIndex == 0u) makeAgain(queue[kWide ? params.maxItems - 1u - entry : entry]);
     barrier();
     int parts = pieces;
     if (parts < 0) visitAll();

@@ -151,8 +151,10 @@ void main() {
     counters.winnerArgs[2] = 1u;
     counters.onScreenArgs[1] = 1u;
     counters.onScreenArgs[2] = 1u;
-    counters.overlapArgs[1] = kLargeSplit;
+    counters.overlapArgs[1] = 1u;
     counters.overlapArgs[2] = 1u;
+    counters.wideArgs[1] = kLargeSplit;
+    counters.wideArgs[2] = 1u;
     counters.leftArgs[1] = kLargeSplit;
     counters.leftArgs[2] = 1u;
   }

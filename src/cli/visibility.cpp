@@ -1,5 +1,5 @@
 // `gpgp visibility`: samples which triangles of a model one camera sees.
-#include "cli/median.h"
+#include "cli/camera_times.h"
 #include "cli/sampled_model.h"
 #include "cli/visibility_pictures.h"
 #include "host/files.h"
@@ -61,6 +61,19 @@ View viewOf(const VisibilityOptions& options, const Bounds& bounds, uint32_t k) 
   return {viewAll(bounds, options.yaw, options.pitch, options.size.width, options.size.height)};
 }
 
+std::string fixed(double value, int digits) {
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(digits);
+  text << value;
+  return text.str();
+}
+
+/// Means over cameras need not be whole.
+std::string countText(double value) { return fixed(value, std::abs(value - std::round(value)) < 0.05 ? 0 : 1); }
+
+std::string percent(double share) { return fixed(100 * share, 2) + " %"; }
+
 /// A share's average over the cameras that have one: of nothing there is none.
 struct Share {
   double sum = 0;
@@ -71,15 +84,7 @@ struct Share {
     ++cameras;
   }
   Json json() const { return cameras ? Json(sum / cameras) : Json(); }
-  std::string text() const {
-    std::ostringstream text;
-    text.precision(4);
-    if (cameras)
-      text << 100 * sum / cameras << " %";
-    else
-      text << '-';
-    return text.str();
-  }
+  std::string text() const { return cameras ? percent(sum / cameras) : "-"; }
 };
 
 /// Errors are worse than anything else.
@@ -92,11 +97,9 @@ GpgpResult worse(GpgpResult a, GpgpResult b) {
 struct Figures {
   double truth = 0, visible = 0;
   Share coverage, overestimation, coverageArea, overestimationArea;
-  double facing = 0, listed = 0, coveredPixels = 0;   ///< of a cell's last view
-  std::vector<std::pair<std::string, double>> passes; ///< milliseconds of all views of a cell
-  double milliseconds = 0;                            ///< the same of whole records, median over the cameras
-  GpuTimes times;                                     ///< the last view's
-  GpgpResult status = GPGP_SUCCESS;                   ///< of all records the worst
+  double facing = 0, listed = 0, coveredPixels = 0; ///< of a cell's last view
+  CameraTimes times;
+  GpgpResult status = GPGP_SUCCESS; ///< of all records the worst
   /// Of all records the largest; the unresolved ones of all.
   uint32_t neededCandidates = 0, neededPairs = 0, skippedTriangles = 0, skippedDraws = 0;
   uint64_t unresolved = 0;
@@ -116,14 +119,7 @@ struct Figures {
     }
   }
   /// A record of a view.
-  void add(const Measured<GpgpSampleReport>& measured, uint32_t cameras) {
-    times = measured.times;
-    if (passes.size() < times.passes.size()) passes.clear();
-    for (size_t p = 0; p < times.passes.size(); ++p) {
-      if (passes.size() <= p) passes.emplace_back(times.passes[p].first, 0.0);
-      passes[p].second += times.passes[p].second / cameras;
-    }
-    const GpgpSampleReport& report = measured.report;
+  void add(const GpgpSampleReport& report) {
     status = worse(status, report.base.status);
     neededCandidates = std::max(neededCandidates, report.neededCandidates);
     neededPairs = std::max(neededPairs, report.neededPairs);
@@ -153,13 +149,13 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
   Figures figures;
   figures.maxCandidates = scene.maxCandidates();
   figures.maxPairs = scene.maxPairs();
-  std::vector<double> totals;
+  std::vector<CameraTimes> times;
   const uint32_t cameras = options.cameras();
   for (uint32_t k = 0; k < cameras; ++k) {
     const View view = viewOf(options, bounds, k);
     const std::vector<View> views = viewsOf(cell, view, bounds.centre(), options.size.height);
-    double total = 0;
     GpgpSampleReport last{};
+    times.emplace_back();
     for (size_t v = 0; v < views.size(); ++v) {
       SampledModel::Step step;
       step.method = method;
@@ -169,11 +165,10 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       step.repeat = options.repeat;
       step.accumulate = v > 0;
       const auto measured = scene.sample(sampler, step);
-      figures.add(measured, cameras);
+      times.back().add(measured.times);
+      figures.add(measured.report);
       last = measured.report;
-      total += measured.times.median();
     }
-    totals.push_back(total);
     const std::vector<uint32_t> found = scene.bits();
     figures.add(last, found, cameras);
 
@@ -199,7 +194,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     }
     if (overlay) paintOverlay(options, corners, view, views.size() > 1, found, standard, truth);
   }
-  figures.milliseconds = medianOf(totals);
+  figures.times = medianOf(times);
   return figures;
 }
 
@@ -223,21 +218,19 @@ std::string remarks(const Model& model, const Figures& figures) {
 
 Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Figures& figures,
                   const std::string& device) {
-  const double share = 100.0 * figures.visible / model.triangleCount;
   Outcome outcome;
   std::ostringstream text;
-  text.precision(4);
   const char* first = options.cameras() > 1 ? "first " : "";
   text << options.model << ": " << model.triangleCount << " triangles in " << model.draws.size() << " draws\n"
-       << figures.visible << " visible (" << share << " %)";
+       << countText(figures.visible) << " visible (" << percent(figures.visible / model.triangleCount) << ')';
   if (options.sampling() == GPGP_SAMPLING_STANDARD)
     text << ", " << std::llround(figures.coveredPixels) << " of "
          << uint64_t{options.size.width} * options.size.height * options.samples * options.samples
          << (options.samples > 1 ? " samples covered" : " pixels covered");
-  text << "; GPU " << milliseconds(figures.milliseconds) << " (median of " << figures.times.totals.size() << ") on "
-       << device << '\n';
+  text << "; GPU " << milliseconds(figures.times.median) << " (median of " << figures.times.repeats << ") on " << device
+       << '\n';
   if (options.truth)
-    text << "truth " << figures.truth << ": coverage " << figures.coverage.text() << ", overestimation "
+    text << "truth " << countText(figures.truth) << ": coverage " << figures.coverage.text() << ", overestimation "
          << figures.overestimation.text() << "; by area " << figures.coverageArea.text() << ", "
          << figures.overestimationArea.text() << '\n';
   text << remarks(model, figures);
@@ -247,9 +240,6 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
     text << "overlay: " << options.overlay << " (from the " << first
          << "camera: green standard, grey added, red too much, blue missed)\n";
   outcome.text = text.str();
-  Json passTimes = Json::object();
-  for (const auto& [name, time] : figures.passes) // a pass may be there several times
-    passTimes[name] = passTimes.value(name, 0.0) + time;
   outcome.json = {{"model", options.model},
                   {"device", device},
                   {"status", statusName(figures.status)},
@@ -276,8 +266,8 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"skippedTriangles", figures.skippedTriangles},
                   {"skippedDraws", figures.skippedDraws},
                   {"leftOut", model.leftOut},
-                  {"gpu_ms_median", figures.milliseconds},
-                  {"passes", passTimes}};
+                  {"gpu_ms_median", figures.times.median},
+                  {"passes", figures.times.passesByName()}};
   return outcome;
 }
 

@@ -153,7 +153,11 @@ Examples:
   gpgp visibility engine.glb --size 1920x1080 --repeat 100 --json | jq .visible
   gpgp visibility engine.glb --method exact --orbit 8 --truth 64 --overlay seen.png
 
-Without --camera and --orbit the camera looks at the middle of the model from far enough to see all of it.)");
+Without --camera and --orbit the camera looks at the middle of the model from far enough to see all of it.
+
+JSON: gpu_ms_median, gpuMilliseconds and passes are milliseconds of a view's record (the median of --repeat), of a cell
+the sum over its views, of an orbit the median over its cameras; gpu_ms_median is gpuMilliseconds.median, and passes
+adds up those of gpuMilliseconds.passes that have one name. Counts and shares are averages over an orbit's cameras.)");
 }
 
 } // namespace gpgp::cli

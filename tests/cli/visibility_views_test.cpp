@@ -353,6 +353,54 @@ TEST(CliVisibilityViews, OverlaysOfCellsShowNothingThroughWalls) {
   EXPECT_EQ(count(host::readPng(png.path()), isGrey), 0u) << "the hidden square is seen from beside alone";
 }
 
+// The triangles overlap in no view, and so their numbers are known.
+TEST(CliVisibilityViews, CountsAndSharesAreWrittenOut) {
+  std::ostringstream obj;
+  for (int i = 0; i < 120; ++i)
+    for (int j = 0; j < 100; ++j) {
+      const double x = (i + 0.05) / 60 - 1, y = (j + 0.05) / 50 - 1;
+      obj << "v " << x << ' ' << y << " 0\nv " << x + 0.014 << ' ' << y << " 0\nv " << x << ' ' << y + 0.018
+          << " 0\nf -3 -2 -1\n";
+    }
+  obj << "v 5 5 0\nv 6 5 0\nv 5 6 0\nf -3 -2 -1\n";
+  const TemporaryFile many("many.obj", obj.str()), camera("many.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  const Args args{"visibility", many.path(), "--camera", camera.path(), "--size", "120x100", "--two-sided"};
+  const std::string text = gpgp(args + Args{"--method", "exact", "--truth", "16"}).out;
+  EXPECT_NE(text.find("\n12000 visible (99.99 %); GPU"), std::string::npos) << text;
+  EXPECT_NE(text.find("\ntruth 12000: coverage 100.00 %, overestimation 0.00 %;"), std::string::npos) << text;
+
+  // Of two cameras one sees the square, one the triangle.
+  const TemporaryFile both("means.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\nf 4 3 2\n");
+  const std::string means =
+      gpgp({"visibility", both.path(), "--size", "64x48", "--orbit", "2", "--method", "exact"}).out;
+  EXPECT_NE(means.find("\n1.5 visible (50.00 %)"), std::string::npos) << means;
+}
+
+TEST(CliVisibilityViews, TimesOfCellsAndOrbits) {
+  const TemporaryFile model("times.obj", kHidden), camera("times.txt", textOf(plainCamera(2)));
+  const auto sumOf = [](const json& passes) {
+    double sum = 0;
+    for (const json& pass : passes) sum += pass["milliseconds"].get<double>();
+    return sum;
+  };
+  const Args args{"visibility", model.path(), "--size", "32x32", "--method", "exact"};
+  for (const Args& more : {Args{"--camera", camera.path(), "--cell", "4x4"}, Args{"--orbit", "3"}, Args{}}) {
+    const json seen = gpgpJson(args + more);
+    const json& times = seen["gpuMilliseconds"];
+    const double median = seen["gpu_ms_median"];
+    EXPECT_EQ(times["median"], median);
+    EXPECT_EQ(times["repeats"], 1);
+    EXPECT_EQ(times["least"], median) << "of one repeat";
+    const double sum = sumOf(times["passes"]);
+    double byName = 0;
+    for (const auto& [name, time] : seen["passes"].items()) byName += time.get<double>();
+    EXPECT_NEAR(byName, sum, 1e-6);
+    // A single repeat is timed by its passes, too; medians of passes over cameras need not add up.
+    EXPECT_LE(sum, median * (more.size() == 2 ? 2 : 1.001));
+    EXPECT_GT(sum, median * 0.25) << "all views of a cell";
+  }
+}
+
 // A floor from behind the eye to far before it: half of the picture.
 TEST(CliVisibilityViews, OverlayOfWhatReachesBehindTheEye) {
   const TemporaryFile model("floor.obj", "v -500 0 500\nv 500 0 500\nv 500 0 -500\nv -500 0 -500\nf 1 2 3 4\n");

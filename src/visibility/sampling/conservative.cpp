@@ -12,36 +12,42 @@ void addConservative(core::PassList& list, const Budgets& budgets) {
   using namespace shader;
   using enum core::UseKind;
   struct Sweep {
-    uint32_t small, big; // shaders
-    const char *smallName, *bigName;
+    uint32_t small, big, wide; // shaders
+    const char *smallName, *bigName, *wideName;
   };
-  const auto makeSweep = [&](uint32_t phase, const char* smallName, const char* bigName) {
-    const uint32_t small = addShader(list, smallName, visibility_overlap, phase);
-    return Sweep{small, addShader(list, bigName, visibility_overlap_big, phase), smallName, bigName};
+  const auto makeSweep = [&](uint32_t phase, const char* smallName, const char* bigName, const char* wideName) {
+    const uint32_t small = addShader(list, smallName, visibility_overlap, {phase});
+    const uint32_t big = addShader(list, bigName, visibility_overlap_big, {phase, 0});
+    return Sweep{small,     big,     addShader(list, wideName, visibility_overlap_big, {phase, 1}),
+                 smallName, bigName, wideName};
   };
   const size_t first = list.passes.size();
   uint32_t level = 0;
   const auto addFill = [&](const char* name, core::ResourceIndex target, uint32_t value, VkDeviceSize offset,
                            VkDeviceSize size) { list.fill(name, target, value, offset, size).level = level; };
   const auto addSweep = [&](const Sweep& sweep) {
-    const auto addPass = [&](const char* name, uint32_t shader, size_t arguments) {
-      fetchesTriangles(list.dispatchIndirect(name, shader,
-                                             {{kBindCounters, readWrite},
-                                              {kBindQueue, readWrite},
-                                              {kBindSamples, read},
-                                              {kBindSurfaces, read},
-                                              {kBindGaps, readWrite},
-                                              {kBindBits, readWrite}},
-                                             kBindCounters, arguments))
-          .level = level;
+    const auto addPass = [&](const char* name, uint32_t shader, size_t arguments) -> core::Pass& {
+      core::Pass& pass = fetchesTriangles(list.dispatchIndirect(name, shader,
+                                                                {{kBindCounters, readWrite},
+                                                                 {kBindQueue, readWrite},
+                                                                 {kBindSamples, read},
+                                                                 {kBindSurfaces, read},
+                                                                 {kBindGaps, readWrite},
+                                                                 {kBindBits, readWrite}},
+                                                                kBindCounters, arguments));
+      pass.level = level;
+      return pass;
     };
     addFill("clear overlap", kBindCounters, 0, offsetof(Counters, overlapCount), 8);
+    addFill("clear wide", kBindCounters, 0, offsetof(Counters, wideCount), 8);
     addPass(sweep.smallName, sweep.small, offsetof(Counters, keptArgs));
     addPass(sweep.bigName, sweep.big, offsetof(Counters, overlapArgs));
+    addPass(sweep.wideName, sweep.wide, offsetof(Counters, wideArgs)).beside = true;
   };
-  addSweep(makeSweep(0, "overlap", "overlap big"));
-  const Sweep cover = makeSweep(1, "cover", "cover big"), nearest = makeSweep(2, "nearest", "nearest big"),
-              take = makeSweep(3, "take", "take big");
+  addSweep(makeSweep(0, "overlap", "overlap big", "overlap wide"));
+  const Sweep cover = makeSweep(1, "cover", "cover big", "cover wide"),
+              nearest = makeSweep(2, "nearest", "nearest big", "nearest wide"),
+              take = makeSweep(3, "take", "take big", "take wide");
   const VkDeviceSize pixels = budgets.pixels();
   for (level = 1; level <= kMaxRefinements; ++level) {
     if (level == 1) addFill("clear gaps", kBindGaps, 0, 0, pixels * 8);

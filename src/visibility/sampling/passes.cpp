@@ -54,10 +54,11 @@ void addResources(core::PassList& list, const Budgets& budgets) {
 }
 } // namespace
 
-uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv, uint32_t phase) {
+uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv,
+                   std::initializer_list<uint32_t> constants) {
   core::ShaderDesc desc{name, spirv};
-  desc.specialization[0] = phase;
-  desc.specializationCount = 1;
+  std::copy(constants.begin(), constants.end(), desc.specialization.begin());
+  desc.specializationCount = static_cast<uint32_t>(constants.size());
   return list.add(desc);
 }
 

@@ -40,7 +40,9 @@ void addNearby(core::PassList& list);
 void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes
 void addMetrics(core::PassList& list); ///< records that measure have these passes only
 
-uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv, uint32_t phase = 0);
+/// constants: specialisation, from 0 on.
+uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv,
+                   std::initializer_list<uint32_t> constants = {});
 /// Adds to a pass' uses those of a shader that makes triangles from the draws' items.
 core::Pass& fetchesTriangles(core::Pass& pass);
 
