@@ -28,7 +28,8 @@ typedef struct GpgpGeometrySetCreateInfo {
 #define GPGP_GEOMETRY_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGeometrySetCreateInfo, GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO)
 
 /** Checks the mesh table and queues it for upload.
- *  Errors: INVALID_ARGUMENT (mesh index in the message), INVALID_STRUCT, OUT_OF_..._MEMORY.
+ *  Errors: INVALID_ARGUMENT (mesh index in the message), UNSUPPORTED (16 bytes a mesh are more than the device binds),
+ *  INVALID_STRUCT, OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext context, const GpgpGeometrySetCreateInfo* info,
                                                     GpgpAsset* geometrySet);
@@ -49,10 +50,11 @@ typedef struct GpgpSamplerCreateInfo {
                                      (conservative: 52; exact: 16 and a fifth) */
   uint32_t maxCameras;          /**< of one record, at most 128; 0: 1 */
   uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 56 bytes each */
-  uint32_t maxTriangles;        /**< of one record, all draws and cameras together; 0: 4194304. What is beyond is not
-                                     sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle
-                                     (exact: 8, or 4 a pair if that is more), and 8 for each 64 */
-  uint32_t methods;             /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
+  uint32_t
+      maxTriangles; /**< of one record, all draws and cameras together, at most 2^30; 0: 4194304. What is beyond is not
+                         sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle
+                         (exact: 8, or 4 a pair if that is more), and 8 for each 64 */
+  uint32_t methods; /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
   uint32_t maxSamples;    /**< per pixel in each direction, a power of two up to 64; 0: 1. Scratch: the 8 bytes a pixel
                                for each of its samples */
   uint32_t maxCandidates; /**< exact: triangles that may be seen, and those that may hide them; 0: a quarter
@@ -73,13 +75,14 @@ typedef struct GpgpCameraViewCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  uint32_t maxTriangles; /**< one bit each is allocated; 0: 4194304 */
+  uint32_t maxTriangles; /**< at most 2^31; one bit each is allocated; 0: 4194304 */
 } GpgpCameraViewCreateInfo;
 #define GPGP_CAMERA_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO)
 
 /** Makes the history of one camera: all triangles unseen until its first record. It is ready once a gpgpRecordUpload
  *  has cleared it.
- *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
+ *  Errors: INVALID_ARGUMENT, UNSUPPORTED (its bits are more than the device binds), INVALID_STRUCT, OUT_OF_..._MEMORY.
+ * @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const GpgpCameraViewCreateInfo* info,
                                                    GpgpView* view);
 
@@ -247,11 +250,14 @@ typedef struct GpgpSampleInfo {
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
- *  (conservative: the earlier draw). Exact: but for pixels where more than about 1 300 candidates
- *  do not cover the pixel: there what is left, and all behind, counts as visible, which `unresolved` says.
+ *  (conservative: the earlier draw). Exact: but for pixels that more than about 1 500 candidates (1 300 of exactly one
+ *  depth) do not cover: there what is left, and all behind, counts as visible, which `unresolved` says.
  *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
  *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
- *  NOT_READY: geometry set or view not resident, or sampler not prewarmed.
+ *  NOT_READY: geometry set or view not resident, or sampler not prewarmed. INVALID_ARGUMENT, with the field's name and
+ *  what is allowed: a size, camera, method or epsilon out of range or not of the sampler's; a buffer that is missing,
+ *  too small, misaligned or larger than the device binds; fields that exclude each other; triangleCount beyond the
+ *  view's maxTriangles.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker sampler, VkCommandBuffer commandBuffer,
@@ -267,13 +273,14 @@ typedef struct GpgpVisibilityMetricsInfo {
   GpgpBuffer truthCounts;    /**< optional: their pixelCounts; without it shares by area are 0 */
   GpgpBuffer recheckBits;    /**< optional: bits of a finer truth (256 samples): a triangle that is visible and in
                                   these is part of the truth, but one that is in these only is not */
-  GpgpBuffer falsePositives; /**< out, optional: bits: visible, not in the truth */
+  GpgpBuffer falsePositives; /**< out, optional: bits, like all in words of 32: visible, not in the truth */
   GpgpBuffer falseNegatives; /**< out, optional: bits: in the truth, not visible */
 } GpgpVisibilityMetricsInfo;
 #define GPGP_VISIBILITY_METRICS_INFO_INIT GPGP_INIT(GpgpVisibilityMetricsInfo, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO)
 
 /** Compares visible bits with a truth, triangle by triangle: coverage and overestimation (6.3). Their numbers are in
- * this record's report. NOT_READY: sampler not prewarmed.
+ * this record's report. Bits and masks: a bit a triangle, in words of 32. NOT_READY: sampler not prewarmed.
+ * INVALID_ARGUMENT: a buffer that is missing or too small, with its name and the bytes that it needs.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpWorker sampler, VkCommandBuffer commandBuffer,
@@ -295,10 +302,11 @@ typedef struct GpgpSampleReport {
   uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set; instances beyond `draws` */
   uint32_t neededCandidates; /**< exact: at least, where there is too little room */
   uint32_t neededPairs;
-  uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible. For
-                             want of room: neededCandidates or neededPairs then exceed the budgets. Or whatever the
-                             budgets: what a pixel's list of more than about 1 300 leaves after a bounded time; and
-                             what more than 2^20 parts of candidates of over 8 x 8 pixels leave no place for */
+  uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible, and
+                             what they hide may be, too. For want of room: neededCandidates or neededPairs then exceed
+                           the budgets. Or whatever the  budgets: what a pixel's list of more than about 1 300 leaves
+                           after a bounded time; and  what more than 2^20 parts of candidates of over 8 x 8 pixels leave
+                           no place for */
   uint32_t neededDraws; /**< of one camera */
   uint32_t draws;       /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */
