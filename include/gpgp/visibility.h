@@ -302,6 +302,9 @@ typedef struct GpgpSampleReport {
   uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set; instances beyond `draws` */
   uint32_t neededCandidates; /**< exact: at least, where there is too little room */
   uint32_t neededPairs;
+  uint32_t maxTriangles; /**< what the sampler has room for, as all three: as it was made with, or its defaults */
+  uint32_t maxCandidates;
+  uint32_t maxPairs;
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible, and
                              what they hide may be, too. For want of room: neededCandidates or neededPairs then exceed
                            the budgets. Or whatever the  budgets: what a pixel's list of more than about 1 300 leaves

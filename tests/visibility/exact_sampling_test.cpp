@@ -195,6 +195,7 @@ TEST_F(VisibilityGpuTest, ExactWithoutRoomShowsTooMuchAndSaysSo) {
     EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
     EXPECT_GT(gpu.report.unresolved, 0u);
     EXPECT_GT(candidates ? gpu.report.neededCandidates : gpu.report.neededPairs, candidates ? 500u : 3000u);
+    EXPECT_EQ(candidates ? gpu.report.maxCandidates : gpu.report.maxPairs, candidates ? 500u : 3000u);
     EXPECT_EQ(compare(gpu.bits, twin.bits).found, compare(twin.bits, twin.bits).found);
     EXPECT_GT(gpu.report.visible, twin.counters.visible);
   }

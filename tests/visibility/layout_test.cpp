@@ -68,7 +68,7 @@ TEST(Layout, ParamsAgree) {
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 51u);
+    EXPECT_EQ(offsets.size(), 53u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);
@@ -78,6 +78,7 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, unfoldArgs);
     EXPECT_OFFSET(offsets, Counters, mediumArgs);
     EXPECT_OFFSET(offsets, Counters, largeArgs);
+    EXPECT_OFFSET(offsets, Counters, wideArgs);
     EXPECT_OFFSET(offsets, Counters, leftArgs);
     EXPECT_OFFSET(offsets, Counters, overlapArgs);
     EXPECT_OFFSET(offsets, Counters, winnerArgs);

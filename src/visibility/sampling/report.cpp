@@ -23,6 +23,9 @@ bool Sampler::takeSampleReport(GpgpSampleReport& report) {
   report.skippedDraws = counters.skippedDraws;
   report.neededCandidates = counters.candidates;
   report.neededPairs = counters.pairs;
+  report.maxTriangles = budgets_.maxTriangles;
+  report.maxCandidates = budgets_.maxCandidates;
+  report.maxPairs = budgets_.maxPairs;
   report.unresolved = counters.unresolved;
   report.neededDraws = counters.draws;
   report.draws = counters.drawsGiven;
