@@ -50,11 +50,10 @@ typedef struct GpgpSamplerCreateInfo {
                                      (conservative: 52; exact: 16 and a fifth) */
   uint32_t maxCameras;          /**< of one record, at most 128; 0: 1 */
   uint32_t maxDraws;            /**< of all cameras together; 0: 65536. Scratch: 56 bytes each */
-  uint32_t
-      maxTriangles; /**< of one record, all draws and cameras together, at most 2^30; 0: 4194304. What is beyond is not
-                         sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle
-                         (exact: 8, or 4 a pair if that is more), and 8 for each 64 */
-  uint32_t methods; /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
+  uint32_t maxTriangles;        /**< of one record, all draws and cameras together, at most 2^30; 0: 4194304. What is
+                                     beyond is not sampled and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a
+                                     triangle (exact: 8, or 4 a pair if that is more), and 8 for each 64 */
+  uint32_t methods;             /**< GPGP_SAMPLING_..._BIT of the methods it will be asked for; 0: standard */
   uint32_t maxSamples;    /**< per pixel in each direction, a power of two up to 64; 0: 1. Scratch: the 8 bytes a pixel
                                for each of its samples */
   uint32_t maxCandidates; /**< exact: triangles that may be seen, and those that may hide them; 0: a quarter
@@ -82,7 +81,7 @@ typedef struct GpgpCameraViewCreateInfo {
 /** Makes the history of one camera: all triangles unseen until its first record. It is ready once a gpgpRecordUpload
  *  has cleared it.
  *  Errors: INVALID_ARGUMENT, UNSUPPORTED (its bits are more than the device binds), INVALID_STRUCT, OUT_OF_..._MEMORY.
- * @threads context @lifetime call */
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const GpgpCameraViewCreateInfo* info,
                                                    GpgpView* view);
 
@@ -307,9 +306,9 @@ typedef struct GpgpSampleReport {
   uint32_t maxPairs;
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible, and
                              what they hide may be, too. For want of room: neededCandidates or neededPairs then exceed
-                           the budgets. Or whatever the  budgets: what a pixel's list of more than about 1 300 leaves
-                           after a bounded time; and  what more than 2^20 parts of candidates of over 8 x 8 pixels leave
-                           no place for */
+                             the budgets. Or whatever the budgets: what a pixel's list of more than about 1 300 leaves
+                             after a bounded time; and what more than 2^20 parts of candidates of over 8 x 8 pixels
+                             leave no place for */
   uint32_t neededDraws; /**< of one camera */
   uint32_t draws;       /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */

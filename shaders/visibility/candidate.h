@@ -145,9 +145,12 @@ GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool revers
   return depthKey(withinDepths(t, nearest), reversed);
 }
 
+/// By how much an edge function, in pixels, falls at most from a pixel's centre to its border.
+GPGP_FN int fallWithin(ivec2 slope) { return (abs(slope.x) + abs(slope.y) + 1) >> 1; }
+
 /// Whether an edge has all points of a pixel inside.
 GPGP_FN bool fillsEdge(ivec2 u, ivec2 slope, ivec2 pixel, Grid grid) {
-  return edgeBlock(u, slope, pixel, grid) >= (abs(slope.x) + abs(slope.y) + 1) >> 1;
+  return edgeBlock(u, slope, pixel, grid) >= fallWithin(slope);
 }
 
 /// Whether a triangle owns all points of a pixel; one sample a pixel, at its centre.
@@ -158,7 +161,7 @@ GPGP_FN bool fillsPixel(ScreenTriangle t, ivec2 pixel, Grid grid) {
 
 /// The same for compact triangles and pixels in their bounds.
 GPGP_FN bool fillsEdgeCompact(ivec2 u, ivec2 slope, ivec2 centre) {
-  return (edgeCompact(u, slope, centre) - edgeBias(slope)) >> 8 >= (abs(slope.x) + abs(slope.y) + 1) >> 1;
+  return (edgeCompact(u, slope, centre) - edgeBias(slope)) >> 8 >= fallWithin(slope);
 }
 GPGP_FN bool fillsPixelCompact(ScreenTriangle t, ivec2 centre) {
   return fillsEdgeCompact(t.p1, edgeSlope(t.p1, t.p2), centre) &&

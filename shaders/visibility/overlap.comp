@@ -30,7 +30,7 @@ void main() {
       if (bounds.x >= bounds.z || bounds.y >= bounds.w || tooLarge(t)) continue;
       uvec2 blocks = uvec2(bounds.zw - bounds.xy + 7) / 8u;
       queued = blocks.x * blocks.y > 1u;
-      wide = blocks.x * blocks.y > 64u;
+      wide = blocks.x * blocks.y > kSliceBlocks;
       if (!queued) {
         Visitor v;
         v.id = f.id;

@@ -180,7 +180,7 @@ TEST_F(EdgeTest, PositionsThatAreNoNumbersAreSkippedAndCounted) {
   }
 }
 
-// As large as viewports get. Needs a device that binds 256 MiB.
+// As large as viewports get. Needs a device that binds 512 MiB.
 TEST_F(VisibilityGpuTest, AViewportOf8192SquaredEqualsTheTwin) {
   if (device.properties().limits.maxStorageBufferRange < 8192u * 8192u * 8u)
     GTEST_SKIP() << device.name() << " binds too little for 8192 x 8192 pixels";
@@ -234,7 +234,7 @@ struct Sheets {
     return in;
   }
   /// What is so whether or not there is room for all candidates.
-  void check(const GpuResult& gpu) const {
+  void check(const GpuResult& gpu, size_t more = 0) const {
     EXPECT_EQ(gpu.report.neededTriangles, scene.params.triangleCount);
     EXPECT_EQ(gpu.report.coveredPixels, scene.params.width * scene.params.height);
     EXPECT_EQ(gpu.report.skippedTriangles, 0u);
@@ -248,9 +248,7 @@ struct Sheets {
     }
     EXPECT_EQ(lost, 0u) << "of the first sheet, which nothing hides";
     EXPECT_EQ(outside, 0u) << "of any sheet, beside the picture";
-    // A few more where what would hide them found no room.
-    EXPECT_LE(hidden, gpu.report.unresolved + gpu.report.unresolved / 10000)
-        << "behind the first sheet only what was not decided";
+    EXPECT_LE(hidden, gpu.report.unresolved + more) << "behind the first sheet only what was not decided";
     EXPECT_EQ(gpu.report.base.status, gpu.report.unresolved ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS);
   }
 };
@@ -286,7 +284,7 @@ TEST_F(VisibilityGpuTest, AHundredMillionTrianglesOfInstances) {
       createSampler(1024, 1024, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT}) {
     const GpuResult gpu = sample(scene, sampler, set, {.method = method, .byDraw = false});
-    sheets.check(gpu);
+    sheets.check(gpu, gpu.report.unresolved / 10000); // what has no room hides nothing: 23 of 24 533 399 once
     EXPECT_TRUE(gpu.report.unresolved == 0 || method == GPGP_SAMPLING_EXACT);
   }
 }
