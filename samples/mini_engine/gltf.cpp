@@ -1,4 +1,5 @@
-// glTF 2 through tinygltf: the triangles of every node of the scene, with normals, placed by the nodes' transforms.
+// glTF 2 through tinygltf: the triangles of every node of the scene, with normals, placed by the nodes' transforms. A
+// file with more than that, such as skins or compressed meshes, is refused by name.
 #include "scene.h"
 
 #include <glm/gtc/quaternion.hpp>
@@ -6,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <stdexcept>
 
@@ -105,20 +107,55 @@ void visit(Model& model, const tinygltf::Model& gltf, int index, const glm::mat4
   for (const int child : node.children) visit(model, gltf, child, world, known, depth + 1);
 }
 
+/// Throws where the file is of another version or has what this reader leaves out, and would look different without.
+void refuseOthers(const tinygltf::Model& gltf) {
+  if (gltf.asset.version.rfind("2.", 0) != 0) throw std::runtime_error("is of glTF version " + gltf.asset.version);
+  const auto refuse = [](bool has, const char* what) {
+    if (has) throw std::runtime_error(std::string("has ") + what + ", which the mini-engine does not read");
+  };
+  for (const std::string& extension : gltf.extensionsUsed)
+    refuse(extension.rfind("KHR_materials_", 0) != 0 && extension.rfind("KHR_texture_", 0) != 0, extension.c_str());
+  refuse(!gltf.skins.empty(), "skins");
+  for (const tinygltf::Accessor& accessor : gltf.accessors)
+    refuse(accessor.sparse.isSparse || accessor.bufferView < 0, "accessors that are sparse or have no bytes");
+  for (const tinygltf::Mesh& mesh : gltf.meshes)
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      refuse(!primitive.targets.empty(), "morph targets");
+      refuse(primitive.mode != TINYGLTF_MODE_TRIANGLES || primitive.indices < 0,
+             "primitives that are no indexed triangles");
+    }
+  for (const tinygltf::Material& material : gltf.materials)
+    refuse(material.alphaMode == "MASK", "alpha-tested materials");
+}
+
+/// As the reader of any .glb must (glTF 2.0, 4.4.2); tinygltf does not look.
+void checkContainer(const std::string& file) {
+  char header[8] = {};
+  std::ifstream(file, std::ios::binary).read(header, sizeof header);
+  uint32_t version = 0;
+  std::memcpy(&version, header + 4, 4);
+  if (std::memcmp(header, "glTF", 4) == 0 && version != 2)
+    throw std::runtime_error("is of container version " + std::to_string(version) + ", not 2");
+}
+
 } // namespace
 
-Model loadGltf(const std::string& file) {
+Model loadGltf(const std::string& file) try {
+  checkContainer(file);
   tinygltf::TinyGLTF loader;
   tinygltf::Model gltf;
   std::string error, warning;
-  if (!loader.LoadBinaryFromFile(&gltf, &error, &warning, file)) throw std::runtime_error(file + ": " + error);
+  if (!loader.LoadBinaryFromFile(&gltf, &error, &warning, file)) throw std::runtime_error(error);
+  refuseOthers(gltf);
   Model model;
   model.name = file.substr(file.find_last_of('/') + 1);
   std::map<int, std::vector<uint32_t>> known;
   const size_t scene = gltf.defaultScene < 0 ? 0 : static_cast<size_t>(gltf.defaultScene);
   for (const int node : gltf.scenes.at(scene).nodes) visit(model, gltf, node, glm::mat4(1.0f), known, 0);
-  if (model.triangleCount == 0) throw std::runtime_error(file + ": holds no triangles");
+  if (model.triangleCount == 0) throw std::runtime_error("holds no triangles");
   return model;
+} catch (const std::exception& problem) {
+  throw std::runtime_error(file + ": " + problem.what());
 }
 
 } // namespace mini

@@ -11,17 +11,22 @@
 
 namespace gpgp::cli {
 
-void addDraw(Model& model, const GpgpMesh& mesh, const Rows& rows, uint32_t flags) {
-  if (mesh.indexCount == 0) return;
-  const auto same = [&mesh](const GpgpMesh& other) { return other.firstIndex == mesh.firstIndex; };
-  auto known = std::find_if(model.meshes.begin(), model.meshes.end(), same);
-  if (known == model.meshes.end()) known = model.meshes.insert(known, mesh);
+uint32_t addMesh(Model& model, const GpgpMesh& mesh) {
+  if (mesh.indexCount == 0) return kNoMesh;
+  model.meshes.push_back(mesh);
+  return static_cast<uint32_t>(model.meshes.size() - 1);
+}
+
+void addDraw(Model& model, uint32_t mesh, const Rows& rows, uint32_t flags) {
+  if (mesh == kNoMesh) return;
+  const uint32_t triangles = model.meshes[mesh].indexCount / 3;
+  if (triangles > UINT32_MAX - model.triangleCount) throw std::runtime_error("has more than 2^32 - 1 triangles");
   GpgpVisibilityDraw draw{};
   std::copy(rows.begin(), rows.end(), draw.transform);
-  draw.mesh = static_cast<uint32_t>(known - model.meshes.begin());
+  draw.mesh = mesh;
   draw.firstTriangle = model.triangleCount;
   draw.flags = flags;
-  model.triangleCount += mesh.indexCount / 3;
+  model.triangleCount += triangles;
   model.draws.push_back(draw);
 }
 
@@ -32,7 +37,7 @@ Model loadModel(const std::filesystem::path& file) {
   if (extension == ".obj")
     model = loadObj(file);
   else if (extension == ".glb" || extension == ".gltf")
-    model = loadGltf(file, extension == ".glb");
+    model = loadGltf(file);
   else
     throw std::runtime_error(file.string() + ": not one of .glb, .gltf, .obj");
   if (model.triangleCount == 0) throw std::runtime_error(file.string() + ": holds no triangle");

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace gpgp::cli {
@@ -16,7 +17,8 @@ struct Model {
   std::vector<GpgpMesh> meshes;
   std::vector<GpgpVisibilityDraw> draws; ///< triangles numbered one draw after the other
   uint32_t triangleCount = 0;
-  uint32_t leftOut = 0; ///< glTF primitives that are no triangles
+  uint32_t leftOut = 0;           ///< glTF primitives that are no triangles
+  std::vector<std::string> notes; ///< what else is not shown as the file means it, each with how often
 };
 
 /// Throws std::runtime_error with the file's name, and the line for .obj.

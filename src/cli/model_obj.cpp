@@ -81,7 +81,7 @@ Model loadObj(const std::filesystem::path& file) {
       for (const size_t corner : clipEars(outline)) model.indices.push_back(corners[corner]);
     }
   }
-  addDraw(model, {0, static_cast<uint32_t>(model.indices.size()), 0}, kIdentityRows);
+  addDraw(model, addMesh(model, {0, static_cast<uint32_t>(model.indices.size()), 0}), kIdentityRows);
   return model;
 }
 

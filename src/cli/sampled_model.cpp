@@ -38,6 +38,7 @@ Sampler SampledModel::sampler(GpgpSamplingMethod method, uint32_t maxSamples) {
   info.maxSamples = maxSamples;
   info.maxCandidates = maxCandidates();
   info.maxPairs = maxPairs();
+  const Progress progress("making pipelines");
   Sampler made = session_.take(Sampler::create(session_.context(), info), "gpgpCreateSampler");
   session_.check(made.prewarm(), "gpgpPrewarm");
   return made;
@@ -115,27 +116,27 @@ GpgpSampleReport SampledModel::compare(Sampler& sampler, const std::vector<uint3
       .report;
 }
 
-std::vector<uint32_t> SampledModel::truth(const std::vector<View>& views, uint32_t samples) {
+std::vector<uint32_t> SampledModel::truth(const std::vector<View>& views, uint32_t samples,
+                                          const std::function<void(uint64_t, uint64_t)>& told) {
   uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
   const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
   while (perRecord > 1 && uint64_t{options_.size.width} * options_.size.height * perRecord * perRecord * 8 > range)
     perRecord /= 2;
   Sampler worker = sampler(GPGP_SAMPLING_TRUTH, perRecord);
   const uint32_t slices = samples / perRecord * (samples / perRecord) + 1;
-  Progress progress("truth", slices * static_cast<uint32_t>(views.size()));
-  bool first = true;
+  uint64_t done = 0;
   for (const View& view : views)
-    for (uint32_t slice = 0; slice < slices; ++slice, progress.advance()) {
+    for (uint32_t slice = 0; slice < slices; ++slice) {
       Step step;
       step.method = GPGP_SAMPLING_TRUTH;
       step.view = view;
       step.samples = samples;
       step.slice = slice;
-      step.accumulate = !first;
+      step.accumulate = done > 0;
       step.sizes = true;
       step.label = "slice";
       sample(worker, step);
-      first = false;
+      told(++done, slices * views.size());
     }
   return bits();
 }

@@ -33,7 +33,9 @@ public:
                            const std::vector<uint32_t>& areas, const std::vector<uint32_t>& recheck);
 
   /// The truth with samples x samples a pixel and the centre, for the union of views; sizes() has its areas afterwards.
-  std::vector<uint32_t> truth(const std::vector<View>& views, uint32_t samples);
+  /// `told` hears how many of how many slices are done.
+  std::vector<uint32_t> truth(const std::vector<View>& views, uint32_t samples,
+                              const std::function<void(uint64_t, uint64_t)>& told);
 
 private:
   Session& session_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 namespace gpgp::cli {
 namespace {
@@ -123,7 +124,8 @@ GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, con
   GpuTimes times;
   std::vector<std::vector<double>> perPass(passCount);
   if (repeat > 1) busy_.warmUp();
-  Progress progress(label, repeat);
+  std::optional<Progress> progress; // of single records those know that make many of them
+  if (repeat > 1) progress.emplace(label, repeat);
   const uint32_t each = repeat > 1 && timed ? 2 : 1; // records: one by pass, one as a whole; a single one is both
   for (uint32_t i = 0; i < each * repeat; ++i) {
     const bool byPass = i % 2 == 0 || each == 1, asWhole = i % 2 == 1 || each == 1;
@@ -157,7 +159,7 @@ GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, con
       perPass[p].push_back(static_cast<double>(stamps[p + 1] - stamps[p]) * period);
     const auto ends = timed && asWhole ? read(whole, 2) : std::vector<uint64_t>();
     if (!ends.empty()) times.totals.push_back(static_cast<double>(ends[1] - ends[0]) * period);
-    if (asWhole) progress.advance();
+    if (asWhole && progress) progress->advance();
   }
   // Everything is finished: one more advance makes the last report ready.
   frames_.begin();

@@ -1,13 +1,16 @@
 // `gpgp visibility`: samples which triangles of a model one camera sees.
 #include "cli/camera_times.h"
-#include "cli/sampled_model.h"
+#include "cli/cell_walls.h"
+#include "cli/progress.h"
 #include "cli/visibility_pictures.h"
+#include "cli/visibility_truth.h"
 #include "host/files.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -104,6 +107,7 @@ struct Figures {
   uint32_t neededCandidates = 0, neededPairs = 0, skippedTriangles = 0, skippedDraws = 0;
   uint64_t unresolved = 0;
   uint32_t maxCandidates = 0, maxPairs = 0; ///< given
+  uint32_t viewPoints = 0, behindWalls = 0; ///< of all cameras' cells; these were left out
   std::vector<uint32_t> found, first;       ///< of all cameras together; of the first one
 
   /// Metrics of one camera of `cameras`; areas of the truth's triangles, in samples.
@@ -152,10 +156,17 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
   std::vector<CameraTimes> times;
   const uint32_t cameras = options.cameras();
   for (uint32_t k = 0; k < cameras; ++k) {
+    const std::string label =
+        "sampling" +
+        (cameras > 1 ? " from camera " + std::to_string(k + 1) + " of " + std::to_string(cameras) : std::string());
     const View view = viewOf(options, bounds, k);
-    const std::vector<View> views = viewsOf(cell, view, bounds.centre(), options.size.height);
+    std::vector<View> views = viewsOf(cell, view, bounds.centre(), options.size.height);
+    figures.viewPoints += static_cast<uint32_t>(views.size());
+    if (!options.throughWalls) figures.behindWalls += leaveOutBehindWalls(views, model);
     GpgpSampleReport last{};
     times.emplace_back();
+    std::optional<Progress> progress;
+    if (options.repeat == 1) progress.emplace(label, views.size());
     for (size_t v = 0; v < views.size(); ++v) {
       SampledModel::Step step;
       step.method = method;
@@ -168,7 +179,9 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       times.back().add(measured.times);
       figures.add(measured.report);
       last = measured.report;
+      if (progress) progress->advance();
     }
+    progress.reset();
     const std::vector<uint32_t> found = scene.bits();
     figures.add(last, found, cameras);
 
@@ -182,16 +195,18 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       standard = scene.bits();
     }
     if (options.truth) {
-      truth = scene.truth(views, options.truth);
-      const std::vector<uint32_t> areas = scene.sizes();
+      const bool again = options.recheck > options.truth;
+      auto [bits, areas] = truthOf(scene, options, model, views, options.truth);
+      truth = std::move(bits);
       GpgpSampleReport metrics = scene.compare(sampler, found, truth, areas, {});
-      if (metrics.falsePositives && options.recheck > options.truth) {
-        const std::vector<uint32_t> finer = scene.truth(views, options.recheck);
+      if (metrics.falsePositives && again) {
+        const std::vector<uint32_t> finer = truthOf(scene, options, model, views, options.recheck).bits;
         metrics = scene.compare(sampler, found, truth, areas, finer);
         for (size_t i = 0; i < truth.size(); ++i) truth[i] |= found[i] & finer[i]; // as the metrics count them
       }
       figures.addMetrics(metrics, areas, cameras);
     }
+    const Progress painting("painting");
     if (overlay) paintOverlay(options, corners, view, views.size() > 1, found, standard, truth);
   }
   figures.times = medianOf(times);
@@ -211,8 +226,12 @@ std::string remarks(const Model& model, const Figures& figures) {
             "that\n";
   if (figures.skippedTriangles)
     text << figures.skippedTriangles << " triangles skipped: a coordinate is not finite or reaches 2^100\n";
+  if (figures.behindWalls)
+    text << figures.behindWalls << " of " << figures.viewPoints
+         << " view points left out: a triangle lies between them and the middle (--through-walls keeps them)\n";
   if (figures.skippedDraws) text << figures.skippedDraws << " draws skipped: they have no mesh\n";
   if (model.leftOut) text << model.leftOut << " primitives are no triangles and were left out\n";
+  for (const std::string& note : model.notes) text << note << '\n';
   return text.str();
 }
 
@@ -230,9 +249,9 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
   text << "; GPU " << milliseconds(figures.times.median) << " (median of " << figures.times.repeats << ") on " << device
        << '\n';
   if (options.truth)
-    text << "truth " << countText(figures.truth) << ": coverage " << figures.coverage.text() << ", overestimation "
-         << figures.overestimation.text() << "; by area " << figures.coverageArea.text() << ", "
-         << figures.overestimationArea.text() << '\n';
+    text << (options.truthDevice == "cpu" ? "truth by rays " : "truth ") << countText(figures.truth) << ": coverage "
+         << figures.coverage.text() << ", overestimation " << figures.overestimation.text() << "; by area "
+         << figures.coverageArea.text() << ", " << figures.overestimationArea.text() << '\n';
   text << remarks(model, figures);
   if (!options.image.empty())
     text << "picture: " << options.image << " (left: from the " << first << "camera; right: from the side)\n";
@@ -255,6 +274,9 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"gpuMilliseconds", figures.times.json()},
                   {"image", options.image.empty() ? Json() : Json(options.image)},
                   {"cameras", options.cameras()},
+                  {"viewPoints", figures.viewPoints},
+                  {"behindWalls", figures.behindWalls},
+                  {"truthDevice", options.truth ? Json(options.truthDevice) : Json()},
                   {"truth", options.truth ? Json(std::llround(figures.truth)) : Json()},
                   {"coverage", figures.coverage.json()},
                   {"overestimation", figures.overestimation.json()},
@@ -266,6 +288,7 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"skippedTriangles", figures.skippedTriangles},
                   {"skippedDraws", figures.skippedDraws},
                   {"leftOut", model.leftOut},
+                  {"notes", model.notes},
                   {"gpu_ms_median", figures.times.median},
                   {"passes", figures.times.passesByName()}};
   return outcome;
@@ -276,7 +299,10 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
   if (options.needlessSamples)
     std::fprintf(stderr, "gpgp visibility: note: --samples changes nothing here; the exact method decides at points of "
                          "each triangle's own\n");
-  Model model = loadModel(options.model);
+  Model model = [&options] {
+    const Progress progress("reading " + options.model);
+    return loadModel(options.model);
+  }();
   if (options.twoSided)
     for (GpgpVisibilityDraw& draw : model.draws) draw.flags |= GPGP_DRAW_TWO_SIDED;
   Session session(common);
@@ -290,6 +316,7 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
   const std::vector<glm::vec3> corners = paints ? worldCorners(model) : std::vector<glm::vec3>();
   const Figures figures = measure(session, options, cell, model, bounds, corners);
   if (!options.exportIds.empty()) writeIds(options.exportIds, figures.found, model.triangleCount);
+  const Progress painting("painting");
   if (!options.image.empty()) paintSeen(options, corners, viewOf(options, bounds, 0), bounds, figures.first);
   session.checkValidation();
   return outcomeOf(options, model, figures, session.device().name());

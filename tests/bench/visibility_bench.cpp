@@ -3,11 +3,13 @@
 //
 // As a test it runs on small ones. Asserts nothing about time, but fails where exact
 // sampling shows over 1.5 % that the truth does not hold, or a budget is exceeded.
+#include "../visibility/ray_scene_of.h"
 #include "arguments.h"
 #include "spawned_scenes.h"
 #include "visibility_figures.h"
 
 #include "cli/model.h"
+#include "cli/processors.h"
 
 #include <cmath>
 #include <cstring>
@@ -20,6 +22,7 @@ using namespace gpgp::test;
 
 struct Options {
   uint32_t width = 160, height = 90, truth = 64, recheck = 0;
+  bool rays = false; ///< the truth is theirs
   bool clusters = false, newClusters = false, order = false;
   bool passes = false, exactOnly = false, figures = false, tables = false, views = false, walk = false;
   FigureOptions figure;
@@ -110,16 +113,28 @@ void orderTriangles(Scene& scene) {
   }
 }
 
-bool benchScene(Runner& runner, const std::string& name, const Options& options) {
+bool benchScene(Runner& runner, const Scene& scene, const std::string& name, const Options& options) {
   const std::span<const GpgpCamera> camera(&runner.camera(), 1);
   host::Buffer truth = runner.makeBits(), recheck = runner.makeBits(), counts = runner.makeCounts();
-  if (options.truth) runner.truth(options.truth, camera, truth, &counts);
-  if (options.truth && options.recheck) runner.truth(options.recheck, camera, recheck);
+  if (options.rays && options.truth) {
+    const RaySceneOf asRays(scene);
+    const auto cast = [&](uint32_t samples) {
+      return rayTruth(asRays, scene, samples,
+                      [](size_t count, const auto& work) { cli::onAllProcessors(count, work); });
+    };
+    const visibility::RayTruth rays = cast(options.truth);
+    truth = runner.copy(rays.bits());
+    counts = runner.copy(rays.areas());
+    if (options.recheck) recheck = runner.copy(cast(options.recheck).bits());
+  } else if (options.truth) {
+    runner.truth(options.truth, camera, truth, &counts);
+    if (options.recheck) runner.truth(options.recheck, camera, recheck);
+  }
   Sampler standard = runner.sampler(GPGP_SAMPLING_STANDARD_BIT, 1);
   std::printf("%s: %u triangles", name.c_str(), runner.triangles());
   if (options.truth)
-    std::printf(", %u visible at %u x %u + 1 samples", runner.metrics(standard, truth, truth, nullptr, nullptr).truth,
-                options.truth, options.truth);
+    std::printf(", %u visible at %u x %u + 1 %s", runner.metrics(standard, truth, truth, nullptr, nullptr).truth,
+                options.truth, options.truth, options.rays ? "rays" : "samples");
   std::printf("\n  %-16s %9s %9s %9s %9s %9s %7s %10s %10s\n", "method", "visible", "cov %", "cov area", "over %", "ms",
               "ratio", "candidates", "pairs");
   double baseline = 0;
@@ -191,8 +206,9 @@ void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
 } // namespace
 
 const char* const kUsage =
-    "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] "
+    "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] [--rays] "
     "[--passes] [--exact] [--order] [--clusters] [SCENE]...\n"
+    "  --rays   the truth is of rays in double precision on the processor, which snap nothing\n"
     "  --crop   a window of that picture, whose pixels are as small as the picture's\n"
     "  --exact  without the thesis's method\n"
     "  --order, --clusters, --new-clusters\n"
@@ -233,6 +249,8 @@ int runBench(bench::Arguments arguments) {
       options.figure.repeat = arguments.number();
     } else if (arg == "--truth") {
       options.truth = arguments.number(0);
+    } else if (arg == "--rays") {
+      options.rays = true;
     } else if (arg == "--recheck") {
       options.recheck = arguments.number(0);
     } else if (arg == "--grid") {
@@ -299,7 +317,7 @@ int runBench(bench::Arguments arguments) {
       printWalkingCell(runner, title, scene.params.height, options.figure);
       continue;
     }
-    if (!options.figures || options.tables) good = benchScene(runner, title, options) && good;
+    if (!options.figures || options.tables) good = benchScene(runner, scene, title, options) && good;
     if (options.figures) printFigures(runner, title, scene.params.height, options.figure);
     std::fflush(stdout);
   }

@@ -78,6 +78,7 @@ public:
   const GpgpCamera& camera() const { return camera_; }
   host::Buffer makeBits() { return {device_, VkDeviceSize(std::max((triangles() + 31) / 32, 1u)) * 4, kStorage}; }
   host::Buffer makeCounts() { return {device_, VkDeviceSize(triangles()) * 4, kStorage}; }
+  host::Buffer copy(const std::vector<uint32_t>& words) { return host::makeBuffer(device_, words, kStorage, "copy"); }
   const host::Buffer& bits() const { return bits_; }
 
   /// Room for `triangles`.

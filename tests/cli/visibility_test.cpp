@@ -47,6 +47,9 @@ TEST(CliVisibility, SeesWhatIsInFront) {
                                                 "gpuMilliseconds",
                                                 "image",
                                                 "cameras",
+                                                "viewPoints",
+                                                "behindWalls",
+                                                "truthDevice",
                                                 "truth",
                                                 "coverage",
                                                 "overestimation",
@@ -58,6 +61,7 @@ TEST(CliVisibility, SeesWhatIsInFront) {
                                                 "skippedTriangles",
                                                 "skippedDraws",
                                                 "leftOut",
+                                                "notes",
                                                 "gpu_ms_median",
                                                 "passes"}));
   EXPECT_TRUE(front["coverage"].is_null()) << "no truth was asked for";
