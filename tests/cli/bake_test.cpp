@@ -154,6 +154,7 @@ TEST(CliBake, SaysWhatIsNotDrawn) {
   EXPECT_EQ(told[0]["severity"], "error");
   EXPECT_EQ(told[0]["element"], "path");
   EXPECT_EQ(told[0]["line"], 2);
+  EXPECT_EQ(told[0]["column"], 19); // in the data
   EXPECT_EQ(told[1]["severity"], "warning");
   EXPECT_EQ(told[1]["line"], 3);
   for (const json& message : told)
