@@ -104,6 +104,8 @@ const Property kProperties[] = {
      "><stop stop-color='#fff'/><stop offset='1'/></linearGradient><path d='M49 0H51V100H49Z' fill='url(#g)'/>",
      as("<linearGradient id='g' style='color-interpolation:linearRGB'><stop stop-color='#fff'/><stop offset='1'/>"
         "</linearGradient><path d='M49 0H51V100H49Z' fill='url(#g)'/>")},
+    {"color-interpolation", "linearRGB", "<path d='M0 0h9v9' fill-opacity='.5' ", "/>",
+     named("color-interpolation of what is painted, linearRGB, is not supported")},
     {"clip-path", "url(#c)", kClip, "/>", as("<rect x='20' y='20' width='30' height='60' fill='#0a0'/>")},
     {"clip-path", "circle(20px)", kRect, "/>", named("is no clipPath of this file")},
     {"clip-rule", "evenodd", "<clipPath id='c'><path d='M0 0H100V100H0ZM30 30H70V70H30Z' ",

@@ -203,6 +203,19 @@ TEST(SvgSheets, TheirPlacesAreTheText) {
                    "test.svg:5:8: warning: style selector 'c:d' is not supported"}));
 }
 
+TEST(SvgSheets, RulesInsideOfOthersAreNamed) {
+  const Import i = sheeted("", "<style>.a { fill:red; &:hover { fill:blue } } </style>", {});
+  EXPECT_EQ(colorOf(i), 'r');
+  EXPECT_EQ(i.placed, Texts{"test.svg:1:120: warning: <rect> has the declaration '&:hover { fill:blue }', which is not "
+                            "supported; ignored"});
+}
+
+TEST(SvgSheets, MarkersThatAreTakenBackAreNotNamed) {
+  EXPECT_EQ(page("<g marker-end='url(#m)'><path d='M0 0h9v9' marker='url(#n)' style='marker:none'/></g>").placed,
+            Texts());
+  EXPECT_EQ(page("<g marker='url(#m)'><path d='M0 0h9v9' marker-end='none'/></g>").placed.size(), 1u);
+}
+
 TEST(SvgSheets, TheyAreBounded) {
   // A tree of imports, each of two others; and one that is long.
   TextFiles files;

@@ -53,6 +53,8 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   const Affine fitted = Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, aspectRatio(node));
+  if (state.style.overflowVisible && aspectRatio(node).slice)
+    reporter_.warn(place, "overflow 'visible' is not supported: <image> is drawn without it");
   // What of the picture is within its place.
   const double left = std::max(x, fitted.e), top = std::max(y, fitted.f);
   const double right = std::min(x + w, fitted.e + pw * fitted.a), bottom = std::min(y + h, fitted.f + ph * fitted.d);

@@ -294,15 +294,19 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
 }
 
 void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style) {
+  const bool isShape = oneOf(name, kShapes);
+  const bool isFaint = style.opacity * style.fillOpacity * style.strokeOpacity < 1 || style.fill.color.a < 1;
   const struct {
     bool is;
     const char* what;
-  } features[] = {{mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
-                  {style.mask, "mask"},
-                  {style.filter, "filter"},
-                  {style.blendMode, "mix-blend-mode"},
-                  {style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
-                  {!style.markers.empty() && name != "g" && name != "svg" && oneOf(name, kShapes), "marker"}};
+  } features[] = {
+      {mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
+      {style.mask, "mask"},
+      {style.filter, "filter"},
+      {style.blendMode, "mix-blend-mode"},
+      {style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
+      {isShape && std::find(style.markers.begin(), style.markers.end(), true) != style.markers.end(), "marker"},
+      {isShape && style.mixesLinear && isFaint, "color-interpolation of what is painted, linearRGB,"}};
   for (const auto& f : features)
     if (f.is)
       reporter_.warn(document_.place(node),

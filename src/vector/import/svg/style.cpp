@@ -294,9 +294,10 @@ bool setBackground(const Context& c) {
   }
   return !c.value.empty() && (c.style.background = background, true);
 }
-bool setMarker(const Context& c, const char* name) {
-  if (!isWord(c.value, "none")) c.style.markers = name;
-  return true;
+bool setMarker(const Context& c, bool& marker) { return marker = !isWord(c.value, "none"), !c.value.empty(); }
+bool setMarkers(const Context& c) {
+  std::array<bool, 3>& all = c.style.markers;
+  return setMarker(c, all[0]) && (all = {all[0], all[0], all[0]}, true);
 }
 bool setRefers(const Context& c, bool& flag) { return flag = !isWord(c.value, "none") && !c.value.empty(), true; }
 
@@ -344,10 +345,10 @@ const Property kProperties[] = {
     GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
     GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
     GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = !isWord(c.value, "normal"), true)),
-    GPGP_PROPERTY("marker", markers, setMarker(c, "marker")),
-    GPGP_PROPERTY("marker-start", markers, setMarker(c, "marker-start")),
-    GPGP_PROPERTY("marker-mid", markers, setMarker(c, "marker-mid")),
-    GPGP_PROPERTY("marker-end", markers, setMarker(c, "marker-end")),
+    GPGP_PROPERTY("marker", markers, setMarkers(c)),
+    GPGP_PROPERTY("marker-start", markers[0], setMarker(c, c.style.markers[0])),
+    GPGP_PROPERTY("marker-mid", markers[1], setMarker(c, c.style.markers[1])),
+    GPGP_PROPERTY("marker-end", markers[2], setMarker(c, c.style.markers[2])),
 };
 #undef GPGP_PROPERTY
 
@@ -461,6 +462,7 @@ bool hasUnsupported(std::string_view value) {
       "canvastext",  "field",           "fieldtext",    "graytext",         "highlight",  "highlighttext", "linktext",
       "mark",        "marktext",        "selecteditem", "selecteditemtext", "visitedtext"};
   if (oneOf(trim(lower), systemColors)) return true;
+  if (lower.find('{') != lower.npos) return true;                                             // rules inside of others
   if (lower.find("(from ") != lower.npos || lower.find("( from ") != lower.npos) return true; // a colour of another one
   for (Scanner s(lower); !s.done();) {
     double number = 0;

@@ -3,6 +3,7 @@
 #include "vector/geometry/stroke.h"
 #include "vector/import/svg/scanner.h"
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -37,7 +38,7 @@ struct Style {
   Color color;
   bool visible = true, strokeFirst = false, mixesLinear = false; ///< the last: of its gradient's stops
   double fontSize = 16;
-  std::string markers; ///< the property that asks for some
+  std::array<bool, 3> markers{}; ///< at the start, in the middle, at the end
   // not inherited
   double opacity = 1;
   bool displayed = true, nonScalingStroke = false, overflowVisible = false;

@@ -117,7 +117,9 @@ std::vector<Declaration> parseDeclarations(std::string_view original) {
   std::vector<Declaration> declarations;
   split(text, ';', [&declarations](std::string_view part) {
     const size_t colon = part.find(':');
-    if (colon == part.npos) {
+    Scanner name(trim(part.substr(0, colon == part.npos ? 0 : colon)));
+    name.name();
+    if (colon == part.npos || !name.done()) { // the latter may be a rule inside of another
       if (part = trim(part); !part.empty()) declarations.push_back({"", std::string(part), false});
       return;
     }

@@ -17,7 +17,7 @@ struct Declaration {
   std::string name, value;
   bool important = false;
 };
-/// "name: value; name: value !important".
+/// "name: value; name: value !important". What is no declaration has no name.
 std::vector<Declaration> parseDeclarations(std::string_view text);
 
 class StyleSheet {
