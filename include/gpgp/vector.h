@@ -154,7 +154,8 @@ typedef struct GpgpSvgSource {
   const void* data; /**< SVG or gzip-compressed SVG (.svgz) */
   size_t size;
   GpgpMessageFn messageFn; /**< errors, and as warnings what is unsupported (code UNSUPPORTED) or not valid
-                                (INVALID_DATA): "name:line:column: warning: text", with the element in the text */
+                                (INVALID_DATA), with the element. The label is the place, "name:line:column",
+                                or of a style sheet's file, or only the name */
   void* messageUserData;
   const GpgpJobSystem* jobSystem; /**< optional: converts paths side by side */
   GpgpSvgReport* report;          /**< optional, written where the import succeeds */

@@ -31,13 +31,13 @@ private:
   struct Message {
     GpgpSeverity severity;
     GpgpResult code;
-    std::string text;
+    std::string label, text;
   };
   static void GPGP_CALL take(void* userData, const GpgpMessage* message);
   void print();
 
   size_t shown_, printed_ = 0;
-  std::string label_;
+  std::string name_; ///< of the drawing
   std::vector<Message> list_;
 };
 

@@ -355,7 +355,9 @@ TEST(SvgImport, APathOfTooManyCrossingsIsLeftOut) {
   source.size = text.size();
   source.report = &report;
   source.messageUserData = &messages;
-  source.messageFn = [](void* user, const GpgpMessage* m) { static_cast<Texts*>(user)->push_back(withLine(m->text)); };
+  source.messageFn = [](void* user, const GpgpMessage* m) {
+    static_cast<Texts*>(user)->push_back(withLine(placed(*m)));
+  };
   GpgpBlob blob{};
   ASSERT_EQ(gpgpCompileSvg(&source, &blob), GPGP_SUCCESS);
   EXPECT_EQ(messages, (Texts{"line 3: <path>: the path crosses itself more than 4194304 times; not drawn"}));
@@ -1042,7 +1044,7 @@ TEST(SvgImport, EmbeddedImagesGoToWhoeverDecodes) {
   const auto take = [&](const std::string& inside, Texts& messages) {
     const std::string text = "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>\n" + inside + "</svg>";
     vector::svg::Reporter reporter(
-        [](void* user, const GpgpMessage* m) { static_cast<Texts*>(user)->push_back(withLine(m->text)); }, &messages,
+        [](void* user, const GpgpMessage* m) { static_cast<Texts*>(user)->push_back(withLine(placed(*m))); }, &messages,
         "");
     auto svg = vector::svg::importSvg(std::as_bytes(std::span(text)), reporter, {}, {decode, &seen});
     EXPECT_TRUE(svg);

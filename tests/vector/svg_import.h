@@ -25,6 +25,11 @@ struct TextFiles : std::map<std::string, std::string> {
   }
 };
 
+/// As the command prints it: "a.svg:3:7: warning: text".
+inline std::string placed(const GpgpMessage& message) {
+  return std::string(message.label) + (message.severity == GPGP_SEVERITY_ERROR ? ": error: " : ": warning: ") +
+         message.text;
+}
 /// "a.svg:3:7: warning: text" as "line 3: text".
 inline std::string withLine(const std::string& message) {
   const size_t word = std::min(message.find(": error: "), message.find(": warning: "));
@@ -45,7 +50,7 @@ inline Import import(std::string_view text, const vector::svg::ImportLimits& lim
   Import result;
   const auto listen = [](void* user, const GpgpMessage* m) {
     auto& into = *static_cast<Import*>(user);
-    const std::string whole = m->text;
+    const std::string whole = test::placed(*m);
     into.placed.push_back(whole);
     into.messages.push_back((m->severity == GPGP_SEVERITY_ERROR ? "E " : "W ") + withLine(whole));
   };

@@ -28,7 +28,7 @@ public:
   Reporter(GpgpMessageFn function, void* userData, const char* name)
       : function_(function), userData_(userData), name_(name ? name : "") {}
 
-  /// "file:line:column: warning: text". The same text for the same place is given once.
+  /// The label is the place, "file:line:column". The same text for the same place is given once.
   /// For what the importer cannot do.
   void warn(const Place& place, const std::string& text) {
     say(GPGP_SEVERITY_WARNING, GPGP_ERROR_UNSUPPORTED, place, text);
@@ -46,27 +46,27 @@ public:
   void error(const std::string& text, GpgpResult code) {
     const size_t digits = text.find_first_not_of("0123456789:");
     const bool placed = digits != text.npos && digits > 1 && text.substr(digits - 1, 2) == ": ";
-    std::string whole = name_;
-    if (placed) whole.append(whole.empty() ? "" : ":").append(text, 0, digits - 1);
-    whole.append(whole.empty() ? "error: " : ": error: ").append(text, placed ? digits + 1 : 0);
-    call(GPGP_SEVERITY_ERROR, code, whole.c_str());
+    const std::string place = placed ? labelOf(name_, text.substr(0, digits - 1)) : name_;
+    call(GPGP_SEVERITY_ERROR, code, place, text.substr(placed ? digits + 1 : 0));
   }
 
 private:
   static constexpr size_t kMaxMessages = 1000;
 
+  static std::string labelOf(std::string_view file, const std::string& place) {
+    return file.empty() ? place : std::string(file) + ":" + place;
+  }
   void say(GpgpSeverity severity, GpgpResult code, const Place& place, const std::string& text) {
     if (said_.size() > kMaxMessages) return;
-    std::string whole(place.file.empty() ? std::string_view(name_) : place.file);
-    if (!whole.empty()) whole += ':';
-    whole += std::to_string(place.line) + ':' + std::to_string(place.column) +
-             (severity == GPGP_SEVERITY_ERROR ? ": error: " : ": warning: ") + text;
-    if (!said_.insert(whole).second) return;
-    call(severity, code,
-         said_.size() > kMaxMessages ? "more than 1000 messages; the rest are left out" : whole.c_str());
+    const std::string label = labelOf(place.file.empty() ? std::string_view(name_) : place.file,
+                                      std::to_string(place.line) + ":" + std::to_string(place.column));
+    if (!said_.insert(label + ": " + text).second) return;
+    if (said_.size() > kMaxMessages)
+      return call(severity, code, name_, "more than 1000 messages; the rest are left out");
+    call(severity, code, label, text);
   }
-  void call(GpgpSeverity severity, GpgpResult code, const char* text) {
-    const GpgpMessage message{severity, code, "gpgpCompileSvg", name_.c_str(), text};
+  void call(GpgpSeverity severity, GpgpResult code, const std::string& label, const std::string& text) {
+    const GpgpMessage message{severity, code, "gpgpCompileSvg", label.c_str(), text.c_str()};
     if (function_) function_(userData_, &message);
   }
 
