@@ -297,7 +297,7 @@ TEST(CliVector, WhatIsNotValidIsNamedAndNotUnsupported) {
   EXPECT_EQ(drawn["unsupported"], json::array());
   EXPECT_EQ(drawn["warnings"], 2);
   EXPECT_NE(result.err.find("invalid.svg:2:1: warning: <path> has fill 'blurple'"), std::string::npos) << result.err;
-  EXPECT_NE(result.err.find("invalid.svg:3:21: error: <path> has an error in its path data"), std::string::npos)
+  EXPECT_NE(result.err.find("invalid.svg:3:23: error: <path> has an error in its path data"), std::string::npos)
       << result.err;
 }
 
