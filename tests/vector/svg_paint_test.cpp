@@ -125,7 +125,7 @@ TEST(SvgPaint, GradientsTakeWhatTheirTemplatesHave) {
   EXPECT_EQ(page("\n" + linear("href=''")).messages.size(), 1u);
   std::string chain;
   for (int i = 0; i < 40; ++i)
-    chain += "<linearGradient id='" + std::string(i ? "c" + std::to_string(i) : "g") + "' href='#c" +
+    chain += std::string("<linearGradient id='") + std::string(i ? "c" + std::to_string(i) : "g") + "' href='#c" +
              std::to_string(i + 1) + "'/>";
   chain += "<linearGradient id='c40'>" + stops + "</linearGradient>" + rect;
   ASSERT_EQ(page(chain).messages.size(), 2u);

@@ -220,11 +220,12 @@ TEST(SvgSheets, TheyAreBounded) {
   // A tree of imports, each of two others; and one that is long.
   TextFiles files;
   for (int i = 0; i < 30; ++i) {
-    const std::string next = "'" + std::to_string(i + 1) + ".css';";
+    std::string next = "'";
+    next.append(std::to_string(i + 1)).append(".css';");
     files[std::to_string(i) + ".css"] = "@import " + next + "@import " + next;
   }
-  files["long.css"] = ".a{fill:red}" + std::string(size_t(17) << 20, ' ');
-  files["half.css"] = ".a{fill:red}" + std::string(size_t(9) << 20, ' ');
+  files["long.css"] = std::string(".a{fill:red}") + std::string(size_t(17) << 20, ' ');
+  files["half.css"] = std::string(".a{fill:red}") + std::string(size_t(9) << 20, ' ');
   const Import tree = sheeted("", "<style>@import '0.css';</style>", files);
   EXPECT_FALSE(tree.placed.empty());
   EXPECT_LE(tree.placed.size(), 130u);

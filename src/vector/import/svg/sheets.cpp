@@ -113,7 +113,7 @@ void Importer::readSheets() {
 }
 
 void Importer::readStyleElement(pugi::xml_node node, const Place& place, std::string_view name) {
-  const std::string who = "<" + std::string(name) + ">";
+  const std::string who = name == "link" ? "<link>" : "<style>";
   const std::string_view type = node.attribute("type").value(), media = node.attribute("media").value();
   if (name == "link") {
     bool isSheet = false, isAlternate = false;
@@ -152,7 +152,7 @@ void Importer::readStyleElement(pugi::xml_node node, const Place& place, std::st
 bool Importer::isForScreen(std::string_view media, const Place& place, const std::string& who) {
   const Media is = evaluateMedia(media);
   if (is == Media::Unknown)
-    reporter_.warn(place, "media '" + std::string(media.substr(0, 60)) + "' is not supported: " + who +
+    reporter_.warn(place, std::string("media '") + std::string(media.substr(0, 60)) + "' is not supported: " + who +
                               " does not count for it");
   return is == Media::Yes;
 }
@@ -165,7 +165,7 @@ void Importer::parseSheet(std::string_view text, std::string_view folder, const 
 
 void Importer::readSheet(std::string_view href, std::string_view folder, const Place& place, size_t depth) {
   href = trim(href);
-  const std::string shown = "the style sheet '" + std::string(href.substr(0, 60)) + "' ";
+  const std::string shown = std::string("the style sheet '") + std::string(href.substr(0, 60)) + "' ";
   const auto refused = [&](const std::string& why) { reporter_.warn(place, shown + why + "; it does not count"); };
   const auto invalid = [&](const std::string& why) { reporter_.ignored(place, shown + why + "; it does not count"); };
   if (depth > kMaxDepth) return refused("is imported through more than 16 others");

@@ -180,8 +180,8 @@ void StyleSheet::readAtRule(std::string_view name, std::string_view prelude, std
                             const Place& blockPlace, Reading& reading) {
   constexpr size_t kMaxDepth = 32;
   Reporter& reporter = reading.reporter;
-  const std::string rule = "style rule @" + std::string(name.substr(0, 40));
-  const std::string shown = "'" + std::string(prelude.substr(0, 60)) + "'";
+  const std::string rule = std::string("style rule @") + std::string(name.substr(0, 40));
+  const std::string shown = std::string("'") + std::string(prelude.substr(0, 60)) + "'";
   if (isWord(name, "charset")) return;
   if (isWord(name, "import")) {
     if (!reading.importsCount || reading.depth)
@@ -229,7 +229,8 @@ void StyleSheet::readRule(std::string_view selectors, std::string_view declarati
     rule.block = block;
     const Selector read = readSelector(selector, rule);
     if (read == Selector::Read) return rules.push_back(std::move(rule));
-    const std::string said = "style selector '" + std::string(trim(withoutComments(selector)).substr(0, 60)) + "' is ";
+    const std::string said =
+        std::string("style selector '") + std::string(trim(withoutComments(selector)).substr(0, 60)) + "' is ";
     if (read == Selector::Unsupported) return reading.reporter.warn(place, said + "not supported");
     valid = false; // and with it all of the rule
     reading.reporter.ignored(place, said + "not valid; its rule is ignored");
