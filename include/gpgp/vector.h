@@ -154,7 +154,8 @@ typedef struct GpgpSvgSource {
   const void* data; /**< SVG or gzip-compressed SVG (.svgz) */
   size_t size;
   GpgpMessageFn messageFn; /**< errors, and as warnings what is unsupported (code UNSUPPORTED) or not valid
-                                (INVALID_DATA), with element and line */
+                                (INVALID_DATA), with the element. The label is the place, "name:line:column",
+                                or of a style sheet's file, or only the name */
   void* messageUserData;
   const GpgpJobSystem* jobSystem; /**< optional: converts paths side by side */
   GpgpSvgReport* report;          /**< optional, written where the import succeeds */
@@ -165,6 +166,9 @@ typedef struct GpgpSvgSource {
   float scale; /**< the largest at which the drawing is shown, pixels per pixel of its page; 0: 1. There strokes are off
                     by less than a twentieth of a pixel and arcs by less than 1e-4, and strokes that do not scale have
                     their width */
+  const GpgpFileSystem* fileSystem; /**< optional: reads style sheets that are files of their own. Paths are relative to
+                                         the SVG's folder and lead to files in it or below, never to a host; at most 64
+                                         files, of 16 MiB together. NULL: such style sheets are named as unsupported */
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 

@@ -9,6 +9,7 @@
 #include "cli/bake_font.h"
 #endif
 #ifdef GPGP_CLI_VECTOR
+#include "cli/svg_files.h"
 #include "cli/svg_messages.h"
 #endif
 
@@ -83,7 +84,7 @@ struct Baked {
 };
 
 #ifdef GPGP_CLI_VECTOR
-Baked bakeDrawing(const std::string& text, const std::string& name, float scale) {
+Baked bakeDrawing(const std::string& text, const std::string& file, const std::string& name, float scale) {
   GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
   source.name = name.c_str();
   source.data = text.data();
@@ -91,8 +92,10 @@ Baked bakeDrawing(const std::string& text, const std::string& name, float scale)
   source.scale = scale;
   SvgMessages messages;
   messages.attach(source);
+  const SvgFiles files(file);
+  source.fileSystem = files.fileSystem();
   Result<Blob> blob = compileSvg(source);
-  if (!blob) throw Failure(name + ": " + (messages.count() ? messages.failure() : blob.name()));
+  if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
   return {bytesOf(*blob), {{"messages", messages.json()}}, {}};
 }
@@ -120,7 +123,7 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
   }
 #endif
 #ifdef GPGP_CLI_VECTOR
-  if (type == "drawing") return bakeDrawing(bytes, name, options.scale);
+  if (type == "drawing") return bakeDrawing(bytes, file, name, options.scale);
 #endif
 #ifdef GPGP_CLI_TEXT
   if (type == "font") {

@@ -18,26 +18,26 @@ public:
 
   /// Prints what is not printed yet. To be called when the source is compiled.
   void finish();
-  /// When it failed instead: why, as the last message said. That one is left to whoever tells of the failure.
+  /// When it failed instead: where and why, as the last message said. That one is left to whoever tells of the failure.
   std::string failure() const;
 
   size_t count() const { return list_.size(); }
-  /// Of all messages: severity, element, line and text.
+  /// Of all messages: severity, element, line, column and text; the file where it is a style sheet.
   Json json() const;
-  /// Of what is not supported: element, line and text.
+  /// The same of what is not supported, without severity.
   Json unsupported() const;
 
 private:
   struct Message {
     GpgpSeverity severity;
     GpgpResult code;
-    std::string text;
+    std::string label, text;
   };
   static void GPGP_CALL take(void* userData, const GpgpMessage* message);
   void print();
 
   size_t shown_, printed_ = 0;
-  std::string label_;
+  std::string name_; ///< of the drawing
   std::vector<Message> list_;
 };
 

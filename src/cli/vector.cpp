@@ -2,6 +2,7 @@
 #include "cli/css_color.h"
 #include "cli/patch_tiles.h"
 #include "cli/session.h"
+#include "cli/svg_files.h"
 #include "cli/svg_messages.h"
 #include "cli/textures.h"
 #include "cli/vector_images.h"
@@ -55,7 +56,7 @@ void fit(std::span<const char> bytes, const float (&page)[4], const Size& size, 
 /// At what scale the picture shows the source; 0: at its own, or it cannot be read.
 float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource source) {
   if (size.width == 0) return 0;
-  const auto said = gpgp::vector::svg::pageSize(std::as_bytes(bytes));
+  const auto said = gpgp::vector::svg::pageSize(std::as_bytes(bytes), source.fileSystem);
   if (!said) return 0;
   float page[4] = {0, 0, static_cast<float>(said->width), static_cast<float>(said->height)};
   if (!(page[2] > 0 && page[3] > 0)) { // the ink is the page
@@ -75,12 +76,13 @@ float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource sou
 
 /// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
 double compareWithTruth(std::span<const char> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
-                        const std::array<float, 4>& background, const Size& size, float scale) {
+                        const std::array<float, 4>& background, const Size& size, float scale,
+                        const GpgpFileSystem* files) {
   gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
   gpgp::vector::svg::ImportDetail detail;
   if (scale > 0) detail.scale = static_cast<double>(scale);
   detail.strokes /= 16; // so that what strokes are off by is seen
-  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet, {}, {}, detail);
+  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet, {}, {}, detail, files);
   if (!svg) throw Failure(svg.error().text);
   const gpgp::vector::svg::ImportedViews views(*svg);
   std::vector<float> pixels(painted.size());
@@ -101,6 +103,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   source.data = bytes.data();
   source.size = bytes.size();
   messages.attach(source);
+  const SvgFiles files(options.file);
+  source.fileSystem = files.fileSystem();
   GpgpSvgReport converted{};
   source.report = &converted;
   VectorImages images;
@@ -112,7 +116,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   }
   source.scale = scaleInto(options.size, bytes, source);
   const Result<Blob> blob = compileSvg(source);
-  if (!blob) throw Failure(name + ": " + (messages.count() ? messages.failure() : blob.name()));
+  if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
   if (options.truth && !images.pictures().empty())
     throw Failure(name + ": the truth knows no images; draw it without --truth");
@@ -189,7 +193,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   std::vector<uint8_t> pixels;
   if (!options.out.empty() || options.truth) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
   double psnr = 0;
-  if (options.truth) psnr = compareWithTruth(bytes, pixels, item.transform, background, size, source.scale);
+  if (options.truth)
+    psnr = compareWithTruth(bytes, pixels, item.transform, background, size, source.scale, files.fileSystem());
   if (!options.out.empty()) {
     host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
   }
@@ -278,7 +283,7 @@ Examples:
   cat icon.svg | gpgp vector - icon.png
   gpgp vector map.svg --aa 4 --repeat 100 --json | jq .gpu_ms_median
 
-What is approximated or left out is named on standard error with its line, the first ten unless --all-warnings is given,
+What is approximated or left out is named on standard error with its place, the first ten unless --all-warnings is given,
 counted, and listed by --json: all as messages, what is not supported as unsupported.)");
   return [options](const CommonOptions& common) { return vector(*options, common); };
 }

@@ -154,10 +154,42 @@ TEST(CliBake, SaysWhatIsNotDrawn) {
   EXPECT_EQ(told[0]["severity"], "error");
   EXPECT_EQ(told[0]["element"], "path");
   EXPECT_EQ(told[0]["line"], 2);
+  EXPECT_EQ(told[0]["column"], 21); // in the data
   EXPECT_EQ(told[1]["severity"], "warning");
   EXPECT_EQ(told[1]["line"], 3);
   for (const json& message : told)
     EXPECT_NE(result.err.find(message["text"].get<std::string>()), std::string::npos) << result.err;
+}
+
+TEST(CliBake, ReadsStyleSheetsBesideTheDrawingAndNowhereElse) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "gpgp_cli_test_sheets", inside = folder / "drawings";
+  fs::remove_all(folder);
+  host::writeFile((inside / "css/a.css").string(), ".a{fill:#f00}");
+  host::writeFile((folder / "out.css").string(), ".a{fill:#f00}");
+  std::error_code failed;
+  fs::create_symlink(folder / "out.css", inside / "link.css", failed);
+  const std::string rest = "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><rect class='a' width='9' "
+                           "height='9'/></svg>",
+                    file = (inside / "a.svg").string();
+  const auto baked = [&](const std::string& sheet) {
+    host::writeFile(file, "<?xml-stylesheet href='" + sheet + "'?>\n" + rest);
+    const ProcessResult result = gpgp({"bake", file, "-o", (folder / "a.gpgpv").string(), "--json"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return result;
+  };
+  EXPECT_EQ(baked("css/a.css").err, "");
+  host::writeFile(file, rest);
+  const std::string red = host::readText((folder / "a.gpgpv").string());
+  gpgp({"bake", file, "-o", (folder / "b.gpgpv").string()});
+  EXPECT_FALSE(red == host::readText((folder / "b.gpgpv").string())) << "the sheet paints nothing";
+  for (const char* sheet : {"no.css", "../out.css", "css", "http://localhost/a.css"})
+    EXPECT_NE(baked(sheet).err.find(file + ":1:1: warning: the style sheet '" + sheet + "' "), std::string::npos)
+        << sheet;
+  if (!failed) {
+    EXPECT_NE(baked("link.css").err.find("'link.css' cannot be read"), std::string::npos);
+  }
+  fs::remove_all(folder);
 }
 
 TEST(CliBake, WrongUsage) {

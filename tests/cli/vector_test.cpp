@@ -140,7 +140,8 @@ TEST(CliVector, AFailureNamesWhatItIsAbout) {
                                        "<rect width='1e9' height='1e9'/></svg>");
   const ProcessResult result = gpgp({"vector", page.path()});
   EXPECT_EQ(result.exitCode, 1);
-  EXPECT_NE(result.err.find("line 1: <svg> is wider or taller than 10000000 pixels"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("page.svg:1:1: <svg> is wider or taller than 10000000 pixels"), std::string::npos)
+      << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }
 
@@ -270,8 +271,10 @@ TEST(CliVector, WarningsAreCountedAndNotAFlood) {
   ASSERT_TRUE(counted.is_object()) << some.out;
   EXPECT_GE(counted["warnings"], 30);
   EXPECT_EQ(counted["unsupported"].size(), counted["warnings"]);
-  EXPECT_EQ(counted["unsupported"][0],
-            json({{"element", "path"}, {"line", 2}, {"text", "filter is not supported: <path> is drawn without it"}}));
+  EXPECT_EQ(counted["unsupported"][0], json({{"element", "path"},
+                                             {"line", 2},
+                                             {"column", 1},
+                                             {"text", "filter is not supported: <path> is drawn without it"}}));
   EXPECT_EQ(lines(some.err), 11) << some.err;
   EXPECT_EQ(lines(all.err), counted["warnings"]) << all.err;
   EXPECT_EQ(counted["messages"].size(), counted["warnings"]);
@@ -293,8 +296,9 @@ TEST(CliVector, WhatIsNotValidIsNamedAndNotUnsupported) {
   const json drawn = json::parse(result.out, nullptr, false);
   EXPECT_EQ(drawn["unsupported"], json::array());
   EXPECT_EQ(drawn["warnings"], 2);
-  EXPECT_NE(result.err.find("line 2: <path> has fill 'blurple'"), std::string::npos) << result.err;
-  EXPECT_NE(result.err.find("line 3: <path> has an error in its path data"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("invalid.svg:2:1: warning: <path> has fill 'blurple'"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("invalid.svg:3:23: error: <path> has an error in its path data"), std::string::npos)
+      << result.err;
 }
 
 TEST(CliVector, StagesThatCannotBeWrittenAreAnError) {

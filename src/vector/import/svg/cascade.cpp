@@ -12,13 +12,21 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
     std::string_view name, value;
   };
   std::vector<Setting> settings;
-  for (const pugi::xml_attribute a : node.attributes())
-    if (isPresentationAttribute(a.name())) settings.push_back({a.name(), a.value()});
+  const bool isGradient = oneOf(document_.name(node), kGradients), isRoot = node == document_.root();
+  for (const pugi::xml_attribute a : node.attributes()) {
+    std::string_view name = a.name(), value = a.value();
+    if (isGradient && name == "transform") continue; // there the property has an attribute of its own (SVG 2, 8.5)
+    if (isGradient && name == "gradientTransform") {
+      name = "transform";
+      if (trim(value).empty()) value = "none"; // is one, which is no template's
+    }
+    if (isPresentationAttribute(name)) settings.push_back({name, value});
+  }
   std::vector<const Declaration*> declared;
   if (!sheet_.empty() && work_ < limits_.matches) {
     declared = sheet_.match(document_, node, work_, limits_.matches);
     if (work_ >= limits_.matches)
-      reporter_.error(document_.line(node), "the style sheets ask for too much; from here on they are left out",
+      reporter_.error(document_.place(node), "the style sheets ask for too much; from here on they are left out",
                       GPGP_ERROR_UNSUPPORTED);
   }
   const std::vector<Declaration> own = parseDeclarations(node.attribute("style").value());
@@ -29,22 +37,25 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
 
   LengthContext lengths = outer;
   lengths.fontSize = parent.fontSize;
+  if (isRoot) lengths.rootFontSize = Style{}.fontSize; // for its own size; not for its other lengths
   const auto apply = [&](const Setting& s) {
-    if (s.name.empty()) return ignored(node, document_.line(node), "the declaration", s.value);
+    if (s.name.empty()) return ignored(node, document_.place(node), "the declaration", s.value);
     const Applied applied = applyProperty(style, parent, s.name, s.value, lengths);
     if (applied == Applied::Unknown && isGeometry(s.name)) style.geometry.emplace_back(s.name, s.value);
-    if (applied == Applied::Unknown && isUnsupported(s.name, s.value))
-      reporter_.warn(document_.line(node),
+    if (applied == Applied::Unknown &&
+        (isUnsupported(s.name, s.value) || (isRoot && isUnsupportedOnRoot(s.name, s.value))))
+      reporter_.warn(document_.place(node),
                      std::string(s.name) + " is not supported: " + element(node) + " is drawn without it");
     if (s.name == "stroke-linejoin" && (isWord(trim(s.value), "miter-clip") || isWord(trim(s.value), "arcs")))
-      reporter_.warn(document_.line(node), "stroke-linejoin '" + std::string(trim(s.value)) +
-                                               "' is not supported: " + element(node) + " has miters instead");
-    if (applied == Applied::Invalid) ignored(node, document_.line(node), s.name, s.value);
+      reporter_.warn(document_.place(node), "stroke-linejoin '" + std::string(trim(s.value)) +
+                                                "' is not supported: " + element(node) + " has miters instead");
+    if (applied == Applied::Invalid) ignored(node, document_.place(node), s.name, s.value);
   };
   const auto setsSize = [](const Setting& s) { return s.name == "font-size" || s.name == "font"; };
   for (const Setting& s : settings) // lengths in em need it
     if (setsSize(s)) apply(s);
   lengths.fontSize = style.fontSize;
+  if (isRoot) lengths.rootFontSize = style.fontSize;
   for (const Setting& s : settings)
     if (!setsSize(s)) apply(s);
 }
@@ -52,28 +63,55 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
 Affine Importer::transformOf(pugi::xml_node node, const Style& style, const LengthContext& outer) {
   Affine own;
   if (style.transform.empty()) return own;
-  const pugi::xml_attribute text = node.attribute("transform");
-  const size_t line = text && text.value() == style.transform ? document_.line(text, 0) : document_.line(node);
+  const bool isGradient = oneOf(document_.name(node), kGradients);
+  const char* name = isGradient ? "gradientTransform" : "transform";
+  const pugi::xml_attribute text = node.attribute(name);
+  const Place place = text && text.value() == style.transform ? document_.place(text, 0) : document_.place(node);
   LengthContext lengths = outer;
   lengths.fontSize = style.fontSize;
   if (!parseTransform(style.transform, lengths, own)) {
     if (hasUnsupported(style.transform))
-      ignored(node, line, "transform", style.transform);
+      ignored(node, place, "transform", style.transform);
     else
-      reporter_.error(line, element(node) + " has an error in its transform, which is ignored");
+      reporter_.error(place,
+                      element(node) + " has an error in its " + (text ? name : "transform") + ", which is ignored");
     return {};
   }
   if (style.transformOrigin.empty()) return own;
   Point origin;
   if (!parseOrigin(style.transformOrigin, lengths, origin)) {
-    ignored(node, line, "transform-origin", style.transformOrigin);
+    ignored(node, place, "transform-origin", style.transformOrigin);
     return own;
   }
   return Affine{1, 0, 0, 1, origin.x, origin.y} * own * Affine{1, 0, 0, 1, -origin.x, -origin.y};
 }
 
-std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& state, const Shape& shape,
-                                               pugi::xml_node node, const char* property) {
+Box Importer::boxOfContext(const Context& context) {
+  if (!context.box) {
+    std::vector<pugi::xml_node> inside(used_.begin() + static_cast<ptrdiff_t>(context.used), used_.end());
+    used_.resize(context.used); // as the <use> was met
+    context.box = boxAround(context.node, "use", *context.state, context.space);
+    used_.insert(used_.end(), inside.begin(), inside.end());
+  }
+  return *context.box;
+}
+
+std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const Surface& surface, pugi::xml_node node,
+                                               const char* property) {
+  const State& state = surface.state;
+  if (paint.kind == Paint::Kind::ContextFill || paint.kind == Paint::Kind::ContextStroke) {
+    const Context* context = state.context;
+    const bool isFill = paint.kind == Paint::Kind::ContextFill;
+    if (!context) {
+      reporter_.ignored(document_.place(node), element(node) + " " + property + " is context-" +
+                                                   (isFill ? "fill" : "stroke") +
+                                                   " outside of what a <use> shows; it is not painted");
+      return std::nullopt;
+    }
+    const Style& style = context->state->style;
+    return resolve(isFill ? style.fill : style.stroke,
+                   {*context->state, context->space, [&] { return boxOfContext(*context); }}, node, property);
+  }
   const auto plain = [&](Paint::Kind kind) -> std::optional<Ink> {
     if (kind == Paint::Kind::Solid) return Ink{paint.color, nullptr};
     if (kind == Paint::Kind::Current) return Ink{state.style.color, nullptr};
@@ -84,31 +122,33 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const State& 
   const std::string_view name = target ? document_.name(target) : std::string_view();
   const std::string who = element(node) + " " + property;
   const std::string instead = paint.hasFallback ? "its fallback is used" : "it is not painted";
-  if (name == "linearGradient" || name == "radialGradient") {
-    if (isCyclic(target)) {
-      reporter_.ignored(document_.line(node), who + " refers to a gradient that refers to itself; " + instead);
+  if (oneOf(name, kGradients)) {
+    const GradientChain& chain = chainOf(target);
+    if (chain.cyclic) {
+      reporter_.ignored(document_.place(node), who + " refers to a gradient that refers to itself; " + instead);
       return plain(paint.fallback);
     }
-    if (const std::string_view file = otherFileOf(target); !file.empty())
-      reporter_.warn(document_.line(node), who + " refers to a gradient that refers to another file, '" +
-                                               std::string(file.substr(0, 60)) + "', which is not supported");
-    if (auto gradient = gradientOf(target, name == "radialGradient", state, shape))
+    if (!chain.otherFile.empty())
+      reporter_.warn(document_.place(node), who + " refers to a gradient that refers to another file, '" +
+                                                std::string(chain.otherFile.substr(0, 60)) +
+                                                "', which is not supported");
+    if (auto gradient = gradientOf(chain, name == "radialGradient", surface))
       return Ink{{0, 0, 0, 1}, std::move(gradient)};
-    if (gradientStops(target, state.lengths).empty()) { // is there, so that the fallback does not count
-      reporter_.ignored(document_.line(node), who + " refers to a gradient without stops; it is not painted");
+    if (gradientStops(chain, state.lengths).empty()) { // is there, so that the fallback does not count
+      reporter_.ignored(document_.place(node), who + " refers to a gradient without stops; it is not painted");
       return std::nullopt;
     }
-    reporter_.ignored(document_.line(node), who + " refers to a gradient without extent; " + instead);
+    reporter_.ignored(document_.place(node), who + " refers to a gradient without extent; " + instead);
     return plain(paint.fallback);
   }
   const std::string shown = std::string("'") + paint.reference.substr(0, 60) + "'";
   if (!paint.reference.starts_with('#'))
-    reporter_.warn(document_.line(node),
+    reporter_.warn(document_.place(node),
                    who + " refers to another file, " + shown + ", which is not supported; " + instead);
   else if (name.empty())
-    reporter_.ignored(document_.line(node), who + " refers to " + shown + ", which is not there; " + instead);
+    reporter_.ignored(document_.place(node), who + " refers to " + shown + ", which is not there; " + instead);
   else
-    reporter_.warn(document_.line(node),
+    reporter_.warn(document_.place(node),
                    who + " refers to a <" + std::string(name.substr(0, 40)) + ">, which is not supported; " + instead);
   return plain(paint.fallback);
 }

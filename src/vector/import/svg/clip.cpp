@@ -14,15 +14,14 @@ std::string referenceOf(std::string_view text) {
     text = text.substr(1, text.size() - 2);
   return std::string(text.substr(0, 1) == "#" ? text : std::string_view());
 }
+} // namespace
 
-/// Zeros where there is none.
 Affine inverseOf(const Affine& m) {
   const double area = m.a * m.d - m.b * m.c;
   if (!(std::fabs(area) > 0)) return {0, 0, 0, 0, 0, 0};
   return {
       m.d / area, -m.b / area, -m.c / area, m.a / area, (m.c * m.f - m.d * m.e) / area, (m.b * m.e - m.a * m.f) / area};
 }
-} // namespace
 
 void Importer::measure(const Shape& shape, const Affine& transform) {
   Shape moved = shape;
@@ -74,7 +73,7 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
   pugi::xml_node from = node;
   std::string value = state.style.clipPath;
   const auto without = [&](const std::string& why) {
-    reporter_.warn(document_.line(from),
+    reporter_.warn(document_.place(from),
                    std::string("clip-path ") + why + ": " + element(from) + " is drawn without it");
   };
   // What the clipPath is clipped by clips as well.

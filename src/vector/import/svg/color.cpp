@@ -1,4 +1,5 @@
-// Colours (CSS Color 4, sections 5 to 8): names, #rgb[a], #rrggbb[aa], rgb(), rgba(), hsl(), hsla(), hwb().
+// Colours (CSS Color 4, sections 5 to 8): names, #rgb[a], #rrggbb[aa], rgb(), rgba(), hsl(), hsla(), hwb(); and
+// light-dark().
 #include "vector/import/svg/style.h"
 
 #include <algorithm>
@@ -233,11 +234,25 @@ bool parseFunction(std::string_view text, Color& color) {
   return true;
 }
 
+/// light-dark(a, b): drawings are shown on light pages. What is for dark ones has to be there, whatever it is.
+bool parseLightDark(std::string_view lower, Color& color) {
+  constexpr std::string_view name = "light-dark(";
+  if (!lower.starts_with(name) || lower.back() != ')') return false;
+  const std::string_view inside = lower.substr(name.size(), lower.size() - name.size() - 1);
+  int depth = 0;
+  for (size_t i = 0; i < inside.size(); ++i) {
+    depth += (inside[i] == '(') - (inside[i] == ')');
+    if (depth == 0 && inside[i] == ',')
+      return !trim(inside.substr(i + 1)).empty() && parseColor(inside.substr(0, i), color);
+  }
+  return false;
+}
+
 } // namespace
 
 bool parseColor(std::string_view text, Color& color) {
   text = trim(text);
-  if (text.empty() || text.size() > 128) return false;
+  if (text.empty() || text.size() > 256) return false;
   if (text[0] == '#') return parseHex(text.substr(1), color);
   const std::string lower = lowered(text);
   if (lower == "transparent") {
@@ -246,7 +261,8 @@ bool parseColor(std::string_view text, Color& color) {
   }
   const Named* found = std::lower_bound(std::begin(kNames), std::end(kNames), std::string_view(lower),
                                         [](const Named& a, std::string_view b) { return a.name < b; });
-  if (found == std::end(kNames) || found->name != lower) return parseFunction(lower, color);
+  if (found == std::end(kNames) || found->name != lower)
+    return parseLightDark(lower, color) || parseFunction(lower, color);
   color = {(found->rgb >> 16) / 255.0, (found->rgb >> 8 & 255u) / 255.0, (found->rgb & 255u) / 255.0, 1};
   return true;
 }

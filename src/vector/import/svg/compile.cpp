@@ -18,14 +18,16 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   if (!source.data && source.size) return fail(GPGP_ERROR_INVALID_ARGUMENT, "data is NULL, size is not 0");
   if (!(source.scale >= 0 && source.scale <= kMaxScale))
     return fail(GPGP_ERROR_INVALID_ARGUMENT, "scale must be 0 to 1e6");
+  if (source.fileSystem && !source.fileSystem->read) return fail(GPGP_ERROR_INVALID_ARGUMENT, "fileSystem needs read");
   using Clock = std::chrono::steady_clock;
   const auto milliseconds = [](Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
   };
   const auto begin = Clock::now();
-  const auto imported = vector::svg::importSvg(
-      {static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
-      {source.imageFn, source.imageUserData}, {source.scale > 0 ? static_cast<double>(source.scale) : 1});
+  const auto imported =
+      vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
+                             {source.imageFn, source.imageUserData},
+                             {source.scale > 0 ? static_cast<double>(source.scale) : 1}, source.fileSystem);
   if (!imported) return fail(imported.error().code, imported.error().text);
   std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
   const vector::svg::ImportedViews views(*imported);
@@ -37,7 +39,7 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   if (!drawing) return fail(drawing.error().code, drawing.error().text);
   for (const vector::LeftEmpty& left : leftEmpty) {
     const auto& path = (left.group ? imported->groups[left.group - 1].clip : imported->paths)[left.index];
-    reporter.error(path.line, path.element + ": " + left.error.text + "; not drawn", GPGP_ERROR_UNSUPPORTED);
+    reporter.error(path.place, path.element + ": " + left.error.text + "; not drawn", GPGP_ERROR_UNSUPPORTED);
   }
   if (imported->width > 0 && imported->height > 0) {
     const double page[4] = {0, 0, imported->width, imported->height};

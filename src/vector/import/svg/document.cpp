@@ -2,6 +2,7 @@
 #include "vector/import/svg/document.h"
 
 #include "vector/import/svg/entities.h"
+#include "vector/import/svg/scanner.h"
 
 #include <algorithm>
 #include <zlib.h>
@@ -100,11 +101,33 @@ pugi::xml_node following(pugi::xml_node node, pugi::xml_node root, size_t& depth
   return node != root ? node.next_sibling() : pugi::xml_node();
 }
 
-enum class Space { Other, Svg, XLink };
+constexpr size_t kMaxHtml = 1000;
+constexpr std::string_view kNameCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.:";
+
+/// Behind a document type definition and what it has in brackets.
+size_t pastDoctype(std::string_view text, size_t at) {
+  char quote = 0;
+  bool inside = false;
+  for (; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quote)
+      quote = c == quote ? 0 : quote;
+    else if (c == '"' || c == '\'')
+      quote = c;
+    else if (c == '[' || c == ']')
+      inside = c == '[';
+    else if (c == '>' && !inside)
+      return at + 1;
+  }
+  return at;
+}
+
+enum class Space { Other, Svg, XLink, Html };
 
 Space spaceOf(std::string_view uri) {
   const auto has = [uri](std::string_view part) { return uri.find(part) != uri.npos; };
   if (has("w3.org/2000/svg") || has("&ns_svg;")) return Space::Svg;
+  if (has("w3.org/1999/xhtml")) return Space::Html;
   return has("w3.org/1999/xlink") || has("&ns_xlink;") ? Space::XLink : Space::Other;
 }
 } // namespace
@@ -162,22 +185,25 @@ core::Result<void> Document::load(std::span<const std::byte> bytes) {
   }
   if (tags > kMaxTags || attributes > kMaxAttributes)
     return makeError(GPGP_ERROR_INVALID_DATA, "more than %zu tags or %zu attributes", kMaxTags, kMaxAttributes);
+  findUnknownEntities();
   const pugi::xml_parse_result parsed =
-      tree_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
+      tree_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_default | pugi::parse_pi, pugi::encoding_utf8);
   if (parsed.status == pugi::status_out_of_memory) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
-  if (!parsed)
-    return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: not well-formed XML (%s)",
-                     lineAt(static_cast<size_t>(std::max<ptrdiff_t>(parsed.offset, 0))), parsed.description());
+  if (!parsed) {
+    const Place at = placeAt(static_cast<size_t>(std::max<ptrdiff_t>(parsed.offset, 0)));
+    return makeError(GPGP_ERROR_INVALID_DATA, "%zu:%zu: not well-formed XML (%s)", at.line, at.column,
+                     parsed.description());
+  }
   const pugi::xml_node top = tree_.document_element();
+  const Place rootAt = place(top);
   if (localName(top.name()) != "svg")
-    return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: the outermost element is <%.60s>, not <svg>", line(top),
-                     top.name());
+    return makeError(GPGP_ERROR_INVALID_DATA, "%zu:%zu: the outermost element is <%.60s>, not <svg>", rootAt.line,
+                     rootAt.column, top.name());
   root_ = top;
-  const auto rootAt = static_cast<size_t>(std::max<ptrdiff_t>(top.offset_debug(), 0));
   resolveNamespaces();
   if (name(root_).empty())
-    return makeError(GPGP_ERROR_INVALID_DATA, "line %zu: the outermost element is in another namespace than SVG's",
-                     lineAt(rootAt));
+    return makeError(GPGP_ERROR_INVALID_DATA, "%zu:%zu: the outermost element is in another namespace than SVG's",
+                     rootAt.line, rootAt.column);
   size_t depth = 0;
   for (pugi::xml_node n = root_; n; n = following(n, root_, depth))
     if (const pugi::xml_attribute id = n.attribute("id"); id && n.type() == pugi::node_element)
@@ -224,26 +250,65 @@ void Document::resolveNamespaces() {
       else if (name != "xlink:href")
         a.set_name("xlink:href");
     }
-    const std::string local(spaceIn(n.name()) == Space::Svg ? localName(n.name()) : std::string_view());
+    const Space space = spaceIn(n.name());
+    if (space == Space::Html && html_.size() < kMaxHtml)
+      html_.push_back({n, std::string(localName(n.name())), place(n)});
+    const std::string local(space == Space::Svg ? localName(n.name()) : std::string_view());
     if (local != n.name()) n.set_name(local.c_str());
   }
 }
 
-size_t Document::lineAt(size_t offset) const {
-  return 1 + static_cast<size_t>(std::lower_bound(newlines_.begin(), newlines_.end(), offset) - newlines_.begin());
+Place Document::placeAt(size_t offset) const {
+  const auto next = std::lower_bound(newlines_.begin(), newlines_.end(), offset);
+  const size_t begin = next == newlines_.begin() ? 0 : *(next - 1) + 1;
+  return {1 + static_cast<size_t>(next - newlines_.begin()), 1 + offset - begin, {}};
 }
 
-size_t Document::line(pugi::xml_node node) const {
-  const ptrdiff_t offset = node.offset_debug();
-  return offset < 0 ? 1 : lineAt(static_cast<size_t>(offset));
+Place Document::place(pugi::xml_node node) const {
+  const ptrdiff_t name = node.offset_debug(), before = node.type() == pugi::node_pi ? 2 : 1; // "<?" or "<"
+  return name < before ? Place{} : placeAt(static_cast<size_t>(name - before));
 }
 
-size_t Document::line(pugi::xml_attribute attribute, size_t offset) const {
+Place Document::placeOf(const char* value, size_t offset) const {
   // Parsed in place, so values are where they were in the file.
   const std::less_equal<const char*> ordered;
-  const char* value = attribute.value();
-  if (!ordered(text_.data(), value) || !ordered(value, text_.data() + text_.size())) return 1;
-  return lineAt(static_cast<size_t>(value - text_.data()) + offset);
+  if (!ordered(text_.data(), value) || !ordered(value, text_.data() + text_.size())) return {};
+  return placeAt(static_cast<size_t>(value - text_.data()) + offset);
+}
+
+/// What is left of them when those that the file defines are expanded; at most a hundred.
+void Document::findUnknownEntities() {
+  constexpr std::string_view known[] = {"amp", "lt", "gt", "quot", "apos", "ns_svg", "ns_xlink"};
+  const std::string_view text = text_;
+  const auto past = [text](std::string_view mark, size_t at) {
+    const size_t found = text.find(mark, at);
+    return found == text.npos ? text.size() : found + mark.size();
+  };
+  for (size_t at = text.find_first_of("&<"); at < text.size() && unknownEntities_.size() < 100;
+       at = text.find_first_of("&<", at)) {
+    const std::string_view rest = text.substr(at, 128);
+    const bool skips = rest.starts_with("<!--") || rest.starts_with("<![CDATA[") || rest.starts_with("<!DOCTYPE");
+    if (rest.starts_with("<!--"))
+      at = past("-->", at);
+    else if (rest.starts_with("<![CDATA["))
+      at = past("]]>", at);
+    else if (rest.starts_with("<!DOCTYPE"))
+      at = pastDoctype(text, at);
+    if (skips) continue;
+    ++at;
+    if (rest[0] != '&' || rest.substr(1, 1) == "#") continue;
+    const size_t end = rest.find_first_not_of(kNameCharacters, 1);
+    const std::string_view name = rest.substr(1, std::min(end, rest.size()) - 1);
+    if (end == rest.npos || rest[end] != ';' || name.empty() || oneOf(name, known)) continue;
+    unknownEntities_.push_back({std::string(rest.substr(0, end + 1)), placeAt(at - 1)});
+  }
+}
+
+std::vector<pugi::xml_node> Document::styleInstructions() const {
+  std::vector<pugi::xml_node> found;
+  for (pugi::xml_node n = tree_.first_child(); n && n != root_ && found.size() < 100; n = n.next_sibling())
+    if (n.type() == pugi::node_pi && std::string_view(n.name()) == "xml-stylesheet") found.push_back(n);
+  return found;
 }
 
 std::string_view Document::name(pugi::xml_node node) const {
@@ -257,11 +322,11 @@ pugi::xml_node Document::find(std::string_view reference) const {
   return found == ids_.end() ? pugi::xml_node() : found->second;
 }
 
-std::vector<pugi::xml_node> Document::all(std::string_view wanted) const {
+std::vector<pugi::xml_node> Document::all(std::initializer_list<std::string_view> wanted) const {
   std::vector<pugi::xml_node> found;
   size_t depth = 0;
   for (pugi::xml_node n = root_; n; n = following(n, root_, depth))
-    if (name(n) == wanted) found.push_back(n);
+    if (std::find(wanted.begin(), wanted.end(), name(n)) != wanted.end()) found.push_back(n);
   return found;
 }
 

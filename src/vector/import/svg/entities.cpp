@@ -2,6 +2,8 @@
 // result.
 #include "vector/import/svg/entities.h"
 
+#include "vector/import/svg/reporter.h"
+
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
@@ -59,11 +61,10 @@ public:
       } else if (rest[0] == '&') {
         const auto [entity, length] = find(rest);
         if (entity) {
-          const auto line = [&] {
-            return 1 + std::count(text_.begin(), text_.begin() + static_cast<ptrdiff_t>(at), '\n');
-          };
-          if (auto ok = resolve(*entity, 0); !ok)
-            return makeError(ok.error().code, "line %zu: %s", static_cast<size_t>(line()), ok.error().text);
+          if (auto ok = resolve(*entity, 0); !ok) {
+            const Place place = placeIn(text_, at, {});
+            return makeError(ok.error().code, "%zu:%zu: %s", place.line, place.column, ok.error().text);
+          }
           for (const char c : entity->text)
             if (tag && (c == '"' || c == '\''))
               out += c == '"' ? "&quot;" : "&apos;";

@@ -8,7 +8,7 @@ namespace gpgp::vector::svg {
 
 /// Puts in place of each &name; what the definition says, quotes escaped inside tags and newlines as spaces, so that
 /// lines stay where they are. What is not defined, or in another file, stays as it is. Errors: INVALID_DATA where an
-/// entity contains itself, which names the line, or where the text comes to more than `maxBytes`.
+/// entity contains itself, which names the place, or where the text comes to more than `maxBytes`.
 core::Result<void> expandEntities(std::string& text, size_t maxBytes);
 
 } // namespace gpgp::vector::svg

@@ -36,34 +36,46 @@ Box boxOf(const Shape& shape) {
   return box;
 }
 
-/// The first along the references that has the attribute.
-pugi::xml_attribute Importer::gradientAttribute(pugi::xml_node gradient, const char* name) const {
-  for (int hops = 0; gradient && hops < 32; ++hops, gradient = document_.find(trim(hrefOf(gradient).value())))
-    if (const pugi::xml_attribute a = gradient.attribute(name)) return a;
+const Importer::GradientChain& Importer::chainOf(pugi::xml_node gradient) {
+  constexpr size_t kLongest = 32;
+  const auto [known, isNew] = chains_.try_emplace(gradient.hash_value());
+  GradientChain& chain = known->second;
+  if (!isNew) return chain;
+  for (chain.gradients.push_back(gradient);; chain.gradients.push_back(gradient)) {
+    const pugi::xml_attribute attribute = hrefOf(gradient);
+    const std::string_view href = trim(attribute.value());
+    if (!attribute) return chain;
+    const auto noTemplate = [&](const std::string& why) {
+      reporter_.ignored(document_.place(attribute, 0), element(gradient) + " refers to '" +
+                                                           std::string(href.substr(0, 60)) + "', which is " + why +
+                                                           "; ignored");
+    };
+    if (!href.empty() && href[0] != '#') return chain.otherFile = href, chain;
+    const pugi::xml_node next = document_.find(href);
+    if (!next) return noTemplate("not there"), chain;
+    if (!oneOf(document_.name(next), kGradients)) return noTemplate("no gradient but a " + element(next)), chain;
+    chain.cyclic = std::find(chain.gradients.begin(), chain.gradients.end(), next) != chain.gradients.end();
+    if (chain.cyclic) return chain;
+    if (chain.gradients.size() == kLongest) return noTemplate("one more than 32 after each other"), chain;
+    gradient = next;
+  }
+}
+
+/// The first along the references that has the attribute. What the other kind of gradient does not have is none of its
+/// attributes (SVG 2, 14.2.2 and 14.2.3).
+pugi::xml_attribute Importer::gradientAttribute(const GradientChain& chain, const char* name) const {
+  constexpr std::string_view linear[] = {"x1", "y1", "x2", "y2"}, radial[] = {"cx", "cy", "r", "fx", "fy", "fr"};
+  for (const pugi::xml_node gradient : chain.gradients) {
+    const pugi::xml_attribute a = gradient.attribute(name);
+    const bool isLinear = document_.name(gradient) == "linearGradient";
+    if (a && !(isLinear ? oneOf(name, radial) : oneOf(name, linear))) return a;
+  }
   return {};
 }
 
-bool Importer::isCyclic(pugi::xml_node gradient) const {
-  std::vector<pugi::xml_node> seen;
-  for (; gradient && seen.size() < 32; gradient = document_.find(trim(hrefOf(gradient).value()))) {
-    if (std::find(seen.begin(), seen.end(), gradient) != seen.end()) return true;
-    seen.push_back(gradient);
-  }
-  return false;
-}
-
-std::string_view Importer::otherFileOf(pugi::xml_node gradient) const {
-  for (int hops = 0; gradient && hops < 32; ++hops) {
-    const std::string_view href = trim(hrefOf(gradient).value());
-    if (!href.empty() && !href.starts_with('#')) return href;
-    gradient = document_.find(href);
-  }
-  return {};
-}
-
-std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, const LengthContext& lengths) {
+std::vector<GpgpGradientStop> Importer::gradientStops(const GradientChain& chain, const LengthContext& lengths) {
   std::vector<GpgpGradientStop> stops;
-  for (int hops = 0; gradient && hops < 32 && stops.empty(); ++hops) {
+  for (const pugi::xml_node gradient : chain.gradients) {
     const Style around = styleOf(gradient, lengths);
     reportChildren(gradient);
     for (const pugi::xml_node child : gradient.children()) {
@@ -74,7 +86,7 @@ std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, c
       }
       reportChildren(child);
       Style own = around.inherited();
-      cascade(child, around, {}, own);
+      cascade(child, around, lengths, own);
       double offset = 0;
       const pugi::xml_attribute place = child.attribute("offset");
       Scanner s(trim(place.value()));
@@ -91,23 +103,24 @@ std::vector<GpgpGradientStop> Importer::gradientStops(pugi::xml_node gradient, c
       for (size_t i = 0; i < 4; ++i) stop.color[i] = static_cast<float>(std::clamp(linear[i], 0.0, 1.0));
       stops.push_back(stop);
     }
-    gradient = document_.find(trim(hrefOf(gradient).value()));
+    if (!stops.empty()) break;
   }
   return stops;
 }
 
-std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool radial, const State& state,
-                                                     const Shape& shape) {
+std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain, bool radial, const Surface& surface) {
+  const pugi::xml_node node = chain.gradients[0];
+  const State& state = surface.state;
   auto made = std::make_shared<Gradient>();
-  made->stops = gradientStops(node, state.lengths);
+  made->stops = gradientStops(chain, state.lengths);
   if (made->stops.empty()) return nullptr;
-  const auto text = [&](const char* name) { return std::string_view(gradientAttribute(node, name).value()); };
-  const auto oneOf = [&](const char* name, std::initializer_list<std::string_view> words) {
-    const pugi::xml_attribute a = gradientAttribute(node, name);
+  const auto text = [&](const char* name) { return std::string_view(gradientAttribute(chain, name).value()); };
+  const auto isOneOf = [&](const char* name, std::initializer_list<std::string_view> words) {
+    const pugi::xml_attribute a = gradientAttribute(chain, name);
     if (a && std::find(words.begin(), words.end(), trim(a.value())) == words.end()) ignored(node, a);
   };
-  oneOf("gradientUnits", {"userSpaceOnUse", "objectBoundingBox"});
-  oneOf("spreadMethod", {"pad", "reflect", "repeat"});
+  isOneOf("gradientUnits", {"userSpaceOnUse", "objectBoundingBox"});
+  isOneOf("spreadMethod", {"pad", "reflect", "repeat"});
   const bool userSpace = trim(text("gradientUnits")) == "userSpaceOnUse";
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
@@ -116,14 +129,14 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
     const double whole = axis == LengthAxis::X   ? lengths.width
                          : axis == LengthAxis::Y ? lengths.height
                                                  : std::hypot(lengths.width, lengths.height) / std::sqrt(2);
-    const pugi::xml_attribute a = gradientAttribute(node, name);
+    const pugi::xml_attribute a = gradientAttribute(chain, name);
     double value = percent / 100 * whole;
     if (a && !parseLength(trim(a.value()), lengths, axis, value)) {
-      noLength(node, document_.line(a, 0), name, a.value());
+      noLength(node, document_.place(a, 0), name, a.value());
       value = percent / 100 * whole;
     }
     if (value < 0 && axis == LengthAxis::Diagonal) { // a radius
-      reporter_.error(document_.line(a, 0), element(node) + " has a negative " + name + "; ignored");
+      reporter_.error(document_.place(a, 0), element(node) + " has a negative " + name + "; ignored");
       value = percent / 100 * whole;
     }
     return static_cast<float>(value);
@@ -134,8 +147,8 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
     g.end[0] = number("cx", LengthAxis::X, 50);
     g.end[1] = number("cy", LengthAxis::Y, 50);
     g.endRadius = number("r", LengthAxis::Diagonal, 50);
-    g.start[0] = gradientAttribute(node, "fx") ? number("fx", LengthAxis::X, 50) : g.end[0];
-    g.start[1] = gradientAttribute(node, "fy") ? number("fy", LengthAxis::Y, 50) : g.end[1];
+    g.start[0] = gradientAttribute(chain, "fx") ? number("fx", LengthAxis::X, 50) : g.end[0];
+    g.start[1] = gradientAttribute(chain, "fy") ? number("fy", LengthAxis::Y, 50) : g.end[1];
     g.startRadius = number("fr", LengthAxis::Diagonal, 0);
     if (g.endRadius == 0) g.kind = GPGP_GRADIENT_LINEAR, std::copy_n(g.end, 2, g.start); // all in the last colour
   } else {
@@ -147,21 +160,20 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
   const std::string_view spread = trim(text("spreadMethod"));
   g.spread = spread == "reflect" ? GPGP_SPREAD_REFLECT : spread == "repeat" ? GPGP_SPREAD_REPEAT : GPGP_SPREAD_PAD;
   g.interpolateSrgb = !styleOf(node, state.lengths).mixesLinear;
-  Affine map = state.transform;
+  Affine map = surface.space;
   if (!userSpace) {
-    const Box box = boxOf(shape);
+    const Box box = surface.box();
     const double w = box.right - box.left, h = box.bottom - box.top;
     if (!(w > 0 && h > 0)) return nullptr; // nothing to measure by: not painted
     map = map * Affine{w, 0, 0, h, box.left, box.top};
   }
-  if (const pugi::xml_attribute a = gradientAttribute(node, "gradientTransform")) {
-    Affine own;
-    if (parseTransform(a.value(), state.lengths, own)) {
-      if (own.a * own.d == own.b * own.c) return nullptr; // it has no extent
-      map = map * own;
-    } else {
-      reporter_.error(document_.line(a, 0), element(node) + " has an error in its gradientTransform, which is ignored");
-    }
+  for (const pugi::xml_node gradient : chain.gradients) { // the property, whose attribute gradientTransform is
+    const Style style = styleOf(gradient, state.lengths);
+    if (style.transform.empty()) continue;
+    const Affine own = transformOf(gradient, style, state.lengths);
+    if (own.a * own.d == own.b * own.c) return nullptr; // it has no extent
+    map = map * own;
+    break;
   }
   const double to[6] = {map.a, map.b, map.c, map.d, map.e, map.f};
   bool finite = true;
@@ -169,7 +181,7 @@ std::shared_ptr<const Gradient> Importer::gradientOf(pugi::xml_node node, bool r
   for (const float v : {g.start[0], g.start[1], g.end[0], g.end[1], g.startRadius, g.endRadius})
     finite = finite && std::isfinite(v);
   if (!finite) {
-    reporter_.error(document_.line(node), element(node) + " reaches beyond all numbers; not painted");
+    reporter_.error(document_.place(node), element(node) + " reaches beyond all numbers; not painted");
     return nullptr;
   }
   g.stops = made->stops.data();

@@ -1,45 +1,12 @@
 // <image> with a data: URI as a rectangle painted with the image (SVG 2, 12.4). Whoever compiles decodes PNG, JPEG and
 // the like, and keeps the texture; here base64 becomes bytes and the picture is fitted into its place.
+#include "vector/import/svg/data_uri.h"
 #include "vector/import/svg/importer.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace gpgp::vector::svg {
-namespace {
-
-/// The bytes behind "data:...;base64,"; empty where it is something else.
-std::vector<uint8_t> decodeDataUri(std::string_view uri) {
-  const size_t comma = uri.find(',');
-  if (uri.substr(0, 5) != "data:" || comma == uri.npos) return {};
-  const std::string_view head = uri.substr(0, comma);
-  if (head.size() < 7 || head.substr(head.size() - 7) != ";base64") return {};
-  std::vector<uint8_t> bytes;
-  bytes.reserve((uri.size() - comma) / 4 * 3);
-  uint32_t bits = 0, count = 0;
-  for (const char c : uri.substr(comma + 1)) {
-    const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
-                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
-                      : c >= '0' && c <= '9' ? c - '0' + 52
-                      : c == '+'             ? 62
-                      : c == '/'             ? 63
-                                             : -1;
-    if (digit < 0) {
-      if (c == '=') break;
-      if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
-      return {};
-    }
-    bits = bits << 6 | static_cast<uint32_t>(digit);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes.push_back(static_cast<uint8_t>(bits >> count));
-    }
-  }
-  return bytes;
-}
-
-} // namespace
 
 const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
   const std::string_view href = trim(hrefOf(node).value());
@@ -63,16 +30,17 @@ const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
 
 void Importer::drawImage(pugi::xml_node node, const State& state) {
   const std::string_view href = trim(hrefOf(node).value());
-  const size_t line = document_.line(node);
-  if (!images_.fn) return reporter_.warn(line, "<image> is not supported");
+  const Place place = document_.place(node);
+  if (!images_.fn) return reporter_.warn(place, "<image> is not supported");
   if (href.substr(0, 5) != "data:")
-    return reporter_.warn(line, "<image> of another file, '" + std::string(href.substr(0, 60)) + "', is not supported");
+    return reporter_.warn(place,
+                          "<image> of another file, '" + std::string(href.substr(0, 60)) + "', is not supported");
   const bool many = pictureCount_ >= GPGP_MAX_IMAGES && !pictures_.count(href);
   const Picture* picture = pictureOf(node);
   if (!picture)
-    return reporter_.warn(line, many ? "<image> is one more than the " + std::to_string(GPGP_MAX_IMAGES) +
-                                           " that a drawing can have; not supported"
-                                     : std::string("<image> holds nothing that can be decoded; not supported"));
+    return reporter_.warn(place, many ? "<image> is one more than the " + std::to_string(GPGP_MAX_IMAGES) +
+                                            " that a drawing can have; not supported"
+                                      : std::string("<image> holds nothing that can be decoded; not supported"));
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   bool hasWidth = false, hasHeight = false;
@@ -85,6 +53,8 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   const Affine fitted = Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, aspectRatio(node));
+  if (state.style.overflowVisible && aspectRatio(node).slice)
+    reporter_.warn(place, "overflow 'visible' is not supported: <image> is drawn without it");
   // What of the picture is within its place.
   const double left = std::max(x, fitted.e), top = std::max(y, fitted.f);
   const double right = std::min(x + w, fitted.e + pw * fitted.a), bottom = std::min(y + h, fitted.f + ph * fitted.d);

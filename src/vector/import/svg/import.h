@@ -3,7 +3,7 @@
 // Supported: path, rect, circle, ellipse, line, polyline, polygon, g, a, svg (nested too), use, symbol, switch;
 // transforms; fill, stroke with joins, caps and dashes (made into fills), opacities, colours, style sheets with simple
 // selectors; linear and radial gradients; clip paths; opacity of groups; embedded images. What is not supported is
-// named with its line while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and
+// named with its place while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and
 // a limit that is met is said.
 #pragma once
 #include "core/result.h"
@@ -27,8 +27,10 @@ struct ImportLimits {
   size_t depth = 200;        ///< of elements in each other, <use> included
   size_t elements = 500'000; ///< visited, copies by <use> included
   size_t paths = 250'000;
-  size_t points = 8'000'000;   ///< of all paths
-  size_t matches = 20'000'000; ///< style selectors and declarations looked at
+  size_t points = 8'000'000;            ///< of all paths
+  size_t matches = 20'000'000;          ///< style selectors and declarations looked at
+  size_t sheets = 64;                   ///< style sheets of other files
+  size_t sheetBytes = size_t(16) << 20; ///< of all of them
 };
 
 struct Gradient {
@@ -49,7 +51,7 @@ struct ImportedPath {
   float color[4] = {};                         ///< linear RGB, straight alpha
   std::shared_ptr<const Gradient> gradient;    ///< instead of the colour, whose alpha still counts
   std::shared_ptr<const GpgpImagePaint> image; ///< likewise
-  size_t line = 1;                             ///< of the element it comes from
+  Place place;                                 ///< of the element it comes from
   std::string element;                         ///< "<path>"
   uint32_t group = 0;                          ///< 1 + its index in Imported::groups
 
@@ -105,14 +107,16 @@ struct ImportedViews {
 struct PageSize {
   double width = 0, height = 0;
 };
-core::Result<PageSize> pageSize(std::span<const std::byte> bytes);
+core::Result<PageSize> pageSize(std::span<const std::byte> bytes, const GpgpFileSystem* files = nullptr);
 
 /// The map from the page of an SVG (x, y, width, height) into a picture, as if the picture's size were what the
 /// outermost element asks for: the viewBox, or the page where there is none, fitted as preserveAspectRatio says.
 core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&page)[4], double width, double height);
 
-/// Errors where the bytes are no SVG at all; everything milder goes to the reporter.
+/// Errors where the bytes are no SVG at all; everything milder goes to the reporter. Style sheets of other files are
+/// read through `files`, by names relative to the drawing's folder.
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits = {},
-                                 const ImageDecoder& images = {}, const ImportDetail& detail = {});
+                                 const ImageDecoder& images = {}, const ImportDetail& detail = {},
+                                 const GpgpFileSystem* files = nullptr);
 
 } // namespace gpgp::vector::svg

@@ -34,17 +34,10 @@ bool isFor(pugi::xml_node node) {
 } // namespace
 
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits,
-                                 const ImageDecoder& images, const ImportDetail& detail) {
+                                 const ImageDecoder& images, const ImportDetail& detail, const GpgpFileSystem* files) {
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
-  return Importer(document, reporter, limits, images, detail).run();
-}
-
-core::Result<PageSize> pageSize(std::span<const std::byte> bytes) {
-  Document document;
-  if (auto ok = document.load(bytes); !ok) return ok.error();
-  Reporter quiet(nullptr, nullptr, "");
-  return Importer(document, quiet, {}, {}, {}).pageSize();
+  return Importer(document, reporter, limits, images, detail, files).run();
 }
 
 /// "<rect> has x 'wide', which is ".
@@ -56,15 +49,15 @@ std::string Importer::element(pugi::xml_node node) const {
   return std::string("<") + std::string(std::string_view(node.name()).substr(0, 40)) + ">";
 }
 
-void Importer::ignored(pugi::xml_node node, size_t line, std::string_view name, std::string_view value) {
+void Importer::ignored(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value) {
   const std::string text = valueOf(node, name, value);
-  hasUnsupported(value) ? reporter_.warn(line, text + "not supported; ignored")
-                        : reporter_.ignored(line, text + "not valid; ignored");
+  hasUnsupported(value) ? reporter_.warn(place, text + "not supported; ignored")
+                        : reporter_.ignored(place, text + "not valid; ignored");
 }
 
-void Importer::noLength(pugi::xml_node node, size_t line, std::string_view name, std::string_view value) {
-  hasUnsupported(value) ? ignored(node, line, name, value)
-                        : reporter_.error(line, valueOf(node, name, value) + "no length");
+void Importer::noLength(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value) {
+  hasUnsupported(value) ? ignored(node, place, name, value)
+                        : reporter_.error(place, valueOf(node, name, value) + "no length");
 }
 
 AspectRatio Importer::aspectRatio(pugi::xml_node node) {
@@ -75,7 +68,7 @@ AspectRatio Importer::aspectRatio(pugi::xml_node node) {
 }
 
 void Importer::stop(pugi::xml_node node, const std::string& why) {
-  if (!stopped_) reporter_.error(document_.line(node), why + "; the rest is not drawn", GPGP_ERROR_UNSUPPORTED);
+  if (!stopped_) reporter_.error(document_.place(node), why + "; the rest is not drawn", GPGP_ERROR_UNSUPPORTED);
   stopped_ = true;
 }
 
@@ -86,87 +79,14 @@ bool Importer::stopped(pugi::xml_node node) {
 }
 
 core::Result<Imported> Importer::run() {
+  reportEverywhere();
   const State state = begin();
+  const Place place = document_.place(document_.root());
   if (result_.width > kMaxReach || result_.height > kMaxReach)
-    return core::makeError(GPGP_ERROR_INVALID_DATA, "line %zu: <svg> is wider or taller than 10000000 pixels",
-                           document_.line(document_.root()));
+    return core::makeError(GPGP_ERROR_INVALID_DATA, "%zu:%zu: <svg> is wider or taller than 10000000 pixels",
+                           place.line, place.column);
   if (!empty_) visit(document_.root(), state);
   return std::move(result_);
-}
-
-PageSize Importer::pageSize() {
-  begin();
-  return {result_.width, result_.height};
-}
-
-bool Importer::isForScreen(pugi::xml_node node) {
-  const pugi::xml_attribute media = node.attribute("media");
-  bool others = false;
-  for (std::string_view rest = media.value(); !rest.empty();) {
-    const size_t end = std::min(rest.find(','), rest.size());
-    const std::string_view medium = trim(rest.substr(0, end));
-    if (isWord(medium, "all") || isWord(medium, "screen")) return true;
-    Scanner s(medium);
-    s.name();
-    if (!s.done())
-      reporter_.warn(document_.line(media, 0), "media '" + std::string(medium.substr(0, 60)) +
-                                                   "' is not supported: " + element(node) + " does not count for it");
-    others |= !medium.empty();
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return !others;
-}
-
-Importer::State Importer::begin() {
-  for (const pugi::xml_node node : document_.all("style")) {
-    const std::string_view type = node.attribute("type").value();
-    if (!isForScreen(node)) continue;
-    std::string text;
-    for (const pugi::xml_node part : node.children()) text += part.value();
-    if (type.empty() || type == "text/css") sheet_.parse(text, document_.line(node), reporter_);
-  }
-  const pugi::xml_node root = document_.root();
-  const pugi::xml_attribute boxText = root.attribute("viewBox");
-  const std::optional<ViewBox> box = parseViewBox(boxText.value());
-  if (boxText && !box) ignored(root, boxText);
-  State state;
-  // A page in percent has the size of its viewBox: there is nothing around it.
-  state.lengths.width = box ? box->width : 100;
-  state.lengths.height = box ? box->height : 100;
-  bool hasWidth = false, hasHeight = false;
-  Style style;
-  cascade(root, {}, state.lengths, style);
-  LengthContext lengths = state.lengths;
-  lengths.fontSize = style.fontSize;
-  double width = extent(root, style, "width", lengths, LengthAxis::X, 0, &hasWidth);
-  double height = extent(root, style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
-  empty_ = !hasExtent(root, hasWidth ? width : 1, hasHeight ? height : 1, box);
-  const auto isPercent = [&](const char* name) {
-    const std::string* styled = style.geometryOf(name);
-    const std::string_view text = styled ? std::string_view(*styled) : root.attribute(name).value();
-    return text.find('%') != text.npos;
-  };
-  if (isPercent("width")) hasWidth = false;
-  if (isPercent("height")) hasHeight = false;
-  if (empty_) {
-    if (hasWidth && hasHeight) result_.width = width, result_.height = height;
-    return state;
-  }
-  if (box && !hasWidth) width = hasHeight ? height * box->width / box->height : box->width;
-  if (box && !hasHeight) height = hasWidth ? width * box->height / box->width : box->height;
-  if (box || (hasWidth && hasHeight)) {
-    result_.width = width;
-    result_.height = height;
-  }
-  if (box) {
-    state.transform = fitViewBox(*box, width, height, aspectRatio(root));
-    state.lengths.width = box->width;
-    state.lengths.height = box->height;
-  } else {
-    if (hasWidth) state.lengths.width = width;
-    if (hasHeight) state.lengths.height = height;
-  }
-  return state;
 }
 
 void Importer::visit(pugi::xml_node node, const State& parent, const double* useSize) {
@@ -175,7 +95,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   const bool isSymbol = name == "symbol" && useSize;
   if (oneOf(name, kSilent) && !isSymbol) return;
   if (parent.depth >= limits_.depth) {
-    reporter_.error(document_.line(node),
+    reporter_.error(document_.place(node),
                     "elements are nested deeper than " + std::to_string(limits_.depth) +
                         "; what is inside is not drawn",
                     GPGP_ERROR_UNSUPPORTED);
@@ -188,11 +108,11 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   if (!state.style.displayed) return;
   state.transform = state.transform * transformOf(node, state.style, parent.lengths);
   if (!state.transform.finite()) {
-    reporter_.error(document_.line(node), element(node) + " has a transform beyond all numbers; not drawn");
+    reporter_.error(document_.place(node), element(node) + " has a transform beyond all numbers; not drawn");
     return;
   }
   if (mode_ == Mode::Clip && !oneOf(name, kShapes) && name != "use" && name != "text") {
-    reporter_.ignored(document_.line(node), element(node) + " shows nothing inside a <clipPath>");
+    reporter_.ignored(document_.place(node), element(node) + " shows nothing inside a <clipPath>");
     return;
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
@@ -223,7 +143,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
       result_.groups.resize(faded - 1);
     }
   } else if (opacity < 1 && !fades && drawn > 1) {
-    reporter_.warn(document_.line(node),
+    reporter_.warn(document_.place(node),
                    "opacity of " + element(node) + ", inside too many that fade, is applied to each of its paths");
   }
 }
@@ -243,7 +163,7 @@ void Importer::content(pugi::xml_node node, std::string_view name, State& state,
   } else if (name == "switch") {
     visitSwitch(node, state);
   } else {
-    reporter_.warn(document_.line(node), element(node) + " is not supported");
+    reporter_.warn(document_.place(node), element(node) + " is not supported");
   }
 }
 
@@ -257,8 +177,9 @@ void Importer::visitChildren(pugi::xml_node node, const State& state) {
 void Importer::visitSwitch(pugi::xml_node node, const State& state) {
   for (const pugi::xml_node child : node.children()) {
     const std::string_view name = document_.name(child);
-    if (name.empty() || name == "foreignObject" || oneOf(name, kSilent)) continue;
-    if (isFor(child)) return visit(child, state);
+    if (name.empty() || oneOf(name, kSilent) || !isFor(child)) continue;
+    if (name != "foreignObject") return visit(child, state);
+    reporter_.warn(document_.place(child), element(child) + " is not supported: <switch> shows what follows it");
   }
 }
 
@@ -266,20 +187,23 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
   reportChildren(node);
   const pugi::xml_attribute href = hrefOf(node);
   const pugi::xml_node target = document_.find(trim(href.value()));
-  const size_t line = document_.line(node);
+  const Place place = document_.place(node);
   const std::string shown = std::string("'") + std::string(href.value()).substr(0, 60) + "'";
   if (!target) {
     const bool outside = href && href.value()[0] != '#' && href.value()[0] != '\0';
-    outside ? reporter_.warn(line, "<use> of another file, " + shown + ", is not supported")
-            : reporter_.error(line, "<use> refers to " + shown + ", which is not there");
+    outside ? reporter_.warn(place, "<use> of another file, " + shown + ", is not supported")
+            : reporter_.error(place, "<use> refers to " + shown + ", which is not there");
     return;
   }
   bool inside = std::find(used_.begin(), used_.end(), target) != used_.end();
   for (pugi::xml_node up = node; up && !inside; up = up.parent()) inside = up == target;
   if (inside) {
-    reporter_.error(line, "<use> of " + shown + " contains itself; not drawn");
+    reporter_.error(place, "<use> of " + shown + " contains itself; not drawn");
     return;
   }
+  const std::string_view kind = document_.name(target);
+  if (oneOf(kind, kSilent) && kind != "symbol")
+    return reporter_.ignored(place, "<use> refers to " + shown + ", a " + element(target) + ", which shows nothing");
   State moved = state;
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
@@ -289,6 +213,8 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
   constexpr double unset = -1;
   const double size[2] = {extent(node, state.style, "width", lengths, LengthAxis::X, unset),
                           extent(node, state.style, "height", lengths, LengthAxis::Y, unset)};
+  const Context context{&state, node, used_.size(), moved.transform};
+  moved.context = &context;
   used_.push_back(target);
   visit(target, moved, size);
   used_.pop_back();
@@ -296,17 +222,20 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
 
 bool Importer::hasExtent(pugi::xml_node node, double width, double height, const std::optional<ViewBox>& box) {
   if (width > 0 && height > 0 && (!box || (box->width > 0 && box->height > 0))) return true;
-  reporter_.ignored(document_.line(node), element(node) + " has a width, height or viewBox of zero; not drawn");
+  reporter_.ignored(document_.place(node), element(node) + " has a width, height or viewBox of zero; not drawn");
   return false;
 }
 
 /// <svg> inside another, or <symbol>: its own coordinates, and a clip where something reaches beyond its edge.
 void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
   const size_t before = result_.paths.size();
-  if (node == document_.root()) return visitChildren(node, state);
+  if (node == document_.root()) {
+    if (mode_ == Mode::Paint) paintBackground(state);
+    return visitChildren(node, state);
+  }
   for (const char* name : {"refX", "refY"})
     if (node.attribute(name))
-      reporter_.warn(document_.line(node),
+      reporter_.warn(document_.place(node),
                      std::string(name) + " is not supported: " + element(node) + " is drawn without it");
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
@@ -353,7 +282,7 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
       if (++steps_ > 8 * limits_.points) return;
       if (u >= -slack && v >= -slack && u <= w + slack && v <= h + slack) continue;
       if (!clips)
-        reporter_.warn(document_.line(node),
+        reporter_.warn(document_.place(node),
                        element(node) + " is not clipped to its viewport; its content reaches beyond");
       return;
     }
@@ -365,17 +294,22 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
 }
 
 void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style) {
+  const bool isShape = oneOf(name, kShapes);
+  const bool isFaint = style.opacity * style.fillOpacity * style.strokeOpacity < 1 || style.fill.color.a < 1;
   const struct {
     bool is;
     const char* what;
-  } features[] = {{mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
-                  {style.mask, "mask"},
-                  {style.filter, "filter"},
-                  {style.blendMode, "mix-blend-mode"},
-                  {!style.markers.empty() && name != "g" && name != "svg" && oneOf(name, kShapes), "marker"}};
+  } features[] = {
+      {mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
+      {style.mask, "mask"},
+      {style.filter, "filter"},
+      {style.blendMode, "mix-blend-mode"},
+      {style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
+      {isShape && std::find(style.markers.begin(), style.markers.end(), true) != style.markers.end(), "marker"},
+      {isShape && style.mixesLinear && isFaint, "color-interpolation of what is painted, linearRGB,"}};
   for (const auto& f : features)
     if (f.is)
-      reporter_.warn(document_.line(node),
+      reporter_.warn(document_.place(node),
                      std::string(f.what) + " is not supported: " + element(node) + " is drawn without it");
 }
 
@@ -383,7 +317,7 @@ void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, con
 void Importer::reportChildren(pugi::xml_node node) {
   for (const pugi::xml_node child : node.children())
     if (const std::string_view inner = document_.name(child); !inner.empty() && !oneOf(inner, kSilent))
-      reporter_.warn(document_.line(child), element(child) + " is not supported");
+      reporter_.warn(document_.place(child), element(child) + " is not supported");
 }
 
 void Importer::draw(pugi::xml_node node, std::string_view name, const State& state) {
@@ -398,15 +332,15 @@ void Importer::draw(pugi::xml_node node, std::string_view name, const State& sta
     if (shape.points.size() > 2) emit(shape, state.transform, style.clipRule, {}, 1, node);
     return;
   }
+  const Surface surface{state, state.transform, [&shape] { return boxOf(shape); }};
   const auto fill = [&] {
     if (shape.points.size() < 3) return;
-    const std::optional<Ink> ink = resolve(style.fill, state, shape, node, "fill");
+    const std::optional<Ink> ink = resolve(style.fill, surface, node, "fill");
     if (ink) emit(shape, state.transform, style.fillRule, *ink, style.fillOpacity * state.opacity, node);
   };
   if (!style.strokeFirst) fill();
   if (style.strokeWidth > 0)
-    if (const std::optional<Ink> ink = resolve(style.stroke, state, shape, node, "stroke"))
-      stroke(shape, state, *ink, node);
+    if (const std::optional<Ink> ink = resolve(style.stroke, surface, node, "stroke")) stroke(shape, state, *ink, node);
   if (style.strokeFirst) fill();
 }
 
@@ -440,7 +374,7 @@ void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pu
   for (const Point& p : from.points) {
     const Point q = transform(p);
     if (!(std::fabs(q.x) <= 1e7 && std::fabs(q.y) <= 1e7) || !(style.strokeWidth * shown * scale <= 2e7)) {
-      reporter_.error(document_.line(node), element(node) + " reaches beyond 10000000 pixels; not drawn");
+      reporter_.error(document_.place(node), element(node) + " reaches beyond 10000000 pixels; not drawn");
       return;
     }
   }
@@ -457,7 +391,7 @@ void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pu
   const auto begin = std::chrono::steady_clock::now();
   bool done = strokeShape(from, s, tolerance, {}, area);
   if (!done && !s.dashes.empty()) {
-    reporter_.error(document_.line(node),
+    reporter_.error(document_.place(node),
                     element(node) + " has too many dashes (more than " + std::to_string(StrokeLimits{}.dashes) +
                         "); drawn without",
                     GPGP_ERROR_UNSUPPORTED);
@@ -466,7 +400,7 @@ void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pu
   result_.strokeMilliseconds +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (!done) {
-    reporter_.error(document_.line(node), element(node) + " has a stroke of too many points; not drawn",
+    reporter_.error(document_.place(node), element(node) + " has a stroke of too many points; not drawn",
                     GPGP_ERROR_UNSUPPORTED);
     return;
   }
@@ -488,7 +422,7 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
   for (const Point& p : shape.points) {
     const Point q = transform(p);
     if (!(std::fabs(q.x) <= 1e7 && std::fabs(q.y) <= 1e7)) {
-      reporter_.error(document_.line(node), element(node) + " reaches beyond 10000000 pixels; not drawn");
+      reporter_.error(document_.place(node), element(node) + " reaches beyond 10000000 pixels; not drawn");
       return;
     }
     path.points.push_back(static_cast<float>(q.x));
@@ -498,7 +432,7 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
   path.rule = rule;
   path.gradient = ink.gradient;
   path.image = ink.image;
-  path.line = document_.line(node);
+  path.place = document_.place(node);
   path.element = element(node);
   path.group = group_;
   const double linear[4] = {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b), alpha};

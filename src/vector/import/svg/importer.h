@@ -6,6 +6,8 @@
 #include "vector/import/svg/stylesheet.h"
 #include "vector/layout.h"
 
+#include <deque>
+#include <functional>
 #include <optional>
 #include <unordered_map>
 
@@ -32,32 +34,66 @@ struct Box {
   void add(Point p);
 };
 Box boxOf(const Shape& shape);
+/// Zeros where there is none.
+Affine inverseOf(const Affine& m);
+
+inline constexpr std::string_view kGradients[] = {"linearGradient", "radialGradient"};
 
 class Importer {
 public:
   Importer(const Document& document, Reporter& reporter, const ImportLimits& limits, const ImageDecoder& images,
-           const ImportDetail& detail)
-      : document_(document), reporter_(reporter), limits_(limits), images_(images), detail_(detail) {}
+           const ImportDetail& detail, const GpgpFileSystem* files)
+      : document_(document), reporter_(reporter), limits_(limits), images_(images), detail_(detail), files_(files) {}
   core::Result<Imported> run();
   PageSize pageSize();
 
 private:
   /// What an element gets from above.
+  struct Context;
   struct State {
     Style style;
     Affine transform;
     LengthContext lengths; ///< of the nearest viewport
     double opacity = 1;    ///< of groups around that could not be one
     size_t depth = 0;
-    uint32_t group = 0;             ///< 1 + index in the result
-    uint32_t fading = 0, clips = 0; ///< groups around that fade, and that clip
+    const Context* context = nullptr; ///< the innermost <use> around, whose paints context-fill and -stroke are
+    uint32_t group = 0;               ///< 1 + index in the result
+    uint32_t fading = 0, clips = 0;   ///< groups around that fade, and that clip
   };
 
-  // importer.cpp
-  /// Whether a style sheet's media are ours.
-  bool isForScreen(pugi::xml_node node);
+  /// A <use> that is being shown.
+  struct Context {
+    const State* state = nullptr; ///< lives as long as it is shown
+    pugi::xml_node node;
+    size_t used = 0; ///< how many were being shown before
+    Affine space;    ///< from its own coordinates
+    mutable std::optional<Box> box{};
+  };
+  /// What a paint goes onto.
+  struct Surface {
+    const State& state;
+    Affine space; ///< from its coordinates
+    std::function<Box()> box;
+  };
+
+  // page.cpp
   /// The style sheets, and the root's page with what is measured by it.
   State begin();
+  void paintBackground(const State& state);
+  /// Of what has an effect wherever it stands, also where nothing is drawn from.
+  void reportEverywhere();
+
+  // sheets.cpp
+  /// Reads all style sheets: those that instructions name, then elements in the file's order.
+  void readSheets();
+  /// Whether a style sheet's media are ours; what cannot be told is said.
+  bool isForScreen(std::string_view media, const Place& place, const std::string& who);
+  void readStyleElement(pugi::xml_node node, const Place& place, std::string_view name);
+  /// Reads a sheet of another file, whose name is relative to the folder of the one that refers to it.
+  void readSheet(std::string_view href, std::string_view folder, const Place& place, size_t depth);
+  void parseSheet(std::string_view text, std::string_view folder, const Place& place, size_t depth);
+
+  // importer.cpp
   void visit(pugi::xml_node node, const State& parent, const double* useSize = nullptr);
   void visitChildren(pugi::xml_node node, const State& state);
   void visitUse(pugi::xml_node node, const State& state);
@@ -112,28 +148,31 @@ private:
   void cascade(pugi::xml_node node, const Style& parent, const LengthContext& lengths, Style& style);
   /// What the transform and transform-origin properties come to.
   Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths);
-  std::optional<Ink> resolve(const Paint& paint, const State& state, const Shape& shape, pugi::xml_node node,
-                             const char* property);
+  std::optional<Ink> resolve(const Paint& paint, const Surface& surface, pugi::xml_node node, const char* property);
+  Box boxOfContext(const Context& context);
 
   // gradient.cpp
-  pugi::xml_attribute gradientAttribute(pugi::xml_node gradient, const char* name) const;
-  /// Whether following its references leads to one for the second time.
-  bool isCyclic(pugi::xml_node gradient) const;
-  /// What is not in this document along its references, or nothing.
-  std::string_view otherFileOf(pugi::xml_node gradient) const;
-  std::vector<GpgpGradientStop> gradientStops(pugi::xml_node gradient, const LengthContext& lengths);
+  /// A gradient, the one it refers to, and so on.
+  struct GradientChain {
+    std::vector<pugi::xml_node> gradients;
+    bool cyclic = false;        ///< the last refers to one of them
+    std::string_view otherFile; ///< which the last refers to
+  };
+  const GradientChain& chainOf(pugi::xml_node gradient);
+  pugi::xml_attribute gradientAttribute(const GradientChain& chain, const char* name) const;
+  std::vector<GpgpGradientStop> gradientStops(const GradientChain& chain, const LengthContext& lengths);
   /// Nothing where it has no stops, or no box to be measured by.
-  std::shared_ptr<const Gradient> gradientOf(pugi::xml_node node, bool radial, const State& state, const Shape& shape);
+  std::shared_ptr<const Gradient> gradientOf(const GradientChain& chain, bool radial, const Surface& surface);
 
   std::string element(pugi::xml_node node) const;
   std::string valueOf(pugi::xml_node node, std::string_view name, std::string_view value) const;
   /// Says that a value does not count, for it is not valid, or not supported.
-  void ignored(pugi::xml_node node, size_t line, std::string_view name, std::string_view value);
+  void ignored(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value);
   void ignored(pugi::xml_node node, pugi::xml_attribute attribute) {
-    ignored(node, document_.line(attribute, 0), attribute.name(), attribute.value());
+    ignored(node, document_.place(attribute, 0), attribute.name(), attribute.value());
   }
   /// What is no length.
-  void noLength(pugi::xml_node node, size_t line, std::string_view name, std::string_view value);
+  void noLength(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value);
   /// The node's preserveAspectRatio; one that is not valid is named and does not count.
   AspectRatio aspectRatio(pugi::xml_node node);
 
@@ -145,6 +184,11 @@ private:
   std::unordered_map<std::string_view, Picture> pictures_; // by href
   uint32_t pictureCount_ = 0;
   StyleSheet sheet_;
+  const GpgpFileSystem* files_;
+  std::deque<std::string> sheetNames_;  // which places of messages refer to
+  std::vector<std::string> openSheets_; // paths, each imported by the one before
+  size_t sheetCount_ = 0, sheetBytes_ = 0;
+  std::unordered_map<size_t, GradientChain> chains_; // by their first
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
@@ -157,6 +201,7 @@ private:
   Mode mode_ = Mode::Paint;
   Box box_; // of what was measured
   Affine toBox_;
+  Affine toPage_;                            ///< from the outermost element's coordinates
   std::unordered_map<size_t, Style> styles_; // of what is referred to
   struct MadeClip {
     Affine transform;

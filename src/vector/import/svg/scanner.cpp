@@ -116,7 +116,7 @@ bool parseLength(std::string_view text, const LengthContext& context, LengthAxis
                {"cm", 96 / 2.54},
                {"in", 96},
                {"em", context.fontSize},
-               {"rem", 16},
+               {"rem", context.rootFontSize},
                {"ex", context.fontSize / 2},
                {"ch", context.fontSize / 2},
                {"q", 96 / 101.6},

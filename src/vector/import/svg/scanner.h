@@ -46,7 +46,7 @@ bool isWord(std::string_view text, std::string_view word);
 
 /// What percentages and font units refer to.
 struct LengthContext {
-  double width = 100, height = 100, fontSize = 16;
+  double width = 100, height = 100, fontSize = 16, rootFontSize = 16;
 };
 enum class LengthAxis { X, Y, Diagonal };
 /// A length with unit in user units; false where it is none.

@@ -26,7 +26,7 @@ double Importer::length(pugi::xml_node node, const Style& style, const char* nam
   if ((!a && !styled) || text == "auto") return otherwise;
   double value = 0;
   if (!parseLength(text, lengths, axis, value)) {
-    noLength(node, styled ? document_.line(node) : document_.line(a, 0), name, text);
+    noLength(node, styled ? document_.place(node) : document_.place(a, 0), name, text);
     return otherwise;
   }
   if (given) *given = true;
@@ -38,7 +38,7 @@ double Importer::extent(pugi::xml_node node, const Style& style, const char* nam
   bool has = false;
   const double value = length(node, style, name, lengths, axis, otherwise, &has);
   const bool negative = has && value < 0;
-  if (negative) reporter_.error(document_.line(node), element(node) + " has a negative " + name + "; ignored");
+  if (negative) reporter_.error(document_.place(node), element(node) + " has a negative " + name + "; ignored");
   if (given) *given = has && !negative;
   return negative ? otherwise : value;
 }
@@ -53,14 +53,14 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
   };
   // A size below zero is an error, one of zero draws nothing.
   const auto positive = [&](const char* attribute, double value) {
-    if (value < 0) reporter_.error(document_.line(node), element(node) + " has a negative " + attribute);
+    if (value < 0) reporter_.error(document_.place(node), element(node) + " has a negative " + attribute);
     return value > 0;
   };
   // One below zero is as if it were not there.
   const auto radius = [&](const char* attribute, LengthAxis axis, bool* given) {
     double value = along(attribute, axis, 0, given);
     if (value < 0) {
-      reporter_.ignored(document_.line(node), element(node) + " has a negative " + attribute + "; ignored");
+      reporter_.ignored(document_.place(node), element(node) + " has a negative " + attribute + "; ignored");
       value = 0;
       *given = false;
     }
@@ -73,7 +73,7 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
     const std::string_view data = styled ? insidePath(*styled) : d.value();
     const size_t bad = parsePathData(data, shape, tolerance);
     if (bad != std::string_view::npos)
-      reporter_.error(styled ? document_.line(node) : document_.line(d, bad),
+      reporter_.error(styled ? document_.place(node) : document_.place(d, bad),
                       element(node) + " has an error in its path data at character " + std::to_string(bad + 1) +
                           "; drawn up to there");
   } else if (name == "rect") {
@@ -100,7 +100,7 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
   } else { // polyline, polygon
     const pugi::xml_attribute points = node.attribute("points");
     if (!parsePoints(points.value(), name == "polygon", shape))
-      reporter_.error(document_.line(points, 0), element(node) + " has an error in its points; drawn up to there");
+      reporter_.error(document_.place(points, 0), element(node) + " has an error in its points; drawn up to there");
   }
   return shape;
 }

@@ -46,13 +46,17 @@ bool parsePaint(std::string_view text, Paint& paint) {
     text = trim(text.substr(end + 1));
     if (!text.empty()) {
       Paint rest;
-      if (isUrl(text) || !parsePaint(text, rest)) return false;
+      if (isUrl(text) || !parsePaint(text, rest) || rest.kind == Paint::Kind::ContextFill ||
+          rest.kind == Paint::Kind::ContextStroke)
+        return false;
       p.hasFallback = true;
       p.fallback = rest.kind;
       p.color = rest.color;
     }
-  } else if (isWord(text, "none") || isWord(text, "context-fill") || isWord(text, "context-stroke")) {
+  } else if (isWord(text, "none")) {
     p.kind = Paint::Kind::None;
+  } else if (isWord(text, "context-fill") || isWord(text, "context-stroke")) {
+    p.kind = isWord(text, "context-fill") ? Paint::Kind::ContextFill : Paint::Kind::ContextStroke;
   } else if (isCurrentColor(text)) {
     p.kind = Paint::Kind::Current;
   } else {
@@ -86,6 +90,7 @@ bool parseFontSize(std::string_view v, const Style& parent, LengthContext length
                {"large", 18},
                {"x-large", 24},
                {"xx-large", 32},
+               {"xxx-large", 48},
                {"larger", parent.fontSize * 1.2},
                {"smaller", parent.fontSize / 1.2}};
   for (const auto& n : names)
@@ -151,6 +156,8 @@ constexpr Word<Join> kJoins[] = {{"miter", Join::Miter},
                                  {"miter-clip", Join::Miter},
                                  {"arcs", Join::Miter}};
 constexpr Word<bool> kInterpolations[] = {{"auto", false}, {"srgb", false}, {"linearrgb", true}};
+constexpr Word<bool> kOverflows[] = {
+    {"visible", true}, {"auto", true}, {"hidden", false}, {"scroll", false}, {"clip", false}};
 constexpr Word<bool> kVisibilities[] = {{"visible", true}, {"hidden", false}, {"collapse", false}};
 
 struct Context {
@@ -178,14 +185,119 @@ bool setStopColor(const Context& c) {
   stop.isCurrent = isCurrentColor(c.value);
   return stop.isCurrent || parseColor(c.value, stop.color);
 }
+/// normal, or some of fill, stroke and markers, each once; what is left out comes last, in this order.
 bool setPaintOrder(const Context& c) {
-  const size_t fill = c.value.find("fill"), stroke = c.value.find("stroke");
-  c.style.strokeFirst = stroke != c.value.npos && (fill == c.value.npos || stroke < fill);
+  constexpr std::string_view parts[] = {"fill", "stroke", "markers"};
+  const std::string lower = lowered(c.value);
+  std::vector<std::string_view> order;
+  for (std::string_view rest = lower; !(rest = trim(rest)).empty();) {
+    const std::string_view part = rest.substr(0, rest.find_first_of(" \t\r\n\f"));
+    rest.remove_prefix(part.size());
+    const bool isNormal = part == "normal" && order.empty() && trim(rest).empty();
+    if (!isNormal && (!oneOf(part, parts) || std::find(order.begin(), order.end(), part) != order.end())) return false;
+    if (!isNormal) order.push_back(part);
+  }
+  const auto at = [&order](std::string_view part) { return std::find(order.begin(), order.end(), part); };
+  c.style.strokeFirst = at("stroke") < at("fill");
+  return !lower.empty();
+}
+/// Words of CSS Display and those of CSS 2 for text and tables.
+bool setDisplay(const Context& c) {
+  constexpr std::string_view words[] = {"none",
+                                        "inline",
+                                        "block",
+                                        "contents",
+                                        "flow",
+                                        "flow-root",
+                                        "inline-block",
+                                        "list-item",
+                                        "table",
+                                        "inline-table",
+                                        "table-row-group",
+                                        "table-header-group",
+                                        "table-footer-group",
+                                        "table-row",
+                                        "table-cell",
+                                        "table-column-group",
+                                        "table-column",
+                                        "table-caption",
+                                        "flex",
+                                        "inline-flex",
+                                        "grid",
+                                        "inline-grid",
+                                        "ruby",
+                                        "run-in",
+                                        "compact",
+                                        "marker"};
+  const std::string lower = lowered(c.value);
+  for (std::string_view rest = lower; !(rest = trim(rest)).empty();) { // one, or two such as "inline flow"
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n\f"));
+    if (!oneOf(word, words)) return false;
+    rest.remove_prefix(word.size());
+  }
+  return !lower.empty() && (c.style.displayed = lower != "none", true);
+}
+/// Of the two of overflow-x and overflow-y the first counts.
+bool setOverflow(const Context& c) {
+  return choose(c.value.substr(0, c.value.find_first_of(" \t\r\n\f")), kOverflows, c.style.overflowVisible);
+}
+bool setVectorEffect(const Context& c) {
+  constexpr std::string_view others[] = {"non-scaling-size", "non-rotation", "fixed-position", "viewport", "screen"};
+  bool scales = true, unknown = false;
+  const std::string lower = lowered(c.value);
+  if (lower == "none") return c.style.nonScalingStroke = c.style.unsupportedEffect = false, true;
+  for (std::string_view rest = lower; !(rest = trim(rest)).empty();) {
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n\f"));
+    rest.remove_prefix(word.size());
+    if (word == "non-scaling-stroke")
+      scales = false;
+    else if (oneOf(word, others))
+      unknown = true;
+    else
+      return false;
+  }
+  if (lower.empty()) return false;
+  c.style.nonScalingStroke = !scales;
+  c.style.unsupportedEffect = unknown;
   return true;
 }
-bool setMarker(const Context& c, const char* name) {
-  if (!isWord(c.value, "none")) c.style.markers = name;
-  return true;
+bool setBackgroundColor(const Context& c) {
+  Style::StopColor& color = c.style.background.color;
+  color.isCurrent = isCurrentColor(c.value);
+  return color.isCurrent || parseColor(c.value, color.color);
+}
+/// The shorthand (CSS Backgrounds 3, 2.10): its colour, and whether it has an image.
+bool setBackground(const Context& c) {
+  constexpr std::string_view words[] = {"none",  "repeat", "no-repeat", "repeat-x",   "repeat-y",    "space",
+                                        "round", "scroll", "fixed",     "local",      "left",        "right",
+                                        "top",   "bottom", "center",    "border-box", "padding-box", "content-box",
+                                        "text",  "auto",   "cover",     "contain",    "/",           ","};
+  Style::Background background;
+  Style::StopColor& color = background.color;
+  for (std::string_view rest = c.value; !(rest = trim(rest)).empty();) {
+    size_t end = 0;
+    for (int depth = 0; end < rest.size(); ++end) { // a word with its brackets
+      depth += (rest[end] == '(') - (rest[end] == ')');
+      if (depth == 0 && std::string_view(" \t\r\n\f/,").find(rest[end]) != std::string_view::npos) break;
+    }
+    const std::string_view part = rest.substr(0, std::max<size_t>(end, 1));
+    rest.remove_prefix(part.size());
+    const std::string lower = lowered(part);
+    double length = 0;
+    if (isCurrentColor(part))
+      color.isCurrent = true;
+    else if (lower.starts_with("url(") || lower.find("gradient(") != lower.npos || lower.find("image") != lower.npos)
+      background.hasImage = true;
+    else if (!oneOf(lower, words) && !parseLength(part, c.lengths, LengthAxis::X, length) &&
+             !parseColor(part, color.color))
+      return false;
+  }
+  return !c.value.empty() && (c.style.background = background, true);
+}
+bool setMarker(const Context& c, bool& marker) { return marker = !isWord(c.value, "none"), !c.value.empty(); }
+bool setMarkers(const Context& c) {
+  std::array<bool, 3>& all = c.style.markers;
+  return setMarker(c, all[0]) && (all = {all[0], all[0], all[0]}, true);
 }
 bool setRefers(const Context& c, bool& flag) { return flag = !isWord(c.value, "none") && !c.value.empty(), true; }
 
@@ -216,14 +328,14 @@ const Property kProperties[] = {
     GPGP_PROPERTY("color", color, setColor(c)),
     GPGP_PROPERTY("visibility", visible, choose(c.value, kVisibilities, c.style.visible)),
     GPGP_PROPERTY("color-interpolation", mixesLinear, choose(c.value, kInterpolations, c.style.mixesLinear)),
-    GPGP_PROPERTY("display", displayed, (c.style.displayed = !isWord(c.value, "none"), true)),
-    GPGP_PROPERTY("overflow", overflowVisible,
-                  (c.style.overflowVisible = isWord(c.value, "visible") || isWord(c.value, "auto"), true)),
+    GPGP_PROPERTY("display", displayed, setDisplay(c)),
+    GPGP_PROPERTY("overflow", overflowVisible, setOverflow(c)),
     GPGP_PROPERTY("font-size", fontSize, parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize)),
     GPGP_PROPERTY("font", fontSize, parseFont(c.value, c.parent, c.lengths, c.style.fontSize)),
     GPGP_PROPERTY("paint-order", strokeFirst, setPaintOrder(c)),
-    GPGP_PROPERTY("vector-effect", nonScalingStroke,
-                  (c.style.nonScalingStroke = c.value.find("non-scaling-stroke") == 0, true)),
+    GPGP_PROPERTY("vector-effect", nonScalingStroke, setVectorEffect(c)),
+    GPGP_PROPERTY("background", background, setBackground(c)),
+    GPGP_PROPERTY("background-color", background.color, setBackgroundColor(c)),
     GPGP_PROPERTY("stop-color", stopColor, setStopColor(c)),
     GPGP_PROPERTY("stop-opacity", stopOpacity, parseOpacity(c.value, c.style.stopOpacity)),
     GPGP_PROPERTY("clip-path", clipPath, (c.style.clipPath = isWord(c.value, "none") ? "" : c.value, true)),
@@ -233,10 +345,10 @@ const Property kProperties[] = {
     GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
     GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
     GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = !isWord(c.value, "normal"), true)),
-    GPGP_PROPERTY("marker", markers, setMarker(c, "marker")),
-    GPGP_PROPERTY("marker-start", markers, setMarker(c, "marker-start")),
-    GPGP_PROPERTY("marker-mid", markers, setMarker(c, "marker-mid")),
-    GPGP_PROPERTY("marker-end", markers, setMarker(c, "marker-end")),
+    GPGP_PROPERTY("marker", markers, setMarkers(c)),
+    GPGP_PROPERTY("marker-start", markers[0], setMarker(c, c.style.markers[0])),
+    GPGP_PROPERTY("marker-mid", markers[1], setMarker(c, c.style.markers[1])),
+    GPGP_PROPERTY("marker-end", markers[2], setMarker(c, c.style.markers[2])),
 };
 #undef GPGP_PROPERTY
 
@@ -255,6 +367,8 @@ Style Style::inherited() const {
   s.displayed = fresh.displayed;
   s.nonScalingStroke = fresh.nonScalingStroke;
   s.overflowVisible = fresh.overflowVisible;
+  s.background = fresh.background;
+  s.unsupportedEffect = false;
   s.stopColor = fresh.stopColor;
   s.stopOpacity = fresh.stopOpacity;
   s.clipPath.clear();
@@ -277,18 +391,57 @@ bool isGeometry(std::string_view name) {
 }
 
 bool isPresentationAttribute(std::string_view name) {
-  constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"};
-  return (findProperty(name) && name != "font") || oneOf(name, unsupported);
+  constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"},
+                             no[] = {"font", "background", "background-color"};
+  return (findProperty(name) && !oneOf(name, no)) || oneOf(name, unsupported);
 }
 
 bool isUnsupported(std::string_view name, std::string_view value) {
-  constexpr std::string_view names[] = {"translate",   "rotate",          "scale",           "transform-box",
-                                        "offset-path", "backdrop-filter", "mask-image",      "perspective",
-                                        "clip",        "shape-rendering", "image-rendering", "zoom",
-                                        "all"};
+  constexpr std::string_view names[] = {"translate",
+                                        "rotate",
+                                        "scale",
+                                        "transform-box",
+                                        "offset-path",
+                                        "offset",
+                                        "backdrop-filter",
+                                        "mask-image",
+                                        "mask-border",
+                                        "mask-border-source",
+                                        "perspective",
+                                        "clip",
+                                        "shape-rendering",
+                                        "image-rendering",
+                                        "zoom",
+                                        "all",
+                                        "animation",
+                                        "animation-name",
+                                        "content-visibility",
+                                        "color-scheme",
+                                        "fill-image",
+                                        "stroke-image",
+                                        "stroke-align",
+                                        "stroke-alignment",
+                                        "stroke-dash-corner",
+                                        "stroke-dash-justify",
+                                        "-webkit-mask",
+                                        "-webkit-mask-image",
+                                        "-webkit-filter",
+                                        "-webkit-transform",
+                                        "-webkit-clip-path"};
   constexpr std::string_view without[] = {
-      "none",   "view-box",        "inherit",      "initial", "unset", "revert", "auto", "geometricprecision",
-      "smooth", "optimizequality", "high-quality", "normal",  "1",     "100%"};
+      "none",       "view-box",        "inherit",      "initial",    "unset", "revert", "auto",    "geometricprecision",
+      "smooth",     "optimizequality", "high-quality", "normal",     "1",     "100%",   "visible", "light",
+      "light dark", "dark light",      "only light",   "light only", "center"};
+  return oneOf(name, names) && !oneOf(lowered(trim(value)), without);
+}
+
+bool isUnsupportedOnRoot(std::string_view name, std::string_view value) {
+  constexpr std::string_view names[] = {"background-image", "border",      "border-top",     "border-right",
+                                        "border-bottom",    "border-left", "border-style",   "border-image",
+                                        "border-radius",    "outline",     "outline-style",  "box-shadow",
+                                        "padding",          "padding-top", "padding-right",  "padding-bottom",
+                                        "padding-left",     "object-fit",  "object-position"};
+  constexpr std::string_view without[] = {"none", "inherit", "initial", "unset", "revert", "0", "0px", "hidden"};
   return oneOf(name, names) && !oneOf(lowered(trim(value)), without);
 }
 
@@ -309,6 +462,7 @@ bool hasUnsupported(std::string_view value) {
       "canvastext",  "field",           "fieldtext",    "graytext",         "highlight",  "highlighttext", "linktext",
       "mark",        "marktext",        "selecteditem", "selecteditemtext", "visitedtext"};
   if (oneOf(trim(lower), systemColors)) return true;
+  if (lower.find('{') != lower.npos) return true;                                             // rules inside of others
   if (lower.find("(from ") != lower.npos || lower.find("( from ") != lower.npos) return true; // a colour of another one
   for (Scanner s(lower); !s.done();) {
     double number = 0;

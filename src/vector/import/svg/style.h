@@ -3,6 +3,7 @@
 #include "vector/geometry/stroke.h"
 #include "vector/import/svg/scanner.h"
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,7 +19,7 @@ bool parseColor(std::string_view text, Color& color);
 double linearFromSrgb(double value);
 
 struct Paint {
-  enum class Kind { None, Solid, Current, Reference };
+  enum class Kind { None, Solid, Current, Reference, ContextFill, ContextStroke };
   Kind kind = Kind::None;
   Color color;
   std::string reference;      ///< "#id"
@@ -37,7 +38,7 @@ struct Style {
   Color color;
   bool visible = true, strokeFirst = false, mixesLinear = false; ///< the last: of its gradient's stops
   double fontSize = 16;
-  std::string markers; ///< the property that asks for some
+  std::array<bool, 3> markers{}; ///< at the start, in the middle, at the end
   // not inherited
   double opacity = 1;
   bool displayed = true, nonScalingStroke = false, overflowVisible = false;
@@ -51,6 +52,11 @@ struct Style {
   /// x, y, r, d and others that style sheets may set in place of attributes; the last of a name counts.
   std::vector<std::pair<std::string, std::string>> geometry;
   const std::string* geometryOf(std::string_view name) const;
+  struct Background {
+    StopColor color{{0, 0, 0, 0}, false};
+    bool hasImage = false;
+  } background;                   ///< counts for the outermost element
+  bool unsupportedEffect = false; ///< vector-effect asks for more than lines that do not scale
   /// mask and filter where they refer to something, mix-blend-mode where it is not normal.
   bool mask = false, filter = false, blendMode = false;
 
@@ -58,12 +64,14 @@ struct Style {
   Style inherited() const;
 };
 
-/// Whether an attribute of this name sets a property, supported or not.
+/// Whether an attribute of this name sets a property, supported or not, on every element.
 bool isPresentationAttribute(std::string_view name);
 /// Whether it is an attribute that style sheets may set as well (SVG 2, 2.5).
 bool isGeometry(std::string_view name);
 /// Whether it is a property that would change the picture, and is not supported.
 bool isUnsupported(std::string_view name, std::string_view value);
+/// The same of properties that count for the outermost element's box alone.
+bool isUnsupportedOnRoot(std::string_view name, std::string_view value);
 
 /// Whether a value that is not understood has functions or units of CSS that are not supported.
 bool hasUnsupported(std::string_view value);

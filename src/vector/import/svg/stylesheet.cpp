@@ -1,6 +1,8 @@
 // A rule is found by its most telling part (id, else first class, else type), so that a match costs little.
 #include "vector/import/svg/stylesheet.h"
 
+#include "vector/import/svg/media.h"
+
 #include <algorithm>
 
 namespace gpgp::vector::svg {
@@ -92,6 +94,22 @@ std::vector<std::string_view> wordsOf(std::string_view text) {
   return words;
 }
 
+/// The address of url(a), url("a") or "a", and what follows it.
+std::pair<std::string, std::string_view> uriAt(std::string_view text) {
+  std::string uri;
+  const bool isUrl = isWord(text.substr(0, 4), "url(");
+  size_t at = isUrl ? std::min(text.find_first_not_of(" \t\r\n\f", 4), text.size()) : 0;
+  const char quote = at < text.size() && (text[at] == '"' || text[at] == '\'') ? text[at] : '\0';
+  if (!isUrl && !quote) return {};
+  for (at += quote != 0; at < text.size() && text[at] != (quote ? quote : ')'); ++at) {
+    if (text[at] == '\\' && at + 1 < text.size()) ++at; // the next is itself
+    uri += text[at];
+  }
+  if (isUrl) at = text.find(')', at);
+  if (at >= text.size()) return {};
+  return {std::string(trim(uri)), trim(text.substr(at + 1))};
+}
+
 } // namespace
 
 std::vector<Declaration> parseDeclarations(std::string_view original) {
@@ -99,7 +117,9 @@ std::vector<Declaration> parseDeclarations(std::string_view original) {
   std::vector<Declaration> declarations;
   split(text, ';', [&declarations](std::string_view part) {
     const size_t colon = part.find(':');
-    if (colon == part.npos) {
+    Scanner name(trim(part.substr(0, colon == part.npos ? 0 : colon)));
+    name.name();
+    if (colon == part.npos || !name.done()) { // the latter may be a rule inside of another
       if (part = trim(part); !part.empty()) declarations.push_back({"", std::string(part), false});
       return;
     }
@@ -114,51 +134,109 @@ std::vector<Declaration> parseDeclarations(std::string_view original) {
   return declarations;
 }
 
-void StyleSheet::parse(std::string_view text, size_t line, Reporter& reporter) {
-  size_t counted = 0; // newlines before it are in `line`
+void StyleSheet::parse(std::string_view text, const Place& place, Reporter& reporter, const ImportFn& import) {
+  Reading reading{reporter, import};
+  readRules(text, place, reading);
+}
+
+void StyleSheet::readRules(std::string_view text, Place place, Reading& reading) {
+  size_t placed = 0; // where `place` is
+  const auto placeAt = [&](size_t at) {
+    place = placeIn(text.substr(placed), at - placed, place);
+    placed = at;
+    return place;
+  };
   for (size_t at = 0; at < text.size();) {
     at = pastSpace(text, at);
     if (text.substr(at, 4) == "<!--") at += 4;
     if (text.substr(at, 3) == "-->") at += 3;
     at = pastSpace(text, at);
     if (at >= text.size()) return;
-    line += static_cast<size_t>(
-        std::count(text.begin() + static_cast<ptrdiff_t>(counted), text.begin() + static_cast<ptrdiff_t>(at), '\n'));
-    counted = at;
+    const Place here = placeAt(at);
     const bool isAt = text[at] == '@';
     const size_t brace = findOutside(text, at, isAt ? ";{" : "{"); // or the end of a rule without a block
-    const size_t end = brace < text.size() && text[brace] == ';' ? brace : findOutside(text, brace + 1, "}");
+    const bool hasBlock = brace < text.size() && text[brace] == '{';
+    const size_t end = hasBlock ? findOutside(text, brace + 1, "}") : brace;
+    const std::string_view block = hasBlock ? text.substr(brace + 1, end - brace - 1) : std::string_view();
     if (isAt) {
       Scanner name(text.substr(at + 1));
-      reporter.warn(line, std::string("style rule @") + std::string(name.name().substr(0, 40)) + " is not supported");
-      at = end + 1;
-      continue;
+      const std::string_view word = name.name();
+      const size_t behind = at + 1 + word.size();
+      const std::string prelude = withoutComments(text.substr(behind, brace - behind));
+      readAtRule(word, trim(prelude), block, here, placeAt(std::min(brace + 1, text.size())), reading);
+    } else {
+      if (!hasBlock) return reading.reporter.error(here, "style rule without a block");
+      if (rules_.size() >= kMaxRules) {
+        reading.reporter.error(here, "more than 65536 style rules; the rest are left out", GPGP_ERROR_UNSUPPORTED);
+        return;
+      }
+      readRule(text.substr(at, brace - at), block, here, reading);
     }
-    if (brace == text.size()) return reporter.error(line, "style rule without a block");
-    if (rules_.size() >= kMaxRules) {
-      reporter.error(line, "more than 65536 style rules; the rest are left out", GPGP_ERROR_UNSUPPORTED);
-      return;
-    }
-    const size_t block = blocks_.size();
-    blocks_.push_back(parseDeclarations(text.substr(brace + 1, end - brace - 1)));
-    std::vector<Rule> rules;
-    bool valid = true;
-    split(text.substr(at, brace - at), ',', [&](std::string_view selector) {
-      if (rules_.size() + rules.size() >= kMaxRules) return;
-      Rule rule;
-      rule.block = block;
-      const Selector read = readSelector(selector, rule);
-      if (read == Selector::Read) return rules.push_back(std::move(rule));
-      const std::string said =
-          "style selector '" + std::string(trim(withoutComments(selector)).substr(0, 60)) + "' is ";
-      if (read == Selector::Unsupported) return reporter.warn(line, said + "not supported");
-      valid = false; // and with it all of the rule
-      reporter.ignored(line, said + "not valid; its rule is ignored");
-    });
-    if (valid)
-      for (Rule& rule : rules) add(std::move(rule));
     at = end + 1;
   }
+}
+
+void StyleSheet::readAtRule(std::string_view name, std::string_view prelude, std::string_view block, const Place& place,
+                            const Place& blockPlace, Reading& reading) {
+  constexpr size_t kMaxDepth = 32;
+  Reporter& reporter = reading.reporter;
+  const std::string rule = std::string("style rule @") + std::string(name.substr(0, 40));
+  const std::string shown = std::string("'") + std::string(prelude.substr(0, 60)) + "'";
+  if (isWord(name, "charset")) return;
+  if (isWord(name, "import")) {
+    if (!reading.importsCount || reading.depth)
+      return reporter.ignored(place, rule + " does not stand before all others; ignored");
+    const auto [uri, media] = uriAt(prelude);
+    if (uri.empty()) return reporter.ignored(place, rule + " has " + shown + ", which is no address; ignored");
+    const std::string lower = lowered(media);
+    const bool isLayer = lower.starts_with("layer") || lower.find("supports(") != lower.npos;
+    const Media is = isLayer ? Media::Unknown : evaluateMedia(media);
+    if (is == Media::Unknown)
+      return reporter.warn(place, rule + " has the condition '" + std::string(media.substr(0, 60)) +
+                                      "', which is not supported: its style sheet does not count");
+    if (is == Media::No) return;
+    if (!reading.import) return reporter.warn(place, rule + " is not supported");
+    return reading.import(uri, place);
+  }
+  if (isWord(name, "namespace")) { // prefixes are named where selectors have them
+    const auto [uri, rest] = uriAt(prelude);
+    if (!uri.empty() && uri != "http://www.w3.org/2000/svg")
+      reporter.warn(place, rule + " of other elements than SVG's is not supported");
+    return;
+  }
+  reading.importsCount = false;
+  if (!isWord(name, "media")) return reporter.warn(place, rule + " is not supported");
+  const Media is = evaluateMedia(prelude);
+  if (is == Media::Unknown || reading.depth >= kMaxDepth)
+    return reporter.warn(place, rule + " has the condition " + shown +
+                                    ", which is not supported: what is in it does not count");
+  if (is == Media::No) return;
+  ++reading.depth;
+  readRules(block, blockPlace, reading);
+  --reading.depth;
+}
+
+void StyleSheet::readRule(std::string_view selectors, std::string_view declarations, const Place& place,
+                          Reading& reading) {
+  reading.importsCount = false;
+  const size_t block = blocks_.size();
+  blocks_.push_back(parseDeclarations(declarations));
+  std::vector<Rule> rules;
+  bool valid = true;
+  split(selectors, ',', [&](std::string_view selector) {
+    if (rules_.size() + rules.size() >= kMaxRules) return;
+    Rule rule;
+    rule.block = block;
+    const Selector read = readSelector(selector, rule);
+    if (read == Selector::Read) return rules.push_back(std::move(rule));
+    const std::string said =
+        std::string("style selector '") + std::string(trim(withoutComments(selector)).substr(0, 60)) + "' is ";
+    if (read == Selector::Unsupported) return reading.reporter.warn(place, said + "not supported");
+    valid = false; // and with it all of the rule
+    reading.reporter.ignored(place, said + "not valid; its rule is ignored");
+  });
+  if (valid)
+    for (Rule& rule : rules) add(std::move(rule));
 }
 
 /// Behind "[", up to and with "]".

@@ -1,10 +1,11 @@
-// Style sheets: rules' selectors (Selectors 3 without pseudo-classes, pseudo-elements, namespaces and escapes) with
-// their declarations.
+// Style sheets: @import, @media, and rules' selectors (Selectors 3 without pseudo-classes, pseudo-elements, namespaces
+// and escapes) with their declarations.
 #pragma once
 #include "vector/import/svg/document.h"
 #include "vector/import/svg/reporter.h"
 #include "vector/import/svg/scanner.h"
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -16,15 +17,18 @@ struct Declaration {
   std::string name, value;
   bool important = false;
 };
-/// "name: value; name: value !important".
+/// "name: value; name: value !important". What is no declaration has no name.
 std::vector<Declaration> parseDeclarations(std::string_view text);
 
 class StyleSheet {
 public:
   static constexpr size_t kMaxRules = 65536;
 
-  /// Appends the rules of a <style> element whose text begins in `line`. What is not supported is reported.
-  void parse(std::string_view text, size_t line, Reporter& reporter);
+  /// Reads what an @import at this place refers to.
+  using ImportFn = std::function<void(std::string_view uri, const Place& place)>;
+
+  /// Appends the rules of a style sheet whose text begins at `place`. What is not supported is reported.
+  void parse(std::string_view text, const Place& place, Reporter& reporter, const ImportFn& import = {});
 
   /// What applies to an element, weakest first. `work` grows by what is compared; beyond `most` nothing matches.
   std::vector<const Declaration*> match(const Document& document, pugi::xml_node node, size_t& work, size_t most) const;
@@ -52,6 +56,16 @@ private:
     uint32_t specificity = 0;
     size_t block = 0;
   };
+  struct Reading {
+    Reporter& reporter;
+    const ImportFn& import;
+    bool importsCount = true; ///< until the first rule of another kind
+    size_t depth = 0;         ///< of blocks around
+  };
+  void readRules(std::string_view text, Place place, Reading& reading);
+  void readAtRule(std::string_view name, std::string_view prelude, std::string_view block, const Place& place,
+                  const Place& blockPlace, Reading& reading);
+  void readRule(std::string_view selectors, std::string_view block, const Place& place, Reading& reading);
   enum class Selector { Read, Unsupported, Invalid };
   Selector readSelector(std::string_view text, Rule& rule) const;
   void add(Rule rule);
