@@ -3,9 +3,10 @@
 // A segment is a part of a curve on the boundary of a path's filled region: the region lies on one side of it, nothing
 // on the other. Segments of a path form closed outlines, so a sample is inside where an odd number of them lies left of
 // it in its row. A segment's curve is cut into equal steps of its parameter, as many as keep the chords within
-// kFlatness of it; between the curve's ends they begin a little outside of it, so that they leave as much area on one
-// side of it as on the other. Chords that reach beyond the segment's ends are clipped to those. Everything that borders
-// shares its vertices bit for bit: consecutive chords, segments that meet, and paths that have a curve in common.
+// kFlatness of it; between the curve's ends they begin a little outside of it, by up to 4/3 kFlatness, so that they
+// leave as much area on one side of it as on the other. Chords that reach beyond the segment's ends are clipped to
+// those. Everything that borders shares its vertices bit for bit: consecutive chords, segments that meet, and paths
+// that have a curve in common.
 //
 // A projective item's lines stay lines, so its chords need no other form; its curves take as many chords as the largest
 // magnification along them asks for. What lies behind the eye is cut off along a line of the drawing that is seen past
@@ -36,7 +37,8 @@
 
 GPGP_SHADER_BEGIN
 
-GPGP_CONST float kFlatness = 0.03125f;  // pixels: how far a chord may lie from its curve
+GPGP_CONST float kFlatness = 0.03125f;  // pixels: how far a chord may lie from its curve, before vertices are moved
+GPGP_CONST float kFlatAlone = 256.0f;   // the square of how much closer a curve's only chord lies, which can't be moved
 GPGP_CONST uint kMaxChords = 1024u;     // of one curve
 GPGP_CONST float kLongestChord = 16.0f; // pixels, so that work is even; longer only beyond kMaxChords
 
@@ -62,7 +64,7 @@ GPGP_FN vec2 toPixel(ItemRecord item, float x, float y) {
   GPGP_PRECISE float py = item.transform.y * x + (item.transform.w * y + item.offsets.w);
 #if PROJECTIVE
   if (projects(item)) {
-    const float w = max(depthOf(item, x, y), item.perspective.w); // the latter only by rounding
+    const float w = max(depthOf(item, x, y), item.perspective.w); // the latter by rounding, or by chords' outset
     return vec2(divide(px, w), divide(py, w));
   }
 #endif
@@ -80,7 +82,7 @@ GPGP_FN float bendOf(vec2 a, vec2 b, vec2 c) {
 // How many chords a curve takes: a power of two, or one and a half times that, which needs neither roots nor division.
 // `length` in longest chords, `bend` the fourth power of what flatness asks for.
 GPGP_FN uint chordsFor(float length, float bend) {
-  uint n = 1u;
+  uint n = bend * kFlatAlone > 1.0f ? 2u : 1u;
   while (n < kMaxChords) {
     GPGP_PRECISE float m = float(n);
     GPGP_PRECISE float m2 = m * m;
@@ -191,8 +193,26 @@ GPGP_FN bool mayMatter(Grid g, ItemRecord item, SegmentRecord s) {
   return left && bottom >= -1.0f && top * float(g.samples) <= float(g.rows) + 1.0f;
 }
 
+// How far the vertex of two chords lies outside of its curve, by the curve's second difference a - c, where a, b, c
+// lead from control point to control point: so far that the two cover the curve's area, 1/8 for a parabola.
+GPGP_FN float middleOutset(float ax, float ay, float bx, float by, float cx, float cy) {
+  GPGP_PRECISE float ab = ax * by - ay * bx;
+  GPGP_PRECISE float bc = bx * cy - by * cx;
+  GPGP_PRECISE float ac = ax * cy - ay * cx;
+  GPGP_PRECISE float whole = ab + bc + 2.0f * ac; // twice the area by which the vertex grows the triangle
+  GPGP_PRECISE float over = ab + bc - ac;         // 0 for a parabola
+  if (abs(whole) < 1e-20f) return 0.125f;
+  // Within a hundredth, as what is not a parabola's is a small part. Curves that are not convex stay within bounds.
+  const float guess = uintBitsToFloat(0x7ef311c3u - floatBitsToUint(whole));
+  GPGP_PRECISE float missing = 2.0f - whole * guess;
+  GPGP_PRECISE float share = over * (guess * missing);
+  GPGP_PRECISE float outset = 0.125f + 0.1f * clamp(share, -0.5f, 1.0f);
+  return outset;
+}
+
 // Where chord i of n begins in the drawing, and the one before it ends; `step` is chordStep(n). A chord across a curve
-// with second derivative p lies p step^2 / 12 inside of it on average, so chords begin as far outside.
+// with second derivative p lies p step^2 / 12 inside of it on average, so chords begin as far outside. The curve's ends
+// stay, so the vertices beside them take over the half that these leave, or all of it where there is but one.
 GPGP_FN vec2 curvePoint(SegmentRecord s, uint i, uint n, float step) {
   if (i == 0u) return vec2(s.first.x, s.first.y);
   if (i >= n) return vec2(s.second.z, s.second.w);
@@ -214,9 +234,20 @@ GPGP_FN vec2 curvePoint(SegmentRecord s, uint i, uint n, float step) {
   GPGP_PRECISE float ey = (cy - by) - dy;
   GPGP_PRECISE float tex = t * ex;
   GPGP_PRECISE float tey = t * ey;
-  GPGP_PRECISE float twelfth = 0.5f * step * step; // of the second derivative, which is 6 (d + t e)
-  GPGP_PRECISE float x = s.first.x + (t * (3.0f * ax + t * (3.0f * dx + tex)) - twelfth * (dx + tex));
-  GPGP_PRECISE float y = s.first.y + (t * (3.0f * ay + t * (3.0f * dy + tey)) - twelfth * (dy + tey));
+  // The second derivative is 6 (d + t e).
+  GPGP_PRECISE float twelfth = 0.5f * step * step;
+  float atStart = i == 1u ? 0.5f : 0.0f, atEnd = i + 1u == n ? 0.5f : 0.0f;
+  if (n == 2u) { // (a - c) is -2 (d + t e) there
+    twelfth = 2.0f * middleOutset(ax, ay, bx, by, cx, cy);
+    atStart = 0.0f;
+    atEnd = 0.0f;
+  }
+  GPGP_PRECISE float own = 1.0f + (atStart + atEnd);
+  GPGP_PRECISE float along = t + atEnd;
+  GPGP_PRECISE float outX = own * dx + along * ex;
+  GPGP_PRECISE float outY = own * dy + along * ey;
+  GPGP_PRECISE float x = s.first.x + (t * (3.0f * ax + t * (3.0f * dx + tex)) - twelfth * outX);
+  GPGP_PRECISE float y = s.first.y + (t * (3.0f * ay + t * (3.0f * dy + tey)) - twelfth * outY);
   return vec2(x, y);
 }
 
@@ -303,11 +334,12 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
   // i - n / 2 is cut, down to there from above the canvas.
   uint chords = n, at = i;
   float spacing = step;
-  bool closing = false;
+  bool closing = false, cut = false;
   if (projects(item)) {
     const uint front = inFront(item, s);
     if (front == 0u) return false;
-    if (front < 4u) {
+    cut = front < 4u;
+    if (cut) {
       chords = n / 2u;
       spacing = step + step;
       closing = i >= chords;
@@ -342,7 +374,7 @@ GPGP_FN bool chordOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, f
       a = vec2(s.ends.z, s.ends.w);
   }
 #if PROJECTIVE
-  if (projects(item)) {
+  if (cut) { // vertices of others lie behind the eye by a hair at most, and toPixel keeps them before it
     const float near = item.perspective.w;
     const float da = depthOf(item, a.x, a.y), db = depthOf(item, b.x, b.y);
     if (da < near && db < near) return false;

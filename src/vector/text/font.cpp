@@ -10,6 +10,7 @@
 #include FT_FONT_FORMATS_H
 #include FT_MULTIPLE_MASTERS_H
 #include <hb-ot.h>
+#include <unicode/uchar.h>
 
 namespace gpgp::text {
 namespace {
@@ -24,6 +25,17 @@ struct TagText {
     text[4] = 0;
   }
 };
+
+/// Beside those that may be emoji, as U+2139.
+bool hasLetters(hb_face_t* face) {
+  const std::unique_ptr<hb_set_t, void (*)(hb_set_t*)> characters(hb_set_create(), hb_set_destroy);
+  hb_face_collect_unicodes(face, characters.get());
+  for (hb_codepoint_t c = HB_SET_VALUE_INVALID; hb_set_next(characters.get(), &c);) {
+    const auto character = static_cast<UChar32>(c);
+    if (u_isalpha(character) && !u_hasBinaryProperty(character, UCHAR_EMOJI)) return true;
+  }
+  return false;
+}
 
 Result<std::vector<char>> readFile(const char* path, const GpgpFileSystem* fileSystem) {
   if (fileSystem && fileSystem->read) {
@@ -225,6 +237,7 @@ void Font::readMetrics() {
   if (size >= 2 && (bytes[0] || bytes[1])) info_.colors |= GPGP_FONT_COLOR_PAINTS;
   if (hb_ot_color_has_png(face)) info_.colors |= GPGP_FONT_COLOR_BITMAPS;
   if (hb_ot_color_has_svg(face)) info_.colors |= GPGP_FONT_COLOR_SVG;
+  emojiFont_ = info_.colors && !hasLetters(face);
   info_.paletteCount = hb_ot_color_palette_get_count(face);
 }
 

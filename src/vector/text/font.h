@@ -88,6 +88,9 @@ public:
     return hb_font_get_nominal_glyph(shaping(), character, &glyph) != 0 && glyph < info_.glyphCount;
   }
 
+  /// In colour and without letters: text takes what such a font has only where no other has it.
+  bool isEmojiFont() const { return emojiFont_; }
+
   uint32_t magic = kMagic;
   Messages messages;
 
@@ -101,6 +104,7 @@ private:
   std::atomic<uint32_t> references_{1};
   std::unique_ptr<OpenFont> open_;
   GpgpFontInfo info_ = GPGP_FONT_INFO_INIT;
+  bool emojiFont_ = false;
   std::vector<GpgpFontAxis> axes_;
   std::vector<std::string> names_;
 };

@@ -125,6 +125,11 @@ bool wantsColor(std::span<const char32_t> grapheme) {
   return has(0xfe0f) && is(UCHAR_EMOJI) && (grapheme[0] >= 0x80 || has(0x20e3));
 }
 
+/// Of those that may be an emoji: to be shown as text, by its own default or by U+FE0E (UTS #51).
+bool wantsText(std::span<const char32_t> grapheme) {
+  return !wantsColor(grapheme) && u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), UCHAR_EMOJI) != 0;
+}
+
 /// An emoji, as text too; digits, # and * are not.
 bool isEmoji(std::span<const char32_t> grapheme) {
   return wantsColor(grapheme) ||
@@ -144,19 +149,60 @@ bool sameShaping(const Style& a, const Style& b) {
 
 } // namespace
 
+namespace {
+
+bool hasForm(const Font& font, std::span<const char32_t> characters) {
+  return hasAll(font, characters) ||
+         ((characters.size() > 1 || characters[0] >= 0x80) && hasOtherForm(font, characters));
+}
+
+/// How many of the first characters a font has.
+size_t hasFirst(const Font& font, std::span<const char32_t> characters) {
+  if (hasForm(font, characters)) return characters.size();
+  size_t count = 0;
+  while (count < characters.size() && (font.has(characters[count]) || (count && isIgnorable(characters[count]))))
+    ++count;
+  constexpr size_t kMostComposed = 4; // marks that the font has only with what they stand on
+  for (size_t more = std::min(characters.size() - 1, count + kMostComposed); more > count; --more)
+    if (hasForm(font, characters.first(more))) return more;
+  return count;
+}
+
+} // namespace
+
 Font* Itemizer::fontOf(std::span<const char32_t> grapheme, const Style& style) {
   const uint32_t count = style.source->fontCount;
   const bool inColor = wantsColor(grapheme);
   if (inColor || wantsNoColor(grapheme))
     for (uint32_t i = 0; i < count; ++i)
       if (isColored(*style.font(i)) == inColor && hasAll(*style.font(i), grapheme)) return style.font(i);
-  for (uint32_t i = 0; i < count; ++i)
-    if (hasAll(*style.font(i), grapheme) || (grapheme[0] >= 0x80 && hasOtherForm(*style.font(i), grapheme)) ||
-        (grapheme.size() > 1 && hasOtherForm(*style.font(i), grapheme)))
-      return style.font(i);
-  for (uint32_t i = 0; i < count; ++i)
-    if (style.font(i)->has(grapheme[0])) return style.font(i);
-  return style.font(0);
+  const bool asText = wantsText(grapheme);
+  for (const bool emojiToo : {false, true})
+    for (uint32_t i = 0; i < count; ++i)
+      if ((emojiToo || !asText || !style.font(i)->isEmojiFont()) && hasForm(*style.font(i), grapheme))
+        return style.font(i);
+  Font* best = style.font(0);
+  size_t most = 0;
+  for (const bool emojiToo : {false, true})
+    for (uint32_t i = 0; i < count; ++i) {
+      if (!emojiToo && asText && style.font(i)->isEmojiFont()) continue;
+      const size_t has = hasFirst(*style.font(i), grapheme);
+      if (has <= most) continue;
+      most = has;
+      best = style.font(i);
+    }
+  return best;
+}
+
+size_t Itemizer::lengthIn(const Font& font, std::span<const char32_t> grapheme, const Style& style) {
+  size_t length = std::max(hasFirst(font, grapheme), size_t(1));
+  const auto somewhere = [&](char32_t c) {
+    for (uint32_t i = 0; i < style.source->fontCount; ++i)
+      if (style.font(i)->has(c)) return true;
+    return false;
+  };
+  while (length < grapheme.size() && (isIgnorable(grapheme[length]) || !somewhere(grapheme[length]))) ++length;
+  return length;
 }
 
 void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) const {
@@ -180,6 +226,10 @@ void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) c
       const bool stays = last && last->kind == Run::Kind::text && (isIgnorable(c) || (isWhite(c) && !emoji)) &&
                          styleOf[at - 1] == style && hasAll(*last->font, grapheme);
       run.font = stays ? last->font : fontOf(grapheme, styles[style]);
+      if (!stays) {
+        next = run.end = at + static_cast<uint32_t>(lengthIn(*run.font, grapheme, styles[style]));
+        run.parted = !whole && last && last->font != run.font;
+      }
       if (!stays) emoji = isColored(*run.font) && isEmoji(grapheme);
       const UScriptCode script = scripts[at - begin];
       if (whole && last && last->kind == Run::Kind::text && last->level == run.level && last->font == run.font &&

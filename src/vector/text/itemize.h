@@ -21,6 +21,7 @@ struct Run {
   hb_script_t script;
   Font* font;
   uint32_t style;                          // of its first character
+  bool parted = false;                     // marks of a grapheme that begins in another font
   uint32_t firstGlyph = 0, glyphCount = 0; // in the layout's glyphs
 };
 
@@ -34,9 +35,14 @@ struct Itemizer {
 
   /// Appends the runs of a paragraph.
   void paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) const;
-  /// The font of a grapheme in a style: the first that has all its characters, for emoji the first such in colour, and
-  /// where U+FE0E wants text the first such without; else the first that has its first character; else the first.
+  /// The font of a grapheme in a style: the first that has all its characters, for emoji the first such in colour,
+  /// where U+FE0E wants text the first such without, and where text is the character's default a font of emoji last;
+  /// else the one that has most of its first characters; else the first.
   static Font* fontOf(std::span<const char32_t> grapheme, const Style& style);
+
+private:
+  /// How much of a grapheme is shaped in a font: what it has, and what no font of the style has behind that.
+  static size_t lengthIn(const Font& font, std::span<const char32_t> grapheme, const Style& style);
 };
 
 /// A character that leaves no mark where it is missing.

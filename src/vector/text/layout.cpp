@@ -99,18 +99,42 @@ Result<void> Layout::analyse() {
   return {};
 }
 
+/// Whether a grapheme begins there that is painted otherwise than the one before it: a glyph can have but one colour.
+bool Layout::paintedApart(uint32_t character) const {
+  if (!(flags_[character] & kGrapheme) || styleOf_[character] == styleOf_[character - 1]) return false;
+  const GpgpTextStyle &a = *styles_[styleOf_[character - 1]].source, &b = *styles_[styleOf_[character]].source;
+  return !std::equal(a.color, a.color + 4, b.color) || a.outlineWidth != b.outlineWidth ||
+         !std::equal(a.outlineColor, a.outlineColor + 4, b.outlineColor);
+}
+
 uint32_t Layout::addGlyphs(const Text& text, const Run& run, uint32_t begin, uint32_t end) {
   const Style& style = styles_[run.style];
-  const RunRequest request{run.font,
-                           run.script,
-                           style.language,
-                           (run.level & 1) != 0,
-                           style.source->letterSpacing != 0,
-                           {style.source->features, style.source->featureCount},
-                           text.characters,
-                           begin,
-                           end};
-  const auto glyphs = shaping_->shape(request);
+  RunRequest request{run.font,
+                     run.script,
+                     style.language,
+                     (run.level & 1) != 0,
+                     style.source->letterSpacing != 0,
+                     {style.source->features, style.source->featureCount},
+                     text.characters,
+                     begin,
+                     end,
+                     run.parted && begin == run.begin};
+  auto glyphs = shaping_->shape(request);
+  if (&text == &text_ && styles_.size() > 1) { // letters of a ligature that are painted otherwise leave it
+    apart_.clear();
+    const auto hasGlyph = [&](uint32_t cluster) { // clusters grow along the run, or shrink from right to left
+      const auto found = std::partition_point(glyphs.begin(), glyphs.end(), [&](const ShapedGlyph& glyph) {
+        return request.rightToLeft ? glyph.cluster > cluster : glyph.cluster < cluster;
+      });
+      return found != glyphs.end() && found->cluster == cluster;
+    };
+    for (uint32_t c = begin + 1; c < end; ++c)
+      if (paintedApart(c) && !hasGlyph(c - begin)) apart_.push_back(c);
+    if (!apart_.empty()) {
+      request.apart = apart_;
+      glyphs = shaping_->shape(request);
+    }
+  }
   for (ShapedGlyph glyph : glyphs) {
     glyph.cluster += begin;
     shaped_.push_back(glyph);

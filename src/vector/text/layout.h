@@ -71,6 +71,7 @@ private:
   void place();
 
   uint32_t addGlyphs(const Text& text, const Run& run, uint32_t begin, uint32_t end); // how many
+  bool paintedApart(uint32_t character) const;
   void share(const Run& run, std::span<const ShapedGlyph> glyphs, uint32_t begin, uint32_t end);
   void measure(const Run& run, uint32_t begin, uint32_t end, uint32_t firstGlyph, uint32_t glyphCount);
   Piece slice(uint32_t run, uint32_t begin, uint32_t end);
@@ -106,6 +107,7 @@ private:
     std::vector<uint8_t> flags, levels;
   } inserted_;
   std::vector<UScriptCode> scripts_;
+  std::vector<uint32_t> apart_;
 
   Text text_;
   std::vector<uint32_t> styleOf_; // by character, as all of these

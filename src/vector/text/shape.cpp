@@ -57,6 +57,9 @@ void Shaper::makeKey(const RunRequest& run, uint32_t from, uint32_t to) {
   append(key_, to - run.end);
   append(key_, run.rightToLeft);
   append(key_, run.spaced);
+  append(key_, run.parted);
+  append(key_, run.apart.size());
+  for (const uint32_t c : run.apart) append(key_, c - run.begin);
   append(key_, run.features.size());
   for (const GpgpFontFeature& feature : run.features) append(key_, feature);
   key_.append(reinterpret_cast<const char*>(run.text.data() + from), (to - from) * sizeof(char32_t));
@@ -70,6 +73,10 @@ void Shaper::shapeNow(const RunRequest& run, uint32_t from, uint32_t to, std::ve
   if (run.spaced)
     for (const GpgpTag tag : {GPGP_TAG('l', 'i', 'g', 'a'), GPGP_TAG('c', 'l', 'i', 'g')}) feature(tag, 0);
   for (const GpgpFontFeature& wanted : run.features) feature(wanted.tag, wanted.value);
+  for (const uint32_t c : run.apart)
+    for (const GpgpTag tag : {GPGP_TAG('l', 'i', 'g', 'a'), GPGP_TAG('c', 'l', 'i', 'g'), GPGP_TAG('d', 'l', 'i', 'g'),
+                              GPGP_TAG('h', 'l', 'i', 'g')})
+      features_.push_back({tag, 0, c - from, c - from + 1});
 
   hb_buffer_t* buffer = buffer_.get();
   hb_buffer_clear_contents(buffer);
@@ -78,6 +85,7 @@ void Shaper::shapeNow(const RunRequest& run, uint32_t from, uint32_t to, std::ve
   hb_buffer_set_direction(buffer, run.rightToLeft ? HB_DIRECTION_RTL : HB_DIRECTION_LTR);
   hb_buffer_set_script(buffer, run.script);
   hb_buffer_set_language(buffer, run.language);
+  hb_buffer_set_flags(buffer, run.parted ? HB_BUFFER_FLAG_DO_NOT_INSERT_DOTTED_CIRCLE : HB_BUFFER_FLAG_DEFAULT);
   hb_shape(run.font->shaping(), buffer, features_.data(), static_cast<unsigned>(features_.size()));
   if (!hb_buffer_allocation_successful(buffer)) throw std::bad_alloc();
 

@@ -33,6 +33,8 @@ struct RunRequest {
   std::span<const GpgpFontFeature> features;
   std::span<const char32_t> text;
   uint32_t begin, end;
+  bool parted;                          // begins with marks of what is shaped in another font
+  std::span<const uint32_t> apart = {}; // characters that join no optional ligature with what is before them
 };
 
 class Shaper {

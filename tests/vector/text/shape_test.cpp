@@ -266,6 +266,146 @@ TEST(TextShape, EachGraphemeTakesTheFirstFontThatHasIt) {
   EXPECT_EQ(paper.info.missingCount, 0u);
 }
 
+TEST(TextShape, MarksThatOnlyALaterFontHasAreThere) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle latin = openFont("DejaVuSansMono.ttf"), thai = openFont("NotoSansThai-Regular.ttf"),
+                   devanagari = openFont("NotoSansDevanagari-Regular.ttf");
+  const std::vector<GpgpFont> fonts = {latin.get(), thai.get(), devanagari.get()};
+  struct Shaped {
+    GpgpFont font;
+    uint32_t cluster;
+    bool operator==(const Shaped&) const = default;
+  };
+  Paper paper;
+  const auto shaped = [&](const std::string& text, const std::vector<GpgpFont>& chain) {
+    EXPECT_EQ(paper.set(textInfo(text, chain, 20)), GPGP_SUCCESS);
+    std::vector<Shaped> glyphs;
+    for (uint32_t i = 0; i < paper.info.glyphCount; ++i)
+      glyphs.push_back({paper.info.glyphs[i].font, paper.info.glyphs[i].cluster});
+    return glyphs;
+  };
+  const auto isWhole = [&] {
+    for (uint32_t i = 0; i < paper.info.glyphCount; ++i)
+      if (paper.info.glyphs[i].glyph == 0) return false;
+    return paper.info.missingCount == 0;
+  };
+  // No font has both: the letter out of the first that has it, the mark out of the first that has that.
+  EXPECT_EQ(shaped("Ж\u0e39\u0e49", fonts), (std::vector<Shaped>{{latin.get(), 0}, {thai.get(), 2}, {thai.get(), 2}}));
+  EXPECT_TRUE(isWhole());
+  EXPECT_EQ(shaped("Ж\u0e49", fonts), (std::vector<Shaped>{{latin.get(), 0}, {thai.get(), 2}}));
+  EXPECT_TRUE(isWhole());
+  EXPECT_EQ(paper.caret(2).x, paper.caret(0).x); // one grapheme, whatever its fonts
+  // No circle of dots for what stands on another font's letter.
+  EXPECT_EQ(shaped("Ж\u0941", fonts), (std::vector<Shaped>{{latin.get(), 0}, {devanagari.get(), 2}}));
+  EXPECT_TRUE(isWhole());
+  // A later font has all of it: that one alone.
+  const auto inOne = shaped("ก\u0e49", fonts);
+  for (const Shaped& glyph : inOne) EXPECT_EQ(glyph.font, thai.get());
+  EXPECT_TRUE(isWhole());
+  // What no font has stays with what is before it, and is reported.
+  const auto none = shaped("Ж\u0e49\U0001e8d0Ж", fonts);
+  EXPECT_EQ(none.front().font, latin.get());
+  EXPECT_EQ(paper.info.missingCount, 1u);
+}
+
+/// No grapheme of random letters and marks has a missing glyph where fonts of the chain have its characters.
+TEST(TextShape, RandomGraphemesLackNothingThatAFontHas) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle held[] = {openFont("DejaVuSans.ttf"),
+                             openFont("NotoSansThai-Regular.ttf"),
+                             openFont("NotoSansDevanagari-Regular.ttf"),
+                             openFont("NotoSansHebrew-Regular.ttf"),
+                             openFont("NotoNaskhArabic-Regular.ttf"),
+                             openFont("NotoColorEmoji.ttf")};
+  const char* letters[] = {"x", "Ж", "ก", "क", "א", "ب", "5", "©", "☂"};
+  const char* marks[] = {"\u0e49", "\u0e39", "\u0941", "\u0301", "\u05b8", "\u064e", "\u093c", "\u0331", "\ufe0e"};
+  std::mt19937 random(3);
+  Paper paper;
+  for (int round = 0; round < 3000; ++round) {
+    std::vector<GpgpFont> chain;
+    for (const FontHandle& font : held) chain.push_back(font.get());
+    std::shuffle(chain.begin(), chain.end(), random);
+    std::string text = letters[random() % std::size(letters)];
+    for (uint32_t i = random() % 4; i > 0; --i) text += marks[random() % std::size(marks)];
+    ASSERT_EQ(paper.set(textInfo(text, chain, 20)), GPGP_SUCCESS);
+    EXPECT_EQ(paper.info.missingCount, 0u) << text;
+    for (uint32_t i = 0; i < paper.info.glyphCount; ++i) EXPECT_NE(paper.info.glyphs[i].glyph, 0u) << text;
+  }
+}
+
+TEST(TextShape, TextTakesNothingFromFontsOfEmojiThatOthersHave) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle dejavu = openFont("DejaVuSans.ttf"), emoji = openFont("NotoColorEmoji.ttf"),
+                   amiri = openFont("AmiriQuranColored.ttf"), naskh = openFont("NotoNaskhArabic-Regular.ttf");
+  Paper paper;
+  for (const std::vector<GpgpFont>& chain :
+       {std::vector<GpgpFont>{emoji.get(), dejavu.get()}, {dejavu.get(), emoji.get()}}) {
+    for (const char* each : {"5 ©", "0123456789#*®™", "☂", "❤", "5\ufe0e"}) {
+      SCOPED_TRACE(each);
+      const std::string text = each;
+      ASSERT_EQ(paper.set(textInfo(text, chain, 20)), GPGP_SUCCESS);
+      EXPECT_EQ(paper.info.missingCount, 0u);
+      for (uint32_t i = 0; i < paper.info.glyphCount; ++i) EXPECT_EQ(paper.info.glyphs[i].font, dejavu.get());
+    }
+    for (const char* each : {"☂\ufe0f", "©\ufe0f", "5\ufe0f\u20e3", "😀", "☕"}) {
+      SCOPED_TRACE(each);
+      const std::string text = each;
+      ASSERT_EQ(paper.set(textInfo(text, chain, 20)), GPGP_SUCCESS);
+      for (uint32_t i = 0; i < paper.info.glyphCount; ++i) EXPECT_EQ(paper.info.glyphs[i].font, emoji.get());
+    }
+  }
+  // Alone it has to do; and a font of letters in colour is no font of emoji.
+  const std::string digits = "5";
+  ASSERT_EQ(paper.set(textInfo(digits, {emoji.get()}, 20)), GPGP_SUCCESS);
+  EXPECT_EQ(paper.info.missingCount, 0u);
+  const std::string letters = "بِسْمِ";
+  const std::vector<GpgpFont> colored = {amiri.get(), naskh.get()};
+  ASSERT_EQ(paper.set(textInfo(letters, colored, 20)), GPGP_SUCCESS);
+  for (uint32_t i = 0; i < paper.info.glyphCount; ++i) EXPECT_EQ(paper.info.glyphs[i].font, amiri.get());
+}
+
+/// Each letter keeps its colour: none is lost in a ligature with letters of another.
+TEST(TextShape, LettersInColourLeaveLigatures) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  const std::vector<GpgpFont> fonts = {font.get()};
+  const std::string text = "office waffles fluffy";
+  Paper paper;
+  const auto glyphsOf = [&](const std::vector<GpgpTextSpan>& spans, float width = 0) {
+    GpgpTextInfo info = textInfo(text, fonts, 20, width);
+    info.spans = spans.data();
+    info.spanCount = static_cast<uint32_t>(spans.size());
+    EXPECT_EQ(paper.set(info), GPGP_SUCCESS);
+    return paper.info.glyphCount;
+  };
+  const auto span = [&](uint32_t begin, uint32_t end, float red, float outline = 0) {
+    GpgpTextSpan made{begin, end, textInfo(text, fonts, 20).style};
+    made.style.color[0] = red;
+    made.style.outlineWidth = outline;
+    return made;
+  };
+  const uint32_t joined = glyphsOf({});
+  ASSERT_LT(joined, text.size());               // DejaVu joins f and i, f and l, f and f
+  EXPECT_EQ(glyphsOf({span(1, 9, 0)}), joined); // no change of what is seen
+  for (uint32_t begin = 0; begin < text.size(); ++begin)
+    for (uint32_t end = begin + 1; end <= text.size(); ++end)
+      for (const float width : {0.f, 60.f}) {
+        for (const bool outlined : {false, true}) {
+          glyphsOf({span(begin, end, outlined ? 0.f : 1.f, outlined ? 1.f : 0.f)}, width);
+          for (uint32_t i = 0; i < paper.info.glyphCount; ++i) {
+            const GpgpTextGlyph& glyph = paper.info.glyphs[i];
+            // up to where the next glyph's letters begin
+            const uint32_t next =
+                i + 1 < paper.info.glyphCount ? paper.info.glyphs[i + 1].cluster : static_cast<uint32_t>(text.size());
+            for (uint32_t c = glyph.cluster; c < next; ++c) {
+              if (text[c] == ' ') continue;
+              EXPECT_EQ(glyph.span, c >= begin && c < end ? 1u : 0u) << begin << " to " << end << ", letter " << c;
+            }
+          }
+        }
+      }
+}
+
 TEST(TextShape, EmojiOfLatinCharactersAreInColour) {
   GPGP_NEEDS_FONTS();
   // The first two have all of these in black, keycaps in the second.

@@ -1,0 +1,50 @@
+# What a build needs from the system, by the names of Debian's packages: all that is missing is named at once, before
+# any find_package(... REQUIRED) speaks of files.
+#
+#   gpgp_need(DEBIAN_PACKAGE PACKAGE name [version] | MODULE name | PROGRAM name | HEADER path)
+#   gpgp_end_needs(WHO HINT): what was asked for since the last is WHO's, which HINT says more of
+#   gpgp_check_needs(): ends the configuration where something is missing
+function(gpgp_need debian kind name)
+  string(MAKE_C_IDENTIFIER "GPGP_HAS_${name}" found)
+  if(kind STREQUAL "PACKAGE")
+    find_package(${name} ${ARGN} QUIET)
+    set(${found} ${${name}_FOUND})
+  elseif(kind STREQUAL "MODULE") # of pkg-config
+    find_package(PkgConfig QUIET)
+    if(NOT PkgConfig_FOUND)
+      set_property(GLOBAL APPEND PROPERTY gpgp_missing pkg-config)
+    else()
+      unset(${found}_FOUND CACHE) # it may have gone since
+      pkg_check_modules(${found} QUIET ${name})
+      set(${found} ${${found}_FOUND})
+    endif()
+  elseif(kind STREQUAL "PROGRAM")
+    find_program(${found} ${name})
+    mark_as_advanced(${found})
+  elseif(kind STREQUAL "HEADER")
+    find_path(${found} ${name})
+    mark_as_advanced(${found})
+  else()
+    message(FATAL_ERROR "gpgp_need: ${kind}?")
+  endif()
+  if(NOT ${found})
+    set_property(GLOBAL APPEND PROPERTY gpgp_missing ${debian})
+  endif()
+endfunction()
+
+function(gpgp_end_needs who hint)
+  get_property(missing GLOBAL PROPERTY gpgp_missing)
+  set_property(GLOBAL PROPERTY gpgp_missing)
+  if(missing)
+    list(REMOVE_DUPLICATES missing)
+    list(JOIN missing " " missing)
+    set_property(GLOBAL APPEND_STRING PROPERTY gpgp_refusal "\n${who}: ${missing}\n${hint}")
+  endif()
+endfunction()
+
+function(gpgp_check_needs)
+  get_property(refusal GLOBAL PROPERTY gpgp_refusal)
+  if(refusal)
+    message(FATAL_ERROR "Packages are missing (Debian's names).${refusal}")
+  endif()
+endfunction()
