@@ -57,9 +57,10 @@ struct Cut {
 /// All heights at which two pieces change sides, both pieces named. Cost near linear for drawings whose pieces are
 /// short against the whole: pieces are dealt into horizontal bands of about their own height, and within a band only
 /// those whose x ranges overlap are compared; where that would be too many, strips (strips.h) find who is near.
-/// UNSUPPORTED where a path has more than kMaxCrossings, or more pairs to compare than kMaxCompared, as many curves
-/// that coincide all but exactly have.
-constexpr size_t kMaxCrossings = size_t(1) << 22, kMaxCompared = size_t(1) << 26;
+/// UNSUPPORTED where a path has more than kMaxCrossings, most often before they are looked for (inversions.h), or where
+/// telling its curves apart takes more than kMaxWork, as it does where many coincide all but exactly: a pair of curves
+/// is 1, a row in which two are compared kWorkOfRow.
+constexpr size_t kMaxCrossings = size_t(1) << 22, kMaxWork = size_t(1) << 26, kWorkOfRow = 4;
 core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vector<Cut>& cuts);
 
 /// A patch before it has a place in a table: pieces left and right, rows.

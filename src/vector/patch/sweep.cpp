@@ -23,36 +23,45 @@ constexpr uint32_t kNone = UINT32_MAX;
 
 class Sweep {
 public:
-  Sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule, std::pmr::vector<Slab>& slabs)
-      : pieces_(pieces), cuts_(cuts), rule_(rule), slabs_(slabs), memory_(slabs.get_allocator().resource()),
+  Sweep(std::span<const Monotone> pieces, GpgpFillRule rule, std::pmr::vector<Slab>& slabs)
+      : pieces_(pieces), rule_(rule), slabs_(slabs), memory_(slabs.get_allocator().resource()),
         status_(static_cast<uint32_t>(pieces.size()), memory_), pieceAt_(pieces.size(), 0, memory_),
         states_(pieces.size(), State{}, memory_), open_(pieces.size(), Open{}, memory_), ends_(memory_),
         begins_(memory_), block_(memory_), touched_(memory_), runs_(memory_), starts_(memory_) {}
 
-  void run() {
+  void run(std::span<const Cut> cutsOfPieces) {
     const uint32_t count = static_cast<uint32_t>(pieces_.size());
-    uint32_t next = 0;
     for (uint32_t i = 0; i < count; ++i) {
-      states_[i].edge = next + i;
+      states_[i].edge = newEdge_++;
       states_[i].top = static_cast<float>(pieces_[i].top());
-      states_[i].bottom = bottomOf(i, next);
-      while (next < cuts_.size() && cuts_[next].piece == i) ++next;
+      states_[i].bottom = static_cast<float>(pieces_[i].bottom());
     }
+    // By height, then by piece. Beside each cut where the edge that it begins ends, so that cuts are read in a row:
+    // each piece's own lie far apart where there are millions.
+    std::pmr::vector<uint64_t> cuts(memory_);
+    cuts.reserve(cutsOfPieces.size());
+    for (const Cut& cut : cutsOfPieces) cuts.push_back(uint64_t(heightBits(cut.y)) << 32 | cut.piece);
+    sortKeys(cuts);
+    const auto heightOfCut = [&cuts](size_t i) { return heightOf(static_cast<uint32_t>(cuts[i] >> 32)); };
+    std::pmr::vector<float> bottomsOfCuts(cuts.size(), 0, memory_);
+    for (size_t i = cuts.size(); i-- > 0;)
+      bottomsOfCuts[i] = std::exchange(states_[static_cast<uint32_t>(cuts[i])].bottom, heightOfCut(i));
     const auto tops = orderBy(count, memory_, [this](uint32_t i) { return static_cast<float>(pieces_[i].top()); });
     const auto bottoms =
         orderBy(count, memory_, [this](uint32_t i) { return static_cast<float>(pieces_[i].bottom()); });
-    const auto cuts = orderBy(static_cast<uint32_t>(cuts_.size()), memory_, [this](uint32_t i) { return cuts_[i].y; });
-    uint32_t top = 0, bottom = 0, cut = 0;
+    uint32_t top = 0, bottom = 0;
+    size_t cut = 0;
     while (bottom < count) {
       y_ = static_cast<float>(pieces_[bottoms[bottom]].bottom());
       if (top < count) y_ = std::min(y_, static_cast<float>(pieces_[tops[top]].top()));
-      if (cut < cuts.size()) y_ = std::min(y_, cuts_[cuts[cut]].y);
+      if (cut < cuts.size()) y_ = std::min(y_, heightOfCut(cut));
       ++batch_;
       starts_.clear();
       touched_.clear();
       ends_.clear();
       begins_.clear();
-      for (; cut < cuts.size() && cuts_[cuts[cut]].y == y_; ++cut) goOn(cuts[cut]);
+      for (; cut < cuts.size() && heightOfCut(cut) == y_; ++cut)
+        goOn(static_cast<uint32_t>(cuts[cut]), bottomsOfCuts[cut]);
       for (; bottom < count && static_cast<float>(pieces_[bottoms[bottom]].bottom()) == y_; ++bottom)
         ends_.push_back(bottoms[bottom]);
       for (; top < count && static_cast<float>(pieces_[tops[top]].top()) == y_; ++top) begins_.push_back(tops[top]);
@@ -65,7 +74,7 @@ public:
 private:
   /// A piece in the sweep, with one of its edges.
   struct State {
-    uint32_t edge = 0; ///< numbered by piece, from top to bottom: a piece's has as many before it as there are cuts
+    uint32_t edge = 0; ///< a number that no other has
     float top = 0, bottom = 0;
     uint32_t slot = kNone;
     int winding = 0;                 ///< right of it
@@ -83,18 +92,12 @@ private:
     bool bounds = false;
   };
 
-  float bottomOf(uint32_t piece, uint32_t nextCut) const {
-    return nextCut < cuts_.size() && cuts_[nextCut].piece == piece ? cuts_[nextCut].y
-                                                                   : static_cast<float>(pieces_[piece].bottom());
-  }
-
   /// A piece's next edge takes the place of the one that ends at a cut. repair() sees to it that the place is right.
-  void goOn(uint32_t cut) {
-    const uint32_t piece = cuts_[cut].piece;
+  void goOn(uint32_t piece, float bottom) {
     State& state = states_[piece];
-    ++state.edge;
-    state.top = state.bottom;
-    state.bottom = bottomOf(piece, cut + 1);
+    state.edge = newEdge_++;
+    state.top = y_;
+    state.bottom = bottom;
     state.known = kNone;
     markDirty(piece);
   }
@@ -150,8 +153,12 @@ private:
 
   bool leftOf(uint32_t a, uint32_t b) const {
     if (a == b) return false;
+    if (const int side = sideByHull(pieces_[a], pieces_[b])) return side < 0; // most pairs are far apart
+    return leftBetween(a, b);
+  }
+  /// The same of two that are near each other.
+  bool leftBetween(uint32_t a, uint32_t b) const {
     const Monotone &lp = pieces_[a], &rp = pieces_[b];
-    if (const int side = sideByHull(lp, rp)) return side < 0; // most pairs are far apart
     const State &l = states_[a], &r = states_[b];
     const double top = std::max(l.top, r.top), bottom = std::min(l.bottom, r.bottom);
     double widest = 0;
@@ -182,11 +189,6 @@ private:
     starts_.push_back(piece);
   }
 
-  void markNeighbours(uint32_t slot) {
-    for (const uint32_t beside : {status_.before(slot), status_.after(slot)})
-      if (beside != status_.end()) markDirty(pieceAt_[beside]);
-  }
-
   void enter(uint32_t piece, uint32_t slot) {
     place(piece, slot);
     markDirty(piece);
@@ -194,7 +196,8 @@ private:
 
   void remove(uint32_t piece) {
     const uint32_t slot = states_[piece].slot;
-    markNeighbours(slot);
+    for (const uint32_t beside : {status_.before(slot), status_.after(slot)})
+      if (beside != status_.end()) markDirty(pieceAt_[beside]);
     touched_.push_back(piece);
     removedMark_ = removedMark_ || status_.marked(slot);
     status_.erase(slot);
@@ -220,7 +223,8 @@ private:
       const uint32_t at = states_[starts_[i]].slot;
       if (at == kNone) continue;
       const uint32_t right = status_.after(at);
-      if (right != status_.end() && states_[pieceAt_[right]].dirty == batch_ && wrong(pieceAt_[at], pieceAt_[right]))
+      if (right != status_.end() && states_[pieceAt_[right]].dirty == batch_ &&
+          wrong<&Sweep::leftBetween>(pieceAt_[at], pieceAt_[right]))
         swap(at, right);
     }
     for (size_t i = 0; i < starts_.size() && swaps; ++i) {
@@ -237,9 +241,9 @@ private:
   }
 
   /// Whether two neighbours must change places; the same two are asked once.
-  bool wrong(uint32_t left, uint32_t right) {
+  template <bool (Sweep::*Left)(uint32_t, uint32_t) const = &Sweep::leftOf> bool wrong(uint32_t left, uint32_t right) {
     if (states_[left].known == states_[right].edge) return false;
-    if (leftOf(right, left)) {
+    if ((this->*Left)(right, left)) {
       states_[right].known = states_[left].edge; // as they will lie
       return true;
     }
@@ -254,8 +258,6 @@ private:
     markDirty(moved);
     states_[madeRoom].dirty = batch_;
     starts_.push_back(madeRoom);
-    markNeighbours(moving);
-    markNeighbours(other);
   }
 
   /// Windings from each changed place on until they agree with what was there, then the slabs around those places.
@@ -335,7 +337,6 @@ private:
   }
 
   std::span<const Monotone> pieces_;
-  std::span<const Cut> cuts_;
   const GpgpFillRule rule_;
   std::pmr::vector<Slab>& slabs_;
   std::pmr::memory_resource* memory_;
@@ -348,7 +349,7 @@ private:
   std::pmr::vector<Run> runs_;
   std::pmr::vector<uint32_t> starts_;
   float y_ = 0;
-  uint32_t batch_ = 0;
+  uint32_t batch_ = 0, newEdge_ = 0;
   bool removedMark_ = false;
 };
 
@@ -357,7 +358,7 @@ private:
 void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule,
            std::pmr::vector<Slab>& slabs) {
   if (pieces.empty()) return;
-  Sweep(pieces, cuts, rule, slabs).run();
+  Sweep(pieces, rule, slabs).run(cuts);
 }
 
 } // namespace gpgp::vector
