@@ -249,7 +249,7 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
         if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back({piece, cut});
     });
     work += kWorkOfRow * pair.rows();
-    return crossings <= kMaxCrossings && work <= kMaxWork;
+    return crossings <= kMaxCrossings && work <= kMaxWork + kWorkOfPiece * pieces.size() + kWorkOfCrossing * crossings;
   };
   const auto compare = [&](uint32_t l, uint32_t r, double from, double to) {
     if (l > r) std::swap(l, r);

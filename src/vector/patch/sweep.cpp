@@ -29,7 +29,7 @@ public:
         states_(pieces.size(), State{}, memory_), open_(pieces.size(), Open{}, memory_), ends_(memory_),
         begins_(memory_), block_(memory_), touched_(memory_), runs_(memory_), starts_(memory_) {}
 
-  void run(std::span<const Cut> cutsOfPieces) {
+  core::Result<void> run(std::span<const Cut> cutsOfPieces) {
     const uint32_t count = static_cast<uint32_t>(pieces_.size());
     for (uint32_t i = 0; i < count; ++i) {
       states_[i].edge = newEdge_++;
@@ -68,7 +68,11 @@ public:
       advance();
       repair();
       update();
+      if (levelCrossings_ > kMaxLevelCrossings)
+        return core::makeError(GPGP_ERROR_UNSUPPORTED, "level lines of the path cross its others more than %zu times",
+                               kMaxLevelCrossings);
     }
+    return {};
   }
 
 private:
@@ -275,6 +279,7 @@ private:
         State& s = states_[pieceAt_[slot]];
         const int right = winding + pieces_[pieceAt_[slot]].winding;
         if (s.dirty != batch_ && s.winding == right) break;
+        levelCrossings_ += s.dirty != batch_; // nothing of its own happens here
         s.winding = right;
         s.visited = batch_;
         last = slot;
@@ -350,15 +355,16 @@ private:
   std::pmr::vector<uint32_t> starts_;
   float y_ = 0;
   uint32_t batch_ = 0, newEdge_ = 0;
+  size_t levelCrossings_ = 0;
   bool removedMark_ = false;
 };
 
 } // namespace
 
-void sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule,
-           std::pmr::vector<Slab>& slabs) {
-  if (pieces.empty()) return;
-  Sweep(pieces, rule, slabs).run(cuts);
+core::Result<void> sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule,
+                         std::pmr::vector<Slab>& slabs) {
+  if (pieces.empty()) return {};
+  return Sweep(pieces, rule, slabs).run(cuts);
 }
 
 } // namespace gpgp::vector
