@@ -180,9 +180,9 @@ TEST(Crossings, CostGrowsAsTheirNumber) {
     }
     return large / small;
   };
-  EXPECT_LT(growth([](int n) { return convert(random(n, true)); }, 400), 7) << "curves";
+  EXPECT_LT(growth([](int n) { return convert(random(n, true)); }, 500), 7) << "curves";
   EXPECT_LT(growth([](int n) { return convert(random(n, false)); }, 800), 7) << "lines";
-  EXPECT_LT(growth([&](int n) { return convert(random(n, false), &stroke); }, 250), 7) << "a wide stroke";
+  EXPECT_LT(growth([&](int n) { return convert(random(n, false), &stroke); }, 400), 7) << "a wide stroke";
 }
 
 TEST(Crossings, TooManyAreRefusedBeforeTheyAreLookedFor) {
