@@ -110,7 +110,7 @@ private:
   /// place.
   void advance() {
     constexpr size_t kFew = 8; // more are sorted in, which is cheaper than trying all pairs and swapping many
-    const bool many = starts_.size() > kFew;
+    went_ = starts_.size();
     if (ends_.size() <= kFew && begins_.size() <= kFew) {
       for (uint32_t& end : ends_)
         for (uint32_t& begin : begins_) {
@@ -123,7 +123,7 @@ private:
     }
     for (const uint32_t end : ends_)
       if (end != kNone) remove(end);
-    if (many) sortTogether();
+    if (went_ > kFew) sortTogether();
     for (const uint32_t begin : begins_)
       if (begin != kNone) insert(begin);
   }
@@ -223,7 +223,7 @@ private:
   void repair() {
     size_t swaps = 64 + 8 * starts_.size();
     // Two that cross here lie beside each other. They are put right first: what is beside both is then asked once.
-    for (size_t i = 0, count = starts_.size(); i < count; ++i) {
+    for (size_t i = 0, count = went_ > 1 ? starts_.size() : 0; i < count; ++i) {
       const uint32_t at = states_[starts_[i]].slot;
       if (at == kNone) continue;
       const uint32_t right = status_.after(at);
@@ -355,6 +355,7 @@ private:
   std::pmr::vector<uint32_t> starts_;
   float y_ = 0;
   uint32_t batch_ = 0, newEdge_ = 0;
+  size_t went_ = 0; // edges that went on at this height
   size_t levelCrossings_ = 0;
   bool removedMark_ = false;
 };
