@@ -51,6 +51,22 @@ TestPath bars(int count) {
   return path;
 }
 
+/// Triangles that share a corner, all corners on a grid: dozens of edges meet in one point, others in several.
+TestPath fan(int count) {
+  std::mt19937 random(9);
+  const auto c = [&random] { return static_cast<float>(random() % 41) * 25; };
+  TestPath path;
+  for (int i = 0; i < count; ++i) {
+    const std::array<float, 4> v{c(), c(), c(), c()};
+    path.move(500, 500).line(v[0], v[1]).line(v[2], v[3]).close();
+    path.move(500 + v[0] / 2, 500 + v[1] / 2)
+        .line(500 - v[0] / 2, 500 - v[1] / 2)
+        .line(v[3], v[2])
+        .close(); // through it
+  }
+  return path;
+}
+
 /// The same curve again and again, each time a few roundings away.
 TestPath nearlyTheSame(int count) {
   std::mt19937 random(2);
@@ -133,6 +149,7 @@ TEST(Crossings, PatchesAreTheInsideOfPathsThatCrossOften) {
     expectInside(random(500, false), rule, 100);        //
     expectInside(random(300, true, 4, 1e5f), rule, 50); // where many lie at the same height
     expectInside(bars(200), rule, 100);
+    expectInside(fan(60), rule, 200);
   }
 }
 
