@@ -184,9 +184,9 @@ std::string mapOf(int lines, int size) {
 }
 
 TEST(CliVector, TheCanvasIsAsLargeAsTheDrawingNeeds) {
-  const TemporaryFile file("map.svg", mapOf(400, 2048));
+  const TemporaryFile file("map.svg", mapOf(600, 2048));
   const json drawn = gpgpJson({"vector", file.path(), "--aa", "4"});
-  EXPECT_EQ(drawn["paths"], 400);
+  EXPECT_EQ(drawn["paths"], 600);
   EXPECT_EQ(drawn["paths_dropped"], 0);
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
   EXPECT_GT(drawn["tile_words"], 131072) << "more than a canvas has by default";
