@@ -54,7 +54,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpPushTransform(GpgpList list, const float* tran
  *  +-1e7 before and after the moves and even scales pushed around it), and of those around it. Round corners, if radii
  *  is not NULL: as GpgpListShape's. Where box and canvas are parallel (the transforms move, scale, mirror or turn by
  *  quarters) and corners are not round, a scissor that costs next to nothing; else (turned, skewed, in perspective) the
- *  clip goes with its box, counts as a shape (maxShapes, maxPatches) and costs the pixels on its edge more. Either way
+ *  clip goes with its box, counts as a shape (maxShapes, maxPaths) and costs the pixels on its edge more. Either way
  *  edges are smooth, sample by sample, as those of any path.
  *  Errors: INVALID_ARGUMENT (not a number, beyond 1e7, right below left; too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, const float* radii);

@@ -331,20 +331,24 @@ typedef struct GpgpCanvasCreateInfo {
   const void* pNext;
   GpgpWorkerCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
-  /** CPatches in one record, and no more paths; 0: 262144. A drawing counts GpgpDrawingInfo::patches for each item
-   *  that shows it, a glyph its own each time it is placed (about as many as its outline has lines and curves; the
-   *  report sums them up), a shape of a list, and a clip that is not a scissor, 1. */
-  uint32_t maxPatches;
+  /** Paths in one record; 48 bytes each, 8 more on hardware, and a bit for each square of 128 pixels; 0: 262144, at
+   *  most 4194304. A drawing counts GpgpDrawingInfo::paths for each item that shows it, a glyph its own each
+   *  time it is placed, a shape of a list, and a clip that is not a scissor, 1. How many curves and patches they
+   *  have is not limited: these are in the drawing's own buffer. */
+  uint32_t maxPaths;
   uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
-                                each; 0: 131072 */
-  uint32_t maxDrawings;    /**< items in one record, and what lists have of drawings, clips, and changes of transform
-                                and clip (ui.h); 0: 64, at most 65536. They may show at most 8 different drawings and
-                                glyph sets */
-  uint32_t maxGlyphs;      /**< of all texts in one record, blanks not counted; 176 bytes each, 48 of them once more for
-                                every record in flight; 0: 1024, at most 1048576 */
-  uint32_t maxShapes;      /**< of all lists in one record, their clips that are not scissors included (ui.h); as many
-                                of them with an image or gradient, and twice as many stops; 592 bytes each, 240 of them
-                                once more for every record in flight; 0: 1024, at most 1048576 */
+                                each, with their lists 480; 0: 131072 */
+  uint32_t maxTileWords; /**< for each path that meets the canvas, the rows of tiles of its box times how many times 32
+                              tiles its box is wide, begun ones whole; 16 bytes each; 0: maxTileEntries, or 65536 where
+                              that is less */
+  uint32_t maxDrawings;  /**< items in one record, and what lists have of drawings, clips, and changes of transform
+                              and clip (ui.h); 0: 64, at most 65536. They may show at most 8 different drawings and
+                              glyph sets */
+  uint32_t maxGlyphs;    /**< of all texts in one record, blanks not counted; 176 bytes each, 48 of them once more for
+                              every record in flight; 0: 1024, at most 1048576 */
+  uint32_t maxShapes;    /**< of all lists in one record, their clips that are not scissors included (ui.h); as many
+                              of them with an image or gradient, and twice as many stops; 592 bytes each, 240 of them
+                              once more for every record in flight; 0: 1024, at most 1048576 */
   GpgpCanvasTargets targets; /**< what records will write; 0: any. Pipelines are made for these alone: with one, half
                                 as many, in half the time */
 } GpgpCanvasCreateInfo;
@@ -471,9 +475,12 @@ typedef struct GpgpCanvasReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t patches;          /**< needed */
-  uint32_t patchesGiven;     /**< maxPatches */
-  uint32_t tileEntries;      /**< needed, at least: a record with as many may turn out to need more */
+  uint32_t paths;            /**< needed */
+  uint32_t pathsGiven;       /**< maxPaths */
+  uint32_t tileWords;        /**< needed by the paths that maxPaths and the other budgets left */
+  uint32_t tileWordsGiven;   /**< maxTileWords */
+  uint32_t tileEntries;      /**< needed by the paths that have tile words: where these did not suffice, a record with
+                                  as many as are needed may turn out to need more entries */
   uint32_t tileEntriesGiven; /**< maxTileEntries */
   uint32_t pathsDropped;     /**< whole paths, and of texts whole glyphs, left out where the budget did not suffice */
   uint32_t glyphs;           /**< needed */

@@ -64,7 +64,7 @@ void Engine::run(uint32_t frames) {
                        " triangles shaded (F freezes, M method, 1 shaded, 2 overlay, 3 density)");
     } else if (i % 30 == 29) {
       target_.setTitle("gpgp mini engine: " + std::to_string(city_.report().terminals) + " spawned, " +
-                       std::to_string((screen_ ? screen_->report() : hud_->report()).patches) + " patches, " +
+                       std::to_string((screen_ ? screen_->report() : hud_->report()).paths) + " paths, " +
                        std::to_string(sight_.report().visible) + " triangles visible");
     }
   }
@@ -245,7 +245,7 @@ void Engine::printSummary() const {
   const GpgpCanvasReport& canvas = screen_ ? screen_->report() : hud_->report();
   line("vector", canvas.base);
   if (hud_) std::printf("%u paths, ", hud_->paths());
-  std::printf("%u patches, %u tile entries\n", canvas.patches, canvas.tileEntries);
+  std::printf("%u paths, %u tile entries\n", canvas.paths, canvas.tileEntries);
   line("visibility", sample.base);
   std::printf("%u of %u triangles of %s visible, %u pixels covered, %u appeared, %u disappeared\n", sample.visible,
               sight_.model().triangleCount, sight_.model().name.c_str(), sample.coveredPixels, sample.appeared,

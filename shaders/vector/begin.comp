@@ -31,7 +31,7 @@ void main() {
 #if ALONE
   if (lane == 0)
     counters = CanvasCounters(0, 0, header.pathCount, header.pathsDropped, header.wordLimit, header.entryLimit, 0, 0,
-                              header.patchCount, 0, 0, 0, 0, header.glyphs, header.glyphLimit, header.shapes,
+                              header.pathsNeeded, 0, 0, 0, 0, header.glyphs, header.glyphLimit, header.shapes,
                               header.shapeLimit, header.sources, header.sourceLimit, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
                               0, 0);
   for (uint i = lane; i < header.sourceCount; i += lanes) items[i] = sourceOf(i);

@@ -177,7 +177,7 @@ struct CanvasHeader {
   uint width, height, tilesX, tilesY;
   uint segmentCount, pathCount, itemCount, pathWords; // pathWords: 32 paths each
   uint wordLimit, entryLimit, samples, flags;         // entryLimit: without those of small glyphs; flags: kWrite...
-  uint pathsDropped, binsX, binCount, patchCount;     // patchCount: needed
+  uint pathsDropped, binsX, binCount, pathsNeeded;
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
   uint premultiplied;            // images whose colours are, as bits
   uint binShift;                 // a bin is a square of 2^binShift tiles
@@ -198,8 +198,8 @@ struct CanvasCounters {
   uint words, entries;        // needed
   uint cutPath, pathsDropped; // paths from cutPath on are left out
   uint wordsGiven, entriesGiven;
-  uint placed, allotted; // workgroups that are done; the latter on software devices pieces (pieces.glsl)
-  uint patches;
+  uint placed, allotted;    // workgroups that are done; the latter on software devices pieces (pieces.glsl)
+  uint paths;               // needed
   uint rows;                // needed: of the lists between mark and fill; on software devices chords (pieces.glsl)
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
   uint glyphs, glyphsGiven; // needed; room for as many

@@ -121,7 +121,7 @@ void main() {
   }
   if (lane == 0) {
     cut = wholeItems(cut);
-    counters.patches = header.patchCount;
+    counters.paths = header.pathsNeeded;
     counters.glyphs = header.glyphs;
     counters.glyphsGiven = header.glyphLimit;
     counters.shapes = header.shapes;

@@ -156,10 +156,12 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
     if (info->maxWidth > 16384 || info->maxHeight > 16384)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 16384 x 16384",
                        info->maxWidth, info->maxHeight);
-    if (info->maxPatches > 1u << 22)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxPatches is %u; at most 4194304", info->maxPatches);
+    if (info->maxPaths > 1u << 22)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxPaths is %u; at most 4194304", info->maxPaths);
     if (info->maxTileEntries > 1u << 28)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTileEntries is %u; at most 268435456", info->maxTileEntries);
+    if (info->maxTileWords > 1u << 28)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTileWords is %u; at most 268435456", info->maxTileWords);
     if (info->maxDrawings > 65536)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDrawings is %u; at most 65536", info->maxDrawings);
     if (info->maxGlyphs > 1u << 20)

@@ -8,7 +8,7 @@ namespace gpgp::cli {
 namespace {
 
 // What a record holds, on devices that bind no more than 128 MiB too.
-constexpr uint64_t kPatches = 1u << 18, kPixels = 1u << 24, kEntries = 1u << 18;
+constexpr uint64_t kPaths = 1u << 18, kPixels = 1u << 24, kEntries = 1u << 18;
 
 /// Bitmap glyphs in a texture.
 struct Pictures {
@@ -44,7 +44,7 @@ Pictures makePictures(Session& session, const PageGlyphs& all) {
 /// A glyph of the set, or a shape: a picture, an underline or a strike.
 struct Placed {
   double top, bottom; ///< rows of the picture that it may touch
-  uint64_t patches;   ///< more than it has, as a rule; where not, a band is drawn in two
+  uint64_t paths;     ///< that it has
   GpgpGlyphInstance glyph{};
   std::optional<GpgpListShape> shape;
   std::optional<GpgpListImage> image; ///< the shape's
@@ -62,7 +62,7 @@ std::vector<Placed> placeAll(const GpgpLayoutInfo& layout, const PageGlyphs& all
       const double y = double(frame.top) + double(at.y), size = double(at.size);
       Placed& one = placed.emplace_back(Placed{y + size * double(glyph.box[1]) - 1,
                                                y + size * double(glyph.box[3]) + 1,
-                                               uint64_t{glyph.verbs} * (color ? 8 : 2), // an outline: two sides, joins
+                                               uint64_t{glyph.paths.size()},
                                                {indices[which[i]], at.x, at.y, at.size, {}},
                                                {},
                                                {}});
@@ -103,7 +103,7 @@ std::vector<Placed> placeAll(const GpgpLayoutInfo& layout, const PageGlyphs& all
 
 struct Band {
   uint32_t first, end; ///< rows
-  uint64_t patches = 0;
+  uint64_t paths = 0;
   uint32_t glyphs = 0, shapes = 0;
   std::vector<const Placed*> placed;
 };
@@ -112,7 +112,7 @@ Band bandOf(const std::vector<Placed>& placed, uint32_t first, uint32_t end) {
   Band band{first, end, 0, 0, 0, {}};
   for (const Placed& one : placed)
     if (one.top < end && one.bottom > first) {
-      band.patches += one.patches;
+      band.paths += one.paths;
       ++(one.shape ? band.shapes : band.glyphs);
       band.placed.push_back(&one);
     }
@@ -135,7 +135,7 @@ public:
     plan(0, frame_.size.height, bands);
     for (const Band& band : bands) {
       canvasFor_.rows = std::max(canvasFor_.rows, band.end - band.first);
-      canvasFor_.patches = std::max(canvasFor_.patches, band.patches);
+      canvasFor_.paths = std::max(canvasFor_.paths, band.paths);
       canvasFor_.glyphs = std::max(canvasFor_.glyphs, band.glyphs);
       canvasFor_.shapes = std::max(canvasFor_.shapes, band.shapes);
     }
@@ -148,7 +148,7 @@ private:
   void plan(uint32_t first, uint32_t end, std::vector<Band>& bands) const {
     Band band = bandOf(placed_, first, end);
     const uint32_t rows = end - first;
-    if (rows == 1 || (band.patches <= kPatches && uint64_t{rows} * frame_.size.width <= kPixels)) {
+    if (rows == 1 || (band.paths <= kPaths && uint64_t{rows} * frame_.size.width <= kPixels)) {
       bands.push_back(std::move(band));
       return;
     }
@@ -161,7 +161,7 @@ private:
     info.base = session_.workerInfo("canvas");
     info.maxWidth = frame_.size.width;
     info.maxHeight = canvasFor_.rows;
-    info.maxPatches = static_cast<uint32_t>(std::clamp<uint64_t>(canvasFor_.patches, 1024, 1u << 22));
+    info.maxPaths = static_cast<uint32_t>(std::clamp<uint64_t>(canvasFor_.paths, 1024, 1u << 22));
     info.maxTileEntries = canvasFor_.entries;
     info.maxGlyphs = std::max(canvasFor_.glyphs, 1u);
     info.maxShapes = std::max(canvasFor_.shapes, 1u);
@@ -262,7 +262,7 @@ private:
   std::vector<Placed> placed_;
   struct {
     uint32_t rows = 0, entries = 0, glyphs = 0, shapes = 0;
-    uint64_t patches = 0;
+    uint64_t paths = 0;
   } canvasFor_;
   Canvas canvas_;
   DrawnPage page_;

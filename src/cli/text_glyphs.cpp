@@ -37,7 +37,6 @@ PageGlyphs collectGlyphs(TextPage& page) {
       for (uint32_t p = 0; p < outline.pathCount; ++p) {
         glyph.paths.emplace_back(outline.paths[p]);
         glyph.foreground.push_back(outline.foreground[p]);
-        glyph.verbs += outline.paths[p].verbCount;
       }
       const float reach = stroke ? stroke->width / 2 : 0;
       for (size_t side = 0; side < 4 && outline.pathCount; ++side)

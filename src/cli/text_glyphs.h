@@ -27,7 +27,6 @@ struct PageGlyph {
   uint64_t key = 0;            ///< number of the font, and glyph; 2^63 more: its outline
   std::vector<KeptPath> paths; ///< in em
   std::vector<VkBool32> foreground;
-  uint32_t verbs = 0;
   host::Picture picture;                               ///< of a bitmap glyph; 0 x 0: none
   float box[4] = {};                                   ///< em: left, top, right, bottom
   bool isPicture() const { return picture.width > 0; } ///< a glyph set does not take it

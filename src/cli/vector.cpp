@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -93,6 +94,41 @@ double compareWithTruth(std::span<const char> bytes, std::span<const uint8_t> pa
       Blend::Srgb);
 }
 
+/// A canvas for what a report says is needed, or as near to that as the device has room for; none where it has not.
+/// `info`: of the canvas that reported; becomes that of the new one.
+std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info, const GpgpCanvasReport& report) {
+  const auto wanted = [](uint32_t needed, uint32_t given, double share) {
+    // Somewhat more than is needed: what had no tile words has not been asked for its entries.
+    const double more = needed > given ? 1.125 * static_cast<double>(needed) - static_cast<double>(given) : 0;
+    return static_cast<uint32_t>(std::min(static_cast<double>(given) + more * share, static_cast<double>(1u << 28)));
+  };
+  for (const double share : {1.0, 0.5, 0.25, 0.125}) {
+    GpgpCanvasCreateInfo next = info;
+    next.maxPaths = std::max(info.maxPaths, report.paths);
+    next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, share);
+    next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, share);
+    if (next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven) break;
+    Result<Canvas> made = Canvas::create(session.context(), next);
+    if (!made) continue;
+    info = next;
+    return std::move(*made);
+  }
+  return std::nullopt;
+}
+
+/// What is missing, and what would have held it. `said`: the budget was.
+std::string leftOut(const GpgpCanvasReport& report, uint32_t paths, bool said) {
+  const bool words = report.tileWords > report.tileWordsGiven;
+  const std::string text =
+      std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
+  if (said) // as many words come with them
+    return text + "; --max-tile-entries " + std::to_string(std::max(report.tileEntries, words ? report.tileWords : 0)) +
+           " would hold them, or somewhat more";
+  return text + ": they need " + std::to_string(words ? report.tileWords : report.tileEntries) +
+         (words ? " tile words" : " tile entries") + ", and the device has room for " +
+         std::to_string(words ? report.tileWordsGiven : report.tileEntriesGiven) + "; a smaller --size needs fewer";
+}
+
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const std::array<float, 4> background = parseBackground(options.background);
   const std::string bytes = readInput(options.file), name = inputName(options.file);
@@ -143,7 +179,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   canvasInfo.base = session.workerInfo("canvas");
   canvasInfo.maxWidth = size.width;
   canvasInfo.maxHeight = size.height;
-  canvasInfo.maxPatches = std::max({facts.patches, facts.paths, 1024u});
+  canvasInfo.maxPaths = std::max(facts.paths, 1024u);
   canvasInfo.maxTileEntries = options.maxTileEntries;
   canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
   Canvas canvas = session.take(Canvas::create(session.context(), canvasInfo), "gpgpCreateCanvas");
@@ -188,7 +224,14 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                              return canvas.recordPrepare(commands, frame, info);
                            });
   };
-  rasterise(1); // not counted: memory is used the first time
+  // Not counted: memory is used the first time, and the report says what the drawing needs.
+  for (GpgpCanvasReport needs = rasterise(1).report; needs.pathsDropped && options.maxTileEntries == 0;
+       needs = rasterise(1).report) {
+    std::optional<Canvas> larger = largerCanvas(session, canvasInfo, needs);
+    if (!larger) break;
+    canvas = std::move(*larger);
+    session.check(canvas.prewarm(), "gpgpPrewarm");
+  }
   const auto [times, report] = rasterise(options.repeat);
   std::vector<uint8_t> pixels;
   if (!options.out.empty() || options.truth) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
@@ -216,10 +259,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   if (options.truth) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
-  if (report.pathsDropped)
-    outcome.failure = name + ": " + std::to_string(report.pathsDropped) + " of " + std::to_string(facts.paths) +
-                      " paths were left out; --max-tile-entries " + std::to_string(report.tileEntries) +
-                      " would hold them, or somewhat more";
+  if (report.pathsDropped) outcome.failure = name + ": " + leftOut(report, facts.paths, options.maxTileEntries != 0);
   outcome.json = {{"file", options.file},
                   {"device", device.name()},
                   {"status", statusName(report.base.status)},
@@ -231,6 +271,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"curves", facts.curves},
                   {"patches", facts.patches},
                   {"tile_entries_given", report.tileEntriesGiven},
+                  {"tile_words", report.tileWords},
+                  {"tile_words_given", report.tileWordsGiven},
                   {"paths_dropped", report.pathsDropped},
                   {"warnings", messages.count()},
                   {"messages", messages.json()},
@@ -275,7 +317,7 @@ Work addVector(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--all-warnings", options->allWarnings, "Name every part that is approximated or left out");
   command->add_option("--max-tile-entries", options->maxTileEntries,
-                      "Budget: tiles that paths' edges pass through (0: the library's default)");
+                      "Budget: tiles that paths' edges pass through (0: as many as are needed)");
   command->footer(R"(
 Examples:
   gpgp vector tiger.svg --out tiger.png

@@ -152,7 +152,7 @@ static void useVector(GpgpContext context, uint32_t family) {
   info.base.label = "canvas";
   info.base.queueFamily = family;
   info.maxWidth = info.maxHeight = 64;
-  info.maxPatches = info.maxTileEntries = 1024;
+  info.maxPaths = info.maxTileEntries = 1024;
   GPGP_CHECK(gpgpCreateCanvas(context, &info, &canvas));
   GPGP_CHECK(gpgpPrewarm(canvas, NULL));
 #ifdef ENGINE_COMPILE_SVG

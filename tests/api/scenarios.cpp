@@ -191,7 +191,7 @@ public:
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = base;
     info.maxWidth = info.maxHeight = kSize;
-    info.maxPatches = 256;
+    info.maxPaths = 256;
     info.maxTileEntries = 4096;
     info.maxDrawings = 5;
     info.maxGlyphs = 10;
@@ -241,7 +241,7 @@ public:
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
     const GpgpResult result = gpgpGetCanvasReport(worker, &report);
     header = report.base;
-    meaningful = report.patches > 0 && report.tileEntries > 0 && report.pathsDropped == 0 &&
+    meaningful = report.paths > 0 && report.tileEntries > 0 && report.pathsDropped == 0 &&
                  report.glyphs == 2 * std::size(glyphs_) && report.shapes == 2 && report.items == 4;
     return result;
   }

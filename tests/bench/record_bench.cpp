@@ -32,7 +32,7 @@ void measureList(host::HeadlessDevice& device, int records) {
   GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
   canvasInfo.base = {"bench", device.graphics().family, 0, VK_FALSE};
   canvasInfo.maxWidth = canvasInfo.maxHeight = 64;
-  canvasInfo.maxShapes = canvasInfo.maxPatches = kShapes;
+  canvasInfo.maxShapes = canvasInfo.maxPaths = kShapes;
   GpgpWorker canvas = nullptr;
   expect(gpgpCreateCanvas(context, &canvasInfo, &canvas), "gpgpCreateCanvas");
   expect(gpgpPrewarm(canvas, nullptr), "gpgpPrewarm");

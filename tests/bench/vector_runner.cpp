@@ -65,12 +65,12 @@ VectorMade VectorRunner::makeText(const Scene& scene) {
   return made;
 }
 
-void VectorRunner::openCanvas(uint32_t largest, uint32_t maxPatches, uint32_t maxGlyphs) {
+void VectorRunner::openCanvas(uint32_t largest, uint32_t maxPaths, uint32_t maxGlyphs) {
   closeCanvas();
   GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
   info.base = {"bench", device_.graphics().family, 0, VK_FALSE};
   info.maxWidth = info.maxHeight = largest;
-  info.maxPatches = maxPatches;
+  info.maxPaths = maxPaths;
   info.maxGlyphs = maxGlyphs;
   info.maxTileEntries = 1 << 19;
   expect(gpgpCreateCanvas(context_, &info, &canvas_), "gpgpCreateCanvas");

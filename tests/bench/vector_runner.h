@@ -42,7 +42,7 @@ public:
   VectorMade makeDrawing(const Scene& scene);
   VectorMade makeText(const Scene& scene);
   /// For pictures of at most `largest` pixels a side; takes the place of the one before.
-  void openCanvas(uint32_t largest, uint32_t maxPatches, uint32_t maxGlyphs = 0);
+  void openCanvas(uint32_t largest, uint32_t maxPaths, uint32_t maxGlyphs = 0);
 
   struct Settings {
     uint32_t samples = 16;

@@ -4,6 +4,8 @@
 #include "run.h"
 
 #include <algorithm>
+#include <random>
+#include <sstream>
 
 namespace gpgp::test {
 namespace {
@@ -32,6 +34,8 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "curves_per_patch",
                                                 "tile_entries",
                                                 "tile_entries_given",
+                                                "tile_words",
+                                                "tile_words_given",
                                                 "patches_per_tile",
                                                 "curves_per_patch_tiled",
                                                 "paths_dropped",
@@ -159,6 +163,41 @@ TEST(CliVector, PathsThatAreLeftOutAreAFailure) {
   EXPECT_GT(told["tile_entries"], 10);
   EXPECT_NE(told["error"].get<std::string>().find("left out"), std::string::npos);
   gpgpJson({"vector", file.path(), "--max-tile-entries", "1000"});
+}
+
+/// Lines of a map, each across most of the page: a few tiles in boxes of many.
+std::string mapOf(int lines, int size) {
+  std::mt19937 random(3);
+  std::ostringstream svg;
+  svg << "<svg xmlns='http://www.w3.org/2000/svg' width='" << size << "' height='" << size << "'>\n";
+  for (int i = 0; i < lines; ++i) {
+    const int step = size / 64, turn = static_cast<int>(random() % 4) * 2 - 3;
+    int x = static_cast<int>(random() % static_cast<uint32_t>(size)), y = 0;
+    svg << "<path fill='none' stroke='#" << (100 + random() % 900) << "' d='M" << x << " 0";
+    for (; y < size; y += step) {
+      x += turn * step / 3 + static_cast<int>(random() % 9) - 4;
+      svg << 'L' << x << ' ' << y + step;
+    }
+    svg << "'/>\n";
+  }
+  svg << "</svg>\n";
+  return svg.str();
+}
+
+TEST(CliVector, TheCanvasIsAsLargeAsTheDrawingNeeds) {
+  const TemporaryFile file("map.svg", mapOf(600, 2048));
+  const json drawn = gpgpJson({"vector", file.path(), "--aa", "4"});
+  EXPECT_EQ(drawn["paths"], 600);
+  EXPECT_EQ(drawn["paths_dropped"], 0);
+  EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
+  EXPECT_GT(drawn["tile_words"], 131072) << "more than a canvas has by default";
+  EXPECT_GT(drawn["tile_entries"], 131072) << "more than a canvas has by default";
+  EXPECT_GE(drawn["tile_words_given"], drawn["tile_words"]);
+  EXPECT_GE(drawn["tile_entries_given"], drawn["tile_entries"]);
+  // What was said is kept to.
+  const ProcessResult few = gpgp({"vector", file.path(), "--aa", "4", "--max-tile-entries", "131072", "--json"});
+  EXPECT_EQ(few.exitCode, 1);
+  EXPECT_GT(json::parse(few.out)["paths_dropped"], 0);
 }
 
 TEST(CliVector, CountsPatchesByTile) {

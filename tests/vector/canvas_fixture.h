@@ -36,13 +36,13 @@ struct CanvasTest : DeviceTest {
   std::vector<GpgpCanvasImage> images;
   GpgpCanvasTargets canvasTargets = GPGP_CANVAS_TARGET_RGBA16F; ///< of the canvases that are made
 
-  void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t patches = 0,
+  void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t paths = 0,
                   const GpgpTargetInfo* target = nullptr) {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
     info.maxWidth = info.maxHeight = size;
     info.maxTileEntries = entries;
-    info.maxPatches = patches ? patches : 65536;
+    info.maxPaths = paths ? paths : 65536;
     info.targets = canvasTargets;
     canvas = worker(gpgpCreateCanvas, info, target);
   }

@@ -352,18 +352,17 @@ TEST_F(CanvasTest, ExceededBudgetsLeaveOutWholePathsAndSayHowMany) {
   const auto expected = raster({place(few)}, 128, 128, 4);
   for (size_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(pixels[i].a, expected[i].a) << i;
 
-  makeCanvas(128, 0, whole.patches / 2); // too few patches
-  GpgpCanvasReport patches = GPGP_CANVAS_REPORT_INIT;
-  raster({place(all)}, 128, 128, 4, &patches);
-  EXPECT_EQ(patches.base.status, GPGP_BUDGET_EXCEEDED);
-  EXPECT_EQ(patches.patches, whole.patches);
-  EXPECT_EQ(patches.patchesGiven, whole.patches / 2);
-  EXPECT_GT(patches.pathsDropped, 0u);
-  EXPECT_LT(patches.pathsDropped, 20u);
+  makeCanvas(128, 0, 10); // too few paths
+  GpgpCanvasReport paths = GPGP_CANVAS_REPORT_INIT;
+  raster({place(all)}, 128, 128, 4, &paths);
+  EXPECT_EQ(paths.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(paths.paths, 20u);
+  EXPECT_EQ(paths.pathsGiven, 10u);
+  EXPECT_EQ(paths.pathsDropped, 10u);
 }
 
-// What a report says is needed is what suffices, and a patch less does not.
-TEST_F(CanvasTest, ReportsSayHowManyPatchesAreNeeded) {
+// What a report says is needed is what suffices, and a path less does not.
+TEST_F(CanvasTest, ReportsSayHowManyPathsAreNeeded) {
   std::vector<TestPath> shapes;
   for (uint32_t i = 0; i < 6; ++i) shapes.push_back(randomShape(i, 60));
   shapes.push_back(TestPath().move(1, 1).close()); // a path without patches
@@ -373,28 +372,46 @@ TEST_F(CanvasTest, ReportsSayHowManyPatchesAreNeeded) {
   TestList list(context);
   for (int i = 0; i < 4; ++i) list.add(rectangle(0, 0, 8, 8));
   list.clip({0, 0, 40, 40}, {9, 9, 9, 9}).add(rectangle(0, 0, 50, 50)).pop();
-  GpgpDrawingInfo info = GPGP_DRAWING_INFO_INIT;
-  ASSERT_EQ(gpgpGetDrawingInfo(drawing, &info), GPGP_SUCCESS);
   const struct {
     std::vector<GpgpCanvasItem> items;
     uint32_t needed;
     std::vector<uint32_t> given;
-  } cases[] = {{{place(drawing), list.item(), place(drawing), list.item()},
-                2 * info.patches + 12,
-                {info.patches + 3, 2 * info.patches + 11, 2 * info.patches + 12}},
-               {{place(empty), list.item()}, 906, {905, 906}}}; // and room for as many paths
+  } cases[] = {{{place(drawing), list.item(), place(drawing), list.item()}, 26, {10, 25, 26}},
+               {{place(empty), list.item()}, 906, {905, 906}}};
   for (const auto& c : cases) {
     const std::string which = "case " + std::to_string(&c - cases);
     for (const uint32_t given : c.given) {
       makeCanvas(64, 0, given);
       GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
       raster(c.items, 64, 64, 4, &report);
-      EXPECT_EQ(report.patches, c.needed) << which << ", given " << given;
-      EXPECT_EQ(report.patchesGiven, given) << which;
+      EXPECT_EQ(report.paths, c.needed) << which << ", given " << given;
+      EXPECT_EQ(report.pathsGiven, given) << which;
       EXPECT_EQ(report.base.status, given < c.needed ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS) << which;
       EXPECT_EQ(report.pathsDropped > 0, given < c.needed) << which;
     }
   }
+}
+
+// The canvas holds paths, not their patches: one of thousands is one.
+TEST_F(CanvasTest, APathIsOneHoweverManyPatchesItHas) {
+  TestPath zigzag;
+  for (int i = 0; i < 2000; ++i) {
+    const float x = static_cast<float>(i % 50) * 2.5f, y = static_cast<float>(i / 50) * 3;
+    zigzag.move(x, y).line(x + 2, y + 1).line(x, y + 2.5f).close();
+  }
+  const GpgpAsset drawing = makeDrawing({zigzag.view()});
+  GpgpDrawingInfo info = GPGP_DRAWING_INFO_INIT;
+  ASSERT_EQ(gpgpGetDrawingInfo(drawing, &info), GPGP_SUCCESS);
+  ASSERT_GE(info.patches, 2000u);
+  makeCanvas(128);
+  const auto expected = raster({place(drawing)}, 128, 128, 4);
+  makeCanvas(128, 0, 1);
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto pixels = raster({place(drawing)}, 128, 128, 4, &report);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(report.paths, 1u);
+  EXPECT_EQ(report.pathsDropped, 0u);
+  for (size_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(pixels[i].a, expected[i].a) << i;
 }
 
 TEST_F(CanvasTest, HardwareHasPassesThatSoftwareDevicesHaveNot) {
@@ -416,12 +433,32 @@ TEST_F(CanvasTest, TooFewTileWordsLeaveOutTheLastPaths) {
     s.color = {1, 1, 1, 1.0f / 1024};
     views.push_back(s.view());
   }
+  const GpgpAsset drawing = makeDrawing(views);
   GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
-  const auto pixels = raster({place(makeDrawing(views))}, 512, 512, 4, &report);
+  const auto pixels = raster({place(drawing)}, 512, 512, 4, &report);
   EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
   EXPECT_EQ(report.pathsDropped, 188u);
-  EXPECT_EQ(report.tileEntries, 700u * 128);
+  EXPECT_EQ(report.tileWords, 700u * 128);
+  EXPECT_EQ(report.tileWordsGiven, 65536u);
+  EXPECT_LE(report.tileEntries, report.tileEntriesGiven);
   EXPECT_EQ(report.tileEntriesGiven, 65536u);
+  // Words are a budget of their own, and as many as are needed suffice.
+  const GpgpWorker few = canvas;
+  for (const uint32_t words : {report.tileWords - 1, report.tileWords}) {
+    GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+    info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+    info.maxWidth = info.maxHeight = 512;
+    info.maxTileEntries = 65536;
+    info.maxTileWords = words;
+    info.targets = canvasTargets;
+    canvas = worker(gpgpCreateCanvas, info);
+    GpgpCanvasReport again = GPGP_CANVAS_REPORT_INIT;
+    raster({place(drawing)}, 512, 512, 4, &again);
+    EXPECT_EQ(again.pathsDropped, report.tileWords - words);
+    EXPECT_EQ(again.tileWords, report.tileWords);
+    EXPECT_EQ(again.tileWordsGiven, words);
+  }
+  canvas = few;
   const float expected = 1 - std::pow(1 - 1.0f / 1024, 512.0f);
   for (const Rgba& p : pixels) ASSERT_NEAR(p.a, expected, 0.002f);
 }
@@ -996,8 +1033,7 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
   };
   const double db = psnr(pixels);
   RecordProperty("psnr_centibel", static_cast<int>(db * 10));
-  std::printf("%s: %.1f dB, %zu paths, %u patches, %u entries\n", GetParam(), db, views.paths.size(), report.patches,
-              report.tileEntries);
+  std::printf("%s: %.1f dB, %zu paths, %u entries\n", GetParam(), db, views.paths.size(), report.tileEntries);
   EXPECT_GE(db, 38.0);
   exactArea = true;
   const double areaDb = psnr(raster({item}, size, size, 16));

@@ -642,8 +642,8 @@ TEST_F(GlyphTest, CanvasBudgetsLeaveOutWholeGlyphs) {
     const auto pixels = raster({text(set, glyphs)}, 128, 128, 4, &report);
     EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED) << what;
     EXPECT_EQ(report.glyphs, 30u) << what;
-    EXPECT_EQ(report.patches, whole.patches) << what;
-    EXPECT_EQ(report.patchesGiven, info.maxPatches ? info.maxPatches : 262144u) << what;
+    EXPECT_EQ(report.paths, whole.paths) << what;
+    EXPECT_EQ(report.pathsGiven, info.maxPaths ? info.maxPaths : 262144u) << what;
     EXPECT_GT(report.pathsDropped, 0u) << what;
     EXPECT_LT(report.pathsDropped, 60u) << what;
     ASSERT_EQ(report.pathsDropped % 2, 0u) << what;
@@ -661,21 +661,21 @@ TEST_F(GlyphTest, CanvasBudgetsLeaveOutWholeGlyphs) {
     check("maxTileEntries");
   }
   info.maxTileEntries = 0;
-  info.maxPatches = whole.patches / 2 + 1;
+  info.maxPaths = whole.paths / 2 + 1;
   make();
-  check("maxPatches");
-  info.maxPatches = whole.patches;
+  check("maxPaths");
+  info.maxPaths = whole.paths;
   make();
   GpgpCanvasReport fits = GPGP_CANVAS_REPORT_INIT;
   raster({text(set, glyphs)}, 128, 128, 4, &fits);
   EXPECT_EQ(fits.base.status, GPGP_SUCCESS);
-  info.maxPatches = 1; // nothing fits, which is reported as well
+  info.maxPaths = 1; // nothing fits, which is reported as well
   make();
   GpgpCanvasReport none = GPGP_CANVAS_REPORT_INIT;
   raster({text(set, glyphs)}, 128, 128, 4, &none);
   EXPECT_EQ(none.base.status, GPGP_BUDGET_EXCEEDED);
   EXPECT_EQ(none.pathsDropped, 60u);
-  EXPECT_EQ(none.patches, whole.patches);
+  EXPECT_EQ(none.paths, whole.paths);
   EXPECT_EQ(none.glyphs, 30u);
 }
 

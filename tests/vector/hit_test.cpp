@@ -194,7 +194,7 @@ TEST_F(CanvasTest, ListsBeyondBudgetsLeaveOutTheLastAndSayHowMany) {
   GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
   info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
   info.maxWidth = info.maxHeight = 64;
-  info.maxPatches = 4096;
+  info.maxPaths = 4096;
   info.maxShapes = 5;
   info.maxDrawings = 3;
   info.targets = canvasTargets;

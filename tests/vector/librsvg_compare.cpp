@@ -69,7 +69,7 @@ public:
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = session_.workerInfo("comparison");
     info.maxWidth = info.maxHeight = size;
-    info.maxPatches = 1 << 20;
+    info.maxPaths = 1 << 20;
     info.maxTileEntries = 1 << 18;
     canvas_ = session_.take(Canvas::create(session_.context(), info), "gpgpCreateCanvas");
     session_.check(canvas_.prewarm(), "gpgpPrewarm");

@@ -53,7 +53,7 @@ struct TwinTest : CanvasTest {
     info.maxWidth = kWidth;
     info.maxHeight = kHeight;
     info.maxTileEntries = kEntries;
-    info.maxPatches = kPatches;
+    info.maxPaths = kPatches;
     info.maxDrawings = kItems;
     info.maxGlyphs = kGlyphs;
     info.maxShapes = kShapes;

@@ -35,7 +35,7 @@ GPGP_UNITY_API int32_t GPGP_UNITY_CALL gpgpUnityGetEventId(void);
 /** What a frame may take, for all canvases together; 0: as it is (2048 x 2048 pixels a canvas, and
  * GpgpCanvasCreateInfo's own). Makes pipelines: while a level loads, not in a frame. */
 typedef struct GpgpUnityBudgets {
-  uint32_t maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs;
+  uint32_t maxWidth, maxHeight, maxTileEntries, maxPaths, maxGlyphs;
   uint32_t maxItems;  /* drawings and texts; a text with emoji that are pictures counts twice */
   uint32_t maxShapes; /* emoji that are pictures, at each place that they are shown at */
 } GpgpUnityBudgets;

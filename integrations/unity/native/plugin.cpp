@@ -164,7 +164,7 @@ GpgpResult Plugin::makeCanvas() {
   info.maxWidth = budgets_.maxWidth;
   info.maxHeight = budgets_.maxHeight;
   info.maxTileEntries = budgets_.maxTileEntries;
-  info.maxPatches = budgets_.maxPatches;
+  info.maxPaths = budgets_.maxPaths;
   info.maxGlyphs = budgets_.maxGlyphs;
   info.maxDrawings = budgets_.maxItems;
   info.maxShapes = budgets_.maxShapes;

@@ -52,6 +52,8 @@ bool Plugin::advance(Surface& surface, const UnityVulkanRecordingState& state) {
         return std::string(name) + ' ' + std::to_string(needs) + " (it has " + std::to_string(has) + ')';
       };
       say("a canvas needs " + needed("maxTileEntries", report->tileEntries, report->tileEntriesGiven) + ", " +
+          needed("maxPaths", report->paths, report->pathsGiven) + ", " +
+          needed("maxTileWords", report->tileWords, report->tileWordsGiven) + ", " +
           needed("maxGlyphs", report->glyphs, report->glyphsGiven) + ", " +
           needed("maxItems", report->items, report->itemsGiven) + ", " +
           needed("maxShapes", report->shapes, report->shapesGiven) + ": gpgpUnitySetBudgets");

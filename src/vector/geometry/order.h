@@ -30,6 +30,13 @@ inline void sortKeys(std::pmr::vector<uint64_t>& keys) {
   }
 }
 
+/// Heights as integers in the same order.
+inline uint32_t heightBits(float height) {
+  const uint32_t bits = std::bit_cast<uint32_t>(height + 0.0f); // no -0
+  return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+inline float heightOf(uint32_t bits) { return std::bit_cast<float>(bits >> 31 ? bits & 0x7fffffffu : ~bits); }
+
 /// The numbers below `count` by height(i), a finite float, then as they are.
 template <class Height>
 std::pmr::vector<uint32_t> orderBy(uint32_t count, std::pmr::memory_resource* memory, Height&& height) {
@@ -44,10 +51,7 @@ std::pmr::vector<uint32_t> orderBy(uint32_t count, std::pmr::memory_resource* me
     return order;
   }
   std::pmr::vector<uint64_t> keys(count, 0, memory);
-  for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t bits = std::bit_cast<uint32_t>(height(i) + 0.0f); // no -0
-    keys[i] = uint64_t(bits >> 31 ? ~bits : bits | 0x80000000u) << 32 | i;
-  }
+  for (uint32_t i = 0; i < count; ++i) keys[i] = uint64_t(heightBits(height(i))) << 32 | i;
   sortKeys(keys);
   for (uint32_t i = 0; i < count; ++i) order[i] = static_cast<uint32_t>(keys[i]);
   return order;

@@ -57,14 +57,14 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
   if (auto ok = outline(path, pieces); !ok) return ok;
   mergeCoincident(pieces);
   std::pmr::vector<Cut> cuts(memory);
-  if (auto ok = findCrossings(pieces, cuts); !ok) {
-    if (!tooMany) return ok;
-    *tooMany = ok.error();
-    pieces.clear();
-    cuts.clear();
-  }
   std::pmr::vector<Slab> slabs(memory);
-  sweep(pieces, cuts, path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule, slabs);
+  auto swept = findCrossings(pieces, cuts);
+  if (swept) swept = sweep(pieces, cuts, path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule, slabs);
+  if (!swept) {
+    if (!tooMany) return swept;
+    *tooMany = swept.error();
+    slabs.clear();
+  }
   if (slabs.size() + drawing.patches.size() > shader::kEntryPatch) return tooManyPatches();
   // Neighbours in the list share boxes at the raster's upper level, so keep the order of the sweep.
   const auto order = orderBy(

@@ -5,10 +5,12 @@
 // where tangents and chords bound them. The work per pair is bounded, so coincident curves cannot stall it: what is
 // undecided then differs by less than float distance anyway.
 #include "vector/patch/drawing.h"
+#include "vector/patch/inversions.h"
 #include "vector/patch/strips.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace gpgp::vector {
 namespace {
@@ -41,27 +43,55 @@ class PairSearch {
 public:
   PairSearch(const Monotone& a, const Monotone& b) : a_(a), b_(b) {}
 
-  /// Calls found(y) for each change of sides between y0 and y1, rows of both.
-  template <class Found> void run(double y0, double y1, Found&& found) {
+  struct Row {
+    double y;
+    Monotone::Place a, b;
+    double gap() const { return b.x - a.x; }
+    bool left() const { return gap() >= 0; } // meeting counts as being left, so that a meeting is found once
+  };
+  Row row(double y) {
+    ++rows_;
+    const auto [a, b] = placesAt(a_, y, b_, y);
+    return {y, a, b};
+  }
+  /// Where places are known they are taken.
+  Row row(double y, const Monotone::Place* a, const Monotone::Place* b) {
+    if (!a && !b) return row(y);
+    rows_ += !a || !b;
+    return {y, a ? *a : a_.placeAt(y), b ? *b : b_.placeAt(y)};
+  }
+  size_t rows() const { return rows_; } ///< evaluated
+
+  /// Whether boxes alone say that there is no change.
+  static bool apart(const Row& from, const Row& to) {
+    const double aMin = std::min(from.a.x, to.a.x), aMax = std::max(from.a.x, to.a.x),
+                 bMin = std::min(from.b.x, to.b.x), bMax = std::max(from.b.x, to.b.x);
+    if (aMax < bMin || bMax < aMin) return true;
+    return (aMax == bMin || bMax == aMin) && from.left() == to.left();
+  }
+
+  /// Calls found(y) for each change of sides between two rows of both. `bends`: whether one may have an inflection in
+  /// between.
+  template <class Found> void run(Row from, const Row& last, bool bends, Found&& found) {
+    const double y0 = from.y, y1 = last.y;
     if (a_.curve.line && b_.curve.line) {
-      const double d0 = b_.xAt(y0) - a_.xAt(y0), d1 = b_.xAt(y1) - a_.xAt(y1);
+      const double d0 = from.gap(), d1 = last.gap();
       if ((d0 >= 0) != (d1 >= 0)) found(y0 + (y1 - y0) * (d0 / (d0 - d1)));
       return;
     }
-    Row from = row(y0);
-    const Row last = row(y1);
     if (apart(from, last)) return;
     double turns[5];
     int count = 0;
-    for (const Monotone* piece : {&a_, &b_}) {
-      double heights[2];
-      for (int i = piece->inflections(heights); i-- > 0;) {
-        if (!(heights[i] > y0 && heights[i] < y1)) continue;
-        int at = count++;
-        for (; at > 0 && turns[at - 1] > heights[i]; --at) turns[at] = turns[at - 1];
-        turns[at] = heights[i];
+    if (bends)
+      for (const Monotone* piece : {&a_, &b_}) {
+        double heights[2];
+        for (int i = piece->inflections(heights); i-- > 0;) {
+          if (!(heights[i] > y0 && heights[i] < y1)) continue;
+          int at = count++;
+          for (; at > 0 && turns[at - 1] > heights[i]; --at) turns[at] = turns[at - 1];
+          turns[at] = heights[i];
+        }
       }
-    }
     turns[count++] = y1;
     int left = kHalvings;
     for (int i = 0; i < count; ++i) {
@@ -73,24 +103,6 @@ public:
   }
 
 private:
-  struct Row {
-    double y;
-    Monotone::Place a, b;
-    double gap() const { return b.x - a.x; }
-    bool left() const { return gap() >= 0; } // meeting counts as being left, so that a meeting is found once
-  };
-  Row row(double y) const {
-    const auto [a, b] = placesAt(a_, y, b_, y);
-    return {y, a, b};
-  }
-  /// Whether boxes alone say that there is no change.
-  static bool apart(const Row& from, const Row& to) {
-    const double aMin = std::min(from.a.x, to.a.x), aMax = std::max(from.a.x, to.a.x),
-                 bMin = std::min(from.b.x, to.b.x), bMax = std::max(from.b.x, to.b.x);
-    if (aMax < bMin || bMax < aMin) return true;
-    return (aMax == bMin || bMax == aMin) && from.left() == to.left();
-  }
-
   /// Halves as often as `left` says, and returns what is left of that. Each half gets a half of it, so that rows in
   /// which pieces run close beside each other, such as those from a common end, leave enough for the others.
   template <class Found> int part(const Row& from, const Row& to, Found& found, int left) {
@@ -129,8 +141,8 @@ private:
     return out < std::min(r0.x - l0.x, r1.x - l1.x) || (out == 0 && (r0.x > l0.x || r1.x > l1.x));
   }
 
-  double cross(const Row& from, const Row& to, double fine) const {
-    double low = from.y, high = to.y, y = low + (high - low) * (from.gap() / (from.gap() - to.gap()));
+  double cross(const Row& from, const Row& to, double fine) {
+    double low = from.y, high = to.y, y = low + (high - low) * guess(from, to);
     const bool rises = to.gap() > from.gap();
     for (int i = 0; i < 60 && high - low > fine; ++i) {
       if (!(y > low && y < high)) y = 0.5 * (low + high);
@@ -143,9 +155,43 @@ private:
     return std::clamp(y, low, high);
   }
 
+  /// About where the gap is nothing, as a share of the rows: of a line, and where slopes are near the line's, of the
+  /// cubic with the same slopes at the ends.
+  static double guess(const Row& from, const Row& to) {
+    const double height = to.y - from.y, g0 = from.gap(), all = to.gap() - g0;
+    const double m0 = (from.b.slope - from.a.slope) * height / all, m1 = (to.b.slope - to.a.slope) * height / all;
+    const double line = -g0 / all;
+    if (!(m0 > 0.5 && m0 < 2 && m1 > 0.5 && m1 < 2)) return line;
+    const double c2 = 3 - 2 * m0 - m1, c3 = m0 + m1 - 2; // of (gap - g0) / all, which grows from 0 to 1
+    double t = line;
+    for (int i = 0; i < 2; ++i) t -= (((c3 * t + c2) * t + m0) * t - line) / ((3 * c3 * t + 2 * c2) * t + m0);
+    return t;
+  }
+
   static constexpr int kHalvings = 200;
   const Monotone &a_, &b_;
+  size_t rows_ = 0;
 };
+
+/// By piece, then by height, each height of a piece once.
+void sortCuts(uint32_t pieces, std::pmr::vector<Cut>& cuts) {
+  if (cuts.empty()) return;
+  std::pmr::vector<uint32_t> ends(pieces, 0, cuts.get_allocator().resource());
+  for (const Cut& cut : cuts) ++ends[cut.piece];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::pmr::vector<Cut> sorted(cuts.size(), Cut{}, cuts.get_allocator());
+  for (size_t i = cuts.size(); i-- > 0;) sorted[--ends[cuts[i].piece]] = cuts[i]; // now where each begins
+  const auto at = [&](uint32_t i) {
+    return sorted.begin() + static_cast<ptrdiff_t>(i < pieces ? ends[i] : cuts.size());
+  };
+  auto last = sorted.begin();
+  for (uint32_t i = 0; i < pieces; ++i) {
+    std::sort(at(i), at(i + 1), [](const Cut& l, const Cut& r) { return l.y < r.y; });
+    last = std::unique_copy(at(i), at(i + 1), last, [](const Cut& l, const Cut& r) { return l.y == r.y; });
+  }
+  sorted.erase(last, sorted.end());
+  cuts.swap(sorted);
+}
 
 } // namespace
 
@@ -191,27 +237,46 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
   std::frexp(std::max({std::abs(top), std::abs(bottom), 1e-30}), &exponent);
   const double grid = std::ldexp(1.0, exponent - 24);
 
-  size_t crossings = 0, compared = 0;
-  /// False where that has become too much.
-  const auto compare = [&](uint32_t l, uint32_t r, double from, double to) {
-    // The same way round in every band: a meeting exactly on a band's border counts for one of the two.
-    if (l > r) std::swap(l, r);
-    const Monotone &lp = pieces[l], &rp = pieces[r];
-    if (++compared > kMaxCompared) return false;
-    if (sideByHull(lp, rp) != 0) return true;
-    PairSearch(lp, rp).run(from, to, [&](double y) {
+  size_t crossings = 0, work = 0;
+  /// False where that has become too much. The same way round in every band: a meeting exactly on a band's border
+  /// counts for one of the two.
+  const auto search = [&](PairSearch& pair, uint32_t l, uint32_t r, const PairSearch::Row& from,
+                          const PairSearch::Row& to, bool bends) {
+    pair.run(from, to, bends, [&](double y) {
       const float cut = static_cast<float>(std::round(y / grid) * grid);
       ++crossings;
       for (const uint32_t piece : {l, r})
         if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back({piece, cut});
     });
-    return crossings <= kMaxCrossings;
+    work += kWorkOfRow * pair.rows();
+    return crossings <= kMaxCrossings && work <= kMaxWork + kWorkOfPiece * pieces.size() + kWorkOfCrossing * crossings;
+  };
+  const auto compare = [&](uint32_t l, uint32_t r, double from, double to) {
+    if (l > r) std::swap(l, r);
+    ++work;
+    if (sideByHull(pieces[l], pieces[r]) != 0) return true;
+    PairSearch pair(pieces[l], pieces[r]);
+    const PairSearch::Row above = pair.row(from);
+    return search(pair, l, r, above, pair.row(to), true);
+  };
+  const auto compareParts = [&](const StripPart& a, const StripPart& b) {
+    const StripPart &l = a.piece < b.piece ? a : b, &r = a.piece < b.piece ? b : a;
+    ++work;
+    PairSearch pair(pieces[l.piece], pieces[r.piece]);
+    const double from = std::max(l.from, r.from), to = std::min(l.to, r.to);
+    const PairSearch::Row above =
+                              pair.row(from, l.from == from ? &l.first : nullptr, r.from == from ? &r.first : nullptr),
+                          below = pair.row(to, l.to == to ? &l.last : nullptr, r.to == to ? &r.last : nullptr);
+    // Pieces that change sides overlap; only where they do not, or just meet, there is something to save.
+    if ((above.left() == below.left() || above.gap() == 0 || below.gap() == 0) &&
+        (PairSearch::apart(above, below) || sideByHull(pieces[l.piece], pieces[r.piece]) != 0))
+      return true;
+    return search(pair, l.piece, r.piece, above, below, l.bends || r.bends);
   };
   const auto tooMuch = [&] {
     return crossings > kMaxCrossings
                ? core::makeError(GPGP_ERROR_UNSUPPORTED, "the path crosses itself more than %zu times", kMaxCrossings)
-               : core::makeError(GPGP_ERROR_UNSUPPORTED, "more than %zu pairs of the path's curves run close together",
-                                 kMaxCompared);
+               : core::makeError(GPGP_ERROR_UNSUPPORTED, "too many of the path's curves run close together");
   };
 
   std::pmr::vector<BandEntry> entries(memory);
@@ -235,9 +300,13 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
       return l.xMin != r.xMin ? l.xMin < r.xMin : l.piece < r.piece;
     });
     if (crowded(entries)) {
+      // What has too many is refused before they are looked for: a few strips tell most, more those in doubt.
+      crossings = leastCrossings(pieces, top, bottom, 32, kMaxCrossings, memory);
+      if (crossings > kMaxCrossings / 2) crossings = leastCrossings(pieces, top, bottom, 256, kMaxCrossings, memory);
+      if (crossings > kMaxCrossings) return tooMuch();
       cuts.clear();
-      crossings = compared = 0;
-      if (!Strips(pieces, memory, compare).run(top, bottom)) return tooMuch();
+      crossings = work = 0;
+      if (!Strips(pieces, memory, compareParts).run(top, bottom)) return tooMuch();
       break;
     }
     for (size_t i = 0; i < entries.size(); ++i) {
@@ -254,11 +323,7 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
       }
     }
   }
-  std::sort(cuts.begin(), cuts.end(),
-            [](const Cut& l, const Cut& r) { return l.piece != r.piece ? l.piece < r.piece : l.y < r.y; });
-  cuts.erase(std::unique(cuts.begin(), cuts.end(),
-                         [](const Cut& l, const Cut& r) { return l.piece == r.piece && l.y == r.y; }),
-             cuts.end());
+  sortCuts(static_cast<uint32_t>(pieces.size()), cuts);
   return {};
 }
 

@@ -30,12 +30,12 @@ uint32_t targetOf(const GpgpCanvasInfo& info) {
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Worker(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
-      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072), maxWords_(std::max(maxEntries_, 65536u)),
+      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072),
+      maxWords_(info.maxTileWords ? info.maxTileWords : std::max(maxEntries_, 65536u)),
       targets_(info.targets ? info.targets : ~GpgpCanvasTargets(0)), budgets_{info.maxDrawings ? info.maxDrawings : 64,
                                                                               info.maxGlyphs ? info.maxGlyphs : 1024,
                                                                               info.maxShapes ? info.maxShapes : 1024,
-                                                                              info.maxPatches ? info.maxPatches
-                                                                                              : 262144},
+                                                                              info.maxPaths ? info.maxPaths : 262144},
       software_(owner.device.software), assets_(budgets_.items, &owner.host()), tables_(budgets_, &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
@@ -290,14 +290,13 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   if (raw.header.status == GPGP_SUCCESS) std::memcpy(&counters, raw.words.data(), sizeof counters);
   report.base = raw.header;
   const bool executed = raw.header.status == GPGP_SUCCESS;
-  report.patches = counters.patches;
-  report.patchesGiven = executed ? budgets_.patches : 0;
-  // Room for tile words is by maxTileEntries as well; entries were counted behind that.
+  report.paths = counters.paths;
+  report.pathsGiven = executed ? budgets_.paths : 0;
+  report.tileWords = counters.words;
+  report.tileWordsGiven = counters.wordsGiven;
   // Where the others do not fit, small glyphs count as what was put aside for them.
   const uint32_t aside = executed ? maxEntries_ - counters.entriesGiven : 0;
-  report.tileEntries =
-      std::max(counters.entries + (counters.entries > counters.entriesGiven ? aside : counters.stamped),
-               counters.words > counters.wordsGiven ? counters.words : 0);
+  report.tileEntries = counters.entries + (counters.entries > counters.entriesGiven ? aside : counters.stamped);
   report.tileEntriesGiven = executed ? maxEntries_ : 0;
   report.pathsDropped = counters.pathsDropped;
   report.glyphs = counters.glyphs;

@@ -146,11 +146,11 @@ uint32_t Canvas::listWords() const { // 31 paths a tile, fewer where that would 
 uint64_t Canvas::binWords() const { // enough for any record with the largest bins, or for most with the smallest
   constexpr uint32_t kLargest = shader::kTileSize << shader::kMaxBinShift;
   const uint64_t least = uint64_t(divide(maxWidth_, kLargest)) * divide(maxHeight_, kLargest) *
-                         (divide(budgets_.patches, 32) + shader::kBinHead);
+                         (divide(budgets_.paths, 32) + shader::kBinHead);
   return software_ ? least : std::max(least, std::min<uint64_t>(least * 6, 16 << 20));
 }
 // Paths in the lists of all bins: most paths are in one or two.
-uint32_t Canvas::binLists() const { return software_ ? 0 : 2 * budgets_.patches + 65536; }
+uint32_t Canvas::binLists() const { return software_ ? 0 : 2 * budgets_.paths + 65536; }
 
 uint64_t Canvas::binsEnd() const {
   const uint64_t lists = tiles() * (software_ ? listWords() + 3 : 2) + binLists();
@@ -178,7 +178,7 @@ core::PassList Canvas::describe() const {
   const auto fromHost =
       list.add({"constants", core::ResourceKind::constants,
                 heads + budgets_.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
-  const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.patches) * sizeof(shader::PlacedPath)});
+  const auto paths = list.add({"paths", scratch, VkDeviceSize(budgets_.paths) * sizeof(shader::PlacedPath)});
   const auto words = list.add({"tile words", scratch, VkDeviceSize(maxWords_) * sizeof(shader::TileWord)});
   const auto masks = list.add({"bins", scratch, binsEnd() * 4});
   const auto entries = list.add({"entries", scratch, VkDeviceSize(maxEntries_) * shader::kEntryWords * 4});

@@ -32,12 +32,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   asset->curves_ = static_cast<uint32_t>(drawing.curves.size());
   Outlines outlines = base ? editOutlines(drawing, base->kept_->outlines, edits, &context.host())
                            : makeOutlines(drawing, &context.host());
-  asset->ends_.assign(drawing.paths.size(), Ends{});
-  for (const PatchRecord& patch : drawing.patches) ++asset->ends_[patch.path].patches;
-  for (size_t i = 0; i < asset->ends_.size(); ++i) {
-    if (i) asset->ends_[i].patches += asset->ends_[i - 1].patches;
-    asset->ends_[i].segments = outlines.ends[i];
-  }
+  asset->patches_ = static_cast<uint32_t>(drawing.patches.size());
+  asset->ends_.assign(outlines.ends.begin(), outlines.ends.end());
   for (const PaintRecord& paint : drawing.paints)
     if (paint.kind == shader::kPaintImage) asset->images_ = std::max(asset->images_, paint.firstStop + 1);
   for (const LayerRecord& layer : drawing.layers) asset->layerDepth_ = std::max(asset->layerDepth_, layer.depth);

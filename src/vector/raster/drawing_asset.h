@@ -36,14 +36,11 @@ public:
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), ends_(&owner.host()) {}
 
-  /// How many patches and segments the first n paths have: what decides how many paths fit a budget.
-  struct Ends {
-    uint32_t patches, segments;
-  };
-  Ends first(size_t paths) const { return paths ? ends_[paths - 1] : Ends{}; }
+  /// How many segments the first n paths have.
+  uint32_t segments(size_t paths) const { return paths ? ends_[paths - 1] : 0; }
   uint32_t paths() const { return static_cast<uint32_t>(ends_.size()); }
   uint32_t curves() const { return curves_; }
-  uint32_t patches() const { return first(paths()).patches; }
+  uint32_t patches() const { return patches_; }
   uint32_t pathTable() const { return pathTable_; } ///< where BoxedPaths begin, in vec4
   const shader::SlotRecord& tables() const { return tables_; }
   bool groups() const { return tables_.layers > tables_.clips || layerDepth_; } ///< that clip or fade
@@ -61,15 +58,15 @@ public:
   const float* viewport() const { return viewport_; }
 
 private:
-  std::pmr::vector<Ends> ends_; // by path, running
-  std::optional<Kept> kept_;    // where it is editable
+  std::pmr::vector<uint32_t> ends_; // of segments, by path
+  std::optional<Kept> kept_;        // where it is editable
   struct Hit {
     Outlines outlines;
     std::pmr::vector<PathRecord> paths;
     std::pmr::vector<ClipRecord> clips;
   };
   std::optional<Hit> hit_; // where it is hit-testable, but not editable
-  uint32_t curves_ = 0, images_ = 0, pathTable_ = 0, layerDepth_ = 0;
+  uint32_t curves_ = 0, patches_ = 0, images_ = 0, pathTable_ = 0, layerDepth_ = 0;
   shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};
 };

@@ -83,18 +83,8 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
                  shader::kMaxLayerDepth);
   const uint32_t source = addSource(map, opacity, firstImage, clip);
   if (source == kNone && !full_) return {}; // covers nothing
-  const uint32_t room = budgets_.patches - static_cast<uint32_t>(used_.patches);
-  uint32_t paths = full_ ? 0 : std::min(drawing.paths(), budgets_.patches - used_.paths);
-  if (drawing.first(paths).patches > room) { // the largest number of first paths that fits
-    uint32_t low = 0, high = paths;
-    while (low + 1 < high) {
-      const uint32_t middle = low + (high - low) / 2;
-      (drawing.first(middle).patches <= room ? low : high) = middle;
-    }
-    paths = low;
-  }
+  const uint32_t paths = full_ ? 0 : std::min(drawing.paths(), budgets_.paths - used_.paths);
   pathsDropped_ += drawing.paths() - paths;
-  patchesDropped_ += drawing.first(drawing.paths()).patches - drawing.first(paths).patches;
   full_ = full_ || paths < drawing.paths();
   if (paths == 0) return {};
   const auto slot = bind(drawing);
@@ -105,17 +95,15 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   groups = groups || drawing.groups();
   placed_[used_.placements++] = {
       0, 0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, used_.segments, used_.paths, 0, drawing.pathTable()};
-  used_.segments += drawing.first(paths).segments;
+  used_.segments += drawing.segments(paths);
   used_.paths += paths;
-  used_.patches += drawing.first(paths).patches;
   return {};
 }
 
 /// Whether there is room. Its tables lie before all others.
 bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color) {
-  full_ = full_ || shapes == budgets_.shapes || used_.paths == budgets_.patches || used_.patches == budgets_.patches;
+  full_ = full_ || shapes == budgets_.shapes || used_.paths == budgets_.paths;
   ++shapesNeeded_;
-  patchesDropped_ += full_;
   if (full_) return false;
   tables_.shapes[shapes] = shape;
   placed_[used_.placements++] = {0,
@@ -130,7 +118,6 @@ bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const s
   ++shapes;
   used_.segments += shader::shapeSegments(shape);
   ++used_.paths;
-  ++used_.patches;
   return true;
 }
 
@@ -162,7 +149,6 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
   if (list.clips().size() > budgets_.items) {
     sourcesNeeded_ += static_cast<uint32_t>(list.clips().size());
     shapesNeeded_ += static_cast<uint32_t>(list.clips().size());
-    patchesDropped_ += list.clips().size();
     clipsDropped_ += static_cast<uint32_t>(list.clips().size());
     full_ = true;
     return {};
@@ -271,10 +257,8 @@ void Gather::finish(shader::CanvasHeader& header) {
   header.itemCount = used_.placements;
   header.segmentCount = used_.segments;
   header.pathCount = used_.paths;
-  // No more paths than patches fit.
-  const uint64_t needed =
-      std::max<uint64_t>(used_.patches + patchesDropped_, uint64_t(used_.paths) + pathsDropped_ + clipsDropped_);
-  header.patchCount = static_cast<uint32_t>(std::min<uint64_t>(needed, UINT32_MAX));
+  header.pathsNeeded =
+      static_cast<uint32_t>(std::min<uint64_t>(uint64_t(used_.paths) + pathsDropped_ + clipsDropped_, UINT32_MAX));
   header.pathsDropped = pathsDropped_;
   header.glyphs = used_.glyphs;
   header.glyphLimit = budgets_.glyphs;

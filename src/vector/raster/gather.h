@@ -19,7 +19,7 @@ struct ItemAsset {
 };
 
 struct ItemBudgets {
-  uint32_t items, glyphs, shapes, patches;
+  uint32_t items, glyphs, shapes, paths;
 };
 
 /// Room for what one record has, made once.
@@ -95,13 +95,11 @@ private:
   const GpgpCanvasInfo& info_;
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
   struct Used {
-    uint64_t patches = 0;
     uint32_t paths = 0, segments = 0, placements = 0, stamps = 0, stampEntries = 0;
     uint32_t glyphs = 0; ///< those without room, too
   } used_;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
   uint32_t shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
-  uint64_t patchesDropped_ = 0;
   uint32_t pathsDropped_ = 0, clipsDropped_ = 0;
   const uint32_t stampRoom_;
   bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below

@@ -58,7 +58,7 @@ struct Gather::Block {
   uint32_t tiles[kMost];                                  ///< see Stamping
   struct Sums {
     size_t glyphs = 0;
-    uint64_t paths = 0, patches = 0;
+    uint64_t paths = 0;
     bool gradients = false;
   } sums;
 
@@ -152,7 +152,6 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
       if (glyph->paths == 0 || hidden) continue;
       block.put(sums.glyphs++, from, *glyph);
       sums.paths += glyph->paths;
-      sums.patches += glyph->patches;
       sums.gradients |= glyph->gradients;
     }
     if (doubt.any())
@@ -171,18 +170,15 @@ void Gather::addBlock(const Block& block, uint32_t source) {
   Used used = used_; // a copy, which what is placed cannot be part of
   const Block::Sums& sums = block.sums;
   gradients = gradients || sums.gradients;
-  const bool roomy = !full_ && used.glyphs + sums.glyphs <= budgets_.glyphs &&
-                     used.paths + sums.paths <= budgets_.patches && used.patches + sums.patches <= budgets_.patches;
+  const bool roomy =
+      !full_ && used.glyphs + sums.glyphs <= budgets_.glyphs && used.paths + sums.paths <= budgets_.paths;
   for (size_t k = 0; k < sums.glyphs; ++k) {
     const GpgpGlyphInstance& from = *block.from[k];
     const GlyphSet::Glyph& glyph = *block.glyph[k];
-    if (!roomy && (used.glyphs >= budgets_.glyphs || glyph.paths > budgets_.patches - used.paths ||
-                   glyph.patches > budgets_.patches - used.patches))
-      full_ = true;
+    if (!roomy && (used.glyphs >= budgets_.glyphs || glyph.paths > budgets_.paths - used.paths)) full_ = true;
     ++used.glyphs;
     if (!roomy && full_) {
       pathsDropped_ += glyph.paths;
-      patchesDropped_ += glyph.patches;
       continue;
     }
     const uint32_t tiles = block.tiles[k];
@@ -204,7 +200,6 @@ void Gather::addBlock(const Block& block, uint32_t source) {
       used.segments += glyph.segments;
     }
     used.paths += glyph.paths;
-    used.patches += glyph.patches;
   }
   used_ = used;
 }

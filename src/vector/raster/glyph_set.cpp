@@ -17,25 +17,21 @@ constexpr uint32_t kDefaultGlyphs = 4096;
 constexpr VkDeviceSize kDefaultBytes = VkDeviceSize(8) << 20;
 constexpr uint32_t kGenerations = 1u << (32 - GlyphSet::kPlaceBits);
 
-/// The outlines of glyphs in a row, and how many segments, patches and vec4 of gradients there are up to the end of
+/// The outlines of glyphs in a row, and how many segments and vec4 of gradients there are up to the end of
 /// each path.
 struct Tables {
   Outlines outlines;
-  std::pmr::vector<uint32_t> patches;
   std::pmr::vector<uint64_t> gradients;
 
   Tables(const Drawing& drawing, std::pmr::memory_resource* memory)
-      : outlines(makeOutlines(drawing, memory)), patches(drawing.paths.size(), 0, memory),
-        gradients(drawing.paths.size(), 0, memory) {
-    for (const PatchRecord& patch : drawing.patches) ++patches[patch.path];
-    for (size_t i = 0; i < patches.size(); ++i) {
+      : outlines(makeOutlines(drawing, memory)), gradients(drawing.paths.size(), 0, memory) {
+    for (size_t i = 0; i < gradients.size(); ++i) {
       if (const uint32_t paint = drawing.paths[i].paint)
         gradients[i] = kPaintSize + uint64_t(drawing.paints[paint - 1].stopCount) * kStopSize;
-      if (i) patches[i] += patches[i - 1], gradients[i] += gradients[i - 1];
+      if (i) gradients[i] += gradients[i - 1];
     }
   }
   uint32_t segmentsBefore(size_t path) const { return path ? outlines.ends[path - 1] : 0; }
-  uint32_t patchesBefore(size_t path) const { return path ? patches[path - 1] : 0; }
   uint64_t gradientsOf(size_t path, uint32_t paths) const {
     return paths ? gradients[path + paths - 1] - (path ? gradients[path - 1] : 0) : 0;
   }
@@ -155,7 +151,6 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     const uint32_t firstSegment = tables.segmentsBefore(firstPath);
     glyph.segments = tables.segmentsBefore(path) - firstSegment;
     glyph.paths = entry.paths;
-    glyph.patches = tables.patchesBefore(path) - tables.patchesBefore(firstPath);
     glyph.living = true;
     glyph.gradients = tables.gradientsOf(firstPath, entry.paths) > 0;
     glyph.use(frame);

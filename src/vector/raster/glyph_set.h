@@ -16,7 +16,7 @@ class GlyphSet final : public core::Resident {
 public:
   struct Glyph {
     uint32_t first = 0, size = 0; ///< its block, in vec4
-    uint32_t segments = 0, paths = 0, patches = 0;
+    uint32_t segments = 0, paths = 0;
     shader::vec2 middle = {}; ///< of the path that it is
     shader::vec2 reach = {};  ///< from there to the sides of its box; infinite where it is not one path
     uint16_t generation = 0;  ///< of the glyph; of the next one where there is none

@@ -89,7 +89,7 @@ struct TextGpu : testing::Test {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
     info.maxWidth = info.maxHeight = size;
-    info.maxPatches = 1u << 20;
+    info.maxPaths = 1u << 20;
     info.maxTileEntries = 1u << 18;
     info.maxGlyphs = maxGlyphs;
     info.targets = GPGP_CANVAS_TARGET_RGBA8;

@@ -13,7 +13,7 @@ namespace Gpgp
         [StructLayout(LayoutKind.Sequential)]
         internal struct Budgets
         {
-            public uint maxWidth, maxHeight, maxTileEntries, maxPatches, maxGlyphs, maxItems, maxShapes;
+            public uint maxWidth, maxHeight, maxTileEntries, maxPaths, maxGlyphs, maxItems, maxShapes;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -90,7 +90,7 @@ namespace Gpgp
         }
 
         /// <summary>Larger canvases, or more on them. Makes pipelines: while a level loads. 0: the default.</summary>
-        public static void SetBudgets(uint maxWidth, uint maxHeight, uint maxTileEntries = 0, uint maxPatches = 0,
+        public static void SetBudgets(uint maxWidth, uint maxHeight, uint maxTileEntries = 0, uint maxPaths = 0,
                                       uint maxGlyphs = 0, uint maxItems = 0, uint maxShapes = 0)
         {
             var budgets = new Native.Budgets
@@ -98,7 +98,7 @@ namespace Gpgp
                 maxWidth = maxWidth,
                 maxHeight = maxHeight,
                 maxTileEntries = maxTileEntries,
-                maxPatches = maxPatches,
+                maxPaths = maxPaths,
                 maxGlyphs = maxGlyphs,
                 maxItems = maxItems,
                 maxShapes = maxShapes

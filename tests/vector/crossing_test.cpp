@@ -1,0 +1,312 @@
+// Paths that cross themselves often: what their patches are, that their cost grows with their crossings, and that those
+// with too many are refused before these are looked for.
+#include "oracle.h"
+#include "vector/curve.h"
+#include "vector/patch/drawing.h"
+#include "vector/patch/inversions.h"
+#include "vector/patch/status.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <random>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+
+std::pmr::memory_resource* heap() { return std::pmr::get_default_resource(); }
+
+constexpr float kSide = 1000; // of the page
+
+/// Curves or lines from one random point of the page to the next.
+TestPath random(int count, bool curves, uint32_t seed = 1, float origin = 0) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> coordinate(0, kSide);
+  const auto c = [&] { return origin + coordinate(random); };
+  TestPath path;
+  path.add(GPGP_PATH_MOVE, {c(), c()});
+  for (int i = 0; i < count; ++i) {
+    const std::array<float, 6> v{c(), c(), c(), c(), c(), c()};
+    if (curves)
+      path.cubic(v[0], v[1], v[2], v[3], v[4], v[5]);
+    else
+      path.line(v[0], v[1]);
+  }
+  return path;
+}
+
+/// As many bars across the page as down it: level edges pass all upright ones.
+TestPath bars(int count) {
+  TestPath path;
+  const float wide = kSide / static_cast<float>(count) * 0.25f;
+  for (int i = 0; i < count; ++i) {
+    const float at = kSide * static_cast<float>(i) / static_cast<float>(count);
+    path.move(at, 0).line(at + wide, 0).line(at + wide, kSide).line(at, kSide).close();
+    path.move(0, at).line(kSide, at).line(kSide, at + wide).line(0, at + wide).close();
+  }
+  return path;
+}
+
+/// Triangles that share a corner, all corners on a grid: dozens of edges meet in one point, others in several.
+TestPath fan(int count) {
+  std::mt19937 random(9);
+  const auto c = [&random] { return static_cast<float>(random() % 41) * 25; };
+  TestPath path;
+  for (int i = 0; i < count; ++i) {
+    const std::array<float, 4> v{c(), c(), c(), c()};
+    path.move(500, 500).line(v[0], v[1]).line(v[2], v[3]).close();
+    path.move(500 + v[0] / 2, 500 + v[1] / 2)
+        .line(500 - v[0] / 2, 500 - v[1] / 2)
+        .line(v[3], v[2])
+        .close(); // through it
+  }
+  return path;
+}
+
+/// The same curve again and again, each time a few roundings away.
+TestPath nearlyTheSame(int count) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> little(0, 1e-4f);
+  TestPath path;
+  for (int i = 0; i < count; ++i) {
+    path.move(100 + little(random), 0).cubic(700, 100 + little(random), -100, 600, 500, 1000 + little(random));
+    path.line(900 + little(random), 1000).line(900, 0).close();
+  }
+  return path;
+}
+
+/// Of this process, whoever else is running.
+double seconds(const std::function<void()>& work) {
+  const std::clock_t start = std::clock();
+  work();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+double convert(const TestPath& path, const GpgpStroke* stroke = nullptr) {
+  GpgpPath view = path.view();
+  view.stroke = stroke;
+  return seconds([&] { EXPECT_TRUE(vector::makeDrawing(std::span(&view, 1), heap())); });
+}
+
+/// How a path is refused, and how long that takes.
+double refuse(const TestPath& path, const char* text, const GpgpStroke* stroke = nullptr) {
+  GpgpPath view = path.view();
+  view.stroke = stroke;
+  return seconds([&] {
+    const auto drawing = vector::makeDrawing(std::span(&view, 1), heap());
+    ASSERT_FALSE(drawing);
+    EXPECT_EQ(drawing.error().code, GPGP_ERROR_UNSUPPORTED);
+    EXPECT_NE(std::string(drawing.error().text).find(text), std::string::npos) << drawing.error().text;
+  });
+}
+
+/// Whether what patches cover at random points is what winding numbers say.
+void expectInside(const TestPath& path, GpgpFillRule rule, size_t rows) {
+  GpgpPath view = path.view();
+  view.fillRule = rule;
+  const auto made = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(made) << made.error().text;
+  const vector::Drawing& d = *made;
+  const PathOracle oracle(view);
+  const double slack = oracle.magnitude() * 1.5e-6;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> xs(static_cast<float>(oracle.left), static_cast<float>(oracle.right)),
+      ys(static_cast<float>(oracle.top), static_cast<float>(oracle.bottom));
+  size_t tested = 0, wrong = 0, doubled = 0, inside = 0;
+  for (size_t row = 0; row < rows; ++row) {
+    const float y = ys(random);
+    std::vector<const vector::PatchRecord*> here;
+    for (const auto& p : d.patches)
+      if (y >= p.top && y < p.bottom) here.push_back(&p);
+    for (int i = 0; i < 20; ++i) {
+      const float x = xs(random);
+      if (!oracle.certain(x, y, slack)) continue;
+      int count = 0;
+      for (const auto* p : here)
+        count += shader::rightOfCurve(d.curves[p->left], x, y, 0) && !shader::rightOfCurve(d.curves[p->right], x, y, 0);
+      const bool in = oracle.inside(x, y);
+      if (count != static_cast<int>(in) && oracle.distance(x, y) <= slack) continue; // in a sliver
+      ++tested;
+      inside += in;
+      wrong += (count > 0) != in;
+      doubled += count > 1;
+    }
+  }
+  EXPECT_EQ(wrong, 0u) << "of " << tested << ", rule " << rule;
+  EXPECT_EQ(doubled, 0u) << "of " << tested << ", rule " << rule;
+  EXPECT_GT(tested, rows * 10);
+  EXPECT_GT(inside, tested / 10);
+  EXPECT_LT(inside, tested) << "rule " << rule;
+}
+
+TEST(Crossings, PatchesAreTheInsideOfPathsThatCrossOften) {
+  for (const GpgpFillRule rule : {GPGP_FILL_NON_ZERO, GPGP_FILL_EVEN_ODD}) {
+    expectInside(random(500, true), rule, 100);         // 100 000 crossings
+    expectInside(random(500, false), rule, 100);        //
+    expectInside(random(300, true, 4, 1e5f), rule, 50); // where many lie at the same height
+    expectInside(bars(200), rule, 100);
+    expectInside(fan(60), rule, 200);
+  }
+}
+
+TEST(Crossings, HolesAreFoundWhereverTheyBegin) {
+  // Boxes in each other, wound alike, and holes in their middle that undo them all: what bounds a hole's slabs lies
+  // beyond all boxes' edges.
+  TestPath path;
+  constexpr int kBoxes = 60, kHoles = 40;
+  for (int i = 0; i < kBoxes; ++i) {
+    const float a = static_cast<float>(i) * 5, b = kSide - a;
+    path.move(a, a).line(b, a).line(b, b).line(a, b).close();
+  }
+  for (int i = 0; i < kHoles; ++i) {
+    const float x = 310 + 9 * static_cast<float>(i), y = 320 + static_cast<float>(i * 7 % kHoles) * 8;
+    for (int k = 0; k < kBoxes; ++k) path.move(x, y).line(x - 4, y + 17).line(x, y + 30).line(x + 4, y + 17).close();
+  }
+  expectInside(path, GPGP_FILL_NON_ZERO, 300);
+  GpgpPath view = path.view();
+  const auto drawing = vector::makeDrawing(std::span(&view, 1), heap());
+  ASSERT_TRUE(drawing);
+  double area = 0; // all of them are of lines
+  for (const auto& p : drawing->patches) {
+    const auto xAt = [&](uint32_t curve, float y) {
+      const auto& c = drawing->curves[curve];
+      const double share = (static_cast<double>(y) - static_cast<double>(c.ends.y)) / static_cast<double>(c.ends.w);
+      return static_cast<double>(c.ends.x) + static_cast<double>(c.ends.z) * share;
+    };
+    area += (static_cast<double>(p.bottom) - static_cast<double>(p.top)) * 0.5 *
+            (xAt(p.right, p.top) - xAt(p.left, p.top) + xAt(p.right, p.bottom) - xAt(p.left, p.bottom));
+  }
+  EXPECT_NEAR(area, kSide * kSide - kHoles * 8 * 30 * 0.5, 1e-3 * kHoles);
+}
+
+TEST(Crossings, CostGrowsAsTheirNumber) {
+  // Twice the curves cross four times as often. Where each crossing costs as much as there are curves around it, it is
+  // twelve times the time and more.
+  GpgpStroke stroke{};
+  stroke.width = 50;
+  stroke.join = GPGP_JOIN_ROUND;
+  const auto growth = [](const std::function<double(int)>& measure, int count) {
+    double small = 1e30, large = 1e30; // the best of a few
+    for (int i = 0; i < 3; ++i) {
+      small = std::min(small, measure(count));
+      large = std::min(large, measure(2 * count));
+    }
+    return large / small;
+  };
+  EXPECT_LT(growth([](int n) { return convert(random(n, true)); }, 500), 7) << "curves";
+  EXPECT_LT(growth([](int n) { return convert(random(n, false)); }, 800), 7) << "lines";
+  EXPECT_LT(growth([&](int n) { return convert(random(n, false), &stroke); }, 400), 7) << "a wide stroke";
+}
+
+TEST(Crossings, TooManyAreRefusedBeforeTheyAreLookedFor) {
+  GpgpStroke stroke{};
+  stroke.width = 50;
+  const double some = convert(random(500, true)); // 100 000 crossings, where more than 4 million are too many
+  EXPECT_LT(refuse(random(4000, true), "crosses itself more than 4194304 times"), 8 * some);
+  EXPECT_LT(refuse(random(20000, false), "crosses itself more than 4194304 times"), 8 * some);
+  EXPECT_LT(refuse(random(8000, false), "crosses itself more than 4194304 times", &stroke), 8 * some);
+  EXPECT_LT(refuse(nearlyTheSame(1000), "run close together"), 40 * some);
+  EXPECT_LT(refuse(bars(6000), "level lines of the path cross its others more than 33554432 times"), 40 * some);
+}
+
+TEST(Crossings, ClipsEditsAndWhatIsLeftEmptyKnowTheLimit) {
+  const TestPath many = random(6000, false), square = bars(1);
+  const GpgpPath views[] = {square.view(), many.view(), square.view()};
+  std::pmr::vector<vector::LeftEmpty> leftEmpty(heap());
+  const auto drawing = vector::makeDrawing(views, heap(), nullptr, &leftEmpty);
+  ASSERT_TRUE(drawing);
+  ASSERT_EQ(leftEmpty.size(), 1u);
+  EXPECT_EQ(leftEmpty[0].index, 1u);
+  ASSERT_EQ(drawing->paths.size(), 3u);
+  for (const auto& patch : drawing->patches) EXPECT_NE(patch.path, 1u);
+  const auto base = vector::makeDrawing(std::span(views, 1), heap());
+  ASSERT_TRUE(base);
+  const GpgpPathEdit edit{0, views[1]};
+  const auto edited = vector::replacePaths(*base, std::span(&edit, 1), heap());
+  ASSERT_FALSE(edited);
+  EXPECT_EQ(edited.error().code, GPGP_ERROR_UNSUPPORTED);
+  const TestPath crossed = bars(6000); // which the sweep finds
+  GpgpPath level = crossed.view();
+  const auto none = vector::makeDrawing(std::span(&level, 1), heap(), nullptr, &leftEmpty);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(leftEmpty.size(), 2u);
+  EXPECT_TRUE(none->patches.empty());
+}
+
+TEST(Crossings, InversionsAreCounted) {
+  std::mt19937 random(5);
+  std::pmr::vector<double> values(heap()), room(heap());
+  for (size_t count : {0u, 1u, 2u, 3u, 31u, 32u, 33u, 200u}) {
+    values.clear();
+    for (size_t i = 0; i < count; ++i) values.push_back(static_cast<double>(random() % 50));
+    size_t expected = 0;
+    for (size_t i = 0; i < count; ++i)
+      for (size_t k = i + 1; k < count; ++k) expected += values[i] > values[k];
+    EXPECT_EQ(vector::countInversions(values, room), expected) << count;
+    EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
+  }
+}
+
+TEST(Crossings, AreNeverFewerThanWhatStripsSay) {
+  for (const bool curves : {false, true}) {
+    const TestPath path = random(150, curves, 6);
+    std::pmr::vector<vector::Monotone> pieces(heap());
+    ASSERT_TRUE(vector::outline(path.view(), pieces));
+    vector::mergeCoincident(pieces);
+    std::pmr::vector<vector::Cut> cuts(heap());
+    ASSERT_TRUE(vector::findCrossings(pieces, cuts));
+    const size_t found = cuts.size() / 2; // two pieces cross at each, but for those at an end of one
+    size_t before = 0;
+    for (const uint32_t strips : {8u, 64u, 512u}) {
+      const size_t least = vector::leastCrossings(pieces, 0, kSide, strips, SIZE_MAX, heap());
+      EXPECT_GT(least, before) << "finer strips see more";
+      EXPECT_LE(least, found + 2);
+      before = least;
+    }
+    EXPECT_GT(before, found * 8 / 10);
+  }
+}
+
+TEST(Crossings, TheStatusIsAList) {
+  constexpr uint32_t kSlots = 200;
+  vector::Status status(kSlots, heap());
+  std::vector<std::pair<double, uint32_t>> list; // by value
+  std::vector<double> valueOf(kSlots + 1);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int turn = 0; turn < 20000; ++turn) {
+    const size_t at = list.empty() ? 0 : random() % list.size();
+    const bool grow = (turn / 2000) % 2 == 0;
+    if (list.size() < kSlots && (list.empty() || random() % 8 < (grow ? 4 : 2))) {
+      const double value = any(random);
+      const uint32_t slot = status.insert([&](uint32_t other) { return value < valueOf[other]; });
+      ASSERT_LT(slot, kSlots);
+      valueOf[slot] = value;
+      list.insert(std::upper_bound(list.begin(), list.end(), std::pair(value, slot)), {value, slot});
+    } else if (random() % 2) {
+      status.mark(list[at].second, random() % 3 == 0);
+    } else {
+      status.erase(list[at].second);
+      list.erase(list.begin() + static_cast<ptrdiff_t>(at));
+    }
+    if (turn % 16) continue;
+    for (size_t i = 0; i < list.size(); ++i) {
+      const uint32_t slot = list[i].second;
+      ASSERT_EQ(status.before(slot), i ? list[i - 1].second : status.end());
+      ASSERT_EQ(status.after(slot), i + 1 < list.size() ? list[i + 1].second : status.end());
+      uint32_t left = status.end(), right = status.end();
+      for (size_t k = i; k-- > 0 && left == status.end();)
+        if (status.marked(list[k].second)) left = list[k].second;
+      for (size_t k = i + 1; k < list.size() && right == status.end(); ++k)
+        if (status.marked(list[k].second)) right = list[k].second;
+      ASSERT_EQ(status.markedBefore(slot), left);
+      ASSERT_EQ(status.markedAfter(slot), right);
+    }
+  }
+}
+
+} // namespace
