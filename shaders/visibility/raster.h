@@ -3,7 +3,7 @@
 //
 // Guarantees: vertices are snapped to 1/256 pixel and all decisions are exact integers, so two triangles that share an
 // edge never both cover, nor both miss, a point on it (top-left rule). Depth is a function of the triangle and the
-// point alone: whichever pass or thread asks, the bits are the same.
+// point alone: whichever pass or thread asks, and whichever corner comes first, the bits are the same.
 #ifndef GPGP_SHADERS_VISIBILITY_RASTER_H
 #define GPGP_SHADERS_VISIBILITY_RASTER_H
 #include "core/math.h"
@@ -74,12 +74,33 @@ GPGP_FN int snap(float normalised, int pixels) {
   return clamp(int(position), limit - kGuard * limit, limit + kGuard * limit);
 }
 
-/// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1].
+GPGP_FN bool liesBefore(ivec2 a, ivec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
+
+/// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1]. Its p0 is the uppermost vertex, of
+/// those the leftmost, so that depth does not depend on which one the mesh names first.
 GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float zb, float zc, Grid grid) {
   ScreenTriangle t;
   t.p0 = a;
   t.p1 = b;
   t.p2 = c;
+  t.z0 = za;
+  float z1 = zb;
+  float z2 = zc;
+  if (liesBefore(b, a) && liesBefore(b, c)) {
+    t.p0 = b;
+    t.p1 = c;
+    t.p2 = a;
+    t.z0 = zb;
+    z1 = zc;
+    z2 = za;
+  } else if (liesBefore(c, a) && liesBefore(c, b)) {
+    t.p0 = c;
+    t.p1 = a;
+    t.p2 = b;
+    t.z0 = zc;
+    z1 = za;
+    z2 = zb;
+  }
   int left = min(a.x, min(b.x, c.x));
   int top = min(a.y, min(b.y, c.y));
   int right = max(a.x, max(b.x, c.x));
@@ -93,9 +114,8 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
   t.bounds.w = min(((bottom - grid.offset.y) >> grid.shift) + 1, firstRow + samples.y);
   t.zMin = min(za, min(zb, zc));
   t.zMax = max(za, max(zb, zc));
-  GPGP_PRECISE float dz1 = zb - za;
-  GPGP_PRECISE float dz2 = zc - za;
-  t.z0 = za;
+  GPGP_PRECISE float dz1 = z1 - t.z0;
+  GPGP_PRECISE float dz2 = z2 - t.z0;
   t.dz1 = dz1;
   t.dz2 = dz2;
   t.inverseArea = reciprocal(wideToFloat(twiceArea(a, b, c)));

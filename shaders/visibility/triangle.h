@@ -176,11 +176,30 @@ GPGP_FN uint classify(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool two
   return kWhole;
 }
 
-/// For kClipped: the polygon that is left. Returns kOutside, kBackFacing, kSkipped or kClipped.
+GPGP_FN bool liesBefore(vec4 a, vec4 b) {
+  if (a.x != b.x) return a.x < b.x;
+  if (a.y != b.y) return a.y < b.y;
+  if (a.z != b.z) return a.z < b.z;
+  return a.w < b.w;
+}
+
+/// Swaps two corners if the second one lies before the first, which turns the triangle over.
+GPGP_FN void sortCorners(GPGP_INOUT(vec4) a, GPGP_INOUT(vec4) b, GPGP_INOUT(bool) mirrored) {
+  if (!liesBefore(b, a)) return;
+  vec4 first = b;
+  b = a;
+  a = first;
+  mirrored = !mirrored;
+}
+
+/// For kClipped: the polygon that is left. The same one whichever corner the mesh names first. Returns kOutside, kBackFacing, kSkipped or kClipped.
 GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool twoSided,
                           GPGP_OUT(ScreenPolygon) screen) {
   screen.count = 0;
   screen.reversedOrder = false;
+  sortCorners(a, b, mirrored);
+  sortCorners(b, c, mirrored);
+  sortCorners(a, b, mirrored);
   ClipPolygon polygon;
   polygon.v[0] = a;
   polygon.v[1] = b;
