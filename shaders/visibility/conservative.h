@@ -191,9 +191,9 @@ GPGP_FN uvec2 coverageOf(ScreenTriangle t, ivec2 pixel) {
   ivec2 s0 = edgeSlope(t.p1, t.p2);
   ivec2 s1 = edgeSlope(t.p2, t.p0);
   ivec2 s2 = edgeSlope(t.p0, t.p1);
-  int e0 = edgeBlock(t.p1, s0, first, grid);
-  int e1 = edgeBlock(t.p2, s1, first, grid);
-  int e2 = edgeBlock(t.p0, s2, first, grid);
+  int e0 = edgeBlock(t.p1, s0, first, grid, 0);
+  int e1 = edgeBlock(t.p2, s1, first, grid, 0);
+  int e2 = edgeBlock(t.p0, s2, first, grid, 0);
   uvec2 mask = uvec2(0u, 0u);
   if (blockOutside(e0, s0, 8) || blockOutside(e1, s1, 8) || blockOutside(e2, s2, 8)) return mask;
   for (int y = 0; y < 8; ++y)

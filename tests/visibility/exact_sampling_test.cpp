@@ -165,6 +165,7 @@ TEST_F(VisibilityGpuTest, TruthEqualsTheTwinSliceBySlice) {
     const TwinInput in = [&] {
       TwinInput input = scene.input();
       const bool centre = slice == 256;
+      input.params.method = shader::kTruth;
       input.params.gridShift = centre ? 8 : 6;
       input.params.gridX = centre ? 128 : slice % 16 * 4 + 2;
       input.params.gridY = centre ? 128 : slice / 16 * 4 + 2;

@@ -190,7 +190,8 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
 }
 } // namespace
 
-TwinResult sampleExactOnCpu(const TwinInput& in) {
+TwinResult sampleExactOnCpu(TwinInput in) {
+  in.params.method = kExact;
   const Params& params = in.params;
   const bool reversed = params.reversedDepth != 0;
   TwinResult out = sampleOnCpu(in);
@@ -224,7 +225,7 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
     for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
       for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
         const ivec2 pixel(x, y), point = samplePoint(pixel, grid);
-        if (coversWide(piece.triangle, point) && fillsPixel(piece.triangle, pixel, grid))
+        if (fillsPixel(piece.triangle, pixel, grid))
           limits[at(pixel)] =
               std::min(limits[at(pixel)], fillKey(piece.triangle, depthWide(piece.triangle, point), reversed));
       }
@@ -271,6 +272,7 @@ TwinResult sampleExactOnCpu(const TwinInput& in) {
 
 TwinResult truthOnCpu(TwinInput in, uint32_t samples, std::vector<uint32_t>& sizes) {
   sizes.assign(in.params.triangleCount, 0);
+  in.params.method = kTruth;
   const uint32_t part = 256 / samples, perRecord = std::min(samples, 4u), perSide = samples / perRecord;
   TwinResult all;
   for (uint32_t slice = 0; slice <= perSide * perSide; ++slice) {

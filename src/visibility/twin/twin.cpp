@@ -47,10 +47,11 @@ bool hasIndices(const DrawEntry& e, uint32_t local) { return uint64_t(e.firstInd
 void draw(TwinResult& out, const Params& params, const ScreenTriangle& t, uint32_t id) {
   const Grid grid = gridOf(params);
   const auto width = static_cast<size_t>(samplesOf(grid).x);
+  const int margin = marginOf(t, grid.margin);
   for (int y = t.bounds.y; y < t.bounds.w; ++y)
     for (int x = t.bounds.x; x < t.bounds.z; ++x) {
       const ivec2 point = samplePoint(ivec2(x, y), grid);
-      if (!coversWide(t, point)) continue;
+      if (!coversWide(t, margin, point)) continue;
       const uint32_t key = depthKey(depthWide(t, point), params.reversedDepth != 0);
       const size_t at = size_t(y) * width + static_cast<size_t>(x);
       if (key < out.depth[at])
@@ -64,7 +65,7 @@ void draw(TwinResult& out, const Params& params, const ScreenTriangle& t, uint32
 shader::Grid gridOf(const Params& params, uint32_t camera) {
   return {ivec2(static_cast<int>(params.width), static_cast<int>(params.height)), static_cast<int>(params.gridShift),
           ivec2(static_cast<int>(params.gridX), static_cast<int>(params.gridY)),
-          static_cast<int>(camera * params.height)};
+          static_cast<int>(camera * params.height), marginOfMethod(params.method)};
 }
 
 std::vector<DrawEntry> entriesOf(const TwinInput& in, TwinEntries& about) {
