@@ -192,7 +192,8 @@ GPGP_FN void sortCorners(GPGP_INOUT(vec4) a, GPGP_INOUT(vec4) b, GPGP_INOUT(bool
   mirrored = !mirrored;
 }
 
-/// For kClipped: the polygon that is left. The same one whichever corner the mesh names first. Returns kOutside, kBackFacing, kSkipped or kClipped.
+/// For kClipped: the polygon that is left. The same one whichever corner the mesh names first. Returns kOutside,
+/// kBackFacing, kSkipped or kClipped.
 GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool twoSided,
                           GPGP_OUT(ScreenPolygon) screen) {
   screen.count = 0;

@@ -150,7 +150,8 @@ TEST(Raster, RowsOfSamplesAreTheTriangleButForTheirEnds) {
     for (int row = 0; row < 64; ++row) {
       std::uint64_t exact = 0;
       for (int column = 0; column < 64; ++column)
-        if (coversWide(t, margin, pixel * 256 + ivec2(column, row) * 4 + ivec2(2, 2))) exact |= std::uint64_t(1) << column;
+        if (coversWide(t, margin, pixel * 256 + ivec2(column, row) * 4 + ivec2(2, 2)))
+          exact |= std::uint64_t(1) << column;
       const std::uint64_t samples = samplesOfRow(t, pixel, row);
       ASSERT_LE(std::popcount(samples ^ exact), 2) << n << ": " << row;
       if (margins == 0) {
@@ -185,7 +186,8 @@ TEST(Raster, VerticesOnEdgesLeaveNoCrack) {
       return pixel * 256 + ivec2(static_cast<int>(std::floor(u + 0.5)), static_cast<int>(std::floor(v + 0.5)));
     };
     const double from = -random(400, 4000), to = random(400, 4000);
-    const double first = from + random(1, 99) * 0.01 * (to - from), second = first + random(1, 99) * 0.01 * (to - first);
+    const double first = from + random(1, 99) * 0.01 * (to - from),
+                 second = first + random(1, 99) * 0.01 * (to - first);
     const ivec2 a = at(from, 0), b = at(to, 0), m = at(first, 0), k = at(second, 0), up = at(0, -9000),
                 down = at(0, 9000), left = at(-9000, 0), right = at(9000, 0);
     std::vector<ScreenTriangle> all;
