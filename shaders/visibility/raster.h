@@ -30,8 +30,8 @@ struct Grid {
 
 /// Quarters of a unit that triangles own beyond their edges at most, in each direction, where samples are looked for
 /// below the pixel. Snapping moves a vertex by up to half a unit, so that one on another triangle's edge (a T-junction)
-/// leaves a crack of up to a unit: half of it on either side closes it, a quarter more is for what transforms round.
-GPGP_CONST int kMargin = 3;
+/// leaves a crack of up to a unit: half a unit from either side closes it.
+GPGP_CONST int kMargin = 2;
 
 /// Standard sampling is what rasterising hardware does; conservative and nearby sampling begin with it.
 GPGP_FN int marginOfMethod(uint method) { return method == kExact || method == kTruth ? kMargin : 0; }
@@ -180,7 +180,7 @@ GPGP_FN int marginOf(ScreenTriangle t, int most) {
   if (most == 0) return 0;
   int around = spanOf(edgeSlope(t.p1, t.p2)) + spanOf(edgeSlope(t.p2, t.p0)) + spanOf(edgeSlope(t.p0, t.p1));
   GPGP_PRECISE float inverseRadius = float(around) * t.inverseArea;
-  int margin = inverseRadius <= 0.083333336f ? 3 : inverseRadius <= 0.125f ? 2 : inverseRadius <= 0.25f ? 1 : 0;
+  int margin = inverseRadius <= 0.125f ? 2 : inverseRadius <= 0.25f ? 1 : 0;
   return min(margin, most);
 }
 

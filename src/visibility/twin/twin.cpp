@@ -136,7 +136,21 @@ TwinTriangle placeTriangle(const TwinInput& in, const Draw& draw, uint32_t local
 
 TwinTriangle placeTriangle(const TwinInput& in, const DrawEntry& entry, uint32_t localTriangle) {
   TwinTriangle result;
-  const Draw& draw = in.draws[entry.draw];
+  if (in.params.originCount && in.draws[entry.draw].origin >= in.params.originCount) {
+    result.fate = kSkipped;
+    return result;
+  }
+  const auto originAt = [](const float* parts, uint32_t i) {
+    return std::pair(vec3(parts[i * 8], parts[i * 8 + 1], parts[i * 8 + 2]),
+                     vec3(parts[i * 8 + 4], parts[i * 8 + 5], parts[i * 8 + 6]));
+  };
+  Draw draw = in.draws[entry.draw];
+  if (in.params.hasOrigins) {
+    const auto [fromHigh, fromLow] = originAt(in.params.cameraOrigins, entry.camera);
+    std::pair<vec3, vec3> own(vec3(0), vec3(0));
+    if (in.params.originCount) own = originAt(in.params.origins, draw.origin);
+    draw = relativeDraw(draw, originFrom(own.first, own.second, fromHigh, fromLow));
+  }
   vec4 clip[3];
   mat4 viewProjection;
   for (int i = 0; i < 16; ++i) viewProjection[i / 4][i % 4] = in.params.viewProjection[entry.camera * 16 + uint(i)];
