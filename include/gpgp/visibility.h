@@ -318,8 +318,8 @@ typedef struct GpgpSampleReport {
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible, and
                              what they hide may be, too. For want of room: neededCandidates or neededPairs then exceed
                              the budgets. Or whatever the budgets: the list of a pixel that takes more than a bounded
-                             time (see gpgpRecordPrepareVisibility); and what more than 2^20 parts of candidates of over 8 x 8 pixels
-                             leave no place for */
+                             time (see gpgpRecordPrepareVisibility); and what more than 2^20 parts of candidates
+                             of over 8 x 8 pixels leave no place for */
   uint32_t neededDraws; /**< of one camera */
   uint32_t draws;       /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */

@@ -37,7 +37,8 @@ bool mayBeInSight(uint chunk, uint entry) {
   if (draw.firstTriangle > params.triangleCount || end > params.triangleCount - draw.firstTriangle) return true;
   Cluster c = clusters[firstCluster(draw.mesh) + place];
   if (!hasOrigin(draw)) return true; // they are counted, too
-  return !isOutOfSight(c, seenFrom(draw, e.camera), viewProjection(e.camera), ivec2(int(params.width), int(params.height)));
+  ivec2 pixels = ivec2(int(params.width), int(params.height));
+  return !isOutOfSight(c, seenFrom(draw, e.camera), viewProjection(e.camera), pixels);
 }
 
 void main() {

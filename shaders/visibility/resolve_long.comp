@@ -1,5 +1,5 @@
-// Decides a pixel's list of more than kBatch by the depths of its samples (depths.glsl). Where the record asks what a move
-// would uncover, too: the nearest kBatch first, and so on until all samples are covered.
+// Decides a pixel's list of more than kBatch by the depths of its samples (depths.glsl). Where the record asks what a
+// move would uncover, too: the nearest kBatch first, and so on until all samples are covered.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
