@@ -94,7 +94,9 @@ typedef struct GpgpVisibilityDraw {
   uint32_t firstTriangle; /**< where this draw's triangles start in the visible bits and lists; a multiple of 32 lets
                                draws be cleared apart */
   uint32_t flags;         /**< GPGP_DRAW_... */
-  uint32_t reserved;
+  uint32_t origin;        /**< with GpgpSampleInfo::origins: index of the one that transform is relative to. Triangles
+                               of a draw whose index is out of range are skipped and counted; without origins it is
+                               not read */
 } GpgpVisibilityDraw;
 #define GPGP_DRAW_TWO_SIDED 1u /**< back faces count as visible */
 #define GPGP_DRAW_CLOCKWISE                                                                                            \
@@ -132,10 +134,13 @@ enum {
 #define GPGP_HEURISTICS_THESIS (GPGP_HEURISTIC_IN_CIRCLE | GPGP_HEURISTIC_DEPTH)
 
 /** Near and far planes are the projection's; the far one may be infinitely far. Clip space is Vulkan's, y down: an
- *  engine whose viewports have a negative height negates the matrix' second row. */
+ *  engine whose viewports have a negative height negates the matrix' second row.
+ *  Floats are 8 mm apart 10^5 m from the world's origin. A large world gives each camera an origin near it, usually its
+ *  place, and each draw one near it (GpgpSampleInfo::origins): then floats hold only what is relative to them. */
 typedef struct GpgpCamera {
-  float viewProjection[16]; /**< world to clip, column-major */
+  float viewProjection[16]; /**< world, less origin, to clip; column-major */
   VkBool32 reversedDepth;   /**< near is 1 */
+  double origin[3];         /**< a place in the world, less than 1e30 in magnitude; 0, 0, 0: the world's */
 } GpgpCamera;
 
 /** A region that a viewer may be in until the next record: a camera in its middle and those around it. What the union
@@ -215,6 +220,11 @@ typedef struct GpgpSampleInfo {
                                 and indices. FALSE where any of them may have changed */
   GpgpBuffer draws;        /**< GpgpVisibilityDraw[drawCount]; STORAGE usage */
   uint32_t drawCount;
+  const double* origins;  /**< optional: three numbers each, less than 1e30 in magnitude: places in the world, such as
+                               the middles of its sectors, that draws' transforms are relative to
+                               (GpgpVisibilityDraw::origin). Differences to cameras' are exact to 2^-46 of an origin's
+                               magnitude, and to 2^-24 of the difference */
+  uint32_t originCount;   /**< at most 32; 0: draws' transforms are relative to the world's */
   GpgpBuffer commands;    /**< optional: the engine's VkDrawIndexedIndirectCommand[commandCount]; STORAGE usage. Then
                                what is drawn are the commands' instances: instance i of a command is of its indices,
                                and has the transform, flags and triangle numbers of draws[firstInstance + i], whose
@@ -249,8 +259,9 @@ typedef struct GpgpSampleInfo {
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
- *  (conservative: the earlier draw). Exact: but for pixels that more than about 1 500 candidates (1 300 of exactly one
- *  depth) do not cover: there what is left, and all behind, counts as visible, which `unresolved` says.
+ *  (conservative: the earlier draw). Exact: but for pixels of more than about 6 000 candidates of a few samples
+ *  each, or 400 that reach over all of it without hiding one another: there all count as visible, which `unresolved`
+ *  says.
  *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
  *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
  *  NOT_READY: geometry set or view not resident, or sampler not prewarmed. INVALID_ARGUMENT, with the field's name and
@@ -306,9 +317,9 @@ typedef struct GpgpSampleReport {
   uint32_t maxPairs;
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible, and
                              what they hide may be, too. For want of room: neededCandidates or neededPairs then exceed
-                             the budgets. Or whatever the budgets: what a pixel's list of more than about 1 300 leaves
-                             after a bounded time; and what more than 2^20 parts of candidates of over 8 x 8 pixels
-                             leave no place for */
+                             the budgets. Or whatever the budgets: the list of a pixel that takes more than a bounded
+                             time (see gpgpRecordPrepareVisibility); and what more than 2^20 parts of candidates
+                             of over 8 x 8 pixels leave no place for */
   uint32_t neededDraws; /**< of one camera */
   uint32_t draws;       /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */

@@ -10,6 +10,7 @@ void drawLarge(ScreenTriangle t, uint id, uint slice, uint slices) {
   ivec2 s0 = edgeSlope(t.p1, t.p2);
   ivec2 s1 = edgeSlope(t.p2, t.p0);
   ivec2 s2 = edgeSlope(t.p0, t.p1);
+  int margin = marginOf(t, grid().margin);
   uint columns = uint(t.bounds.z - t.bounds.x + 7) / 8u;
   uint blocks = blocksOf(t);
   ivec2 inBlock = ivec2(int(gl_LocalInvocationIndex) & 7, int(gl_LocalInvocationIndex) >> 3);
@@ -19,8 +20,8 @@ void drawLarge(ScreenTriangle t, uint id, uint slice, uint slices) {
     uint block = first + gl_LocalInvocationIndex;
     if (block < blocks) {
       ivec2 corner = t.bounds.xy + 8 * ivec2(int(block % columns), int(block / columns));
-      ivec3 edges = ivec3(edgeBlock(t.p1, s0, corner, grid()), edgeBlock(t.p2, s1, corner, grid()),
-                          edgeBlock(t.p0, s2, corner, grid()));
+      ivec3 edges = ivec3(edgeBlock(t.p1, s0, corner, grid(), margin), edgeBlock(t.p2, s1, corner, grid(), margin),
+                          edgeBlock(t.p0, s2, corner, grid(), margin));
       if (!blockOutside(edges.x, s0, 8) && !blockOutside(edges.y, s1, 8) && !blockOutside(edges.z, s2, 8)) {
         uint place = atomicAdd(blockCount, 1u);
         blockCorner[place] = corner;

@@ -1,5 +1,20 @@
-// The matrices of a record's cameras. Needs `params`.
+// The matrices of a record's cameras, and draws as they are relative to them. Needs `params`.
+#include "visibility/triangle.h"
+
 mat4 viewProjection(uint camera) {
   return mat4(params.viewProjection[camera * 4u], params.viewProjection[camera * 4u + 1u],
               params.viewProjection[camera * 4u + 2u], params.viewProjection[camera * 4u + 3u]);
+}
+
+bool hasOrigin(Draw draw) { return params.originCount == 0u || draw.origin < params.originCount; }
+
+/// A draw that hasOrigin(), relative to a camera's origin.
+Draw seenFrom(Draw draw, uint camera) {
+  if (params.hasOrigins == 0u) return draw;
+  uint at = draw.origin * 2u;
+  bool any = params.originCount != 0u;
+  vec3 high = any ? params.origins[at].xyz : vec3(0.0);
+  vec3 low = any ? params.origins[at + 1u].xyz : vec3(0.0);
+  return relativeDraw(
+      draw, originFrom(high, low, params.cameraOrigins[camera * 2u].xyz, params.cameraOrigins[camera * 2u + 1u].xyz));
 }

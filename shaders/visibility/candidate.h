@@ -2,7 +2,7 @@
 // comes there, and which of the pixel's 64 x 64 samples it covers, a row at a time.
 //
 // Guarantees: one result on every device. The rows' masks are made with floats and may be wrong by a sample at either
-// end, but two triangles with a common edge neither share a sample there nor leave one out.
+// end, but two triangles with a common edge leave no sample out there.
 #ifndef GPGP_SHADERS_VISIBILITY_CANDIDATE_H
 #define GPGP_SHADERS_VISIBILITY_CANDIDATE_H
 #include "visibility/layout.h"
@@ -50,7 +50,8 @@ GPGP_FN int innermostBlock(ivec2 u, ivec2 slope, ivec2 first) {
   grid.shift = 8;
   grid.offset = innermost(slope, ivec2(0, 0));
   grid.top = 0;
-  return edgeBlock(u, slope, first, grid);
+  grid.margin = 0;
+  return edgeBlock(u, slope, first, grid, 0);
 }
 
 /// Bits: which pixels of a tile of 8 x 8 a triangle touches, whose pixelBounds and the tile's first pixel are given.
@@ -145,12 +146,38 @@ GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool revers
   return depthKey(withinDepths(t, nearest), reversed);
 }
 
+/// The same with the triangle's margin, which is less than a unit.
+GPGP_FN uint nearestWithMargin(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
+  Footing f = footingOf(t, compact, pixel);
+  GPGP_PRECISE float reach = f.reach + (abs(f.slope.x) + abs(f.slope.y));
+  GPGP_PRECISE float nearest = reversed ? f.depth + reach : f.depth - reach;
+  return depthKey(withinDepths(t, nearest), reversed);
+}
+
+/// Where one of 64 x 64 samples a pixel lies, numbered from the picture's corner.
+GPGP_FN ivec2 sampleIn(ivec2 sample_) { return ivec2(sample_.x * 4 + 2, sample_.y * 4 + 2); }
+
+/// Which of those a triangle and its margin reach over: first x, y, last z, w.
+GPGP_FN ivec4 samplesAbout(ScreenTriangle t) {
+  ivec4 r;
+  r.x = min(t.p0.x, min(t.p1.x, t.p2.x)) >> 2;
+  r.y = min(t.p0.y, min(t.p1.y, t.p2.y)) >> 2;
+  r.z = (max(t.p0.x, max(t.p1.x, t.p2.x)) - 1) >> 2;
+  r.w = (max(t.p0.y, max(t.p1.y, t.p2.y)) - 1) >> 2;
+  return r;
+}
+
+GPGP_FN bool reachesRows(ScreenTriangle t, int first, int count) {
+  ivec4 samples = samplesAbout(t);
+  return samples.y < first + count && samples.w >= first;
+}
+
 /// By how much an edge function, in pixels, falls at most from a pixel's centre to its border.
 GPGP_FN int fallWithin(ivec2 slope) { return (abs(slope.x) + abs(slope.y) + 1) >> 1; }
 
 /// Whether an edge has all points of a pixel inside.
 GPGP_FN bool fillsEdge(ivec2 u, ivec2 slope, ivec2 pixel, Grid grid) {
-  return edgeBlock(u, slope, pixel, grid) >= fallWithin(slope);
+  return edgeBlock(u, slope, pixel, grid, 0) >= fallWithin(slope);
 }
 
 /// Whether a triangle owns all points of a pixel; one sample a pixel, at its centre.
@@ -241,9 +268,9 @@ GPGP_FN uvec2 bitRange(int first, int end) {
 
 /// A candidate within a pixel. Each edge is a line, at x + r * y of the pixel's width in row r of 64. It covers the
 /// samples from the greater of its left edges to before the lesser of its right ones, both rounded to columns; the
-/// third edge is one of them. A sample that an edge meets lies right of it. In rows above and below the triangle the
-/// edges have crossed, so that nothing is covered; a horizontal edge is a third line that leaves nothing of the rows
-/// outside.
+/// third edge is one of them. A sample that an edge meets lies right of it. The lines lie marginOf() outside the edges.
+/// In rows above and below the triangle they have crossed, so that nothing is covered; a horizontal edge is a third
+/// line that leaves nothing of the rows outside.
 struct Outline {
   vec2 left;
   vec2 right;
@@ -259,17 +286,18 @@ GPGP_CONST float kColumn = 0.015625f; ///< in widths; a power of two, so that wh
 /// 18 of a step's 24 bits, so that its product with a row of 64 is exact: added to something, it is rounded once.
 GPGP_FN float stepOf(float v) { return uintBitsToFloat(floatBitsToUint(v) & ~63u); }
 
-/// Adds an edge. Its line is computed from its upper corner, so that both triangles at an edge have the same one, and
-/// neither share a sample nor leave one out.
-GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2 first) {
+/// Adds an edge. Its line is computed from its upper corner, so that both triangles at an edge have the same one but
+/// for their margins, in quarters of a unit, and leave no sample out.
+GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2 first, int margin) {
   if (u.y == v.y) { // those above it are outside, or those below it
-    o.third = vec2(float(u.y - first.y - 2), -4.0f);
     o.isThirdLeft = u.x < v.x;
+    o.third = vec2(float((u.y - first.y - 2) * 4 + (o.isThirdLeft ? -margin : margin)), -16.0f);
     return;
   }
   ivec2 top = (u.y < v.y ? u : v) - first;
-  GPGP_PRECISE float start = (float(top.x - 2) + float(2 - top.y) * slope) * 0.25f + 0.498046875f;
   bool isLeft = u.y > v.y; // upwards: bounds from the left, as the triangle is clockwise as seen
+  GPGP_PRECISE float beyond = float(isLeft ? -margin : margin) * 0.0625f * (1.0f + abs(slope)); // in columns
+  GPGP_PRECISE float start = (float(top.x - 2) + float(2 - top.y) * slope) * 0.25f + 0.498046875f + beyond;
   vec2 before = isLeft ? o.left : o.right;
   if (before.x != kNoEdge) {
     o.third = before;
@@ -289,9 +317,10 @@ GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
   o.right = vec2(kNoEdge, 0.0f);
   o.third = vec2(kNoEdge, 0.0f);
   o.isThirdLeft = true;
-  addEdge(o, c.p1, c.p2, c.slope0, first);
-  addEdge(o, c.p2, c.p0, c.slope1, first);
-  addEdge(o, c.p0, c.p1, c.slope2, first);
+  int margin = marginOf(triangleOf(c), kMargin);
+  addEdge(o, c.p1, c.p2, c.slope0, first, margin);
+  addEdge(o, c.p2, c.p0, c.slope1, first, margin);
+  addEdge(o, c.p0, c.p1, c.slope2, first, margin);
   o.rowBegin = clamp((min(c.p0.y, min(c.p1.y, c.p2.y)) - first.y + 1) >> 2, 0, 64);
   o.rowEnd = clamp((max(c.p0.y, max(c.p1.y, c.p2.y)) - first.y + 1) >> 2, 0, 64);
   return o;

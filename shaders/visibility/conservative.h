@@ -20,16 +20,24 @@ GPGP_FN bool isPerspective(mat4 viewProjection) {
   return viewProjection[0].w != 0.0f || viewProjection[1].w != 0.0f || viewProjection[2].w != 0.0f;
 }
 
+/// Numbers at the corners a, b and another one of a triangle, in the order in which it has them.
+GPGP_FN vec3 inOrderOf(ScreenTriangle t, ivec2 a, ivec2 b, vec3 v) {
+  bool aThird = t.p2.x == a.x && t.p2.y == a.y;
+  bool bThird = t.p2.x == b.x && t.p2.y == b.y;
+  if (t.p0.x == a.x && t.p0.y == a.y) return bThird ? vec3(v.x, v.z, v.y) : v;
+  if (t.p0.x == b.x && t.p0.y == b.y) return aThird ? vec3(v.y, v.z, v.x) : vec3(v.y, v.x, v.z);
+  return aThird ? vec3(v.z, v.y, v.x) : vec3(v.z, v.x, v.y);
+}
+
 /// What is linear on the screen, at the corners of a whole triangle that classify() made.
 GPGP_FN vec3 wholeDepths(vec4 a, vec4 b, vec4 c, ScreenTriangle t, Grid grid, bool perspective) {
   if (!perspective) return vec3(t.z0, t.z0 + t.dz1, t.z0 + t.dz2);
+  ivec2 first;
   ivec2 second;
   float z;
-  bool ok = project(b, grid, second, z);
-  bool same = ok && second.x == t.p1.x && second.y == t.p1.y;
-  float q1 = divide(1.0f, b.w);
-  float q2 = divide(1.0f, c.w);
-  return same ? vec3(divide(1.0f, a.w), q1, q2) : vec3(divide(1.0f, a.w), q2, q1);
+  bool ok = project(a, grid, first, z) && project(b, grid, second, z);
+  return ok ? inOrderOf(t, first, second, vec3(divide(1.0f, a.w), divide(1.0f, b.w), divide(1.0f, c.w)))
+            : vec3(0.0f, 0.0f, 0.0f);
 }
 
 /// The same at the corners of piece k of a clipped one.
@@ -37,7 +45,7 @@ GPGP_FN vec3 pieceDepths(ScreenPolygon screen, int k, ScreenTriangle t, bool per
   if (!perspective) return vec3(t.z0, t.z0 + t.dz1, t.z0 + t.dz2);
   int i = screen.reversedOrder ? k + 2 : k + 1;
   int j = screen.reversedOrder ? k + 1 : k + 2;
-  return vec3(screen.q[0], screen.q[i], screen.q[j]);
+  return inOrderOf(t, screen.p[0], screen.p[i], vec3(screen.q[0], screen.q[i], screen.q[j]));
 }
 
 /// A triangle cut by a pixel's four sides: x, y in units from the pixel's corner, and depth.
@@ -183,9 +191,9 @@ GPGP_FN uvec2 coverageOf(ScreenTriangle t, ivec2 pixel) {
   ivec2 s0 = edgeSlope(t.p1, t.p2);
   ivec2 s1 = edgeSlope(t.p2, t.p0);
   ivec2 s2 = edgeSlope(t.p0, t.p1);
-  int e0 = edgeBlock(t.p1, s0, first, grid);
-  int e1 = edgeBlock(t.p2, s1, first, grid);
-  int e2 = edgeBlock(t.p0, s2, first, grid);
+  int e0 = edgeBlock(t.p1, s0, first, grid, 0);
+  int e1 = edgeBlock(t.p2, s1, first, grid, 0);
+  int e2 = edgeBlock(t.p0, s2, first, grid, 0);
   uvec2 mask = uvec2(0u, 0u);
   if (blockOutside(e0, s0, 8) || blockOutside(e1, s1, 8) || blockOutside(e2, s2, 8)) return mask;
   for (int y = 0; y < 8; ++y)

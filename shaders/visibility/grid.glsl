@@ -7,6 +7,7 @@ Grid gridOf(uint camera) {
   g.shift = int(params.gridShift);
   g.offset = ivec2(int(params.gridX), int(params.gridY));
   g.top = int(camera * params.height);
+  g.margin = marginOfMethod(params.method);
   return g;
 }
 

@@ -12,6 +12,7 @@ GPGP_CONST uint kFarthest = 0xffffffffu;   ///< in a sample: nothing
 GPGP_CONST uint kTwoSided = 1u;            ///< GPGP_DRAW_TWO_SIDED
 GPGP_CONST uint kClockwise = 2u;           ///< GPGP_DRAW_CLOCKWISE
 GPGP_CONST uint kMaxCameras = 128u;        ///< of one record
+GPGP_CONST uint kMaxOrigins = 32u;         ///< that draws' transforms are relative to
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
@@ -93,7 +94,7 @@ struct Draw {
   uint mesh;
   uint firstTriangle;
   uint flags;
-  uint reserved;
+  uint origin; ///< in the record's origins
 };
 
 /// One draw of a camera. Lies in the draw table, whose regions hold, for each of `maxEntries`: first item and first
@@ -118,9 +119,13 @@ struct Params {
 #ifdef __cplusplus
   float viewProjection[kMaxCameras * 16]; // of each camera, column-major
   float depthScales[kMaxCameras * 4];
+  float cameraOrigins[kMaxCameras * 8]; // of each, what floats hold of it, then the rest; four numbers each
+  float origins[kMaxOrigins * 8];
 #else
   vec4 viewProjection[kMaxCameras * 4u]; // the columns
   vec4 depthScales[kMaxCameras];         // nearby: of each camera, see nearby.h
+  vec4 cameraOrigins[kMaxCameras * 2u];
+  vec4 origins[kMaxOrigins * 2u];
 #endif
   uint cameraCount;
   uint width;
@@ -171,9 +176,9 @@ struct Params {
   uint numberCount;   // triangles' numbers that are there; with hasNumbers
   uint hasNumbers;    // 1: triangles have the numbers of their place among the indices
   uint clusterCount;  // of all meshes; 0: chunks are not tested
-  uint reserved0;     // a uniform block is a multiple of 16 bytes
-  uint reserved1;
-  uint reserved2;
+  uint originCount;   // of draws; 0: none has one
+  uint hasOrigins;    // 1: draws or cameras have some
+  uint reserved;      // a uniform block is a multiple of 16 bytes
 };
 GPGP_CONST uint kHasTruthCounts = 1u;
 GPGP_CONST uint kHasRecheck = 2u;
@@ -280,9 +285,9 @@ GPGP_FN uvec3 listGroups(uint listed) {
 
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
-static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 && sizeof(Params) == kMaxCameras * 80 + 52 * 4 &&
-              sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Surface) == 20 &&
-              sizeof(Counters) == 4 * kCounterWords);
+static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 &&
+              sizeof(Params) == kMaxCameras * 112 + kMaxOrigins * 32 + 52 * 4 && sizeof(DrawEntry) == 4 * kEntryWords &&
+              sizeof(Candidate) == 64 && sizeof(Surface) == 20 && sizeof(Counters) == 4 * kCounterWords);
 #endif
 
 GPGP_SHADER_END

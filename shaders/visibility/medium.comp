@@ -19,12 +19,13 @@ void main() {
   for (uint entry = gl_WorkGroupID.x; entry < count; entry += gl_NumWorkGroups.x) {
     ScreenTriangle t = records[entry].triangle;
     uint id = records[entry].id;
+    int margin = marginOf(t, grid().margin);
     int width = t.bounds.z - t.bounds.x;
     int pixels = width * (t.bounds.w - t.bounds.y);
     for (int i = int(gl_LocalInvocationIndex); i < pixels; i += 64) {
       ivec2 pixel = t.bounds.xy + ivec2(i % width, i / width);
       float z;
-      if (coversCompact(t, samplePoint(pixel, grid()), z)) coverPixel(t, true, pixel, z, id);
+      if (coversCompact(t, margin, samplePoint(pixel, grid()), z)) coverPixel(t, true, pixel, z, id);
     }
   }
 }

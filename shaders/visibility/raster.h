@@ -3,11 +3,12 @@
 //
 // Guarantees: vertices are snapped to 1/256 pixel and all decisions are exact integers, so two triangles that share an
 // edge never both cover, nor both miss, a point on it (top-left rule). Depth is a function of the triangle and the
-// point alone: whichever pass or thread asks, the bits are the same.
+// point alone: whichever pass or thread asks, and whichever corner comes first, the bits are the same.
 #ifndef GPGP_SHADERS_VISIBILITY_RASTER_H
 #define GPGP_SHADERS_VISIBILITY_RASTER_H
 #include "core/math.h"
 #include "visibility/exact.h"
+#include "visibility/layout.h"
 
 GPGP_SHADER_BEGIN
 
@@ -24,7 +25,16 @@ struct Grid {
   int shift;    ///< 8: one sample a pixel; 2: 64 x 64; 0: every point that a vertex can lie on
   ivec2 offset; ///< of the first sample, in units; 0 to 2^shift - 1
   int top;      ///< the viewport's first row of pixels: viewports of several cameras lie one below the other
+  int margin;   ///< 0, or kMargin: what triangles own beyond their edges
 };
+
+/// Quarters of a unit that triangles own beyond their edges at most, in each direction, where samples are looked for
+/// below the pixel. Snapping moves a vertex by up to half a unit, so that one on another triangle's edge (a T-junction)
+/// leaves a crack of up to a unit: half a unit from either side closes it.
+GPGP_CONST int kMargin = 2;
+
+/// Standard sampling is what rasterising hardware does; conservative and nearby sampling begin with it.
+GPGP_FN int marginOfMethod(uint method) { return method == kExact || method == kTruth ? kMargin : 0; }
 
 /// Samples of a viewport, in each direction.
 GPGP_FN ivec2 samplesOf(Grid grid) {
@@ -43,6 +53,7 @@ GPGP_FN Grid middleGrid(ivec2 pixels, int shift) {
   grid.shift = shift;
   grid.offset = ivec2((1 << shift) >> 1, (1 << shift) >> 1);
   grid.top = 0;
+  grid.margin = 0;
   return grid;
 }
 
@@ -74,16 +85,38 @@ GPGP_FN int snap(float normalised, int pixels) {
   return clamp(int(position), limit - kGuard * limit, limit + kGuard * limit);
 }
 
-/// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1].
+GPGP_FN bool liesBefore(ivec2 a, ivec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
+
+/// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1]. Its p0 is the uppermost vertex, of
+/// those the leftmost, so that depth does not depend on which one the mesh names first.
 GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float zb, float zc, Grid grid) {
   ScreenTriangle t;
   t.p0 = a;
   t.p1 = b;
   t.p2 = c;
-  int left = min(a.x, min(b.x, c.x));
-  int top = min(a.y, min(b.y, c.y));
-  int right = max(a.x, max(b.x, c.x));
-  int bottom = max(a.y, max(b.y, c.y));
+  t.z0 = za;
+  float z1 = zb;
+  float z2 = zc;
+  if (liesBefore(b, a) && liesBefore(b, c)) {
+    t.p0 = b;
+    t.p1 = c;
+    t.p2 = a;
+    t.z0 = zb;
+    z1 = zc;
+    z2 = za;
+  } else if (liesBefore(c, a) && liesBefore(c, b)) {
+    t.p0 = c;
+    t.p1 = a;
+    t.p2 = b;
+    t.z0 = zc;
+    z1 = za;
+    z2 = zb;
+  }
+  int around = min(grid.margin, 1); // kMargin is less than a unit
+  int left = min(a.x, min(b.x, c.x)) - around;
+  int top = min(a.y, min(b.y, c.y)) - around;
+  int right = max(a.x, max(b.x, c.x)) + around;
+  int bottom = max(a.y, max(b.y, c.y)) + around;
   int roundUp = (1 << grid.shift) - 1;
   ivec2 samples = samplesOf(grid);
   t.bounds.x = max((left - grid.offset.x + roundUp) >> grid.shift, 0);
@@ -93,9 +126,8 @@ GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float z
   t.bounds.w = min(((bottom - grid.offset.y) >> grid.shift) + 1, firstRow + samples.y);
   t.zMin = min(za, min(zb, zc));
   t.zMax = max(za, max(zb, zc));
-  GPGP_PRECISE float dz1 = zb - za;
-  GPGP_PRECISE float dz2 = zc - za;
-  t.z0 = za;
+  GPGP_PRECISE float dz1 = z1 - t.z0;
+  GPGP_PRECISE float dz2 = z2 - t.z0;
   t.dz1 = dz1;
   t.dz2 = dz2;
   t.inverseArea = reciprocal(wideToFloat(twiceArea(a, b, c)));
@@ -140,6 +172,21 @@ GPGP_FN ivec2 edgeSlope(ivec2 u, ivec2 v) { return ivec2(u.y - v.y, v.x - u.x); 
 /// 0 where an edge owns the points on it (top or left edge), 1 where it does not.
 GPGP_FN int edgeBias(ivec2 slope) { return slope.x > 0 || (slope.x == 0 && slope.y > 0) ? 0 : 1; }
 
+GPGP_FN int spanOf(ivec2 slope) { return abs(slope.x) + abs(slope.y); }
+
+/// What a triangle owns beyond its edges, of `most` quarters of a unit: at most a sixteenth of its in-circle's radius,
+/// so that small ones lose nothing to their neighbours and slivers stay slivers.
+GPGP_FN int marginOf(ScreenTriangle t, int most) {
+  if (most == 0) return 0;
+  int around = spanOf(edgeSlope(t.p1, t.p2)) + spanOf(edgeSlope(t.p2, t.p0)) + spanOf(edgeSlope(t.p0, t.p1));
+  GPGP_PRECISE float inverseRadius = float(around) * t.inverseArea;
+  int margin = inverseRadius <= 0.125f ? 2 : inverseRadius <= 0.25f ? 1 : 0;
+  return min(margin, most);
+}
+
+/// The least value of the edge function at a point that the triangle owns; margin: what marginOf() says.
+GPGP_FN int edgeLeast(ivec2 slope, int margin) { return edgeBias(slope) - ((spanOf(slope) * margin) >> 2); }
+
 /// The edge function at a point, exact.
 GPGP_FN Wide edgeWide(ivec2 u, ivec2 slope, ivec2 point) {
   return wideSum(wideProduct(slope.x, point.x - u.x), wideProduct(slope.y, point.y - u.y));
@@ -152,10 +199,11 @@ GPGP_FN int edgeCompact(ivec2 u, ivec2 slope, ivec2 point) {
 
 /// What tells inside from outside in a block of up to 16 x 16 samples that starts at `first`: sample (i, j) of the
 /// block is inside the edge exactly if edgeBlock + slope.x * i + slope.y * j >= 0, which cannot overflow.
-GPGP_FN int edgeBlock(ivec2 u, ivec2 slope, ivec2 first, Grid grid) {
+GPGP_FN int edgeBlock(ivec2 u, ivec2 slope, ivec2 first, Grid grid, int margin) {
+  int least = edgeLeast(slope, margin);
   Wide bias;
-  bias.high = edgeBias(slope) == 0 ? 0 : -1;
-  bias.low = bias.high == 0 ? 0u : 0xffffffffu;
+  bias.high = least > 0 ? -1 : 0;
+  bias.low = uint(-least);
   return wideShifted(wideSum(edgeWide(u, slope, samplePoint(first, grid)), bias), grid.shift);
 }
 
@@ -191,14 +239,16 @@ GPGP_FN bool insideWide(ivec2 u, ivec2 slope, ivec2 point) {
   return wideSign(edgeWide(u, slope, point)) >= edgeBias(slope);
 }
 
-/// Whether the triangle owns a point, any triangle.
-GPGP_FN bool coversWide(ScreenTriangle t, ivec2 point) {
-  return insideWide(t.p1, edgeSlope(t.p1, t.p2), point) && insideWide(t.p2, edgeSlope(t.p2, t.p0), point) &&
-         insideWide(t.p0, edgeSlope(t.p0, t.p1), point);
+/// Whether the triangle owns a point, any triangle; margin: what marginOf() says.
+GPGP_FN bool coversWide(ScreenTriangle t, int margin, ivec2 point) {
+  Grid unit = middleGrid(ivec2(0, 0), 0);
+  return edgeBlock(t.p1, edgeSlope(t.p1, t.p2), point, unit, margin) >= 0 &&
+         edgeBlock(t.p2, edgeSlope(t.p2, t.p0), point, unit, margin) >= 0 &&
+         edgeBlock(t.p0, edgeSlope(t.p0, t.p1), point, unit, margin) >= 0;
 }
 
 /// The same for compact triangles, with the depth where it is covered.
-GPGP_FN bool coversCompact(ScreenTriangle t, ivec2 point, GPGP_OUT(float) z) {
+GPGP_FN bool coversCompact(ScreenTriangle t, int margin, ivec2 point, GPGP_OUT(float) z) {
   ivec2 s0 = edgeSlope(t.p1, t.p2);
   ivec2 s1 = edgeSlope(t.p2, t.p0);
   ivec2 s2 = edgeSlope(t.p0, t.p1);
@@ -206,7 +256,7 @@ GPGP_FN bool coversCompact(ScreenTriangle t, ivec2 point, GPGP_OUT(float) z) {
   int e1 = edgeCompact(t.p2, s1, point);
   int e2 = edgeCompact(t.p0, s2, point);
   z = 0.0f;
-  if (e0 < edgeBias(s0) || e1 < edgeBias(s1) || e2 < edgeBias(s2)) return false;
+  if (e0 < edgeLeast(s0, margin) || e1 < edgeLeast(s1, margin) || e2 < edgeLeast(s2, margin)) return false;
   z = depthOf(t, compactToFloat(e1), compactToFloat(e2));
   return true;
 }

@@ -1,5 +1,7 @@
 // From object space to the pixel grid: transform, reject, clip, project.
 //
+// Where a record has origins, "world" is what is relative to the camera's.
+//
 // Guarantees: a triangle in front of the near plane is never lost, however far it reaches: what leaves the guard band
 // or crosses the near or far plane is clipped (Sutherland-Hodgman), always from the inner to the outer vertex, so that
 // triangles with a common edge cut it at the same point. Coordinates that are not finite or reach 2^100 are told apart,
@@ -10,6 +12,25 @@
 #include "visibility/raster.h"
 
 GPGP_SHADER_BEGIN
+
+/// Where one origin lies as seen from another. Each is what floats hold of it and the rest, so that what is near is
+/// exact however far away both are.
+GPGP_FN vec3 originFrom(vec3 high, vec3 low, vec3 fromHigh, vec3 fromLow) {
+  GPGP_PRECISE vec3 far = high - fromHigh;
+  GPGP_PRECISE vec3 near = low - fromLow;
+  GPGP_PRECISE vec3 sum = far + near;
+  return sum;
+}
+
+/// The draw with its transform relative to a camera's origin, where its own one lies as given.
+GPGP_FN Draw relativeDraw(Draw draw, vec3 origin) {
+  Draw r = draw;
+  for (int row = 0; row < 3; ++row) {
+    GPGP_PRECISE float moved = draw.transform[row * 4 + 3] + origin[row];
+    r.transform[row * 4 + 3] = moved;
+  }
+  return r;
+}
 
 GPGP_FN vec3 transformToWorld(Draw draw, vec3 p) {
   float w[3];
@@ -176,11 +197,31 @@ GPGP_FN uint classify(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool two
   return kWhole;
 }
 
-/// For kClipped: the polygon that is left. Returns kOutside, kBackFacing, kSkipped or kClipped.
+GPGP_FN bool liesBefore(vec4 a, vec4 b) {
+  if (a.x != b.x) return a.x < b.x;
+  if (a.y != b.y) return a.y < b.y;
+  if (a.z != b.z) return a.z < b.z;
+  return a.w < b.w;
+}
+
+/// Swaps two corners if the second one lies before the first, which turns the triangle over.
+GPGP_FN void sortCorners(GPGP_INOUT(vec4) a, GPGP_INOUT(vec4) b, GPGP_INOUT(bool) mirrored) {
+  if (!liesBefore(b, a)) return;
+  vec4 first = b;
+  b = a;
+  a = first;
+  mirrored = !mirrored;
+}
+
+/// For kClipped: the polygon that is left. The same one whichever corner the mesh names first. Returns kOutside,
+/// kBackFacing, kSkipped or kClipped.
 GPGP_FN uint clipTriangle(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool twoSided,
                           GPGP_OUT(ScreenPolygon) screen) {
   screen.count = 0;
   screen.reversedOrder = false;
+  sortCorners(a, b, mirrored);
+  sortCorners(b, c, mirrored);
+  sortCorners(a, b, mirrored);
   ClipPolygon polygon;
   polygon.v[0] = a;
   polygon.v[1] = b;

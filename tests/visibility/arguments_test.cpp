@@ -68,6 +68,12 @@ TEST_F(ArgumentsTest, RecordsAreChecked) {
   bad(GPGP_ERROR_INVALID_HANDLE, "geometrySet", [](auto& i) { i.geometrySet = nullptr; });
   bad(argument, "method", [](auto& i) { i.method = 4; });
   bad(argument, "viewProjection", [](auto& i) { i.camera.viewProjection[3] = NAN; });
+  bad(argument, "origin of camera 0", [](auto& i) { i.camera.origin[2] = NAN; });
+  bad(argument, "origin of camera 0", [](auto& i) { i.camera.origin[0] = -1e30; });
+  bad(argument, "origins is NULL", [](auto& i) { i.originCount = 1; });
+  const double places[33 * 3] = {0, 0, 0, 0, HUGE_VAL};
+  bad(argument, "origins[1]", [&](auto& i) { i.origins = places, i.originCount = 2; });
+  bad(argument, "originCount is 33; at most 32", [&](auto& i) { i.origins = places, i.originCount = 33; });
   bad(argument, "viewport", [](auto& i) { i.width = 0; });
   bad(argument, "viewport", [](auto& i) { i.height = 65; });
   bad(argument, "drawCount", [](auto& i) { i.drawCount = 65537; });

@@ -73,7 +73,7 @@ TEST(Conservative, DepthsInAPixelBoundThoseOfItsPoints) {
     const ScreenTriangle t = shader::makeTriangle(a, b, c, 0.1f, 0.2f, 0.3f, grid);
     const glm::ivec2 pixel(32, 32);
     float nearest = 0, farthest = 0;
-    const bool found = depthsInPixel(t, 1.0f / w, pixel, true, false, nearest, farthest);
+    const bool found = depthsInPixel(t, inOrderOf(t, a, b, 1.0f / w), pixel, true, false, nearest, farthest);
     double low = 1e9, high = 0;
     const glm::dvec2 da(a), db(b), dc(c);
     const double area = (db.x - da.x) * (dc.y - da.y) - (db.y - da.y) * (dc.x - da.x);
@@ -144,7 +144,7 @@ TEST(Conservative, CoverageOfAPixelIsThatOfItsSamples) {
     const glm::uvec2 mask = coverageOf(t, {32, 32});
     for (int i = 0; i < 64; ++i)
       ASSERT_EQ(((i < 32 ? mask.x >> i : mask.y >> (i - 32)) & 1) != 0,
-                coversWide(t, {8192 + i % 8 * 32 + 16, 8192 + i / 8 * 32 + 16}))
+                coversWide(t, 0, {8192 + i % 8 * 32 + 16, 8192 + i / 8 * 32 + 16}))
           << n;
   }
 }

@@ -160,6 +160,10 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
     std::copy_n(scene.params.viewProjection + (i + 1) * 16, 16, cameras[i].viewProjection);
     cameras[i].reversedDepth = scene.params.reversedDepth;
   }
+  for (size_t i = 0; i < scene.cameraOrigins.size(); ++i)
+    for (int k = 0; k < 3; ++k) (i ? cameras[i - 1] : info.camera).origin[k] = scene.cameraOrigins[i][k];
+  info.origins = scene.origins.empty() ? nullptr : &scene.origins[0].x;
+  info.originCount = static_cast<uint32_t>(scene.origins.size());
   info.moreCameras = cameras.data();
   info.moreCameraCount = static_cast<uint32_t>(cameras.size());
   TwinEntries entries;

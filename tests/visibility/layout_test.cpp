@@ -45,7 +45,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 54u);
+    EXPECT_EQ(offsets.size(), 56u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -61,6 +61,9 @@ TEST(Layout, ParamsAgree) {
     EXPECT_OFFSET(offsets, Params, cameraCount);
     EXPECT_OFFSET(offsets, Params, epsilonDynamic);
     EXPECT_OFFSET(offsets, Params, depthScales);
+    EXPECT_OFFSET(offsets, Params, cameraOrigins);
+    EXPECT_OFFSET(offsets, Params, origins);
+    EXPECT_OFFSET(offsets, Params, hasOrigins);
     EXPECT_OFFSET(offsets, Params, hasNumbers);
     EXPECT_OFFSET(offsets, Params, clusterCount);
   }
@@ -95,6 +98,7 @@ TEST(Layout, TheEnginesStructsAreTheShaders) {
   EXPECT_EQ(draw.at("mesh"), offsetof(GpgpVisibilityDraw, mesh));
   EXPECT_EQ(draw.at("firstTriangle"), offsetof(GpgpVisibilityDraw, firstTriangle));
   EXPECT_EQ(draw.at("flags"), offsetof(GpgpVisibilityDraw, flags));
+  EXPECT_EQ(draw.at("origin"), offsetof(GpgpVisibilityDraw, origin));
   const auto mesh = offsetsOf(visibility_plan, "Mesh");
   EXPECT_EQ(mesh.at("firstIndex"), offsetof(GpgpMesh, firstIndex));
   EXPECT_EQ(mesh.at("indexCount"), offsetof(GpgpMesh, indexCount));

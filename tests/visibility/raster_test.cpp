@@ -56,7 +56,7 @@ TEST(Raster, CoverageIsTheFillRuleExactly) {
       for (int x = 0; x < viewport.pixels.x; ++x) {
         const bool inBounds = x >= t.bounds.x && y >= t.bounds.y && x < t.bounds.z && y < t.bounds.w;
         const bool expected = ownsPoint(a, b, c, ivec2(x * 256 + 128, y * 256 + 128));
-        ASSERT_EQ(coversWide(t, samplePoint(ivec2(x, y), viewport)), expected) << n << ": " << x << ", " << y;
+        ASSERT_EQ(coversWide(t, 0, samplePoint(ivec2(x, y), viewport)), expected) << n << ": " << x << ", " << y;
         ASSERT_TRUE(inBounds || !expected) << n;
         covered += expected;
       }
@@ -79,20 +79,21 @@ TEST(Raster, CompactAndBlockFormsEqualTheExactOne) {
     if (isEmpty(t)) continue;
     const ivec2 corner(random(t.bounds.x, t.bounds.z - 1), random(t.bounds.y, t.bounds.w - 1));
     const ivec2 s0 = edgeSlope(b, c), s1 = edgeSlope(c, a), s2 = edgeSlope(a, b);
-    const int e0 = edgeBlock(b, s0, corner, viewport), e1 = edgeBlock(c, s1, corner, viewport),
-              e2 = edgeBlock(a, s2, corner, viewport);
+    const int margin = marginOf(t, n % 3 == 0 ? 0 : kMargin);
+    const int e0 = edgeBlock(b, s0, corner, viewport, margin), e1 = edgeBlock(c, s1, corner, viewport, margin),
+              e2 = edgeBlock(a, s2, corner, viewport, margin);
     bool any = false;
     for (int j = 0; j < 8; ++j)
       for (int i = 0; i < 8; ++i) {
         const ivec2 pixel = corner + ivec2(i, j);
-        const bool expected = coversWide(t, samplePoint(pixel, viewport));
+        const bool expected = coversWide(t, margin, samplePoint(pixel, viewport));
         const bool block =
             e0 + s0.x * i + s0.y * j >= 0 && e1 + s1.x * i + s1.y * j >= 0 && e2 + s2.x * i + s2.y * j >= 0;
         ASSERT_EQ(block, expected);
         any |= expected;
         if (!isCompact(t) || pixel.x >= t.bounds.z || pixel.y >= t.bounds.w) continue;
         float z = -1;
-        ASSERT_EQ(coversCompact(t, samplePoint(pixel, viewport), z), expected);
+        ASSERT_EQ(coversCompact(t, margin, samplePoint(pixel, viewport), z), expected);
         if (expected) {
           ASSERT_EQ(floatBitsToUint(z), floatBitsToUint(depthWide(t, samplePoint(pixel, viewport))));
         }
@@ -109,13 +110,30 @@ std::uint64_t samplesOfRow(const ScreenTriangle& t, ivec2 pixel, int row) {
   return std::uint64_t(half.y) << 32 | half.x;
 }
 
-// Floats decide them: each end of a row may be a sample off. Rows that the triangle does not reach have none, and two
-// triangles share none. Corners often lie on samples, and edges are often horizontal.
+/// Where a triangle's margin may reach: the triangle scaled by 1 + sqrt(2) / 16 about the middle of its in-circle.
+bool isWithinMargin(const ivec2 (&corners)[3], int y) {
+  double side[3], around = 0, middle = 0, low = 1e30, high = -1e30;
+  for (int i = 0; i < 3; ++i) {
+    const ivec2 edge = corners[(i + 2) % 3] - corners[(i + 1) % 3];
+    side[i] = std::hypot(edge.x, edge.y);
+    around += side[i];
+    middle += side[i] * corners[i].y;
+  }
+  middle /= around;
+  for (const ivec2& c : corners) {
+    const double scaled = middle + (c.y - middle) * 1.0884;
+    low = std::min(low, scaled), high = std::max(high, scaled);
+  }
+  return y >= low - 0.02 && y <= high + 0.02; // a line is rounded once
+}
+
+// Floats decide them: each end of a row may be a sample off. Rows that the triangle and its margin do not reach have
+// none, and two triangles without margins share none. Corners often lie on samples, and edges are often horizontal.
 TEST(Raster, RowsOfSamplesAreTheTriangleButForTheirEnds) {
   Random random(7);
   const Grid viewport = middleGrid(ivec2(64, 64), 8);
   const ivec2 pixel(31, 33);
-  int covered = 0, wrong = 0;
+  int covered = 0, wrong = 0, apart = 0;
   for (int n = 0; n < 6000; ++n) {
     const int reach = n % 3 == 0 ? 200 : n % 3 == 1 ? 2000 : 200000, step = n % 2 ? 1 : 4;
     const auto corner = [&] {
@@ -128,15 +146,20 @@ TEST(Raster, RowsOfSamplesAreTheTriangleButForTheirEnds) {
     if (!orient(a, b, c) || area(b, a, d) <= 0) continue;
     const ScreenTriangle t = makeTriangle(a, b, c, 0, 0, 0, viewport);
     const ScreenTriangle beside = makeTriangle(b, a, d, 0, 0, 0, viewport);
+    const int margin = marginOf(t, kMargin), margins = margin + marginOf(beside, kMargin);
     for (int row = 0; row < 64; ++row) {
       std::uint64_t exact = 0;
       for (int column = 0; column < 64; ++column)
-        if (coversWide(t, pixel * 256 + ivec2(column, row) * 4 + ivec2(2, 2))) exact |= std::uint64_t(1) << column;
+        if (coversWide(t, margin, pixel * 256 + ivec2(column, row) * 4 + ivec2(2, 2)))
+          exact |= std::uint64_t(1) << column;
       const std::uint64_t samples = samplesOfRow(t, pixel, row);
       ASSERT_LE(std::popcount(samples ^ exact), 2) << n << ": " << row;
-      ASSERT_EQ(samples & samplesOfRow(beside, pixel, row), 0u) << n << ": " << row;
+      if (margins == 0) {
+        ASSERT_EQ(samples & samplesOfRow(beside, pixel, row), 0u) << n << ": " << row;
+        ++apart;
+      }
       const int y = pixel.y * 256 + row * 4 + 2;
-      if (y < std::min({a.y, b.y, c.y}) || y > std::max({a.y, b.y, c.y})) {
+      if (!isWithinMargin({a, b, c}, y)) {
         ASSERT_EQ(samples, 0u) << n << ": " << row;
       }
       covered += std::popcount(exact);
@@ -145,6 +168,71 @@ TEST(Raster, RowsOfSamplesAreTheTriangleButForTheirEnds) {
   }
   EXPECT_GT(covered, 1000000);
   EXPECT_LT(wrong, covered / 1000);
+  EXPECT_GT(apart, 500);
+}
+
+// A vertex on an edge: snapping moves all three, and what lies between them belongs to none without margins.
+TEST(Raster, VerticesOnEdgesLeaveNoCrack) {
+  Random random(11);
+  const Grid viewport = middleGrid(ivec2(64, 64), 8);
+  const ivec2 pixel(31, 33);
+  int cracks = 0;
+  for (int n = 0; n < 4000; ++n) {
+    // A line through the pixel: its ends, two vertices on it and two corners beside it, before they snap.
+    const double angle = random(0, 1 << 20) * 6e-6, x = random(0, 1 << 20) * 0x1p-12, y = random(0, 1 << 20) * 0x1p-12;
+    const auto at = [&](double along, double beside) {
+      const double u = along * std::cos(angle) - beside * std::sin(angle) + x;
+      const double v = along * std::sin(angle) + beside * std::cos(angle) + y;
+      return pixel * 256 + ivec2(static_cast<int>(std::floor(u + 0.5)), static_cast<int>(std::floor(v + 0.5)));
+    };
+    const double from = -random(400, 4000), to = random(400, 4000);
+    const double first = from + random(1, 99) * 0.01 * (to - from),
+                 second = first + random(1, 99) * 0.01 * (to - first);
+    const ivec2 a = at(from, 0), b = at(to, 0), m = at(first, 0), k = at(second, 0), up = at(0, -9000),
+                down = at(0, 9000), left = at(-9000, 0), right = at(9000, 0);
+    std::vector<ScreenTriangle> all;
+    const auto add = [&](ivec2 p, ivec2 q, ivec2 r) {
+      if (wideSign(twiceArea(p, q, r)) > 0) all.push_back(makeTriangle(p, q, r, 0, 0, 0, viewport));
+    };
+    add(a, b, down), add(a, down, left), add(b, right, down); // one side in one piece
+    add(a, up, m), add(m, up, k), add(k, up, b), add(a, left, up), add(b, up, right);
+    for (int row = 0; row < 64; ++row) {
+      std::uint64_t samples = 0, exact = 0, plain = 0;
+      for (const ScreenTriangle& t : all) {
+        samples |= samplesOfRow(t, pixel, row);
+        for (int column = 0; column < 64; ++column) {
+          const ivec2 point = pixel * 256 + ivec2(column, row) * 4 + ivec2(2, 2);
+          exact |= std::uint64_t(coversWide(t, marginOf(t, kMargin), point)) << column;
+          plain |= std::uint64_t(coversWide(t, 0, point)) << column;
+        }
+      }
+      ASSERT_EQ(samples, ~std::uint64_t(0)) << n << ": " << row;
+      ASSERT_EQ(exact, ~std::uint64_t(0)) << n << ": " << row;
+      cracks += plain != ~std::uint64_t(0);
+    }
+  }
+  EXPECT_GT(cracks, 1000);
+}
+
+// The same three corners, and their depths, are the same triangle whichever comes first.
+TEST(Raster, DepthDoesNotDependOnTheFirstCorner) {
+  Random random(12);
+  const Grid viewport = middleGrid(ivec2(64, 64), 8);
+  for (int n = 0; n < 2000; ++n) {
+    ivec2 a(random(0, 16384), random(0, 16384)), b(random(0, 16384), random(0, 16384)),
+        c(random(0, 16384), random(0, 16384));
+    if (n % 4 == 0) b.y = a.y;
+    if (n % 4 == 1) c.x = a.x;
+    if (!orient(a, b, c)) continue;
+    const float x = float(random(0, 1000)) / 1001, y = float(random(0, 1000)) / 1001, z = float(random(0, 1000)) / 1001;
+    const ScreenTriangle t = makeTriangle(a, b, c, x, y, z, viewport);
+    for (const ScreenTriangle& other :
+         {makeTriangle(b, c, a, y, z, x, viewport), makeTriangle(c, a, b, z, x, y, viewport)})
+      for (int i = 0; i < 64; ++i) {
+        const ivec2 point(random(0, 16384), random(0, 16384));
+        ASSERT_EQ(floatBitsToUint(depthWide(t, point)), floatBitsToUint(depthWide(other, point))) << n;
+      }
+  }
 }
 
 TEST(Raster, DepthIsTheMixOfTheCornersDepths) {
@@ -162,7 +250,7 @@ TEST(Raster, DepthIsTheMixOfTheCornersDepths) {
     const ScreenTriangle t = makeTriangle(a, b, c, z[0], z[1], z[2], viewport);
     for (int k = 0; k < 50 && !isEmpty(t); ++k) {
       const ivec2 pixel(random(t.bounds.x, t.bounds.z - 1), random(t.bounds.y, t.bounds.w - 1));
-      if (!coversWide(t, samplePoint(pixel, viewport))) continue;
+      if (!coversWide(t, 0, samplePoint(pixel, viewport))) continue;
       const ivec2 p(pixel.x * 256 + 128, pixel.y * 256 + 128);
       const double total = double(area(a, b, c));
       const double exact =
@@ -221,7 +309,7 @@ TEST(Raster, SharedEdgesAreHitExactlyOnce) {
       const ScreenTriangle t = makeTriangle(hub, a, b, 0.5f, 0.5f, 0.5f, viewport);
       for (int y = t.bounds.y; y < t.bounds.w; ++y)
         for (int x = t.bounds.x; x < t.bounds.z; ++x)
-          hits[static_cast<size_t>(y * 48 + x)] += coversWide(t, samplePoint(ivec2(x, y), viewport));
+          hits[static_cast<size_t>(y * 48 + x)] += coversWide(t, 0, samplePoint(ivec2(x, y), viewport));
     }
     if (!proper) continue;
     for (int y = 0; y < 48; ++y)

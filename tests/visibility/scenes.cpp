@@ -52,6 +52,18 @@ visibility::TwinInput Scene::input() {
     positionWords.resize(positions.size());
     for (size_t i = 0; i < positions.size(); ++i) positionWords[i] = std::bit_cast<uint32_t>(positions[i]);
   }
+  const auto split = [](const std::vector<glm::dvec3>& places, float* parts) {
+    for (size_t i = 0; i < places.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        float* part = parts + i * 8 + static_cast<size_t>(k);
+        part[0] = static_cast<float>(places[i][k]);
+        part[4] = static_cast<float>(places[i][k] - static_cast<double>(part[0]));
+      }
+  };
+  split(origins, params.origins);
+  split(cameraOrigins, params.cameraOrigins);
+  params.originCount = static_cast<uint32_t>(origins.size());
+  params.hasOrigins = !origins.empty() || !cameraOrigins.empty();
   params.gridShift = 8;
   params.gridX = params.gridY = 128;
   params.drawCount = static_cast<uint32_t>(draws.size());

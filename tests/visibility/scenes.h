@@ -14,10 +14,12 @@ struct Scene {
   bool useShort = false;
   std::vector<shader::Mesh> meshes;
   std::vector<shader::Draw> draws;
-  std::vector<uint32_t> positionWords; ///< made by input()
-  std::vector<uint32_t> commands;      ///< VkDrawIndexedIndirectCommand[]: draws are their instances
-  std::vector<uint32_t> numbers;       ///< with commands: of the triangles, by their place among the indices
-  uint32_t drawCount = UINT32_MAX;     ///< what drawCountBuffer holds; UINT32_MAX: there is none
+  std::vector<uint32_t> positionWords;   ///< made by input()
+  std::vector<uint32_t> commands;        ///< VkDrawIndexedIndirectCommand[]: draws are their instances
+  std::vector<uint32_t> numbers;         ///< with commands: of the triangles, by their place among the indices
+  uint32_t drawCount = UINT32_MAX;       ///< what drawCountBuffer holds; UINT32_MAX: there is none
+  std::vector<glm::dvec3> origins;       ///< of draws
+  std::vector<glm::dvec3> cameraOrigins; ///< of cameras that have one
   shader::Params params{};
 
   uint32_t addVertex(float x, float y, float z);

@@ -67,7 +67,7 @@ TEST(Twin, ATessellatedSheetCoversEachPixelOnce) {
       for (const auto& t : placeTriangle(input, input.draws[0], local).pieces)
         for (int y = t.bounds.y; y < t.bounds.w; ++y)
           for (int x = t.bounds.x; x < t.bounds.z; ++x)
-            if (coversWide(t, shader::samplePoint(glm::ivec2(x, y), gridOf(input.params)))) own.insert({x, y});
+            if (coversWide(t, 0, shader::samplePoint(glm::ivec2(x, y), gridOf(input.params)))) own.insert({x, y});
       for (const auto& [x, y] : own) ++hits[size_t(y) * 128 + size_t(x)];
     }
     const TwinResult result = sampleOnCpu(input);

@@ -12,6 +12,25 @@ using core::makeError;
 using core::Result;
 namespace {
 
+bool isOrigin(const double* origin) {
+  return std::all_of(origin, origin + 3, [](double v) { return v > -1e30 && v < 1e30; });
+}
+
+Result<void> checkOrigins(const GpgpSampleInfo& info) {
+  if (info.originCount > shader::kMaxOrigins)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "originCount is %u; at most %u", info.originCount,
+                     shader::kMaxOrigins);
+  if (info.originCount && !info.origins)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "origins is NULL, but originCount is %u", info.originCount);
+  for (uint32_t i = 0; i < info.originCount; ++i)
+    if (!isOrigin(info.origins + size_t(i) * 3))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "origins[%u] is not finite, or reaches 1e30", i);
+  for (uint32_t i = 0; i <= info.moreCameraCount; ++i)
+    if (!isOrigin(i ? info.moreCameras[i - 1].origin : info.camera.origin))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the origin of camera %u is not finite, or reaches 1e30", i);
+  return {};
+}
+
 /// The viewport, the method and its settings, cameras, counts.
 Result<void> checkSampling(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view) {
   if (info.width == 0 || info.height == 0 || info.width > budgets.maxWidth || info.height > budgets.maxHeight)
@@ -173,6 +192,7 @@ Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t need
 Result<void> checkSampleInfo(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view) {
   if (auto ok = checkSampling(info, budgets, view); !ok) return ok;
   if (auto ok = checkInput(info); !ok) return ok;
+  if (auto ok = checkOrigins(info); !ok) return ok;
   return checkOutput(info);
 }
 

@@ -12,7 +12,8 @@ namespace gpgp::visibility {
 using shader::Params;
 
 static_assert(sizeof(GpgpMesh) == sizeof(shader::Mesh) && sizeof(GpgpVisibilityDraw) == sizeof(shader::Draw));
-static_assert(offsetof(GpgpVisibilityDraw, flags) == offsetof(shader::Draw, flags));
+static_assert(offsetof(GpgpVisibilityDraw, flags) == offsetof(shader::Draw, flags) &&
+              offsetof(GpgpVisibilityDraw, origin) == offsetof(shader::Draw, origin));
 static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided && GPGP_DRAW_CLOCKWISE == shader::kClockwise);
 static_assert(GPGP_SAMPLING_EXACT == shader::kExact && GPGP_SAMPLING_CONSERVATIVE == shader::kConservative &&
               GPGP_SAMPLING_NEARBY == shader::kNearby);
@@ -26,6 +27,26 @@ constexpr uint32_t kTruthSamples = 64;
 uint32_t verticesIn(VkDeviceSize bytes, uint32_t offset, uint32_t position, uint32_t stride) {
   const uint64_t first = uint64_t(offset) + position;
   return bytes < first ? 0 : static_cast<uint32_t>(std::min<VkDeviceSize>((bytes - first) / stride + 1, UINT32_MAX));
+}
+
+/// Writes what floats hold of three numbers, and the rest.
+void splitOrigin(const double* origin, float* parts) {
+  for (int i = 0; i < 3; ++i) {
+    parts[i] = static_cast<float>(origin[i]);
+    parts[i + 4] = static_cast<float>(origin[i] - static_cast<double>(parts[i]));
+  }
+}
+
+void setOrigins(const GpgpSampleInfo& info, Params& params) {
+  params.originCount = info.originCount;
+  params.hasOrigins = info.originCount ? 1 : 0;
+  for (uint32_t i = 0; i < info.originCount; ++i)
+    splitOrigin(info.origins + size_t(i) * 3, params.origins + size_t(i) * 8);
+  for (uint32_t i = 0; i <= info.moreCameraCount; ++i) {
+    const double* origin = i ? info.moreCameras[i - 1].origin : info.camera.origin;
+    if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0) params.hasOrigins = 1;
+    splitOrigin(origin, params.cameraOrigins + size_t(i) * 8);
+  }
 }
 
 /// Where the record's samples lie in a pixel.
@@ -71,6 +92,7 @@ Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const Ge
     const glm::vec4 scale = depthScale(camera, info.width, info.height, info.reach);
     for (int k = 0; k < 4; ++k) params.depthScales[i * 4 + static_cast<uint32_t>(k)] = scale[k];
   }
+  setOrigins(info, params);
   params.cameraCount = cameras;
   params.width = info.width;
   params.height = info.height;

@@ -47,10 +47,11 @@ bool hasIndices(const DrawEntry& e, uint32_t local) { return uint64_t(e.firstInd
 void draw(TwinResult& out, const Params& params, const ScreenTriangle& t, uint32_t id) {
   const Grid grid = gridOf(params);
   const auto width = static_cast<size_t>(samplesOf(grid).x);
+  const int margin = marginOf(t, grid.margin);
   for (int y = t.bounds.y; y < t.bounds.w; ++y)
     for (int x = t.bounds.x; x < t.bounds.z; ++x) {
       const ivec2 point = samplePoint(ivec2(x, y), grid);
-      if (!coversWide(t, point)) continue;
+      if (!coversWide(t, margin, point)) continue;
       const uint32_t key = depthKey(depthWide(t, point), params.reversedDepth != 0);
       const size_t at = size_t(y) * width + static_cast<size_t>(x);
       if (key < out.depth[at])
@@ -64,7 +65,7 @@ void draw(TwinResult& out, const Params& params, const ScreenTriangle& t, uint32
 shader::Grid gridOf(const Params& params, uint32_t camera) {
   return {ivec2(static_cast<int>(params.width), static_cast<int>(params.height)), static_cast<int>(params.gridShift),
           ivec2(static_cast<int>(params.gridX), static_cast<int>(params.gridY)),
-          static_cast<int>(camera * params.height)};
+          static_cast<int>(camera * params.height), marginOfMethod(params.method)};
 }
 
 std::vector<DrawEntry> entriesOf(const TwinInput& in, TwinEntries& about) {
@@ -135,7 +136,21 @@ TwinTriangle placeTriangle(const TwinInput& in, const Draw& draw, uint32_t local
 
 TwinTriangle placeTriangle(const TwinInput& in, const DrawEntry& entry, uint32_t localTriangle) {
   TwinTriangle result;
-  const Draw& draw = in.draws[entry.draw];
+  if (in.params.originCount && in.draws[entry.draw].origin >= in.params.originCount) {
+    result.fate = kSkipped;
+    return result;
+  }
+  const auto originAt = [](const float* parts, uint32_t i) {
+    return std::pair(vec3(parts[i * 8], parts[i * 8 + 1], parts[i * 8 + 2]),
+                     vec3(parts[i * 8 + 4], parts[i * 8 + 5], parts[i * 8 + 6]));
+  };
+  Draw draw = in.draws[entry.draw];
+  if (in.params.hasOrigins) {
+    const auto [fromHigh, fromLow] = originAt(in.params.cameraOrigins, entry.camera);
+    std::pair<vec3, vec3> own(vec3(0), vec3(0));
+    if (in.params.originCount) own = originAt(in.params.origins, draw.origin);
+    draw = relativeDraw(draw, originFrom(own.first, own.second, fromHigh, fromLow));
+  }
   vec4 clip[3];
   mat4 viewProjection;
   for (int i = 0; i < 16; ++i) viewProjection[i / 4][i % 4] = in.params.viewProjection[entry.camera * 16 + uint(i)];

@@ -68,7 +68,7 @@ shader::Grid gridOf(const shader::Params& params, uint32_t camera = 0);
 TwinResult sampleOnCpu(const TwinInput& input);
 
 /// Method exact. depth: at the pixels' centres; ids: empty. counters.candidates and .pairs have no budget.
-TwinResult sampleExactOnCpu(const TwinInput& input);
+TwinResult sampleExactOnCpu(TwinInput input);
 
 /// Method nearby; what TwinResult::ids shows is standard sampling's.
 TwinResult sampleNearbyOnCpu(const TwinInput& input);
