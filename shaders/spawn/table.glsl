@@ -89,7 +89,6 @@ uint toDescendant(inout Shape s, uint family, Fan fan, uint index, uint maxDepth
   }
 #else
   for (uint i = 0; i < (child.y & kEntrySteps); ++i) {
-    GPGP_TURN;
     const uvec4 row = tableAt(child.x + kStepSize * i);
     const uint op = row.x & kStepOperator;
     if (isStep(op, kOpSubDiv)) {

@@ -2,18 +2,24 @@
 // shown undecided is the same as well.
 #ifndef GPGP_SHADERS_VISIBILITY_TURNS_H
 #define GPGP_SHADERS_VISIBILITY_TURNS_H
+#include "core/turns.h"
 #include "visibility/layout.h"
 
 GPGP_SHADER_BEGIN
 
-/// After so many, what is left of a list is shown. Lavapipe ends a shader's loops silently after 65 535.
-GPGP_CONST uint kMostTurns = 60000u;
-
-/// To go once through a list, an invocation an entry.
-GPGP_FN uint turnsThrough(uint size) { return (size + kBatch - 1u) / kBatch; }
+/// To go once through a list, an invocation an entry; and once round the loop that does so.
+GPGP_FN uint turnsThrough(uint size) { return size / kBatch + 3u; }
+/// At most, as often as a list is gone through up to its next batch: keys of 32 bits are divided by 64 at a time, which
+/// may have to begin again by number; entries are taken each time; and what is left is shown.
+GPGP_CONST uint kMostPasses = 17u;
+/// Whether a list could take more turns than there are before another batch is decided, so that what is left of it is
+/// shown. turns: of it so far.
+GPGP_FN bool takesTooLong(uint turns, uint size) {
+  return turns + kMostPasses * turnsThrough(size) > kDeviceTurns - 512u - 2048u; // a batch, and what each list takes
+}
 
 /// At most, to decide a batch: each entry may be doubtful, and all others may hide it.
-GPGP_FN uint turnsOfBatch(uint n) { return n * (n + 3u) + 64u; }
+GPGP_FN uint turnsOfBatch(uint n) { return n * (n + 6u) + 64u; }
 
 GPGP_SHADER_END
 #endif

@@ -161,6 +161,11 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   if (sorted.size() <= kBatch) return take(0, sorted.size());
   const auto size = static_cast<uint32_t>(sorted.size());
   uint32_t turns = turnsThrough(size);
+  const auto show = [&](size_t first) {
+    for (const Sorted& entry : Batch(sorted).subspan(first))
+      bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
+  };
+  if (takesTooLong(turns, size)) return show(0);
   // Decides entries from `first` on; false where that takes too long, and what is left is shown.
   const std::function<bool(size_t, Batch, KeyOf)> decide = [&](size_t first, Batch rest, KeyOf keyOf) {
     for (uint32_t low = keyOf(rest.front()); !rest.empty() && isOpen();) {
@@ -173,9 +178,8 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
         if (!decide(first, rest.first(n), idOf)) return false;
       } else {
         turns += turnsOfBatch(std::min(n, kBatch));
-        if (n > kBatch || turns > kMostTurns) {
-          for (const Sorted& entry : Batch(sorted).subspan(first))
-            bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
+        if (n > kBatch || takesTooLong(turns, size)) {
+          show(first);
           return false;
         }
         take(first, n);
