@@ -99,6 +99,8 @@ Fit fitOf(const core::Device& device, const KernelInfo& info, bool uneven) {
 constexpr uint32_t kLeastBatches = 16, kBatchGroups = 64, kStepGroups = 16, kBatchAxioms = 512;
 constexpr const char* kTooManyTurns = "one shape of this grammar takes some %u turns of loops, its longest expressions "
                                       "once for each of its successors; this device gives a shader %u";
+/// Turns of loops for a chain from which on few shapes are all that a workgroup has turns for in a round.
+constexpr uint32_t kLongTurns = 4096;
 /// Where devices do not count turns: a step counts as so many, a query as what it looks at; after the steps, and after
 /// what queries of one step looked at, others get their turn.
 constexpr uint32_t kStepTurns = 32, kMostSteps = 16384, kMostQueried = 4096;
@@ -388,7 +390,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const bool batches = (kernel ? kernel->info : interpreter).target == KernelTarget::software;
   uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
   if (context.device.software) {
-    const uint32_t least = std::min(batches ? kBatchGroups : kStepGroups, maxGroups);
+    const bool isLong = grammar.turns.chain * grammar.turns.passed > kLongTurns;
+    const uint32_t least = std::min(isLong ? maxGroups : batches ? kBatchGroups : kStepGroups, maxGroups);
     maxGroups = std::clamp(info.axiomCount / kBatchAxioms, least, maxGroups);
   }
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;

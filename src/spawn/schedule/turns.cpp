@@ -59,14 +59,15 @@ Turns turnsOf(const Graph& graph) {
     if (node.op == kOpSubDiv && node.division == UINT32_MAX) parts = std::max(parts, node.edgeCount);
     if (node.op >= kOpCompSplit) edges = std::max(edges, node.edgeCount);
   }
-  const uint32_t value = loop(codes);           // evaluate()
-  const uint32_t division = loop(parts, value); // divisionOf()
+  const uint32_t value = loop(codes);                  // evaluate()
+  const uint32_t division = loop(parts, value);        // divisionOf()
+  const uint32_t byWords = 2 * loop(edges) + division; // toChild()
   Turns turns;
-  turns.fan = division + 2 * value + loop(edges);                         // familyFan(), fanOf(): a Repeat, or others
-  turns.child = 2 * loop(edges) + division + loop(kFamilySteps, loop(3)); // toChild(), toDescendant()
-  const uint32_t transform = loop(3, value) + loop(3);                    // and rotationOf()
+  turns.fan = division + 2 * value + loop(edges);      // familyFan(), fanOf(): a Repeat, or others
+  turns.child = byWords + loop(kFamilySteps, loop(3)); // or toDescendant()
+  const uint32_t transform = loop(3, value) + loop(3); // and rotationOf()
   const uint32_t choose = value + 2 * loop(choices, value);
-  turns.passed = 1 + transform + choose + turns.fan + turns.child;
+  turns.passed = 1 + transform + choose + turns.fan + byWords;
   turns.chain = longestChain(graph);
   turns.phases = graph.phases > 0;
   turns.quads = quadsOf(graph);
