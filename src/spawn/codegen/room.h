@@ -9,7 +9,7 @@ namespace gpgp::spawn {
 
 /// What a kernel has code for, in operators, each counted wherever it is inlined, with a share for its expressions and
 /// edges; and where that does not suffice for all, what chains have beside the loop that runs the others.
-constexpr uint32_t kRoom = 1024, kRoomBesideWords = 96;
+constexpr uint32_t kRoom = 512, kRoomBesideWords = 96;
 constexpr uint32_t kLongChain = 24; ///< operators: chains that no shape is brought to are code up to this length
 
 /// What code and expressions of an operator by itself are worth.
