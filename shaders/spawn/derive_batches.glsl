@@ -124,7 +124,9 @@ void main() {
   const uint queued = round == 0 ? 0 : min(rounds[round].shapes, record.maxShapes);
   const uint count = queued + axiomsThere - min(round == 0 ? 0 : axiomsTaken(), axiomsThere);
   startRound(round == 0 ? axioms0 : rounds[round].shapes, round == 0 ? axiomsThere : queued);
-  if (count == 0) return;
+  // What waits is known before the round; that others have taken all of it meanwhile is not: all must have finished for
+  // one to be the last.
+  if (round == 0 ? count == 0 : rounds[round].groupsX == 0) return;
   if (gl_GlobalInvocationID.x == 0) atomicMax(state.rounds, round + 1);
   const uint share = clamp(count / (4 * gl_NumWorkGroups.x), 1, groupSize);
   const bool spreads = count < record.spread && roundsLeft() > 0;

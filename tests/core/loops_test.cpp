@@ -61,7 +61,9 @@ TEST(Loops, AreWholeBelowTheBoundAndElseKnownToHaveEnded) {
         ASSERT_FALSE(m.ended) << "invocation " << i;
       }
     }
-    if (countOf(loops) <= shader::kDeviceTurns) EXPECT_EQ(cut, 0u);
+    if (countOf(loops) <= shader::kDeviceTurns) {
+      EXPECT_EQ(cut, 0u);
+    }
   }
   for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
 }

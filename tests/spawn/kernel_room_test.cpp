@@ -100,7 +100,9 @@ TEST(KernelRoom, GrammarsWithRoomAreCodeAsAWhole) {
   for (const std::string& name : ownGrammarNames()) EXPECT_EQ(sourceOf(ownGrammar(name)).byWords, 0u) << name;
   for (const char* name : {"3d_tree_4_3.pga", "3d_tree_8_3.pga", "balcony.pga", "commercial.pga", "mc_skyscraper.pga",
                            "menger_sponge_3.pga"})
-    if (const auto text = sharedGrammar(name)) EXPECT_EQ(sourceOf(*text).byWords, 0u) << name;
+    if (const auto text = sharedGrammar(name)) {
+      EXPECT_EQ(sourceOf(*text).byWords, 0u) << name;
+    }
 }
 
 TEST(KernelRoom, MessagesSayWhatIsInterpreted) {

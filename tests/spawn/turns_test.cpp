@@ -168,7 +168,7 @@ TEST(Turns, BoundsGrowWithTheGraph) {
   const spawn::Turns many = spawn::turnsOf(graphOf(bake(ladder(60))));
   EXPECT_EQ(few.chain, 2u);
   EXPECT_GE(many.chain, 60u);
-  EXPECT_EQ(few.passed, many.passed);
+  EXPECT_GT(many.passed, few.passed); // as that has expressions
 }
 
 } // namespace
