@@ -118,7 +118,7 @@ std::string ladder(uint32_t steps, const std::string& between = "", const std::s
 }
 
 TEST_F(TurnsTest, ChainsOfChoicesHaveNoTerminalThatTheGrammarHasNot) {
-  make();
+  make({.maxRounds = 64});
   check("k7", bake(fileCase("k7")), axiomsOf(10000));
   check("k30", bake(fileCase("k30")), axiomsOf(1500));
   check("k60", bake(fileCase("k60")), axiomsOf(400));
@@ -132,7 +132,7 @@ TEST_F(TurnsTest, ChainsOfChoicesInEverySchedule) {
 }
 
 TEST_F(TurnsTest, OperatorsBetweenChoicesAndExpressionsInThem) {
-  make();
+  make({.maxRounds = 128});
   const std::string sum = "Exp(ShapeSize(Y) * 2 + ShapeSize(Z) - 1 + ShapeSize(Y) * 3 - ShapeSize(Z) + 0.5 + "
                           "ShapeSize(Z) * 4 - 2 * ShapeSize(Y) + ShapeSeed() * 0)";
   check("long expressions", bake(ladder(60, "Translate(" + sum + ", " + sum + ", " + sum + ") ")), axiomsOf(10000));
@@ -149,10 +149,10 @@ TEST_F(TurnsTest, OperatorsBetweenChoicesAndExpressionsInThem) {
 }
 
 TEST_F(TurnsTest, ManyChildrenOfFewAxioms) {
-  make();
+  make({.maxRounds = 64});
   check("copies",
         bake("axiom Box S;\nterminal A (1, 0);\nterminal B (1, 1);\n"
-             "S = Repeat(X, 0.00002, ADJUST_TO_FILL) IfSizeLess(Y, 1) { A | B };\n"),
+             "S = Repeat(X, 0.0001, ADJUST_TO_FILL) IfSizeLess(Y, 1) { A | B };\n"),
         axiomsOf(3, 2));
 }
 

@@ -419,7 +419,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
       context.device.software ? expansionOf(grammar.turns) : Expansion{shader::kSpawnGroupSize, 1};
   constants.recordsAtOnce = expansion.records;
   if (context.device.software) {
-    if (!limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0))
+    if (!limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr))
       return core::makeError(GPGP_ERROR_UNSUPPORTED, kTooManyTurns, grammar.turns.passed, shader::kDeviceTurns);
   } else {
     constants.steps = kMostSteps * kStepTurns;
@@ -521,8 +521,8 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
         info.fit.groupSize * kSharedBytesEach + 64 > device.maxComputeSharedMemorySize)
       continue;
     shader::SpawnConstants constants{};
-    if (context.device.software &&
-        !limitTurns(constants, grammar.turns, info.fit, info.target == KernelTarget::software ? info.fit.groupSize : 0))
+    if (context.device.software && !limitTurns(constants, grammar.turns, info.fit,
+                                               info.target == KernelTarget::software ? info.fit.groupSize : 0, true))
       continue; // workgroups and stacks that this device has no turns for
     const auto pipeline =
         createComputePipeline({kernel.info.schedule, kernel.spirv(),

@@ -45,7 +45,7 @@ uint32_t quadsOf(const Graph& graph) {
 }
 
 /// Steps of a family from its operator to a child (codegen/table.cpp), the choices among them included, at most.
-constexpr uint32_t kFamilySteps = 24;
+constexpr uint32_t kFamilySteps = 16;
 /// Moving shapes between the stack and elsewhere, and what else a step by itself does: ranks, sums, and the search for
 /// a parent, over 64 invocations in subgroups of at least four.
 constexpr uint32_t kStepTurns = 512, kQueryTurns = 80;
@@ -63,8 +63,9 @@ Turns turnsOf(const Graph& graph) {
   const uint32_t division = loop(parts, value);        // divisionOf()
   const uint32_t byWords = 2 * loop(edges) + division; // toChild()
   Turns turns;
-  turns.fan = division + 2 * value + loop(edges);      // familyFan(), fanOf(): a Repeat, or others
-  turns.child = byWords + loop(kFamilySteps, loop(3)); // or toDescendant()
+  turns.fan = division + 2 * value + loop(edges); // familyFan(), fanOf(): a Repeat, or others
+  turns.child = byWords;
+  turns.family = loop(kFamilySteps);                   // toDescendant()
   const uint32_t transform = loop(3, value) + loop(3); // and rotationOf()
   const uint32_t choose = value + 2 * loop(choices, value);
   turns.passed = 1 + transform + choose + turns.fan + byWords;
@@ -74,7 +75,7 @@ Turns turnsOf(const Graph& graph) {
   return turns;
 }
 
-bool limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup) {
+bool limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup, bool isKernel) {
   constants.operatorTurns = turns.passed;
   constants.mostQueried = 512;
   // Where a shape's operators or children would take more, others get their turn.
@@ -85,8 +86,8 @@ bool limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& fit, u
   uint32_t beyond = 0; // what may come after a workgroup has found that it goes on
   if (subgroup) {
     const uint32_t rows = fit.stackShapes / subgroup + 2;
-    constants.childTurns = turns.child + 1;
-    constants.batchTurns = turns.passed + turns.fan + 8;
+    constants.childTurns = turns.child + (isKernel ? turns.family : 0) + 1;
+    constants.batchTurns = turns.fan + 32; // and the turn in which the loop over operators finds its end
     constants.childrenAtOnce = std::clamp(mostAtOnce / constants.childTurns, 1u, fit.stackShapes / 8 / subgroup);
     const uint32_t leftRows = 8192;
     constants.mostLeft = leftRows * subgroup;
@@ -96,7 +97,7 @@ bool limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& fit, u
     // Each step counts as the worst one. Queries are counted as they are made, and one has room for as much as all
     // else.
     constants.childTurns = chain + kQueryTurns;
-    constants.batchTurns = kStepTurns + turns.fan + turns.child + chain;
+    constants.batchTurns = kStepTurns + turns.fan + turns.child + turns.family + chain;
     constants.childrenAtOnce = 1;
     const uint32_t leftRows = 512;
     constants.mostLeft = leftRows * fit.groupSize;
