@@ -418,6 +418,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const Expansion expansion =
       context.device.software ? expansionOf(grammar.turns) : Expansion{shader::kSpawnGroupSize, 1};
   constants.recordsAtOnce = expansion.records;
+  constants.one = 1;
   if (context.device.software) {
     if (!limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr))
       return core::makeError(GPGP_ERROR_UNSUPPORTED, kTooManyTurns, grammar.turns.passed, shader::kDeviceTurns);
@@ -427,7 +428,6 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
     constants.chainLength = shader::kMaxChain;
     constants.mostQueried = kMostQueried;
     constants.mostLeft = UINT32_MAX;
-    constants.one = 1;
   }
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
