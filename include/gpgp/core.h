@@ -461,7 +461,7 @@ typedef struct GpgpRecordInfo {
 /** Common part of every report; each service's report struct embeds it as `base`. A worker keeps the last
  *  maxFramesInFlight x maxRecordsPerFrame reports; older ones that nobody took are dropped with a warning. */
 typedef struct GpgpReportHeader {
-  GpgpResult status; /**< SUCCESS, BUDGET_EXCEEDED or NOT_EXECUTED */
+  GpgpResult status; /**< SUCCESS, BUDGET_EXCEEDED, NOT_EXECUTED; ERROR_UNSUPPORTED: the device ended loops early */
   uint64_t tag;
   uint64_t frame;
 } GpgpReportHeader;

@@ -3,11 +3,8 @@
 #include "spawn/colliders.glsl"
 uint linkedColliders() { return rounds[firstRound].linked; }
 
-/// What queries of one step may look at before the rest waits for another; a query looks at all that it has to.
-const uint kMostSpent = 4096;
-/// What is as much work as another step.
-const uint kSpentStep = 32;
-shared uint mostSpent; // by an invocation in this step
+uint spentOnQueries, chainsMade; // by the invocation in this step
+shared uint spentInStep;           // turns of an invocation's or a subgroup's loops in this step
 
 /// To the queue for later phases.
 void waitForPhase(Shape s) {
@@ -33,12 +30,13 @@ void registerCollider(inout Shape s) {
   s.axiom = kColliderLink | i;
 }
 
-/// runChain and what it leaves to its caller.
+/// runChain and what it leaves to its caller. A query looks at all that it has to.
 uint runContext(inout Shape s, bool arrives) {
   uint spent = 0;
   uint end = kEndWaits;
-  for (uint chains = 0; chains < kMaxChain && spent < kMostSpent; ++chains) {
+  for (uint chains = 0; chains < kMaxChain && spent < record.mostQueried; ++chains) {
     end = runChain(s, arrives && chains == 0, record.maxDepth);
+    chainsMade = chains + 1;
     if (end != kEndContext) break;
     end = kEndWaits;
     if (graphWords[s.node + kNodeArgument2] > phase) {
@@ -56,15 +54,27 @@ uint runContext(inout Shape s, bool arrives) {
     follow(s, edgeTarget(s.node, edge));
   }
   if (end == kEndWaits && s.node == 0) end = kEndDiscarded;
-  if (spent > 0) atomicMax(mostSpent, spent);
+  spentOnQueries = spent;
   return end;
 }
 
-/// How many steps of a workgroup's work the queries of this one were. Colliders of this step can be read after it.
-uint queriedSteps() {
+/// How many turns of loops the chains and queries of this step were. Colliders of this step can be read after it.
+uint queriedTurns() {
+  uint spent = spentOnQueries;
+  if (record.childTurns != 0) { // as the device counts them: invocations look at other colliders, each at its own turns
+#ifdef GPGP_SUBGROUPS
+    spent = 2 * subgroupAdd(spent) + subgroupMax(chainsMade) * record.childTurns;
+#else
+    atomicAdd(spentInStep, 2 * spent + chainsMade * record.childTurns);
+    spent = 0;
+#endif
+  }
+  if (spent > 0) atomicMax(spentInStep, spent);
+  spentOnQueries = 0;
+  chainsMade = 0;
   stackBarrier();
-  const uint steps = mostSpent / kSpentStep;
+  const uint turns = spentInStep;
   barrier();
-  if (laneIndex() == 0) mostSpent = 0;
-  return steps;
+  if (laneIndex() == 0) spentInStep = 0;
+  return turns;
 }

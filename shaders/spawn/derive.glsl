@@ -31,6 +31,8 @@ layout(push_constant) uniform Push {
 layout(push_constant) uniform Push { uint round; };
 #endif
 
+#include "core/turns.h"
+
 #include "spawn/lanes.glsl"
 
 uint stackSize; // of the workgroup; each of its invocations counts along
@@ -129,10 +131,15 @@ void giveAway() {
       atomicMax(rounds[round + 1].groupsX, min(min(base + count, record.maxShapes), record.maxGroups));
     }
   }
-#ifdef GPGP_SOFTWARE // turns count
-  for (uint i = lane; i < fitting; i += groupSize)
-    for (uint plane = 0; plane < kShapePlanes; ++plane)
-      queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
+#ifdef GPGP_SOFTWARE // in a loop for each plane there would be six times as many turns
+  for (uint i = lane; i < fitting; i += groupSize) {
+    queues[target + i] = stacks[stackPlane(0) + i];
+    queues[target + record.maxShapes + i] = stacks[stackPlane(1) + i];
+    queues[target + 2 * record.maxShapes + i] = stacks[stackPlane(2) + i];
+    queues[target + 3 * record.maxShapes + i] = stacks[stackPlane(3) + i];
+    queues[target + 4 * record.maxShapes + i] = stacks[stackPlane(4) + i];
+    queues[target + 5 * record.maxShapes + i] = stacks[stackPlane(5) + i];
+  }
 #else
   for (uint plane = 0; plane < kShapePlanes; ++plane)
     for (uint i = lane; i < fitting; i += groupSize)
@@ -151,9 +158,14 @@ void giveAway() {
 void takeBack() {
   stackBarrier();
   const uint source = nextQueue() + keptAt;
-  for (uint plane = 0; plane < kShapePlanes; ++plane)
-    for (uint i = laneIndex(); i < keptCount; i += groupSize)
-      stacks[stackPlane(plane) + i] = queues[source + 1 + plane * record.maxShapes + i];
+  for (uint i = laneIndex(); i < keptCount; i += groupSize) {
+    stacks[stackPlane(0) + i] = queues[source + 1 + i];
+    stacks[stackPlane(1) + i] = queues[source + 1 + record.maxShapes + i];
+    stacks[stackPlane(2) + i] = queues[source + 1 + 2 * record.maxShapes + i];
+    stacks[stackPlane(3) + i] = queues[source + 1 + 3 * record.maxShapes + i];
+    stacks[stackPlane(4) + i] = queues[source + 1 + 4 * record.maxShapes + i];
+    stacks[stackPlane(5) + i] = queues[source + 1 + 5 * record.maxShapes + i];
+  }
   stackSize = keptCount;
   keptShapes -= keptCount;
   const uvec4 before = queues[source];
@@ -293,6 +305,11 @@ bool isLast(uint answers) {
   return atomicAdd(rounds[round].finished, one) + 1 == gl_NumWorkGroups.x;
 }
 
+/// By one invocation, behind the last loop: where the device has ended loops, what was derived is wrong.
+void sayIfEnded() {
+  if (loopsWereEnded(record.one)) atomicOr(state.ended, 1);
+}
+
 /// All has been derived, or nothing more can be: says how many instances there are. What workgroups have counted was
 /// answered before they said that they have finished. Those of one subgroup write the report as well; where they are
 /// larger, it is copied when they are through, which is no slower there.
@@ -316,7 +333,7 @@ void reportAll() {
     report = SpawnState(terminals, written, atomicAdd(state.peakShapes, 0), atomicAdd(state.droppedShapes, 0),
                         atomicAdd(state.unfinishedShapes, 0), atomicAdd(state.rounds, 0), atomicAdd(state.keyHashX, 0),
                         atomicAdd(state.keyHashY, 0), atomicAdd(state.depth, 0), 0, 0, exceeded,
-                        atomicAdd(state.colliders, 0), 0, 0, 0);
+                        atomicAdd(state.colliders, 0), 0, 0, atomicAdd(state.ended, 0));
 }
 
 /// The first thing that a round does. needed: shapes that wait for it; count: that are there.

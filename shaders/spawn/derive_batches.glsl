@@ -8,9 +8,7 @@
 // invocations, in loops of its own. Invocations go step by step together, and never wait for each other.
 
 const uint kMostWaiting = stackShapes / 2; // more of them go elsewhere
-const uint kMostTurns = stackShapes / 8 / groupSize;
 const uint kMostTerminals = stackShapes < 512 ? stackShapes / 8 : 64; // before they are written
-const uint kMostLeft = 12288 * groupSize; // shapes that one workgroup may leave to the next round
 uint terminalCount; // on the stack
 
 /// Shapes onto the stack, at one of its ends; there is room.
@@ -29,6 +27,9 @@ void stackUp(bool waits, bool ends, Shape s) {
   stackSize += both & 0xffffu;
   terminalCount += both >> 16;
 }
+
+/// Of moving so many shapes of the stack.
+uint turnsOfRows(uint shapes) { return kRowTurns * (shapes / groupSize + 2); }
 
 /// Writes terminals while there are at least so many. Adds them to the hash.
 void writeTerminals(uint least, inout uvec2 hash) {
@@ -96,7 +97,7 @@ void leaveRest(uint queued, uint axiomsThere, uint answers) {
   uint first = 0;
   if (lane == 0) first = min(atomicAdd(rounds[round].taken, 0), queued);
   first = fromFirst(first);
-  const uint until = min(queued, first + kMostLeft);
+  const uint until = min(queued, first + record.mostLeft);
   for (; first < until; first += groupSize) {
     const bool own = first + lane < until;
     Shape s;
@@ -110,6 +111,7 @@ void leaveRest(uint queued, uint axiomsThere, uint answers) {
   if (until < queued) atomicAdd(state.droppedShapes, queued - until);
   if (axiomsLeft > 0 && roundsLeft() == 0) atomicAdd(rounds[round + 1].shapes, axiomsLeft); // dropped
   if (axiomsLeft > 0 && roundsLeft() > 0) atomicMax(rounds[round + 1].groupsX, record.maxGroups);
+  sayIfEnded();
   if (record.reports != 0 && (round + 1 == record.rounds ||
                               (axiomsLeft == 0 && atomicAdd(rounds[round + 1].shapes, 0) == 0)))
     reportAll();
@@ -122,7 +124,9 @@ void main() {
   const uint queued = round == 0 ? 0 : min(rounds[round].shapes, record.maxShapes);
   const uint count = queued + axiomsThere - min(round == 0 ? 0 : axiomsTaken(), axiomsThere);
   startRound(round == 0 ? axioms0 : rounds[round].shapes, round == 0 ? axiomsThere : queued);
-  if (count == 0) return;
+  // What waits is known before the round; that others have taken all of it meanwhile is not: all must have finished for
+  // one to be the last.
+  if (round == 0 ? count == 0 : rounds[round].groupsX == 0) return;
   if (gl_GlobalInvocationID.x == 0) atomicMax(state.rounds, round + 1);
   const uint share = clamp(count / (4 * gl_NumWorkGroups.x), 1, groupSize);
   const bool spreads = count < record.spread && roundsLeft() > 0;
@@ -138,18 +142,18 @@ void main() {
   uvec2 hash = uvec2(0);
   uint depth = 0;
   uint unfinished = 0;
-  for (uint made = 0; made < mostTurns;) { // turns of loops
+  for (uint made = 0; made < mostTurns;) { // turns of loops, as the device counts them (core/turns.h) or more
     if (stackSize >= enough) {
-      made += 6 * stackSize / groupSize;
+      made += turnsOfRows(stackSize);
       giveMost();
     }
     if (stackSize == 0 && keptCount > 0) {
-      made += 6 * keptCount / groupSize;
+      made += turnsOfRows(keptCount);
       takeBack();
     }
     if (stackSize == 0 && !takeMore(share, queued, axiomsThere)) break;
     do {
-      loopTurns = 0;
+      operatorsPassed = 0;
       const uint batch = min(stackSize, groupSize);
       stackSize -= batch;
       Shape parent;
@@ -167,7 +171,7 @@ void main() {
         if (fan.extent < 0.0f) atomicAdd(state.droppedShapes, 1);
         fan.count -= parent.made;
       }
-      const uint turns = min(subgroupMax(fan.count), kMostTurns);
+      const uint turns = min(subgroupMax(fan.count), record.childrenAtOnce);
       const uint first = parent.made;
       parent.made += turns;
       stackUp(fan.count > turns, end == kEndTerminal, parent); // the children behind these turns come later
@@ -183,8 +187,9 @@ void main() {
         }
         stackUp(end == kEndWaits, end == kEndTerminal, s);
       }
-      made += subgroupMax(loopTurns) + 2 * turns + 4;
+      made += subgroupMax(operatorsPassed) * record.operatorTurns + turns * record.childTurns + record.batchTurns;
     } while (stackSize > 0 && stackSize < enough && terminalCount < kMostTerminals && made < mostTurns);
+    made += kWriteTurns * (terminalCount / groupSize + 1);
     writeTerminals(groupSize, hash);
   }
   writeTerminals(1, hash);
@@ -200,5 +205,6 @@ void main() {
     if ((hash.x | hash.y) != 0) answers |= atomicAdd(state.keyHashX, hash.x) | atomicAdd(state.keyHashY, hash.y);
     if (unfinished > 0) answers |= atomicAdd(state.unfinishedShapes, unfinished);
   }
+  if (loopsWereEnded(record.one) && lane == 0) answers |= atomicOr(state.ended, 1);
   leaveRest(queued, axiomsThere, answers);
 }

@@ -19,11 +19,15 @@ void leaveRest(uint count, uint answers) {
   uint last = 0;
   if (lane == 0 && isLast(answers)) last = 1;
   if (fromFirst(last) == 0) return;
-  for (;;) {
+  for (uint left = 0;; left += groupSize) {
     uint first = 0;
     if (lane == 0) first = atomicAdd(rounds[round].taken, groupSize);
     first = fromFirst(first);
     if (first >= count) break;
+    if (left >= record.mostLeft) {
+      if (lane == 0) atomicAdd(state.droppedShapes, count - first);
+      break;
+    }
     const uint rest = min(count - first, groupSize);
     Shape s;
     if (lane < rest) {
@@ -35,6 +39,7 @@ void leaveRest(uint count, uint answers) {
     push(lane < rest, lane, rest, s);
   }
   if (stackSize > 0) giveAway();
+  if (lane == 0) sayIfEnded();
   if (lane == 0 && record.reports != 0 &&
       (round + 1 == record.rounds || atomicAdd(rounds[round + 1].shapes, 0) == 0))
     reportAll();
@@ -100,7 +105,7 @@ void main() {
     deepest = 0;
     unfinishedShapes = 0;
 #ifdef GPGP_COLLIDERS
-    mostSpent = 0;
+    spentInStep = 0;
 #endif
   }
   barrier();
@@ -116,7 +121,7 @@ void main() {
   bool fetched = false; // axioms, which are made of nothing
   uint first = 0;
   uint batches = 0;
-  for (uint step = 0; step < record.steps || made < total; ++step) {
+  for (uint turns = 0; turns < record.steps || made < total; turns += record.batchTurns) {
     if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
       total = 0;
       made = 0;
@@ -225,7 +230,7 @@ void main() {
     }
     made += batch;
 #ifdef GPGP_COLLIDERS
-    step += queriedSteps();
+    turns += queriedTurns();
 #endif
     uint leaving;
     const uint places = ranksOf(end == kEndTerminal, end == kEndWaits, leaving);
@@ -249,7 +254,8 @@ void main() {
   push(waits, place, rest, s);
 
   uint answers = 0;
-  if (oneSubgroup) answers = addCounts(hash, depth, unfinished);
+  if (loopsWereEnded(record.one)) answers |= atomicOr(state.ended, 1);
+  if (oneSubgroup) answers |= addCounts(hash, depth, unfinished);
   leaveRest(count, answers);
   if (!oneSubgroup) addCounts(hash, depth, unfinished);
 }

@@ -16,6 +16,7 @@
 #include "spawn/bindings.glsl"
 layout(set = 0, binding = 11, std430) writeonly buffer VertexWords { uint vertexWords[]; }; // the same as vertices
 
+#include "core/turns.h"
 #include "spawn/mesh.h"
 #include "spawn/shape.h"
 
@@ -179,9 +180,10 @@ void main() {
   const uint lane = laneIndex();
   const uint kept = min(state.terminals, record.maxTerminals);
   const uint indexWords = record.indexWords;
-  for (uint batch = gl_WorkGroupID.x * groupSize; batch < kept; batch += gl_NumWorkGroups.x * groupSize) {
+  const uint each = record.recordsAtOnce;
+  for (uint batch = gl_WorkGroupID.x * each; batch < kept; batch += gl_NumWorkGroups.x * each) {
     barrier(); // the last ones have been read
-    const uint all = stageRecords(batch + lane, batch + lane < kept, lane);
+    const uint all = stageRecords(batch + lane, lane < each && batch + lane < kept, lane);
     for (uint block = 0; block < 4 * all; block += groupSize) {
       const uint vertex = block + lane;
       uint place = kNoPlace; // of the vertex, in the buffer
@@ -225,4 +227,5 @@ void main() {
           indexWord(indexWords, places.y, i - quad * indexWords);
     }
   }
+  if (loopsWereEnded(record.one)) atomicOr(state.ended, 1);
 }

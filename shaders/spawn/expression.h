@@ -60,7 +60,6 @@ GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at) {
   uint depth = 0u;
   uint next = value;
   for (uint code = graphWords[next]; code != kCodeEnd; code = graphWords[next]) {
-    GPGP_TURN;
     next += 1u;
     if (code == kCodeNumber) {
       stack[depth] = uintBitsToFloat(graphWords[next]);

@@ -38,7 +38,6 @@ GPGP_FN Division divisionOf(GPGP_GRAPH Shape s, uint wanted) {
   uint weightedParts = 0u;
   d.part.fixedBefore = 0.0f;
   for (uint i = 0u; i < count; ++i) {
-    GPGP_TURN;
     const float v = parameter(GPGP_G s, i);
     const uint bit = edgeTarget(GPGP_G s.node, i) != 0u ? 1u << i : 0u;
     if (i == wanted) {
@@ -102,7 +101,6 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
   }
   const uint count = graphWords[s.node + kNodeEdgeCount];
   for (uint i = 0u; i < count; ++i) {
-    GPGP_TURN;
     if (edgeTarget(GPGP_G s.node, i) != 0u) fan.successors |= 1u << i;
   }
   fan.count = uint(bitCount(fan.successors));

@@ -22,8 +22,11 @@ struct SpawnState {
   uint colliders; // those that did not fit included
   uint waiting;   // shapes for later phases, those that did not fit included; they stay where they are
   uint levels;    // bit set of those that colliders are linked in
-  uint reserved;
+  uint ended;     // 1: the device has ended loops before their time (core/turns.h), and what was derived is wrong
 };
+GPGP_CONST uint kRowTurns = 2u;    // of moving a shape for each invocation of a batch
+GPGP_CONST uint kWriteTurns = 24u; // of writing a terminal for each
+
 // What a workgroup's shapes should grow to in a round that spreads work.
 GPGP_CONST uint kGrowing = 2u; // batches at most,
 GPGP_CONST uint kGrowth = 16u; // or else, and at least, so many times
@@ -48,7 +51,7 @@ struct SpawnConstants {
   uint maxGroups;         // workgroups of a round at most
   uint maxDepth;          // recursive edges that a shape may pass
   uint spread;            // shapes that a round should at least begin with: below, workgroups give work away
-  uint steps;             // after which a workgroup leaves its work to the next round
+  uint steps;             // turns of loops after which a workgroup leaves its work to the next round
   uint maxShapes;         // that each queue holds
   uint maxTerminals;      // that the records hold
   uint terminalsTo;       // kTo..., below
@@ -64,6 +67,16 @@ struct SpawnConstants {
   uint balances;          // 1: workgroups give work away as well where most have finished
   uint reports;           // 1: the last workgroup to derive says what was written, and place is left out
   uint readsAxiomCounter; // 1: the engine's buffer says how many axioms there are
+  // What takes how many of `steps` at most (src/spawn/schedule/turns.h).
+  uint chainLength;    // operators that one shape passes before others get their turn
+  uint childrenAtOnce; // that a shape of a batch becomes before others get their turn
+  uint operatorTurns;  // of an operator that is passed by the graph's words
+  uint batchTurns;     // of a batch beside its operators and children, or of a step, queries aside
+  uint childTurns;     // of one more child, or of a chain up to a Collider or IfCollides; 0: turns are not counted
+  uint mostQueried;    // what queries of one step may look at before the rest waits for another
+  uint mostLeft;       // shapes that the last workgroup of a round leaves to the next one
+  uint recordsAtOnce;  // that a workgroup makes vertices of, at most kSpawnGroupSize
+  uint one;            // 1, which no compiler knows
 };
 
 // What becomes of terminals.

@@ -36,7 +36,6 @@ GPGP_FN Rotation rotationOf(vec3 degrees) {
   vec3 sines = vec3(0.0f);
   vec3 cosines = vec3(1.0f);
   for (uint i = 0u; i < 3u; ++i) {
-    GPGP_TURN;
     const float angle = component(degrees, i);
     if (angle == 0.0f) continue;
     const vec2 both = sineCosineDegrees(angle);
@@ -253,7 +252,6 @@ GPGP_FN void toFace(GPGP_GRAPH GPGP_INOUT(Shape) s, uint number) {
 /// The place of the n-th set bit.
 GPGP_FN uint selectBit(uint bits, uint n) {
   for (uint i = 0u; i < n; ++i) {
-    GPGP_TURN;
     bits &= bits - 1u;
   }
   return uint(findLSB(bits));

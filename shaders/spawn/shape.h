@@ -8,13 +8,8 @@
 #include "core/random.h"
 #include "spawn/graph_format.h"
 
-// Stands in each loop whose turns the graph decides. Compilers of software devices allow a kernel a number of turns, so
-// that there it has to count them.
 #ifdef GPGP_SOFTWARE
-uint loopTurns; // of the invocation
-#define GPGP_TURN ++loopTurns
-#else
-#define GPGP_TURN
+uint operatorsPassed; // by the invocation, where the device counts turns of loops (src/spawn/schedule/turns.h)
 #endif
 
 GPGP_SHADER_BEGIN

@@ -40,11 +40,17 @@ void transformBy(inout Shape s, uint frame, uint flags) {
     Rotation r;
     r.c0 = unpackVector(tableAt(rotation));
     r.c1 = unpackVector(tableAt(rotation + 1u));
-    if (hasFrame(flags, kFrameTurned))
-      r = rotationOf(vec3(add(r.c0.x, multiply(r.c1.x, seed)), add(r.c0.y, multiply(r.c1.y, seed)),
-                          add(r.c0.z, multiply(r.c1.z, seed))));
-    else
+    if (hasFrame(flags, kFrameTurned)) {
+      const vec3 angles = vec3(add(r.c0.x, multiply(r.c1.x, seed)), add(r.c0.y, multiply(r.c1.y, seed)),
+                               add(r.c0.z, multiply(r.c1.z, seed)));
+#ifdef GPGP_SOFTWARE // which counts turns of loops
+      r = rotationOfAngles(sineCosineDegrees(angles.x), sineCosineDegrees(angles.y), sineCosineDegrees(angles.z));
+#else
+      r = rotationOf(angles);
+#endif
+    } else {
       r.c2 = unpackVector(tableAt(rotation + 2u));
+    }
     rotate(s, r);
   }
 }
@@ -89,7 +95,6 @@ uint toDescendant(inout Shape s, uint family, Fan fan, uint index, uint maxDepth
   }
 #else
   for (uint i = 0; i < (child.y & kEntrySteps); ++i) {
-    GPGP_TURN;
     const uvec4 row = tableAt(child.x + kStepSize * i);
     const uint op = row.x & kStepOperator;
     if (isStep(op, kOpSubDiv)) {

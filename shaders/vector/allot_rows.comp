@@ -6,9 +6,10 @@
 // do not suffice, allot.comp deals them out again.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
+#include "ended.glsl"
 #include "pieces.glsl"
 layout(local_size_x = 64) in;
-const uint kMostPieces = 7000; // of a row, as lavapipe ends a shader's loops after 65 535 turns
+const uint kMostPieces = 7000; // of a row: invocations that run together take as many together (core/turns.h)
 
 void main() {
   const uint total = min(counters.words, header.wordLimit);
@@ -45,4 +46,5 @@ void main() {
       next += bitCount(words[w].edges);
     }
   }
+  sayIfEnded();
 }

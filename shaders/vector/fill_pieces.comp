@@ -8,14 +8,14 @@
 // cost more if they were left out; what is rare waits until several need it.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
+#include "ended.glsl"
 #include "lanes.glsl"
 #include "run.glsl"
 #include "pieces.glsl"
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 15, std430) buffer Entries { uint entries[]; };
 const uint kIdle = 2; // invocations that wait for work before it is looked for
-// Turns after which an invocation takes no more rows, or gives up: two loops count them, and lavapipe ends a shader's
-// loops after 65 535.
+// Turns after which an invocation takes no more rows, or gives up. The device counts them in two loops (core/turns.h).
 const uint kManyTurns = 20000, kMostTurns = 30000;
 
 const uint kNone = ~0u; // no word of an entry
@@ -149,6 +149,7 @@ void main() {
     } while (countOf(!busy) < enough && turns < kMostTurns);
     if (turns >= kMostTurns) {
       withoutLists();
+      sayIfEnded();
       return;
     }
   }
@@ -158,4 +159,5 @@ void main() {
   }
   if (turns >= kManyTurns && gl_WorkGroupID.x + 1 == gl_NumWorkGroups.x && counters.rowsTaken < rowCount)
     withoutLists();
+  sayIfEnded();
 }

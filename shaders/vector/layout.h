@@ -211,7 +211,8 @@ struct CanvasCounters {
   uint stamped;                // entries of small glyphs, behind the others
   uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
   uint rowsTaken;              // of tiles, by fill on software devices
-  uint pad0, pad1, pad2;
+  uint ended;                  // 1: the device has ended loops before their time (core/turns.h)
+  uint pad1, pad2;
 };
 
 // A chord between mark and fill.

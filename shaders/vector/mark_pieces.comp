@@ -7,6 +7,7 @@
 // until as many as possible have something for them.
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
+#include "ended.glsl"
 #include "lanes.glsl"
 #include "pieces.glsl"
 #define SEGMENTS_ONLY 1
@@ -191,4 +192,5 @@ void main() {
     atomicMax(counters.rows, header.rowLimit + 1);
     fillWithoutLists();
   }
+  sayIfEnded();
 }

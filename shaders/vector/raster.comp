@@ -10,6 +10,9 @@
 #include "canvas.glsl"
 #include "composite.glsl"
 #include "lists.glsl"
+#if CROWDED
+#include "ended.glsl"
+#endif
 const uint kRoom = kTileSize * kTileSize;
 layout(local_size_x = kRoom) in;
 #include "scan.glsl"
@@ -157,6 +160,9 @@ void main() {
     }
   }
   finishPixel();
+#if CROWDED
+  sayIfEnded();
+#endif
 #if ASIDE
   aside[groupIndex() * kRoom + lane] = sum;
 #else

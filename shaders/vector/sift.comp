@@ -8,11 +8,13 @@
 #extension GL_GOOGLE_include_directive : require
 #include "canvas.glsl"
 layout(local_size_x = 64) in;
+#include "ended.glsl"
 #include "lists.glsl"
 #include "color.h"
-// lavapipe ends all loops of a shader after 65 535 turns, of which invocations that run together (8) take as many as
-// all of them where they differ. Tiles of rows that would take more are crowded.
+// Tiles of rows that would take more are crowded. A step takes the device up to four turns of loops (core/turns.h), and
+// invocations that run together are mostly of one bin, so that they take their steps together.
 const uint kMaxSteps = 6000;
+const uint kMaxWords = 16384; // of the bin, that are looked through
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
 
@@ -41,6 +43,10 @@ void main() {
   uint open = (1u << width) - 1, full = 0, painted = 0, soft = 0, rich = 0, steps = 0;
   for (uint word = header.pathWords; word > 0 && open != 0; --word) {
     ++steps;
+    if (header.pathWords - word >= kMaxWords) {
+      full |= open;
+      break;
+    }
     for (uint rest = bins[bits + word - 1]; rest != 0 && open != 0;) {
       if (++steps > kMaxSteps) {
         full |= open;
@@ -152,4 +158,5 @@ void main() {
       binVectors[list / 4 + 2] = floatBitsToUint(targetColor(sum, header.flags));
     }
   }
+  sayIfEnded();
 }

@@ -70,6 +70,8 @@ void showAll(Rest rest) {
 
 /// Draws the entries up to a key; false where that takes too long.
 bool drawUpTo(inout Rest rest, uint high, ivec2 pixel, int firstRow) {
+  rest.turns += turnsOfDraws(sizeOf(rest));
+  if (tookTooLong(rest.turns, sizeOf(rest))) return false;
   for (uint begin = rest.begin; begin < rest.end; begin += kBatch) {
     uint i = begin + laneOf();
     uvec2 own = uvec2(0u);
@@ -82,12 +84,11 @@ bool drawUpTo(inout Rest rest, uint high, ivec2 pixel, int firstRow) {
       uvec2 entry = fromLane(own, uint(findLSB(left)));
       Candidate c = readCandidate(entry.x);
       rest.turns += turnsOfDrawing(triangleOf(c));
-      if (rest.turns > kMostTurns) return false;
+      if (tookTooLong(rest.turns, sizeOf(rest))) return false;
       drawHalfRow(c, entry.y, pixel, firstRow);
     }
   }
-  rest.turns += turnsThrough(sizeOf(rest));
-  return rest.turns <= kMostTurns;
+  return true;
 }
 
 /// Decides 16 rows; false where that takes too long.
@@ -96,8 +97,10 @@ bool resolveRows(inout Rest rest, ivec2 pixel, int firstRow) {
     nearestKeys[placeOf(column)] = kFarthest;
     nearestIds[placeOf(column)] = kNoTriangle;
   }
+  rest.turns += kTurnsOfRows;
   rest.low = rest.nearest;
   while (true) {
+    if (takesTooLong(rest.turns, sizeOf(rest))) return false;
     uint high = lastKey(rest);
     sync();
     if (!drawUpTo(rest, high, pixel, firstRow)) return false;

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+#include "visibility/ended.glsl"
 #include "visibility/lists.glsl"
 #include "visibility/grid.glsl"
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
@@ -58,6 +59,7 @@ void sumUp() {
     sums[lane] += before;
     barrier();
   }
+  sayIfEnded();
 }
 
 void enterTile(uint tile, uint begin, uint middle, uint end) {
@@ -112,8 +114,11 @@ void enterTile(uint tile, uint begin, uint middle, uint end) {
   if (lane == 0u && fits) {
     first.y = atomicAdd(counters.openCount, all_.y);
     first.z = atomicAdd(counters.longCount, all_.z);
-    atomicMax(counters.openArgs[0], min((first.y + all_.y + kListRun - 1u) / kListRun, kMaxGroups));
-    atomicMax(counters.longArgs[0], min(first.z + all_.z, kMaxGroups));
+    uint runs = (first.y + all_.y + kListRun - 1u) / kListRun, lists = first.z + all_.z;
+    atomicMax(counters.openArgs[0], min(runs, kMaxGroups));
+    atomicMax(counters.openArgs[1], (runs + kMaxGroups - 1u) / kMaxGroups);
+    atomicMax(counters.longArgs[0], min(lists, kMaxGroups));
+    atomicMax(counters.longArgs[1], (lists + kMaxGroups - 1u) / kMaxGroups);
   }
   barrier();
   if (n != 0u && fits) {

@@ -242,6 +242,7 @@ struct Counters {
   uint falsePositives;
   uint truthArea[2]; // samples: low word, high word
   uint foundArea[2];
+  uint ended;       // 1: the device has ended loops before their time (core/turns.h)
   uint drawChunks;  // of one camera's draws
   uint chunks;      // of all draws
   uint queueCount;  // triangles that one invocation should not draw alone
@@ -274,8 +275,8 @@ struct Counters {
   uint keptCount; // chunks that may be in sight
   uint keptArgs[3];
 };
-GPGP_CONST uint kCounterWords = 85u;
-GPGP_CONST uint kReportWords = 24u;
+GPGP_CONST uint kCounterWords = 86u;
+GPGP_CONST uint kReportWords = 25u;
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
 GPGP_FN uvec3 listGroups(uint listed) {

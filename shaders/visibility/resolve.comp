@@ -10,6 +10,8 @@
 #include "visibility/layout.h"
 #include "visibility/planes.glsl"
 
+#include "visibility/ended.glsl"
+
 /// Decides lists from one on: as many of `count` as fit, which it returns.
 uint resolveSome(uint first, uint count) {
   uint lane = laneOf();
@@ -75,7 +77,8 @@ uint resolveSome(uint first, uint count) {
 void main() {
   makeColumns();
   uint lists = counters.openCount;
-  for (uint first = gl_WorkGroupID.x * kListRun; first < lists; first += gl_NumWorkGroups.x * kListRun)
-    for (uint done = 0u; done < min(lists - first, kListRun);)
-      done += resolveSome(first + done, min(lists - first, kListRun) - done);
+  uint first = (gl_WorkGroupID.y * kMaxGroups + gl_WorkGroupID.x) * kListRun;
+  for (uint done = 0u; first + done < lists && done < kListRun;)
+    done += resolveSome(first + done, min(lists - first, kListRun) - done);
+  sayIfEnded();
 }

@@ -11,6 +11,8 @@
 #include "visibility/planes.glsl"
 #include "visibility/turns.h"
 
+#include "visibility/ended.glsl"
+
 /// Keys lie as the entries do. Each invocation reads only those that it wrote.
 layout(std430, set = 0, binding = kBindKeys) buffer KeyBuffer { uint depths[]; };
 
@@ -183,7 +185,8 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   rest.byNumber = false;
   rest.depth = 0u;
   uvec4 uncovered = uvec4(0xffffffffu);
-  bool more = true;
+  bool more = !takesTooLong(rest.turns, sizeOf(rest));
+  if (!more) showRest(rest);
   while (more) {
     uint high = lastKey(rest);
     sync();
@@ -194,7 +197,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
       continue;
     }
     rest.turns += turnsOfBatch(min(n, kBatch));
-    if (n > kBatch || rest.turns > kMostTurns) {
+    if (n > kBatch || takesTooLong(rest.turns, sizeOf(rest))) {
       showRest(rest);
       break;
     }
@@ -222,13 +225,14 @@ uint turnOf(uint i, uint lists) {
 void main() {
   makeColumns();
   uint pixels = counters.longCount;
-  for (uint i = gl_WorkGroupID.x; i < pixels; i += gl_NumWorkGroups.x) {
-    uint slot = open[params.pixelCapacity - 1u - turnOf(i, pixels)];
-    uint end = slots[slot];
-    uint begin = end - slots[lengthAt(slot)];
-    ivec2 pixel = pixelOf(slot);
-    if (movesIn(pixel)) resolveLong(begin, end, pixel);
-    else resolveByDepth(begin, end, pixel);
-    sync();
-  }
+  uint i = gl_WorkGroupID.y * kMaxGroups + gl_WorkGroupID.x; // each has turns of its own
+  if (i >= pixels) return;
+  uint slot = open[params.pixelCapacity - 1u - turnOf(i, pixels)];
+  uint end = slots[slot];
+  uint begin = end - slots[lengthAt(slot)];
+  ivec2 pixel = pixelOf(slot);
+  sync();
+  if (movesIn(pixel)) resolveLong(begin, end, pixel);
+  else resolveByDepth(begin, end, pixel);
+  sayIfEnded();
 }

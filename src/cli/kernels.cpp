@@ -1,5 +1,6 @@
 #include "cli/kernels.h"
 
+#include "cli/messages.h"
 #include "cli/processors.h"
 #include "host/files.h"
 #include "spawn/codegen/compile_kernel.h"
@@ -131,6 +132,27 @@ std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<cons
   return kernels;
 }
 
+std::vector<KernelCode> compileOrSay(const spawn::Graph& graph, const spawn::Schedule& schedule,
+                                     std::span<const spawn::KernelTarget> targets, bool matching,
+                                     const std::string& grammar) {
+  const auto source = spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{});
+  const auto say = [&](const char* kind, const std::string& text) {
+    std::fprintf(stderr, "%s\n", printable(grammar + kind + text).c_str());
+  };
+  const bool compiles = spawn::isWorthCompiling(source);
+  if (const std::string remark = spawn::remarkOn(source); !remark.empty())
+    say(compiles ? ": note: " : ": warning: ", remark);
+  std::vector<KernelCode> kernels(targets.size());
+  for (size_t i = 0; compiles && i < targets.size(); ++i) {
+    auto code = spawn::compileKernel(source, targets[i]);
+    if (code)
+      kernels[i] = std::move(*code);
+    else
+      say(": warning: ", spawn::kInterpreted + std::string(code.error().text));
+  }
+  return kernels;
+}
+
 spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, spawn::KernelTarget target) {
   spawn::KernelInfo info;
   info.target = target;
@@ -170,8 +192,10 @@ std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vec
       throw Usage("--schedule " + *forAll + " is for all devices, so " + name +
                   " would never run; one of them, and tuned ones, go into a file");
     forAll = &name;
-    for (const spawn::KernelTarget target : spawn::targetsOf(grammar.graph)) // the first that a device can run is taken
-      append(kernelInfo(*schedule, target), compileKernels(grammar.graph, std::span(&*schedule, 1), target, false)[0]);
+    const auto targets = spawn::targetsOf(grammar.graph); // the first that a device can run is taken
+    const auto kernels = compileOrSay(grammar.graph, *schedule, targets, false, joined(files));
+    for (size_t i = 0; i < targets.size(); ++i)
+      if (!kernels[i].empty()) append(kernelInfo(*schedule, targets[i]), kernels[i]);
   }
   return all;
 }

@@ -49,6 +49,12 @@ using KernelCode = std::vector<uint32_t>; ///< as spawn::Kernel::code
 std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules,
                                        spawn::KernelTarget target, bool matching);
 
+/// The kernels of a schedule for kinds of devices. Messages say what of them is interpreted, and where one cannot be
+/// compiled, which is empty then. grammar: its name in messages.
+std::vector<KernelCode> compileOrSay(const spawn::Graph& graph, const spawn::Schedule& schedule,
+                                     std::span<const spawn::KernelTarget> targets, bool matching,
+                                     const std::string& grammar);
+
 /// What a kernel says of itself, for any device and number of axioms.
 spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, spawn::KernelTarget target);
 /// As it stands in a file behind the graph.

@@ -84,7 +84,9 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
       throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
                   name + "\"");
     if (schedule->roots.empty()) matchesNothing(options, "the default schedule, which is no partition");
-    const auto code = compileKernels(grammar.graph, std::span(&*schedule, 1), target, options.matching == "on");
+    const auto code = compileOrSay(grammar.graph, *schedule, std::span(&target, 1), options.matching == "on",
+                                   joined(options.grammars));
+    if (code[0].empty()) return {{}, "interpreter", {}, schedule->groups};
     return {kernelWords(grammar, kernelInfo(*schedule, target), code[0]), schedule->name, {}, schedule->groups};
   }
   const auto kernel = kernelFor(kernelsIn(name, grammar), session.device(), count);
@@ -208,7 +210,9 @@ std::string exceededBudgets(const GpgpSpawnReport& report, uint32_t tooMany, con
 
 /// As if it had been one record.
 void add(GpgpSpawnReport& sum, const GpgpSpawnReport& record) {
-  sum.base.status = std::max(sum.base.status, record.base.status);
+  if (sum.base.status >= GPGP_SUCCESS) // an error stays one
+    sum.base.status =
+        record.base.status < GPGP_SUCCESS ? record.base.status : std::max(sum.base.status, record.base.status);
   for (const auto member :
        {&GpgpSpawnReport::terminals, &GpgpSpawnReport::instancesWritten, &GpgpSpawnReport::droppedShapes,
         &GpgpSpawnReport::unfinishedShapes, &GpgpSpawnReport::vertices, &GpgpSpawnReport::verticesWritten,
@@ -364,6 +368,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     writeGlb(
         options.out, corners, [&](uint32_t bucket) { return bucketNames[bucket]; }, colour);
   }
+  if (report.base.status < GPGP_SUCCESS)
+    throw Failure(joined(options.grammars) + ": " + statusName(report.base.status) +
+                  ": the device ended loops of a shader before their time, and what it derived is wrong");
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
   const bool whole = !report.droppedShapes && report.collidersKept == report.colliders &&
                      report.unfinishedShapes == reference.result.unfinishedShapes;

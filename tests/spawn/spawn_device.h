@@ -22,6 +22,7 @@ public:
     spawner.base.queueFamily = device_.graphics().family;
     spawner.maxShapes = budgets.maxShapes;
     spawner.maxColliders = budgets.maxColliders;
+    spawner.maxRounds = budgets.maxRounds;
     EXPECT_EQ(gpgpCreateSpawner(context_, &spawner, &spawner_), GPGP_SUCCESS);
     EXPECT_EQ(gpgpPrewarm(spawner_, nullptr), GPGP_SUCCESS);
   }
@@ -33,8 +34,9 @@ public:
   SpawnDevice(const SpawnDevice&) = delete;
   SpawnDevice& operator=(const SpawnDevice&) = delete;
 
-  /// Uploads the grammar and derives once.
-  GpgpSpawnReport derive(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity) {
+  /// Uploads the grammar and derives once. written: gets the instances.
+  GpgpSpawnReport derive(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, uint32_t capacity,
+                         std::vector<GpgpInstance>* written = nullptr) {
     GpgpGrammarCreateInfo grammarInfo = GPGP_GRAMMAR_CREATE_INFO_INIT;
     grammarInfo.data = words.data();
     grammarInfo.size = words.size() * sizeof(uint32_t);
@@ -57,6 +59,7 @@ public:
     advance();
     GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
     EXPECT_EQ(gpgpGetSpawnReport(spawner_, &report), GPGP_SUCCESS);
+    if (written) *written = host::download<GpgpInstance>(device_, instances, report.instancesWritten);
     gpgpDestroyAsset(grammar);
     return report;
   }

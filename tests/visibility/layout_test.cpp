@@ -89,7 +89,7 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, longArgs);
     EXPECT_OFFSET(offsets, Counters, keptArgs);
   }
-  EXPECT_EQ(offsetof(shader::Counters, foundArea) + 8, shader::kReportWords * 4);
+  EXPECT_EQ(offsetof(shader::Counters, ended) + 4, shader::kReportWords * 4);
 }
 
 TEST(Layout, TheEnginesStructsAreTheShaders) {

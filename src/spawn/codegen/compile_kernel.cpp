@@ -1,6 +1,7 @@
 #include "spawn/codegen/compile_kernel.h"
 
 #include "shaders/spawn_kernel_sources.h"
+#include "spawn/codegen/large_stack.h"
 
 #include <glslang/Include/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
@@ -67,7 +68,8 @@ std::span<const KernelTarget> targetsOf(const Graph& graph) {
   return std::span(kTargets).subspan(graph.phases ? 1 : 0);
 }
 
-core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, KernelTarget target) {
+namespace {
+core::Result<std::vector<uint32_t>> compile(const KernelSource& source, KernelTarget target) {
   static const Process process;
   static const TBuiltInResource limits = resources();
   const std::string text = kernelText(source.functions, target);
@@ -105,6 +107,21 @@ core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, Ke
   code.insert(code.end(), source.table.begin(), source.table.end());
   code.insert(code.end(), optimized.begin(), optimized.end());
   return code;
+}
+} // namespace
+
+core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, KernelTarget target) {
+  core::Result<std::vector<uint32_t>> code = core::makeError(GPGP_ERROR_UNSUPPORTED, "no thread to compile the kernel");
+  onLargeStack([&] { code = compile(source, target); });
+  return code;
+}
+
+std::string remarkOn(const KernelSource& source) {
+  if (!source.byWords) return {};
+  return std::to_string(source.byWords) +
+         (isWorthCompiling(source) ? " operators of long chains are interpreted: kernels have no room for them"
+                                   : " operators are of chains that kernels have no room for: this grammar is "
+                                     "interpreted, and has no kernel");
 }
 
 } // namespace gpgp::spawn

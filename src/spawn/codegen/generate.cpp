@@ -1,5 +1,6 @@
 #include "spawn/codegen/generate.h"
 
+#include "spawn/codegen/room.h"
 #include "spawn/codegen/table.h"
 #include "spawn/graph/matching.h"
 #include "spawn/operators.h"
@@ -25,14 +26,17 @@ std::string literal(float value) {
 }
 std::string number(uint32_t value) { return std::to_string(value) + "u"; }
 
-constexpr uint32_t kLongChain = 24; // operators
-
 class Generator {
 public:
   Generator(const Graph& graph, const std::vector<bool>& waits, const Roots& roots)
       : graph_(graph), waits_(waits), stops_(waits), peers_(graph.nodes.size()), row_(graph.nodes.size()),
-        group_(graph.nodes.size(), kNoGroup), length_(graph.nodes.size()), table_(makeTable(graph, waits)) {
-    for (uint32_t n = 0; n < graph.nodes.size(); ++n) peers_[n] = {n};
+        group_(graph.nodes.size(), kNoGroup), table_(makeTable(graph, waits)) {
+    uint64_t choices = 0;
+    for (uint32_t n = 0; n < graph.nodes.size(); ++n) {
+      peers_[n] = {n};
+      if (table_.chooses[n]) choices += weightOf(graph, graph.nodes[n]);
+    }
+    if (choices > kRoom) table_ = makeTable(graph, waits, false);
     for (const Edge& edge : graph.edges)
       if (edge.recursive && edge.target != kNoNode) stops_[edge.target] = true;
     if (!roots.empty()) match(roots);
@@ -40,24 +44,30 @@ public:
 
   KernelSource run() {
     if (graph_.phases) add("#define GPGP_COLLIDERS\n");
+    std::vector<uint32_t> first;
+    for (const std::vector<uint32_t>& peers : peers_) first.push_back(peers[0]);
+    room_ = findRoom(graph_, waits_, first, entered(), table_.chooses);
     writeParameters();
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
       if (table_.family[indexOf(node)]) continue;
-      const bool byWords = node.op >= kOpCompSplit && (node.division == UINT32_MAX || stops_[indexOf(node)]);
+      const bool byWords =
+          node.op >= kOpCompSplit && (room_.words || node.division == UINT32_MAX || stops_[indexOf(node)]);
       if (!multiplies(node) && !byWords) continue;
       operators |= 1u << node.op;
       if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= 1u << 30;
       if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= 1u << 31;
     }
     add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/fans.h\"\n");
+    if (room_.words) add("#include \"spawn/chain.h\"\n");
     writeTable();
     std::vector<uint8_t> written(graph_.nodes.size());
     const std::string before = std::move(out_);
     out_.clear();
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) writeChain(n, written);
     writeRunChain();
-    return {before + tables() + out_, std::move(table_.words)};
+    return {before + tables() + out_, std::move(table_.words), static_cast<uint32_t>(graph_.nodes.size()),
+            room_.byWords};
   }
 
 private:
@@ -129,10 +139,6 @@ private:
   /// As nodes appear in Shape::node: their offset among the baked words.
   static uint32_t offsetOf(uint32_t node) { return kHeaderSize + node * kNodeSize; }
   const Edge& edgeOf(const Node& node, uint32_t index) const { return graph_.edges[node.firstEdge + index]; }
-  bool isChain(uint32_t node) const {
-    const Node& n = graph_.nodes[node];
-    return n.op != kOpTerminal && !isContext(n.op) && !multiplies(n);
-  }
 
   // ---------------------------------------------------------------- parameters
 
@@ -218,6 +224,11 @@ private:
 
   /// parameter() of fans.h: constants from the words, the rest by expressions.
   void writeParameters() {
+    if (room_.words) {
+      add("float parameter(Shape s, uint index) {\n"
+          "  return evaluate(s, graphWords[s.node + kNodeParameters] + index * kParameterSize);\n}\n");
+      return;
+    }
     add("float parameter(Shape s, uint index) {\n"
         "  const uint at = graphWords[s.node + kNodeParameters] + index * kParameterSize;\n"
         "  if (graphWords[at] == kParameterConstant) return uintBitsToFloat(graphWords[at + 1u]);\n  switch (at) {\n");
@@ -329,7 +340,7 @@ private:
     std::vector<std::pair<uint32_t, uint32_t>> stack;
     const auto open = [&](uint32_t any) {
       const uint32_t node = peers_[any][0];
-      if (written[node] || !isChain(node)) return;
+      if (written[node] || !room_.coded[node]) return;
       written[node] = 1;
       stack.push_back({node, 0});
     };
@@ -344,10 +355,6 @@ private:
         continue;
       }
       stack.pop_back();
-      length_[node] = 1;
-      for (uint32_t i = 0; i < n.edgeCount; ++i) // terminals and what multiplies have none
-        if (const Edge& e = edgeOf(n, i); e.target != kNoNode && !e.recursive && !waits_[e.target])
-          length_[node] = std::min(length_[node] + length_[peers_[e.target][0]], kLongChain + 1);
       add("uint chain" + std::to_string(node) + "(inout Shape s, uint maxDepth, uint row) { // " + operatorName(n.op) +
           "\n  uint end = kEndDiscarded;\n");
       writeOperator(n);
@@ -365,7 +372,7 @@ private:
       return;
     }
     case kOpRotate:
-      if (!areConstant(node)) return pass("rotate(s, " + rotation(node) + ")");
+      if (!areConstant(node)) return writeRotation(node);
       writeRotation(rotationOf(vec3(constant(node, 0), constant(node, 1), constant(node, 2))));
       add("  " + take(node, 0) + "\n");
       return;
@@ -391,7 +398,6 @@ private:
   /// Angles that are known are none for the device: NVIDIA's compiler folds sums of products of constants without the
   /// product's rounding, although they are precise, and then rotates by something else than all others.
   std::string rotation(const Node& node) {
-    if (!isConstant(node, 0) && !isConstant(node, 1) && !isConstant(node, 2)) return "rotationOf(" + vector(node) + ")";
     std::string angles;
     for (uint32_t i = 0; i < 3; ++i) {
       const vec2 known = isConstant(node, i) ? sineCosineDegrees(constant(node, i)) : vec2(0);
@@ -399,6 +405,14 @@ private:
                                                        : "sineCosineDegrees(" + parameter(node, i) + ")");
     }
     return "rotationOfAngles(" + angles + ")";
+  }
+  void writeRotation(const Node& node) {
+    const bool known = isConstant(node, 0) || isConstant(node, 1) || isConstant(node, 2);
+    // Without any that is known, a loop is less code; software devices count its turns.
+    if (!known) add("#ifndef GPGP_SOFTWARE\n  rotate(s, rotationOf(" + vector(node) + "));\n#else\n");
+    add("  rotate(s, " + rotation(node) + ");\n");
+    if (!known) add("#endif\n");
+    add("  " + take(node, 0) + "\n");
   }
   /// rotate() with known columns: zeros are left out, ones are not multiplied with.
   void writeRotation(const Rotation& rotation) {
@@ -442,6 +456,10 @@ private:
     for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + " break;\n");
     add("  default: " + take(node, count - 1) + " break;\n  }\n");
   }
+  /// Whether a filter has no code of its own: what it keeps depends on parameters.
+  static bool isByWords(const Node& node) {
+    return node.op == kOpRepeat || (node.op == kOpSubDiv && node.division == UINT32_MAX);
+  }
   /// An operator that could multiply, but keeps one successor at most.
   void writeFilter(const Node& node) {
     uint32_t kept = kNoNode;
@@ -459,7 +477,7 @@ private:
       const bool boxes = node.shapes == 1u << kShapeBox;
       if (!boxes) add("  if (facesOf(s.geometry, " + number(1u << kept) + ").count == 0u) return kEndDiscarded;\n");
       add(std::string(boxes ? "  toBoxFace" : "  toFace") + "(s, " + place + ");\n");
-    } else if (node.division != UINT32_MAX) {
+    } else if (!isByWords(node)) {
       const uint32_t* division = graph_.divisions.data() + node.division;
       const bool fixed = division[kDivisionFixedParts] != 0;
       if (!fixed && division[kDivisionWeightedParts] == 0) {
@@ -473,9 +491,9 @@ private:
       std::string values;
       for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
       add("  toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place + ");\n");
-    } else { // by the words, which also take the edge
+    } else { // by the words, which also take the edge; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
-          ";\n  const Fan fan = fanOf(s);\n"
+          ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n  const Fan fan = fanOf(s);\n"
           "  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n");
       followed = true;
     }
@@ -494,8 +512,8 @@ private:
       for (uint32_t e = 0; e < node.edgeCount; ++e) {
         const Edge& edge = edgeOf(node, e);
         // What waits for an operator that could multiply is made its child by the graph's words.
-        const bool brought =
-            isChain(indexOf(node)) && !edge.recursive && !(node.op >= kOpCompSplit && stops_[indexOf(node)]);
+        const bool waits = node.op >= kOpCompSplit && (stops_[indexOf(node)] || isByWords(node));
+        const bool brought = isChain(node) && !edge.recursive && !waits;
         if (edge.target == kNoNode || table_.family[indexOf(node)]) continue;
         if (!brought || waits_[edge.target]) nodes[edge.target] = true;
       }
@@ -513,13 +531,12 @@ private:
     const std::vector<bool> entries = entered();
     const auto isEntry = [&](uint32_t n) { return entries[n]; };
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
-      if (graph_.nodes[n].op == kOpTerminal) terminals += "  case " + number(offsetOf(n)) + ":\n";
-      if (isContext(graph_.nodes[n].op))
+      if (graph_.nodes[n].op == kOpTerminal && !room_.words) terminals += "  case " + number(offsetOf(n)) + ":\n";
+      if (isContext(graph_.nodes[n].op) && !room_.words)
         add("  case " + number(offsetOf(n)) +
             ": end = " + (waits_[n] ? "arrives ? kEndWaits : kEndContext" : "kEndContext") + "; break;\n");
-      if (!isChain(n) || peers_[n][0] != n) continue;
+      if (!room_.named[n]) continue;
       const bool entry = std::any_of(peers_[n].begin(), peers_[n].end(), isEntry);
-      if (!entry && length_[n] > kLongChain) continue;
       if (!entry) add("#ifndef GPGP_SOFTWARE\n");
       for (const uint32_t peer : peers_[n]) add("  case " + number(offsetOf(peer)) + ":");
       const std::string row =
@@ -529,7 +546,11 @@ private:
       if (!entry) add("#endif\n");
     }
     if (!terminals.empty()) add(terminals + "    end = kEndTerminal; break;\n");
-    add("  default: end = kEndWaits; break;\n  }\n  return end;\n}\n");
+    if (room_.words)
+      add("  default: end = kEndGoesOn; break;\n  }\n  if (end == kEndGoesOn) end = runWords(s, maxDepth);\n"
+          "  return end;\n}\n");
+    else
+      add("  default: end = kEndWaits; break;\n  }\n  return end;\n}\n");
   }
 
   const Graph& graph_;
@@ -537,7 +558,7 @@ private:
   std::vector<bool> stops_;                  // by node: shapes wait there, those that come back to it included
   std::vector<std::vector<uint32_t>> peers_; // by node: in its place in matching groups, by row
   std::vector<uint32_t> row_, group_;        // by node
-  std::vector<uint32_t> length_;             // by node: of its chain and those that it calls, in operators
+  Room room_;
   std::vector<uint32_t> matched_;
   KernelTable table_;
   std::map<std::vector<uint32_t>, uint32_t> columns_; // to where they begin in the table

@@ -16,6 +16,8 @@ namespace gpgp::spawn {
 struct KernelSource {
   std::string functions;       ///< GLSL
   std::vector<uint32_t> table; ///< that they read (shaders/spawn/table_format.h)
+  uint32_t operators = 0;      ///< of the graph
+  uint32_t byWords = 0;        ///< those that there is no room for as code: they are run by the graph's words
 };
 
 /// The source of a valid graph's kernel. waits: by node, where shapes go through a queue. An operator that multiplies

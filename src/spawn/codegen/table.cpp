@@ -53,8 +53,9 @@ std::optional<Term> combine(uint32_t code, const Term& a, const Term& b) {
 
 class TableMaker {
 public:
-  TableMaker(const Graph& graph, const std::vector<bool>& waits)
-      : graph_(graph), waits_(waits), frames_(graph.nodes.size()), extents_(graph.nodes.size()) {}
+  TableMaker(const Graph& graph, const std::vector<bool>& waits, bool throughChoices)
+      : graph_(graph), waits_(waits), throughChoices_(throughChoices), frames_(graph.nodes.size()),
+        extents_(graph.nodes.size()) {}
 
   KernelTable run() {
     const auto count = static_cast<uint32_t>(graph_.nodes.size());
@@ -216,7 +217,7 @@ private:
   bool isInner(const Edge& edge) const {
     if (edge.target == kNoNode || edge.recursive || waits_[edge.target]) return false;
     const Node& node = graph_.nodes[edge.target];
-    return chooses(node) || multipliesByKnown(node);
+    return (throughChoices_ && chooses(node)) || multipliesByKnown(node);
   }
   static bool chooses(const Node& node) { return node.op >= kOpIf && node.op <= kOpRandomRule; }
 
@@ -394,6 +395,7 @@ private:
 
   const Graph& graph_;
   const std::vector<bool>& waits_;
+  const bool throughChoices_;
   KernelTable table_;
   std::vector<Frame> frames_;
   std::vector<Extent> extents_; // by node
@@ -405,6 +407,8 @@ bool multipliesByKnown(const Node& node) {
                               (node.op == kOpCompSplit && node.shapes == 1u << kShapeBox));
 }
 
-KernelTable makeTable(const Graph& graph, const std::vector<bool>& waits) { return TableMaker(graph, waits).run(); }
+KernelTable makeTable(const Graph& graph, const std::vector<bool>& waits, bool throughChoices) {
+  return TableMaker(graph, waits, throughChoices).run();
+}
 
 } // namespace gpgp::spawn

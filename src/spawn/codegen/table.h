@@ -28,7 +28,8 @@ constexpr size_t kMostPrograms = 8;
 /// Whether an operator multiplies every shape by the same number, but for parts without a length.
 bool multipliesByKnown(const Node& node);
 
-/// waits: by node, the schedule (generate.h). Shapes do not pass a node where they wait within a row.
-KernelTable makeTable(const Graph& graph, const std::vector<bool>& waits);
+/// waits: by node, the schedule (generate.h). Shapes do not pass a node where they wait within a row. throughChoices:
+/// whether families may go through choices, for each of which a kernel has code.
+KernelTable makeTable(const Graph& graph, const std::vector<bool>& waits, bool throughChoices = true);
 
 } // namespace gpgp::spawn

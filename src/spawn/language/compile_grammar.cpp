@@ -95,9 +95,16 @@ GpgpResult bake(const GpgpGrammarSource& first, const spawn::Graph& graph, bool 
   if (kernel) {
     const spawn::Schedule schedule = *spawn::namedSchedule(graph, "default");
     const spawn::KernelSource kernelSource = spawn::generate(graph, schedule.waits);
+    if (const std::string remark = spawn::remarkOn(kernelSource); !remark.empty())
+      report(first, {}, spawn::isWorthCompiling(kernelSource) ? GPGP_SEVERITY_INFO : GPGP_SEVERITY_WARNING,
+             remark.c_str());
     for (const spawn::KernelTarget target : spawn::targetsOf(graph)) { // the first that a device can run is taken
+      if (!spawn::isWorthCompiling(kernelSource)) break;
       const auto code = spawn::compileKernel(kernelSource, target);
-      if (!code) return fail(first, code.error().code, code.error().text);
+      if (!code) { // without a kernel, the grammar is interpreted
+        report(first, {}, GPGP_SEVERITY_WARNING, (std::string(spawn::kInterpreted) + code.error().text).c_str());
+        continue;
+      }
       spawn::KernelInfo info;
       info.target = target;
       info.groups = static_cast<uint32_t>(schedule.groups);

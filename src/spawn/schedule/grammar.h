@@ -4,6 +4,7 @@
 #include "core/resident.h"
 #include "spawn/graph/blob.h"
 #include "spawn/graph/kernel.h"
+#include "spawn/schedule/turns.h"
 
 #include <array>
 #include <cstring>
@@ -39,6 +40,7 @@ public:
 
   const Graph graph;
   const bool uneven = isUneven(graph); ///< asked for by each record
+  const Turns turns = turnsOf(graph);  ///< and by those of software devices
   const std::pmr::vector<Kernel> kernels;
   /// Where a kernel's table begins in the uploaded words, in units of 16 bytes.
   uint32_t tableOf(const Kernel& kernel) const { return tables_[static_cast<size_t>(&kernel - kernels.data())]; }

@@ -1,5 +1,6 @@
 #include "spawn/schedule/spawner.h"
 
+#include "core/turns.h"
 #include "shaders/spawn_bounds.spv.h"
 #include "shaders/spawn_derive.spv.h"
 #include "shaders/spawn_derive_colliders.spv.h"
@@ -71,12 +72,10 @@ constexpr uint32_t kKnownRounds = 3;
 struct Limits {
   Fit fit;               // of kernels that name none
   Fit uneven;            // of those whose derivations are uneven (isUneven): more at work on what is left at the end
-  uint32_t steps;        // of a workgroup in a round
   uint32_t expandGroups; // workgroups at most
 };
-/// Software devices end a shader's loops silently after 65 535 iterations in all, so workgroups give up early there.
-constexpr Limits kHardware{{32, 2048, 256, 2048}, {128, 1024, 512, 4096, 0, 1}, 16384, 2048},
-    kSoftware{{64, 16, 1024, 512}, {64, 16, 1024, 512}, 256, 64};
+constexpr Limits kHardware{{32, 2048, 256, 2048}, {128, 1024, 512, 4096, 0, 1}, 2048},
+    kSoftware{{64, 256, 1024, 512}, {64, 256, 1024, 512}, 65535};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
 
 /// Whether shaders/spawn/derive_batches.glsl can run.
@@ -96,8 +95,15 @@ Fit fitOf(const core::Device& device, const KernelInfo& info, bool uneven) {
   return fit;
 }
 /// For batches: stacks below this many have no room for them. Workgroups that are worth it, and axioms for each of
-/// more; turns of loops after which a workgroup leaves its work to the next round.
-constexpr uint32_t kLeastBatches = 16, kBatchGroups = 64, kBatchAxioms = 512, kBatchTurns = 8192;
+/// more.
+constexpr uint32_t kLeastBatches = 16, kBatchGroups = 64, kStepGroups = 16, kBatchAxioms = 512;
+constexpr const char* kTooManyTurns = "one shape of this grammar takes some %u turns of loops, its longest expressions "
+                                      "once for each of its successors; this device gives a shader %u";
+/// Turns of loops for a chain from which on few shapes are all that a workgroup has turns for in a round.
+constexpr uint32_t kLongTurns = 4096;
+/// Where devices do not count turns: a step counts as so many, a query as what it looks at; after the steps, and after
+/// what queries of one step looked at, others get their turn.
+constexpr uint32_t kStepTurns = 32, kMostSteps = 16384, kMostQueried = 4096;
 
 /// The interpreter, for grammars with colliders or without.
 KernelInfo interpreterFor(const core::Device& device, bool colliders) {
@@ -285,7 +291,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
                    {kAxioms, read},
                    {kDraws, read},
                    {kRecords, read},
-                   {kCounters, read},
+                   {kCounters, readWrite},
                    {kBuckets, readWrite},
                    {kConstants, read},
                    {kVertices, write},
@@ -383,7 +389,11 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   if (counted) rounds = std::clamp(fit.rounds, std::min(rounds, 2u), rounds_);
   const bool batches = (kernel ? kernel->info : interpreter).target == KernelTarget::software;
   uint32_t maxGroups = std::min(fit.maxGroups, stackShapesOf(maxShapes_) / fit.stackShapes);
-  if (batches) maxGroups = std::clamp(info.axiomCount / kBatchAxioms, std::min(kBatchGroups, maxGroups), maxGroups);
+  if (context.device.software) {
+    const bool isLong = grammar.turns.chain * grammar.turns.passed > kLongTurns;
+    const uint32_t least = std::min(isLong ? maxGroups : batches ? kBatchGroups : kStepGroups, maxGroups);
+    maxGroups = std::clamp(info.axiomCount / kBatchAxioms, least, maxGroups);
+  }
   const bool regions = info.flags & GPGP_SPAWN_REGIONS;
   const bool counts = vertices() ? !info.vertices->vertices.buffer : !info.instances.buffer;
   const bool inOrder = ordered_ && !counts;
@@ -405,7 +415,20 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.spread = fit.spread;
   constants.balances = fit.balances;
   constants.reports = info.axiomCount && phases == 1 && !vertices() && !counts && !sorted && !inOrder && !regions;
-  constants.steps = batches ? kBatchTurns : limits.steps;
+  const Expansion expansion =
+      context.device.software ? expansionOf(grammar.turns) : Expansion{shader::kSpawnGroupSize, 1};
+  constants.recordsAtOnce = expansion.records;
+  constants.one = 1;
+  if (context.device.software) {
+    if (!limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr))
+      return core::makeError(GPGP_ERROR_UNSUPPORTED, kTooManyTurns, grammar.turns.passed, shader::kDeviceTurns);
+  } else {
+    constants.steps = kMostSteps * kStepTurns;
+    constants.batchTurns = kStepTurns;
+    constants.chainLength = shader::kMaxChain;
+    constants.mostQueried = kMostQueried;
+    constants.mostLeft = UINT32_MAX;
+  }
   constants.maxShapes = maxShapes_;
   constants.maxTerminals = maxTerminals_;
   constants.terminalsTo = counts              ? shader::kToCounts
@@ -449,8 +472,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.groups[kBoundGroups] = {256, 1, 1};
   record.groups[kRoundGroups] = {maxGroups, 1, 1};
   record.groups[kLinkGroups] = {std::clamp(maxColliders_ / (4 * shader::kSpawnGroupSize), 1u, 256u), 1, 1};
-  record.groups[kExpandGroups] = {std::min((maxTerminals_ - 1) / shader::kSpawnGroupSize + 1, limits.expandGroups), 1,
-                                  1};
+  const uint32_t expanded = (maxTerminals_ - 1) / (constants.recordsAtOnce * expansion.times) + 1;
+  record.groups[kExpandGroups] = {std::min(expanded, limits.expandGroups), 1, 1};
   record.conditions[kSorted] = sorted;
   record.conditions[kExpanded] = vertices() && !counts;
   record.conditions[kOrdered] = inOrder;
@@ -497,6 +520,10 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
         info.fit.groupSize > device.maxComputeWorkGroupSize[0] ||
         info.fit.groupSize * kSharedBytesEach + 64 > device.maxComputeSharedMemorySize)
       continue;
+    shader::SpawnConstants constants{};
+    if (context.device.software && !limitTurns(constants, grammar.turns, info.fit,
+                                               info.target == KernelTarget::software ? info.fit.groupSize : 0, true))
+      continue; // workgroups and stacks that this device has no turns for
     const auto pipeline =
         createComputePipeline({kernel.info.schedule, kernel.spirv(),
                                specialization(context.device, info.fit, grammar.tableOf(kernel)), kDeriveConstants});
@@ -526,6 +553,7 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   if (report.base.status == GPGP_SUCCESS &&
       (raw.words[11] || report.droppedShapes || report.unfinishedShapes || report.colliders > report.collidersKept))
     report.base.status = GPGP_BUDGET_EXCEEDED;
+  if (report.base.status != GPGP_NOT_EXECUTED && raw.words[15]) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;
 }
 

@@ -306,6 +306,7 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.items = counters.items;
   report.itemsGiven = counters.itemsGiven;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
+  if (counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;
 }
 

@@ -388,6 +388,7 @@ core::PassList Canvas::describe() const {
   };
   // Tiles from lists that passes before have written.
   const auto tilesOf = [&](const core::ShaderDesc& shader, uint32_t condition, VkDeviceSize arguments) -> core::Pass& {
+    const bool crowded = arguments == shader::kCrowdedArguments || arguments == shader::kRichCrowdedArguments;
     core::Pass& pass = list.dispatchIndirect(shader.name, list.add(shader),
                                              {{params, read},
                                               {shapes, read},
@@ -395,7 +396,7 @@ core::PassList Canvas::describe() const {
                                               {words, read},
                                               {masks, read},
                                               {entries, read},
-                                              {counters, read}},
+                                              {counters, crowded ? readWrite : read}},
                                              masks, arguments * 4);
     const bool one = condition == kPlain || condition == kPaintsOne || condition == kRichOne || condition == kAsideOne;
     for (core::ResourceIndex i = 0; i < (one ? 1 : kMaxSlots); ++i) pass.uses[pass.useCount++] = {i, read};

@@ -44,6 +44,7 @@ bool Sampler::takeSampleReport(GpgpSampleReport& report) {
                        (counters.hasList && counters.listed < counters.visible) ||
                        counters.drawsGiven < counters.draws || counters.drawListed < counters.drawTriangles;
   if (report.base.status == GPGP_SUCCESS && tooMany) report.base.status = GPGP_BUDGET_EXCEEDED;
+  if (report.base.status != GPGP_NOT_EXECUTED && counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;
 }
 

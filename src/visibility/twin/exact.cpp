@@ -147,16 +147,21 @@ void resolveByDepth(const std::vector<Candidate>& candidates, List list, ivec2 p
   for (const Entry& entry : list) sorted.push_back({candidates[entry.candidate], entry.key, {}, {}});
   const auto show = [&](uint32_t id) { bits[id / 32] |= 1u << (id % 32); };
   const auto size = static_cast<uint32_t>(sorted.size());
+  const auto showAll = [&] {
+    for (const Sorted& entry : sorted) show(entry.candidate.id);
+  };
   uint32_t turns = turnsThrough(size);
   for (int firstRow = 0; firstRow < 64; firstRow += 16) {
+    turns += kTurnsOfRows;
     std::vector<std::pair<uint32_t, uint32_t>> nearest(16 * 64, {kFarthest, kNoTriangle});
     size_t first = 0;
     for (uint32_t low = sorted.front().key;;) {
+      if (takesTooLong(turns, size)) return showAll();
       const Batch rest = Batch(sorted).subspan(first);
       uint32_t passes = 0;
       const uint32_t high = lastKey(rest, depthOf, low, drawnAtOnce(size), passes);
       const size_t n = countUpTo(rest, depthOf, high);
-      turns += (passes + 1) * turnsThrough(size);
+      turns += passes * turnsThrough(size) + turnsOfDraws(size);
       for (const Sorted& entry : rest.first(n)) {
         const ScreenTriangle t = triangleOf(entry.candidate);
         const ivec4 box = samplesAbout(t);
@@ -172,10 +177,7 @@ void resolveByDepth(const std::vector<Candidate>& candidates, List list, ivec2 p
             at = std::min(at, {std::max(depthKey(depthWide(t, point), reversed), entry.key), entry.candidate.id});
           }
       }
-      if (turns > kMostTurns) {
-        for (const Sorted& entry : sorted) show(entry.candidate.id);
-        return;
-      }
+      if (tookTooLong(turns, size)) return showAll();
       if (high == sorted.back().key || high >= std::max_element(nearest.begin(), nearest.end())->first) break;
       low = high + 1;
       first += n;
@@ -213,6 +215,11 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   if (sorted.size() <= kBatch) return take(0, sorted.size());
   const auto size = static_cast<uint32_t>(sorted.size());
   uint32_t turns = turnsThrough(size);
+  const auto show = [&](size_t first) {
+    for (const Sorted& entry : Batch(sorted).subspan(first))
+      bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
+  };
+  if (takesTooLong(turns, size)) return show(0);
   // Decides entries from `first` on; false where that takes too long, and what is left is shown.
   const std::function<bool(size_t, Batch, KeyOf)> decide = [&](size_t first, Batch rest, KeyOf keyOf) {
     for (uint32_t low = keyOf(rest.front()); !rest.empty() && isOpen();) {
@@ -225,9 +232,8 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
         if (!decide(first, rest.first(n), idOf)) return false;
       } else {
         turns += turnsOfBatch(std::min(n, kBatch));
-        if (n > kBatch || turns > kMostTurns) {
-          for (const Sorted& entry : Batch(sorted).subspan(first))
-            bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
+        if (n > kBatch || takesTooLong(turns, size)) {
+          show(first);
           return false;
         }
         take(first, n);

@@ -1,0 +1,123 @@
+#include "spawn/codegen/room.h"
+
+#include <algorithm>
+
+namespace gpgp::spawn {
+namespace {
+using namespace shader;
+
+/// Of an operator's expressions.
+uint32_t codesOf(const Graph& graph, const Node& node) {
+  uint32_t codes = 0;
+  for (uint32_t i = 0; i < node.parameterCount; ++i)
+    if (const Parameter& p = graph.parameters[node.firstParameter + i]; p.kind == kParameterProgram)
+      for (uint32_t at = p.value; graph.code[at] != kCodeEnd && codes < 8 * kRoom; ++at, ++codes)
+        if (graph.code[at] == kCodeNumber) ++at;
+  return codes;
+}
+
+/// What chains are inlined to, by the node whose code it is.
+struct Sizes {
+  std::vector<uint32_t> lengths; ///< operators, at most kLongChain + 1
+  std::vector<uint32_t> weights; ///< at most 2 kRoom
+};
+
+class Measure {
+public:
+  Measure(const Graph& graph, const std::vector<bool>& waits, const std::vector<uint32_t>& first)
+      : graph_(graph), waits_(waits), first_(first),
+        seen_(graph.nodes.size()), sizes_{std::vector<uint32_t>(graph.nodes.size()),
+                                          std::vector<uint32_t>(graph.nodes.size())} {}
+
+  Sizes run() {
+    for (uint32_t n = 0; n < graph_.nodes.size(); ++n) measure(n);
+    return std::move(sizes_);
+  }
+
+private:
+  template <class Call> void forCalled(uint32_t node, const Call& call) const {
+    for (uint32_t e = 0; e < graph_.nodes[node].edgeCount; ++e) {
+      const Edge& edge = graph_.edges[graph_.nodes[node].firstEdge + e];
+      if (edge.target != kNoNode && !edge.recursive && !waits_[edge.target]) call(first_[edge.target]);
+    }
+  }
+  /// Depth first by hand, as chains may be long: what a chain calls is measured before it.
+  void measure(uint32_t index) {
+    struct Visit {
+      uint32_t node;
+      bool opened;
+    };
+    std::vector<Visit> stack{{first_[index], false}};
+    while (!stack.empty()) {
+      const auto [node, opened] = stack.back();
+      const Node& n = graph_.nodes[node];
+      if (!opened && !seen_[node] && isChain(n)) {
+        seen_[node] = 1;
+        stack.back().opened = true;
+        forCalled(node, [&](uint32_t target) { stack.push_back({target, false}); });
+        continue;
+      }
+      stack.pop_back();
+      if (!opened) continue;
+      uint32_t length = 1, weight = weightOf(graph_, n);
+      forCalled(node, [&](uint32_t target) { // terminals and what multiplies have none
+        length = std::min(length + sizes_.lengths[target], kLongChain + 1);
+        weight = std::min(weight + sizes_.weights[target], 2 * kRoom);
+      });
+      sizes_.lengths[node] = length;
+      sizes_.weights[node] = weight;
+    }
+  }
+
+  const Graph& graph_;
+  const std::vector<bool>& waits_;
+  const std::vector<uint32_t>& first_;
+  std::vector<uint8_t> seen_;
+  Sizes sizes_;
+};
+} // namespace
+
+uint32_t weightOf(const Graph& graph, const Node& node) { return 1 + codesOf(graph, node) / 4 + node.edgeCount / 2; }
+
+Room findRoom(const Graph& graph, const std::vector<bool>& waits, const std::vector<uint32_t>& first,
+              const std::vector<bool>& entered, const std::vector<bool>& chooses) {
+  const auto count = static_cast<uint32_t>(graph.nodes.size());
+  const Sizes sizes = Measure(graph, waits, first).run();
+  std::vector<bool> enters(count); // by the node whose code it is
+  for (uint32_t n = 0; n < count; ++n)
+    if (entered[n]) enters[first[n]] = true;
+  Room room;
+  room.named.resize(count);
+  room.coded.resize(count);
+  std::vector<uint32_t> weights; // of what is named
+  uint64_t all = 0;
+  for (uint32_t n = 0; n < count; ++n) {
+    const Node& node = graph.nodes[n];
+    if (chooses[n]) all += weightOf(graph, node);
+    if (multiplies(node)) all += codesOf(graph, node) / 4;
+    room.coded[n] = isChain(node) && first[n] == n;
+    room.named[n] = room.coded[n] && (enters[n] || sizes.lengths[n] <= kLongChain);
+    if (!room.named[n]) continue;
+    weights.push_back(sizes.weights[n]);
+    all += sizes.weights[n];
+  }
+  if (all <= kRoom) return room;
+  // Only light chains are code. None of them calls a heavier one.
+  room.words = true;
+  std::sort(weights.begin(), weights.end());
+  uint32_t most = 0;
+  uint64_t sum = 0;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    sum += weights[i];
+    if (sum > kRoomBesideWords) break;
+    if (i + 1 == weights.size() || weights[i + 1] > weights[i]) most = weights[i];
+  }
+  for (uint32_t n = 0; n < count; ++n) {
+    if (isChain(graph.nodes[n]) && sizes.weights[first[n]] > most) ++room.byWords;
+    if (!room.coded[n] || sizes.weights[n] <= most) continue;
+    room.coded[n] = room.named[n] = false;
+  }
+  return room;
+}
+
+} // namespace gpgp::spawn

@@ -1,0 +1,35 @@
+// Which chains of operators a kernel has code for. Chains are inlined wherever one begins, and compilers take more than
+// linear time: with code for all of them, a chain of n rules would take n^2 operators, and choices that meet again 2^n.
+#pragma once
+#include "spawn/graph/graph.h"
+
+#include <vector>
+
+namespace gpgp::spawn {
+
+/// What a kernel has code for, in operators, each counted wherever it is inlined, with a share for its expressions and
+/// edges; and where that does not suffice for all, what chains have beside the loop that runs the others.
+constexpr uint32_t kRoom = 512, kRoomBesideWords = 96;
+constexpr uint32_t kLongChain = 24; ///< operators: chains that no shape is brought to are code up to this length
+
+/// What code and expressions of an operator by itself are worth.
+uint32_t weightOf(const Graph& graph, const Node& node);
+
+/// Passes on one shape, and is no terminal.
+inline bool isChain(const Node& node) {
+  return node.op != shader::kOpTerminal && !isContext(node.op) && !multiplies(node);
+}
+
+struct Room {
+  bool words = false;      ///< some chains, and all expressions of what multiplies, are run by the graph's words
+  uint32_t byWords = 0;    ///< operators of such chains
+  std::vector<bool> named; ///< by node: its chain is code, and runChain() goes there
+  std::vector<bool> coded; ///< by node: its chain is code
+};
+
+/// waits: by node, the schedule. first: by node, the one whose code it has. entered: by node, a shape can come there
+/// that no chain has brought. chooses: by node, families go through this choice, for which there is code in any case.
+Room findRoom(const Graph& graph, const std::vector<bool>& waits, const std::vector<uint32_t>& first,
+              const std::vector<bool>& entered, const std::vector<bool>& chooses);
+
+} // namespace gpgp::spawn
