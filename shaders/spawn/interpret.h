@@ -12,7 +12,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_FN float parameter(GPGP_GRAPH Shape s, uint index) {
-  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize);
+  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize, index);
 }
 
 GPGP_SHADER_END
@@ -75,9 +75,11 @@ GPGP_FN uint runChain(GPGP_GRAPH GPGP_INOUT(Shape) s, bool /* arrives */, uint m
     if (op <= kOpSetGeometry) {
       const uint target = edgeTarget(GPGP_G s.node, 0u);
       transform(GPGP_G s, op);
+      if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
       follow(s, target);
     } else if (op <= kOpRandomRule) {
       follow(s, edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op)));
+      if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
 #if defined(__cplusplus) || defined(GPGP_COLLIDERS) // without, no grammar that has them is run
     } else if (op < kOpCompSplit) {
       return kEndContext;

@@ -1095,6 +1095,19 @@ TEST_F(SpawnTest, RepeatsOfTooManyCopiesAreDroppedAndCounted) {
   }
 }
 
+TEST_F(SpawnTest, ARepeatMakesAsManyCopiesAsItMay) { // with the rounds that a spawner has by default
+  const std::string repeat = "Repeat(X,-0.00000095367431640625,ADJUST_TO_FILL)"; // 2^-20
+  for (const std::string& text : {"axiom Box A; terminal T (1,0); A = " + repeat + " T;",
+                                  "axiom Box A; terminal T (1,0); A = Translate(1,0,0) " + repeat +
+                                      " Replicate() { Discard() | Scale(1,-1,-1) T };"})
+    for (const bool kernel : {false, true}) {
+      const Derived gpu = run(kernel ? bakeKernel(text) : bake(text), {makeAxiom(1, 1, 1)}, 1u << 20, false);
+      EXPECT_EQ(gpu.report.terminals, 1u << 20) << text;
+      EXPECT_EQ(gpu.report.instancesWritten, 1u << 20) << text;
+      EXPECT_EQ(gpu.report.droppedShapes, 0u) << text;
+    }
+}
+
 TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {
   const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | B }; B = Replicate() { T | T | T };");
   std::vector<GpgpAxiom> all(4, makeAxiom(1, 1, 1));
@@ -1112,7 +1125,7 @@ TEST_F(SpawnTest, LinkedGrammarsEqualTheEvaluator) { // which derives what each 
   for (const std::string& name : ownGrammarNames()) files.push_back({name, ownGrammar(name)});
   files.push_back({"lines.pga", "axiom Hexagon Faces; axiom Box Faces; axiom DynamicRightPrism{(0,0.5),(-0.5,-0.5),"
                                 "(0.5,0)} Part; axiom Quad T; terminal T (1,0); terminal U (1,1);"
-                                "Faces = CompSplit() { T | U | Part }; Part = SubDiv(X) { 1: Tall | -1: U };"
+                                "Faces = CompSplit() { T | U | Part }; Part = SubDiv(X) { -1: Tall | -2: U };"
                                 "Tall = Extrude(3) CompSplit() { T | Discard() | U };"});
   for (const GpgpCompileFlags flags : {GpgpCompileFlags(0), GPGP_COMPILE_KERNEL}) {
     const auto words = linked(files, flags);
