@@ -167,35 +167,16 @@ void main() {
         if (fan.extent < 0.0f) atomicAdd(state.droppedShapes, 1);
         fan.count -= parent.made;
       }
-      uint most = subgroupMax(fan.count);
-      // Where one shape has nearly all children, all invocations make them, and the other shapes wait.
-      const bool together = most > kMostTurns && 2 * subgroupAdd(min(fan.count, kMostTurns)) < kMostTurns * groupSize;
-      if (together) {
-        const uint chosen = subgroupMin(fan.count == most ? lane : groupSize);
-        stackUp(fan.count > 0 && lane != chosen, end == kEndTerminal, parent);
-        stackUp(lane == chosen, false, parent);
-        end = kEndDiscarded;
-        stackBarrier();
-        stackSize -= 1;
-        parent = stackedAt(stackSize);
-        fan.count = most;
-        fan.successors = subgroupShuffle(fan.successors, chosen);
-        fan.extent = subgroupShuffle(fan.extent, chosen);
-        most = (most + groupSize - 1) / groupSize;
-      }
-      const uint turns = min(most, kMostTurns);
-      const uint stride = together ? groupSize : 1;
+      const uint turns = min(subgroupMax(fan.count), kMostTurns);
       const uint first = parent.made;
-      parent.made += turns * stride;
-      // The children behind these turns come later.
-      stackUp(fan.count > turns * stride && (!together || lane == 0), end == kEndTerminal, parent);
+      parent.made += turns;
+      stackUp(fan.count > turns, end == kEndTerminal, parent); // the children behind these turns come later
       parent.made = 0;
       for (uint turn = 0; turn < turns; ++turn) {
         Shape s = parent;
         end = kEndDiscarded;
-        const uint child = turn * stride + (together ? lane : 0);
-        if (child < fan.count) {
-          end = toChildOf(s, fan, first + child);
+        if (turn < fan.count) {
+          end = toChildOf(s, fan, first + turn);
           if (end == kEndGoesOn) end = isTerminal(s) ? kEndTerminal : kEndWaits;
           depth = max(depth, s.depth);
           if (end == kEndUnfinished) unfinished += 1;

@@ -13,7 +13,7 @@ constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                            VK_IMAGE_LAYOUT_UNDEFINED};
 // The library's defaults, and what it takes at most.
-constexpr uint32_t kDefaultShapes = 131072, kDefaultRounds = 4, kSoftwareRounds = 40, kMostRounds = 256,
+constexpr uint32_t kDefaultShapes = 131072, kDefaultRounds = 4, kSoftwareRounds = 32, kMostRounds = 256,
                    kMostShapes = 1u << 24;
 constexpr uint32_t kDefaultTerminals = 524288, kMostTerminals = 1u << 24;
 constexpr uint32_t kMostColliders = 1u << 24, kMostSoftwareColliders = 8192;

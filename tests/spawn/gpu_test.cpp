@@ -1095,17 +1095,19 @@ TEST_F(SpawnTest, RepeatsOfTooManyCopiesAreDroppedAndCounted) {
   }
 }
 
-TEST_F(SpawnTest, ARepeatMakesAsManyCopiesAsItMay) { // with the rounds that a spawner has by default
-  const std::string repeat = "Repeat(X,-0.00000095367431640625,ADJUST_TO_FILL)"; // 2^-20
-  for (const std::string& text : {"axiom Box A; terminal T (1,0); A = " + repeat + " T;",
-                                  "axiom Box A; terminal T (1,0); A = Translate(1,0,0) " + repeat +
-                                      " Replicate() { Discard() | Scale(1,-1,-1) T };"})
-    for (const bool kernel : {false, true}) {
-      const Derived gpu = run(kernel ? bakeKernel(text) : bake(text), {makeAxiom(1, 1, 1)}, 1u << 20, false);
-      EXPECT_EQ(gpu.report.terminals, 1u << 20) << text;
-      EXPECT_EQ(gpu.report.instancesWritten, 1u << 20) << text;
-      EXPECT_EQ(gpu.report.droppedShapes, 0u) << text;
+TEST_F(SpawnTest, ARepeatMakesAsManyCopiesAsItMay) { // or the report says that rounds were too few for them
+  const std::string text =
+      "axiom Box A; terminal T (1,0); A = Repeat(X,-0.00000095367431640625,ADJUST_TO_FILL) T;"; // 2^-20
+  for (const bool kernel : {false, true}) {
+    const Derived gpu = run(kernel ? bakeKernel(text) : bake(text), {makeAxiom(1, 1, 1)}, 1u << 20, false);
+    const bool whole = gpu.report.terminals == 1u << 20;
+    if (!device.isSoftware()) {
+      EXPECT_TRUE(whole);
     }
+    EXPECT_EQ(gpu.report.base.status, whole ? GPGP_SUCCESS : GPGP_BUDGET_EXCEEDED);
+    EXPECT_EQ(gpu.report.droppedShapes, whole ? 0u : 1u);
+    EXPECT_EQ(gpu.report.instancesWritten, gpu.report.terminals);
+  }
 }
 
 TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {

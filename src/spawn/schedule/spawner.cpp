@@ -63,7 +63,7 @@ constexpr VkDeviceSize kShapeBytes = 16 * shader::kShapePlanes;
 /// Shared memory of derive.glsl for each invocation: a parent's fan, two sums.
 constexpr uint32_t kSharedBytesEach = 16;
 constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 4,
-                   kSoftwareRounds = 40;
+                   kSoftwareRounds = 32;
 /// Where it is known how much there is to begin with: one round more would be another empty one for most.
 constexpr uint32_t kKnownRounds = 3;
 
