@@ -47,10 +47,10 @@ spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<con
 
 std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms) {
   spawn::DeriveOptions options;
-  options.maxDepth = UINT32_MAX;
+  options.maxDepth = 1u << 16; // each level is a place on the evaluator's stack
   options.keepInstances = false;
   const spawn::Derivation all = spawn::derive(words, axioms, options);
-  return all.complete ? std::optional(all.depth) : std::nullopt;
+  return all.complete && !all.unfinishedShapes ? std::optional(all.depth) : std::nullopt;
 }
 
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,

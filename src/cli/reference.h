@@ -15,7 +15,7 @@ namespace gpgp::cli {
 spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
                                   const std::string& grammar);
 
-/// How deep rules nest in themselves, where all axioms end before the evaluator gives up.
+/// How deep rules nest in themselves, where that is at most 2^16 and all axioms end before the evaluator gives up.
 std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms);
 
 /// Of one thread, instances or vertices included, into memory that was touched before: the device's buffers are there
