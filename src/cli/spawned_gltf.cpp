@@ -69,7 +69,7 @@ public:
   explicit Writer(const std::filesystem::path& file) : file_(file) {
     model_.asset.version = "2.0";
     model_.asset.generator = "gpgp";
-    model_.scenes.emplace_back();
+    model_.scenes.emplace_back().name = "spawned"; // an object also where it has no nodes
     model_.defaultScene = 0;
   }
 
