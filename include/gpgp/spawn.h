@@ -316,8 +316,9 @@ typedef struct GpgpSpawnReport {
   uint32_t peakShapes;       /**< the most shapes that waited for a round, those that did not fit included: a
                                   maxShapes that would have been enough for them */
   uint32_t droppedShapes;    /**< shapes that did not fit maxShapes or were left after maxRounds, and axioms whose
-                                  rule does not exist or that axiomCounter counts beyond axiomCount, and shapes of
-                                  which a Repeat would make more than 2^20; what lay below them is not known */
+                                  rule does not exist or that axiomCounter counts beyond axiomCount, shapes of which
+                                  a Repeat would make more than 2^20, and polygons that a SubDiv cannot cut; what lay
+                                  below them is not known */
   uint32_t unfinishedShapes; /**< shapes deeper than maxDepth */
   uint32_t rounds;           /**< rounds that had work */
   uint32_t keyHash[2];       /**< order-free hash of (path key, terminal, rule, shape) over all terminals */

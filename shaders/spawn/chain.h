@@ -70,9 +70,11 @@ GPGP_FN uint runWords(GPGP_GRAPH GPGP_INOUT(Shape) s, uint maxDepth) {
     if (op <= kOpSetGeometry) {
       const uint target = edgeTarget(GPGP_G s.node, 0u);
       transform(GPGP_G s, op);
+      if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
       follow(s, target);
     } else if (op <= kOpRandomRule) {
       follow(s, edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op)));
+      if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
 #if defined(__cplusplus) || defined(GPGP_COLLIDERS) // without, no grammar that has them is run
     } else if (op < kOpCompSplit) {
       return kEndContext;

@@ -53,7 +53,7 @@ void stackBarrier() {
 Shape axiomAt(uint index) {
   const uvec4 a = axioms[index * 6 + 3];
   const uvec4 b = axioms[index * 6 + 4];
-  Shape s = axiomShape(unpackVector(a), a.w, b.x, b.y, uintBitsToFloat(b.z), index);
+  Shape s = axiomShape(unpackVector(a), a.w, b.y, uintBitsToFloat(b.z), index);
   // Never so many: it is 0, but the answer goes where all answers go that way (isLast).
   if (startWords(b.y) == 0) s.depth |= atomicAdd(state.droppedShapes, 1) >> 31;
   return s;
@@ -240,7 +240,9 @@ void keep(bool own, uint place, uint first, Shape s) {
   }
 }
 
-uvec2 hashOfTerminal(Shape s) {
+/// Its path key becomes the instance's.
+uvec2 hashOfTerminal(inout Shape s) {
+  s.key = instanceKey(s.key, axioms[s.axiom * 6 + 4].x);
   const uvec4 terminal = graphRows[s.node / 4];
   return terminalHash(s.key, terminal[kNodeArgument], terminal[kNodeRule], shapeType(s));
 }

@@ -31,8 +31,8 @@ GPGP_FN float attributeOf(Shape s, uint code) {
 
 GPGP_FN float truth(bool value) { return value ? 1.0f : 0.0f; }
 
-/// a op b for the codes of two operands.
-GPGP_FN float combine(uint code, float a, float b, float random) {
+/// a op b for the codes of two operands. drawn: kCodeRandom's number.
+GPGP_FN float combine(uint code, float a, float b, float drawn) {
   switch (code) {
   case kCodeAdd: return add(a, b);
   case kCodeSubtract: return subtract(a, b);
@@ -46,18 +46,19 @@ GPGP_FN float combine(uint code, float a, float b, float random) {
   case kCodeGreaterEqual: return truth(a >= b);
   case kCodeAnd: return truth(a != 0.0f && b != 0.0f);
   case kCodeOr: return truth(a != 0.0f || b != 0.0f);
-  default: return add(a, multiply(subtract(b, a), random)); // kCodeRandom
+  default: return add(a, multiply(subtract(b, a), drawn)); // kCodeRandom
   }
 }
 
-/// A parameter's value for a shape; at is its word offset.
-GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at) {
+/// A parameter's value for a shape; at is its word offset, index its place among the operator's parameters.
+GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at, uint index) {
   const uint kind = graphWords[at];
   const uint value = graphWords[at + 1u];
   if (kind == kParameterConstant) return uintBitsToFloat(value);
   if (kind == kParameterAttribute) return attributeOf(s, value);
   float stack[kMaxStack];
   uint depth = 0u;
+  uint draws = index << kDrawsOfParameter;
   uint next = value;
   for (uint code = graphWords[next]; code != kCodeEnd; code = graphWords[next]) {
     next += 1u;
@@ -70,8 +71,13 @@ GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at) {
       depth += 1u;
     } else {
       depth -= 1u;
+      float drawn = 0.0f;
+      if (code == kCodeRandom) {
+        drawn = drawnNumber(s.key, draws);
+        draws += 1u;
+      }
       // validate() has run each program: none takes from an empty stack. NOLINTNEXTLINE(clang-analyzer-*)
-      stack[depth - 1u] = combine(code, stack[depth - 1u], stack[depth], unitFloat(s.seed));
+      stack[depth - 1u] = combine(code, stack[depth - 1u], stack[depth], drawn);
     }
   }
   return stack[0]; // NOLINT(clang-analyzer-*)

@@ -7,14 +7,15 @@
 #define GPGP_SHADERS_SPAWN_FANS_H
 #include "spawn/operators.h"
 
-// Which operators that multiply there are, bits by kOp values, and two cases that cost much code. Generated kernels say
-// what their graph has; what it has not is left out.
+// Which operators that multiply there are, bits by kOp values, and three cases that cost much code. Generated kernels
+// say what their graph has; what it has not is left out.
 #ifndef GPGP_OPERATORS
 #define GPGP_OPERATORS 0xffffffffu
 #endif
 
 GPGP_SHADER_BEGIN
 
+GPGP_CONST uint kHasCuts = 1u << 29;      // SubDiv of others than boxes, quads and spheres
 GPGP_CONST uint kHasDivisions = 1u << 30; // SubDiv whose parts are not constant
 GPGP_CONST uint kHasSides = 1u << 31;     // CompSplit of others than boxes
 
@@ -73,6 +74,30 @@ GPGP_FN Part partAt(GPGP_GRAPH uint at) {
   return part;
 }
 
+/// Where a SubDiv has the pieces of a polygon, by its parts; 0: nowhere.
+GPGP_FN uint cutsAt(GPGP_GRAPH uint node, uint polygon) {
+  const uint division = graphWords[node + kNodeArgument2];
+  if (division == 0u || graphWords[division + kDivisionCuts] == 0u) return 0u;
+  const uint first = division + graphWords[division + kDivisionCuts];
+  const uint size = graphWords[node + kNodeEdgeCount] + 1u;
+  for (uint i = 0u; i < graphWords[first]; ++i) {
+    if (graphWords[first + 1u + i * size] == polygon) return first + 2u + i * size;
+  }
+  return 0u;
+}
+/// A shape that a SubDiv can not cut is dropped, which whoever asks counts.
+GPGP_FN bool isUncut(GPGP_GRAPH Shape s, uint node, uint axis) {
+  return isCut(shapeType(s), axis) && cutsAt(GPGP_G node, shapePolygon(s)) == 0u;
+}
+/// The polygon of a SubDiv's part. False where there is nothing of it.
+GPGP_FN bool cutTo(GPGP_GRAPH GPGP_INOUT(Shape) s, uint node, uint axis, uint part) {
+  if (!isCut(shapeType(s), axis)) return true;
+  const uint piece = graphWords[cutsAt(GPGP_G node, shapePolygon(s)) + part];
+  if (piece == kNoPiece) return false;
+  setGeometry(s, pieceShape(shapeType(s)), piece);
+  return true;
+}
+
 /// What the operator that a shape waits for makes of it.
 GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
   const uint op = graphWords[s.node + kNodeOperator] & kOperatorMask;
@@ -82,6 +107,11 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
   fan.extent = 0.0f;
   if (op < kOpCompSplit) return fan;
   if (isOperator(op, kOpSubDiv)) {
+    if ((GPGP_OPERATORS & kHasCuts) != 0u && isUncut(GPGP_G s, s.node, graphWords[s.node + kNodeArgument])) {
+      fan.count = 0u;
+      fan.extent = -1.0f;
+      return fan;
+    }
     const uint division = graphWords[s.node + kNodeArgument2];
     if ((GPGP_OPERATORS & kHasDivisions) != 0u && division == 0u) return divisionOf(GPGP_G s, 0u).fan;
     fan.extent = remainderOf(component(s.size, graphWords[s.node + kNodeArgument]), graphFloat(GPGP_G division));
@@ -112,7 +142,8 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
   return fan;
 }
 
-/// The shape becomes its child number index, below fan.count. Of the fan it needs successors and length.
+/// The shape becomes its child number index, below fan.count; its node is 0 where SubDiv has nothing for it. Of the fan
+/// it needs successors and length.
 GPGP_FN void toChild(GPGP_GRAPH GPGP_INOUT(Shape) s, Fan fan, uint index) {
   if (GPGP_OPERATORS == 0u || fan.successors == 0u) return;
   const uint op = graphWords[s.node + kNodeOperator] & kOperatorMask;
@@ -126,7 +157,12 @@ GPGP_FN void toChild(GPGP_GRAPH GPGP_INOUT(Shape) s, Fan fan, uint index) {
       part = divisionOf(GPGP_G s, successor).part;
     else
       part = partAt(GPGP_G argument2 + kDivisionParts + successor * kPartSize);
-    toPart(s, argument, fan.extent, part, successor);
+    bool there = toPart(s, argument, fan.extent, part, successor);
+    if ((GPGP_OPERATORS & kHasCuts) != 0u) there = there && cutTo(GPGP_G s, s.node, argument, successor);
+    if (!there) {
+      s.node = 0u;
+      return;
+    }
   } else if (isOperator(op, kOpRepeat)) {
     toRepeat(s, argument, argument2, fan.successors, fan.extent, index);
   } else if (isOperator(op, kOpCompSplit)) {

@@ -20,7 +20,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 5u;
+GPGP_CONST uint kGraphVersion = 6u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -31,6 +31,7 @@ GPGP_CONST uint kHeaderChecked = 4u;
 GPGP_CONST uint kHeaderSections = 4u; // count and offset of each section
 GPGP_CONST uint kHeaderBuckets = 28u; // terminal lines
 GPGP_CONST uint kHeaderPhases = 29u;  // of derivation, where there are Collider or IfCollides; else 0
+GPGP_CONST uint kHeaderPieces = 30u;  // polygons that SubDiv makes, the last ones of all
 GPGP_CONST uint kHeaderSize = 32u;
 
 // sections, in order
@@ -49,7 +50,7 @@ GPGP_CONST uint kSectionAxioms = 11u;
 GPGP_CONST uint kSectionCount = 12u;
 
 // node: eight words. What a terminal says lies in the first four, which are read at once.
-GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, and its priority << kNodePriority
+GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, kNodeDraws, and its priority << kNodePriority
 GPGP_CONST uint kNodeArgument = 1u;
 GPGP_CONST uint kNodeArgument2 = 2u;
 GPGP_CONST uint kNodeParameters = 3u; // offset of the first; of a terminal: kNodeRule
@@ -63,6 +64,8 @@ GPGP_CONST uint kOperatorMask = 0xffu;
 GPGP_CONST uint kNoRule = 0xffffffffu;
 /// The node could multiply shapes, but at most one of its successors is not discarded: it passes on one shape or none.
 GPGP_CONST uint kNodeFilter = 0x100u;
+/// Of an operator that passes on one shape: a parameter draws a random number, so the shape's path key changes here.
+GPGP_CONST uint kNodeDraws = 0x200u;
 GPGP_CONST uint kNodePriority = 16u;
 GPGP_CONST uint kMaxPriority = 0xffffu;
 
@@ -86,13 +89,16 @@ GPGP_CONST uint kParameterProgram = 2u;   // value: offset of its first code wor
 GPGP_CONST uint kParameterSize = 2u;
 
 // division: what a SubDiv with constant parts makes of them. Fixed length, parts with a fixed length and parts with a
-// weight as bit sets (without those that are discarded), then for each part four values.
+// weight as bit sets (without those that are discarded), where its cuts begin, seen from its own start, or 0; then for
+// each part four values. cuts: how many, then for each polygon that it cuts its number and one number a part.
 GPGP_CONST uint kDivisionFixedParts = 1u;
 GPGP_CONST uint kDivisionWeightedParts = 2u;
-GPGP_CONST uint kDivisionParts = 3u;
-GPGP_CONST uint kPartFixed = 0u;       // its length, or
-GPGP_CONST uint kPartShare = 1u;       // its share of what fixed lengths leave
-GPGP_CONST uint kPartFixedBefore = 2u; // sums over the parts before it
+GPGP_CONST uint kDivisionCuts = 3u;
+GPGP_CONST uint kDivisionParts = 4u;
+GPGP_CONST uint kNoPiece = 0xffffffffu; // the polygon does not reach that far
+GPGP_CONST uint kPartFixed = 0u;        // its length, or
+GPGP_CONST uint kPartShare = 1u;        // its share of what fixed lengths leave
+GPGP_CONST uint kPartFixedBefore = 2u;  // sums over the parts before it
 GPGP_CONST uint kPartShareBefore = 3u;
 GPGP_CONST uint kPartSize = 4u;
 
@@ -154,7 +160,7 @@ GPGP_CONST uint kCodeLessEqual = 10u;
 GPGP_CONST uint kCodeGreaterEqual = 11u;
 GPGP_CONST uint kCodeAnd = 12u;
 GPGP_CONST uint kCodeOr = 13u;
-GPGP_CONST uint kCodeRandom = 14u;    // minimum, maximum
+GPGP_CONST uint kCodeRandom = 14u;    // minimum, maximum: draws
 GPGP_CONST uint kCodePosition = 32u;  // + axis
 GPGP_CONST uint kCodeShapeSize = 35u; // + axis
 GPGP_CONST uint kCodeNormal = 38u;    // + axis
@@ -166,6 +172,9 @@ GPGP_CONST uint kCodeCount = 52u;
 
 /// GPGP_AXIOM_DEFAULT_RULE. Other starts are counted: first the rules, then the axioms.
 GPGP_CONST uint kDefaultRule = 0xffffffffu;
+
+/// The numbers that an operator draws: of parameter p those from p << this on, in the order of its code.
+GPGP_CONST uint kDrawsOfParameter = 16u;
 
 // limits that the interpreter relies on
 GPGP_CONST uint kMaxStack = 8u;       // of expressions
@@ -197,6 +206,16 @@ GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape != kShapeSp
 GPGP_FN uint prismOf(uint polygon) { return polygon <= kShapeOctagon ? polygon + 6u : polygon + 2u; }
 /// What the ends of a prism are.
 GPGP_FN uint polygonOf(uint prism) { return prism <= kShapePrism8 ? prism - 6u : prism - 2u; }
+
+/// Whether SubDiv along an axis makes something else of a shape's polygon. A sphere's pieces are spheres.
+GPGP_FN bool isCut(uint shape, uint axis) {
+  return shape != kShapeBox && shape != kShapeQuad && shape != kShapeSphere && axis != (isPolygon(shape) ? 2u : 1u);
+}
+/// What the piece is.
+GPGP_FN uint pieceShape(uint shape) {
+  if (shape >= kShapeDynamicConvexPolygon) return shape;
+  return isPolygon(shape) ? kShapeDynamicConvexPolygon : kShapeDynamicConvexRightPrism;
+}
 
 GPGP_SHADER_END
 #endif

@@ -12,7 +12,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_FN float parameter(GPGP_GRAPH Shape s, uint index) {
-  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize);
+  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize, index);
 }
 
 GPGP_SHADER_END

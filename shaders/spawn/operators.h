@@ -100,9 +100,18 @@ struct Part {
   float fixedBefore;
   float shareBefore;
 };
-GPGP_FN void toPart(GPGP_INOUT(Shape) s, uint axis, float remainder, Part part, uint number) {
-  toPiece(s, axis, add(part.fixedBefore, multiply(remainder, part.shareBefore)),
-          add(part.fixedLength, multiply(remainder, part.share)), number);
+/// False where nothing of the part is within the shape: fixed lengths are cut off where the shape ends. A part in ten
+/// thousand of a length is taken for rounding.
+GPGP_FN bool toPart(GPGP_INOUT(Shape) s, uint axis, float remainder, Part part, uint number) {
+  const float start = add(part.fixedBefore, multiply(remainder, part.shareBefore));
+  float extent = add(part.fixedLength, multiply(remainder, part.share));
+  if (!(remainder > 0.0f)) { // else all of them fit
+    const float room = subtract(component(s.size, axis), start);
+    if (!(room > multiply(extent, 1.0e-4f))) return false;
+    extent = min(extent, room);
+  }
+  toPiece(s, axis, start, extent, number);
+  return true;
 }
 
 /// What a shape multiplies into.
@@ -110,7 +119,7 @@ struct Fan {
   uint count;      // children
   uint successors; // bit i: successor i takes part; 0: the operator passes on one shape, and the only child is the
                    // shape itself, which has not passed it yet. Repeat: the children
-  float extent;    // SubDiv: what weights share; Repeat: the length of a copy, negative where there would be too many
+  float extent; // SubDiv: what weights share; Repeat: the length of a copy; negative: the shape is dropped and counted
 };
 
 /// How many times Repeat's extent fits. A part in ten thousand of a copy is taken for rounding. Where it fits more than
@@ -124,8 +133,8 @@ GPGP_FN Fan repetitionOf(float size, uint mode, float wanted) {
     if (fits > float(kMaxRepeat)) {
       r.extent = -1.0f;
     } else if (mode == kRepeatAdjustToFill) {
-      r.count = uint(floor(add(fits, 1.0e-4f)));
-      if (r.count > 0u) r.extent = divide(size, float(r.count));
+      r.count = uint(max(1.0f, floor(add(fits, 1.0e-4f))));
+      r.extent = divide(size, float(r.count));
     } else {
       r.count = uint(max(1.0f, -floor(subtract(1.0e-4f, fits))));
     }

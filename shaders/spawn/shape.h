@@ -23,7 +23,7 @@ struct Shape {
   float custom;  // attribute; GLSL reserves that word
   uint geometry; // GpgpShape, and its polygon << 8
   uint seed;
-  uvec2 key;
+  uvec2 key;  // of the path, where numbers were drawn on it included; instances have instanceKey() of it
   uint axiom; // index
   uint node;  // the operator it waits for, a word offset; 0: discarded
   uint depth; // recursive edges on its path
@@ -81,7 +81,7 @@ GPGP_FN uint startGeometry(GPGP_GRAPH uint start, uint words) {
 }
 
 /// The start of a derivation, from a GpgpAxiom's fields. node 0 where its rule does not exist.
-GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, float custom, uint index) {
+GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint rule, float custom, uint index) {
   Shape s;
   s.axisX = vec3(1.0f, 0.0f, 0.0f);
   s.axisY = vec3(0.0f, 1.0f, 0.0f);
@@ -92,7 +92,8 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint id, uint rule, fl
   s.custom = isNan(custom) ? unitFloat(s.seed) : settle(custom);
   const uint words = startWords(GPGP_G rule);
   s.geometry = words != 0u ? startGeometry(GPGP_G rule, words) : 0u;
-  s.key = childKey(uvec2(seed, id), 0u);
+  if (isPolygon(shapeType(s))) s.size.z = 0.0f;
+  s.key = childKey(uvec2(seed, 0u), 0u); // without the id: axioms that share a seed draw the same numbers
   s.axiom = index;
   s.depth = 0u;
   s.made = 0u;
@@ -133,8 +134,11 @@ GPGP_FN vec4 instanceRow(Shape s, vec4 axiomRow) {
   return row;
 }
 
-/// A terminal shape's contribution to the order-free hash of a derivation. terminal: its number, as rules name it;
-/// rule: whose body it ended. Up to 8192 terminals, no two pairs of them are one number.
+/// The path key that an instance has: of two axioms with the same seed, but not the same id, no two are equal.
+GPGP_FN uvec2 instanceKey(uvec2 key, uint id) { return uvec2(key.x ^ mixBits(key.y + id * 0x9e3779b1u), key.y); }
+
+/// A terminal shape's contribution to the order-free hash of a derivation. key: its instance's; terminal: its number,
+/// as rules name it; rule: whose body it ended. Up to 8192 terminals, no two pairs of them are one number.
 GPGP_FN uvec2 terminalHash(uvec2 key, uint terminal, uint rule, uint shape) {
   return childKey(key, (rule * 8192u + terminal) * 32u + shape);
 }

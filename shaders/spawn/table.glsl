@@ -11,11 +11,15 @@ bool hasFrame(uint flags, uint flag) { return (GPGP_FRAMES & flag) != 0u && (fla
 float frameFactor(vec3 size, uint factor) {
   return factor == kFrameNoFactor ? 1.0f : component(size, factor);
 }
-vec3 frameVector(uint row, vec3 v, vec3 size, float seed, uint flags, uint factors) {
-  if (hasFrame(flags, kFrameDrawn)) {
-    const vec3 d = unpackVector(tableAt(row + 1u));
-    v = vec3(add(v.x, multiply(d.x, seed)), add(v.y, multiply(d.y, seed)), add(v.z, multiply(d.z, seed)));
-  }
+/// v + d * numbers that are drawn; first: the flag of the first component.
+vec3 frameDrawn(vec3 v, vec3 d, uvec2 key, uint flags, uint first) {
+  if (hasFrame(flags, first)) v.x = add(v.x, multiply(d.x, drawnNumber(key, 0u)));
+  if (hasFrame(flags, first << 1)) v.y = add(v.y, multiply(d.y, drawnNumber(key, 1u << kDrawsOfParameter)));
+  if (hasFrame(flags, first << 2)) v.z = add(v.z, multiply(d.z, drawnNumber(key, 2u << kDrawsOfParameter)));
+  return v;
+}
+vec3 frameVector(uint row, vec3 v, vec3 size, uvec2 key, uint flags, uint first, uint factors) {
+  if (hasFrame(flags, 7u * first)) v = frameDrawn(v, unpackVector(tableAt(row + 1u)), key, flags, first);
   if (factors != 0x3fu)
     v = vec3(multiply(frameFactor(size, factors & 3u), v.x), multiply(frameFactor(size, (factors >> 2) & 3u), v.y),
              multiply(frameFactor(size, factors >> 4), v.z));
@@ -27,39 +31,41 @@ vec3 frameVector(uint row, vec3 v, vec3 size, float seed, uint flags, uint facto
 }
 void transformBy(inout Shape s, uint frame, uint flags) {
   const uvec4 translation = tableAt(frame);
-  const float seed = unitFloat(s.seed);
-  const vec3 size = s.size;
-  if (hasFrame(flags, kFrameTranslates))
-    s.position = framePoint(s, frameVector(frame, unpackVector(translation), size, seed, flags, flags & 0x3fu));
-  if (hasFrame(flags, kFrameScales)) {
-    const uint scale = frame + kFrameScale / 4u;
-    resize(s, frameVector(scale, unpackVector(tableAt(scale)), size, seed, flags, (flags >> 6) & 0x3fu));
+  if (hasFrame(flags, kFrameTranslates)) {
+    s.position = framePoint(s, frameVector(frame, unpackVector(translation), s.size, s.key, flags,
+                                           kFrameTranslationDraws, flags & 0x3fu));
+    if (hasFrame(flags, 7u * kFrameTranslationDraws)) s.key = drawnKey(s.key);
   }
   if (hasFrame(flags, kFrameRotates)) {
     const uint rotation = frame + kFrameRotation / 4u;
     Rotation r;
     r.c0 = unpackVector(tableAt(rotation));
     r.c1 = unpackVector(tableAt(rotation + 1u));
-    if (hasFrame(flags, kFrameTurned)) {
-      const vec3 angles = vec3(add(r.c0.x, multiply(r.c1.x, seed)), add(r.c0.y, multiply(r.c1.y, seed)),
-                               add(r.c0.z, multiply(r.c1.z, seed)));
+    if (hasFrame(flags, 7u * kFrameRotationDraws)) {
+      const vec3 angles = frameDrawn(r.c0, r.c1, s.key, flags, kFrameRotationDraws);
 #ifdef GPGP_SOFTWARE // which counts turns of loops
       r = rotationOfAngles(sineCosineDegrees(angles.x), sineCosineDegrees(angles.y), sineCosineDegrees(angles.z));
 #else
       r = rotationOf(angles);
 #endif
+      s.key = drawnKey(s.key);
     } else {
       r.c2 = unpackVector(tableAt(rotation + 2u));
     }
     rotate(s, r);
   }
+  if (hasFrame(flags, kFrameScales)) {
+    const uint scale = frame + kFrameScale / 4u;
+    resize(s, frameVector(scale, unpackVector(tableAt(scale)), s.size, s.key, flags, kFrameScaleDraws,
+                          (flags >> 6) & 0x3fu));
+    if (hasFrame(flags, 7u * kFrameScaleDraws)) s.key = drawnKey(s.key);
+  }
 }
 /// toPart where it is known whether some parts have a fixed length.
-void toPartBy(inout Shape s, uint axis, float remainder, bool fixedLengths, uvec4 row, vec4 part) {
-  if (!fixedLengths)
-    toPiece(s, axis, multiply(remainder, part.w), multiply(remainder, part.y), row.y);
-  else
-    toPart(s, axis, remainder, Part(part.x, part.y, part.z, part.w), row.y);
+bool toPartBy(inout Shape s, uint axis, float remainder, bool fixedLengths, uvec4 row, vec4 part) {
+  if (fixedLengths) return toPart(s, axis, remainder, Part(part.x, part.y, part.z, part.w), row.y);
+  toPiece(s, axis, multiply(remainder, part.w), multiply(remainder, part.y), row.y);
+  return true;
 }
 /// The fan of a shape that waits for a family's operator.
 Fan familyFan(Shape s, uint family) {
@@ -102,13 +108,13 @@ uint toDescendant(inout Shape s, uint family, Fan fan, uint index, uint maxDepth
       const float remainder = remainderOf(component(s.size, axis), uintBitsToFloat(row.z));
       if ((row.x & kStepWeighted) != 0u && !(remainder > 0.0f)) return kEndDiscarded;
       const vec4 part = uintBitsToFloat(tableAt(child.x + kStepSize * i + 1u));
-      toPart(s, axis, remainder, Part(part.x, part.y, part.z, part.w), row.y);
+      if (!toPart(s, axis, remainder, Part(part.x, part.y, part.z, part.w), row.y)) return kEndDiscarded;
     } else if (isStep(op, kOpCompSplit)) {
       toBoxFace(s, row.y);
     } else if (isStep(op, kOpReplicate)) {
       toCopy(s, row.y);
     } else if (isStep(op, kOpIf)) {
-      child = tableAt(row.y + chosenEdge(s, row.z));
+      child = tableAt(row.y + chosenEdge(s, row.z)); // which draws
       i = 0xffffffffu;
       continue;
     }

@@ -10,7 +10,7 @@
 GPGP_SHADER_BEGIN
 
 // frame, of a step: Translate, Rotate and Scale, each at most once and in this order. A component of translation or
-// scale is (a + d * seed) * f + c, where f is an axis of the shape's size or one. Words:
+// scale is (a + d * n) * f + c, where n is drawn (drawnNumber) and f is an axis of the shape's size or one. Words:
 GPGP_CONST uint kFrameTranslation = 0u; // a, d and c, four words apart
 GPGP_CONST uint kFrameFlags = 3u;
 GPGP_CONST uint kFrameScale = 12u;    // the same
@@ -21,9 +21,11 @@ GPGP_CONST uint kFrameNoFactor = 3u;    // f is one
 GPGP_CONST uint kFrameTranslates = 1u << 12;
 GPGP_CONST uint kFrameRotates = 1u << 13;
 GPGP_CONST uint kFrameScales = 1u << 14;
-GPGP_CONST uint kFrameDrawn = 1u << 15;  // some d of translation or scale is not zero
-GPGP_CONST uint kFrameAdded = 1u << 16;  // some c is not
-GPGP_CONST uint kFrameTurned = 1u << 17; // rotation by angles
+GPGP_CONST uint kFrameAdded = 1u << 15; // some c of translation or scale is not zero
+// A component draws a number, whose d may be zero; x, y and z one after the other. A rotation that does is by angles.
+GPGP_CONST uint kFrameTranslationDraws = 1u << 16;
+GPGP_CONST uint kFrameRotationDraws = 1u << 19;
+GPGP_CONST uint kFrameScaleDraws = 1u << 22;
 
 // family, of an operator that multiplies by a known number, with all such operators and choices on static edges behind
 // it. Words of its first entry: the number of children, and 1 for a Repeat, which makes as many in each of its copies.

@@ -45,6 +45,14 @@ spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<con
                 ": it is too large, or the derivation never ends; --max-depth bounds how deep rules nest");
 }
 
+std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms) {
+  spawn::DeriveOptions options;
+  options.maxDepth = 1u << 16; // each level is a place on the evaluator's stack
+  options.keepInstances = false;
+  const spawn::Derivation all = spawn::derive(words, axioms, options);
+  return all.complete && !all.unfinishedShapes ? std::optional(all.depth) : std::nullopt;
+}
+
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
                    const spawn::VertexLayout* layout, const std::string& grammar) {
   spawn::Derivation memory = checkThatItEnds(words, axioms, maxDepth, grammar);

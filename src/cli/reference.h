@@ -2,6 +2,7 @@
 #pragma once
 #include "spawn/evaluator/evaluator.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@ namespace gpgp::cli {
 /// longer. Axioms behind the place where the evaluator gives up are not looked at. grammar: its name.
 spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
                                   const std::string& grammar);
+
+/// How deep rules nest in themselves, where that is at most 2^16 and all axioms end before the evaluator gives up.
+std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms);
 
 /// Of one thread, instances or vertices included, into memory that was touched before: the device's buffers are there
 /// before it starts as well.

@@ -3,7 +3,7 @@
 #include "cli/grammar_source.h"
 #include "cli/painter.h"
 #include "cli/reference.h"
-#include "cli/triangles_gltf.h"
+#include "cli/spawned_gltf.h"
 #include "cli/tuner.h"
 #include "cli/unit_shapes.h"
 #include "host/files.h"
@@ -30,7 +30,7 @@ struct SpawnOptions {
   float yaw = 35, pitch = 25, zoom = 1;
   uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
   std::string schedule = "default", output = "instances", matching = "off";
-  bool sorted = false;
+  bool sorted = false, nodes = false;
   spawn::Heuristics heuristics;
 };
 
@@ -118,17 +118,18 @@ struct Triangles {
 };
 
 void addTriangles(Triangles& all, const std::vector<GpgpInstance>& instances) {
-  std::vector<std::vector<glm::vec3>> shapes;
+  std::vector<UnitShape> shapes;
   for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
   for (const GpgpInstance& instance : instances) {
-    const std::vector<glm::vec3>& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
+    const UnitShape& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
     if (!all.keep) {
-      all.count(instance.terminal, shape.size() / 3);
+      all.count(instance.terminal, shape.triangles.size());
       continue;
     }
-    for (size_t i = 0; i + 2 < shape.size(); i += 3)
-      all.add({placed(instance, shape[i]), placed(instance, shape[i + 1]), placed(instance, shape[i + 2])},
-              instance.terminal);
+    const bool mirrored = isMirrored(instance);
+    const auto at = [&](uint32_t vertex) { return placed(instance, shape.vertices[vertex].position); };
+    for (const auto& [a, b, c] : shape.triangles)
+      all.add({at(a), at(mirrored ? c : b), at(mirrored ? b : c)}, instance.terminal);
   }
 }
 
@@ -180,8 +181,11 @@ std::string exceeded(const std::string& what, const std::string& option, uint64_
          "\n";
 }
 
-/// All budgets that were exceeded, a line each. tooMany: of the dropped shapes, those that no budget can save.
-std::string exceededBudgets(const GpgpSpawnReport& report, uint32_t tooMany, const Deriver& deriver, bool vertices) {
+/// All budgets that were exceeded, a line each. tooMany: of the dropped shapes, those that no budget can save. depth:
+/// says how deep rules nest, where that has an end.
+std::string exceededBudgets(const GpgpSpawnReport& report, uint32_t tooMany,
+                            const std::function<std::optional<uint32_t>()>& depth, const Deriver& deriver,
+                            bool vertices) {
   std::string text;
   if (tooMany)
     text += "budget exceeded: " + counted(tooMany, "shape") + (tooMany == 1 ? " was" : " were") +
@@ -196,9 +200,14 @@ std::string exceededBudgets(const GpgpSpawnReport& report, uint32_t tooMany, con
   if (report.collidersKept < report.colliders)
     text += exceeded(counted(report.colliders - report.collidersKept, "collider"), "--max-colliders", report.colliders,
                      deriver.mostColliders());
-  if (report.unfinishedShapes)
+  if (report.unfinishedShapes) {
+    const auto enough = depth();
     text += "budget exceeded: " + counted(report.unfinishedShapes, "shape") +
-            (report.unfinishedShapes == 1 ? " was" : " were") + " not finished; raise --max-depth\n";
+            (report.unfinishedShapes == 1 ? " was" : " were") + " not finished; " +
+            (enough ? "--max-depth " + std::to_string(*enough) + " would have been enough"
+                    : std::string("the rules nest in themselves without end, or too deep for any --max-depth")) +
+            "\n";
+  }
   if (!vertices && report.instancesWritten < report.terminals)
     text += exceeded(counted(report.terminals - report.instancesWritten, "instance"), "--max-instances",
                      report.terminals, deriver.mostElements());
@@ -299,7 +308,19 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     deriverOptions.expected = 0;
     asVertices.emplace(session, grammar, slices.of(0), deriverOptions);
   }
-  Triangles triangles{!options.image.empty() || !options.out.empty(), std::vector<uint64_t>(graph.terminals.size())};
+  Triangles triangles{!options.image.empty(), std::vector<uint64_t>(graph.terminals.size())};
+  std::vector<SpawnedVertex> allVertices; // for --out
+  std::vector<uint32_t> allIndices;
+  const auto take = [&](Deriver& from) {
+    const std::vector<SpawnedVertex> written = from.vertices();
+    const std::vector<uint32_t> indices = from.indices();
+    addTriangles(triangles, written, indices);
+    if (options.out.empty()) return written.size();
+    const uint32_t first = static_cast<uint32_t>(allVertices.size());
+    allVertices.insert(allVertices.end(), written.begin(), written.end());
+    for (const uint32_t index : indices) allIndices.push_back(first + index);
+    return written.size();
+  };
   std::string budgets; // that the first record exceeded that exceeded any
   for (size_t record = 0; record < slices.records; ++record) {
     if (record) deriver.setAxioms(slices.of(record));
@@ -314,14 +335,13 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
               ? checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars))
                     .droppedShapes
               : 0;
-      budgets = exceededBudgets(measured.report, tooMany, deriver, vertices);
+      const auto depth = [&] { return depthOf(grammar.words, slices.of(record)); };
+      budgets = exceededBudgets(measured.report, tooMany, depth, deriver, vertices);
       if (!budgets.empty() && slices.records > 1)
         budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
     }
     if (vertices) {
-      const std::vector<SpawnedVertex> written = deriver.vertices();
-      verticesWritten += written.size();
-      addTriangles(triangles, written, deriver.indices());
+      verticesWritten += take(deriver);
     } else {
       const std::vector<GpgpInstance> written = deriver.instances();
       if (asVertices) {
@@ -332,7 +352,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                       "draw is not known; raise --max-instances, or --output vertices says it");
         if (record) asVertices->setAxioms(slices.of(record));
         asVertices->fit(prepared);
-        addTriangles(triangles, asVertices->vertices(), asVertices->indices());
+        take(*asVertices);
       } else {
         addTriangles(triangles, written);
       }
@@ -354,23 +374,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   }
   for (size_t terminal = 0; terminal < triangles.counts.size(); ++terminal)
     bucketTriangles[graph.terminals[terminal].bucket] += triangles.counts[terminal];
-  if (!options.image.empty()) paint(options, triangles, graph);
-  if (!options.out.empty()) {
-    const auto colour = [&](uint32_t bucket) {
-      for (const spawn::Terminal& terminal : graph.terminals)
-        if (terminal.bucket == bucket) return paletteColour(terminal.index);
-      return paletteColour(0);
-    };
-    std::vector<std::vector<glm::vec3>> corners(bucketNames.size());
-    for (size_t i = 0; i < triangles.corners.size(); ++i)
-      for (const glm::vec3& corner : triangles.corners[i])
-        corners[graph.terminals[triangles.terminals[i]].bucket].push_back(corner);
-    writeGlb(
-        options.out, corners, [&](uint32_t bucket) { return bucketNames[bucket]; }, colour);
-  }
   if (report.base.status < GPGP_SUCCESS)
     throw Failure(joined(options.grammars) + ": " + statusName(report.base.status) +
                   ": the device ended loops of a shader before their time, and what it derived is wrong");
+  if (!options.image.empty()) paint(options, triangles, graph);
+  if (!options.out.empty()) writeGlb(options.out, graph, {instances, allVertices, allIndices}, options.nodes);
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
   const bool whole = !report.droppedShapes && report.collidersKept == report.colliders &&
                      report.unfinishedShapes == reference.result.unfinishedShapes;
@@ -415,10 +423,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   }
   text << '\n';
   if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
-  text << budgets;
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
   outcome.text = text.str();
+  if (!budgets.empty()) budgets.pop_back(); // the end of its line
+  outcome.failure = budgets.empty() && exceeded ? "not all of it was derived" : budgets;
   outcome.json = {{"grammar", jsonOf(options.grammars)},
                   {"device", session.device().name()},
                   {"status", statusName(report.base.status)},
@@ -528,9 +537,16 @@ Work addSpawn(CLI::App& app) {
       ->needs(image)
       ->check(within(0.01, 1000.0))
       ->capture_default_str();
-  command->add_option("--out", options->out, "Write what was derived as triangles")
-      ->check(glbFile())
-      ->type_name("FILE.glb");
+  CLI::Option* out =
+      command
+          ->add_option("--out", options->out,
+                       "Write what was derived: a node and mesh for each terminal, with normals, uv and its colour")
+          ->check(glbFile())
+          ->type_name("FILE.glb");
+  command
+      ->add_flag("--out-nodes", options->nodes,
+                 "There, a node for each instance that one can place, below its terminal's; they share meshes")
+      ->needs(out);
   addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)")->needs(image);
   command
       ->add_option("--max-instances", options->maxInstances,

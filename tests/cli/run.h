@@ -52,6 +52,21 @@ inline std::string gpgpFailure(std::vector<std::string> arguments) {
   return error;
 }
 
+/// Runs with --json what is done, but for what exceeds a budget: exit code 1, one object that has the result and the
+/// error, the same on standard error.
+inline json gpgpExceeded(std::vector<std::string> arguments) {
+  arguments.push_back("--json");
+  const ProcessResult result = gpgp(arguments);
+  EXPECT_EQ(result.exitCode, 1) << result.err;
+  const json object = json::parse(result.out, nullptr, false);
+  EXPECT_TRUE(object.is_object()) << result.out;
+  if (!object.is_object()) return json::object();
+  EXPECT_EQ(object.value("ok", true), false);
+  EXPECT_NE(object.value("error", "").find("budget exceeded: "), std::string::npos);
+  EXPECT_NE(result.err.find(object.value("error", "-")), std::string::npos) << result.err;
+  return object;
+}
+
 /// Each of these is wrong usage: exit code 2 and nothing on standard output.
 inline void expectWrongUsage(const std::vector<std::vector<std::string>>& wrong) {
   for (const auto& arguments : wrong) {

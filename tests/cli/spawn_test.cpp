@@ -1,5 +1,6 @@
 // `gpgp spawn` on grammars whose terminals can be counted by hand.
 #include "files.h"
+#include "glb.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "run.h"
@@ -75,14 +76,10 @@ TEST(CliSpawn, CountsTerminals) {
   EXPECT_NE(otherSeed["key_hash"], tower["key_hash"]);
 }
 
-/// Of a binary glTF file that has nothing but positions, in an order of their own.
-std::vector<std::array<float, 9>> trianglesOf(const std::string& file) {
-  const std::string text = host::readText(file);
-  uint32_t json = 0;
-  std::memcpy(&json, text.data() + 12, 4);
-  const size_t begin = 20 + json + 8; // behind the headers of the file and of both chunks
-  std::vector<std::array<float, 9>> triangles((text.size() - begin) / 36);
-  std::memcpy(triangles.data(), text.data() + begin, triangles.size() * 36);
+/// Corners of a binary glTF file's triangles, in an order of their own.
+std::vector<std::array<Vector, 3>> trianglesOf(const std::string& file) {
+  std::vector<std::array<Vector, 3>> triangles;
+  for (const GlbTriangle& t : readGlb(file).triangles) triangles.push_back(t.corners);
   std::sort(triangles.begin(), triangles.end());
   return triangles;
 }
@@ -185,7 +182,9 @@ TEST(CliSpawn, WritesVertices) {
   EXPECT_EQ(vertices["buckets"][0]["triangles"], 2 * 10 * 2);
   EXPECT_EQ(host::readPng(picture.path()).width, 96u);
   EXPECT_EQ(host::readText(out.path()).substr(0, 4), "glTF");
-  const json few = derive({"--output", "vertices", "--max-instances", "100"});
+  auto less = common;
+  less.insert(less.end(), {"--output", "vertices", "--max-instances", "100"});
+  const json few = gpgpExceeded(less);
   EXPECT_EQ(few["budget_exceeded"], true);
   EXPECT_LE(few["vertices"], 100);
   EXPECT_EQ(few["terminals"], instances["terminals"]);
@@ -203,7 +202,10 @@ TEST(CliSpawn, BudgetsThatAreSetAreKept) { // and what is lost is told; others g
   EXPECT_EQ(whole["budget_exceeded"], false);
   auto small = common;
   small.insert(small.end(), {"--max-shapes", "2"});
-  const json told = gpgpJson(small);
+  small.push_back("--json");
+  const ProcessResult result = gpgp(small);
+  const json told = json::parse(result.out);
+  EXPECT_EQ(result.exitCode, told["budget_exceeded"] ? 1 : 0);
   EXPECT_EQ(told["max_shapes"], 2);
   EXPECT_EQ(told["budget_exceeded"], told["dropped_shapes"].get<uint32_t>() > 0);
   EXPECT_EQ(told["terminals"] == whole["terminals"], told["dropped_shapes"] == 0);
@@ -246,7 +248,7 @@ TEST(CliSpawn, WhatHasNoEffectIsWrong) {
 
 TEST(CliSpawn, BudgetsAreReported) {
   const TemporaryFile grammar("budget.pga", kTower);
-  const json tower = gpgpJson({"spawn", grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "4"});
+  const json tower = gpgpExceeded({"spawn", grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "4"});
   EXPECT_EQ(tower["status"], "GPGP_BUDGET_EXCEEDED");
   EXPECT_EQ(tower["terminals"], 10);
   EXPECT_EQ(tower["instances"], 4);
@@ -260,15 +262,22 @@ TEST(CliSpawn, WhatWasExceededIsNamed) {
     arguments.insert(arguments.begin(), "spawn");
     arguments.insert(arguments.end(), {"--schedule", "interpreter"});
     const ProcessResult result = gpgp(arguments);
-    EXPECT_EQ(result.exitCode, 0) << result.err;
-    const size_t at = result.out.find("budget exceeded: ");
-    return at == std::string::npos ? result.out : result.out.substr(at + 17);
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_NE(result.out.find("terminals"), std::string::npos); // what there is is told all the same
+    const size_t at = result.err.find("budget exceeded: ");
+    return at == std::string::npos ? result.err : result.err.substr(at + 17);
   };
   EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "9"}),
             "1 instance did not fit; --max-instances 10 would have held all\n");
   EXPECT_EQ(said({grammar.path(), "--axiom-size", "4,10,4", "--max-instances", "100", "--output", "vertices"}),
             "144 vertices did not fit; --max-instances 240 would have held all\n");
-  EXPECT_EQ(said({deep.path(), "--max-depth", "7"}), "1 shape was not finished; raise --max-depth\n");
+  EXPECT_EQ(said({deep.path(), "--max-depth", "7"}), "1 shape was not finished; the rules nest in themselves without "
+                                                     "end, or too deep for any --max-depth\n");
+  const TemporaryFile ends("named_ends.pga", "axiom Box S;\nterminal T (0, 0);\n"
+                                             "S = If(ShapePos(X) < 20) { Translate(1,0,0) S | T };\n");
+  EXPECT_EQ(said({ends.path(), "--max-depth", "7"}),
+            "1 shape was not finished; --max-depth 20 would have been enough\n");
+  gpgpJson({"spawn", ends.path(), "--max-depth", "20", "--schedule", "interpreter"});
   const TemporaryFile thin("thin.pga", "axiom Box S;\nterminal T (1, 0);\nS = Repeat(X, 1e-9, ADJUST_TO_FILL) T;\n");
   EXPECT_EQ(said({thin.path()}), "1 shape was dropped, as a Repeat makes at most 1048576 copies of one\n");
   EXPECT_EQ(said({thin.path(), "--axioms", "4", "--slice", "2"}),
@@ -279,9 +288,10 @@ TEST(CliSpawn, SlicesSumUp) {
   const TemporaryFile grammar("slices.pga", kStreet),
       colliders("slices_colliders.pga", "axiom Box S;\nterminal W (1, 0);\n"
                                         "S = Collider(w) W;\n");
+  const std::vector<std::string> common = {"spawn", grammar.path(), "--axioms",    "10",       "--axiom-size",
+                                           "9,8,4", "--schedule",   "interpreter", "--repeat", "2"};
   const auto spawn = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"spawn", grammar.path(), "--axioms", "10", "--axiom-size", "9,8,4", "--schedule",
-                               "interpreter", "--repeat", "2"});
+    more.insert(more.begin(), common.begin(), common.end());
     return gpgpJson(more);
   };
   for (const char* output : {"instances", "vertices"}) {
@@ -292,7 +302,9 @@ TEST(CliSpawn, SlicesSumUp) {
          {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "rules", "key_hash", "bytes_written"})
       EXPECT_EQ(one[same], several[same]) << same;
   }
-  const json few = spawn({"--slice", "4", "--max-instances", "60"}); // of each record
+  auto less = common;
+  less.insert(less.end(), {"--slice", "4", "--max-instances", "60"}); // of each record
+  const json few = gpgpExceeded(less);
   EXPECT_EQ(few["instances"], 3 * 60);
   EXPECT_EQ(few["budget_exceeded"], true);
   expectWrongUsage({{"spawn", colliders.path(), "--axioms", "10", "--slice", "4"}});
@@ -311,7 +323,7 @@ TEST(CliSpawn, DerivationsWithoutEndAreToldAtOnce) {
   for (const auto& command : {std::vector<std::string>{"spawn", grammar.path()},
                               std::vector<std::string>{"tune", grammar.path(), "--axioms", "1", "-o", out.path()}})
     EXPECT_NE(gpgpFailure(command).find("one axiom alone becomes more than 100 million shapes"), std::string::npos);
-  EXPECT_EQ(gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--max-depth", "5"})["terminals"], 0);
+  EXPECT_EQ(gpgpExceeded({"spawn", grammar.path(), "--schedule", "interpreter", "--max-depth", "5"})["terminals"], 0);
   // Whichever axiom it is.
   const TemporaryFile large("large.pga", "axiom Box S;\nterminal T (1, 0);\n"
                                          "S = Repeat(X, 1, ADJUST_TO_FILL) Repeat(Y, 1, ADJUST_TO_FILL) T;\n"),
@@ -334,14 +346,14 @@ TEST(CliSpawn, CollidersThatDoNotFitAreReported) { // by themselves, what differ
   EXPECT_EQ(gpgpJson(common)["budget_exceeded"], false);
   auto few = common;
   few.insert(few.end(), {"--max-colliders", "4"});
-  const json told = gpgpJson(few);
+  const json told = gpgpExceeded(few);
   EXPECT_EQ(told["budget_exceeded"], true);
   EXPECT_EQ(told["colliders"], 9);
   EXPECT_EQ(told["terminals"], 18);
   const ProcessResult text = gpgp(few);
-  EXPECT_NE(text.out.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have held all"),
+  EXPECT_NE(text.err.find("budget exceeded: 5 colliders did not fit; --max-colliders 9 would have held all"),
             std::string::npos)
-      << text.out;
+      << text.err;
 }
 
 TEST(CliSpawn, AxiomFiles) {
@@ -512,10 +524,7 @@ TEST(CliSpawn, AxiomFilesHoldTransforms) {
     const TemporaryFile axioms(file, text), out("placed.glb");
     gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--axiom-size", "2,4,6", "--axiom-file",
               axioms.path(), "--out", out.path()});
-    const std::string bytes = host::readText(out.path());
-    uint32_t size = 0;
-    std::memcpy(&size, bytes.data() + 12, 4);
-    const json accessor = json::parse(bytes.substr(20, size))["accessors"][0];
+    const json accessor = readGlb(out.path()).model["accessors"][0];
     std::vector<double> all = accessor["min"];
     for (const double high : accessor["max"]) all.push_back(high);
     return all;
@@ -538,21 +547,14 @@ TEST(CliSpawn, AxiomFilesHoldTransforms) {
 TEST(CliSpawn, WritesTriangles) {
   const TemporaryFile grammar("glb.pga", kTower), out("tower.glb");
   gpgpJson({"spawn", grammar.path(), "--axiom-size", "4,10,4", "--out", out.path()});
-  const std::string bytes = host::readText(out.path());
-  ASSERT_GT(bytes.size(), 20u + 10u * 12u * 3u * 12u); // ten boxes of twelve triangles of three corners
-  EXPECT_EQ(bytes.substr(0, 4), "glTF");
-  const auto word = [&](size_t at) {
-    uint32_t value = 0;
-    for (size_t i = 0; i < 4; ++i) value |= uint32_t(uint8_t(bytes[at + i])) << (8 * i);
-    return value;
-  };
-  EXPECT_EQ(word(8), bytes.size());
-  const json model = json::parse(bytes.substr(20, word(12)));
-  ASSERT_EQ(model["accessors"].size(), 1u);
-  EXPECT_EQ(model["accessors"][0]["count"], 10 * 12 * 3);
+  const json model = readGlb(out.path()).model;
+  ASSERT_EQ(model["meshes"].size(), 1u);
+  EXPECT_EQ(model["accessors"][0]["count"], 10 * 24);
+  EXPECT_EQ(model["accessors"][3]["count"], 10 * 12 * 3);
   EXPECT_EQ(model["accessors"][0]["min"], (json{-2.0, 0.0, -2.0}));
   EXPECT_EQ(model["accessors"][0]["max"], (json{2.0, 10.0, 2.0}));
   EXPECT_EQ(model["materials"][0]["name"], "Floor");
+  EXPECT_EQ(model["nodes"][0]["name"], "Floor");
 }
 
 TEST(CliSpawn, TrianglesThatCannotBeWrittenAreAFailure) {

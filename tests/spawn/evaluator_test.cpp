@@ -124,7 +124,7 @@ TEST(Operators, RepeatCounts) {
   EXPECT_FLOAT_EQ(end[0].position[0], -4.5f);
   EXPECT_FLOAT_EQ(end[1].position[0], -2.5f);
   EXPECT_EQ(repeat(9, "3,ANCHOR_TO_START").size(), 3u);
-  EXPECT_EQ(repeat(2, "3,ADJUST_TO_FILL").size(), 0u);
+  EXPECT_EQ(repeat(2, "3,ADJUST_TO_FILL").size(), 1u);
   EXPECT_EQ(repeat(10, "-0.25,ADJUST_TO_FILL").size(), 4u);
   EXPECT_EQ(repeat(0.7f, "0.1,ADJUST_TO_FILL").size(), 7u); // 0.7 / 0.1 is just below 7
   EXPECT_EQ(repeat(10, "0,ADJUST_TO_FILL").size(), 0u);
@@ -228,7 +228,8 @@ TEST(Operators, ConditionsAndExpressions) {
   EXPECT_FALSE(taken("Exp(ShapePos(Y) <= -0.1)"));
   EXPECT_TRUE(taken("Exp(ShapeRotation(Y,Y) == 1)"));
   EXPECT_TRUE(taken("Exp(Rand(4,4) == 4)"));
-  EXPECT_TRUE(taken("Exp(ShapeSize(X) / 0 > 1000000)"));
+  EXPECT_TRUE(taken("Exp(ShapeSize(X) / ShapePos(X) > 1000000)")); // which is 0
+  EXPECT_TRUE(taken("Exp(ShapePos(X) / ShapePos(X) == 0)"));
   EXPECT_TRUE(taken("Exp(ShapeSize(Z) / ShapeSize(Y) == 1.5)"));
   EXPECT_TRUE(taken("Exp(-ShapeSize(X) == -2)"));
 }

@@ -1095,6 +1095,21 @@ TEST_F(SpawnTest, RepeatsOfTooManyCopiesAreDroppedAndCounted) {
   }
 }
 
+TEST_F(SpawnTest, ARepeatMakesAsManyCopiesAsItMay) { // or the report says that rounds were too few for them
+  const std::string text =
+      "axiom Box A; terminal T (1,0); A = Repeat(X,-0.00000095367431640625,ADJUST_TO_FILL) T;"; // 2^-20
+  for (const bool kernel : {false, true}) {
+    const Derived gpu = run(kernel ? bakeKernel(text) : bake(text), {makeAxiom(1, 1, 1)}, 1u << 20, false);
+    const bool whole = gpu.report.terminals == 1u << 20;
+    if (!device.isSoftware()) {
+      EXPECT_TRUE(whole);
+    }
+    EXPECT_EQ(gpu.report.base.status, whole ? GPGP_SUCCESS : GPGP_BUDGET_EXCEEDED);
+    EXPECT_EQ(gpu.report.droppedShapes, whole ? 0u : 1u);
+    EXPECT_EQ(gpu.report.instancesWritten, gpu.report.terminals);
+  }
+}
+
 TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {
   const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | B }; B = Replicate() { T | T | T };");
   std::vector<GpgpAxiom> all(4, makeAxiom(1, 1, 1));
@@ -1112,7 +1127,7 @@ TEST_F(SpawnTest, LinkedGrammarsEqualTheEvaluator) { // which derives what each 
   for (const std::string& name : ownGrammarNames()) files.push_back({name, ownGrammar(name)});
   files.push_back({"lines.pga", "axiom Hexagon Faces; axiom Box Faces; axiom DynamicRightPrism{(0,0.5),(-0.5,-0.5),"
                                 "(0.5,0)} Part; axiom Quad T; terminal T (1,0); terminal U (1,1);"
-                                "Faces = CompSplit() { T | U | Part }; Part = SubDiv(X) { 1: Tall | -1: U };"
+                                "Faces = CompSplit() { T | U | Part }; Part = SubDiv(X) { -1: Tall | -2: U };"
                                 "Tall = Extrude(3) CompSplit() { T | Discard() | U };"});
   for (const GpgpCompileFlags flags : {GpgpCompileFlags(0), GPGP_COMPILE_KERNEL}) {
     const auto words = linked(files, flags);

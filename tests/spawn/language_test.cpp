@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace {
 using namespace gpgp;
 using namespace gpgp::test;
@@ -193,6 +195,117 @@ TEST(Language, TheLastTerminalLineHasItsPlace) {
             Messages{"1026:1: error: more than 1024 terminal lines"});
   EXPECT_EQ(messagesOf(lines + "A = Generate();"),
             Messages{"1026:5: error: Generate() is a terminal line more than the 1024 that a grammar can have"});
+}
+
+// ---------------------------------------------------------------- numbers that are none
+
+TEST(LanguageNumbers, WhatConstantsCannotBeIsAnError) {
+  const std::string large = "numbers go up to 2^100, which is 1.2676506e30";
+  EXPECT_EQ(ofRules("A = Translate(1 / 0,0,0) T;"), Messages{"3:17: error: this divides by 0"});
+  EXPECT_EQ(ofRules("A = Translate(0 / 0,0,0) T;"), Messages{"3:17: error: this divides by 0"});
+  EXPECT_EQ(ofRules("A = Translate(0,Exp(2 - ShapeSize(X) / (3 - 3)),0) T;"),
+            Messages{"3:38: error: this divides by 0"});
+  EXPECT_EQ(ofRules("A = SubDiv(X) { Rand(1,5/0): T | -1: T };"), Messages{"3:25: error: this divides by 0"});
+  EXPECT_EQ(ofRules("var zero = 2 - 2; A = If(ShapeSize(X) > 1 / zero) { T | T };"),
+            Messages{"3:43: error: this divides by 0"});
+  EXPECT_EQ(ofRules("A = Translate(1e20 * 1e20,0,0) T;"), Messages{"3:20: error: this becomes too large; " + large});
+  EXPECT_EQ(ofRules("A = Translate(0,1 / 1e-38 * 1,0) T;"),
+            Messages{"3:19: error: this divides by 0"}); // it settles to 0
+  EXPECT_EQ(ofRules("A = Translate(1e29 / 1e-20,0,0) T;"), Messages{"3:20: error: this becomes too large; " + large});
+  EXPECT_EQ(ofRules("A = Translate(2e30,0,0) T;"), Messages{"3:15: error: this is too large; " + large});
+  EXPECT_EQ(ofRules("A = Translate(1.2e30 + 1e29,0,0) T;"), Messages{"3:22: error: this becomes too large; " + large});
+  EXPECT_EQ(ofRules("A = Translate(1.2e30,-1.2e30,1 / 1e-29) T;"), Messages{});
+  EXPECT_EQ(ofRules("A = Translate(ShapeSize(X) / ShapePos(X),0,0) T;"), Messages{}); // a matter of the shape
+}
+
+TEST(LanguageNumbers, WhatIsSetHasToBeOne) {
+  const std::string text = "var v = 1;\naxiom Box A;\nterminal T (1,0);\nA = Translate(1 / v,0,0) T;";
+  const auto said = [&](float value) {
+    GpgpVariable variable{};
+    variable.name = "v";
+    variable.value = value;
+    return messagesOf(text, {variable});
+  };
+  EXPECT_EQ(said(2), Messages{});
+  EXPECT_EQ(said(0), Messages{"4:17: error: this divides by 0"});
+  for (const float value : {INFINITY, -INFINITY, NAN, 3e38f}) {
+    const Messages messages = said(value);
+    ASSERT_FALSE(messages.empty());
+    EXPECT_EQ(messages[0].substr(0, 30), "error: var 'v' cannot be set t") << messages[0];
+  }
+}
+
+// ---------------------------------------------------------------- did you mean
+
+TEST(LanguageSuggestions, NameWhatIsMeant) {
+  const auto only = [](const std::string& rules) {
+    const Messages messages = ofRules(rules);
+    EXPECT_EQ(messages.size(), 1u) << rules;
+    return messages.empty() ? std::string() : messages[0];
+  };
+  const std::string
+      operators = "3:5: error: there is no operator ",
+      functions = " is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, ShapeSeed or "
+                  "ShapeCustomAttribute; did you mean ";
+  EXPECT_EQ(only("A = translate(1,0,0) T;"), operators + "'translate'; did you mean 'Translate'?");
+  EXPECT_EQ(only("A = Tarnslate(1,0,0) T;"), operators + "'Tarnslate'; did you mean 'Translate'?");
+  EXPECT_EQ(only("A = Subdivide(1,0,0) T;"), operators + "'Subdivide'; did you mean 'SubDiv'?");
+  EXPECT_EQ(only("A = Replicat() { T | T };"), operators + "'Replicat'; did you mean 'Replicate'?");
+  EXPECT_EQ(only("A = SetAsDynamicConvexPrism((0,0),(0.5,0),(0,0.5)) T;"), operators + "'SetAsDynamicConvexPrism'");
+  EXPECT_EQ(only("A = SetAsDynamicConvexRightPrsm((0,0),(0.5,0),(0,0.5)) T;"),
+            operators + "'SetAsDynamicConvexRightPrsm'; did you mean 'SetAsDynamicConvexRightPrism'?");
+  EXPECT_EQ(only("A = Wnidow; Window = T;").substr(0, 75),
+            "3:5: error: there is no rule or terminal 'Wnidow'; did you mean 'Window'?");
+  EXPECT_EQ(only("A = t;"), "3:5: error: there is no rule or terminal 't'; did you mean 'T'?");
+  EXPECT_EQ(only("A = discard;"), "3:5: error: there is no rule or terminal 'discard'; did you mean 'Discard'?");
+  EXPECT_EQ(only("A = Translate(ShapSize(X),0,0) T;"), "3:15: error: 'ShapSize'" + functions + "'ShapeSize'?");
+  EXPECT_EQ(only("A = Translate(rand(0,1),0,0) T;"), "3:15: error: 'rand'" + functions + "'Rand'?");
+  EXPECT_EQ(only("var height = 3; A = Translate(hieght,0,0) T;"),
+            "3:31: error: there is no var 'hieght'; expected a value; did you mean 'height'?");
+  EXPECT_NE(messagesOf("axiom box A; terminal T (1,0); A = T;")[0].find("; did you mean 'Box'?"), std::string::npos);
+  GpgpVariable variable{};
+  variable.name = "Heigth";
+  EXPECT_EQ(messagesOf("var height = 1; axiom Box A; terminal T (1,0); A = Translate(height,0,0) T;", {variable}),
+            Messages{"error: there is no var 'Heigth' that could be set; did you mean 'height'?"});
+  // What is like nothing, or longer than names are, stays alone.
+  EXPECT_EQ(only("A = Zq;"), "3:5: error: there is no rule or terminal 'Zq'");
+  EXPECT_EQ(only("A = " + std::string(100, 'T') + ";"),
+            "3:5: error: there is no rule or terminal '" + std::string(100, 'T') + "'");
+}
+
+// ---------------------------------------------------------------- names of names
+
+/// Instructions that this thread takes are not asked for; chains that were followed from each rule would be 5 * 10^9
+/// steps.
+TEST(LanguageAliases, LongChainsAreFollowedOnce) {
+  constexpr int kRules = 100000;
+  std::string forward = "axiom Box R0;\nterminal T (1,0);\n", backward = forward, circle = forward;
+  for (int i = 0; i < kRules; ++i) {
+    const std::string name = "R" + std::to_string(i), next = "R" + std::to_string(i + 1);
+    forward += name + " = " + (i + 1 < kRules ? next : "T") + ";\n";
+    circle += name + " = " + (i + 1 < kRules ? next : "R" + std::to_string(kRules / 2)) + ";\n";
+  }
+  for (int i = kRules; i-- > 0;)
+    backward += "R" + std::to_string(i) + " = " + (i + 1 < kRules ? "R" + std::to_string(i + 1) : "T") + ";\n";
+  for (const std::string& text : {forward, backward}) {
+    spawn::Diagnostics diagnostics;
+    const spawn::Graph graph = spawn::compile(text, {}, diagnostics, std::pmr::new_delete_resource());
+    EXPECT_FALSE(diagnostics.hasErrors());
+    ASSERT_EQ(graph.rules.size(), size_t(kRules));
+    for (const spawn::Rule& rule : graph.rules) ASSERT_EQ(rule.node, graph.rules[0].node);
+    EXPECT_EQ(graph.nodes.size(), 1u);
+  }
+  const Messages messages = messagesOf(circle);
+  ASSERT_EQ(messages.size(), 1001u);
+  EXPECT_EQ(messages[0], std::to_string(3 + kRules / 2) + ":1: error: rule 'R" + std::to_string(kRules / 2) +
+                             "' leads back to itself without any operator");
+  EXPECT_EQ(messages[1000], "error: " + std::to_string(kRules / 2 - 1000) + " more errors are left out");
+}
+
+TEST(LanguageAliases, CirclesAreNamedAndWhatLeadsToThemIsNot) {
+  const std::string back = "' leads back to itself without any operator";
+  EXPECT_EQ(ofRules("A = B; B = C; C = B; D = D; E = Scale(1,1,1) A;"),
+            (Messages{"3:8: error: rule 'B" + back, "3:15: error: rule 'C" + back, "3:22: error: rule 'D" + back}));
 }
 
 struct Case {

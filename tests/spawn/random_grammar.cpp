@@ -39,6 +39,7 @@ private:
     std::string text = std::to_string(value);
     return text.substr(0, text.find('.') + 4);
   }
+  static std::string notZero(const std::string& number) { return std::stod(number) == 0 ? "0.5" : number; }
   const char* axis() { return below(3) == 0 ? "X" : below(2) == 0 ? "Y" : "Z"; }
 
   std::string value(double low, double high) {
@@ -46,7 +47,7 @@ private:
     case 0: return std::string("Rand(") + number(low, high) + "," + number(low, high) + ")";
     case 1: return std::string("Exp(ShapeSize(") + axis() + ") * " + number(0.1, 0.9) + ")";
     case 2: return std::string("Exp(v + ShapeSeed() * ") + number(low, high) + ")";
-    case 3: return std::string("Exp(ShapePos(") + axis() + ") / " + number(-4, 4) + ")";
+    case 3: return std::string("Exp(ShapePos(") + axis() + ") / " + notZero(number(-4, 4)) + ")";
     case 4:
       return std::string("Exp(ShapeNormal(Y) * ") + number(low, high) + " - ShapeRotation(" + axis() + "," + axis() +
              "))";

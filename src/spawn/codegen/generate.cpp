@@ -55,6 +55,7 @@ public:
           node.op >= kOpCompSplit && (room_.words || node.division == UINT32_MAX || stops_[indexOf(node)]);
       if (!multiplies(node) && !byWords) continue;
       operators |= 1u << node.op;
+      if (isCutting(node)) operators |= 1u << 29;
       if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= 1u << 30;
       if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= 1u << 31;
     }
@@ -154,7 +155,8 @@ private:
     if (code >= kCodeNormal && code < kCodeNormal + 3) return axis("axisZ", code - kCodeNormal);
     return code == kCodeSeed ? "unitFloat(s.seed)" : "s.custom";
   }
-  static std::string operation(uint32_t code, const std::string& a, const std::string& b) {
+  /// draw: the number of what kCodeRandom draws.
+  static std::string operation(uint32_t code, const std::string& a, const std::string& b, uint32_t draw) {
     const auto call = [&](const char* function) { return std::string(function) + "(" + a + ", " + b + ")"; };
     const auto compare = [&](const char* op) { return "truth(" + a + " " + op + " " + b + ")"; };
     switch (code) {
@@ -170,7 +172,8 @@ private:
     case kCodeGreaterEqual: return compare(">=");
     case kCodeAnd: return "truth(" + a + " != 0.0f && " + b + " != 0.0f)";
     case kCodeOr: return "truth(" + a + " != 0.0f || " + b + " != 0.0f)";
-    default: return "add(" + a + ", multiply(subtract(" + b + ", " + a + "), unitFloat(s.seed)))";
+    default:
+      return "add(" + a + ", multiply(subtract(" + b + ", " + a + "), drawnNumber(s.key, " + number(draw) + ")))";
     }
   }
   const Parameter& parameterOf(const Node& node, uint32_t index) const {
@@ -182,6 +185,7 @@ private:
       return word(node, true, [&](const Node& peer) { return parameterOf(peer, index).value; });
     if (own.kind == kParameterAttribute) return attribute(own.value);
     std::vector<std::string> stack;
+    uint32_t draws = index << kDrawsOfParameter;
     for (uint32_t at = 0; graph_.code[own.value + at] != kCodeEnd; ++at) {
       const uint32_t code = graph_.code[own.value + at];
       if (code == kCodeNumber) {
@@ -193,7 +197,8 @@ private:
       } else {
         const std::string b = std::move(stack.back());
         stack.pop_back();
-        stack.back() = operation(code, stack.back(), b);
+        stack.back() = operation(code, stack.back(), b, draws);
+        if (code == kCodeRandom) ++draws;
       }
     }
     return stack.back();
@@ -226,7 +231,7 @@ private:
   void writeParameters() {
     if (room_.words) {
       add("float parameter(Shape s, uint index) {\n"
-          "  return evaluate(s, graphWords[s.node + kNodeParameters] + index * kParameterSize);\n}\n");
+          "  return evaluate(s, graphWords[s.node + kNodeParameters] + index * kParameterSize, index);\n}\n");
       return;
     }
     add("float parameter(Shape s, uint index) {\n"
@@ -277,8 +282,10 @@ private:
                                : "max(0.0f, " + component(axis) + ")") +
               ";\n");
           if (op & kStepWeighted) add("    if (!(remainder" + std::to_string(i) + " > 0.0f)) return 0xffffffffu;\n");
-          add("    toPartBy(s, " + number(axis) + ", remainder" + std::to_string(i) + ", " +
-              (op & kStepFixed ? "true, " : "false, ") + row + ", uintBitsToFloat(tableAt(" + where + " + 1u)));\n");
+          const std::string part = "toPartBy(s, " + number(axis) + ", remainder" + std::to_string(i) + ", " +
+                                   (op & kStepFixed ? "true, " : "false, ") + row + ", uintBitsToFloat(tableAt(" +
+                                   where + " + 1u)))";
+          add(op & kStepFixed ? "    if (!" + part + ") return 0xffffffffu;\n" : "    " + part + ";\n");
           break;
         }
         case kOpCompSplit: add("    toBoxFace(s, " + row + ".y);\n"); break;
@@ -299,7 +306,7 @@ private:
   void writeChoices() {
     const auto matched = std::exchange(peers_, {});
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) peers_.push_back({n});
-    add("uint chosenEdge(Shape s, uint node) {\n  uint chosen = 0u;\n  switch (node) {\n");
+    add("uint chosenEdge(inout Shape s, uint node) {\n  uint chosen = 0u;\n  switch (node) {\n");
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       if (!table_.chooses[n]) continue;
       const Node& node = graph_.nodes[n];
@@ -308,6 +315,7 @@ private:
         writeDraw(node);
       else
         add("  chosen = " + condition(node) + " ? 0u : 1u;\n");
+      addDrawn(node);
       add("  break;\n  }\n");
     }
     add("  default: break;\n  }\n  return chosen;\n}\n");
@@ -363,11 +371,16 @@ private:
   }
 
   void writeOperator(const Node& node) {
-    const auto pass = [&](const std::string& expression) { add("  " + expression + ";\n  " + take(node, 0) + "\n"); };
+    const auto pass = [&](const std::string& expression) {
+      add("  " + expression + ";\n");
+      addDrawn(node);
+      add("  " + take(node, 0) + "\n");
+    };
     switch (node.op) {
     case kOpTranslate: {
       const std::string terms = frameTerms(node);
       if (!terms.empty()) add("  precise vec3 p = s.position" + terms + ";\n  s.position = settleFinite3(p);\n");
+      addDrawn(node);
       add("  " + take(node, 0) + "\n");
       return;
     }
@@ -433,7 +446,13 @@ private:
     return node.op == kOpIf ? parameter(node, 0) + " != 0.0f" : component(node.argument) + " < " + parameter(node, 0);
   }
   void writeIf(const Node& node) {
-    add("  if (" + condition(node) + ") { " + take(node, 0) + " } else { " + take(node, 1) + " }\n");
+    add("  const bool holds = " + condition(node) + ";\n");
+    addDrawn(node);
+    add("  if (holds) { " + take(node, 0) + " } else { " + take(node, 1) + " }\n");
+  }
+  /// Behind what draws numbers.
+  void addDrawn(const Node& node) {
+    if (node.draws) add("  s.key = drawnKey(s.key);\n");
   }
   /// The edge that RandomRule takes, as `chosen`.
   void writeDraw(const Node& node) {
@@ -452,6 +471,7 @@ private:
     const uint32_t count = node.edgeCount;
     add("  uint chosen = 0u;\n");
     writeDraw(node);
+    addDrawn(node);
     add("  switch (chosen) {\n");
     for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + " break;\n");
     add("  default: " + take(node, count - 1) + " break;\n  }\n");
@@ -490,11 +510,13 @@ private:
       const uint32_t* part = division + kDivisionParts + kept * kPartSize;
       std::string values;
       for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
-      add("  toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place + ");\n");
+      add("  if (!toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place +
+          ")) return kEndDiscarded;\n");
     } else { // by the words, which also take the edge; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n  const Fan fan = fanOf(s);\n"
-          "  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n");
+          "  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
+          "  if (s.node == 0u) return kEndDiscarded;\n");
       followed = true;
     }
     add("  " + take(node, kept, followed) + "\n");

@@ -16,10 +16,11 @@ constexpr uint32_t kMostChildren = 64, kMostSteps = 12, kMostEntries = 128;
 /// A family goes through a choice whose successors make on average this share of what most of them make.
 constexpr double kBusyShare = 0.8;
 
-/// A component: (a + d * seed) * f + c.
+/// A component: (a + d * n) * f + c, with n the number that it draws.
 struct Term {
   float a = 0, d = 0, c = 0;
   uint32_t factor = kFrameNoFactor;
+  bool draws = false; ///< of the whole
 
   bool isNumber() const { return isFactor() && d == 0; }
   bool isSize() const { return a == 1 && d == 0 && c == 0 && factor != kFrameNoFactor; }
@@ -89,6 +90,7 @@ private:
     if (parameter.kind == kParameterAttribute)
       return isSizeCode(parameter.value) ? std::optional(sizeTerm(parameter.value)) : std::nullopt;
     std::vector<Term> stack;
+    bool draws = false;
     for (uint32_t at = parameter.value; graph_.code[at] != kCodeEnd; ++at) {
       const uint32_t code = graph_.code[at];
       if (code == kCodeNumber) {
@@ -101,10 +103,12 @@ private:
         const Term b = stack.back();
         stack.pop_back();
         const auto result = combine(code, stack.back(), b);
-        if (!result) return std::nullopt;
+        if (!result || (code == kCodeRandom && draws)) return std::nullopt; // its second number is none of a frame's
+        draws = draws || code == kCodeRandom;
         stack.back() = *result;
       }
     }
+    stack.back().draws = draws;
     return stack.back();
   }
   std::optional<Terms> termsOf(uint32_t index) const {
@@ -125,11 +129,13 @@ private:
   }
   static void putOperator(uint32_t* row, uint32_t op, const Terms& terms) {
     uint32_t& flags = row[kFrameFlags];
-    const bool drawn = terms[0].d != 0 || terms[1].d != 0 || terms[2].d != 0;
+    const uint32_t draws = (terms[0].draws ? 1u : 0u) | (terms[1].draws ? 2u : 0u) | (terms[2].draws ? 4u : 0u);
+    flags |= draws * (op == kOpTranslate ? kFrameTranslationDraws
+                      : op == kOpRotate  ? kFrameRotationDraws
+                                         : kFrameScaleDraws);
     if (op == kOpRotate) {
       flags |= kFrameRotates;
-      if (drawn) {
-        flags |= kFrameTurned;
+      if (draws) {
         put(row, kFrameRotation, terms[0].a, terms[1].a, terms[2].a);
         put(row, kFrameRotation + 4, terms[0].d, terms[1].d, terms[2].d);
       } else {
@@ -143,7 +149,6 @@ private:
     const bool scale = op == kOpScale;
     const uint32_t first = scale ? kFrameScale : kFrameTranslation;
     flags |= scale ? kFrameScales : kFrameTranslates;
-    if (drawn) flags |= kFrameDrawn;
     if (terms[0].c != 0 || terms[1].c != 0 || terms[2].c != 0) flags |= kFrameAdded;
     put(row, first, terms[0].a, terms[1].a, terms[2].a);
     put(row, first + 4, terms[0].d, terms[1].d, terms[2].d);
@@ -403,8 +408,9 @@ private:
 } // namespace
 
 bool multipliesByKnown(const Node& node) {
-  return multiplies(node) && (node.op == kOpReplicate || (node.op == kOpSubDiv && node.division != UINT32_MAX) ||
-                              (node.op == kOpCompSplit && node.shapes == 1u << kShapeBox));
+  return multiplies(node) && !isCutting(node) &&
+         (node.op == kOpReplicate || (node.op == kOpSubDiv && node.division != UINT32_MAX) ||
+          (node.op == kOpCompSplit && node.shapes == 1u << kShapeBox));
 }
 
 KernelTable makeTable(const Graph& graph, const std::vector<bool>& waits, bool throughChoices) {

@@ -68,7 +68,7 @@ public:
     for (size_t a = 0; a < axioms_.size() && out_.complete; ++a) {
       const GpgpAxiom& axiom = axioms_[a];
       if (!startWords(words_, axiom.rule)) ++out_.droppedShapes;
-      runFrom(axiomShape(words_, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.id, axiom.rule,
+      runFrom(axiomShape(words_, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.rule,
                          axiom.attribute, static_cast<uint32_t>(a)));
     }
     for (uint32_t phase = 1; phase < words_[kHeaderPhases] && out_.complete; ++phase)
@@ -115,24 +115,30 @@ private:
   /// One of the first three parameters.
   float value(const Step& step, const Shape& s, uint32_t i) const {
     if (!(step.variable >> i & 1)) return component(step.values, i);
-    return expression(s, step.terms[i], step.parameters + i * kParameterSize);
+    return expression(s, step, step.terms[i], i);
   }
-  float expression(const Shape& s, uint32_t terms, uint32_t words) const {
-    if (terms == kNoTerms) return evaluateWords(s, words);
+  /// A parameter that is not constant. terms: as Step::terms
+  float expression(const Shape& s, const Step& step, uint32_t terms, uint32_t index) const {
+    if (terms == kNoTerms) return evaluateWords(s, step.parameters + index * kParameterSize, index);
     const Term* term = &program_.terms[terms];
     float result = operand(*term, s);
-    while ((++term)->code != kCodeEnd) result = combine(term->code, result, operand(*term, s), unitFloat(s.seed));
+    while ((++term)->code != kCodeEnd) {
+      const float drawn = term->code == kCodeRandom ? drawnNumber(s.key, term->draw) : 0;
+      result = combine(term->code, result, operand(*term, s), drawn);
+    }
     return result;
   }
   static float operand(const Term& term, const Shape& s) {
     if (term.source == kNumber) return term.number;
-    if (term.source == kDrawn) return add(term.number, multiply(term.range, unitFloat(s.seed)));
+    if (term.source == kDrawn) return add(term.number, multiply(term.range, drawnNumber(s.key, term.draw)));
     if (term.source == kSeed) return unitFloat(s.seed);
     float attribute;
     std::memcpy(&attribute, reinterpret_cast<const char*>(&s) + term.source, sizeof attribute);
     return attribute;
   }
-  [[gnu::noinline]] float evaluateWords(const Shape& s, uint32_t at) const { return evaluate(words_, s, at); }
+  [[gnu::noinline]] float evaluateWords(const Shape& s, uint32_t at, uint32_t index) const {
+    return evaluate(words_, s, at, index);
+  }
   vec2 angle(const Step& step, const Shape& s, uint32_t i) const {
     return step.variable >> i & 1 ? sineCosineDegrees(value(step, s, i)) : step.angles[i];
   }
@@ -193,6 +199,7 @@ private:
         frame.step = toChild(frame, s);
         continue;
       }
+      if (step.draws) s.key = drawnKey(s.key);
       frame.step = follow(s, step.ways[way]);
     }
     return wait(frame);
@@ -210,6 +217,7 @@ private:
     const Step& step = *frame.step;
     const Shape& s = frame.shape;
     Fan fan{step.count, step.successors, 0};
+    if (step.cuts && isUncut(words_, s, step.node, step.argument)) return {0, 0, -1};
     switch (step.op) {
     case kDivide:
       fan.extent = remainderOf(component(s.size, step.argument), step.total);
@@ -232,7 +240,7 @@ private:
   /// A part's length, or negative weight.
   float length(const Step& step, const Shape& s, uint32_t part) const {
     const Way& way = step.ways[part];
-    return way.terms ? expression(s, way.terms, step.parameters + part * kParameterSize) : way.length;
+    return way.terms ? expression(s, step, way.terms, part) : way.length;
   }
   /// The fan of divisionOf(), and what its parts need.
   Fan divide(Frame& frame) const {
@@ -274,6 +282,7 @@ private:
     const Step& step = *frame.step;
     const uint32_t index = frame.made++;
     uint32_t way = 0;
+    bool there = true;
     const auto nextSuccessor = [&] {
       way = uint(findLSB(frame.left));
       frame.left &= frame.left - 1;
@@ -281,11 +290,13 @@ private:
     switch (step.op) {
     case kDivide:
       nextSuccessor();
-      forAxis(step.argument, [&](uint32_t axis) { toPart(s, axis, frame.fan.extent, step.ways[way].part, way); });
+      forAxis(step.argument,
+              [&](uint32_t axis) { there = toPart(s, axis, frame.fan.extent, step.ways[way].part, way); });
+      if (step.cuts) there = there && cutTo(words_, s, step.node, step.argument, way);
       break;
     case kOpSubDiv:
       nextSuccessor();
-      toPart(s, step.argument, frame.fan.extent, nextPart(frame, s, way), way);
+      there = toPart(s, step.argument, frame.fan.extent, nextPart(frame, s, way), way);
       break;
     case kOpRepeat:
       forAxis(step.argument,
@@ -303,7 +314,7 @@ private:
       break;
     default: return &step;
     }
-    return follow(s, step.ways[way]);
+    return there ? follow(s, step.ways[way]) : program_.at(0);
   }
 
   void emit(const Frame& frame) {
@@ -311,7 +322,8 @@ private:
     const GpgpAxiom& axiom = axioms_[context_.axiomNumber(shape.axiom)];
     const uint32_t bucket = frame.step->argument2, type = shapeType(shape);
     const uint32_t rule = words_[frame.step->node + kNodeRule];
-    const uvec2 hash = terminalHash(shape.key, frame.step->argument, rule, type);
+    const uvec2 key = instanceKey(shape.key, axiom.id);
+    const uvec2 hash = terminalHash(key, frame.step->argument, rule, type);
     out_.keyHash[0] += hash.x;
     out_.keyHash[1] += hash.y;
     ++out_.buckets[bucket];
@@ -330,8 +342,8 @@ private:
     instance.terminal = frame.step->argument;
     instance.seed = shape.seed;
     instance.attribute = shape.custom;
-    instance.key[0] = shape.key.x;
-    instance.key[1] = shape.key.y;
+    instance.key[0] = key.x;
+    instance.key[1] = key.y;
     instance.size[0] = shape.size.x;
     instance.size[1] = shape.size.y;
     instance.size[2] = shape.size.z;

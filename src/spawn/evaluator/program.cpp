@@ -20,40 +20,44 @@ uint32_t sourceOf(uint32_t code) {
 static_assert(offsetof(Shape, axisY) == offsetof(Shape, axisX) + 12 &&
               offsetof(Shape, axisZ) == offsetof(Shape, axisX) + 24);
 
-/// Terms of the parameter at a word. Returns where they are, or kNoTerms where they do not go from left to right.
-uint32_t addTerms(std::vector<Term>& terms, const uint32_t* words, uint32_t at) {
+/// Terms of the parameter at a word; index: its place among the operator's. Returns where they are, or kNoTerms where
+/// they do not go from left to right.
+uint32_t addTerms(std::vector<Term>& terms, const uint32_t* words, uint32_t at, uint32_t index) {
   const size_t first = terms.size();
+  uint32_t draws = index << kDrawsOfParameter;
   if (words[at] == kParameterAttribute) {
-    terms.push_back({kCodeEnd, sourceOf(words[at + 1]), 0, 0});
+    terms.push_back({kCodeEnd, sourceOf(words[at + 1]), 0, 0, 0});
   } else {
     const uint32_t* code = words + words[at + 1];
     const auto operand = [&] {
       if (*code != kCodeNumber && *code < kCodeAttributes) return false;
       if (*code != kCodeNumber) {
-        terms.push_back({kCodeEnd, sourceOf(*code++), 0, 0});
+        terms.push_back({kCodeEnd, sourceOf(*code++), 0, 0, 0});
         return true;
       }
       const float number = uintBitsToFloat(code[1]);
       code += 2;
       if (*code == kCodeNumber && code[2] == kCodeRandom) { // as combine() draws, with its difference worked out
-        terms.push_back({kCodeEnd, kDrawn, number, subtract(uintBitsToFloat(code[1]), number)});
+        terms.push_back({kCodeEnd, kDrawn, number, subtract(uintBitsToFloat(code[1]), number), draws++});
         code += 3;
       } else {
-        terms.push_back({kCodeEnd, kNumber, number, 0});
+        terms.push_back({kCodeEnd, kNumber, number, 0, 0});
       }
       return true;
     };
     bool plain = operand();
     while (plain && *code != kCodeEnd) {
       plain = operand() && *code != kCodeNumber && *code < kCodeAttributes && *code != kCodeEnd;
-      if (plain) terms.back().code = *code++;
+      if (!plain) break;
+      terms.back().code = *code++;
+      if (terms.back().code == kCodeRandom) terms.back().draw = draws++;
     }
     if (!plain) {
       terms.resize(first);
       return kNoTerms;
     }
   }
-  terms.push_back({kCodeEnd, 0, 0, 0});
+  terms.push_back({kCodeEnd, 0, 0, 0, 0});
   return static_cast<uint32_t>(first);
 }
 
@@ -99,7 +103,7 @@ void addLengths(Program& program, const Step& step, const uint32_t* words) {
     if (isConstant(words, at))
       ways[i].length = graphFloat(words, at + 1);
     else
-      ways[i].terms = addTerms(program.terms, words, at);
+      ways[i].terms = addTerms(program.terms, words, at, i);
   }
 }
 
@@ -129,8 +133,11 @@ Program decode(const uint32_t* words) {
     const uint32_t* node = words + step.node;
     step.op = node[kNodeOperator] & kOperatorMask;
     step.filter = node[kNodeOperator] & kNodeFilter;
+    step.draws = node[kNodeOperator] & kNodeDraws;
     step.argument = node[kNodeArgument];
     step.argument2 = node[kNodeArgument2];
+    for (uint32_t shape = 0; step.op == kOpSubDiv && shape < kShapeCount; ++shape)
+      step.cuts = step.cuts || ((node[kNodeShapes] >> shape & 1) && isCut(shape, step.argument));
     step.parameters = node[kNodeParameters];
     step.wayCount = node[kNodeEdgeCount];
     step.ways = program.ways.data() + program.ways.size();
@@ -145,7 +152,7 @@ Program decode(const uint32_t* words) {
         step.values = withComponent(step.values, i, graphFloat(words, at + 1));
       } else {
         step.variable |= 1u << i;
-        step.terms[i] = addTerms(program.terms, words, at);
+        step.terms[i] = addTerms(program.terms, words, at, i);
       }
     }
     simplify(step);

@@ -26,8 +26,9 @@ enum : uint32_t { kNumber = 0xffffff00u, kSeed, kDrawn };
 /// Of an expression that goes from left to right: a number or an attribute, and how it joins what stands before it.
 struct Term {
   uint32_t code;   ///< kCodeAdd to kCodeRandom; kCodeEnd behind the last term
-  uint32_t source; ///< offset in Shape, or: kNumber; kSeed: the seed's fraction; kDrawn: number + range * that
+  uint32_t source; ///< offset in Shape, or: kNumber; kSeed: the seed's fraction; kDrawn: number + range * what it draws
   float number, range;
+  uint32_t draw; ///< of kDrawn or kCodeRandom: the number of what it draws
 };
 /// Instead of a place in Program::terms: what does not go from left to right, which evaluate() does.
 constexpr uint32_t kNoTerms = UINT32_MAX;
@@ -36,6 +37,8 @@ struct Step {
   uint32_t op = kDiscard;
   uint32_t node = 0;   ///< word offset
   bool filter = false; ///< kNodeFilter
+  bool draws = false;  ///< kNodeDraws
+  bool cuts = false;   ///< SubDiv to which shapes can come that it cuts
   uint32_t argument = 0, argument2 = 0;
   const Way* ways = nullptr;
   uint32_t wayCount = 0;

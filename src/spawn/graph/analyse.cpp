@@ -4,6 +4,7 @@
 // Types flow from the axioms and, since a derivation may start with any rule, from every rule with its axiom's type.
 // Recursive are the back edges of a depth-first search from the axioms' nodes: without them there is no cycle.
 #include "core/math.h"
+#include "spawn/graph/cuts.h"
 #include "spawn/graph/graph.h"
 #include "spawn/graph/longest_paths.h"
 
@@ -37,9 +38,19 @@ uint32_t multiplicityOf(uint32_t op) {
   }
 }
 
+void removePieces(Graph& graph) {
+  if (!graph.pieces) return;
+  const Polygon first = graph.polygons[graph.polygons.size() - graph.pieces];
+  graph.polygons.resize(graph.polygons.size() - graph.pieces);
+  graph.vertices.resize(2 * size_t(first.firstVertex));
+  graph.quads.resize(kQuadSize * size_t(first.firstQuad));
+  graph.pieces = 0;
+}
+
 /// The division of a SubDiv, where all parts are constant.
 void divide(Graph& graph, Node& node) {
   node.division = UINT32_MAX;
+  node.cuts = false;
   if (node.op != kOpSubDiv) return;
   const auto value = [&](uint32_t i) { return uintBitsToFloat(graph.parameters[node.firstParameter + i].value); };
   float fixedLength = 0, weights = 0;
@@ -51,7 +62,8 @@ void divide(Graph& graph, Node& node) {
     if (value(i) < 0) weights = subtract(weights, value(i)), weightedParts |= own;
   }
   node.division = static_cast<uint32_t>(graph.divisions.size());
-  graph.divisions.insert(graph.divisions.end(), {floatBitsToUint(fixedLength), fixedParts, weightedParts});
+  graph.divisions.insert(graph.divisions.end(), {floatBitsToUint(fixedLength), fixedParts, weightedParts, 0u});
+  node.cuts = fixedLength == 0 && weights > 0;
   float fixedBefore = 0, weightBefore = 0;
   for (uint32_t i = 0; i < node.edgeCount; ++i) {
     const float v = value(i);
@@ -161,13 +173,29 @@ uint32_t outputOf(const Node& node, uint32_t edge, uint32_t shape) {
     if (edge == 2) return isPrism(shape) ? bit(kShapeQuad) : 0u;
     if (isPrism(shape)) return bit(polygonOf(shape));
     return shape != kShapeSphere && edge == 0 ? bit(shape) : 0u;
+  case kOpSubDiv:
+    if (!isCut(shape, node.argument)) return bit(shape);
+    return node.cuts ? bit(pieceShape(shape)) : 0u;
   default: return bit(shape);
   }
+}
+
+uint32_t drawsOf(const Graph& graph, const Parameter& parameter) {
+  if (parameter.kind != kParameterProgram) return 0;
+  uint32_t draws = 0;
+  for (uint32_t at = parameter.value; graph.code[at] != kCodeEnd; ++at) {
+    if (graph.code[at] == kCodeNumber)
+      ++at; // which follows
+    else if (graph.code[at] == kCodeRandom)
+      ++draws;
+  }
+  return draws;
 }
 
 void analyse(Graph& graph) {
   const auto memory = graph.nodes.get_allocator().resource();
   graph.divisions.clear();
+  removePieces(graph);
   for (Node& node : graph.nodes) {
     divide(graph, node);
     uint32_t kept = 0;
@@ -178,6 +206,9 @@ void analyse(Graph& graph) {
       if (edge.target != kNoNode) kept += many ? 2 : 1;
     }
     node.filter = node.op >= kOpCompSplit && kept <= 1;
+    node.draws = false;
+    for (uint32_t i = 0; node.op < kOpCompSplit && i < node.parameterCount; ++i)
+      node.draws = node.draws || drawsOf(graph, graph.parameters[node.firstParameter + i]) > 0;
   }
   ShapeFlow fromAxioms(graph, &Node::axiomShapes), all(graph, &Node::shapes);
   for (const Axiom& axiom : graph.axioms) {
@@ -187,6 +218,9 @@ void analyse(Graph& graph) {
   for (const Rule& rule : graph.rules) all.arrive(rule.node, bit(graph.axioms[rule.axiom].shape));
   fromAxioms.run();
   all.run();
+  for (Node& node : graph.nodes) // what it drops is counted where it waits
+    if (isCutting(node)) node.filter = false;
+  cutPolygons(graph);
   for (const Node& node : graph.nodes)
     for (uint32_t e = 0; e < node.edgeCount; ++e)
       graph.edges[node.firstEdge + e].shapes = outgoing(node, e, node.shapes);

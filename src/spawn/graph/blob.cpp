@@ -63,11 +63,13 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   words[kHeaderWords] = offset;
   words[kHeaderBuckets] = graph.buckets;
   words[kHeaderPhases] = graph.phases;
+  words[kHeaderPieces] = graph.pieces;
   for (const Node& n : graph.nodes)
-    words.insert(words.end(), {n.op | (n.filter ? kNodeFilter : 0u) | n.priority << kNodePriority, n.argument,
-                               n.division == UINT32_MAX ? n.argument2 : at(kSectionDivisions, n.division),
-                               n.op == kOpTerminal ? n.rule : at(kSectionParameters, n.firstParameter),
-                               n.parameterCount, at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
+    words.insert(words.end(),
+                 {n.op | (n.filter ? kNodeFilter : 0u) | (n.draws ? kNodeDraws : 0u) | n.priority << kNodePriority,
+                  n.argument, n.division == UINT32_MAX ? n.argument2 : at(kSectionDivisions, n.division),
+                  n.op == kOpTerminal ? n.rule : at(kSectionParameters, n.firstParameter), n.parameterCount,
+                  at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
   for (const Edge& e : graph.edges)
     words.insert(words.end(), {nodeAt(e.target) | (e.recursive ? kEdgeRecursive : 0u), e.multiplicity, e.shapes});
   for (const Parameter& p : graph.parameters)
@@ -127,10 +129,11 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
 
   Graph graph(memory);
   graph.buckets = words[kHeaderBuckets];
+  graph.pieces = words[kHeaderPieces];
   graph.nodes.reserve(counts[kSectionNodes]);
   for (uint32_t i = 0; i < counts[kSectionNodes]; ++i) {
     const uint32_t* w = entry(kSectionNodes, i);
-    const uint32_t op = w[kNodeOperator] & (kNodeFilter - 1);
+    const uint32_t op = w[kNodeOperator] & kOperatorMask;
     graph.nodes.push_back({op, w[kNodeArgument], op == kOpSubDiv ? 0 : w[kNodeArgument2],
                            op == kOpTerminal ? 0 : indexOf(kSectionParameters, w[kNodeParameters], 1),
                            w[kNodeParameterCount], indexOf(kSectionEdges, w[kNodeEdges], 1), w[kNodeEdgeCount],

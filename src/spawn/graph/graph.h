@@ -36,6 +36,9 @@ struct Node {
   uint32_t axiomShapes = 0;        ///< those of them that come from axioms
   uint32_t division = UINT32_MAX;  ///< in Graph::divisions
   bool filter = false;             ///< could multiply shapes, but passes on at most one
+  bool cuts = false;               ///< SubDiv by constant weights alone: cuts polygons
+  bool uncut = false;              ///< one that can arrive it cannot cut; such shapes are dropped and counted
+  bool draws = false;              ///< passes on one shape, and a parameter draws a random number
   uint32_t priority = 0;           ///< of its rule, at most kMaxPriority: see dependenciesOf()
   uint32_t rule = shader::kNoRule; ///< of a terminal: in whose body it stands
 };
@@ -74,6 +77,7 @@ struct Graph {
   std::pmr::vector<Parameter> parameters;
   std::pmr::vector<uint32_t> code;
   std::pmr::vector<Polygon> polygons;
+  uint32_t pieces = 0; ///< of them, the last: those that SubDiv makes; from analyse()
   std::pmr::vector<float> vertices;
   std::pmr::vector<uint32_t> quads; ///< four corners of their polygon each, 16 bits
   std::pmr::vector<Terminal> terminals;
@@ -123,6 +127,16 @@ void analyse(Graph& graph);
 /// Every index, enum, count and program. What passes can be derived without further checks and without end only where
 /// the graph has a cycle.
 core::Result<void> validate(const Graph& graph);
+
+/// How many random numbers a parameter draws.
+uint32_t drawsOf(const Graph& graph, const Parameter& parameter);
+
+/// A SubDiv to which shapes can come whose polygon it cuts.
+inline bool isCutting(const Node& node) {
+  for (uint32_t shape = 0; node.op == shader::kOpSubDiv && shape < shader::kShapeCount; ++shape)
+    if ((node.shapes >> shape & 1) && shader::isCut(shape, node.argument)) return true;
+  return false;
+}
 
 /// Collider or IfCollides.
 inline bool isContext(uint32_t op) { return op == shader::kOpCollider || op == shader::kOpIfCollides; }

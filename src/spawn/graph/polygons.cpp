@@ -11,11 +11,13 @@ namespace gpgp::spawn {
 namespace {
 
 using Corner = std::array<uint32_t, 4>;
+using Quads = std::pmr::vector<Corner>;
 constexpr uint32_t kNone = UINT32_MAX;
 
 class Clipper {
 public:
-  Clipper(const float* corners, uint32_t count) : corners_(corners), previous_(count), next_(count), behind_(count) {
+  Clipper(const float* corners, uint32_t count, std::pmr::memory_resource* memory)
+      : corners_(corners), previous_(count, memory), next_(count, memory), behind_(count, memory) {
     for (uint32_t i = 0; i < count; ++i) {
       previous_[i] = i == 0 ? count - 1 : i - 1;
       next_[i] = i + 1 == count ? 0 : i + 1;
@@ -37,13 +39,13 @@ public:
   }
 
   /// Quads as corners 0 1 2 and 0 2 3; a triangle repeats its last one. Nothing where there is no ear left.
-  std::vector<Corner> clip() {
-    std::vector<Corner> quads;
+  Quads clip() {
+    Quads quads(previous_.get_allocator());
     uint32_t left = static_cast<uint32_t>(next_.size()), at = 0, tried = 0;
     bool flat = false; // ears without area count
     while (left >= 3) {
       if (tried == left) {
-        if (flat) return {};
+        if (flat) return Quads(previous_.get_allocator());
         flat = true;
         tried = 0;
       }
@@ -90,7 +92,7 @@ private:
     return true;
   }
 
-  void cutOff(uint32_t b, std::vector<Corner>& quads) {
+  void cutOff(uint32_t b, Quads& quads) {
     const uint32_t a = previous_[b], c = next_[b];
     Corner quad{a, b, c, kNone};
     uint32_t paired = kNone;
@@ -111,16 +113,14 @@ private:
     next_[a] = c;
     previous_[c] = a;
   }
-  static bool isSingle(uint32_t quad, const std::vector<Corner>& quads) {
-    return quad != kNone && quads[quad][3] == kNone;
-  }
+  static bool isSingle(uint32_t quad, const Quads& quads) { return quad != kNone && quads[quad][3] == kNone; }
 
   const float* corners_;
-  std::vector<uint32_t> previous_, next_;
-  std::vector<uint32_t> behind_; ///< what was cut off along the edge that begins at a corner
+  std::pmr::vector<uint32_t> previous_, next_;
+  std::pmr::vector<uint32_t> behind_; ///< what was cut off along the edge that begins at a corner
 };
 
-void addCorners(Graph& graph, const std::vector<Corner>& quads, uint32_t count, bool mirrored) {
+void addCorners(Graph& graph, const Quads& quads, uint32_t count, bool mirrored) {
   graph.polygons.push_back({static_cast<uint32_t>(graph.vertices.size() / 2), count,
                             static_cast<uint32_t>(graph.quads.size() / 2), static_cast<uint32_t>(quads.size())});
   for (const Corner& q : quads) {
@@ -133,8 +133,8 @@ void addCorners(Graph& graph, const std::vector<Corner>& quads, uint32_t count, 
 } // namespace
 
 uint32_t addPolygon(Graph& graph, const float* corners, uint32_t count) {
-  std::vector<Corner> quads;
-  Clipper clipper(corners, count);
+  Quads quads(graph.quads.get_allocator());
+  Clipper clipper(corners, count, graph.quads.get_allocator().resource());
   if (!clipper.isConvex()) {
     if (!clipper.isCrossed()) quads = clipper.clip();
     if (quads.empty()) return kNoPolygon;

@@ -94,8 +94,8 @@ uint32_t cornersOf(uint32_t shape) {
 
 Result<void> checkGeometry(const Graph& graph, const char* where, uint32_t shape, uint32_t polygon) {
   if (shape >= kShapeCount) return makeError(GPGP_ERROR_INVALID_DATA, "%s has unknown shape %u", where, shape);
-  if (polygon >= graph.polygons.size())
-    return makeError(GPGP_ERROR_INVALID_DATA, "%s names polygon %u of %zu", where, polygon, graph.polygons.size());
+  const size_t own = graph.polygons.size() - graph.pieces;
+  if (polygon >= own) return makeError(GPGP_ERROR_INVALID_DATA, "%s names polygon %u of %zu", where, polygon, own);
   const uint32_t corners = cornersOf(shape);
   if (corners && graph.polygons[polygon].vertexCount != corners)
     return makeError(GPGP_ERROR_INVALID_DATA, "%s: a %s needs %u corners", where, kShapes[shape], corners);
@@ -182,6 +182,8 @@ Result<void> validate(const Graph& graph) {
   }
   if (graph.polygons.size() < kRegularPolygons || graph.polygons.size() % 2 || graph.polygons.size() > 0xffffff)
     return makeError(GPGP_ERROR_INVALID_DATA, "%zu polygons", graph.polygons.size());
+  if (graph.pieces % 2 || graph.pieces > graph.polygons.size() - kRegularPolygons)
+    return makeError(GPGP_ERROR_INVALID_DATA, "%u polygons of %zu are pieces", graph.pieces, graph.polygons.size());
   const size_t vertices = graph.vertices.size() / 2, quads = graph.quads.size() / kQuadSize;
   for (size_t i = 0; i < graph.polygons.size(); ++i) {
     const Polygon& polygon = graph.polygons[i];
@@ -199,6 +201,10 @@ Result<void> validate(const Graph& graph) {
       if ((graph.quads[word] & 0xffffu) >= polygon.vertexCount || graph.quads[word] >> 16 >= polygon.vertexCount)
         return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu has a quad with a corner out of range", i);
   }
+  for (size_t i = 0, own = graph.polygons.size() - graph.pieces; graph.pieces && i < own; ++i)
+    if (graph.polygons[i].firstVertex + graph.polygons[i].vertexCount > graph.polygons[own].firstVertex ||
+        graph.polygons[i].firstQuad + graph.polygons[i].quadCount > graph.polygons[own].firstQuad)
+      return makeError(GPGP_ERROR_INVALID_DATA, "polygon %zu lies among pieces", i);
   if (graph.vertices.size() % 2) return makeError(GPGP_ERROR_INVALID_DATA, "half a vertex");
   for (size_t i = 0; i < graph.vertices.size(); i += 2)
     if (!isCorner(graph.vertices[i], graph.vertices[i + 1])) // no NaN is

@@ -1,5 +1,10 @@
 #include "spawn/language/append_graph.h"
 
+#include "spawn/language/build_graph.h"
+#include "spawn/language/lexer.h"
+
+#include <algorithm>
+
 namespace gpgp::spawn {
 namespace {
 using namespace shader;
@@ -29,9 +34,9 @@ Names appendNames(const Graph& part, const std::string& name, Graph& graph, Tags
   return names;
 }
 
-/// All but the regular ones, which every graph has.
+/// All but the regular ones, which every graph has, and pieces, which follow from the whole.
 void appendPolygons(const Graph& part, Graph& graph) {
-  for (size_t i = kRegularPolygons; i < part.polygons.size(); ++i) {
+  for (size_t i = kRegularPolygons; i < part.polygons.size() - part.pieces; ++i) {
     const Polygon& p = part.polygons[i];
     graph.polygons.push_back({sizeOf(graph.vertices) / 2, p.vertexCount, sizeOf(graph.quads) / kQuadSize, p.quadCount});
     const auto vertices = part.vertices.begin() + 2 * std::ptrdiff_t(p.firstVertex);
@@ -41,6 +46,15 @@ void appendPolygons(const Graph& part, Graph& graph) {
   }
 }
 } // namespace
+
+std::string linkedName(std::string_view file) {
+  std::string name(file.substr(file.find_last_of("/\\") + 1)); // npos + 1 is 0
+  name.erase(std::min(name.find('.'), name.size()));
+  for (char& c : name)
+    if (!isNameCharacter(c)) c = '_';
+  const bool digits = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+  return digits ? std::string("_").append(name) : name;
+}
 
 uint32_t addName(Graph& graph, std::string_view name) {
   const uint32_t at = sizeOf(graph.names);

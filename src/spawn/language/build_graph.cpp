@@ -6,8 +6,9 @@
 #include "spawn/language/check_context.h"
 #include "spawn/language/check_shapes.h"
 #include "spawn/language/expressions.h"
-#include "spawn/language/lexer.h"
+#include "spawn/language/resolve_rules.h"
 #include "spawn/language/spellings.h"
+#include "spawn/language/suggest.h"
 
 #include <algorithm>
 #include <array>
@@ -37,7 +38,11 @@ public:
     defineTerminals();
     defineRules();
     for (size_t i = 0; i < tree_.rules.size(); ++i) buildRule(i);
-    for (size_t i = 0; i < tree_.rules.size(); ++i) graph_.rules[firstRule_ + i].node = resolveRule(i);
+    const std::vector<uint32_t> nodes = resolveRules(ruleTargets_, [&](size_t i) {
+      const RuleDefinition& rule = tree_.rules[i];
+      diagnostics_.error(rule.place, "rule '" + rule.name + "' leads back to itself without any operator");
+    });
+    for (size_t i = 0; i < nodes.size(); ++i) graph_.rules[firstRule_ + i].node = nodes[i];
     for (const auto& [edge, rule] : ruleEdges_) graph_.edges[edge].target = graph_.rules[firstRule_ + rule].node;
     buildAxioms();
   }
@@ -49,13 +54,7 @@ private:
     size_t index;
     Place place;
   };
-  /// Where a successor leads: a node, nowhere, or to a rule whose node is not known yet.
-  struct Target {
-    uint32_t node = kNoNode;
-    std::optional<size_t> rule;
-  };
 
-  /// Of a rule or terminal.
   uint32_t addOwnName(const std::string& name) {
     return addName(graph_, part_.name.empty() ? name : part_.name + "." + name);
   }
@@ -76,7 +75,15 @@ private:
       if (!variable.name) continue;
       const bool known = std::any_of(tree_.variables.begin(), tree_.variables.end(),
                                      [&](const VariableDefinition& v) { return v.name == variable.name; });
-      if (!known) diagnostics_.error({}, std::string("there is no var '") + variable.name + "' that could be set");
+      if (!known) {
+        Suggestion suggestion(variable.name);
+        for (const VariableDefinition& v : tree_.variables) suggestion.offer(v.name);
+        diagnostics_.error({}, std::string("there is no var '") + variable.name + "' that could be set" +
+                                   suggestion.text());
+      }
+      if (!isUsable(variable.value))
+        diagnostics_.error({}, std::string("var '") + variable.name + "' cannot be set to " +
+                                   numberText(variable.value) + "; " + kUsableNumbers);
       set[variable.name] = settle(variable.value);
     }
     for (const VariableDefinition& variable : tree_.variables) {
@@ -147,10 +154,10 @@ private:
       ruleTargets_[index] = buildSuccessor(rule.body);
       return;
     }
-    // 20%: A else: B is RandomRule(ShapeSeed()) with probabilities
+    // 20%: A else: B is RandomRule(Rand(0, 1)) with probabilities
     const size_t errors = diagnostics_.errorCount();
     float given = 0;
-    std::vector<Parameter> parameters{{kParameterAttribute, kCodeSeed}};
+    std::vector<Parameter> parameters{expressions_.drawnParameter()};
     for (const Branch& branch : rule.alternatives) {
       const bool isGiven = !branch.isElse && branch.label;
       const float p = isGiven ? expressions_.constant(*branch.label, "a probability") : std::max(0.0f, 100.0f - given);
@@ -183,23 +190,6 @@ private:
       diagnostics_.error(place, "these probabilities are all 0; expected one that is more");
   }
 
-  /// A rule that is only a name leads to what the name leads to.
-  uint32_t resolveRule(size_t index) {
-    std::vector<bool> seen(tree_.rules.size());
-    size_t rule = index;
-    while (ruleTargets_[rule].rule) {
-      if (seen[rule]) {
-        if (rule == index)
-          diagnostics_.error(tree_.rules[index].place,
-                             "rule '" + tree_.rules[index].name + "' leads back to itself without any operator");
-        return kNoNode;
-      }
-      seen[rule] = true;
-      rule = *ruleTargets_[rule].rule;
-    }
-    return ruleTargets_[rule].node;
-  }
-
   Target buildSuccessor(const Successor& successor) {
     if (successor.call) return buildCall(*successor.call);
     if (successor.name.empty()) return {}; // was reported
@@ -207,7 +197,8 @@ private:
     if (it == names_.end()) {
       diagnostics_.error(successor.place, isOperatorName(successor.name)
                                               ? "expected '(' after the operator " + successor.name
-                                              : "there is no rule or terminal '" + successor.name + "'");
+                                              : "there is no rule or terminal '" + successor.name + "'" +
+                                                    suggestionFor(successor.name, true));
       return {};
     }
     if (it->second.kind == NameKind::rule) {
@@ -216,6 +207,21 @@ private:
       return {kNoNode, it->second.index};
     }
     return {terminalNode(static_cast<uint32_t>(it->second.index), successor.place), std::nullopt};
+  }
+
+  /// What may be meant instead of an operator's name; ofShapes: instead of a rule's or terminal's, which it may be as
+  /// well.
+  std::string suggestionFor(const std::string& name, bool ofShapes) const {
+    if (!diagnostics_.takesErrors()) return {};
+    Suggestion suggestion(name);
+    if (ofShapes)
+      for (const auto& [candidate, what] : names_) suggestion.offer(candidate);
+    forOperatorNames([&](const char* candidate) { suggestion.offer(candidate); });
+    return suggestion.text();
+  }
+
+  void reportUnknown(const Call& call) {
+    diagnostics_.error(call.place, "there is no operator '" + call.name + "'" + suggestionFor(call.name, false));
   }
 
   /// A rule has one for each of its terminals, which says whose it is.
@@ -253,7 +259,7 @@ private:
     if (names_.count(call.name))
       diagnostics_.error(call.place, "'" + call.name + "' is no operator; expected no '(' after it");
     else
-      diagnostics_.error(call.place, "there is no operator '" + call.name + "'");
+      reportUnknown(call);
     checkNames(call, true);
     for (const Branch& branch : call.branches) buildSuccessor(branch.successor);
     return {};
@@ -384,7 +390,7 @@ private:
     const bool convex = call.name.find("Convex") != std::string::npos;
     uint32_t shape = prism ? kShapeDynamicRightPrism : kShapeDynamicPolygon;
     if (convex) shape = prism ? kShapeDynamicConvexRightPrism : kShapeDynamicConvexPolygon;
-    if (!isOperatorName(call.name)) diagnostics_.error(call.place, "there is no operator '" + call.name + "'");
+    if (!isOperatorName(call.name)) reportUnknown(call);
     checkBranches(call, {call.name.c_str(), kOpSetGeometry, "", 1, false});
     const uint32_t polygon = buildPolygon(call.place, call.arguments, convex);
     const uint32_t node = addNode(call.place, kOpSetGeometry, {}, call.branches);
@@ -496,10 +502,13 @@ private:
   void setShape(Axiom& axiom, const AxiomDefinition& definition) {
     const auto shape = shapeNamed(definition.shape);
     if (!shape) {
+      Suggestion suggestion(definition.shape);
+      for (uint32_t s = 0; s < kShapeCount; ++s) suggestion.offer(shapeName(s));
       diagnostics_.error(definition.shapePlace,
                          "there is no shape '" + definition.shape +
                              "'; expected Triangle, Quad, Pentagon, "
-                             "Hexagon, Heptagon, Octagon, Prism3, Box, Prism5 to Prism8, Sphere or a Dynamic... shape");
+                             "Hexagon, Heptagon, Octagon, Prism3, Box, Prism5 to Prism8, Sphere or a Dynamic... shape" +
+                             suggestion.text());
       return;
     }
     axiom.shape = *shape;
@@ -544,15 +553,6 @@ private:
   uint32_t wrongTags_ = 0;
 };
 } // namespace
-
-std::string linkedName(std::string_view file) {
-  std::string name(file.substr(file.find_last_of("/\\") + 1)); // npos + 1 is 0
-  name.erase(std::min(name.find('.'), name.size()));
-  for (char& c : name)
-    if (!isNameCharacter(c)) c = '_';
-  const bool digits = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
-  return digits ? std::string("_").append(name) : name;
-}
 
 Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* memory) {
   Graph graph(memory);

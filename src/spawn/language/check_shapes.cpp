@@ -26,6 +26,15 @@ void warnOfEnds(const Graph& graph, const Node& node, Place place, Diagnostics& 
     }
     if (!goesOn) ending |= 1u << s;
   }
+  if (ending && leads && node.op == kOpSubDiv) {
+    diagnostics.warning(place, "SubDiv cuts nothing of " + list(ending) +
+                                   ", which can arrive: by lengths, its pieces would have other corners for each size. "
+                                   "Such shapes are dropped and counted; expected constant weights alone");
+    return;
+  }
+  if (node.uncut)
+    diagnostics.warning(place, "SubDiv cannot cut some shapes that can arrive: they would fall into several pieces, or "
+                               "there would be too many different ones. Such shapes are dropped and counted");
   if (ending && leads)
     diagnostics.warning(place, std::string(operatorName(node.op)) + " passes on nothing of " + list(ending) +
                                    ", which can arrive: such shapes end here");

@@ -28,6 +28,8 @@ public:
   void warning(Place place, std::string text) { add(place, GPGP_SEVERITY_WARNING, std::move(text)); }
   void info(Place place, std::string text) { add(place, GPGP_SEVERITY_INFO, std::move(text)); }
   bool hasErrors() const { return errorCount() > 0; }
+  /// Whether one more error is kept: what only words it better need not be worked out otherwise.
+  bool takesErrors() const { return errorCount() < kLimit; }
   size_t errorCount() const { return counts_[GPGP_SEVERITY_ERROR]; }
   /// Names a place of what is no text: messages then call it by that name.
   void name(Place place, std::string text) { names_[{place.line, place.column}] = std::move(text); }

@@ -1,8 +1,11 @@
 #include "spawn/language/expressions.h"
 
 #include "spawn/expression.h"
+#include "spawn/language/spellings.h"
+#include "spawn/language/suggest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace gpgp::spawn {
@@ -19,6 +22,8 @@ bool isWhole(const Expression& e) {
                       [](const Expression& a) { return a.kind == ExpressionKind::broken; });
 }
 } // namespace
+
+bool isUsable(float value) { return std::abs(value) <= kLargest; } // no NaN is
 
 std::optional<uint32_t> axisOf(const Expression& expression, Diagnostics& diagnostics) {
   if (expression.kind == ExpressionKind::name) {
@@ -60,8 +65,26 @@ ExpressionCompiler::Code ExpressionCompiler::attribute(const Expression& express
   return result;
 }
 
+float ExpressionCompiler::fold(Place place, uint32_t op, float left, float right) {
+  const double a = left, b = right;
+  const double exact = op == kCodeAdd        ? a + b
+                       : op == kCodeSubtract ? a - b
+                       : op == kCodeMultiply ? a * b
+                       : op == kCodeDivide   ? a / b
+                                             : 0;
+  if (std::abs(exact) > double(kLargest)) {
+    diagnostics_.error(place, std::string("this becomes too large; ") + kUsableNumbers);
+    return 0;
+  }
+  return combine(op, left, right, 0);
+}
+
 ExpressionCompiler::Code ExpressionCompiler::join(Place place, uint32_t op, Code left, Code right) {
-  if (left.isConstant && right.isConstant && op != kCodeRandom) return number(combine(op, left.value, right.value, 0));
+  if (op == kCodeDivide && right.isConstant && right.value == 0) { // whatever the shape is
+    diagnostics_.error(place, "this divides by 0");
+    return number(0);
+  }
+  if (left.isConstant && right.isConstant && op != kCodeRandom) return number(fold(place, op, left.value, right.value));
   Code result;
   result.words = std::move(left.words);
   result.words.insert(result.words.end(), right.words.begin(), right.words.end());
@@ -98,19 +121,35 @@ ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
   if (e.name == "ShapeCustomAttribute") return attribute(e, kCodeCustom, 0);
   diagnostics_.error(e.place, "'" + e.name +
                                   "' is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, "
-                                  "ShapeNormal, ShapeSeed or ShapeCustomAttribute");
+                                  "ShapeNormal, ShapeSeed or ShapeCustomAttribute" +
+                                  suggestionFor(e.name, true));
   for (const Expression& argument : e.arguments)
     if (argument.kind != ExpressionKind::name) compile(argument); // a name may be an axis
   return number(0);
 }
 
+/// What may be meant instead of a var's or function's name.
+std::string ExpressionCompiler::suggestionFor(const std::string& name, bool isCall) const {
+  if (!diagnostics_.takesErrors()) return {};
+  Suggestion suggestion(name);
+  if (!isCall)
+    for (const auto& [candidate, value] : variables_) suggestion.offer(candidate);
+  for (const char* candidate : kFunctions) suggestion.offer(candidate);
+  return suggestion.text();
+}
+
 ExpressionCompiler::Code ExpressionCompiler::compile(const Expression& e) {
   switch (e.kind) {
-  case ExpressionKind::number: return number(e.number);
+  case ExpressionKind::number:
+    if (!isUsable(e.number)) {
+      diagnostics_.error(e.place, std::string("this is too large; ") + kUsableNumbers);
+      return number(0);
+    }
+    return number(e.number);
   case ExpressionKind::name: {
     const auto variable = variables_.find(e.name);
     if (variable != variables_.end()) return number(variable->second);
-    diagnostics_.error(e.place, "there is no var '" + e.name + "'; expected a value");
+    diagnostics_.error(e.place, "there is no var '" + e.name + "'; expected a value" + suggestionFor(e.name, false));
     return number(0);
   }
   case ExpressionKind::pair: diagnostics_.error(e.place, "expected one value, found a pair (x, y)"); return number(0);
@@ -122,8 +161,10 @@ ExpressionCompiler::Code ExpressionCompiler::compile(const Expression& e) {
   return join(e.place, e.op, std::move(left), compile(e.arguments[1]));
 }
 
-Parameter ExpressionCompiler::parameter(const Expression& expression) {
-  Code code = compile(expression);
+Parameter ExpressionCompiler::parameter(const Expression& expression) { return parameter(compile(expression)); }
+Parameter ExpressionCompiler::drawnParameter() { return parameter(join({}, kCodeRandom, number(0), number(1))); }
+
+Parameter ExpressionCompiler::parameter(Code code) {
   if (code.isConstant) return {kParameterConstant, floatBitsToUint(code.value)};
   if (code.words.size() == 1) return {kParameterAttribute, code.words[0]};
   code.words.push_back(kCodeEnd);

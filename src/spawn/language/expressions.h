@@ -7,12 +7,18 @@
 
 namespace gpgp::spawn {
 
+/// Of the numbers that a grammar can have.
+bool isUsable(float value);
+constexpr const char* kUsableNumbers = "numbers go up to 2^100, which is 1.2676506e30";
+
 class ExpressionCompiler {
 public:
   ExpressionCompiler(const std::map<std::string, float>& variables, Graph& graph, Diagnostics& diagnostics)
       : variables_(variables), graph_(graph), diagnostics_(diagnostics) {}
 
   Parameter parameter(const Expression& expression);
+  /// Rand(0, 1)
+  Parameter drawnParameter();
   /// A value that may not depend on the shape; what names it in the message.
   float constant(const Expression& expression, const char* what);
 
@@ -23,11 +29,15 @@ private:
     bool isConstant = false;
     float value = 0;
   };
+  Parameter parameter(Code code);
   Code compile(const Expression& expression);
   Code call(const Expression& expression);
   Code number(float value) const;
   Code attribute(const Expression& expression, uint32_t code, uint32_t axes);
   Code join(Place place, uint32_t op, Code left, Code right);
+  /// left op right, of numbers. Reports what is none.
+  float fold(Place place, uint32_t op, float left, float right);
+  std::string suggestionFor(const std::string& name, bool isCall) const;
 
   const std::map<std::string, float>& variables_;
   Graph& graph_;

@@ -39,6 +39,13 @@ constexpr std::array<const char*, 6> kOtherOperators{"Discard",
                                                      "SetAsDynamicConcavePolygon",
                                                      "SetAsDynamicConvexRightPrism",
                                                      "SetAsDynamicConcaveRightPrism"};
+constexpr std::array<const char*, 8> kFunctions{"Exp",           "Rand",        "ShapePos",  "ShapeSize",
+                                                "ShapeRotation", "ShapeNormal", "ShapeSeed", "ShapeCustomAttribute"};
+/// Calls for each operator's name.
+template <class Call> void forOperatorNames(const Call& call) {
+  for (const Spelling& spelling : kSpellings) call(spelling.name);
+  for (const char* name : kOtherOperators) call(name);
+}
 inline bool isOperatorName(const std::string& name) {
   return std::any_of(std::begin(kSpellings), std::end(kSpellings), [&](const Spelling& s) { return name == s.name; }) ||
          std::any_of(kOtherOperators.begin(), kOtherOperators.end(), [&](const char* s) { return name == s; });

@@ -52,18 +52,19 @@ constexpr uint32_t kStepTurns = 512, kQueryTurns = 80;
 } // namespace
 
 Turns turnsOf(const Graph& graph) {
-  uint32_t codes = 0, choices = 1, parts = 1, edges = 1;
+  uint32_t codes = 0, choices = 1, parts = 1, edges = 1, cut = 0;
   for (const Parameter& parameter : graph.parameters) codes = std::max(codes, lengthOf(graph, parameter));
   for (const Node& node : graph.nodes) {
     if (node.op == kOpRandomRule) choices = std::max(choices, node.edgeCount);
     if (node.op == kOpSubDiv && node.division == UINT32_MAX) parts = std::max(parts, node.edgeCount);
     if (node.op >= kOpCompSplit) edges = std::max(edges, node.edgeCount);
+    if (node.op == kOpSubDiv && isCutting(node)) cut = static_cast<uint32_t>(graph.polygons.size());
   }
   const uint32_t value = loop(codes);                  // evaluate()
   const uint32_t division = loop(parts, value);        // divisionOf()
-  const uint32_t byWords = 2 * loop(edges) + division; // toChild()
+  const uint32_t byWords = 2 * loop(edges) + division + loop(cut); // toChild()
   Turns turns;
-  turns.fan = division + 2 * value + loop(edges); // familyFan(), fanOf(): a Repeat, or others
+  turns.fan = division + 2 * value + loop(edges) + loop(cut); // familyFan(), fanOf(): a Repeat, or others
   turns.child = byWords;
   turns.family = loop(kFamilySteps);                   // toDescendant()
   const uint32_t transform = loop(3, value) + loop(3); // and rotationOf()

@@ -1,0 +1,53 @@
+// Optimal string alignment distance, row by row.
+#include "spawn/language/suggest.h"
+
+#include <algorithm>
+#include <array>
+
+namespace gpgp::spawn {
+namespace {
+constexpr size_t kMostDistance = 3, kMostLetters = 64; // longer names are not compared
+
+std::string lowerCase(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return result;
+}
+
+/// Or something above most, where it is above most.
+size_t distanceOf(std::string_view a, std::string_view b, size_t most) {
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return most + 1;
+  using Row = std::array<size_t, kMostLetters + 1>;
+  std::array<Row, 3> rows{};
+  for (size_t j = 0; j <= b.size(); ++j) rows[0][j] = j;
+  for (size_t i = 1; i <= a.size(); ++i) {
+    Row& row = rows[i % 3];
+    const Row &before = rows[(i + 2) % 3], &twoBefore = rows[(i + 1) % 3];
+    size_t least = row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({before[j] + 1, row[j - 1] + 1, before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], twoBefore[j - 2] + 1);
+      least = std::min(least, row[j]);
+    }
+    if (least > most) return most + 1;
+  }
+  return rows[a.size() % 3][b.size()];
+}
+} // namespace
+
+Suggestion::Suggestion(std::string_view wrong)
+    : wrong_(lowerCase(wrong)), distance_(std::min(wrong.size() / 3, kMostDistance) + 1) {}
+
+void Suggestion::offer(std::string_view candidate) {
+  if (distance_ == 0 || wrong_.size() > kMostLetters || candidate.size() > kMostLetters) return;
+  const size_t distance = distanceOf(wrong_, lowerCase(candidate), distance_ - 1);
+  if (distance >= distance_) return;
+  distance_ = distance;
+  best_ = candidate;
+}
+
+std::string Suggestion::text() const { return best_.empty() ? std::string() : "; did you mean '" + best_ + "'?"; }
+
+} // namespace gpgp::spawn
