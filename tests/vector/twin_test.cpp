@@ -71,7 +71,7 @@ struct TwinTest : CanvasTest {
         image.push_back(alpha << 24 | dice.upTo(alpha + 1) << 16 | dice.upTo(alpha + 1) << 8 | dice.upTo(alpha + 1));
       }
       textures.emplace_back(device, width, height, image, filter, mode);
-      images.push_back(textures.back().view(images.size() % 2 != 0));
+      images.push_back(textures.back().view(dice.oneIn(2), dice.oneIn(2) ? GPGP_IMAGE_SRGB : GPGP_IMAGE_LINEAR));
       twinImages.push_back({width, height, image, filter, mode});
     };
     add(5, 3, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
