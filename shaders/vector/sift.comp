@@ -11,9 +11,9 @@ layout(local_size_x = 64) in;
 #include "ended.glsl"
 #include "lists.glsl"
 #include "color.h"
-// Tiles of rows that would take more are crowded. A step takes the device up to four turns of loops (core/turns.h), and
-// invocations that run together are mostly of one bin, so that they take their steps together.
-const uint kMaxSteps = 6000;
+// Tiles of rows that would take more are crowded. Invocations that run together, up to 16, take as many turns as all of
+// them where they differ (core/turns.h).
+const uint kMaxSteps = 3900;
 const uint kMaxWords = 16384; // of the bin, that are looked through
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
