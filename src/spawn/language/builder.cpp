@@ -253,8 +253,9 @@ private:
   Expression value(GpgpGrammarValue v, Place at) {
     const uint32_t id = v.id;
     if (id == GPGP_VALUE_NUMBER) {
-      if (!std::isfinite(v.number)) diagnostics_.error(at, "this number is not finite");
-      return number(v.number, at);
+      if (std::isfinite(v.number)) return number(v.number, at);
+      diagnostics_.error(at, "this number is not finite");
+      return number(0, at);
     }
     if (id >= GPGP_VALUE_X && id <= GPGP_VALUE_Z) return named(ExpressionKind::name, kAxes[id - GPGP_VALUE_X], at);
     if (id >= GPGP_VALUE_ADJUST_TO_FILL && id <= GPGP_VALUE_ANCHOR_TO_END)
