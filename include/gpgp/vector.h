@@ -71,8 +71,7 @@ typedef struct GpgpGradient {
   VkBool32 interpolateSrgb; /**< mix stops as sRGB encodes them, as SVG does; else linearly */
 } GpgpGradient;
 
-/** A texture of the engine's as paint. Its colours are taken as linear (an sRGB format decodes itself). Beyond 0 to 1
- *  and between texels the sampler decides: address modes, filters, mip levels, anisotropy. */
+/** A texture of the engine's as paint. GpgpCanvasImage says what it holds, and its sampler what lies beyond 0 to 1. */
 typedef struct GpgpImagePaint {
   uint32_t image;     /**< in GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES */
   float transform[6]; /**< texture coordinates (0 to 1 over the image) to drawing: x' = t0 u + t2 v + t4,
@@ -407,12 +406,30 @@ typedef struct GpgpCanvasItem {
 
 enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
 
-/** An image that items paint with. The engine has made its contents visible to sampling in compute shaders. */
+typedef int32_t GpgpImageEncoding; /**< what an image's colours are where shaders sample it */
+enum {
+  GPGP_IMAGE_LINEAR = 0, /**< linear light: sRGB formats, which decode themselves, and float formats as a rule */
+  GPGP_IMAGE_SRGB = 1    /**< as sRGB encodes light: the texels of a picture file in a UNORM format */
+};
+
+typedef int32_t GpgpImageFilter; /**< how an image is filtered between its texels */
+enum { GPGP_IMAGE_FILTER_LINEAR = 0, GPGP_IMAGE_FILTER_NEAREST = 1 };
+
+/** An image that items paint with. The engine has made its contents visible to sampling in compute shaders.
+ *
+ *  Colours between texels are mixed premultiplied, and as the canvas mixes colours: in linear light, or with blendSrgb
+ *  as sRGB encodes them. An image whose texels are just that (premultiplied, its encoding the canvas's) is sampled
+ *  once a pixel, and the sampler decides everything. Of any other image the texels are converted one by one: four are
+ *  sampled a pixel, eight between two levels. The sampler then decides what lies beyond the edges; anisotropy and a
+ *  bias of levels do not count, and all levels of the view are used. */
 typedef struct GpgpCanvasImage {
   VkImageView view; /**< 2D, a float or normalised format that the sampler may filter */
   VkSampler sampler;
-  VkImageLayout layout;   /**< it is in: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
-  VkBool32 premultiplied; /**< its colours have been multiplied by its alpha */
+  VkImageLayout layout;       /**< it is in: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
+  VkBool32 premultiplied;     /**< its colours have been multiplied by its alpha, as they are encoded (an sRGB format's
+                                   as they are decoded); also true of opaque images */
+  GpgpImageEncoding encoding; /**< of its colours, where they are sampled */
+  GpgpImageFilter filter;     /**< NEAREST: the sampler filters so as well, and each pixel takes what it gives */
 } GpgpCanvasImage;
 
 typedef struct GpgpCanvasInfo {

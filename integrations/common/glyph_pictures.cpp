@@ -12,7 +12,7 @@ constexpr uint32_t kMargin = 8;  // around a picture; with its neighbour's, a te
 constexpr uint32_t kLevels = 5;  // down to a sixteenth
 static_assert(kPitch % (1u << (kLevels - 1)) == 0 && 2 * kMargin >= 1u << (kLevels - 1));
 
-/// Premultiplied linear colour, 4 numbers a texel.
+/// Premultiplied colour, linear or as sRGB encodes it, 4 numbers a texel.
 struct Texels {
   uint32_t width = 0, height = 0;
   std::vector<float> rgba;
@@ -23,14 +23,17 @@ struct Texels {
 float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 float srgbFromLinear(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
 
-Texels texelsOf(const GpgpGlyphImage& image) {
-  float linear[256];
-  for (int i = 0; i < 256; ++i) linear[i] = linearFromSrgb(static_cast<float>(i) / 255);
+Texels texelsOf(const GpgpGlyphImage& image, bool encoded) {
+  float values[256];
+  for (int i = 0; i < 256; ++i) {
+    values[i] = static_cast<float>(i) / 255;
+    if (!encoded) values[i] = linearFromSrgb(values[i]);
+  }
   Texels texels{image.width, image.height, std::vector<float>(size_t{image.width} * image.height * 4)};
   for (size_t i = 0; i < texels.rgba.size(); i += 4) {
     const uint8_t* in = image.pixels + i;
     const float alpha = static_cast<float>(in[3]) / 255;
-    for (size_t c = 0; c < 3; ++c) texels.rgba[i + c] = linear[in[c]] * alpha;
+    for (size_t c = 0; c < 3; ++c) texels.rgba[i + c] = values[in[c]] * alpha;
     texels.rgba[i + 3] = alpha;
   }
   return texels;
@@ -72,9 +75,10 @@ Texels shrunk(const Texels& from, uint32_t width, uint32_t height) {
   return to;
 }
 
-void append(const Texels& texels, std::vector<uint8_t>& bytes) {
+/// As the texture's format has them: an sRGB format encodes what is linear.
+void append(const Texels& texels, bool encoded, std::vector<uint8_t>& bytes) {
   for (size_t i = 0; i < texels.rgba.size(); ++i) {
-    const float value = i % 4 == 3 ? texels.rgba[i] : srgbFromLinear(texels.rgba[i]);
+    const float value = encoded || i % 4 == 3 ? texels.rgba[i] : srgbFromLinear(texels.rgba[i]);
     bytes.push_back(static_cast<uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
   }
 }
@@ -124,7 +128,7 @@ VkResult GlyphPictures::makeTexture() {
     VkImageCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
     info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = VK_FORMAT_R8G8B8A8_SRGB;
+    info.format = format();
     info.extent = {columns_ * kPitch, rows_ * kPitch, 1};
     info.mipLevels = kLevels;
     info.arrayLayers = 1;
@@ -146,7 +150,7 @@ VkResult GlyphPictures::makeTexture() {
     info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
     info.image = texture_;
     info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    info.format = VK_FORMAT_R8G8B8A8_SRGB;
+    info.format = format();
     info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, kLevels, 0, 1};
     result = load<PFN_vkCreateImageView>("vkCreateImageView")(device_.device, &info, nullptr, &view_);
     if (result != VK_SUCCESS) return result;
@@ -176,7 +180,7 @@ GpgpResult GlyphPictures::add(const GpgpGlyphImage& image, uint32_t& place) {
   if (found == kNone) return GPGP_BUDGET_EXCEEDED;
   if (const VkResult made = makeTexture(); made != VK_SUCCESS) return codeOf(made);
   constexpr uint32_t kLargest = kPitch - 2 * kMargin;
-  Texels ink = texelsOf(image);
+  Texels ink = texelsOf(image, device_.blendSrgb);
   if (const uint32_t larger = std::max(ink.width, ink.height); larger > kLargest) {
     const auto fitted = [larger](uint32_t side) {
       return std::max(static_cast<uint32_t>(uint64_t{side} * kLargest / larger), 1u);
@@ -189,7 +193,7 @@ GpgpResult GlyphPictures::add(const GpgpGlyphImage& image, uint32_t& place) {
   Pending& pending = pending_.emplace_back();
   pending.place = found;
   for (uint32_t level = 0;; ++level) {
-    append(padded, pending.levels);
+    append(padded, device_.blendSrgb, pending.levels);
     if (level + 1 == kLevels) break;
     padded = halved(padded);
   }
@@ -287,7 +291,12 @@ GpgpResult GlyphPictures::recordUpload(VkCommandBuffer commands, const GpgpFrame
 
 std::optional<GpgpCanvasImage> GlyphPictures::image() const {
   if (!written_) return std::nullopt;
-  return GpgpCanvasImage{view_, sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_TRUE};
+  return GpgpCanvasImage{view_,
+                         sampler_,
+                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                         VK_TRUE,
+                         device_.blendSrgb ? GPGP_IMAGE_SRGB : GPGP_IMAGE_LINEAR,
+                         GPGP_IMAGE_FILTER_LINEAR};
 }
 
 } // namespace gpgp::integration

@@ -18,6 +18,9 @@ struct PictureDevice {
   PFN_vkGetDeviceProcAddr getDeviceProcAddr = nullptr;
   VkPhysicalDeviceMemoryProperties memory{}; ///< vkGetPhysicalDeviceMemoryProperties
   uint32_t maxSide = 4096;                   ///< VkPhysicalDeviceLimits::maxImageDimension2D, or less
+  /// The canvases that show the pictures have GpgpCanvasInfo::blendSrgb, so pictures are kept and made smaller as sRGB
+  /// encodes them. Others show them as well, more slowly and somewhat softer.
+  bool blendSrgb = false;
 };
 
 class GlyphPictures {
@@ -61,6 +64,7 @@ private:
     VkDeviceMemory memory = VK_NULL_HANDLE;
     uint64_t frame = 0;
   };
+  VkFormat format() const { return device_.blendSrgb ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R8G8B8A8_SRGB; }
   uint32_t findPlace() const;
   VkResult makeTexture();
   VkResult allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags, VkDeviceMemory& memory) const;

@@ -67,6 +67,7 @@ Renderer::Impl::Impl(const RendererInfo& wanted) : info(checked(wanted)) {
   cacheInfo.pictureDevice.device = info.device;
   cacheInfo.pictureDevice.getDeviceProcAddr = vkGetDeviceProcAddr;
   vkGetPhysicalDeviceMemoryProperties(info.physicalDevice, &cacheInfo.pictureDevice.memory);
+  cacheInfo.pictureDevice.blendSrgb = !info.srgbTarget; // as the canvas does
   check(cache.create(cacheInfo), "gpgpCreateGlyphSet");
   Result<List> listMade = List::create(info.context);
   check(listMade.code(), "gpgpCreateList");

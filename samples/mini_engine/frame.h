@@ -11,7 +11,10 @@ public:
   FramePicture(const FramePicture&) = delete;
   FramePicture& operator=(const FramePicture&) = delete;
   /// To be sampled in compute shaders.
-  GpgpCanvasImage image() const { return {image_.view, sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_FALSE}; }
+  GpgpCanvasImage image() const {
+    return {image_.view, sampler_,          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+            VK_FALSE,    GPGP_IMAGE_LINEAR, GPGP_IMAGE_FILTER_LINEAR};
+  }
 
   static constexpr uint32_t kSide = 32, kBorder = 12; // texels
 

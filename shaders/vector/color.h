@@ -31,6 +31,15 @@ GPGP_FN vec4 convert(vec4 color, bool encode) {
   return vec4(convertSrgb(straight, encode) * color.w, color.w);
 }
 
+// What an image holds, premultiplied, as colours mix. `holds`: kImage...
+GPGP_FN vec4 imageColor(vec4 color, uint holds, uint flags) {
+  const bool encoded = (holds & kImageEncoded) != 0u, wanted = (flags & kBlendSrgb) != 0u;
+  if ((holds & kImagePremultiplied) != 0u) return encoded == wanted ? color : convert(color, wanted);
+  vec3 straight = vec3(color);
+  if (encoded != wanted) straight = convertSrgb(max(straight, 0.0f), wanted);
+  return vec4(straight * color.w, color.w);
+}
+
 // A straight linear colour premultiplied, as colours mix. flags: the header's, as below.
 GPGP_FN vec4 blended(vec3 color, float alpha, uint flags) {
   return vec4(((flags & kBlendSrgb) != 0u ? encodeSrgb(color) : color) * alpha, alpha);

@@ -69,6 +69,7 @@ void main() {
         }
         if (w < wEnd) {
           word = fetchTileWord(w++);
+          after = kNoTiles;
           if (w < wEnd) after = fetchTileWord(w);
           left += 32;
           next = word.stamped;

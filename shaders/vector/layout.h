@@ -179,7 +179,7 @@ struct CanvasHeader {
   uint wordLimit, entryLimit, samples, flags;         // entryLimit: without those of small glyphs; flags: kWrite...
   uint pathsDropped, binsX, binCount, pathsNeeded;
   uint groupSegments, listWords; // segments of a workgroup; words of a tile's list on software devices (lists.glsl)
-  uint premultiplied;            // images whose colours are, as bits
+  uint images;                   // what each holds: kImageBits bits of kImage..., the first one's lowest
   uint binShift;                 // a bin is a square of 2^binShift tiles
   uint rowLimit;
   uint sourceCount;
@@ -226,6 +226,10 @@ GPGP_CONST uint kPaintRadial = 1u;
 GPGP_CONST uint kPaintImage = 2u;
 GPGP_CONST uint kPaintSlices = 3u; // an image whose middle is stretched more than its borders
 GPGP_CONST uint kMaxImages = 8u;
+GPGP_CONST uint kImageBits = 4u;
+GPGP_CONST uint kImagePremultiplied = 1u; // its colours have been multiplied by its alpha
+GPGP_CONST uint kImageEncoded = 2u;       // what sampling gives is encoded as sRGB encodes light
+GPGP_CONST uint kImageByTexel = 4u;       // its texels are converted before they are mixed (paint.glsl)
 GPGP_CONST uint kMaxClipDepth = 16u;
 GPGP_CONST uint kMaxLayerDepth = 4u;
 GPGP_CONST uint kSpreadPad = 0u;

@@ -46,30 +46,48 @@ vec4 gradientAt(uint slot, uint paint, vec2 at) {
 #define IMAGE(n) layout(set = 1, binding = n) uniform sampler2D image##n;
 IMAGE(0) IMAGE(1) IMAGE(2) IMAGE(3) IMAGE(4) IMAGE(5) IMAGE(6) IMAGE(7)
 
-vec4 sampleImage(uint i, vec2 at, vec2 dx, vec2 dy) { // a sampler may only be chosen by a constant
-  switch (i) {
-  case 0: return textureGrad(image0, at, dx, dy);
-  case 1: return textureGrad(image1, at, dx, dy);
-  case 2: return textureGrad(image2, at, dx, dy);
-  case 3: return textureGrad(image3, at, dx, dy);
-  case 4: return textureGrad(image4, at, dx, dy);
-  case 5: return textureGrad(image5, at, dx, dy);
-  case 6: return textureGrad(image6, at, dx, dy);
-  default: return textureGrad(image7, at, dx, dy);
+// f of image i; which one that is may only be chosen by a constant.
+#define OF_IMAGE(i, f)                                                                                                 \
+  switch (i) {                                                                                                         \
+  case 0: return f(image0);                                                                                            \
+  case 1: return f(image1);                                                                                            \
+  case 2: return f(image2);                                                                                            \
+  case 3: return f(image3);                                                                                            \
+  case 4: return f(image4);                                                                                            \
+  case 5: return f(image5);                                                                                            \
+  case 6: return f(image6);                                                                                            \
+  default: return f(image7);                                                                                           \
   }
-}
+#define SAMPLE_GRAD(image) textureGrad(image, at, dx, dy)
+#define SAMPLE_LOD(image) textureLod(image, at, level)
+#define SIZE(image) textureSize(image, 0)
+#define LEVELS(image) textureQueryLevels(image)
+vec4 sampleImage(uint i, vec2 at, vec2 dx, vec2 dy) { OF_IMAGE(i, SAMPLE_GRAD) }
+vec4 sampleLevel(uint i, vec2 at, float level) { OF_IMAGE(i, SAMPLE_LOD) }
+ivec2 sizeOfImage(uint i) { OF_IMAGE(i, SIZE) }
+int levelsOfImage(uint i) { OF_IMAGE(i, LEVELS) }
 
-ivec2 sizeOfImage(uint i) {
-  switch (i) {
-  case 0: return textureSize(image0, 0);
-  case 1: return textureSize(image1, 0);
-  case 2: return textureSize(image2, 0);
-  case 3: return textureSize(image3, 0);
-  case 4: return textureSize(image4, 0);
-  case 5: return textureSize(image5, 0);
-  case 6: return textureSize(image6, 0);
-  default: return textureSize(image7, 0);
+// Mixes texels after each has become a colour as they mix on the canvas: four of a level, and of the next one where
+// texels are smaller than pixels. The sampler gives a texel at its middle, and so decides what lies beyond the edges. A
+// little right of and below the middle, rounding leads to no other texel.
+vec4 mixedTexels(uint i, vec2 at, vec2 dx, vec2 dy, uint holds) {
+  const ivec2 whole = sizeOfImage(i);
+  const vec2 size = vec2(whole), across = dx * size, down = dy * size;
+  const float wanted = 0.5 * log2(max(dot(across, across), dot(down, down)));
+  const float level = clamp(wanted, 0.0, float(levelsOfImage(i) - 1)), upper = floor(level), part = level - upper;
+  vec2 texels = size;
+  vec4 around = vec4(0), sum = vec4(0);
+  for (uint k = 0; k < (part > 0 ? 8u : 4u); ++k) {
+    const float own = upper + float(k / 4);
+    if (k % 4 == 0) {
+      texels = vec2(max(whole >> int(own), ivec2(1))); // lavapipe tells the size of one level to all invocations
+      around = texelsAround(at * texels);
+    }
+    const vec2 texel = around.xy + vec2(k & 1, k / 2 & 1) + (0.5 + 1.0 / 1024);
+    const float weight = texelWeight(around, k) * (k < 4 ? 1 - part : part);
+    sum += imageColor(sampleLevel(i, texel / texels, own), holds, header.flags) * weight;
   }
+  return sum;
 }
 
 // An image's colour at a point of the drawing, premultiplied; dx and dy: how far the point moves from pixel to pixel.
@@ -90,8 +108,8 @@ vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
     ux *= slope;
     uy *= slope;
   }
-  vec4 color = sampleImage(image, u, ux, uy);
-  if ((header.premultiplied >> image & 1) == 0) color.rgb *= color.a;
-  return (header.flags & kBlendSrgb) != 0 ? convert(color, true) : color;
+  const uint holds = header.images >> image * kImageBits;
+  if ((holds & kImageByTexel) != 0) return mixedTexels(image, u, ux, uy, holds);
+  return imageColor(sampleImage(image, u, ux, uy), holds, header.flags);
 }
 #endif

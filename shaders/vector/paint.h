@@ -50,5 +50,15 @@ GPGP_FN vec2 sliceAt(float place, vec2 places, vec2 there, vec4 slopes, float te
   return vec2(clamp(there.x + along * slopes.y, middle - reach, middle + reach), slopes.y);
 }
 
+// Between which four texels a point lies that is given in texels: the first one's place, and how much the next ones
+// weigh along both axes.
+GPGP_FN vec4 texelsAround(vec2 at) {
+  const vec2 first = floor(at - 0.5f);
+  return vec4(first, at - 0.5f - first);
+}
+GPGP_FN float texelWeight(vec4 around, uint k) {
+  return ((k & 1u) != 0u ? around.z : 1.0f - around.z) * ((k & 2u) != 0u ? around.w : 1.0f - around.w);
+}
+
 GPGP_SHADER_END
 #endif

@@ -10,9 +10,9 @@
 layout(local_size_x = 64) in;
 #include "lists.glsl"
 #include "color.h"
-// lavapipe ends all loops of a shader after 65 535 turns, of which invocations that run together (8) take as many as
-// all of them where they differ. Tiles of rows that would take more are crowded.
-const uint kMaxSteps = 6000;
+// lavapipe ends all loops of a shader after 65 535 turns, of which invocations that run together (16 with its widest
+// vectors) take as many as all of them where they differ. Tiles of rows that would take more are crowded.
+const uint kMaxSteps = 3900;
 
 uint bitsFrom(int bit) { return bit <= 0 ? ~0u : (bit >= 32 ? 0u : ~0u << uint(bit)); }
 

@@ -27,6 +27,7 @@ Pictures makePictures(Session& session, const PageGlyphs& all) {
       reinterpret_cast<PFN_vkGetDeviceProcAddr>(device.getInstanceProcAddr()(device.instance(), "vkGetDeviceProcAddr"));
   device.vki().getPhysicalDeviceMemoryProperties(device.physicalDevice(), &on.memory);
   on.maxSide = device.properties().limits.maxImageDimension2D;
+  on.blendSrgb = true;
   pictures.texture = std::make_unique<integration::GlyphPictures>(on, static_cast<uint32_t>(count));
   for (const PageGlyph& glyph : all.glyphs) {
     uint32_t& place = pictures.places.emplace_back(integration::GlyphPictures::kNone);

@@ -5,7 +5,7 @@
 namespace gpgp::cli {
 namespace {
 
-/// Half as wide, or half as tall; straight alpha.
+/// Half as wide, or half as tall; straight alpha. As the picture is encoded, in which canvases with blendSrgb mix.
 host::Picture halved(const host::Picture& from, bool wide) {
   host::Picture to{wide ? (from.width + 1) / 2 : from.width, wide ? from.height : (from.height + 1) / 2, {}};
   to.rgba.resize(size_t{to.width} * to.height * 4);
@@ -40,13 +40,14 @@ Textures::Textures(host::HeadlessDevice& device, const std::vector<host::Picture
   info.addressModeU = info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   host::check(device.vk().vkCreateSampler(device.device(), &info, nullptr, &sampler_), "vkCreateSampler");
   for (const host::Picture& picture : pictures) {
-    textures_.emplace_back(device, host::ImageInfo{.format = VK_FORMAT_R8G8B8A8_SRGB,
+    textures_.emplace_back(device, host::ImageInfo{.format = VK_FORMAT_R8G8B8A8_UNORM,
                                                    .width = picture.width,
                                                    .height = picture.height,
                                                    .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
     const host::Image& image = textures_.back();
     host::uploadImage(device, image, picture.rgba, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    views_.push_back({image.view(), sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_FALSE});
+    views_.push_back({image.view(), sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_FALSE, GPGP_IMAGE_SRGB,
+                      GPGP_IMAGE_FILTER_LINEAR});
   }
 }
 

@@ -13,7 +13,7 @@ namespace gpgp::cli {
 /// without them needs.
 host::Picture shrunk(host::Picture picture, double texelsAcross, double texelsDown);
 
-/// A texture for each picture, filtered linearly and clamped.
+/// A texture for each picture, as it is encoded, filtered linearly and clamped.
 class Textures {
 public:
   Textures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures);

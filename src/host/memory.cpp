@@ -83,7 +83,7 @@ Image::Image(HeadlessDevice& device, const ImageInfo& info, const std::string& n
   create.imageType = VK_IMAGE_TYPE_2D;
   create.format = info.format;
   create.extent = {info.width, info.height, 1};
-  create.mipLevels = 1;
+  create.mipLevels = info.levels;
   create.arrayLayers = info.layers;
   create.samples = info.samples;
   create.usage = info.usage;
@@ -99,7 +99,7 @@ Image::Image(HeadlessDevice& device, const ImageInfo& info, const std::string& n
     view.image = handle_;
     view.viewType = info.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = info.format;
-    view.subresourceRange = {aspect(), 0, 1, 0, info.layers};
+    view.subresourceRange = {aspect(), 0, info.levels, 0, info.layers};
     check(vk.vkCreateImageView(device.device(), &view, nullptr, &view_), "vkCreateImageView");
   } catch (...) {
     destroy();
@@ -186,7 +186,7 @@ void imageBarrier(const HeadlessDevice& device, VkCommandBuffer commands, const 
   barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image.handle();
-  barrier.subresourceRange = {image.aspect(), 0, 1, 0, image.info().layers};
+  barrier.subresourceRange = {image.aspect(), 0, image.info().levels, 0, image.info().layers};
   device.vk().vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
                                    0, nullptr, 0, nullptr, 1, &barrier);
 }
@@ -234,11 +234,15 @@ void uploadImage(HeadlessDevice& device, const Image& image, std::span<const uin
   std::memcpy(staging.mapped(), pixels.data(), pixels.size());
   device.submitAndWait([&](VkCommandBuffer commands) {
     imageBarrier(device, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    const ImageInfo& info = image.info();
     VkBufferImageCopy copy{};
-    copy.imageSubresource = {image.aspect(), 0, 0, 1};
-    copy.imageExtent = {image.info().width, image.info().height, 1};
-    device.vk().vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                       1, &copy);
+    for (uint32_t level = 0; level < info.levels; ++level) {
+      copy.imageSubresource = {image.aspect(), level, 0, 1};
+      copy.imageExtent = {std::max(info.width >> level, 1u), std::max(info.height >> level, 1u), 1};
+      device.vk().vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(),
+                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+      copy.bufferOffset += VkDeviceSize{copy.imageExtent.width} * copy.imageExtent.height * bytesPerPixel(info.format);
+    }
     imageBarrier(device, commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout);
   });
 }

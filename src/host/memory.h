@@ -50,6 +50,7 @@ struct ImageInfo {
   VkImageUsageFlags usage = VK_IMAGE_USAGE_STORAGE_BIT; ///< both transfer usages are added
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   uint32_t layers = 1; ///< more: the view is one of an array
+  uint32_t levels = 1; ///< each half as large as the one before
 };
 
 /// A 2D image with one level, and a view of all of it. Layout UNDEFINED at first.
@@ -91,7 +92,7 @@ void uploadBytes(HeadlessDevice& device, const Buffer& buffer, const void* data,
 void downloadBytes(HeadlessDevice& device, const Buffer& buffer, void* data, size_t size, VkDeviceSize offset = 0);
 /// Fills the whole buffer with a word and waits: for poisoning and clearing.
 void fill(HeadlessDevice& device, const Buffer& buffer, uint32_t word);
-/// Writes all pixels, rows tightly packed, and waits; the image is in `layout` afterwards.
+/// Writes all pixels, level by level, rows tightly packed, and waits; the image is in `layout` afterwards.
 void uploadImage(HeadlessDevice& device, const Image& image, std::span<const uint8_t> pixels, VkImageLayout layout);
 /// All pixels, layer by layer, rows tightly packed; the image is in `layout` before and after.
 std::vector<uint8_t> downloadImage(HeadlessDevice& device, const Image& image, VkImageLayout layout);

@@ -30,6 +30,7 @@ struct GlyphCacheTest : testing::Test {
       EXPECT_EQ(canvas.prewarm(), GPGP_SUCCESS);
     }
     ~Stage() { vkDeviceWaitIdle(device.device); }
+    bool blendSrgb = true; ///< else colours mix in linear light
     /// A list in the frame that `commands` are of, whose uploads they have.
     host::Picture draw(VkCommandBuffer commands, GpgpList list, const std::optional<GpgpCanvasImage>& pictures,
                        const float (&background)[4]) {
@@ -42,7 +43,8 @@ struct GlyphCacheTest : testing::Test {
       info.itemCount = 1;
       info.images = pictures ? &*pictures : nullptr;
       info.imageCount = pictures ? 1 : 0;
-      info.exactArea = info.encodeSrgb = info.blendSrgb = VK_TRUE;
+      info.exactArea = info.encodeSrgb = VK_TRUE;
+      info.blendSrgb = blendSrgb;
       std::copy_n(background, 4, info.background);
       const GpgpAccess after{VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
@@ -65,6 +67,7 @@ struct GlyphCacheTest : testing::Test {
       info.pictureDevice.device = device.device;
       info.pictureDevice.getDeviceProcAddr = vkGetDeviceProcAddr;
       vkGetPhysicalDeviceMemoryProperties(device.physical, &info.pictureDevice.memory);
+      info.pictureDevice.blendSrgb = blendSrgb;
       return info;
     }
   };
@@ -128,7 +131,22 @@ struct GlyphCacheTest : testing::Test {
   }
 };
 
-/// A font's picture in a box of the canvas by the definition: each pixel the mean of what it covers, in linear light.
+/// Where colours mix as sRGB encodes them, and where they mix in linear light: pictures and canvas alike.
+struct GlyphCacheBlending : GlyphCacheTest, testing::WithParamInterface<bool> {
+  void SetUp() override {
+    stage->blendSrgb = GetParam();
+    GlyphCacheTest::SetUp();
+  }
+  void TearDown() override {
+    GlyphCacheTest::TearDown();
+    stage->blendSrgb = true;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Blending, GlyphCacheBlending, testing::Bool(),
+                         [](const auto& is) { return is.param ? "AsEncoded" : "InLinearLight"; });
+
+/// A font's picture in a box of the canvas by the definition: each pixel the mean of what it covers, in linear light
+/// or as sRGB encodes it.
 struct Expected {
   host::Picture picture;
   float box[4] = {};
@@ -143,8 +161,8 @@ struct Expected {
         box[side] = (side % 2 == 0 ? x + glyph.x : y + glyph.y) + image.box[side] * glyph.size;
     });
   }
-  /// Premultiplied linear colour and alpha of a pixel, by 8 x 8 points of it.
-  std::array<double, 4> at(uint32_t px, uint32_t py) const {
+  /// Premultiplied colour and alpha of a pixel, by 8 x 8 points of it.
+  std::array<double, 4> at(uint32_t px, uint32_t py, bool encoded) const {
     std::array<double, 4> sum{};
     constexpr int kPoints = 8;
     for (int j = 0; j < kPoints; ++j)
@@ -157,15 +175,17 @@ struct Expected {
         const auto ty = static_cast<uint32_t>(v * static_cast<float>(picture.height));
         const uint8_t* texel = &picture.rgba[(size_t{ty} * picture.width + tx) * 4];
         const double alpha = texel[3] / 255.0 / (kPoints * kPoints);
-        for (size_t c = 0; c < 3; ++c)
-          sum[c] += double{host::linearFromSrgb(static_cast<float>(texel[c]) / 255)} * alpha;
+        for (size_t c = 0; c < 3; ++c) {
+          const float value = static_cast<float>(texel[c]) / 255;
+          sum[c] += double{encoded ? value : host::linearFromSrgb(value)} * alpha;
+        }
         sum[3] += alpha;
       }
     return sum;
   }
 };
 
-TEST_F(GlyphCacheTest, PicturesAreTheFontsAtEverySize) {
+TEST_P(GlyphCacheBlending, PicturesAreTheFontsAtEverySize) {
   ASSERT_EQ(cache.create(stage->cacheInfo(4)), GPGP_SUCCESS);
   // Filters blur small pictures a little.
   for (const auto& [size, limit] : {std::pair(13.0f, 5.5), {27.5f, 3.3}, {60.0f, 1.6}, {150.0f, 1.1}}) {
@@ -191,9 +211,11 @@ TEST_F(GlyphCacheTest, PicturesAreTheFontsAtEverySize) {
           beyond += p[0] || p[1] || p[2];
           continue;
         }
-        const std::array<double, 4> wanted = expected.at(px, py); // over black, where colours mix linearly or not
-        for (size_t c = 0; c < 3; ++c)
-          difference += std::abs(p[c] - 255.0 * double{host::srgbFromLinear(static_cast<float>(wanted[c]))});
+        const std::array<double, 4> wanted = expected.at(px, py, GetParam()); // over black
+        for (size_t c = 0; c < 3; ++c) {
+          const auto value = static_cast<float>(wanted[c]);
+          difference += std::abs(p[c] - 255.0 * double{GetParam() ? value : host::srgbFromLinear(value)});
+        }
         pixels += 3;
       }
     EXPECT_EQ(beyond, 0u) << size;
@@ -251,7 +273,7 @@ TEST_F(GlyphCacheTest, UnderlinesLieBelowAndStrikesOver) {
   }
 }
 
-TEST_F(GlyphCacheTest, LargePicturesAreShrunkNoMoreThanTheyMust) {
+TEST_P(GlyphCacheBlending, LargePicturesAreShrunkNoMoreThanTheyMust) {
   integration::GlyphPictures pictures(stage->cacheInfo(1).pictureDevice, 1000);
   EXPECT_EQ(pictures.capacity(), 625u) << "as many as 4096 texels a side hold";
   for (const auto& [width, height, wide, tall] :
@@ -263,7 +285,7 @@ TEST_F(GlyphCacheTest, LargePicturesAreShrunkNoMoreThanTheyMust) {
     EXPECT_NEAR((source[2] - source[0]) * 25 * 160, static_cast<float>(wide), 0.01f) << width;
     EXPECT_NEAR((source[3] - source[1]) * 25 * 160, static_cast<float>(tall), 0.01f) << height;
   }
-  // Stripes of a texel become grey, half as bright in linear light, and keep their alpha.
+  // Stripes of a texel become grey, half as bright in linear light or as it is encoded, and keep their alpha.
   std::vector<uint8_t> stripes(size_t{288} * 288 * 4, 255);
   for (size_t i = 0; i < stripes.size(); i += 8) stripes[i] = stripes[i + 1] = stripes[i + 2] = 0;
   integration::GlyphPictures one(stage->cacheInfo(1).pictureDevice, 1);
@@ -282,7 +304,7 @@ TEST_F(GlyphCacheTest, LargePicturesAreShrunkNoMoreThanTheyMust) {
   EXPECT_EQ(list.add(shape), GPGP_SUCCESS);
   const host::Picture seen = stage->draw(commands, list, one.image(), {0, 0, 0, 1});
   for (const uint32_t at : {20u, 70u, 120u})
-    EXPECT_NEAR(seen.rgba[(size_t{at} * kSide + at) * 4], 255 * host::srgbFromLinear(0.5f), 2);
+    EXPECT_NEAR(seen.rgba[(size_t{at} * kSide + at) * 4], 255 * (GetParam() ? 0.5f : host::srgbFromLinear(0.5f)), 2);
 }
 
 TEST_F(GlyphCacheTest, APictureUnusedMakesRoomAndWhatFindsNoneIsCounted) {

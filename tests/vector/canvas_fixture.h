@@ -140,13 +140,15 @@ struct Texture {
   host::HeadlessDevice& device;
   host::Image image;
   VkSampler sampler = VK_NULL_HANDLE;
+  VkFilter filter;
 
   Texture(host::HeadlessDevice& owner, uint32_t width, uint32_t height, std::span<const uint32_t> texels,
-          VkFilter filter, VkSamplerAddressMode mode)
+          VkFilter filtering, VkSamplerAddressMode mode)
       : device(owner), image(owner, {.format = VK_FORMAT_R8G8B8A8_UNORM,
                                      .width = width,
                                      .height = height,
-                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT}) {
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT}),
+        filter(filtering) {
     VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     info.magFilter = info.minFilter = filter;
     info.addressModeU = info.addressModeV = mode;
@@ -178,8 +180,9 @@ struct Texture {
   }
   ~Texture() { device.vk().vkDestroySampler(device.device(), sampler, nullptr); }
   Texture(const Texture&) = delete;
-  GpgpCanvasImage view(bool premultiplied = false) const {
-    return {image.view(), sampler, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, premultiplied};
+  GpgpCanvasImage view(bool premultiplied = false, GpgpImageEncoding encoding = GPGP_IMAGE_LINEAR) const {
+    return {image.view(),  sampler,  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+            premultiplied, encoding, filter == VK_FILTER_LINEAR ? GPGP_IMAGE_FILTER_LINEAR : GPGP_IMAGE_FILTER_NEAREST};
   }
 };
 

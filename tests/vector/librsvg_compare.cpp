@@ -18,6 +18,7 @@
 #include "cli/vector_truth.h"
 #include "host/files.h"
 #include "host/picture.h"
+#include "tile_difference.h"
 #include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
 
@@ -54,9 +55,10 @@ void GPGP_CALL onMessage(void* userData, const GpgpMessage* message) {
 
 struct Compared {
   fs::path file;
-  std::string verdict; // "agrees", "differs", or why it does not count
-  double large = 0;    // share of pixels
-  double mean = 0;     // difference of channels, of 255
+  std::string verdict;        // "agrees", "differs", or why it does not count
+  double large = 0;           // share of pixels
+  double mean = 0;            // difference of channels, of 255
+  test::TileDifference worst; // the largest channel's, of 255
   float transform[6] = {};
   bool images = false;
   bool counts() const { return verdict == "agrees" || verdict == "differs"; }
@@ -167,6 +169,14 @@ void compare(const host::Picture& ours, const host::Picture& theirs, Compared& c
   const double pixels = static_cast<double>(ours.rgba.size()) / 4;
   compared.large = static_cast<double>(large) / pixels;
   compared.mean = static_cast<double>(sum) / (3 * pixels);
+  compared.worst = test::worstTile(ours.width, ours.height, [&](uint32_t x, uint32_t y) {
+    int largest = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      const size_t i = (size_t{y} * ours.width + x) * 4 + c;
+      largest = std::max(largest, std::abs(ours.rgba[i] - theirs.rgba[i]));
+    }
+    return largest;
+  });
   if (compared.verdict.empty()) compared.verdict = compared.large <= 0.01 && compared.mean < 2 ? "agrees" : "differs";
 }
 
@@ -281,7 +291,8 @@ int run(const Options& options) {
     count += c.counts();
     agree += c.verdict == "agrees";
     char numbers[80];
-    std::snprintf(numbers, sizeof numbers, "%6.2f %% %6.2f  ", c.large * 100, c.mean);
+    std::snprintf(numbers, sizeof numbers, "%6.2f %% %6.2f %6.1f at %4u %4u  ", c.large * 100, c.mean, c.worst.mean,
+                  c.worst.x, c.worst.y);
     const std::string line = std::string(numbers) + c.file.string() + "  " + c.verdict + "\n";
     if (c.verdict == "differs") std::fputs(line.c_str(), stdout);
     lines += line;

@@ -35,6 +35,7 @@ constexpr uint32_t kEntries = 8192, kItems = 64, kGlyphs = 256, kShapes = 256, k
 constexpr uint32_t kGlyphKinds = 8;
 
 struct TwinTest : CanvasTest {
+  uint32_t maxWidth = kWidth, maxHeight = kHeight;
   host::Buffer scratch;
   std::deque<std::vector<uint32_t>> texels;
   std::deque<Texture> textures;
@@ -50,8 +51,8 @@ struct TwinTest : CanvasTest {
     CanvasTest::SetUp();
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = {"canvas", device.graphics().family, 0, VK_TRUE};
-    info.maxWidth = kWidth;
-    info.maxHeight = kHeight;
+    info.maxWidth = maxWidth;
+    info.maxHeight = maxHeight;
     info.maxTileEntries = kEntries;
     info.maxPaths = kPatches;
     info.maxDrawings = kItems;
@@ -70,7 +71,7 @@ struct TwinTest : CanvasTest {
         image.push_back(alpha << 24 | dice.upTo(alpha + 1) << 16 | dice.upTo(alpha + 1) << 8 | dice.upTo(alpha + 1));
       }
       textures.emplace_back(device, width, height, image, filter, mode);
-      images.push_back(textures.back().view(images.size() % 2 != 0));
+      images.push_back(textures.back().view(dice.oneIn(2), dice.oneIn(2) ? GPGP_IMAGE_SRGB : GPGP_IMAGE_LINEAR));
       twinImages.push_back({width, height, image, filter, mode});
     };
     add(5, 3, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
@@ -110,7 +111,10 @@ struct TwinTest : CanvasTest {
 
   GpgpAsset makeRandomDrawing(Dice& dice, const Kinds& kinds, RandomPaths& from, uint32_t fading) {
     from.add(dice, kinds, dice.between(30, 70), kinds.images ? 2 : 0, 0, fading, 0);
-    const GpgpAsset drawing = makeDrawing(from.paths, from.groups);
+    return keep(makeDrawing(from.paths, from.groups), from);
+  }
+  /// Notes what lies in a drawing's buffer.
+  GpgpAsset keep(GpgpAsset drawing, const RandomPaths& from) {
     const auto memory = std::pmr::get_default_resource();
     const auto converted = vector::makeDrawing(from.paths, from.groups, memory);
     EXPECT_TRUE(converted);
@@ -558,18 +562,14 @@ struct TwinTest : CanvasTest {
     }
   }
   size_t doubted = 0, compared = 0;
-};
 
-TEST_F(TwinTest, RandomRecordsAreWhatTheTwinSays) {
-  const uint32_t first = numberFrom("GPGP_TWIN_FIRST_SEED", 0), count = numberFrom("GPGP_TWIN_SEEDS", 64);
-  for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
-    RandomRecord record;
-    makeRecord(seed, record);
+  /// All of that for one record, whose drawings it destroys.
+  void check(const RandomRecord& record) {
     SCOPED_TRACE(record.what);
     const Left left = draw(record);
     Given given;
     gather(record, left.header, given);
-    if (HasFatalFailure()) break;
+    if (HasFatalFailure()) return;
     const TwinPlaces places = vector::placeOnCpu(given.input);
     std::vector<PlacedPath> paths;
     if (!given.alone) {
@@ -581,8 +581,96 @@ TEST_F(TwinTest, RandomRecordsAreWhatTheTwinSays) {
     if (!HasFatalFailure()) checkPicture(record, given, places, left);
     for (const GpgpAsset drawing : record.drawings) gpgpDestroyAsset(drawing);
   }
+};
+
+/// The same on canvases as wide and tall as pages are, of paths along their edges.
+struct PageTwinTest : TwinTest {
+  PageTwinTest() { maxWidth = 2048, maxHeight = 1024; }
+
+  static void frame(TestPath& path, float left, float top, float right, float bottom, float thick) {
+    path.rule = GPGP_FILL_EVEN_ODD;
+    for (const float in : {0.0f, thick})
+      path.move(left + in, top + in)
+          .line(right - in, top + in)
+          .line(right - in, bottom - in)
+          .line(left + in, bottom - in)
+          .close();
+  }
+  /// Frames as thin as hairlines, along the page or a multiple of 32 tiles from its right edge on, lines that lean over
+  /// its edges, its whole area, and anything.
+  void makePage(uint32_t seed, RandomRecord& record) {
+    Dice dice(seed);
+    constexpr std::array<uint32_t, 9> kWidths = {256, 512, 768, 1024, 2048, 264, 320, 500, 40};
+    record.width = dice.oneIn(4) ? 8 * (1 + dice.upTo(128)) : kWidths[dice.upTo(9)];
+    record.height = record.width >= 1024 ? 16 + 8 * dice.upTo(8) : record.width > 64 ? 16 * (1 + dice.upTo(24)) : 1024;
+    constexpr std::array<uint32_t, 6> kSamples = {16, 1, 16, 4, 8, 16};
+    record.samples = kSamples[dice.upTo(6)];
+    record.exactArea = dice.oneIn(2);
+    record.background = {1, 1, 1, 1};
+    record.what = "page " + std::to_string(seed) + ": " + std::to_string(record.width) + " x " +
+                  std::to_string(record.height) + ", samples " + std::to_string(record.samples) +
+                  (record.exactArea ? ", exactArea" : "");
+    const auto w = static_cast<float>(record.width), h = static_cast<float>(record.height);
+    const auto one = [&](std::initializer_list<float> of) { return of.begin()[dice.upTo(uint32_t(of.size()))]; };
+    for (uint32_t drawings = 1 + dice.upTo(2); drawings > 0; --drawings) {
+      RandomPaths from;
+      for (uint32_t paths = 1 + dice.upTo(3); paths > 0; --paths) {
+        TestPath& path = from.shapes.emplace_back();
+        path.color = dice.color();
+        const float d = one({0, 0, 0.018f, 0.25f, -0.25f, 0.9f}), thick = one({0.036f, 0.1f, 0.25f, 0.5f, 3});
+        switch (dice.upTo(5)) {
+        case 0: frame(path, d, d, w - d, h - d, thick); break;
+        case 1: {
+          const float left = w - 256 * std::max(std::floor(w / 256) - static_cast<float>(dice.upTo(2)), 1.0f);
+          frame(path, left + d, d, w + one({0, -0.3f, 7, 300}), h + one({0, -0.3f, 7}), thick);
+          break;
+        }
+        case 2: { // down the right edge, or along the bottom
+          const float lean = dice.between(-2, 2), x = w - dice.between(-1, 2), y = h - dice.between(-1, 2);
+          if (dice.oneIn(2))
+            path.move(x, -1).line(x + thick, -1).line(x + lean + thick, h + 1).line(x + lean, h + 1).close();
+          else
+            path.move(-1, y).line(-1, y + thick).line(w + 1, y + lean + thick).line(w + 1, y + lean).close();
+          break;
+        }
+        case 3: path.move(d, d).line(w - d, d).line(w - d, h - d).line(d, h - d).close(); break;
+        default:
+          from.shapes.pop_back();
+          from.path(dice, {}, std::max(w, h), 0, 0);
+          continue;
+        }
+        from.paths.push_back(path.view());
+      }
+      record.drawings.push_back(keep(makeDrawing(from.paths, from.groups), from));
+      GpgpCanvasItem item = place(record.drawings.back());
+      if (dice.oneIn(3)) { // along tiles, words or the page
+        const float right = dice.oneIn(2) ? w : w - 8 * static_cast<float>(dice.upTo(record.width / 8));
+        std::copy_n(std::array{d0(dice), d0(dice), right + d0(dice), h + d0(dice)}.data(), 4, item.scissor);
+      }
+      record.items.push_back(item);
+    }
+  }
+  static float d0(Dice& dice) { return dice.oneIn(2) ? 0.0f : dice.between(-1, 1); }
+};
+
+TEST_F(TwinTest, RandomRecordsAreWhatTheTwinSays) {
+  const uint32_t first = numberFrom("GPGP_TWIN_FIRST_SEED", 0), count = numberFrom("GPGP_TWIN_SEEDS", 64);
+  for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
+    RandomRecord record;
+    makeRecord(seed, record);
+    check(record);
+  }
   // Where gradients begin anew or nearest texels meet, a pixel's colour is open.
   EXPECT_LT(doubted * 50, compared);
+}
+
+TEST_F(PageTwinTest, PagesAreWhatTheTwinSays) {
+  const uint32_t first = numberFrom("GPGP_TWIN_FIRST_SEED", 0), count = numberFrom("GPGP_TWIN_SEEDS", 64);
+  for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
+    RandomRecord record;
+    makePage(seed, record);
+    check(record);
+  }
 }
 
 } // namespace

@@ -25,6 +25,12 @@ uint32_t targetOf(const GpgpCanvasInfo& info) {
   if (!info.target.view) return kNoImage;
   return info.target.format == VK_FORMAT_R16G16B16A16_SFLOAT ? kHasImage16 : kHasImage8;
 }
+/// kImage...: what an image holds, and whether its texels are what the canvas mixes, as the sampler then may.
+uint32_t heldBy(const GpgpCanvasImage& image, bool blendSrgb) {
+  const bool encoded = image.encoding == GPGP_IMAGE_SRGB, mixes = image.premultiplied && encoded == blendSrgb;
+  return (image.premultiplied ? shader::kImagePremultiplied : 0) | (encoded ? shader::kImageEncoded : 0) |
+         (image.filter == GPGP_IMAGE_FILTER_LINEAR && !mixes ? shader::kImageByTexel : 0);
+}
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
@@ -87,6 +93,10 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
     if (!info.images[i].sampler) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].sampler is NULL", i);
     if (info.images[i].layout == VK_IMAGE_LAYOUT_UNDEFINED)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].layout is UNDEFINED: nothing could be found there", i);
+    if (info.images[i].encoding < GPGP_IMAGE_LINEAR || info.images[i].encoding > GPGP_IMAGE_SRGB)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].encoding is %d", i, info.images[i].encoding);
+    if (info.images[i].filter < GPGP_IMAGE_FILTER_LINEAR || info.images[i].filter > GPGP_IMAGE_FILTER_NEAREST)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images[%u].filter is %d", i, info.images[i].filter);
   }
   for (uint32_t i = 0; i < info.itemCount; ++i) {
     for (const float v : info.items[i].transform)
@@ -163,7 +173,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.groupSegments = perGroup;
   header.listWords = listWords();
   for (uint32_t i = 0; i < info.imageCount && images; ++i)
-    header.premultiplied |= info.images[i].premultiplied ? 1u << i : 0;
+    header.images |= heldBy(info.images[i], info.blendSrgb) << i * shader::kImageBits;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
   r.constants = {bytes(std::span(&header, 1), 1),

@@ -37,6 +37,8 @@ struct Bounds {
 };
 
 vec4 premultiplied(const vec4& straight) { return {vec3(straight) * straight.w, straight.w}; }
+/// A texel's colour may be off by as much where a sampler that filters is asked for it alone (paint.glsl).
+constexpr float kAlone = 1.0f / 1024 + 1e-5f;
 
 struct Paint {
   const TwinInput& input;
@@ -113,7 +115,8 @@ struct Paint {
     const uint32_t which = item.firstImage + record.firstStop;
     const TwinImage& image = input.images[which];
     const vec2 size(image.width, image.height);
-    const bool premultiplies = (input.header.premultiplied >> which & 1) == 0;
+    const uint32_t holds = input.header.images >> which * shader::kImageBits;
+    const bool encodes = ((holds & shader::kImageEncoded) != 0) != blendSrgb();
     const auto textureAt = [&](vec2 u) {
       if (record.kind != shader::kPaintSlices) return u;
       const size_t slices = input.slots[slot].stops + record.slices * 2;
@@ -124,25 +127,47 @@ struct Paint {
                   shader::sliceAt(u.y, vec2(places.z, places.w), vec2(there.z, there.w), down, texels.y).x);
     };
     Bounds bounds;
-    // A filter's weights and sums of 8-bit texels may be as coarse as these are.
-    const float filtered = image.filter == VK_FILTER_LINEAR ? 1.0f / 255 : 0;
-    const auto at = [&](vec2 point) {
-      const vec4 color = sampled(image, point);
-      const auto paint = [&](vec4 c) {
-        if (premultiplies) c = premultiplied(c);
-        if (blendSrgb()) c = shader::convert(c, true);
-        bounds.add(c, blendSrgb() ? kPower : 0);
-        return c;
+    // What the device may make of a colour that it knows to `coarse`.
+    const auto painted = [&](const vec4& color, float coarse) {
+      Bounds around;
+      const auto paint = [&](const vec4& c) {
+        const vec4 mixes = shader::imageColor(c, holds, input.header.flags);
+        around.add(mixes, encodes ? kPower : 0);
+        return mixes;
       };
-      for (const float more : {-filtered, filtered})
-        for (const float alpha : {-filtered, filtered}) paint(glm::clamp(color + vec4(vec3(more), alpha), 0.0f, 1.0f));
-      return paint(color);
+      for (const float more : {-coarse, coarse})
+        for (const float alpha : {-coarse, coarse}) paint(glm::clamp(color + vec4(vec3(more), alpha), 0.0f, 1.0f));
+      return std::pair(paint(color), around);
+    };
+    // A filter's weights and sums of 8-bit texels may be as coarse as these are.
+    const bool filters = image.filter == VK_FILTER_LINEAR, byTexel = (holds & shader::kImageByTexel) != 0;
+    const float subTexel = byTexel ? 0 : input.subTexel;
+    const auto at = [&](vec2 point) {
+      if (!byTexel) {
+        const auto [color, around] = painted(sampled(image, point), filters ? 1.0f / 255 : 0);
+        bounds.add(around.low);
+        bounds.add(around.high);
+        return color;
+      }
+      const vec4 place = shader::texelsAround(point);
+      vec4 sum(0), low(0), high(0);
+      for (uint32_t k = 0; k < 4; ++k) {
+        const int x = static_cast<int>(place.x) + static_cast<int>(k & 1), y = static_cast<int>(place.y) + (k > 1);
+        const auto [color, around] = painted(texel(image, x, y), filters ? kAlone : 0);
+        const float weight = shader::texelWeight(place, k);
+        sum += color * weight;
+        low += around.low * weight;
+        high += around.high * weight;
+      }
+      bounds.add(low);
+      bounds.add(high);
+      return sum;
     };
     const vec2 texture = textureAt(p);
     const vec4 middle = at(texture * size);
     for (const vec2 corner : {vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1)}) {
       const vec2 there = textureAt(p + corner * reach) * size;
-      at(there + corner * (input.subTexel + kSteps * kUnit * glm::abs(there)));
+      at(there + corner * (subTexel + kSteps * kUnit * glm::abs(there)));
     }
     return bounds.around(middle);
   }

@@ -15,7 +15,7 @@
 
 namespace gpgp::vector {
 
-/// An image of one level that items paint with, and its sampler.
+/// An image of one level that items paint with, and its sampler; what it holds the header says.
 struct TwinImage {
   uint32_t width = 0, height = 0;
   std::span<const uint32_t> texels; ///< 8-bit RGBA, rows from the top
