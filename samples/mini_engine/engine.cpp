@@ -244,7 +244,6 @@ void Engine::printSummary() const {
               spawn.instancesWritten, spawn.rounds, spawn.keyHash[1], spawn.keyHash[0]);
   const GpgpCanvasReport& canvas = screen_ ? screen_->report() : hud_->report();
   line("vector", canvas.base);
-  if (hud_) std::printf("%u paths, ", hud_->paths());
   std::printf("%u paths, %u tile entries\n", canvas.paths, canvas.tileEntries);
   line("visibility", sample.base);
   std::printf("%u of %u triangles of %s visible, %u pixels covered, %u appeared, %u disappeared\n", sample.visible,

@@ -109,10 +109,4 @@ void Hud::collect() {
   }
 }
 
-uint32_t Hud::paths() const {
-  uint32_t count = 0;
-  for (const Item& item : items_) count += item.info.paths;
-  return count;
-}
-
 } // namespace mini

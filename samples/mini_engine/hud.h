@@ -17,7 +17,6 @@ public:
   void collect();
   const GpgpCanvasReport& report() const { return report_; }
   uint32_t reports() const { return reports_; }
-  uint32_t paths() const;
 
 private:
   struct Item {

@@ -107,7 +107,7 @@ void judgeFile(const std::string& file, size_t points, Tally& tally) {
   if (!svg) return; // damaged files are the importer's tests
   for (size_t i = 0; i < svg->paths.size(); ++i)
     judge(svg->paths[i].view(), points / svg->paths.size() + 1, static_cast<uint32_t>(i), tally,
-          file + " path " + std::to_string(i) + " line " + std::to_string(svg->paths[i].line));
+          file + " path " + std::to_string(i) + " line " + std::to_string(svg->paths[i].place.line));
 }
 
 struct Drawings : testing::TestWithParam<const char*> {};
