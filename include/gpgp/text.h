@@ -219,11 +219,12 @@ typedef struct GpgpFontFeature {
 } GpgpFontFeature;
 
 typedef struct GpgpTextStyle {
-  /** A grapheme takes the first that has all its characters; emoji the first of those in colour, and what U+FE0E wants
-   *  as text the first of the others. Digits, (C) and other characters that are text unless U+FE0F follows take a font in
-   *  colour without letters only where no other has them. White space goes with what is before it, but for emoji in
-   *  colour. A grapheme that none has whole begins in the font that has most of its beginning; marks that are left take
-   *  the first that has them. What none has is shaped with what is before it, and is reported as missing. */
+  /** A grapheme takes the first font that has all its characters. Emoji take the first of those in colour, and what
+   *  U+FE0E wants as text the first of the others. Digits, (C) and other characters that are text unless U+FE0F follows
+   *  take a font in colour without letters only where no other has them. White space goes with what is before it, but
+   *  for emoji in colour. A grapheme that no font has whole begins in the font that has most of its beginning; marks
+   *  that are left take the first that has them. What none has is shaped with what is before it, and is reported as
+   *  missing. */
   const GpgpFont* fonts;
   uint32_t fontCount;
   float size;           /**< pixels an em; more than 0, at most 100000 */

@@ -267,7 +267,7 @@ TEST(CliVector, EmbeddedImagesArePainted) {
   EXPECT_EQ(pixelOf(seen, 5, 10)[3], 0) << "beside its place";
   seen = draw(image + " preserveAspectRatio='xMinYMid slice' opacity='0.5'/>");
   EXPECT_NEAR(pixelOf(seen, 11, 2)[0], 255, 2);
-  EXPECT_EQ(pixelOf(seen, 11, 2)[3], 128);
+  EXPECT_NEAR(pixelOf(seen, 11, 2)[3], 127.5, 0.5); // half of 255, which devices round either way
   EXPECT_GT(pixelOf(seen, 28, 10)[0], pixelOf(seen, 28, 10)[2]) << "the blue half is cut off";
   EXPECT_EQ(pixelOf(seen, 31, 10)[3], 0) << "beside its place";
   const TemporaryFile broken("broken.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'>\n"

@@ -46,8 +46,8 @@ TEST_P(RealPaths, PatchesAreTheInside) {
       inside += in;
       doubled += count > 1;
       if ((count > 0) != in && wrongHere++ == 0)
-        ADD_FAILURE() << "path " << i << ", line " << svg->paths[i].place.line << ", at " << x << " " << y << ", inside "
-                      << in << ", patches " << d->patches.size();
+        ADD_FAILURE() << "path " << i << ", line " << svg->paths[i].place.line << ", at " << x << " " << y
+                      << ", inside " << in << ", patches " << d->patches.size();
     }
     wrong += wrongHere;
   }

@@ -32,11 +32,11 @@ const Export kExports[] = {
      R"svg(<?xml version="1.0" encoding="utf-8"?>
 <!-- Generator: Adobe Illustrator 16.0.0, SVG Export Plug-In -->
 <!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd" [
-	<!ENTITY ns_svg "http://www.w3.org/2000/svg"><!ENTITY ns_xlink "http://www.w3.org/1999/xlink">
-	<!ENTITY ns_ai "http://ns.adobe.com/AdobeIllustrator/10.0/">]>
+  <!ENTITY ns_svg "http://www.w3.org/2000/svg"><!ENTITY ns_xlink "http://www.w3.org/1999/xlink">
+  <!ENTITY ns_ai "http://ns.adobe.com/AdobeIllustrator/10.0/">]>
 <svg version="1.1" xmlns="&ns_svg;" xmlns:xlink="&ns_xlink;" xmlns:i="&ns_ai;" width="100px" height="100px" viewBox="0 0 100 100" enable-background="new 0 0 100 100" xml:space="preserve">
 <style type="text/css"><![CDATA[.st0{fill:#00AA00;}
-	.st1{clip-path:url(#SVGID_2_);}]]></style>
+  .st1{clip-path:url(#SVGID_2_);}]]></style>
 <switch><foreignObject requiredExtensions="&ns_ai;" x="0" y="0" width="1" height="1"><i:pgfRef xlink:href="#p"/></foreignObject>
 <g i:extraneous="self"><defs><rect id="SVGID_1_" x="20" y="20" width="60" height="60"/></defs><clipPath id="SVGID_2_"><use xlink:href="#SVGID_1_" overflow="visible"/></clipPath>
 <g class="st1"><rect class="st0" width="100" height="100"/></g></g></switch></svg>)svg",
