@@ -59,7 +59,6 @@ void sumUp() {
     sums[lane] += before;
     barrier();
   }
-  sayIfEnded();
 }
 
 void enterTile(uint tile, uint begin, uint middle, uint end) {
@@ -151,4 +150,5 @@ void main() {
     if (begin != kNoTile) enterTile(tile, begin, middle, middle + slots[tileWord(tile) + 1u]);
     barrier();
   }
+  sayIfEnded();
 }

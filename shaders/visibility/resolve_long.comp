@@ -1,5 +1,4 @@
-// Decides a pixel's list of more than kBatch by the depths of its samples (depths.glsl). Where the record asks what a
-// move would uncover, too: the nearest kBatch first, and so on until all samples are covered.
+// Decides a pixel's list of more than kBatch: the nearest kBatch first, and so on until all samples are covered.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
@@ -30,7 +29,6 @@ struct Rest {
   uint nearest;
   uint farthest;
   uint turns; // of loops, so far
-  uint atOnce; // entries that are decided together, at most
   bool byNumber; // of one depth, divided by their triangles' numbers: low and farthest are such
   uint depth;    // that one
 };
@@ -47,17 +45,17 @@ bool isWithin(Rest rest, uint i, uint low, uint high) {
 }
 uint keyOf(Rest rest, uint i) { return rest.byNumber ? candidateId(entries[i]) : depths[i]; }
 
-/// How many of the first bins hold at most so many entries together.
-uint binsOfBatch(uint most) {
+/// How many of the first bins hold at most kBatch entries together.
+uint binsOfBatch() {
   uint lane = laneOf();
   uvec2 held = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
   uint second = sumUpTo(held.x + held.y);
   uint first = second - held.y;
   // The sums grow, so those that fit come first.
-  return maxAll(second <= most ? lane * 2u + 2u : first <= most ? lane * 2u + 1u : 0u);
+  return maxAll(second <= kBatch ? lane * 2u + 2u : first <= kBatch ? lane * 2u + 1u : 0u);
 }
 
-/// The farthest key up to which entries are decided next: at most rest.atOnce, or those that have one and the same key.
+/// The farthest key up to which entries are decided next: at most kBatch, or those that have one and the same key.
 uint lastKey(inout Rest rest) {
   uint lane = laneOf();
   uint high = rest.farthest;
@@ -71,7 +69,7 @@ uint lastKey(inout Rest rest) {
       if (isWithin(rest, i, rest.low, high)) atomicAdd(bins[(keyOf(rest, i) - rest.low) >> shift], 1u);
     }
     sync();
-    uint fitting = binsOfBatch(rest.atOnce);
+    uint fitting = binsOfBatch();
     if (fitting == kBins) return high;
     uint span = max(fitting, 1u) << shift;
     if (span <= high - rest.low) high = rest.low + span - 1u;
@@ -181,7 +179,6 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   uint farthest = maxAll(most);
   rest.farthest = farthest;
   rest.turns = turnsThrough(sizeOf(rest));
-  rest.atOnce = kBatch;
   rest.byNumber = false;
   rest.depth = 0u;
   uvec4 uncovered = uvec4(0xffffffffu);
@@ -212,8 +209,6 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   }
 }
 
-#include "visibility/depths.glsl"
-
 /// Which of all long lists is decided as the i-th. Pixels beside each other, whose lists lie so, too, have triangles in
 /// common: where they are decided long after one another, the later one need not ask about what the earlier one shows.
 uint turnOf(uint i, uint lists) {
@@ -232,7 +227,6 @@ void main() {
   uint begin = end - slots[lengthAt(slot)];
   ivec2 pixel = pixelOf(slot);
   sync();
-  if (movesIn(pixel)) resolveLong(begin, end, pixel);
-  else resolveByDepth(begin, end, pixel);
+  resolveLong(begin, end, pixel);
   sayIfEnded();
 }

@@ -79,16 +79,16 @@ size_t countUpTo(Batch list, KeyOf keyOf, uint32_t key) {
   return static_cast<size_t>(std::upper_bound(list.begin(), list.end(), key, isBefore) - list.begin());
 }
 
-/// The farthest key up to which entries are decided together, of those that are not nearer than `low`: at most `most`,
+/// The farthest key up to which entries are decided together, of those that are not nearer than `low`: at most kBatch,
 /// or those that have one and the same key. Counts the passes through the list.
-uint32_t lastKey(Batch list, KeyOf keyOf, uint32_t low, size_t most, uint32_t& passes) {
+uint32_t lastKey(Batch list, KeyOf keyOf, uint32_t low, uint32_t& passes) {
   uint32_t high = keyOf(list.back());
   while (true) {
     ++passes;
     const uint32_t range = high - low, shift = std::max<uint32_t>(std::bit_width(range), 6) - 6;
     const auto endOf = [&](uint32_t bins) { return std::min(low + (uint64_t(bins) << shift) - 1, uint64_t(high)); };
     uint32_t fitting = 0;
-    while (fitting < 64 && countUpTo(list, keyOf, static_cast<uint32_t>(endOf(fitting + 1))) <= most) ++fitting;
+    while (fitting < 64 && countUpTo(list, keyOf, static_cast<uint32_t>(endOf(fitting + 1))) <= kBatch) ++fitting;
     if (fitting == 64) return high;
     high = static_cast<uint32_t>(endOf(std::max(fitting, 1u)));
     if (fitting != 0 || shift == 0) return high;
@@ -135,64 +135,10 @@ void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, v
   }
 }
 
-/// Decides a long list by the depths of its samples, 16 rows at a time.
-void resolveByDepth(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed,
-                    std::vector<uint32_t>& bits) {
-  std::vector<Sorted> sorted;
-  for (Entry& entry : list) {
-    const ScreenTriangle t = triangleOf(candidates[entry.candidate]);
-    entry.key = nearestWithMargin(t, isCompact(t), pixel, reversed);
-  }
-  std::sort(list.begin(), list.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
-  for (const Entry& entry : list) sorted.push_back({candidates[entry.candidate], entry.key, {}, {}});
-  const auto show = [&](uint32_t id) { bits[id / 32] |= 1u << (id % 32); };
-  const auto size = static_cast<uint32_t>(sorted.size());
-  const auto showAll = [&] {
-    for (const Sorted& entry : sorted) show(entry.candidate.id);
-  };
-  uint32_t turns = turnsThrough(size);
-  for (int firstRow = 0; firstRow < 64; firstRow += 16) {
-    turns += kTurnsOfRows;
-    std::vector<std::pair<uint32_t, uint32_t>> nearest(16 * 64, {kFarthest, kNoTriangle});
-    size_t first = 0;
-    for (uint32_t low = sorted.front().key;;) {
-      if (takesTooLong(turns, size)) return showAll();
-      const Batch rest = Batch(sorted).subspan(first);
-      uint32_t passes = 0;
-      const uint32_t high = lastKey(rest, depthOf, low, drawnAtOnce(size), passes);
-      const size_t n = countUpTo(rest, depthOf, high);
-      turns += passes * turnsThrough(size) + turnsOfDraws(size);
-      for (const Sorted& entry : rest.first(n)) {
-        const ScreenTriangle t = triangleOf(entry.candidate);
-        const ivec4 box = samplesAbout(t);
-        const int margin = marginOf(t, kMargin);
-        if (!reachesRows(t, pixel.y * 64 + firstRow, 16)) continue;
-        turns += turnsOfDrawing(t);
-        for (int row = 0; row < 16; ++row)
-          for (int column = 0; column < 64; ++column) {
-            const ivec2 sample = pixel * 64 + ivec2(column, firstRow + row), point = sampleIn(sample);
-            if (sample.x < box.x || sample.y < box.y || sample.x > box.z || sample.y > box.w) continue;
-            if (!coversWide(t, margin, point)) continue;
-            auto& at = nearest[static_cast<size_t>(row * 64 + column)];
-            at = std::min(at, {std::max(depthKey(depthWide(t, point), reversed), entry.key), entry.candidate.id});
-          }
-      }
-      if (tookTooLong(turns, size)) return showAll();
-      if (high == sorted.back().key || high >= std::max_element(nearest.begin(), nearest.end())->first) break;
-      low = high + 1;
-      first += n;
-    }
-    for (const auto& [key, id] : nearest)
-      if (id != kNoTriangle) show(id);
-  }
-}
-
 /// Decides a list, front to back until all samples are covered.
 void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed, vec4 depthScale,
              std::vector<uint32_t>& bits) {
   if (list.empty()) return;
-  if (list.size() > kBatch && depthScale.z == 0.0f)
-    return resolveByDepth(candidates, std::move(list), pixel, reversed, bits);
   const auto rank = [&](const Entry& e) {
     const Candidate& c = candidates[e.candidate];
     return std::tuple(e.key, c.id, c.p1.x, c.p1.y);
@@ -224,7 +170,7 @@ void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, b
   const std::function<bool(size_t, Batch, KeyOf)> decide = [&](size_t first, Batch rest, KeyOf keyOf) {
     for (uint32_t low = keyOf(rest.front()); !rest.empty() && isOpen();) {
       uint32_t passes = 1;
-      const uint32_t high = lastKey(rest, keyOf, low, kBatch, passes);
+      const uint32_t high = lastKey(rest, keyOf, low, passes);
       const auto n = static_cast<uint32_t>(countUpTo(rest, keyOf, high));
       turns += passes * turnsThrough(size);
       if (n > kBatch && keyOf == depthOf) {
