@@ -139,11 +139,17 @@ GPGP_FN Footing footingOf(ScreenTriangle t, bool compact, ivec2 pixel) {
   return f;
 }
 
-/// The nearest that the part of a triangle's box that lies in a pixel comes, as a key.
-GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
-  Footing f = footingOf(t, compact, pixel);
+/// The nearest and the farthest that the part of a triangle's box that lies in a pixel comes, as keys.
+GPGP_FN uint nearestKey(ScreenTriangle t, Footing f, bool reversed) {
   GPGP_PRECISE float nearest = reversed ? f.depth + f.reach : f.depth - f.reach;
   return depthKey(withinDepths(t, nearest), reversed);
+}
+GPGP_FN uint farthestKey(ScreenTriangle t, Footing f, bool reversed) {
+  GPGP_PRECISE float farthest = reversed ? f.depth - f.reach : f.depth + f.reach;
+  return depthKey(withinDepths(t, farthest), reversed);
+}
+GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
+  return nearestKey(t, footingOf(t, compact, pixel), reversed);
 }
 
 /// By how much an edge function, in pixels, falls at most from a pixel's centre to its border.

@@ -1,4 +1,8 @@
-// Decides a pixel's list of more than kBatch: the nearest kBatch first, and so on until all samples are covered.
+// Decides a pixel's list of more than kBatch: those that come nearest first, up to kBatch together, until all samples
+// are covered and what is left begins behind all that covers them.
+//
+// Of what a batch shows, that which reaches behind where the next one begins is carried over to it, so that planes decide
+// between both. Where too many do, what begins before the end of those that are not carried is not decided: it is shown.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
@@ -24,15 +28,19 @@ shared uint count;
 struct Rest {
   uint begin;
   uint end;
-  uint low; // what is nearer is decided
-  uint before; // how many that are
+  uint low;     // what begins nearer is decided
+  uint last;    // what begins farther is hidden
+  uint carried; // items that lie there already
+  uint before;  // how many were decided, but for those
   uint nearest;
   uint farthest;
-  uint turns; // of loops, so far
-  bool byNumber; // of one depth, divided by their triangles' numbers: low and farthest are such
+  uint doubt;    // what begins nearer is decided, or shown
+  uint turns;    // of loops, so far
+  bool byNumber; // of one depth, divided by their triangles' numbers: low and last are such
   uint depth;    // that one
 };
 uint sizeOf(Rest rest) { return rest.end - rest.begin; } // of the whole list
+uint roomOf(Rest rest) { return kBatch - rest.carried; }
 
 /// Whether an entry lies in a range of the keys by which the rest is divided just now.
 bool isWithin(Rest rest, uint i, uint low, uint high) {
@@ -45,20 +53,20 @@ bool isWithin(Rest rest, uint i, uint low, uint high) {
 }
 uint keyOf(Rest rest, uint i) { return rest.byNumber ? candidateId(entries[i]) : depths[i]; }
 
-/// How many of the first bins hold at most kBatch entries together.
-uint binsOfBatch() {
+/// How many of the first bins hold at most so many entries together.
+uint binsOf(uint most) {
   uint lane = laneOf();
   uvec2 held = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
   uint second = sumUpTo(held.x + held.y);
   uint first = second - held.y;
   // The sums grow, so those that fit come first.
-  return maxAll(second <= kBatch ? lane * 2u + 2u : first <= kBatch ? lane * 2u + 1u : 0u);
+  return maxAll(second <= most ? lane * 2u + 2u : first <= most ? lane * 2u + 1u : 0u);
 }
 
-/// The farthest key up to which entries are decided next: at most kBatch, or those that have one and the same key.
+/// The farthest key up to which entries are decided next: at most roomOf(rest), or those that have one and the same.
 uint lastKey(inout Rest rest) {
   uint lane = laneOf();
-  uint high = rest.farthest;
+  uint high = rest.last;
   while (true) {
     uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
     rest.turns += turnsThrough(sizeOf(rest));
@@ -69,7 +77,7 @@ uint lastKey(inout Rest rest) {
       if (isWithin(rest, i, rest.low, high)) atomicAdd(bins[(keyOf(rest, i) - rest.low) >> shift], 1u);
     }
     sync();
-    uint fitting = binsOfBatch();
+    uint fitting = binsOf(roomOf(rest));
     if (fitting == kBins) return high;
     uint span = max(fitting, 1u) << shift;
     if (span <= high - rest.low) high = rest.low + span - 1u;
@@ -78,20 +86,22 @@ uint lastKey(inout Rest rest) {
   }
 }
 
-/// Gets the entries up to a key, if they are not more than kBatch; returns how many there are.
-uint takeEntries(Rest rest, uint high) {
-  if (laneOf() == 0u) count = 0u;
-  setKey(laneOf(), kFarthest);
+/// Gets the entries up to a key, behind the carried ones, if there is room for them; returns how many there are. next:
+/// where those that are left begin, at least.
+uint takeEntries(Rest rest, uint high, out uint next) {
+  if (laneOf() == 0u) count = rest.carried;
   sync();
+  uint least = kFarthest;
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
+    uint key = depths[i];
+    if (key > (rest.byNumber ? rest.depth : high)) least = min(least, key);
     if (!isWithin(rest, i, rest.low, high)) continue;
     uint at = atomicAdd(count, 1u);
-    if (at >= kBatch) continue;
-    items[at] = entries[i];
-    setKey(at, depths[i]);
+    if (at < kBatch) items[at] = entries[i];
   }
+  next = minAll(least);
   sync();
-  return count;
+  return count - rest.carried;
 }
 
 /// Whether an entry's box may hold one of the open samples.
@@ -101,34 +111,90 @@ bool reachesOpen(Facet f, uvec4 uncovered) {
   return reaches(f, columns, rows);
 }
 
-/// Goes through a batch, whose items and keys are there; false once all samples are covered.
-bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 uncovered) {
+/// Shows those that are left and begin up to a key, but for those of which that is said already.
+void showRest(inout Rest rest, uint last) {
+  for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
+    uint id = candidateId(entries[i]);
+    bool isLeft = rest.byNumber ? depths[i] > rest.depth || isWithin(rest, i, rest.low, rest.last)
+                                : depths[i] >= rest.low;
+    if (!isLeft || depths[i] < rest.doubt || depths[i] > last) continue;
+    atomicAdd(counters.unresolved, 1u); // whoever else shows it, in whatever order
+    show(id);
+  }
+  rest.turns += turnsThrough(sizeOf(rest));
+  rest.doubt = max(rest.doubt, last + 1u);
+}
+
+/// Goes through a batch, whose items are there: the carried ones and n others. next: where those that are left begin.
+/// False once nothing that is left can be seen.
+bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout uvec4 uncovered) {
+  bool reversed = params.reversedDepth != 0u;
+  n += rest.carried;
   Entry own = noEntry();
-  own.place = place;
   bool isThere = laneOf() < n;
   bool isKnown = true;
   bool isWide = false;
+  uint item = 0u;
+  uint end = 0u;
+  uint key = kFarthest;
   Facet f = facetOf(vec3(0.0), 0u);
+  Outline outline;
   if (isThere) {
-    Candidate c = readCandidate(items[laneOf()]);
+    item = items[laneOf()];
+    Candidate c = readCandidate(item);
+    ScreenTriangle t = triangleOf(c);
     own.id = c.id;
     isKnown = isShown(c.id);
-    isWide = !isCompact(triangleOf(c));
+    isWide = !isCompact(t);
     putCorners(cornersOf(c), pixel * 256);
-    put(place, outlineOf(c, pixel), parallaxIn(pixel, rest.nearest, keyAt(laneOf()), rest.before + place));
-    f = facetOf(c, footingIn(c, pixel), pixel, params.reversedDepth != 0u);
+    Footing footing = footingIn(c, pixel);
+    outline = outlineOf(c, pixel);
+    key = middleKey(c, outline, footing, pixel, reversed);
+    end = farthestKey(t, footing, reversed);
+    f = facetOf(c, footing, pixel, reversed);
     setFacet(own, f);
   }
+  setKey(laneOf(), key);
+  own.place = placeAmong(isThere, 0u, n);
+  if (isThere) put(own.place, outline, parallaxIn(pixel, rest.nearest, key, rest.before + own.place));
   uvec4 open_ = uncovered;
   bool decides = reachesOpen(f, open_);
   if (isThere && decides) own.list = bitsFrom(0, int(n));
-  Looked looked = lookAtBatch(0u, n, movesIn(pixel), uncovered);
-  own.isSeen = isThere && (looked.seen & (1u << place)) != 0u;
+  uvec4 left = uncovered;
+  Looked looked = lookAtBatch(0u, n, movesIn(pixel), left);
+  own.isSeen = isThere && (looked.seen & (1u << own.place)) != 0u;
   uint reach = maxAll(own.isSeen ? orderOf(own.farthest) : 0u);
-  bool asks = own.list != 0u && !isKnown && isAsked(own, reach);
-  if (decide(own, asks, isWide, open_) && !isKnown) show(own.id);
+  bool ends = end < next; // what is known is asked as well where it matters later: others show it in whatever order
+  bool asks = own.list != 0u && !(isKnown && ends) && isAsked(own, reach);
+  bool isVisible = decide(own, asks, isWide, open_);
+  if (isVisible && !isKnown) show(own.id);
+  // What ends closes its samples, and is behind nothing that is left.
+  bool goesOn = isVisible && !ends;
+  uint going = lanesWith(goesOn);
+  if (uint(bitCount(going)) > kMostCarried) {
+    sync();
+    setKey(laneOf(), goesOn ? end : kFarthest);
+    sync();
+    if (goesOn) ends = rankOf(laneOf(), 0u, kBatch) < uint(bitCount(going)) - kKeptCarried;
+    showRest(rest, maxAll(goesOn && ends ? end : 0u) - 1u);
+    goesOn = goesOn && !ends;
+    going = lanesWith(goesOn);
+  }
+  uint ending = orAll(isThere && ends ? 1u << own.place : 0u);
+  if (going != 0u) {
+    for (; ending != 0u; ending &= ending - 1u) uncovered &= ~samplesOf(outlineAt(uint(findLSB(ending))));
+  } else {
+    uncovered = left;
+  }
+  rest.before += n;
+  rest.carried = uint(bitCount(going));
+  rest.before -= rest.carried;
+  uint farthest = maxAll(goesOn ? end : 0u);
   sync();
-  return looked.holes;
+  if (goesOn) items[bitCount(going & ((1u << laneOf()) - 1u))] = item;
+  if (looked.holes) return true;
+  rest.farthest = min(rest.farthest, farthest);
+  return going != 0u && (rest.byNumber || next <= rest.farthest);
 }
 
 /// Divides entries of one and the same depth by their triangles' numbers.
@@ -145,19 +211,7 @@ void goByNumber(inout Rest rest) {
   rest.byNumber = true;
   rest.depth = rest.low;
   rest.low = minAll(least);
-  rest.farthest = maxAll(most);
-}
-
-/// A pixel that would take too long shows those that are left.
-void showRest(Rest rest) {
-  for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-    uint id = candidateId(entries[i]);
-    bool isLeft = rest.byNumber ? depths[i] > rest.depth || isWithin(rest, i, rest.low, rest.farthest)
-                                : depths[i] >= rest.low;
-    if (!isLeft) continue;
-    atomicAdd(counters.unresolved, 1u); // whoever else shows it, in whatever order
-    show(id);
-  }
+  rest.last = maxAll(most);
 }
 
 void resolveLong(uint begin, uint end, ivec2 pixel) {
@@ -165,7 +219,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   uint most = 0u;
   for (uint i = begin + laneOf(); i < end; i += kBatch) {
     Candidate c = readCandidate(entries[i]);
-    uint key = middleKey(c, outlineOf(c, pixel), footingIn(c, pixel), pixel, params.reversedDepth != 0u);
+    uint key = nearestKey(triangleOf(c), footingIn(c, pixel), params.reversedDepth != 0u);
     depths[i] = key;
     least = min(least, key);
     most = max(most, key);
@@ -173,39 +227,42 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   Rest rest;
   rest.begin = begin;
   rest.end = end;
+  rest.carried = 0u;
   rest.before = 0u;
   rest.nearest = minAll(least);
   rest.low = rest.nearest;
-  uint farthest = maxAll(most);
-  rest.farthest = farthest;
+  rest.farthest = maxAll(most);
+  rest.last = rest.farthest;
+  rest.doubt = 0u;
   rest.turns = turnsThrough(sizeOf(rest));
   rest.byNumber = false;
   rest.depth = 0u;
   uvec4 uncovered = uvec4(0xffffffffu);
   bool more = !takesTooLong(rest.turns, sizeOf(rest));
-  if (!more) showRest(rest);
+  if (!more) showRest(rest, kFarthest);
   while (more) {
     uint high = lastKey(rest);
     sync();
-    uint n = takeEntries(rest, high);
+    uint next;
+    uint n = takeEntries(rest, high, next);
     rest.turns += turnsThrough(sizeOf(rest));
-    if (n > kBatch && !rest.byNumber) {
+    if (n > roomOf(rest) && !rest.byNumber) {
       goByNumber(rest);
       continue;
     }
-    rest.turns += turnsOfBatch(min(n, kBatch));
-    if (n > kBatch || takesTooLong(rest.turns, sizeOf(rest))) {
-      showRest(rest);
+    rest.turns += turnsOfBatch(min(n + rest.carried, kBatch));
+    if (n > roomOf(rest) || takesTooLong(rest.turns, sizeOf(rest))) {
+      showRest(rest, kFarthest);
       break;
     }
-    more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n), pixel, uncovered);
-    rest.before += n;
+    bool isLast = high == rest.last;
     rest.low = high + 1u;
-    if (high != rest.farthest) continue;
-    more = more && rest.byNumber && rest.depth != farthest;
-    rest.low = rest.depth + 1u;
-    rest.farthest = farthest;
-    rest.byNumber = false;
+    if (rest.byNumber && isLast) rest.byNumber = false;
+    if (!rest.byNumber) rest.low = next;
+    more = resolveBatch(rest, n, rest.byNumber ? rest.depth + 1u : next, pixel, uncovered);
+    if (rest.byNumber) continue;
+    more = more && next <= rest.farthest && next != kFarthest;
+    rest.last = rest.farthest;
   }
 }
 
