@@ -2,7 +2,7 @@
 // are covered and what is left begins behind all that covers them.
 //
 // Of what a batch shows, that which reaches behind where the next one begins is carried over to it, so that planes decide
-// between both. Where too many do, what begins before the end of those that are not carried is not decided: it is shown.
+// between both. Where too many do, those that reach least far are not: what would have to be decided against them is shown.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
@@ -34,7 +34,8 @@ struct Rest {
   uint before;  // how many were decided, but for those
   uint nearest;
   uint farthest;
-  uint doubt;    // what begins nearer is decided, or shown
+  bool hasDoubt; // some samples are doubted
+  uint doubt;    // where what is behind them begins
   uint turns;    // of loops, so far
   bool byNumber; // of one depth, divided by their triangles' numbers: low and last are such
   uint depth;    // that one
@@ -111,23 +112,40 @@ bool reachesOpen(Facet f, uvec4 uncovered) {
   return reaches(f, columns, rows);
 }
 
-/// Shows those that are left and begin up to a key, but for those of which that is said already.
-void showRest(inout Rest rest, uint last) {
+/// Whoever else shows it, in whatever order.
+void showUndecided(uint id) {
+  atomicAdd(counters.unresolved, 1u);
+  show(id);
+}
+
+/// A pixel that would take too long shows those that are left.
+void showRest(Rest rest) {
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-    uint id = candidateId(entries[i]);
     bool isLeft = rest.byNumber ? depths[i] > rest.depth || isWithin(rest, i, rest.low, rest.last)
                                 : depths[i] >= rest.low;
-    if (!isLeft || depths[i] < rest.doubt || depths[i] > last) continue;
-    atomicAdd(counters.unresolved, 1u); // whoever else shows it, in whatever order
-    show(id);
+    if (isLeft) showUndecided(candidateId(entries[i]));
   }
-  rest.turns += turnsThrough(sizeOf(rest));
-  rest.doubt = max(rest.doubt, last + 1u);
+}
+
+/// The samples that are left, in the rows of each invocation.
+struct Left {
+  uvec4 uncovered;
+  uvec4 doubted; // only such cover them as were not carried for want of room: what begins up to rest.doubt is undecided
+};
+
+/// Bits: places of those, of the given ones, that have a doubted sample.
+uint doubtedAmong(uint places, uvec4 doubted) {
+  uint found = 0u;
+  for (; places != 0u; places &= places - 1u) {
+    uint place = uint(findLSB(places));
+    if (!isNone(samplesOf(outlineAt(place)) & doubted)) found |= 1u << place;
+  }
+  return orAll(found);
 }
 
 /// Goes through a batch, whose items are there: the carried ones and n others. next: where those that are left begin.
 /// False once nothing that is left can be seen.
-bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout uvec4 uncovered) {
+bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout Left samples) {
   bool reversed = params.reversedDepth != 0u;
   n += rest.carried;
   Entry own = noEntry();
@@ -135,6 +153,7 @@ bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout uvec4 u
   bool isKnown = true;
   bool isWide = false;
   uint item = 0u;
+  uint begin = 0u;
   uint end = 0u;
   uint key = kFarthest;
   Facet f = facetOf(vec3(0.0), 0u);
@@ -150,6 +169,7 @@ bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout uvec4 u
     Footing footing = footingIn(c, pixel);
     outline = outlineOf(c, pixel);
     key = middleKey(c, outline, footing, pixel, reversed);
+    begin = nearestKey(t, footing, reversed);
     end = farthestKey(t, footing, reversed);
     f = facetOf(c, footing, pixel, reversed);
     setFacet(own, f);
@@ -157,44 +177,60 @@ bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout uvec4 u
   setKey(laneOf(), key);
   own.place = placeAmong(isThere, 0u, n);
   if (isThere) put(own.place, outline, parallaxIn(pixel, rest.nearest, key, rest.before + own.place));
-  uvec4 open_ = uncovered;
+  uvec4 open_ = samples.uncovered;
   bool decides = reachesOpen(f, open_);
   if (isThere && decides) own.list = bitsFrom(0, int(n));
-  uvec4 left = uncovered;
+  uvec4 left = samples.uncovered;
   Looked looked = lookAtBatch(0u, n, movesIn(pixel), left);
-  own.isSeen = isThere && (looked.seen & (1u << own.place)) != 0u;
+  uint bit = isThere ? 1u << own.place : 0u;
+  own.isSeen = (looked.seen & bit) != 0u;
   uint reach = maxAll(own.isSeen ? orderOf(own.farthest) : 0u);
-  bool ends = end < next; // what is known is asked as well where it matters later: others show it in whatever order
-  bool asks = own.list != 0u && !(isKnown && ends) && isAsked(own, reach);
-  bool isVisible = decide(own, asks, isWide, open_);
-  if (isVisible && !isKnown) show(own.id);
-  // What ends closes its samples, and is behind nothing that is left.
-  bool goesOn = isVisible && !ends;
+  bool ends = end < next;
+  bool isDoubted = rest.hasDoubt && begin <= rest.doubt;
+  bool asks = own.list != 0u && !isKnown && isAsked(own, reach);
+  if (decide(own, asks, isWide, open_) && !isKnown) show(own.id);
+  // What follows goes by the order alone: others show in whatever order, and what is known is not asked.
+  if (rest.hasDoubt) {
+    uint undecided = doubtedAmong(orAll(isThere && isDoubted && !own.isSeen ? bit : 0u), samples.doubted);
+    if ((undecided & bit) != 0u) showUndecided(own.id);
+  }
+  bool goesOn = own.isSeen && !ends;
   uint going = lanesWith(goesOn);
+  uint forced = 0u;
   if (uint(bitCount(going)) > kMostCarried) {
     sync();
     setKey(laneOf(), goesOn ? end : kFarthest);
     sync();
-    if (goesOn) ends = rankOf(laneOf(), 0u, kBatch) < uint(bitCount(going)) - kKeptCarried;
-    showRest(rest, maxAll(goesOn && ends ? end : 0u) - 1u);
-    goesOn = goesOn && !ends;
+    bool isForced = goesOn && rankOf(laneOf(), 0u, kBatch) < uint(bitCount(going)) - kKeptCarried;
+    rest.doubt = max(rest.doubt, maxAll(isForced ? end : 1u) - 1u);
+    forced = orAll(isForced ? bit : 0u);
+    goesOn = goesOn && !isForced;
     going = lanesWith(goesOn);
   }
-  uint ending = orAll(isThere && ends ? 1u << own.place : 0u);
-  if (going != 0u) {
-    for (; ending != 0u; ending &= ending - 1u) uncovered &= ~samplesOf(outlineAt(uint(findLSB(ending))));
-  } else {
-    uncovered = left;
+  // What ends is behind nothing that is left.
+  if (going != 0u || forced != 0u || rest.hasDoubt) {
+    for (uint ending = orAll(ends ? bit : 0u); ending != 0u; ending &= ending - 1u) {
+      uvec4 closed = samplesOf(outlineAt(uint(findLSB(ending))));
+      samples.uncovered &= ~closed;
+      samples.doubted &= ~closed;
+    }
+    for (; forced != 0u; forced &= forced - 1u) {
+      uvec4 closed = samplesOf(outlineAt(uint(findLSB(forced))));
+      samples.doubted |= closed & samples.uncovered;
+      samples.uncovered &= ~closed;
+    }
+    rest.hasDoubt = lanesWith(!isNone(samples.doubted)) != 0u;
   }
+  if (going == 0u) samples.uncovered = left;
   rest.before += n;
   rest.carried = uint(bitCount(going));
   rest.before -= rest.carried;
-  uint farthest = maxAll(goesOn ? end : 0u);
+  uint farthest = max(maxAll(goesOn ? end : 0u), rest.hasDoubt ? rest.doubt : 0u);
   sync();
   if (goesOn) items[bitCount(going & ((1u << laneOf()) - 1u))] = item;
   if (looked.holes) return true;
   rest.farthest = min(rest.farthest, farthest);
-  return going != 0u && (rest.byNumber || next <= rest.farthest);
+  return (going != 0u || rest.hasDoubt) && (rest.byNumber || next <= rest.farthest);
 }
 
 /// Divides entries of one and the same depth by their triangles' numbers.
@@ -233,13 +269,16 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   rest.low = rest.nearest;
   rest.farthest = maxAll(most);
   rest.last = rest.farthest;
+  rest.hasDoubt = false;
   rest.doubt = 0u;
   rest.turns = turnsThrough(sizeOf(rest));
   rest.byNumber = false;
   rest.depth = 0u;
-  uvec4 uncovered = uvec4(0xffffffffu);
+  Left samples;
+  samples.uncovered = uvec4(0xffffffffu);
+  samples.doubted = uvec4(0u);
   bool more = !takesTooLong(rest.turns, sizeOf(rest));
-  if (!more) showRest(rest, kFarthest);
+  if (!more) showRest(rest);
   while (more) {
     uint high = lastKey(rest);
     sync();
@@ -252,14 +291,14 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
     }
     rest.turns += turnsOfBatch(min(n + rest.carried, kBatch));
     if (n > roomOf(rest) || takesTooLong(rest.turns, sizeOf(rest))) {
-      showRest(rest, kFarthest);
+      showRest(rest);
       break;
     }
     bool isLast = high == rest.last;
     rest.low = high + 1u;
     if (rest.byNumber && isLast) rest.byNumber = false;
     if (!rest.byNumber) rest.low = next;
-    more = resolveBatch(rest, n, rest.byNumber ? rest.depth + 1u : next, pixel, uncovered);
+    more = resolveBatch(rest, n, rest.byNumber ? rest.depth + 1u : next, pixel, samples);
     if (rest.byNumber) continue;
     more = more && next <= rest.farthest && next != kFarthest;
     rest.last = rest.farthest;

@@ -13,8 +13,8 @@ GPGP_CONST uint kKeptCarried = 22u; ///< where there would be more
 /// To go once through a list, an invocation an entry; and once round the loop that does so.
 GPGP_FN uint turnsThrough(uint size) { return size / kBatch + 3u; }
 /// At most, as often as a list is gone through up to its next batch: keys of 32 bits are divided by 64 at a time, which
-/// may have to begin again by number; entries are taken each time; and what is left is shown, or a part of it.
-GPGP_CONST uint kMostPasses = 18u;
+/// may have to begin again by number; entries are taken each time; and what is left is shown.
+GPGP_CONST uint kMostPasses = 17u;
 /// Whether a list could take more turns than there are before another batch is decided, so that what is left of it is
 /// shown. turns: of it so far.
 GPGP_FN bool takesTooLong(uint turns, uint size) {
@@ -22,7 +22,7 @@ GPGP_FN bool takesTooLong(uint turns, uint size) {
 }
 
 /// At most, to decide a batch: each entry may be doubtful, and all others may hide it.
-GPGP_FN uint turnsOfBatch(uint n) { return n * (n + 7u) + 80u; }
+GPGP_FN uint turnsOfBatch(uint n) { return n * (n + 8u) + 96u; }
 
 GPGP_SHADER_END
 #endif

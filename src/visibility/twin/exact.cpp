@@ -96,10 +96,14 @@ uint32_t lastKey(Batch list, KeyOf keyOf, uint32_t low, uint32_t last, size_t mo
   }
 }
 
+/// What a batch shows: by its order, and as planes correct that.
+struct Looked {
+  std::vector<bool> seen, visible;
+};
+
 /// Decides a batch, in its order, `before` entries of whose list come before it: those with a sample that nothing
 /// before them covers are visible, and what the order by one depth each may have wrong is decided by planes.
-std::vector<bool> resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, vec4 depthScale,
-                               bool reversed) {
+Looked resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, vec4 depthScale, bool reversed) {
   const Samples atFirst = open;
   uvec2 columns(0, 0), rows(0, 0);
   for (uint32_t row = 0; row < 64; ++row) {
@@ -133,7 +137,7 @@ std::vector<bool> resolveBatch(Batch batch, uint32_t nearest, size_t before, Sam
     }
     visible[i] = doubtful ? isAhead(batch, i, atFirst, decides) : seen[i];
   }
-  return visible;
+  return {seen, visible};
 }
 
 /// The order in which a batch is decided.
@@ -152,19 +156,25 @@ void close(Samples& open, const Placed& p) {
   }
 }
 
-/// Of those that a batch shows and that reach behind where the next one begins: the ones that are carried over to it.
-/// Where there are too many, `last` is how far others reach.
-std::vector<Placed> carriedOf(const std::vector<Placed>& going, uint32_t& last) {
-  if (going.size() <= kMostCarried) return going;
-  std::vector<Placed> carried;
+bool hasAny(const Placed& p, const Samples& samples) {
+  for (int row = 0; row < 64; ++row) {
+    const uvec2 own = samplesIn(p.outline, row), some = samples[static_cast<size_t>(row)];
+    if ((own.x & some.x) | (own.y & some.y)) return true;
+  }
+  return false;
+}
+
+/// Takes from those that would be carried over to the next batch the ones that reach least far, if there are too many.
+std::vector<Placed> takeForced(std::vector<Placed>& going) {
+  if (going.size() <= kMostCarried) return {};
+  std::vector<Placed> carried, forced;
   for (const Placed& p : going) {
     const auto isNearer = [&](const Placed& other) { return other.end < p.end; };
-    if (static_cast<size_t>(std::count_if(going.begin(), going.end(), isNearer)) < going.size() - kKeptCarried)
-      last = std::max(last, p.end - 1);
-    else
-      carried.push_back(p);
+    const auto rank = static_cast<size_t>(std::count_if(going.begin(), going.end(), isNearer));
+    (rank < going.size() - kKeptCarried ? forced : carried).push_back(p);
   }
-  return carried;
+  going = std::move(carried);
+  return forced;
 }
 
 /// Decides a list of more than kBatch, as resolve_long.comp does; returns how many of it are not decided.
@@ -175,20 +185,17 @@ uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, s
   const auto size = static_cast<uint32_t>(list.size());
   uint32_t turns = turnsThrough(size), doubt = 0, unresolved = 0;
   size_t first = 0, before = 0; // entries that were taken; and without those that are carried
-  const auto showRest = [&](uint32_t last) {
-    for (const Placed& p : Batch(list).subspan(first))
-      if (p.begin >= doubt && p.begin <= last) show(p), ++unresolved;
-    turns += turnsThrough(size);
-    doubt = std::max(doubt, last + 1);
+  const auto showRest = [&] {
+    for (const Placed& p : Batch(list).subspan(first)) show(p), ++unresolved;
     return unresolved;
   };
-  if (takesTooLong(turns, size)) return showRest(kFarthest);
+  if (takesTooLong(turns, size)) return showRest();
   const uint32_t nearest = list.front().begin;
   uint32_t low = nearest, farthest = list.back().begin, last = farthest, depth = 0;
   size_t end = list.size(); // of those by whose numbers the list is divided
   KeyOf keyOf = beginOf;
-  Samples open;
-  open.fill(uvec2(~0u, ~0u));
+  Samples open, doubted; // the samples that only such cover as were taken before they ended, at depths up to `doubt`
+  open.fill(uvec2(~0u, ~0u)), doubted.fill(uvec2(0u, 0u));
   std::vector<Placed> carried;
   for (bool more = true; more;) {
     const Batch rest = Batch(list).subspan(first, end - first);
@@ -206,7 +213,7 @@ uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, s
       continue;
     }
     turns += turnsOfBatch(static_cast<uint32_t>(std::min<size_t>(n + carried.size(), kBatch)));
-    if (n > room || takesTooLong(turns, size)) return showRest(kFarthest);
+    if (n > room || takesTooLong(turns, size)) return showRest();
     const bool isLast = high == last;
     low = high + 1;
     first += n;
@@ -219,30 +226,32 @@ uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, s
     batch.insert(batch.end(), rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(n));
     sortBatch(batch);
     Samples left = open;
-    const std::vector<bool> visible = resolveBatch(batch, nearest, before, left, depthScale, reversed);
+    const Looked looked = resolveBatch(batch, nearest, before, left, depthScale, reversed);
     std::vector<Placed> going;
     for (size_t i = 0; i < batch.size(); ++i) {
-      if (!visible[i]) continue;
-      show(batch[i]);
-      if (batch[i].end >= next) going.push_back(batch[i]);
+      if (looked.seen[i] && batch[i].end >= next) going.push_back(batch[i]);
+      if (looked.visible[i]) show(batch[i]);
+      if (looked.seen[i] || batch[i].begin > doubt || !hasAny(batch[i], doubted)) continue;
+      show(batch[i]), ++unresolved;
     }
-    uint32_t undecided = 0;
-    carried = carriedOf(going, undecided);
-    if (carried.size() < going.size()) showRest(undecided);
+    for (const Placed& p : batch)
+      if (p.end < next) close(open, p), close(doubted, p);
+    for (const Placed& p : takeForced(going)) {
+      doubt = std::max(doubt, p.end - 1);
+      for (size_t row = 0; row < 64; ++row) {
+        const uvec2 own = samplesIn(p.outline, static_cast<int>(row));
+        doubted[row].x |= own.x & open[row].x, doubted[row].y |= own.y & open[row].y;
+      }
+      close(open, p);
+    }
+    carried = std::move(going);
     if (carried.empty()) open = left;
     before += batch.size() - carried.size();
-    for (const Placed& p : batch) {
-      const bool goes =
-          std::any_of(carried.begin(), carried.end(), [&](const Placed& c) { return c.candidate == p.candidate; });
-      const bool wasGoing =
-          std::any_of(going.begin(), going.end(), [&](const Placed& c) { return c.candidate == p.candidate; });
-      if (!carried.empty() && !goes && (wasGoing || p.end < next)) close(open, p);
-    }
     if (!isAny(left)) {
-      uint32_t reach = 0;
+      uint32_t reach = isAny(doubted) ? doubt : 0;
       for (const Placed& p : carried) reach = std::max(reach, p.end);
       farthest = std::min(farthest, reach);
-      more = !carried.empty() && (keyOf == idOf || next <= farthest);
+      more = (!carried.empty() || isAny(doubted)) && (keyOf == idOf || next <= farthest);
     }
     if (keyOf == idOf) continue;
     more = more && next <= farthest && next != kFarthest;
@@ -268,10 +277,10 @@ uint32_t resolve(const std::vector<Candidate>& candidates, const List& list, ive
   sortBatch(placed);
   Samples open;
   open.fill(uvec2(~0u, ~0u));
-  const std::vector<bool> visible = resolveBatch(placed, placed.front().key, 0, open, depthScale, reversed);
+  const Looked looked = resolveBatch(placed, placed.front().key, 0, open, depthScale, reversed);
   for (size_t i = 0; i < placed.size(); ++i) {
     const uint32_t id = placed[i].candidate->id;
-    if (visible[i]) bits[id / 32] |= 1u << (id % 32);
+    if (looked.visible[i]) bits[id / 32] |= 1u << (id % 32);
   }
   return 0;
 }
