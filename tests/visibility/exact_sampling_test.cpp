@@ -56,9 +56,11 @@ TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
     EXPECT_GT(c.truth, 500u) << name;
     // With the order by one depth each alone the fronts have 99.46 % and 0.68 %, the far ones 96.59 % and 0.73 %.
     EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : name == "far fronts" ? 0.9995 : 0.99)) << name;
-    const double most = c.truth * (name == "city" || name == "far fronts" ? 0.001 : 0.004);
-    EXPECT_LE(c.extra, most + exact.counters.unresolved) << name;
-    EXPECT_LE(exact.counters.unresolved, c.truth * (name == "colonnade" ? 0.03 : 0)) << name; // slivers as far as slanted
+    // Margins overlap beside common edges, where planes are not asked; the colonnade's far columns are tens of slivers a
+    // pixel that interleave in depth.
+    const double most = name == "colonnade" ? 0.01 : name == "far fronts" ? 0.0075 : 0.004;
+    EXPECT_LE(c.extra, c.truth * most + exact.counters.unresolved) << name;
+    EXPECT_LE(exact.counters.unresolved, c.truth * (name == "colonnade" ? 0.03 : 0.001)) << name;
     const TwinResult standard = sampleOnCpu(scene.input());
     EXPECT_LT(compare(standard.bits, truth.bits).found, c.truth * 0.8) << name; // or the scene tests nothing
     uint32_t counted = 0;
