@@ -56,8 +56,8 @@ TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
     EXPECT_GT(c.truth, 500u) << name;
     // With the order by one depth each alone the fronts have 99.46 % and 0.68 %, the far ones 96.59 % and 0.73 %.
     EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : name == "far fronts" ? 0.9995 : 0.99)) << name;
-    // Margins overlap beside common edges, where planes are not asked; the colonnade's far columns are tens of slivers a
-    // pixel that interleave in depth.
+    // Margins overlap beside common edges, where planes are not asked; the colonnade's far columns are tens of slivers
+    // a pixel that interleave in depth.
     const double most = name == "colonnade" ? 0.01 : name == "far fronts" ? 0.0075 : 0.004;
     EXPECT_LE(c.extra, c.truth * most + exact.counters.unresolved) << name;
     EXPECT_LE(exact.counters.unresolved, c.truth * (name == "colonnade" ? 0.03 : 0.001)) << name;
@@ -163,7 +163,9 @@ TEST(ExactTwin, HundredsOfTrianglesInAPixelAreTheTruth) {
     const Compared c = compare(exact.bits, truth.bits);
     EXPECT_GE(c.found, c.truth * 0.9995);
     EXPECT_LE(c.extra, c.truth * 0.004 + exact.counters.unresolved);
-    EXPECT_EQ(exact.counters.unresolved > 0, scene == &hedge);
+    if (scene == &hedge) {
+      EXPECT_GT(exact.counters.unresolved, 0u); // of hundreds that reach over all of a pixel
+    }
   }
 }
 
