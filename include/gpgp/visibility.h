@@ -259,9 +259,9 @@ typedef struct GpgpSampleInfo {
 #define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
- *  (conservative: the earlier draw). Exact: but for pixels of more than about 6 000 candidates of a few samples
- *  each, or 400 that reach over all of it without hiding one another: there all count as visible, which `unresolved`
- *  says.
+ *  (conservative: the earlier draw). Exact: but for pixels in which more than 28 triangles reach through one
+ *  another in depth, or with more than about 1 500 candidates: what is in doubt there counts as visible, which
+ *  `unresolved` says.
  *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
  *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
  *  NOT_READY: geometry set or view not resident, or sampler not prewarmed. INVALID_ARGUMENT, with the field's name and
@@ -317,8 +317,8 @@ typedef struct GpgpSampleReport {
   uint32_t maxPairs;
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible, and
                              what they hide may be, too. For want of room: neededCandidates or neededPairs then exceed
-                             the budgets. Or whatever the budgets: the list of a pixel that takes more than a bounded
-                             time (see gpgpRecordPrepareVisibility); and what more than 2^20 parts of candidates
+                             the budgets. Or whatever the budgets: what is in doubt in a pixel of too many
+                             triangles (see gpgpRecordPrepareVisibility); and what more than 2^20 parts of candidates
                              of over 8 x 8 pixels leave no place for */
   uint32_t neededDraws; /**< of one camera */
   uint32_t draws;       /**< of them sampled, and with drawCommands written */

@@ -6,15 +6,15 @@ mat4 viewProjection(uint camera) {
               params.viewProjection[camera * 4u + 2u], params.viewProjection[camera * 4u + 3u]);
 }
 
-bool hasOrigin(Draw draw) { return params.originCount == 0u || draw.origin < params.originCount; }
-
-/// A draw that hasOrigin(), relative to a camera's origin.
-Draw seenFrom(Draw draw, uint camera) {
-  if (params.hasOrigins == 0u) return draw;
-  uint at = draw.origin * 2u;
+/// Makes a draw's transform relative to a camera's origin; false where the draw names none that is there.
+bool seeFrom(inout Draw draw, uint camera) {
+  if (params.hasOrigins == 0u) return true;
   bool any = params.originCount != 0u;
+  if (any && draw.origin >= params.originCount) return false;
+  uint at = draw.origin * 2u;
   vec3 high = any ? params.origins[at].xyz : vec3(0.0);
   vec3 low = any ? params.origins[at + 1u].xyz : vec3(0.0);
-  return relativeDraw(
-      draw, originFrom(high, low, params.cameraOrigins[camera * 2u].xyz, params.cameraOrigins[camera * 2u + 1u].xyz));
+  moveDraw(draw,
+           originFrom(high, low, params.cameraOrigins[camera * 2u].xyz, params.cameraOrigins[camera * 2u + 1u].xyz));
+  return true;
 }

@@ -139,37 +139,17 @@ GPGP_FN Footing footingOf(ScreenTriangle t, bool compact, ivec2 pixel) {
   return f;
 }
 
-/// The nearest that the part of a triangle's box that lies in a pixel comes, as a key.
-GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
-  Footing f = footingOf(t, compact, pixel);
+/// The nearest and the farthest that the part of a triangle's box that lies in a pixel comes, as keys.
+GPGP_FN uint nearestKey(ScreenTriangle t, Footing f, bool reversed) {
   GPGP_PRECISE float nearest = reversed ? f.depth + f.reach : f.depth - f.reach;
   return depthKey(withinDepths(t, nearest), reversed);
 }
-
-/// The same with the triangle's margin, which is less than a unit.
-GPGP_FN uint nearestWithMargin(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
-  Footing f = footingOf(t, compact, pixel);
-  GPGP_PRECISE float reach = f.reach + (abs(f.slope.x) + abs(f.slope.y));
-  GPGP_PRECISE float nearest = reversed ? f.depth + reach : f.depth - reach;
-  return depthKey(withinDepths(t, nearest), reversed);
+GPGP_FN uint farthestKey(ScreenTriangle t, Footing f, bool reversed) {
+  GPGP_PRECISE float farthest = reversed ? f.depth - f.reach : f.depth + f.reach;
+  return depthKey(withinDepths(t, farthest), reversed);
 }
-
-/// Where one of 64 x 64 samples a pixel lies, numbered from the picture's corner.
-GPGP_FN ivec2 sampleIn(ivec2 sample_) { return ivec2(sample_.x * 4 + 2, sample_.y * 4 + 2); }
-
-/// Which of those a triangle and its margin reach over: first x, y, last z, w.
-GPGP_FN ivec4 samplesAbout(ScreenTriangle t) {
-  ivec4 r;
-  r.x = min(t.p0.x, min(t.p1.x, t.p2.x)) >> 2;
-  r.y = min(t.p0.y, min(t.p1.y, t.p2.y)) >> 2;
-  r.z = (max(t.p0.x, max(t.p1.x, t.p2.x)) - 1) >> 2;
-  r.w = (max(t.p0.y, max(t.p1.y, t.p2.y)) - 1) >> 2;
-  return r;
-}
-
-GPGP_FN bool reachesRows(ScreenTriangle t, int first, int count) {
-  ivec4 samples = samplesAbout(t);
-  return samples.y < first + count && samples.w >= first;
+GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
+  return nearestKey(t, footingOf(t, compact, pixel), reversed);
 }
 
 /// By how much an edge function, in pixels, falls at most from a pixel's centre to its border.

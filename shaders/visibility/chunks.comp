@@ -36,9 +36,8 @@ bool mayBeInSight(uint chunk, uint entry) {
   uint end = min((place + 1u) * kChunk, e.indexCount / 3u);
   if (draw.firstTriangle > params.triangleCount || end > params.triangleCount - draw.firstTriangle) return true;
   Cluster c = clusters[firstCluster(draw.mesh) + place];
-  if (!hasOrigin(draw)) return true; // they are counted, too
-  ivec2 pixels = ivec2(int(params.width), int(params.height));
-  return !isOutOfSight(c, seenFrom(draw, e.camera), viewProjection(e.camera), pixels);
+  if (!seeFrom(draw, e.camera)) return true; // they are counted, too
+  return !isOutOfSight(c, draw, viewProjection(e.camera), ivec2(int(params.width), int(params.height)));
 }
 
 void main() {

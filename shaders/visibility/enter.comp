@@ -59,7 +59,6 @@ void sumUp() {
     sums[lane] += before;
     barrier();
   }
-  sayIfEnded();
 }
 
 void enterTile(uint tile, uint begin, uint middle, uint end) {
@@ -116,9 +115,9 @@ void enterTile(uint tile, uint begin, uint middle, uint end) {
     first.z = atomicAdd(counters.longCount, all_.z);
     uint runs = (first.y + all_.y + kListRun - 1u) / kListRun, lists = first.z + all_.z;
     atomicMax(counters.openArgs[0], min(runs, kMaxGroups));
-    atomicMax(counters.openArgs[1], (runs + kMaxGroups - 1u) / kMaxGroups);
+    if (runs > kMaxGroups) atomicMax(counters.openArgs[1], (runs + kMaxGroups - 1u) / kMaxGroups);
     atomicMax(counters.longArgs[0], min(lists, kMaxGroups));
-    atomicMax(counters.longArgs[1], (lists + kMaxGroups - 1u) / kMaxGroups);
+    if (lists > kMaxGroups) atomicMax(counters.longArgs[1], (lists + kMaxGroups - 1u) / kMaxGroups);
   }
   barrier();
   if (n != 0u && fits) {
@@ -151,4 +150,5 @@ void main() {
     if (begin != kNoTile) enterTile(tile, begin, middle, middle + slots[tileWord(tile) + 1u]);
     barrier();
   }
+  sayIfEnded();
 }

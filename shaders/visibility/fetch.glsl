@@ -101,8 +101,7 @@ Fetched fetchTriangle(uint entry, uint local) {
   DrawEntry e = entryOf(entry);
   Draw draw = draws[e.draw];
   f.camera = e.camera;
-  f.valid = hasOrigin(draw) && fetchId(e, draw.firstTriangle, local, f.id);
-  draw = seenFrom(draw, e.camera);
+  f.valid = fetchId(e, draw.firstTriangle, local, f.id) && seeFrom(draw, e.camera);
   f.mirrored = turnsFaces(draw);
   f.twoSided = (draw.flags & kTwoSided) != 0u;
   uint index = e.firstIndex + local * 3u;

@@ -1,13 +1,15 @@
 // Which samples are drawn. Needs the camera block `params`.
 #ifndef GPGP_SHADERS_VISIBILITY_GRID_GLSL
 #define GPGP_SHADERS_VISIBILITY_GRID_GLSL
+layout(constant_id = 2) const bool kHasMargins = true; // some records look below the pixel
+
 Grid gridOf(uint camera) {
   Grid g;
   g.pixels = ivec2(int(params.width), int(params.height));
   g.shift = int(params.gridShift);
   g.offset = ivec2(int(params.gridX), int(params.gridY));
   g.top = int(camera * params.height);
-  g.margin = marginOfMethod(params.method);
+  g.margin = kHasMargins ? marginOfMethod(params.method) : 0;
   return g;
 }
 

@@ -90,33 +90,20 @@ GPGP_FN bool liesBefore(ivec2 a, ivec2 b) { return a.y < b.y || (a.y == b.y && a
 /// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1]. Its p0 is the uppermost vertex, of
 /// those the leftmost, so that depth does not depend on which one the mesh names first.
 GPGP_FN ScreenTriangle makeTriangle(ivec2 a, ivec2 b, ivec2 c, float za, float zb, float zc, Grid grid) {
+  bool second = liesBefore(b, a);
+  bool third = liesBefore(c, second ? b : a);
   ScreenTriangle t;
-  t.p0 = a;
-  t.p1 = b;
-  t.p2 = c;
-  t.z0 = za;
-  float z1 = zb;
-  float z2 = zc;
-  if (liesBefore(b, a) && liesBefore(b, c)) {
-    t.p0 = b;
-    t.p1 = c;
-    t.p2 = a;
-    t.z0 = zb;
-    z1 = zc;
-    z2 = za;
-  } else if (liesBefore(c, a) && liesBefore(c, b)) {
-    t.p0 = c;
-    t.p1 = a;
-    t.p2 = b;
-    t.z0 = zc;
-    z1 = za;
-    z2 = zb;
-  }
+  t.p0 = third ? c : second ? b : a;
+  t.p1 = third ? a : second ? c : b;
+  t.p2 = third ? b : second ? a : c;
+  t.z0 = third ? zc : second ? zb : za;
+  float z1 = third ? za : second ? zc : zb;
+  float z2 = third ? zb : second ? za : zc;
   int around = min(grid.margin, 1); // kMargin is less than a unit
   int left = min(a.x, min(b.x, c.x)) - around;
-  int top = min(a.y, min(b.y, c.y)) - around;
+  int top = t.p0.y - around;
   int right = max(a.x, max(b.x, c.x)) + around;
-  int bottom = max(a.y, max(b.y, c.y)) + around;
+  int bottom = max(t.p1.y, t.p2.y) + around;
   int roundUp = (1 << grid.shift) - 1;
   ivec2 samples = samplesOf(grid);
   t.bounds.x = max((left - grid.offset.x + roundUp) >> grid.shift, 0);

@@ -1,5 +1,8 @@
-// Decides a pixel's list of more than kBatch by the depths of its samples (depths.glsl). Where the record asks what a
-// move would uncover, too: the nearest kBatch first, and so on until all samples are covered.
+// Decides a pixel's list of more than kBatch: those that come nearest first, up to kBatch together, until all samples
+// are covered and what is left begins behind all that covers them.
+//
+// Of what a batch shows, that which reaches behind where the next one begins is carried over to it, so that planes decide
+// between both. Where too many do, those that reach least far are not: what would have to be decided against them is shown.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
@@ -25,16 +28,20 @@ shared uint count;
 struct Rest {
   uint begin;
   uint end;
-  uint low; // what is nearer is decided
-  uint before; // how many that are
+  uint low;     // what begins nearer is decided
+  uint last;    // what begins farther is hidden
+  uint carried; // items that lie there already
+  uint before;  // how many were decided, but for those
   uint nearest;
   uint farthest;
-  uint turns; // of loops, so far
-  uint atOnce; // entries that are decided together, at most
-  bool byNumber; // of one depth, divided by their triangles' numbers: low and farthest are such
+  bool hasDoubt; // some samples are doubted
+  uint doubt;    // where what is behind them begins
+  uint turns;    // of loops, so far
+  bool byNumber; // of one depth, divided by their triangles' numbers: low and last are such
   uint depth;    // that one
 };
 uint sizeOf(Rest rest) { return rest.end - rest.begin; } // of the whole list
+uint roomOf(Rest rest) { return kBatch - rest.carried; }
 
 /// Whether an entry lies in a range of the keys by which the rest is divided just now.
 bool isWithin(Rest rest, uint i, uint low, uint high) {
@@ -48,7 +55,7 @@ bool isWithin(Rest rest, uint i, uint low, uint high) {
 uint keyOf(Rest rest, uint i) { return rest.byNumber ? candidateId(entries[i]) : depths[i]; }
 
 /// How many of the first bins hold at most so many entries together.
-uint binsOfBatch(uint most) {
+uint binsOf(uint most) {
   uint lane = laneOf();
   uvec2 held = uvec2(bins[lane * 2u], bins[lane * 2u + 1u]);
   uint second = sumUpTo(held.x + held.y);
@@ -57,10 +64,10 @@ uint binsOfBatch(uint most) {
   return maxAll(second <= most ? lane * 2u + 2u : first <= most ? lane * 2u + 1u : 0u);
 }
 
-/// The farthest key up to which entries are decided next: at most rest.atOnce, or those that have one and the same key.
+/// The farthest key up to which entries are decided next: at most roomOf(rest), or those that have one and the same.
 uint lastKey(inout Rest rest) {
   uint lane = laneOf();
-  uint high = rest.farthest;
+  uint high = rest.last;
   while (true) {
     uint shift = uint(max(findMSB(high - rest.low) - 5, 0));
     rest.turns += turnsThrough(sizeOf(rest));
@@ -71,7 +78,7 @@ uint lastKey(inout Rest rest) {
       if (isWithin(rest, i, rest.low, high)) atomicAdd(bins[(keyOf(rest, i) - rest.low) >> shift], 1u);
     }
     sync();
-    uint fitting = binsOfBatch(rest.atOnce);
+    uint fitting = binsOf(roomOf(rest));
     if (fitting == kBins) return high;
     uint span = max(fitting, 1u) << shift;
     if (span <= high - rest.low) high = rest.low + span - 1u;
@@ -80,20 +87,22 @@ uint lastKey(inout Rest rest) {
   }
 }
 
-/// Gets the entries up to a key, if they are not more than kBatch; returns how many there are.
-uint takeEntries(Rest rest, uint high) {
-  if (laneOf() == 0u) count = 0u;
-  setKey(laneOf(), kFarthest);
+/// Gets the entries up to a key, behind the carried ones, if there is room for them; returns how many there are. next:
+/// where those that are left begin, at least.
+uint takeEntries(Rest rest, uint high, out uint next) {
+  if (laneOf() == 0u) count = rest.carried;
   sync();
+  uint least = kFarthest;
   for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
+    uint key = depths[i];
+    if (key > (rest.byNumber ? rest.depth : high)) least = min(least, key);
     if (!isWithin(rest, i, rest.low, high)) continue;
     uint at = atomicAdd(count, 1u);
-    if (at >= kBatch) continue;
-    items[at] = entries[i];
-    setKey(at, depths[i]);
+    if (at < kBatch) items[at] = entries[i];
   }
+  next = minAll(least);
   sync();
-  return count;
+  return count - rest.carried;
 }
 
 /// Whether an entry's box may hold one of the open samples.
@@ -103,34 +112,125 @@ bool reachesOpen(Facet f, uvec4 uncovered) {
   return reaches(f, columns, rows);
 }
 
-/// Goes through a batch, whose items and keys are there; false once all samples are covered.
-bool resolveBatch(Rest rest, uint n, uint place, ivec2 pixel, inout uvec4 uncovered) {
+/// Whoever else shows it, in whatever order.
+void showUndecided(uint id) {
+  atomicAdd(counters.unresolved, 1u);
+  show(id);
+}
+
+/// A pixel that would take too long shows those that are left.
+void showRest(Rest rest) {
+  for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
+    bool isLeft = rest.byNumber ? depths[i] > rest.depth || isWithin(rest, i, rest.low, rest.last)
+                                : depths[i] >= rest.low;
+    if (isLeft) showUndecided(candidateId(entries[i]));
+  }
+}
+
+/// The samples that are left, in the rows of each invocation.
+struct Left {
+  uvec4 uncovered;
+  uvec4 doubted; // only such cover them as were not carried for want of room: what begins up to rest.doubt is undecided
+};
+
+/// Bits: places of those, of the given ones, that have a doubted sample.
+uint doubtedAmong(uint places, uvec4 doubted) {
+  uint found = 0u;
+  for (; places != 0u; places &= places - 1u) {
+    uint place = uint(findLSB(places));
+    if (!isNone(samplesOf(outlineAt(place)) & doubted)) found |= 1u << place;
+  }
+  return orAll(found);
+}
+
+/// Goes through a batch, whose items are there: the carried ones and n others. next: where those that are left begin.
+/// False once nothing that is left can be seen.
+bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout Left samples) {
+  bool reversed = params.reversedDepth != 0u;
+  n += rest.carried;
   Entry own = noEntry();
-  own.place = place;
   bool isThere = laneOf() < n;
   bool isKnown = true;
   bool isWide = false;
+  uint item = 0u;
+  uint begin = 0u;
+  uint end = 0u;
+  uint key = kFarthest;
   Facet f = facetOf(vec3(0.0), 0u);
+  Outline outline;
   if (isThere) {
-    Candidate c = readCandidate(items[laneOf()]);
+    item = items[laneOf()];
+    Candidate c = readCandidate(item);
+    ScreenTriangle t = triangleOf(c);
     own.id = c.id;
     isKnown = isShown(c.id);
-    isWide = !isCompact(triangleOf(c));
+    isWide = !isCompact(t);
     putCorners(cornersOf(c), pixel * 256);
-    put(place, outlineOf(c, pixel), parallaxIn(pixel, rest.nearest, keyAt(laneOf()), rest.before + place));
-    f = facetOf(c, footingIn(c, pixel), pixel, params.reversedDepth != 0u);
+    Footing footing = footingIn(c, pixel);
+    outline = outlineOf(c, pixel);
+    key = middleKey(c, outline, footing, pixel, reversed);
+    begin = nearestKey(t, footing, reversed);
+    end = farthestKey(t, footing, reversed);
+    f = facetOf(c, footing, pixel, reversed);
     setFacet(own, f);
   }
-  uvec4 open_ = uncovered;
+  setKey(laneOf(), key);
+  own.place = placeAmong(isThere, 0u, n);
+  if (isThere) put(own.place, outline, parallaxIn(pixel, rest.nearest, key, rest.before + own.place));
+  uvec4 open_ = samples.uncovered;
   bool decides = reachesOpen(f, open_);
   if (isThere && decides) own.list = bitsFrom(0, int(n));
-  Looked looked = lookAtBatch(0u, n, movesIn(pixel), uncovered);
-  own.isSeen = isThere && (looked.seen & (1u << place)) != 0u;
+  uvec4 left = samples.uncovered;
+  Looked looked = lookAtBatch(0u, n, movesIn(pixel), left);
+  uint bit = isThere ? 1u << own.place : 0u;
+  own.isSeen = (looked.seen & bit) != 0u;
   uint reach = maxAll(own.isSeen ? orderOf(own.farthest) : 0u);
+  bool ends = end < next;
+  bool isDoubted = rest.hasDoubt && begin <= rest.doubt;
   bool asks = own.list != 0u && !isKnown && isAsked(own, reach);
   if (decide(own, asks, isWide, open_) && !isKnown) show(own.id);
+  // What follows goes by the order alone: others show in whatever order, and what is known is not asked.
+  if (rest.hasDoubt) {
+    uint undecided = doubtedAmong(orAll(isThere && isDoubted && !own.isSeen ? bit : 0u), samples.doubted);
+    if ((undecided & bit) != 0u) showUndecided(own.id);
+  }
+  bool goesOn = own.isSeen && !ends;
+  uint going = lanesWith(goesOn);
+  uint forced = 0u;
+  if (uint(bitCount(going)) > kMostCarried) {
+    sync();
+    setKey(laneOf(), goesOn ? end : kFarthest);
+    sync();
+    bool isForced = goesOn && rankOf(laneOf(), 0u, kBatch) < uint(bitCount(going)) - kKeptCarried;
+    rest.doubt = max(rest.doubt, maxAll(isForced ? end : 1u) - 1u);
+    forced = orAll(isForced ? bit : 0u);
+    goesOn = goesOn && !isForced;
+    going = lanesWith(goesOn);
+  }
+  // What ends is behind nothing that is left.
+  if (going != 0u || forced != 0u || rest.hasDoubt) {
+    for (uint ending = orAll(ends ? bit : 0u); ending != 0u; ending &= ending - 1u) {
+      uvec4 closed = samplesOf(outlineAt(uint(findLSB(ending))));
+      samples.uncovered &= ~closed;
+      samples.doubted &= ~closed;
+    }
+    for (; forced != 0u; forced &= forced - 1u) {
+      uvec4 closed = samplesOf(outlineAt(uint(findLSB(forced))));
+      samples.doubted |= closed & samples.uncovered;
+      samples.uncovered &= ~closed;
+    }
+    rest.hasDoubt = lanesWith(!isNone(samples.doubted)) != 0u;
+  }
+  if (going == 0u) samples.uncovered = left;
+  rest.before += n;
+  rest.carried = uint(bitCount(going));
+  rest.before -= rest.carried;
+  uint farthest = max(maxAll(goesOn ? end : 0u), rest.hasDoubt ? rest.doubt : 0u);
   sync();
-  return looked.holes;
+  if (goesOn) items[bitCount(going & ((1u << laneOf()) - 1u))] = item;
+  if (looked.holes) return true;
+  rest.farthest = min(rest.farthest, farthest);
+  return (going != 0u || rest.hasDoubt) && (rest.byNumber || next <= rest.farthest);
 }
 
 /// Divides entries of one and the same depth by their triangles' numbers.
@@ -147,19 +247,7 @@ void goByNumber(inout Rest rest) {
   rest.byNumber = true;
   rest.depth = rest.low;
   rest.low = minAll(least);
-  rest.farthest = maxAll(most);
-}
-
-/// A pixel that would take too long shows those that are left.
-void showRest(Rest rest) {
-  for (uint i = rest.begin + laneOf(); i < rest.end; i += kBatch) {
-    uint id = candidateId(entries[i]);
-    bool isLeft = rest.byNumber ? depths[i] > rest.depth || isWithin(rest, i, rest.low, rest.farthest)
-                                : depths[i] >= rest.low;
-    if (!isLeft) continue;
-    atomicAdd(counters.unresolved, 1u); // whoever else shows it, in whatever order
-    show(id);
-  }
+  rest.last = maxAll(most);
 }
 
 void resolveLong(uint begin, uint end, ivec2 pixel) {
@@ -167,7 +255,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   uint most = 0u;
   for (uint i = begin + laneOf(); i < end; i += kBatch) {
     Candidate c = readCandidate(entries[i]);
-    uint key = middleKey(c, outlineOf(c, pixel), footingIn(c, pixel), pixel, params.reversedDepth != 0u);
+    uint key = nearestKey(triangleOf(c), footingIn(c, pixel), params.reversedDepth != 0u);
     depths[i] = key;
     least = min(least, key);
     most = max(most, key);
@@ -175,44 +263,47 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   Rest rest;
   rest.begin = begin;
   rest.end = end;
+  rest.carried = 0u;
   rest.before = 0u;
   rest.nearest = minAll(least);
   rest.low = rest.nearest;
-  uint farthest = maxAll(most);
-  rest.farthest = farthest;
+  rest.farthest = maxAll(most);
+  rest.last = rest.farthest;
+  rest.hasDoubt = false;
+  rest.doubt = 0u;
   rest.turns = turnsThrough(sizeOf(rest));
-  rest.atOnce = kBatch;
   rest.byNumber = false;
   rest.depth = 0u;
-  uvec4 uncovered = uvec4(0xffffffffu);
+  Left samples;
+  samples.uncovered = uvec4(0xffffffffu);
+  samples.doubted = uvec4(0u);
   bool more = !takesTooLong(rest.turns, sizeOf(rest));
   if (!more) showRest(rest);
   while (more) {
     uint high = lastKey(rest);
     sync();
-    uint n = takeEntries(rest, high);
+    uint next;
+    uint n = takeEntries(rest, high, next);
     rest.turns += turnsThrough(sizeOf(rest));
-    if (n > kBatch && !rest.byNumber) {
+    if (n > roomOf(rest) && !rest.byNumber) {
       goByNumber(rest);
       continue;
     }
-    rest.turns += turnsOfBatch(min(n, kBatch));
-    if (n > kBatch || takesTooLong(rest.turns, sizeOf(rest))) {
+    rest.turns += turnsOfBatch(min(n + rest.carried, kBatch));
+    if (n > roomOf(rest) || takesTooLong(rest.turns, sizeOf(rest))) {
       showRest(rest);
       break;
     }
-    more = resolveBatch(rest, n, placeAmong(laneOf() < n, 0u, n), pixel, uncovered);
-    rest.before += n;
+    bool isLast = high == rest.last;
     rest.low = high + 1u;
-    if (high != rest.farthest) continue;
-    more = more && rest.byNumber && rest.depth != farthest;
-    rest.low = rest.depth + 1u;
-    rest.farthest = farthest;
-    rest.byNumber = false;
+    if (rest.byNumber && isLast) rest.byNumber = false;
+    if (!rest.byNumber) rest.low = next;
+    more = resolveBatch(rest, n, rest.byNumber ? rest.depth + 1u : next, pixel, samples);
+    if (rest.byNumber) continue;
+    more = more && next <= rest.farthest && next != kFarthest;
+    rest.last = rest.farthest;
   }
 }
-
-#include "visibility/depths.glsl"
 
 /// Which of all long lists is decided as the i-th. Pixels beside each other, whose lists lie so, too, have triangles in
 /// common: where they are decided long after one another, the later one need not ask about what the earlier one shows.
@@ -232,7 +323,6 @@ void main() {
   uint begin = end - slots[lengthAt(slot)];
   ivec2 pixel = pixelOf(slot);
   sync();
-  if (movesIn(pixel)) resolveLong(begin, end, pixel);
-  else resolveByDepth(begin, end, pixel);
+  resolveLong(begin, end, pixel);
   sayIfEnded();
 }

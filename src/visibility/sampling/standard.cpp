@@ -72,6 +72,7 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
   const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
                                    {"ids small", "ids medium", "ids large", "ids left"}};
   const uint32_t limits = budgets.methods & GPGP_SAMPLING_EXACT_BIT ? 1 : 0;
+  const uint32_t margins = budgets.methods & (GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_TRUTH_BIT) ? 1 : 0;
   for (uint32_t phase = 0; phase < (single ? 1 : 2); ++phase) {
     // Draws triangles that it makes itself, or those that have a record.
     const auto addMaking = [&](const char* name, uint32_t shader, core::UseKind queue,
@@ -92,26 +93,26 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
     };
     if (phase == 0) {
       addMaking(names[0][0],
-                addShader(list, "small", choose(visibility_small_int64, visibility_small), {phase, limits}), write,
+                addShader(list, "small", choose(visibility_small_int64, visibility_small), {phase, limits, margins}), write,
                 offsetof(Counters, keptArgs));
       fetchesTriangles(
-          list.dispatchIndirect("unfold", addShader(list, "unfold", visibility_unfold),
+          list.dispatchIndirect("unfold", addShader(list, "unfold", visibility_unfold, {0, limits, margins}),
                                 {{kBindQueue, readWrite}, {kBindRecords, write}, {kBindCounters, readWrite}},
                                 kBindCounters, offsetof(Counters, unfoldArgs)));
     } else {
-      addMaking(names[1][0], addShader(list, "ids", visibility_ids, {phase, limits}), read,
+      addMaking(names[1][0], addShader(list, "ids", visibility_ids, {phase, limits, margins}), read,
                 offsetof(Counters, winnerArgs));
     }
     // Minima do not depend on order: what draws goes beside what draws. Ids of all need the depth of all.
     addRecorded(names[phase][1],
-                addShader(list, "medium", choose(visibility_medium_int64, visibility_medium), {phase, limits}),
+                addShader(list, "medium", choose(visibility_medium_int64, visibility_medium), {phase, limits, margins}),
                 offsetof(Counters, mediumArgs))
         .beside = phase == 1;
     addRecorded(names[phase][2],
-                addShader(list, "large", choose(visibility_large_int64, visibility_large), {phase, limits}),
+                addShader(list, "large", choose(visibility_large_int64, visibility_large), {phase, limits, margins}),
                 offsetof(Counters, largeArgs))
         .beside = true;
-    addMaking(names[phase][3], addShader(list, "left", choose(visibility_left_int64, visibility_left), {phase, limits}),
+    addMaking(names[phase][3], addShader(list, "left", choose(visibility_left_int64, visibility_left), {phase, limits, margins}),
               read, offsetof(Counters, leftArgs))
         .beside = true;
   }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <functional>
 #include <span>
 #include <tuple>
 
@@ -15,11 +14,8 @@ namespace gpgp::visibility {
 namespace {
 using namespace shader;
 
-/// A pixel's list: candidates and the keys of their depths there.
-struct Entry {
-  uint32_t candidate, key;
-};
-using List = std::vector<Entry>;
+/// A pixel's list: of candidates.
+using List = std::vector<uint32_t>;
 
 /// Takes back what finish() made.
 void clearLists(TwinResult& out) {
@@ -27,33 +23,38 @@ void clearLists(TwinResult& out) {
   out.counters.appeared = out.counters.disappeared = 0;
 }
 
-/// An entry of a list, in its order.
-struct Sorted {
-  const Candidate& candidate;
-  uint32_t key;
+/// An entry of a list within its pixel.
+struct Placed {
+  const Candidate* candidate;
+  uint32_t key;        ///< of its depth, by which a batch is ordered
+  uint32_t begin, end; ///< of the nearest and the farthest that it may come
   Outline outline;
   Facet facet;
 };
 /// Entries of a list that are decided together.
-using Batch = std::span<const Sorted>;
+using Batch = std::span<const Placed>;
 /// Samples of a pixel, by row.
 using Samples = std::array<uvec2, 64>;
 
+bool isAny(const Samples& samples) {
+  return std::any_of(samples.begin(), samples.end(), [](uvec2 row) { return row.x | row.y; });
+}
+
 /// Whether two entries may have area in common; only compact ones are asked.
-bool mayOverlap(const Sorted& a, const Sorted& b) {
-  const bool compact = isCompact(triangleOf(a.candidate)) && isCompact(triangleOf(b.candidate));
-  return !compact || overlap(cornersOf(a.candidate), cornersOf(b.candidate));
+bool mayOverlap(const Placed& a, const Placed& b) {
+  const bool compact = isCompact(triangleOf(*a.candidate)) && isCompact(triangleOf(*b.candidate));
+  return !compact || overlap(cornersOf(*a.candidate), cornersOf(*b.candidate));
 }
 
 /// Whether an entry has one of the samples at which none of the others is nearer.
 bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vector<bool>& decides) {
-  const Sorted& own = batch[place];
-  std::vector<std::pair<const Sorted*, Crossing>> rivals;
+  const Placed& own = batch[place];
+  std::vector<std::pair<const Placed*, Crossing>> rivals;
   for (size_t j = 0; j < batch.size(); ++j) {
-    const Sorted& other = batch[j];
+    const Placed& other = batch[j];
     if (j == place || !decides[j] || other.facet.nearest > own.facet.farthest) continue;
     if (!(leadWithin(other.facet, own.facet) >= 0) || !mayOverlap(other, own)) continue;
-    rivals.emplace_back(&other, crossingOf(other.facet, own.facet, other.candidate.id < own.candidate.id));
+    rivals.emplace_back(&other, crossingOf(other.facet, own.facet, other.candidate->id < own.candidate->id));
   }
   for (int row = 0; row < 64; ++row) {
     const uvec2 open = samples[static_cast<size_t>(row)];
@@ -68,21 +69,21 @@ bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vecto
   return false;
 }
 
-/// By what a list is divided: the depth, or among entries of one depth the triangle's number.
-using KeyOf = uint32_t (*)(const Sorted&);
-uint32_t depthOf(const Sorted& s) { return s.key; }
-uint32_t idOf(const Sorted& s) { return s.candidate.id; }
+/// By what a list is divided: where an entry begins, or among those that begin at one depth the triangle's number.
+using KeyOf = uint32_t (*)(const Placed&);
+uint32_t beginOf(const Placed& p) { return p.begin; }
+uint32_t idOf(const Placed& p) { return p.candidate->id; }
 
 /// How many entries of a list have a key up to one.
 size_t countUpTo(Batch list, KeyOf keyOf, uint32_t key) {
-  const auto isBefore = [keyOf](uint32_t value, const Sorted& s) { return value < keyOf(s); };
+  const auto isBefore = [keyOf](uint32_t value, const Placed& p) { return value < keyOf(p); };
   return static_cast<size_t>(std::upper_bound(list.begin(), list.end(), key, isBefore) - list.begin());
 }
 
-/// The farthest key up to which entries are decided together, of those that are not nearer than `low`: at most `most`,
-/// or those that have one and the same key. Counts the passes through the list.
-uint32_t lastKey(Batch list, KeyOf keyOf, uint32_t low, size_t most, uint32_t& passes) {
-  uint32_t high = keyOf(list.back());
+/// The farthest key up to which entries are decided together, of those from `low` to `last`: at most `most`, or those
+/// that have one and the same key. Counts the passes through the list.
+uint32_t lastKey(Batch list, KeyOf keyOf, uint32_t low, uint32_t last, size_t most, uint32_t& passes) {
+  uint32_t high = last;
   while (true) {
     ++passes;
     const uint32_t range = high - low, shift = std::max<uint32_t>(std::bit_width(range), 6) - 6;
@@ -95,17 +96,21 @@ uint32_t lastKey(Batch list, KeyOf keyOf, uint32_t low, size_t most, uint32_t& p
   }
 }
 
-/// Decides a part of a list, `before` entries of which come before it: those with a sample that nothing before them
-/// covers become visible, and what the order by one depth each may have wrong is decided by planes.
-void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, vec4 depthScale, bool reversed,
-                  std::vector<uint32_t>& bits) {
+/// What a batch shows: by its order, and as planes correct that.
+struct Looked {
+  std::vector<bool> seen, visible;
+};
+
+/// Decides a batch, in its order, `before` entries of whose list come before it: those with a sample that nothing
+/// before them covers are visible, and what the order by one depth each may have wrong is decided by planes.
+Looked resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, vec4 depthScale, bool reversed) {
   const Samples atFirst = open;
   uvec2 columns(0, 0), rows(0, 0);
   for (uint32_t row = 0; row < 64; ++row) {
     columns.x |= open[row].x, columns.y |= open[row].y;
     if (open[row].x | open[row].y) (row < 32 ? rows.x : rows.y) |= 1u << (row & 31);
   }
-  std::vector<bool> seen(batch.size()), decides(batch.size());
+  std::vector<bool> seen(batch.size()), decides(batch.size()), visible(batch.size());
   bool holes = true;
   for (size_t i = 0; i < batch.size(); ++i) {
     decides[i] = reaches(batch[i].facet, columns, rows);
@@ -121,7 +126,7 @@ void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, v
       holes = holes || (rest.x | rest.y);
     }
   }
-  const auto nearer = [](const Sorted& a, const Sorted& b) {
+  const auto nearer = [](const Placed& a, const Placed& b) {
     return isNearerSomewhere(a.facet, b.facet) && mayOverlap(a, b);
   };
   for (size_t i = 0; i < batch.size(); ++i) {
@@ -130,121 +135,154 @@ void resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open, v
       if (!decides[j] || (seen[i] ? j <= i : j >= i || !seen[j])) continue;
       doubtful = seen[i] ? nearer(batch[j], batch[i]) : nearer(batch[i], batch[j]);
     }
-    const uint32_t id = batch[i].candidate.id;
-    if (doubtful ? isAhead(batch, i, atFirst, decides) : seen[i]) bits[id / 32] |= 1u << (id % 32);
+    visible[i] = doubtful ? isAhead(batch, i, atFirst, decides) : seen[i];
+  }
+  return {seen, visible};
+}
+
+/// The order in which a batch is decided.
+void sortBatch(std::vector<Placed>& batch) {
+  const auto rank = [](const Placed& p) {
+    return std::tuple(p.key, p.candidate->id, p.candidate->p1.x, p.candidate->p1.y);
+  };
+  std::sort(batch.begin(), batch.end(), [&](const Placed& a, const Placed& b) { return rank(a) < rank(b); });
+}
+
+void close(Samples& open, const Placed& p) {
+  for (int row = 0; row < 64; ++row) {
+    const uvec2 own = samplesIn(p.outline, row);
+    uvec2& rest = open[static_cast<size_t>(row)];
+    rest.x &= ~own.x, rest.y &= ~own.y;
   }
 }
 
-/// Decides a long list by the depths of its samples, 16 rows at a time.
-void resolveByDepth(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed,
-                    std::vector<uint32_t>& bits) {
-  std::vector<Sorted> sorted;
-  for (Entry& entry : list) {
-    const ScreenTriangle t = triangleOf(candidates[entry.candidate]);
-    entry.key = nearestWithMargin(t, isCompact(t), pixel, reversed);
+bool hasAny(const Placed& p, const Samples& samples) {
+  for (int row = 0; row < 64; ++row) {
+    const uvec2 own = samplesIn(p.outline, row), some = samples[static_cast<size_t>(row)];
+    if ((own.x & some.x) | (own.y & some.y)) return true;
   }
-  std::sort(list.begin(), list.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
-  for (const Entry& entry : list) sorted.push_back({candidates[entry.candidate], entry.key, {}, {}});
-  const auto show = [&](uint32_t id) { bits[id / 32] |= 1u << (id % 32); };
-  const auto size = static_cast<uint32_t>(sorted.size());
-  const auto showAll = [&] {
-    for (const Sorted& entry : sorted) show(entry.candidate.id);
+  return false;
+}
+
+/// Takes from those that would be carried over to the next batch the ones that reach least far, if there are too many.
+std::vector<Placed> takeForced(std::vector<Placed>& going) {
+  if (going.size() <= kMostCarried) return {};
+  std::vector<Placed> carried, forced;
+  for (const Placed& p : going) {
+    const auto isNearer = [&](const Placed& other) { return other.end < p.end; };
+    const auto rank = static_cast<size_t>(std::count_if(going.begin(), going.end(), isNearer));
+    (rank < going.size() - kKeptCarried ? forced : carried).push_back(p);
+  }
+  going = std::move(carried);
+  return forced;
+}
+
+/// Decides a list of more than kBatch, as resolve_long.comp does; returns how many of it are not decided.
+uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, std::vector<uint32_t>& bits) {
+  const auto rank = [](const Placed& p) { return std::tuple(p.begin, p.candidate->id); };
+  std::sort(list.begin(), list.end(), [&](const Placed& a, const Placed& b) { return rank(a) < rank(b); });
+  const auto show = [&](const Placed& p) { bits[p.candidate->id / 32] |= 1u << (p.candidate->id % 32); };
+  const auto size = static_cast<uint32_t>(list.size());
+  uint32_t turns = turnsThrough(size), doubt = 0, unresolved = 0;
+  size_t first = 0, before = 0; // entries that were taken; and without those that are carried
+  const auto showRest = [&] {
+    for (const Placed& p : Batch(list).subspan(first)) show(p), ++unresolved;
+    return unresolved;
   };
-  uint32_t turns = turnsThrough(size);
-  for (int firstRow = 0; firstRow < 64; firstRow += 16) {
-    turns += kTurnsOfRows;
-    std::vector<std::pair<uint32_t, uint32_t>> nearest(16 * 64, {kFarthest, kNoTriangle});
-    size_t first = 0;
-    for (uint32_t low = sorted.front().key;;) {
-      if (takesTooLong(turns, size)) return showAll();
-      const Batch rest = Batch(sorted).subspan(first);
-      uint32_t passes = 0;
-      const uint32_t high = lastKey(rest, depthOf, low, drawnAtOnce(size), passes);
-      const size_t n = countUpTo(rest, depthOf, high);
-      turns += passes * turnsThrough(size) + turnsOfDraws(size);
-      for (const Sorted& entry : rest.first(n)) {
-        const ScreenTriangle t = triangleOf(entry.candidate);
-        const ivec4 box = samplesAbout(t);
-        const int margin = marginOf(t, kMargin);
-        if (!reachesRows(t, pixel.y * 64 + firstRow, 16)) continue;
-        turns += turnsOfDrawing(t);
-        for (int row = 0; row < 16; ++row)
-          for (int column = 0; column < 64; ++column) {
-            const ivec2 sample = pixel * 64 + ivec2(column, firstRow + row), point = sampleIn(sample);
-            if (sample.x < box.x || sample.y < box.y || sample.x > box.z || sample.y > box.w) continue;
-            if (!coversWide(t, margin, point)) continue;
-            auto& at = nearest[static_cast<size_t>(row * 64 + column)];
-            at = std::min(at, {std::max(depthKey(depthWide(t, point), reversed), entry.key), entry.candidate.id});
-          }
-      }
-      if (tookTooLong(turns, size)) return showAll();
-      if (high == sorted.back().key || high >= std::max_element(nearest.begin(), nearest.end())->first) break;
-      low = high + 1;
-      first += n;
+  if (takesTooLong(turns, size)) return showRest();
+  const uint32_t nearest = list.front().begin;
+  uint32_t low = nearest, farthest = list.back().begin, last = farthest, depth = 0;
+  size_t end = list.size(); // of those by whose numbers the list is divided
+  KeyOf keyOf = beginOf;
+  Samples open, doubted; // the samples that only such cover as were taken before they ended, at depths up to `doubt`
+  open.fill(uvec2(~0u, ~0u)), doubted.fill(uvec2(0u, 0u));
+  std::vector<Placed> carried;
+  for (bool more = true; more;) {
+    const Batch rest = Batch(list).subspan(first, end - first);
+    const size_t room = kBatch - carried.size();
+    uint32_t passes = 1;
+    const uint32_t high = lastKey(rest, keyOf, low, last, room, passes);
+    const size_t n = countUpTo(rest, keyOf, high);
+    turns += passes * turnsThrough(size);
+    if (n > room && keyOf == beginOf) {
+      turns += turnsThrough(size);
+      depth = low;
+      end = first + n;
+      keyOf = idOf;
+      low = idOf(list[first]), last = idOf(list[end - 1]);
+      continue;
     }
-    for (const auto& [key, id] : nearest)
-      if (id != kNoTriangle) show(id);
+    turns += turnsOfBatch(static_cast<uint32_t>(std::min<size_t>(n + carried.size(), kBatch)));
+    if (n > room || takesTooLong(turns, size)) return showRest();
+    const bool isLast = high == last;
+    low = high + 1;
+    first += n;
+
+    if (isLast) keyOf = beginOf, end = list.size();
+    const uint32_t begin = first < list.size() ? list[first].begin : kFarthest;
+    const uint32_t next = keyOf == idOf ? depth + 1 : begin; // where those that are left begin
+    if (keyOf == beginOf) low = next;
+    std::vector<Placed> batch = std::move(carried);
+    batch.insert(batch.end(), rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(n));
+    sortBatch(batch);
+    Samples left = open;
+    const Looked looked = resolveBatch(batch, nearest, before, left, depthScale, reversed);
+    std::vector<Placed> going;
+    for (size_t i = 0; i < batch.size(); ++i) {
+      if (looked.seen[i] && batch[i].end >= next) going.push_back(batch[i]);
+      if (looked.visible[i]) show(batch[i]);
+      if (looked.seen[i] || batch[i].begin > doubt || !hasAny(batch[i], doubted)) continue;
+      show(batch[i]), ++unresolved;
+    }
+    for (const Placed& p : batch)
+      if (p.end < next) close(open, p), close(doubted, p);
+    for (const Placed& p : takeForced(going)) {
+      doubt = std::max(doubt, p.end - 1);
+      for (size_t row = 0; row < 64; ++row) {
+        const uvec2 own = samplesIn(p.outline, static_cast<int>(row));
+        doubted[row].x |= own.x & open[row].x, doubted[row].y |= own.y & open[row].y;
+      }
+      close(open, p);
+    }
+    carried = std::move(going);
+    if (carried.empty()) open = left;
+    before += batch.size() - carried.size();
+    if (!isAny(left)) {
+      uint32_t reach = isAny(doubted) ? doubt : 0;
+      for (const Placed& p : carried) reach = std::max(reach, p.end);
+      farthest = std::min(farthest, reach);
+      more = (!carried.empty() || isAny(doubted)) && (keyOf == idOf || next <= farthest);
+    }
+    if (keyOf == idOf) continue;
+    more = more && next <= farthest && next != kFarthest;
+    last = farthest;
   }
+  return unresolved;
 }
 
-/// Decides a list, front to back until all samples are covered.
-void resolve(const std::vector<Candidate>& candidates, List list, ivec2 pixel, bool reversed, vec4 depthScale,
-             std::vector<uint32_t>& bits) {
-  if (list.empty()) return;
-  if (list.size() > kBatch && depthScale.z == 0.0f)
-    return resolveByDepth(candidates, std::move(list), pixel, reversed, bits);
-  const auto rank = [&](const Entry& e) {
-    const Candidate& c = candidates[e.candidate];
-    return std::tuple(e.key, c.id, c.p1.x, c.p1.y);
-  };
-  std::sort(list.begin(), list.end(), [&](const Entry& a, const Entry& b) { return rank(a) < rank(b); });
-  std::vector<Sorted> sorted;
-  for (const Entry& entry : list) {
-    const Candidate& c = candidates[entry.candidate];
+/// Decides a list, front to back until all samples are covered; returns how many of it are not decided.
+uint32_t resolve(const std::vector<Candidate>& candidates, const List& list, ivec2 pixel, bool reversed,
+                 vec4 depthScale, std::vector<uint32_t>& bits) {
+  if (list.empty()) return 0;
+  std::vector<Placed> placed;
+  for (const uint32_t index : list) {
+    const Candidate& c = candidates[index];
     const ScreenTriangle t = triangleOf(c);
-    sorted.push_back(
-        {c, entry.key, outlineOf(c, pixel), facetOf(c, footingOf(t, isCompact(t), pixel), pixel, reversed)});
+    const Footing footing = footingOf(t, isCompact(t), pixel);
+    const Outline outline = outlineOf(c, pixel);
+    placed.push_back({&c, middleKey(c, outline, footing, pixel, reversed), nearestKey(t, footing, reversed),
+                      farthestKey(t, footing, reversed), outline, facetOf(c, footing, pixel, reversed)});
   }
+  if (placed.size() > kBatch) return resolveLong(std::move(placed), depthScale, reversed, bits);
+  sortBatch(placed);
   Samples open;
   open.fill(uvec2(~0u, ~0u));
-  const auto isOpen = [&] { return std::any_of(open.begin(), open.end(), [](uvec2 row) { return row.x | row.y; }); };
-  const auto take = [&](size_t first, size_t count) {
-    if (isOpen())
-      resolveBatch(Batch(sorted).subspan(first, count), sorted.front().key, first, open, depthScale, reversed, bits);
-  };
-  if (sorted.size() <= kBatch) return take(0, sorted.size());
-  const auto size = static_cast<uint32_t>(sorted.size());
-  uint32_t turns = turnsThrough(size);
-  const auto show = [&](size_t first) {
-    for (const Sorted& entry : Batch(sorted).subspan(first))
-      bits[entry.candidate.id / 32] |= 1u << (entry.candidate.id % 32);
-  };
-  if (takesTooLong(turns, size)) return show(0);
-  // Decides entries from `first` on; false where that takes too long, and what is left is shown.
-  const std::function<bool(size_t, Batch, KeyOf)> decide = [&](size_t first, Batch rest, KeyOf keyOf) {
-    for (uint32_t low = keyOf(rest.front()); !rest.empty() && isOpen();) {
-      uint32_t passes = 1;
-      const uint32_t high = lastKey(rest, keyOf, low, kBatch, passes);
-      const auto n = static_cast<uint32_t>(countUpTo(rest, keyOf, high));
-      turns += passes * turnsThrough(size);
-      if (n > kBatch && keyOf == depthOf) {
-        turns += turnsThrough(size);
-        if (!decide(first, rest.first(n), idOf)) return false;
-      } else {
-        turns += turnsOfBatch(std::min(n, kBatch));
-        if (n > kBatch || takesTooLong(turns, size)) {
-          show(first);
-          return false;
-        }
-        take(first, n);
-      }
-      first += n;
-      rest = rest.subspan(n);
-      low = high + 1;
-    }
-    return true;
-  };
-  decide(0, sorted, depthOf);
+  const Looked looked = resolveBatch(placed, placed.front().key, 0, open, depthScale, reversed);
+  for (size_t i = 0; i < placed.size(); ++i) {
+    const uint32_t id = placed[i].candidate->id;
+    if (looked.visible[i]) bits[id / 32] |= 1u << (id % 32);
+  }
+  return 0;
 }
 } // namespace
 
@@ -298,7 +336,6 @@ TwinResult sampleExactOnCpu(TwinInput in) {
       const ScreenTriangle& t = piece.triangle;
       if (piece.seen != seen) continue;
       const auto index = static_cast<uint32_t>(candidates.size());
-      const Candidate candidate = makeCandidate(t, piece.id);
       bool mayShow = false;
       for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
         for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
@@ -308,12 +345,10 @@ TwinResult sampleExactOnCpu(TwinInput in) {
           mayShow = true;
           if ((seen && !open[at(pixel)]) || !touches(t, isCompact(t), pixel)) continue;
           if (nearestKey(t, isCompact(t), pixel, reversed) > limit) continue;
-          const Footing footing = footingOf(t, isCompact(t), pixel);
-          lists[at(pixel)].push_back(
-              {index, middleKey(candidate, outlineOf(candidate, pixel), footing, pixel, reversed)});
+          lists[at(pixel)].push_back(index);
           ++out.counters.pairs;
         }
-      if (mayShow || piece.shared || seen) candidates.push_back(candidate);
+      if (mayShow || piece.shared || seen) candidates.push_back(makeCandidate(t, piece.id));
     }
   }
   out.counters.candidates = static_cast<uint32_t>(candidates.size());
@@ -321,7 +356,8 @@ TwinResult sampleExactOnCpu(TwinInput in) {
   for (int y = 0; y < height; ++y) {
     const float* s = params.depthScales + static_cast<uint32_t>(y) / params.height * 4;
     for (int x = 0; x < width; ++x)
-      resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), reversed, vec4(s[0], s[1], s[2], s[3]), out.bits);
+      out.counters.unresolved +=
+          resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), reversed, vec4(s[0], s[1], s[2], s[3]), out.bits);
   }
   out.ids.clear();
   finish(in, out);

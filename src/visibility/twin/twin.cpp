@@ -149,7 +149,7 @@ TwinTriangle placeTriangle(const TwinInput& in, const DrawEntry& entry, uint32_t
     const auto [fromHigh, fromLow] = originAt(in.params.cameraOrigins, entry.camera);
     std::pair<vec3, vec3> own(vec3(0), vec3(0));
     if (in.params.originCount) own = originAt(in.params.origins, draw.origin);
-    draw = relativeDraw(draw, originFrom(own.first, own.second, fromHigh, fromLow));
+    moveDraw(draw, originFrom(own.first, own.second, fromHigh, fromLow));
   }
   vec4 clip[3];
   mat4 viewProjection;
