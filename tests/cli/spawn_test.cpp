@@ -282,6 +282,14 @@ TEST(CliSpawn, WhatWasExceededIsNamed) {
   EXPECT_EQ(said({thin.path()}), "1 shape was dropped, as a Repeat makes at most 1048576 copies of one\n");
   EXPECT_EQ(said({thin.path(), "--axioms", "4", "--slice", "2"}),
             "2 shapes were dropped, as a Repeat makes at most 1048576 copies of one\n");
+  const TemporaryFile uncut("uncut.pga", "axiom Prism6 S;\nterminal T (1, 0);\nS = SubDiv(X) { 1: T | -1: T };\n");
+  EXPECT_EQ(said({uncut.path()}), "1 shape was dropped, as SubDiv cuts polygons and prisms by constant weights alone, "
+                                  "and each part into one piece\n");
+  const TemporaryFile both("both.pga", "axiom Prism6 S;\nterminal T (1, 0);\nS = Replicate() { SubDiv(X) { 1: T } |"
+                                       " Repeat(X, 1e-9, ADJUST_TO_FILL) T };\n");
+  EXPECT_EQ(said({both.path()}), "1 shape was dropped, as a Repeat makes at most 1048576 copies of one\n"
+                                 "budget exceeded: 1 shape was dropped, as SubDiv cuts polygons and prisms by constant "
+                                 "weights alone, and each part into one piece\n");
 }
 
 TEST(CliSpawn, SlicesSumUp) {

@@ -138,6 +138,7 @@ Solids solidsOf(const std::vector<uint32_t>& words, const GpgpAxiom& axiom) {
   const auto d = spawn::derive(words, std::span(&axiom, 1), options);
   Solids solids;
   solids.dropped = d.droppedShapes;
+  EXPECT_EQ(d.uncutShapes, d.droppedShapes); // no Repeat here makes too many copies
   size_t at = 0;
   for (size_t i = 0; i < d.instances.size(); ++i)
     for (uint32_t quad = 0; quad < d.quads[i]; ++quad, at += 12) {
