@@ -1,7 +1,9 @@
 // How a workgroup of a software device derives. It is one subgroup, and takes shapes from its stack by batches, one for
 // each invocation: they go through their chains, and then their children are made, the first ones of all beside each
-// other, the second ones, and so on. Children go back to the stack, which has two ends: at its lower end are shapes
-// that wait, at its upper end terminals, which are written when there are enough of them for all invocations.
+// other, the second ones, and so on. Where there are fewer shapes, several invocations share the children of each, and
+// what they have not made in this round is as many shapes, which go to as many workgroups. Children go back to the
+// stack, which has two ends: at its lower end are shapes that wait, at its upper end terminals, which are written when
+// there are enough of them for all invocations.
 //
 // Compilers of such devices turn branches into masks: whatever a loop holds is run at each of its turns, wanted or not.
 // So the loop over children only makes them, and everything else is done for as many shapes at once as there are
@@ -10,6 +12,11 @@
 const uint kMostWaiting = stackShapes / 2; // more of them go elsewhere
 const uint kMostTerminals = stackShapes < 512 ? stackShapes / 8 : 64; // before they are written
 uint terminalCount; // on the stack
+
+// Shape::made of what waits here: the number of its next child, and above it how far those behind are apart, as a power
+// of two. Of at most kMaxRepeat copies of a family no child is beyond the mask.
+const uint kMadeBits = 27;
+const uint kMadeMask = (1u << kMadeBits) - 1u;
 
 /// Shapes onto the stack, at one of its ends; there is room.
 void stackUp(bool waits, bool ends, Shape s) {
@@ -156,31 +163,36 @@ void main() {
       operatorsPassed = 0;
       const uint batch = min(stackSize, groupSize);
       stackSize -= batch;
+      // Where shapes are few, each is the parent of several invocations, which take its children by turns.
+      const uint shares = 1u << findMSB(groupSize / batch);
+      const uint share = lane / batch;
       Shape parent;
       uint end = kEndDiscarded;
-      if (lane < batch) {
-        parent = stackedAt(stackSize + lane);
+      if (share < shares) {
+        parent = stackedAt(stackSize + lane - share * batch);
         end = runChain(parent, false, maxDepth);
+        depth = max(depth, parent.depth);
+        if (share > 0 && end != kEndWaits) end = kEndDiscarded; // the first one's
       }
-      depth = max(depth, lane < batch ? parent.depth : 0);
       if (end == kEndUnfinished) unfinished += 1;
       Fan fan;
-      fan.count = 0;
+      uint first = 0, stride = 1, left = 0; // children
       if (end == kEndWaits) {
         fan = fanFor(parent);
-        if (fan.extent < 0.0f) atomicAdd(state.droppedShapes, 1);
-        fan.count -= parent.made;
+        if (fan.extent < 0.0f && share == 0) atomicAdd(state.droppedShapes, 1);
+        first = (parent.made & kMadeMask) + (share << (parent.made >> kMadeBits));
+        stride = shares << (parent.made >> kMadeBits);
+        left = first < fan.count ? (fan.count - first - 1) / stride + 1 : 0;
       }
-      const uint turns = min(subgroupMax(fan.count), record.childrenAtOnce);
-      const uint first = parent.made;
-      parent.made += turns;
-      stackUp(fan.count > turns, end == kEndTerminal, parent); // the children behind these turns come later
+      const uint turns = min(subgroupMax(left), record.childrenAtOnce);
+      parent.made = (first + turns * stride) | (uint(findMSB(stride)) << kMadeBits);
+      stackUp(left > turns, end == kEndTerminal, parent); // the children behind these turns come later
       parent.made = 0;
       for (uint turn = 0; turn < turns; ++turn) {
         Shape s = parent;
         end = kEndDiscarded;
-        if (turn < fan.count) {
-          end = toChildOf(s, fan, first + turn);
+        if (turn < left) {
+          end = toChildOf(s, fan, first + turn * stride);
           if (end == kEndGoesOn) end = isTerminal(s) ? kEndTerminal : kEndWaits;
           depth = max(depth, s.depth);
           if (end == kEndUnfinished) unfinished += 1;

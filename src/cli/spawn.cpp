@@ -181,16 +181,24 @@ std::string exceeded(const std::string& what, const std::string& option, uint64_
          "\n";
 }
 
-/// All budgets that were exceeded, a line each. tooMany: of the dropped shapes, those that no budget can save. depth:
-/// says how deep rules nest, where that has an end.
-std::string exceededBudgets(const GpgpSpawnReport& report, uint32_t tooMany,
+/// Of the dropped shapes, those that no budget can save.
+struct Hopeless {
+  uint32_t tooManyCopies = 0, uncut = 0;
+};
+/// All budgets that were exceeded, a line each. depth: says how deep rules nest, where that has an end.
+std::string exceededBudgets(const GpgpSpawnReport& report, const Hopeless& hopeless,
                             const std::function<std::optional<uint32_t>()>& depth, const Deriver& deriver,
                             bool vertices) {
   std::string text;
-  if (tooMany)
-    text += "budget exceeded: " + counted(tooMany, "shape") + (tooMany == 1 ? " was" : " were") +
-            " dropped, as a Repeat makes at most " + std::to_string(shader::kMaxRepeat) + " copies of one\n";
-  const uint32_t waiting = report.droppedShapes - std::min(report.droppedShapes, tooMany);
+  const auto dropped = [&](uint32_t shapes, const std::string& why) {
+    if (shapes)
+      text += "budget exceeded: " + counted(shapes, "shape") + (shapes == 1 ? " was" : " were") + " dropped, as " +
+              why + "\n";
+  };
+  dropped(hopeless.tooManyCopies, "a Repeat makes at most " + std::to_string(shader::kMaxRepeat) + " copies of one");
+  dropped(hopeless.uncut, "SubDiv cuts polygons and prisms by constant weights alone, and each part into one piece");
+  const uint32_t waiting =
+      report.droppedShapes - std::min(report.droppedShapes, hopeless.tooManyCopies + hopeless.uncut);
   if (waiting && report.peakShapes > deriver.maxShapes())
     text +=
         exceeded(counted(waiting, "shape") + " of a round", "--max-shapes", report.peakShapes, deriver.mostShapes());
@@ -330,13 +338,14 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     times.add(measured.times);
     bytesWritten += deriver.bytesWritten();
     if (budgets.empty()) {
-      const uint32_t tooMany = // the report does not tell them from those that still waited
-          measured.report.droppedShapes && reference.result.droppedShapes
-              ? checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars))
-                    .droppedShapes
-              : 0;
+      Hopeless hopeless; // which the report does not tell from those that still waited
+      if (measured.report.droppedShapes && reference.result.droppedShapes) {
+        const spawn::Derivation own =
+            checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars));
+        hopeless = {own.droppedShapes - own.uncutShapes, own.uncutShapes};
+      }
       const auto depth = [&] { return depthOf(grammar.words, slices.of(record)); };
-      budgets = exceededBudgets(measured.report, tooMany, depth, deriver, vertices);
+      budgets = exceededBudgets(measured.report, hopeless, depth, deriver, vertices);
       if (!budgets.empty() && slices.records > 1)
         budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
     }

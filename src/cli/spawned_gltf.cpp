@@ -4,6 +4,7 @@
 #include "cli/painter.h"
 #include "cli/unit_shapes.h"
 #include "host/files.h"
+#include "host/picture.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <tiny_gltf.h>
@@ -76,8 +77,9 @@ public:
   int addMaterial(const std::string& name, const glm::vec3& colour) {
     tinygltf::Material& material = model_.materials.emplace_back();
     material.name = name;
-    const auto linear = [](float v) { return std::pow(static_cast<double>(v), 2.2); };
-    material.pbrMetallicRoughness.baseColorFactor = {linear(colour.x), linear(colour.y), linear(colour.z), 1.0};
+    using host::linearFromSrgb;
+    material.pbrMetallicRoughness.baseColorFactor = {linearFromSrgb(colour.x), linearFromSrgb(colour.y),
+                                                     linearFromSrgb(colour.z), 1.0};
     material.pbrMetallicRoughness.metallicFactor = 0;
     material.doubleSided = true; // polygons are seen from behind as well
     return static_cast<int>(model_.materials.size()) - 1;

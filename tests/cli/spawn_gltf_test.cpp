@@ -98,6 +98,22 @@ TEST(CliSpawnGltf, NodesAndTrianglesAreTheSame) {
   }
 }
 
+TEST(CliSpawnGltf, ColoursAreThePalettes) { // in linear light: encoded as sRGB they are the palette's bytes
+  const TemporaryFile grammar("colours.pga", "axiom Box S; terminal Slate (1,11); terminal Brick (1,12);\n"
+                                             "S = SubDiv(X) { -1: Slate | -1: Brick };\n"),
+      out("colours.glb");
+  gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--out", out.path()});
+  const Glb glb = readGlb(out.path());
+  const std::map<std::string, std::array<int, 3>> expected = {{"Slate", {0x3f, 0x4b, 0x57}},
+                                                              {"Brick", {0xb5, 0x52, 0x3b}}};
+  for (const auto& material : glb.model["materials"])
+    for (size_t c = 0; c < 3; ++c) {
+      const double linear = material["pbrMetallicRoughness"]["baseColorFactor"][c];
+      const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+      EXPECT_NEAR(255 * encoded, expected.at(material["name"])[c], 0.01) << material["name"];
+    }
+}
+
 TEST(CliSpawnGltf, NothingIsAFileAsWell) {
   const TemporaryFile grammar("none.pga",
                               "axiom Box S; terminal T (1,0); S = If(ShapeSize(X) > 5) { T | Discard() };\n"),

@@ -282,6 +282,14 @@ TEST(CliSpawn, WhatWasExceededIsNamed) {
   EXPECT_EQ(said({thin.path()}), "1 shape was dropped, as a Repeat makes at most 1048576 copies of one\n");
   EXPECT_EQ(said({thin.path(), "--axioms", "4", "--slice", "2"}),
             "2 shapes were dropped, as a Repeat makes at most 1048576 copies of one\n");
+  const TemporaryFile uncut("uncut.pga", "axiom Prism6 S;\nterminal T (1, 0);\nS = SubDiv(X) { 1: T | -1: T };\n");
+  EXPECT_EQ(said({uncut.path()}), "1 shape was dropped, as SubDiv cuts polygons and prisms by constant weights alone, "
+                                  "and each part into one piece\n");
+  const TemporaryFile both("both.pga", "axiom Prism6 S;\nterminal T (1, 0);\nS = Replicate() { SubDiv(X) { 1: T } |"
+                                       " Repeat(X, 1e-9, ADJUST_TO_FILL) T };\n");
+  EXPECT_EQ(said({both.path()}), "1 shape was dropped, as a Repeat makes at most 1048576 copies of one\n"
+                                 "budget exceeded: 1 shape was dropped, as SubDiv cuts polygons and prisms by constant "
+                                 "weights alone, and each part into one piece\n");
 }
 
 TEST(CliSpawn, SlicesSumUp) {
@@ -573,37 +581,26 @@ TEST(CliSpawn, TrianglesThatCannotBeWrittenAreAFailure) {
 
 /// The service's own shapes: prisms stand along Y, triangles without area are left out.
 TEST(CliSpawn, ShapesAreThoseOfTheService) {
-  const auto corners = [](const char* shape, const char* size) {
+  const auto triangles = [](const char* shape, const char* size) {
     const TemporaryFile grammar("shape.pga", std::string("axiom ") + shape + " T;\nterminal T (1, 0);\n"),
         out("shape.glb");
     gpgpJson({"spawn", grammar.path(), "--schedule", "interpreter", "--axiom-size", size, "--out", out.path()});
-    const std::string bytes = host::readText(out.path());
-    uint32_t jsonSize = 0;
-    std::memcpy(&jsonSize, bytes.data() + 12, 4);
-    const json model = json::parse(bytes.substr(20, jsonSize));
-    std::vector<std::array<float, 3>> points(model["accessors"][0]["count"].get<size_t>());
-    std::memcpy(points.data(), bytes.data() + 28 + jsonSize, points.size() * 12);
-    return points;
+    return readGlb(out.path()).triangles;
   };
-  const auto prism = corners("Prism6", "2,6,3");
-  EXPECT_EQ(prism.size(), 20u * 3u); // two hexagons of four triangles, six sides of two
-  double volume = 0;
-  for (size_t i = 0; i < prism.size(); i += 3) {
-    const auto &a = prism[i], &b = prism[i + 1], &c = prism[i + 2];
-    volume += (double(a[0]) * (double(b[1]) * c[2] - double(b[2]) * c[1]) +
-               double(a[1]) * (double(b[2]) * c[0] - double(b[0]) * c[2]) +
-               double(a[2]) * (double(b[0]) * c[1] - double(b[1]) * c[0])) /
-              6;
-  }
-  EXPECT_NEAR(volume, 0.75 * 2 * 6 * 3, 1e-3); // a hexagon covers three quarters of its box; outwards is positive
-  float low = 1e9f, high = -1e9f;
-  for (const auto& p : prism) low = std::min(low, p[1]), high = std::max(high, p[1]);
-  EXPECT_FLOAT_EQ(high - low, 6);
-  for (const auto& p : prism) EXPECT_TRUE(p[1] == low || p[1] == high); // no corner between the ends
-  EXPECT_EQ(corners("Box", "1,1,1").size(), 12u * 3u);
-  EXPECT_EQ(corners("Triangle", "1,1,1").size(), 3u);
-  EXPECT_EQ(corners("Pentagon", "1,1,1").size(), 3u * 3u);
-  EXPECT_EQ(corners("Sphere", "1,1,1").size(), (96u * 2u - 24u) * 3u);
+  const auto prism = triangles("Prism6", "2,6,3");
+  EXPECT_EQ(prism.size(), 20u); // two hexagons of four triangles, six sides of two
+  // A hexagon covers three quarters of its box; outwards is positive.
+  EXPECT_NEAR(volumeOf(prism), 0.75 * 2 * 6 * 3, 1e-3);
+  double low = 1e9, high = -1e9;
+  for (const GlbTriangle& t : prism)
+    for (const Vector& p : t.corners) low = std::min(low, p[1]), high = std::max(high, p[1]);
+  EXPECT_DOUBLE_EQ(high - low, 6);
+  for (const GlbTriangle& t : prism) // no corner between the ends
+    for (const Vector& p : t.corners) EXPECT_TRUE(p[1] == low || p[1] == high);
+  EXPECT_EQ(triangles("Box", "1,1,1").size(), 12u);
+  EXPECT_EQ(triangles("Triangle", "1,1,1").size(), 1u);
+  EXPECT_EQ(triangles("Pentagon", "1,1,1").size(), 3u);
+  EXPECT_EQ(triangles("Sphere", "1,1,1").size(), 96u * 2u - 24u);
 }
 
 TEST(CliSpawn, ErrorsHaveAPlace) {

@@ -80,6 +80,12 @@ private:
       text += std::string(i ? " | " : "") + (labels ? value(low, high) + ": " : std::string()) + successor(depth - 1);
     return text + " }";
   }
+  /// By constants, which cut polygons.
+  std::string weights(size_t count, int depth) {
+    std::string text = " { ";
+    for (size_t i = 0; i < count; ++i) text += (i ? " | -" : "-") + number(0.2, 2) + ": " + successor(depth - 1);
+    return text + " }";
+  }
 
   /// Rules are in up to three parts; none leads back to a part before its own. Of a tag, Colliders are in parts before
   /// those with its IfCollides.
@@ -103,7 +109,11 @@ private:
     case 3: return std::string("Extrude(") + value(0.1, 2) + ") " + successor(depth - 1);
     case 4: return std::string("CompSplit() ") + list(3, depth, 0, 0, false);
     case 5:
-    case 6: return std::string("SubDiv(") + axis() + ")" + list(1 + below(5), depth, -2, 1.5, true);
+    case 6: {
+      const std::string divides = std::string("SubDiv(") + axis() + ")";
+      const size_t parts = 1 + below(5);
+      return divides + (below(2) ? weights(parts, depth) : list(parts, depth, -2, 1.5, true));
+    }
     case 7:
       return std::string("Repeat(") + axis() + "," + value(-0.6, 2) + "," +
              (below(3)   ? "ADJUST_TO_FILL"

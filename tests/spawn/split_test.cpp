@@ -1,4 +1,5 @@
 // SubDiv and Repeat: nothing of them reaches out of the shape that they split, and they share it without gaps.
+#include "divisions.h"
 #include "grammars.h"
 #include "spawn/evaluator/evaluator.h"
 
@@ -122,10 +123,11 @@ TEST(Splits, PolygonAxiomsAreFlat) { // whatever their third extent says
 /// What a derivation makes, by terminal: the volume of its solids, and all of their corners.
 struct Solids {
   std::map<uint32_t, double> volumes;
+  std::map<uint32_t, double> areas; // of the triangles
   std::map<uint32_t, std::vector<std::array<double, 3>>> corners;
   uint32_t dropped = 0;
 };
-Solids solidsOf(const std::string& text, const GpgpAxiom& axiom) {
+Solids solidsOf(const std::vector<uint32_t>& words, const GpgpAxiom& axiom) {
   GpgpVertexLayout described{};
   described.stride = 12;
   described.attributeCount = 1;
@@ -133,9 +135,10 @@ Solids solidsOf(const std::string& text, const GpgpAxiom& axiom) {
   const auto layout = spawn::layoutOf(described);
   spawn::DeriveOptions options;
   options.vertices = &*layout;
-  const auto d = spawn::derive(bake(text), std::span(&axiom, 1), options);
+  const auto d = spawn::derive(words, std::span(&axiom, 1), options);
   Solids solids;
   solids.dropped = d.droppedShapes;
+  EXPECT_EQ(d.uncutShapes, d.droppedShapes); // no Repeat here makes too many copies
   size_t at = 0;
   for (size_t i = 0; i < d.instances.size(); ++i)
     for (uint32_t quad = 0; quad < d.quads[i]; ++quad, at += 12) {
@@ -149,6 +152,10 @@ Solids solidsOf(const std::string& text, const GpgpAxiom& axiom) {
       const uint32_t terminal = d.instances[i].terminal;
       for (const auto& corner : p) solids.corners[terminal].push_back(corner);
       const auto add = [&](const auto& a, const auto& b, const auto& c) {
+        std::array<double, 3> u, v;
+        for (size_t k = 0; k < 3; ++k) u[k] = b[k] - a[k], v[k] = c[k] - a[k];
+        solids.areas[terminal] +=
+            std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
         solids.volumes[terminal] += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
                                      a[2] * (b[0] * c[1] - b[1] * c[0])) /
                                     6;
@@ -158,6 +165,7 @@ Solids solidsOf(const std::string& text, const GpgpAxiom& axiom) {
     }
   return solids;
 }
+Solids solidsOf(const std::string& text, const GpgpAxiom& axiom) { return solidsOf(bake(text), axiom); }
 
 TEST(Cuts, HalvesOfATriangleAreATriangleAndAQuadrilateral) {
   const auto solids = solidsOf("axiom Box B; terminal L (1,0); terminal R (1,1); B = SetAsDynamicConvexRightPrism("
@@ -222,6 +230,39 @@ TEST(Cuts, FacesOfPiecesAreTheirs) { // ends and sides are where the piece has t
   // Extruded a little outwards, all faces lie around the solid.
   const auto faces = of("CompSplit() { T | T | T }");
   EXPECT_NEAR(faces.volumes.at(0), solid, 1e-4); // they are the surface of the same volume
+}
+
+TEST(Cuts, EveryShapeIsSharedOrDropped) { // by its area or volume, whatever it is and however it is divided
+  const Divisions divisions = makeDivisions();
+  double whole = 0, first = 0; // of what arrives; of the first third of it
+  for (size_t i = 0; i < divisions.all.size(); ++i) {
+    const Division& d = divisions.all[i];
+    const Solids solids = solidsOf(divisions.words, divisions.axioms[i]);
+    double sum = 0, ofFirst = 0;
+    for (const auto& [terminal, size] : d.polygon ? solids.areas : solids.volumes) {
+      sum += size;
+      if (terminal == 0) ofFirst = size;
+    }
+    const auto what = [&] {
+      return d.shape + (d.polygon ? ", a polygon along " : " along ") + d.axis + ", kind " +
+             std::to_string(static_cast<int>(d.how));
+    };
+    if (d.how == Divide::nothing) {
+      whole = sum;
+      EXPECT_GT(whole, 0.5) << what();
+      continue;
+    }
+    const bool cut = !d.keeps && d.axis != (d.polygon ? 'Z' : 'Y');
+    const bool dropped = cut && (d.how == Divide::byLengths || d.how == Divide::byExpressions);
+    const bool flat = d.polygon && d.axis == 'Z'; // nothing to share
+    EXPECT_EQ(solids.dropped, dropped ? 1u : 0u) << what();
+    if (d.how == Divide::byWeights) first = ofFirst;
+    const double expected = dropped || flat ? 0 : d.how == Divide::keepFirst ? first : whole;
+    EXPECT_NEAR(sum, expected, 1e-4 * whole) << what();
+    if (flat) continue;
+    EXPECT_GT(first, 0.02 * whole) << what();
+    EXPECT_TRUE(!d.keeps || std::abs(first - whole / 3) < 1e-4 * whole) << what();
+  }
 }
 
 TEST(Cuts, OthersKeepTheirShapeOrAreDropped) {

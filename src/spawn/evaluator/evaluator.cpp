@@ -207,7 +207,10 @@ private:
   /// For its children to be made, if it has any.
   uint32_t wait(Frame& frame) {
     frame.fan = fanOf(frame);
-    if (frame.fan.extent < 0) ++out_.droppedShapes;
+    if (frame.fan.extent < 0) {
+      ++out_.droppedShapes;
+      if (frame.step->op != kOpRepeat) ++out_.uncutShapes;
+    }
     frame.made = 0;
     frame.left = frame.fan.successors;
     return frame.fan.count ? kEndWaits : kEndDiscarded;

@@ -27,7 +27,8 @@ struct Derivation {
   std::vector<uint32_t> buckets;       ///< terminals by bucket
   uint64_t terminals = 0;
   uint64_t shapes = 0;        ///< that were taken up, terminals included
-  uint32_t droppedShapes = 0; ///< axioms whose rule does not exist, and shapes that a Repeat would cut too often
+  uint32_t droppedShapes = 0; ///< axioms whose rule does not exist, shapes that a Repeat would cut too often, and
+  uint32_t uncutShapes = 0;   ///< those that a SubDiv cannot cut
   uint32_t unfinishedShapes = 0;
   uint64_t colliders = 0; ///< that Collider registered
   uint32_t depth = 0;     ///< the most recursive edges on a path

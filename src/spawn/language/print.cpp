@@ -20,7 +20,8 @@ std::string printGraph(const Graph& graph) {
   }
   for (const Terminal& t : graph.terminals)
     out << "terminal " << graph.nameAt(t.name) << " (" << t.kind << ", " << t.index << ") bucket " << t.bucket << '\n';
-  for (uint32_t i = kRegularPolygons; i < graph.polygons.size(); i += 2) {
+  const size_t own = graph.polygons.size() - graph.pieces; // SubDiv makes the others anew
+  for (uint32_t i = kRegularPolygons; i < own; i += 2) {
     out << "polygon " << i << " {";
     for (uint32_t v = 0; v < graph.polygons[i].vertexCount; ++v) {
       const float* corner = &graph.vertices[2 * (graph.polygons[i].firstVertex + size_t(v))];
