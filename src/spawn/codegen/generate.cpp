@@ -425,6 +425,7 @@ private:
     if (!known) add("#ifndef GPGP_SOFTWARE\n  rotate(s, rotationOf(" + vector(node) + "));\n#else\n");
     add("  rotate(s, " + rotation(node) + ");\n");
     if (!known) add("#endif\n");
+    addDrawn(node);
     add("  " + take(node, 0) + "\n");
   }
   /// rotate() with known columns: zeros are left out, ones are not multiplied with.
