@@ -1042,14 +1042,25 @@ TEST_F(SpawnTest, TheLastRoundGivesNothingAwayByChoice) {
 }
 
 TEST_F(SpawnTest, StacksThatFlowOverInTheLastRoundLoseNothing) {
-  const std::vector<GpgpAxiom> all = {makeAxiom(20, 1, 1, 1, 1), makeAxiom(10, 1, 1, 2, 2), makeAxiom(10, 1, 1, 3, 3)};
   for (const uint32_t size : {8u, 32u}) { // a subgroup's on most devices
+    // Devices that count turns of loops have so many for a workgroup in a round, and small ones derive less with them.
+    const bool few = device.isSoftware() && size == 8;
+    const auto axiomsOf = [](float x) {
+      return std::vector<GpgpAxiom>{makeAxiom(x, 1, 1, 1, 1), makeAxiom(x / 2, 1, 1, 2, 2),
+                                    makeAxiom(x / 2, 1, 1, 3, 3)};
+    };
+    const std::vector<GpgpAxiom> all = axiomsOf(few ? 10 : 20);
     // One workgroup, whose stack holds a batch.
     const auto words = bakeFor("axiom Box A; terminal T (1,0);"
                                "A = IfSizeLess(X,1) { T | Scale(-0.5,-1,-1) Replicate() { T | A | A | A } };",
                                spawn::KernelTarget::subgroups, {size, 1, 2 * size, 64});
     makeSpawner({.maxRounds = 1});
     check("workgroups of " + std::to_string(size), words, all);
+    if (few) { // what there are no turns for is reported
+      const Derived more = run(words, axiomsOf(40), 2000, true);
+      EXPECT_EQ(more.report.base.status, GPGP_BUDGET_EXCEEDED);
+      EXPECT_GT(more.report.droppedShapes, 0u);
+    }
     makeSpawner({.maxShapes = size, .maxRounds = 1}); // where there is no room for that either
     const Derived gpu = run(words, all, 2000, true);
     EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
