@@ -439,6 +439,15 @@ All = Rotate(-53.28, Exp(ShapeSize(Z) * 0.352), 90)
       SubDiv(Z) { Exp(ShapeNormal(Y) * 1.111 - ShapeRotation(X,Z)): Thin | -1: Thin };
 )"),
         axioms(7, 6, 9, 7));
+  // SubDivs that keep one part: of polygons and prisms a piece, by constants and by expressions.
+  check("filters that cut", bakeKernel(R"(axiom Hexagon Half;
+terminal Thin (1, 0);
+terminal Flat (1, 1);
+Half = SubDiv(X) { -1: Discard() | -2: Turned };
+Turned = Rotate(Rand(0, 20), Rand(0, 90), Rand(-9, 9)) Extrude(2) SubDiv(Z) { -1: Part | -1: Discard() };
+Part = SubDiv(Y) { Rand(0.5, 1): Flat | -1: Discard() };
+)"),
+        axioms(7, 12, 16, 10));
   if (!sharedGrammar("balcony.pga")) GTEST_SKIP() << "the published grammars are not in the shared data folder";
   const auto given = [](const char* name) { return bakeKernel(*sharedGrammar(name)); };
   check("menger 8000", bakeKernel(replaced(*sharedGrammar("menger_sponge_3.pga"), "0.333", "0.111")),

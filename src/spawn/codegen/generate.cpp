@@ -51,8 +51,8 @@ public:
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
       if (table_.family[indexOf(node)]) continue;
-      const bool byWords =
-          node.op >= kOpCompSplit && (room_.words || node.division == UINT32_MAX || stops_[indexOf(node)]);
+      const bool byWords = node.op >= kOpCompSplit &&
+                           (room_.words || node.division == UINT32_MAX || isByWords(node) || stops_[indexOf(node)]);
       if (!multiplies(node) && !byWords) continue;
       operators |= 1u << node.op;
       if (isCutting(node)) operators |= 1u << 29;
@@ -102,7 +102,7 @@ private:
       const Node& node = graph_.nodes[index];
       if (node.op == kOpTerminal) continue;
       key.insert(key.end(), {node.argument, node.argument2, node.filter, node.division == UINT32_MAX, waits_[index],
-                             node.op == kOpCompSplit && node.shapes == 1u << kShapeBox});
+                             node.op == kOpCompSplit && node.shapes == 1u << kShapeBox, isCutting(node)});
       for (uint32_t i = 0; node.filter && i < node.parameterCount; ++i)
         key.push_back(graph_.parameters[node.firstParameter + i].value);
       for (uint32_t e = 0; e < node.edgeCount; ++e) {
@@ -477,9 +477,9 @@ private:
     for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + " break;\n");
     add("  default: " + take(node, count - 1) + " break;\n  }\n");
   }
-  /// Whether a filter has no code of its own: what it keeps depends on parameters.
+  /// Whether a filter has no code of its own: what it keeps depends on parameters, or pieces of polygons on the shape.
   static bool isByWords(const Node& node) {
-    return node.op == kOpRepeat || (node.op == kOpSubDiv && node.division == UINT32_MAX);
+    return node.op == kOpRepeat || (node.op == kOpSubDiv && (node.division == UINT32_MAX || isCutting(node)));
   }
   /// An operator that could multiply, but keeps one successor at most.
   void writeFilter(const Node& node) {
@@ -509,16 +509,26 @@ private:
           literal(uintBitsToFloat(division[0])) + ");\n");
       if (!fixed) add("  if (!(remainder > 0.0f)) return kEndDiscarded;\n");
       const uint32_t* part = division + kDivisionParts + kept * kPartSize;
+      const auto partValue = [&](uint32_t i) { return literal(uintBitsToFloat(part[i])); };
       std::string values;
-      for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
-      add("  if (!toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place +
-          ")) return kEndDiscarded;\n");
-    } else { // by the words, which also take the edge; on software devices when it has waited, as they count loops
+      for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + partValue(i);
+      if (fixed) // else there is something left for the part, and none is cut off
+        add("  if (!toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place +
+            ")) return kEndDiscarded;\n");
+      else
+        add("  toPiece(s, " + number(node.argument) + ", multiply(remainder, " + partValue(kPartShareBefore) +
+            "), multiply(remainder, " + partValue(kPartShare) + "), " + place + ");\n");
+    } else { // by the words; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
-          ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n  const Fan fan = fanOf(s);\n"
-          "  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
-          "  if (s.node == 0u) return kEndDiscarded;\n");
-      followed = true;
+          ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n");
+      followed = node.op == kOpRepeat || isCutting(node);
+      if (followed)
+        add("  const Fan fan = fanOf(s);\n  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
+            "  if (s.node == 0u) return kEndDiscarded;\n");
+      else
+        add("  const Division d = divisionOf(s, " + place +
+            ");\n  if (d.fan.count == 0u) return kEndDiscarded;\n  if (!toPart(s, " + number(node.argument) +
+            ", d.fan.extent, d.part, " + place + ")) return kEndDiscarded;\n");
     }
     add("  " + take(node, kept, followed) + "\n");
   }
