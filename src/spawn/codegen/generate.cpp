@@ -486,10 +486,7 @@ private:
     uint32_t kept = kNoNode;
     for (uint32_t e = 0; e < node.edgeCount; ++e)
       if (edgeOf(node, e).target != kNoNode) kept = e;
-    if (kept == kNoNode) {
-      add("  return kEndDiscarded;\n");
-      return;
-    }
+    if (kept == kNoNode) return add("  return kEndDiscarded;\n");
     const std::string place = number(kept);
     bool followed = false;
     if (node.op == kOpReplicate) {
@@ -509,15 +506,10 @@ private:
           literal(uintBitsToFloat(division[0])) + ");\n");
       if (!fixed) add("  if (!(remainder > 0.0f)) return kEndDiscarded;\n");
       const uint32_t* part = division + kDivisionParts + kept * kPartSize;
-      const auto partValue = [&](uint32_t i) { return literal(uintBitsToFloat(part[i])); };
       std::string values;
-      for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + partValue(i);
-      if (fixed) // else there is something left for the part, and none is cut off
-        add("  if (!toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place +
-            ")) return kEndDiscarded;\n");
-      else
-        add("  toPiece(s, " + number(node.argument) + ", multiply(remainder, " + partValue(kPartShareBefore) +
-            "), multiply(remainder, " + partValue(kPartShare) + "), " + place + ");\n");
+      for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
+      add("  if (!toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place +
+          ")) return kEndDiscarded;\n");
     } else { // by the words; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n");
