@@ -61,7 +61,7 @@ uint runContext(inout Shape s, bool arrives) {
 /// How many turns of loops the chains and queries of this step were. Colliders of this step can be read after it.
 uint queriedTurns() {
   uint spent = spentOnQueries;
-  if (record.childTurns != 0) { // as the device counts them: invocations look at other colliders, each at its own turns
+  if (turnsCount) { // as the device counts them: invocations look at other colliders, each at its own turns
 #ifdef GPGP_SUBGROUPS
     spent = 2 * subgroupAdd(spent) + subgroupMax(chainsMade) * record.childTurns;
 #else

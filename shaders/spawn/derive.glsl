@@ -20,6 +20,12 @@ layout(constant_id = 3) const bool oneSubgroup = false;
 #else
 const bool oneSubgroup = false;
 #endif
+// Whether the device counts turns of loops (core/turns.h); pipelines of others have nothing of it.
+#ifdef GPGP_SOFTWARE
+const bool turnsCount = true;
+#else
+layout(constant_id = 4) const bool turnsCount = false;
+#endif
 layout(local_size_x_id = 0) in;
 #ifdef GPGP_COLLIDERS
 layout(push_constant) uniform Push {
@@ -102,6 +108,13 @@ uint keptAt;     // the last one
 uint keptCount;  // its shapes; 0: there is none
 uint keptShapes; // of all of them
 
+/// Turns of loops after which a workgroup leaves its work to the next round. What is kept for leaving shapes of this
+/// round, of which there are so many, is there for work where they are fewer than the most.
+uint mostTurnsOf(uint shapes) {
+  if (!turnsCount) return record.steps;
+  return record.steps + (record.mostLeft - min(shapes, record.mostLeft)) / groupSize * record.leftTurns;
+}
+
 uint nextQueue() { return ((round + 1) & 1) * kShapePlanes * record.maxShapes; }
 
 /// Moves the stack to the next round's queue, or keeps it there.
@@ -131,20 +144,20 @@ void giveAway() {
       atomicMax(rounds[round + 1].groupsX, min(min(base + count, record.maxShapes), record.maxGroups));
     }
   }
-#ifdef GPGP_SOFTWARE // in a loop for each plane there would be six times as many turns
-  for (uint i = lane; i < fitting; i += groupSize) {
-    queues[target + i] = stacks[stackPlane(0) + i];
-    queues[target + record.maxShapes + i] = stacks[stackPlane(1) + i];
-    queues[target + 2 * record.maxShapes + i] = stacks[stackPlane(2) + i];
-    queues[target + 3 * record.maxShapes + i] = stacks[stackPlane(3) + i];
-    queues[target + 4 * record.maxShapes + i] = stacks[stackPlane(4) + i];
-    queues[target + 5 * record.maxShapes + i] = stacks[stackPlane(5) + i];
+  if (turnsCount) { // in a loop for each plane there would be six times as many
+    for (uint i = lane; i < fitting; i += groupSize) {
+      queues[target + i] = stacks[stackPlane(0) + i];
+      queues[target + record.maxShapes + i] = stacks[stackPlane(1) + i];
+      queues[target + 2 * record.maxShapes + i] = stacks[stackPlane(2) + i];
+      queues[target + 3 * record.maxShapes + i] = stacks[stackPlane(3) + i];
+      queues[target + 4 * record.maxShapes + i] = stacks[stackPlane(4) + i];
+      queues[target + 5 * record.maxShapes + i] = stacks[stackPlane(5) + i];
+    }
+  } else {
+    for (uint plane = 0; plane < kShapePlanes; ++plane)
+      for (uint i = lane; i < fitting; i += groupSize)
+        queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
   }
-#else
-  for (uint plane = 0; plane < kShapePlanes; ++plane)
-    for (uint i = lane; i < fitting; i += groupSize)
-      queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
-#endif
   if (keeps) {
     keptAt = base;
     keptCount = count;
@@ -158,13 +171,19 @@ void giveAway() {
 void takeBack() {
   stackBarrier();
   const uint source = nextQueue() + keptAt;
-  for (uint i = laneIndex(); i < keptCount; i += groupSize) {
-    stacks[stackPlane(0) + i] = queues[source + 1 + i];
-    stacks[stackPlane(1) + i] = queues[source + 1 + record.maxShapes + i];
-    stacks[stackPlane(2) + i] = queues[source + 1 + 2 * record.maxShapes + i];
-    stacks[stackPlane(3) + i] = queues[source + 1 + 3 * record.maxShapes + i];
-    stacks[stackPlane(4) + i] = queues[source + 1 + 4 * record.maxShapes + i];
-    stacks[stackPlane(5) + i] = queues[source + 1 + 5 * record.maxShapes + i];
+  if (turnsCount) {
+    for (uint i = laneIndex(); i < keptCount; i += groupSize) {
+      stacks[stackPlane(0) + i] = queues[source + 1 + i];
+      stacks[stackPlane(1) + i] = queues[source + 1 + record.maxShapes + i];
+      stacks[stackPlane(2) + i] = queues[source + 1 + 2 * record.maxShapes + i];
+      stacks[stackPlane(3) + i] = queues[source + 1 + 3 * record.maxShapes + i];
+      stacks[stackPlane(4) + i] = queues[source + 1 + 4 * record.maxShapes + i];
+      stacks[stackPlane(5) + i] = queues[source + 1 + 5 * record.maxShapes + i];
+    }
+  } else {
+    for (uint plane = 0; plane < kShapePlanes; ++plane)
+      for (uint i = laneIndex(); i < keptCount; i += groupSize)
+        stacks[stackPlane(plane) + i] = queues[source + 1 + plane * record.maxShapes + i];
   }
   stackSize = keptCount;
   keptShapes -= keptCount;
@@ -307,9 +326,11 @@ bool isLast(uint answers) {
   return atomicAdd(rounds[round].finished, one) + 1 == gl_NumWorkGroups.x;
 }
 
-/// By one invocation, behind the last loop: where the device has ended loops, what was derived is wrong.
-void sayIfEnded() {
-  if (loopsWereEnded(record.one)) atomicOr(state.ended, 1);
+/// Behind the last loop: where the device has ended loops, what was derived is wrong. Returns the
+/// device's answer, for isLast.
+uint sayIfEnded() {
+  if (!turnsCount || !loopsWereEnded(record.one)) return 0;
+  return atomicOr(state.ended, 1);
 }
 
 /// All has been derived, or nothing more can be: says how many instances there are. What workgroups have counted was
@@ -335,7 +356,7 @@ void reportAll() {
     report = SpawnState(terminals, written, atomicAdd(state.peakShapes, 0), atomicAdd(state.droppedShapes, 0),
                         atomicAdd(state.unfinishedShapes, 0), atomicAdd(state.rounds, 0), atomicAdd(state.keyHashX, 0),
                         atomicAdd(state.keyHashY, 0), atomicAdd(state.depth, 0), 0, 0, exceeded,
-                        atomicAdd(state.colliders, 0), 0, 0, atomicAdd(state.ended, 0));
+                        atomicAdd(state.colliders, 0), 0, 0, turnsCount ? atomicAdd(state.ended, 0) : 0);
 }
 
 /// The first thing that a round does. needed: shapes that wait for it; count: that are there.

@@ -139,7 +139,7 @@ void main() {
   const bool spreads = count < record.spread && roundsLeft() > 0;
   const uint enough = spreads ? min(kGrowth * groupSize, kMostWaiting) : kMostWaiting;
   const uint maxDepth = record.maxDepth;
-  const uint mostTurns = record.steps;
+  const uint mostTurns = mostTurnsOf(queued);
   stackSize = 0;
   terminalCount = 0;
   keepsRest = roundsLeft() == 0;
@@ -217,6 +217,6 @@ void main() {
     if ((hash.x | hash.y) != 0) answers |= atomicAdd(state.keyHashX, hash.x) | atomicAdd(state.keyHashY, hash.y);
     if (unfinished > 0) answers |= atomicAdd(state.unfinishedShapes, unfinished);
   }
-  if (loopsWereEnded(record.one) && lane == 0) answers |= atomicOr(state.ended, 1);
+  answers |= sayIfEnded();
   leaveRest(queued, axiomsThere, answers);
 }

@@ -24,7 +24,7 @@ void leaveRest(uint count, uint answers) {
     if (lane == 0) first = atomicAdd(rounds[round].taken, groupSize);
     first = fromFirst(first);
     if (first >= count) break;
-    if (left >= record.mostLeft) {
+    if (turnsCount && left >= record.mostLeft) {
       if (lane == 0) atomicAdd(state.droppedShapes, count - first);
       break;
     }
@@ -121,7 +121,8 @@ void main() {
   bool fetched = false; // axioms, which are made of nothing
   uint first = 0;
   uint batches = 0;
-  for (uint turns = 0; turns < record.steps || made < total; turns += record.batchTurns) {
+  const uint mostTurns = mostTurnsOf(count);
+  for (uint turns = 0; turns < mostTurns || made < total; turns += record.batchTurns) {
     if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
       total = 0;
       made = 0;
@@ -254,7 +255,7 @@ void main() {
   push(waits, place, rest, s);
 
   uint answers = 0;
-  if (loopsWereEnded(record.one)) answers |= atomicOr(state.ended, 1);
+  answers |= sayIfEnded();
   if (oneSubgroup) answers |= addCounts(hash, depth, unfinished);
   leaveRest(count, answers);
   if (!oneSubgroup) addCounts(hash, depth, unfinished);

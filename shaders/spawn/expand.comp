@@ -34,6 +34,7 @@ layout(constant_id = 5) const uint attribute4 = kNoAttribute;
 layout(constant_id = 6) const uint attribute5 = kNoAttribute;
 layout(constant_id = 7) const uint attribute6 = kNoAttribute;
 layout(constant_id = 8) const uint attribute7 = kNoAttribute;
+layout(constant_id = 9) const bool turnsCount = false; // the device counts turns of loops (core/turns.h)
 
 #include "spawn/lanes.glsl"
 
@@ -180,7 +181,7 @@ void main() {
   const uint lane = laneIndex();
   const uint kept = min(state.terminals, record.maxTerminals);
   const uint indexWords = record.indexWords;
-  const uint each = record.recordsAtOnce;
+  const uint each = turnsCount ? record.recordsAtOnce : groupSize;
   for (uint batch = gl_WorkGroupID.x * each; batch < kept; batch += gl_NumWorkGroups.x * each) {
     barrier(); // the last ones have been read
     const uint all = stageRecords(batch + lane, lane < each && batch + lane < kept, lane);
@@ -227,5 +228,5 @@ void main() {
           indexWord(indexWords, places.y, i - quad * indexWords);
     }
   }
-  if (loopsWereEnded(record.one)) atomicOr(state.ended, 1);
+  if (turnsCount && loopsWereEnded(record.one)) atomicOr(state.ended, 1);
 }

@@ -75,6 +75,7 @@ struct SpawnConstants {
   uint childTurns;     // of one more child, or of a chain up to a Collider or IfCollides; 0: turns are not counted
   uint mostQueried;    // what queries of one step may look at before the rest waits for another
   uint mostLeft;       // shapes that the last workgroup of a round leaves to the next one
+  uint leftTurns;      // of leaving one for each invocation
   uint recordsAtOnce;  // that a workgroup makes vertices of, at most kSpawnGroupSize
   uint one;            // 1, which no compiler knows
 };

@@ -50,7 +50,7 @@ struct Use {
   UseKind kind;
 };
 
-constexpr uint32_t kMaxSpecialization = 9;
+constexpr uint32_t kMaxSpecialization = 10;
 struct ShaderDesc {
   const char* name;
   std::span<const uint32_t> spirv;

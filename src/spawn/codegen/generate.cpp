@@ -51,8 +51,8 @@ public:
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
       if (table_.family[indexOf(node)]) continue;
-      const bool byWords =
-          node.op >= kOpCompSplit && (room_.words || node.division == UINT32_MAX || stops_[indexOf(node)]);
+      const bool byWords = node.op >= kOpCompSplit &&
+                           (room_.words || node.division == UINT32_MAX || isByWords(node) || stops_[indexOf(node)]);
       if (!multiplies(node) && !byWords) continue;
       operators |= 1u << node.op;
       if (isCutting(node)) operators |= 1u << 29;
@@ -102,7 +102,7 @@ private:
       const Node& node = graph_.nodes[index];
       if (node.op == kOpTerminal) continue;
       key.insert(key.end(), {node.argument, node.argument2, node.filter, node.division == UINT32_MAX, waits_[index],
-                             node.op == kOpCompSplit && node.shapes == 1u << kShapeBox});
+                             node.op == kOpCompSplit && node.shapes == 1u << kShapeBox, isCutting(node)});
       for (uint32_t i = 0; node.filter && i < node.parameterCount; ++i)
         key.push_back(graph_.parameters[node.firstParameter + i].value);
       for (uint32_t e = 0; e < node.edgeCount; ++e) {
@@ -425,6 +425,7 @@ private:
     if (!known) add("#ifndef GPGP_SOFTWARE\n  rotate(s, rotationOf(" + vector(node) + "));\n#else\n");
     add("  rotate(s, " + rotation(node) + ");\n");
     if (!known) add("#endif\n");
+    addDrawn(node);
     add("  " + take(node, 0) + "\n");
   }
   /// rotate() with known columns: zeros are left out, ones are not multiplied with.
@@ -476,19 +477,16 @@ private:
     for (uint32_t i = 0; i + 1 < count; ++i) add("  case " + number(i) + ": " + take(node, i) + " break;\n");
     add("  default: " + take(node, count - 1) + " break;\n  }\n");
   }
-  /// Whether a filter has no code of its own: what it keeps depends on parameters.
+  /// Whether a filter has no code of its own: what it keeps depends on parameters, or pieces of polygons on the shape.
   static bool isByWords(const Node& node) {
-    return node.op == kOpRepeat || (node.op == kOpSubDiv && node.division == UINT32_MAX);
+    return node.op == kOpRepeat || (node.op == kOpSubDiv && (node.division == UINT32_MAX || isCutting(node)));
   }
   /// An operator that could multiply, but keeps one successor at most.
   void writeFilter(const Node& node) {
     uint32_t kept = kNoNode;
     for (uint32_t e = 0; e < node.edgeCount; ++e)
       if (edgeOf(node, e).target != kNoNode) kept = e;
-    if (kept == kNoNode) {
-      add("  return kEndDiscarded;\n");
-      return;
-    }
+    if (kept == kNoNode) return add("  return kEndDiscarded;\n");
     const std::string place = number(kept);
     bool followed = false;
     if (node.op == kOpReplicate) {
@@ -512,12 +510,17 @@ private:
       for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
       add("  if (!toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place +
           ")) return kEndDiscarded;\n");
-    } else { // by the words, which also take the edge; on software devices when it has waited, as they count loops
+    } else { // by the words; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
-          ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n  const Fan fan = fanOf(s);\n"
-          "  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
-          "  if (s.node == 0u) return kEndDiscarded;\n");
-      followed = true;
+          ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n");
+      followed = node.op == kOpRepeat || isCutting(node);
+      if (followed)
+        add("  const Fan fan = fanOf(s);\n  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
+            "  if (s.node == 0u) return kEndDiscarded;\n");
+      else
+        add("  const Division d = divisionOf(s, " + place +
+            ");\n  if (d.fan.count == 0u) return kEndDiscarded;\n  if (!toPart(s, " + number(node.argument) +
+            ", d.fan.extent, d.part, " + place + ")) return kEndDiscarded;\n");
     }
     add("  " + take(node, kept, followed) + "\n");
   }

@@ -128,21 +128,22 @@ uint32_t cellsOf(uint32_t maxColliders) { return std::bit_ceil(2 * maxColliders)
 uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
 
 /// Of shaders/spawn/derive.glsl.
-constexpr uint32_t kDeriveConstants = 4;
+constexpr uint32_t kDeriveConstants = 5;
 std::array<uint32_t, core::kMaxSpecialization> specialization(const core::Device& device, const Fit& fit,
                                                               uint32_t table = 0) {
-  return {fit.groupSize, fit.stackShapes, table, fit.groupSize == device.subgroupSize};
+  return {fit.groupSize, fit.stackShapes, table, fit.groupSize == device.subgroupSize, device.software};
 }
 
-/// Of shaders/spawn/expand.comp: the stride, and all attributes.
-std::array<uint32_t, core::kMaxSpecialization> specialization(const VertexLayout& layout) {
+/// Of shaders/spawn/expand.comp: the stride, all attributes, and whether turns of loops count.
+std::array<uint32_t, core::kMaxSpecialization> specialization(const core::Device& device, const VertexLayout& layout) {
   std::array<uint32_t, core::kMaxSpecialization> all;
   all.fill(shader::kNoAttribute);
   all[0] = layout.strideWords;
   std::copy_n(layout.attributes.begin(), layout.attributeCount, all.begin() + 1);
+  all.back() = device.software;
   return all;
 }
-static_assert(core::kMaxSpecialization == 1 + shader::kMaxVertexAttributes);
+static_assert(core::kMaxSpecialization == 2 + shader::kMaxVertexAttributes);
 
 /// The most quads that 16-bit indices reach, without 65535, which could restart a primitive.
 constexpr uint32_t kShortQuads = 65535 / 4;
@@ -285,7 +286,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
     const auto spirv =
         subgroups ? std::span<const uint32_t>(spawn_expand_subgroups) : std::span<const uint32_t>(spawn_expand);
     const uint32_t expand =
-        list.add(core::ShaderDesc{"expand", spirv, specialization(layout), core::kMaxSpecialization});
+        list.add(core::ShaderDesc{"expand", spirv, specialization(context.device, layout), core::kMaxSpecialization});
     list.dispatch("expand", expand,
                   {{kGraph, read},
                    {kAxioms, read},

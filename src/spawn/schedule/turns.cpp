@@ -60,8 +60,8 @@ Turns turnsOf(const Graph& graph) {
     if (node.op >= kOpCompSplit) edges = std::max(edges, node.edgeCount);
     if (node.op == kOpSubDiv && isCutting(node)) cut = static_cast<uint32_t>(graph.polygons.size());
   }
-  const uint32_t value = loop(codes);                  // evaluate()
-  const uint32_t division = loop(parts, value);        // divisionOf()
+  const uint32_t value = loop(codes);                              // evaluate()
+  const uint32_t division = loop(parts, value);                    // divisionOf()
   const uint32_t byWords = 2 * loop(edges) + division + loop(cut); // toChild()
   Turns turns;
   turns.fan = division + 2 * value + loop(edges) + loop(cut); // familyFan(), fanOf(): a Repeat, or others
@@ -90,21 +90,22 @@ bool limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& fit, u
     constants.childTurns = turns.child + (isKernel ? turns.family : 0) + 1;
     constants.batchTurns = turns.fan + 32; // and the turn in which the loop over operators finds its end
     constants.childrenAtOnce = std::clamp(mostAtOnce / constants.childTurns, 1u, fit.stackShapes / 8 / subgroup);
-    const uint32_t leftRows = 8192;
-    constants.mostLeft = leftRows * subgroup;
+    constants.leftTurns = 1 + kRowTurns;
     beyond = 2 * kRowTurns * rows + chain + constants.batchTurns + constants.childrenAtOnce * constants.childTurns +
-             kWriteTurns * (64 / subgroup + constants.childrenAtOnce + 4) + (1 + kRowTurns) * leftRows + 256;
+             kWriteTurns * (64 / subgroup + constants.childrenAtOnce + 4) + 256;
   } else {
     // Each step counts as the worst one. Queries are counted as they are made, and one has room for as much as all
     // else.
     constants.childTurns = chain + kQueryTurns;
     constants.batchTurns = kStepTurns + turns.fan + turns.child + turns.family + chain;
     constants.childrenAtOnce = 1;
-    const uint32_t leftRows = 512;
-    constants.mostLeft = leftRows * fit.groupSize;
+    constants.leftTurns = 24;
     const uint32_t steps = turns.phases ? 1 : std::max(fit.stackShapes / fit.groupSize, 2u) - 1; // of a batch
-    beyond = steps * constants.batchTurns + 24 * leftRows + kDeviceTurns / 8;
+    beyond = steps * constants.batchTurns + (turns.phases ? kDeviceTurns / 8 : 0);
   }
+  const uint32_t leftRows = subgroup ? 8192 : 512;
+  constants.mostLeft = leftRows * (subgroup ? subgroup : fit.groupSize);
+  beyond += constants.leftTurns * leftRows;
   if (beyond >= kDeviceTurns - kDeviceTurns / 8) return false;
   constants.steps = kDeviceTurns - beyond;
   return true;
