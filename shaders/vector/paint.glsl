@@ -58,37 +58,12 @@ IMAGE(0) IMAGE(1) IMAGE(2) IMAGE(3) IMAGE(4) IMAGE(5) IMAGE(6) IMAGE(7)
   case 6: return f(image6);                                                                                            \
   default: return f(image7);                                                                                           \
   }
-#define SAMPLE_GRAD(image) textureGrad(image, at, dx, dy)
-#define SAMPLE_LOD(image) textureLod(image, at, level)
+#define SAMPLE(image) textureGrad(image, at, dx, dy)
 #define SIZE(image) textureSize(image, 0)
 #define LEVELS(image) textureQueryLevels(image)
-vec4 sampleImage(uint i, vec2 at, vec2 dx, vec2 dy) { OF_IMAGE(i, SAMPLE_GRAD) }
-vec4 sampleLevel(uint i, vec2 at, float level) { OF_IMAGE(i, SAMPLE_LOD) }
+vec4 sampleImage(uint i, vec2 at, vec2 dx, vec2 dy) { OF_IMAGE(i, SAMPLE) }
 ivec2 sizeOfImage(uint i) { OF_IMAGE(i, SIZE) }
 int levelsOfImage(uint i) { OF_IMAGE(i, LEVELS) }
-
-// Mixes texels after each has become a colour as they mix on the canvas: four of a level, and of the next one where
-// texels are smaller than pixels. The sampler gives a texel at its middle, and so decides what lies beyond the edges. A
-// little right of and below the middle, rounding leads to no other texel.
-vec4 mixedTexels(uint i, vec2 at, vec2 dx, vec2 dy, uint holds) {
-  const ivec2 whole = sizeOfImage(i);
-  const vec2 size = vec2(whole), across = dx * size, down = dy * size;
-  const float wanted = 0.5 * log2(max(dot(across, across), dot(down, down)));
-  const float level = clamp(wanted, 0.0, float(levelsOfImage(i) - 1)), upper = floor(level), part = level - upper;
-  vec2 texels = size;
-  vec4 around = vec4(0), sum = vec4(0);
-  for (uint k = 0; k < (part > 0 ? 8u : 4u); ++k) {
-    const float own = upper + float(k / 4);
-    if (k % 4 == 0) {
-      texels = vec2(max(whole >> int(own), ivec2(1))); // lavapipe tells the size of one level to all invocations
-      around = texelsAround(at * texels);
-    }
-    const vec2 texel = around.xy + vec2(k & 1, k / 2 & 1) + (0.5 + 1.0 / 1024);
-    const float weight = texelWeight(around, k) * (k < 4 ? 1 - part : part);
-    sum += imageColor(sampleLevel(i, texel / texels, own), holds, header.flags) * weight;
-  }
-  return sum;
-}
 
 // An image's colour at a point of the drawing, premultiplied; dx and dy: how far the point moves from pixel to pixel.
 vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
@@ -109,7 +84,42 @@ vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
     uy *= slope;
   }
   const uint holds = header.images >> image * kImageBits;
-  if ((holds & kImageByTexel) != 0) return mixedTexels(image, u, ux, uy, holds);
-  return imageColor(sampleImage(image, u, ux, uy), holds, header.flags);
+  const bool byTexel = (holds & kImageByTexel) != 0;
+  const vec2 from = u;
+  ivec2 whole = ivec2(1);
+  float upper = 0, part = 0;
+  uint samples = 1;
+  if (byTexel) {
+    whole = sizeOfImage(image);
+    const vec2 across = ux * vec2(whole), down = uy * vec2(whole);
+    const float wanted = 0.5 * log2(max(dot(across, across), dot(down, down)));
+    const float level = clamp(wanted, 0.0, float(levelsOfImage(image) - 1));
+    upper = floor(level);
+    part = level - upper;
+    samples = part > 0 ? 8 : 4;
+  }
+  // Where images hold something else than the canvas mixes, texels are mixed after each has become a colour: four of a
+  // level, and of the next one where texels are smaller than pixels. The sampler gives a texel at its middle, and so
+  // decides what lies beyond the edges. A little right of and below the middle, rounding leads to no other texel, and a
+  // pixel as wide as a level's texels is filtered from that level alone.
+  vec2 texels = vec2(1);
+  vec4 around = vec4(0), sum = vec4(0);
+  for (uint k = 0; k < samples; ++k) {
+    float weight = 1;
+    if (byTexel) {
+      if (k % 4 == 0) {
+        const float own = upper + float(k / 4);
+        const vec2 wide = own > 0 ? exp2(own) / vec2(whole) : vec2(0);
+        texels = vec2(max(whole >> int(own), ivec2(1))); // lavapipe tells the size of one level to all invocations
+        around = texelsAround(from * texels);
+        ux = vec2(wide.x, 0);
+        uy = vec2(0, wide.y);
+      }
+      u = (around.xy + vec2(k & 1, k / 2 & 1) + (0.5 + 1.0 / 1024)) / texels;
+      weight = texelWeight(around, k) * (k < 4 ? 1 - part : part);
+    }
+    sum += imageColor(sampleImage(image, u, ux, uy), holds, header.flags) * weight;
+  }
+  return sum;
 }
 #endif

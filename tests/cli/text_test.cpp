@@ -432,7 +432,7 @@ TEST_F(CliText, ABrokenGlyphIsDrawnAsMissingAndNamed) {
 }
 
 TEST_F(CliText, AVeryLongTextTakesSeveralRecords) {
-  const std::vector<std::string> as = {"--size", "8", "--width", "1000", "--background", "white"};
+  const std::vector<std::string> as = {"--size", "26", "--width", "3250", "--background", "white"};
   const json drawn = draw(std::string(25000, 'm'), as);
   EXPECT_EQ(drawn["glyphs"], 25000);
   EXPECT_GT(drawn["records"], 1);
