@@ -67,8 +67,8 @@ Turns turnsOf(const Graph& graph) {
     if (node.op >= kOpCompSplit) edges = std::max(edges, node.edgeCount);
     cut = std::max(cut, cutsOf(graph, node));
   }
-  const uint32_t value = loop(codes);                  // evaluate()
-  const uint32_t division = loop(parts, value);        // divisionOf()
+  const uint32_t value = loop(codes);                              // evaluate()
+  const uint32_t division = loop(parts, value);                    // divisionOf()
   const uint32_t byWords = 2 * loop(edges) + division + loop(cut); // toChild()
   Turns turns;
   turns.fan = division + 2 * value + loop(edges) + loop(cut); // familyFan(), fanOf(): a Repeat, or others
