@@ -1148,8 +1148,8 @@ TEST_F(SpawnTest, ChildrenOfOneShapeAreSharedOut) { // whatever their number, ea
                            "B = Repeat(Y,0.25,ANCHOR_TO_END) IfSizeLess(Y,0.2) { U | T };";
   for (const bool kernel : {false, true}) {
     const auto words = kernel ? bakeKernel(text) : bake(text);
-    for (const uint32_t count : {1u, 2u, 3u, 5u, 9u})
-      for (const float copies : {1.0f, 7.0f, 8.0f, 17.0f, 130.0f, 1000.0f}) {
+    for (const uint32_t count : {1u, 3u, 9u})
+      for (const float copies : {1.0f, 17.0f, 300.0f}) {
         std::vector<GpgpAxiom> all;
         for (uint32_t i = 0; i < count; ++i) all.push_back(makeAxiom(copies + float(i), 4.1f + float(i), 3, i + 1, i));
         check(std::to_string(count) + " axioms of " + std::to_string(copies), words, all);

@@ -147,6 +147,10 @@ private:
     const Node& node = graph_.nodes[index];
     if (!node.cuts) return false;
     if (cuts_[index].count(polygon)) return true;
+    if (cuts_[index].size() == kMostCuts) {
+      graph_.nodes[index].uncut = true;
+      return false;
+    }
     // A prism's polygon has -z as its y.
     Points points(memory_);
     const Corners corners = cornersOf(polygon);

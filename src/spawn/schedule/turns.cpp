@@ -44,6 +44,13 @@ uint32_t quadsOf(const Graph& graph) {
   return quads;
 }
 
+/// Polygons that a SubDiv cuts.
+uint32_t cutsOf(const Graph& graph, const Node& node) {
+  if (node.op != kOpSubDiv || node.division == UINT32_MAX) return 0;
+  const uint32_t at = graph.divisions[node.division + kDivisionCuts];
+  return at ? graph.divisions[node.division + at] : 0;
+}
+
 /// Steps of a family from its operator to a child (codegen/table.cpp), the choices among them included, at most.
 constexpr uint32_t kFamilySteps = 16;
 /// Moving shapes between the stack and elsewhere, and what else a step by itself does: ranks, sums, and the search for
@@ -58,7 +65,7 @@ Turns turnsOf(const Graph& graph) {
     if (node.op == kOpRandomRule) choices = std::max(choices, node.edgeCount);
     if (node.op == kOpSubDiv && node.division == UINT32_MAX) parts = std::max(parts, node.edgeCount);
     if (node.op >= kOpCompSplit) edges = std::max(edges, node.edgeCount);
-    if (node.op == kOpSubDiv && isCutting(node)) cut = static_cast<uint32_t>(graph.polygons.size());
+    cut = std::max(cut, cutsOf(graph, node));
   }
   const uint32_t value = loop(codes);                              // evaluate()
   const uint32_t division = loop(parts, value);                    // divisionOf()
