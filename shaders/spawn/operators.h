@@ -104,14 +104,12 @@ struct Part {
 /// thousand of a length is taken for rounding.
 GPGP_FN bool toPart(GPGP_INOUT(Shape) s, uint axis, float remainder, Part part, uint number) {
   const float start = add(part.fixedBefore, multiply(remainder, part.shareBefore));
-  float extent = add(part.fixedLength, multiply(remainder, part.share));
-  if (!(remainder > 0.0f)) { // else all of them fit
-    const float room = subtract(component(s.size, axis), start);
-    if (!(room > multiply(extent, 1.0e-4f))) return false;
-    extent = min(extent, room);
-  }
-  toPiece(s, axis, start, extent, number);
-  return true;
+  const float extent = add(part.fixedLength, multiply(remainder, part.share));
+  const float room = subtract(component(s.size, axis), start);
+  const bool allFit = remainder > 0.0f;
+  // Without a return before its end: compilers take long for chains of those.
+  toPiece(s, axis, start, allFit ? extent : min(extent, room), number);
+  return allFit || room > multiply(extent, 1.0e-4f);
 }
 
 /// What a shape multiplies into.

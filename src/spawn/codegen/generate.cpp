@@ -487,6 +487,7 @@ private:
     for (uint32_t e = 0; e < node.edgeCount; ++e)
       if (edgeOf(node, e).target != kNoNode) kept = e;
     if (kept == kNoNode) return add("  return kEndDiscarded;\n");
+    std::string there = "true";
     const std::string place = number(kept);
     bool followed = false;
     if (node.op == kOpReplicate) {
@@ -504,12 +505,11 @@ private:
       }
       add("  const float remainder = remainderOf(" + component(node.argument) + ", " +
           literal(uintBitsToFloat(division[0])) + ");\n");
-      if (!fixed) add("  if (!(remainder > 0.0f)) return kEndDiscarded;\n");
       const uint32_t* part = division + kDivisionParts + kept * kPartSize;
       std::string values;
       for (uint32_t i = 0; i < kPartSize; ++i) values += (i ? ", " : "") + literal(uintBitsToFloat(part[i]));
-      add("  if (!toPart(s, " + number(node.argument) + ", remainder, Part(" + values + "), " + place +
-          ")) return kEndDiscarded;\n");
+      there = (fixed ? "toPart(s, " : "remainder > 0.0f && toPart(s, ") + number(node.argument) + ", remainder, Part(" +
+              values + "), " + place + ")";
     } else { // by the words; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n");
@@ -518,11 +518,11 @@ private:
         add("  const Fan fan = fanOf(s);\n  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
             "  if (s.node == 0u) return kEndDiscarded;\n");
       else
-        add("  const Division d = divisionOf(s, " + place +
-            ");\n  if (d.fan.count == 0u) return kEndDiscarded;\n  if (!toPart(s, " + number(node.argument) +
-            ", d.fan.extent, d.part, " + place + ")) return kEndDiscarded;\n");
+        add("  const Division d = divisionOf(s, " + place + ");\n");
+      if (!followed)
+        there = "d.fan.count != 0u && toPart(s, " + number(node.argument) + ", d.fan.extent, d.part, " + place + ")";
     }
-    add("  " + take(node, kept, followed) + "\n");
+    add("  if (" + there + ") { " + take(node, kept, followed) + " }\n");
   }
 
   /// By node: whether a shape can come there that no chain has brought.
