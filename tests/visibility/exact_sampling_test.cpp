@@ -58,7 +58,7 @@ TEST(ExactTwin, FindsTheTruthAndHardlyMore) {
     EXPECT_GE(c.found, c.truth * (name == "fronts" ? 0.998 : name == "far fronts" ? 0.9995 : 0.99)) << name;
     // Margins overlap beside common edges, where planes are not asked; the colonnade's far columns are tens of slivers
     // a pixel that interleave in depth.
-    const double most = name == "colonnade" ? 0.01 : name == "far fronts" ? 0.0075 : 0.004;
+    const double most = name == "colonnade" ? 0.016 : name == "far fronts" ? 0.0075 : 0.004;
     EXPECT_LE(c.extra, c.truth * most + exact.counters.unresolved) << name;
     EXPECT_LE(exact.counters.unresolved, c.truth * (name == "colonnade" ? 0.03 : 0.001)) << name;
     const TwinResult standard = sampleOnCpu(scene.input());

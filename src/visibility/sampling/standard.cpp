@@ -93,8 +93,8 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
     };
     if (phase == 0) {
       addMaking(names[0][0],
-                addShader(list, "small", choose(visibility_small_int64, visibility_small), {phase, limits, margins}), write,
-                offsetof(Counters, keptArgs));
+                addShader(list, "small", choose(visibility_small_int64, visibility_small), {phase, limits, margins}),
+                write, offsetof(Counters, keptArgs));
       fetchesTriangles(
           list.dispatchIndirect("unfold", addShader(list, "unfold", visibility_unfold, {0, limits, margins}),
                                 {{kBindQueue, readWrite}, {kBindRecords, write}, {kBindCounters, readWrite}},
@@ -112,8 +112,9 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
                 addShader(list, "large", choose(visibility_large_int64, visibility_large), {phase, limits, margins}),
                 offsetof(Counters, largeArgs))
         .beside = true;
-    addMaking(names[phase][3], addShader(list, "left", choose(visibility_left_int64, visibility_left), {phase, limits, margins}),
-              read, offsetof(Counters, leftArgs))
+    addMaking(names[phase][3],
+              addShader(list, "left", choose(visibility_left_int64, visibility_left), {phase, limits, margins}), read,
+              offsetof(Counters, leftArgs))
         .beside = true;
   }
   if (budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT)
