@@ -256,9 +256,16 @@ void Decoupled::draw(VkCommandBuffer commands, const Camera& display) {
   stamped_[slot_] = true;
 }
 
+/// Whether a sampler that had room for all left some of a pixel's many triangles undecided: they are shown.
+static bool isOnlyInDoubt(const GpgpSampleReport& report) {
+  return report.base.status == GPGP_BUDGET_EXCEEDED && report.unresolved > 0 &&
+         report.neededTriangles <= report.maxTriangles && report.neededCandidates <= report.maxCandidates &&
+         report.neededPairs <= report.maxPairs;
+}
+
 void Decoupled::collect() {
   for (auto next = sampler_.report(); next; next = sampler_.report()) {
-    well_ = well_ && next->base.status == GPGP_SUCCESS;
+    well_ = well_ && (next->base.status == GPGP_SUCCESS || isOnlyInDoubt(*next));
     if (next->base.tag == tagShading) shading_ = *next;
     if (next->base.tag == tagTruth) truth_ = *next;
     if (next->base.tag != tagMisses || !next->truth) continue;

@@ -183,7 +183,7 @@ void main() {
 #endif
         if (total > most) {
           total = most;
-          const bool late = waits && before + fan.count > total;
+          const bool late = waits && fan.count > 0 && before + fan.count > total; // what makes none is done
           if (late) {
             const uint part = total - min(before, total);
             childrenUpTo[lane] = part > 0 ? total : 0xffffffffu;
