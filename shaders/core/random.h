@@ -34,8 +34,8 @@ GPGP_FN uvec2 childKey(uvec2 key, uint index) {
 /// [0, 1) with 24 bits, exact.
 GPGP_FN float unitFloat(uint bits) { return float(bits >> 8) * 5.9604645e-8f; }
 
-/// Number index of those that are drawn at a place in a derivation, in [0, 1). Kernels have it at each place that draws:
-/// a key's halves are mixed, so that one round of one of them is enough.
+/// Number index of those that are drawn at a place in a derivation, in [0, 1). A key's halves are mixed, so that one
+/// round of one of them is enough, which kernels have at each place that draws.
 GPGP_FN float drawnNumber(uvec2 key, uint index) { return unitFloat(mixBits(key.y + index * 0xc2b2ae3du)); }
 /// The path key behind that place: what is drawn next differs. A bijection as well.
 GPGP_FN uvec2 drawnKey(uvec2 key) { return uvec2(key.x, key.y + 0x27220a95u); }

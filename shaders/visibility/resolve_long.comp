@@ -1,8 +1,8 @@
 // Decides a pixel's list of more than kBatch: those that come nearest first, up to kBatch together, until all samples
 // are covered and what is left begins behind all that covers them.
 //
-// Of what a batch shows, that which reaches behind where the next one begins is carried over to it, so that planes decide
-// between both. Where too many do, those that reach least far are not: what would have to be decided against them is shown.
+// Of what a batch shows, that which reaches behind where the next one begins is carried over to it, so that planes
+// decide between both. Where too many do, those that reach least far are not: what they leave in doubt is shown.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_SUBGROUPS
