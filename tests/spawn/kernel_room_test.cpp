@@ -134,9 +134,9 @@ TEST(KernelRoom, DerivesWhatTheEvaluatorDerives) {
   std::vector<GpgpAxiom> axioms;
   for (uint32_t i = 0; i < 200; ++i) axioms.push_back(spawn::makeAxiom(3, 4, 5, i + 1, i));
   // Splits wait between one another, so that their code has room whatever their number.
-  for (const auto& [text, hasRoom] : {std::pair(chain(250), false), std::pair(choices(), false),
-                                      std::pair(twice(40), false), std::pair(nestedSplits(60), true),
-                                      std::pair(longExpression(100), false)}) {
+  for (const auto& [text, hasRoom] :
+       {std::pair(chain(250), false), std::pair(choices(), false), std::pair(twice(40), false),
+        std::pair(nestedSplits(60), true), std::pair(longExpression(100), false)}) {
     std::vector<uint32_t> words = bake(text);
     const spawn::Derivation expected = spawn::derive(words, axioms);
     const spawn::KernelSource source = sourceOf(text);

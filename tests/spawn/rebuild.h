@@ -137,8 +137,8 @@ private:
                            static_cast<uint32_t>(to.size()));
   }
   GpgpGrammarOperator alternatives(const std::vector<spawn::Branch>& branches) {
-    const GpgpGrammarValue drawn = gpgpAddExpression(builder_, GPGP_EXPRESSION_RANDOM, GPGP_GRAMMAR_NUMBER(0),
-                                                     GPGP_GRAMMAR_NUMBER(1));
+    const GpgpGrammarValue drawn =
+        gpgpAddExpression(builder_, GPGP_EXPRESSION_RANDOM, GPGP_GRAMMAR_NUMBER(0), GPGP_GRAMMAR_NUMBER(1));
     return add(GPGP_OPERATOR_RANDOM_RULE, {drawn}, branches);
   }
 
