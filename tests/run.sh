@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs all tests: release, then again under AddressSanitizer and
-# UndefinedBehaviorSanitizer, then a build of all but the tests with the second compiler. Works as root or through sudo,
+# Installs what is missing, builds everything and runs all tests: release, then a build of all but the tests with the
+# second compiler, then again under AddressSanitizer and UndefinedBehaviorSanitizer. Works as root or through sudo,
 # asks nothing, can be run again. Ends with a summary; exits 1 where anything failed.
 #
 #   tests/run.sh            everything
 #   tests/run.sh --quick    release only
+#   GPGP_TEST_MINUTES=80    what there is time for: what would take longer by what release took is left out, which the
+#                           summary says (default: 80; 0: no limit)
 #   GPGP_DEVICE=name        runs the tests on another device than lavapipe
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -55,12 +57,24 @@ buildAndTest() {
   if step "build $1 (build/$1)" buildPreset "$1"; then step "tests, $1" testPreset "$1" || true; fi
 }
 
+# hasTimeFor PERCENT NAME: whether that much of what release took is left of the time; if not, notes it.
+minutes=${GPGP_TEST_MINUTES:-80}
+hasTimeFor() {
+  if ((minutes == 0 || (SECONDS - started) + released * $1 / 100 <= minutes * 60)); then return 0; fi
+  summary+=("LEFT OUT  $2: no time after $(((SECONDS - started) / 60)) of $minutes minutes (GPGP_TEST_MINUTES)")
+  return 1
+}
+
 step "Debian packages (samples/packages.txt, tests/packages.txt)" installMissing samples/packages.txt tests/packages.txt
 step "real test data (tests/data/fetch.sh)" tests/data/fetch.sh || true
+releaseBegins=$SECONDS
 buildAndTest release
+released=$((SECONDS - releaseBegins))
 if [[ $quick == no ]]; then
-  buildAndTest asan-ubsan
-  step "build with clang, without tests (build/clang)" buildPreset clang OFF || true
+  if hasTimeFor 20 "build with clang"; then
+    step "build with clang, without tests (build/clang)" buildPreset clang OFF || true
+  fi
+  if hasTimeFor 100 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
 fi
 
 say "summary, after $(((SECONDS - started) / 60)) min $(((SECONDS - started) % 60)) s"
