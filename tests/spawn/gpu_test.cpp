@@ -7,6 +7,7 @@
 #include "host/device.h"
 #include "host/files.h"
 #include "host/memory.h"
+#include "kernels.h"
 #include "random_grammar.h"
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
@@ -405,19 +406,6 @@ std::vector<uint32_t> bakeKernel(const std::string& text) {
   std::memcpy(words.data(), blob.data, blob.size);
   gpgpFreeBlob(&blob);
   EXPECT_GT(words.size(), words[shader::kHeaderWords]);
-  return words;
-}
-
-/// The grammar with a kernel's bytes behind it.
-std::vector<uint32_t> withKernel(std::vector<uint32_t> words, const spawn::KernelSource& source,
-                                 spawn::KernelTarget target, const spawn::Fit& fit = {}) {
-  const auto code = spawn::compileKernel(source, target);
-  EXPECT_TRUE(code) << code.error().text;
-  spawn::KernelInfo info;
-  info.target = target;
-  info.fit = fit;
-  const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
-  words.insert(words.end(), kernel.begin(), kernel.end());
   return words;
 }
 

@@ -2,6 +2,7 @@
 // time and stack that do not grow with the grammar, and with the same result.
 #include "grammars.h"
 #include "host/device.h"
+#include "kernels.h"
 #include "random_grammar.h"
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
@@ -143,14 +144,8 @@ TEST(KernelRoom, DerivesWhatTheEvaluatorDerives) {
     EXPECT_EQ(source.byWords == 0, hasRoom) << text.substr(0, 200);
     const spawn::Graph graph = graphOf(words);
     for (const spawn::KernelTarget target : spawn::targetsOf(graph)) {
-      std::vector<uint32_t> one = words;
-      const auto code = spawn::compileKernel(source, target);
-      ASSERT_TRUE(code) << code.error().text;
-      spawn::KernelInfo info;
-      info.target = target;
-      const auto kernel =
-          spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
-      one.insert(one.end(), kernel.begin(), kernel.end());
+      const std::vector<uint32_t> one = withKernel(words, source, target);
+      ASSERT_GT(one.size(), words.size());
       const GpgpSpawnReport report = device.derive(one, axioms, uint32_t(expected.terminals) + 1);
       EXPECT_EQ(report.base.status, GPGP_SUCCESS) << text.substr(0, 200);
       EXPECT_EQ(report.terminals, expected.terminals) << text.substr(0, 200);

@@ -1,6 +1,7 @@
 // Derivations whose loops are long, on devices that end a shader's loops in silence (shaders/core/turns.h): every
 // instance against the CPU evaluator, by the interpreter and by kernels of every schedule.
 #include "grammars.h"
+#include "kernels.h"
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
 #include "spawn/codegen/schedules.h"
@@ -86,13 +87,9 @@ struct TurnsTest : ::testing::Test {
       const auto source = spawn::generate(graph, spawn::namedSchedule(graph, name)->waits);
       std::vector<uint32_t> all = words;
       for (const spawn::KernelTarget target : spawn::targetsOf(graph)) {
-        const auto code = spawn::compileKernel(source, target);
-        ASSERT_TRUE(code) << code.error().text;
-        spawn::KernelInfo info;
-        info.target = target;
-        const auto kernel =
-            spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
-        all.insert(all.end(), kernel.begin(), kernel.end());
+        const size_t before = all.size();
+        all = withKernel(std::move(all), source, target);
+        ASSERT_GT(all.size(), before) << what << ", " << name;
       }
       check(what + ", " + name, all, axioms);
     }
