@@ -7,17 +7,13 @@
 #define GPGP_SHADERS_SPAWN_FANS_H
 #include "spawn/operators.h"
 
-// Which operators that multiply there are, bits by kOp values, and three cases that cost much code. Generated kernels
+// Which operators that multiply there are: bits by kOp values, and kHas bits (operators.h). Generated kernels
 // say what their graph has; what it has not is left out.
 #ifndef GPGP_OPERATORS
 #define GPGP_OPERATORS 0xffffffffu
 #endif
 
 GPGP_SHADER_BEGIN
-
-GPGP_CONST uint kHasCuts = 1u << 29;      // SubDiv of others than boxes, quads and spheres
-GPGP_CONST uint kHasDivisions = 1u << 30; // SubDiv whose parts are not constant
-GPGP_CONST uint kHasSides = 1u << 31;     // CompSplit of others than boxes
 
 GPGP_FN uint edgeTarget(GPGP_GRAPH uint node, uint index) {
   return graphWords[graphWords[node + kNodeEdges] + index * kEdgeSize + kEdgeTarget];

@@ -264,6 +264,11 @@ GPGP_FN uint selectBit(uint bits, uint n) {
   return uint(findLSB(bits));
 }
 
+// Bits of GPGP_OPERATORS beside those of kOp values: cases of operators that cost much code.
+GPGP_CONST uint kHasCuts = 1u << 29;      // SubDiv of others than boxes, quads and spheres
+GPGP_CONST uint kHasDivisions = 1u << 30; // SubDiv whose parts are not constant
+GPGP_CONST uint kHasSides = 1u << 31;     // CompSplit of others than boxes
+
 /// How a chain of operators that pass on one shape ended.
 GPGP_CONST uint kEndDiscarded = 0u;
 GPGP_CONST uint kEndTerminal = 1u;   // shape.node is the terminal's node

@@ -27,6 +27,13 @@ std::string chain(uint32_t rules) {
     text += "R" + std::to_string(i) + " = Translate(1, 0, 0) R" + std::to_string(i + 1) + ";\n";
   return text + "R" + std::to_string(rules) + " = A;\n";
 }
+/// Rules that keep one of an operator's shapes.
+std::string filters(uint32_t rules, const std::string& before, const std::string& behind) {
+  std::string text = "axiom Box R0;\nterminal A (1, 0);\n";
+  for (uint32_t i = 0; i < rules; ++i)
+    text += "R" + std::to_string(i) + " = " + before + "R" + std::to_string(i + 1) + behind + ";\n";
+  return text + "R" + std::to_string(rules) + " = A;\n";
+}
 /// Rules beside each other, each with a choice and a translation.
 std::string wide(uint32_t rules) {
   std::string text = "axiom Box S0;\nterminal A (1, 0);\nterminal B (1, 1);\n";
@@ -94,6 +101,24 @@ TEST(KernelRoom, CodeIsBoundedWhateverTheGrammar) {
   for (const std::string& text : {wide(500), choices(), twice(60), nestedSplits(150), longExpression(100)}) {
     const spawn::KernelSource source = sourceOf(text);
     EXPECT_LT(source.functions.size(), 200'000u) << text.substr(0, 200);
+  }
+}
+
+TEST(KernelRoom, CompiledCodeIsBoundedForOperatorsThatKeepOneShape) {
+  const auto sizeOf = [](const spawn::KernelSource& source) { // as drivers get it: inlined
+    return spawn::compileKernel(source, spawn::KernelTarget::subgroups)->size();
+  };
+  const size_t most = sizeOf(sourceOf(ownGrammar("building.pga")));
+  const std::pair<const char*, const char*> operators[] = {{"SubDiv(X) { 0.01: Discard() | -1: ", " }"},
+                                                           {"SubDiv(Y) { Rand(0.01, 0.02): Discard() | -1: ", " }"},
+                                                           {"CompSplit() { Discard() | ", " | Discard() }"},
+                                                           {"Replicate() { Discard() | Translate(0, 1, 0) ", " }"}};
+  for (const auto& [before, behind] : operators) {
+    uint32_t rules = 0; // as many as are compiled
+    while (rules < 30 && spawn::isWorthCompiling(sourceOf(filters(rules + 1, before, behind)))) ++rules;
+    EXPECT_GE(rules, 3u) << before;
+    EXPECT_LT(sizeOf(sourceOf(filters(rules, before, behind))), 2 * most) << before << rules;
+    EXPECT_FALSE(spawn::isWorthCompiling(sourceOf(filters(500, before, behind)))) << before;
   }
 }
 

@@ -55,9 +55,9 @@ public:
                            (room_.words || node.division == UINT32_MAX || isByWords(node) || stops_[indexOf(node)]);
       if (!multiplies(node) && !byWords) continue;
       operators |= 1u << node.op;
-      if (isCutting(node)) operators |= 1u << 29;
-      if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= 1u << 30;
-      if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= 1u << 31;
+      if (isCutting(node)) operators |= kHasCuts;
+      if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= kHasDivisions;
+      if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= kHasSides;
     }
     add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/fans.h\"\n");
     if (room_.words) add("#include \"spawn/chain.h\"\n");
@@ -513,7 +513,7 @@ private:
     } else { // by the words; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n");
-      followed = node.op == kOpRepeat || isCutting(node);
+      followed = node.op == kOpRepeat;
       if (followed)
         add("  const Fan fan = fanOf(s);\n  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
             "  if (s.node == 0u) return kEndDiscarded;\n");
@@ -544,31 +544,24 @@ private:
       }
     return nodes;
   }
-  /// A shape comes from an operator that multiplies (arrives), or has waited for this one. Software devices run every
-  /// chain that is named here, so there only those are that a shape can come to; and so it is with long ones
-  /// everywhere, as what is named is inlined to its end: with all of them, code would grow with the square of a chain's
-  /// length.
+  /// A shape comes from an operator that multiplies (arrives), or has waited for this one. What is named here is inlined
+  /// to its end, and software devices run all of it, so that only those chains are that a shape can come to.
   void writeRunChain() {
     add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n"
         "  uint end = s.node == 0u ? kEndDiscarded : kEndUnfinished;\n"
         "  if (s.node != 0u && s.depth <= maxDepth) switch (s.node) {\n");
     std::string terminals;
-    const std::vector<bool> entries = entered();
-    const auto isEntry = [&](uint32_t n) { return entries[n]; };
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       if (graph_.nodes[n].op == kOpTerminal && !room_.words) terminals += "  case " + number(offsetOf(n)) + ":\n";
       if (isContext(graph_.nodes[n].op) && !room_.words)
         add("  case " + number(offsetOf(n)) +
             ": end = " + (waits_[n] ? "arrives ? kEndWaits : kEndContext" : "kEndContext") + "; break;\n");
       if (!room_.named[n]) continue;
-      const bool entry = std::any_of(peers_[n].begin(), peers_[n].end(), isEntry);
-      if (!entry) add("#ifndef GPGP_SOFTWARE\n");
       for (const uint32_t peer : peers_[n]) add("  case " + number(offsetOf(peer)) + ":");
       const std::string row =
           matched_.empty() ? "0u" : "matchedRows[(s.node - " + number(kHeaderSize) + ") / " + number(kNodeSize) + "]";
       add(std::string(waits_[n] ? " if (arrives) end = kEndWaits; else" : "") + " end = " + chainOf(n) +
           "(s, maxDepth, " + (peers_[n].size() > 1 ? row : number(row_[n])) + "); break;\n");
-      if (!entry) add("#endif\n");
     }
     if (!terminals.empty()) add(terminals + "    end = kEndTerminal; break;\n");
     if (room_.words)

@@ -16,22 +16,22 @@ uint32_t codesOf(const Graph& graph, const Node& node) {
   return codes;
 }
 
-/// What chains are inlined to, by the node whose code it is.
-struct Sizes {
-  std::vector<uint32_t> lengths; ///< operators, at most kLongChain + 1
-  std::vector<uint32_t> weights; ///< at most 2 kRoom
-};
+/// Of what an operator does, by the time that compilers take for twelve of them in a row, beside twelve translations.
+uint32_t codeOf(const Node& node) {
+  if (node.op == kOpCompSplit) return node.shapes == 1u << kShapeBox ? 8 : 24;
+  if (node.op == kOpSubDiv) return node.division == UINT32_MAX ? 16 : 5;
+  return 1;
+}
 
+/// What chains are inlined to, by the node whose code it is: at most 2 kRoom.
 class Measure {
 public:
   Measure(const Graph& graph, const std::vector<bool>& waits, const std::vector<uint32_t>& first)
-      : graph_(graph), waits_(waits), first_(first),
-        seen_(graph.nodes.size()), sizes_{std::vector<uint32_t>(graph.nodes.size()),
-                                          std::vector<uint32_t>(graph.nodes.size())} {}
+      : graph_(graph), waits_(waits), first_(first), seen_(graph.nodes.size()), weights_(graph.nodes.size()) {}
 
-  Sizes run() {
+  std::vector<uint32_t> run() {
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) measure(n);
-    return std::move(sizes_);
+    return std::move(weights_);
   }
 
 private:
@@ -59,13 +59,11 @@ private:
       }
       stack.pop_back();
       if (!opened) continue;
-      uint32_t length = 1, weight = weightOf(graph_, n);
+      uint32_t weight = weightOf(graph_, n);
       forCalled(node, [&](uint32_t target) { // terminals and what multiplies have none
-        length = std::min(length + sizes_.lengths[target], kLongChain + 1);
-        weight = std::min(weight + sizes_.weights[target], 2 * kRoom);
+        weight = std::min(weight + weights_[target], 2 * kRoom);
       });
-      sizes_.lengths[node] = length;
-      sizes_.weights[node] = weight;
+      weights_[node] = weight;
     }
   }
 
@@ -73,16 +71,18 @@ private:
   const std::vector<bool>& waits_;
   const std::vector<uint32_t>& first_;
   std::vector<uint8_t> seen_;
-  Sizes sizes_;
+  std::vector<uint32_t> weights_;
 };
 } // namespace
 
-uint32_t weightOf(const Graph& graph, const Node& node) { return 1 + codesOf(graph, node) / 4 + node.edgeCount / 2; }
+uint32_t weightOf(const Graph& graph, const Node& node) {
+  return codeOf(node) + codesOf(graph, node) / 4 + node.edgeCount / 2;
+}
 
 Room findRoom(const Graph& graph, const std::vector<bool>& waits, const std::vector<uint32_t>& first,
               const std::vector<bool>& entered, const std::vector<bool>& chooses) {
   const auto count = static_cast<uint32_t>(graph.nodes.size());
-  const Sizes sizes = Measure(graph, waits, first).run();
+  const std::vector<uint32_t> inlined = Measure(graph, waits, first).run();
   std::vector<bool> enters(count); // by the node whose code it is
   for (uint32_t n = 0; n < count; ++n)
     if (entered[n]) enters[first[n]] = true;
@@ -96,10 +96,10 @@ Room findRoom(const Graph& graph, const std::vector<bool>& waits, const std::vec
     if (chooses[n]) all += weightOf(graph, node);
     if (multiplies(node)) all += codesOf(graph, node) / 4;
     room.coded[n] = isChain(node) && first[n] == n;
-    room.named[n] = room.coded[n] && (enters[n] || sizes.lengths[n] <= kLongChain);
+    room.named[n] = room.coded[n] && enters[n];
     if (!room.named[n]) continue;
-    weights.push_back(sizes.weights[n]);
-    all += sizes.weights[n];
+    weights.push_back(inlined[n]);
+    all += inlined[n];
   }
   if (all <= kRoom) return room;
   // Only light chains are code. None of them calls a heavier one.
@@ -113,8 +113,8 @@ Room findRoom(const Graph& graph, const std::vector<bool>& waits, const std::vec
     if (i + 1 == weights.size() || weights[i + 1] > weights[i]) most = weights[i];
   }
   for (uint32_t n = 0; n < count; ++n) {
-    if (isChain(graph.nodes[n]) && sizes.weights[first[n]] > most) ++room.byWords;
-    if (!room.coded[n] || sizes.weights[n] <= most) continue;
+    if (isChain(graph.nodes[n]) && inlined[first[n]] > most) ++room.byWords;
+    if (!room.coded[n] || inlined[n] <= most) continue;
     room.coded[n] = room.named[n] = false;
   }
   return room;

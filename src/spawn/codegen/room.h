@@ -7,10 +7,11 @@
 
 namespace gpgp::spawn {
 
-/// What a kernel has code for, in operators, each counted wherever it is inlined, with a share for its expressions and
-/// edges; and where that does not suffice for all, what chains have beside the loop that runs the others.
-constexpr uint32_t kRoom = 512, kRoomBesideWords = 96;
-constexpr uint32_t kLongChain = 24; ///< operators: chains that no shape is brought to are code up to this length
+/// The code that a kernel has room for, in operators. Each counts wherever it is inlined, with a share for its
+/// expressions and edges, and more where it keeps one of several shapes. The sample grammars need 2 to 138.
+constexpr uint32_t kRoom = 256;
+/// Where that does not suffice: the same for chains beside the loop that runs the others.
+constexpr uint32_t kRoomBesideWords = 96;
 
 /// What code and expressions of an operator by itself are worth.
 uint32_t weightOf(const Graph& graph, const Node& node);
