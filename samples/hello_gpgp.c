@@ -124,10 +124,10 @@ int main(void) {
   need(gpgpCreateGrammar(context, &grammarInfo, &grammar), "gpgpCreateGrammar");
   gpgpFreeBlob(&blob); /* the asset has its own copy */
 
-  /* ---- a worker that derives grammars, for queues of family 0; its pipelines are made now, never in a frame */
+  /* ---- a recorder that derives grammars, for queues of family 0; its pipelines are made now, never in a frame */
   GpgpSpawnerCreateInfo spawnerInfo = GPGP_SPAWNER_CREATE_INFO_INIT;
   spawnerInfo.base.queueFamily = 0;
-  GpgpWorker spawner;
+  GpgpRecorder spawner;
   need(gpgpCreateSpawner(context, &spawnerInfo, &spawner), "gpgpCreateSpawner");
   need(gpgpPrewarm(spawner, NULL), "gpgpPrewarm");
 
@@ -145,7 +145,7 @@ int main(void) {
   axiom.size[1] = 10.0f;
   axiom.size[2] = 4.0f;
   axiom.seed = 1;
-  axiom.rule = GPGP_AXIOM_DEFAULT_RULE; /* the one that the grammar names: Tower */
+  axiom.start = GPGP_AXIOM_DEFAULT_START; /* the one that the grammar names: Tower */
   axiom.attribute = NAN;                /* taken from the seed */
   memcpy(mapped[0], &axiom, sizeof axiom);
 
@@ -192,7 +192,7 @@ int main(void) {
     printf("  %.0f x %.0f x %.0f m, centre at height %.1f m\n", first[i].size[0], first[i].size[1], first[i].size[2],
            first[i].transform[7]);
 
-  /* ---- taken down in any order that Vulkan allows; destroying the context takes its assets and workers along */
+  /* ---- taken down in any order that Vulkan allows; destroying the context takes its assets and recorders along */
   gpgpDestroyContext(context);
   VkBuffer buffers[3] = {axioms, instances, count};
   for (int i = 0; i < 3; ++i) {

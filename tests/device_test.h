@@ -1,5 +1,5 @@
 // A device with validation and a context, which the tests of a suite share: on software devices it is making pipelines
-// that takes time, so a worker is made once for each create info. Any validation message fails the test.
+// that takes time, so a recorder is made once for each create info. Any validation message fails the test.
 #pragma once
 #include "host/device.h"
 
@@ -38,7 +38,7 @@ struct SharedDevice {
   GpgpContext context = nullptr;
   GpgpFeatures features = 0;
   std::vector<std::string> messages; ///< of the context: "function: text"
-  std::map<std::string, GpgpWorker> workers;
+  std::map<std::string, GpgpRecorder> recorders;
   uint64_t frame = 0;
 
   explicit SharedDevice(const char* label) {
@@ -86,13 +86,13 @@ struct DeviceTest : testing::Test {
     return f;
   }
 
-  /// The worker that `create` makes of such an info, prewarmed for the target; belongs to the suite.
+  /// The recorder that `create` makes of such an info, prewarmed for the target; belongs to the suite.
   template <class Info>
-  GpgpWorker worker(GpgpResult(GPGP_CALL* create)(GpgpContext, const Info*, GpgpWorker*), const Info& info,
+  GpgpRecorder recorder(GpgpResult(GPGP_CALL* create)(GpgpContext, const Info*, GpgpRecorder*), const Info& info,
                     const GpgpTargetInfo* target = nullptr) {
     std::string key(reinterpret_cast<const char*>(&info), sizeof info);
     if (target) key.append(reinterpret_cast<const char*>(target), sizeof *target);
-    GpgpWorker& made = suiteDevice->workers[key];
+    GpgpRecorder& made = suiteDevice->recorders[key];
     if (made) return made;
     EXPECT_EQ(create(context, &info, &made), GPGP_SUCCESS) << lastMessage();
     GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;

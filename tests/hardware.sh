@@ -175,7 +175,7 @@ benchmarkCommands() {
     echo "gpgp spawn samples/grammars/$name.pga --axioms $axioms --axiom-size $x,$y,$z --spacing $spacing --repeat 200 --json"
   done < <(grep -v '^#' samples/grammars/cases.txt)
   echo "spawn_bench --repeat 30 bounds"
-  echo "visibility_bench --size 1920x1080 --repeat 20 --truth 0 --exact street colonnade foliage city bigcity"
+  echo "visibility_bench --size 1920x1080 --repeat 20 --reference 0 --exact street colonnade foliage city bigcity"
 }
 
 case ${1:-} in

@@ -3,16 +3,16 @@
  * An engine hands gpgp its device once (gpgpCreateContext), then, each frame, a command buffer in recording state.
  * gpgp records work into it and returns. It never submits, waits, presents, owns a queue or creates a thread.
  *
- *   asset    immutable input, shareable between workers: a grammar, a drawing, a geometry set
- *   worker   pipelines and scratch for one kind of work, sized by budgets: a spawner, a canvas, a sampler
+ *   asset    immutable input, shareable between recorders: a grammar, a drawing, a geometry set
+ *   recorder   pipelines and scratch for one kind of work, sized by budgets: a spawner, a canvas, a recorder
  *   view     the history of one camera, canvas or tile
  *   report   what a record did, as counted by the GPU; ready when its frame is safe
  *
  * A frame:
  *   gpgpAdvance(context, &frame)                      once: frees, harvests reports, recycles rings
  *   gpgpRecordUpload(context, cmd, &frame, bytes)     copies pending asset data
- *   gpgpRecordPrepare...(worker, cmd, &frame, info)   outside render passes: the compute work
- *   gpgpRecordDraw...(worker, cmd, &frame, info)      inside the engine's pass, where something is drawn
+ *   gpgpRecordPrepare...(recorder, cmd, &frame, info)   outside render passes: the compute work
+ *   gpgpRecordDraw...(recorder, cmd, &frame, info)      inside the engine's pass, where something is drawn
  *
  * Conventions, stated once for all services:
  *   object and world space   right-handed, +Y up, 1 unit = 1 metre; counter-clockwise triangles face the viewer
@@ -24,7 +24,7 @@
  *
  * Documentation tags:
  *   @threads any      safe from any thread at any time
- *   @threads context  one thread at a time per context; beside records of its workers, too, but for gpgpAdvance, which
+ *   @threads context  one thread at a time per context; beside records of its recorders, too, but for gpgpAdvance, which
  *                     changes what records and reports read, and for destroying what a record uses
  *   @threads handle   one thread at a time per handle named first; different handles run side by side
  *   @lifetime call    pointers are read during the call only; frame: until the frame is safe; handle: until destroyed
@@ -92,7 +92,7 @@ enum {
   GPGP_ERROR_OUT_OF_HOST_MEMORY = -5,
   GPGP_ERROR_OUT_OF_DEVICE_MEMORY = -6,
   GPGP_ERROR_DEVICE_LOST = -7,
-  GPGP_ERROR_TOO_MANY_RECORDS = -8, /**< maxRecordsPerFrame or maxFramesInFlight is used up */
+  GPGP_ERROR_TOO_MANY_RECORDINGS = -8, /**< maxRecordingsPerFrame or maxFramesInFlight is used up */
   GPGP_ERROR_INVALID_DATA = -9,     /**< bytes that are not what they claim: magic, version, checksum or content */
   GPGP_ERROR_UNSUPPORTED = -10,     /**< valid input that this build or device cannot handle */
   GPGP_ERROR_IO = -11,
@@ -139,7 +139,7 @@ enum {
   GPGP_STRUCTURE_CANVAS_INFO = 204,
   GPGP_STRUCTURE_CANVAS_DRAW_INFO = 205,
   GPGP_STRUCTURE_CANVAS_REPORT = 206,
-  GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO = 207,
+  GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO = 207,
   GPGP_STRUCTURE_GLYPH_SOURCE = 208,
   GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO = 209,
   GPGP_STRUCTURE_GLYPH_SET_INFO = 210,
@@ -147,10 +147,10 @@ enum {
   GPGP_STRUCTURE_HIT_TEST_INFO = 212,
   /* visibility */
   GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO = 300,
-  GPGP_STRUCTURE_SAMPLER_CREATE_INFO = 301,
-  GPGP_STRUCTURE_SAMPLE_INFO = 302,
-  GPGP_STRUCTURE_SAMPLE_REPORT = 303,
-  GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO = 304,
+  GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO = 301,
+  GPGP_STRUCTURE_VISIBILITY_INFO = 302,
+  GPGP_STRUCTURE_VISIBILITY_REPORT = 303,
+  GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO = 304,
   GPGP_STRUCTURE_VISIBILITY_METRICS_INFO = 305,
   GPGP_STRUCTURE_VIEW_CELL_INFO = 306,
   /* text */
@@ -185,8 +185,8 @@ extern "C" {
 
 typedef struct GpgpContext_T* GpgpContext;
 typedef struct GpgpAsset_T* GpgpAsset;   /**< grammar, drawing, glyph set or geometry set */
-typedef struct GpgpWorker_T* GpgpWorker; /**< spawner, canvas or sampler */
-typedef struct GpgpView_T* GpgpView;     /**< history of one camera, canvas or tile */
+typedef struct GpgpRecorder_T* GpgpRecorder; /**< spawner, canvas or recorder */
+typedef struct GpgpHistory_T* GpgpHistory;     /**< history of one camera, canvas or tile */
 
 typedef int32_t GpgpService;
 enum { GPGP_SERVICE_CORE = 0, GPGP_SERVICE_SPAWN = 1, GPGP_SERVICE_VECTOR = 2, GPGP_SERVICE_VISIBILITY = 3 };
@@ -223,7 +223,7 @@ typedef struct GpgpRequirements {
   uint32_t apiVersion;           /**< at least this Vulkan version, for instance and device */
   GpgpFeatures requiredFeatures; /**< always 0: the baseline is plain Vulkan 1.2 */
   GpgpFeatures optionalFeatures; /**< those that the device offers and gpgp would use */
-  VkQueueFlags queueFlags;       /**< a family for workers needs these; drawing needs GRAPHICS as well */
+  VkQueueFlags queueFlags;       /**< a family for recorders needs these; drawing needs GRAPHICS as well */
   const char* const* extensions; /**< device extensions behind optionalFeatures; static strings */
   uint32_t extensionCount;
   VkPhysicalDeviceFeatures2 features; /**< chain to VkDeviceCreateInfo::pNext, or merge: enables optionalFeatures;
@@ -304,7 +304,7 @@ typedef struct GpgpContextCreateInfo {
   uint32_t apiVersion;           /**< the version that instance and device were created with; 0: 1.2 */
   GpgpFeatures features;         /**< what was enabled on the device */
   uint32_t maxFramesInFlight;    /**< 1 to 8; 0: 3 */
-  uint32_t maxRecordsPerFrame;   /**< gpgpRecord... calls per frame and worker; 0: 16 */
+  uint32_t maxRecordingsPerFrame;   /**< gpgpRecord... calls per frame and recorder; 0: 16 */
   VkDeviceSize uploadRingBytes;  /**< staging memory for gpgpRecordUpload, all frames together; 0: 8 MiB */
   VkPipelineCache pipelineCache; /**< the engine's, used for all pipelines; or VK_NULL_HANDLE: gpgp's own */
   const void* pipelineCacheData; /**< initial bytes for gpgp's own cache, from gpgpGetPipelineCacheData */
@@ -369,8 +369,8 @@ typedef struct GpgpAccess {
 
 typedef uint64_t GpgpAccessMode;
 /** The engine's render graph places the barriers at the edges itself; before and after are ignored, the resources are
- * in the state that gpgpGetRecordAccess tells, and stay in it. gpgp still places those between its own passes. */
-#define GPGP_ACCESS_SYNCHRONISED ((GpgpAccessMode)1 << 0)
+ * in the state that gpgpGetRecordingAccess tells, and stay in it. gpgp still places those between its own passes. */
+#define GPGP_ACCESS_EXTERNAL_BARRIERS ((GpgpAccessMode)1 << 0)
 
 typedef struct GpgpBuffer {
   VkBuffer buffer;
@@ -390,15 +390,15 @@ typedef struct GpgpImage {
   GpgpAccess after;
 } GpgpImage;
 
-/* ---------------------------------------------------------------- workers */
+/* ---------------------------------------------------------------- recorders */
 
-/** Common part of every worker's create info; each service's struct embeds it as `base`. */
-typedef struct GpgpWorkerCreateInfo {
+/** Common part of every recorder's create info; each service's struct embeds it as `base`. */
+typedef struct GpgpRecorderCreateInfo {
   const char* label;       /**< copied */
-  uint32_t queueFamily;    /**< all records of this worker go to queues of this family */
+  uint32_t queueFamily;    /**< all records of this recorder go to queues of this family */
   VkQueueFlags queueFlags; /**< of that family; 0: gpgp asks the physical device */
   VkBool32 engineScratch;  /**< VK_TRUE: no scratch is allocated, each record brings its own */
-} GpgpWorkerCreateInfo;
+} GpgpRecorderCreateInfo;
 
 typedef struct GpgpTargetInfo {
   GpgpStructureType sType;
@@ -417,24 +417,24 @@ typedef struct GpgpTargetInfo {
 typedef struct GpgpPrewarmInfo {
   GpgpStructureType sType;
   const void* pNext;
-  const GpgpTargetInfo* targets; /**< for workers that draw: each combination they will draw into */
+  const GpgpTargetInfo* targets; /**< for recorders that draw: each combination they will draw into */
   uint32_t targetCount;
 } GpgpPrewarmInfo;
 #define GPGP_PREWARM_INFO_INIT GPGP_INIT(GpgpPrewarmInfo, GPGP_STRUCTURE_PREWARM_INFO)
 
-/** Compiles the worker's pipelines on the calling thread (through the job system where one was given). Until it has
- *  returned, records return GPGP_NOT_READY and record nothing. info may be NULL for workers that do not draw.
- *  May run beside records of other workers. @threads handle @lifetime call; render passes: handle */
-GPGP_API GpgpResult GPGP_CALL gpgpPrewarm(GpgpWorker worker, const GpgpPrewarmInfo* info);
+/** Compiles the recorder's pipelines on the calling thread (through the job system where one was given). Until it has
+ *  returned, records return GPGP_NOT_READY and record nothing. info may be NULL for recorders that do not draw.
+ *  May run beside records of other recorders. @threads handle @lifetime call; render passes: handle */
+GPGP_API GpgpResult GPGP_CALL gpgpPrewarm(GpgpRecorder recorder, const GpgpPrewarmInfo* info);
 
-/** Bytes of scratch that one record of this worker needs, and the usage flags an engine's buffer for it must have.
+/** Bytes of scratch that one record of this recorder needs, and the usage flags an engine's buffer for it must have.
  *  @threads any */
-GPGP_API GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpWorker worker, VkDeviceSize* size, VkDeviceSize* alignment,
+GPGP_API GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpRecorder recorder, VkDeviceSize* size, VkDeviceSize* alignment,
                                                  VkBufferUsageFlags* usage);
 
-/** The passes that one record of this worker runs, in order. count in: capacity of names, out: passes. names NULL
+/** The passes that one record of this recorder runs, in order. count in: capacity of names, out: passes. names NULL
  *  asks for the count. @threads any @lifetime call; names: handle */
-GPGP_API GpgpResult GPGP_CALL gpgpGetPasses(GpgpWorker worker, uint32_t* count, const char** names);
+GPGP_API GpgpResult GPGP_CALL gpgpGetPasses(GpgpRecorder recorder, uint32_t* count, const char** names);
 
 /** GPU timestamps of a record: query firstQuery at its start and one more after each pass, passes + 1 in all. The
  *  engine has reset the queries. */
@@ -444,22 +444,22 @@ typedef struct GpgpTimestamps {
   uint32_t queryCount; /**< at least passes + 1 */
 } GpgpTimestamps;
 
-/** What gpgp does with buffers and images in a record: the state that GPGP_ACCESS_SYNCHRONISED expects of the engine's
+/** What gpgp does with buffers and images in a record: the state that GPGP_ACCESS_EXTERNAL_BARRIERS expects of the engine's
  *  render graph before a record, and leaves behind. Either pointer may be NULL. @threads any */
-GPGP_API void GPGP_CALL gpgpGetRecordAccess(GpgpAccess* buffer, GpgpAccess* image);
+GPGP_API void GPGP_CALL gpgpGetRecordingAccess(GpgpAccess* buffer, GpgpAccess* image);
 
 /** Common part of every record info; each service's struct embeds it as `base`. */
-typedef struct GpgpRecordInfo {
+typedef struct GpgpRecordingInfo {
   uint64_t tag;       /**< the engine's own number, found again in the report */
-  GpgpBuffer scratch; /**< for workers with engineScratch: contents undefined before and after */
+  GpgpBuffer scratch; /**< for recorders with engineScratch: contents undefined before and after */
   GpgpTimestamps timestamps;
   GpgpAccessMode accessMode;
-} GpgpRecordInfo;
+} GpgpRecordingInfo;
 
 /* ---------------------------------------------------------------- reports */
 
-/** Common part of every report; each service's report struct embeds it as `base`. A worker keeps the last
- *  maxFramesInFlight x maxRecordsPerFrame reports; older ones that nobody took are dropped with a warning. */
+/** Common part of every report; each service's report struct embeds it as `base`. A recorder keeps the last
+ *  maxFramesInFlight x maxRecordingsPerFrame reports; older ones that nobody took are dropped with a warning. */
 typedef struct GpgpReportHeader {
   GpgpResult status; /**< SUCCESS, BUDGET_EXCEEDED, NOT_EXECUTED; ERROR_UNSUPPORTED: the device ended loops early */
   uint64_t tag;
@@ -472,10 +472,10 @@ typedef struct GpgpReportHeader {
 GPGP_API GpgpResult GPGP_CALL gpgpGetResidency(GpgpAsset asset, VkBool32* resident);
 
 /** Destroying is always legal: memory that a frame in flight may read is freed by the gpgpAdvance that says it is
- *  safe. An asset, worker or view handle is invalid from here on. NULL is ignored. @threads context */
+ *  safe. An asset, recorder or view handle is invalid from here on. NULL is ignored. @threads context */
 GPGP_API void GPGP_CALL gpgpDestroyAsset(GpgpAsset asset);
-GPGP_API void GPGP_CALL gpgpDestroyWorker(GpgpWorker worker);
-GPGP_API void GPGP_CALL gpgpDestroyView(GpgpView view);
+GPGP_API void GPGP_CALL gpgpDestroyRecorder(GpgpRecorder recorder);
+GPGP_API void GPGP_CALL gpgpDestroyHistory(GpgpHistory history);
 
 typedef struct GpgpServiceMemory {
   VkDeviceSize deviceBytes;      /**< device-local: assets and scratch */

@@ -73,14 +73,14 @@ GPGP_STRUCTURE_OF(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT);
-GPGP_STRUCTURE_OF(GpgpCanvasViewCreateInfo, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpGeometrySetCreateInfo, GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO);
-GPGP_STRUCTURE_OF(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO);
-GPGP_STRUCTURE_OF(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO);
-GPGP_STRUCTURE_OF(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT);
+GPGP_STRUCTURE_OF(GpgpVisibilityRecorderCreateInfo, GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpVisibilityInfo, GPGP_STRUCTURE_VISIBILITY_INFO);
+GPGP_STRUCTURE_OF(GpgpVisibilityReport, GPGP_STRUCTURE_VISIBILITY_REPORT);
 GPGP_STRUCTURE_OF(GpgpVisibilityMetricsInfo, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO);
 GPGP_STRUCTURE_OF(GpgpViewCellInfo, GPGP_STRUCTURE_VIEW_CELL_INFO);
-GPGP_STRUCTURE_OF(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpCameraHistoryCreateInfo, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpFontCreateInfo, GPGP_STRUCTURE_FONT_CREATE_INFO);
 GPGP_STRUCTURE_OF(GpgpFontInfo, GPGP_STRUCTURE_FONT_INFO);
 GPGP_STRUCTURE_OF(GpgpGlyphOutlineInfo, GPGP_STRUCTURE_GLYPH_OUTLINE_INFO);
@@ -102,8 +102,8 @@ template <class T> T init() noexcept {
 namespace detail {
 inline void destroy(GpgpContext handle) noexcept { gpgpDestroyContext(handle); }
 inline void destroy(GpgpAsset handle) noexcept { gpgpDestroyAsset(handle); }
-inline void destroy(GpgpWorker handle) noexcept { gpgpDestroyWorker(handle); }
-inline void destroy(GpgpView handle) noexcept { gpgpDestroyView(handle); }
+inline void destroy(GpgpRecorder handle) noexcept { gpgpDestroyRecorder(handle); }
+inline void destroy(GpgpHistory handle) noexcept { gpgpDestroyHistory(handle); }
 inline void destroy(GpgpList handle) noexcept { gpgpDestroyList(handle); }
 inline void destroy(GpgpGrammarBuilder handle) noexcept { gpgpDestroyGrammarBuilder(handle); }
 inline void destroy(GpgpFont handle) noexcept { gpgpDestroyFont(handle); }
@@ -148,9 +148,9 @@ Result<T> create(GpgpResult(GPGP_CALL* function)(GpgpContext, const Info*, Raw*)
   return Result<T>(code, T(raw));
 }
 template <class Report>
-Result<Report> report(GpgpResult(GPGP_CALL* function)(GpgpWorker, Report*), GpgpWorker worker) noexcept {
+Result<Report> report(GpgpResult(GPGP_CALL* function)(GpgpRecorder, Report*), GpgpRecorder recorder) noexcept {
   Report value = init<Report>();
-  const GpgpResult code = function(worker, &value);
+  const GpgpResult code = function(recorder, &value);
   return Result<Report>(code, value);
 }
 } // namespace detail
@@ -194,17 +194,17 @@ public:
   }
 };
 
-/// Scratch that one record of a worker needs.
+/// Scratch that one record of a recorder needs.
 struct ScratchSize {
   VkDeviceSize size = 0, alignment = 0;
   VkBufferUsageFlags usage = 0;
 };
 
-/// What all workers have in common.
-class Worker : public Handle<GpgpWorker> {
+/// What all recorders have in common.
+class Recorder : public Handle<GpgpRecorder> {
 public:
   using Handle::Handle;
-  /// For workers that do not draw.
+  /// For recorders that do not draw.
   [[nodiscard]] GpgpResult prewarm() noexcept { return gpgpPrewarm(get(), nullptr); }
   [[nodiscard]] GpgpResult prewarm(const GpgpPrewarmInfo& info) noexcept { return gpgpPrewarm(get(), &info); }
   Result<ScratchSize> scratchSize() const noexcept {
@@ -218,7 +218,7 @@ public:
   }
 };
 
-class View : public Handle<GpgpView> {
+class View : public Handle<GpgpHistory> {
 public:
   using Handle::Handle;
 };
@@ -235,11 +235,11 @@ public:
   [[nodiscard]] GpgpResult terminals(uint32_t& count, GpgpGrammarTerminal* terminals) const noexcept {
     return gpgpGetGrammarTerminals(get(), &count, terminals);
   }
-  /// As terminals(). Places in the list are what GpgpAxiom::rule takes.
+  /// As terminals(). Places in the list are what GpgpAxiom::start takes.
   [[nodiscard]] GpgpResult starts(uint32_t& count, GpgpGrammarStart* starts) const noexcept {
     return gpgpGetGrammarStarts(get(), &count, starts);
   }
-  /// A rule, or a grammar that was linked, for GpgpAxiom::rule.
+  /// A rule, or a grammar that was linked, for GpgpAxiom::start.
   Result<uint32_t> start(const char* name) const noexcept {
     uint32_t rule = 0;
     const GpgpResult code = gpgpFindGrammarStart(get(), name, &rule);
@@ -247,15 +247,15 @@ public:
   }
 };
 
-class Spawner : public Worker {
+class Spawner : public Recorder {
 public:
-  using Worker::Worker;
+  using Recorder::Recorder;
   static Result<Spawner> create(GpgpContext context, const GpgpSpawnerCreateInfo& info) noexcept {
     return detail::create<Spawner>(gpgpCreateSpawner, context, info);
   }
   /// Makes the kernels that the grammar was baked with ready.
   [[nodiscard]] GpgpResult prewarm(const Grammar& grammar) noexcept { return gpgpPrewarmGrammar(get(), grammar.get()); }
-  using Worker::prewarm;
+  using Recorder::prewarm;
   [[nodiscard]] GpgpResult recordPrepare(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
                                          const GpgpSpawnInfo& info) noexcept {
     return gpgpRecordPrepareSpawn(get(), commandBuffer, &frame, &info);
@@ -346,17 +346,17 @@ inline Result<GpgpHit> hitTest(GpgpContext context, const GpgpHitTestInfo& info)
   return Result<GpgpHit>(code, value);
 }
 
-class CanvasView : public View {
+class CanvasHistory : public View {
 public:
   using View::View;
-  static Result<CanvasView> create(GpgpContext context, const GpgpCanvasViewCreateInfo& info) noexcept {
-    return detail::create<CanvasView>(gpgpCreateCanvasView, context, info);
+  static Result<CanvasHistory> create(GpgpContext context, const GpgpCanvasHistoryCreateInfo& info) noexcept {
+    return detail::create<CanvasHistory>(gpgpCreateCanvasHistory, context, info);
   }
 };
 
-class Canvas : public Worker {
+class Canvas : public Recorder {
 public:
-  using Worker::Worker;
+  using Recorder::Recorder;
   static Result<Canvas> create(GpgpContext context, const GpgpCanvasCreateInfo& info) noexcept {
     return detail::create<Canvas>(gpgpCreateCanvas, context, info);
   }
@@ -382,22 +382,22 @@ public:
   }
 };
 
-class CameraView : public View {
+class CameraHistory : public View {
 public:
   using View::View;
-  static Result<CameraView> create(GpgpContext context, const GpgpCameraViewCreateInfo& info) noexcept {
-    return detail::create<CameraView>(gpgpCreateCameraView, context, info);
+  static Result<CameraHistory> create(GpgpContext context, const GpgpCameraHistoryCreateInfo& info) noexcept {
+    return detail::create<CameraHistory>(gpgpCreateCameraHistory, context, info);
   }
 };
 
-class Sampler : public Worker {
+class VisibilityRecorder : public Recorder {
 public:
-  using Worker::Worker;
-  static Result<Sampler> create(GpgpContext context, const GpgpSamplerCreateInfo& info) noexcept {
-    return detail::create<Sampler>(gpgpCreateSampler, context, info);
+  using Recorder::Recorder;
+  static Result<VisibilityRecorder> create(GpgpContext context, const GpgpVisibilityRecorderCreateInfo& info) noexcept {
+    return detail::create<VisibilityRecorder>(gpgpCreateVisibilityRecorder, context, info);
   }
   [[nodiscard]] GpgpResult recordPrepare(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
-                                         const GpgpSampleInfo& info) noexcept {
+                                         const GpgpVisibilityInfo& info) noexcept {
     return gpgpRecordPrepareVisibility(get(), commandBuffer, &frame, &info);
   }
   [[nodiscard]] GpgpResult recordPrepareMetrics(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
@@ -405,7 +405,7 @@ public:
     return gpgpRecordPrepareVisibilityMetrics(get(), commandBuffer, &frame, &info);
   }
   /// The oldest report not yet taken; GPGP_NOT_READY: none.
-  Result<GpgpSampleReport> report() noexcept { return detail::report(gpgpGetSampleReport, get()); }
+  Result<GpgpVisibilityReport> report() noexcept { return detail::report(gpgpGetVisibilityReport, get()); }
 };
 
 // ---------------------------------------------------------------- libgpgp_compiler

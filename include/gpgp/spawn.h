@@ -1,7 +1,7 @@
 /* gpgp spawn: grammars derived on the GPU, straight into the engine's buffers.
  *
  *   grammar (asset)   an operator graph with its parameter table; from a baked blob or compiled from text
- *   spawner (worker)  derives axioms with any grammar; sized by budgets
+ *   spawner (recorder)  derives axioms with any grammar; sized by budgets
  *
  *   gpgpCompileGrammar (libgpgp_compiler) -> blob -> gpgpCreateGrammar -> gpgpRecordUpload -> gpgpRecordPrepareSpawn
  */
@@ -18,12 +18,12 @@ typedef struct GpgpAxiom {
   float size[3];        /**< extents of the start shape, metres, its centre at the object's origin */
   uint32_t seed;        /**< of all random values below this axiom */
   uint32_t id;          /**< the engine's own number, found again in each instance */
-  uint32_t rule;        /**< its start, which says its shape, by its place in gpgpGetGrammarStarts;
-                             GPGP_AXIOM_DEFAULT_RULE: the grammar's first axiom line */
+  uint32_t start;       /**< its start, which says its shape, by its place in gpgpGetGrammarStarts;
+                             GPGP_AXIOM_DEFAULT_START: the grammar's first axiom line */
   float attribute;      /**< custom attribute, inherited; NaN: taken from the seed as in [0, 1) */
   uint32_t reserved[5]; /**< 0 */
 } GpgpAxiom;
-#define GPGP_AXIOM_DEFAULT_RULE 0xffffffffu
+#define GPGP_AXIOM_DEFAULT_START 0xffffffffu
 
 /** What a terminal becomes. 96 bytes, std430. The mesh's unit shape spans [-0.5, 0.5] on each axis; the transform
  *  includes the shape's size. Polygons face +Z and have size[2] 0; their transform keeps 1 metre for that axis.
@@ -75,7 +75,7 @@ typedef struct GpgpCompileMessage {
                             begins with the place, by name */
   GpgpSeverity severity;
   const char* text;
-  uint32_t leftOut; /**< 0; in a last message: how many more of this severity there were, as text says */
+  uint32_t omitted; /**< 0; in a last message: how many more of this severity there were, as text says */
 } GpgpCompileMessage;
 typedef void(GPGP_CALL* GpgpCompileMessageFn)(void* userData, const GpgpCompileMessage* message);
 
@@ -156,7 +156,7 @@ typedef struct GpgpGrammarTerminal {
 GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset grammar, uint32_t* count,
                                                       GpgpGrammarTerminal* terminals);
 
-/** Where a derivation can start: a rule or an axiom line. Its place in the list is what GpgpAxiom::rule takes. */
+/** Where a derivation can start: a rule or an axiom line. Its place in the list is what GpgpAxiom::start takes. */
 typedef struct GpgpGrammarStart {
   const char* name;   /**< of the rule; of an axiom line, the name of what it starts, but of the first one of a linked
                            grammar that grammar's name alone. @lifetime handle */
@@ -169,9 +169,9 @@ typedef struct GpgpGrammarStart {
  *  the count. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarStarts(GpgpAsset grammar, uint32_t* count, GpgpGrammarStart* starts);
 
-/** The place of the first start by that name, for GpgpAxiom::rule: a rule, or a linked grammar as a whole.
+/** The place of the first start by that name, for GpgpAxiom::start: a rule, or a linked grammar as a whole.
  *  Errors: INVALID_ARGUMENT (there is none), INVALID_HANDLE. @threads any @lifetime call */
-GPGP_API GpgpResult GPGP_CALL gpgpFindGrammarStart(GpgpAsset grammar, const char* name, uint32_t* rule);
+GPGP_API GpgpResult GPGP_CALL gpgpFindGrammarStart(GpgpAsset grammar, const char* name, uint32_t* start);
 
 /* ---------------------------------------------------------------- spawner */
 
@@ -215,7 +215,7 @@ typedef uint64_t GpgpSpawnerFlags;
 typedef struct GpgpSpawnerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpWorkerCreateInfo base;
+  GpgpRecorderCreateInfo base;
   GpgpSpawnerFlags flags;
   const GpgpVertexLayout* vertices; /**< optional: terminals become vertices and indices, not instances; records give
                                          GpgpSpawnInfo::vertices. @lifetime call */
@@ -235,18 +235,18 @@ typedef struct GpgpSpawnerCreateInfo {
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
-/** Makes a worker that derives any grammar, with scratch for the budgets. Prewarm it before the first record.
+/** Makes a recorder that derives any grammar, with scratch for the budgets. Prewarm it before the first record.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpSpawnerCreateInfo* info,
-                                                GpgpWorker* spawner);
+                                                GpgpRecorder* spawner);
 
 /** Compiles the kernels that a grammar was baked with and that are for this device, on the calling thread. Until it has
  *  returned, and for grammars without such kernels, records run the interpreter, which derives the same. The pipelines
  *  belong to the grammar and serve all spawners of the context. May run beside records and gpgpAdvance, so that
  *  frames go on; only the two handles must live until it returns.
  *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY. @threads handle: one call for a grammar at a time */
-GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker spawner, GpgpAsset grammar);
+GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpRecorder spawner, GpgpAsset grammar);
 
 /** Where terminals go as triangles. A terminal that fits only in part is left out whole. */
 typedef struct GpgpVertexOutput {
@@ -270,7 +270,7 @@ typedef uint64_t GpgpSpawnFlags;
 typedef struct GpgpSpawnInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpRecordInfo base;
+  GpgpRecordingInfo base;
   GpgpAsset grammar;
   GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]; STORAGE usage. Part of a longer list is its offset and count */
   const GpgpAxiom* hostAxioms; /**< instead of axioms: GpgpAxiom[axiomCount] of the CPU, copied while recording; at most
@@ -304,7 +304,7 @@ typedef struct GpgpSpawnInfo {
  *  NOT_READY: grammar not resident or spawner not prewarmed.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
-GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker spawner, VkCommandBuffer commandBuffer,
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpRecorder spawner, VkCommandBuffer commandBuffer,
                                                      const GpgpFrame* frame, const GpgpSpawnInfo* info);
 
 typedef struct GpgpSpawnReport {
@@ -331,7 +331,7 @@ typedef struct GpgpSpawnReport {
 #define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
 
 /** The oldest report not yet taken. NOT_READY: none. @threads handle */
-GPGP_API GpgpResult GPGP_CALL gpgpGetSpawnReport(GpgpWorker spawner, GpgpSpawnReport* report);
+GPGP_API GpgpResult GPGP_CALL gpgpGetSpawnReport(GpgpRecorder spawner, GpgpSpawnReport* report);
 
 #ifdef __cplusplus
 }

@@ -146,7 +146,7 @@ GPGP_API GpgpGrammarOperator GPGP_CALL gpgpAddOperator(GpgpGrammarBuilder builde
 GPGP_API void GPGP_CALL gpgpAddTerminal(GpgpGrammarBuilder builder, const char* names, uint32_t kind, uint32_t index);
 
 /** Adds a rule: another name for a rule or terminal, or, where successor is NULL, an operator. Rules are numbered in
- * the order of the calls, see GpgpAxiom::rule. In libgpgp_compiler. @threads handle @lifetime call */
+ * the order of the calls, see GpgpAxiom::start. In libgpgp_compiler. @threads handle @lifetime call */
 GPGP_API void GPGP_CALL gpgpAddRule(GpgpGrammarBuilder builder, const char* name, const char* successor,
                                     GpgpGrammarOperator op);
 

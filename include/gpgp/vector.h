@@ -3,8 +3,8 @@
  *   drawing (asset)    paths converted to CPatches (disjoint regions between curves) and uploaded as the outlines of
  *                      these; resolution-independent: chords are made for each record, within 1/32 of a pixel
  *   glyph set (asset)  many small drawings under the engine's keys, to which more are added; what text is drawn with
- *   canvas (worker)    rasterises drawings and text; sized by budgets
- *   canvas view        keeps one rasterised canvas, to be drawn inside the engine's render pass
+ *   canvas (recorder)    rasterises drawings and text; sized by budgets
+ *   canvas history        keeps one rasterised canvas, to be drawn inside the engine's render pass
  *   list               shapes, images, text and drawings that the engine adds every frame (ui.h)
  *
  *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
@@ -319,7 +319,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphSetInfo(GpgpAsset glyphSet, GpgpGlyphS
 /** Bits: what a canvas's records write. */
 typedef uint64_t GpgpCanvasTargets;
 /** A view, alone or with a target. */
-#define GPGP_CANVAS_TARGET_VIEW ((GpgpCanvasTargets)1)
+#define GPGP_CANVAS_TARGET_HISTORY ((GpgpCanvasTargets)1)
 /** A target in R8G8B8A8_UNORM. */
 #define GPGP_CANVAS_TARGET_RGBA8 ((GpgpCanvasTargets)2)
 /** A target in R16G16B16A16_SFLOAT. */
@@ -328,7 +328,7 @@ typedef uint64_t GpgpCanvasTargets;
 typedef struct GpgpCanvasCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpWorkerCreateInfo base;
+  GpgpRecorderCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
   /** Paths in one record; 48 bytes each, 8 more on hardware, and a bit for each square of 128 pixels; 0: 262144, at
    *  most 4194304. A drawing counts GpgpDrawingInfo::paths for each item that shows it, a glyph its own each
@@ -353,25 +353,25 @@ typedef struct GpgpCanvasCreateInfo {
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
-/** Makes a worker that rasterises drawings, with scratch for the budgets. Prewarm it before the first record.
+/** Makes a recorder that rasterises drawings, with scratch for the budgets. Prewarm it before the first record.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext context, const GpgpCanvasCreateInfo* info,
-                                               GpgpWorker* canvas);
+                                               GpgpRecorder* canvas);
 
-typedef struct GpgpCanvasViewCreateInfo {
+typedef struct GpgpCanvasHistoryCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
   uint32_t width, height; /**< pixels; 8 bytes each are allocated */
-} GpgpCanvasViewCreateInfo;
-#define GPGP_CANVAS_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasViewCreateInfo, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO)
+} GpgpCanvasHistoryCreateInfo;
+#define GPGP_CANVAS_HISTORY_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO)
 
 /** Makes a place where a canvas keeps its result between gpgpRecordPrepareCanvas and gpgpRecordDrawCanvas. It is ready
  *  once a gpgpRecordUpload has cleared it.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
-GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext context, const GpgpCanvasViewCreateInfo* info,
-                                                   GpgpView* view);
+GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext context, const GpgpCanvasHistoryCreateInfo* info,
+                                                   GpgpHistory* history);
 
 /** A glyph in a text. */
 typedef struct GpgpGlyphInstance {
@@ -435,13 +435,13 @@ typedef struct GpgpCanvasImage {
 typedef struct GpgpCanvasInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpRecordInfo base;
+  GpgpRecordingInfo base;
   uint32_t width, height;      /**< pixels */
   const GpgpCanvasItem* items; /**< in painting order, the first at the bottom */
   uint32_t itemCount;
   uint32_t samples;    /**< 1, 4, 8 or 16 per pixel; 0: 16 */
   float background[4]; /**< linear, premultiplied */
-  GpgpView view;       /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
+  GpgpHistory history;       /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
   GpgpImage target;    /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
                             Receives premultiplied linear colour */
   VkBool32 encodeSrgb; /**< the target receives what sRGB encodes of the straight colour, times alpha, as PNG files and
@@ -462,13 +462,13 @@ typedef struct GpgpCanvasInfo {
  *  NOT_READY: a drawing or a glyph that is drawn is not resident, or the canvas not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */
-GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,
                                                       const GpgpFrame* frame, const GpgpCanvasInfo* info);
 
 typedef struct GpgpCanvasDrawInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpView view;
+  GpgpHistory history;
   const GpgpTargetInfo* target; /**< equal to one of those given to gpgpPrewarm */
   float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
   uint32_t width, height;       /**< of the part of the canvas that is drawn, pixels */
@@ -485,7 +485,7 @@ typedef struct GpgpCanvasDrawInfo {
  *  prepared, or the target was not prewarmed.
  *  @threads handle @lifetime call @pass inside
  *  @state graphics pipeline, graphics descriptor set 0, push constants */
-GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker canvas, VkCommandBuffer commandBuffer,
+GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,
                                                    const GpgpFrame* frame, const GpgpCanvasDrawInfo* info);
 
 typedef struct GpgpCanvasReport {
@@ -510,7 +510,7 @@ typedef struct GpgpCanvasReport {
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 
 /** The oldest report not yet taken. NOT_READY: none. @threads handle */
-GPGP_API GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpWorker canvas, GpgpCanvasReport* report);
+GPGP_API GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpRecorder canvas, GpgpCanvasReport* report);
 
 #ifdef __cplusplus
 }

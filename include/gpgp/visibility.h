@@ -1,8 +1,8 @@
 /* gpgp visibility: which triangles can be seen, for object-space shading.
  *
  *   geometry set (asset)  meshes as the engine's own buffers describe them: no vertex data is copied
- *   sampler (worker)      samples triangle ids and gathers the visible set; sized by budgets
- *   camera view           remembers what one camera saw, to tell what has changed
+ *   recorder (recorder)      samples triangle ids and gathers the visible set; sized by budgets
+ *   camera history           remembers what one camera saw, to tell what has changed
  */
 #ifndef GPGP_VISIBILITY_H
 #define GPGP_VISIBILITY_H
@@ -35,17 +35,17 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext context, const G
                                                     GpgpAsset* geometrySet);
 
 /** An order of a mesh's triangles in which those that follow one another face one way and lie near each other, so that
- *  clusters of them (GpgpSampleInfo::clusters) are left out where they face away: of closed meshes nearly half.
+ *  clusters of them (GpgpVisibilityInfo::clusters) are left out where they face away: of closed meshes nearly half.
  *  order[i], of indexCount / 3: the number of the triangle that is to be the i-th. For when meshes are built; an engine
  *  that keeps data by triangle number moves it likewise. positions: three floats each, positionStride bytes apart.
  *  Errors: INVALID_ARGUMENT (an index out of range is in the message). @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpOrderTriangles(const float* positions, uint32_t positionStride, uint32_t vertexCount,
                                                  const uint32_t* indices, uint32_t indexCount, uint32_t* order);
 
-typedef struct GpgpSamplerCreateInfo {
+typedef struct GpgpVisibilityRecorderCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpWorkerCreateInfo base;
+  GpgpRecorderCreateInfo base;
   uint32_t maxWidth, maxHeight; /**< viewport, at most 8192 each; 0: 2048. Scratch: 8 bytes a pixel and camera
                                      (conservative: 52; exact: 16 and a fifth) */
   uint32_t maxCameras;          /**< of one record, at most 128; 0: 1 */
@@ -61,29 +61,29 @@ typedef struct GpgpSamplerCreateInfo {
   uint32_t maxPairs;      /**< exact: of a candidate and a pixel; 0: 4 each and 4 a pixel, as far as the device
                                binds them; and half as many of a candidate and 8 x 8 pixels. Scratch: 8 bytes
                                each, and see maxTriangles */
-} GpgpSamplerCreateInfo;
-#define GPGP_SAMPLER_CREATE_INFO_INIT GPGP_INIT(GpgpSamplerCreateInfo, GPGP_STRUCTURE_SAMPLER_CREATE_INFO)
+} GpgpVisibilityRecorderCreateInfo;
+#define GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT GPGP_INIT(GpgpVisibilityRecorderCreateInfo, GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO)
 
-/** Makes a worker that samples any geometry set, with scratch for the budgets. Prewarm it before the first record.
+/** Makes a recorder that samples any geometry set, with scratch for the budgets. Prewarm it before the first record.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
-GPGP_API GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext context, const GpgpSamplerCreateInfo* info,
-                                                GpgpWorker* sampler);
+GPGP_API GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext context, const GpgpVisibilityRecorderCreateInfo* info,
+                                                GpgpRecorder* recorder);
 
-typedef struct GpgpCameraViewCreateInfo {
+typedef struct GpgpCameraHistoryCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
   uint32_t maxTriangles; /**< at most 2^31; one bit each is allocated; 0: 4194304 */
-} GpgpCameraViewCreateInfo;
-#define GPGP_CAMERA_VIEW_CREATE_INFO_INIT GPGP_INIT(GpgpCameraViewCreateInfo, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO)
+} GpgpCameraHistoryCreateInfo;
+#define GPGP_CAMERA_HISTORY_CREATE_INFO_INIT GPGP_INIT(GpgpCameraHistoryCreateInfo, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO)
 
 /** Makes the history of one camera: all triangles unseen until its first record. It is ready once a gpgpRecordUpload
  *  has cleared it.
  *  Errors: INVALID_ARGUMENT, UNSUPPORTED (its bits are more than the device binds), INVALID_STRUCT, OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
-GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext context, const GpgpCameraViewCreateInfo* info,
-                                                   GpgpView* view);
+GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext context, const GpgpCameraHistoryCreateInfo* info,
+                                                   GpgpHistory* history);
 
 /** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. Draws may share triangle numbers: the bit is
  *  then set if any of them is visible. A transform that mirrors, by a determinant of at most -2^-126, does not turn
@@ -94,7 +94,7 @@ typedef struct GpgpVisibilityDraw {
   uint32_t firstTriangle; /**< where this draw's triangles start in the visible bits and lists; a multiple of 32 lets
                                draws be cleared apart */
   uint32_t flags;         /**< GPGP_DRAW_... */
-  uint32_t origin;        /**< with GpgpSampleInfo::origins: index of the one that transform is relative to. Triangles
+  uint32_t origin;        /**< with GpgpVisibilityInfo::origins: index of the one that transform is relative to. Triangles
                                of a draw whose index is out of range are skipped and counted; without origins it is
                                not read */
 } GpgpVisibilityDraw;
@@ -109,7 +109,7 @@ enum {
   GPGP_SAMPLING_STANDARD = 0,     /**< a grid of `samples` x `samples` a pixel; 1: its centre */
   GPGP_SAMPLING_EXACT = 1,        /**< standard, and then, among those that it did not find, the triangles with one of
                                        64 x 64 samples a pixel that nothing in front of them covers */
-  GPGP_SAMPLING_TRUTH = 2,        /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
+  GPGP_SAMPLING_REFERENCE = 2,        /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
   GPGP_SAMPLING_CONSERVATIVE = 3, /**< the thesis's (6.1.3): a pixel's centre, and then the triangles that touch a pixel
                                       and come near what was found there, by `heuristics` */
   GPGP_SAMPLING_NEARBY = 4 /**< a pixel's centre, and then what may be seen from up to `reach` away: several times as
@@ -118,7 +118,7 @@ enum {
 };
 #define GPGP_SAMPLING_STANDARD_BIT 1u
 #define GPGP_SAMPLING_EXACT_BIT 2u
-#define GPGP_SAMPLING_TRUTH_BIT 4u
+#define GPGP_SAMPLING_REFERENCE_BIT 4u
 #define GPGP_SAMPLING_CONSERVATIVE_BIT 8u
 #define GPGP_SAMPLING_NEARBY_BIT 16u
 
@@ -131,12 +131,12 @@ enum {
 #define GPGP_HEURISTIC_IN_CIRCLE 1u
 #define GPGP_HEURISTIC_DEPTH 2u
 #define GPGP_HEURISTIC_KEEP_FRONT 4u
-#define GPGP_HEURISTICS_THESIS (GPGP_HEURISTIC_IN_CIRCLE | GPGP_HEURISTIC_DEPTH)
+#define GPGP_HEURISTICS_DEFAULT (GPGP_HEURISTIC_IN_CIRCLE | GPGP_HEURISTIC_DEPTH)
 
 /** Near and far planes are the projection's; the far one may be infinitely far. Clip space is Vulkan's, y down: an
  *  engine whose viewports have a negative height negates the matrix' second row.
  *  Floats are 8 mm apart 10^5 m from the world's origin. A large world gives each camera an origin near it, usually its
- *  place, and each draw one near it (GpgpSampleInfo::origins): then floats hold only what is relative to them. */
+ *  place, and each draw one near it (GpgpVisibilityInfo::origins): then floats hold only what is relative to them. */
 typedef struct GpgpCamera {
   float viewProjection[16]; /**< world, less origin, to clip; column-major */
   VkBool32 reversedDepth;   /**< near is 1 */
@@ -177,20 +177,20 @@ typedef struct GpgpTriangleSize {
   float width, height; /**< of its box, pixels */
 } GpgpTriangleSize;
 
-typedef struct GpgpSampleInfo {
+typedef struct GpgpVisibilityInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpRecordInfo base;
+  GpgpRecordingInfo base;
   GpgpAsset geometrySet;
-  GpgpView view; /**< optional: history of this camera; its previous record is what `appeared` compares with */
+  GpgpHistory history; /**< optional: history of this camera; its previous record is what `appeared` compares with */
   GpgpSamplingMethod method;
   GpgpCamera camera;
   const GpgpCamera* moreCameras; /**< of the same viewport size and reversedDepth: a stereo pair's other eye, views of a
                                       cell. A triangle that any of them sees is visible */
   uint32_t moreCameraCount;
   uint32_t width, height; /**< viewport of each camera, pixels */
-  uint32_t samples;     /**< standard, truth: per pixel in each direction, a power of two up to 256; 0: 1 (truth: 64) */
-  uint32_t slice;       /**< truth: 0 to n * n, where n = max(samples / maxSamples, 1); the last one is the centre */
+  uint32_t samples;     /**< standard, reference: per pixel in each direction, a power of two up to 256; 0: 1 (reference: 64) */
+  uint32_t slice;       /**< reference: 0 to n * n, where n = max(samples / maxSamples, 1); the last one is the centre */
   VkBool32 accumulate;  /**< bits, pixel counts and sizes are added to, not overwritten: unites slices, views, a view
                              cell */
   float resolution;     /**< conservative: factor of width and height, 0.25 to 1, rounded to whole pixels; 0: 1 */
@@ -240,7 +240,7 @@ typedef struct GpgpSampleInfo {
   uint32_t triangleCount;     /**< of all draws: one past the last triangle number; at most 2^31 */
   GpgpBuffer visibleBits;     /**< out: one bit per triangle, ceil(triangleCount / 32) words, overwritten */
   GpgpBuffer pixelCounts;     /**< out, optional: uint32_t per triangle: samples that show it (exact: centres);
-                                   truth: at most 2^32 - 1; with a resolution below 1, of that smaller picture */
+                                   reference: at most 2^32 - 1; with a resolution below 1, of that smaller picture */
   GpgpBuffer visibleList;   /**< out, optional: uint32_t triangle numbers, compact, in no stated order; its size is the
                                  budget */
   GpgpBuffer visibleCount;  /**< out, optional: uint32_t[4]: needed, then a VkDispatchIndirectCommand with one workgroup
@@ -255,8 +255,8 @@ typedef struct GpgpSampleInfo {
                                  primitive i [firstIndex / 3 + i]; its size is the budget */
   GpgpBuffer triangleSizes; /**< out, optional: GpgpTriangleSize per triangle: of visible ones, the largest of all
                                  cameras and draws, in pixels of width and height times resolution; 0 for others */
-} GpgpSampleInfo;
-#define GPGP_SAMPLE_INFO_INIT GPGP_INIT(GpgpSampleInfo, GPGP_STRUCTURE_SAMPLE_INFO)
+} GpgpVisibilityInfo;
+#define GPGP_VISIBILITY_INFO_INIT GPGP_INIT(GpgpVisibilityInfo, GPGP_STRUCTURE_VISIBILITY_INFO)
 
 /** Samples triangle ids and gathers the visible set. Where two triangles have the same depth the lower number wins
  *  (conservative: the earlier draw). Exact: but for pixels in which more than 28 triangles reach through one
@@ -264,40 +264,40 @@ typedef struct GpgpSampleInfo {
  *  `unresolved` says.
  *  Draws, meshes and indices that name what is not there, and coordinates that are not finite or reach 2^100, are
  *  skipped and counted. Without draws the geometry buffers may be left out; without triangles the bits too.
- *  NOT_READY: geometry set or view not resident, or sampler not prewarmed. INVALID_ARGUMENT, with the field's name and
- *  what is allowed: a size, camera, method or epsilon out of range or not of the sampler's; a buffer that is missing,
+ *  NOT_READY: geometry set or view not resident, or recorder not prewarmed. INVALID_ARGUMENT, with the field's name and
+ *  what is allowed: a size, camera, method or epsilon out of range or not of the recorder's; a buffer that is missing,
  *  too small, misaligned or larger than the device binds; fields that exclude each other; triangleCount beyond the
  *  view's maxTriangles.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
-GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker sampler, VkCommandBuffer commandBuffer,
-                                                          const GpgpFrame* frame, const GpgpSampleInfo* info);
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpRecorder recorder, VkCommandBuffer commandBuffer,
+                                                          const GpgpFrame* frame, const GpgpVisibilityInfo* info);
 
 typedef struct GpgpVisibilityMetricsInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpRecordInfo base;
+  GpgpRecordingInfo base;
   uint32_t triangleCount;    /**< of all buffers; at most 2^31 */
   GpgpBuffer visibleBits;    /**< what is measured: a record's, or several records' united; STORAGE usage, as all */
-  GpgpBuffer truthBits;      /**< of records of method truth: all slices, of all cameras that visibleBits unites */
-  GpgpBuffer truthCounts;    /**< optional: their pixelCounts; without it shares by area are 0 */
-  GpgpBuffer recheckBits;    /**< optional: bits of a finer truth (256 samples): a triangle that is visible and in
-                                  these is part of the truth, but one that is in these only is not */
-  GpgpBuffer falsePositives; /**< out, optional: bits, like all in words of 32: visible, not in the truth */
-  GpgpBuffer falseNegatives; /**< out, optional: bits: in the truth, not visible */
+  GpgpBuffer referenceBits;      /**< of records of method reference: all slices, of all cameras that visibleBits unites */
+  GpgpBuffer referenceCounts;    /**< optional: their pixelCounts; without it shares by area are 0 */
+  GpgpBuffer recheckBits;    /**< optional: bits of a finer reference (256 samples): a triangle that is visible and in
+                                  these is part of the reference, but one that is in these only is not */
+  GpgpBuffer falsePositives; /**< out, optional: bits, like all in words of 32: visible, not in the reference */
+  GpgpBuffer falseNegatives; /**< out, optional: bits: in the reference, not visible */
 } GpgpVisibilityMetricsInfo;
 #define GPGP_VISIBILITY_METRICS_INFO_INIT GPGP_INIT(GpgpVisibilityMetricsInfo, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO)
 
-/** Compares visible bits with a truth, triangle by triangle: coverage and overestimation (6.3). Their numbers are in
- * this record's report. Bits and masks: a bit a triangle, in words of 32. NOT_READY: sampler not prewarmed.
+/** Compares visible bits with a reference, triangle by triangle: coverage and overestimation (6.3). Their numbers are in
+ * this record's report. Bits and masks: a bit a triangle, in words of 32. NOT_READY: recorder not prewarmed.
  * INVALID_ARGUMENT: a buffer that is missing or too small, with its name and the bytes that it needs.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
-GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpWorker sampler, VkCommandBuffer commandBuffer,
+GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpRecorder recorder, VkCommandBuffer commandBuffer,
                                                                  const GpgpFrame* frame,
                                                                  const GpgpVisibilityMetricsInfo* info);
 
-typedef struct GpgpSampleReport {
+typedef struct GpgpVisibilityReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
@@ -312,7 +312,7 @@ typedef struct GpgpSampleReport {
   uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set; instances beyond `draws` */
   uint32_t neededCandidates; /**< exact: at least, where there is too little room */
   uint32_t neededPairs;
-  uint32_t maxTriangles; /**< what the sampler has room for, as all three: as it was made with, or its defaults */
+  uint32_t maxTriangles; /**< what the recorder has room for, as all three: as it was made with, or its defaults */
   uint32_t maxCandidates;
   uint32_t maxPairs;
   uint32_t unresolved;  /**< exact: triangles and pairs that were not decided; the triangles are reported visible, and
@@ -324,22 +324,22 @@ typedef struct GpgpSampleReport {
   uint32_t draws;       /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */
   uint32_t drawTriangles;       /**< of them written */
-  uint32_t truth;               /**< of metrics, as all that follows: triangles in the truth */
-  uint32_t falsePositives;      /**< visible, not in the truth */
-  uint32_t falseNegatives;      /**< in the truth, not visible */
-  float coverage;               /**< found ones, of the truth: 0 to 1; 0 without truth */
-  float overestimation;         /**< false positives, of the truth; may exceed 1 */
-  float coverageArea;           /**< the truth's samples that show found ones, of all that show a triangle */
+  uint32_t reference;               /**< of metrics, as all that follows: triangles in the reference */
+  uint32_t falsePositives;      /**< visible, not in the reference */
+  uint32_t falseNegatives;      /**< in the reference, not visible */
+  float coverage;               /**< found ones, of the reference: 0 to 1; 0 without reference */
+  float overestimation;         /**< false positives, of the reference; may exceed 1 */
+  float coverageArea;           /**< the reference's samples that show found ones, of all that show a triangle */
   float overestimationArea;     /**< false positives, which no sample shows, as one sample each, of the same */
-} GpgpSampleReport;
-#define GPGP_SAMPLE_REPORT_INIT GPGP_INIT(GpgpSampleReport, GPGP_STRUCTURE_SAMPLE_REPORT)
+} GpgpVisibilityReport;
+#define GPGP_VISIBILITY_REPORT_INIT GPGP_INIT(GpgpVisibilityReport, GPGP_STRUCTURE_VISIBILITY_REPORT)
 
 /** The oldest report not yet taken. NOT_READY: none. BUDGET_EXCEEDED in base.status: maxTriangles (neededTriangles says
  *  how many there are), maxDraws or drawCommands (neededDraws), the list (visible says how many), the lists by draw
  *  (neededDrawTriangles), or anything `unresolved`, which larger budgets do not always help. What is written is valid,
  *  and whole triangles. Of several cameras all but visible, listed, appeared, disappeared and draws are sums.
  *  @threads handle */
-GPGP_API GpgpResult GPGP_CALL gpgpGetSampleReport(GpgpWorker sampler, GpgpSampleReport* report);
+GPGP_API GpgpResult GPGP_CALL gpgpGetVisibilityReport(GpgpRecorder recorder, GpgpVisibilityReport* report);
 
 #ifdef __cplusplus
 }

@@ -94,7 +94,7 @@ public:
 
   const FrameReport& report() const;
   /// Canvas reports, to see exceeded budgets of the GPU: gpgpGetCanvasReport. Another one after resize().
-  GpgpWorker canvas() const;
+  GpgpRecorder canvas() const;
   /// Before a font is destroyed whose layouts were drawn.
   void forget(GpgpFont font);
 

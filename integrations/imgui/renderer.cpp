@@ -295,7 +295,7 @@ void Renderer::resize(uint32_t width, uint32_t height) {
 
 void Renderer::use(VkCommandBuffer commands) { impl_->target = commands; }
 const FrameReport& Renderer::report() const { return impl_->report; }
-GpgpWorker Renderer::canvas() const { return impl_->canvas; }
+GpgpRecorder Renderer::canvas() const { return impl_->canvas; }
 
 void Renderer::forget(GpgpFont font) {
   impl_->cache.forget(font);

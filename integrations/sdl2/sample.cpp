@@ -100,7 +100,7 @@ public:
     canvasInfo.base.queueFlags = device.queueFlags;
     canvasInfo.maxWidth = swapchain.maxExtent().width;
     canvasInfo.maxHeight = swapchain.maxExtent().height;
-    canvasInfo.targets = GPGP_CANVAS_TARGET_VIEW;
+    canvasInfo.targets = GPGP_CANVAS_TARGET_HISTORY;
     canvas_ = take(Canvas::create(context_, canvasInfo), "gpgpCreateCanvas");
     target_ = init<GpgpTargetInfo>();
     target_.renderPass = pass_.handle();
@@ -141,13 +141,13 @@ public:
     info.height = swapchain_.extent().height;
     info.items = items.data();
     info.itemCount = static_cast<uint32_t>(items.size());
-    info.view = view_;
+    info.history = view_;
     info.exactArea = VK_TRUE; // small letters want it
     need(canvas_.recordPrepare(commands, frames_.number(), info), "gpgpRecordPrepareCanvas");
 
     pass_.begin(commands, acquired->index, {0.02f, 0.03f, 0.05f, 1});
     auto draw = init<GpgpCanvasDrawInfo>();
-    draw.view = view_;
+    draw.history = view_;
     draw.target = &target_;
     draw.width = info.width;
     draw.height = info.height;
@@ -174,11 +174,11 @@ public:
 
 private:
   void makeView() {
-    auto info = init<GpgpCanvasViewCreateInfo>();
+    auto info = init<GpgpCanvasHistoryCreateInfo>();
     info.label = "window";
     info.width = swapchain_.extent().width;
     info.height = swapchain_.extent().height;
-    view_ = take(CanvasView::create(context_, info), "gpgpCreateCanvasView");
+    view_ = take(CanvasHistory::create(context_, info), "gpgpCreateCanvasHistory");
   }
   /// The drawing's page in the middle of the window.
   GpgpCanvasItem fitted() const {
@@ -205,7 +205,7 @@ private:
   std::optional<Line> line_;
 #endif
   Canvas canvas_;
-  CanvasView view_;
+  CanvasHistory view_;
   GpgpTargetInfo target_ = GPGP_TARGET_INFO_INIT;
 };
 

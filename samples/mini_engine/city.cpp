@@ -68,7 +68,7 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
   grammarInfo.size = baked.size();
   grammar_ = gpgp.take(gpgp::Grammar::create(gpgp.context, grammarInfo), "gpgpCreateGrammar");
   auto spawnerInfo = gpgp::init<GpgpSpawnerCreateInfo>();
-  spawnerInfo.base = gpgp.worker("city spawner");
+  spawnerInfo.base = gpgp.recorder("city spawner");
   spawnerInfo.flags = GPGP_SPAWNER_ORDERED; // where faces coincide, the picture is the same in every run
   spawner_ = gpgp.take(gpgp::Spawner::create(gpgp.context, spawnerInfo), "gpgpCreateSpawner");
   gpgp.check(spawner_.prewarm(), "gpgpPrewarm");

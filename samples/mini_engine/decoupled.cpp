@@ -1,4 +1,4 @@
-// Three records of gpgp's sampler a displayed frame, four where it is shaded: the visible set for shading, what the
+// Three records of gpgp's recorder a displayed frame, four where it is shaded: the visible set for shading, what the
 // display shows (standard sampling), and the one compared with the other.
 #include "decoupled.h"
 
@@ -17,8 +17,8 @@ namespace mini {
 namespace {
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkDeviceSize kRecordBytes = 32;    // Record of shaded.glsl
-constexpr uint32_t kTruthPerRecord = 2;      // samples in each direction
-constexpr uint32_t kTruthSlicesPerFrame = 4; // so that no frame hangs
+constexpr uint32_t kReferencePerRecord = 2;      // samples in each direction
+constexpr uint32_t kReferenceSlicesPerFrame = 4; // so that no frame hangs
 constexpr GpgpAccess kComputeRead = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT,
                                      VK_IMAGE_LAYOUT_UNDEFINED};
 constexpr GpgpAccess kArguments = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
@@ -47,7 +47,7 @@ Decoupled::Decoupled(Device& device, Gpgp& gpgp, const Forward& forward, Model m
       standard_(makeWords(device, (model_.triangleCount + 31) / 32)),
       display_(makeWords(device, (model_.triangleCount + 31) / 32)),
       displayCounts_(makeWords(device, model_.triangleCount)),
-      truthBits_(makeWords(device, (model_.triangleCount + 31) / 32)),
+      referenceBits_(makeWords(device, (model_.triangleCount + 31) / 32)),
       positives_(makeWords(device, (model_.triangleCount + 31) / 32)),
       negatives_(makeWords(device, (model_.triangleCount + 31) / 32)),
       shadeSet_(device, {&positions_, &normals_, &indices_, &draws_, &meshes_, &records_, &list_, &count_},
@@ -58,18 +58,18 @@ Decoupled::Decoupled(Device& device, Gpgp& gpgp, const Forward& forward, Model m
                   VK_SHADER_STAGE_VERTEX_BIT),
       shadePipeline_(device, {std::begin(mini_shade_comp), std::end(mini_shade_comp)}, shadeSet_.layout, 24) {
   geometry_ = gpgp.geometrySet("shaded model", model_.meshes);
-  auto samplerInfo = gpgp::init<GpgpSamplerCreateInfo>();
-  samplerInfo.base = gpgp.worker("shading sampler");
-  samplerInfo.maxWidth = kMaxExtent.width;
-  samplerInfo.maxHeight = kMaxExtent.height;
-  samplerInfo.maxDraws = static_cast<uint32_t>(model_.draws.size());
-  samplerInfo.maxTriangles = model_.triangleCount;
-  samplerInfo.maxCandidates = std::max(model_.triangleCount, 65536u);
-  samplerInfo.methods =
-      GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_TRUTH_BIT;
-  samplerInfo.maxSamples = kTruthPerRecord;
-  sampler_ = gpgp.take(gpgp::Sampler::create(gpgp.context, samplerInfo), "gpgpCreateSampler");
-  gpgp.check(sampler_.prewarm(), "gpgpPrewarm");
+  auto recorderInfo = gpgp::init<GpgpVisibilityRecorderCreateInfo>();
+  recorderInfo.base = gpgp.recorder("shading recorder");
+  recorderInfo.maxWidth = kMaxExtent.width;
+  recorderInfo.maxHeight = kMaxExtent.height;
+  recorderInfo.maxDraws = static_cast<uint32_t>(model_.draws.size());
+  recorderInfo.maxTriangles = model_.triangleCount;
+  recorderInfo.maxCandidates = std::max(model_.triangleCount, 65536u);
+  recorderInfo.methods =
+      GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_REFERENCE_BIT;
+  recorderInfo.maxSamples = kReferencePerRecord;
+  recorder_ = gpgp.take(gpgp::VisibilityRecorder::create(gpgp.context, recorderInfo), "gpgpCreateVisibilityRecorder");
+  gpgp.check(recorder_.prewarm(), "gpgpPrewarm");
   PipelineInfo info;
   info.vertex.assign(std::begin(mini_shaded_vert), std::end(mini_shaded_vert));
   info.fragment.assign(std::begin(mini_shaded_frag), std::end(mini_shaded_frag));
@@ -78,7 +78,7 @@ Decoupled::Decoupled(Device& device, Gpgp& gpgp, const Forward& forward, Model m
   displayPipeline_ = Pipeline(device, forward.renderPass(), Forward::kSamples, info);
   VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
   queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
-  queries.queryCount = kSlots * kStamps;
+  queries.queryCount = kSlots * kTimestamps;
   if (device.properties.limits.timestampComputeAndGraphics)
     check(vkCreateQueryPool(device.device, &queries, nullptr, &queries_), "vkCreateQueryPool");
 }
@@ -86,20 +86,20 @@ Decoupled::Decoupled(Device& device, Gpgp& gpgp, const Forward& forward, Model m
 Decoupled::~Decoupled() { vkDestroyQueryPool(device_.device, queries_, nullptr); }
 
 /// Before and after visibility, after shading, before and after the display.
-void Decoupled::stamp(VkCommandBuffer commands, uint32_t query) {
-  if (queries_) vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, slot_ * kStamps + query);
+void Decoupled::writeTimestamp(VkCommandBuffer commands, uint32_t query) {
+  if (queries_) vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, slot_ * kTimestamps + query);
 }
 
 /// Of a frame that is finished.
-void Decoupled::readStamps(uint32_t slot) {
-  if (!stamped_[slot] || !queries_) return;
-  stamped_[slot] = false;
-  uint64_t stamps[kStamps] = {};
-  check(vkGetQueryPoolResults(device_.device, queries_, slot * kStamps, kStamps, sizeof stamps, stamps, 8,
+void Decoupled::readTimestamps(uint32_t slot) {
+  if (!timed_[slot] || !queries_) return;
+  timed_[slot] = false;
+  uint64_t timestamps[kTimestamps] = {};
+  check(vkGetQueryPoolResults(device_.device, queries_, slot * kTimestamps, kTimestamps, sizeof timestamps, timestamps, 8,
                               VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   const auto between = [&](int from, int to) {
-    return static_cast<double>(stamps[to] - stamps[from]) * 1e-6 *
+    return static_cast<double>(timestamps[to] - timestamps[from]) * 1e-6 *
            static_cast<double>(device_.properties.limits.timestampPeriod);
   };
   ++times_.displays;
@@ -111,13 +111,13 @@ void Decoupled::readStamps(uint32_t slot) {
 }
 
 const Decoupled::Times& Decoupled::times() {
-  for (uint32_t slot = 0; slot < kSlots; ++slot) readStamps(slot);
+  for (uint32_t slot = 0; slot < kSlots; ++slot) readTimestamps(slot);
   return times_;
 }
 
 void Decoupled::sample(VkCommandBuffer commands, const GpgpFrame& frame, GpgpSamplingMethod method,
                        const Camera& camera, VkExtent2D extent, const Buffer& bits, Tag tag, uint32_t slice) {
-  auto info = gpgp::init<GpgpSampleInfo>();
+  auto info = gpgp::init<GpgpVisibilityInfo>();
   info.base.tag = tag;
   info.geometrySet = geometry_;
   info.method = method;
@@ -125,12 +125,12 @@ void Decoupled::sample(VkCommandBuffer commands, const GpgpFrame& frame, GpgpSam
   info.width = extent.width;
   info.height = extent.height;
   if (method == GPGP_SAMPLING_CONSERVATIVE) {
-    info.heuristics = GPGP_HEURISTICS_THESIS;
+    info.heuristics = GPGP_HEURISTICS_DEFAULT;
     info.epsilonStatic = info.epsilonDynamic = options_.epsilon;
     info.resolution = options_.resolution;
   }
-  if (method == GPGP_SAMPLING_TRUTH) {
-    info.samples = options_.truth;
+  if (method == GPGP_SAMPLING_REFERENCE) {
+    info.samples = options_.reference;
     info.slice = slice;
     info.accumulate = slice > 0;
   }
@@ -147,30 +147,30 @@ void Decoupled::sample(VkCommandBuffer commands, const GpgpFrame& frame, GpgpSam
     info.visibleCount = count_.forGpgp(kArguments, kArguments);
     info.triangleSizes = sizes_.forGpgp(kVertexShaderRead, kVertexShaderRead);
   }
-  gpgp_.check(sampler_.recordPrepare(commands, frame, info), "gpgpRecordPrepareVisibility");
+  gpgp_.check(recorder_.recordPrepare(commands, frame, info), "gpgpRecordPrepareVisibility");
 }
 
 /// What was found against bits of another record.
-void Decoupled::compare(VkCommandBuffer commands, const GpgpFrame& frame, const Buffer& truth, Tag tag) {
+void Decoupled::compare(VkCommandBuffer commands, const GpgpFrame& frame, const Buffer& reference, Tag tag) {
   auto info = gpgp::init<GpgpVisibilityMetricsInfo>();
   info.base.tag = tag;
   info.triangleCount = model_.triangleCount;
   info.visibleBits = found_.forGpgp(kVertexShaderRead, kVertexShaderRead);
-  info.truthBits = truth.forGpgp(kNoAccess, kNoAccess);
-  if (tag == tagMisses) info.truthCounts = displayCounts_.forGpgp(kNoAccess, kNoAccess);
-  if (tag == tagTruth) {
+  info.referenceBits = reference.forGpgp(kNoAccess, kNoAccess);
+  if (tag == tagMisses) info.referenceCounts = displayCounts_.forGpgp(kNoAccess, kNoAccess);
+  if (tag == tagReference) {
     info.falsePositives = positives_.forGpgp(kVertexShaderRead, kVertexShaderRead);
     info.falseNegatives = negatives_.forGpgp(kVertexShaderRead, kVertexShaderRead);
   }
-  gpgp_.check(sampler_.recordPrepareMetrics(commands, frame, info), "gpgpRecordPrepareVisibilityMetrics");
+  gpgp_.check(recorder_.recordPrepareMetrics(commands, frame, info), "gpgpRecordPrepareVisibilityMetrics");
 }
 
 /// Lights what is in the list, by gpgp's own arguments.
 void Decoupled::shade(VkCommandBuffer commands) {
   struct {
     glm::vec4 eye;
-    uint32_t drawCount, stamp;
-  } const push{glm::vec4(shadingCamera_.eye, 1), static_cast<uint32_t>(model_.draws.size()), stamp_};
+    uint32_t drawCount, shading;
+  } const push{glm::vec4(shadingCamera_.eye, 1), static_cast<uint32_t>(model_.draws.size()), shading_};
   barrier(commands, VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
           VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shadePipeline_.handle);
@@ -182,65 +182,65 @@ void Decoupled::shade(VkCommandBuffer commands) {
           VK_PIPELINE_STAGE_VERTEX_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
 }
 
-std::pair<uint32_t, uint32_t> Decoupled::truthSlices() const {
+std::pair<uint32_t, uint32_t> Decoupled::referenceSlices() const {
   if (!showsOverlay()) return {0, 0};
-  const uint32_t side = std::max(options_.truth / kTruthPerRecord, 1u);
-  return {truthSlice_, side * side + 1};
+  const uint32_t side = std::max(options_.reference / kReferencePerRecord, 1u);
+  return {referenceSlice_, side * side + 1};
 }
 
 /// Of what was shaded last.
-bool Decoupled::isTruthKnown() const { return overlaid_ == stamp_ && truthSlice_ == truthSlices().second; }
+bool Decoupled::isReferenceKnown() const { return overlaid_ == shading_ && referenceSlice_ == referenceSlices().second; }
 
 /// What standard sampling finds from where it was shaded, and a few slices a frame of what is truly visible from there.
-void Decoupled::sampleTruth(VkCommandBuffer commands, const GpgpFrame& frame) {
-  if (overlaid_ != stamp_) {
+void Decoupled::sampleReference(VkCommandBuffer commands, const GpgpFrame& frame) {
+  if (overlaid_ != shading_) {
     sample(commands, frame, GPGP_SAMPLING_STANDARD, shadingCamera_, shadingExtent_, standard_, tagOther);
-    overlaid_ = stamp_;
-    truthSlice_ = 0;
+    overlaid_ = shading_;
+    referenceSlice_ = 0;
   }
-  if (isTruthKnown()) return;
-  for (uint32_t i = 0; i < kTruthSlicesPerFrame && !isTruthKnown(); ++i, ++truthSlice_)
-    sample(commands, frame, GPGP_SAMPLING_TRUTH, shadingCamera_, shadingExtent_, truthBits_, tagOther, truthSlice_);
-  if (isTruthKnown()) compare(commands, frame, truthBits_, tagTruth);
+  if (isReferenceKnown()) return;
+  for (uint32_t i = 0; i < kReferenceSlicesPerFrame && !isReferenceKnown(); ++i, ++referenceSlice_)
+    sample(commands, frame, GPGP_SAMPLING_REFERENCE, shadingCamera_, shadingExtent_, referenceBits_, tagOther, referenceSlice_);
+  if (isReferenceKnown()) compare(commands, frame, referenceBits_, tagReference);
 }
 
 void Decoupled::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Camera& shading, const Camera& display,
                         VkExtent2D extent) {
   if (step_ >= options_.freezeAfter && step_) frozen_ = true;
   slot_ = static_cast<uint32_t>(frame.current % kSlots);
-  readStamps(slot_); // the engine has waited for the frame that used it last
-  if (queries_) vkCmdResetQueryPool(commands, queries_, slot_ * kStamps, kStamps);
-  const bool waits = showsOverlay() && !isTruthKnown();
-  const bool shades = stamp_ == 0 || (!frozen_ && !waits && step_ % options_.rate == 0);
+  readTimestamps(slot_); // the engine has waited for the frame that used it last
+  if (queries_) vkCmdResetQueryPool(commands, queries_, slot_ * kTimestamps, kTimestamps);
+  const bool waits = showsOverlay() && !isReferenceKnown();
+  const bool shades = shading_ == 0 || (!frozen_ && !waits && step_ % options_.rate == 0);
   shades_[slot_] = shades;
-  stamp(commands, 0);
+  writeTimestamp(commands, 0);
   if (shades) {
     shadingCamera_ = shading;
     shadingExtent_ = extent;
-    ++stamp_;
+    ++shading_;
     sample(commands, frame, options_.method, shading, extent, found_, tagShading);
-    stamp(commands, 1);
+    writeTimestamp(commands, 1);
     shade(commands);
-    stamp(commands, 2);
+    writeTimestamp(commands, 2);
   }
   if (!shades) {
-    stamp(commands, 1);
-    stamp(commands, 2);
+    writeTimestamp(commands, 1);
+    writeTimestamp(commands, 2);
   }
   sample(commands, frame, GPGP_SAMPLING_STANDARD, display, extent, display_, tagDisplay);
   compare(commands, frame, display_, tagMisses);
-  if (showsOverlay()) sampleTruth(commands, frame);
+  if (showsOverlay()) sampleReference(commands, frame);
   ++step_;
 }
 
 void Decoupled::draw(VkCommandBuffer commands, const Camera& display) {
-  constexpr uint32_t kOverlayWithoutTruth = 3; // of shaded.vert
+  constexpr uint32_t kOverlayWithoutReference = 3; // of shaded.vert
   struct {
     glm::mat4 viewProjection;
-    uint32_t draw, firstIndex, vertexOffset, stamp, show;
-  } push{display.viewProjection, 0, 0, 0, stamp_, static_cast<uint32_t>(options_.show)};
-  if (showsOverlay() && !isTruthKnown()) push.show = kOverlayWithoutTruth;
-  stamp(commands, 3);
+    uint32_t draw, firstIndex, vertexOffset, shading, show;
+  } push{display.viewProjection, 0, 0, 0, shading_, static_cast<uint32_t>(options_.show)};
+  if (showsOverlay() && !isReferenceKnown()) push.show = kOverlayWithoutReference;
+  writeTimestamp(commands, 3);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, displayPipeline_.handle);
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, displayPipeline_.layout, 0, 1, &displaySet_.handle,
                           0, nullptr);
@@ -252,23 +252,23 @@ void Decoupled::draw(VkCommandBuffer commands, const Camera& display) {
     vkCmdPushConstants(commands, displayPipeline_.layout, Pipeline::kStages, 0, 84, &push);
     vkCmdDraw(commands, mesh.indexCount, 1, 0, 0);
   }
-  stamp(commands, 4);
-  stamped_[slot_] = true;
+  writeTimestamp(commands, 4);
+  timed_[slot_] = true;
 }
 
-/// Whether a sampler that had room for all left some of a pixel's many triangles undecided: they are shown.
-static bool isOnlyInDoubt(const GpgpSampleReport& report) {
+/// Whether a recorder that had room for all left some of a pixel's many triangles undecided: they are shown.
+static bool isOnlyInDoubt(const GpgpVisibilityReport& report) {
   return report.base.status == GPGP_BUDGET_EXCEEDED && report.unresolved > 0 &&
          report.neededTriangles <= report.maxTriangles && report.neededCandidates <= report.maxCandidates &&
          report.neededPairs <= report.maxPairs;
 }
 
 void Decoupled::collect() {
-  for (auto next = sampler_.report(); next; next = sampler_.report()) {
+  for (auto next = recorder_.report(); next; next = recorder_.report()) {
     well_ = well_ && (next->base.status == GPGP_SUCCESS || isOnlyInDoubt(*next));
     if (next->base.tag == tagShading) shading_ = *next;
-    if (next->base.tag == tagTruth) truth_ = *next;
-    if (next->base.tag != tagMisses || !next->truth) continue;
+    if (next->base.tag == tagReference) reference_ = *next;
+    if (next->base.tag != tagMisses || !next->reference) continue;
     const double missing = 1.0 - static_cast<double>(next->coverageArea);
     ++misses_.displays;
     misses_.pixels += missing;

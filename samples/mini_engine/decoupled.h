@@ -18,9 +18,9 @@ struct DecoupledOptions {
   float resolution = 1, epsilon = 0.05f; ///< of the conservative method: factor, static and dynamic alike
   uint32_t rate = 4;                     ///< displayed frames for one of shading
   uint32_t freezeAfter = UINT32_MAX;     ///< frames after which shading stops
-  uint32_t truth = 16;                   ///< overlay: N x N samples a pixel
+  uint32_t reference = 16;                   ///< overlay: N x N samples a pixel
   float farther = 1;                     ///< how many times farther away than the display's camera the shading's is
-  /// An overlay's shading waits for the truth of the one before it.
+  /// An overlay's shading waits for the reference of the one before it.
   enum Show { shaded, overlay, density } show = shaded;
 };
 
@@ -51,25 +51,25 @@ public:
     double visibility = 0, shading = 0, display = 0;
   };
   const Times& times();
-  const GpgpSampleReport& shadingReport() const { return shading_; }
-  uint32_t shadings() const { return stamp_; }
-  /// Against the last truth of which all slices are there; false positives are not sampled again.
-  const std::optional<GpgpSampleReport>& truthReport() const { return truth_; }
+  const GpgpVisibilityReport& shadingReport() const { return shading_; }
+  uint32_t shadings() const { return shading_; }
+  /// Against the last reference of which all slices are there; false positives are not sampled again.
+  const std::optional<GpgpVisibilityReport>& referenceReport() const { return reference_; }
   /// An overlay's slices that are there, and how many there will be; 0 of 0: none is shown.
-  std::pair<uint32_t, uint32_t> truthSlices() const;
+  std::pair<uint32_t, uint32_t> referenceSlices() const;
   bool allWell() const { return well_ && misses_.displays > 0; }
 
 private:
-  enum Tag : uint64_t { tagShading, tagDisplay, tagMisses, tagTruth, tagOther };
+  enum Tag : uint64_t { tagShading, tagDisplay, tagMisses, tagReference, tagOther };
   void sample(VkCommandBuffer commands, const GpgpFrame& frame, GpgpSamplingMethod method, const Camera& camera,
               VkExtent2D extent, const Buffer& bits, Tag tag, uint32_t slice = 0);
-  void compare(VkCommandBuffer commands, const GpgpFrame& frame, const Buffer& truth, Tag tag);
+  void compare(VkCommandBuffer commands, const GpgpFrame& frame, const Buffer& reference, Tag tag);
   void shade(VkCommandBuffer commands);
-  void stamp(VkCommandBuffer commands, uint32_t query);
-  void readStamps(uint32_t slot);
+  void writeTimestamp(VkCommandBuffer commands, uint32_t query);
+  void readTimestamps(uint32_t slot);
   bool showsOverlay() const { return options_.show == DecoupledOptions::overlay; }
-  bool isTruthKnown() const;
-  void sampleTruth(VkCommandBuffer commands, const GpgpFrame& frame);
+  bool isReferenceKnown() const;
+  void sampleReference(VkCommandBuffer commands, const GpgpFrame& frame);
 
   Device& device_;
   Gpgp& gpgp_;
@@ -77,25 +77,25 @@ private:
   DecoupledOptions options_;
   Buffer positions_, normals_, indices_, draws_, meshes_;
   Buffer records_, found_, list_, count_, sizes_;
-  Buffer standard_, display_, displayCounts_, truthBits_, positives_, negatives_;
+  Buffer standard_, display_, displayCounts_, referenceBits_, positives_, negatives_;
   gpgp::GeometrySet geometry_;
-  gpgp::Sampler sampler_;
+  gpgp::VisibilityRecorder recorder_;
   BufferSet shadeSet_, displaySet_;
   ComputePipeline shadePipeline_;
   Pipeline displayPipeline_;
   Camera shadingCamera_;
   VkExtent2D shadingExtent_{};
-  uint32_t step_ = 0, stamp_ = 0;
-  uint32_t overlaid_ = 0, truthSlice_ = 0; ///< the shading that the overlay is of, and its next slice
+  uint32_t step_ = 0, shading_ = 0;
+  uint32_t overlaid_ = 0, referenceSlice_ = 0; ///< the shading that the overlay is of, and its next slice
   bool frozen_ = false, well_ = true;
-  static constexpr uint32_t kSlots = 2, kStamps = 5; ///< frames in flight; stamps of a frame
+  static constexpr uint32_t kSlots = 2, kTimestamps = 5; ///< frames in flight; timestamps of a frame
   VkQueryPool queries_ = VK_NULL_HANDLE;
-  bool stamped_[kSlots] = {}, shades_[kSlots] = {};
+  bool timed_[kSlots] = {}, shades_[kSlots] = {};
   uint32_t slot_ = 0;
   Misses misses_;
   Times times_;
-  GpgpSampleReport shading_{};
-  std::optional<GpgpSampleReport> truth_;
+  GpgpVisibilityReport shading_{};
+  std::optional<GpgpVisibilityReport> reference_;
 };
 
 } // namespace mini

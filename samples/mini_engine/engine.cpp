@@ -216,26 +216,26 @@ bool Engine::allWell() const {
 
 void Engine::printSummary() const {
   const GpgpSpawnReport& spawn = city_.report();
-  const GpgpSampleReport& sample = sight_.report();
+  const GpgpVisibilityReport& sample = sight_.report();
   const auto line = [](const char* service, const GpgpReportHeader& base) {
     std::printf("%-11s %-20s frame %llu: ", service, gpgpResultString(base.status),
                 static_cast<unsigned long long>(base.frame));
   };
   std::printf("device      %s\n", device_.properties.deviceName);
   if (decoupled_) {
-    const GpgpSampleReport& shading = decoupled_->shadingReport();
+    const GpgpVisibilityReport& shading = decoupled_->shadingReport();
     const Decoupled::Misses& misses = decoupled_->misses();
     std::printf("shading     %s: %u of %u triangles, %u times\n", gpgpResultString(shading.base.status),
                 shading.visible, sight_.model().triangleCount, decoupled_->shadings());
     std::printf("display     %u displays, %.3f %% of the model's pixels without shading, at most %.3f %%\n",
                 misses.displays, 100 * misses.pixels / std::max(misses.displays, 1u), 100 * misses.worst);
-    if (const auto& truth = decoupled_->truthReport())
-      std::printf("truth       %u triangles: coverage %.2f %%, overestimation %.2f %% (not sampled again)\n",
-                  truth->truth, 100 * static_cast<double>(truth->coverage),
-                  100 * static_cast<double>(truth->overestimation));
-    else if (const auto [slices, all] = decoupled_->truthSlices(); all)
+    if (const auto& reference = decoupled_->referenceReport())
+      std::printf("reference       %u triangles: coverage %.2f %%, overestimation %.2f %% (not sampled again)\n",
+                  reference->reference, 100 * static_cast<double>(reference->coverage),
+                  100 * static_cast<double>(reference->overestimation));
+    else if (const auto [slices, all] = decoupled_->referenceSlices(); all)
       std::printf(
-          "truth       %u of %u slices sampled: the overlay lacks red and blue; more --frames make the others\n",
+          "reference       %u of %u slices sampled: the overlay lacks red and blue; more --frames make the others\n",
           slices, all);
     return;
   }

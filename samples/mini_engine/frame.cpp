@@ -69,9 +69,9 @@ FramePicture::FramePicture(Device& device)
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = VK_FILTER_LINEAR;
   info.addressModeU = info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  check(vkCreateSampler(device.device, &info, nullptr, &sampler_), "vkCreateSampler");
+  check(vkCreateSampler(device.device, &info, nullptr, &recorder_), "vkCreateSampler");
 }
 
-FramePicture::~FramePicture() { vkDestroySampler(device_.device, sampler_, nullptr); }
+FramePicture::~FramePicture() { vkDestroySampler(device_.device, recorder_, nullptr); }
 
 } // namespace mini

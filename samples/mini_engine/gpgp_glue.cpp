@@ -90,8 +90,8 @@ GpgpResult Gpgp::check(GpgpResult result, const char* what) {
                            (lastError_.empty() ? "" : ": " + lastError_));
 }
 
-GpgpWorkerCreateInfo Gpgp::worker(const char* label) const {
-  GpgpWorkerCreateInfo info{};
+GpgpRecorderCreateInfo Gpgp::recorder(const char* label) const {
+  GpgpRecorderCreateInfo info{};
   info.label = label;
   info.queueFamily = device_.family;
   info.queueFlags = device_.queueFlags;

@@ -49,7 +49,7 @@ public:
     check(result.code(), what);
     return std::move(*result);
   }
-  GpgpWorkerCreateInfo worker(const char* label) const;
+  GpgpRecorderCreateInfo recorder(const char* label) const;
   /// Compiles an SVG; where the file is not there, says so and gives nothing.
   gpgp::Drawing loadSvg(const std::string& file, const char* label);
   gpgp::GeometrySet geometrySet(const char* label, const std::vector<GpgpMesh>& meshes);

@@ -23,7 +23,7 @@ std::optional<std::vector<std::string>> readTexts(const std::vector<GrammarWatch
 
 } // namespace
 
-GrammarWatch::GrammarWatch(GpgpContext context, GpgpWorker spawner, GrammarWatchOptions options)
+GrammarWatch::GrammarWatch(GpgpContext context, GpgpRecorder spawner, GrammarWatchOptions options)
     : context_(context), spawner_(spawner), options_(std::move(options)), thread_([this] { run(); }) {}
 
 GrammarWatch::~GrammarWatch() {

@@ -32,7 +32,7 @@ struct GrammarWatchOptions {
 class GrammarWatch {
 public:
   /// Both handles outlive the watch.
-  GrammarWatch(GpgpContext context, GpgpWorker spawner, GrammarWatchOptions options);
+  GrammarWatch(GpgpContext context, GpgpRecorder spawner, GrammarWatchOptions options);
   ~GrammarWatch();
   GrammarWatch(const GrammarWatch&) = delete;
   GrammarWatch& operator=(const GrammarWatch&) = delete;
@@ -46,7 +46,7 @@ private:
   bool compile(const std::vector<std::string>& texts, GpgpCompileFlags flags);
 
   const GpgpContext context_;
-  const GpgpWorker spawner_;
+  const GpgpRecorder spawner_;
   const GrammarWatchOptions options_;
   gpgp::Grammar next_; // only update touches it
 

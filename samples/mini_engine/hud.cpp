@@ -28,10 +28,10 @@ Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFi
   load(frameFile, true);
   load(pictureFile, false);
   auto info = gpgp::init<GpgpCanvasCreateInfo>();
-  info.base = gpgp.worker("hud canvas");
+  info.base = gpgp.recorder("hud canvas");
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
-  info.targets = GPGP_CANVAS_TARGET_VIEW;
+  info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
   target_ = gpgp::init<GpgpTargetInfo>();
   target_.renderPass = forward.renderPass();
@@ -53,11 +53,11 @@ void Hud::load(const std::string& file, bool isFrame) {
 
 void Hud::resize(VkExtent2D extent) {
   extent_ = extent;
-  auto info = gpgp::init<GpgpCanvasViewCreateInfo>();
+  auto info = gpgp::init<GpgpCanvasHistoryCreateInfo>();
   info.label = "hud";
   info.width = extent.width;
   info.height = extent.height;
-  view_ = gpgp_.take(gpgp::CanvasView::create(gpgp_.context, info), "gpgpCreateCanvasView");
+  view_ = gpgp_.take(gpgp::CanvasHistory::create(gpgp_.context, info), "gpgpCreateCanvasHistory");
   prepared_ = false;
 }
 
@@ -83,7 +83,7 @@ void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   info.height = extent_.height;
   info.items = items.data();
   info.itemCount = static_cast<uint32_t>(items.size());
-  info.view = view_;
+  info.history = view_;
   if (gpgp_.check(canvas_.recordPrepare(commands, frame, info), "gpgpRecordPrepareCanvas") == GPGP_SUCCESS)
     prepared_ = true;
 }
@@ -91,7 +91,7 @@ void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
 void Hud::draw(VkCommandBuffer commands, const GpgpFrame& frame) {
   if (!prepared_) return;
   auto info = gpgp::init<GpgpCanvasDrawInfo>();
-  info.view = view_;
+  info.history = view_;
   info.target = &target_;
   info.width = extent_.width;
   info.height = extent_.height;

@@ -28,7 +28,7 @@ private:
   Gpgp& gpgp_;
   std::vector<Item> items_;
   gpgp::Canvas canvas_;
-  gpgp::CanvasView view_;
+  gpgp::CanvasHistory view_;
   GpgpTargetInfo target_{};
   VkExtent2D extent_{};
   bool prepared_ = false;

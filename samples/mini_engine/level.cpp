@@ -30,7 +30,7 @@ std::vector<GpgpAxiom> levelAxioms() {
       axiom.transform[7] =
           axiom.size[1] * 0.5f; // shapes have their origin in the middle; buildings stand on the ground
       axiom.transform[11] = static_cast<float>(z) * kBlock;
-      axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+      axiom.start = GPGP_AXIOM_DEFAULT_START;
       axiom.attribute = std::nanf("");
       axioms.push_back(axiom);
     }

@@ -34,9 +34,9 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --freeze N       decoupled: no shading after N frames; F does it in a window
   --farther F      decoupled: the shading's camera is F times as far away (default 1)
   --show WHAT      decoupled: shaded (magenta: nothing was shaded); overlay (green: standard sampling finds it, too,
-                   grey: the method alone, red: not in the truth, blue: missed); density (red: a pixel and less,
+                   grey: the method alone, red: not in the reference, blue: missed); density (red: a pixel and less,
                    blue: 64). 1, 2, 3 in a window
-  --truth N        decoupled overlay: N x N samples a pixel (default 16), a few slices a frame; shading waits
+  --reference N        decoupled overlay: N x N samples a pixel (default 16), a few slices a frame; shading waits
                    for them, so that 16 x 16 need 17 frames
   --path           decoupled: the same path with standard and exact sampling; prints what displays missed, and times
   --table          the path with all configurations of the thesis's table 6.1, too
@@ -55,7 +55,7 @@ struct Options {
   std::vector<mini::Input> inputs;
   bool window = false, validate = false, watch = false, path = false, table = false;
   mini::DecoupledOptions decoupled;
-  bool method = false, truth = false; // given
+  bool method = false, reference = false; // given
   std::string ofDecoupled;            // the last option that belongs to --decoupled
 };
 
@@ -135,10 +135,10 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
     const char* value = argv[++i];
     char rest = 0;
     int chosen = -1;
-    if (indexOf(name.c_str(), {"--method", "--show", "--rate", "--freeze", "--truth", "--farther"}) >= 0)
+    if (indexOf(name.c_str(), {"--method", "--show", "--rate", "--freeze", "--reference", "--farther"}) >= 0)
       options.ofDecoupled = name;
     options.method = options.method || name == "--method";
-    options.truth = options.truth || name == "--truth";
+    options.reference = options.reference || name == "--reference";
     if (name == "--out")
       options.out = value;
     else if (name == "--device")
@@ -149,8 +149,8 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       continue;
     else if (name == "--score" && parseNumber(value, options.score) && options.score <= mini::kMaxScore)
       continue;
-    else if (name == "--method" && (chosen = indexOf(value, {"standard", "exact", "truth", "conservative"})) >= 0 &&
-             chosen != GPGP_SAMPLING_TRUTH)
+    else if (name == "--method" && (chosen = indexOf(value, {"standard", "exact", "reference", "conservative"})) >= 0 &&
+             chosen != GPGP_SAMPLING_REFERENCE)
       options.decoupled.method = chosen;
     else if (name == "--show" && (chosen = indexOf(value, {"shaded", "overlay", "density"})) >= 0)
       options.decoupled.show = static_cast<mini::DecoupledOptions::Show>(chosen);
@@ -158,8 +158,8 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       continue;
     else if (name == "--freeze" && parseNumber(value, options.decoupled.freezeAfter))
       continue;
-    else if (name == "--truth" && parseNumber(value, options.decoupled.truth) && options.decoupled.truth >= 2 &&
-             options.decoupled.truth <= 256 && !(options.decoupled.truth & (options.decoupled.truth - 1)))
+    else if (name == "--reference" && parseNumber(value, options.decoupled.reference) && options.decoupled.reference >= 2 &&
+             options.decoupled.reference <= 256 && !(options.decoupled.reference & (options.decoupled.reference - 1)))
       continue;
     else if (name == "--farther" && std::sscanf(value, "%f%c", &options.decoupled.farther, &rest) == 1 &&
              options.decoupled.farther >= 0.1f && options.decoupled.farther <= 8)
@@ -177,7 +177,7 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   if (!options.ofDecoupled.empty() && !options.decoupled.on) wrong = options.ofDecoupled + " without --decoupled";
   const bool overlay = options.decoupled.show == mini::DecoupledOptions::overlay;
   if (options.path && options.method) wrong = "--method beside --path or --table, which choose methods";
-  if (options.path && overlay) wrong = "--show overlay beside --path or --table: shading would wait for the truth";
+  if (options.path && overlay) wrong = "--show overlay beside --path or --table: shading would wait for the reference";
   if (options.watch && options.decoupled.on) wrong = "--watch beside --decoupled, which shows no city";
   bool showsOverlay = overlay || (options.window && !options.path);
   for (const mini::Input& input : options.inputs)
@@ -185,7 +185,7 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       if (!std::strchr("fm123", input.character)) wrong = std::string("--input: there is no key ") + input.character;
       showsOverlay = showsOverlay || input.character == '2';
     }
-  if (options.truth && !showsOverlay) wrong = "--truth without an overlay";
+  if (options.reference && !showsOverlay) wrong = "--reference without an overlay";
   if (options.screen && options.decoupled.on) wrong = "--screen beside --decoupled";
   if (options.frames == 1 && !options.inputs.empty()) wrong = "--input with --frames 1: it comes before the second";
   if (!options.screen && (options.score || options.stereo)) wrong = "--score or --stereo without --screen";

@@ -1,4 +1,4 @@
-// Two layers on one canvas worker, each with a view: the world's is drawn at its panel's depth, the front's flat.
+// Two layers on one canvas recorder, each with a view: the world's is drawn at its panel's depth, the front's flat.
 #include "screen.h"
 
 #include "level.h"
@@ -33,11 +33,11 @@ Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::st
   pictures_.portrait = gpgp.loadSvg(dataFolder + "/fetched/svg/tiger.svgz", "portrait");
   makeArrow();
   auto info = gpgp::init<GpgpCanvasCreateInfo>();
-  info.base = gpgp.worker("screen canvas");
+  info.base = gpgp.recorder("screen canvas");
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
   info.maxGlyphs = 2048;
-  info.targets = GPGP_CANVAS_TARGET_VIEW;
+  info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
   for (Layer* layer : {&world_, &front_}) {
     auto list = gpgp::init<GpgpListCreateInfo>();
@@ -92,11 +92,11 @@ void Screen::resize(VkExtent2D extent) {
   extent_ = {extent.width / eyes_, extent.height};
   text_.forget();
   for (Layer* layer : {&world_, &front_}) {
-    auto info = gpgp::init<GpgpCanvasViewCreateInfo>();
+    auto info = gpgp::init<GpgpCanvasHistoryCreateInfo>();
     info.label = layer == &world_ ? "inventory" : "screen";
     info.width = extent_.width * layer->parts;
     info.height = extent_.height;
-    layer->view = gpgp_.take(gpgp::CanvasView::create(gpgp_.context, info), "gpgpCreateCanvasView");
+    layer->view = gpgp_.take(gpgp::CanvasHistory::create(gpgp_.context, info), "gpgpCreateCanvasHistory");
     layer->prepared = false;
   }
   float* clip = front_.clips[0];
@@ -173,7 +173,7 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
   info.height = extent_.height;
   info.items = layer.items;
   info.itemCount = layer.parts;
-  info.view = layer.view;
+  info.history = layer.view;
   info.exactArea = VK_TRUE; // small letters want it
   GpgpCanvasImage images[2] = {frame_.image()};
   const std::optional<GpgpCanvasImage> text = text_.image();
@@ -202,7 +202,7 @@ void Screen::draw(VkCommandBuffer commands, const GpgpFrame& frame, uint32_t eye
   for (Layer* layer : {&world_, &front_}) {
     if (!layer->shown || !layer->prepared) continue;
     auto info = gpgp::init<GpgpCanvasDrawInfo>();
-    info.view = layer->view;
+    info.history = layer->view;
     info.target = &layer->target;
     info.width = extent_.width;
     info.height = extent_.height;

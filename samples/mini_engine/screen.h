@@ -31,7 +31,7 @@ public:
 private:
   struct Layer { // a list on a canvas: of an eye's size, or one that has a part for each eye
     gpgp::List list;
-    gpgp::CanvasView view;
+    gpgp::CanvasHistory view;
     GpgpTargetInfo target{};
     uint32_t parts = 1;
     GpgpCanvasItem items[2]{};

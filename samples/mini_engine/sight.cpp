@@ -1,4 +1,4 @@
-// The same position, index and draw buffers serve gpgp's sampler and the engine's own vertex shader.
+// The same position, index and draw buffers serve gpgp's recorder and the engine's own vertex shader.
 #include "sight.h"
 
 #include "target.h"
@@ -24,18 +24,18 @@ Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model) : 
   visibleBits_ = makeBuffer(device, none, kStorage);
 
   geometry_ = gpgp.geometrySet("model", model_.meshes);
-  auto samplerInfo = gpgp::init<GpgpSamplerCreateInfo>();
-  samplerInfo.base = gpgp.worker("model sampler");
-  samplerInfo.maxWidth = kMaxExtent.width;
-  samplerInfo.maxHeight = kMaxExtent.height;
-  samplerInfo.maxDraws = static_cast<uint32_t>(model_.draws.size());
-  samplerInfo.maxTriangles = model_.triangleCount;
-  sampler_ = gpgp.take(gpgp::Sampler::create(gpgp.context, samplerInfo), "gpgpCreateSampler");
-  gpgp.check(sampler_.prewarm(), "gpgpPrewarm");
-  auto viewInfo = gpgp::init<GpgpCameraViewCreateInfo>();
+  auto recorderInfo = gpgp::init<GpgpVisibilityRecorderCreateInfo>();
+  recorderInfo.base = gpgp.recorder("model recorder");
+  recorderInfo.maxWidth = kMaxExtent.width;
+  recorderInfo.maxHeight = kMaxExtent.height;
+  recorderInfo.maxDraws = static_cast<uint32_t>(model_.draws.size());
+  recorderInfo.maxTriangles = model_.triangleCount;
+  recorder_ = gpgp.take(gpgp::VisibilityRecorder::create(gpgp.context, recorderInfo), "gpgpCreateVisibilityRecorder");
+  gpgp.check(recorder_.prewarm(), "gpgpPrewarm");
+  auto viewInfo = gpgp::init<GpgpCameraHistoryCreateInfo>();
   viewInfo.label = "main camera";
   viewInfo.maxTriangles = model_.triangleCount;
-  view_ = gpgp.take(gpgp::CameraView::create(gpgp.context, viewInfo), "gpgpCreateCameraView");
+  view_ = gpgp.take(gpgp::CameraHistory::create(gpgp.context, viewInfo), "gpgpCreateCameraHistory");
 
   set_ = std::make_unique<BufferSet>(
       device, std::vector<const Buffer*>{&positions_, &normals_, &indices_, &draws_, &visibleBits_},
@@ -49,10 +49,10 @@ Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model) : 
 }
 
 void Sight::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Camera& camera, VkExtent2D extent) {
-  auto info = gpgp::init<GpgpSampleInfo>();
+  auto info = gpgp::init<GpgpVisibilityInfo>();
   info.base.tag = frame.current;
   info.geometrySet = geometry_;
-  info.view = view_;
+  info.history = view_;
   info.method = GPGP_SAMPLING_STANDARD;
   std::copy_n(glm::value_ptr(camera.viewProjection), 16, info.camera.viewProjection);
   info.width = extent.width;
@@ -65,7 +65,7 @@ void Sight::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Came
   info.drawCount = static_cast<uint32_t>(model_.draws.size());
   info.triangleCount = model_.triangleCount;
   info.visibleBits = visibleBits_.forGpgp(kVertexShaderRead, kVertexShaderRead);
-  if (gpgp_.check(sampler_.recordPrepare(commands, frame, info), "gpgpRecordPrepareVisibility") == GPGP_SUCCESS)
+  if (gpgp_.check(recorder_.recordPrepare(commands, frame, info), "gpgpRecordPrepareVisibility") == GPGP_SUCCESS)
     prepared_ = true;
 }
 
@@ -89,7 +89,7 @@ void Sight::draw(VkCommandBuffer commands, const Camera& camera) {
 }
 
 void Sight::collect() {
-  for (auto next = sampler_.report(); next; next = sampler_.report()) {
+  for (auto next = recorder_.report(); next; next = recorder_.report()) {
     report_ = *next;
     ++reports_;
   }

@@ -19,7 +19,7 @@ public:
   /// Draws the model, visible triangles orange, from any camera.
   void draw(VkCommandBuffer commands, const Camera& camera);
   void collect();
-  const GpgpSampleReport& report() const { return report_; }
+  const GpgpVisibilityReport& report() const { return report_; }
   uint32_t reports() const { return reports_; }
   const Model& model() const { return model_; }
 
@@ -28,13 +28,13 @@ private:
   Model model_;
   Buffer positions_, normals_, indices_, draws_, visibleBits_;
   gpgp::GeometrySet geometry_;
-  gpgp::Sampler sampler_;
-  gpgp::CameraView view_;
+  gpgp::VisibilityRecorder recorder_;
+  gpgp::CameraHistory view_;
   std::unique_ptr<BufferSet> set_;
   Pipeline pipeline_;
   bool prepared_ = false;
   uint32_t reports_ = 0;
-  GpgpSampleReport report_{};
+  GpgpVisibilityReport report_{};
 };
 
 } // namespace mini

@@ -1,7 +1,7 @@
 // Lets one text be GLSL and C++.
 //
 // A header in shaders/ that includes this file is compiled by glslang for the GPU and by g++ or clang (with GLM)
-// for the CPU twin. What it may contain: plain structs, constants, and pure functions on values. What it may not:
+// for the CPU reference. What it may contain: plain structs, constants, and pure functions on values. What it may not:
 // buffers, swizzles beyond .x .y .z .w, subgroup or derivative operations, vec3 members in structs that lie in
 // buffers (std430 and C++ disagree about them).
 //

@@ -4,7 +4,7 @@
 #include "api/check_struct.h"
 #include "core/context.h"
 #include "core/resident.h"
-#include "core/worker.h"
+#include "core/recorder.h"
 
 #include <cmath>
 
@@ -53,7 +53,7 @@ inline Result<Context*> resolve(Call& call, GpgpContext handle) {
   return context;
 }
 
-/// The object behind an asset, worker or view handle, null for NULL and destroyed handles. Where `context` is still
+/// The object behind an asset, recorder or view handle, null for NULL and destroyed handles. Where `context` is still
 /// null it receives the handle's, also of a destroyed one: it gets the message.
 template <class Handle> core::Object* objectOf(Handle handle, const Context** context) {
   const uintptr_t bits = reinterpret_cast<uintptr_t>(handle);
@@ -83,11 +83,11 @@ Result<T*> resolve(Call& call, Handle handle, Kind kind, const char* name, const
   return static_cast<T*>(object);
 }
 
-/// The common beginning of every record function, after the worker was resolved.
-inline Result<void> checkRecord(const core::Worker& worker, const GpgpFrame* frame) {
-  if (auto ok = worker.context.checkAlive(); !ok) return ok;
-  if (auto ok = worker.context.checkFrame(frame); !ok) return ok;
-  if (!worker.ready()) return makeError(GPGP_NOT_READY, "call gpgpPrewarm first");
+/// The common beginning of every record function, after the recorder was resolved.
+inline Result<void> checkRecord(const core::Recorder& recorder, const GpgpFrame* frame) {
+  if (auto ok = recorder.context.checkAlive(); !ok) return ok;
+  if (auto ok = recorder.context.checkFrame(frame); !ok) return ok;
+  if (!recorder.ready()) return makeError(GPGP_NOT_READY, "call gpgpPrewarm first");
   return {};
 }
 

@@ -32,8 +32,8 @@ GpgpResult GPGP_CALL gpgpCreateContext(const GpgpContextCreateInfo* info, GpgpCo
     if (info->features & ~GPGP_FEATURE_ALL) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "features has unknown bits");
     if (info->maxFramesInFlight > 8)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxFramesInFlight is %u; at most 8", info->maxFramesInFlight);
-    if (info->maxRecordsPerFrame > 4096)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRecordsPerFrame is %u; at most 4096", info->maxRecordsPerFrame);
+    if (info->maxRecordingsPerFrame > 4096)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRecordingsPerFrame is %u; at most 4096", info->maxRecordingsPerFrame);
     if (info->hostAllocator && (!info->hostAllocator->allocate || !info->hostAllocator->free))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "hostAllocator needs both allocate and free");
     if (info->gpuAllocator && (!info->gpuAllocator->allocate || !info->gpuAllocator->free))
@@ -141,7 +141,7 @@ GpgpResult GPGP_CALL gpgpGetPipelineCacheData(GpgpContext handle, size_t* size, 
 // ---------------------------------------------------------------- objects of all kinds
 
 namespace {
-/// Any worker, asset or view: the kind is in the handle's type, so only these ranges are accepted.
+/// Any recorder, asset or view: the kind is in the handle's type, so only these ranges are accepted.
 template <class T, class Handle>
 Result<T*> resolveAny(Call& call, Handle handle, Kind first, Kind last, const char* name) {
   core::Object* object = objectOf(handle, &call.context);
@@ -163,36 +163,36 @@ template <class Handle> void destroy(const char* function, Handle handle, Kind f
 }
 } // namespace
 
-GpgpResult GPGP_CALL gpgpPrewarm(GpgpWorker handle, const GpgpPrewarmInfo* info) {
+GpgpResult GPGP_CALL gpgpPrewarm(GpgpRecorder handle, const GpgpPrewarmInfo* info) {
   return guarded("gpgpPrewarm", [&](Call& call) -> Result<void> {
-    const auto worker = resolveAny<core::Worker>(call, handle, Kind::spawner, Kind::sampler, "worker");
-    if (!worker) return worker.error();
+    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::visibilityRecorder, "recorder");
+    if (!recorder) return recorder.error();
     if (info)
       if (auto ok = checkStruct(info, GPGP_STRUCTURE_PREWARM_INFO, "info"); !ok) return ok;
-    if (auto ok = (*worker)->context.checkAlive(); !ok) return ok;
-    return (*worker)->prewarm(info);
+    if (auto ok = (*recorder)->context.checkAlive(); !ok) return ok;
+    return (*recorder)->prewarm(info);
   });
 }
 
-GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpWorker handle, VkDeviceSize* size, VkDeviceSize* alignment,
+GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpRecorder handle, VkDeviceSize* size, VkDeviceSize* alignment,
                                         VkBufferUsageFlags* usage) {
   return guarded("gpgpGetScratchSize", [&](Call& call) -> Result<void> {
-    const auto worker = resolveAny<core::Worker>(call, handle, Kind::spawner, Kind::sampler, "worker");
-    if (!worker) return worker.error();
+    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::visibilityRecorder, "recorder");
+    if (!recorder) return recorder.error();
     if (!size) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "size is NULL");
-    *size = (*worker)->scratchBytes();
-    if (alignment) *alignment = (*worker)->scratchAlignment();
-    if (usage) *usage = core::Worker::kScratchUsage;
+    *size = (*recorder)->scratchBytes();
+    if (alignment) *alignment = (*recorder)->scratchAlignment();
+    if (usage) *usage = core::Recorder::kScratchUsage;
     return {};
   });
 }
 
-GpgpResult GPGP_CALL gpgpGetPasses(GpgpWorker handle, uint32_t* count, const char** names) {
+GpgpResult GPGP_CALL gpgpGetPasses(GpgpRecorder handle, uint32_t* count, const char** names) {
   return guarded("gpgpGetPasses", [&](Call& call) -> Result<void> {
-    const auto worker = resolveAny<core::Worker>(call, handle, Kind::spawner, Kind::sampler, "worker");
-    if (!worker) return worker.error();
+    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::visibilityRecorder, "recorder");
+    if (!recorder) return recorder.error();
     if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
-    const auto& passes = (*worker)->passes().passes;
+    const auto& passes = (*recorder)->passes().passes;
     const uint32_t all = static_cast<uint32_t>(passes.size());
     const uint32_t written = names ? std::min(*count, all) : 0;
     for (uint32_t i = 0; i < written; ++i) names[i] = passes[i].name;
@@ -202,7 +202,7 @@ GpgpResult GPGP_CALL gpgpGetPasses(GpgpWorker handle, uint32_t* count, const cha
   });
 }
 
-void GPGP_CALL gpgpGetRecordAccess(GpgpAccess* buffer, GpgpAccess* image) {
+void GPGP_CALL gpgpGetRecordingAccess(GpgpAccess* buffer, GpgpAccess* image) {
   const GpgpAccess access{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                           VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
                               VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -226,11 +226,11 @@ GpgpResult GPGP_CALL gpgpGetResidency(GpgpAsset handle, VkBool32* resident) {
 void GPGP_CALL gpgpDestroyAsset(GpgpAsset asset) {
   destroy("gpgpDestroyAsset", asset, Kind::grammar, Kind::geometrySet, "asset");
 }
-void GPGP_CALL gpgpDestroyWorker(GpgpWorker worker) {
-  destroy("gpgpDestroyWorker", worker, Kind::spawner, Kind::sampler, "worker");
+void GPGP_CALL gpgpDestroyRecorder(GpgpRecorder recorder) {
+  destroy("gpgpDestroyRecorder", recorder, Kind::spawner, Kind::visibilityRecorder, "recorder");
 }
-void GPGP_CALL gpgpDestroyView(GpgpView view) {
-  destroy("gpgpDestroyView", view, Kind::canvasView, Kind::cameraView, "view");
+void GPGP_CALL gpgpDestroyHistory(GpgpHistory view) {
+  destroy("gpgpDestroyHistory", view, Kind::canvasHistory, Kind::cameraHistory, "view");
 }
 
 GpgpResult GPGP_CALL gpgpGetMemoryReport(GpgpContext handle, GpgpMemoryReport* report) {

@@ -85,7 +85,7 @@ GpgpResult GPGP_CALL gpgpFindGrammarStart(GpgpAsset handle, const char* name, ui
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCreateInfo* info, GpgpWorker* spawner) {
+GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCreateInfo* info, GpgpRecorder* spawner) {
   return guarded("gpgpCreateSpawner", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
@@ -101,12 +101,12 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (info->maxRounds > 256) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRounds is at most 256");
     auto made = spawn::Spawner::create(**context, *info);
     if (!made) return made.error();
-    *spawner = adopt<GpgpWorker>(**context, std::move(*made));
+    *spawner = adopt<GpgpRecorder>(**context, std::move(*made));
     return {};
   });
 }
 
-GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpWorker handle, GpgpAsset grammarHandle) {
+GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpRecorder handle, GpgpAsset grammarHandle) {
   return guarded("gpgpPrewarmGrammar", [&](Call& call) -> Result<void> {
     const auto spawner = resolve<spawn::Spawner>(call, handle, Kind::spawner, "spawner");
     if (!spawner) return spawner.error();
@@ -171,7 +171,7 @@ Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& inf
 }
 } // namespace
 
-GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
+GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpRecorder handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
                                             const GpgpSpawnInfo* info) {
   return guarded("gpgpRecordPrepareSpawn", [&](Call& call) -> Result<void> {
     const auto spawner = resolve<spawn::Spawner>(call, handle, Kind::spawner, "spawner");
@@ -200,7 +200,7 @@ GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpWorker handle, VkCommandBuffer c
   });
 }
 
-GpgpResult GPGP_CALL gpgpGetSpawnReport(GpgpWorker handle, GpgpSpawnReport* report) {
+GpgpResult GPGP_CALL gpgpGetSpawnReport(GpgpRecorder handle, GpgpSpawnReport* report) {
   return guarded("gpgpGetSpawnReport", [&](Call& call) -> Result<void> {
     const auto spawner = resolve<spawn::Spawner>(call, handle, Kind::spawner, "spawner");
     if (!spawner) return spawner.error();

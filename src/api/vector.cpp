@@ -146,7 +146,7 @@ GpgpResult GPGP_CALL gpgpGetGlyphSetInfo(GpgpAsset handle, GpgpGlyphSetInfo* inf
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreateInfo* info, GpgpWorker* canvas) {
+GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreateInfo* info, GpgpRecorder* canvas) {
   return guarded("gpgpCreateCanvas", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
@@ -168,20 +168,20 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxGlyphs is %u; at most 1048576", info->maxGlyphs);
     if (info->maxShapes > 1u << 20)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes is %u; at most 1048576", info->maxShapes);
-    if (info->targets & ~(GPGP_CANVAS_TARGET_VIEW | GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F))
+    if (info->targets & ~(GPGP_CANVAS_TARGET_HISTORY | GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets has unknown bits");
     auto made = Canvas::create(**context, *info);
     if (!made) return made.error();
-    *canvas = adopt<GpgpWorker>(**context, std::move(*made));
+    *canvas = adopt<GpgpRecorder>(**context, std::move(*made));
     return {};
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext handle, const GpgpCanvasViewCreateInfo* info, GpgpView* view) {
-  return guarded("gpgpCreateCanvasView", [&](Call& call) -> Result<void> {
+GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext handle, const GpgpCanvasHistoryCreateInfo* info, GpgpHistory* view) {
+  return guarded("gpgpCreateCanvasHistory", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
-    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_VIEW_CREATE_INFO, "info"); !ok) return ok;
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO, "info"); !ok) return ok;
     if (!view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "view is NULL");
     if (info->width == 0 || info->height == 0 || info->width > 16384 || info->height > 16384)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected 1 x 1 to 16384 x 16384",
@@ -192,14 +192,14 @@ GpgpResult GPGP_CALL gpgpCreateCanvasView(GpgpContext handle, const GpgpCanvasVi
                        info->width, info->height, static_cast<unsigned long long>(bytes),
                        (*context)->device.limits.maxStorageBufferRange);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
-    auto made = CanvasView::create(**context, *info);
+    auto made = CanvasHistory::create(**context, *info);
     if (!made) return made.error();
-    *view = adopt<GpgpView>(**context, std::move(*made));
+    *view = adopt<GpgpHistory>(**context, std::move(*made));
     return {};
   });
 }
 
-GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
+GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
                                              const GpgpCanvasInfo* info) {
   return guarded("gpgpRecordPrepareCanvas", [&](Call& call) -> Result<void> {
     const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
@@ -211,9 +211,9 @@ GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker handle, VkCommandBuffer 
     if (info->itemCount > (*canvas)->maxDrawings())
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "itemCount is %u; the canvas was made for %u (maxDrawings)",
                        info->itemCount, (*canvas)->maxDrawings());
-    CanvasView* view = nullptr;
-    if (info->view) {
-      const auto resolved = resolve<CanvasView>(call, info->view, Kind::canvasView, "view", &context);
+    CanvasHistory* view = nullptr;
+    if (info->history) {
+      const auto resolved = resolve<CanvasHistory>(call, info->history, Kind::canvasHistory, "view", &context);
       if (!resolved) return resolved.error();
       view = *resolved;
     }
@@ -231,13 +231,13 @@ GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpWorker handle, VkCommandBuffer 
   });
 }
 
-GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
+GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
                                           const GpgpCanvasDrawInfo* info) {
   return guarded("gpgpRecordDrawCanvas", [&](Call& call) -> Result<void> {
     const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
     if (!canvas) return canvas.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_DRAW_INFO, "info"); !ok) return ok;
-    const auto view = resolve<CanvasView>(call, info->view, Kind::canvasView, "view", &(*canvas)->context);
+    const auto view = resolve<CanvasHistory>(call, info->history, Kind::canvasHistory, "view", &(*canvas)->context);
     if (!view) return view.error();
     if (auto ok = checkStruct(info->target, GPGP_STRUCTURE_TARGET_INFO, "target"); !ok) return ok;
     if (!allFinite(info->clip)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "clip holds a number that is not finite");
@@ -246,7 +246,7 @@ GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpWorker handle, VkCommandBuffer com
   });
 }
 
-GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpWorker handle, GpgpCanvasReport* report) {
+GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpRecorder handle, GpgpCanvasReport* report) {
   return guarded("gpgpGetCanvasReport", [&](Call& call) -> Result<void> {
     const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
     if (!canvas) return canvas.error();

@@ -1,6 +1,6 @@
 // The C functions of visibility.h.
 #include "api/check.h"
-#include "visibility/sampling/sampler.h"
+#include "visibility/sampling/recorder.h"
 #include "visibility/triangle_order.h"
 #include "visibility/view_cell.h"
 
@@ -57,12 +57,12 @@ GpgpResult GPGP_CALL gpgpOrderTriangles(const float* positions, uint32_t positio
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext handle, const GpgpSamplerCreateInfo* info, GpgpWorker* sampler) {
-  return guarded("gpgpCreateSampler", [&](Call& call) -> Result<void> {
+GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext handle, const GpgpVisibilityRecorderCreateInfo* info, GpgpRecorder* recorder) {
+  return guarded("gpgpCreateVisibilityRecorder", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
-    if (auto ok = checkStruct(info, GPGP_STRUCTURE_SAMPLER_CREATE_INFO, "info"); !ok) return ok;
-    if (!sampler) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "sampler is NULL");
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO, "info"); !ok) return ok;
+    if (!recorder) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "recorder is NULL");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (info->maxWidth > 8192 || info->maxHeight > 8192)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192",
@@ -75,21 +75,21 @@ GpgpResult GPGP_CALL gpgpCreateSampler(GpgpContext handle, const GpgpSamplerCrea
     if (info->maxSamples > 64 || (info->maxSamples & (info->maxSamples - 1)))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxSamples is %u; expected a power of two up to 64",
                        info->maxSamples);
-    if (info->methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_TRUTH_BIT |
+    if (info->methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_REFERENCE_BIT |
                           GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_NEARBY_BIT))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods is 0x%x; it has unknown bits", info->methods);
-    auto made = Sampler::create(**context, *info);
+    auto made = VisibilityRecorder::create(**context, *info);
     if (!made) return made.error();
-    *sampler = adopt<GpgpWorker>(**context, std::move(*made));
+    *recorder = adopt<GpgpRecorder>(**context, std::move(*made));
     return {};
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext handle, const GpgpCameraViewCreateInfo* info, GpgpView* view) {
-  return guarded("gpgpCreateCameraView", [&](Call& call) -> Result<void> {
+GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext handle, const GpgpCameraHistoryCreateInfo* info, GpgpHistory* view) {
+  return guarded("gpgpCreateCameraHistory", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
-    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CAMERA_VIEW_CREATE_INFO, "info"); !ok) return ok;
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO, "info"); !ok) return ok;
     if (!view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "view is NULL");
     if (info->maxTriangles > 1u << 31)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 2147483648", info->maxTriangles);
@@ -98,9 +98,9 @@ GpgpResult GPGP_CALL gpgpCreateCameraView(GpgpContext handle, const GpgpCameraVi
       return makeError(GPGP_ERROR_UNSUPPORTED, "maxTriangles is %u, but this device binds at most %u bytes",
                        info->maxTriangles, (*context)->device.limits.maxStorageBufferRange);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
-    auto made = CameraView::create(**context, *info);
+    auto made = CameraHistory::create(**context, *info);
     if (!made) return made.error();
-    *view = adopt<GpgpView>(**context, std::move(*made));
+    *view = adopt<GpgpHistory>(**context, std::move(*made));
     return {};
   });
 }
@@ -120,18 +120,18 @@ GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32
   });
 }
 
-GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker handle, VkCommandBuffer commandBuffer,
-                                                 const GpgpFrame* frame, const GpgpSampleInfo* info) {
+GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpRecorder handle, VkCommandBuffer commandBuffer,
+                                                 const GpgpFrame* frame, const GpgpVisibilityInfo* info) {
   return guarded("gpgpRecordPrepareVisibility", [&](Call& call) -> Result<void> {
-    const auto sampler = resolve<Sampler>(call, handle, Kind::sampler, "sampler");
-    if (!sampler) return sampler.error();
-    if (auto ok = checkStruct(info, GPGP_STRUCTURE_SAMPLE_INFO, "info"); !ok) return ok;
-    const core::Context& context = (*sampler)->context;
+    const auto recorder = resolve<VisibilityRecorder>(call, handle, Kind::visibilityRecorder, "recorder");
+    if (!recorder) return recorder.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_VISIBILITY_INFO, "info"); !ok) return ok;
+    const core::Context& context = (*recorder)->context;
     const auto geometry = resolve<GeometrySet>(call, info->geometrySet, Kind::geometrySet, "geometrySet", &context);
     if (!geometry) return geometry.error();
-    CameraView* view = nullptr;
-    if (info->view) {
-      const auto resolved = resolve<CameraView>(call, info->view, Kind::cameraView, "view", &context);
+    CameraHistory* view = nullptr;
+    if (info->history) {
+      const auto resolved = resolve<CameraHistory>(call, info->history, Kind::cameraHistory, "view", &context);
       if (!resolved) return resolved.error();
       view = *resolved;
     }
@@ -144,30 +144,30 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpWorker handle, VkCommandBuf
       if (!allFinite(info->moreCameras[i].viewProjection))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                          "moreCameras[%u].viewProjection holds a number that is not finite", i);
-    if (auto ok = checkRecord(**sampler, frame); !ok) return ok;
+    if (auto ok = checkRecord(**recorder, frame); !ok) return ok;
     if (!(*geometry)->resident()) return makeError(GPGP_NOT_READY, "geometrySet is not resident");
     if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
-    return (*sampler)->prepare(commandBuffer, *info, **geometry, view);
+    return (*recorder)->prepare(commandBuffer, *info, **geometry, view);
   });
 }
 
-GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpWorker handle, VkCommandBuffer commandBuffer,
+GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpRecorder handle, VkCommandBuffer commandBuffer,
                                                         const GpgpFrame* frame, const GpgpVisibilityMetricsInfo* info) {
   return guarded("gpgpRecordPrepareVisibilityMetrics", [&](Call& call) -> Result<void> {
-    const auto sampler = resolve<Sampler>(call, handle, Kind::sampler, "sampler");
-    if (!sampler) return sampler.error();
+    const auto recorder = resolve<VisibilityRecorder>(call, handle, Kind::visibilityRecorder, "recorder");
+    if (!recorder) return recorder.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO, "info"); !ok) return ok;
-    if (auto ok = checkRecord(**sampler, frame); !ok) return ok;
-    return (*sampler)->measure(commandBuffer, *info);
+    if (auto ok = checkRecord(**recorder, frame); !ok) return ok;
+    return (*recorder)->measure(commandBuffer, *info);
   });
 }
 
-GpgpResult GPGP_CALL gpgpGetSampleReport(GpgpWorker handle, GpgpSampleReport* report) {
-  return guarded("gpgpGetSampleReport", [&](Call& call) -> Result<void> {
-    const auto sampler = resolve<Sampler>(call, handle, Kind::sampler, "sampler");
-    if (!sampler) return sampler.error();
-    if (auto ok = checkStruct(report, GPGP_STRUCTURE_SAMPLE_REPORT, "report"); !ok) return ok;
-    if (!(*sampler)->takeSampleReport(*report)) return makeError(GPGP_NOT_READY, "no report is there");
+GpgpResult GPGP_CALL gpgpGetVisibilityReport(GpgpRecorder handle, GpgpVisibilityReport* report) {
+  return guarded("gpgpGetVisibilityReport", [&](Call& call) -> Result<void> {
+    const auto recorder = resolve<VisibilityRecorder>(call, handle, Kind::visibilityRecorder, "recorder");
+    if (!recorder) return recorder.error();
+    if (auto ok = checkStruct(report, GPGP_STRUCTURE_VISIBILITY_REPORT, "report"); !ok) return ok;
+    if (!(*recorder)->takeSampleReport(*report)) return makeError(GPGP_NOT_READY, "no report is there");
     return {};
   });
 }

@@ -232,7 +232,7 @@ public:
       if (!placed && !has(needed)) errors_.error(row_.place, std::string("an axiom needs a value for ") + needed);
     if (isRead("seed")) axiom.seed = seed();
     if (isRead("rule"))
-      axiom.rule = rule();
+      axiom.start = rule();
     else if (has("shape") && !has("rule"))
       errors_.error(placeOf("shape"), "a shape needs the rule that starts with it");
     axiom.attribute = number("attribute", axiom.attribute);
@@ -315,7 +315,7 @@ private:
     else
       errors_.error(placeOf("rule"), "the grammar has no rule " + quoted(name) +
                                          (linked ? "; expected a grammar, or its rule as in " + starts_[0].name : ""));
-    return GPGP_AXIOM_DEFAULT_RULE;
+    return GPGP_AXIOM_DEFAULT_START;
   }
 
   const Row& row_;
@@ -342,7 +342,7 @@ GpgpAxiom axiomAt(const std::array<float, 3>& place, float degrees, const std::a
   std::copy(size.begin(), size.end(), axiom.size);
   axiom.seed = seed;
   axiom.id = id;
-  axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+  axiom.start = GPGP_AXIOM_DEFAULT_START;
   axiom.attribute = std::numeric_limits<float>::quiet_NaN();
   return axiom;
 }
@@ -357,7 +357,7 @@ std::vector<GpgpAxiom> axiomGrid(uint32_t count, float spacing, const AxiomDefau
     axioms.push_back(axiomAt(
         {(static_cast<float>(i % side) - offset) * spacing, 0, (static_cast<float>(i / side) - offset) * spacing}, 0,
         defaults.size, defaults.seed + i, i));
-    axioms.back().rule = defaults.starts[i % defaults.starts.size()];
+    axioms.back().start = defaults.starts[i % defaults.starts.size()];
   }
   return axioms;
 }

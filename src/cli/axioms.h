@@ -14,7 +14,7 @@ namespace gpgp::cli {
 struct AxiomDefaults {
   std::array<float, 3> size{1, 1, 1};
   uint32_t seed = 1;                                     ///< axiom i has seed + i
-  std::vector<uint32_t> starts{GPGP_AXIOM_DEFAULT_RULE}; ///< a grid's axioms take them in turn
+  std::vector<uint32_t> starts{GPGP_AXIOM_DEFAULT_START}; ///< a grid's axioms take them in turn
 };
 
 /// A place that a derivation can start at, as a file names it.

@@ -69,7 +69,7 @@ void Deriver::setAxioms(const std::vector<GpgpAxiom>& axioms) {
 
 Spawner Deriver::newSpawner(uint32_t rounds) {
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
-  info.base = session_.workerInfo("spawner");
+  info.base = session_.recorderInfo("spawner");
   const GpgpVertexLayout vertices = layout();
   if (options_.vertices) info.vertices = &vertices;
   info.maxShapes = maxShapes_;
@@ -162,7 +162,7 @@ Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repe
     output.indices = indices_.range({}, kRead);
   }
   return session_.measure(spawner, "deriving", repeat,
-                          [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                          [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
                             GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
                             info.base = base;
                             info.grammar = grammar.get();

@@ -10,8 +10,8 @@ std::string forecast(double seconds, uint32_t samples, bool again) {
   return "gpgp visibility: note: " +
          (again ? "sampling false positives again at " + finely + " takes about " + durationText(seconds) +
                       "; --recheck 0 leaves it out, a smaller --recheck or --size takes less\n"
-                : "the truth of " + finely + " samples takes about " + durationText(seconds) +
-                      "; a smaller --truth or --size takes less\n");
+                : "the reference of " + finely + " samples takes about " + durationText(seconds) +
+                      "; a smaller --reference or --size takes less\n");
 }
 
 } // namespace gpgp::cli

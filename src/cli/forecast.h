@@ -5,7 +5,7 @@
 
 namespace gpgp::cli {
 
-/// A line about a truth of samples x samples a pixel that takes `seconds`; empty where that is less than a minute.
+/// A line about a reference of samples x samples a pixel that takes `seconds`; empty where that is less than a minute.
 /// again: it samples false positives again.
 std::string forecast(double seconds, uint32_t samples, bool again);
 

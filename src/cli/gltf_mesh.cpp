@@ -117,7 +117,7 @@ Part addPrimitive(Model& model, const tinygltf::Model& gltf, const tinygltf::Pri
   const bool isList = primitive.mode == TINYGLTF_MODE_TRIANGLES,
              isStrip = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP;
   if (!isList && !isStrip && primitive.mode != TINYGLTF_MODE_TRIANGLE_FAN) {
-    ++model.leftOut;
+    ++model.omitted;
     return part;
   }
   const auto position = primitive.attributes.find("POSITION");

@@ -62,7 +62,7 @@ struct Errors {
     std::fprintf(stderr, "%s\n", printable(line.str()).c_str());
     if (message->severity != GPGP_SEVERITY_ERROR) return;
     if (all->count == 0) all->first = line.str();
-    all->count += message->leftOut ? message->leftOut : 1;
+    all->count += message->omitted ? message->omitted : 1;
   }
 };
 

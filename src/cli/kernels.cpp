@@ -58,7 +58,7 @@ std::vector<uint32_t> BakedGraph::starts() const {
   const auto isLinked = [&](const auto& entry) { return std::strchr(graph.nameAt(entry.name), '.') != nullptr; };
   if (std::none_of(graph.terminals.begin(), graph.terminals.end(), isLinked) &&
       std::none_of(graph.rules.begin(), graph.rules.end(), isLinked))
-    return {GPGP_AXIOM_DEFAULT_RULE};
+    return {GPGP_AXIOM_DEFAULT_START};
   std::vector<uint32_t> starts;
   for (size_t a = 0; a < graph.axioms.size(); ++a) // a grammar's first axiom has its name alone
     if (!isLinked(graph.axioms[a])) starts.push_back(static_cast<uint32_t>(graph.rules.size() + a));

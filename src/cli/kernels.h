@@ -20,7 +20,7 @@ struct BakedGraph {
   std::pmr::vector<uint32_t> words;
   spawn::Graph graph;
 
-  /// Names of all starts, as GpgpAxiom::rule counts them.
+  /// Names of all starts, as GpgpAxiom::start counts them.
   std::vector<NamedStart> namedStarts() const;
   /// Where axioms start in turn that nobody says more of: each linked grammar, or the only one.
   std::vector<uint32_t> starts() const;

@@ -17,7 +17,7 @@ struct Model {
   std::vector<GpgpMesh> meshes;
   std::vector<GpgpVisibilityDraw> draws; ///< triangles numbered one draw after the other
   uint32_t triangleCount = 0;
-  uint32_t leftOut = 0;           ///< glTF primitives that are no triangles
+  uint32_t omitted = 0;           ///< glTF primitives that are no triangles
   std::vector<std::string> notes; ///< what else is not shown as the file means it, each with how often
 };
 

@@ -27,9 +27,9 @@ SampledModel::SampledModel(Session& session, const VisibilityOptions& options, c
   count_ = host::Buffer(device, 16, kStorage, host::Memory::device, "visible count");
 }
 
-Sampler SampledModel::sampler(GpgpSamplingMethod method, uint32_t maxSamples) {
-  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
-  info.base = session_.workerInfo("sampler");
+VisibilityRecorder SampledModel::recorder(GpgpSamplingMethod method, uint32_t maxSamples) {
+  GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
+  info.base = session_.recorderInfo("recorder");
   info.maxWidth = options_.size.width;
   info.maxHeight = options_.size.height;
   info.maxDraws = static_cast<uint32_t>(model_.draws.size());
@@ -39,7 +39,7 @@ Sampler SampledModel::sampler(GpgpSamplingMethod method, uint32_t maxSamples) {
   info.maxCandidates = maxCandidates();
   info.maxPairs = maxPairs();
   const Progress progress("making pipelines");
-  Sampler made = session_.take(Sampler::create(session_.context(), info), "gpgpCreateSampler");
+  VisibilityRecorder made = session_.take(VisibilityRecorder::create(session_.context(), info), "gpgpCreateVisibilityRecorder");
   session_.check(made.prewarm(), "gpgpPrewarm");
   return made;
 }
@@ -55,11 +55,11 @@ uint32_t SampledModel::maxPairs() const {
   return static_cast<uint32_t>(std::min<uint64_t>(pixels * 24 + (1u << 20), range / 20));
 }
 
-Measured<GpgpSampleReport> SampledModel::sample(Sampler& sampler, const Step& step) {
+Measured<GpgpVisibilityReport> SampledModel::sample(VisibilityRecorder& recorder, const Step& step) {
   const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED};
-  return session_.measure(sampler, step.label, step.repeat,
-                          [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
-                            GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+  return session_.measure(recorder, step.label, step.repeat,
+                          [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
+                            GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
                             info.base = base;
                             info.geometrySet = geometry_;
                             info.method = step.method;
@@ -88,54 +88,54 @@ Measured<GpgpSampleReport> SampledModel::sample(Sampler& sampler, const Step& st
                             if (step.sizes) info.pixelCounts = sizes_.range({}, after);
                             info.visibleList = list_.range({}, after);
                             info.visibleCount = count_.range({}, after);
-                            return sampler.recordPrepare(commands, frame, info);
+                            return recorder.recordPrepare(commands, frame, info);
                           });
 }
 
-GpgpSampleReport SampledModel::compare(Sampler& sampler, const std::vector<uint32_t>& found,
-                                       const std::vector<uint32_t>& truth, const std::vector<uint32_t>& areas,
+GpgpVisibilityReport SampledModel::compare(VisibilityRecorder& recorder, const std::vector<uint32_t>& found,
+                                       const std::vector<uint32_t>& reference, const std::vector<uint32_t>& areas,
                                        const std::vector<uint32_t>& recheck) {
   host::HeadlessDevice& device = session_.device();
   const auto copy = [&](const std::vector<uint32_t>& words, const char* name) {
     return words.empty() ? host::Buffer() : host::makeBuffer(device, words, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, name);
   };
-  const host::Buffer foundBits = copy(found, "found"), truthBits = copy(truth, "truth");
-  const host::Buffer truthCounts = copy(areas, "truth's counts"), recheckBits = copy(recheck, "recheck");
+  const host::Buffer foundBits = copy(found, "found"), referenceBits = copy(reference, "reference");
+  const host::Buffer referenceCounts = copy(areas, "reference's counts"), recheckBits = copy(recheck, "recheck");
   return session_
-      .measure(sampler, "metrics", 1,
-               [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+      .measure(recorder, "metrics", 1,
+               [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
                  GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
                  info.base = base;
                  info.triangleCount = model_.triangleCount;
                  info.visibleBits = foundBits.range();
-                 info.truthBits = truthBits.range();
-                 info.truthCounts = truthCounts.range();
+                 info.referenceBits = referenceBits.range();
+                 info.referenceCounts = referenceCounts.range();
                  if (!recheck.empty()) info.recheckBits = recheckBits.range();
-                 return sampler.recordPrepareMetrics(commands, frame, info);
+                 return recorder.recordPrepareMetrics(commands, frame, info);
                })
       .report;
 }
 
-std::vector<uint32_t> SampledModel::truth(const std::vector<View>& views, uint32_t samples,
+std::vector<uint32_t> SampledModel::reference(const std::vector<View>& views, uint32_t samples,
                                           const std::function<void(uint64_t, uint64_t)>& told) {
   uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
   const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
   while (perRecord > 1 && uint64_t{options_.size.width} * options_.size.height * perRecord * perRecord * 8 > range)
     perRecord /= 2;
-  Sampler worker = sampler(GPGP_SAMPLING_TRUTH, perRecord);
+  VisibilityRecorder reference = recorder(GPGP_SAMPLING_REFERENCE, perRecord);
   const uint32_t slices = samples / perRecord * (samples / perRecord) + 1;
   uint64_t done = 0;
   for (const View& view : views)
     for (uint32_t slice = 0; slice < slices; ++slice) {
       Step step;
-      step.method = GPGP_SAMPLING_TRUTH;
+      step.method = GPGP_SAMPLING_REFERENCE;
       step.view = view;
       step.samples = samples;
       step.slice = slice;
       step.accumulate = done > 0;
       step.sizes = true;
       step.label = "slice";
-      sample(worker, step);
+      sample(recorder, step);
       told(++done, slices * views.size());
     }
   return bits();

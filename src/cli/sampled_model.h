@@ -12,8 +12,8 @@ public:
   /// The options and the model must outlive it.
   SampledModel(Session& session, const VisibilityOptions& options, const Model& model);
 
-  Sampler sampler(GpgpSamplingMethod method, uint32_t maxSamples);
-  /// Of the exact method's samplers.
+  VisibilityRecorder recorder(GpgpSamplingMethod method, uint32_t maxSamples);
+  /// Of the exact method's recorders.
   uint32_t maxCandidates() const;
   uint32_t maxPairs() const;
 
@@ -24,17 +24,17 @@ public:
     bool accumulate = false, sizes = false;
     const char* label = "sampling";
   };
-  Measured<GpgpSampleReport> sample(Sampler& sampler, const Step& step);
+  Measured<GpgpVisibilityReport> sample(VisibilityRecorder& recorder, const Step& step);
   std::vector<uint32_t> bits() { return host::download<uint32_t>(session_.device(), bits_, words_); }
   std::vector<uint32_t> sizes() { return host::download<uint32_t>(session_.device(), sizes_, model_.triangleCount); }
 
-  /// How far what was found agrees with a truth; recheck may be empty.
-  GpgpSampleReport compare(Sampler& sampler, const std::vector<uint32_t>& found, const std::vector<uint32_t>& truth,
+  /// How far what was found agrees with a reference; recheck may be empty.
+  GpgpVisibilityReport compare(VisibilityRecorder& recorder, const std::vector<uint32_t>& found, const std::vector<uint32_t>& reference,
                            const std::vector<uint32_t>& areas, const std::vector<uint32_t>& recheck);
 
-  /// The truth with samples x samples a pixel and the centre, for the union of views; sizes() has its areas afterwards.
+  /// The reference with samples x samples a pixel and the centre, for the union of views; sizes() has its areas afterwards.
   /// `told` hears how many of how many slices are done.
-  std::vector<uint32_t> truth(const std::vector<View>& views, uint32_t samples,
+  std::vector<uint32_t> reference(const std::vector<View>& views, uint32_t samples,
                               const std::function<void(uint64_t, uint64_t)>& told);
 
 private:

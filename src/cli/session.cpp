@@ -87,8 +87,8 @@ GpgpResult Session::check(GpgpResult result, const char* what) {
   throw Failure(text);
 }
 
-GpgpWorkerCreateInfo Session::workerInfo(const char* label) const {
-  GpgpWorkerCreateInfo info{};
+GpgpRecorderCreateInfo Session::recorderInfo(const char* label) const {
+  GpgpRecorderCreateInfo info{};
   info.label = label;
   info.queueFamily = device_.graphics().family;
   info.queueFlags = device_.graphics().flags;
@@ -107,16 +107,16 @@ void Session::upload() {
   }
 }
 
-GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, const Record& record,
+GpuTimes Session::run(GpgpRecorder recorder, const char* label, uint32_t repeat, const Record& record,
                       const std::function<void()>& collectReports) {
   uint32_t passCount = 0;
-  check(gpgpGetPasses(worker, &passCount, nullptr), "gpgpGetPasses");
+  check(gpgpGetPasses(recorder, &passCount, nullptr), "gpgpGetPasses");
   std::vector<const char*> names(passCount);
-  check(gpgpGetPasses(worker, &passCount, names.data()), "gpgpGetPasses");
+  check(gpgpGetPasses(recorder, &passCount, names.data()), "gpgpGetPasses");
   const bool timed = device_.properties().limits.timestampComputeAndGraphics == VK_TRUE;
   const uint32_t whole = passCount + 1, queryCount = passCount + 3; // two around the record behind those of passes
   const QueryPool queries(device_, queryCount);
-  const auto stamp = [&](VkCommandBuffer commands, uint32_t query) {
+  const auto writeTimestamp = [&](VkCommandBuffer commands, uint32_t query) {
     if (timed) device_.vk().vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries.pool, query);
   };
   const double period = static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-6;
@@ -133,30 +133,30 @@ GpuTimes Session::run(GpgpWorker worker, const char* label, uint32_t repeat, con
     check(gpgpAdvance(context_, &frames_.frame()), "gpgpAdvance");
     collectReports();
     if (repeat > 1) busy_.record(commands);
-    GpgpRecordInfo base{};
+    GpgpRecordingInfo base{};
     base.tag = i / each;
     if (timed) {
       device_.vk().vkCmdResetQueryPool(commands, queries.pool, 0, queryCount);
       if (byPass) base.timestamps = {queries.pool, 0, whole};
     }
     host::fullBarrier(device_, commands); // repeats write the same buffers
-    stamp(commands, whole);
+    writeTimestamp(commands, whole);
     const GpgpResult result = check(record(commands, frames_.frame(), base), label);
     if (result != GPGP_SUCCESS) throw Failure(std::string(label) + ": " + gpgpResultString(result));
-    stamp(commands, whole + 1);
+    writeTimestamp(commands, whole + 1);
     frames_.submit();
     frames_.waitAll();
     const auto read = [&](uint32_t first, uint32_t count) {
-      std::vector<uint64_t> stamps(count);
+      std::vector<uint64_t> timestamps(count);
       host::check(device_.vk().vkGetQueryPoolResults(device_.device(), queries.pool, first, count,
-                                                     stamps.size() * sizeof(uint64_t), stamps.data(), sizeof(uint64_t),
+                                                     timestamps.size() * sizeof(uint64_t), timestamps.data(), sizeof(uint64_t),
                                                      VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                   "vkGetQueryPoolResults");
-      return stamps;
+      return timestamps;
     };
-    const auto stamps = timed && byPass ? read(0, whole) : std::vector<uint64_t>();
-    for (size_t p = 0; p + 1 < stamps.size(); ++p)
-      perPass[p].push_back(static_cast<double>(stamps[p + 1] - stamps[p]) * period);
+    const auto timestamps = timed && byPass ? read(0, whole) : std::vector<uint64_t>();
+    for (size_t p = 0; p + 1 < timestamps.size(); ++p)
+      perPass[p].push_back(static_cast<double>(timestamps[p + 1] - timestamps[p]) * period);
     const auto ends = timed && asWhole ? read(whole, 2) : std::vector<uint64_t>();
     if (!ends.empty()) times.totals.push_back(static_cast<double>(ends[1] - ends[0]) * period);
     if (asWhole && progress) progress->advance();

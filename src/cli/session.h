@@ -45,7 +45,7 @@ public:
     check(result.code(), what);
     return std::move(*result);
   }
-  GpgpWorkerCreateInfo workerInfo(const char* label) const;
+  GpgpRecorderCreateInfo recorderInfo(const char* label) const;
   /// Uploads all pending assets.
   void upload();
   /// Keeps a GPU's clocks up for some milliseconds, for who waits for what is measured next.
@@ -54,13 +54,13 @@ public:
   /// it records, and before each of them, if there are several, another one by a timestamp after each pass. record is
   /// given the info's common part, and returns what the record function returned. The report is the last run's. A GPU
   /// is kept busy for a while before, and between records: idle ones lower their clocks within milliseconds.
-  using Record = std::function<GpgpResult(VkCommandBuffer, const GpgpFrame&, const GpgpRecordInfo&)>;
-  template <class WorkerType>
-  auto measure(WorkerType& worker, const char* label, uint32_t repeat, const Record& record) {
-    Measured<std::decay_t<decltype(*worker.report())>> result;
+  using Record = std::function<GpgpResult(VkCommandBuffer, const GpgpFrame&, const GpgpRecordingInfo&)>;
+  template <class RecorderType>
+  auto measure(RecorderType& recorder, const char* label, uint32_t repeat, const Record& record) {
+    Measured<std::decay_t<decltype(*recorder.report())>> result;
     bool found = false;
-    result.times = run(worker, label, repeat, record, [&] { // every frame: the worker keeps only a few
-      for (auto report = worker.report(); report; report = worker.report()) {
+    result.times = run(recorder, label, repeat, record, [&] { // every frame: the recorder keeps only a few
+      for (auto report = recorder.report(); report; report = recorder.report()) {
         result.report = *report;
         found = report->base.tag == repeat - 1;
       }
@@ -72,7 +72,7 @@ public:
   void checkValidation();
 
 private:
-  GpuTimes run(GpgpWorker worker, const char* label, uint32_t repeat, const Record& record,
+  GpuTimes run(GpgpRecorder recorder, const char* label, uint32_t repeat, const Record& record,
                const std::function<void()>& collectReports);
   static void GPGP_CALL onMessage(void* userData, const GpgpMessage* message);
   host::HeadlessDevice device_;

@@ -159,7 +159,7 @@ private:
 
   void makeCanvas() {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
-    info.base = session_.workerInfo("canvas");
+    info.base = session_.recorderInfo("canvas");
     info.maxWidth = frame_.size.width;
     info.maxHeight = canvasFor_.rows;
     info.maxPaths = static_cast<uint32_t>(std::clamp<uint64_t>(canvasFor_.paths, 1024, 1u << 22));
@@ -207,7 +207,7 @@ private:
     item.transform[4] = frame_.left;
     item.transform[5] = frame_.top - static_cast<float>(band.first);
     auto drawn = session_.measure(canvas_, "drawing", repeat_ + 1,
-                                  [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                                  [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
                                     GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
                                     info.base = base;
                                     info.width = size.width;

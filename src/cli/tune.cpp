@@ -63,7 +63,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   text << "; " << tuned.candidates << (tuned.candidates == 1 ? " candidate in " : " candidates in ")
        << std::round(tuned.seconds * 10) / 10 << " s";
   if (options.search == "exhaustive" && !tuned.complete) text << ", not of all partitions (--samples, --seconds)";
-  if (tuned.leftOut) text << "; " << tuned.leftOut << " were left out for lack of time";
+  if (tuned.omitted) text << "; " << tuned.omitted << " were left out for lack of time";
   if (tuned.interpreter < best.milliseconds)
     text << "\nthe interpreter is faster than any kernel: spawn --schedule interpreter, bake --no-kernel";
   text << "\nkept: " << out.string() << '\n';
@@ -89,7 +89,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
                     {"balances", best.fit.balances == 1},
                     {"rounds", best.rounds}}},
                   {"candidates", tuned.candidates},
-                  {"left_out", tuned.leftOut},
+                  {"left_out", tuned.omitted},
                   {"seconds", tuned.seconds},
                   {"out", out.string()}};
   return outcome;

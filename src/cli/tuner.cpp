@@ -78,7 +78,7 @@ public:
     all = measured(std::move(all), "schedules", kForSchedules);
     while (!settings_.search && !tuned_.complete && measureNeighbours(all)) {
     }
-    tuned_.complete = tuned_.complete && tuned_.leftOut == 0;
+    tuned_.complete = tuned_.complete && tuned_.omitted == 0;
     tuned_.measured = all;
     if (!std::isfinite(all.front().milliseconds))
       throw Failure("no schedule fits this device's budgets; use fewer axioms");
@@ -247,7 +247,7 @@ private:
       first += count;
     }
     tuned_.candidates += first;
-    tuned_.leftOut += list.size() - first;
+    tuned_.omitted += list.size() - first;
     list.resize(first);
     sort(list);
     return list;

@@ -47,7 +47,7 @@ struct Tuned {
   double interpreter = 0; ///< milliseconds
   bool complete = false;  ///< all partitions were tried
   size_t candidates = 0;  ///< measured
-  size_t leftOut = 0;     ///< for lack of time
+  size_t omitted = 0;     ///< for lack of time
   double seconds = 0;
 
   const spawn::Schedule& schedule() const { return schedules[best.schedule]; }

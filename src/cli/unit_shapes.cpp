@@ -1,9 +1,9 @@
-// By shaders/spawn/mesh.h, in a graph of regular polygons alone.
+// By shaders/spawn/outputs/mesh.h, in a graph of regular polygons alone.
 #include "cli/unit_shapes.h"
 
 #include "spawn/graph/blob.h"
 #include "spawn/graph/export_labels.h"
-#include "spawn/mesh.h"
+#include "spawn/outputs/mesh.h"
 
 namespace gpgp::cli {
 namespace {

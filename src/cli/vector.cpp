@@ -6,7 +6,7 @@
 #include "cli/svg_messages.h"
 #include "cli/textures.h"
 #include "cli/vector_images.h"
-#include "cli/vector_truth.h"
+#include "cli/vector_reference.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "vector/import/svg/import.h"
@@ -26,7 +26,7 @@ struct VectorOptions {
   std::string file, out, background, stages, antialiasing = "16";
   Size size;
   bool allWarnings = false;
-  bool truth = false;
+  bool reference = false;
   uint32_t repeat = 1, maxTileEntries = 0;
 };
 
@@ -76,7 +76,7 @@ float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource sou
 }
 
 /// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
-double compareWithTruth(std::span<const char> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
+double compareWithReference(std::span<const char> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
                         const std::array<float, 4>& background, const Size& size, float scale,
                         const GpgpFileSystem* files) {
   gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
@@ -90,7 +90,7 @@ double compareWithTruth(std::span<const char> bytes, std::span<const uint8_t> pa
   for (size_t i = 0; i < painted.size(); ++i) pixels[i] = static_cast<float>(painted[i]) / 255.0f;
   return psnrOverWhite(
       pixels,
-      vectorTruth(views.paths, views.groups, transform, background.data(), size.width, size.height, Blend::Srgb),
+      vectorReference(views.paths, views.groups, transform, background.data(), size.width, size.height, Blend::Srgb),
       Blend::Srgb);
 }
 
@@ -117,7 +117,7 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
 }
 
 /// What is missing, and what would have held it. `said`: the budget was.
-std::string leftOut(const GpgpCanvasReport& report, uint32_t paths, bool said) {
+std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
   const bool words = report.tileWords > report.tileWordsGiven;
   const std::string text =
       std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
@@ -154,8 +154,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
-  if (options.truth && !images.pictures().empty())
-    throw Failure(name + ": the truth knows no images; draw it without --truth");
+  if (options.reference && !images.pictures().empty())
+    throw Failure(name + ": the reference knows no images; draw it without --reference");
   if (!stages.failure.empty()) throw Failure(stages.failure);
 
   Session session(common);
@@ -176,7 +176,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   }
 
   GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
-  canvasInfo.base = session.workerInfo("canvas");
+  canvasInfo.base = session.recorderInfo("canvas");
   canvasInfo.maxWidth = size.width;
   canvasInfo.maxHeight = size.height;
   canvasInfo.maxPaths = std::max(facts.paths, 1024u);
@@ -207,7 +207,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const uint32_t samples = area ? 16 : static_cast<uint32_t>(std::stoul(options.antialiasing));
   const auto rasterise = [&](uint32_t repeat) {
     return session.measure(canvas, "rasterising", repeat,
-                           [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+                           [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
                              GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
                              info.base = base;
                              info.width = size.width;
@@ -234,10 +234,10 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   }
   const auto [times, report] = rasterise(options.repeat);
   std::vector<uint8_t> pixels;
-  if (!options.out.empty() || options.truth) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
+  if (!options.out.empty() || options.reference) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
   double psnr = 0;
-  if (options.truth)
-    psnr = compareWithTruth(bytes, pixels, item.transform, background, size, source.scale, files.fileSystem());
+  if (options.reference)
+    psnr = compareWithReference(bytes, pixels, item.transform, background, size, source.scale, files.fileSystem());
   if (!options.out.empty()) {
     host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
   }
@@ -256,10 +256,10 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
        << (area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries << " tile entries; GPU "
        << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on " << device.name() << '\n';
   if (messages.count()) text << messages.count() << " parts of the drawing are approximated, left out or not valid\n";
-  if (options.truth) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
+  if (options.reference) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
-  if (report.pathsDropped) outcome.failure = name + ": " + leftOut(report, facts.paths, options.maxTileEntries != 0);
+  if (report.pathsDropped) outcome.failure = name + ": " + omitted(report, facts.paths, options.maxTileEntries != 0);
   outcome.json = {{"file", options.file},
                   {"device", device.name()},
                   {"status", statusName(report.base.status)},
@@ -286,7 +286,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"passes", passes},
                   {"unsupported", messages.unsupported()},
                   {"image", options.out.empty() ? Json() : Json(options.out)}};
-  if (options.truth) outcome.json["psnr_db"] = psnr;
+  if (options.reference) outcome.json["psnr_db"] = psnr;
   return outcome;
 }
 
@@ -307,7 +307,7 @@ Work addVector(CLI::App& app) {
   command->add_option("--background", options->background, "CSS colour behind the drawing (default: transparent)")
       ->type_name("COLOUR");
   command->add_option("-o,--out,OUT", options->out, "Write the picture")->check(pngFile())->type_name("FILE.png");
-  command->add_flag("--truth", options->truth,
+  command->add_flag("--reference", options->reference,
                     "Compare with 256 samples a pixel, composited by winding numbers on the CPU (slow)");
   command->add_option("--stages", options->stages, "Write each stage of the conversion as SVG")->type_name("FOLDER");
   command

@@ -3,7 +3,7 @@
 #include "cli/cell_walls.h"
 #include "cli/progress.h"
 #include "cli/visibility_pictures.h"
-#include "cli/visibility_truth.h"
+#include "cli/visibility_reference.h"
 #include "host/files.h"
 
 #include <algorithm>
@@ -98,7 +98,7 @@ GpgpResult worse(GpgpResult a, GpgpResult b) {
 
 /// Averages over the cameras, but for what says otherwise.
 struct Figures {
-  double truth = 0, visible = 0;
+  double reference = 0, visible = 0;
   Share coverage, overestimation, coverageArea, overestimationArea;
   double facing = 0, listed = 0, coveredPixels = 0; ///< of a cell's last view
   CameraTimes times;
@@ -110,10 +110,10 @@ struct Figures {
   uint32_t viewPoints = 0, behindWalls = 0; ///< of all cameras' cells; these were left out
   std::vector<uint32_t> found, first;       ///< of all cameras together; of the first one
 
-  /// Metrics of one camera of `cameras`; areas of the truth's triangles, in samples.
-  void addMetrics(const GpgpSampleReport& metrics, const std::vector<uint32_t>& areas, uint32_t cameras) {
-    truth += metrics.truth / static_cast<double>(cameras);
-    if (metrics.truth) {
+  /// Metrics of one camera of `cameras`; areas of the reference's triangles, in samples.
+  void addMetrics(const GpgpVisibilityReport& metrics, const std::vector<uint32_t>& areas, uint32_t cameras) {
+    reference += metrics.reference / static_cast<double>(cameras);
+    if (metrics.reference) {
       coverage.add(metrics.coverage);
       overestimation.add(metrics.overestimation);
     }
@@ -123,7 +123,7 @@ struct Figures {
     }
   }
   /// A record of a view.
-  void add(const GpgpSampleReport& report) {
+  void add(const GpgpVisibilityReport& report) {
     status = worse(status, report.base.status);
     neededCandidates = std::max(neededCandidates, report.neededCandidates);
     neededPairs = std::max(neededPairs, report.neededPairs);
@@ -132,7 +132,7 @@ struct Figures {
     unresolved += report.unresolved;
   }
   /// What a camera's last record of `cameras` found.
-  void add(const GpgpSampleReport& last, std::vector<uint32_t> bits, uint32_t cameras) {
+  void add(const GpgpVisibilityReport& last, std::vector<uint32_t> bits, uint32_t cameras) {
     facing += last.triangles / static_cast<double>(cameras);
     listed += last.listed / static_cast<double>(cameras);
     coveredPixels += last.coveredPixels / static_cast<double>(cameras);
@@ -144,12 +144,12 @@ struct Figures {
   }
 };
 
-/// Samples from each camera, with the truth and the overlay where asked for.
+/// Samples from each camera, with the reference and the overlay where asked for.
 Figures measure(Session& session, const VisibilityOptions& options, const Cell& cell, const Model& model,
                 const Bounds& bounds, const std::vector<glm::vec3>& corners) {
   const GpgpSamplingMethod method = options.sampling();
   SampledModel scene(session, options, model);
-  Sampler sampler = scene.sampler(method, method == GPGP_SAMPLING_STANDARD ? options.samples : 1);
+  VisibilityRecorder recorder = scene.recorder(method, method == GPGP_SAMPLING_STANDARD ? options.samples : 1);
   Figures figures;
   figures.maxCandidates = scene.maxCandidates();
   figures.maxPairs = scene.maxPairs();
@@ -163,7 +163,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     std::vector<View> views = viewsOf(cell, view, bounds.centre(), options.size.height);
     figures.viewPoints += static_cast<uint32_t>(views.size());
     if (!options.throughWalls) figures.behindWalls += leaveOutBehindWalls(views, model);
-    GpgpSampleReport last{};
+    GpgpVisibilityReport last{};
     times.emplace_back();
     std::optional<Progress> progress;
     if (options.repeat == 1) progress.emplace(label, views.size());
@@ -172,10 +172,10 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       step.method = method;
       step.view = views[v];
       step.samples = options.samples;
-      if (k == 0 && v == 0) scene.sample(sampler, step); // not counted: pipelines and memory are used the first time
+      if (k == 0 && v == 0) scene.sample(recorder, step); // not counted: pipelines and memory are used the first time
       step.repeat = options.repeat;
       step.accumulate = v > 0;
-      const auto measured = scene.sample(sampler, step);
+      const auto measured = scene.sample(recorder, step);
       times.back().add(measured.times);
       figures.add(measured.report);
       last = measured.report;
@@ -186,28 +186,28 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     figures.add(last, found, cameras);
 
     const bool overlay = !options.overlay.empty() && k == 0;
-    std::vector<uint32_t> standard, truth;
+    std::vector<uint32_t> standard, reference;
     if (overlay) {
-      Sampler plain = scene.sampler(GPGP_SAMPLING_STANDARD, 1);
+      VisibilityRecorder plain = scene.recorder(GPGP_SAMPLING_STANDARD, 1);
       SampledModel::Step step;
       step.view = view;
       scene.sample(plain, step);
       standard = scene.bits();
     }
-    if (options.truth) {
-      const bool again = options.recheck > options.truth;
-      auto [bits, areas] = truthOf(scene, options, model, views, options.truth);
-      truth = std::move(bits);
-      GpgpSampleReport metrics = scene.compare(sampler, found, truth, areas, {});
+    if (options.reference) {
+      const bool again = options.recheck > options.reference;
+      auto [bits, areas] = referenceOf(scene, options, model, views, options.reference);
+      reference = std::move(bits);
+      GpgpVisibilityReport metrics = scene.compare(recorder, found, reference, areas, {});
       if (metrics.falsePositives && again) {
-        const std::vector<uint32_t> finer = truthOf(scene, options, model, views, options.recheck).bits;
-        metrics = scene.compare(sampler, found, truth, areas, finer);
-        for (size_t i = 0; i < truth.size(); ++i) truth[i] |= found[i] & finer[i]; // as the metrics count them
+        const std::vector<uint32_t> finer = referenceOf(scene, options, model, views, options.recheck).bits;
+        metrics = scene.compare(recorder, found, reference, areas, finer);
+        for (size_t i = 0; i < reference.size(); ++i) reference[i] |= found[i] & finer[i]; // as the metrics count them
       }
       figures.addMetrics(metrics, areas, cameras);
     }
     const Progress painting("painting");
-    if (overlay) paintOverlay(options, corners, view, views.size() > 1, found, standard, truth);
+    if (overlay) paintOverlay(options, corners, view, views.size() > 1, found, standard, reference);
   }
   figures.times = medianOf(times);
   return figures;
@@ -230,7 +230,7 @@ std::string remarks(const Model& model, const Figures& figures) {
     text << figures.behindWalls << " of " << figures.viewPoints
          << " view points left out: a triangle lies between them and the middle (--through-walls keeps them)\n";
   if (figures.skippedDraws) text << figures.skippedDraws << " draws skipped: they have no mesh\n";
-  if (model.leftOut) text << model.leftOut << " primitives are no triangles and were left out\n";
+  if (model.omitted) text << model.omitted << " primitives are no triangles and were left out\n";
   for (const std::string& note : model.notes) text << note << '\n';
   return text.str();
 }
@@ -248,8 +248,8 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
          << (options.samples > 1 ? " samples covered" : " pixels covered");
   text << "; GPU " << milliseconds(figures.times.median) << " (median of " << figures.times.repeats << ") on " << device
        << '\n';
-  if (options.truth)
-    text << (options.truthDevice == "cpu" ? "truth by rays " : "truth ") << countText(figures.truth) << ": coverage "
+  if (options.reference)
+    text << (options.referenceDevice == "cpu" ? "reference by rays " : "reference ") << countText(figures.reference) << ": coverage "
          << figures.coverage.text() << ", overestimation " << figures.overestimation.text() << "; by area "
          << figures.coverageArea.text() << ", " << figures.overestimationArea.text() << '\n';
   text << remarks(model, figures);
@@ -276,8 +276,8 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"cameras", options.cameras()},
                   {"viewPoints", figures.viewPoints},
                   {"behindWalls", figures.behindWalls},
-                  {"truthDevice", options.truth ? Json(options.truthDevice) : Json()},
-                  {"truth", options.truth ? Json(std::llround(figures.truth)) : Json()},
+                  {"referenceDevice", options.reference ? Json(options.referenceDevice) : Json()},
+                  {"reference", options.reference ? Json(std::llround(figures.reference)) : Json()},
                   {"coverage", figures.coverage.json()},
                   {"overestimation", figures.overestimation.json()},
                   {"coverage_area", figures.coverageArea.json()},
@@ -287,7 +287,7 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"unresolved", figures.unresolved},
                   {"skippedTriangles", figures.skippedTriangles},
                   {"skippedDraws", figures.skippedDraws},
-                  {"leftOut", model.leftOut},
+                  {"omitted", model.omitted},
                   {"notes", model.notes},
                   {"gpu_ms_median", figures.times.median},
                   {"passes", figures.times.passesByName()}};

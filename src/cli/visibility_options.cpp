@@ -110,19 +110,19 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       .add_flag("--through-walls", options.throughWalls,
                 "View points of the cell count even where a triangle lies between them and its middle")
       ->needs(cell);
-  CLI::Option* truth = command.add_option("--truth", options.truth, "Measure against N x N + 1 samples a pixel")
+  CLI::Option* reference = command.add_option("--reference", options.reference, "Measure against N x N + 1 samples a pixel")
                            ->check(CLI::IsMember({1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 256u}));
   const CLI::Option* recheck =
       command.add_option("--recheck", options.recheck, "Sample claimed false positives again at N x N; 0: do not")
           ->check(CLI::IsMember({0u, 64u, 128u, 256u}))
           ->capture_default_str()
-          ->needs(truth);
+          ->needs(reference);
   command
-      .add_option("--truth-device", options.truthDevice,
+      .add_option("--reference-device", options.referenceDevice,
                   "gpu, or cpu: rays in double precision, which share no rounding with the methods")
       ->check(CLI::IsMember({"gpu", "cpu"}))
       ->capture_default_str()
-      ->needs(truth);
+      ->needs(reference);
   command
       .add_option(
           "--overlay", options.overlay,
@@ -153,15 +153,15 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
     options.needlessSamples = samples->count() && options.sampling() == GPGP_SAMPLING_EXACT;
     if (options.method == "cell" && options.cell.empty())
       throw CLI::ValidationError("--method cell", "needs --cell SPEC");
-    if (recheck->count() && options.recheck && options.recheck <= options.truth)
-      throw CLI::ValidationError(recheck->get_name(), "has to be finer than --truth");
+    if (recheck->count() && options.recheck && options.recheck <= options.reference)
+      throw CLI::ValidationError(recheck->get_name(), "has to be finer than --reference");
   });
   command.footer(R"(
 Examples:
   gpgp visibility engine.glb
   gpgp visibility bunny.obj --yaw 90 --image seen.png
   gpgp visibility engine.glb --size 1920x1080 --repeat 100 --json | jq .visible
-  gpgp visibility engine.glb --method exact --orbit 8 --truth 64 --overlay seen.png
+  gpgp visibility engine.glb --method exact --orbit 8 --reference 64 --overlay seen.png
 
 Without --camera and --orbit the camera looks at the middle of the model's bounding box from --yaw degrees around it (0:
 along -Z) and --pitch above, from far enough to see all of it. Camera k of --orbit N stands 360 k / N degrees around, from
@@ -171,8 +171,8 @@ Triangles are numbered from 0: of OBJ files in the order of their f lines, a pol
 ones as the fan of corners 1 2 3, 1 3 4, ...; concave ones by ear clipping); of glTF files node after node, depth first,
 and in each its instances, its primitives and their indices; of a grid copy after copy, along X first.
 
---truth 64 takes 65 records, and --recheck 256, the default, up to 1025 more: minutes on software devices. Standard
-error says how long; --recheck 0, a smaller --truth or --size take less.
+--reference 64 takes 65 records, and --recheck 256, the default, up to 1025 more: minutes on software devices. Standard
+error says how long; --recheck 0, a smaller --reference or --size take less.
 
 JSON: gpu_ms_median, gpuMilliseconds and passes are milliseconds of a view's record (the median of --repeat), of a cell
 the sum over its views, of an orbit the median over its cameras; gpu_ms_median is gpuMilliseconds.median, and passes

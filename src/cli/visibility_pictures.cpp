@@ -26,12 +26,12 @@ void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& c
 
 void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
                   bool ofCell, const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
-                  const std::vector<uint32_t>& truth) {
+                  const std::vector<uint32_t>& reference) {
   constexpr std::array<glm::vec3, 4> kColours = {glm::vec3(0.2f, 0.75f, 0.25f), glm::vec3(0.6f),
                                                  glm::vec3(0.1f, 0.2f, 0.95f), glm::vec3(0.9f, 0.1f, 0.1f)};
   const size_t count = corners.size() / 3;
   const auto classOf = [&](size_t t) -> uint8_t {
-    const bool isFound = isSet(found, t), isTrue = truth.empty() ? isFound : isSet(truth, t);
+    const bool isFound = isSet(found, t), isTrue = reference.empty() ? isFound : isSet(reference, t);
     return !isTrue ? 3 : !isFound ? 2 : isSet(standard, t) ? 0 : 1;
   };
   // Three points a pixel each way, so that triangles below a pixel are seen, the pixel's centre among them, where
@@ -39,7 +39,7 @@ void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>
   Painter painter(options.size.width, options.size.height, view.reversed, Painter::Style::magnified);
   for (const bool marks : {false, true})
     for (size_t t = 0; t < count; ++t) {
-      if (!isSet(found, t) && (truth.empty() || !isSet(truth, t))) continue;
+      if (!isSet(found, t) && (reference.empty() || !isSet(reference, t))) continue;
       const Painter::Triangle triangle{{corners[t * 3], corners[t * 3 + 1], corners[t * 3 + 2]},
                                        kColours[classOf(t)],
                                        classOf(t),

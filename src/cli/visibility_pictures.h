@@ -1,4 +1,4 @@
-// The pictures of `gpgp visibility`: what was seen, and how that compares with standard sampling and a truth.
+// The pictures of `gpgp visibility`: what was seen, and how that compares with standard sampling and a reference.
 #pragma once
 #include "cli/views.h"
 #include "cli/visibility_options.h"
@@ -14,10 +14,10 @@ void paintSeen(const VisibilityOptions& options, const std::vector<glm::vec3>& c
                const Bounds& bounds, const std::vector<uint32_t>& bits);
 
 /// options.overlay, figure 6.2, three pixels each way for one of the viewport's: green standard, grey only what the
-/// method adds, red false positive, blue false negative. truth may be empty. ofCell: what they hold is of more views
+/// method adds, red false positive, blue false negative. reference may be empty. ofCell: what they hold is of more views
 /// than this one.
 void paintOverlay(const VisibilityOptions& options, const std::vector<glm::vec3>& corners, const View& view,
                   bool ofCell, const std::vector<uint32_t>& found, const std::vector<uint32_t>& standard,
-                  const std::vector<uint32_t>& truth);
+                  const std::vector<uint32_t>& reference);
 
 } // namespace gpgp::cli

@@ -1,7 +1,7 @@
 #include "core/context.h"
 
 #include "core/resident.h"
-#include "core/worker.h"
+#include "core/recorder.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -26,9 +26,9 @@ const char* kindName(Kind kind) {
   case Kind::geometrySet: return "geometry set";
   case Kind::spawner: return "spawner";
   case Kind::canvas: return "canvas";
-  case Kind::sampler: return "sampler";
-  case Kind::canvasView: return "canvas view";
-  case Kind::cameraView: return "camera view";
+  case Kind::visibilityRecorder: return "visibility recorder";
+  case Kind::canvasHistory: return "canvas history";
+  case Kind::cameraHistory: return "camera history";
   }
   return "unknown object";
 }
@@ -36,7 +36,7 @@ const char* kindName(Kind kind) {
 Context::Context(const GpgpContextCreateInfo& info)
     : label(info.label), messageFn(info.messageFn), messageUserData(info.messageUserData),
       maxFramesInFlight(info.maxFramesInFlight ? info.maxFramesInFlight : 3),
-      maxRecordsPerFrame(info.maxRecordsPerFrame ? info.maxRecordsPerFrame : 16),
+      maxRecordingsPerFrame(info.maxRecordingsPerFrame ? info.maxRecordingsPerFrame : 16),
       jobSystem(info.jobSystem ? *info.jobSystem : GpgpJobSystem{}),
       fileSystem(info.fileSystem ? *info.fileSystem : GpgpFileSystem{}), host_(info.hostAllocator), slotBlocks_(&host_),
       living_(&host_) {}
@@ -198,7 +198,7 @@ Result<void> Context::advance(const GpgpFrame& frame) {
                      static_cast<unsigned long long>(frame.current - frame.safe), maxFramesInFlight);
   frame_ = frame;
   uploads_->advance();
-  for (Worker* worker = workers; worker; worker = worker->nextWorker()) worker->advance();
+  for (Recorder* recorder = recorders; recorder; recorder = recorder->nextRecorder()) recorder->advance();
   freeRetired(frame.safe);
   return {};
 }

@@ -13,7 +13,7 @@
 namespace gpgp::core {
 
 class Resident;
-class Worker;
+class Recorder;
 class UploadRing;
 
 class Context {
@@ -29,7 +29,7 @@ public:
   const Label label;
   const GpgpMessageFn messageFn;
   void* const messageUserData;
-  const uint32_t maxFramesInFlight, maxRecordsPerFrame;
+  const uint32_t maxFramesInFlight, maxRecordingsPerFrame;
   const GpgpJobSystem jobSystem;   // parallelFor may be null
   const GpgpFileSystem fileSystem; // read may be null
   Device device;
@@ -60,9 +60,9 @@ public:
   /// Checks a frame that a record names: same as the last advance's.
   Result<void> checkFrame(const GpgpFrame* frame) const;
 
-  // ---- lists of living objects that advance visits (context); intrusive, see Resident and Worker
+  // ---- lists of living objects that advance visits (context); intrusive, see Resident and Recorder
   Resident *residents = nullptr, *lastResident = nullptr; ///< those whose upload is pending or in flight, oldest first
-  Worker* workers = nullptr;
+  Recorder* recorders = nullptr;
   UploadRing& uploads() { return *uploads_; }
 
   /// Reads a file through the engine's callbacks or the C library.

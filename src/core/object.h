@@ -17,9 +17,9 @@ enum class Kind : uint32_t {
   geometrySet,
   spawner,
   canvas,
-  sampler,
-  canvasView,
-  cameraView,
+  visibilityRecorder,
+  canvasHistory,
+  cameraHistory,
   list
 };
 const char* kindName(Kind kind);

@@ -1,4 +1,4 @@
-// Passes are data: a service describes its work as a list of resources and passes, once, when a worker is created.
+// Passes are data: a service describes its work as a list of resources and passes, once, when a recorder is created.
 //
 // From the list come the scratch layout, the barriers, the descriptor set layout (binding number = resource number),
 // the recorded commands, debug labels, timestamps, and the pass tables of the documentation. Nothing about a record

@@ -1,5 +1,5 @@
 // Recording: a pass list into the engine's command buffer. Allocates nothing, locks nothing, makes no pipeline.
-#include "core/worker.h"
+#include "core/recorder.h"
 
 #include <algorithm>
 #include <cstring>
@@ -85,13 +85,13 @@ VkAccessFlags access32(const GpgpAccess& use) {
 Result<void> checkStages(const char* resource, const char* edge, const GpgpAccess& access, VkQueueFlags queue) {
   if (!(queue & VK_QUEUE_GRAPHICS_BIT) && (stages32(access.stages) & kGraphicsStages))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "%s.%s.stages names graphics stages, but the worker's queue family has no graphics", resource,
+                     "%s.%s.stages names graphics stages, but the recorder's queue family has no graphics", resource,
                      edge);
   return {};
 }
 } // namespace
 
-Result<void> Worker::check(const Record& record) const {
+Result<void> Recorder::check(const Record& record) const {
   if (auto ok = context.checkAlive(); !ok) return ok;
   if (!record.commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
   const VkPhysicalDeviceLimits& limits = context.device.limits;
@@ -101,13 +101,13 @@ Result<void> Worker::check(const Record& record) const {
                      timestamps.queryCount, passes_.passes.size(), passes_.passes.size() + 1);
   if (timestamps.queryPool && timestampBits_ == 0)
     return makeError(GPGP_ERROR_UNSUPPORTED, "queue family %u writes no timestamps", queueFamily_);
-  if (record.info->accessMode & ~GPGP_ACCESS_SYNCHRONISED)
+  if (record.info->accessMode & ~GPGP_ACCESS_EXTERNAL_BARRIERS)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.accessMode has unknown bits");
   if (engineScratch_) {
     const GpgpBuffer& scratch = record.info->scratch;
     if (!scratch.buffer)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                       "base.scratch.buffer is NULL; the worker was made with engineScratch");
+                       "base.scratch.buffer is NULL; the recorder was made with engineScratch");
     if (scratch.offset % scratchAlignment())
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base.scratch.offset must be a multiple of %llu",
                        static_cast<unsigned long long>(scratchAlignment()));
@@ -151,7 +151,7 @@ Result<void> Worker::check(const Record& record) const {
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.view is NULL", name);
       }
       if (binding.image->after.stages && binding.image->after.layout == VK_IMAGE_LAYOUT_UNDEFINED &&
-          !(record.info->accessMode & GPGP_ACCESS_SYNCHRONISED))
+          !(record.info->accessMode & GPGP_ACCESS_EXTERNAL_BARRIERS))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.after.layout is UNDEFINED: nothing could be found there",
                          name);
       if (!binding.image->image) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.image is NULL", name);
@@ -162,28 +162,28 @@ Result<void> Worker::check(const Record& record) const {
   return {};
 }
 
-Result<uint32_t> Worker::acquire() const {
+Result<uint32_t> Recorder::acquire() const {
   uint32_t inFrame = 0, free = UINT32_MAX;
   for (uint32_t i = 0; i < slots_.size(); ++i) {
-    if (!slots_[i].stamp)
+    if (!slots_[i].marker)
       free = i;
     else
       inFrame += slots_[i].frame == context.current();
   }
-  if (inFrame >= context.maxRecordsPerFrame || free == UINT32_MAX)
-    return makeError(GPGP_ERROR_TOO_MANY_RECORDS,
-                     "the context was made for %u records per frame and worker, and %u "
+  if (inFrame >= context.maxRecordingsPerFrame || free == UINT32_MAX)
+    return makeError(GPGP_ERROR_TOO_MANY_RECORDINGS,
+                     "the context was made for %u records per frame and recorder, and %u "
                      "frames in flight",
-                     context.maxRecordsPerFrame, context.maxFramesInFlight);
+                     context.maxRecordingsPerFrame, context.maxFramesInFlight);
   return free;
 }
 
-void Worker::take(uint32_t slot, uint64_t tag, bool report) {
-  slots_[slot] = {context.current(), tag, nextStamp_, report};
-  if (++nextStamp_ == 0) nextStamp_ = 1;
+void Recorder::take(uint32_t slot, uint64_t tag, bool report) {
+  slots_[slot] = {context.current(), tag, nextMarker_, report};
+  if (++nextMarker_ == 0) nextMarker_ = 1;
 }
 
-void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
+void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                               VkDeviceSize scratchOffset, bool reports) const {
   std::array<VkWriteDescriptorSet, kMaxResources> writes;
   std::array<VkDescriptorBufferInfo, kMaxResources> buffers;
@@ -229,7 +229,7 @@ void Worker::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResou
   context.device.vk.UpdateDescriptorSets(context.device.device, count, writes.data(), 0, nullptr);
 }
 
-void Worker::beginLabel(VkCommandBuffer commandBuffer, const char* pass) const {
+void Recorder::beginLabel(VkCommandBuffer commandBuffer, const char* pass) const {
   const DeviceTable& vk = context.device.vk;
   if (!vk.CmdBeginDebugUtilsLabelEXT) return;
   static constexpr const char* kServices[GPGP_SERVICE_COUNT] = {"core", "spawn", "vector", "visibility"};
@@ -242,14 +242,14 @@ void Worker::beginLabel(VkCommandBuffer commandBuffer, const char* pass) const {
   vk.CmdBeginDebugUtilsLabelEXT(commandBuffer, &info);
 }
 
-void Worker::endLabel(VkCommandBuffer commandBuffer) const {
+void Recorder::endLabel(VkCommandBuffer commandBuffer) const {
   if (context.device.vk.CmdEndDebugUtilsLabelEXT) context.device.vk.CmdEndDebugUtilsLabelEXT(commandBuffer);
 }
 
-/// One barrier at each end of a record. Entry: the engine's last uses, and this worker's previous record (scratch,
+/// One barrier at each end of a record. Entry: the engine's last uses, and this recorder's previous record (scratch,
 /// views). Exit: the engine's next uses, the draw path, and the host that reads the report.
-void Worker::edgeBarrier(const Record& record, bool entry) const {
-  const bool engine = !(record.info->accessMode & GPGP_ACCESS_SYNCHRONISED);
+void Recorder::edgeBarrier(const Record& record, bool entry) const {
+  const bool engine = !(record.info->accessMode & GPGP_ACCESS_EXTERNAL_BARRIERS);
   const VkPipelineStageFlags drawStage = draws_ ? VkPipelineStageFlags(VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT) : 0;
   VkPipelineStageFlags outside = entry ? kWorkStages | drawStage : VK_PIPELINE_STAGE_HOST_BIT | drawStage;
   const VkAccessFlags drawAccess = draws_ ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT) : 0;
@@ -287,12 +287,12 @@ void Worker::edgeBarrier(const Record& record, bool entry) const {
                                        images.data());
 }
 
-std::byte* Worker::constants() const {
+std::byte* Recorder::constants() const {
   const auto slot = acquire();
   return slot ? reinterpret_cast<std::byte*>(constants_.mapped()) + *slot * passes_.constantsBytes : nullptr;
 }
 
-Result<void> Worker::record(const Record& record) {
+Result<void> Recorder::record(const Record& record) {
   const auto acquired = acquire();
   if (!acquired) return acquired.error();
   const uint32_t slot = *acquired;
@@ -331,7 +331,7 @@ Result<void> Worker::record(const Record& record) {
   beginLabel(cmd, nullptr);
   edgeBarrier(record, true);
   // Says that the record ran, to who reads it when the frame has ended; beside the first passes it costs nothing.
-  vk.CmdFillBuffer(cmd, reports_.handle(), slot * reportStride_ + passes_.reportBytes, 4, slots_[slot].stamp);
+  vk.CmdFillBuffer(cmd, reports_.handle(), slot * reportStride_ + passes_.reportBytes, 4, slots_[slot].marker);
   const GpgpTimestamps& timestamps = record.info->timestamps;
   uint32_t query = timestamps.firstQuery;
   if (timestamps.queryPool)
@@ -396,7 +396,7 @@ Result<void> Worker::record(const Record& record) {
   return {};
 }
 
-Result<void> Worker::recordDraw(const DrawRecord& record) {
+Result<void> Recorder::recordDraw(const DrawRecord& record) {
   if (auto ok = context.checkAlive(); !ok) return ok;
   if (!record.commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
   VkPipeline pipeline = VK_NULL_HANDLE;

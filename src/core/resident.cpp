@@ -76,22 +76,22 @@ void Resident::updateArrived() {
 
 Result<Unique<UploadRing>> UploadRing::create(Context& context, VkDeviceSize bytes) {
   auto made = makeUnique<UploadRing>(context.host(), context);
-  made->records_.resize(size_t(context.maxFramesInFlight) * context.maxRecordsPerFrame);
+  made->records_.resize(size_t(context.maxFramesInFlight) * context.maxRecordingsPerFrame);
   bytes = std::max<VkDeviceSize>((bytes + kAlignment - 1) / kAlignment * kAlignment, 4096);
   auto ring = Buffer::create(context.device, context.gpu(), GPGP_SERVICE_CORE, "upload ring", bytes,
                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryPlace::upload);
   if (!ring) return ring.error();
   made->ring_ = std::move(*ring);
-  auto stamps =
-      Buffer::create(context.device, context.gpu(), GPGP_SERVICE_CORE, "upload stamps",
+  auto markers =
+      Buffer::create(context.device, context.gpu(), GPGP_SERVICE_CORE, "upload markers",
                      made->records_.size() * kAlignment, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::readBack);
-  if (!stamps) return stamps.error();
-  made->stamps_ = std::move(*stamps);
+  if (!markers) return markers.error();
+  made->markers_ = std::move(*markers);
   return made;
 }
 
-uint32_t* UploadRing::stamp(size_t record) const {
-  return reinterpret_cast<uint32_t*>(stamps_.mapped() + record * kAlignment);
+uint32_t* UploadRing::marker(size_t record) const {
+  return reinterpret_cast<uint32_t*>(markers_.mapped() + record * kAlignment);
 }
 
 Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceSize byteBudget) {
@@ -100,9 +100,9 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
   if (pending == 0) return VkDeviceSize(0);
   const auto free = std::find_if(records_.begin(), records_.end(), [](const Record& r) { return r.number == 0; });
   if (free == records_.end())
-    return makeError(GPGP_ERROR_TOO_MANY_RECORDS,
+    return makeError(GPGP_ERROR_TOO_MANY_RECORDINGS,
                      "more than %zu uploads in flight (maxFramesInFlight x "
-                     "maxRecordsPerFrame)",
+                     "maxRecordingsPerFrame)",
                      records_.size());
   const DeviceTable& vk = context_.device.vk;
   const uint64_t number = nextNumber_;
@@ -140,8 +140,8 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
   if (!any) return pending;
 
   const size_t index = static_cast<size_t>(free - records_.begin());
-  *stamp(index) = 0;
-  vk.CmdFillBuffer(commandBuffer, stamps_.handle(), index * kAlignment, 4, static_cast<uint32_t>(number));
+  *marker(index) = 0;
+  vk.CmdFillBuffer(commandBuffer, markers_.handle(), index * kAlignment, 4, static_cast<uint32_t>(number));
   // The queue family is the engine's choice, so the stages are the ones that every family has.
   const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
                                 VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT | VK_ACCESS_HOST_READ_BIT};
@@ -161,7 +161,7 @@ void UploadRing::advance() {
       if (record.number && (!oldest || record.number < oldest->number)) oldest = &record;
     if (!oldest || oldest->frame > context_.safe()) return;
     const size_t index = static_cast<size_t>(oldest - records_.data());
-    const bool ran = *static_cast<volatile uint32_t*>(stamp(index)) == static_cast<uint32_t>(oldest->number);
+    const bool ran = *static_cast<volatile uint32_t*>(marker(index)) == static_cast<uint32_t>(oldest->number);
     for (Resident *r = context_.residents, *next = nullptr; r; r = next) {
       next = r->next_;
       bool lost = false;

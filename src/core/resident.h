@@ -86,10 +86,10 @@ private:
     uint64_t number = 0, frame = 0; // number 0: free
     VkDeviceSize ringEnd = 0;       // ring position after its bytes
   };
-  uint32_t* stamp(size_t record) const;
+  uint32_t* marker(size_t record) const;
 
   Context& context_;
-  Buffer ring_, stamps_;
+  Buffer ring_, markers_;
   std::pmr::vector<Record> records_;
   VkDeviceSize head_ = 0, tail_ = 0; // grow without bound; position modulo ring size
   uint64_t nextNumber_ = 1;

@@ -1,7 +1,7 @@
 // What creation copies: a mesh table as bytes to upload, or a size to clear.
 #include "visibility/geometry_set.h"
 
-#include "visibility/layout.h"
+#include "visibility/shared/layout.h"
 
 #include <algorithm>
 #include <cstring>
@@ -31,9 +31,9 @@ core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& conte
   return set;
 }
 
-core::Result<core::Unique<CameraView>> CameraView::create(core::Context& context,
-                                                          const GpgpCameraViewCreateInfo& info) {
-  auto view = core::makeUnique<CameraView>(context.host(), context, info.label);
+core::Result<core::Unique<CameraHistory>> CameraHistory::create(core::Context& context,
+                                                          const GpgpCameraHistoryCreateInfo& info) {
+  auto view = core::makeUnique<CameraHistory>(context.host(), context, info.label);
   view->maxTriangles_ = info.maxTriangles ? info.maxTriangles : 1u << 22;
   std::pmr::vector<std::byte> none(&context.host());
   if (auto ok = view->makeResident(GPGP_SERVICE_VISIBILITY, std::move(none), VkDeviceSize(view->words()) * 4); !ok)

@@ -2,7 +2,7 @@
 # Every GPGP_API function says what it does and:
 #   @threads any|context|handle
 #   @lifetime call|frame|handle   where it takes a pointer to read
-#   Errors:                       where it creates an asset, worker, view or context
+#   Errors:                       where it creates an asset, recorder, view or context
 #   @pass outside|inside|any and @state, and a place in docs/integration_contract.md, where it records commands
 # gpgp.hpp calls every function that takes a handle and knows every descriptor struct; structs.c uses every _INIT macro.
 #
@@ -31,7 +31,7 @@ awk -f "$tests/declarations.awk" "$include"/gpgp/*.h | awk -F'\t' -v contract="$
     if (split(words, unused, " ") < 3) complain("says nothing of what it does before its tags")
     if ($3 !~ /@threads (any|context|handle)/) complain("no @threads any|context|handle")
     if ($2 ~ /const [A-Za-z]+\*/ && $3 !~ /@lifetime (call|frame|handle)/) complain("no @lifetime call|frame|handle")
-    if ($2 ~ /^Gpgp(Context|Asset|Worker|View) / && wrapped !~ $1 "[(,]") complain("not in gpgp.hpp")
+    if ($2 ~ /^Gpgp(Context|Asset|Recorder|View) / && wrapped !~ $1 "[(,]") complain("not in gpgp.hpp")
     if ($1 ~ /^gpgpCreate/ && $3 !~ /Errors: /) complain("no list of errors")
     if ($2 ~ /VkCommandBuffer/) {
       ++records

@@ -64,7 +64,7 @@ static uint32_t chooseFamily(VkPhysicalDevice device) {
 #ifdef ENGINE_COMPILE_GRAMMAR
 static GpgpAsset grammar = NULL;
 #endif
-static GpgpWorker spawner = NULL;
+static GpgpRecorder spawner = NULL;
 
 static void useSpawn(GpgpContext context, uint32_t family) {
   GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
@@ -103,7 +103,7 @@ static void recordSpawn(VkCommandBuffer commandBuffer, const GpgpFrame* frame, G
   memset(axioms, 0, 2 * sizeof *axioms);
   axioms[0].transform[0] = axioms[0].transform[5] = axioms[0].transform[10] = 1;
   axioms[0].size[0] = axioms[0].size[1] = axioms[0].size[2] = 5;
-  axioms[0].rule = GPGP_AXIOM_DEFAULT_RULE;
+  axioms[0].start = GPGP_AXIOM_DEFAULT_START;
   axioms[1] = axioms[0];
   axioms[1].seed = 1;
   info.base.tag = 7;
@@ -138,7 +138,7 @@ static void useVector(GpgpContext context, uint32_t family) {
   GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
   GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
   GpgpAsset drawing = NULL;
-  GpgpWorker canvas = NULL;
+  GpgpRecorder canvas = NULL;
   memset(&path, 0, sizeof path);
   path.verbs = verbs;
   path.verbCount = 4;
@@ -168,7 +168,7 @@ static void useVector(GpgpContext context, uint32_t family) {
     gpgpFreeBlob(&blob);
   }
 #endif
-  gpgpDestroyWorker(canvas);
+  gpgpDestroyRecorder(canvas);
   gpgpDestroyAsset(drawing);
 }
 #endif
@@ -177,21 +177,21 @@ static void useVector(GpgpContext context, uint32_t family) {
 static void useVisibility(GpgpContext context, uint32_t family) {
   const GpgpMesh mesh = {0, 3, 0};
   GpgpGeometrySetCreateInfo setInfo = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
-  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+  GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   GpgpAsset set = NULL;
-  GpgpWorker sampler = NULL;
+  GpgpRecorder recorder = NULL;
   setInfo.label = "geometry";
   setInfo.meshes = &mesh;
   setInfo.meshCount = 1;
   GPGP_CHECK(gpgpCreateGeometrySet(context, &setInfo, &set));
-  info.base.label = "sampler";
+  info.base.label = "recorder";
   info.base.queueFamily = family;
   info.maxWidth = info.maxHeight = 64;
   info.maxDraws = 16;
   info.maxTriangles = 1024;
-  GPGP_CHECK(gpgpCreateSampler(context, &info, &sampler));
-  GPGP_CHECK(gpgpPrewarm(sampler, NULL));
-  gpgpDestroyWorker(sampler);
+  GPGP_CHECK(gpgpCreateVisibilityRecorder(context, &info, &recorder));
+  GPGP_CHECK(gpgpPrewarm(recorder, NULL));
+  gpgpDestroyRecorder(recorder);
   gpgpDestroyAsset(set);
 }
 #endif

@@ -12,8 +12,8 @@ template <class T> constexpr bool isHandle() {
 }
 static_assert(isHandle<gpgp::Context>() && isHandle<gpgp::Grammar>() && isHandle<gpgp::Spawner>());
 static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::GlyphSet>() && isHandle<gpgp::Canvas>() &&
-              isHandle<gpgp::CanvasView>() && isHandle<gpgp::List>());
-static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::Sampler>() && isHandle<gpgp::CameraView>());
+              isHandle<gpgp::CanvasHistory>() && isHandle<gpgp::List>());
+static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::VisibilityRecorder>() && isHandle<gpgp::CameraHistory>());
 static_assert(isHandle<gpgp::GrammarBuilder>());
 static_assert(isHandle<gpgp::Font>() && isHandle<gpgp::Shaper>() && isHandle<gpgp::Layout>());
 static_assert(!std::is_copy_constructible_v<gpgp::Blob> && std::is_nothrow_move_constructible_v<gpgp::Blob>);
@@ -32,12 +32,12 @@ GpgpResult useCore(gpgp::Context& context, const GpgpFrame& frame, VkCommandBuff
   return GPGP_SUCCESS;
 }
 
-GpgpResult useWorker(gpgp::Worker& worker, const gpgp::Asset& asset) {
-  if (const GpgpResult code = worker.prewarm()) return code;
-  if (const GpgpResult code = worker.prewarm(gpgp::init<GpgpPrewarmInfo>())) return code;
+GpgpResult useRecorder(gpgp::Recorder& recorder, const gpgp::Asset& asset) {
+  if (const GpgpResult code = recorder.prewarm()) return code;
+  if (const GpgpResult code = recorder.prewarm(gpgp::init<GpgpPrewarmInfo>())) return code;
   uint32_t count = 0;
-  if (const GpgpResult code = worker.passes(count, nullptr)) return code;
-  const auto scratch = worker.scratchSize();
+  if (const GpgpResult code = recorder.passes(count, nullptr)) return code;
+  const auto scratch = recorder.scratchSize();
   const auto resident = asset.resident();
   return scratch && scratch->size && resident && *resident ? GPGP_SUCCESS : GPGP_NOT_READY;
 }
@@ -53,7 +53,7 @@ GpgpResult useSpawn(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer
   if (!grammar || !spawner) return grammar.code();
   uint32_t count = 0;
   if (const GpgpResult code = grammar->terminals(count, nullptr)) return code;
-  if (const GpgpResult code = useWorker(*spawner, *grammar)) return code;
+  if (const GpgpResult code = useRecorder(*spawner, *grammar)) return code;
   auto spawn = gpgp::init<GpgpSpawnInfo>();
   spawn.grammar = *grammar;
   if (const GpgpResult code = spawner->recordPrepare(cmd, frame, spawn)) return code;
@@ -115,7 +115,7 @@ GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffe
   if (!blob) return blob.code();
   auto drawing = gpgp::Drawing::create(context, gpgp::init<GpgpDrawingCreateInfo>());
   auto canvas = gpgp::Canvas::create(context, gpgp::init<GpgpCanvasCreateInfo>());
-  auto view = gpgp::CanvasView::create(context, gpgp::init<GpgpCanvasViewCreateInfo>());
+  auto view = gpgp::CanvasHistory::create(context, gpgp::init<GpgpCanvasHistoryCreateInfo>());
   if (!drawing || !canvas || !view || !drawing->info()) return drawing.code();
   const auto glyphs = gpgp::GlyphSet::create(context, gpgp::init<GpgpGlyphSetCreateInfo>());
   if (!glyphs) return glyphs.code();
@@ -124,7 +124,7 @@ GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffe
   prepare.view = *view;
   if (const GpgpResult code = canvas->recordPrepare(cmd, frame, prepare)) return code;
   auto draw = gpgp::init<GpgpCanvasDrawInfo>();
-  draw.view = *view;
+  draw.history = *view;
   if (const GpgpResult code = canvas->recordDraw(cmd, frame, draw)) return code;
   return canvas->report().code();
 }
@@ -153,15 +153,15 @@ GpgpResult useText() {
 
 GpgpResult useVisibility(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
   auto set = gpgp::GeometrySet::create(context, gpgp::init<GpgpGeometrySetCreateInfo>());
-  auto sampler = gpgp::Sampler::create(context, gpgp::init<GpgpSamplerCreateInfo>());
-  auto view = gpgp::CameraView::create(context, gpgp::init<GpgpCameraViewCreateInfo>());
-  if (!set || !sampler || !view) return set.code();
-  auto info = gpgp::init<GpgpSampleInfo>();
+  auto recorder = gpgp::VisibilityRecorder::create(context, gpgp::init<GpgpVisibilityRecorderCreateInfo>());
+  auto view = gpgp::CameraHistory::create(context, gpgp::init<GpgpCameraHistoryCreateInfo>());
+  if (!set || !recorder || !view) return set.code();
+  auto info = gpgp::init<GpgpVisibilityInfo>();
   info.geometrySet = *set;
-  info.view = *view;
-  if (const GpgpResult code = sampler->recordPrepare(cmd, frame, info)) return code;
-  const auto report = sampler->report();
-  gpgpDestroyView(view->release());
+  info.history = *view;
+  if (const GpgpResult code = recorder->recordPrepare(cmd, frame, info)) return code;
+  const auto report = recorder->report();
+  gpgpDestroyHistory(view->release());
   return report.name() ? report.code() : GPGP_SUCCESS;
 }
 } // namespace

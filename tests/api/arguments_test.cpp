@@ -59,7 +59,7 @@ TEST_F(ArgumentsTest, CreateContext) {
   bad([](auto& i) { i.features = ~GpgpFeatures(0); }, GPGP_ERROR_INVALID_ARGUMENT, "features");
   bad([](auto& i) { i.apiVersion = VK_API_VERSION_1_1; }, GPGP_ERROR_MISSING_FEATURE, "1.2");
   bad([](auto& i) { i.maxFramesInFlight = 9; }, GPGP_ERROR_INVALID_ARGUMENT, "maxFramesInFlight");
-  bad([](auto& i) { i.maxRecordsPerFrame = 1u << 20; }, GPGP_ERROR_INVALID_ARGUMENT, "maxRecordsPerFrame");
+  bad([](auto& i) { i.maxRecordingsPerFrame = 1u << 20; }, GPGP_ERROR_INVALID_ARGUMENT, "maxRecordingsPerFrame");
   bad([](auto& i) { i.pipelineCacheSize = 4; }, GPGP_ERROR_INVALID_ARGUMENT, "pipelineCacheData");
   const GpgpHostAllocator half{};
   bad([&](auto& i) { i.hostAllocator = &half; }, GPGP_ERROR_INVALID_ARGUMENT, "hostAllocator");
@@ -139,8 +139,8 @@ TEST_F(ArgumentsTest, HandlesOfNothing) {
   EXPECT_EQ(gpgpGetPasses(nullptr, &count, nullptr), GPGP_ERROR_INVALID_HANDLE);
   EXPECT_EQ(gpgpRecordUpload(nullptr, VK_NULL_HANDLE, &frame, 0, nullptr), GPGP_ERROR_INVALID_HANDLE);
   gpgpDestroyAsset(nullptr);
-  gpgpDestroyWorker(nullptr);
-  gpgpDestroyView(nullptr);
+  gpgpDestroyRecorder(nullptr);
+  gpgpDestroyHistory(nullptr);
   gpgpDestroyContext(nullptr);
   EXPECT_TRUE(messages.empty());
 }
@@ -155,7 +155,7 @@ struct ServiceArgumentsTest : ArgumentsTest, testing::WithParamInterface<std::st
     ArgumentsTest::SetUp();
     scenario = makeScenario(GetParam(), device);
     ASSERT_EQ(scenario->createAsset(context), GPGP_SUCCESS);
-    ASSERT_EQ(scenario->createWorker(context, {"worker", device.graphics().family, 0, VK_FALSE}), GPGP_SUCCESS);
+    ASSERT_EQ(scenario->createRecorder(context, {"recorder", device.graphics().family, 0, VK_FALSE}), GPGP_SUCCESS);
     ASSERT_EQ(scenario->createView(context), GPGP_SUCCESS);
     ASSERT_EQ(scenario->prewarm(), GPGP_SUCCESS);
     ASSERT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS);
@@ -163,7 +163,7 @@ struct ServiceArgumentsTest : ArgumentsTest, testing::WithParamInterface<std::st
         [&](VkCommandBuffer cmd) { ASSERT_EQ(gpgpRecordUpload(context, cmd, &frame, 0, nullptr), GPGP_SUCCESS); });
   }
   /// Recording with what `change` did fails as documented, says so once, and records nothing.
-  void expectRefused(GpgpResult expected, const std::string& culprit, const GpgpRecordInfo& base = {}) {
+  void expectRefused(GpgpResult expected, const std::string& culprit, const GpgpRecordingInfo& base = {}) {
     host::FrameRing ring(device, 1);
     const VkCommandBuffer cmd = ring.begin();
     proxy.clear();
@@ -175,19 +175,19 @@ struct ServiceArgumentsTest : ArgumentsTest, testing::WithParamInterface<std::st
 
 TEST_P(ServiceArgumentsTest, DestroyedAndExchangedHandles) {
   const GpgpAsset asset = scenario->asset;
-  const GpgpWorker worker = scenario->worker;
+  const GpgpRecorder recorder = scenario->recorder;
   scenario->asset = nullptr;
   expectRefused(GPGP_ERROR_INVALID_HANDLE, "NULL");
-  scenario->asset = reinterpret_cast<GpgpAsset>(worker); // a worker where an asset belongs
+  scenario->asset = reinterpret_cast<GpgpAsset>(recorder); // a recorder where an asset belongs
   expectRefused(GPGP_ERROR_INVALID_HANDLE, "expected a");
   scenario->asset = asset;
-  scenario->worker = reinterpret_cast<GpgpWorker>(asset);
+  scenario->recorder = reinterpret_cast<GpgpRecorder>(asset);
   expectRefused(GPGP_ERROR_INVALID_HANDLE, "expected a");
-  scenario->worker = worker;
+  scenario->recorder = recorder;
   gpgpDestroyAsset(asset);
   expectRefused(GPGP_ERROR_INVALID_HANDLE, "destroyed");
   messages.clear();
-  EXPECT_EQ(gpgpPrewarm(reinterpret_cast<GpgpWorker>(scenario->view ? scenario->view : nullptr), nullptr),
+  EXPECT_EQ(gpgpPrewarm(reinterpret_cast<GpgpRecorder>(scenario->view ? scenario->view : nullptr), nullptr),
             GPGP_ERROR_INVALID_HANDLE);
 }
 
@@ -206,7 +206,7 @@ TEST_P(ServiceArgumentsTest, FramesScratchAndTimestamps) {
   frame.current = 2;
   expectRefused(GPGP_ERROR_INVALID_ARGUMENT, "gpgpAdvance");
   frame.current = 1;
-  GpgpRecordInfo base{};
+  GpgpRecordingInfo base{};
   base.accessMode = 1ull << 63;
   expectRefused(GPGP_ERROR_INVALID_ARGUMENT, "accessMode", base);
   base = {};
@@ -217,28 +217,28 @@ TEST_P(ServiceArgumentsTest, FramesScratchAndTimestamps) {
   EXPECT_EQ(scenario->record(VK_NULL_HANDLE, frame, {}), GPGP_ERROR_INVALID_ARGUMENT);
   messages.clear();
 
-  const GpgpWorker mine = scenario->worker;
-  ASSERT_EQ(scenario->createWorker(context, {"scratchless", device.graphics().family, 0, VK_TRUE}), GPGP_SUCCESS);
+  const GpgpRecorder mine = scenario->recorder;
+  ASSERT_EQ(scenario->createRecorder(context, {"scratchless", device.graphics().family, 0, VK_TRUE}), GPGP_SUCCESS);
   ASSERT_EQ(scenario->prewarm(), GPGP_SUCCESS);
   expectRefused(GPGP_ERROR_INVALID_ARGUMENT, "scratch.buffer");
   VkDeviceSize size = 0, alignment = 0;
   VkBufferUsageFlags usage = 0;
-  ASSERT_EQ(gpgpGetScratchSize(scenario->worker, &size, &alignment, &usage), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetScratchSize(scenario->recorder, &size, &alignment, &usage), GPGP_SUCCESS);
   host::Buffer scratch(device, size + alignment, usage);
   base = {};
   base.scratch = scratch.range({}, {}, 0, size - 4);
   expectRefused(GPGP_ERROR_INVALID_ARGUMENT, "scratch.size", base);
   base.scratch = scratch.range({}, {}, 4, size);
   expectRefused(GPGP_ERROR_INVALID_ARGUMENT, "scratch.offset", base);
-  gpgpDestroyWorker(scenario->worker);
-  scenario->worker = mine;
+  gpgpDestroyRecorder(scenario->recorder);
+  scenario->recorder = mine;
 }
 
-TEST_P(ServiceArgumentsTest, WorkersOnFamiliesThatDoNotExist) {
-  const GpgpWorker mine = scenario->worker;
-  expectError(scenario->createWorker(context, {"nowhere", 1000, 0, VK_FALSE}), GPGP_ERROR_INVALID_ARGUMENT,
+TEST_P(ServiceArgumentsTest, RecordersOnFamiliesThatDoNotExist) {
+  const GpgpRecorder mine = scenario->recorder;
+  expectError(scenario->createRecorder(context, {"nowhere", 1000, 0, VK_FALSE}), GPGP_ERROR_INVALID_ARGUMENT,
               "queueFamily");
-  EXPECT_EQ(scenario->worker, mine) << "a failed creation must not touch the handle";
+  EXPECT_EQ(scenario->recorder, mine) << "a failed creation must not touch the handle";
 }
 
 INSTANTIATE_TEST_SUITE_P(Services, ServiceArgumentsTest, testing::ValuesIn(scenarioNames()),

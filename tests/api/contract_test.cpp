@@ -46,10 +46,10 @@ struct ContractTest : testing::TestWithParam<std::string> {
     for (const std::string& message : device.takeValidationMessages()) ADD_FAILURE() << message;
   }
 
-  /// Asset, worker and view made, prewarmed and uploaded, in frame 1.
+  /// Asset, recorder and view made, prewarmed and uploaded, in frame 1.
   void prepare(const host::Queue& queue, bool engineScratch = false) {
     ASSERT_EQ(scenario->createAsset(context), GPGP_SUCCESS) << lastMessage();
-    ASSERT_EQ(scenario->createWorker(context, {"worker", queue.family, 0, engineScratch}), GPGP_SUCCESS)
+    ASSERT_EQ(scenario->createRecorder(context, {"recorder", queue.family, 0, engineScratch}), GPGP_SUCCESS)
         << lastMessage();
     ASSERT_EQ(scenario->createView(context), GPGP_SUCCESS) << lastMessage();
     ASSERT_EQ(scenario->prewarm(), GPGP_SUCCESS) << lastMessage();
@@ -67,7 +67,7 @@ struct ContractTest : testing::TestWithParam<std::string> {
   }
   std::string lastMessage() const { return messages.empty() ? "no message" : messages.back(); }
   /// Runs one record on a queue, and returns its results.
-  std::vector<uint32_t> run(const host::Queue& queue, const GpgpRecordInfo& base = {}) {
+  std::vector<uint32_t> run(const host::Queue& queue, const GpgpRecordingInfo& base = {}) {
     scenario->clearOutputs();
     const GpgpFrame frame = advance();
     device.submitAndWait(queue, [&](VkCommandBuffer cmd) {
@@ -147,17 +147,17 @@ TEST_P(ContractTest, DrawingOnlyRecordsADraw) {
   GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
   prewarm.targets = &target;
   prewarm.targetCount = 1;
-  ASSERT_EQ(gpgpPrewarm(scenario->worker, &prewarm), GPGP_SUCCESS) << lastMessage();
+  ASSERT_EQ(gpgpPrewarm(scenario->recorder, &prewarm), GPGP_SUCCESS) << lastMessage();
   const host::Image image(device, {target.colorFormat, 64, 64, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
   const GpgpFrame frame = advance();
   host::FrameRing ring(device, 1);
   const VkCommandBuffer cmd = ring.begin();
   GpgpCanvasDrawInfo info = GPGP_CANVAS_DRAW_INFO_INIT;
-  info.view = scenario->view;
+  info.history = scenario->view;
   info.target = &target;
   info.width = info.height = 64;
   for (int i = 0; i < 4; ++i) info.clip[i * 5] = 1;
-  EXPECT_EQ(gpgpRecordDrawCanvas(scenario->worker, cmd, &frame, &info), GPGP_NOT_READY) << "nothing was prepared";
+  EXPECT_EQ(gpgpRecordDrawCanvas(scenario->recorder, cmd, &frame, &info), GPGP_NOT_READY) << "nothing was prepared";
   ASSERT_EQ(scenario->record(cmd, frame, {}), GPGP_SUCCESS) << lastMessage();
 
   host::imageBarrier(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
@@ -179,7 +179,7 @@ TEST_P(ContractTest, DrawingOnlyRecordsADraw) {
   vk.vkCmdSetScissor(cmd, 0, 1, &scissor);
   proxy.clear();
   const uint64_t allocationsBefore = hostAllocations, newBefore = countingNewCalls();
-  const GpgpResult result = gpgpRecordDrawCanvas(scenario->worker, cmd, &frame, &info);
+  const GpgpResult result = gpgpRecordDrawCanvas(scenario->recorder, cmd, &frame, &info);
   const uint64_t newCalls = countingNewCalls() - newBefore;
   ASSERT_EQ(result, GPGP_SUCCESS) << lastMessage();
   EXPECT_EQ(hostAllocations, allocationsBefore);
@@ -245,8 +245,8 @@ TEST_P(ContractTest, PlacesTheDocumentedBarriersAtTheEdges) {
     const GpgpFrame frame = advance();
     host::FrameRing ring(device, 1);
     const VkCommandBuffer cmd = ring.begin();
-    GpgpRecordInfo base{};
-    base.accessMode = synchronised ? GPGP_ACCESS_SYNCHRONISED : 0;
+    GpgpRecordingInfo base{};
+    base.accessMode = synchronised ? GPGP_ACCESS_EXTERNAL_BARRIERS : 0;
     proxy.clear();
     ASSERT_EQ(scenario->record(cmd, frame, base), GPGP_SUCCESS) << lastMessage();
     std::vector<const LoggedCall*> work;
@@ -279,10 +279,10 @@ TEST_P(ContractTest, ScratchContentsDoNotMatter) {
   prepare(true);
   VkDeviceSize size = 0, alignment = 0;
   VkBufferUsageFlags usage = 0;
-  ASSERT_EQ(gpgpGetScratchSize(scenario->worker, &size, &alignment, &usage), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetScratchSize(scenario->recorder, &size, &alignment, &usage), GPGP_SUCCESS);
   ASSERT_GT(size, 0u);
   host::Buffer scratch(device, size + alignment, usage);
-  GpgpRecordInfo base{};
+  GpgpRecordingInfo base{};
   base.scratch = scratch.range({}, {}, alignment, size);
   std::vector<std::vector<uint32_t>> results;
   for (const uint32_t poison : {0u, 0xffffffffu, 0x7fc00000u, 0xdeadbeefu}) {
@@ -331,7 +331,7 @@ TEST_P(ContractTest, ThreeFramesInFlight) {
     const GpgpFrame frame{ring.frame().current + offset, ring.frame().safe + offset};
     ASSERT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS) << lastMessage();
     take();
-    GpgpRecordInfo base{};
+    GpgpRecordingInfo base{};
     base.tag = i;
     ASSERT_EQ(scenario->record(cmd, frame, base), GPGP_SUCCESS) << lastMessage();
     ring.submit();
@@ -349,10 +349,10 @@ TEST_P(ContractTest, SecondaryCommandBuffersAndTimestamps) {
   const auto expected = run(device.graphics());
   scenario->clearOutputs();
   uint32_t passes = 0;
-  ASSERT_EQ(gpgpGetPasses(scenario->worker, &passes, nullptr), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetPasses(scenario->recorder, &passes, nullptr), GPGP_SUCCESS);
   ASSERT_GT(passes, 0u);
   std::vector<const char*> names(passes);
-  ASSERT_EQ(gpgpGetPasses(scenario->worker, &passes, names.data()), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetPasses(scenario->recorder, &passes, names.data()), GPGP_SUCCESS);
   for (const char* name : names) EXPECT_STRNE(name, "");
 
   const VolkDeviceTable& vk = device.vk();
@@ -371,7 +371,7 @@ TEST_P(ContractTest, SecondaryCommandBuffersAndTimestamps) {
   const VkCommandBufferInheritanceInfo inheritance{VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO};
   const VkCommandBufferBeginInfo beginInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, 0, &inheritance};
   ASSERT_EQ(vk.vkBeginCommandBuffer(secondary, &beginInfo), VK_SUCCESS);
-  GpgpRecordInfo base{};
+  GpgpRecordingInfo base{};
   base.timestamps = {queries, 0, passes + 1};
   const GpgpFrame frame = advance();
   ASSERT_EQ(scenario->record(secondary, frame, base), GPGP_SUCCESS) << lastMessage();
@@ -403,7 +403,7 @@ TEST_P(ContractTest, ComputeOnlyQueueFamily) {
 
 TEST_P(ContractTest, NotReadyRecordsNothing) {
   ASSERT_EQ(scenario->createAsset(context), GPGP_SUCCESS);
-  ASSERT_EQ(scenario->createWorker(context, {"worker", device.graphics().family, 0, VK_FALSE}), GPGP_SUCCESS);
+  ASSERT_EQ(scenario->createRecorder(context, {"recorder", device.graphics().family, 0, VK_FALSE}), GPGP_SUCCESS);
   ASSERT_EQ(scenario->createView(context), GPGP_SUCCESS);
   GpgpFrame frame = advance();
   host::FrameRing ring(device, 1);

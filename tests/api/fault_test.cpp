@@ -89,10 +89,10 @@ struct FaultTest : testing::TestWithParam<std::string> {
     info.gpuAllocator = engineGpu ? &gpu : nullptr;
     return gpgpCreateContext(&info, &context);
   }
-  /// Asset, worker and view; the first error, if any. Pipelines come apart, they take long to compile.
+  /// Asset, recorder and view; the first error, if any. Pipelines come apart, they take long to compile.
   GpgpResult createAll(GpgpContext context) {
     if (const GpgpResult r = scenario->createAsset(context); r != GPGP_SUCCESS) return r;
-    if (const GpgpResult r = scenario->createWorker(context, {"worker", device.graphics().family, 0, VK_FALSE});
+    if (const GpgpResult r = scenario->createRecorder(context, {"recorder", device.graphics().family, 0, VK_FALSE});
         r != GPGP_SUCCESS)
       return r;
     return scenario->createView(context);
@@ -126,7 +126,7 @@ struct FaultTest : testing::TestWithParam<std::string> {
     EXPECT_TRUE(meaningful);
   }
   /// Makes everything with the n-th failure for n = 1, 2, ... until nothing fails any more; then the same for the
-  /// pipelines of the worker that was made.
+  /// pipelines of the recorder that was made.
   void sweep(GpgpResult expected, bool engineGpu, const std::function<void(uint32_t)>& arm,
              const std::function<void()>& disarm) {
     uint32_t failures = 0;
@@ -149,7 +149,7 @@ struct FaultTest : testing::TestWithParam<std::string> {
         EXPECT_EQ(deviceBytes(context), emptyBytes) << "n = " << n << ": device memory leaked";
         ASSERT_EQ(createAll(context), GPGP_SUCCESS) << "n = " << n;
         gpgpDestroyContext(context);
-        scenario->asset = nullptr, scenario->worker = nullptr, scenario->view = nullptr;
+        scenario->asset = nullptr, scenario->recorder = nullptr, scenario->view = nullptr;
       }
       context = nullptr;
       ASSERT_TRUE(faults.host.empty()) << faults.host.size() << " host allocations leaked, n = " << n;
@@ -167,7 +167,7 @@ struct FaultTest : testing::TestWithParam<std::string> {
     }
     expectUsable(context, {3, 2});
     gpgpDestroyContext(context);
-    scenario->asset = nullptr, scenario->worker = nullptr, scenario->view = nullptr;
+    scenario->asset = nullptr, scenario->recorder = nullptr, scenario->view = nullptr;
     EXPECT_TRUE(faults.host.empty());
     EXPECT_TRUE(faults.gpu.empty());
   }

@@ -12,22 +12,22 @@
 namespace gpgp::test {
 
 void Scenario::destroy() {
-  gpgpDestroyView(view);
-  gpgpDestroyWorker(worker);
+  gpgpDestroyHistory(view);
+  gpgpDestroyRecorder(recorder);
   gpgpDestroyAsset(secondAsset);
   gpgpDestroyAsset(asset);
 #if defined(GPGP_WITH_VECTOR)
   gpgpDestroyList(shownList);
   shownList = nullptr;
 #endif
-  view = nullptr, worker = nullptr, asset = secondAsset = nullptr;
+  view = nullptr, recorder = nullptr, asset = secondAsset = nullptr;
 }
 
 GpgpContextCreateInfo scenarioContextInfo(host::HeadlessDevice& device, std::vector<std::string>* messages) {
   GpgpContextCreateInfo info = device.contextCreateInfo();
   info.label = "contract";
   info.maxFramesInFlight = 3;
-  info.maxRecordsPerFrame = 4;
+  info.maxRecordingsPerFrame = 4;
   info.uploadRingBytes = 1 << 20;
   info.messageUserData = messages;
   info.messageFn = [](void* user, const GpgpMessage* m) {
@@ -56,7 +56,7 @@ public:
       axiom.size[0] = axiom.size[1] = axiom.size[2] = 4;
       axiom.seed = i + 1;
       axiom.id = i;
-      axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+      axiom.start = GPGP_AXIOM_DEFAULT_START;
       axiom.attribute = 0.5f;
       axioms_.as<GpgpAxiom>()[i] = axiom;
     }
@@ -84,14 +84,14 @@ public:
     gpgpFreeBlob(&blob);
     return result;
   }
-  GpgpResult createWorker(GpgpContext context, const GpgpWorkerCreateInfo& base) override {
+  GpgpResult createRecorder(GpgpContext context, const GpgpRecorderCreateInfo& base) override {
     GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
     info.base = base;
     info.maxShapes = 1024;
     info.maxDepth = 16;
-    return gpgpCreateSpawner(context, &info, &worker);
+    return gpgpCreateSpawner(context, &info, &recorder);
   }
-  GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordInfo& base) override {
+  GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordingInfo& base) override {
     GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
     info.base = base;
     info.grammar = asset;
@@ -100,7 +100,7 @@ public:
     info.instances = instances_.range(kBefore, kAfter);
     info.draws = draws_.range(kBefore, kAfter);
     info.count = count_.range(kBefore, kAfter);
-    return gpgpRecordPrepareSpawn(worker, cmd, &frame, &info);
+    return gpgpRecordPrepareSpawn(recorder, cmd, &frame, &info);
   }
   std::vector<uint32_t> results() override {
     const auto count = host::download<uint32_t>(device, count_, 1);
@@ -123,7 +123,7 @@ public:
   }
   GpgpResult takeReport(GpgpReportHeader& header, bool& meaningful) override {
     GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
-    const GpgpResult result = gpgpGetSpawnReport(worker, &report);
+    const GpgpResult result = gpgpGetSpawnReport(recorder, &report);
     header = report.base;
     meaningful = report.terminals == kInstances && report.instancesWritten == kInstances;
     return result;
@@ -187,7 +187,7 @@ public:
     for (int i = 0; i < 3 && !result; ++i) result = gpgpPopState(shownList);
     return result;
   }
-  GpgpResult createWorker(GpgpContext context, const GpgpWorkerCreateInfo& base) override {
+  GpgpResult createRecorder(GpgpContext context, const GpgpRecorderCreateInfo& base) override {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = base;
     info.maxWidth = info.maxHeight = kSize;
@@ -196,16 +196,16 @@ public:
     info.maxDrawings = 5;
     info.maxGlyphs = 10;
     info.maxShapes = 2;
-    info.targets = GPGP_CANVAS_TARGET_VIEW | GPGP_CANVAS_TARGET_RGBA8;
-    return gpgpCreateCanvas(context, &info, &worker);
+    info.targets = GPGP_CANVAS_TARGET_HISTORY | GPGP_CANVAS_TARGET_RGBA8;
+    return gpgpCreateCanvas(context, &info, &recorder);
   }
   GpgpResult createView(GpgpContext context) override {
-    GpgpCanvasViewCreateInfo info = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
+    GpgpCanvasHistoryCreateInfo info = GPGP_CANVAS_HISTORY_CREATE_INFO_INIT;
     info.label = "loop view";
     info.width = info.height = kSize;
-    return gpgpCreateCanvasView(context, &info, &view);
+    return gpgpCreateCanvasHistory(context, &info, &view);
   }
-  GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordInfo& base) override {
+  GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordingInfo& base) override {
     GpgpCanvasItem items[3] = {
         {asset, {1, 0, 0, 1, 0, 0}, 1}, {nullptr, {1, 0, 0, 1, 0, 0}, 1}, {nullptr, {1, 0, 0, 1, 0, 0}, 1}};
     items[1].glyphSet = secondAsset;
@@ -217,11 +217,11 @@ public:
     info.width = info.height = kSize;
     info.items = items;
     info.itemCount = 3;
-    info.view = view;
+    info.history = view;
     info.target =
         image_.target({VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED},
                       {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
-    return gpgpRecordPrepareCanvas(worker, cmd, &frame, &info);
+    return gpgpRecordPrepareCanvas(recorder, cmd, &frame, &info);
   }
   std::vector<uint32_t> results() override {
     const auto bytes = host::downloadImage(device, image_, VK_IMAGE_LAYOUT_GENERAL);
@@ -239,7 +239,7 @@ public:
   }
   GpgpResult takeReport(GpgpReportHeader& header, bool& meaningful) override {
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
-    const GpgpResult result = gpgpGetCanvasReport(worker, &report);
+    const GpgpResult result = gpgpGetCanvasReport(recorder, &report);
     header = report.base;
     meaningful = report.paths > 0 && report.tileEntries > 0 && report.pathsDropped == 0 &&
                  report.glyphs == 2 * std::size(glyphs_) && report.shapes == 2 && report.items == 4;
@@ -285,25 +285,25 @@ public:
     info.meshCount = 1;
     return gpgpCreateGeometrySet(context, &info, &asset);
   }
-  GpgpResult createWorker(GpgpContext context, const GpgpWorkerCreateInfo& base) override {
-    GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+  GpgpResult createRecorder(GpgpContext context, const GpgpRecorderCreateInfo& base) override {
+    GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
     info.base = base;
     info.maxWidth = info.maxHeight = 64;
     info.maxDraws = 4;
     info.maxTriangles = 64;
-    return gpgpCreateSampler(context, &info, &worker);
+    return gpgpCreateVisibilityRecorder(context, &info, &recorder);
   }
   GpgpResult createView(GpgpContext context) override {
-    GpgpCameraViewCreateInfo info = GPGP_CAMERA_VIEW_CREATE_INFO_INIT;
+    GpgpCameraHistoryCreateInfo info = GPGP_CAMERA_HISTORY_CREATE_INFO_INIT;
     info.label = "camera";
     info.maxTriangles = 64;
-    return gpgpCreateCameraView(context, &info, &view);
+    return gpgpCreateCameraHistory(context, &info, &view);
   }
-  GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordInfo& base) override {
-    GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+  GpgpResult record(VkCommandBuffer cmd, const GpgpFrame& frame, const GpgpRecordingInfo& base) override {
+    GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
     info.base = base;
     info.geometrySet = asset;
-    info.view = view;
+    info.history = view;
     for (int i = 0; i < 4; ++i) info.camera.viewProjection[i * 5] = 1;
     info.width = info.height = 64;
     info.positions = positions_.range(kBefore);
@@ -316,7 +316,7 @@ public:
     info.visibleBits = bits_.range(kBefore, kAfter);
     info.visibleList = list_.range(kBefore, kAfter);
     info.visibleCount = count_.range(kBefore, kAfter);
-    return gpgpRecordPrepareVisibility(worker, cmd, &frame, &info);
+    return gpgpRecordPrepareVisibility(recorder, cmd, &frame, &info);
   }
   std::vector<uint32_t> results() override {
     std::vector<uint32_t> words{host::download<uint32_t>(device, bits_, 1)[0]};
@@ -331,8 +331,8 @@ public:
     for (const host::Buffer* buffer : {&bits_, &list_, &count_}) host::fill(device, *buffer, 0xffffffffu);
   }
   GpgpResult takeReport(GpgpReportHeader& header, bool& meaningful) override {
-    GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
-    const GpgpResult result = gpgpGetSampleReport(worker, &report);
+    GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
+    const GpgpResult result = gpgpGetVisibilityReport(recorder, &report);
     header = report.base;
     meaningful = report.visible == kTriangles && report.listed == kTriangles && report.coveredPixels > 0;
     return result;

@@ -20,15 +20,15 @@ public:
   virtual ~Scenario() = default;
   virtual const char* name() const = 0;
 
-  /// The service's asset, worker (with its pipelines) and view where it has one. Each returns the API's result.
+  /// The service's asset, recorder (with its pipelines) and view where it has one. Each returns the API's result.
   virtual GpgpResult createAsset(GpgpContext context) = 0;
-  virtual GpgpResult createWorker(GpgpContext context, const GpgpWorkerCreateInfo& base) = 0;
+  virtual GpgpResult createRecorder(GpgpContext context, const GpgpRecorderCreateInfo& base) = 0;
   virtual GpgpResult createView(GpgpContext) { return GPGP_SUCCESS; }
-  virtual GpgpResult prewarm() { return gpgpPrewarm(worker, nullptr); }
+  virtual GpgpResult prewarm() { return gpgpPrewarm(recorder, nullptr); }
   /// Destroys the handles that exist.
   void destroy();
 
-  virtual GpgpResult record(VkCommandBuffer commandBuffer, const GpgpFrame& frame, const GpgpRecordInfo& base) = 0;
+  virtual GpgpResult record(VkCommandBuffer commandBuffer, const GpgpFrame& frame, const GpgpRecordingInfo& base) = 0;
   /// What was written, in an order that does not depend on scheduling. Waits for the device.
   virtual std::vector<uint32_t> results() = 0;
   /// Overwrites the outputs, so that old results cannot pass for new ones.
@@ -41,8 +41,8 @@ public:
 
   host::HeadlessDevice& device;
   GpgpAsset asset = nullptr, secondAsset = nullptr; ///< the second: where the job needs two
-  GpgpWorker worker = nullptr;
-  GpgpView view = nullptr;
+  GpgpRecorder recorder = nullptr;
+  GpgpHistory view = nullptr;
   GpgpList shownList = nullptr;
 };
 

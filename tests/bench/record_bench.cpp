@@ -33,13 +33,13 @@ void measureList(host::HeadlessDevice& device, int records) {
   canvasInfo.base = {"bench", device.graphics().family, 0, VK_FALSE};
   canvasInfo.maxWidth = canvasInfo.maxHeight = 64;
   canvasInfo.maxShapes = canvasInfo.maxPaths = kShapes;
-  GpgpWorker canvas = nullptr;
+  GpgpRecorder canvas = nullptr;
   expect(gpgpCreateCanvas(context, &canvasInfo, &canvas), "gpgpCreateCanvas");
   expect(gpgpPrewarm(canvas, nullptr), "gpgpPrewarm");
-  GpgpCanvasViewCreateInfo viewInfo = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
+  GpgpCanvasHistoryCreateInfo viewInfo = GPGP_CANVAS_HISTORY_CREATE_INFO_INIT;
   viewInfo.width = viewInfo.height = 64;
-  GpgpView view = nullptr;
-  expect(gpgpCreateCanvasView(context, &viewInfo, &view), "gpgpCreateCanvasView");
+  GpgpHistory view = nullptr;
+  expect(gpgpCreateCanvasHistory(context, &viewInfo, &view), "gpgpCreateCanvasHistory");
   const GpgpListCreateInfo listInfo = GPGP_LIST_CREATE_INFO_INIT;
   GpgpCanvasItem item{nullptr, {1, 0, 0, 1, 0, 0}, 1};
   expect(gpgpCreateList(context, &listInfo, &item.list), "gpgpCreateList");
@@ -108,11 +108,11 @@ int runBench(Arguments arguments) {
     expect(gpgpCreateContext(&info, &context), "gpgpCreateContext");
     const auto scenario = makeScenario(name, device);
     expect(scenario->createAsset(context), "asset");
-    expect(scenario->createWorker(context, {"bench", device.graphics().family, 0, VK_FALSE}), "worker");
+    expect(scenario->createRecorder(context, {"bench", device.graphics().family, 0, VK_FALSE}), "recorder");
     expect(scenario->createView(context), "view");
     expect(scenario->prewarm(), "prewarm");
     uint32_t passes = 0;
-    expect(gpgpGetPasses(scenario->worker, &passes, nullptr), "passes");
+    expect(gpgpGetPasses(scenario->recorder, &passes, nullptr), "passes");
     const VolkDeviceTable& vk = device.vk();
     const VkQueryPoolCreateInfo queryInfo{
         VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, nullptr, 0, VK_QUERY_TYPE_TIMESTAMP, passes + 1, 0};
@@ -129,7 +129,7 @@ int runBench(Arguments arguments) {
       device.submitAndWait([&](VkCommandBuffer cmd) {
         expect(gpgpRecordUpload(context, cmd, &frame, 0, nullptr), "gpgpRecordUpload");
         vk.vkCmdResetQueryPool(cmd, queries, 0, passes + 1);
-        GpgpRecordInfo base{};
+        GpgpRecordingInfo base{};
         if (timed) base.timestamps = {queries, 0, passes + 1};
         const auto start = Clock::now();
         expect(scenario->record(cmd, frame, base), "record");

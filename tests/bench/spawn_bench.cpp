@@ -654,7 +654,7 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
                    "%s: tuned is schedule %s, invocations %u, workgroups %u, spread %u, balances %u, rounds %u;",
                    c.name.c_str(), found.schedule().name.c_str(), fit.groupSize, fit.maxGroups, fit.spread,
                    fit.balances, fit.rounds);
-      std::fprintf(stderr, " of %zu, not tried %zu; schedules alone:", found.candidates, found.leftOut);
+      std::fprintf(stderr, " of %zu, not tried %zu; schedules alone:", found.candidates, found.omitted);
       for (const Candidate& candidate : std::span(found.measured).first(std::min<size_t>(4, found.measured.size())))
         std::fprintf(stderr, " %s %s", found.schedules[candidate.schedule].name.c_str(),
                      shown(candidate.milliseconds).c_str());

@@ -19,7 +19,7 @@ VectorRunner::~VectorRunner() {
 void VectorRunner::closeCanvas() {
   device_.waitIdle();
   device_.vk().vkDestroyQueryPool(device_.device(), queries_, nullptr);
-  if (canvas_) gpgpDestroyWorker(canvas_);
+  if (canvas_) gpgpDestroyRecorder(canvas_);
   queries_ = VK_NULL_HANDLE;
   canvas_ = nullptr;
 }

@@ -59,7 +59,7 @@ private:
   host::HeadlessDevice& device_;
   host::BusyWork busy_;
   GpgpContext context_ = nullptr;
-  GpgpWorker canvas_ = nullptr;
+  GpgpRecorder canvas_ = nullptr;
   std::vector<const char*> names_; // of the canvas' passes
   VkQueryPool queries_ = VK_NULL_HANDLE;
   uint64_t frame_ = 0;

@@ -5,7 +5,7 @@
 // them take time. Nothing about time is asserted; it fails where a record fails or drops paths.
 #include "arguments.h"
 #include "cli/patch_tiles.h"
-#include "cli/vector_truth.h"
+#include "cli/vector_reference.h"
 #include "joined_patches.h"
 #include "vector/raster/segments.h"
 #include "vector_runner.h"
@@ -210,11 +210,11 @@ void quality(VectorRunner& runner) {
   const std::vector<GpgpPath> paths = pathsOf(scene);
   const float transform[6] = {1, 0, 0, 1, 0, 0}, white[4] = {1, 1, 1, 1};
   const uint32_t width = 12, height = 14;
-  const auto truth = cli::vectorTruth(paths, {}, transform, white, width, height, cli::Blend::Srgb);
+  const auto reference = cli::vectorReference(paths, {}, transform, white, width, height, cli::Blend::Srgb);
   const auto decibels = [&](const std::vector<uint8_t>& bytes) {
     std::vector<float> values(bytes.size());
     for (size_t i = 0; i < bytes.size(); ++i) values[i] = i % 4 == 3 ? 1 : static_cast<float>(bytes[i]) / 255;
-    return cli::psnrOverWhite(values, truth, cli::Blend::Srgb);
+    return cli::psnrOverWhite(values, reference, cli::Blend::Srgb);
   };
   VectorMade drawing = runner.makeDrawing(scene);
   std::printf("\n| samples | dB against 256 samples |\n|---|---|\n");

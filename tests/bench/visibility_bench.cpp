@@ -1,8 +1,8 @@
-// What each sampling method finds and costs, on the measured scenes: coverage and overestimation against the truth made
+// What each sampling method finds and costs, on the measured scenes: coverage and overestimation against the reference made
 // in the same run, GPU time by timestamps, and the ratio to standard sampling (the baseline).
 //
 // As a test it runs on small ones. Asserts nothing about time, but fails where exact
-// sampling shows over 1.5 % that the truth does not hold, or a budget is exceeded.
+// sampling shows over 1.5 % that the reference does not hold, or a budget is exceeded.
 #include "../visibility/ray_scene_of.h"
 #include "arguments.h"
 #include "spawned_scenes.h"
@@ -21,8 +21,8 @@ using namespace gpgp;
 using namespace gpgp::test;
 
 struct Options {
-  uint32_t width = 160, height = 90, truth = 64, recheck = 0;
-  bool rays = false; ///< the truth is theirs
+  uint32_t width = 160, height = 90, reference = 64, recheck = 0;
+  bool rays = false; ///< the reference is theirs
   bool clusters = false, newClusters = false, order = false;
   bool passes = false, exactOnly = false, figures = false, tables = false, views = false, walk = false;
   FigureOptions figure;
@@ -115,34 +115,34 @@ void orderTriangles(Scene& scene) {
 
 bool benchScene(Runner& runner, const Scene& scene, const std::string& name, const Options& options) {
   const std::span<const GpgpCamera> camera(&runner.camera(), 1);
-  host::Buffer truth = runner.makeBits(), recheck = runner.makeBits(), counts = runner.makeCounts();
-  if (options.rays && options.truth) {
+  host::Buffer reference = runner.makeBits(), recheck = runner.makeBits(), counts = runner.makeCounts();
+  if (options.rays && options.reference) {
     const RaySceneOf asRays(scene);
     const auto cast = [&](uint32_t samples) {
-      return rayTruth(asRays, scene, samples,
+      return rayReference(asRays, scene, samples,
                       [](size_t count, const auto& work) { cli::onAllProcessors(count, work); });
     };
-    const visibility::RayTruth rays = cast(options.truth);
-    truth = runner.copy(rays.bits());
+    const visibility::RayReference rays = cast(options.reference);
+    reference = runner.copy(rays.bits());
     counts = runner.copy(rays.areas());
     if (options.recheck) recheck = runner.copy(cast(options.recheck).bits());
-  } else if (options.truth) {
-    runner.truth(options.truth, camera, truth, &counts);
-    if (options.recheck) runner.truth(options.recheck, camera, recheck);
+  } else if (options.reference) {
+    runner.reference(options.reference, camera, reference, &counts);
+    if (options.recheck) runner.reference(options.recheck, camera, recheck);
   }
-  Sampler standard = runner.sampler(GPGP_SAMPLING_STANDARD_BIT, 1);
+  VisibilityRecorder standard = runner.recorder(GPGP_SAMPLING_STANDARD_BIT, 1);
   std::printf("%s: %u triangles", name.c_str(), runner.triangles());
-  if (options.truth)
-    std::printf(", %u visible at %u x %u + 1 %s", runner.metrics(standard, truth, truth, nullptr, nullptr).truth,
-                options.truth, options.truth, options.rays ? "rays" : "samples");
+  if (options.reference)
+    std::printf(", %u visible at %u x %u + 1 %s", runner.metrics(standard, reference, reference, nullptr, nullptr).reference,
+                options.reference, options.reference, options.rays ? "rays" : "samples");
   std::printf("\n  %-16s %9s %9s %9s %9s %9s %7s %10s %10s\n", "method", "visible", "cov %", "cov area", "over %", "ms",
               "ratio", "candidates", "pairs");
   double baseline = 0;
   bool good = true;
-  const auto bench = [&](const std::string& method, Sampler& sampler, const Sampling& sampling) {
-    const Runner::Run run = runner.measure(sampler, sampling, options.figure.repeat);
-    GpgpSampleReport m{};
-    if (options.truth) m = runner.metrics(sampler, runner.bits(), truth, &counts, options.recheck ? &recheck : nullptr);
+  const auto bench = [&](const std::string& method, VisibilityRecorder& recorder, const Sampling& sampling) {
+    const Runner::Run run = runner.measure(recorder, sampling, options.figure.repeat);
+    GpgpVisibilityReport m{};
+    if (options.reference) m = runner.metrics(recorder, runner.bits(), reference, &counts, options.recheck ? &recheck : nullptr);
     if (baseline == 0) baseline = run.milliseconds;
     const auto percent = [](float share) { return 100 * static_cast<double>(share); };
     std::printf("  %-16s %9u %9.3f %9.4f %9.3f %9.4f %7.2f %10u %10u%s\n", method.c_str(), run.report.visible,
@@ -153,22 +153,22 @@ bool benchScene(Runner& runner, const Scene& scene, const std::string& name, con
       for (const auto& [pass, time] : run.passes)
         if (time > 0.002) std::printf("      %-16s %9.4f\n", pass.c_str(), time);
     good = good && run.report.base.status == GPGP_SUCCESS &&
-           (options.truth < 64 || sampling.heuristics || m.overestimation <= 0.015f); // coarser truths miss more
+           (options.reference < 64 || sampling.heuristics || m.overestimation <= 0.015f); // coarser references miss more
   };
   bench("standard", standard, {});
-  Sampler exact = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1);
+  VisibilityRecorder exact = runner.recorder(GPGP_SAMPLING_EXACT_BIT, 1);
   bench("exact", exact, {.method = GPGP_SAMPLING_EXACT});
   if (options.exactOnly) return good;
   // The thesis's method, with the epsilons that others were measured with.
-  Sampler sampler = runner.sampler(GPGP_SAMPLING_CONSERVATIVE_BIT, 1);
-  constexpr uint32_t kFront = GPGP_HEURISTICS_THESIS | GPGP_HEURISTIC_KEEP_FRONT;
+  VisibilityRecorder recorder = runner.recorder(GPGP_SAMPLING_CONSERVATIVE_BIT, 1);
+  constexpr uint32_t kFront = GPGP_HEURISTICS_DEFAULT | GPGP_HEURISTIC_KEEP_FRONT;
   for (const auto& [what, heuristics, epsilon, refinements] :
-       {std::tuple("thesis 0.05", GPGP_HEURISTICS_THESIS, 0.05f, 0u),
-        {"thesis 2", GPGP_HEURISTICS_THESIS, 2.0f, 0u},
+       {std::tuple("thesis 0.05", GPGP_HEURISTICS_DEFAULT, 0.05f, 0u),
+        {"thesis 2", GPGP_HEURISTICS_DEFAULT, 2.0f, 0u},
         {"front 0.05", kFront, 0.05f, 0u},
-        {"thesis 0.05, 2", GPGP_HEURISTICS_THESIS, 0.05f, 2u},
-        {"thesis 0.05, 4", GPGP_HEURISTICS_THESIS, 0.05f, 4u}})
-    bench(what, sampler,
+        {"thesis 0.05, 2", GPGP_HEURISTICS_DEFAULT, 0.05f, 2u},
+        {"thesis 0.05, 4", GPGP_HEURISTICS_DEFAULT, 0.05f, 4u}})
+    bench(what, recorder,
           {.method = GPGP_SAMPLING_CONSERVATIVE,
            .heuristics = heuristics,
            .refinements = refinements,
@@ -193,7 +193,7 @@ void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
   std::printf("%s: %u triangles\n  %-10s %5s %10s %12s %7s\n", name.c_str(), runner.triangles(), "method", "views",
               "one record", "a record each", "ratio");
   for (const auto& [method, what] : {std::pair(GPGP_SAMPLING_STANDARD, "standard"), {GPGP_SAMPLING_EXACT, "exact"}}) {
-    Sampler united = runner.sampler(1u << method, 1, kViews), single = runner.sampler(1u << method, 1);
+    VisibilityRecorder united = runner.recorder(1u << method, 1, kViews), single = runner.recorder(1u << method, 1);
     double each = 0;
     for (uint32_t n = 1, views = 0; n <= kViews; n *= 2) {
       for (; views < n; ++views)
@@ -206,9 +206,9 @@ void benchViews(Runner& runner, const std::string& name, uint32_t repeat) {
 } // namespace
 
 const char* const kUsage =
-    "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--truth N] [--recheck N] [--rays] "
+    "visibility_bench [--size WxH] [--crop WxH+X+Y] [--repeat N] [--reference N] [--recheck N] [--rays] "
     "[--passes] [--exact] [--order] [--clusters] [SCENE]...\n"
-    "  --rays   the truth is of rays in double precision on the processor, which snap nothing\n"
+    "  --rays   the reference is of rays in double precision on the processor, which snap nothing\n"
     "  --crop   a window of that picture, whose pixels are as small as the picture's\n"
     "  --exact  without the thesis's method\n"
     "  --order, --clusters, --new-clusters\n"
@@ -247,8 +247,8 @@ int runBench(bench::Arguments arguments) {
       scan("%ux%u+%u+%u%c", "64x48+100+80", &c[0], &c[1], &c[2], &c[3]);
     } else if (arg == "--repeat") {
       options.figure.repeat = arguments.number();
-    } else if (arg == "--truth") {
-      options.truth = arguments.number(0);
+    } else if (arg == "--reference") {
+      options.reference = arguments.number(0);
     } else if (arg == "--rays") {
       options.rays = true;
     } else if (arg == "--recheck") {

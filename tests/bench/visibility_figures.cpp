@@ -1,4 +1,4 @@
-// Measures what the thesis plots. All shares are percent of the truth of 64 x 64 + 1 samples made in the same run, and
+// Measures what the thesis plots. All shares are percent of the reference of 64 x 64 + 1 samples made in the same run, and
 // false positives were sampled again at the largest grid where that is finer.
 #include "visibility_figures.h"
 
@@ -25,48 +25,48 @@ struct Figures {
   const std::string& scene;
   const uint32_t height;
   const FigureOptions& options;
-  Sampler standard, exact, conservative;
-  host::Buffer truth, counts, finest;
+  VisibilityRecorder standard, exact, conservative;
+  host::Buffer reference, counts, finest;
   bool recheck;
   double standardTime = 0;
 
   Figures(Runner& r, const std::string& s, uint32_t h, const FigureOptions& o)
-      : runner(r), scene(s), height(h), options(o), standard(r.sampler(GPGP_SAMPLING_STANDARD_BIT, 1)),
-        exact(r.sampler(GPGP_SAMPLING_EXACT_BIT, 1)), conservative(r.sampler(GPGP_SAMPLING_CONSERVATIVE_BIT, 1)),
-        truth(r.makeBits()), counts(r.makeCounts()), finest(r.makeBits()), recheck(o.largestGrid > 64) {}
+      : runner(r), scene(s), height(h), options(o), standard(r.recorder(GPGP_SAMPLING_STANDARD_BIT, 1)),
+        exact(r.recorder(GPGP_SAMPLING_EXACT_BIT, 1)), conservative(r.recorder(GPGP_SAMPLING_CONSERVATIVE_BIT, 1)),
+        reference(r.makeBits()), counts(r.makeCounts()), finest(r.makeBits()), recheck(o.largestGrid > 64) {}
 
   std::span<const GpgpCamera> middle() const { return {&runner.camera(), 1}; }
-  GpgpSampleReport compare(const host::Buffer& bits, const host::Buffer& with) {
+  GpgpVisibilityReport compare(const host::Buffer& bits, const host::Buffer& with) {
     return runner.metrics(standard, bits, with, nullptr, recheck ? &finest : nullptr);
   }
   static Sampling thesis(float epsilonStatic, float epsilonDynamic, float resolution = 1) {
     return {.method = GPGP_SAMPLING_CONSERVATIVE,
             .resolution = resolution,
-            .heuristics = GPGP_HEURISTICS_THESIS,
+            .heuristics = GPGP_HEURISTICS_DEFAULT,
             .epsilonStatic = epsilonStatic,
             .epsilonDynamic = epsilonDynamic};
   }
 
-  /// Figure 6.9; leaves the truth and the finest grid's bits.
+  /// Figure 6.9; leaves the reference and the finest grid's bits.
   void grids() {
-    runner.truth(options.largestGrid, middle(), finest);
-    runner.truth(64, middle(), truth, &counts);
+    runner.reference(options.largestGrid, middle(), finest);
+    runner.reference(64, middle(), reference, &counts);
     host::Buffer bits = runner.makeBits();
-    const double all = runner.metrics(standard, finest, finest, nullptr, nullptr).truth;
+    const double all = runner.metrics(standard, finest, finest, nullptr, nullptr).reference;
     for (uint32_t n = 1; n <= options.largestGrid; n *= 2) {
-      runner.truth(n, middle(), bits);
-      const GpgpSampleReport found = runner.metrics(standard, bits, bits, nullptr, nullptr);
-      print("6.9", scene, "grid", std::to_string(n), n, 100.0 * found.truth / all);
+      runner.reference(n, middle(), bits);
+      const GpgpVisibilityReport found = runner.metrics(standard, bits, bits, nullptr, nullptr);
+      print("6.9", scene, "grid", std::to_string(n), n, 100.0 * found.reference / all);
     }
   }
 
   /// Figures 6.10, 6.11 and table 6.1.
   void resolutions() {
-    const auto run = [&](const char* series, const std::string& label, double factor, Sampler& sampler,
+    const auto run = [&](const char* series, const std::string& label, double factor, VisibilityRecorder& recorder,
                          const Sampling& sampling) {
-      const double time = runner.measure(sampler, sampling, options.repeat).milliseconds;
+      const double time = runner.measure(recorder, sampling, options.repeat).milliseconds;
       if (standardTime == 0) standardTime = time;
-      const GpgpSampleReport m = compare(runner.bits(), truth);
+      const GpgpVisibilityReport m = compare(runner.bits(), reference);
       print("6.10", scene, series, label, factor, time);
       print("table6.1", scene, series, label, time, time / standardTime);
       print("6.11", scene, (std::string(series) + " coverage").c_str(), label, factor, percent(m.coverage));
@@ -84,7 +84,7 @@ struct Figures {
     for (const float dynamic : {0.0f, 0.1f, 0.5f, 2.0f})
       for (const float still : {0.0f, 0.01f, 0.05f, 0.2f, 1.0f, 5.0f}) {
         runner.record(conservative, thesis(still, dynamic), {}, runner.bits());
-        const GpgpSampleReport m = compare(runner.bits(), truth);
+        const GpgpVisibilityReport m = compare(runner.bits(), reference);
         const std::string series = "dynamic " + text(static_cast<double>(dynamic));
         print("6.12", scene, series.c_str(), text(static_cast<double>(still)), percent(m.overestimation),
               percent(m.coverage));
@@ -98,9 +98,9 @@ struct Figures {
     expect(gpgpGetViewCellCameras(&info, &count, cameras.data()), "view cell");
     return cameras;
   }
-  void unite(Sampler& sampler, Sampling sampling, const std::vector<GpgpCamera>& cameras) {
+  void unite(VisibilityRecorder& recorder, Sampling sampling, const std::vector<GpgpCamera>& cameras) {
     for (const GpgpCamera& camera : cameras) {
-      runner.record(sampler, sampling, {&camera, 1}, runner.bits());
+      runner.record(recorder, sampling, {&camera, 1}, runner.bits());
       sampling.accumulate = true;
     }
   }
@@ -120,15 +120,15 @@ struct Figures {
         const std::vector<GpgpCamera> cameras = camerasOf(info);
         const std::string label = std::to_string(pixels) + "/" + std::to_string(skip);
         unite(conservative, thesis(0.05f, 0.05f), cameras);
-        GpgpSampleReport m = compare(runner.bits(), truth);
+        GpgpVisibilityReport m = compare(runner.bits(), reference);
         print("6.14", scene, "conservative", label, percent(m.overestimation), percent(m.coverage));
         unite(exact, {.method = GPGP_SAMPLING_EXACT}, cameras);
-        m = compare(runner.bits(), truth);
+        m = compare(runner.bits(), reference);
         print("6.14", scene, "exact", label, percent(m.overestimation), percent(m.coverage));
       }
   }
 
-  /// A viewer who walks: half a metre to each side, and up and down. The truth: side x side view points, 16 x 16
+  /// A viewer who walks: half a metre to each side, and up and down. The reference: side x side view points, 16 x 16
   /// samples. What a method claims beyond is not sampled again, so it counts as too much even where it is seen from
   /// between those view points, or between those samples.
   void walkingCell() {
@@ -151,15 +151,15 @@ struct Figures {
     host::Buffer whole = runner.makeBits();
     const std::vector<GpgpCamera> all = take(square(options.largestCell >= 32 ? 17 : 5));
     const auto start = std::chrono::steady_clock::now();
-    runner.truth(16, all, whole, nullptr, [&](size_t n) {
+    runner.reference(16, all, whole, nullptr, [&](size_t n) {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      if (n % 17 == 0 || n == all.size()) print("celltruth", scene, "view points", std::to_string(n), seconds, 0);
+      if (n % 17 == 0 || n == all.size()) print("cellreference", scene, "view points", std::to_string(n), seconds, 0);
     });
     const Runner::Run one = runner.measure(exact, {.method = GPGP_SAMPLING_EXACT}, options.repeat);
     host::Buffer again = runner.makeBits();
     const auto row = [&](const char* series, const std::string& label, double milliseconds, const Runner::Run& run,
                          std::span<const GpgpCamera> claiming) {
-      GpgpSampleReport m = runner.metrics(standard, runner.bits(), whole, nullptr, nullptr);
+      GpgpVisibilityReport m = runner.metrics(standard, runner.bits(), whole, nullptr, nullptr);
       print("cell", scene, series, label, percent(m.overestimation), percent(m.coverage));
       Sampling whence{.method = GPGP_SAMPLING_EXACT};
       for (const GpgpCamera& camera : claiming) {
@@ -181,7 +181,7 @@ struct Figures {
       const Runner::Run run = runner.measureUnion(exact, {.method = GPGP_SAMPLING_EXACT}, cameras, 1, options.repeat);
       row("exact", std::to_string(cameras.size()), run.milliseconds, run, cameras);
     }
-    // Many small views: those of gpgpGetViewCellCameras; and in rows on the truth's own grid, in every other row moved
+    // Many small views: those of gpgpGetViewCellCameras; and in rows on the reference's own grid, in every other row moved
     // by half a step.
     const auto rows = [](uint32_t count) {
       std::vector<float> points;
@@ -221,7 +221,7 @@ struct Figures {
     const DrawLists lists = runner.makeLists(room);
     constexpr uint32_t kNearbyDivisor = 4;
     const float reach = std::sqrt(0.5f);
-    Sampler nearby = runner.sampler(GPGP_SAMPLING_NEARBY_BIT, 1, 4, kNearbyDivisor);
+    VisibilityRecorder nearby = runner.recorder(GPGP_SAMPLING_NEARBY_BIT, 1, 4, kNearbyDivisor);
     const Runner::Run first = runner.measure(
         nearby, {.method = GPGP_SAMPLING_NEARBY, .divisor = kNearbyDivisor, .reach = reach, .listed = &lists},
         options.repeat, corners);
@@ -232,7 +232,7 @@ struct Figures {
     for (size_t k = 1; k < 6; ++k)
       for (size_t i = k; i < views.size(); i += 5) spread.push_back(views[i]);
     const uint32_t perRecord = std::min(runner.camerasPerRecord(which.divisor), static_cast<uint32_t>(spread.size()));
-    Sampler small = runner.sampler(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, which.divisor, room);
+    VisibilityRecorder small = runner.recorder(GPGP_SAMPLING_EXACT_BIT, 1, perRecord, which.divisor, room);
     const Runner::Run run = runner.measureUnion(
         small, {.method = GPGP_SAMPLING_EXACT, .divisor = which.divisor, .reach = which.reach, .lists = &lists}, spread,
         perRecord, options.repeat);

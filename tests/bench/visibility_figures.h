@@ -27,8 +27,8 @@ struct FigureOptions {
 ///   6.10  label factor of resolution: milliseconds, ratio to standard sampling (figure 6.10 and table 6.1)
 ///   6.11  label factor of resolution: coverage, overestimation
 ///   6.12  label static/dynamic epsilon: overestimation, coverage
-///   6.14  label pixels and skip of the view cell: overestimation, coverage, against the truth of its middle
-///   celltruth  label view points done: seconds
+///   6.14  label pixels and skip of the view cell: overestimation, coverage, against the reference of its middle
+///   cellreference  label view points done: seconds
 ///   cell  label view points: overestimation, coverage of a walking viewer's cell; cellagain: likewise, where
 ///         false positives were sampled again, exactly, from the view points that claim them
 ///   cellcost  label view points: milliseconds, and in exact views; cellpairs: pairs likewise

@@ -24,7 +24,7 @@ const std::map<std::string, Style>& styles() {
   static const std::map<std::string, Style> all = {
       {"6.9", {"Triangles found by N x N samples a pixel", "N", "% of the finest grid's", true, true}},
       {"6.10", {"GPU time by resolution", "factor of resolution", "ms", true, false}},
-      {"6.11", {"Found and too much by resolution", "factor of resolution", "% of the truth", true, false}},
+      {"6.11", {"Found and too much by resolution", "factor of resolution", "% of the reference", true, false}},
       {"6.12", {"Static and dynamic epsilon", "overestimation, %", "coverage, %", true, false}},
       {"6.14", {"View cells: pixels/skip", "overestimation, %", "coverage, %", false, false}},
       {"cell", {"A walking viewer's cell, by view points", "overestimation, %", "coverage, %", false, false}}};

@@ -1,4 +1,4 @@
-// One scene on a device: records of any method, view cells, truths in slices, metrics; GPU times by timestamps.
+// One scene on a device: records of any method, view cells, references in slices, metrics; GPU times by timestamps.
 #pragma once
 #include "../visibility/measured_scenes.h"
 #include "host/busy_work.h"
@@ -68,7 +68,7 @@ public:
     VkDeviceSize clusters = 1;
     for (const shader::Mesh& mesh : scene_.meshes) clusters += (mesh.indexCount / 3 + 63) / 64;
     clusters_ = {device_, clusters * 48, kStorage};
-    Sampler standard = sampler(GPGP_SAMPLING_STANDARD_BIT, 1);
+    VisibilityRecorder standard = recorder(GPGP_SAMPLING_STANDARD_BIT, 1);
     keepClusters_ = false;
     record(standard, {}, {}, bits_);
     keepClusters_ = !again;
@@ -89,9 +89,9 @@ public:
   }
 
   /// listed: triangles of lists that it samples; 0: it samples the scene.
-  Sampler sampler(uint32_t methods, uint32_t maxSamples, uint32_t maxCameras = 1, uint32_t divisor = 1,
+  VisibilityRecorder recorder(uint32_t methods, uint32_t maxSamples, uint32_t maxCameras = 1, uint32_t divisor = 1,
                   uint32_t listed = 0) {
-    GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+    GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
     info.base.label = "bench";
     info.base.queueFamily = device_.graphics().family;
     info.base.queueFlags = device_.graphics().flags;
@@ -107,8 +107,8 @@ public:
     info.maxCandidates =
         static_cast<uint32_t>(std::min<uint64_t>({std::max(info.maxTriangles, 65536u), 1u << 24, range / 80}));
     info.maxPairs = static_cast<uint32_t>(std::min<uint64_t>(pixels * 24 + (1u << 20), range / 20));
-    auto made = Sampler::create(context_.get(), info);
-    expect(made.code(), "sampler");
+    auto made = VisibilityRecorder::create(context_.get(), info);
+    expect(made.code(), "recorder");
     expect(made->prewarm(), "prewarm");
     return std::move(*made);
   }
@@ -116,16 +116,16 @@ public:
   struct Run {
     double milliseconds = 0;
     std::vector<std::pair<std::string, double>> passes;
-    GpgpSampleReport report{};
+    GpgpVisibilityReport report{};
   };
 
   /// Repeats one record into bits(), each timed as a whole; then as often again, with times of its passes, which wait
   /// for each other where they are timed.
-  Run measure(Sampler& sampler, const Sampling& sampling, uint32_t repeat, std::span<const GpgpCamera> cameras = {}) {
+  Run measure(VisibilityRecorder& recorder, const Sampling& sampling, uint32_t repeat, std::span<const GpgpCamera> cameras = {}) {
     uint32_t passes = 0;
-    expect(gpgpGetPasses(sampler.get(), &passes, nullptr), "passes");
+    expect(gpgpGetPasses(recorder.get(), &passes, nullptr), "passes");
     std::vector<const char*> names(passes);
-    expect(gpgpGetPasses(sampler.get(), &passes, names.data()), "passes");
+    expect(gpgpGetPasses(recorder.get(), &passes, names.data()), "passes");
     const VolkDeviceTable& vk = device_.vk();
     const VkQueryPoolCreateInfo queryInfo{
         VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, nullptr, 0, VK_QUERY_TYPE_TIMESTAMP, passes + 1, 0};
@@ -139,19 +139,19 @@ public:
         vk.vkCmdResetQueryPool(cmd, queries, 0, count);
         busy_.record(cmd);
         host::fullBarrier(device_, cmd);
-        GpgpSampleInfo info = infoOf(sampling, cameras, bits_, nullptr);
+        GpgpVisibilityInfo info = infoOf(sampling, cameras, bits_, nullptr);
         if (byPass)
           info.base.timestamps = {queries, 0, count};
         else
           vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, 0);
-        expect(sampler.recordPrepare(cmd, frames_.frame(), info), "record");
+        expect(recorder.recordPrepare(cmd, frames_.frame(), info), "record");
         if (!byPass) vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, 1);
       });
       std::vector<uint64_t> stamps(count);
       host::check(vk.vkGetQueryPoolResults(device_.device(), queries, 0, count, stamps.size() * 8, stamps.data(), 8,
                                            VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                   "vkGetQueryPoolResults");
-      collect(sampler, result.report);
+      collect(recorder, result.report);
       std::vector<double> times;
       for (uint32_t i = 1; i < count; ++i) times.push_back(static_cast<double>(stamps[i] - stamps[i - 1]) * period);
       return times;
@@ -165,7 +165,7 @@ public:
       for (uint32_t p = 0; p < passes; ++p) each[p].push_back(times[p]);
     }
     submit([](VkCommandBuffer) {});
-    collect(sampler, result.report);
+    collect(recorder, result.report);
     vk.vkDestroyQueryPool(device_.device(), queries, nullptr);
     result.milliseconds = median(totals);
     for (uint32_t p = 0; p < passes; ++p) result.passes.emplace_back(names[p], median(each[p]));
@@ -174,7 +174,7 @@ public:
 
   /// Records that unite cameras into bits(), each with `perRecord` of them: their milliseconds and pairs together. A
   /// later record asks a little less, as what is visible already needs no answer.
-  Run measureUnion(Sampler& sampler, Sampling sampling, std::span<const GpgpCamera> cameras, uint32_t perRecord,
+  Run measureUnion(VisibilityRecorder& recorder, Sampling sampling, std::span<const GpgpCamera> cameras, uint32_t perRecord,
                    uint32_t repeat) {
     Run all;
     std::vector<double> totals;
@@ -184,7 +184,7 @@ public:
       sampling.accumulate = false;
       for (size_t first = 0; first < cameras.size(); first += perRecord) {
         const size_t n = std::min<size_t>(perRecord, cameras.size() - first);
-        const Run one = measure(sampler, sampling, 1, cameras.subspan(first, n));
+        const Run one = measure(recorder, sampling, 1, cameras.subspan(first, n));
         total += one.milliseconds;
         if (all.passes.empty())
           all.passes = one.passes;
@@ -207,31 +207,31 @@ public:
   }
 
   /// One record, not timed.
-  GpgpSampleReport record(Sampler& sampler, const Sampling& sampling, std::span<const GpgpCamera> cameras,
+  GpgpVisibilityReport record(VisibilityRecorder& recorder, const Sampling& sampling, std::span<const GpgpCamera> cameras,
                           const host::Buffer& bits, const host::Buffer* counts = nullptr) {
-    GpgpSampleReport report{};
+    GpgpVisibilityReport report{};
     submit([&](VkCommandBuffer cmd) {
-      const GpgpSampleInfo info = infoOf(sampling, cameras, bits, counts);
-      expect(sampler.recordPrepare(cmd, frames_.frame(), info), "record");
+      const GpgpVisibilityInfo info = infoOf(sampling, cameras, bits, counts);
+      expect(recorder.recordPrepare(cmd, frames_.frame(), info), "record");
     });
     submit([](VkCommandBuffer) {});
-    collect(sampler, report);
+    collect(recorder, report);
     return report;
   }
 
-  /// The truth of all the cameras with samples x samples a pixel and the centre, each told when it is there; counts may
+  /// The reference of all the cameras with samples x samples a pixel and the centre, each told when it is there; counts may
   /// be null.
-  void truth(
+  void reference(
       uint32_t samples, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
       const host::Buffer* counts = nullptr, const std::function<void(size_t)>& told = [](size_t) {}) {
     uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
     while (perRecord > 1 && uint64_t(scene_.params.width) * scene_.params.height * perRecord * perRecord * 8 >
                                 device_.properties().limits.maxStorageBufferRange)
       perRecord /= 2;
-    Sampler worker = sampler(GPGP_SAMPLING_TRUTH_BIT, perRecord);
+    VisibilityRecorder reference = recorder(GPGP_SAMPLING_REFERENCE_BIT, perRecord);
     const uint32_t slices = samples / perRecord * (samples / perRecord) + 1;
     Sampling step;
-    step.method = GPGP_SAMPLING_TRUTH;
+    step.method = GPGP_SAMPLING_REFERENCE;
     step.samples = samples;
     constexpr uint32_t kTogether = 12; // records of one submission: a GPU that waits for each lowers its clocks
     for (const GpgpCamera& camera : cameras) {
@@ -240,32 +240,32 @@ public:
         submit([&](VkCommandBuffer cmd) {
           for (; slice < end; ++slice) {
             step.slice = slice;
-            expect(worker.recordPrepare(cmd, frames_.frame(), infoOf(step, {&camera, 1}, bits, counts)), "record");
+            expect(recorder.recordPrepare(cmd, frames_.frame(), infoOf(step, {&camera, 1}, bits, counts)), "record");
             step.accumulate = true;
           }
         });
-        GpgpSampleReport report{};
-        collect(worker, report);
+        GpgpVisibilityReport report{};
+        collect(recorder, report);
       }
       told(static_cast<size_t>(&camera - cameras.data()) + 1);
     }
   }
 
   /// counts and recheck may be null.
-  GpgpSampleReport metrics(Sampler& sampler, const host::Buffer& bits, const host::Buffer& truth,
+  GpgpVisibilityReport metrics(VisibilityRecorder& recorder, const host::Buffer& bits, const host::Buffer& reference,
                            const host::Buffer* counts, const host::Buffer* recheck) {
-    GpgpSampleReport report{};
+    GpgpVisibilityReport report{};
     submit([&](VkCommandBuffer cmd) {
       GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
       info.triangleCount = triangles();
       info.visibleBits = bits.range({}, kRead);
-      info.truthBits = truth.range({}, kRead);
-      if (counts) info.truthCounts = counts->range({}, kRead);
+      info.referenceBits = reference.range({}, kRead);
+      if (counts) info.referenceCounts = counts->range({}, kRead);
       if (recheck) info.recheckBits = recheck->range({}, kRead);
-      expect(sampler.recordPrepareMetrics(cmd, frames_.frame(), info), "metrics");
+      expect(recorder.recordPrepareMetrics(cmd, frames_.frame(), info), "metrics");
     });
     submit([](VkCommandBuffer) {});
-    collect(sampler, report);
+    collect(recorder, report);
     return report;
   }
 
@@ -274,9 +274,9 @@ private:
   static constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, {}};
 
   static uint32_t reduced(uint32_t pixels, uint32_t divisor) { return (pixels + divisor - 1) / divisor; }
-  GpgpSampleInfo infoOf(const Sampling& sampling, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
+  GpgpVisibilityInfo infoOf(const Sampling& sampling, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
                         const host::Buffer* counts) const {
-    GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+    GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
     info.geometrySet = geometry_.get();
     info.method = sampling.method;
     info.camera = cameras.empty() ? camera_ : cameras[0];
@@ -322,8 +322,8 @@ private:
     if (counts) info.pixelCounts = counts->range({}, kRead);
     return info;
   }
-  static void collect(Sampler& sampler, GpgpSampleReport& report) {
-    for (auto next = sampler.report(); next; next = sampler.report()) report = *next;
+  static void collect(VisibilityRecorder& recorder, GpgpVisibilityReport& report) {
+    for (auto next = recorder.report(); next; next = recorder.report()) report = *next;
   }
   template <class Record> void submit(const Record& record) {
     VkCommandBuffer cmd = frames_.begin();

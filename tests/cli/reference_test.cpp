@@ -38,7 +38,7 @@ TEST(CliReference, OrderDoesNotCountAndEverythingElseDoes) {
   const auto words = bake("axiom Box S;\nterminal T (1, 0);\nS = Repeat(X, 1, ADJUST_TO_FILL) T;\n");
   GpgpAxiom axiom = spawn::makeAxiom(0, 0, 0);
   axiom.size[0] = 5;
-  axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+  axiom.start = GPGP_AXIOM_DEFAULT_START;
   const spawn::Derivation cpu = cli::evaluate(words, {axiom}, 0, nullptr, "grammar").result;
   ASSERT_EQ(cpu.instances.size(), 5u);
   const GpgpSpawnReport report = reportOf(cpu);
@@ -69,7 +69,7 @@ TEST(CliReference, OrderDoesNotCountAndEverythingElseDoes) {
 TEST(CliReference, TheOtherBranchIsADifference) {
   const auto one = bake(branches(1)), two = bake(branches(0));
   GpgpAxiom axiom = spawn::makeAxiom(0, 0, 0);
-  axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+  axiom.start = GPGP_AXIOM_DEFAULT_START;
   const spawn::Derivation cpu = cli::evaluate(one, {axiom}, 0, nullptr, "grammar").result,
                           wrong = cli::evaluate(two, {axiom}, 0, nullptr, "grammar").result;
   EXPECT_NE(cli::difference(cpu, reportOf(wrong), wrong.instances), "");

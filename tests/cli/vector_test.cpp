@@ -90,14 +90,14 @@ TEST(CliVector, BackgroundsAreCssColours) {
   }
 }
 
-TEST(CliVector, AntialiasingOfAllKindsAgainstTheTruth) {
+TEST(CliVector, AntialiasingOfAllKindsAgainstTheReference) {
   // An edge through pixels of column 20 at a quarter of their width; half-transparent colours mix as SVG says.
   const TemporaryFile file("aa.svg", R"(<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20">
 <path d="M0 0 H20.25 V20 H0 Z"/><path d="M30 0 H40 V20 H30 Z" opacity="0.5"/></svg>
 )");
   const TemporaryFile picture("aa.png");
   for (const char* aa : {"1", "4", "8", "16", "area"}) {
-    const json drawn = gpgpJson({"vector", file.path(), picture.path(), "--background", "#fff", "--aa", aa, "--truth"});
+    const json drawn = gpgpJson({"vector", file.path(), picture.path(), "--background", "#fff", "--aa", aa, "--reference"});
     EXPECT_EQ(drawn["aa"], aa);
     EXPECT_EQ(drawn["samples"], std::string_view(aa) == "area" ? 16 : std::atoi(aa));
     EXPECT_GE(drawn["psnr_db"], std::string_view(aa) == "1" ? 20 : 45) << aa;
@@ -114,8 +114,8 @@ TEST(CliVector, StrokesAreSmoothAtTheSizeAskedFor) {
   const TemporaryFile icon("icon.svg", svg + "width='24' height='24'>" + wave),
       large("large.svg", svg + "width='960' height='960' viewBox='0 0 24 24'>" + wave),
       ink("ink.svg", svg + ">" + wave), picture("icon.png"), other("large.png");
-  // The picture is the one of a page of that size, and near a truth of finer strokes.
-  const json drawn = gpgpJson({"vector", icon.path(), picture.path(), "--size", "960x960", "--truth"});
+  // The picture is the one of a page of that size, and near a reference of finer strokes.
+  const json drawn = gpgpJson({"vector", icon.path(), picture.path(), "--size", "960x960", "--reference"});
   const json whole = gpgpJson({"vector", large.path(), other.path()});
   EXPECT_EQ(drawn["curves"], whole["curves"]);
   EXPECT_GE(drawn["psnr_db"], 45);

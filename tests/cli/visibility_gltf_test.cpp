@@ -256,7 +256,7 @@ TEST(CliVisibilityGltf, WhatIsNotShownIsNamed) {
   Maker made;
   made.gltf["cameras"] = json::parse(R"([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}])");
   made.gltf["scenes"].push_back({{"nodes", {0}}});
-  made.gltf["animations"] = json::parse(R"([{"channels": [], "samplers": []}])");
+  made.gltf["animations"] = json::parse(R"([{"channels": [], "recorders": []}])");
   made.gltf["extensionsUsed"] = {"KHR_node_visibility", "KHR_materials_unlit"};
   made.primitive()["extensions"]["KHR_materials_variants"]["mappings"] = json::array();
   for (const int mode : {0, 1, 2, 3}) {
@@ -265,7 +265,7 @@ TEST(CliVisibilityGltf, WhatIsNotShownIsNamed) {
   }
   made.gltf["meshes"][0]["primitives"].push_back({{"attributes", {{"NORMAL", 0}}}});
   const json object = made.seen();
-  EXPECT_EQ(object["leftOut"], 4);
+  EXPECT_EQ(object["omitted"], 4);
   for (const char* part : {"1 cameras", "1 scenes", "1 animations are not played", "extension KHR_node_visibility",
                            "1 primitives have variants", "1 primitives have no positions"})
     EXPECT_TRUE(notes(object, part)) << part << object["notes"];

@@ -140,7 +140,7 @@ TEST(CliVisibilityModels, StripsAndFans) {
   const json strip = mode(5).seen();
   EXPECT_EQ(strip["visible"], 2) << "both face the camera";
   EXPECT_NEAR(strip["coveredPixels"], 1024, kEdge) << "the square";
-  EXPECT_EQ(strip["leftOut"], 0);
+  EXPECT_EQ(strip["omitted"], 0);
   const json fan = mode(6).seen({"--two-sided"});
   EXPECT_EQ(fan["triangles"], 2);
   EXPECT_NEAR(fan["coveredPixels"], 768, kEdge) << "two halves that overlap";

@@ -49,8 +49,8 @@ TEST(CliVisibility, SeesWhatIsInFront) {
                                                 "cameras",
                                                 "viewPoints",
                                                 "behindWalls",
-                                                "truthDevice",
-                                                "truth",
+                                                "referenceDevice",
+                                                "reference",
                                                 "coverage",
                                                 "overestimation",
                                                 "coverage_area",
@@ -60,11 +60,11 @@ TEST(CliVisibility, SeesWhatIsInFront) {
                                                 "unresolved",
                                                 "skippedTriangles",
                                                 "skippedDraws",
-                                                "leftOut",
+                                                "omitted",
                                                 "notes",
                                                 "gpu_ms_median",
                                                 "passes"}));
-  EXPECT_TRUE(front["coverage"].is_null()) << "no truth was asked for";
+  EXPECT_TRUE(front["coverage"].is_null()) << "no reference was asked for";
   EXPECT_EQ(front["status"], "GPGP_SUCCESS");
   EXPECT_EQ(front["triangles"], 4);
   EXPECT_EQ(front["visible"], 2);
@@ -109,10 +109,10 @@ TEST(CliVisibility, ConservativeFindsWhatLiesBetweenCentres) {
     return gpgpJson(args);
   };
   EXPECT_EQ(run({})["visible"], 1);
-  const json found = run({"--method", "conservative", "--truth", "16", "--export-ids", ids.path()});
+  const json found = run({"--method", "conservative", "--reference", "16", "--export-ids", ids.path()});
   EXPECT_EQ(found["visible"], 2);
   EXPECT_EQ(found["method"], "conservative");
-  for (const char* key : {"triangles", "visible", "truth", "coverage", "overestimation", "coverage_area",
+  for (const char* key : {"triangles", "visible", "reference", "coverage", "overestimation", "coverage_area",
                           "overestimation_area", "gpu_ms_median", "passes"})
     EXPECT_TRUE(found.contains(key)) << key;
   EXPECT_EQ(found["coverage"], 1.0);
@@ -172,7 +172,7 @@ TEST(CliVisibility, WhatIsSkippedIsSaid) {
   const TemporaryFile lines("lines.gltf", gltf(R"({"mesh":0})", true));
   const json seen = gpgpJson({"visibility", lines.path(), "--yaw", "0", "--size", "32x32"});
   EXPECT_EQ(seen["visible"], 1);
-  EXPECT_EQ(seen["leftOut"], 1);
+  EXPECT_EQ(seen["omitted"], 1);
   EXPECT_EQ(seen["skippedTriangles"], 0);
   EXPECT_NE(gpgp({"visibility", lines.path(), "--size", "32x32"}).out.find("1 primitives are no triangles"),
             std::string::npos);
@@ -192,12 +192,12 @@ TEST(CliVisibility, NamesAndLinesOfModels) {
   EXPECT_NE(gpgpFailure({"visibility", noBinary.path()}).find("UPPER.GLB"), std::string::npos);
 }
 
-// The truth's only sample, the pixel's centre, does not see the triangle.
+// The reference's only sample, the pixel's centre, does not see the triangle.
 TEST(CliVisibility, SharesOfNothingAreNone) {
   const TemporaryFile model("corner.obj", "v -0.9 -0.9 0.5\nv -0.8 -0.9 0.5\nv -0.9 -0.8 0.5\nf 1 2 3\n"),
       camera("corner.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   const std::vector<std::string> args{"visibility", model.path(), "--camera",    camera.path(), "--size", "1x1",
-                                      "--method",   "exact",      "--two-sided", "--truth",     "1",      "--recheck"};
+                                      "--method",   "exact",      "--two-sided", "--reference",     "1",      "--recheck"};
   const auto with = [&](const std::string& recheck) {
     std::vector<std::string> all = args;
     all.push_back(recheck);
@@ -205,21 +205,21 @@ TEST(CliVisibility, SharesOfNothingAreNone) {
   };
   const json none = gpgpJson(with("0"));
   EXPECT_EQ(none["visible"], 1);
-  EXPECT_EQ(none["truth"], 0);
+  EXPECT_EQ(none["reference"], 0);
   for (const char* key : {"coverage", "overestimation", "coverage_area", "overestimation_area"})
     EXPECT_TRUE(none[key].is_null()) << key;
   EXPECT_NE(gpgp(with("0")).out.find("coverage -, overestimation -"), std::string::npos);
   const json rechecked = gpgpJson(with("64"));
   EXPECT_EQ(rechecked["coverage"], 1.0);
   EXPECT_EQ(rechecked["overestimation"], 0.0);
-  EXPECT_TRUE(rechecked["coverage_area"].is_null()) << "no sample of the truth shows anything";
+  EXPECT_TRUE(rechecked["coverage_area"].is_null()) << "no sample of the reference shows anything";
 
   // From behind there is nothing to see, which does not count.
   const TemporaryFile sliver("one_side.obj", "v -0.01 -0.9 0\nv 0.01 -0.9 0\nv 0 0.9 0\nf 1 2 3\n"
                                              "v -2 -2 -0.01\nv 2 -2 -0.01\nv 0 2 -0.01\nf 4 5 6\n");
   const auto orbit = [&](const std::string& cameras) {
     return gpgpJson(
-        {"visibility", sliver.path(), "--size", "32x32", "--truth", "64", "--recheck", "0", "--orbit", cameras});
+        {"visibility", sliver.path(), "--size", "32x32", "--reference", "64", "--recheck", "0", "--orbit", cameras});
   };
   const json one = orbit("1"), two = orbit("2");
   EXPECT_LT(one["coverage"], 1.0);
@@ -281,7 +281,7 @@ TEST(CliVisibility, WrongUsage) {
                                              {"--camera", camera.path(), "--pitch", "10"},
                                              {"--camera", camera.path(), "--orbit", "2"},
                                              {"--recheck", "64"},
-                                             {"--truth", "64", "--recheck", "64"}}) {
+                                             {"--reference", "64", "--recheck", "64"}}) {
     std::vector<std::string> arguments{"visibility", model.path()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     expectWrongUsage({arguments});

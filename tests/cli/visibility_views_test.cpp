@@ -253,26 +253,26 @@ TEST(CliVisibilityViews, MethodsAndOverlay) {
     return host::readPng(png.path());
   };
   json figures;
-  const host::Picture missed = overlay({"--truth", "64"}, figures);
+  const host::Picture missed = overlay({"--reference", "64"}, figures);
   EXPECT_EQ(missed.width, 96u);
   EXPECT_EQ(missed.height, 96u);
   EXPECT_EQ(figures["coverage"], 0.5);
   EXPECT_EQ(count(missed, isBlue), kStrip) << "missed";
   EXPECT_EQ(count(missed, isGreen), kAll - kStrip);
 
-  const host::Picture added = overlay({"--method", "exact", "--truth", "64"}, figures);
+  const host::Picture added = overlay({"--method", "exact", "--reference", "64"}, figures);
   EXPECT_EQ(figures["coverage"], 1.0);
   EXPECT_EQ(figures["overestimation"], 0.0);
   EXPECT_EQ(count(added, isGreen), kAll - kStrip);
   EXPECT_EQ(count(added, isGrey), kStrip) << "the method's alone";
 
   // One sample a pixel does not find the strip, 64 x 64 do: without them it is too much, with them it is not.
-  const host::Picture tooMuch = overlay({"--method", "exact", "--truth", "1", "--recheck", "0"}, figures);
+  const host::Picture tooMuch = overlay({"--method", "exact", "--reference", "1", "--recheck", "0"}, figures);
   EXPECT_EQ(figures["overestimation"], 1.0);
   EXPECT_EQ(count(tooMuch, isRed), kStrip);
-  const host::Picture checked = overlay({"--method", "exact", "--truth", "1", "--recheck", "64"}, figures);
+  const host::Picture checked = overlay({"--method", "exact", "--reference", "1", "--recheck", "64"}, figures);
   EXPECT_EQ(figures["overestimation"], 0.0);
-  EXPECT_EQ(figures["truth"], 4);
+  EXPECT_EQ(figures["reference"], 4);
   EXPECT_EQ(checked.rgba, added.rgba) << "the overlay is of what the figures count";
 }
 
@@ -295,10 +295,10 @@ TEST(CliVisibilityViews, OverlaysShowWhatIsBelowAPixel) {
     return host::readPng(png.path());
   };
   json figures;
-  const Args wall{"--camera", plain.path(), "--truth", "16"};
+  const Args wall{"--camera", plain.path(), "--reference", "16"};
   const host::Picture missed = overlay(thin, wall, figures);
   EXPECT_EQ(figures["visible"], 2);
-  EXPECT_EQ(figures["truth"], 34);
+  EXPECT_EQ(figures["reference"], 34);
   EXPECT_EQ(count(missed, isBlue), 16u * 48) << "each wire is a line of its pixels";
   EXPECT_EQ(count(missed, isGreen), 48u * 48 - 16 * 48);
   const host::Picture added = overlay(thin, wall + Args{"--method", "exact"}, figures);
@@ -308,7 +308,7 @@ TEST(CliVisibilityViews, OverlaysShowWhatIsBelowAPixel) {
 
   // Some twenty triangles a pixel: the centres show what standard sampling finds, all else what it misses.
   const TemporaryFile round("below_ball.obj", ball());
-  const host::Picture small = overlay(round, {"--orbit", "1", "--truth", "4", "--recheck", "0"}, figures);
+  const host::Picture small = overlay(round, {"--orbit", "1", "--reference", "4", "--recheck", "0"}, figures);
   size_t centres = 0;
   for (size_t y = 1; y < 48; y += 3)
     for (size_t x = 1; x < 48; x += 3) {
@@ -333,9 +333,9 @@ TEST(CliVisibilityViews, OverlaysMarkSpecks) {
   for (const auto& [x, y, column, row] :
        {std::tuple(0.55, 0.52, 26u, 22u), std::tuple(0.42, 0.52, 24u, 22u), std::tuple(0.02, 0.02, 24u, 23u)}) {
     const TemporaryFile model("speck.obj", speck(x, y));
-    const json figures = gpgpJson({"visibility", model.path(), "--size", "16x16", "--camera", camera.path(), "--truth",
+    const json figures = gpgpJson({"visibility", model.path(), "--size", "16x16", "--camera", camera.path(), "--reference",
                                    "64", "--overlay", png.path()});
-    ASSERT_EQ(figures["truth"], 3);
+    ASSERT_EQ(figures["reference"], 3);
     const host::Picture picture = host::readPng(png.path());
     EXPECT_EQ(count(picture, isBlue), 1u);
     EXPECT_EQ(count(picture, isGreen), 48u * 48 - 1);
@@ -365,9 +365,9 @@ TEST(CliVisibilityViews, CountsAndSharesAreWrittenOut) {
   obj << "v 5 5 0\nv 6 5 0\nv 5 6 0\nf -3 -2 -1\n";
   const TemporaryFile many("many.obj", obj.str()), camera("many.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   const Args args{"visibility", many.path(), "--camera", camera.path(), "--size", "120x100", "--two-sided"};
-  const std::string text = gpgp(args + Args{"--method", "exact", "--truth", "16"}).out;
+  const std::string text = gpgp(args + Args{"--method", "exact", "--reference", "16"}).out;
   EXPECT_NE(text.find("\n12000 visible (99.99 %); GPU"), std::string::npos) << text;
-  EXPECT_NE(text.find("\ntruth 12000: coverage 100.00 %, overestimation 0.00 %;"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nreference 12000: coverage 100.00 %, overestimation 0.00 %;"), std::string::npos) << text;
 
   // Of two cameras one sees the square, one the triangle.
   const TemporaryFile both("means.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\nf 4 3 2\n");

@@ -4,7 +4,7 @@
 #include "host/device.h"
 #include "host/files.h"
 #include "host/memory.h"
-#include "toy_worker.h"
+#include "toy_recorder.h"
 
 #include <gtest/gtest.h>
 
@@ -22,17 +22,17 @@ core::Context& of(GpgpContext handle) { return *reinterpret_cast<core::Context*>
 void runToy(host::HeadlessDevice& device, GpgpContext handle, uint32_t factor) {
   const std::vector<uint32_t> data(100, 3);
   const auto asset = ToyAsset::create(of(handle), data);
-  auto worker = ToyWorker::create(of(handle), {"toy", device.graphics().family, 0, VK_FALSE});
-  ASSERT_TRUE(worker) << worker.error().text;
-  ASSERT_TRUE((*worker)->prewarm(nullptr));
+  auto recorder = ToyRecorder::create(of(handle), {"toy", device.graphics().family, 0, VK_FALSE});
+  ASSERT_TRUE(recorder) << recorder.error().text;
+  ASSERT_TRUE((*recorder)->prewarm(nullptr));
   host::Buffer output(device, 400, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   const GpgpBuffer range = output.range();
   const GpgpFrame frame{1, 0};
   ASSERT_EQ(gpgpAdvance(handle, &frame), GPGP_SUCCESS);
-  const GpgpRecordInfo base{};
+  const GpgpRecordingInfo base{};
   device.submitAndWait([&](VkCommandBuffer cmd) {
     ASSERT_EQ(gpgpRecordUpload(handle, cmd, &frame, 0, nullptr), GPGP_SUCCESS);
-    ASSERT_TRUE((*worker)->run(cmd, base, *asset, range, 100, factor));
+    ASSERT_TRUE((*recorder)->run(cmd, base, *asset, range, 100, factor));
   });
   for (const uint32_t word : host::download<uint32_t>(device, output, 100)) EXPECT_EQ(word, 3 * factor);
 }

@@ -1,5 +1,5 @@
 #version 460
-// The smallest worker: output[i] = input[i] * factor, a sum, and a second pass with indirect arguments.
+// The smallest recorder: output[i] = input[i] * factor, a sum, and a second pass with indirect arguments.
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, std430) readonly buffer Input { uint inputs[]; };
 layout(set = 0, binding = 1, std430) buffer Output { uint outputs[]; };

@@ -99,8 +99,8 @@ TEST(DecoupledShading, TheTableHasAllConfigurations) {
 TEST(DecoupledShading, FrozenShadingShowsWhatTheMethodAdds) {
   const std::string out = GPGP_GOLDEN_OUT "-overlay";
   const std::string text =
-      outputOf("--decoupled --show overlay --freeze 1 --truth 2 --frames 3 --size 320x180 --out \"" + out + "\"");
-  EXPECT_NE(text.find("\ntruth "), std::string::npos) << text;
+      outputOf("--decoupled --show overlay --freeze 1 --reference 2 --frames 3 --size 320x180 --out \"" + out + "\"");
+  EXPECT_NE(text.find("\nreference "), std::string::npos) << text;
   const Picture picture = gpgp::host::readPng(std::filesystem::path(out) / "shaded.png");
   size_t green = 0;
   for (size_t i = 0; i < picture.rgba.size(); i += 4)
@@ -158,22 +158,22 @@ TEST(DecoupledShading, DensityIsByArea) {
 }
 
 // 17 slices are there after 5 frames; the next multiple of the rate is frame 8.
-TEST(DecoupledShading, OverlaysWaitForTheirTruth) {
-  const std::string run = "--method standard --truth 8 --rate 4 --size 320x180 ";
+TEST(DecoupledShading, OverlaysWaitForTheirReference) {
+  const std::string run = "--method standard --reference 8 --rate 4 --size 320x180 ";
   const auto [known, once] = shown(run + "--show overlay --frames 8");
   EXPECT_EQ(once, 1u);
   EXPECT_GT(count(known, isBlue), 0u) << "what standard sampling missed";
   const auto [next, twice] = shown(run + "--show overlay --frames 9");
   EXPECT_EQ(twice, 2u);
-  EXPECT_EQ(count(next, isBlue), 0u) << "of the second shading no truth is known";
+  EXPECT_EQ(count(next, isBlue), 0u) << "of the second shading no reference is known";
   EXPECT_NE(outputOf("--decoupled --show overlay --size 64x64 --out \"" GPGP_GOLDEN_OUT "-short\"")
-                .find("truth       12 of 65 slices"),
+                .find("reference       12 of 65 slices"),
             std::string::npos);
 }
 
 TEST(DecoupledShading, OverlaysOfWhatIsFrozen) {
   for (const char* options : {"--freeze 1 --input 2", "--freeze 0 --input 2", "--input 2,f", "--input f,2"}) {
-    const auto [picture, once] = shown(std::string("--truth 2 --frames 4 --size 320x180 ") + options);
+    const auto [picture, once] = shown(std::string("--reference 2 --frames 4 --size 320x180 ") + options);
     EXPECT_EQ(once, 1u) << options;
     EXPECT_GT(count(picture, isGreen), 1000u) << options;
   }
@@ -194,9 +194,9 @@ TEST(DecoupledShading, PathsShadeFromTheirFirstFrameOn) {
 
 // What would have no effect.
 TEST(DecoupledShading, ItsOptionsBelongToIt) {
-  for (const char* options : {"--show density", "--method exact", "--rate 2", "--freeze 1", "--truth 4", "--farther 2",
-                              "--decoupled --truth 4", "--decoupled --input x", "--decoupled --watch",
-                              "--path --method conservative", "--path --show overlay", "--path --truth 4"})
+  for (const char* options : {"--show density", "--method exact", "--rate 2", "--freeze 1", "--reference 4", "--farther 2",
+                              "--decoupled --reference 4", "--decoupled --input x", "--decoupled --watch",
+                              "--path --method conservative", "--path --show overlay", "--path --reference 4"})
     EXPECT_NE(
         std::system((std::string("\"") + GPGP_MINI_ENGINE + "\" " + options + " 2> /dev/null > /dev/null").c_str()), 0)
         << options;

@@ -190,7 +190,7 @@ void FakeUnity::destroyDevice() {
   vkDeviceWaitIdle(device_);
   vkDestroyFramebuffer(device_, framebuffer_, nullptr);
   vkDestroyRenderPass(device_, pass_, nullptr);
-  vkDestroyImageView(device_, cameraView_, nullptr);
+  vkDestroyImageView(device_, cameraHistory_, nullptr);
   while (!textures_.empty()) destroyTexture(textures_.begin()->first);
   for (const Slot& slot : slots_) {
     vkDestroyFence(device_, slot.fence, nullptr);
@@ -316,7 +316,7 @@ void FakeUnity::makeCamera() {
   viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
   viewInfo.format = camera_->format;
   viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  check(vkCreateImageView(device_, &viewInfo, nullptr, &cameraView_), "vkCreateImageView");
+  check(vkCreateImageView(device_, &viewInfo, nullptr, &cameraHistory_), "vkCreateImageView");
   VkAttachmentDescription attachment{};
   attachment.format = camera_->format;
   attachment.samples = VK_SAMPLE_COUNT_1_BIT;
@@ -335,7 +335,7 @@ void FakeUnity::makeCamera() {
   VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
   framebufferInfo.renderPass = pass_;
   framebufferInfo.attachmentCount = 1;
-  framebufferInfo.pAttachments = &cameraView_;
+  framebufferInfo.pAttachments = &cameraHistory_;
   framebufferInfo.width = framebufferInfo.height = 64;
   framebufferInfo.layers = 1;
   check(vkCreateFramebuffer(device_, &framebufferInfo, nullptr, &framebuffer_), "vkCreateFramebuffer");

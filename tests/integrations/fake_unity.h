@@ -114,7 +114,7 @@ private:
   uint32_t family_ = 0;
   std::map<FakeTexture*, std::unique_ptr<FakeTexture>> textures_;
   FakeTexture* camera_ = nullptr;
-  VkImageView cameraView_ = VK_NULL_HANDLE;
+  VkImageView cameraHistory_ = VK_NULL_HANDLE;
   VkRenderPass pass_ = VK_NULL_HANDLE;
   VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
   Slot slots_[kLag];

@@ -2,7 +2,7 @@
 // all pairs, what a shape's own colliders are, phases; the GPU against the evaluator, budgets, the order of axioms.
 #include "grammars.h"
 #include "random_grammar.h"
-#include "spawn/collide.h"
+#include "spawn/colliders/collide.h"
 #include "spawn/evaluator/evaluator.h"
 #include "spawn_device.h"
 
@@ -192,7 +192,7 @@ const std::string kHead = "axiom Box Query; terminal Hit (1,0); terminal Free (1
 const std::string kPair = kHead + "Query = IfCollides(1) { Hit | Free }; Register = Collider(1) Discard();";
 
 GpgpAxiom asRule(GpgpAxiom axiom, uint32_t rule) {
-  axiom.rule = rule;
+  axiom.start = rule;
   return axiom;
 }
 uint64_t hits(const std::string& grammar, const std::vector<GpgpAxiom>& axioms) {
@@ -410,7 +410,7 @@ void expectSame(SpawnDevice& device, const std::vector<uint32_t>& words, const s
 
 std::vector<GpgpAxiom> mixed(double spread, uint32_t seed, uint32_t count) {
   auto all = randomBoxes(count, seed, spread, 0.01, 60);
-  for (size_t i = 0; i < all.size(); ++i) all[i].rule = i % 2;
+  for (size_t i = 0; i < all.size(); ++i) all[i].start = i % 2;
   return all;
 }
 
@@ -561,7 +561,7 @@ TEST(CollideOnGpu, SpawnersWithoutCollidersRefuse) {
   ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
   GpgpSpawnerCreateInfo spawnerInfo = GPGP_SPAWNER_CREATE_INFO_INIT;
   spawnerInfo.base.queueFamily = device.graphics().family;
-  GpgpWorker spawner = nullptr;
+  GpgpRecorder spawner = nullptr;
   spawnerInfo.maxColliders = (1u << 24) + 1;
   EXPECT_EQ(gpgpCreateSpawner(context, &spawnerInfo, &spawner), GPGP_ERROR_UNSUPPORTED);
   spawnerInfo.maxColliders = 0;

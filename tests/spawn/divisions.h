@@ -77,7 +77,7 @@ inline Divisions makeDivisions() {
   const uint32_t ruleCount = result.words[shader::kHeaderSections + 2 * shader::kSectionRules];
   for (uint32_t i = 0; i < result.all.size(); ++i) {
     result.axioms.push_back(spawn::makeAxiom(2, 3, 4, 1, i));
-    result.axioms.back().rule = ruleCount + i;
+    result.axioms.back().start = ruleCount + i;
   }
   return result;
 }

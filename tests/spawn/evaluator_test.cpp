@@ -1,7 +1,7 @@
 // The CPU evaluator against published counts and against closed forms.
 #include "grammars.h"
 #include "spawn/evaluator/evaluator.h"
-#include "spawn/graph_format.h"
+#include "spawn/shared/graph_format.h"
 
 #include <gtest/gtest.h>
 
@@ -281,11 +281,11 @@ TEST(Operators, StartRulesAndUnknownRules) {
   const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | B }; B = Replicate() { T | T | T };");
   GpgpAxiom axiom = makeAxiom(1, 1, 1);
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 4u);
-  axiom.rule = 1;
+  axiom.start = 1;
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 3u);
-  axiom.rule = 2; // the axiom line
+  axiom.start = 2; // the axiom line
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 4u);
-  axiom.rule = 3;
+  axiom.start = 3;
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).terminals, 0u);
   EXPECT_EQ(derive(words, std::span(&axiom, 1)).droppedShapes, 1u);
 }
@@ -299,7 +299,7 @@ TEST(Operators, InstancesNameTheRuleWhoseBodyEnded) {
     std::vector<GpgpAxiom> all;
     for (const uint32_t start : starts) {
       all.push_back(makeAxiom(1, 1, 1, start));
-      all.back().rule = start;
+      all.back().start = start;
     }
     std::vector<uint32_t> rules;
     for (const GpgpInstance& i : derive(words, all).instances) rules.push_back(i.rule);

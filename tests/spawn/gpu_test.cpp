@@ -46,7 +46,7 @@ struct Derived {
 
 struct SpawnTest : DeviceTest {
   static constexpr uint32_t kPoison = 0xbaadf00d;
-  GpgpWorker spawner = nullptr;
+  GpgpRecorder spawner = nullptr;
 
   void SetUp() override {
     DeviceTest::SetUp();
@@ -69,7 +69,7 @@ struct SpawnTest : DeviceTest {
     info.vertices = budgets.vertices;
     info.maxColliders = budgets.maxColliders;
     info.maxHostAxioms = budgets.maxHostAxioms;
-    spawner = worker(gpgpCreateSpawner, info);
+    spawner = recorder(gpgpCreateSpawner, info);
   }
 
   GpgpAsset makeGrammar(const std::vector<uint32_t>& words) {
@@ -149,7 +149,7 @@ struct SpawnTest : DeviceTest {
     const auto all = host::download<GpgpInstance>(device, instances, capacity);
     result.instances.assign(all.begin(), all.begin() + std::min(result.count, capacity));
     for (size_t i = result.count; i < all.size(); ++i) // nothing beyond the count is touched
-      if (all[i].bucket != kPoison || all[i].rule != kPoison) {
+      if (all[i].bucket != kPoison || all[i].start != kPoison) {
         ADD_FAILURE() << "instance " << i << " of " << result.count << " was written";
         break;
       }
@@ -299,7 +299,7 @@ RandomCase randomCase(uint32_t seed) {
     const spawn::Graph graph = graphOf(random.words);
     const uint32_t atLine = 1 + seed % 5, rules = static_cast<uint32_t>(graph.rules.size());
     random.all = axioms(atLine + rules, 6, 9, 7);
-    for (uint32_t rule = 0; rule < rules; ++rule) random.all[atLine + rule].rule = rule;
+    for (uint32_t rule = 0; rule < rules; ++rule) random.all[atLine + rule].start = rule;
     const auto cpu = spawn::derive(random.words, random.all, options);
     random.terminals = static_cast<uint32_t>(cpu.terminals);
     if (cpu.complete && cpu.terminals >= 5 && cpu.colliders <= 8192) return random;
@@ -604,7 +604,7 @@ A2 = IfSizeLess(X, 0.5) { U | A };
 
 TEST_F(SpawnTest, KernelsStartAtRulesThatDiscard) {
   auto all = axioms(7, 12, 16, 10);
-  for (size_t i = 0; i < all.size(); ++i) all[i].rule = i % 2;
+  for (size_t i = 0; i < all.size(); ++i) all[i].start = i % 2;
   check("discard",
         bakeWaiting("axiom Box A; terminal T (1, 0); A = SubDiv(X) { -1: T | -1: B }; B = Discard();", shader::kOpIf,
                     spawn::KernelTarget::software),
@@ -713,7 +713,7 @@ TEST_F(SpawnTest, AxiomsOfTheCpuEqualThoseOfABuffer) {
   const auto words = linked({{"building.pga", ownGrammar("building.pga")}, {"tree.pga", ownGrammar("tree.pga")}});
   const spawn::Graph graph = graphOf(words);
   std::vector<GpgpAxiom> all = axioms(20, 13, 19, 11);
-  for (uint32_t i = 0; i < all.size(); ++i) all[i].rule = i % spawn::startCount(graph);
+  for (uint32_t i = 0; i < all.size(); ++i) all[i].start = i % spawn::startCount(graph);
   for (const bool sorted : {false, true}) {
     compare(spawn::derive(words, all), run(words, all, 50000, sorted, {}, true), "20 axioms of the CPU");
     const std::vector<GpgpAxiom> some(all.begin(), all.begin() + 7);
@@ -805,7 +805,7 @@ TEST_F(SpawnTest, AxiomsOfTheCpuStayWithinTheirBudget) {
   GpgpSpawnerCreateInfo tooMany = GPGP_SPAWNER_CREATE_INFO_INIT;
   tooMany.base.queueFamily = device.graphics().family;
   tooMany.maxHostAxioms = (1u << 24) + 1;
-  GpgpWorker none = nullptr;
+  GpgpRecorder none = nullptr;
   EXPECT_EQ(gpgpCreateSpawner(context, &tooMany, &none), GPGP_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(lastMessage(), "gpgpCreateSpawner: maxHostAxioms is at most 16777216");
   messages.clear();
@@ -1148,9 +1148,9 @@ TEST_F(SpawnTest, ChildrenOfOneShapeAreSharedOut) { // whatever their number, ea
 TEST_F(SpawnTest, StartRulesAndRulesThatDoNotExist) {
   const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | B }; B = Replicate() { T | T | T };");
   std::vector<GpgpAxiom> all(4, makeAxiom(1, 1, 1));
-  all[1].rule = 1;
-  all[2].rule = 2; // the axiom line
-  all[3].rule = 3;
+  all[1].start = 1;
+  all[2].start = 2; // the axiom line
+  all[3].start = 3;
   const Derived gpu = run(words, all, 100, true);
   EXPECT_EQ(gpu.report.terminals, 4u + 3u + 4u);
   EXPECT_EQ(gpu.report.droppedShapes, 1u);
@@ -1174,7 +1174,7 @@ TEST_F(SpawnTest, LinkedGrammarsEqualTheEvaluator) { // which derives what each 
     auto all = axioms(60, 12, 16, 10);
     for (uint32_t i = 0; i < all.size(); ++i) { // all starts, the axiom lines more often
       const uint32_t rules = static_cast<uint32_t>(graph->rules.size());
-      all[i].rule = i % 2 ? rules + i / 2 % lines : i / 2 % rules;
+      all[i].start = i % 2 ? rules + i / 2 % lines : i / 2 % rules;
     }
     check(flags ? "linked, by a kernel" : "linked", words, all);
   }

@@ -61,8 +61,8 @@ TEST(Language, WarningsHideNoErrorsAndWhatIsLeftOutIsCounted) {
   spawn::compile(wrong, {}, diagnostics, std::pmr::new_delete_resource());
   const std::vector<spawn::Diagnostic> errors = diagnostics.sorted();
   ASSERT_EQ(errors.size(), 1001u);
-  EXPECT_EQ(1000 + errors[1000].leftOut, diagnostics.errorCount());
-  EXPECT_EQ(messageOf(errors[1000]), "error: " + std::to_string(errors[1000].leftOut) + " more errors are left out");
+  EXPECT_EQ(1000 + errors[1000].omitted, diagnostics.errorCount());
+  EXPECT_EQ(messageOf(errors[1000]), "error: " + std::to_string(errors[1000].omitted) + " more errors are left out");
 }
 
 // What was meant by a missing ';' is clear where another statement begins: it is the only error.

@@ -48,7 +48,7 @@ std::vector<GpgpAxiom> axiomsOf(const spawn::Graph& graph, uint32_t seed, uint32
   std::vector<GpgpAxiom> all;
   for (uint32_t i = 0; i < std::min(spawn::startCount(graph), 8u) + 1; ++i) {
     GpgpAxiom axiom = spawn::makeAxiom(scale * (7 + float(i)), scale * 9, scale * 6, seed * 31 + i, firstId + i);
-    axiom.rule = i ? i - 1 : GPGP_AXIOM_DEFAULT_RULE;
+    axiom.start = i ? i - 1 : GPGP_AXIOM_DEFAULT_START;
     if (i % 3 == 2) axiom.attribute = float(i) / 7;
     all.push_back(axiom);
   }
@@ -86,10 +86,10 @@ uint64_t expectEqualsAlone(const std::vector<GrammarFile>& files, uint32_t seed)
     alone.push_back(std::move(derivation));
     const uint32_t ownRules = static_cast<uint32_t>(ownGraph.rules.size());
     for (GpgpAxiom& axiom : axioms) {
-      const uint32_t start = axiom.rule == GPGP_AXIOM_DEFAULT_RULE ? ownRules : axiom.rule;
-      axiom.rule = start < ownRules ? rules.back() + start
+      const uint32_t start = axiom.start == GPGP_AXIOM_DEFAULT_START ? ownRules : axiom.start;
+      axiom.start = start < ownRules ? rules.back() + start
                                     : static_cast<uint32_t>(graph.rules.size()) + lines + start - ownRules;
-      EXPECT_EQ(spawn::startAt(graph, axiom.rule).axiom->shape, spawn::startAt(ownGraph, start).axiom->shape);
+      EXPECT_EQ(spawn::startAt(graph, axiom.start).axiom->shape, spawn::startAt(ownGraph, start).axiom->shape);
     }
     mixed.insert(mixed.end(), axioms.begin(), axioms.end());
     rules.push_back(rules.back() + ownRules);
@@ -311,7 +311,7 @@ TEST(Link, TagsAreCommon) {
             Messages{"wall.pga:1:36: warning: Collider(wall) has no effect: there is no IfCollides(wall)"});
   const auto words = linked({{"wall.pga", wall}, {"plant.pga", plant}});
   std::vector<GpgpAxiom> axioms(3, spawn::makeAxiom(1, 1, 1));
-  axioms[0].rule = axioms[2].rule = startNamed(graphOf(words), "plant");
+  axioms[0].start = axioms[2].start = startNamed(graphOf(words), "plant");
   axioms[2].transform[3] = 5;
   const auto derived = spawn::derive(words, axioms);
   EXPECT_EQ(derived.terminals, 2u); // the wall, and the plant that stands apart
@@ -351,9 +351,9 @@ TEST(Starts, EachHasItsShape) {
   std::vector<uint64_t> counts;
   for (uint32_t i = 0; i < wanted.size(); ++i) {
     GpgpAxiom axiom = spawn::makeAxiom(4, 3, 5, 7, 9);
-    axiom.rule = i;
+    axiom.start = i;
     auto chosen = spawn::derive(words, std::span(&axiom, 1));
-    axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+    axiom.start = GPGP_AXIOM_DEFAULT_START;
     auto alone =
         spawn::derive(bake(std::string("axiom ").append(wanted[i]).append(";\n").append(rules)), std::span(&axiom, 1));
     counts.push_back(chosen.terminals);

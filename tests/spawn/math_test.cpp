@@ -2,7 +2,7 @@
 #include "core/math.h"
 #include "core/random.h"
 #include "host/kernel.h"
-#include "shaders/math_twin.spv.h"
+#include "shaders/math_on_gpu.spv.h"
 #include "shaders/spawn_derive_checked.spv.h"
 
 #include <gtest/gtest.h>
@@ -110,7 +110,7 @@ size_t contractible(std::span<const uint32_t> spirv) {
 
 TEST(Math, NothingThatDecidesCanBeContracted) {
   EXPECT_EQ(contractible(spawn_derive_checked), 0u);
-  EXPECT_EQ(contractible(math_twin), 0u);
+  EXPECT_EQ(contractible(math_on_gpu), 0u);
 }
 
 TEST(Math, GpuAndCpuAgreeBitForBit) {
@@ -118,7 +118,7 @@ TEST(Math, GpuAndCpuAgreeBitForBit) {
   const auto in = inputs();
   const auto input = host::makeBuffer(device, in, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   const host::Buffer output(device, in.size() * 48, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  host::ComputeKernel kernel(device, math_twin, 2);
+  host::ComputeKernel kernel(device, math_on_gpu, 2);
   kernel.run({&input, &output}, nullptr, uint32_t((in.size() + 63) / 64));
   const auto results = host::download<uint32_t>(device, output, in.size() * 12);
   for (size_t i = 0; i < in.size(); ++i) {

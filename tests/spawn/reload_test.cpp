@@ -83,10 +83,10 @@ protected:
     GpgpAxiom axiom{};
     axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1;
     axiom.size[0] = axiom.size[1] = axiom.size[2] = 10;
-    axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+    axiom.start = GPGP_AXIOM_DEFAULT_START;
     std::vector<GpgpAxiom> all(std::max<size_t>(starts_.size(), 1), axiom);
     for (size_t i = 0; i < starts_.size(); ++i)
-      EXPECT_EQ(gpgpFindGrammarStart(grammar_, starts_[i].c_str(), &all[i].rule), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpFindGrammarStart(grammar_, starts_[i].c_str(), &all[i].start), GPGP_SUCCESS);
     return all;
   }
 

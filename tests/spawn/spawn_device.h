@@ -73,7 +73,7 @@ private:
   }
   host::HeadlessDevice device_{host::DeviceOptions{.validation = true}};
   GpgpContext context_ = nullptr;
-  GpgpWorker spawner_ = nullptr;
+  GpgpRecorder spawner_ = nullptr;
   uint64_t frame_ = 0;
 };
 

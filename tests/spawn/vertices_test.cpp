@@ -243,7 +243,7 @@ TEST(Mesh, BoxFacesAreThoseOfCompSplit) {
 struct VertexFormat : GpgpVertexLayout {
   VkIndexType indexType;
 };
-/// One that stays where it is: workers are found again by their create info.
+/// One that stays where it is: recorders are found again by their create info.
 const GpgpVertexLayout* stable(const GpgpVertexLayout& layout) {
   static std::list<GpgpVertexLayout> all;
   for (const GpgpVertexLayout& known : all)
@@ -335,12 +335,12 @@ struct VerticesTest : DeviceTest {
     info.maxColliders = maxColliders;
     return info;
   }
-  GpgpWorker spawnerFor(const GpgpVertexLayout* layout) { return worker(gpgpCreateSpawner, spawnerInfo(layout)); }
+  GpgpRecorder spawnerFor(const GpgpVertexLayout* layout) { return recorder(gpgpCreateSpawner, spawnerInfo(layout)); }
   void TearDown() override {
     DeviceTest::TearDown();
     for (const std::string& message : messages) ADD_FAILURE() << message;
   }
-  GpgpAsset makeGrammar(const std::vector<uint32_t>& words, GpgpWorker spawner) {
+  GpgpAsset makeGrammar(const std::vector<uint32_t>& words, GpgpRecorder spawner) {
     GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
     info.data = words.data();
     info.size = words.size() * 4;
@@ -353,7 +353,7 @@ struct VerticesTest : DeviceTest {
   Output run(const std::vector<uint32_t>& words, const std::vector<GpgpAxiom>& axioms, const Wanted& wanted) {
     Output out;
     constexpr auto kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    const GpgpWorker spawner = spawnerFor(wanted.vertices);
+    const GpgpRecorder spawner = spawnerFor(wanted.vertices);
     const GpgpAsset grammar = makeGrammar(words, spawner);
     const uint32_t buckets = words[kHeaderBuckets];
     const auto axiomBuffer = host::makeBuffer(device, axioms, kUsage);
@@ -1085,7 +1085,7 @@ TEST_F(VerticesTest, VerticesBeyondTheirRegionAreCounted) {
 TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
   const auto words = bake(ownGrammar("building.pga"));
   const VertexFormat format = wideVertex();
-  const GpgpWorker spawners[2] = {spawnerFor(nullptr), spawnerFor(&format)};
+  const GpgpRecorder spawners[2] = {spawnerFor(nullptr), spawnerFor(&format)};
   const GpgpAsset grammar = makeGrammar(words, spawners[0]);
   const host::Buffer buffer(device, 65536, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   const GpgpFrame f = advance();
@@ -1148,7 +1148,7 @@ TEST_F(VerticesTest, BadLayoutsAreRefusedWithAReason) {
     change(layout);
     GpgpSpawnerCreateInfo info = spawnerInfo(nullptr);
     info.vertices = &layout;
-    GpgpWorker spawner = nullptr;
+    GpgpRecorder spawner = nullptr;
     EXPECT_EQ(gpgpCreateSpawner(context, &info, &spawner), GPGP_ERROR_INVALID_ARGUMENT);
     const std::string text = lastMessage().substr(lastMessage().find(": ") + 2);
     messages.clear();

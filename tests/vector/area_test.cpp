@@ -1,6 +1,6 @@
 // Areas of what is drawn with curves, against their closed forms.
 #include "canvas_fixture.h"
-#include "vector/shape.h"
+#include "vector/shared/shape.h"
 
 #include <numbers>
 
@@ -46,12 +46,12 @@ shader::ItemRecord placedAsIs() {
   return item;
 }
 
-/// What lies left of a segment's chords, with the side as sign: a path's sum is its area.
+/// What lies left of a segment's flattened segments, with the side as sign: a path's sum is its area.
 double areaLeft(const shader::ItemRecord& item, const shader::SegmentRecord& s, uint32_t n) {
   double sum = 0;
   for (uint32_t i = 0; i < n; ++i) {
-    shader::Chord c;
-    if (!shader::chordOf(kGrid, item, s, i, n, shader::chordStep(n), c)) continue;
+    shader::FlatSegment c;
+    if (!shader::flatSegmentOf(kGrid, item, s, i, n, shader::flatSegmentStep(n), c)) continue;
     sum -= static_cast<double>(c.side) * (static_cast<double>(c.bottom.y) - static_cast<double>(c.top.y)) *
            (static_cast<double>(c.bottom.x) + static_cast<double>(c.top.x)) / 2;
   }
@@ -60,7 +60,7 @@ double areaLeft(const shader::ItemRecord& item, const shader::SegmentRecord& s, 
 double flattenedArea(std::span<const shader::SegmentRecord> segments) {
   const shader::ItemRecord item = placedAsIs();
   double sum = 0;
-  for (const shader::SegmentRecord& s : segments) sum += areaLeft(item, s, shader::chordCount(kGrid, item, s));
+  for (const shader::SegmentRecord& s : segments) sum += areaLeft(item, s, shader::flatSegmentCount(kGrid, item, s));
   return sum;
 }
 
@@ -101,8 +101,8 @@ TEST_F(Areas, OfRoundShapesOfListsAreRight) {
   }
 }
 
-/// The chords of any convex curve leave it its area, whatever their number, but for one alone: within 1.25 n^-2 of what
-/// n chords between points of the curve would cut off.
+/// The flattened segments of any convex curve leave it its area, whatever their number, but for one alone: within 1.25 n^-2 of what
+/// n flattened segments between points of the curve would cut off.
 TEST_F(Areas, BesideConvexCurvesAreTheCurves) {
   const shader::ItemRecord item = placedAsIs();
   int tried = 0;
@@ -121,12 +121,12 @@ TEST_F(Areas, BesideConvexCurvesAreTheCurves) {
     s.second = shader::vec4(x[2], y[2], x[3], y[3]);
     s.ends = shader::vec4(x[0], y[0], x[3], y[3]);
     s.side = 1;
-    // Left of the chord from end to end, and between that and the curve.
+    // Left of the flattened segment from end to end, and between that and the curve.
     const double whole = -(y[3] - y[0]) * (x[0] + x[3]) / 2 - 0.5 * (0.6 * (ab + bc) + 0.9 * ac);
     for (const uint32_t n : {2u, 3u, 4u, 6u, 8u, 16u}) {
       const double cut = std::abs(0.5 * (0.6 * (ab + bc) + 0.9 * ac)) / (n * n);
       const double error = std::abs(areaLeft(item, s, n) - whole) / cut;
-      EXPECT_LT(error, n == 2 ? 0.02 : 1.25 / (n * n)) << "in " << n << " chords";
+      EXPECT_LT(error, n == 2 ? 0.02 : 1.25 / (n * n)) << "in " << n << " flatSegments";
     }
     ++tried;
   }

@@ -1,6 +1,6 @@
 // Pictures beside cairo's: gradients of all circles, fills and groups of real drawings.
 #include "cairo_fixture.h"
-#include "cli/vector_truth.h"
+#include "cli/vector_reference.h"
 #include "fetched_svg.h"
 
 namespace {
@@ -67,19 +67,19 @@ TEST_F(CairoTest, GradientsBetweenAnyTwoCircles) {
         const double x = static_cast<double>(k % 64) + 0.5, y = static_cast<double>(k / 64) + 0.5;
         const auto colorAt = [&](double px, double py) {
           if (nothing) return Rgba{};
-          const auto t = cli::truthOfGradient(gradient, px, py);
+          const auto t = cli::referenceOfGradient(gradient, px, py);
           const auto mixed = [&t](size_t n) {
             return host::srgbFromLinear(static_cast<float>(t[n])) * static_cast<float>(t[3]);
           };
           return Rgba{mixed(0), mixed(1), mixed(2), static_cast<float>(t[3])};
         };
-        const Rgba truth = colorAt(x, y);
+        const Rgba reference = colorAt(x, y);
         bool sure = true;
         for (const double d : {-0.01, 0.01})
           sure =
-              sure && differenceOf(truth, colorAt(x + d, y)) < 0.02f && differenceOf(truth, colorAt(x, y + d)) < 0.02f;
+              sure && differenceOf(reference, colorAt(x + d, y)) < 0.02f && differenceOf(reference, colorAt(x, y + d)) < 0.02f;
         doubtful += !sure;
-        wrong += sure && differenceOf(truth, pixels[k]) > 0.02f;
+        wrong += sure && differenceOf(reference, pixels[k]) > 0.02f;
       }
       EXPECT_EQ(wrong, 0u) << where;
       EXPECT_LT(doubtful, pixels.size() / 4) << where;

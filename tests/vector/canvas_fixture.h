@@ -1,4 +1,4 @@
-// A canvas that tests raster with: pixels read back, validation messages as failures, and the CPU twin.
+// A canvas that tests raster with: pixels read back, validation messages as failures, and the CPU reference.
 #pragma once
 #include "../device_test.h"
 #include "host/frames.h"
@@ -8,7 +8,7 @@
 #include "vector/patch/drawing.h"
 #include "vector/raster/place.h"
 #include "vector/raster/segments.h"
-#include "vector/twin/twin.h"
+#include "vector/cpu_reference/cpu_reference.h"
 
 #include <gpgp/vector.h>
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct Rgba {
 };
 
 struct CanvasTest : DeviceTest {
-  GpgpWorker canvas = nullptr;
+  GpgpRecorder canvas = nullptr;
   bool exactArea = false, blendSrgb = false, encodeSrgb = false;
   std::vector<GpgpCanvasImage> images;
   GpgpCanvasTargets canvasTargets = GPGP_CANVAS_TARGET_RGBA16F; ///< of the canvases that are made
@@ -44,7 +44,7 @@ struct CanvasTest : DeviceTest {
     info.maxTileEntries = entries;
     info.maxPaths = paths ? paths : 65536;
     info.targets = canvasTargets;
-    canvas = worker(gpgpCreateCanvas, info, target);
+    canvas = recorder(gpgpCreateCanvas, info, target);
   }
   GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths) {
     GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
@@ -65,12 +65,12 @@ struct CanvasTest : DeviceTest {
     EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), expected) << lastMessage();
     return drawing;
   }
-  GpgpView makeView(uint32_t width, uint32_t height) {
-    GpgpCanvasViewCreateInfo info = GPGP_CANVAS_VIEW_CREATE_INFO_INIT;
+  GpgpHistory makeView(uint32_t width, uint32_t height) {
+    GpgpCanvasHistoryCreateInfo info = GPGP_CANVAS_HISTORY_CREATE_INFO_INIT;
     info.width = width;
     info.height = height;
-    GpgpView view = nullptr;
-    EXPECT_EQ(gpgpCreateCanvasView(context, &info, &view), GPGP_SUCCESS) << lastMessage();
+    GpgpHistory view = nullptr;
+    EXPECT_EQ(gpgpCreateCanvasHistory(context, &info, &view), GPGP_SUCCESS) << lastMessage();
     return view;
   }
   static GpgpCanvasItem place(GpgpAsset drawing, float scale = 1, float x = 0, float y = 0) {
@@ -186,20 +186,20 @@ struct Texture {
   }
 };
 
-/// The samples that each path of a drawing covers, pixel by pixel, as the CPU twin has them.
-struct Twin {
-  Twin(const vector::Drawing& drawing, const shader::ItemRecord& item, uint32_t w, uint32_t h, uint32_t n)
-      : width(w), paths(drawing.paths.size(), std::vector<vector::TwinCoverage>(size_t(w) * h)) {
+/// The samples that each path of a drawing covers, pixel by pixel, as the CPU reference has them.
+struct CpuReference {
+  CpuReference(const vector::Drawing& drawing, const shader::ItemRecord& item, uint32_t w, uint32_t h, uint32_t n)
+      : width(w), paths(drawing.paths.size(), std::vector<vector::CpuCoverage>(size_t(w) * h)) {
     const vector::Outlines outlines = vector::makeOutlines(drawing, std::pmr::get_default_resource());
     const shader::Grid grid{n, static_cast<int>(h * n), static_cast<int>(w)};
     for (const shader::SegmentRecord& segment : outlines.segments)
       vector::coverSegment(grid, item, segment, paths[segment.path]);
     for (auto& path : paths) vector::closeCoverage(grid, path);
   }
-  const vector::TwinCoverage& at(size_t path, uint32_t x, uint32_t y) const { return paths[path][y * width + x]; }
+  const vector::CpuCoverage& at(size_t path, uint32_t x, uint32_t y) const { return paths[path][y * width + x]; }
 
   uint32_t width;
-  std::vector<std::vector<vector::TwinCoverage>> paths;
+  std::vector<std::vector<vector::CpuCoverage>> paths;
 };
 
 } // namespace gpgp::test

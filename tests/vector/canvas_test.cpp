@@ -1,7 +1,7 @@
-// The canvas on the GPU: coverage against the CPU twin bit for bit, seams, budgets, bad arguments, and
-// real drawings against a truth of 256 samples a pixel made from winding numbers.
+// The canvas on the GPU: coverage against the CPU reference bit for bit, seams, budgets, bad arguments, and
+// real drawings against a reference of 256 samples a pixel made from winding numbers.
 #include "canvas_fixture.h"
-#include "cli/vector_truth.h"
+#include "cli/vector_reference.h"
 #include "fetched_svg.h"
 #include "ui_fixture.h"
 
@@ -17,8 +17,8 @@ namespace {
 using namespace gpgp;
 using namespace gpgp::test;
 
-/// Curves that are level somewhere and run down everywhere else, cut near there: their chords turn back a little.
-TEST(Chords, MeetEachRowOfTheirSegmentOnce) {
+/// Curves that are level somewhere and run down everywhere else, cut near there: their flattened segments turn back a little.
+TEST(FlatSegments, MeetEachRowOfTheirSegmentOnce) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0, 1);
   const shader::Grid grid{16, 16 * 64, 64};
@@ -41,13 +41,13 @@ TEST(Chords, MeetEachRowOfTheirSegmentOnce) {
     s.ends = {30, std::clamp(y(begin), top, s.second.w), 31, std::clamp(y(end), top, s.second.w)};
     if (!(s.ends.y < s.ends.w)) continue;
     ++cut;
-    const uint32_t n = shader::chordCount(grid, item, s);
+    const uint32_t n = shader::flatSegmentCount(grid, item, s);
     std::vector<int> met(static_cast<size_t>(grid.rows), 0);
     for (uint32_t k = 0; k < n; ++k) {
-      shader::Chord chord;
-      if (!shader::chordOf(grid, item, s, k, n, shader::chordStep(n), chord)) continue;
-      back += chord.side < 0 && chord.first < chord.last;
-      for (int row = chord.first; row < chord.last; ++row) met[static_cast<size_t>(row)] += chord.side > 0 ? 1 : -1;
+      shader::FlatSegment flatSegment;
+      if (!shader::flatSegmentOf(grid, item, s, k, n, shader::flatSegmentStep(n), flatSegment)) continue;
+      back += flatSegment.side < 0 && flatSegment.first < flatSegment.last;
+      for (int row = flatSegment.first; row < flatSegment.last; ++row) met[static_cast<size_t>(row)] += flatSegment.side > 0 ? 1 : -1;
     }
     for (int row = 0; row < grid.rows; ++row)
       ASSERT_EQ(met[static_cast<size_t>(row)],
@@ -58,14 +58,14 @@ TEST(Chords, MeetEachRowOfTheirSegmentOnce) {
   EXPECT_GT(back, 0u);
 }
 
-TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
+TEST_F(CanvasTest, CoverageEqualsTheCpuReferenceForEverySampleCountAndTransform) {
   makeCanvas(128);
   for (uint32_t seed = 0; seed < 4; ++seed) {
     TestPath path = randomShape(seed, 90);
     path.rule = seed % 2 ? GPGP_FILL_EVEN_ODD : GPGP_FILL_NON_ZERO;
     const GpgpPath view = path.view();
-    const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
-    ASSERT_TRUE(twin);
+    const auto cpu = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+    ASSERT_TRUE(cpu);
     const GpgpAsset drawing = makeDrawing({view});
     const float transforms[][9] = {{1, 0, 0, 1, 0, 0},
                                    {0.8f, 0.6f, -0.6f, 0.8f, 30, -10},
@@ -82,14 +82,14 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
         std::copy_n(t + 6, 3, item.perspective);
         shader::ItemRecord record{};
         ASSERT_TRUE(vector::placeItem(item, 100, 90, record));
-        const Twin covers(*twin, record, 100, 90, samples);
+        const CpuReference covers(*cpu, record, 100, 90, samples);
         for (const bool area : {false, true}) {
           exactArea = area;
           const auto pixels = raster({item}, 100, 90, samples);
           size_t different = 0, covered = 0;
           for (uint32_t y = 0; y < 90; ++y)
             for (uint32_t x = 0; x < 100; ++x) {
-              const vector::TwinCoverage& pixel = covers.at(0, x, y);
+              const vector::CpuCoverage& pixel = covers.at(0, x, y);
               float expected = static_cast<float>(std::popcount(pixel.mask)) / static_cast<float>(samples);
               if (area)
                 expected = std::clamp(
@@ -108,15 +108,15 @@ TEST_F(CanvasTest, CoverageEqualsTheTwinForEverySampleCountAndTransform) {
 }
 
 // Only one sample of each pixel shows through the stripes on top: each lies in a row of its own.
-TEST_F(CanvasTest, MasksEqualTheTwinsBitForBit) {
+TEST_F(CanvasTest, MasksEqualTheCpuReferencesBitForBit) {
   constexpr uint32_t kSide = 64;
   makeCanvas(kSide);
   for (uint32_t seed = 0; seed < 2; ++seed) {
     TestPath path = randomShape(seed, 90);
     path.rule = seed ? GPGP_FILL_EVEN_ODD : GPGP_FILL_NON_ZERO;
     const GpgpPath view = path.view();
-    const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
-    ASSERT_TRUE(twin);
+    const auto cpu = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+    ASSERT_TRUE(cpu);
     const GpgpCanvasItem places[] = {{nullptr, {0.6f, 0.3f, -0.4f, 0.5f, 30, -10}, 1, {}},
                                      {nullptr, {0.5f, 0.1f, 0.2f, 0.6f, 0, 3}, 1, {0.001f, -0.003f, 0.9f}}};
     const GpgpAsset drawing = makeDrawing({view});
@@ -125,7 +125,7 @@ TEST_F(CanvasTest, MasksEqualTheTwinsBitForBit) {
         item.drawing = drawing;
         shader::ItemRecord record{};
         ASSERT_TRUE(vector::placeItem(item, kSide, kSide, record));
-        const Twin covers(*twin, record, kSide, kSide, samples);
+        const CpuReference covers(*cpu, record, kSide, kSide, samples);
         uint32_t different = 0, covered = 0;
         for (uint32_t k = 0; k < samples; ++k) {
           TestPath stripes; // black, over all other rows of samples
@@ -168,7 +168,7 @@ double projectedCoverage(const PathOracle& path, const GpgpCanvasItem& item, uin
   return inside / 64.0;
 }
 
-TEST_F(CanvasTest, ProjectiveItemsLookLikeTheTruth) {
+TEST_F(CanvasTest, ProjectiveItemsLookLikeTheReference) {
   makeCanvas(256);
   TestPath rings; // circles in each other from the eye's feet to far away
   for (int i = 1; i < 12; ++i) {
@@ -192,12 +192,12 @@ TEST_F(CanvasTest, ProjectiveItemsLookLikeTheTruth) {
     GpgpCanvasItem item{drawing, {}, 1, {}};
     std::copy_n(map, 6, item.transform);
     std::copy_n(map + 6, 3, item.perspective);
-    std::vector<float> truth;
+    std::vector<float> reference;
     double covered = 0;
     for (uint32_t i = 0; i < width * height; ++i) {
       const double coverage = projectedCoverage(oracle, item, i % width, i / width);
       covered += coverage;
-      truth.insert(truth.end(), {0, 0, 0, static_cast<float>(coverage)});
+      reference.insert(reference.end(), {0, 0, 0, static_cast<float>(coverage)});
     }
     EXPECT_GT(covered, 500) << &map - maps;
     for (const bool area : {false, true}) {
@@ -205,7 +205,7 @@ TEST_F(CanvasTest, ProjectiveItemsLookLikeTheTruth) {
       const auto pixels = raster({item}, width, height, 16);
       double sum = 0;
       for (size_t i = 0; i < pixels.size(); ++i)
-        sum += std::pow(static_cast<double>(pixels[i].a) - static_cast<double>(truth[i * 4 + 3]), 2);
+        sum += std::pow(static_cast<double>(pixels[i].a) - static_cast<double>(reference[i * 4 + 3]), 2);
       const double db = -10 * std::log10(sum / static_cast<double>(pixels.size()) + 1e-12);
       std::printf("map %td%s: %.1f dB, %.0f pixels covered\n", &map - maps, area ? ", area" : "", db, covered);
       EXPECT_GE(db, area ? 39.0 : 35.0) << &map - maps;
@@ -213,7 +213,7 @@ TEST_F(CanvasTest, ProjectiveItemsLookLikeTheTruth) {
         const std::string base = std::string(folder) + "/projective" + std::to_string(&map - maps) + (area ? "a" : "");
         host::writePng(base + ".gpu.png",
                        host::fromLinearPremultiplied(width, height, std::span(&pixels[0].r, pixels.size() * 4)));
-        host::writePng(base + ".truth.png", host::fromLinearPremultiplied(width, height, truth));
+        host::writePng(base + ".reference.png", host::fromLinearPremultiplied(width, height, reference));
       }
     }
   }
@@ -337,7 +337,7 @@ TEST_F(CanvasTest, ExceededBudgetsLeaveOutWholePathsAndSayHowMany) {
   EXPECT_EQ(whole.base.status, GPGP_SUCCESS);
   EXPECT_EQ(whole.pathsDropped, 0u);
   ASSERT_GT(whole.tileEntries, 100u);
-  const GpgpWorker roomy = canvas;
+  const GpgpRecorder roomy = canvas;
   makeCanvas(128, whole.tileEntries / 2);
   GpgpCanvasReport part = GPGP_CANVAS_REPORT_INIT;
   const auto pixels = raster({place(all)}, 128, 128, 4, &part);
@@ -443,7 +443,7 @@ TEST_F(CanvasTest, TooFewTileWordsLeaveOutTheLastPaths) {
   EXPECT_LE(report.tileEntries, report.tileEntriesGiven);
   EXPECT_EQ(report.tileEntriesGiven, 65536u);
   // Words are a budget of their own, and as many as are needed suffice.
-  const GpgpWorker few = canvas;
+  const GpgpRecorder few = canvas;
   for (const uint32_t words : {report.tileWords - 1, report.tileWords}) {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
@@ -451,7 +451,7 @@ TEST_F(CanvasTest, TooFewTileWordsLeaveOutTheLastPaths) {
     info.maxTileEntries = 65536;
     info.maxTileWords = words;
     info.targets = canvasTargets;
-    canvas = worker(gpgpCreateCanvas, info);
+    canvas = recorder(gpgpCreateCanvas, info);
     GpgpCanvasReport again = GPGP_CANVAS_REPORT_INIT;
     raster({place(drawing)}, 512, 512, 4, &again);
     EXPECT_EQ(again.pathsDropped, report.tileWords - words);
@@ -605,7 +605,7 @@ TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
   GpgpPath path = square.view();
   path.image = &paint;
   const GpgpAsset drawing = makeDrawing({path});
-  const GpgpView view = makeView(64, 64);
+  const GpgpHistory view = makeView(64, 64);
   const GpgpFrame frame = advance();
   device.submitAndWait([&](VkCommandBuffer commands) {
     ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
@@ -614,7 +614,7 @@ TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
     info.width = info.height = 32;
     info.items = &item;
     info.itemCount = 1;
-    info.view = view;
+    info.history = view;
     const auto expect = [&](GpgpResult result, const char* words) {
       info.images = images.data();
       info.imageCount = static_cast<uint32_t>(images.size());
@@ -669,8 +669,8 @@ TEST_F(CanvasTest, ClipsAreTheUnionOfTheirPathsWithinThoseAbove) {
   for (uint32_t i = 0; i < 4; ++i) shapes.push_back(randomShape(20 + i, 90));
   std::vector<GpgpPath> views;
   for (const TestPath& s : shapes) views.push_back(s.view());
-  const auto twinDrawing = vector::makeDrawing(views, std::pmr::get_default_resource());
-  ASSERT_TRUE(twinDrawing);
+  const auto cpuDrawing = vector::makeDrawing(views, std::pmr::get_default_resource());
+  ASSERT_TRUE(cpuDrawing);
   const GpgpPath either[] = {views[1], views[2]};
   const std::vector<GpgpPathGroup> groups = {{0, 1, either, 2}, {1, 1, &views[3], 1}, {0, 1, &views[3], 0}};
   GpgpPath none = views[0], one = views[0], both = views[0];
@@ -683,16 +683,16 @@ TEST_F(CanvasTest, ClipsAreTheUnionOfTheirPathsWithinThoseAbove) {
       const GpgpCanvasItem item = place(drawing, 0.9f, 3, 2);
       shader::ItemRecord record{};
       ASSERT_TRUE(vector::placeItem(item, 100, 90, record));
-      const Twin twin(*twinDrawing, record, 100, 90, samples);
+      const CpuReference cpu(*cpuDrawing, record, 100, 90, samples);
       const auto pixels = raster({item}, 100, 90, samples);
       size_t different = 0, covered = 0, cut = 0;
       for (uint32_t y = 0; y < 90; ++y)
         for (uint32_t x = 0; x < 100; ++x) {
-          uint32_t mask = twin.at(0, x, y).mask & (twin.at(1, x, y).mask | twin.at(2, x, y).mask);
-          if (nested) mask &= twin.at(3, x, y).mask;
+          uint32_t mask = cpu.at(0, x, y).mask & (cpu.at(1, x, y).mask | cpu.at(2, x, y).mask);
+          if (nested) mask &= cpu.at(3, x, y).mask;
           const float expected = static_cast<float>(std::popcount(mask)) / static_cast<float>(samples);
           covered += mask != 0;
-          cut += mask != twin.at(0, x, y).mask;
+          cut += mask != cpu.at(0, x, y).mask;
           different += pixels[y * 100 + x].a != expected;
         }
       EXPECT_EQ(different, 0u) << samples << " " << nested;
@@ -930,7 +930,7 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
   TestPath square;
   square.move(1, 1).line(4, 1).line(4, 3).close();
   const GpgpAsset drawing = makeDrawing({square.view()});
-  const GpgpView view = makeView(64, 64);
+  const GpgpHistory view = makeView(64, 64);
   GpgpFrame frame = advance();
   device.submitAndWait([&](VkCommandBuffer commands) {
     const GpgpCanvasItem good = place(drawing);
@@ -942,7 +942,7 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
       info.width = info.height = 32;
       info.items = &item;
       info.itemCount = 1;
-      info.view = view;
+      info.history = view;
     };
     const auto expect = [&](GpgpResult result, const char* words) {
       messages.clear();
@@ -960,7 +960,7 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
     info.width = 0, expect(GPGP_ERROR_INVALID_ARGUMENT, "0 x 32");
     info.width = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "65 x 32");
     info.samples = 3, expect(GPGP_ERROR_INVALID_ARGUMENT, "samples");
-    info.view = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "neither view nor target");
+    info.history = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "neither view nor target");
     info.items = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "items is NULL");
     info.itemCount = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "itemCount");
     item.opacity = 2, expect(GPGP_ERROR_INVALID_ARGUMENT, "opacity");
@@ -1013,7 +1013,7 @@ TEST_F(CanvasTest, ABakedDrawingIsReadOutOfAMappedFile) {
 
 struct RealDrawing : CanvasTest, testing::WithParamInterface<const char*> {};
 
-TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
+TEST_P(RealDrawing, LooksLikeTheReferenceOf256Samples) {
   const auto svg = fetchedSvg(GetParam());
   if (!svg) GTEST_SKIP() << GetParam() << " is not there";
   const vector::svg::ImportedViews views(*svg);
@@ -1027,7 +1027,7 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
   const auto pixels = raster({item}, size, size, 16, &report);
   EXPECT_EQ(report.pathsDropped, 0u);
   const float nothing[4] = {};
-  const std::vector<float> expected = cli::vectorTruth(views.paths, views.groups, item.transform, nothing, size, size);
+  const std::vector<float> expected = cli::vectorReference(views.paths, views.groups, item.transform, nothing, size, size);
   const auto psnr = [&expected](const std::vector<Rgba>& picture) {
     return cli::psnrOverWhite(std::span(&picture[0].r, picture.size() * 4), expected);
   };
@@ -1043,7 +1043,7 @@ TEST_P(RealDrawing, LooksLikeTheTruthOf256Samples) {
     const std::string base = std::string(folder) + "/" + std::filesystem::path(GetParam()).stem().string();
     host::writePng(base + ".gpu.png",
                    host::fromLinearPremultiplied(size, size, std::span(&pixels[0].r, pixels.size() * 4)));
-    host::writePng(base + ".truth.png", host::fromLinearPremultiplied(size, size, expected));
+    host::writePng(base + ".reference.png", host::fromLinearPremultiplied(size, size, expected));
   }
 }
 INSTANTIATE_TEST_SUITE_P(Svg, RealDrawing,

@@ -1,8 +1,8 @@
-// Glyph sets and text items: against the same glyphs as drawings and against the CPU twin bit for bit, small sizes
+// Glyph sets and text items: against the same glyphs as drawings and against the CPU reference bit for bit, small sizes
 // against FreeType's rasteriser, uploads, eviction, budgets, baked glyphs, bad arguments.
 #include "canvas_fixture.h"
 #include "host/picture.h"
-#include "vector/placement.h"
+#include "vector/place/placement.h"
 
 #include <bit>
 #include <cstdlib>
@@ -166,7 +166,7 @@ TEST_F(GlyphTest, ATextEqualsItsGlyphsAsDrawings) {
 /// Small glyphs take passes of their own on GPUs: alone, among others, cut by scissors and by the canvas.
 TEST_F(GlyphTest, SmallGlyphsAreDrawnAsDrawingsAre) {
   GpgpCanvasCreateInfo info = canvasOf(160);
-  canvas = worker(gpgpCreateCanvas, info);
+  canvas = recorder(gpgpCreateCanvas, info);
   const Shapes shapes(1, 3);
   const GpgpAsset set = makeSet();
   const auto indices = add(set, shapes.glyphs);
@@ -223,13 +223,13 @@ TEST_F(GlyphTest, SmallGlyphsAreDrawnAsDrawingsAre) {
         }
 
   // Too few entries: those that are drawn are the first ones, whichever passes they take.
-  const GpgpWorker roomy = canvas;
+  const GpgpRecorder roomy = canvas;
   GpgpCanvasReport whole = GPGP_CANVAS_REPORT_INIT;
   raster({text(set, glyphs)}, 128, 128, 16, &whole);
   ASSERT_EQ(whole.base.status, GPGP_SUCCESS);
   for (const uint32_t share : {8u, 4u, 2u}) {
     info.maxTileEntries = whole.tileEntries / share;
-    canvas = worker(gpgpCreateCanvas, info);
+    canvas = recorder(gpgpCreateCanvas, info);
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
     const auto pixels = raster({text(set, glyphs)}, 128, 128, 16, &report);
     EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
@@ -245,7 +245,7 @@ TEST_F(GlyphTest, SmallGlyphsAreDrawnAsDrawingsAre) {
 
 /// More small glyphs over one tile than its list has room for, in an order that shows, translucent and opaque.
 TEST_F(GlyphTest, SmallGlyphsMayLieOnTopOfEachOther) {
-  canvas = worker(gpgpCreateCanvas, canvasOf(256));
+  canvas = recorder(gpgpCreateCanvas, canvasOf(256));
   const Shapes shapes(1, 3);
   const GpgpAsset set = makeSet();
   const auto indices = add(set, shapes.glyphs);
@@ -407,7 +407,7 @@ TEST_F(GlyphTest, GradientsGoWithTheirGlyphs) {
     }
 }
 
-TEST_F(GlyphTest, CoverageEqualsTheTwinForAffineAndProjectiveText) {
+TEST_F(GlyphTest, CoverageEqualsTheCpuReferenceForAffineAndProjectiveText) {
   makeCanvas(128);
   const Shapes shapes(10, 3);
   const GpgpAsset set = makeSet();
@@ -433,7 +433,7 @@ TEST_F(GlyphTest, CoverageEqualsTheTwinForAffineAndProjectiveText) {
         placement.x = glyphs[0].x, placement.y = glyphs[0].y, placement.size = glyphs[0].size;
         const auto drawing = vector::makeDrawing(std::span(&shapes.paths[k], 1), std::pmr::get_default_resource());
         ASSERT_TRUE(drawing);
-        const Twin covers(*drawing, shader::placed(source, placement), 100, 90, samples);
+        const CpuReference covers(*drawing, shader::placed(source, placement), 100, 90, samples);
         const auto pixels = raster({item}, 100, 90, samples);
         size_t different = 0;
         for (uint32_t i = 0; i < 100 * 90; ++i) {
@@ -628,7 +628,7 @@ TEST_F(GlyphTest, CanvasBudgetsLeaveOutWholeGlyphs) {
   raster({text(set, glyphs)}, 128, 128, 4, &whole);
   EXPECT_EQ(whole.base.status, GPGP_SUCCESS);
   EXPECT_EQ(whole.glyphs, 30u);
-  const GpgpWorker roomy = canvas;
+  const GpgpRecorder roomy = canvas;
   const auto firstOnly = [&](size_t count) {
     canvas = roomy;
     return raster({text(set, {glyphs.begin(), glyphs.begin() + static_cast<long>(count)})}, 128, 128, 4);
@@ -650,7 +650,7 @@ TEST_F(GlyphTest, CanvasBudgetsLeaveOutWholeGlyphs) {
     ASSERT_TRUE(same(pixels, firstOnly(30 - report.pathsDropped / 2))) << what;
   };
   // Budgets in turn, each odd enough to end within a glyph.
-  const auto make = [&] { canvas = worker(gpgpCreateCanvas, info); };
+  const auto make = [&] { canvas = recorder(gpgpCreateCanvas, info); };
   info.maxGlyphs = 11;
   make();
   check("maxGlyphs");
@@ -936,9 +936,9 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       instances.push_back(
           {indices[i], static_cast<float>(x) / 64, static_cast<float>(y) / 64, static_cast<float>(size), {0, 0, 0, 1}});
     }
-    std::vector<double> truth(coarse.size(), 0), ofRows(coarse.size(), 0), ofCurves(coarse.size(), 0);
+    std::vector<double> reference(coarse.size(), 0), ofRows(coarse.size(), 0), ofCurves(coarse.size(), 0);
     for (size_t i = 0; i < fine.size(); ++i)
-      truth[i / (size_t(width) * kFine) / kFine * width + i % (size_t(width) * kFine) / kFine] +=
+      reference[i / (size_t(width) * kFine) / kFine * width + i % (size_t(width) * kFine) / kFine] +=
           static_cast<double>(fine[i]) / (kFine * kFine);
     for (size_t i = 0; i < ids.size(); ++i) {
       cover(oracles[i], instances[i], 16, width, height, ofRows);
@@ -948,30 +948,30 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       exactArea = area;
       const auto pixels = raster({text(set, instances)}, width, height, 16);
       // Mean differences of pixels with ink, of 255.
-      double sum = 0, fromFreeType = 0, fromFine = 0, fromTruth = 0, freeType = 0, reference = 0, fromRows = 0,
+      double sum = 0, fromFreeType = 0, fromFine = 0, fromReference = 0, freeType = 0, reference = 0, fromRows = 0,
              rows = 0;
       size_t inked = 0, inkedStraight = 0;
-      for (size_t i = 0; i < truth.size(); ++i) {
+      for (size_t i = 0; i < reference.size(); ++i) {
         const double seen = static_cast<double>(pixels[i].a) * 255, wanted = static_cast<double>(coarse[i]);
         if (seen == 0 && wanted == 0) continue;
         ++inked;
         sum += seen - wanted;
         fromFreeType += std::abs(seen - wanted);
-        fromFine += std::abs(seen - truth[i]);
-        fromTruth += std::abs(seen - ofCurves[i]);
+        fromFine += std::abs(seen - reference[i]);
+        fromReference += std::abs(seen - ofCurves[i]);
         if (const size_t glyph = i / width / cell * 16 + i % width / cell; glyph < ids.size() && straight[glyph]) {
           ++inkedStraight;
           fromRows += std::abs(seen - ofRows[i]);
           rows += std::abs(ofRows[i] - ofCurves[i]);
         }
         freeType += std::abs(wanted - ofCurves[i]);
-        reference += std::abs(truth[i] - ofCurves[i]);
+        reference += std::abs(reference[i] - ofCurves[i]);
       }
       const double n = static_cast<double>(inked), m = static_cast<double>(inkedStraight);
       std::printf("%s, %u px%s: %zu pixels with ink; of coverage %.3f; mean difference from FreeType %.2f, with no "
                   "rounding %.2f, from the curves %.2f; FreeType's from the curves %.2f, with none %.2f; letters "
                   "without curves from 16 exact rows a pixel %.2f, such rows from the letters %.2f\n",
-                  GetParam(), size, area ? ", area" : "", inked, sum / n, fromFreeType / n, fromFine / n, fromTruth / n,
+                  GetParam(), size, area ? ", area" : "", inked, sum / n, fromFreeType / n, fromFine / n, fromReference / n,
                   freeType / n, reference / n, fromRows / m, rows / m);
       EXPECT_GT(inked, ids.size() * size);
       EXPECT_GT(inkedStraight, inked / 8);
@@ -979,8 +979,8 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       EXPECT_LE(reference / n, 0.4) << size << ": the curves are what FreeType comes to without its rounding";
       if (area) {
         EXPECT_LE(fromFine / n, 1.5) << size << ": the pixels of FreeType's rasteriser where it does not round points";
-        EXPECT_LE(fromTruth / n, 1.5) << size << ": the pixels of the curves themselves";
-        EXPECT_LT(fromTruth, freeType) << size << ": nearer to the curves than FreeType at this size";
+        EXPECT_LE(fromReference / n, 1.5) << size << ": the pixels of the curves themselves";
+        EXPECT_LT(fromReference, freeType) << size << ": nearer to the curves than FreeType at this size";
         EXPECT_LE(fromRows / m, 0.4) << size << ": without curves all that is off comes of 16 rows a pixel";
       }
       if (const char* folder = std::getenv("GPGP_TEST_PICTURES")) {

@@ -198,7 +198,7 @@ TEST_F(CanvasTest, ListsBeyondBudgetsLeaveOutTheLastAndSayHowMany) {
   info.maxShapes = 5;
   info.maxDrawings = 3;
   info.targets = canvasTargets;
-  canvas = worker(gpgpCreateCanvas, info);
+  canvas = recorder(gpgpCreateCanvas, info);
   TestList list(context);
   for (int i = 0; i < 8; ++i) list.add(rectangle(static_cast<float>(i) * 8, 0, static_cast<float>(i) * 8 + 8, 64));
   GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
@@ -301,17 +301,17 @@ TEST_F(CanvasTest, WrongCallsOfListsSayWhatIsWrong) {
   const auto record = [&](GpgpCanvasItem item) {
     const GpgpFrame frame = advance();
     GpgpResult result = GPGP_SUCCESS;
-    const GpgpView view = makeView(64, 64);
+    const GpgpHistory view = makeView(64, 64);
     device.submitAndWait([&](VkCommandBuffer commands) {
       EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
       GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
       info.width = info.height = 64;
       info.items = &item;
       info.itemCount = 1;
-      info.view = view;
+      info.history = view;
       result = gpgpRecordPrepareCanvas(canvas, commands, &frame, &info);
     });
-    gpgpDestroyView(view);
+    gpgpDestroyHistory(view);
     return result;
   };
   refused(record(list.item()), "items[0].list: 16 of its pushes are not popped");

@@ -15,7 +15,7 @@
 #include "cli/session.h"
 #include "cli/textures.h"
 #include "cli/vector_images.h"
-#include "cli/vector_truth.h"
+#include "cli/vector_reference.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "tile_difference.h"
@@ -69,7 +69,7 @@ class Ours {
 public:
   explicit Ours(uint32_t size) : session_({}) {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
-    info.base = session_.workerInfo("comparison");
+    info.base = session_.recorderInfo("comparison");
     info.maxWidth = info.maxHeight = size;
     info.maxPaths = 1 << 20;
     info.maxTileEntries = 1 << 18;
@@ -119,7 +119,7 @@ public:
     compared.images = !images.pictures().empty();
     const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     const auto measured = session_.measure(
-        canvas_, "drawing", 1, [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordInfo& base) {
+        canvas_, "drawing", 1, [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
           GpgpCanvasInfo canvas = GPGP_CANVAS_INFO_INIT;
           canvas.base = base;
           canvas.width = w;
@@ -199,11 +199,11 @@ std::vector<fs::path> chosen(const Options& options) {
 }
 
 /// Mean difference of channels, of 255, from 256 samples a pixel.
-double distanceFromTruth(const host::Picture& picture, std::span<const float> truth) {
+double distanceFromReference(const host::Picture& picture, std::span<const float> reference) {
   double sum = 0;
-  for (size_t i = 0; i < truth.size(); ++i)
-    if (i % 4 != 3) sum += std::abs(static_cast<double>(picture.rgba[i]) - static_cast<double>(truth[i]) * 255);
-  return sum / (0.75 * static_cast<double>(truth.size()));
+  for (size_t i = 0; i < reference.size(); ++i)
+    if (i % 4 != 3) sum += std::abs(static_cast<double>(picture.rgba[i]) - static_cast<double>(reference[i]) * 255);
+  return sum / (0.75 * static_cast<double>(reference.size()));
 }
 
 /// Ours, librsvg's and where they differ, each drawing's in a row, the rows in three columns.
@@ -236,13 +236,13 @@ void writeReport(const Options& options, const std::vector<Compared>& worst,
     const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), quiet, {}, {}, detail);
     const vector::svg::ImportedViews views(*svg);
     const float white[4] = {1, 1, 1, 1};
-    const auto truth = cli::vectorTruth(views.paths, views.groups, c.transform, white, shown[0].width, shown[0].height,
+    const auto reference = cli::vectorReference(views.paths, views.groups, c.transform, white, shown[0].width, shown[0].height,
                                         cli::Blend::Srgb);
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, "%5.2f %% of pixels, mean %5.2f; ", c.large * 100, c.mean);
-    if (!c.images) // the truth knows none
-      std::snprintf(numbers + std::strlen(numbers), 100, "from the truth: gpgp %5.2f, librsvg %5.2f",
-                    distanceFromTruth(shown[0], truth), distanceFromTruth(shown[1], truth));
+    if (!c.images) // the reference knows none
+      std::snprintf(numbers + std::strlen(numbers), 100, "from the reference: gpgp %5.2f, librsvg %5.2f",
+                    distanceFromReference(shown[0], reference), distanceFromReference(shown[1], reference));
     page += std::string("<td>") + c.file.string() + "<br>" + numbers + "\n";
     std::printf("%s  %s\n", numbers, c.file.string().c_str());
   }

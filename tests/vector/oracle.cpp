@@ -91,12 +91,12 @@ int PathOracle::winding(double x, double y) const {
 }
 
 double PathOracle::distance(double x, double y) const {
-  constexpr int kChords = 1024;
+  constexpr int kFlatSegments = 1024;
   double least = 1e300;
   for (const Piece& p : pieces_) {
     double fromX = bernstein(p.c, 0, p.t0) - x, fromY = bernstein(p.c, 1, p.t0) - y;
-    for (int i = 1; i <= kChords; ++i) {
-      const double t = p.t0 + (p.t1 - p.t0) * i / kChords;
+    for (int i = 1; i <= kFlatSegments; ++i) {
+      const double t = p.t0 + (p.t1 - p.t0) * i / kFlatSegments;
       const double toX = bernstein(p.c, 0, t) - x, toY = bernstein(p.c, 1, t) - y;
       const double dx = toX - fromX, dy = toY - fromY, square = dx * dx + dy * dy;
       const double at = square > 0 ? std::clamp(-(fromX * dx + fromY * dy) / square, 0.0, 1.0) : 0;

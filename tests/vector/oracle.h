@@ -1,4 +1,4 @@
-// Point-in-path by winding number: the tests' truth, written apart from the library's conversion.
+// Point-in-path by winding number: the tests' reference, written apart from the library's conversion.
 //
 // A path's curves are cut where they turn in y only; a ray to the left counts them by bisection in double precision.
 #pragma once
@@ -49,7 +49,7 @@ public:
     return inside(x - distance, y) == in && inside(x + distance, y) == in && inside(x, y - distance) == in &&
            inside(x, y + distance) == in;
   }
-  /// To the nearest point of the outline, found by a thousand chords a piece. Where `certain` is asked in a sliver
+  /// To the nearest point of the outline, found by a thousand flattened segments a piece. Where `certain` is asked in a sliver
   /// thinner than its distance, the neighbours can all lie beyond the other edge.
   double distance(double x, double y) const;
   struct Crossing {

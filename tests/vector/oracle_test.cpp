@@ -6,7 +6,7 @@
 // for all points in it.
 #include "host/files.h"
 #include "oracle.h"
-#include "vector/curve.h"
+#include "vector/shared/curve.h"
 #include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
 

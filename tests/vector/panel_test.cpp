@@ -122,7 +122,7 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
     GTEST_SKIP() << "the device has no dynamic rendering or no multiview";
   // lavapipe of Mesa 22.3 leaves view 1 of a multiview pass as it was cleared; there, the eyes' own passes are judged.
   const bool judgesMultiview = device.properties().deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
-  canvasTargets = GPGP_CANVAS_TARGET_VIEW;
+  canvasTargets = GPGP_CANVAS_TARGET_HISTORY;
   makeCanvas(128);
   TestList list(context);
   fillWindow(list);
@@ -134,7 +134,7 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
     const uint32_t viewport[] = {eye * kWidth, 0, kWidth, kHeight};
     ASSERT_EQ(gpgpPlacePanel(&panel, glm::value_ptr(cameras[eye]), viewport, &items[eye], clips[eye]), GPGP_SUCCESS);
   }
-  const GpgpView view = makeView(2 * kWidth, kHeight);
+  const GpgpHistory view = makeView(2 * kWidth, kHeight);
   for (const bool multiview : {false, true}) {
     GpgpTargetInfo target = GPGP_TARGET_INFO_INIT;
     target.colorFormat = VK_FORMAT_R8G8B8A8_SRGB;
@@ -158,7 +158,7 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
       info.height = kHeight;
       info.items = items.data();
       info.itemCount = 2;
-      info.view = view;
+      info.history = view;
       ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
       for (uint32_t pass = 0; pass < passes; ++pass) {
         for (const host::Image* image : {&targets[pass].color, &targets[pass].depth})
@@ -185,7 +185,7 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
         vk.vkCmdSetViewport(commands, 0, 1, &viewport);
         vk.vkCmdSetScissor(commands, 0, 1, &scissor);
         GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
-        draw.view = view;
+        draw.history = view;
         draw.target = &target;
         draw.width = kWidth;
         draw.height = kHeight;
@@ -226,7 +226,7 @@ TEST_F(CanvasTest, PanelsAreInFrontOfTheSceneAndBehindItInBothEyes) {
   EXPECT_EQ(hit.item, 1u);
   EXPECT_NEAR(hit.x, u, 0.01);
   EXPECT_NEAR(hit.y, v, 0.01);
-  gpgpDestroyView(view);
+  gpgpDestroyHistory(view);
   GpgpTargetInfo many = GPGP_TARGET_INFO_INIT;
   many.colorFormat = VK_FORMAT_R8G8B8A8_SRGB;
   many.viewMask = 4;

@@ -1,4 +1,4 @@
-// Records of random things of all kinds that a canvas draws, with what the CPU twin needs of them.
+// Records of random things of all kinds that a canvas draws, with what the CPU reference needs of them.
 #pragma once
 #include "ui_fixture.h"
 #include "vector/raster/drawing_asset.h"

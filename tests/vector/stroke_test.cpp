@@ -183,7 +183,7 @@ TEST(Stroke, DegenerateCurves) {
       {"controls a rounding from ends",
        of(Point{20, 20}, Point{20.000001, 20.000001}, Point{80, 60.00001}, Point{80, 60})},
       {"closed on itself", of(Point{50, 20}, Point{120, 90}, Point{-20, 90}, Point{50, 20})},
-      {"no chord", of(Point{50, 20}, Point{50, 90}, Point{50, 90}, Point{50, 20})},
+      {"no flatSegment", of(Point{50, 20}, Point{50, 90}, Point{50, 90}, Point{50, 20})},
       {"hairpin", of(Point{20, 50}, Point{90, 50}, Point{90, 50.5}, Point{20, 50.5})},
       {"collinear", of(Point{20, 20}, Point{40, 40}, Point{60, 60}, Point{80, 80})},
       {"two bends beside the slowest point", of(Point{20, 20}, Point{185, 20}, Point{15, 22}, Point{180, 20})},

@@ -1,6 +1,6 @@
 // SVG text imported by a test: what came of it, what was said, and what it looks like by winding numbers.
 #pragma once
-#include "cli/vector_truth.h"
+#include "cli/vector_reference.h"
 #include "vector/import/svg/import.h"
 
 #include <algorithm>
@@ -80,7 +80,7 @@ inline std::vector<float> picture(const Import& import) {
   const double width = import.drawing.width, height = import.drawing.height;
   const float t[6] = {static_cast<float>(kPictured / width), 0, 0, static_cast<float>(kPictured / height), 0, 0};
   const float white[4] = {1, 1, 1, 1};
-  return cli::vectorTruth(views.paths, views.groups, t, white, kPictured, kPictured, cli::Blend::Srgb);
+  return cli::vectorReference(views.paths, views.groups, t, white, kPictured, kPictured, cli::Blend::Srgb);
 }
 
 /// The largest difference of a channel of any pixel, of 255.

@@ -127,7 +127,7 @@ TEST_F(CanvasTest, ScissorsCutSampleBySample) {
   for (uint32_t seed = 0; seed < 3; ++seed) {
     const TestPath path = randomShape(seed + 20, 90);
     const GpgpPath view = path.view();
-    const auto twin = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
+    const auto cpu = vector::makeDrawing(std::span(&view, 1), std::pmr::get_default_resource());
     const GpgpAsset drawing = makeDrawing({view});
     for (const auto& map : kMaps)
       for (const auto& box : boxes)
@@ -135,13 +135,13 @@ TEST_F(CanvasTest, ScissorsCutSampleBySample) {
           list.reset().clip(box).push(map).add(drawing).pop(2);
           const TestPath clipPath = rectanglePath(box[0], box[1], box[2], box[3]);
           const GpgpPath clip = clipPath.view();
-          const auto clipTwin = vector::makeDrawing(std::span(&clip, 1), std::pmr::get_default_resource());
+          const auto clipCpuReference = vector::makeDrawing(std::span(&clip, 1), std::pmr::get_default_resource());
           shader::ItemRecord record{}, identity{};
           ASSERT_TRUE(vector::placeItem(vector::toMap(map.data(), map.data() + 6), 100, 90, record));
           ASSERT_TRUE(vector::placeItem(vector::Map{}, 100, 90, identity));
-          const Twin covers(*twin, record, 100, 90, samples), shows(*clipTwin, identity, 100, 90, samples);
+          const CpuReference covers(*cpu, record, 100, 90, samples), shows(*clipCpuReference, identity, 100, 90, samples);
           record.scissor = {box[0], box[1], box[2], box[3]};
-          const Twin cut(*twin, record, 100, 90, samples);
+          const CpuReference cut(*cpu, record, 100, 90, samples);
           for (const bool area : {false, true}) {
             exactArea = area;
             const auto pixels = raster({list.item()}, 100, 90, samples);

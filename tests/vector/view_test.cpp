@@ -65,7 +65,7 @@ struct Attachment {
     framebufferInfo.layers = 1;
     EXPECT_EQ(device.vk().vkCreateFramebuffer(device.device(), &framebufferInfo, nullptr, &framebuffer), VK_SUCCESS);
     target.renderPass = pass;
-    target.colorFormat = format; // by which workers are told apart where a handle comes again
+    target.colorFormat = format; // by which recorders are told apart where a handle comes again
   }
   ~Attachment() {
     device.vk().vkDestroyFramebuffer(device.device(), framebuffer, nullptr);
@@ -92,9 +92,9 @@ struct Attachment {
     device.vk().vkCmdEndRenderPass(commands);
   }
   /// All of a view, a pixel a pixel.
-  GpgpCanvasDrawInfo drawAll(GpgpView view) const {
+  GpgpCanvasDrawInfo drawAll(GpgpHistory view) const {
     GpgpCanvasDrawInfo draw = GPGP_CANVAS_DRAW_INFO_INIT;
-    draw.view = view;
+    draw.history = view;
     draw.target = &target;
     draw.width = width;
     draw.height = height;
@@ -108,9 +108,9 @@ struct Attachment {
 
 TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
   const Attachment attachment(device, VK_FORMAT_R8G8B8A8_UNORM, 64, 48);
-  canvasTargets = GPGP_CANVAS_TARGET_VIEW;
+  canvasTargets = GPGP_CANVAS_TARGET_HISTORY;
   makeCanvas(64, 0, 0, &attachment.target);
-  const GpgpView view = makeView(64, 48);
+  const GpgpHistory view = makeView(64, 48);
   TestPath square;
   square.move(10, 10).line(40, 10).line(40, 30).line(10, 30).close();
   square.color = {1, 0.5f, 0, 1};
@@ -120,7 +120,7 @@ TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
     ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
     const std::vector<GpgpCanvasItem> items{place(drawing)};
     GpgpCanvasInfo info = infoOf(items, 64, 48);
-    info.view = view;
+    info.history = view;
     const GpgpCanvasDrawInfo draw = attachment.drawAll(view);
     EXPECT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_NOT_READY);
     ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
@@ -145,9 +145,9 @@ TEST_F(CanvasTest, TheDrawTestsDepthAndWritesNone) {
   attachment.target.depthFormat = VK_FORMAT_D32_SFLOAT;
   attachment.target.depthTest = VK_TRUE;
   attachment.target.depthCompare = VK_COMPARE_OP_LESS;
-  canvasTargets = GPGP_CANVAS_TARGET_VIEW;
+  canvasTargets = GPGP_CANVAS_TARGET_HISTORY;
   makeCanvas(64, 0, 0, &attachment.target);
-  const GpgpView view = makeView(64, 48);
+  const GpgpHistory view = makeView(64, 48);
   TestPath all;
   all.move(0, 0).line(64, 0).line(64, 48).line(0, 48).close();
   all.color = {1, 1, 1, 0.5f};
@@ -157,7 +157,7 @@ TEST_F(CanvasTest, TheDrawTestsDepthAndWritesNone) {
     ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
     const std::vector<GpgpCanvasItem> items{place(drawing)};
     GpgpCanvasInfo info = infoOf(items, 64, 48);
-    info.view = view;
+    info.history = view;
     ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
     attachment.render(commands, {{0, 0, 0, 0}}, [&] {
       // What is there: at the left nearer than the view, in the middle farther, at the right farther still.
@@ -195,7 +195,7 @@ struct TwoWays : CanvasTest {
   static constexpr uint32_t kWidth = 160, kHeight = 120;
   /// What an attachment and a storage image hold of the same items: prepared apart, or by one record.
   std::pair<std::vector<uint8_t>, std::vector<uint8_t>> bothWays(const std::vector<GpgpCanvasItem>& items,
-                                                                 const Attachment& attachment, GpgpView view,
+                                                                 const Attachment& attachment, GpgpHistory view,
                                                                  const host::Image& direct, bool opaque, bool apart) {
     const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     const GpgpFrame frame = advance();
@@ -205,10 +205,10 @@ struct TwoWays : CanvasTest {
       if (opaque)
         info.background[0] = 0.9f, info.background[1] = 0.3f, info.background[2] = 0.05f, info.background[3] = 1;
       info.target = direct.target({}, after);
-      if (!apart) info.view = view;
+      if (!apart) info.history = view;
       EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
       if (apart) {
-        info.view = view;
+        info.history = view;
         info.target = {};
         EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
       }
@@ -235,7 +235,7 @@ struct TwoWays : CanvasTest {
       const Attachment attachment(device, format, kWidth, kHeight);
       canvasTargets = 0;
       makeCanvas(256, 0, 1u << 18, &attachment.target);
-      const GpgpView view = makeView(kWidth, kHeight);
+      const GpgpHistory view = makeView(kWidth, kHeight);
       const bool encodes = format == VK_FORMAT_R8G8B8A8_SRGB;
       const auto image = [&](VkFormat of) {
         return host::Image(device, {.format = of, .width = kWidth, .height = kHeight});
@@ -289,16 +289,16 @@ TEST_F(CanvasTest, WritesOnlyTheTargetsItWasMadeFor) {
   TestPath square;
   square.move(0, 0).line(4, 0).line(4, 4).line(0, 4).close();
   const std::vector<GpgpCanvasItem> items{place(makeDrawing({square.view()}))};
-  const GpgpView view = makeView(64, 64);
+  const GpgpHistory view = makeView(64, 64);
   const host::Image narrow(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = 64, .height = 64});
   const host::Image wide(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = 64, .height = 64});
   const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
   const std::pair<GpgpCanvasTargets, const host::Image*> ways[] = {
-      {GPGP_CANVAS_TARGET_VIEW, nullptr},
+      {GPGP_CANVAS_TARGET_HISTORY, nullptr},
       {GPGP_CANVAS_TARGET_RGBA8, &narrow},
       {GPGP_CANVAS_TARGET_RGBA16F, &wide},
-      {GPGP_CANVAS_TARGET_VIEW | GPGP_CANVAS_TARGET_RGBA8, &narrow}, // on software devices, a pass for each
-      {GPGP_CANVAS_TARGET_VIEW | GPGP_CANVAS_TARGET_RGBA16F, &wide}};
+      {GPGP_CANVAS_TARGET_HISTORY | GPGP_CANVAS_TARGET_RGBA8, &narrow}, // on software devices, a pass for each
+      {GPGP_CANVAS_TARGET_HISTORY | GPGP_CANVAS_TARGET_RGBA16F, &wide}};
   const auto passCount = [&](GpgpCanvasTargets wanted) {
     canvasTargets = wanted;
     makeCanvas(56);
@@ -314,7 +314,7 @@ TEST_F(CanvasTest, WritesOnlyTheTargetsItWasMadeFor) {
       device.submitAndWait([&](VkCommandBuffer commands) {
         EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
         GpgpCanvasInfo info = infoOf(items, 56, 56);
-        if (written & GPGP_CANVAS_TARGET_VIEW) info.view = view;
+        if (written & GPGP_CANVAS_TARGET_HISTORY) info.history = view;
         if (image) info.target = image->target({}, after);
         const bool may = (written & ~made) == 0;
         EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info),
@@ -328,7 +328,7 @@ TEST_F(CanvasTest, WritesOnlyTheTargetsItWasMadeFor) {
   GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
   info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
   info.targets = 8;
-  GpgpWorker none = nullptr;
+  GpgpRecorder none = nullptr;
   EXPECT_EQ(gpgpCreateCanvas(context, &info, &none), GPGP_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(none, nullptr);
 }

@@ -10,14 +10,14 @@ struct ArgumentsTest : VisibilityGpuTest {
   Scene scene = randomSoup(1, 10, 16, 16, true, false);
   std::unique_ptr<SceneBuffers> buffers;
   host::Buffer bits, list, count;
-  GpgpWorker sampler = nullptr;
+  GpgpRecorder recorder = nullptr;
   GpgpAsset set = nullptr;
   GpgpFrame f{};
 
   void SetUp() override {
     VisibilityGpuTest::SetUp();
     scene.input();
-    sampler = createSampler(64, 64);
+    recorder = createRecorder(64, 64);
     set = createGeometrySet(scene);
     buffers = std::make_unique<SceneBuffers>(device, scene);
     for (host::Buffer* buffer : {&bits, &list, &count})
@@ -30,8 +30,8 @@ struct ArgumentsTest : VisibilityGpuTest {
     for (host::Buffer* buffer : {&bits, &list, &count}) *buffer = host::Buffer();
     VisibilityGpuTest::TearDown();
   }
-  GpgpSampleInfo good() {
-    GpgpSampleInfo info = sampleInfo(scene, *buffers, set);
+  GpgpVisibilityInfo good() {
+    GpgpVisibilityInfo info = sampleInfo(scene, *buffers, set);
     info.visibleBits = bits.range();
     info.visibleList = list.range();
     info.visibleCount = count.range();
@@ -48,9 +48,9 @@ struct ArgumentsTest : VisibilityGpuTest {
     }
     messages.clear();
   }
-  void expectRecord(GpgpResult expected, const GpgpSampleInfo& info, const std::string& text) {
+  void expectRecord(GpgpResult expected, const GpgpVisibilityInfo& info, const std::string& text) {
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-      expect(expected, gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), text);
+      expect(expected, gpgpRecordPrepareVisibility(recorder, cmd, &f, &info), text);
     });
   }
 };
@@ -58,7 +58,7 @@ struct ArgumentsTest : VisibilityGpuTest {
 TEST_F(ArgumentsTest, RecordsAreChecked) {
   expectRecord(GPGP_SUCCESS, good(), "");
   const auto bad = [&](GpgpResult code, const char* text, auto change) {
-    GpgpSampleInfo info = good();
+    GpgpVisibilityInfo info = good();
     change(info);
     expectRecord(code, info, text);
   };
@@ -93,53 +93,53 @@ TEST_F(ArgumentsTest, RecordsAreChecked) {
   bad(argument, "visibleBits.offset", [](auto& i) { i.visibleBits.offset = 4; });
   const GpgpFrame unknown{f.current + 5, f.safe};
   device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-    const GpgpSampleInfo info = good();
-    EXPECT_LT(gpgpRecordPrepareVisibility(sampler, cmd, &unknown, &info), 0);
-    EXPECT_LT(gpgpRecordPrepareVisibility(sampler, cmd, nullptr, &info), 0);
+    const GpgpVisibilityInfo info = good();
+    EXPECT_LT(gpgpRecordPrepareVisibility(recorder, cmd, &unknown, &info), 0);
+    EXPECT_LT(gpgpRecordPrepareVisibility(recorder, cmd, nullptr, &info), 0);
     EXPECT_EQ(gpgpRecordPrepareVisibility(nullptr, cmd, &f, &info), GPGP_ERROR_INVALID_HANDLE);
-    EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
-    EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, nullptr, &f, &info), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, cmd, &f, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, nullptr, &f, &info), GPGP_ERROR_INVALID_ARGUMENT);
   });
   // Only the good record left a report.
   advance();
-  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
-  EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
-  EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_NOT_READY);
+  GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
+  EXPECT_EQ(gpgpGetVisibilityReport(recorder, &report), GPGP_SUCCESS);
+  EXPECT_EQ(gpgpGetVisibilityReport(recorder, &report), GPGP_NOT_READY);
   report.sType = 0;
-  EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_ERROR_INVALID_STRUCT);
-  EXPECT_EQ(gpgpGetSampleReport(sampler, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpGetVisibilityReport(recorder, &report), GPGP_ERROR_INVALID_STRUCT);
+  EXPECT_EQ(gpgpGetVisibilityReport(recorder, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
 }
 
 TEST_F(ArgumentsTest, HandlesOfOtherKindsAndDestroyedOnesAreRefused) {
-  GpgpSampleInfo info = good();
-  info.geometrySet = reinterpret_cast<GpgpAsset>(sampler);
-  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "geometrySet is a sampler");
+  GpgpVisibilityInfo info = good();
+  info.geometrySet = reinterpret_cast<GpgpAsset>(recorder);
+  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "geometrySet is a recorder");
   info = good();
-  info.view = reinterpret_cast<GpgpView>(set);
+  info.history = reinterpret_cast<GpgpHistory>(set);
   expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "view");
   gpgpDestroyAsset(set);
   expectRecord(GPGP_ERROR_INVALID_HANDLE, good(), "geometrySet is destroyed");
 }
 
 TEST_F(ArgumentsTest, NotReadyUntilResidentAndPrewarmed) {
-  GpgpSampleInfo info = good();
-  info.view = createView(0);
+  GpgpVisibilityInfo info = good();
+  info.history = createView(0);
   expectRecord(GPGP_NOT_READY, info, "");
   info = good();
   info.geometrySet = createGeometrySet(scene);
   expectRecord(GPGP_NOT_READY, info, "");
-  GpgpSamplerCreateInfo create = GPGP_SAMPLER_CREATE_INFO_INIT;
+  GpgpVisibilityRecorderCreateInfo create = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   create.base.queueFamily = queue().family;
   create.maxWidth = create.maxHeight = 64;
-  ASSERT_EQ(gpgpCreateSampler(context, &create, &sampler), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpCreateVisibilityRecorder(context, &create, &recorder), GPGP_SUCCESS);
   expectRecord(GPGP_NOT_READY, good(), "");
-  ASSERT_EQ(gpgpPrewarm(sampler, nullptr), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpPrewarm(recorder, nullptr), GPGP_SUCCESS);
   expectRecord(GPGP_SUCCESS, good(), "");
 }
 
 TEST_F(ArgumentsTest, AViewTooSmallIsRefused) {
-  GpgpSampleInfo info = good();
-  info.view = createView(9);
+  GpgpVisibilityInfo info = good();
+  info.history = createView(9);
   upload();
   f = advance();
   expectRecord(GPGP_ERROR_INVALID_ARGUMENT, info, "the view was made for 9");
@@ -161,36 +161,36 @@ TEST_F(ArgumentsTest, CreationIsChecked) {
   expect(GPGP_ERROR_INVALID_STRUCT, gpgpCreateGeometrySet(context, &setInfo, &asset), "sType");
   EXPECT_EQ(asset, nullptr);
 
-  GpgpSamplerCreateInfo samplerInfo = GPGP_SAMPLER_CREATE_INFO_INIT;
-  samplerInfo.base.queueFamily = queue().family;
-  GpgpWorker worker = nullptr;
-  samplerInfo.maxWidth = 8193;
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, &worker), "maxWidth");
-  samplerInfo.maxWidth = 64;
-  samplerInfo.maxTriangles = (1u << 30) + 1;
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, &worker), "maxTriangles");
-  samplerInfo.maxTriangles = 64;
-  samplerInfo.base.queueFamily = 99;
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, &worker), "queueFamily");
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, &samplerInfo, nullptr), "sampler is NULL");
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateSampler(context, nullptr, &worker), "info is NULL");
-  EXPECT_EQ(worker, nullptr);
+  GpgpVisibilityRecorderCreateInfo recorderInfo = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
+  recorderInfo.base.queueFamily = queue().family;
+  GpgpRecorder recorder = nullptr;
+  recorderInfo.maxWidth = 8193;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &recorder), "maxWidth");
+  recorderInfo.maxWidth = 64;
+  recorderInfo.maxTriangles = (1u << 30) + 1;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &recorder), "maxTriangles");
+  recorderInfo.maxTriangles = 64;
+  recorderInfo.base.queueFamily = 99;
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &recorder), "queueFamily");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, nullptr), "recorder is NULL");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, nullptr, &recorder), "info is NULL");
+  EXPECT_EQ(recorder, nullptr);
 
-  GpgpCameraViewCreateInfo viewInfo = GPGP_CAMERA_VIEW_CREATE_INFO_INIT;
-  GpgpView view = nullptr;
+  GpgpCameraHistoryCreateInfo viewInfo = GPGP_CAMERA_HISTORY_CREATE_INFO_INIT;
+  GpgpHistory view = nullptr;
   viewInfo.maxTriangles = 0x80000001u;
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraView(context, &viewInfo, &view), "maxTriangles");
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraView(context, &viewInfo, nullptr), "view is NULL");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, &view), "maxTriangles");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, nullptr), "view is NULL");
   viewInfo.sType = 1;
-  expect(GPGP_ERROR_INVALID_STRUCT, gpgpCreateCameraView(context, &viewInfo, &view), "sType");
+  expect(GPGP_ERROR_INVALID_STRUCT, gpgpCreateCameraHistory(context, &viewInfo, &view), "sType");
   EXPECT_EQ(view, nullptr);
 }
 
 TEST_F(ArgumentsTest, PassesAreThoseOfTheDocumentation) {
   uint32_t passes = 0;
-  ASSERT_EQ(gpgpGetPasses(sampler, &passes, nullptr), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetPasses(recorder, &passes, nullptr), GPGP_SUCCESS);
   std::vector<const char*> names(passes);
-  ASSERT_EQ(gpgpGetPasses(sampler, &passes, names.data()), GPGP_SUCCESS);
+  ASSERT_EQ(gpgpGetPasses(recorder, &passes, names.data()), GPGP_SUCCESS);
   ASSERT_EQ(passes, contextFeatures & GPGP_FEATURE_BUFFER_INT64_ATOMICS ? 19u : 23u); // ids with depths, or after them
   std::ifstream file(GPGP_TEST_DATA "/../../docs/visibility.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};

@@ -1,8 +1,8 @@
 // Clusters that are out of sight are left out, and nothing else changes: records with clusters against records without,
-// against the twin, and the test itself against what becomes of each triangle.
+// against the CPU reference, and the test itself against what becomes of each triangle.
 #include "gpu.h"
 
-#include "visibility/cluster.h"
+#include "visibility/shared/cluster.h"
 
 #include <algorithm>
 #include <cmath>
@@ -147,7 +147,7 @@ TEST(Clusters, NoTriangleOfAClusterOutOfSightIsDrawn) {
     }
     const uint32_t width = seed % 2 ? 96 : 1920;
     scene.params.width = width, scene.params.height = width * 5 / 8;
-    const TwinInput input = scene.input();
+    const CpuInput input = scene.input();
     for (uint32_t camera = 0; camera < scene.params.cameraCount; ++camera)
       for (uint32_t d = 0; d < scene.draws.size(); ++d) {
         const shader::Draw& draw = scene.draws[d];
@@ -181,10 +181,10 @@ TEST(Clusters, NoTriangleOfAClusterOutOfSightIsDrawn) {
 
 struct ClusterTest : VisibilityGpuTest {};
 
-TEST_F(ClusterTest, RecordsWithClustersEqualThoseWithoutAndTheTwin) {
+TEST_F(ClusterTest, RecordsWithClustersEqualThoseWithoutAndTheCpuReference) {
   for (uint32_t seed = 0; seed < 5; ++seed) {
     Scene scene = clusterScene(seed, seed % 2 == 0);
-    const TwinInput input = scene.input();
+    const CpuInput input = scene.input();
     for (const GpgpSamplingMethod method :
          {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT, GPGP_SAMPLING_CONSERVATIVE, GPGP_SAMPLING_NEARBY}) {
       if (method == GPGP_SAMPLING_NEARBY && seed % 5 == 4) continue; // perspective alone
@@ -221,7 +221,7 @@ TEST_F(ClusterTest, KeptClustersServeOtherCamerasAndNewOnesNewPositions) {
   Scene scene = clusterScene(1, false);
   const SceneBuffers buffers(device, scene);
   const GpgpAsset set = createGeometrySet(scene);
-  const GpgpWorker sampler = createSampler(96, 60, 1u << 17);
+  const GpgpRecorder recorder = createRecorder(96, 60, 1u << 17);
   upload();
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   const host::Buffer clusters(device, 1000 * shader::kClusterBytes, kStorage);
@@ -234,15 +234,15 @@ TEST_F(ClusterTest, KeptClustersServeOtherCamerasAndNewOnesNewPositions) {
     if (step == 1 || step == 3) scene.setCamera(cameraOf(1, {static_cast<float>(step) - 3, 1, 3}, true), 96, 60, true);
     if (moved)
       for (size_t i = 0; i < scene.positions.size(); ++i) scene.positions[i] = -scene.positions[i] * 0.7f;
-    const TwinInput input = scene.input();
+    const CpuInput input = scene.input();
     const SceneBuffers now(device, scene);
-    GpgpSampleInfo info = sampleInfo(scene, now, set);
+    GpgpVisibilityInfo info = sampleInfo(scene, now, set);
     info.clusters = clusters.range(step ? shaders : GpgpAccess{}, shaders);
     info.keepClusters = step == 1 || step == 3;
     info.visibleBits = bits.range(step ? copied : GpgpAccess{}, copied);
     const GpgpFrame frame = advance();
     device.submitAndWait(queue(), [&](VkCommandBuffer commands) {
-      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, commands, &frame, &info), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, commands, &frame, &info), GPGP_SUCCESS);
     });
     const std::vector<uint32_t> expected = sampleOnCpu(input).bits;
     EXPECT_EQ(host::download<uint32_t>(device, bits, expected.size()), expected) << step;
@@ -255,19 +255,19 @@ TEST_F(ClusterTest, ArgumentsAreChecked) {
   scene.input();
   const SceneBuffers buffers(device, scene);
   const GpgpAsset set = createGeometrySet(scene);
-  const GpgpWorker sampler = createSampler(96, 60, 1u << 17);
+  const GpgpRecorder recorder = createRecorder(96, 60, 1u << 17);
   upload();
   const host::Buffer bits(device, 1u << 20, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   uint32_t clusters = 0;
   for (const shader::Mesh& mesh : scene.meshes) clusters += (mesh.indexCount / 3 + 63) / 64;
   const host::Buffer small(device, clusters * shader::kClusterBytes - 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  GpgpSampleInfo info = sampleInfo(scene, buffers, set);
+  GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
   info.visibleBits = bits.range();
   const GpgpFrame frame = advance();
   const auto recorded = [&] {
     GpgpResult result = GPGP_SUCCESS;
     device.submitAndWait(queue(), [&](VkCommandBuffer commands) {
-      result = gpgpRecordPrepareVisibility(sampler, commands, &frame, &info);
+      result = gpgpRecordPrepareVisibility(recorder, commands, &frame, &info);
     });
     return result;
   };

@@ -1,8 +1,8 @@
 // Conservative sampling: its parts against double precision and closed forms, its properties, and the GPU against the
-// twin bit for bit.
+// CPU reference bit for bit.
 #include "gpu.h"
 #include "measured_scenes.h"
-#include "visibility/conservative.h"
+#include "visibility/conservative/conservative.h"
 
 #include <algorithm>
 #include <bit>
@@ -15,7 +15,7 @@ namespace {
 using namespace visibility;
 using shader::ScreenTriangle;
 
-constexpr uint32_t kThesis = GPGP_HEURISTICS_THESIS, kFront = kThesis | GPGP_HEURISTIC_KEEP_FRONT;
+constexpr uint32_t kThesis = GPGP_HEURISTICS_DEFAULT, kFront = kThesis | GPGP_HEURISTIC_KEEP_FRONT;
 
 void setHeuristics(Scene& scene, uint32_t heuristics, float epsilonStatic, float epsilonDynamic) {
   scene.params.heuristics = heuristics;
@@ -152,17 +152,17 @@ TEST(Conservative, CoverageOfAPixelIsThatOfItsSamples) {
 TEST(Conservative, FindsWhatTheThesisSaysItFinds) {
   Scene scene = columns();
   std::vector<uint32_t> sizes;
-  const std::vector<uint32_t> truth = truthOnCpu(scene.input(), 64, sizes).bits;
+  const std::vector<uint32_t> reference = referenceOnCpu(scene.input(), 64, sizes).bits;
   const std::vector<uint32_t> standard = sampleOnCpu(scene.input()).bits;
-  const double all = countOf(truth);
+  const double all = countOf(reference);
   const auto run = [&](uint32_t heuristics, float epsilon, uint32_t refinements = 0) {
     setHeuristics(scene, heuristics, epsilon, epsilon);
     const std::vector<uint32_t> bits = sampleConservativelyOnCpu(scene.input(), refinements).bits;
     EXPECT_EQ(missingOf(standard, bits), 0u) << "what is seen at a centre stays";
     return bits;
   };
-  const auto found = [&](const std::vector<uint32_t>& bits) { return 1 - missingOf(truth, bits) / all; };
-  const auto extra = [&](const std::vector<uint32_t>& bits) { return missingOf(bits, truth) / all; };
+  const auto found = [&](const std::vector<uint32_t>& bits) { return 1 - missingOf(reference, bits) / all; };
+  const auto extra = [&](const std::vector<uint32_t>& bits) { return missingOf(bits, reference) / all; };
   const auto raw = run(0, 0), strict = run(kThesis, 0.05f), loose = run(kThesis, 2), front = run(kFront, 0.05f);
   EXPECT_EQ(found(raw), 1) << "every triangle that touches a pixel";
   EXPECT_GT(extra(raw), extra(loose));
@@ -185,7 +185,7 @@ TEST(Conservative, FindsWhatTheThesisSaysItFinds) {
 TEST(Conservative, RefinementClosesGaps) {
   Scene scene = leaves();
   setHeuristics(scene, kThesis, 0, 0);
-  const TwinInput in = scene.input();
+  const CpuInput in = scene.input();
   const auto openSamples = [&](uint32_t refinements) {
     const std::vector<uint32_t> bits = sampleConservativelyOnCpu(in, refinements).bits;
     std::vector<glm::uvec2> covered(80 * 45), coverable(80 * 45);
@@ -222,9 +222,9 @@ TEST(Conservative, RefinementClosesGaps) {
   EXPECT_EQ(before, 0u);
 }
 
-TEST_F(VisibilityGpuTest, ConservativeEqualsTheTwin) {
-  const GpgpWorker sampler =
-      createSampler(128, 96, 0, true, GPGP_SAMPLING_CONSERVATIVE_BIT, 0, 0, 0, 2); // one for all: 20 kernels
+TEST_F(VisibilityGpuTest, ConservativeEqualsTheCpuReference) {
+  const GpgpRecorder recorder =
+      createRecorder(128, 96, 0, true, GPGP_SAMPLING_CONSERVATIVE_BIT, 0, 0, 0, 2); // one for all: 20 kernels
   struct Case {
     std::string name;
     Scene scene;
@@ -252,21 +252,21 @@ TEST_F(VisibilityGpuTest, ConservativeEqualsTheTwin) {
                                lookAt({0.7f, 1.7f, 3}, {0.7f, 1.5f, -10}));
   for (Case& c : cases) {
     setHeuristics(c.scene, c.heuristics, c.epsilon, c.epsilon);
-    const TwinResult twin = sampleConservativelyOnCpu(c.scene.input(), c.refinements);
+    const CpuResult cpu = sampleConservativelyOnCpu(c.scene.input(), c.refinements);
     const GpgpAsset set = createGeometrySet(c.scene);
     const GpuResult gpu =
-        sample(c.scene, sampler, set, {.method = GPGP_SAMPLING_CONSERVATIVE, .refinements = c.refinements});
-    expectEqual(gpu, twin, c.name);
-    EXPECT_GT(twin.counters.visible, 5u) << c.name;
+        sample(c.scene, recorder, set, {.method = GPGP_SAMPLING_CONSERVATIVE, .refinements = c.refinements});
+    expectEqual(gpu, cpu, c.name);
+    EXPECT_GT(cpu.counters.visible, 5u) << c.name;
     gpgpDestroyAsset(set);
   }
   // Half the resolution is a smaller viewport.
   Scene scene = columns(48, 27);
   setHeuristics(scene, kThesis, 0.05f, 0.05f);
-  const TwinResult twin = sampleConservativelyOnCpu(scene.input());
-  expectEqual(sample(scene, sampler, createGeometrySet(scene),
+  const CpuResult cpu = sampleConservativelyOnCpu(scene.input());
+  expectEqual(sample(scene, recorder, createGeometrySet(scene),
                      {.method = GPGP_SAMPLING_CONSERVATIVE, .width = 96, .height = 54, .resolution = 0.5f}),
-              twin, "half");
+              cpu, "half");
   // What the record says is checked.
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
@@ -274,13 +274,13 @@ TEST_F(VisibilityGpuTest, ConservativeEqualsTheTwin) {
   upload();
   const GpgpFrame f = advance();
   const auto refuse = [&](const char* text, auto change) {
-    GpgpSampleInfo info = sampleInfo(scene, buffers, set);
+    GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
     info.visibleBits = bits.range();
     info.method = GPGP_SAMPLING_CONSERVATIVE;
     change(info);
     messages.clear();
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT) << text;
+      EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT) << text;
     });
     ASSERT_EQ(messages.size(), 1u) << text;
     EXPECT_NE(messages[0].find(text), std::string::npos) << messages[0];

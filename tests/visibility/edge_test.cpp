@@ -1,4 +1,4 @@
-// Edge cases of input, one by one and with every method: the GPU against the twin, and against what must be seen.
+// Edge cases of input, one by one and with every method: the GPU against the CPU reference, and against what must be seen.
 #include "gpu.h"
 
 #include <cmath>
@@ -13,7 +13,7 @@ using Triangles = std::vector<uint32_t>;
 /// A camera at the origin that looks along -Z; at z = -2 it sees -1 to 1.
 void setStraightCamera(Scene& scene, uint32_t width, uint32_t height) {
   scene.setCamera(perspective(2 * std::atan(0.5f), 1.0f, 0.5f, 100.0f), width, height);
-  scene.params.heuristics = GPGP_HEURISTICS_THESIS;
+  scene.params.heuristics = GPGP_HEURISTICS_DEFAULT;
   scene.params.epsilonStatic = scene.params.epsilonDynamic = 0.05f;
 }
 void addTriangle(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c) {
@@ -24,30 +24,30 @@ void addWall(Scene& scene, float z) { addTriangle(scene, {-30, -30, z}, {30, -30
 void addSmall(Scene& scene, float z) { addTriangle(scene, {-0.5f, -0.5f, z}, {0.5f, -0.5f, z}, {0, 0.5f, z}); }
 
 struct EdgeTest : VisibilityGpuTest {
-  GpgpWorker sampler = nullptr;
+  GpgpRecorder recorder = nullptr;
   void SetUp() override {
     VisibilityGpuTest::SetUp();
-    sampler = createSampler(64, 64, 4096, true, 15, 4);
+    recorder = createRecorder(64, 64, 4096, true, 15, 4);
   }
   /// The same triangles for all methods.
   GpuResult expect(Scene& scene, const Triangles& triangles, const std::string& what) {
     GpuResult last;
     for (const GpgpSamplingMethod method :
-         {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_CONSERVATIVE, GPGP_SAMPLING_TRUTH, GPGP_SAMPLING_EXACT}) {
+         {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_CONSERVATIVE, GPGP_SAMPLING_REFERENCE, GPGP_SAMPLING_EXACT}) {
       const std::string name = what + ", method " + std::to_string(method);
       const GpgpAsset set = createGeometrySet(scene);
       scene.input();
-      last = sample(scene, sampler, set, {.method = method, .samples = method == GPGP_SAMPLING_TRUTH ? 4u : 0u});
+      last = sample(scene, recorder, set, {.method = method, .samples = method == GPGP_SAMPLING_REFERENCE ? 4u : 0u});
       gpgpDestroyAsset(set);
       EXPECT_EQ(last.list, triangles) << name;
       EXPECT_EQ(last.report.base.status, GPGP_SUCCESS) << name;
-      if (method == GPGP_SAMPLING_TRUTH) continue; // the twin's grid is the centre
-      TwinInput input = scene.input();
-      const TwinResult twin = method == GPGP_SAMPLING_STANDARD ? sampleOnCpu(input)
+      if (method == GPGP_SAMPLING_REFERENCE) continue; // the CPU reference's grid is the centre
+      CpuInput input = scene.input();
+      const CpuResult cpu = method == GPGP_SAMPLING_STANDARD ? sampleOnCpu(input)
                               : method == GPGP_SAMPLING_EXACT  ? sampleExactOnCpu(input)
                                                                : sampleConservativelyOnCpu(input);
-      EXPECT_EQ(last.bits, twin.bits) << name;
-      EXPECT_EQ(last.report.skippedTriangles, twin.counters.skippedTriangles) << name;
+      EXPECT_EQ(last.bits, cpu.bits) << name;
+      EXPECT_EQ(last.report.skippedTriangles, cpu.counters.skippedTriangles) << name;
     }
     return last;
   }
@@ -128,9 +128,9 @@ TEST_F(EdgeTest, BetweenTheCentres) {
   setStraightCamera(scene, 64, 64);
   scene.input();
   const GpgpAsset set = createGeometrySet(scene);
-  EXPECT_EQ(sample(scene, sampler, set, {.method = GPGP_SAMPLING_STANDARD}).list, Triangles{1});
-  EXPECT_EQ(sample(scene, sampler, set, {.method = GPGP_SAMPLING_CONSERVATIVE}).list, (Triangles{0, 1}));
-  EXPECT_EQ(sample(scene, sampler, set, {.method = GPGP_SAMPLING_EXACT}).list, (Triangles{0, 1}));
+  EXPECT_EQ(sample(scene, recorder, set, {.method = GPGP_SAMPLING_STANDARD}).list, Triangles{1});
+  EXPECT_EQ(sample(scene, recorder, set, {.method = GPGP_SAMPLING_CONSERVATIVE}).list, (Triangles{0, 1}));
+  EXPECT_EQ(sample(scene, recorder, set, {.method = GPGP_SAMPLING_EXACT}).list, (Triangles{0, 1}));
 }
 
 TEST_F(EdgeTest, EmptyMeshesAndDraws) {
@@ -181,18 +181,18 @@ TEST_F(EdgeTest, PositionsThatAreNoNumbersAreSkippedAndCounted) {
 }
 
 // As large as viewports get. Needs a device that binds 512 MiB.
-TEST_F(VisibilityGpuTest, AViewportOf8192SquaredEqualsTheTwin) {
+TEST_F(VisibilityGpuTest, AViewportOf8192SquaredEqualsTheCpuReference) {
   if (device.properties().limits.maxStorageBufferRange < 8192u * 8192u * 8u)
     GTEST_SKIP() << device.name() << " binds too little for 8192 x 8192 pixels";
   Scene scene = sheet(1, 300, 0.3f); // 180 000 triangles of some hundred pixels
   scene.addDraw(0);
   scene.setCamera(perspective(1.0f, 1.0f, 0.05f, 10.0f) * lookAt({0.1f, 0.05f, 2.2f}, {0, 0, 0}), 8192, 8192);
-  TwinInput input = scene.input();
+  CpuInput input = scene.input();
   const GpuResult gpu = sample(scene);
-  const TwinResult twin = sampleOnCpu(input);
+  const CpuResult cpu = sampleOnCpu(input);
   EXPECT_EQ(gpu.report.base.status, GPGP_SUCCESS);
-  EXPECT_EQ(gpu.bits, twin.bits);
-  EXPECT_EQ(gpu.report.coveredPixels, twin.counters.coveredPixels);
+  EXPECT_EQ(gpu.bits, cpu.bits);
+  EXPECT_EQ(gpu.report.coveredPixels, cpu.counters.coveredPixels);
   EXPECT_GT(gpu.report.visible, scene.params.triangleCount - 100); // all but what the sheet's waves hide
   EXPECT_GT(gpu.report.coveredPixels, 8192u * 8192u / 3);
 }
@@ -258,10 +258,10 @@ TEST_F(VisibilityGpuTest, SheetsOfInstancesWithAndWithoutRoom) {
   Scene scene = sheets.scene;
   const GpgpAsset set = createGeometrySet(scene);
   const auto run = [&](GpgpSamplingMethod method, uint32_t candidates, uint32_t pairs) {
-    const GpgpWorker sampler =
-        createSampler(256, 256, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT,
+    const GpgpRecorder recorder =
+        createRecorder(256, 256, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT,
                       0, candidates, pairs);
-    const GpuResult gpu = sample(scene, sampler, set, {.method = method, .byDraw = false});
+    const GpuResult gpu = sample(scene, recorder, set, {.method = method, .byDraw = false});
     sheets.check(gpu);
     return gpu.report.unresolved;
   };
@@ -280,10 +280,10 @@ TEST_F(VisibilityGpuTest, AHundredMillionTrianglesOfInstances) {
   Scene scene = sheets.scene;
   ASSERT_GT(scene.params.triangleCount, 100000000u);
   const GpgpAsset set = createGeometrySet(scene);
-  const GpgpWorker sampler =
-      createSampler(1024, 1024, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
+  const GpgpRecorder recorder =
+      createRecorder(1024, 1024, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT}) {
-    const GpuResult gpu = sample(scene, sampler, set, {.method = method, .byDraw = false});
+    const GpuResult gpu = sample(scene, recorder, set, {.method = method, .byDraw = false});
     sheets.check(gpu, gpu.report.unresolved / 10000); // what has no room hides nothing: 23 of 24 533 399 once
     EXPECT_TRUE(gpu.report.unresolved == 0 || method == GPGP_SAMPLING_EXACT);
   }

@@ -1,8 +1,8 @@
 // What engines hand over and take back: indirect commands and counts, position formats, faces, several cameras; lists
-// by draw, indirect commands over them, projected sizes, their budgets. The GPU against the twin, bit for bit.
+// by draw, indirect commands over them, projected sizes, their budgets. The GPU against the CPU reference, bit for bit.
 #include "gpu.h"
 #include "measured_scenes.h"
-#include "visibility/position.h"
+#include "visibility/shared/position.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,19 +16,19 @@ using namespace visibility;
 
 constexpr GpgpSamplingMethod kMethods[] = {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT};
 
-TwinResult twinOf(GpgpSamplingMethod method, Scene& scene) {
+CpuResult cpuOf(GpgpSamplingMethod method, Scene& scene) {
   return method == GPGP_SAMPLING_EXACT ? sampleExactOnCpu(scene.input()) : sampleOnCpu(scene.input());
 }
 
-/// One sampler for all scenes of a test: making pipelines is what takes time.
+/// One recorder for all scenes of a test: making pipelines is what takes time.
 struct EngineTest : VisibilityGpuTest {
-  GpgpWorker sampler = nullptr;
+  GpgpRecorder recorder = nullptr;
   GpuResult run(Scene& scene, GpuOptions options = {}) {
-    if (!sampler)
-      sampler = createSampler(256, 256, 0, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT, 0, 0, 0, 3);
+    if (!recorder)
+      recorder = createRecorder(256, 256, 0, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT, 0, 0, 0, 3);
     scene.input(); // fills in what depends on the scene
     const GpgpAsset set = createGeometrySet(scene);
-    GpuResult result = sample(scene, sampler, set, options);
+    GpuResult result = sample(scene, recorder, set, options);
     gpgpDestroyAsset(set);
     return result;
   }
@@ -53,20 +53,20 @@ void useCommands(Scene& scene) {
 TEST_F(EngineTest, IndirectCommandsAreDrawnAsTheirInstances) {
   for (const GpgpSamplingMethod method : kMethods) {
     Scene direct = colonnade(160, 90);
-    const TwinResult expected = twinOf(method, direct);
+    const CpuResult expected = cpuOf(method, direct);
     Scene scene = direct;
     useCommands(scene);
     ASSERT_GT(scene.commands.size(), 5u * 10);
-    const TwinResult twin = twinOf(method, scene);
-    EXPECT_EQ(twin.bits, expected.bits);
-    EXPECT_EQ(twin.drawCommands, expected.drawCommands);
-    expectEqual(run(scene, {.method = method}), twin, "commands");
+    const CpuResult cpu = cpuOf(method, scene);
+    EXPECT_EQ(cpu.bits, expected.bits);
+    EXPECT_EQ(cpu.drawCommands, expected.drawCommands);
+    expectEqual(run(scene, {.method = method}), cpu, "commands");
     scene.drawCount = static_cast<uint32_t>(scene.commands.size() / 5) - 4; // fewer than there is room for
-    const TwinResult fewer = twinOf(method, scene);
-    EXPECT_LT(fewer.counters.draws, twin.counters.draws);
+    const CpuResult fewer = cpuOf(method, scene);
+    EXPECT_LT(fewer.counters.draws, cpu.counters.draws);
     expectEqual(run(scene, {.method = method}), fewer, "count");
     direct.drawCount = 3;
-    const TwinResult three = twinOf(method, direct);
+    const CpuResult three = cpuOf(method, direct);
     EXPECT_EQ(three.counters.draws, 3u);
     expectEqual(run(direct, {.method = method}), three, "count of draws");
   }
@@ -86,13 +86,13 @@ TEST_F(EngineTest, BadCommandsAreSkippedAndCounted) {
   command({60, 1, 0, 0x7ffffff0u, 0});                 // vertices beyond the range
   command({3, 0xffffffffu, 0, 0, 1});                  // very many instances, none of them there
   command({2, 1, 0, 0, 0});                            // no triangle
-  const TwinResult twin = sampleOnCpu(scene.input());
-  EXPECT_EQ(twin.counters.draws, 6u);
-  EXPECT_EQ(twin.counters.skippedDraws, 0xffffffffu) << "stays there";
-  EXPECT_GT(twin.counters.skippedTriangles, 200u);
-  EXPECT_GT(twin.counters.visible, 5u);
+  const CpuResult cpu = sampleOnCpu(scene.input());
+  EXPECT_EQ(cpu.counters.draws, 6u);
+  EXPECT_EQ(cpu.counters.skippedDraws, 0xffffffffu) << "stays there";
+  EXPECT_GT(cpu.counters.skippedTriangles, 200u);
+  EXPECT_GT(cpu.counters.visible, 5u);
   const GpuResult gpu = run(scene);
-  expectEqual(gpu, twin, "bad commands");
+  expectEqual(gpu, cpu, "bad commands");
 }
 
 TEST_F(EngineTest, InstancesBeyondTheDrawTableAreCutAndReported) {
@@ -105,12 +105,12 @@ TEST_F(EngineTest, InstancesBeyondTheDrawTableAreCutAndReported) {
   useCommands(scene);
   scene.addCamera(perspective(1.0f, 1.0f, 0.1f, 100.0f) * lookAt({-1, 1, 3}, {0, 0, 0}));
   scene.params.maxEntries = 51; // 25 for each camera
-  const TwinResult twin = sampleOnCpu(scene.input());
-  EXPECT_EQ(twin.counters.draws, 40u);
-  EXPECT_EQ(twin.counters.drawsGiven, 25u);
-  sampler = createSampler(96, 96, 0, true, 0, 0, 0, 0, 2, 51);
+  const CpuResult cpu = sampleOnCpu(scene.input());
+  EXPECT_EQ(cpu.counters.draws, 40u);
+  EXPECT_EQ(cpu.counters.drawsGiven, 25u);
+  recorder = createRecorder(96, 96, 0, true, 0, 0, 0, 0, 2, 51);
   const GpuResult gpu = run(scene);
-  expectEqual(gpu, twin, "cut");
+  expectEqual(gpu, cpu, "cut");
   EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
   EXPECT_EQ(gpu.report.draws, 25u);
   EXPECT_GT(gpu.report.visible, 100u);
@@ -143,13 +143,13 @@ TEST_F(EngineTest, PositionsOf16BitsWithAnyStrideAndOffset) {
         for (shader::Draw& d : scene.draws)
           for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 3; ++column) d.transform[row * 4 + column] *= 4;
-      const TwinResult twin = sampleOnCpu(scene.input());
-      EXPECT_NEAR(twin.counters.visible, plain, plain * 0.1);
-      expectEqual(run(scene), twin, std::to_string(format) + " " + std::to_string(stride));
+      const CpuResult cpu = sampleOnCpu(scene.input());
+      EXPECT_NEAR(cpu.counters.visible, plain, plain * 0.1);
+      expectEqual(run(scene), cpu, std::to_string(format) + " " + std::to_string(stride));
     }
   // Floats with an offset, in wider vertices.
   Scene scene = colonnade(128, 72);
-  const TwinResult plain = sampleOnCpu(scene.input());
+  const CpuResult plain = sampleOnCpu(scene.input());
   std::vector<float> wide;
   for (size_t i = 0; i < scene.positions.size(); i += 3)
     wide.insert(wide.end(), {NAN, -1, scene.positions[i], scene.positions[i + 1], scene.positions[i + 2]});
@@ -176,9 +176,9 @@ TEST_F(EngineTest, FacesAreChosenPerDraw) {
   std::vector<std::vector<uint32_t>> lists;
   for (const uint32_t flags : {0u, shader::kClockwise, shader::kTwoSided, shader::kTwoSided | shader::kClockwise}) {
     scene.draws[0].flags = flags;
-    const TwinResult twin = sampleOnCpu(scene.input());
-    expectEqual(run(scene), twin, std::to_string(flags));
-    lists.push_back(twin.list);
+    const CpuResult cpu = sampleOnCpu(scene.input());
+    expectEqual(run(scene), cpu, std::to_string(flags));
+    lists.push_back(cpu.list);
   }
   EXPECT_EQ(lists[0], all);
   std::vector<uint32_t> both;
@@ -196,42 +196,42 @@ TEST_F(EngineTest, AStereoPairSeesWhatEitherEyeSees) {
       std::vector<uint32_t> united;
       for (const float x : {0.0f, 0.4f, -0.6f}) {
         scene.setCamera(projection * lookAt({x, 1.7f, 3}, {x, 1.5f, -10}), width, height, true);
-        const std::vector<uint32_t> bits = twinOf(method, scene).bits;
+        const std::vector<uint32_t> bits = cpuOf(method, scene).bits;
         united.resize(bits.size());
         for (size_t i = 0; i < bits.size(); ++i) united[i] |= bits[i];
       }
       scene.setCamera(projection * lookAt({0, 1.7f, 3}, {0, 1.5f, -10}), width, height, true);
       scene.addCamera(projection * lookAt({0.4f, 1.7f, 3}, {0.4f, 1.5f, -10}));
       scene.addCamera(projection * lookAt({-0.6f, 1.7f, 3}, {-0.6f, 1.5f, -10}));
-      const TwinResult twin = twinOf(method, scene);
-      EXPECT_EQ(twin.bits, united) << "cameras do not disturb each other";
-      expectEqual(run(scene, {.method = method}), twin, "stereo");
+      const CpuResult cpu = cpuOf(method, scene);
+      EXPECT_EQ(cpu.bits, united) << "cameras do not disturb each other";
+      expectEqual(run(scene, {.method = method}), cpu, "stereo");
     }
   }
 }
 
-TEST_F(EngineTest, CamerasAndCommandsThroughAllPlanesEqualTheTwin) {
+TEST_F(EngineTest, CamerasAndCommandsThroughAllPlanesEqualTheCpuReference) {
   for (uint32_t seed = 20; seed < 23; ++seed) {
     Scene scene = randomSoup(seed, 150, 70, 61, true, seed % 2);
     for (const float x : {0.7f, -0.7f})
       scene.addCamera(perspective(1.2f, 70.0f / 61, 0.25f, 20.0f, seed % 2) * lookAt({x, 0, 3}, {0.3f, 0.1f, 0}));
     useCommands(scene);
     for (const GpgpSamplingMethod method : kMethods)
-      expectEqual(run(scene, {.method = method}), twinOf(method, scene), "seed " + std::to_string(seed));
+      expectEqual(run(scene, {.method = method}), cpuOf(method, scene), "seed " + std::to_string(seed));
   }
 }
 
 // A view cell's views, as many as a record takes.
-TEST_F(EngineTest, TheMostCamerasOfARecordEqualTheTwin) {
+TEST_F(EngineTest, TheMostCamerasOfARecordEqualTheCpuReference) {
   Scene scene = randomSoup(7, 90, 20, 17, true, true);
   for (uint32_t i = 1; i < shader::kMaxCameras; ++i)
     scene.addCamera(perspective(1.2f, 20.0f / 17, 0.25f, 20.0f, true) *
                     lookAt({0.01f * static_cast<float>(i), 0.3f, 3}, {0.3f, 0.1f, 0}));
   useCommands(scene);
-  sampler = createSampler(20, 17, 0, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT, 0, 0, 0,
+  recorder = createRecorder(20, 17, 0, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT, 0, 0, 0,
                           shader::kMaxCameras);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT})
-    expectEqual(run(scene, {.method = method}), twinOf(method, scene), "method " + std::to_string(method));
+    expectEqual(run(scene, {.method = method}), cpuOf(method, scene), "method " + std::to_string(method));
 }
 
 // Reversed depth with an infinitely far plane, as engines use it.
@@ -244,17 +244,17 @@ TEST_F(EngineTest, AnInfiniteFarPlaneLosesNothing) {
   projection[2][2] = 0;
   projection[3][2] = 0.1f;
   scene.setCamera(projection * view, 128, 72, true);
-  const TwinResult twin = sampleOnCpu(scene.input());
-  EXPECT_EQ(twin.list, finite);
-  expectEqual(run(scene), twin, "infinite");
+  const CpuResult cpu = sampleOnCpu(scene.input());
+  EXPECT_EQ(cpu.list, finite);
+  expectEqual(run(scene), cpu, "infinite");
 }
 
 TEST_F(EngineTest, ListsByDrawAreWhatTheEngineWouldDraw) {
   Scene scene = colonnade(200, 120);
   scene.useShort = true;
-  const TwinResult twin = sampleOnCpu(scene.input());
+  const CpuResult cpu = sampleOnCpu(scene.input());
   const GpuResult gpu = run(scene);
-  expectEqual(gpu, twin, "lists");
+  expectEqual(gpu, cpu, "lists");
   // Independent of how they were made: each command's triangles are its draw's visible ones, and none is missing.
   std::multiset<uint32_t> listed;
   for (size_t c = 0; c < gpu.drawCommands.size(); c += 5) {
@@ -270,8 +270,8 @@ TEST_F(EngineTest, ListsByDrawAreWhatTheEngineWouldDraw) {
         EXPECT_EQ(gpu.drawIndices[command[2] + i * 3 + k], scene.indices[mesh.firstIndex + local * 3 + k]);
     }
   }
-  EXPECT_EQ(listed, std::multiset<uint32_t>(twin.list.begin(), twin.list.end()));
-  EXPECT_EQ(gpu.report.drawTriangles, twin.list.size());
+  EXPECT_EQ(listed, std::multiset<uint32_t>(cpu.list.begin(), cpu.list.end()));
+  EXPECT_EQ(gpu.report.drawTriangles, cpu.list.size());
 }
 
 TEST_F(EngineTest, ListsByDrawKeepTheirBudgetsByWholeTriangles) {
@@ -280,8 +280,8 @@ TEST_F(EngineTest, ListsByDrawKeepTheirBudgetsByWholeTriangles) {
   scene.draws.clear();
   scene.params.triangleCount = 0;
   for (uint32_t i = 0; i < 3; ++i) scene.addDraw(i);
-  const TwinResult twin = sampleOnCpu(scene.input());
-  const uint32_t needed = twin.counters.drawTriangles;
+  const CpuResult cpu = sampleOnCpu(scene.input());
+  const uint32_t needed = cpu.counters.drawTriangles;
   ASSERT_GT(needed, 2000u);
   for (const uint32_t room : {1u, 1000u, needed - 1, needed}) {
     const GpuResult gpu = run(scene, {.drawTriangles = room});
@@ -297,10 +297,10 @@ TEST_F(EngineTest, ListsByDrawKeepTheirBudgetsByWholeTriangles) {
     }
     EXPECT_EQ(next, room);
     for (const uint32_t id : gpu.drawTriangles) {
-      EXPECT_TRUE(std::binary_search(twin.list.begin(), twin.list.end(), id));
+      EXPECT_TRUE(std::binary_search(cpu.list.begin(), cpu.list.end(), id));
       EXPECT_TRUE(seen.insert(id).second);
     }
-    EXPECT_EQ(gpu.bits, twin.bits);
+    EXPECT_EQ(gpu.bits, cpu.bits);
   }
 }
 
@@ -316,9 +316,9 @@ TEST_F(EngineTest, ProjectedSizesAreThoseOfTheTriangles) {
   scene.addDraw(square, glm::translate(glm::mat4(1.0f), {1, 1, -9})); // hidden by the first
   const float angle = 2 * std::atan(1.0f);
   scene.setCamera(perspective(angle, 1.0f, 0.1f, 100.0f) * lookAt({0, 0, 0}, {0, 0, -1}), 256, 256);
-  const TwinResult twin = sampleOnCpu(scene.input());
+  const CpuResult cpu = sampleOnCpu(scene.input());
   const GpuResult gpu = run(scene);
-  expectEqual(gpu, twin, "sizes");
+  expectEqual(gpu, cpu, "sizes");
   for (uint32_t id = 0; id < 8; ++id) {
     GpgpTriangleSize size;
     std::memcpy(&size, &gpu.extents[id * 3], sizeof size);
@@ -332,7 +332,7 @@ TEST_F(EngineTest, ProjectedSizesAreThoseOfTheTriangles) {
 TEST_F(EngineTest, EngineArgumentsAreChecked) {
   Scene scene = randomSoup(1, 10, 16, 16, true, false);
   scene.input();
-  sampler = createSampler(64, 64, 0, false, 0, 0, 0, 0, 2, 8);
+  recorder = createRecorder(64, 64, 0, false, 0, 0, 0, 0, 2, 8);
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
   const host::Buffer any(device, 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
@@ -340,12 +340,12 @@ TEST_F(EngineTest, EngineArgumentsAreChecked) {
   const GpgpFrame f = advance();
   GpgpCamera more[9]{};
   const auto record = [&](const char* text, auto change) {
-    GpgpSampleInfo info = sampleInfo(scene, buffers, set);
+    GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
     info.visibleBits = any.range();
     change(info);
     messages.clear();
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-      const GpgpResult result = gpgpRecordPrepareVisibility(sampler, cmd, &f, &info);
+      const GpgpResult result = gpgpRecordPrepareVisibility(recorder, cmd, &f, &info);
       EXPECT_EQ(result, *text ? GPGP_ERROR_INVALID_ARGUMENT : GPGP_SUCCESS) << text;
     });
     if (!*text) return;
@@ -387,11 +387,11 @@ TEST_F(EngineTest, EngineArgumentsAreChecked) {
     i.drawCommands = i.visibleCount = any.range();
     i.visibleCount.size = 16;
   });
-  GpgpSamplerCreateInfo create = GPGP_SAMPLER_CREATE_INFO_INIT;
+  GpgpVisibilityRecorderCreateInfo create = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   create.base.queueFamily = queue().family;
   create.maxCameras = 129;
-  GpgpWorker none = nullptr;
-  EXPECT_EQ(gpgpCreateSampler(context, &create, &none), GPGP_ERROR_INVALID_ARGUMENT);
+  GpgpRecorder none = nullptr;
+  EXPECT_EQ(gpgpCreateVisibilityRecorder(context, &create, &none), GPGP_ERROR_INVALID_ARGUMENT);
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 // 64-bit integers in two words, saturation, and which floats are told apart, against the processor's own.
 #include "core/math.h"
-#include "visibility/exact.h"
+#include "visibility/shared/integers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "gpu.h"
 
 #include "api/check.h"
-#include "visibility/cluster.h"
+#include "visibility/shared/cluster.h"
 
 #include <algorithm>
 #include <array>
@@ -35,7 +35,7 @@ void sortByDraw(GpuResult& result) {
 } // namespace
 
 SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
-  const visibility::TwinInput input = scene.input();
+  const visibility::CpuInput input = scene.input();
   const auto copy = [&](const auto& span, const char* name) {
     return host::makeBuffer(device, std::vector(span.begin(), span.end()), kStorage, name);
   };
@@ -47,11 +47,11 @@ SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
   if (scene.drawCount != UINT32_MAX) drawCount = copy(std::array{scene.drawCount}, "draw count");
 }
 
-GpgpWorker VisibilityGpuTest::createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles, bool engineScratch,
+GpgpRecorder VisibilityGpuTest::createRecorder(uint32_t width, uint32_t height, uint32_t maxTriangles, bool engineScratch,
                                             uint32_t methods, uint32_t maxSamples, uint32_t maxCandidates,
                                             uint32_t maxPairs, uint32_t maxCameras, uint32_t maxDraws) {
-  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
-  info.base.label = "sampler";
+  GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
+  info.base.label = "recorder";
   info.base.queueFamily = queue().family;
   info.base.engineScratch = engineScratch;
   info.maxWidth = width;
@@ -63,7 +63,7 @@ GpgpWorker VisibilityGpuTest::createSampler(uint32_t width, uint32_t height, uin
   info.maxPairs = maxPairs;
   info.maxCameras = maxCameras;
   info.maxDraws = maxDraws;
-  return worker(gpgpCreateSampler, info);
+  return recorder(gpgpCreateVisibilityRecorder, info);
 }
 
 GpgpAsset VisibilityGpuTest::createGeometrySet(const Scene& scene) {
@@ -77,12 +77,12 @@ GpgpAsset VisibilityGpuTest::createGeometrySet(const Scene& scene) {
   return set;
 }
 
-GpgpView VisibilityGpuTest::createView(uint32_t maxTriangles) {
-  GpgpCameraViewCreateInfo info = GPGP_CAMERA_VIEW_CREATE_INFO_INIT;
+GpgpHistory VisibilityGpuTest::createView(uint32_t maxTriangles) {
+  GpgpCameraHistoryCreateInfo info = GPGP_CAMERA_HISTORY_CREATE_INFO_INIT;
   info.label = "camera";
   info.maxTriangles = maxTriangles;
-  GpgpView view = nullptr;
-  EXPECT_EQ(gpgpCreateCameraView(context, &info, &view), GPGP_SUCCESS);
+  GpgpHistory view = nullptr;
+  EXPECT_EQ(gpgpCreateCameraHistory(context, &info, &view), GPGP_SUCCESS);
   return view;
 }
 
@@ -96,8 +96,8 @@ void VisibilityGpuTest::upload() {
   }
 }
 
-GpgpSampleInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuffers& buffers, GpgpAsset geometrySet) {
-  GpgpSampleInfo info = GPGP_SAMPLE_INFO_INIT;
+GpgpVisibilityInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuffers& buffers, GpgpAsset geometrySet) {
+  GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
   info.geometrySet = geometrySet;
   std::copy_n(scene.params.viewProjection, 16, info.camera.viewProjection);
   info.camera.reversedDepth = scene.params.reversedDepth;
@@ -124,21 +124,21 @@ GpgpSampleInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuff
 
 GpuResult VisibilityGpuTest::sample(Scene& scene, const GpuOptions& options, uint32_t maxTriangles) {
   scene.input();                                                               // fills in what depends on the scene
-  const auto roundUp = [](uint32_t size) { return (size + 255) / 256 * 256; }; // few samplers for many scenes
-  const GpgpWorker sampler =
-      createSampler(roundUp(scene.params.width), roundUp(scene.params.height), maxTriangles, true, 1u << options.method,
+  const auto roundUp = [](uint32_t size) { return (size + 255) / 256 * 256; }; // few recorders for many scenes
+  const GpgpRecorder recorder =
+      createRecorder(roundUp(scene.params.width), roundUp(scene.params.height), maxTriangles, true, 1u << options.method,
                     std::min(options.samples, 4u), 0, 0, scene.params.cameraCount);
   const GpgpAsset set = createGeometrySet(scene);
-  const GpuResult result = sample(scene, sampler, set, options);
+  const GpuResult result = sample(scene, recorder, set, options);
   gpgpDestroyAsset(set);
   return result;
 }
 
-GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset set, const GpuOptions& options) {
+GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpRecorder handle, GpgpAsset set, const GpuOptions& options) {
   const SceneBuffers buffers(device, scene);
   upload();
-  GpgpSampleInfo info = sampleInfo(scene, buffers, set);
-  info.view = options.view;
+  GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
+  info.history = options.view;
   info.base.tag = options.tag;
   info.method = options.method;
   info.samples = options.samples;
@@ -166,7 +166,7 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
   info.originCount = static_cast<uint32_t>(scene.origins.size());
   info.moreCameras = cameras.data();
   info.moreCameraCount = static_cast<uint32_t>(cameras.size());
-  TwinEntries entries;
+  CpuEntries entries;
   uint32_t drawn = 0; // triangles of all draws
   for (const shader::DrawEntry& e : entriesOf(scene.input(), entries)) drawn += e.indexCount / 3;
   const uint32_t drawRoom = std::min(options.drawTriangles, std::max(drawn, 1u));
@@ -191,10 +191,10 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
   VkDeviceSize scratchBytes = 0;
   EXPECT_EQ(gpgpGetScratchSize(handle, &scratchBytes, nullptr, nullptr), GPGP_SUCCESS);
   const core::Context* owner = nullptr;
-  const auto* worker = static_cast<const core::Worker*>(api::objectOf(handle, &owner));
+  const auto* recorder = static_cast<const core::Recorder*>(api::objectOf(handle, &owner));
   host::Buffer scratch;
-  if (worker->engineScratch()) {
-    scratch = host::Buffer(device, scratchBytes, core::Worker::kScratchUsage);
+  if (recorder->engineScratch()) {
+    scratch = host::Buffer(device, scratchBytes, core::Recorder::kScratchUsage);
     host::fill(device, scratch, kPoison);
     info.base.scratch = toHost(scratch);
   }
@@ -214,7 +214,7 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
   advance();
 
   GpuResult result;
-  EXPECT_EQ(gpgpGetSampleReport(handle, &result.report), GPGP_SUCCESS);
+  EXPECT_EQ(gpgpGetVisibilityReport(handle, &result.report), GPGP_SUCCESS);
   EXPECT_EQ(result.report.base.tag, options.tag);
   result.bits = host::download<uint32_t>(device, bits, words);
   result.sizes = host::download<uint32_t>(device, sizes, info.triangleCount);
@@ -242,7 +242,7 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
     const uint32_t samples = std::max(std::min(options.samples, 4u), 1u);
     const size_t pixels =
         size_t(scene.params.width) * scene.params.height * scene.params.cameraCount * samples * samples;
-    const auto& offsets = worker->passes().scratchOffsets;
+    const auto& offsets = recorder->passes().scratchOffsets;
     if (options.method != GPGP_SAMPLING_EXACT) { // there lists take their place
       const auto texels =
           host::download<uint32_t>(device, scratch, pixels * shader::kSampleWords, offsets[shader::kBindSamples]);
@@ -257,32 +257,32 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpWorker handle, GpgpAsset s
   return result;
 }
 
-void expectEqual(const GpuResult& gpu, const visibility::TwinResult& twin, const std::string& what) {
+void expectEqual(const GpuResult& gpu, const visibility::CpuResult& cpu, const std::string& what) {
   size_t differentIds = 0, differentDepths = 0;
   for (size_t i = 0; i < gpu.ids.size(); ++i) {
-    differentIds += gpu.ids[i] != twin.ids[i];
-    differentDepths += gpu.depth[i] != twin.depth[i];
+    differentIds += gpu.ids[i] != cpu.ids[i];
+    differentDepths += gpu.depth[i] != cpu.depth[i];
   }
   EXPECT_EQ(differentIds, 0u) << what;
   EXPECT_EQ(differentDepths, 0u) << what;
-  EXPECT_EQ(gpu.bits, twin.bits) << what;
-  EXPECT_EQ(gpu.report.triangles, twin.counters.triangles) << what;
-  EXPECT_EQ(gpu.report.visible, twin.counters.visible) << what;
-  EXPECT_EQ(gpu.report.coveredPixels, twin.counters.coveredPixels) << what;
-  EXPECT_EQ(gpu.report.neededTriangles, twin.counters.items) << what;
-  EXPECT_EQ(gpu.report.skippedTriangles, twin.counters.skippedTriangles) << what;
-  EXPECT_EQ(gpu.report.skippedDraws, twin.counters.skippedDraws) << what;
-  EXPECT_EQ(gpu.report.neededCandidates, twin.counters.candidates) << what;
-  EXPECT_EQ(gpu.report.neededPairs, twin.counters.pairs) << what;
-  EXPECT_EQ(gpu.report.neededDraws, twin.counters.draws) << what;
-  EXPECT_EQ(gpu.report.unresolved, twin.counters.unresolved) << what;
-  EXPECT_TRUE(twin.sizes.empty() || gpu.sizes == twin.sizes) << what;
+  EXPECT_EQ(gpu.bits, cpu.bits) << what;
+  EXPECT_EQ(gpu.report.triangles, cpu.counters.triangles) << what;
+  EXPECT_EQ(gpu.report.visible, cpu.counters.visible) << what;
+  EXPECT_EQ(gpu.report.coveredPixels, cpu.counters.coveredPixels) << what;
+  EXPECT_EQ(gpu.report.neededTriangles, cpu.counters.items) << what;
+  EXPECT_EQ(gpu.report.skippedTriangles, cpu.counters.skippedTriangles) << what;
+  EXPECT_EQ(gpu.report.skippedDraws, cpu.counters.skippedDraws) << what;
+  EXPECT_EQ(gpu.report.neededCandidates, cpu.counters.candidates) << what;
+  EXPECT_EQ(gpu.report.neededPairs, cpu.counters.pairs) << what;
+  EXPECT_EQ(gpu.report.neededDraws, cpu.counters.draws) << what;
+  EXPECT_EQ(gpu.report.unresolved, cpu.counters.unresolved) << what;
+  EXPECT_TRUE(cpu.sizes.empty() || gpu.sizes == cpu.sizes) << what;
   if (gpu.extents.empty()) return;
-  EXPECT_TRUE(gpu.extents == twin.extents) << what;
-  EXPECT_EQ(gpu.report.neededDrawTriangles, twin.counters.drawTriangles) << what;
-  EXPECT_TRUE(gpu.drawCommands == twin.drawCommands) << what;
-  EXPECT_TRUE(gpu.drawTriangles == twin.drawTriangles) << what;
-  EXPECT_TRUE(gpu.drawIndices == twin.drawIndices) << what;
+  EXPECT_TRUE(gpu.extents == cpu.extents) << what;
+  EXPECT_EQ(gpu.report.neededDrawTriangles, cpu.counters.drawTriangles) << what;
+  EXPECT_TRUE(gpu.drawCommands == cpu.drawCommands) << what;
+  EXPECT_TRUE(gpu.drawTriangles == cpu.drawTriangles) << what;
+  EXPECT_TRUE(gpu.drawIndices == cpu.drawIndices) << what;
 }
 
 } // namespace gpgp::test

@@ -1,4 +1,4 @@
-// Runs a scene through the C API as an engine would, and brings back everything that can be compared with the twin.
+// Runs a scene through the C API as an engine would, and brings back everything that can be compared with the CPU reference.
 #pragma once
 #include "../device_test.h"
 #include "host/frames.h"
@@ -14,7 +14,7 @@ namespace gpgp::test {
 struct GpuOptions {
   uint32_t listTriangles = UINT32_MAX; ///< the list's budget; UINT32_MAX: all; 0: no list
   bool count = true;
-  GpgpView view = nullptr;
+  GpgpHistory view = nullptr;
   uint64_t tag = 0;
   GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;
   uint32_t samples = 0, slice = 0;
@@ -33,7 +33,7 @@ struct GpuResult {
   std::vector<uint32_t> bits, list, count; ///< list: as much as was written, sorted
   std::vector<uint32_t> depth, ids;        ///< from the scratch buffer
   uint32_t chunks = 0, keptChunks = 0;     ///< likewise
-  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+  GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
 };
 
 /// The engine's side of one scene: its buffers on the device.
@@ -45,23 +45,23 @@ struct SceneBuffers {
 struct VisibilityGpuTest : DeviceTest {
   const host::Queue& queue() const { return device.computeOnly() ? *device.computeOnly() : device.graphics(); }
 
-  GpgpWorker createSampler(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false,
+  GpgpRecorder createRecorder(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false,
                            uint32_t methods = 0, uint32_t maxSamples = 0, uint32_t maxCandidates = 0,
                            uint32_t maxPairs = 0, uint32_t maxCameras = 0, uint32_t maxDraws = 0);
   GpgpAsset createGeometrySet(const Scene& scene);
-  GpgpView createView(uint32_t maxTriangles);
+  GpgpHistory createView(uint32_t maxTriangles);
   /// Copies all that is pending.
   void upload();
   /// An info with everything but outputs and view.
-  static GpgpSampleInfo sampleInfo(const Scene& scene, const SceneBuffers& buffers, GpgpAsset geometrySet);
+  static GpgpVisibilityInfo sampleInfo(const Scene& scene, const SceneBuffers& buffers, GpgpAsset geometrySet);
 
-  /// Samples once, with scratch that was poisoned before, and waits. maxTriangles: of the sampler; 0: the default.
+  /// Samples once, with scratch that was poisoned before, and waits. maxTriangles: of the recorder; 0: the default.
   GpuResult sample(Scene& scene, const GpuOptions& options = {}, uint32_t maxTriangles = 0);
-  /// The same with the sampler and the geometry set given.
-  GpuResult sample(Scene& scene, GpgpWorker sampler, GpgpAsset geometrySet, const GpuOptions& options);
+  /// The same with the recorder and the geometry set given.
+  GpuResult sample(Scene& scene, GpgpRecorder recorder, GpgpAsset geometrySet, const GpuOptions& options);
 };
 
 /// Everything equal, bit for bit.
-void expectEqual(const GpuResult& gpu, const visibility::TwinResult& twin, const std::string& what);
+void expectEqual(const GpuResult& gpu, const visibility::CpuResult& cpu, const std::string& what);
 
 } // namespace gpgp::test

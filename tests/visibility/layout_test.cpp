@@ -1,8 +1,8 @@
 // One layout in C++ and GLSL: offsets and sizes of shared structs as the compiled shaders have them, and as C++ has
 // them.
-#include "visibility/layout.h"
+#include "visibility/shared/layout.h"
 
-#include "visibility/cluster.h"
+#include "visibility/shared/cluster.h"
 #include "visibility/sampling/budgets.h"
 
 #include "shaders/visibility_chunks.spv.h"
@@ -81,7 +81,7 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, unfoldArgs);
     EXPECT_OFFSET(offsets, Counters, mediumArgs);
     EXPECT_OFFSET(offsets, Counters, largeArgs);
-    EXPECT_OFFSET(offsets, Counters, wideArgs);
+    EXPECT_OFFSET(offsets, Counters, splitArgs);
     EXPECT_OFFSET(offsets, Counters, leftArgs);
     EXPECT_OFFSET(offsets, Counters, overlapArgs);
     EXPECT_OFFSET(offsets, Counters, winnerArgs);
@@ -128,7 +128,7 @@ TEST(Layout, ListDispatchesCoverTheListInRows) {
 TEST(Budgets, RecordsGrowWithTheCamerasAsFarAsTheDeviceBindsThem) {
   VkPhysicalDeviceLimits limits{};
   limits.maxStorageBufferRange = 1u << 27;
-  GpgpSamplerCreateInfo info = GPGP_SAMPLER_CREATE_INFO_INIT;
+  GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   info.maxTriangles = 1u << 24;
   const auto recordsFor = [&](uint32_t cameras) {
     info.maxCameras = cameras;

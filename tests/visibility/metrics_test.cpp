@@ -1,4 +1,4 @@
-// Metrics: the GPU's comparison with a truth against counting on the CPU, and the cameras of a view cell.
+// Metrics: the GPU's comparison with a reference against counting on the CPU, and the cameras of a view cell.
 #include "gpu.h"
 #include "measured_scenes.h"
 
@@ -15,32 +15,32 @@ constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, {}};
 
 struct MetricsTest : VisibilityGpuTest {
-  GpgpWorker sampler = nullptr;
+  GpgpRecorder recorder = nullptr;
   void SetUp() override {
     VisibilityGpuTest::SetUp();
-    sampler = createSampler(64, 64, 0, false, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_TRUTH_BIT, 4);
+    recorder = createRecorder(64, 64, 0, false, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_REFERENCE_BIT, 4);
     advance(); // what the tests before left is there
-    GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
-    while (gpgpGetSampleReport(sampler, &report) == GPGP_SUCCESS) continue;
+    GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
+    while (gpgpGetVisibilityReport(recorder, &report) == GPGP_SUCCESS) continue;
   }
   struct Measured {
-    GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+    GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
     Words positives, negatives;
   };
-  Measured measure(uint32_t triangles, const Words& visible, const Words& truth, const Words& counts,
+  Measured measure(uint32_t triangles, const Words& visible, const Words& reference, const Words& counts,
                    const Words& recheck, bool masks) {
     Measured result;
     const auto make = [&](const Words& words, const char* name) {
       return words.empty() ? host::Buffer() : host::makeBuffer(device, words, kStorage, name);
     };
-    const host::Buffer visibleBits = make(visible, "visible"), truthBits = make(truth, "truth");
-    const host::Buffer truthCounts = make(counts, "counts"), recheckBits = make(recheck, "recheck");
+    const host::Buffer visibleBits = make(visible, "visible"), referenceBits = make(reference, "reference");
+    const host::Buffer referenceCounts = make(counts, "counts"), recheckBits = make(recheck, "recheck");
     const host::Buffer positives(device, visible.size() * 4, kStorage), negatives(device, visible.size() * 4, kStorage);
     GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
     info.triangleCount = triangles;
     info.visibleBits = visibleBits.range();
-    info.truthBits = truthBits.range();
-    if (!counts.empty()) info.truthCounts = truthCounts.range();
+    info.referenceBits = referenceBits.range();
+    if (!counts.empty()) info.referenceCounts = referenceCounts.range();
     if (!recheck.empty()) info.recheckBits = recheckBits.range();
     if (masks) {
       info.falsePositives = positives.range({}, kRead);
@@ -48,10 +48,10 @@ struct MetricsTest : VisibilityGpuTest {
     }
     const GpgpFrame f = advance();
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-      EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(sampler, cmd, &f, &info), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(recorder, cmd, &f, &info), GPGP_SUCCESS);
     });
     advance();
-    EXPECT_EQ(gpgpGetSampleReport(sampler, &result.report), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpGetVisibilityReport(recorder, &result.report), GPGP_SUCCESS);
     if (masks) {
       result.positives = host::download<uint32_t>(device, positives, visible.size());
       result.negatives = host::download<uint32_t>(device, negatives, visible.size());
@@ -65,9 +65,9 @@ TEST_F(MetricsTest, AreThoseOfCountingTriangleByTriangle) {
   for (const uint32_t triangles : {1u, 31u, 32u, 1000u, 70001u})
     for (const bool full : {true, false}) {
       const size_t words = (triangles + 31) / 32;
-      Words visible(words), truth(words), recheck(full ? words : 0), counts(full ? triangles : 0);
+      Words visible(words), reference(words), recheck(full ? words : 0), counts(full ? triangles : 0);
       for (uint32_t& w : visible) w = static_cast<uint32_t>(random()); // also behind the last triangle
-      for (uint32_t& w : truth) w = static_cast<uint32_t>(random() & random());
+      for (uint32_t& w : reference) w = static_cast<uint32_t>(random() & random());
       for (uint32_t& w : recheck) w = static_cast<uint32_t>(random() & random());
       for (uint32_t& c : counts) c = static_cast<uint32_t>(random() % 8 ? random() % 5000 : 0xffffffffu - random() % 9);
       uint32_t all = 0, found = 0, extra = 0;
@@ -75,7 +75,7 @@ TEST_F(MetricsTest, AreThoseOfCountingTriangleByTriangle) {
       Words positives(words), negatives(words);
       for (uint32_t t = 0; t < triangles; ++t) {
         const auto in = [&](const Words& bits) { return !bits.empty() && (bits[t / 32] >> t % 32 & 1u); };
-        const bool isTrue = in(truth) || (in(visible) && in(recheck));
+        const bool isTrue = in(reference) || (in(visible) && in(recheck));
         const double samples = full && isTrue ? counts[t] : 0;
         all += isTrue;
         found += isTrue && in(visible);
@@ -85,8 +85,8 @@ TEST_F(MetricsTest, AreThoseOfCountingTriangleByTriangle) {
         if (!isTrue && in(visible)) positives[t / 32] |= 1u << t % 32;
         if (isTrue && !in(visible)) negatives[t / 32] |= 1u << t % 32;
       }
-      const Measured m = measure(triangles, visible, truth, counts, recheck, full);
-      EXPECT_EQ(m.report.truth, all);
+      const Measured m = measure(triangles, visible, reference, counts, recheck, full);
+      EXPECT_EQ(m.report.reference, all);
       EXPECT_EQ(m.report.falsePositives, extra);
       EXPECT_EQ(m.report.falseNegatives, all - found);
       EXPECT_EQ(m.report.visible, 0u); // nothing was sampled
@@ -111,108 +111,108 @@ TEST_F(MetricsTest, OfNoTrianglesAreZero) {
   GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
   const GpgpFrame f = advance();
   device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-    EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(sampler, cmd, &f, &info), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(recorder, cmd, &f, &info), GPGP_SUCCESS);
   });
   advance();
-  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
-  EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+  GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
+  EXPECT_EQ(gpgpGetVisibilityReport(recorder, &report), GPGP_SUCCESS);
   EXPECT_EQ(report.base.status, GPGP_SUCCESS);
-  EXPECT_EQ(report.truth + report.falsePositives + report.falseNegatives, 0u);
+  EXPECT_EQ(report.reference + report.falsePositives + report.falseNegatives, 0u);
 }
 
 TEST_F(MetricsTest, BadBuffersAreRefusedByName) {
   const host::Buffer words(device, 16, kStorage);
   GpgpVisibilityMetricsInfo good = GPGP_VISIBILITY_METRICS_INFO_INIT;
   good.triangleCount = 100;
-  good.visibleBits = good.truthBits = words.range();
+  good.visibleBits = good.referenceBits = words.range();
   const GpgpFrame f = advance();
   const auto expectBad = [&](const char* text, auto change) {
     GpgpVisibilityMetricsInfo info = good;
     change(info);
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-      EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(sampler, cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT) << text;
+      EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(recorder, cmd, &f, &info), GPGP_ERROR_INVALID_ARGUMENT) << text;
     });
     ASSERT_EQ(messages.size(), 1u) << text;
     EXPECT_NE(messages[0].find(text), std::string::npos) << messages[0];
     messages.clear();
   };
   expectBad("visibleBits.buffer is NULL", [](auto& i) { i.visibleBits = {}; });
-  expectBad("truthBits.buffer is NULL", [](auto& i) { i.truthBits = {}; });
-  expectBad("truthBits.size is 16", [](auto& i) {
+  expectBad("referenceBits.buffer is NULL", [](auto& i) { i.referenceBits = {}; });
+  expectBad("referenceBits.size is 16", [](auto& i) {
     i.triangleCount = 129;
     i.visibleBits.size = 32;
   });
-  expectBad("truthCounts.size is 16", [&](auto& i) { i.truthCounts = words.range(); });
+  expectBad("referenceCounts.size is 16", [&](auto& i) { i.referenceCounts = words.range(); });
   expectBad("recheckBits.size is 8", [&](auto& i) { i.recheckBits = words.range(), i.recheckBits.size = 8; });
   expectBad("falsePositives.size is 12",
             [&](auto& i) { i.falsePositives = words.range(), i.falsePositives.size = 12; });
   expectBad("falseNegatives.size is 4", [&](auto& i) { i.falseNegatives = words.range(), i.falseNegatives.size = 4; });
-  expectBad("truthBits.offset must be", [](auto& i) { i.truthBits.offset = 1; });
+  expectBad("referenceBits.offset must be", [](auto& i) { i.referenceBits.offset = 1; });
   expectBad("triangleCount", [](auto& i) { i.triangleCount = 0x80000001u; });
   GpgpVisibilityMetricsInfo info = good;
-  info.sType = GPGP_STRUCTURE_SAMPLE_INFO;
-  EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(sampler, VK_NULL_HANDLE, &f, &info), GPGP_ERROR_INVALID_STRUCT);
+  info.sType = GPGP_STRUCTURE_VISIBILITY_INFO;
+  EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(recorder, VK_NULL_HANDLE, &f, &info), GPGP_ERROR_INVALID_STRUCT);
   messages.clear();
   device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-    EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(sampler, cmd, &f, &good), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpRecordPrepareVisibilityMetrics(recorder, cmd, &f, &good), GPGP_SUCCESS);
   });
   EXPECT_TRUE(messages.empty());
 }
 
-// An engine's whole way: truth in slices, a method, the comparison; and a record of the method goes on as before.
+// An engine's whole way: reference in slices, a method, the comparison; and a record of the method goes on as before.
 TEST_F(MetricsTest, OfASceneAreThoseOfItsBits) {
   Scene scene = bunny(64, 64);
-  const visibility::TwinResult standard = visibility::sampleOnCpu(scene.input());
+  const visibility::CpuResult standard = visibility::sampleOnCpu(scene.input());
   std::vector<uint32_t> sizes;
-  const visibility::TwinResult truth = visibility::truthOnCpu(scene.input(), 8, sizes);
+  const visibility::CpuResult reference = visibility::referenceOnCpu(scene.input(), 8, sizes);
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
   upload();
   const host::Buffer bits(device, standard.bits.size() * 4, kStorage),
-      truthBits(device, truth.bits.size() * 4, kStorage);
+      referenceBits(device, reference.bits.size() * 4, kStorage);
   const host::Buffer counts(device, sizes.size() * 4, kStorage);
-  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
+  GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
   const auto record = [&](auto call) {
     const GpgpFrame f = advance();
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) { EXPECT_EQ(call(cmd, f), GPGP_SUCCESS); });
     advance();
-    EXPECT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpGetVisibilityReport(recorder, &report), GPGP_SUCCESS);
   };
   const auto sampleInto = [&](const host::Buffer& to, GpgpSamplingMethod method, uint32_t slice) {
     record([&](VkCommandBuffer cmd, const GpgpFrame& f) {
-      GpgpSampleInfo info = sampleInfo(scene, buffers, set);
+      GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
       info.method = method;
-      info.samples = method == GPGP_SAMPLING_TRUTH ? 8 : 1;
+      info.samples = method == GPGP_SAMPLING_REFERENCE ? 8 : 1;
       info.slice = slice;
       info.accumulate = slice > 0;
       info.visibleBits = to.range();
-      if (method == GPGP_SAMPLING_TRUTH) info.pixelCounts = counts.range();
-      return gpgpRecordPrepareVisibility(sampler, cmd, &f, &info);
+      if (method == GPGP_SAMPLING_REFERENCE) info.pixelCounts = counts.range();
+      return gpgpRecordPrepareVisibility(recorder, cmd, &f, &info);
     });
   };
-  for (uint32_t slice = 0; slice <= 4; ++slice) sampleInto(truthBits, GPGP_SAMPLING_TRUTH, slice);
+  for (uint32_t slice = 0; slice <= 4; ++slice) sampleInto(referenceBits, GPGP_SAMPLING_REFERENCE, slice);
   sampleInto(bits, GPGP_SAMPLING_STANDARD, 0);
   EXPECT_EQ(report.visible, standard.counters.visible);
-  EXPECT_EQ(report.truth, 0u);
+  EXPECT_EQ(report.reference, 0u);
   record([&](VkCommandBuffer cmd, const GpgpFrame& f) {
     GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
     info.triangleCount = scene.params.triangleCount;
     info.visibleBits = bits.range();
-    info.truthBits = truthBits.range();
-    info.truthCounts = counts.range();
-    return gpgpRecordPrepareVisibilityMetrics(sampler, cmd, &f, &info);
+    info.referenceBits = referenceBits.range();
+    info.referenceCounts = counts.range();
+    return gpgpRecordPrepareVisibilityMetrics(recorder, cmd, &f, &info);
   });
   uint32_t all = 0, found = 0;
   uint64_t area = 0, foundArea = 0;
   for (size_t t = 0; t < sizes.size(); ++t) {
-    const bool isTrue = truth.bits[t / 32] >> t % 32 & 1u, isFound = standard.bits[t / 32] >> t % 32 & 1u;
+    const bool isTrue = reference.bits[t / 32] >> t % 32 & 1u, isFound = standard.bits[t / 32] >> t % 32 & 1u;
     all += isTrue;
     found += isTrue && isFound;
     area += sizes[t];
     if (isFound) foundArea += sizes[t];
   }
-  EXPECT_EQ(report.truth, all);
-  EXPECT_EQ(report.falsePositives, 0u); // the centre is one of the truth's samples
+  EXPECT_EQ(report.reference, all);
+  EXPECT_EQ(report.falsePositives, 0u); // the centre is one of the reference's samples
   EXPECT_EQ(report.falseNegatives, all - found);
   EXPECT_GT(report.falseNegatives, 100u);
   EXPECT_FLOAT_EQ(report.coverageArea, static_cast<float>(static_cast<double>(foundArea) / static_cast<double>(area)));
@@ -221,11 +221,11 @@ TEST_F(MetricsTest, OfASceneAreThoseOfItsBits) {
 }
 
 // What 64 x 64 samples a pixel leave out is little, and covers next to nothing.
-TEST_F(MetricsTest, TheTruthOf64HoldsNearlyAllOfThatOf128) {
+TEST_F(MetricsTest, TheReferenceOf64HoldsNearlyAllOfThatOf128) {
   Scene scene = foliage(3000);
   setWalkingCamera(scene, {1, 1.7f, 7}, {0, 1.5f, 0}, 64, 36, true);
   scene.input();
-  const GpgpWorker worker = createSampler(64, 36, 0, false, GPGP_SAMPLING_TRUTH_BIT, 8);
+  const GpgpRecorder recorder = createRecorder(64, 36, 0, false, GPGP_SAMPLING_REFERENCE_BIT, 8);
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
   upload();
@@ -236,36 +236,36 @@ TEST_F(MetricsTest, TheTruthOf64HoldsNearlyAllOfThatOf128) {
     for (uint32_t slice = 0; slice <= samples / 8 * (samples / 8); ++slice) {
       const GpgpFrame f = advance();
       device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-        GpgpSampleInfo info = sampleInfo(scene, buffers, set);
-        info.method = GPGP_SAMPLING_TRUTH;
+        GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
+        info.method = GPGP_SAMPLING_REFERENCE;
         info.samples = samples;
         info.slice = slice;
         info.accumulate = slice > 0;
         info.visibleBits = (samples == 64 ? coarse : fine).range();
         if (samples == 128) info.pixelCounts = counts.range();
-        ASSERT_EQ(gpgpRecordPrepareVisibility(worker, cmd, &f, &info), GPGP_SUCCESS);
+        ASSERT_EQ(gpgpRecordPrepareVisibility(recorder, cmd, &f, &info), GPGP_SUCCESS);
       });
     }
   GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
   info.triangleCount = triangles;
   info.visibleBits = coarse.range();
-  info.truthBits = fine.range();
-  info.truthCounts = counts.range();
+  info.referenceBits = fine.range();
+  info.referenceCounts = counts.range();
   const GpgpFrame f = advance();
   device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-    ASSERT_EQ(gpgpRecordPrepareVisibilityMetrics(sampler, cmd, &f, &info), GPGP_SUCCESS);
+    ASSERT_EQ(gpgpRecordPrepareVisibilityMetrics(recorder, cmd, &f, &info), GPGP_SUCCESS);
   });
   advance();
-  GpgpSampleReport report = GPGP_SAMPLE_REPORT_INIT;
-  ASSERT_EQ(gpgpGetSampleReport(sampler, &report), GPGP_SUCCESS);
+  GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
+  ASSERT_EQ(gpgpGetVisibilityReport(recorder, &report), GPGP_SUCCESS);
   std::printf("64 x 64 samples: %u triangles fewer than 128 x 128 of %u, %u others; %.6f of the area\n",
-              report.falseNegatives, report.truth, report.falsePositives, static_cast<double>(report.coverageArea));
-  EXPECT_GT(report.truth, 2000u);
+              report.falseNegatives, report.reference, report.falsePositives, static_cast<double>(report.coverageArea));
+  EXPECT_GT(report.reference, 2000u);
   EXPECT_GE(report.coverage, 0.98f);
   EXPECT_GE(report.coverageArea, 0.999f); // what is missed are slivers along rows and columns
 }
 
-TEST_F(MetricsTest, CountsOfTheTruthStayAtTheLargestNumber) {
+TEST_F(MetricsTest, CountsOfTheReferenceStayAtTheLargestNumber) {
   Scene scene = randomSoup(5, 4, 64, 64, true, false);
   scene.input();
   const GpgpAsset set = createGeometrySet(scene);
@@ -276,13 +276,13 @@ TEST_F(MetricsTest, CountsOfTheTruthStayAtTheLargestNumber) {
   const host::Buffer counts = host::makeBuffer(device, start, kStorage, "counts");
   const GpgpFrame f = advance();
   device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-    GpgpSampleInfo info = sampleInfo(scene, buffers, set);
-    info.method = GPGP_SAMPLING_TRUTH;
+    GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
+    info.method = GPGP_SAMPLING_REFERENCE;
     info.samples = 4;
     info.accumulate = VK_TRUE;
     info.visibleBits = bits.range();
     info.pixelCounts = counts.range({}, kRead);
-    EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, cmd, &f, &info), GPGP_SUCCESS);
   });
   const Words after = host::download<uint32_t>(device, counts, start.size());
   EXPECT_GT(std::count(after.begin(), after.end(), 0xffffffffu), 0);

@@ -1,7 +1,7 @@
 // Method nearby, and records that sample what another one listed: how a view cell is sampled from many points.
 #include "gpu.h"
 #include "measured_scenes.h"
-#include "visibility/nearby.h"
+#include "visibility/nearby/nearby.h"
 #include "visibility/view_cell.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ Scene street(uint32_t width, uint32_t height, bool reversed) {
 }
 
 /// The triangles that a record listed by draw, as a scene to sample.
-Scene listed(const Scene& scene, const TwinResult& lists) {
+Scene listed(const Scene& scene, const CpuResult& lists) {
   Scene result = scene;
   result.commands = lists.drawCommands;
   result.indices = lists.drawIndices;
@@ -58,7 +58,7 @@ size_t countOf(const std::vector<uint32_t>& bits) {
   return count;
 }
 
-TEST(NearbyTwin, InverseDistancesAreThoseAlongTheView) {
+TEST(NearbyCpuReference, InverseDistancesAreThoseAlongTheView) {
   for (const bool reversed : {false, true}) {
     Scene scene;
     scene.setCamera(perspective(1.0f, 2.0f, 0.5f, 80.0f, reversed) * lookAt({3, 1, 2}, {0, 0, 0}), 200, 100, reversed);
@@ -80,11 +80,11 @@ TEST(NearbyTwin, InverseDistancesAreThoseAlongTheView) {
   EXPECT_EQ(depthScale(parallel, 8, 8, 1), glm::vec4(0));
 }
 
-TEST(NearbyTwin, HoldsWhatIsSeenFromTheCellAndLittleElse) {
+TEST(NearbyCpuReference, HoldsWhatIsSeenFromTheCellAndLittleElse) {
   Scene scene = street(96, 54, true);
   const Scene middle = scene;
   setCell(scene, kCorners, 1);
-  const TwinResult nearby = sampleNearbyOnCpu(scene.input());
+  const CpuResult nearby = sampleNearbyOnCpu(scene.input());
   std::vector<uint32_t> seen(nearby.bits.size()), found(seen);
   const auto unite = [](std::vector<uint32_t>& all, const std::vector<uint32_t>& bits) {
     for (size_t i = 0; i < all.size(); ++i) all[i] |= bits[i];
@@ -110,41 +110,41 @@ TEST(NearbyTwin, HoldsWhatIsSeenFromTheCellAndLittleElse) {
 }
 
 struct NearbyTest : VisibilityGpuTest {
-  GpgpWorker sampler = nullptr;
+  GpgpRecorder recorder = nullptr;
   GpuResult run(Scene& scene, const GpuOptions& options) {
-    if (!sampler)
-      sampler =
-          createSampler(256, 256, 0, true,
+    if (!recorder)
+      recorder =
+          createRecorder(256, 256, 0, true,
                         GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_NEARBY_BIT, 0, 0, 0, 12);
     scene.input(); // fills in what depends on the scene
     const GpgpAsset set = createGeometrySet(scene);
-    GpuResult result = sample(scene, sampler, set, options);
+    GpuResult result = sample(scene, recorder, set, options);
     gpgpDestroyAsset(set);
     return result;
   }
 };
 
-TEST_F(NearbyTest, EqualsTheTwin) {
+TEST_F(NearbyTest, EqualsTheCpuReference) {
   for (const bool reversed : {false, true})
     for (const float reach : {0.0f, 1.0f}) {
       Scene scene = street(130, 71, reversed);
       setCell(scene, kCorners, reach);
-      const TwinResult twin = sampleNearbyOnCpu(scene.input());
-      EXPECT_GT(twin.counters.visible, 1000u);
-      expectEqual(run(scene, {.method = GPGP_SAMPLING_NEARBY, .reach = reach}), twin, "nearby");
+      const CpuResult cpu = sampleNearbyOnCpu(scene.input());
+      EXPECT_GT(cpu.counters.visible, 1000u);
+      expectEqual(run(scene, {.method = GPGP_SAMPLING_NEARBY, .reach = reach}), cpu, "nearby");
     }
   Scene scene = colonnade(128, 72); // ground and columns through the near plane
   setCell(scene, {{0, 0}}, 0.3f);
   expectEqual(run(scene, {.method = GPGP_SAMPLING_NEARBY, .reach = 0.3f}), sampleNearbyOnCpu(scene.input()), "clipped");
 }
 
-TEST_F(NearbyTest, ExactWithAReachEqualsTheTwinAndShowsWhatAMoveUncovers) {
+TEST_F(NearbyTest, ExactWithAReachEqualsTheCpuReferenceAndShowsWhatAMoveUncovers) {
   for (const bool reversed : {false, true}) {
     Scene scene = street(96, 54, reversed);
     const std::vector<uint32_t> one = sampleExactOnCpu(scene.input()).bits;
     setCell(scene, {{0, 0}}, 0.02f);
-    const TwinResult twin = sampleExactOnCpu(scene.input());
-    expectEqual(run(scene, {.method = GPGP_SAMPLING_EXACT, .reach = 0.02f}), twin, "exact with a reach");
+    const CpuResult cpu = sampleExactOnCpu(scene.input());
+    expectEqual(run(scene, {.method = GPGP_SAMPLING_EXACT, .reach = 0.02f}), cpu, "exact with a reach");
     std::vector<uint32_t> moved(one.size());
     for (const auto& by : std::vector<glm::vec2>{{-0.02f, 0}, {0.02f, 0}, {0, -0.02f}, {0, 0.02f}}) {
       Scene other = scene;
@@ -154,12 +154,12 @@ TEST_F(NearbyTest, ExactWithAReachEqualsTheTwinAndShowsWhatAMoveUncovers) {
     }
     std::vector<uint32_t> found = moved;
     for (size_t i = 0; i < one.size(); ++i) {
-      EXPECT_EQ(one[i] & ~twin.bits[i], 0u); // nothing is lost
-      found[i] &= twin.bits[i];
+      EXPECT_EQ(one[i] & ~cpu.bits[i], 0u); // nothing is lost
+      found[i] &= cpu.bits[i];
     }
     EXPECT_GT(countOf(moved), 20u);
     EXPECT_GT(countOf(found) * 5, countOf(moved)); // a part of what shows by moving
-    EXPECT_LT(countOf(twin.bits), countOf(one) * 5 / 4);
+    EXPECT_LT(countOf(cpu.bits), countOf(one) * 5 / 4);
   }
 }
 
@@ -168,11 +168,11 @@ TEST_F(NearbyTest, WhatItListsIsSampledUnderItsOwnNumbers) {
   std::vector<glm::vec2> points = kCorners;
   for (int i = 0; i < 8; ++i) points.emplace_back(static_cast<float>(i) / 8 - 0.45f, 0.1f); // more than eight cameras
   setCell(scene, points, 1);
-  const TwinResult all = sampleOnCpu(scene.input());
+  const CpuResult all = sampleOnCpu(scene.input());
   Scene cell = listed(scene, sampleNearbyOnCpu(scene.input()));
   ASSERT_LT(cell.numbers.size() * 2, scene.params.triangleCount);
   std::fill(std::begin(cell.params.depthScales), std::end(cell.params.depthScales), 0.0f);
-  const TwinResult standard = sampleOnCpu(cell.input()), exact = sampleExactOnCpu(cell.input());
+  const CpuResult standard = sampleOnCpu(cell.input()), exact = sampleExactOnCpu(cell.input());
   EXPECT_EQ(standard.bits, all.bits); // whatever a centre shows is nearby
   expectEqual(run(cell, {}), standard, "standard");
   expectEqual(run(cell, {.method = GPGP_SAMPLING_EXACT}), exact, "exact");
@@ -180,7 +180,7 @@ TEST_F(NearbyTest, WhatItListsIsSampledUnderItsOwnNumbers) {
   for (size_t i = 0; i < cell.numbers.size(); i += 3)
     cell.numbers[i] = scene.params.triangleCount + static_cast<uint32_t>(i);
   cell.numbers.resize(cell.numbers.size() - 7);
-  const TwinResult skipped = sampleOnCpu(cell.input());
+  const CpuResult skipped = sampleOnCpu(cell.input());
   EXPECT_GT(skipped.counters.skippedTriangles, all.counters.skippedTriangles);
   expectEqual(run(cell, {}), skipped, "numbers out of range");
 }
@@ -188,7 +188,7 @@ TEST_F(NearbyTest, WhatItListsIsSampledUnderItsOwnNumbers) {
 TEST_F(NearbyTest, ArgumentsAreChecked) {
   Scene scene = randomSoup(1, 10, 16, 16, true, false);
   scene.input();
-  sampler = createSampler(64, 64, 0, false, GPGP_SAMPLING_NEARBY_BIT | GPGP_SAMPLING_EXACT_BIT);
+  recorder = createRecorder(64, 64, 0, false, GPGP_SAMPLING_NEARBY_BIT | GPGP_SAMPLING_EXACT_BIT);
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
   const host::Buffer any(device, 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
@@ -202,7 +202,7 @@ TEST_F(NearbyTest, ArgumentsAreChecked) {
                                                       {exact, "reach is -1", -1.0f, false},
                                                       {exact, "camera 0 has no perspective", 1.0f, true},
                                                       {exact, "", 0.0f, true}}) {
-    GpgpSampleInfo info = sampleInfo(scene, buffers, set);
+    GpgpVisibilityInfo info = sampleInfo(scene, buffers, set);
     info.visibleBits = any.range();
     info.method = method;
     info.reach = reach;
@@ -210,7 +210,7 @@ TEST_F(NearbyTest, ArgumentsAreChecked) {
     const GpgpResult expected = *text ? GPGP_ERROR_INVALID_ARGUMENT : GPGP_SUCCESS;
     messages.clear();
     device.submitAndWait(queue(), [&](VkCommandBuffer cmd) {
-      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, cmd, &f, &info), expected);
+      EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, cmd, &f, &info), expected);
     });
     if (!*text) continue;
     ASSERT_EQ(messages.size(), 1u) << text;

@@ -66,7 +66,7 @@ struct Pixel {
 };
 } // namespace
 
-Verdict judge(const visibility::TwinInput& in, const std::vector<uint32_t>& ids) {
+Verdict judge(const visibility::CpuInput& in, const std::vector<uint32_t>& ids) {
   const shader::Params& params = in.params;
   std::vector<Pixel> pixels(ids.size());
   for (const shader::Draw& draw : in.draws) {

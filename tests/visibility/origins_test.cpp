@@ -47,17 +47,17 @@ uint32_t common(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b) 
 
 TEST(Origins, FarAwayIsAsAtTheOrigin) {
   Scene near = columnsAt(glm::dvec3(0));
-  const TwinResult expected = sampleExactOnCpu(near.input());
+  const CpuResult expected = sampleExactOnCpu(near.input());
   EXPECT_GT(expected.counters.visible, 2000u);
   for (const glm::dvec3& by : kFar) {
     Scene far = columnsAt(by);
-    const TwinResult found = sampleExactOnCpu(far.input());
+    const CpuResult found = sampleExactOnCpu(far.input());
     EXPECT_EQ(found.bits, expected.bits) << by.x;
     EXPECT_EQ(found.depth, expected.depth) << by.x;
   }
   // Or the scene would not tell.
   Scene here = columnsByFloats(glm::vec3(0)), there = columnsByFloats(glm::vec3(kFar[1]));
-  const TwinResult right = sampleExactOnCpu(here.input()), floats = sampleExactOnCpu(there.input());
+  const CpuResult right = sampleExactOnCpu(here.input()), floats = sampleExactOnCpu(there.input());
   EXPECT_LT(common(floats.bits, right.bits), right.counters.visible * 0.9);
 }
 
@@ -65,19 +65,19 @@ TEST(Origins, FarAwayIsAsAtTheOrigin) {
 TEST(Origins, OnePlaceForAllChangesNothing) {
   Scene plain = columnsByFloats(glm::vec3(0)), placed = plain;
   placed.origins = placed.cameraOrigins = {glm::dvec3(1234567.891, -7654321.987, 3e12)};
-  const TwinResult expected = sampleExactOnCpu(plain.input()), found = sampleExactOnCpu(placed.input());
+  const CpuResult expected = sampleExactOnCpu(plain.input()), found = sampleExactOnCpu(placed.input());
   EXPECT_EQ(found.bits, expected.bits);
   EXPECT_EQ(found.depth, expected.depth);
 }
 
-TEST_F(VisibilityGpuTest, FarAwayEqualsTheTwin) {
+TEST_F(VisibilityGpuTest, FarAwayEqualsTheCpuReference) {
   for (const bool clusters : {false, true})
     for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT}) {
       Scene scene = columnsAt(kFar[1]);
-      const TwinResult twin =
+      const CpuResult cpu =
           method == GPGP_SAMPLING_EXACT ? sampleExactOnCpu(scene.input()) : sampleOnCpu(scene.input());
       const GpuResult gpu = sample(scene, {.method = method, .clusters = clusters});
-      expectEqual(gpu, twin, "method " + std::to_string(method) + (clusters ? ", clusters" : ""));
+      expectEqual(gpu, cpu, "method " + std::to_string(method) + (clusters ? ", clusters" : ""));
     }
 }
 
@@ -86,9 +86,9 @@ TEST_F(VisibilityGpuTest, DrawsOfAnUnknownOriginAreSkippedAndCounted) {
     Scene scene = columnsAt(kFar[0]);
     scene.draws[1].origin = 3;
     const uint32_t triangles = scene.meshes[scene.draws[1].mesh].indexCount / 3;
-    const TwinResult twin = sampleOnCpu(scene.input());
-    EXPECT_EQ(twin.counters.skippedTriangles, triangles * 2);
-    expectEqual(sample(scene, {.clusters = clusters}), twin, clusters ? "clusters" : "");
+    const CpuResult cpu = sampleOnCpu(scene.input());
+    EXPECT_EQ(cpu.counters.skippedTriangles, triangles * 2);
+    expectEqual(sample(scene, {.clusters = clusters}), cpu, clusters ? "clusters" : "");
   }
 }
 

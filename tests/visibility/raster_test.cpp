@@ -1,6 +1,6 @@
 // The rasteriser on one triangle: coverage against a direct evaluation, the fast forms against the exact one, and edges
 // shared by triangles.
-#include "visibility/candidate.h"
+#include "visibility/shared/candidate.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 // The tests' scenes as the reference by rays reads them.
 #pragma once
 #include "scenes.h"
-#include "visibility/reference/ray_truth.h"
+#include "visibility/reference/ray_reference.h"
 
 #include <cstring>
 
@@ -40,11 +40,11 @@ inline void inOrder(size_t count, const std::function<void(size_t)>& work) {
 }
 
 /// What the scene's camera sees by rays.
-inline visibility::RayTruth rayTruth(const RaySceneOf& rays, const Scene& scene, uint32_t samples,
+inline visibility::RayReference rayReference(const RaySceneOf& rays, const Scene& scene, uint32_t samples,
                                      const visibility::ForEach& forEach = inOrder) {
-  visibility::RayTruth truth(rays, forEach);
-  truth.add(cameraOf(scene), scene.params.width, scene.params.height, samples);
-  return truth;
+  visibility::RayReference reference(rays, forEach);
+  reference.add(cameraOf(scene), scene.params.width, scene.params.height, samples);
+  return reference;
 }
 
 } // namespace gpgp::test

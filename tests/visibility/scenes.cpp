@@ -47,7 +47,7 @@ void Scene::addCamera(const glm::mat4& viewProjection) {
   for (int i = 0; i < 16; ++i) matrix[i] = viewProjection[i / 4][i % 4];
 }
 
-visibility::TwinInput Scene::input() {
+visibility::CpuInput Scene::input() {
   if (params.positionFormat == shader::kFloats) {
     positionWords.resize(positions.size());
     for (size_t i = 0; i < positions.size(); ++i) positionWords[i] = std::bit_cast<uint32_t>(positions[i]);

@@ -1,6 +1,6 @@
 // Scenes for the visibility tests: meshes, draws and a camera, as an engine's buffers would hold them.
 #pragma once
-#include "visibility/twin/twin.h"
+#include "visibility/cpu_reference/cpu_reference.h"
 
 #include <string>
 #include <vector>
@@ -31,8 +31,8 @@ struct Scene {
   void setCamera(const glm::mat4& viewProjection, uint32_t width, uint32_t height, bool reversed = false);
   /// One more camera of the same size.
   void addCamera(const glm::mat4& viewProjection);
-  /// The scene as the twin reads it; valid until the scene changes.
-  visibility::TwinInput input();
+  /// The scene as the CPU reference reads it; valid until the scene changes.
+  visibility::CpuInput input();
 };
 
 /// Right-handed, +Y up to Vulkan's clip space; field of view in radians.

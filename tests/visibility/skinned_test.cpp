@@ -33,9 +33,9 @@ Scene posed(Scene scene) {
 }
 
 struct SkinnedTest : VisibilityGpuTest {
-  GpgpSampleInfo info(const Scene& scene, const SceneBuffers& buffers, GpgpAsset set, GpgpSamplingMethod method,
+  GpgpVisibilityInfo info(const Scene& scene, const SceneBuffers& buffers, GpgpAsset set, GpgpSamplingMethod method,
                       const host::Buffer& bits) {
-    GpgpSampleInfo result = sampleInfo(scene, buffers, set);
+    GpgpVisibilityInfo result = sampleInfo(scene, buffers, set);
     result.method = method;
     result.visibleBits = bits.range(
         {}, {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED});
@@ -44,40 +44,40 @@ struct SkinnedTest : VisibilityGpuTest {
 };
 
 TEST_F(SkinnedTest, PositionsThatTheGpuWritesBetweenTwoRecordsMove) {
-  const GpgpWorker sampler = createSampler(96, 96, 4096, false, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
+  const GpgpRecorder recorder = createRecorder(96, 96, 4096, false, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT}) {
     Scene before = restPose(), after = posed(before);
-    const auto twin = [method](Scene& scene) {
+    const auto cpu = [method](Scene& scene) {
       return (method == GPGP_SAMPLING_EXACT ? sampleExactOnCpu(scene.input()) : sampleOnCpu(scene.input())).bits;
     };
-    ASSERT_NE(twin(before), twin(after));
+    ASSERT_NE(cpu(before), cpu(after));
     const SceneBuffers buffers(device, before), source(device, after);
     const GpgpAsset set = createGeometrySet(before);
     upload();
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    const VkDeviceSize words = twin(before).size();
+    const VkDeviceSize words = cpu(before).size();
     const host::Buffer first(device, words * 4, kStorage), second(device, words * 4, kStorage);
     const GpgpAccess written{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                              VK_IMAGE_LAYOUT_UNDEFINED};
     const GpgpFrame frame = advance();
     device.submitAndWait(queue(), [&](VkCommandBuffer commands) {
-      GpgpSampleInfo record = info(before, buffers, set, method, first);
+      GpgpVisibilityInfo record = info(before, buffers, set, method, first);
       record.positions = buffers.positions.range({}, written);
-      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, commands, &frame, &record), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, commands, &frame, &record), GPGP_SUCCESS);
       const VkBufferCopy all{0, 0, buffers.positions.size()};
       device.vk().vkCmdCopyBuffer(commands, source.positions.handle(), buffers.positions.handle(), 1, &all);
       record = info(before, buffers, set, method, second);
       record.positions = buffers.positions.range(written, {});
-      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, commands, &frame, &record), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, commands, &frame, &record), GPGP_SUCCESS);
     });
-    EXPECT_EQ(host::download<uint32_t>(device, first, words), twin(before)) << "method " << method;
-    EXPECT_EQ(host::download<uint32_t>(device, second, words), twin(after)) << "method " << method;
+    EXPECT_EQ(host::download<uint32_t>(device, first, words), cpu(before)) << "method " << method;
+    EXPECT_EQ(host::download<uint32_t>(device, second, words), cpu(after)) << "method " << method;
     gpgpDestroyAsset(set);
   }
 }
 
 TEST_F(SkinnedTest, PositionsThatTheCpuWritesBetweenTwoRecordsMove) {
-  const GpgpWorker sampler = createSampler(96, 96, 4096);
+  const GpgpRecorder recorder = createRecorder(96, 96, 4096);
   Scene before = restPose(), after = posed(before);
   const SceneBuffers buffers(device, before);
   const GpgpAsset set = createGeometrySet(before);
@@ -85,16 +85,16 @@ TEST_F(SkinnedTest, PositionsThatTheCpuWritesBetweenTwoRecordsMove) {
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   const host::Buffer positions(device, buffers.positions.size(), kStorage, host::Memory::host);
   for (Scene* pose : {&before, &after, &before}) {
-    const TwinInput input = pose->input();
+    const CpuInput input = pose->input();
     std::memcpy(positions.mapped(), input.positions.data(), input.positions.size_bytes());
     const std::vector<uint32_t> expected = sampleOnCpu(input).bits;
     const host::Buffer bits(device, expected.size() * 4, kStorage);
-    GpgpSampleInfo record = info(before, buffers, set, GPGP_SAMPLING_STANDARD, bits);
+    GpgpVisibilityInfo record = info(before, buffers, set, GPGP_SAMPLING_STANDARD, bits);
     record.positions =
         positions.range({VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED});
     const GpgpFrame frame = advance();
     device.submitAndWait(queue(), [&](VkCommandBuffer commands) {
-      EXPECT_EQ(gpgpRecordPrepareVisibility(sampler, commands, &frame, &record), GPGP_SUCCESS);
+      EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, commands, &frame, &record), GPGP_SUCCESS);
     });
     EXPECT_EQ(host::download<uint32_t>(device, bits, expected.size()), expected);
   }

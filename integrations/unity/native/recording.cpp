@@ -135,7 +135,7 @@ void Plugin::record(Surface& surface, const UnityVulkanRecordingState& state, co
   item.opacity = 1;
   const std::optional<GpgpCanvasImage> pictures = glyphs_.image();
   auto info = init<GpgpCanvasInfo>();
-  info.base.accessMode = GPGP_ACCESS_SYNCHRONISED; // Unity's barriers
+  info.base.accessMode = GPGP_ACCESS_EXTERNAL_BARRIERS; // Unity's barriers
   info.width = image.extent.width;
   info.height = image.extent.height;
   info.items = &item;

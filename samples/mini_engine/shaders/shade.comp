@@ -12,7 +12,7 @@ layout(set = 0, binding = 7, std430) readonly buffer Count { uint visibleCount[]
 
 layout(push_constant) uniform Push {
   vec4 eye; // the shading's, not the display's
-  uint drawCount, stamp;
+  uint drawCount, shading;
 } push;
 
 void main() {
@@ -32,5 +32,5 @@ void main() {
     vec3 colour = haze(lit(vec3(0.90, 0.30, 0.02), v.world, v.normal, push.eye.xyz, 0.35), push.eye.xyz, v.world);
     records[triangle].corners[c] = uvec2(packHalf2x16(colour.rg), packHalf2x16(vec2(colour.b, 1.0)));
   }
-  records[triangle].stamp = push.stamp;
+  records[triangle].shading = push.shading;
 }

@@ -5,7 +5,7 @@ struct Draw { // GpgpVisibilityDraw
 };
 struct Record {
   uvec2 corners[3]; // colours as halves
-  uint stamp;       // of the shading that made it
+  uint shading;       // of the shading that made it
   uint unused;
 };
 layout(set = 0, binding = 0, std430) readonly buffer Positions { float positions[]; };

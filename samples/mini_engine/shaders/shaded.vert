@@ -12,9 +12,9 @@ layout(set = 0, binding = 9, std430) readonly buffer Sizes { float sizes[]; }; /
 
 layout(push_constant) uniform Push {
   mat4 viewProjection;
-  uint draw, firstIndex, vertexOffset, stamp, show;
+  uint draw, firstIndex, vertexOffset, shading, show;
 } push;
-const uint kShaded = 0u, kOverlay = 1u, kOverlayWithoutTruth = 3u; // else density
+const uint kShaded = 0u, kOverlay = 1u, kOverlayWithoutReference = 3u; // else density
 
 layout(location = 0) out vec3 colour;
 
@@ -43,13 +43,13 @@ void main() {
   if (push.show == kShaded) {
     uvec2 packed = records[triangle].corners[corner];
     // Without a record of the last shading there is nothing to show: a disocclusion.
-    colour = records[triangle].stamp == push.stamp ? vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x)
+    colour = records[triangle].shading == push.shading ? vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x)
                                                    : vec3(0.9, 0.0, 0.8);
     return;
   }
   uint word = triangle >> 5;
   bool shown = has(found[word], triangle);
-  if (push.show == kOverlay || push.show == kOverlayWithoutTruth) {
+  if (push.show == kOverlay || push.show == kOverlayWithoutReference) {
     shown = shown || (push.show == kOverlay && has(falseNegatives[word], triangle));
     colour = overlay(triangle);
   } else {

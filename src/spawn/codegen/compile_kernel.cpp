@@ -57,10 +57,10 @@ std::string kernelText(const std::string& functions, KernelTarget target) {
                 "#extension GL_KHR_shader_subgroup_shuffle : require\n"
               : "") +
          (target == KernelTarget::software ? "#define GPGP_SOFTWARE\n" : "") +
-         "#include \"spawn/bindings.glsl\"\n"
-         "#include \"spawn/operators.h\"\n"
-         "#include \"spawn/table_format.h\"\n" +
-         functions + "#include \"spawn/derive.glsl\"\n";
+         "#include \"spawn/shared/bindings.glsl\"\n"
+         "#include \"spawn/shared/operators.h\"\n"
+         "#include \"spawn/kernel/table_format.h\"\n" +
+         functions + "#include \"spawn/derive/derive.glsl\"\n";
 }
 
 std::span<const KernelTarget> targetsOf(const Graph& graph) {

@@ -3,8 +3,8 @@
 #include "spawn/codegen/room.h"
 #include "spawn/codegen/table.h"
 #include "spawn/graph/matching.h"
-#include "spawn/operators.h"
-#include "spawn/table_format.h"
+#include "spawn/shared/operators.h"
+#include "spawn/kernel/table_format.h"
 
 #include <algorithm>
 #include <array>
@@ -59,8 +59,8 @@ public:
       if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= kHasDivisions;
       if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= kHasSides;
     }
-    add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/fans.h\"\n");
-    if (room_.words) add("#include \"spawn/chain.h\"\n");
+    add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/shared/fans.h\"\n");
+    if (room_.words) add("#include \"spawn/shared/chain.h\"\n");
     writeTable();
     std::vector<uint8_t> written(graph_.nodes.size());
     const std::string before = std::move(out_);
@@ -158,20 +158,20 @@ private:
   /// draw: the number of what kCodeRandom draws.
   static std::string operation(uint32_t code, const std::string& a, const std::string& b, uint32_t draw) {
     const auto call = [&](const char* function) { return std::string(function) + "(" + a + ", " + b + ")"; };
-    const auto compare = [&](const char* op) { return "truth(" + a + " " + op + " " + b + ")"; };
+    const auto compare = [&](const char* op) { return "reference(" + a + " " + op + " " + b + ")"; };
     switch (code) {
     case kCodeAdd: return call("add");
     case kCodeSubtract: return call("subtract");
     case kCodeMultiply: return call("multiply");
     case kCodeDivide: return call("divide");
-    case kCodeEqual: return "truth(" + call("nearlyEqual") + ")";
-    case kCodeNotEqual: return "truth(!" + call("nearlyEqual") + ")";
+    case kCodeEqual: return "reference(" + call("nearlyEqual") + ")";
+    case kCodeNotEqual: return "reference(!" + call("nearlyEqual") + ")";
     case kCodeLess: return compare("<");
     case kCodeGreater: return compare(">");
     case kCodeLessEqual: return compare("<=");
     case kCodeGreaterEqual: return compare(">=");
-    case kCodeAnd: return "truth(" + a + " != 0.0f && " + b + " != 0.0f)";
-    case kCodeOr: return "truth(" + a + " != 0.0f || " + b + " != 0.0f)";
+    case kCodeAnd: return "reference(" + a + " != 0.0f && " + b + " != 0.0f)";
+    case kCodeOr: return "reference(" + a + " != 0.0f || " + b + " != 0.0f)";
     default:
       return "add(" + a + ", multiply(subtract(" + b + ", " + a + "), drawnNumber(s.key, " + number(draw) + ")))";
     }
@@ -259,7 +259,7 @@ private:
     if (programs) add("#define GPGP_PROGRAMS\nuint runProgram(inout Shape s, uvec4 child);\n");
     add("#define GPGP_TABLE\nbool isStep(uint op, uint which) { return (" + number(table_.stepOperators) +
         " & (1u << which)) != 0u && op == which; }\n#define GPGP_FRAMES " + number(table_.frameFlags) +
-        "\n#include \"spawn/table.glsl\"\n");
+        "\n#include \"spawn/kernel/table.glsl\"\n");
     if (programs) writePrograms();
   }
   /// What all children with the same steps do, each with its own numbers. Returns the entry that it chooses, or 0, or

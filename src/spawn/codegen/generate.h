@@ -1,10 +1,10 @@
-// Operator graph to GLSL: the three functions of the interpreter (shaders/spawn/interpret.h) for one graph, with
+// Operator graph to GLSL: the three functions of the interpreter (shaders/spawn/derive/interpret.h) for one graph, with
 // operators in straight lines and parameters folded.
 //
 // What a node is decides little: operators that pass on one shape become functions that call the next one, operators
 // that multiply become cases of fanOf and toChild. `waits` is the schedule: a shape on its way to such a node goes
 // through a queue, to any other it goes on in the same invocation. The result equals the interpreter's to the last bit,
-// as both call shaders/spawn/operators.h and constants are folded with the same arithmetic.
+// as both call shaders/spawn/shared/operators.h and constants are folded with the same arithmetic.
 #pragma once
 #include "spawn/graph/partition.h"
 
@@ -15,7 +15,7 @@ namespace gpgp::spawn {
 
 struct KernelSource {
   std::string functions;       ///< GLSL
-  std::vector<uint32_t> table; ///< that they read (shaders/spawn/table_format.h)
+  std::vector<uint32_t> table; ///< that they read (shaders/spawn/kernel/table_format.h)
   uint32_t operators = 0;      ///< of the graph
   uint32_t byWords = 0;        ///< those that there is no room for as code: they are run by the graph's words
 };

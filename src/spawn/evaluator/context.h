@@ -1,6 +1,6 @@
 // Collider and IfCollides on the CPU: the colliders of all axioms, and the shapes that wait for later phases.
 #pragma once
-#include "spawn/collide.h"
+#include "spawn/colliders/collide.h"
 
 #include <gpgp/spawn.h>
 

@@ -67,8 +67,8 @@ public:
   void run() {
     for (size_t a = 0; a < axioms_.size() && out_.complete; ++a) {
       const GpgpAxiom& axiom = axioms_[a];
-      if (!startWords(words_, axiom.rule)) ++out_.droppedShapes;
-      runFrom(axiomShape(words_, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.rule,
+      if (!startWords(words_, axiom.start)) ++out_.droppedShapes;
+      runFrom(axiomShape(words_, vec3(axiom.size[0], axiom.size[1], axiom.size[2]), axiom.seed, axiom.start,
                          axiom.attribute, static_cast<uint32_t>(a)));
     }
     for (uint32_t phase = 1; phase < words_[kHeaderPhases] && out_.complete; ++phase)
@@ -392,7 +392,7 @@ GpgpAxiom makeAxiom(float x, float y, float z, uint32_t seed, uint32_t id) {
   axiom.size[2] = z;
   axiom.seed = seed;
   axiom.id = id;
-  axiom.rule = GPGP_AXIOM_DEFAULT_RULE;
+  axiom.start = GPGP_AXIOM_DEFAULT_START;
   axiom.attribute = std::numeric_limits<float>::quiet_NaN();
   return axiom;
 }

@@ -1,4 +1,4 @@
-// The CPU twin of the derivation on the GPU: one thread, depth first, the same operators on the same graph.
+// The CPU reference of the derivation on the GPU: one thread, depth first, the same operators on the same graph.
 //
 // Counts, keys, seeds, shapes and the hash are bit-identical to the GPU's; transforms agree within rounding. Used as
 // the oracle of tests, by the command, and as the baseline of benchmarks.

@@ -1,6 +1,6 @@
 // A grammar's words decoded for the evaluator: what a node needs side by side, and what is constant worked out.
 #pragma once
-#include "spawn/interpret.h"
+#include "spawn/derive/interpret.h"
 
 #include <vector>
 

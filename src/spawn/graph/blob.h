@@ -1,4 +1,4 @@
-// Baked grammars: an operator graph as checked, checksummed words (layout: shaders/spawn/graph_format.h).
+// Baked grammars: an operator graph as checked, checksummed words (layout: shaders/spawn/shared/graph_format.h).
 #pragma once
 #include "spawn/graph/graph.h"
 

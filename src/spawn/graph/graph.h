@@ -4,7 +4,7 @@
 // kNoNode as a target discards the shape.
 #pragma once
 #include "core/result.h"
-#include "spawn/graph_format.h"
+#include "spawn/shared/graph_format.h"
 
 #include <memory_resource>
 #include <string>
@@ -92,7 +92,7 @@ struct Graph {
   const char* nameAt(uint32_t offset) const { return names.data() + offset; }
 };
 
-/// Where a derivation can start: at the rules, then at the axioms, as GpgpAxiom::rule counts them.
+/// Where a derivation can start: at the rules, then at the axioms, as GpgpAxiom::start counts them.
 struct Start {
   const char* name;
   const Axiom* axiom; ///< which has the shape

@@ -28,7 +28,7 @@ struct Fit {
 enum class KernelTarget : uint32_t {
   any,
   subgroups, ///< with subgroup arithmetic, ballots and shuffles in compute shaders
-  software   ///< on the CPU, and with them (shaders/spawn/derive_batches.glsl); workgroups are subgroups
+  software   ///< on the CPU, and with them (shaders/spawn/derive/derive_batches.glsl); workgroups are subgroups
 };
 
 /// What one kernel is for.
@@ -43,7 +43,7 @@ struct KernelInfo {
 
 struct Kernel {
   KernelInfo info;
-  std::pmr::vector<uint32_t> code; ///< words of the table, the table (shaders/spawn/table_format.h), SPIR-V
+  std::pmr::vector<uint32_t> code; ///< words of the table, the table (shaders/spawn/kernel/table_format.h), SPIR-V
 
   std::span<const uint32_t> table() const { return std::span(code).subspan(1, code[0]); }
   std::span<const uint32_t> spirv() const { return std::span(code).subspan(1 + code[0]); }

@@ -1,6 +1,6 @@
 #include "spawn/language/build_graph.h"
 
-#include "spawn/expression.h"
+#include "spawn/shared/expression.h"
 #include "spawn/graph/export_labels.h"
 #include "spawn/language/append_graph.h"
 #include "spawn/language/check_context.h"

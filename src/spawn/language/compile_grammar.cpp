@@ -16,9 +16,9 @@ using namespace gpgp;
 
 namespace {
 void report(const GpgpGrammarSource& source, spawn::Place place, GpgpSeverity severity, const char* text,
-            uint32_t leftOut = 0) {
+            uint32_t omitted = 0) {
   if (!source.messageFn) return;
-  const GpgpCompileMessage message{source.name ? source.name : "", place.line, place.column, severity, text, leftOut};
+  const GpgpCompileMessage message{source.name ? source.name : "", place.line, place.column, severity, text, omitted};
   source.messageFn(source.messageUserData, &message);
 }
 
@@ -30,10 +30,10 @@ GpgpResult fail(const GpgpGrammarSource& source, GpgpResult result, const char* 
 void report(const GpgpGrammarSource& source, const spawn::Diagnostics& diagnostics) {
   for (const spawn::Diagnostic& d : diagnostics.sorted()) {
     if (!source.builder) {
-      report(source, d.place, d.severity, d.text.c_str(), d.leftOut);
+      report(source, d.place, d.severity, d.text.c_str(), d.omitted);
     } else { // places have names instead
       const std::string place = diagnostics.isNamed(d.place) ? diagnostics.where(d.place) + ": " : std::string();
-      report(source, {}, d.severity, (place + d.text).c_str(), d.leftOut);
+      report(source, {}, d.severity, (place + d.text).c_str(), d.omitted);
     }
   }
 }

@@ -17,13 +17,13 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   });
   constexpr const char* kNouns[] = {"note", "warning", "error"};
   for (GpgpSeverity severity = GPGP_SEVERITY_ERROR; severity >= GPGP_SEVERITY_INFO; --severity) {
-    const uint32_t leftOut = counts_[severity] - std::min(counts_[severity], kLimit);
-    if (leftOut)
+    const uint32_t omitted = counts_[severity] - std::min(counts_[severity], kLimit);
+    if (omitted)
       result.push_back(
           {{},
            severity,
-           std::to_string(leftOut) + " more " + kNouns[severity] + (leftOut == 1 ? " is" : "s are") + " left out",
-           leftOut});
+           std::to_string(omitted) + " more " + kNouns[severity] + (omitted == 1 ? " is" : "s are") + " left out",
+           omitted});
   }
   return result;
 }

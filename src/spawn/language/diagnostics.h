@@ -17,7 +17,7 @@ struct Diagnostic {
   Place place;
   GpgpSeverity severity = GPGP_SEVERITY_ERROR;
   std::string text;
-  uint32_t leftOut = 0; ///< how many more of its severity there were, where text says that
+  uint32_t omitted = 0; ///< how many more of its severity there were, where text says that
 };
 
 class Diagnostics {

@@ -1,6 +1,6 @@
 #include "spawn/language/expressions.h"
 
-#include "spawn/expression.h"
+#include "spawn/shared/expression.h"
 #include "spawn/language/spellings.h"
 #include "spawn/language/suggest.h"
 

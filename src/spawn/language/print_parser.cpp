@@ -1,5 +1,5 @@
 // The printed form back to a graph. One pass over the tokens; what it names by number is checked once all is read.
-#include "spawn/expression.h"
+#include "spawn/shared/expression.h"
 #include "spawn/graph/export_labels.h"
 #include "spawn/language/lexer.h"
 #include "spawn/language/print.h"

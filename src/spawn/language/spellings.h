@@ -1,6 +1,6 @@
 // How the operators of PGA-shape are written.
 #pragma once
-#include "spawn/graph_format.h"
+#include "spawn/shared/graph_format.h"
 
 #include <algorithm>
 #include <array>

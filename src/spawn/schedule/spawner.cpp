@@ -13,8 +13,8 @@
 #include "shaders/spawn_link.spv.h"
 #include "shaders/spawn_order.spv.h"
 #include "shaders/spawn_place.spv.h"
-#include "spawn/layout.h"
-#include "spawn/shape.h"
+#include "spawn/shared/layout.h"
+#include "spawn/shared/shape.h"
 
 #include <algorithm>
 #include <bit>
@@ -23,7 +23,7 @@
 namespace gpgp::spawn {
 namespace {
 
-// Resource numbers are the bindings of shaders/spawn/bindings.glsl.
+// Resource numbers are the bindings of shaders/spawn/shared/bindings.glsl.
 enum : core::ResourceIndex {
   kGraph,
   kAxioms,
@@ -78,7 +78,7 @@ constexpr Limits kHardware{{32, 2048, 256, 2048}, {128, 1024, 512, 4096, 0, 1}, 
     kSoftware{{64, 256, 1024, 512}, {64, 256, 1024, 512}, 65535};
 const Limits& limitsOf(const core::Device& device) { return device.software ? kSoftware : kHardware; }
 
-/// Whether shaders/spawn/derive_batches.glsl can run.
+/// Whether shaders/spawn/derive/derive_batches.glsl can run.
 bool takesBatches(const core::Device& device) {
   return device.software && device.subgroupArithmetic && device.subgroupSize;
 }
@@ -113,7 +113,7 @@ KernelInfo interpreterFor(const core::Device& device, bool colliders) {
                                                    : KernelTarget::any;
   return info;
 }
-/// Whether a kernel's workgroups are one subgroup each and know of it (shaders/spawn/derive.glsl). Those write the
+/// Whether a kernel's workgroups are one subgroup each and know of it (shaders/spawn/derive/derive.glsl). Those write the
 /// report.
 bool isOneSubgroup(const core::Device& device, KernelTarget target, const Fit& fit) {
   return target != KernelTarget::any && fit.groupSize == device.subgroupSize;
@@ -127,14 +127,14 @@ uint32_t cellsOf(uint32_t maxColliders) { return std::bit_ceil(2 * maxColliders)
 /// Shapes on the stacks of all workgroups.
 uint32_t stackShapesOf(uint32_t maxShapes) { return std::max(4 * maxShapes, 65536u); }
 
-/// Of shaders/spawn/derive.glsl.
+/// Of shaders/spawn/derive/derive.glsl.
 constexpr uint32_t kDeriveConstants = 5;
 std::array<uint32_t, core::kMaxSpecialization> specialization(const core::Device& device, const Fit& fit,
                                                               uint32_t table = 0) {
   return {fit.groupSize, fit.stackShapes, table, fit.groupSize == device.subgroupSize, device.software};
 }
 
-/// Of shaders/spawn/expand.comp: the stride, all attributes, and whether turns of loops count.
+/// Of shaders/spawn/outputs/expand.comp: the stride, all attributes, and whether turns of loops count.
 std::array<uint32_t, core::kMaxSpecialization> specialization(const core::Device& device, const VertexLayout& layout) {
   std::array<uint32_t, core::kMaxSpecialization> all;
   all.fill(shader::kNoAttribute);
@@ -351,7 +351,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
 }
 
 /// All rounds but the last one only spread the work, of which a workgroup makes kGrowth times as many shapes, or in the
-/// round that is enough, or the last but one, as many as kGrowing batches hold (shaders/spawn/derive_steps.glsl). In
+/// round that is enough, or the last but one, as many as kGrowing batches hold (shaders/spawn/derive/derive_steps.glsl). In
 /// uneven derivations they even it out as well, and nobody knows how much there is behind a counter, or in later
 /// phases.
 uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const {
@@ -495,7 +495,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
     record.replacement = pipelineOf(deriveColliding_);
   }
   if (auto ok = check(record); !ok) return ok;
-  return Worker::record(record);
+  return Recorder::record(record);
 }
 
 core::Result<void> Spawner::prewarm(Grammar& grammar) const {
@@ -536,7 +536,7 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
 
 bool Spawner::takeReport(GpgpSpawnReport& report) {
   core::RawReport raw;
-  if (!Worker::takeReport(raw)) return false;
+  if (!Recorder::takeReport(raw)) return false;
   report.base = raw.header;
   report.terminals = raw.words[0];
   report.instancesWritten = raw.words[1];

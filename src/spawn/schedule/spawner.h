@@ -2,7 +2,7 @@
 //
 // Passes of a record: clear, then the rounds, place, emit. A round shares a queue of shapes among workgroups; each
 // derives what comes of its shapes with a stack of its own and leaves to the next round what it should not or cannot do
-// alone (shaders/spawn/derive.comp). Terminals leave as instances, and the last workgroup says how many, without place.
+// alone (shaders/spawn/derive/derive.comp). Terminals leave as instances, and the last workgroup says how many, without place.
 // Where these are sorted by bucket, or ordered, terminals become records first, and emit puts them in their places. A
 // spawner for vertices makes records as well, and expand vertices and indices of them, before place; where they are
 // ordered, before expand.
@@ -10,7 +10,7 @@
 // Grammars with Collider and IfCollides are derived in phases: all rounds of one, link, which makes the colliders so
 // far searchable, all rounds of the next. A spawner made for colliders records those passes for such grammars only.
 #pragma once
-#include "core/worker.h"
+#include "core/recorder.h"
 #include "spawn/schedule/grammar.h"
 #include "spawn/schedule/vertices.h"
 
@@ -18,17 +18,17 @@
 
 namespace gpgp::spawn {
 
-class Spawner final : public core::Worker {
+class Spawner final : public core::Recorder {
 public:
   static core::Result<core::Unique<Spawner>> create(core::Context& context, const GpgpSpawnerCreateInfo& info);
-  Spawner(core::Context& owner, const GpgpWorkerCreateInfo& base)
-      : Worker(owner, core::Kind::spawner, base, GPGP_SERVICE_SPAWN) {}
+  Spawner(core::Context& owner, const GpgpRecorderCreateInfo& base)
+      : Recorder(owner, core::Kind::spawner, base, GPGP_SERVICE_SPAWN) {}
 
   /// Sizes of buffers are the caller's to check; the rest is checked here.
   core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar);
   /// Makes pipelines of the grammar's kernels that are for this device and fit it.
   core::Result<void> prewarm(Grammar& grammar) const;
-  using Worker::prewarm;
+  using Recorder::prewarm;
   bool takeReport(GpgpSpawnReport& report);
   /// It writes vertices, not instances.
   bool vertices() const { return stride_ != 0; }

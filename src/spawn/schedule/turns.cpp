@@ -2,7 +2,7 @@
 
 #include "core/turns.h"
 #include "spawn/graph/longest_paths.h"
-#include "spawn/mesh.h"
+#include "spawn/outputs/mesh.h"
 
 #include <algorithm>
 

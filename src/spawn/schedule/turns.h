@@ -2,7 +2,7 @@
 // bounds from the graph, from which follows how long a workgroup may go on.
 #pragma once
 #include "spawn/graph/kernel.h"
-#include "spawn/layout.h"
+#include "spawn/shared/layout.h"
 
 namespace gpgp::spawn {
 

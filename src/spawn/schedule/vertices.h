@@ -1,7 +1,7 @@
 // How a spawner's vertices look, checked and in the words that shaders and the evaluator read.
 #pragma once
 #include "core/result.h"
-#include "spawn/mesh.h"
+#include "spawn/outputs/mesh.h"
 
 #include <gpgp/spawn.h>
 

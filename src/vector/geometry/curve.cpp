@@ -219,22 +219,22 @@ int Monotone::inflections(double heights[2]) const {
 }
 
 namespace {
-/// How far a piece's control points lie to the left of another's chord.
+/// How far a piece's control points lie to the left of another's flatSegment.
 struct Spread {
   double low, high;
 };
-Two leftOfChord(const Point* chord, const Point* of, int i, int k) {
-  const Point d = chord[3] - chord[0];
-  return d.x * (Two{of[i].y, of[k].y} - chord[0].y) - d.y * (Two{of[i].x, of[k].x} - chord[0].x);
+Two leftOfFlatSegment(const Point* flatSegment, const Point* of, int i, int k) {
+  const Point d = flatSegment[3] - flatSegment[0];
+  return d.x * (Two{of[i].y, of[k].y} - flatSegment[0].y) - d.y * (Two{of[i].x, of[k].x} - flatSegment[0].x);
 }
-Spread leftOfChord(const Monotone& chord, const Monotone& of) {
-  const Two ends = leftOfChord(chord.curve.p, of.curve.p, 0, 3), inner = leftOfChord(chord.curve.p, of.curve.p, 1, 2);
+Spread leftOfFlatSegment(const Monotone& flatSegment, const Monotone& of) {
+  const Two ends = leftOfFlatSegment(flatSegment.curve.p, of.curve.p, 0, 3), inner = leftOfFlatSegment(flatSegment.curve.p, of.curve.p, 1, 2);
   const Two low = ends < inner ? ends : inner, high = ends < inner ? inner : ends;
   return {std::min(low[0], low[1]), std::max(high[0], high[1])};
 }
-Spread leftOfOwnChord(const Monotone& piece) {
+Spread leftOfOwnFlatSegment(const Monotone& piece) {
   if (piece.curve.line) return {0, 0};
-  const Two inner = leftOfChord(piece.curve.p, piece.curve.p, 1, 2);
+  const Two inner = leftOfFlatSegment(piece.curve.p, piece.curve.p, 1, 2);
   return {std::min({0.0, inner[0], inner[1]}), std::max({0.0, inner[0], inner[1]})};
 }
 } // namespace
@@ -243,10 +243,10 @@ int sideByHull(const Monotone& a, const Monotone& b) {
   const Point *p = a.curve.p, *q = b.curve.p;
   if (std::max(p[0].x, p[3].x) < std::min(q[0].x, q[3].x)) return -1;
   if (std::max(q[0].x, q[3].x) < std::min(p[0].x, p[3].x)) return 1;
-  const Spread ofA = leftOfChord(b, a), ofB = leftOfOwnChord(b);
+  const Spread ofA = leftOfFlatSegment(b, a), ofB = leftOfOwnFlatSegment(b);
   if (ofA.low >= ofB.high && ofA.high > ofB.low) return -1;
   if (ofA.high <= ofB.low && ofA.low < ofB.high) return 1;
-  const Spread mineB = leftOfChord(a, b), mineA = leftOfOwnChord(a);
+  const Spread mineB = leftOfFlatSegment(a, b), mineA = leftOfOwnFlatSegment(a);
   if (mineB.low >= mineA.high && mineB.high > mineA.low) return 1;
   if (mineB.high <= mineA.low && mineB.low < mineA.high) return -1;
   return 0;

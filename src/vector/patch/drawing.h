@@ -5,7 +5,7 @@
 #pragma once
 #include "core/result.h"
 #include "vector/geometry/curve.h"
-#include "vector/layout.h"
+#include "vector/shared/layout.h"
 
 #include <gpgp/vector.h>
 

@@ -86,7 +86,7 @@ private:
     uint32_t known = kNone;          ///< an edge that is right of it
   };
   struct Open { // the slab whose left side is a piece
-    uint32_t right = 0, stamp = 0;
+    uint32_t right = 0, smallGlyph = 0;
     float top = 0;
     bool active = false;
   };
@@ -293,7 +293,7 @@ private:
     removedMark_ = false;
     for (const uint32_t piece : touched_) {
       Open& open = open_[piece];
-      if (open.active && open.stamp != batch_) close(piece, open);
+      if (open.active && open.smallGlyph != batch_) close(piece, open);
     }
   }
 
@@ -333,7 +333,7 @@ private:
     Open& open = open_[left];
     if (open.active && open.right != right) close(left, open);
     if (!open.active) open = {right, 0, y_, true};
-    open.stamp = batch_;
+    open.smallGlyph = batch_;
   }
 
   void close(uint32_t left, Open& open) {

@@ -34,7 +34,7 @@ uint32_t heldBy(const GpgpCanvasImage& image, bool blendSrgb) {
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
-    : Worker(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
+    : Recorder(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
       maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
       maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072),
       maxWords_(info.maxTileWords ? info.maxTileWords : std::max(maxEntries_, 65536u)),
@@ -54,9 +54,9 @@ Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCa
   return canvas;
 }
 
-Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* view) const {
+Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* view) const {
   if (info.width == 0 || info.height == 0 || info.width > maxWidth_ || info.height > maxHeight_)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the canvas is %u x %u; the worker was made for 1 x 1 to %u x %u",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the canvas is %u x %u; the recorder was made for 1 x 1 to %u x %u",
                      info.width, info.height, maxWidth_, maxHeight_);
   if (info.samples != 0 && info.samples != 1 && info.samples != 4 && info.samples != 8 && info.samples != 16)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "samples is %u; expected 1, 4, 8 or 16", info.samples);
@@ -119,7 +119,7 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasView* vie
 }
 
 Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo& info,
-                             std::span<const ItemAsset> assets, CanvasView* view) {
+                             std::span<const ItemAsset> assets, CanvasHistory* view) {
   if (auto ok = checkInfo(info, view); !ok) return ok;
   core::Record r;
   r.commandBuffer = commandBuffer;
@@ -129,7 +129,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   auto* const placements = reinterpret_cast<shader::PlacementRecord*>(
       place ? place + sizeof(CanvasHeader) + sizeof(Gather::slots) : nullptr);
   if (!placements) return record(r); // which says why
-  Gather gather(context, budgets_, tables_, placements, info, stampRoom());
+  Gather gather(context, budgets_, tables_, placements, info, smallGlyphRoom());
   for (uint32_t i = 0; i < info.itemCount; ++i)
     if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
@@ -160,7 +160,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.binWords = header.pathWords + shader::kBinHead;
   header.binListLimit = binLists();
   header.wordLimit = maxWords_;
-  header.entryLimit = maxEntries_ - gather.stampEntries();
+  header.entryLimit = maxEntries_ - gather.smallGlyphEntries();
   header.rowLimit = maxRows();
   header.samples = info.samples ? info.samples : 16;
   header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
@@ -192,10 +192,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   }
   const uint32_t image = targetOf(info);
   if (image != kNoImage) r.bindings[image == kHasImage8 ? kImage8 : kImage16].image = &info.target;
-  // Small glyphs are stamped; records of nothing else, in one colour each, need little more than that.
+  // Small glyphs are smallGlyph; records of nothing else, in one colour each, need little more than that.
   const uint32_t tiles = header.tilesX * header.tilesY;
-  const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.stampEntries()) * 3;
-  const bool alone = gather.stamps() > 0 && gather.stamps() == gather.placements() && !gradients && !rich &&
+  const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.smallGlyphEntries()) * 3;
+  const bool alone = gather.smallGlyphs() > 0 && gather.smallGlyphs() == gather.placements() && !gradients && !rich &&
                      shader::kFirstBin + tileLists <= binsEnd();
   const uint32_t form = projective ? 2 : several ? 1 : 0;
   const bool sixteen = header.samples == 16 && !software_;
@@ -204,7 +204,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   } else {
     r.conditions[kPlaced] = r.conditions[kOneDrawing + form] = true;
     r.conditions[sixteen && form == 0 ? kMarkSixteen : kMarkOne + form] = true;
-    if (gather.stamps() > 0) r.conditions[several ? kStampDrawings : kStampOne] = true;
+    if (gather.smallGlyphs() > 0) r.conditions[several ? kSmallGlyphDrawings : kSmallGlyphOne] = true;
   }
   const bool one = !several && !software_; // software devices have one general shader
   const uint32_t kinds[] = {alone    ? kGlyphs
@@ -238,12 +238,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                       1, 1};
   const uint32_t segmentGroups = divide(header.segmentCount, perGroup);
   r.groups[kSegments] = software_ ? spread(segmentGroups) : rows(shader::kClearGroups + segmentGroups);
-  // On software devices an invocation takes part of a segment's chords, few enough turns for lavapipe's loops.
+  // On software devices an invocation takes part of a segment's flattened segments, few enough turns for lavapipe's loops.
   if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
   r.groups[kOnce] = {1, 1, 1};
   r.groups[kClear] = {64, 1, 1};
   r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(info.height, 64)), 4096u), 1, 1};
-  r.groups[kStamps] = rows(std::max(header.itemCount, 1u));
+  r.groups[kSmallGlyphs] = rows(std::max(header.itemCount, 1u));
   const uint32_t wordGroups = std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64));
   r.groups[kWords] = software_ ? spread(wordGroups) : std::array<uint32_t, 3>{wordGroups, 1, 1};
   r.groups[kTiles] = {divide(header.tilesX, 8), divide(header.tilesY, 8), 8};
@@ -261,7 +261,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   return {};
 }
 
-Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasView& view) {
+Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& view) {
   if (view.preparedWidth == 0) return makeError(GPGP_NOT_READY, "nothing was prepared into the view");
   const uint32_t last = std::max(info.x, info.target->viewMask ? info.secondX : 0);
   if (info.width == 0 || info.height == 0 || last > view.preparedWidth || info.width > view.preparedWidth - last ||
@@ -306,7 +306,7 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.tileWordsGiven = counters.wordsGiven;
   // Where the others do not fit, small glyphs count as what was put aside for them.
   const uint32_t aside = executed ? maxEntries_ - counters.entriesGiven : 0;
-  report.tileEntries = counters.entries + (counters.entries > counters.entriesGiven ? aside : counters.stamped);
+  report.tileEntries = counters.entries + (counters.entries > counters.entriesGiven ? aside : counters.smallGlyph);
   report.tileEntriesGiven = executed ? maxEntries_ : 0;
   report.pathsDropped = counters.pathsDropped;
   report.glyphs = counters.glyphs;

@@ -1,10 +1,10 @@
 // The passes of the canvas, and how much room their lists have.
 #include "vector/raster/canvas_passes.h"
 
-#include "shaders/vector_allot.spv.h"
-#include "shaders/vector_allot_rows.spv.h"
-#include "shaders/vector_allot_software.spv.h"
-#include "shaders/vector_allot_subgroups.spv.h"
+#include "shaders/vector_allocate.spv.h"
+#include "shaders/vector_allocate_rows.spv.h"
+#include "shaders/vector_allocate_software.spv.h"
+#include "shaders/vector_allocate_subgroups.spv.h"
 #include "shaders/vector_aside_rich.spv.h"
 #include "shaders/vector_aside_rich_images.spv.h"
 #include "shaders/vector_aside_rich_one.spv.h"
@@ -32,7 +32,7 @@
 #include "shaders/vector_crowded_rich_images1.spv.h"
 #include "shaders/vector_crowded_rich_images2.spv.h"
 #include "shaders/vector_fill.spv.h"
-#include "shaders/vector_fill_left.spv.h"
+#include "shaders/vector_fill_backdrop.spv.h"
 #include "shaders/vector_fill_one.spv.h"
 #include "shaders/vector_fill_pieces.spv.h"
 #include "shaders/vector_fill_pieces_one.spv.h"
@@ -88,16 +88,16 @@
 #include "shaders/vector_sift_split.spv.h"
 #include "shaders/vector_split.spv.h"
 #include "shaders/vector_split_one.spv.h"
-#include "shaders/vector_stamp.spv.h"
-#include "shaders/vector_stamp_alone.spv.h"
-#include "shaders/vector_stamp_alone_one.spv.h"
-#include "shaders/vector_stamp_alone_one_subgroups.spv.h"
-#include "shaders/vector_stamp_alone_sixteen.spv.h"
-#include "shaders/vector_stamp_alone_sixteen_subgroups.spv.h"
-#include "shaders/vector_stamp_alone_subgroups.spv.h"
-#include "shaders/vector_stamp_one.spv.h"
-#include "shaders/vector_stamp_one_subgroups.spv.h"
-#include "shaders/vector_stamp_subgroups.spv.h"
+#include "shaders/vector_small_glyphs.spv.h"
+#include "shaders/vector_small_glyphs_alone.spv.h"
+#include "shaders/vector_small_glyphs_alone_one.spv.h"
+#include "shaders/vector_small_glyphs_alone_one_subgroups.spv.h"
+#include "shaders/vector_small_glyphs_alone_sixteen.spv.h"
+#include "shaders/vector_small_glyphs_alone_sixteen_subgroups.spv.h"
+#include "shaders/vector_small_glyphs_alone_subgroups.spv.h"
+#include "shaders/vector_small_glyphs_one.spv.h"
+#include "shaders/vector_small_glyphs_one_subgroups.spv.h"
+#include "shaders/vector_small_glyphs_subgroups.spv.h"
 #include "shaders/vector_tiles0.spv.h"
 #include "shaders/vector_tiles1.spv.h"
 #include "shaders/vector_tiles2.spv.h"
@@ -155,7 +155,7 @@ uint32_t Canvas::binLists() const { return software_ ? 0 : 2 * budgets_.paths + 
 uint64_t Canvas::binsEnd() const {
   const uint64_t lists = tiles() * (software_ ? listWords() + 3 : 2) + binLists();
   // Of small glyphs alone the tiles have lists in place of bins and theirs, and some are left over.
-  const uint64_t ofTiles = tiles() * shader::kTileListWords + uint64_t(stampRoom()) * 3;
+  const uint64_t ofTiles = tiles() * shader::kTileListWords + uint64_t(smallGlyphRoom()) * 3;
   return shader::kFirstBin + std::max(binWords() + 3 + lists, software_ ? 0 : std::min<uint64_t>(ofTiles, 16 << 20));
 }
 
@@ -192,17 +192,17 @@ core::PassList Canvas::describe() const {
     const auto added = list.add({kImageNames[i], texture, 0, true});
     if (i == 0) images = added;
   }
-  // Software devices have lists of pieces and of rows of tiles there (pieces.glsl), and a chord behind all, which
+  // Software devices have lists of pieces and of rows of tiles there (pieces.glsl), and a flattened segment behind all, which
   // invocations write that have none.
-  const VkDeviceSize chordBytes =
-      software_ ? (VkDeviceSize(maxRows()) + 1) * 16 : VkDeviceSize(maxRows()) * sizeof(shader::ChordRecord);
-  const auto chords = list.add({"chords", scratch, chordBytes});
+  const VkDeviceSize flatSegmentBytes =
+      software_ ? (VkDeviceSize(maxRows()) + 1) * 16 : VkDeviceSize(maxRows()) * sizeof(shader::FlatSegmentRecord);
+  const auto flatSegments = list.add({"flatSegments", scratch, flatSegmentBytes});
   const auto rowList = list.add(
-      {"rows of chords", scratch, software_ ? VkDeviceSize(maxWords_ + maxRows()) * 16 : VkDeviceSize(maxRows()) * 4});
+      {"rows of flatSegments", scratch, software_ ? VkDeviceSize(maxWords_ + maxRows()) * 16 : VkDeviceSize(maxRows()) * 4});
   const auto shapes = list.add({"shapes", scratch, shapeBytes});
   const VkDeviceSize keptTiles = software_ ? 0 : std::min<VkDeviceSize>(tiles(), shader::kTilesAside);
   const auto aside = list.add({"tiles painted aside", scratch, std::max<VkDeviceSize>(keptTiles * 64 * 16, 16)});
-  assert(images == kFirstImage && chords == kChordList && shapes == kShapes && aside == kAsideTiles);
+  assert(images == kFirstImage && flatSegments == kFlatSegmentList && shapes == kShapes && aside == kAsideTiles);
   const auto useImages = [images](core::Pass& pass) {
     for (uint32_t i = 0; i < shader::kMaxImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
   };
@@ -232,21 +232,21 @@ core::PassList Canvas::describe() const {
   };
   const bool subgroups = context.device.subgroupArithmetic && (software_ || context.device.subgroupSize >= 32);
   if (!software_) {
-    const auto stamp = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
+    const auto smallGlyph = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass = dispatch(
           shader.name, shader,
-          {{fromHost, read}, {paths, write}, {masks, readWrite}, {counters, readWrite}, {entries, write}}, kStamps);
+          {{fromHost, read}, {paths, write}, {masks, readWrite}, {counters, readWrite}, {entries, write}}, kSmallGlyphs);
       pass.condition = condition;
       return pass;
     };
-    stamp({"stamp, glyphs alone, 16 samples",
-           subgroups ? Spirv(vector_stamp_alone_sixteen_subgroups) : Spirv(vector_stamp_alone_sixteen)},
+    smallGlyph({"small glyphs, glyphs alone, 16 samples",
+           subgroups ? Spirv(vector_small_glyphs_alone_sixteen_subgroups) : Spirv(vector_small_glyphs_alone_sixteen)},
           kAloneSixteen);
-    stamp({"stamp, glyphs alone", subgroups ? Spirv(vector_stamp_alone_one_subgroups) : Spirv(vector_stamp_alone_one)},
+    smallGlyph({"small glyphs, glyphs alone", subgroups ? Spirv(vector_small_glyphs_alone_one_subgroups) : Spirv(vector_small_glyphs_alone_one)},
           kAloneOne)
         .beside = true;
-    stamp({"stamp, glyphs alone, several drawings",
-           subgroups ? Spirv(vector_stamp_alone_subgroups) : Spirv(vector_stamp_alone)},
+    smallGlyph({"small glyphs, glyphs alone, several drawings",
+           subgroups ? Spirv(vector_small_glyphs_alone_subgroups) : Spirv(vector_small_glyphs_alone)},
           kAloneDrawings)
         .beside = true;
   }
@@ -269,14 +269,14 @@ core::PassList Canvas::describe() const {
   };
   if (software_) clear({"clear words", vector_clear_words}, words);
   if (!software_) {
-    const auto stamp = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
+    const auto smallGlyph = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass = dispatch(shader.name, shader,
-                                  {{paths, read}, {words, write}, {counters, readWrite}, {entries, write}}, kStamps);
+                                  {{paths, read}, {words, write}, {counters, readWrite}, {entries, write}}, kSmallGlyphs);
       pass.condition = condition;
       return pass;
     };
-    stamp({"stamp", subgroups ? Spirv(vector_stamp_one_subgroups) : Spirv(vector_stamp_one)}, kStampOne);
-    stamp({"stamp, several drawings", subgroups ? Spirv(vector_stamp_subgroups) : Spirv(vector_stamp)}, kStampDrawings)
+    smallGlyph({"small glyphs", subgroups ? Spirv(vector_small_glyphs_one_subgroups) : Spirv(vector_small_glyphs_one)}, kSmallGlyphOne);
+    smallGlyph({"small glyphs, several drawings", subgroups ? Spirv(vector_small_glyphs_subgroups) : Spirv(vector_small_glyphs)}, kSmallGlyphDrawings)
         .beside = true;
   }
   const std::array<Spirv, 3> mark =
@@ -285,7 +285,7 @@ core::PassList Canvas::describe() const {
                                          vector_mark_pieces_projective_subgroups}
                   : std::array<Spirv, 3>{vector_mark_pieces_one, vector_mark_pieces, vector_mark_pieces_projective};
   const std::initializer_list<core::Use> markUses = {{paths, read},   {words, readWrite}, {counters, readWrite},
-                                                     {chords, write}, {rowList, write},   {entries, write}};
+                                                     {flatSegments, write}, {rowList, write},   {entries, write}};
   either({"mark", "mark, several drawings", "mark, projective"}, mark, markUses, kSegments, kMarkOne);
   if (!software_) { // the usual samples, which the compiler knows
     core::Pass& pass = dispatch("mark, 16 samples", {"mark, 16 samples", vector_mark_sixteen}, markUses, kSegments);
@@ -297,15 +297,15 @@ core::PassList Canvas::describe() const {
     pack.condition = kPlaced;
     pack.beside = true;
   }
-  const auto allot = [&](const core::ShaderDesc& shader, uint32_t groups, bool listing) {
+  const auto allocate = [&](const core::ShaderDesc& shader, uint32_t groups, bool listing) {
     core::Pass& pass = dispatch(
         shader.name, shader, {{paths, read}, {words, readWrite}, {entries, readWrite}, {counters, readWrite}}, groups);
     pass.condition = kPlaced;
     if (!listing) return;
-    pass.uses[pass.useCount++] = {chords, read};
+    pass.uses[pass.useCount++] = {flatSegments, read};
     pass.uses[pass.useCount++] = {rowList, readWrite};
   };
-  // From lists, or, where these did not suffice, without them; allot says which.
+  // From lists, or, where these did not suffice, without them; allocate says which.
   const auto fill = [&](const core::ShaderDesc& shader, bool fromLists, uint32_t condition, bool beside) {
     core::Pass& pass =
         list.dispatchIndirect(shader.name, list.add(shader),
@@ -315,7 +315,7 @@ core::PassList Canvas::describe() const {
                                {words, read},
                                {counters, read},
                                {entries, readWrite},
-                               {chords, read},
+                               {flatSegments, read},
                                {rowList, read}},
                               counters, fromLists ? offsetof(CanvasCounters, rowsX) : offsetof(CanvasCounters, fillX));
     for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
@@ -326,8 +326,8 @@ core::PassList Canvas::describe() const {
   static constexpr const char* kUnlisted[] = {"fill without lists", "fill without lists, several drawings",
                                               "fill without lists, projective"};
   if (software_) {
-    allot({"allot", vector_allot_rows}, kWords, true);
-    allot({"allot again", vector_allot_software}, kOnce, false);
+    allocate({"allocate", vector_allocate_rows}, kWords, true);
+    allocate({"allocate again", vector_allocate_software}, kOnce, false);
     clear({"clear entries", vector_clear_entries}, entries);
     const Spirv listedOne = subgroups ? Spirv(vector_fill_pieces_one_subgroups) : Spirv(vector_fill_pieces_one),
                 listedAll = subgroups ? Spirv(vector_fill_pieces_subgroups) : Spirv(vector_fill_pieces);
@@ -340,7 +340,7 @@ core::PassList Canvas::describe() const {
                                         {paths, read},
                                         {words, read},
                                         {counters, readWrite},
-                                        {chords, read},
+                                        {flatSegments, read},
                                         {rowList, read},
                                         {entries, readWrite}},
                                        kFill);
@@ -348,14 +348,14 @@ core::PassList Canvas::describe() const {
       pass.beside = k > 0;
     }
     list.dispatch(
-            "left of tiles", list.add(core::ShaderDesc{"left of tiles", vector_fill_left}),
+            "backdrop", list.add(core::ShaderDesc{"backdrop", vector_fill_backdrop}),
             {{params, read}, {paths, read}, {words, read}, {counters, read}, {rowList, read}, {entries, readWrite}},
             kFill)
         .condition = kPlaced;
     fill({"clear entries again", vector_clear_entries}, false, kPlaced, false);
     for (uint32_t k = 0; k < 3; ++k) fill({kUnlisted[k], unlisted[k]}, false, kMarkOne + k, k > 0);
   } else {
-    allot({"allot", subgroups ? Spirv(vector_allot_subgroups) : vector_allot}, kWords, false);
+    allocate({"allocate", subgroups ? Spirv(vector_allocate_subgroups) : vector_allocate}, kWords, false);
     const auto split = [&](const core::ShaderDesc& shader, uint32_t condition) -> core::Pass& {
       core::Pass& pass =
           dispatch(shader.name, shader, {{paths, read}, {words, read}, {masks, readWrite}, {counters, read}}, kSplits);

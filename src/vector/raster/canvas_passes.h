@@ -6,7 +6,7 @@ namespace gpgp::vector {
 
 // Resources are numbered as the shaders bind them (canvas.glsl): 0 to 7 drawings, then these.
 constexpr core::ResourceIndex kView = 8, kImage8 = 9, kImage16 = 10, kFirstImage = 18;
-[[maybe_unused]] constexpr core::ResourceIndex kChordList = 26, kShapes = 28, kAsideTiles = 29;
+[[maybe_unused]] constexpr core::ResourceIndex kFlatSegmentList = 26, kShapes = 28, kAsideTiles = 29;
 // Workgroup counts and conditions of a record.
 enum Groups : uint32_t {
   kBegin,
@@ -18,7 +18,7 @@ enum Groups : uint32_t {
   kSift,
   kPacks,
   kSplits,
-  kStamps,
+  kSmallGlyphs,
   kOnce,
   kClear,
   kFill
@@ -46,8 +46,8 @@ enum Conditions : uint32_t {
   kMarkOne,
   kMarkDrawings,
   kMarkProjective,
-  kStampOne,
-  kStampDrawings,
+  kSmallGlyphOne,
+  kSmallGlyphDrawings,
   kPlaced,
   kAlone,
   kAloneSixteen, // samples, of one drawing

@@ -52,9 +52,9 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   return asset;
 }
 
-core::Result<core::Unique<CanvasView>> CanvasView::create(core::Context& context,
-                                                          const GpgpCanvasViewCreateInfo& info) {
-  auto view = core::makeUnique<CanvasView>(context.host(), context, info.label);
+core::Result<core::Unique<CanvasHistory>> CanvasHistory::create(core::Context& context,
+                                                          const GpgpCanvasHistoryCreateInfo& info) {
+  auto view = core::makeUnique<CanvasHistory>(context.host(), context, info.label);
   view->width = info.width;
   view->height = info.height;
   const std::pmr::vector<std::byte> none(&context.host());

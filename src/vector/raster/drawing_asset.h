@@ -1,4 +1,4 @@
-// Drawings and canvas views as the engine holds them: one device buffer each, resident after upload.
+// Drawings and canvas historys as the engine holds them: one device buffer each, resident after upload.
 #pragma once
 #include "core/resident.h"
 #include "vector/raster/segments.h"
@@ -72,10 +72,10 @@ private:
 };
 
 /// One rasterised canvas: packed half4, premultiplied linear.
-class CanvasView final : public core::Resident {
+class CanvasHistory final : public core::Resident {
 public:
-  static core::Result<core::Unique<CanvasView>> create(core::Context& context, const GpgpCanvasViewCreateInfo& info);
-  CanvasView(core::Context& owner, const char* name) : Resident(owner, core::Kind::canvasView, name) {}
+  static core::Result<core::Unique<CanvasHistory>> create(core::Context& context, const GpgpCanvasHistoryCreateInfo& info);
+  CanvasHistory(core::Context& owner, const char* name) : Resident(owner, core::Kind::canvasHistory, name) {}
   uint32_t width = 0, height = 0;                 ///< room
   uint32_t preparedWidth = 0, preparedHeight = 0; ///< what the last record leaves; 0: nothing yet
 };

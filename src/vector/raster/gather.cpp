@@ -1,7 +1,7 @@
 #include "vector/raster/gather.h"
 
-#include "vector/edge.h"
-#include "vector/shape.h"
+#include "vector/shared/edge.h"
+#include "vector/shared/shape.h"
 
 #include <algorithm>
 #include <cstdarg>

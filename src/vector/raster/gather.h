@@ -4,7 +4,7 @@
 // Items come in painting order. Where a budget ends, everything from there on is left out, and counted, so that the
 // report can say what all would have needed.
 #pragma once
-#include "core/worker.h"
+#include "core/recorder.h"
 #include "vector/raster/drawing_asset.h"
 #include "vector/raster/glyph_set.h"
 #include "vector/ui/list.h"
@@ -48,11 +48,11 @@ struct ItemTables {
 
 class Gather {
 public:
-  /// `placed`: room for one of each item, glyph and shape of the budgets; only written. `stampRoom`: how many tile
-  /// entries small glyphs may take for themselves (stamp.comp).
+  /// `placed`: room for one of each item, glyph and shape of the budgets; only written. `smallGlyphRoom`: how many tile
+  /// entries small glyphs may take for themselves (small_glyphs.comp).
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
-         const GpgpCanvasInfo& info, uint32_t stampRoom)
-      : context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info), stampRoom_(stampRoom) {}
+         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom)
+      : context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info), smallGlyphRoom_(smallGlyphRoom) {}
 
   /// NOT_READY where a glyph or a list's drawing is not resident.
   core::Result<void> add(uint32_t index, const ItemAsset& asset);
@@ -64,8 +64,8 @@ public:
   uint32_t slotCount = 0;
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
   bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
-  uint32_t stamps() const { return used_.stamps; }             ///< small glyphs
-  uint32_t stampEntries() const { return used_.stampEntries; } ///< what they take at most
+  uint32_t smallGlyphs() const { return used_.smallGlyphs; }             ///< small glyphs
+  uint32_t smallGlyphEntries() const { return used_.smallGlyphEntries; } ///< what they take at most
   uint32_t placements() const { return used_.placements; }
   uint32_t sources = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0; ///< used
 
@@ -74,7 +74,7 @@ private:
   core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
                                 const Chain& clip);
   struct Block;
-  class Stamping;
+  class SmallGlyph;
   core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
   void addBlock(const Block& block, uint32_t source);
   core::Result<void> checkInstances(std::span<const GpgpGlyphInstance> glyphs, size_t first, size_t end) const;
@@ -95,13 +95,13 @@ private:
   const GpgpCanvasInfo& info_;
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
   struct Used {
-    uint32_t paths = 0, segments = 0, placements = 0, stamps = 0, stampEntries = 0;
+    uint32_t paths = 0, segments = 0, placements = 0, smallGlyphs = 0, smallGlyphEntries = 0;
     uint32_t glyphs = 0; ///< those without room, too
   } used_;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
   uint32_t shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
   uint32_t pathsDropped_ = 0, clipsDropped_ = 0;
-  const uint32_t stampRoom_;
+  const uint32_t smallGlyphRoom_;
   bool full_ = false; ///< something did not fit whole: nothing more is drawn, so that what is there is what lies below
 };
 

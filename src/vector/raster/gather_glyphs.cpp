@@ -1,5 +1,5 @@
-// Glyphs of a text as placements, and which of them are for stamp.comp.
-#include "vector/edge.h"
+// Glyphs of a text as placements, and which of them are for small_glyphs.comp.
+#include "vector/shared/edge.h"
 #include "vector/raster/gather.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ struct Gather::Block {
   const GpgpGlyphInstance* from[kMost];
   const GlyphSet::Glyph* glyph[kMost];
   float x[kMost], y[kMost], reachX[kMost], reachY[kMost]; ///< boxes: middles, and from there to the sides
-  uint32_t tiles[kMost];                                  ///< see Stamping
+  uint32_t tiles[kMost];                                  ///< see SmallGlyph
   struct Sums {
     size_t glyphs = 0;
     uint64_t paths = 0;
@@ -72,16 +72,16 @@ struct Gather::Block {
   }
 };
 
-/// Finds which glyphs are for stamp.comp: small ones that no scissor cuts.
-class Gather::Stamping {
+/// Finds which glyphs are for small_glyphs.comp: small ones that no scissor cuts.
+class Gather::SmallGlyph {
 public:
-  Stamping(const ItemRecord& source, const GpgpCanvasInfo& info)
+  SmallGlyph(const ItemRecord& source, const GpgpCanvasInfo& info)
       : map_(source.transform), at_(source.offsets), scissor_(source.scissor), cut_(shader::hasScissor(source)),
         width_(static_cast<float>(info.width)), height_(static_cast<float>(info.height)) {}
 
   /// How many tiles each may have edges in; 0 where it is none of them.
   void countTiles(Block& block) const {
-    // With room for the margins that shaders take (placeOf in stamp.comp, place.comp). Those grow with the place, but
+    // With room for the margins that shaders take (placeOf in small_glyphs.comp, place.comp). Those grow with the place, but
     // what is small and reaches the canvas is near it.
     const float margin = 1.1f + 2e-5f * (std::max(width_, height_) + 4 * kFar);
     for (size_t k = block.sums.glyphs; k % 4 != 0; ++k) block.x[k] = block.y[k] = block.reachX[k] = block.reachY[k] = 0;
@@ -94,7 +94,7 @@ public:
       const Wholes pairs = wholeOf(atMost(farX, kFar) + 2.95f), rows = wholeOf(atMost(farY, kFar) * 2.0f + 2.5f);
       const Floats sideX = farX + margin, sideY = farY + margin;
       const Floats most = across(px - sideX, px + sideX, width_) * across(py - sideY, py + sideY, height_);
-      Wholes small = (most <= float(shader::kStampTiles)) & (pairs * rows <= int(shader::kStampPairs));
+      Wholes small = (most <= float(shader::kSmallGlyphTiles)) & (pairs * rows <= int(shader::kSmallGlyphPairs));
       if (cut_)
         small &= (px - sideX > scissor_.x) & (px + sideX < scissor_.z) & (py - sideY > scissor_.y) &
                  (py + sideY < scissor_.w);
@@ -120,18 +120,18 @@ private:
 Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source) {
   const bool hidden = source == kNone && !full_;
   ItemRecord map{};
-  bool stamping = false;
+  bool smallGlyph = false;
   if (source != kNone) {
     ItemRecord& item = tables_.sources[source];
     item.whole = 1;
     if (!placesGlyphs(item)) return {}; // covers nothing
-    stamping = stampRoom_ && item.perspective.w == 0;
+    smallGlyph = smallGlyphRoom_ && item.perspective.w == 0;
     map = item;
     const auto slot = bind(set);
     if (!slot) return slot.error();
     source |= *slot << shader::kSlotBit;
   }
-  const Stamping stamps(map, info_);
+  const SmallGlyph smallGlyphs(map, info_);
   const std::span<const GlyphSet::Glyph> table = set.table();
   const uint64_t frame = context_.current(), arrived = set.arrived();
   Block block;
@@ -157,8 +157,8 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     if (doubt.any())
       if (auto ok = checkInstances(glyphs, first, i); !ok) return ok;
     block.sums = sums;
-    if (stamping)
-      stamps.countTiles(block);
+    if (smallGlyph)
+      smallGlyphs.countTiles(block);
     else
       std::fill_n(block.tiles, sums.glyphs, 0u);
     addBlock(block, source);
@@ -182,20 +182,20 @@ void Gather::addBlock(const Block& block, uint32_t source) {
       continue;
     }
     const uint32_t tiles = block.tiles[k];
-    const bool stamped = tiles && tiles <= stampRoom_ - used.stampEntries;
+    const bool smallGlyph = tiles && tiles <= smallGlyphRoom_ - used.smallGlyphEntries;
     const float* c = from.color;
     placed_[used.placements++] = {from.x,
                                   from.y,
                                   from.size,
-                                  source | uint32_t(stamped) << shader::kStampedBit,
+                                  source | uint32_t(smallGlyph) << shader::kSmallGlyphBit,
                                   {c[0], c[1], c[2], c[3]},
                                   used.segments,
                                   used.paths,
                                   glyph.first,
                                   glyph.first + glyph.segments * uint32_t(sizeof(shader::SegmentRecord) / 16)};
-    if (stamped) {
-      used.stampEntries += tiles;
-      ++used.stamps;
+    if (smallGlyph) {
+      used.smallGlyphEntries += tiles;
+      ++used.smallGlyphs;
     } else {
       used.segments += glyph.segments;
     }

@@ -1,6 +1,6 @@
-// How an item's transform becomes what shaders read; shared with the CPU twin, which must see the same numbers.
+// How an item's transform becomes what shaders read; shared with the CPU reference, which must see the same numbers.
 #pragma once
-#include "vector/layout.h"
+#include "vector/shared/layout.h"
 
 #include <gpgp/vector.h>
 

@@ -1,6 +1,6 @@
 #include "vector/ui/list.h"
 
-#include "vector/shape.h"
+#include "vector/shared/shape.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "visibility/sampling/budgets.h"
 
-#include "visibility/layout.h"
+#include "visibility/shared/layout.h"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ uint32_t recordsOf(uint32_t maxTriangles, uint32_t most, uint32_t shares) {
 }
 } // namespace
 
-Budgets::Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits& limits)
+Budgets::Budgets(const GpgpVisibilityRecorderCreateInfo& info, const VkPhysicalDeviceLimits& limits)
     : maxWidth(info.maxWidth ? info.maxWidth : 2048), maxHeight(info.maxHeight ? info.maxHeight : 2048),
       maxCameras(std::max(info.maxCameras, 1u)), maxDraws(info.maxDraws ? info.maxDraws : 65536),
       maxTriangles(info.maxTriangles ? info.maxTriangles : 1u << 22), maxSamples(std::max(info.maxSamples, 1u)),

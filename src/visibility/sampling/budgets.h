@@ -1,4 +1,4 @@
-// What a sampler was made for, and the room that follows from it.
+// What a recorder was made for, and the room that follows from it.
 #pragma once
 #include <gpgp/visibility.h>
 
@@ -13,7 +13,7 @@ struct Budgets {
   uint32_t recordShares; // of records: one for four cameras, as many as the device binds
 
   /// Zeros mean the defaults of gpgp/visibility.h.
-  Budgets(const GpgpSamplerCreateInfo& info, const VkPhysicalDeviceLimits& limits);
+  Budgets(const GpgpVisibilityRecorderCreateInfo& info, const VkPhysicalDeviceLimits& limits);
 
   uint64_t pixels() const { return uint64_t(maxWidth) * maxHeight * maxCameras; }
   uint64_t chunks() const;        ///< of shader::kChunk triangles

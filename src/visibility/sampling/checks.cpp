@@ -16,7 +16,7 @@ bool isOrigin(const double* origin) {
   return std::all_of(origin, origin + 3, [](double v) { return v > -1e30 && v < 1e30; });
 }
 
-Result<void> checkOrigins(const GpgpSampleInfo& info) {
+Result<void> checkOrigins(const GpgpVisibilityInfo& info) {
   if (info.originCount > shader::kMaxOrigins)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "originCount is %u; at most %u", info.originCount,
                      shader::kMaxOrigins);
@@ -32,45 +32,45 @@ Result<void> checkOrigins(const GpgpSampleInfo& info) {
 }
 
 /// The viewport, the method and its settings, cameras, counts.
-Result<void> checkSampling(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view) {
+Result<void> checkSampling(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* view) {
   if (info.width == 0 || info.height == 0 || info.width > budgets.maxWidth || info.height > budgets.maxHeight)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the viewport is %u x %u; the sampler was made for 1 x 1 to %u x %u",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the viewport is %u x %u; the recorder was made for 1 x 1 to %u x %u",
                      info.width, info.height, budgets.maxWidth, budgets.maxHeight);
   const uint32_t method = info.method < 0 || info.method > 31 ? 0 : 1u << info.method;
   if (!(budgets.methods & method))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d; the sampler was made for methods 0x%x", info.method,
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d; the recorder was made for methods 0x%x", info.method,
                      budgets.methods);
   const uint32_t samples = samplesOf(info), perSide = samples / std::min(samples, budgets.maxSamples);
   if (!std::has_single_bit(samples) || samples > 256)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "samples is %u; expected a power of two up to 256", samples);
   if (info.method == GPGP_SAMPLING_STANDARD && samples > budgets.maxSamples)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "samples is %u; the sampler was made for %u", samples,
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "samples is %u; the recorder was made for %u", samples,
                      budgets.maxSamples);
-  if (info.method == GPGP_SAMPLING_TRUTH && info.slice > perSide * perSide)
+  if (info.method == GPGP_SAMPLING_REFERENCE && info.slice > perSide * perSide)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "slice is %u; %u samples are taken in slices 0 to %u", info.slice,
                      samples, perSide * perSide);
   const uint32_t cameras = info.moreCameraCount < budgets.maxCameras ? info.moreCameraCount + 1 : 0;
   if (!cameras)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameraCount is %u; the sampler was made for %u cameras in all",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameraCount is %u; the recorder was made for %u cameras in all",
                      info.moreCameraCount, budgets.maxCameras);
   for (uint32_t i = 0; i < info.moreCameraCount; ++i)
     if (!info.moreCameras[i].reversedDepth != !info.camera.reversedDepth)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameras[%u].reversedDepth is not the first camera's", i);
   const bool commands = info.commands.buffer && info.commandCount;
   if (!commands && uint64_t(info.drawCount) * cameras > budgets.maxDraws)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawCount is %u for %u cameras; the sampler was made for %u",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "drawCount is %u for %u cameras; the recorder was made for %u",
                      info.drawCount, cameras, budgets.maxDraws);
   if (commands && info.commandCount > budgets.maxDraws)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandCount is %u; the sampler was made for %u", info.commandCount,
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandCount is %u; the recorder was made for %u", info.commandCount,
                      budgets.maxDraws);
   if (commands && cameras > budgets.maxDraws)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "there are %u cameras; the sampler was made for %u draws of all",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "there are %u cameras; the recorder was made for %u draws of all",
                      cameras, budgets.maxDraws);
   if (info.method == GPGP_SAMPLING_CONSERVATIVE) {
     if (info.resolution != 0 && !(info.resolution >= 0.25f && info.resolution <= 1))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "resolution is %g; expected 0.25 to 1",
                        static_cast<double>(info.resolution));
-    if (info.heuristics & ~(GPGP_HEURISTICS_THESIS | GPGP_HEURISTIC_KEEP_FRONT))
+    if (info.heuristics & ~(GPGP_HEURISTICS_DEFAULT | GPGP_HEURISTIC_KEEP_FRONT))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "heuristics is 0x%x; it has unknown bits", info.heuristics);
     if (!(info.epsilonStatic >= 0 && info.epsilonStatic < 1e30f && info.epsilonDynamic >= 0 &&
           info.epsilonDynamic < 1e30f))
@@ -96,7 +96,7 @@ Result<void> checkSampling(const GpgpSampleInfo& info, const Budgets& budgets, c
 }
 
 /// Geometry and draws.
-Result<void> checkInput(const GpgpSampleInfo& info) {
+Result<void> checkInput(const GpgpVisibilityInfo& info) {
   if (info.indexType != VK_INDEX_TYPE_UINT16 && info.indexType != VK_INDEX_TYPE_UINT32)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indexType is %d; expected UINT16 or UINT32", info.indexType);
   const uint32_t number = positionFormatOf(info.positionFormat).bytes;
@@ -145,7 +145,7 @@ Result<void> checkInput(const GpgpSampleInfo& info) {
 }
 
 /// Bits, lists and commands.
-Result<void> checkOutput(const GpgpSampleInfo& info) {
+Result<void> checkOutput(const GpgpVisibilityInfo& info) {
   if (info.drawCommands.buffer) {
     const bool counted = info.commands.buffer || info.drawCountBuffer.buffer;
     const uint64_t needed = counted ? 1 : std::max(info.drawCount, 1u);
@@ -189,7 +189,7 @@ Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t need
   return {};
 }
 
-Result<void> checkSampleInfo(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view) {
+Result<void> checkSampleInfo(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* view) {
   if (auto ok = checkSampling(info, budgets, view); !ok) return ok;
   if (auto ok = checkInput(info); !ok) return ok;
   if (auto ok = checkOrigins(info); !ok) return ok;

@@ -1,4 +1,4 @@
-// The checks of a record that depend on what the sampler was made for, and on the sizes of the engine's buffers.
+// The checks of a record that depend on what the recorder was made for, and on the sizes of the engine's buffers.
 #pragma once
 #include "core/result.h"
 #include "visibility/geometry_set.h"
@@ -9,6 +9,6 @@ namespace gpgp::visibility {
 core::Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t needed, const char* why);
 
 /// view may be null.
-core::Result<void> checkSampleInfo(const GpgpSampleInfo& info, const Budgets& budgets, const CameraView* view);
+core::Result<void> checkSampleInfo(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* view);
 
 } // namespace gpgp::visibility

@@ -2,7 +2,7 @@
 #include "visibility/sampling/passes.h"
 
 #include "shaders/visibility_overlap.spv.h"
-#include "shaders/visibility_overlap_big.spv.h"
+#include "shaders/visibility_overlap_large.spv.h"
 
 #include <cstddef>
 
@@ -12,14 +12,14 @@ void addConservative(core::PassList& list, const Budgets& budgets) {
   using namespace shader;
   using enum core::UseKind;
   struct Sweep {
-    uint32_t small, big, wide; // shaders
-    const char *smallName, *bigName, *wideName;
+    uint32_t small, large, split; // shaders
+    const char *smallName, *largeName, *splitName;
   };
-  const auto makeSweep = [&](uint32_t phase, const char* smallName, const char* bigName, const char* wideName) {
+  const auto makeSweep = [&](uint32_t phase, const char* smallName, const char* largeName, const char* splitName) {
     const uint32_t small = addShader(list, smallName, visibility_overlap, {phase});
-    const uint32_t big = addShader(list, bigName, visibility_overlap_big, {phase, 0});
-    return Sweep{small,     big,     addShader(list, wideName, visibility_overlap_big, {phase, 1}),
-                 smallName, bigName, wideName};
+    const uint32_t large = addShader(list, largeName, visibility_overlap_large, {phase, 0});
+    return Sweep{small,     large,     addShader(list, splitName, visibility_overlap_large, {phase, 1}),
+                 smallName, largeName, splitName};
   };
   const size_t first = list.passes.size();
   uint32_t level = 0;
@@ -39,15 +39,15 @@ void addConservative(core::PassList& list, const Budgets& budgets) {
       return pass;
     };
     addFill("clear overlap", kBindCounters, 0, offsetof(Counters, overlapCount), 8);
-    addFill("clear wide", kBindCounters, 0, offsetof(Counters, wideCount), 8);
+    addFill("clear split", kBindCounters, 0, offsetof(Counters, splitCount), 8);
     addPass(sweep.smallName, sweep.small, offsetof(Counters, keptArgs));
-    addPass(sweep.bigName, sweep.big, offsetof(Counters, overlapArgs));
-    addPass(sweep.wideName, sweep.wide, offsetof(Counters, wideArgs)).beside = true;
+    addPass(sweep.largeName, sweep.large, offsetof(Counters, overlapArgs));
+    addPass(sweep.splitName, sweep.split, offsetof(Counters, splitArgs)).beside = true;
   };
-  addSweep(makeSweep(0, "overlap", "overlap big", "overlap wide"));
-  const Sweep cover = makeSweep(1, "cover", "cover big", "cover wide"),
-              nearest = makeSweep(2, "nearest", "nearest big", "nearest wide"),
-              take = makeSweep(3, "take", "take big", "take wide");
+  addSweep(makeSweep(0, "overlap", "overlap large", "overlap split"));
+  const Sweep cover = makeSweep(1, "cover", "cover large", "cover split"),
+              nearest = makeSweep(2, "nearest", "nearest large", "nearest split"),
+              take = makeSweep(3, "take", "take large", "take split");
   const VkDeviceSize pixels = budgets.pixels();
   for (level = 1; level <= kMaxRefinements; ++level) {
     if (level == 1) addFill("clear gaps", kBindGaps, 0, 0, pixels * 8);

@@ -1,12 +1,12 @@
 // Exact sampling: what follows standard sampling.
 #include "visibility/sampling/passes.h"
 
-#include "shaders/visibility_allot.spv.h"
-#include "shaders/visibility_big.spv.h"
-#include "shaders/visibility_enter.spv.h"
-#include "shaders/visibility_pick.spv.h"
-#include "shaders/visibility_pick_unfold.spv.h"
-#include "shaders/visibility_place.spv.h"
+#include "shaders/visibility_bin_allocate.spv.h"
+#include "shaders/visibility_bin_large.spv.h"
+#include "shaders/visibility_pixel_lists.spv.h"
+#include "shaders/visibility_select.spv.h"
+#include "shaders/visibility_select_large.spv.h"
+#include "shaders/visibility_bin_place.spv.h"
 #include "shaders/visibility_resolve.spv.h"
 #include "shaders/visibility_resolve_long.spv.h"
 #include "shaders/visibility_resolve_long_subgroups.spv.h"
@@ -34,7 +34,7 @@ void addExact(core::PassList& list, const core::Device& device) {
   };
   const size_t first = list.passes.size();
   // Those that are pieces or many pixels wide beside gather: whether they are seen is asked later.
-  fetchesTriangles(list.dispatchIndirect("pick unfold", addShader(list, "pick unfold", visibility_pick_unfold),
+  fetchesTriangles(list.dispatchIndirect("select large", addShader(list, "select large", visibility_select_large),
                                          {{kBindQueue, read},
                                           {kBindCounters, readWrite},
                                           {kBindBits, readWrite},
@@ -42,7 +42,7 @@ void addExact(core::PassList& list, const core::Device& device) {
                                           {kBindSlots, readWrite}},
                                          kBindCounters, offsetof(Counters, bigUnfoldArgs)))
       .beside = true;
-  fetchesTriangles(list.dispatchIndirect("pick", addShader(list, "pick", visibility_pick),
+  fetchesTriangles(list.dispatchIndirect("select", addShader(list, "select", visibility_select),
                                          {{kBindQueue, read},
                                           {kBindSlots, readWrite},
                                           {kBindCounters, readWrite},
@@ -50,7 +50,7 @@ void addExact(core::PassList& list, const core::Device& device) {
                                           {kBindCandidates, write},
                                           {kBindPairs, write}},
                                          kBindCounters, offsetof(Counters, onScreenArgs)));
-  list.dispatchIndirect("pick big", addShader(list, "big", visibility_big),
+  list.dispatchIndirect("bin large", addShader(list, "bin large", visibility_bin_large),
                         {{kBindParams, read},
                          {kBindSlots, readWrite},
                          {kBindCounters, readWrite},
@@ -58,12 +58,12 @@ void addExact(core::PassList& list, const core::Device& device) {
                          {kBindCandidates, read},
                          {kBindPairs, write}},
                         kBindCounters, offsetof(Counters, bigArgs));
-  list.dispatch("allot", addShader(list, "allot", visibility_allot),
+  list.dispatch("bin allocate", addShader(list, "bin allocate", visibility_bin_allocate),
                 {{kBindParams, read}, {kBindCounters, readWrite}, {kBindSlots, readWrite}}, kAllotGroups);
-  list.dispatchIndirect("place", addShader(list, "place", visibility_place),
+  list.dispatchIndirect("bin place", addShader(list, "bin place", visibility_bin_place),
                         {{kBindParams, read}, {kBindCounters, read}, {kBindSlots, readWrite}, {kBindPairs, readWrite}},
                         kBindCounters, offsetof(Counters, placeArgs));
-  list.dispatch("enter", addShader(list, "enter", visibility_enter, {software}),
+  list.dispatch("pixel lists", addShader(list, "pixel lists", visibility_pixel_lists, {software}),
                 {{kBindParams, read},
                  {kBindCounters, readWrite},
                  {kBindSlots, readWrite},

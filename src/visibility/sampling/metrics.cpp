@@ -1,5 +1,5 @@
 // Metrics: compares two sets of triangles. Records that measure have these passes only.
-#include "visibility/sampling/sampler.h"
+#include "visibility/sampling/recorder.h"
 
 #include "shaders/visibility_measure.spv.h"
 #include "visibility/sampling/checks.h"
@@ -15,8 +15,8 @@ void addMetrics(core::PassList& list) {
   list.dispatch("measure", addShader(list, "measure", visibility_measure),
                 {{kBindParams, read},
                  {kBindBits, read},
-                 {kBindTruth, read},
-                 {kBindTruthCounts, read},
+                 {kBindReference, read},
+                 {kBindReferenceCounts, read},
                  {kBindRecheck, read},
                  {kBindFalsePositives, write},
                  {kBindFalseNegatives, write},
@@ -25,7 +25,7 @@ void addMetrics(core::PassList& list) {
       .condition = kIfMeasuring;
 }
 
-Result<void> Sampler::measure(VkCommandBuffer commandBuffer, const GpgpVisibilityMetricsInfo& info) {
+Result<void> VisibilityRecorder::measure(VkCommandBuffer commandBuffer, const GpgpVisibilityMetricsInfo& info) {
   if (info.triangleCount > 1u << 31)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; at most 2147483648", info.triangleCount);
   const uint64_t words = (uint64_t(info.triangleCount) + 31) / 32;
@@ -42,8 +42,8 @@ Result<void> Sampler::measure(VkCommandBuffer commandBuffer, const GpgpVisibilit
     return {};
   };
   if (auto ok = bind(shader::kBindBits, "visibleBits", info.visibleBits, 0, words * 4); !ok) return ok;
-  if (auto ok = bind(shader::kBindTruth, "truthBits", info.truthBits, 0, words * 4); !ok) return ok;
-  if (auto ok = bind(shader::kBindTruthCounts, "truthCounts", info.truthCounts, shader::kHasTruthCounts,
+  if (auto ok = bind(shader::kBindReference, "referenceBits", info.referenceBits, 0, words * 4); !ok) return ok;
+  if (auto ok = bind(shader::kBindReferenceCounts, "referenceCounts", info.referenceCounts, shader::kHasReferenceCounts,
                      uint64_t(info.triangleCount) * 4);
       !ok)
     return ok;
@@ -63,7 +63,7 @@ Result<void> Sampler::measure(VkCommandBuffer commandBuffer, const GpgpVisibilit
   record.conditions[kIfMeasuring] = true;
   record.constants[0] = std::as_bytes(std::span(&params, 1));
   if (auto ok = check(record); !ok) return ok;
-  return Worker::record(record);
+  return Recorder::record(record);
 }
 
 } // namespace gpgp::visibility

@@ -1,6 +1,6 @@
 #include "visibility/sampling/parameters.h"
 
-#include "visibility/conservative.h"
+#include "visibility/conservative/conservative.h"
 #include "visibility/sampling/passes.h"
 #include "visibility/view_cell.h"
 
@@ -21,7 +21,7 @@ static_assert(GPGP_HEURISTIC_IN_CIRCLE == shader::kInCircle && GPGP_HEURISTIC_DE
               GPGP_HEURISTIC_KEEP_FRONT == shader::kKeepFront);
 
 namespace {
-constexpr uint32_t kTruthSamples = 64;
+constexpr uint32_t kReferenceSamples = 64;
 
 /// Vertices that a range holds, the last one without its padding.
 uint32_t verticesIn(VkDeviceSize bytes, uint32_t offset, uint32_t position, uint32_t stride) {
@@ -37,7 +37,7 @@ void splitOrigin(const double* origin, float* parts) {
   }
 }
 
-void setOrigins(const GpgpSampleInfo& info, Params& params) {
+void setOrigins(const GpgpVisibilityInfo& info, Params& params) {
   params.originCount = info.originCount;
   params.hasOrigins = info.originCount ? 1 : 0;
   for (uint32_t i = 0; i < info.originCount; ++i)
@@ -50,15 +50,15 @@ void setOrigins(const GpgpSampleInfo& info, Params& params) {
 }
 
 /// Where the record's samples lie in a pixel.
-void setGrid(const GpgpSampleInfo& info, const Budgets& budgets, Params& params) {
+void setGrid(const GpgpVisibilityInfo& info, const Budgets& budgets, Params& params) {
   const uint32_t samples = samplesOf(info), perRecord = std::min(samples, budgets.maxSamples),
                  perSide = samples / perRecord;
-  const bool centre = info.method == GPGP_SAMPLING_TRUTH && info.slice == perSide * perSide;
+  const bool centre = info.method == GPGP_SAMPLING_REFERENCE && info.slice == perSide * perSide;
   const uint32_t spacing = 256 / (centre ? 1 : perRecord), part = centre ? 256 : 256 / samples;
   params.gridShift = static_cast<uint32_t>(std::countr_zero(spacing));
   params.gridX = (centre ? 0 : info.slice % perSide) * part + part / 2;
   params.gridY = (centre ? 0 : info.slice / perSide) * part + part / 2;
-  if (info.method != GPGP_SAMPLING_TRUTH) params.gridX = params.gridY = spacing / 2;
+  if (info.method != GPGP_SAMPLING_REFERENCE) params.gridX = params.gridY = spacing / 2;
 }
 } // namespace
 
@@ -75,13 +75,13 @@ PositionFormat positionFormatOf(VkFormat format) {
   }
 }
 
-uint32_t samplesOf(const GpgpSampleInfo& info) {
-  if (info.method != GPGP_SAMPLING_STANDARD && info.method != GPGP_SAMPLING_TRUTH) return 1;
-  return info.samples ? info.samples : info.method == GPGP_SAMPLING_TRUTH ? kTruthSamples : 1;
+uint32_t samplesOf(const GpgpVisibilityInfo& info) {
+  if (info.method != GPGP_SAMPLING_STANDARD && info.method != GPGP_SAMPLING_REFERENCE) return 1;
+  return info.samples ? info.samples : info.method == GPGP_SAMPLING_REFERENCE ? kReferenceSamples : 1;
 }
 
-Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const GeometrySet& geometry,
-                    const CameraView* view) {
+Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, const GeometrySet& geometry,
+                    const CameraHistory* view) {
   Params params{};
   const uint32_t cameras = info.moreCameraCount + 1;
   for (uint32_t i = 0; i < cameras; ++i) {

@@ -1,7 +1,7 @@
 // What the shaders read of one record, worked out from what the engine gave. The record has been checked.
 #pragma once
 #include "visibility/geometry_set.h"
-#include "visibility/layout.h"
+#include "visibility/shared/layout.h"
 #include "visibility/sampling/budgets.h"
 
 namespace gpgp::visibility {
@@ -15,10 +15,10 @@ struct PositionFormat {
 PositionFormat positionFormatOf(VkFormat format);
 
 /// A pixel's samples, per side.
-uint32_t samplesOf(const GpgpSampleInfo& info);
+uint32_t samplesOf(const GpgpVisibilityInfo& info);
 
 /// view may be null.
-shader::Params parametersOf(const GpgpSampleInfo& info, const Budgets& budgets, const GeometrySet& geometry,
-                            const CameraView* view);
+shader::Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, const GeometrySet& geometry,
+                            const CameraHistory* view);
 
 } // namespace gpgp::visibility

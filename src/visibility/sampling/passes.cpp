@@ -1,7 +1,7 @@
 // The resources that the passes share, and the parts in their order.
 #include "visibility/sampling/passes.h"
 
-#include "visibility/nearby.h"
+#include "visibility/nearby/nearby.h"
 
 #include <algorithm>
 #include <cassert>

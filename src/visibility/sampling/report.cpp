@@ -1,12 +1,12 @@
 // What the GPU counted, as the engine reads it.
-#include "visibility/sampling/sampler.h"
+#include "visibility/sampling/recorder.h"
 
 #include <algorithm>
 #include <cstring>
 
 namespace gpgp::visibility {
 
-bool Sampler::takeSampleReport(GpgpSampleReport& report) {
+bool VisibilityRecorder::takeSampleReport(GpgpVisibilityReport& report) {
   core::RawReport raw;
   if (!takeReport(raw)) return false;
   shader::Counters counters{};
@@ -31,15 +31,15 @@ bool Sampler::takeSampleReport(GpgpSampleReport& report) {
   report.draws = counters.drawsGiven;
   report.neededDrawTriangles = counters.drawTriangles;
   report.drawTriangles = counters.drawListed;
-  report.truth = counters.truth;
+  report.reference = counters.reference;
   report.falsePositives = counters.falsePositives;
-  report.falseNegatives = counters.truth - counters.found;
+  report.falseNegatives = counters.reference - counters.found;
   const auto share = [](double part, double whole) { return whole > 0 ? static_cast<float>(part / whole) : 0.0f; };
   const auto wide = [](const uint32_t* words) { return static_cast<double>(uint64_t(words[1]) << 32 | words[0]); };
-  report.coverage = share(counters.found, counters.truth);
-  report.overestimation = share(counters.falsePositives, counters.truth);
-  report.coverageArea = share(wide(counters.foundArea), wide(counters.truthArea));
-  report.overestimationArea = share(counters.falsePositives, wide(counters.truthArea));
+  report.coverage = share(counters.found, counters.reference);
+  report.overestimation = share(counters.falsePositives, counters.reference);
+  report.coverageArea = share(wide(counters.foundArea), wide(counters.referenceArea));
+  report.overestimationArea = share(counters.falsePositives, wide(counters.referenceArea));
   const bool tooMany = counters.items > budgets_.maxTriangles || counters.unresolved ||
                        (counters.hasList && counters.listed < counters.visible) ||
                        counters.drawsGiven < counters.draws || counters.drawListed < counters.drawTriangles;

@@ -5,20 +5,20 @@
 #include "shaders/visibility_chunks.spv.h"
 #include "shaders/visibility_clear.spv.h"
 #include "shaders/visibility_clusters.spv.h"
-#include "shaders/visibility_expand.spv.h"
+#include "shaders/visibility_expand_commands.spv.h"
 #include "shaders/visibility_gather.spv.h"
 #include "shaders/visibility_ids.spv.h"
 #include "shaders/visibility_large.spv.h"
 #include "shaders/visibility_large_int64.spv.h"
-#include "shaders/visibility_left.spv.h"
-#include "shaders/visibility_left_int64.spv.h"
+#include "shaders/visibility_overflow.spv.h"
+#include "shaders/visibility_overflow_int64.spv.h"
 #include "shaders/visibility_medium.spv.h"
 #include "shaders/visibility_medium_int64.spv.h"
 #include "shaders/visibility_plan.spv.h"
 #include "shaders/visibility_small.spv.h"
 #include "shaders/visibility_small_int64.spv.h"
 #include "shaders/visibility_surfaces.spv.h"
-#include "shaders/visibility_unfold.spv.h"
+#include "shaders/visibility_clip.spv.h"
 
 #include <cstddef>
 
@@ -52,7 +52,7 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
                  {kBindTable, write},
                  {kBindCounters, readWrite}},
                 kOneGroup);
-  list.dispatch("expand", addShader(list, "expand", visibility_expand),
+  list.dispatch("expand commands", addShader(list, "expand commands", visibility_expand_commands),
                 {{kBindParams, read},
                  {kBindCommands, read},
                  {kBindCommandCount, read},
@@ -72,7 +72,7 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
   const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
                                    {"ids small", "ids medium", "ids large", "ids left"}};
   const uint32_t limits = budgets.methods & GPGP_SAMPLING_EXACT_BIT ? 1 : 0;
-  const uint32_t margins = budgets.methods & (GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_TRUTH_BIT) ? 1 : 0;
+  const uint32_t margins = budgets.methods & (GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_REFERENCE_BIT) ? 1 : 0;
   for (uint32_t phase = 0; phase < (single ? 1 : 2); ++phase) {
     // Draws triangles that it makes itself, or those that have a record.
     const auto addMaking = [&](const char* name, uint32_t shader, core::UseKind queue,
@@ -96,7 +96,7 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
                 addShader(list, "small", choose(visibility_small_int64, visibility_small), {phase, limits, margins}),
                 write, offsetof(Counters, keptArgs));
       fetchesTriangles(
-          list.dispatchIndirect("unfold", addShader(list, "unfold", visibility_unfold, {0, limits, margins}),
+          list.dispatchIndirect("clip", addShader(list, "clip", visibility_clip, {0, limits, margins}),
                                 {{kBindQueue, readWrite}, {kBindRecords, write}, {kBindCounters, readWrite}},
                                 kBindCounters, offsetof(Counters, unfoldArgs)));
     } else {
@@ -113,7 +113,7 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
                 offsetof(Counters, largeArgs))
         .beside = true;
     addMaking(names[phase][3],
-              addShader(list, "left", choose(visibility_left_int64, visibility_left), {phase, limits, margins}), read,
+              addShader(list, "overflow", choose(visibility_overflow_int64, visibility_overflow), {phase, limits, margins}), read,
               offsetof(Counters, leftArgs))
         .beside = true;
   }

@@ -85,7 +85,7 @@ struct TextGpu : testing::Test {
     for (const std::string& words : device.takeValidationMessages()) ADD_FAILURE() << words;
   }
 
-  GpgpWorker makeCanvas(uint32_t size, uint32_t maxGlyphs) {
+  GpgpRecorder makeCanvas(uint32_t size, uint32_t maxGlyphs) {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
     info.maxWidth = info.maxHeight = size;
@@ -93,7 +93,7 @@ struct TextGpu : testing::Test {
     info.maxTileEntries = 1u << 18;
     info.maxGlyphs = maxGlyphs;
     info.targets = GPGP_CANVAS_TARGET_RGBA8;
-    GpgpWorker made = nullptr;
+    GpgpRecorder made = nullptr;
     EXPECT_EQ(gpgpCreateCanvas(context, &info, &made), GPGP_SUCCESS) << message;
     const GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
     EXPECT_EQ(gpgpPrewarm(made, &prewarm), GPGP_SUCCESS) << message;
@@ -145,7 +145,7 @@ struct TextGpu : testing::Test {
     return info;
   }
   /// Uploads and draws, and reads back.
-  std::vector<uint8_t> picture(GpgpWorker canvas, const GpgpCanvasItem& item, uint32_t size) {
+  std::vector<uint8_t> picture(GpgpRecorder canvas, const GpgpCanvasItem& item, uint32_t size) {
     const host::Image image(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = size, .height = size});
     const VkCommandBuffer commands = ring->begin();
     EXPECT_EQ(gpgpAdvance(context, &ring->frame()), GPGP_SUCCESS) << message;
@@ -197,7 +197,7 @@ TEST_F(TextGpu, TenThousandGlyphsWhoseStringChangesEachFrame) {
 #endif
   const FontHandle font = openFont("DejaVuSans.ttf");
   const std::vector<GpgpFont> fonts = {font.get()};
-  const GpgpWorker canvas = makeCanvas(kSize, 13000);
+  const GpgpRecorder canvas = makeCanvas(kSize, 13000);
   const GpgpAsset set = makeSet();
   const auto glyphs = closure(font.get(), {{' ', '~'}, {0x400, 0x44f}, {0x2010, 0x2026}, {0x20ac, 0x20ac}});
   add(set, font.get(), glyphs);
@@ -338,7 +338,7 @@ TEST_F(TextGpu, ABakedFontIsDrawnAsTheLiveOneWithoutConversion) {
        {"--ranges", "U+0020-007E, U+00A0-00FF", "--characters", "“”é"}},
       {"NotoNaskhArabic-Regular.ttf", "الأبواب مفتوحة في الصباح", "ar", {"--characters", "الأبواب مفتوحة في الصباح"}},
       {"NotoSansDevanagari-Regular.ttf", "सुबह खिड़की क्षत्रिय श्रृंखला", "hi", {"--ranges", "U+0900-097F"}}};
-  const GpgpWorker canvas = makeCanvas(512, 1024);
+  const GpgpRecorder canvas = makeCanvas(512, 1024);
   for (const Case& one : cases) {
     SCOPED_TRACE(one.font);
     const FontHandle font = openFont(one.font);

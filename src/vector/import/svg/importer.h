@@ -4,7 +4,7 @@
 #include "vector/import/svg/import.h"
 #include "vector/import/svg/style.h"
 #include "vector/import/svg/stylesheet.h"
-#include "vector/layout.h"
+#include "vector/shared/layout.h"
 
 #include <deque>
 #include <functional>

@@ -1,0 +1,93 @@
+// Operators that pass on one shape, by the graph's words: what the interpreter does with all of them, and a generated
+// kernel with those that it has no code for. What it needs is parameter() and what includes fans.h.
+#ifndef GPGP_SHADERS_SPAWN_CHAIN_H
+#define GPGP_SHADERS_SPAWN_CHAIN_H
+#include "spawn/shared/operators.h"
+
+// Operators that one shape passes before others get their turn. Where the device counts turns of loops, the host says
+// how many there is room for, and they are counted (src/spawn/schedule/turns.h).
+#ifdef GPGP_SOFTWARE
+#define GPGP_OPERATOR_PASSED ++operatorsPassed
+#else
+#define GPGP_OPERATOR_PASSED
+#endif
+#if !defined(__cplusplus) && (defined(GPGP_SOFTWARE) || defined(GPGP_COLLIDERS))
+#define GPGP_CHAIN_LENGTH record.chainLength
+#else
+#define GPGP_CHAIN_LENGTH kMaxChain
+#endif
+
+GPGP_SHADER_BEGIN
+
+/// The edge that a conditional or random operator takes.
+GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op) {
+  const float first = parameter(GPGP_G s, 0u);
+  if (op == kOpIf) return first != 0.0f ? 0u : 1u;
+  if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
+  const uint count = graphWords[s.node + kNodeEdgeCount];
+  float total = 0.0f;
+  for (uint i = 0u; i < count; ++i) {
+    total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u)));
+  }
+  const float x = multiply(subtract(first, floor(first)), total);
+  float sum = 0.0f;
+  uint chosen = 0u;
+  for (uint i = 0u; i < count; ++i) {
+    const float p = max(0.0f, parameter(GPGP_G s, i + 1u));
+    if (p > 0.0f && (sum <= x)) chosen = i;
+    sum = add(sum, p);
+  }
+  return chosen;
+}
+
+/// One of the operators that pass on exactly one shape; its node stays.
+GPGP_FN void transform(GPGP_GRAPH GPGP_INOUT(Shape) s, uint op) {
+  // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called.
+  vec3 value = vec3(0.0f);
+  const uint count = min(graphWords[s.node + kNodeParameterCount], 3u);
+  for (uint i = 0u; i < count; ++i) {
+    value = withComponent(value, i, parameter(GPGP_G s, i));
+  }
+  switch (op) {
+  case kOpTranslate: translate(s, value); break;
+  case kOpRotate: rotate(s, rotationOf(value)); break;
+  case kOpScale: resize(s, value); break;
+  case kOpExtrude: extrude(s, value.x); break;
+  case kOpSwapSize: swapSizes(s, graphWords[s.node + kNodeArgument]); break;
+  default: setGeometry(s, graphWords[s.node + kNodeArgument], graphWords[s.node + kNodeArgument2]);
+  }
+}
+
+/// Takes a shape from operator to operator while each passes on one shape. Returns a kEnd value.
+GPGP_FN uint runWords(GPGP_GRAPH GPGP_INOUT(Shape) s, uint maxDepth) {
+  for (uint step = 0u; step < GPGP_CHAIN_LENGTH; ++step) {
+    GPGP_OPERATOR_PASSED;
+    if (s.node == 0u) return kEndDiscarded;
+    if (s.depth > maxDepth) return kEndUnfinished;
+    const uint operatorWord = graphWords[s.node + kNodeOperator];
+    const uint op = operatorWord & kOperatorMask;
+    if (op == kOpTerminal) return kEndTerminal;
+    if (op <= kOpSetGeometry) {
+      const uint target = edgeTarget(GPGP_G s.node, 0u);
+      transform(GPGP_G s, op);
+      if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
+      follow(s, target);
+    } else if (op <= kOpRandomRule) {
+      follow(s, edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op)));
+      if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
+#if defined(__cplusplus) || defined(GPGP_COLLIDERS) // without, no grammar that has them is run
+    } else if (op < kOpCompSplit) {
+      return kEndContext;
+#endif
+    } else {
+      if ((operatorWord & kNodeFilter) == 0u) return kEndWaits;
+      const Fan fan = fanOf(GPGP_G s);
+      if (fan.count == 0u) return kEndDiscarded;
+      toChild(GPGP_G s, fan, 0u);
+    }
+  }
+  return s.node == 0u ? kEndDiscarded : kEndWaits;
+}
+
+GPGP_SHADER_END
+#endif

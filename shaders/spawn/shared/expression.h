@@ -1,0 +1,87 @@
+// Parameters of operators: constants, attributes of the shape, or small programs for a stack machine.
+// All values are settled floats; conditions are 1 and 0. Equality tolerates rounding, as the language asks for normals.
+#ifndef GPGP_SHADERS_SPAWN_EXPRESSION_H
+#define GPGP_SHADERS_SPAWN_EXPRESSION_H
+#include "spawn/shared/shape.h"
+
+GPGP_SHADER_BEGIN
+
+GPGP_FN float component(vec3 v, uint axis) { return axis == 0u ? v.x : (axis == 1u ? v.y : v.z); }
+
+GPGP_FN vec3 withComponent(vec3 v, uint axis, float value) {
+  return vec3(axis == 0u ? value : v.x, axis == 1u ? value : v.y, axis == 2u ? value : v.z);
+}
+
+GPGP_FN bool nearlyEqual(float a, float b) {
+  const float scale = max(1.0f, max(abs(a), abs(b)));
+  return abs(subtract(a, b)) <= multiply(1.0e-5f, scale);
+}
+
+GPGP_FN float attributeOf(Shape s, uint code) {
+  if (code >= kCodePosition && code < kCodePosition + 3u) return component(s.position, code - kCodePosition);
+  if (code >= kCodeShapeSize && code < kCodeShapeSize + 3u) return component(s.size, code - kCodeShapeSize);
+  if (code >= kCodeNormal && code < kCodeNormal + 3u) return component(s.axisZ, code - kCodeNormal);
+  if (code >= kCodeRotation && code < kCodeRotation + 9u) {
+    const uint axis = (code - kCodeRotation) / 3u;
+    const uint element = (code - kCodeRotation) % 3u;
+    return component(axis == 0u ? s.axisX : (axis == 1u ? s.axisY : s.axisZ), element);
+  }
+  return code == kCodeSeed ? unitFloat(s.seed) : s.custom;
+}
+
+GPGP_FN float reference(bool value) { return value ? 1.0f : 0.0f; }
+
+/// a op b for the codes of two operands. drawn: kCodeRandom's number.
+GPGP_FN float combine(uint code, float a, float b, float drawn) {
+  switch (code) {
+  case kCodeAdd: return add(a, b);
+  case kCodeSubtract: return subtract(a, b);
+  case kCodeMultiply: return multiply(a, b);
+  case kCodeDivide: return divide(a, b);
+  case kCodeEqual: return reference(nearlyEqual(a, b));
+  case kCodeNotEqual: return reference(!nearlyEqual(a, b));
+  case kCodeLess: return reference(a < b);
+  case kCodeGreater: return reference(a > b);
+  case kCodeLessEqual: return reference(a <= b);
+  case kCodeGreaterEqual: return reference(a >= b);
+  case kCodeAnd: return reference(a != 0.0f && b != 0.0f);
+  case kCodeOr: return reference(a != 0.0f || b != 0.0f);
+  default: return add(a, multiply(subtract(b, a), drawn)); // kCodeRandom
+  }
+}
+
+/// A parameter's value for a shape; at is its word offset, index its place among the operator's parameters.
+GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at, uint index) {
+  const uint kind = graphWords[at];
+  const uint value = graphWords[at + 1u];
+  if (kind == kParameterConstant) return uintBitsToFloat(value);
+  if (kind == kParameterAttribute) return attributeOf(s, value);
+  float stack[kMaxStack];
+  uint depth = 0u;
+  uint draws = index << kDrawsOfParameter;
+  uint next = value;
+  for (uint code = graphWords[next]; code != kCodeEnd; code = graphWords[next]) {
+    next += 1u;
+    if (code == kCodeNumber) {
+      stack[depth] = uintBitsToFloat(graphWords[next]);
+      next += 1u;
+      depth += 1u;
+    } else if (code >= kCodeAttributes) {
+      stack[depth] = attributeOf(s, code);
+      depth += 1u;
+    } else {
+      depth -= 1u;
+      float drawn = 0.0f;
+      if (code == kCodeRandom) {
+        drawn = drawnNumber(s.key, draws);
+        draws += 1u;
+      }
+      // validate() has run each program: none takes from an empty stack. NOLINTNEXTLINE(clang-analyzer-*)
+      stack[depth - 1u] = combine(code, stack[depth - 1u], stack[depth], drawn);
+    }
+  }
+  return stack[0]; // NOLINT(clang-analyzer-*)
+}
+
+GPGP_SHADER_END
+#endif

@@ -1,0 +1,221 @@
+// The baked operator graph as words, the same in the file, in device memory and for the CPU evaluator.
+//
+// A baked grammar is an array of 32-bit words, little-endian: a header, then sections back to back in the header's
+// order. References between sections are word offsets from the start, so that the interpreter follows them without
+// looking anything up; 0 as an edge's target means that the shape is discarded. src/spawn/graph/blob.cpp writes and
+// checks all of it; nothing here is checked again.
+#ifndef GPGP_SHADERS_SPAWN_GRAPH_FORMAT_H
+#define GPGP_SHADERS_SPAWN_GRAPH_FORMAT_H
+#include "core/shared.h"
+
+// How shared functions read the graph: a pointer in C++, the bound buffer graphWords[] in GLSL.
+#ifdef __cplusplus
+#define GPGP_GRAPH const ::gpgp::shader::uint *graphWords,
+#define GPGP_G graphWords,
+#else
+#define GPGP_GRAPH
+#define GPGP_G
+#endif
+
+GPGP_SHADER_BEGIN
+
+GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
+GPGP_CONST uint kGraphVersion = 6u;
+
+// header words
+GPGP_CONST uint kHeaderMagic = 0u;
+GPGP_CONST uint kHeaderVersion = 1u;
+GPGP_CONST uint kHeaderWords = 2u;    // of everything
+GPGP_CONST uint kHeaderChecksum = 3u; // of all words from kHeaderChecked on
+GPGP_CONST uint kHeaderChecked = 4u;
+GPGP_CONST uint kHeaderSections = 4u; // count and offset of each section
+GPGP_CONST uint kHeaderBuckets = 28u; // terminal lines
+GPGP_CONST uint kHeaderPhases = 29u;  // of derivation, where there are Collider or IfCollides; else 0
+GPGP_CONST uint kHeaderPieces = 30u;  // polygons that SubDiv makes, the last ones of all
+GPGP_CONST uint kHeaderSize = 32u;
+
+// sections, in order
+GPGP_CONST uint kSectionNodes = 0u;
+GPGP_CONST uint kSectionEdges = 1u;
+GPGP_CONST uint kSectionParameters = 2u;
+GPGP_CONST uint kSectionCode = 3u;
+GPGP_CONST uint kSectionPolygons = 4u;
+GPGP_CONST uint kSectionVertices = 5u;
+GPGP_CONST uint kSectionTerminals = 6u;
+GPGP_CONST uint kSectionRules = 7u;
+GPGP_CONST uint kSectionNames = 8u; // bytes in words, each name ends in 0
+GPGP_CONST uint kSectionDivisions = 9u;
+GPGP_CONST uint kSectionQuads = 10u;
+GPGP_CONST uint kSectionAxioms = 11u;
+GPGP_CONST uint kSectionCount = 12u;
+
+// node: eight words. What a terminal says lies in the first four, which are read at once.
+GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, kNodeDraws, and its priority << kNodePriority
+GPGP_CONST uint kNodeArgument = 1u;
+GPGP_CONST uint kNodeArgument2 = 2u;
+GPGP_CONST uint kNodeParameters = 3u; // offset of the first; of a terminal: kNodeRule
+GPGP_CONST uint kNodeRule = 3u;       // in whose body the terminal stands, or kNoRule: an axiom line names it
+GPGP_CONST uint kNodeParameterCount = 4u;
+GPGP_CONST uint kNodeEdges = 5u; // offset of the first
+GPGP_CONST uint kNodeEdgeCount = 6u;
+GPGP_CONST uint kNodeShapes = 7u; // bit set of the GpgpShape values that can arrive
+GPGP_CONST uint kNodeSize = 8u;
+GPGP_CONST uint kOperatorMask = 0xffu;
+GPGP_CONST uint kNoRule = 0xffffffffu;
+/// The node could multiply shapes, but at most one of its successors is not discarded: it passes on one shape or none.
+GPGP_CONST uint kNodeFilter = 0x100u;
+/// Of an operator that passes on one shape: a parameter draws a random number, so the shape's path key changes here.
+GPGP_CONST uint kNodeDraws = 0x200u;
+GPGP_CONST uint kNodePriority = 16u;
+GPGP_CONST uint kMaxPriority = 0xffffu;
+
+// edge: target, multiplicity, count
+GPGP_CONST uint kEdgeTarget = 0u; // offset of a node, 0: discard; and kEdgeRecursive
+GPGP_CONST uint kEdgeMultiplicity = 1u;
+GPGP_CONST uint kEdgeShapes = 2u;
+GPGP_CONST uint kEdgeSize = 3u;
+/// The edge closes a cycle: every derivation without end passes such edges for ever, so they are what depth counts.
+GPGP_CONST uint kEdgeRecursive = 0x80000000u;
+
+GPGP_CONST uint kMultiplicityOne = 0u;      // always one shape
+GPGP_CONST uint kMultiplicityFixed = 1u;    // a number known from the shape's type
+GPGP_CONST uint kMultiplicityOptional = 2u; // none or one
+GPGP_CONST uint kMultiplicityAny = 3u;      // any number
+
+// parameter: kind, value
+GPGP_CONST uint kParameterConstant = 0u;  // value: float bits
+GPGP_CONST uint kParameterAttribute = 1u; // value: an attribute's code
+GPGP_CONST uint kParameterProgram = 2u;   // value: offset of its first code word
+GPGP_CONST uint kParameterSize = 2u;
+
+// division: what a SubDiv with constant parts makes of them. Fixed length, parts with a fixed length and parts with a
+// weight as bit sets (without those that are discarded), where its cuts begin, seen from its own start, or 0; then for
+// each part four values. cuts: how many, then for each polygon that it cuts its number and one number a part.
+GPGP_CONST uint kDivisionFixedParts = 1u;
+GPGP_CONST uint kDivisionWeightedParts = 2u;
+GPGP_CONST uint kDivisionCuts = 3u;
+GPGP_CONST uint kDivisionParts = 4u;
+GPGP_CONST uint kNoPiece = 0xffffffffu; // the polygon does not reach that far
+GPGP_CONST uint kPartFixed = 0u;        // its length, or
+GPGP_CONST uint kPartShare = 1u;        // its share of what fixed lengths leave
+GPGP_CONST uint kPartFixedBefore = 2u;  // sums over the parts before it
+GPGP_CONST uint kPartShareBefore = 3u;
+GPGP_CONST uint kPartSize = 4u;
+
+// polygon: first vertex (offset), vertex count, first quad (offset), quad count or 0. Polygons come in pairs, 2 k + 1
+// is 2 k seen from behind: (x, -y) in reverse order. The first six pairs are the regular ones with 3 to 8 corners.
+// Without quads it is convex: a fan. A quad is four corners as 16 bits each, and means the triangles 0 1 2 and 0 2 3.
+GPGP_CONST uint kPolygonSize = 4u;
+GPGP_CONST uint kQuadSize = 2u;
+GPGP_CONST uint kMaxCorners = 4096u; // of a polygon
+GPGP_CONST uint kRegularPolygons = 12u;
+GPGP_CONST uint kQuadPolygon = 2u;
+
+// terminal: name (byte offset in names), kind, index, bucket
+GPGP_CONST uint kTerminalSize = 4u;
+// rule: name (byte offset in names), node offset or 0, the axiom whose shape it starts with (offset)
+GPGP_CONST uint kRuleSize = 3u;
+// axiom: name (byte offset in names), node offset or 0, GpgpShape and its polygon << 8. The first is the default.
+GPGP_CONST uint kAxiomSize = 3u;
+
+// operators
+GPGP_CONST uint kOpTerminal =
+    0u; // argument: terminal, argument2: bucket; each rule has nodes of its own for its terminals
+GPGP_CONST uint kOpTranslate = 1u;
+GPGP_CONST uint kOpRotate = 2u;
+GPGP_CONST uint kOpScale = 3u;
+GPGP_CONST uint kOpExtrude = 4u;
+GPGP_CONST uint kOpSwapSize = 5u;    // argument: the three axes, two bits each
+GPGP_CONST uint kOpSetGeometry = 6u; // argument: GpgpShape, argument2: polygon
+GPGP_CONST uint kOpIf = 7u;
+GPGP_CONST uint kOpIfSizeLess = 8u;  // argument: axis
+GPGP_CONST uint kOpRandomRule = 9u;  // parameters: chance, then one probability an edge
+GPGP_CONST uint kOpCollider = 10u;   // argument: tag, argument2: the phase that it waits for
+GPGP_CONST uint kOpIfCollides = 11u; // argument: tag, argument2: the phase that it runs in
+GPGP_CONST uint kOpCompSplit = 12u;  // edges: top, bottom, sides; what follows may multiply shapes, too
+GPGP_CONST uint kOpSubDiv = 13u;     // argument: axis, argument2: division or 0; one parameter an edge
+GPGP_CONST uint kOpRepeat = 14u;     // argument: axis, argument2: mode
+GPGP_CONST uint kOpReplicate = 15u;
+GPGP_CONST uint kOpCount = 16u;
+
+/// A tag is a number below this, or a name: this and its byte offset in names.
+GPGP_CONST uint kTagName = 0x80000000u;
+
+GPGP_CONST uint kRepeatAdjustToFill = 0u;
+GPGP_CONST uint kRepeatAnchorToStart = 1u;
+GPGP_CONST uint kRepeatAnchorToEnd = 2u;
+
+// expression code: a stack machine without jumps
+GPGP_CONST uint kCodeEnd = 0u;
+GPGP_CONST uint kCodeNumber = 1u; // float bits follow
+GPGP_CONST uint kCodeAdd = 2u;
+GPGP_CONST uint kCodeSubtract = 3u;
+GPGP_CONST uint kCodeMultiply = 4u;
+GPGP_CONST uint kCodeDivide = 5u;
+GPGP_CONST uint kCodeEqual = 6u;
+GPGP_CONST uint kCodeNotEqual = 7u;
+GPGP_CONST uint kCodeLess = 8u;
+GPGP_CONST uint kCodeGreater = 9u;
+GPGP_CONST uint kCodeLessEqual = 10u;
+GPGP_CONST uint kCodeGreaterEqual = 11u;
+GPGP_CONST uint kCodeAnd = 12u;
+GPGP_CONST uint kCodeOr = 13u;
+GPGP_CONST uint kCodeRandom = 14u;    // minimum, maximum: draws
+GPGP_CONST uint kCodePosition = 32u;  // + axis
+GPGP_CONST uint kCodeShapeSize = 35u; // + axis
+GPGP_CONST uint kCodeNormal = 38u;    // + axis
+GPGP_CONST uint kCodeRotation = 41u;  // + 3 * axis + component
+GPGP_CONST uint kCodeSeed = 50u;
+GPGP_CONST uint kCodeCustom = 51u;
+GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
+GPGP_CONST uint kCodeCount = 52u;
+
+/// GPGP_AXIOM_DEFAULT_START. Other starts are counted: first the rules, then the axioms.
+GPGP_CONST uint kDefaultRule = 0xffffffffu;
+
+/// The numbers that an operator draws: of parameter p those from p << this on, in the order of its code.
+GPGP_CONST uint kDrawsOfParameter = 16u;
+
+// limits that the interpreter relies on
+GPGP_CONST uint kMaxStack = 8u;       // of expressions
+GPGP_CONST uint kMaxSuccessors = 32u; // of one operator
+GPGP_CONST uint kMaxBuckets = 1024u;
+GPGP_CONST uint kMaxPhases = 8u;
+GPGP_CONST uint kMaxChain = 64u;       // operators that one shape passes before others get their turn
+GPGP_CONST uint kMaxRepeat = 1048576u; // copies that one Repeat makes
+
+// shape types, as GpgpShape
+GPGP_CONST uint kShapeTriangle = 0u;
+GPGP_CONST uint kShapeQuad = 1u;
+GPGP_CONST uint kShapeOctagon = 5u;
+GPGP_CONST uint kShapePrism3 = 6u;
+GPGP_CONST uint kShapeBox = 7u;
+GPGP_CONST uint kShapePrism8 = 11u;
+GPGP_CONST uint kShapeDynamicConvexPolygon = 12u;
+GPGP_CONST uint kShapeDynamicPolygon = 13u;
+GPGP_CONST uint kShapeDynamicConvexRightPrism = 14u;
+GPGP_CONST uint kShapeDynamicRightPrism = 15u;
+GPGP_CONST uint kShapeSphere = 16u;
+GPGP_CONST uint kShapeCount = 17u;
+
+GPGP_CONST uint kDynamicShapes = 0xf000u; // bits
+GPGP_CONST uint kPolygonShapes = 0x303fu; // bits: triangle to octagon, the two dynamic ones
+GPGP_FN bool isPolygon(uint shape) { return ((kPolygonShapes >> shape) & 1u) != 0u; }
+GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape != kShapeSphere; }
+/// What a polygon becomes when it is extruded.
+GPGP_FN uint prismOf(uint polygon) { return polygon <= kShapeOctagon ? polygon + 6u : polygon + 2u; }
+/// What the ends of a prism are.
+GPGP_FN uint polygonOf(uint prism) { return prism <= kShapePrism8 ? prism - 6u : prism - 2u; }
+
+/// Whether SubDiv along an axis makes something else of a shape's polygon. A sphere's pieces are spheres.
+GPGP_FN bool isCut(uint shape, uint axis) {
+  return shape != kShapeBox && shape != kShapeQuad && shape != kShapeSphere && axis != (isPolygon(shape) ? 2u : 1u);
+}
+/// What the piece is.
+GPGP_FN uint pieceShape(uint shape) {
+  if (shape >= kShapeDynamicConvexPolygon) return shape;
+  return isPolygon(shape) ? kShapeDynamicConvexPolygon : kShapeDynamicConvexRightPrism;
+}
+
+GPGP_SHADER_END
+#endif

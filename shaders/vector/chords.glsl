@@ -1,9 +1,0 @@
-// The lists between mark and fill: chords' rows of pixels, and chords, each at the place of its first row. Where they
-// do not suffice, fill finds the chords again by itself.
-layout(set = 0, binding = 26, std430) buffer Chords { ChordRecord chordList[]; };
-layout(set = 0, binding = 27, std430) buffer Rows { uint rows[]; }; // by how much it comes after its chord's first one
-const uint kRightSide = 0x80000000u;
-const uint kCut = 0x40000000u; // its item has a scissor
-const vec4 kNoScissor = vec4(-kUnbounded, -kUnbounded, kUnbounded, kUnbounded);
-
-bool listed(uint rowCount) { return rowCount <= header.rowLimit; }

@@ -1,0 +1,88 @@
+// One invocation a triangle of at most 8 x 8 pixels on the screen: makes candidates of those that are seen at a pixel's
+// centre, which may hide others, and of those that may be seen elsewhere, and enters them in the tiles that they reach
+// over.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/shared/fetch.glsl"
+#include "visibility/exact/lists.glsl"
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+#include "visibility/exact/tile_pairs.glsl"
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
+
+shared uint groupCandidates;
+shared uint groupPairs;
+shared uint firstCandidate;
+shared uint firstPair;
+
+/// Whether a triangle comes in front of a limit of the pixels in its bounds.
+bool mayShow(ScreenTriangle t, ivec4 bounds, uint camera) {
+  bool reversed = params.reversedDepth != 0u;
+  uint nearest = depthKey(reversed ? t.zMax : t.zMin, reversed);
+  for (int y = bounds.y; y < bounds.w; ++y)
+    for (int x = bounds.x; x < bounds.z; ++x)
+      if (nearest <= slots[slotOf(ivec2(x, y), camera)]) return true;
+  return false;
+}
+
+const uint kMostTiles = 4u; // of at most 8 x 8 pixels
+
+/// One of a triangle's tiles, of which one or two lie beside each other.
+uint tileAmong(uvec3 tiles, uint i) {
+  return tiles.x + (tiles.y == 1u ? i * tileColumns() : (i >> 1u) * tileColumns() + (i & 1u));
+}
+
+void main() {
+  uint count = counters.onScreenCount;
+  for (uint first = gl_WorkGroupID.x * 64u; first < count; first += gl_NumWorkGroups.x * 64u) {
+    if (gl_LocalInvocationIndex == 0u) {
+      groupCandidates = 0u;
+      groupPairs = 0u;
+    }
+    barrier();
+    ScreenTriangle t;
+    uint id = 0u;
+    bool seen = false;
+    uvec3 tiles = uvec3(0u);
+    uint candidate = 0u;
+    uint pair = 0u;
+    if (first + gl_LocalInvocationIndex < count) {
+      uint item;
+      Fetched f = fetchNumber(queue[params.maxItems + first + gl_LocalInvocationIndex], item);
+      id = f.id;
+      if (classifyFetched(f, t) == kWhole) {
+        ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
+        seen = isSeen(id);
+        if (seen || mayShow(t, bounds, f.camera)) {
+          tiles = tilesOf(bounds, f.camera);
+          candidate = atomicAdd(groupCandidates, 1u);
+          pair = atomicAdd(groupPairs, tiles.z);
+        }
+      }
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u && groupCandidates != 0u) {
+      firstCandidate = atomicAdd(counters.candidates, groupCandidates);
+      firstPair = atomicAdd(counters.tilePairs, groupPairs);
+    }
+    barrier();
+    if (tiles.z != 0u) {
+      candidate += firstCandidate;
+      pair += firstPair;
+      uint room = maxTilePairs() - min(pair, maxTilePairs());
+      if (candidate < params.maxCandidates && tiles.z <= room) {
+        uint places[kMostTiles]; // all counted first: what that says is waited for once, after the candidate is written
+        for (uint i = 0u; i < kMostTiles; ++i)
+          if (i < tiles.z) places[i] = countIn(tileAmong(tiles, i), seen);
+        writeCandidate(candidate, makeCandidate(t, id));
+        for (uint i = 0u; i < kMostTiles; ++i)
+          if (i < tiles.z) enter(candidate, seen, tileAmong(tiles, i), places[i], pair + i);
+      } else {
+        show(id);
+        for (uint i = 0u; i < min(tiles.z, room); ++i) pairs[(pair + i) * kTilePairWords] = kNoTile;
+      }
+    }
+    barrier();
+  }
+}

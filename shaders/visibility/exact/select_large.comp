@@ -1,0 +1,49 @@
+// One invocation a triangle on the screen that is clipped or reaches over more than 8 x 8 pixels: makes it, or the
+// pieces that clipping leaves, candidates that workgroups share.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "visibility/shared/fetch.glsl"
+#include "visibility/exact/lists.glsl"
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
+layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
+#include "visibility/exact/candidates.glsl"
+
+void add(ScreenTriangle t, uint id, uint camera) {
+  ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(camera));
+  if (bounds.x >= bounds.z || bounds.y >= bounds.w) return;
+  uint place = atomicAdd(counters.candidates, 1u);
+  if (place < params.maxCandidates) {
+    writeCandidate(place, makeCandidate(t, id));
+    uint slices = clamp(tilesOf(bounds, camera).z / kSliceTiles, 1u, kMaxSlices);
+    uint first = atomicAdd(counters.bigCount, slices);
+    // What is counted below the capacity is written, so that no entry lies unwritten among the others.
+    uint end = min(first + slices, params.maxBig);
+    for (uint i = first; i < end; ++i) {
+      slots[bigAt(i)] = place;
+      slots[bigAt(i) + 1u] = (i - first) | (slices << 12u) | (camera << 24u);
+    }
+    if (first < end) atomicMax(counters.bigArgs[0], min(end, kMaxGroups));
+    if (first + slices <= params.maxBig) return;
+  }
+  atomicOr(bits[id >> 5u], 1u << (id & 31u));
+  atomicAdd(counters.unresolved, 1u);
+}
+
+void main() {
+  uint count = counters.bigQueueCount;
+  for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
+    uint item;
+    Fetched f = fetchNumber(queue[params.maxItems * 2u - 1u - entry], item);
+    ScreenTriangle t;
+    uint fate = classifyFetched(f, t);
+    if (fate == kWhole) add(t, f.id, f.camera);
+    if (fate != kClipped) continue;
+    ScreenPolygon polygon;
+    if (clipTriangle(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, polygon) != kClipped) continue;
+    for (int k = 0; k + 2 < polygon.count; ++k)
+      if (fanPiece(polygon, k, gridOf(f.camera), t)) add(t, f.id, f.camera);
+  }
+}

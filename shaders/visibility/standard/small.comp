@@ -1,0 +1,105 @@
+// Depth, one invocation a triangle: rejects, draws small ones at once and queues the others. Small ones that were the
+// nearest in a pixel when they were drawn are queued for ids.comp from the queue's other end: each item takes one place
+// at most, so they never meet. Exact sampling also wants lists of those that are on the screen; they follow the queue:
+// those of at most 8 x 8 pixels from its front, the others and those that are clipped from its end.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#ifdef GPGP_INT64_ATOMICS
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#endif
+#include "visibility/shared/fetch.glsl"
+#include "visibility/shared/chunks.glsl"
+#include "visibility/standard/pixels.glsl"
+#include "visibility/standard/draw_small.glsl"
+layout(local_size_x = 64) in; // kChunk
+
+layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
+
+shared uint groupTriangles;
+shared uint groupSkipped;
+shared uint groupWinners;
+shared uint groupOnScreen;
+shared uint groupBig;
+shared uint firstWinner;
+shared uint firstOnScreen;
+shared uint firstBig;
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) {
+    groupTriangles = 0u;
+    groupSkipped = 0u;
+  }
+  uint kept = keptCount();
+  uint triangles = 0u;
+  uint skipped = 0u;
+  for (uint i = gl_WorkGroupID.x; i < kept; i += gl_NumWorkGroups.x) {
+    uint chunk = keptChunk(i);
+    uint drawIndex = findChunk(chunk);
+    uvec2 start = startOf(drawIndex);
+    if (start.x >= params.maxItems) continue;
+    if (gl_LocalInvocationIndex == 0u) {
+      groupWinners = 0u;
+      groupOnScreen = 0u;
+      groupBig = 0u;
+    }
+    barrier();
+    uint end = min(entryOf(drawIndex).indexCount / 3u, params.maxItems - start.x);
+    uint local = (chunk - start.y) * kChunk + gl_LocalInvocationIndex;
+    const uint kNone = 0xffffffffu;
+    uint winner = kNone;
+    uint onScreen = kNone;
+    uint big = kNone;
+    if (local < end) {
+      Fetched f = fetchTriangle(drawIndex, local);
+      ScreenTriangle t;
+      uint fate = classifyFetched(f, t);
+      if (fate == kSkipped) ++skipped;
+      if (fate == kWhole) ++triangles;
+      bool empty = fate == kWhole && isEmpty(t);
+      if (fate == kWhole && !empty && isSmall(t)) {
+        if (drawSmall(t, drawnId(f.id, start.x + local))) winner = atomicAdd(groupWinners, 1u);
+      } else if (fate == kClipped || (fate == kWhole && !empty)) {
+        uint entry = atomicAdd(counters.queueCount, 1u);
+        queue[entry] = start.x + local;
+        atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
+      }
+      if (params.method == kExact) {
+        ivec4 bounds = ivec4(0);
+        if (fate == kWhole) bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
+        bool reaches = bounds.x < bounds.z && bounds.y < bounds.w;
+        bool isBig = fate == kClipped || (reaches && (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8));
+        if (isBig) big = atomicAdd(groupBig, 1u);
+        else if (reaches) onScreen = atomicAdd(groupOnScreen, 1u);
+      }
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) {
+      if (groupWinners != 0u) {
+        firstWinner = atomicAdd(counters.winnerCount, groupWinners);
+        atomicMax(counters.winnerArgs[0], min((firstWinner + groupWinners + 63u) / 64u, kMaxGroups));
+      }
+      if (groupOnScreen != 0u) {
+        firstOnScreen = atomicAdd(counters.onScreenCount, groupOnScreen);
+        atomicMax(counters.onScreenArgs[0], min((firstOnScreen + groupOnScreen + 63u) / 64u, kMaxGroups));
+      }
+      if (groupBig != 0u) {
+        firstBig = atomicAdd(counters.bigQueueCount, groupBig);
+        atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
+      }
+    }
+    barrier();
+    uint number = chunk * kChunk + gl_LocalInvocationIndex;
+    if (winner != kNone) queue[params.maxItems - 1u - firstWinner - winner] = number;
+    if (onScreen != kNone) queue[params.maxItems + firstOnScreen + onScreen] = number;
+    if (big != kNone) queue[params.maxItems * 2u - 1u - firstBig - big] = number;
+  }
+  barrier();
+  if (triangles != 0u) atomicAdd(groupTriangles, triangles);
+  if (skipped != 0u) atomicAdd(groupSkipped, skipped);
+  barrier();
+  if (gl_LocalInvocationIndex == 0u) {
+    if (groupTriangles != 0u) atomicAdd(counters.triangles, groupTriangles);
+    if (groupSkipped != 0u) atomicAdd(counters.skippedTriangles, groupSkipped);
+  }
+}

@@ -1,0 +1,159 @@
+// Recorders: pipelines, rings and scratch for one pass list, and the one function that records it.
+//
+// A service derives from Recorder, describes its passes in the constructor path (init), and for each record fills a
+// Record: engine buffers by resource, constants, workgroup counts. Recording allocates nothing.
+#pragma once
+#include "core/context.h"
+#include "core/passes.h"
+
+#include <atomic>
+
+namespace gpgp::core {
+
+constexpr uint32_t kMaxResources = 32;
+constexpr uint32_t kMaxGroupCounts = 16;
+constexpr uint32_t kMaxConditions = 48;
+constexpr uint32_t kMaxTargets = 16;
+
+/// What one record gives for the resources of kinds buffer and image.
+struct Binding {
+  const GpgpBuffer* engineBuffer = nullptr; ///< with before/after states
+  std::span<const std::byte> hostData;      ///< copied while recording, at most Resource::bytes
+  VkBuffer ownBuffer = VK_NULL_HANDLE;      ///< an asset's or view's
+  VkDeviceSize ownOffset = 0, ownSize = VK_WHOLE_SIZE;
+  const GpgpImage* image = nullptr;
+  VkDescriptorImageInfo texture = {}; ///< imageView NULL: left out
+  const char* name = nullptr;         ///< what this record calls it in messages; null: the resource's name
+};
+
+struct Record {
+  VkCommandBuffer commandBuffer = VK_NULL_HANDLE;
+  const GpgpRecordingInfo* info = nullptr;
+  std::array<Binding, kMaxResources> bindings = {};
+  std::array<std::array<uint32_t, 3>, kMaxGroupCounts> groups = {};
+  std::array<bool, kMaxConditions> conditions = {};
+  uint32_t levels = UINT32_MAX;                             ///< passes of this level and above are left out
+  std::array<std::span<const std::byte>, 9> constants = {}; ///< for the first constants resource, in a row
+  uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
+  VkPipeline replacement = VK_NULL_HANDLE;
+  bool reports = false; ///< its passes write the whole report to the resource of that kind: nothing is copied
+};
+
+struct DrawRecord {
+  VkCommandBuffer commandBuffer = VK_NULL_HANDLE;
+  std::array<Binding, kMaxResources> bindings = {};
+  const GpgpTargetInfo* target = nullptr;
+  std::span<const std::byte> pushConstants; ///< at most 128 bytes
+  uint32_t vertexCount = 0;
+};
+
+/// A report as it came from the GPU.
+struct RawReport {
+  GpgpReportHeader header{}; ///< status SUCCESS or NOT_EXECUTED
+  std::span<const uint32_t> words;
+};
+
+/// Whether a pipeline made for one target can draw into the other.
+inline bool sameTarget(const GpgpTargetInfo& a, const GpgpTargetInfo& b) {
+  return a.renderPass == b.renderPass && a.subpass == b.subpass && a.viewMask == b.viewMask &&
+         a.colorFormat == b.colorFormat && a.depthFormat == b.depthFormat && a.samples == b.samples &&
+         a.depthTest == b.depthTest && (!a.depthTest || a.depthCompare == b.depthCompare);
+}
+
+class Recorder : public Object {
+public:
+  ~Recorder() override;
+  void retire() override;
+
+  bool ready() const { return ready_.load(std::memory_order_acquire); }
+  Result<void> prewarm(const GpgpPrewarmInfo* info);
+  const PassList& passes() const { return passes_; }
+  VkDeviceSize scratchBytes() const { return passes_.scratchBytes; }
+  VkDeviceSize scratchAlignment() const;
+  static constexpr VkBufferUsageFlags kScratchUsage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+      VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  bool engineScratch() const { return engineScratch_; }
+
+  /// Checks what all services check (frame, scratch, timestamps, sizes, states); changes nothing. Call before record.
+  Result<void> check(const Record& record) const;
+  /// Records the pass list. TOO_MANY_RECORDS where the rings are used up; nothing is recorded then.
+  Result<void> record(const Record& record);
+  Result<void> recordDraw(const DrawRecord& record);
+
+  /// The oldest report not yet taken, if any. The words are valid until the next advance.
+  bool takeReport(RawReport& report);
+
+  void advance();
+  Recorder* nextRecorder() const { return nextRecorder_; }
+
+protected:
+  /// Where the next record's constants will lie, for parts of Record::constants to be written in place: those are not
+  /// copied. Memory that is slow to read. Null where record() has no room.
+  std::byte* constants() const;
+  Recorder(Context& context, Kind kind, const GpgpRecorderCreateInfo& info, GpgpService service);
+  /// Takes the finished description and makes what recording needs. Call once at the end of creation.
+  struct DrawShaders {
+    ShaderDesc vertex, fragment;
+    ShaderDesc multiviewVertex, multiviewFragment; ///< for targets with a view mask, of views 0 and 1
+  };
+  Result<void> init(PassList passes, const DrawShaders* draw = nullptr);
+  /// A pipeline with this recorder's layout; all recorders of a class have layouts that are compatible.
+  Result<VkPipeline> createComputePipeline(const ShaderDesc& shader) const;
+  /// Of a shader of the pass list, once prewarmed.
+  VkPipeline pipelineOf(uint32_t shader) const { return pipelines_[shader]; }
+
+private:
+  struct InFlight { // one record in flight
+    uint64_t frame = 0;
+    uint64_t tag = 0;
+    uint32_t marker = 0; ///< what the GPU will have written; 0: free
+    bool report = false;
+  };
+  struct Target {
+    GpgpTargetInfo info;
+    VkPipeline pipeline;
+  };
+
+  Result<uint32_t> acquire() const;
+  void take(uint32_t slot, uint64_t tag, bool report);
+  void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
+                        VkDeviceSize scratchOffset, bool reports) const;
+  Result<VkPipeline> createDrawPipeline(const GpgpTargetInfo& target) const;
+  Result<VkShaderModule> createModule(const ShaderDesc& shader) const;
+  void beginLabel(VkCommandBuffer commandBuffer, const char* pass) const;
+  void endLabel(VkCommandBuffer commandBuffer) const;
+  void edgeBarrier(const Record& record, bool entry) const;
+
+  const GpgpService service_;
+  const uint32_t queueFamily_;
+  VkQueueFlags queueFlags_;
+  const bool engineScratch_;
+  PassList passes_;
+  DrawShaders draw_{};
+  bool draws_ = false;
+  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE, textureLayout_ = VK_NULL_HANDLE;
+  uint32_t firstTexture_ = 0; // textures lie in a row
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  std::pmr::vector<VkDescriptorSet> sets_, textureSets_;
+  std::pmr::vector<VkPipeline> pipelines_; // by shader; filled by prewarm
+  std::array<Target, kMaxTargets> targets_ = {};
+  std::atomic<uint32_t> targetCount_{0};
+  std::atomic<bool> ready_{false};
+  Buffer scratch_, constants_, reports_;
+  VkDeviceSize reportStride_ = 0;
+  static constexpr VkDeviceSize kUnusedBytes = 256;
+  VkDeviceSize unusedOffset_ = 0; ///< behind the constants: what records leave out and passes could write
+  std::pmr::vector<InFlight> slots_;
+  std::pmr::vector<uint32_t> harvested_; // words of harvested reports, as many as queue_ has places
+  std::pmr::vector<RawReport> queue_;    // ring of harvested reports
+  size_t queueHead_ = 0, queueCount_ = 0;
+  uint32_t nextMarker_ = 1;
+  void unlink();
+  uint32_t timestampBits_ = 0; // of the queue family
+  Recorder *previousRecorder_ = nullptr, *nextRecorder_ = nullptr;
+  bool linked_ = false;
+};
+
+} // namespace gpgp::core
