@@ -146,7 +146,7 @@ int main(void) {
   axiom.size[2] = 4.0f;
   axiom.seed = 1;
   axiom.start = GPGP_AXIOM_DEFAULT_START; /* the one that the grammar names: Tower */
-  axiom.attribute = NAN;                /* taken from the seed */
+  axiom.attribute = NAN;                  /* taken from the seed */
   memcpy(mapped[0], &axiom, sizeof axiom);
 
   /* ---- one frame: the engine's command buffer, into which gpgp records */

@@ -89,7 +89,7 @@ struct DeviceTest : testing::Test {
   /// The recorder that `create` makes of such an info, prewarmed for the target; belongs to the suite.
   template <class Info>
   GpgpRecorder recorder(GpgpResult(GPGP_CALL* create)(GpgpContext, const Info*, GpgpRecorder*), const Info& info,
-                    const GpgpTargetInfo* target = nullptr) {
+                        const GpgpTargetInfo* target = nullptr) {
     std::string key(reinterpret_cast<const char*>(&info), sizeof info);
     if (target) key.append(reinterpret_cast<const char*>(target), sizeof *target);
     GpgpRecorder& made = suiteDevice->recorders[key];

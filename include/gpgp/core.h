@@ -24,8 +24,8 @@
  *
  * Documentation tags:
  *   @threads any      safe from any thread at any time
- *   @threads context  one thread at a time per context; beside records of its recorders, too, but for gpgpAdvance, which
- *                     changes what records and reports read, and for destroying what a record uses
+ *   @threads context  one thread at a time per context; beside records of its recorders, too, but for gpgpAdvance,
+ * which changes what records and reports read, and for destroying what a record uses
  *   @threads handle   one thread at a time per handle named first; different handles run side by side
  *   @lifetime call    pointers are read during the call only; frame: until the frame is safe; handle: until destroyed
  *   @pass outside     command buffer must be outside a render pass; inside: inside; any: either
@@ -93,8 +93,8 @@ enum {
   GPGP_ERROR_OUT_OF_DEVICE_MEMORY = -6,
   GPGP_ERROR_DEVICE_LOST = -7,
   GPGP_ERROR_TOO_MANY_RECORDINGS = -8, /**< maxRecordingsPerFrame or maxFramesInFlight is used up */
-  GPGP_ERROR_INVALID_DATA = -9,     /**< bytes that are not what they claim: magic, version, checksum or content */
-  GPGP_ERROR_UNSUPPORTED = -10,     /**< valid input that this build or device cannot handle */
+  GPGP_ERROR_INVALID_DATA = -9,        /**< bytes that are not what they claim: magic, version, checksum or content */
+  GPGP_ERROR_UNSUPPORTED = -10,        /**< valid input that this build or device cannot handle */
   GPGP_ERROR_IO = -11,
   GPGP_ERROR_VULKAN = -12 /**< Vulkan failed otherwise; the message holds its code */
 };
@@ -184,9 +184,9 @@ extern "C" {
 /* ---------------------------------------------------------------- handles */
 
 typedef struct GpgpContext_T* GpgpContext;
-typedef struct GpgpAsset_T* GpgpAsset;   /**< grammar, drawing, glyph set or geometry set */
+typedef struct GpgpAsset_T* GpgpAsset;       /**< grammar, drawing, glyph set or geometry set */
 typedef struct GpgpRecorder_T* GpgpRecorder; /**< spawner, canvas or recorder */
-typedef struct GpgpHistory_T* GpgpHistory;     /**< history of one camera, canvas or tile */
+typedef struct GpgpHistory_T* GpgpHistory;   /**< history of one camera, canvas or tile */
 
 typedef int32_t GpgpService;
 enum { GPGP_SERVICE_CORE = 0, GPGP_SERVICE_SPAWN = 1, GPGP_SERVICE_VECTOR = 2, GPGP_SERVICE_VISIBILITY = 3 };
@@ -196,17 +196,11 @@ enum { GPGP_SERVICE_CORE = 0, GPGP_SERVICE_SPAWN = 1, GPGP_SERVICE_VECTOR = 2, G
 
 typedef uint64_t GpgpFeatures;
 /* What the engine enabled on its device. Vulkan cannot tell afterwards, so the engine declares it. */
-#define GPGP_FEATURE_SYNCHRONIZATION_2 ((GpgpFeatures)1 << 0)
-#define GPGP_FEATURE_DYNAMIC_RENDERING ((GpgpFeatures)1 << 1)
-#define GPGP_FEATURE_BUFFER_DEVICE_ADDRESS ((GpgpFeatures)1 << 2)
-#define GPGP_FEATURE_GEOMETRY_SHADER ((GpgpFeatures)1 << 3)
-#define GPGP_FEATURE_BUFFER_INT64_ATOMICS ((GpgpFeatures)1 << 4) /**< shaderBufferInt64Atomics and shaderInt64 */
-#define GPGP_FEATURE_MULTIVIEW ((GpgpFeatures)1 << 5)
-#define GPGP_FEATURE_CONSERVATIVE_RASTERIZATION ((GpgpFeatures)1 << 6)
-#define GPGP_FEATURE_FRAGMENT_BARYCENTRIC ((GpgpFeatures)1 << 7)
-#define GPGP_FEATURE_FRAGMENT_STORES ((GpgpFeatures)1 << 8) /**< fragmentStoresAndAtomics */
-#define GPGP_FEATURE_DEBUG_UTILS ((GpgpFeatures)1 << 9)     /**< VK_EXT_debug_utils on the instance: names and labels */
-#define GPGP_FEATURE_ALL (((GpgpFeatures)1 << 10) - 1)
+#define GPGP_FEATURE_DYNAMIC_RENDERING ((GpgpFeatures)1 << 0)
+#define GPGP_FEATURE_BUFFER_INT64_ATOMICS ((GpgpFeatures)1 << 1) /**< shaderBufferInt64Atomics and shaderInt64 */
+#define GPGP_FEATURE_MULTIVIEW ((GpgpFeatures)1 << 2)
+#define GPGP_FEATURE_DEBUG_UTILS ((GpgpFeatures)1 << 3) /**< VK_EXT_debug_utils on the instance: names and labels */
+#define GPGP_FEATURE_ALL (((GpgpFeatures)1 << 4) - 1)
 
 typedef struct GpgpRequirementsInfo {
   GpgpStructureType sType;
@@ -230,7 +224,6 @@ typedef struct GpgpRequirements {
                                            its chain points into this struct, so do not copy the struct */
   VkPhysicalDeviceVulkan11Features features11;
   VkPhysicalDeviceVulkan12Features features12;
-  VkPhysicalDeviceSynchronization2Features synchronization2;
   VkPhysicalDeviceDynamicRenderingFeatures dynamicRendering;
   uint32_t missingCount;   /**< 0: the device can run gpgp */
   const char* missing[16]; /**< each missing item by name and needed value; static strings */
@@ -301,13 +294,13 @@ typedef struct GpgpContextCreateInfo {
   VkPhysicalDevice physicalDevice;
   VkDevice device;
   PFN_vkGetInstanceProcAddr getInstanceProcAddr;
-  uint32_t apiVersion;           /**< the version that instance and device were created with; 0: 1.2 */
-  GpgpFeatures features;         /**< what was enabled on the device */
-  uint32_t maxFramesInFlight;    /**< 1 to 8; 0: 3 */
-  uint32_t maxRecordingsPerFrame;   /**< gpgpRecord... calls per frame and recorder; 0: 16 */
-  VkDeviceSize uploadRingBytes;  /**< staging memory for gpgpRecordUpload, all frames together; 0: 8 MiB */
-  VkPipelineCache pipelineCache; /**< the engine's, used for all pipelines; or VK_NULL_HANDLE: gpgp's own */
-  const void* pipelineCacheData; /**< initial bytes for gpgp's own cache, from gpgpGetPipelineCacheData */
+  uint32_t apiVersion;            /**< the version that instance and device were created with; 0: 1.2 */
+  GpgpFeatures features;          /**< what was enabled on the device */
+  uint32_t maxFramesInFlight;     /**< 1 to 8; 0: 3 */
+  uint32_t maxRecordingsPerFrame; /**< gpgpRecord... calls per frame and recorder; 0: 16 */
+  VkDeviceSize uploadRingBytes;   /**< staging memory for gpgpRecordUpload, all frames together; 0: 8 MiB */
+  VkPipelineCache pipelineCache;  /**< the engine's, used for all pipelines; or VK_NULL_HANDLE: gpgp's own */
+  const void* pipelineCacheData;  /**< initial bytes for gpgp's own cache, from gpgpGetPipelineCacheData */
   size_t pipelineCacheSize;
   const GpgpHostAllocator* hostAllocator; /**< NULL: malloc. The struct is copied */
   const GpgpGpuAllocator* gpuAllocator;   /**< NULL: own blocks. The struct is copied */
@@ -444,8 +437,8 @@ typedef struct GpgpTimestamps {
   uint32_t queryCount; /**< at least passes + 1 */
 } GpgpTimestamps;
 
-/** What gpgp does with buffers and images in a record: the state that GPGP_ACCESS_EXTERNAL_BARRIERS expects of the engine's
- *  render graph before a record, and leaves behind. Either pointer may be NULL. @threads any */
+/** What gpgp does with buffers and images in a record: the state that GPGP_ACCESS_EXTERNAL_BARRIERS expects of the
+ * engine's render graph before a record, and leaves behind. Either pointer may be NULL. @threads any */
 GPGP_API void GPGP_CALL gpgpGetRecordingAccess(GpgpAccess* buffer, GpgpAccess* image);
 
 /** Common part of every record info; each service's struct embeds it as `base`. */

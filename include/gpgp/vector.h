@@ -365,13 +365,14 @@ typedef struct GpgpCanvasHistoryCreateInfo {
   const char* label;
   uint32_t width, height; /**< pixels; 8 bytes each are allocated */
 } GpgpCanvasHistoryCreateInfo;
-#define GPGP_CANVAS_HISTORY_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO)
+#define GPGP_CANVAS_HISTORY_CREATE_INFO_INIT                                                                           \
+  GPGP_INIT(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO)
 
 /** Makes a place where a canvas keeps its result between gpgpRecordPrepareCanvas and gpgpRecordDrawCanvas. It is ready
  *  once a gpgpRecordUpload has cleared it.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext context, const GpgpCanvasHistoryCreateInfo* info,
-                                                   GpgpHistory* history);
+                                                      GpgpHistory* history);
 
 /** A glyph in a text. */
 typedef struct GpgpGlyphInstance {
@@ -403,6 +404,22 @@ typedef struct GpgpCanvasItem {
                          all 0: none */
   GpgpList list;    /**< instead of drawing and glyphSet: all that is in it, with its own transforms before this one */
 } GpgpCanvasItem;
+
+#ifdef __cplusplus
+} /* extern "C" */
+inline GpgpCanvasItem gpgpInitCanvasItem() {
+  GpgpCanvasItem item = GpgpCanvasItem();
+  item.transform[0] = item.transform[3] = item.opacity = 1.0f;
+  return item;
+}
+extern "C" {
+/** An opaque item without a transform; a zeroed one is transparent and has no extent. */
+#define GPGP_CANVAS_ITEM_INIT gpgpInitCanvasItem()
+#else
+/** An opaque item without a transform; a zeroed one is transparent and has no extent. */
+#define GPGP_CANVAS_ITEM_INIT                                                                                          \
+  { .transform = {1, 0, 0, 1, 0, 0}, .opacity = 1 }
+#endif
 
 enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
 
@@ -441,7 +458,7 @@ typedef struct GpgpCanvasInfo {
   uint32_t itemCount;
   uint32_t samples;    /**< 1, 4, 8 or 16 per pixel; 0: 16 */
   float background[4]; /**< linear, premultiplied */
-  GpgpHistory history;       /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
+  GpgpHistory history; /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
   GpgpImage target;    /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
                             Receives premultiplied linear colour */
   VkBool32 encodeSrgb; /**< the target receives what sRGB encodes of the straight colour, times alpha, as PNG files and

@@ -62,13 +62,15 @@ typedef struct GpgpVisibilityRecorderCreateInfo {
                                binds them; and half as many of a candidate and 8 x 8 pixels. Scratch: 8 bytes
                                each, and see maxTriangles */
 } GpgpVisibilityRecorderCreateInfo;
-#define GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT GPGP_INIT(GpgpVisibilityRecorderCreateInfo, GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO)
+#define GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT                                                                      \
+  GPGP_INIT(GpgpVisibilityRecorderCreateInfo, GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO)
 
 /** Makes a recorder that samples any geometry set, with scratch for the budgets. Prewarm it before the first record.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
-GPGP_API GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext context, const GpgpVisibilityRecorderCreateInfo* info,
-                                                GpgpRecorder* recorder);
+GPGP_API GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext context,
+                                                           const GpgpVisibilityRecorderCreateInfo* info,
+                                                           GpgpRecorder* recorder);
 
 typedef struct GpgpCameraHistoryCreateInfo {
   GpgpStructureType sType;
@@ -76,14 +78,15 @@ typedef struct GpgpCameraHistoryCreateInfo {
   const char* label;
   uint32_t maxTriangles; /**< at most 2^31; one bit each is allocated; 0: 4194304 */
 } GpgpCameraHistoryCreateInfo;
-#define GPGP_CAMERA_HISTORY_CREATE_INFO_INIT GPGP_INIT(GpgpCameraHistoryCreateInfo, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO)
+#define GPGP_CAMERA_HISTORY_CREATE_INFO_INIT                                                                           \
+  GPGP_INIT(GpgpCameraHistoryCreateInfo, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO)
 
 /** Makes the history of one camera: all triangles unseen until its first record. It is ready once a gpgpRecordUpload
  *  has cleared it.
  *  Errors: INVALID_ARGUMENT, UNSUPPORTED (its bits are more than the device binds), INVALID_STRUCT, OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext context, const GpgpCameraHistoryCreateInfo* info,
-                                                   GpgpHistory* history);
+                                                      GpgpHistory* history);
 
 /** One draw of one mesh. 64 bytes, std430, in a buffer of the engine's. Draws may share triangle numbers: the bit is
  *  then set if any of them is visible. A transform that mirrors, by a determinant of at most -2^-126, does not turn
@@ -94,9 +97,9 @@ typedef struct GpgpVisibilityDraw {
   uint32_t firstTriangle; /**< where this draw's triangles start in the visible bits and lists; a multiple of 32 lets
                                draws be cleared apart */
   uint32_t flags;         /**< GPGP_DRAW_... */
-  uint32_t origin;        /**< with GpgpVisibilityInfo::origins: index of the one that transform is relative to. Triangles
-                               of a draw whose index is out of range are skipped and counted; without origins it is
-                               not read */
+  uint32_t origin; /**< with GpgpVisibilityInfo::origins: index of the one that transform is relative to. Triangles
+                        of a draw whose index is out of range are skipped and counted; without origins it is
+                        not read */
 } GpgpVisibilityDraw;
 #define GPGP_DRAW_TWO_SIDED 1u /**< back faces count as visible */
 #define GPGP_DRAW_CLOCKWISE                                                                                            \
@@ -109,7 +112,7 @@ enum {
   GPGP_SAMPLING_STANDARD = 0,     /**< a grid of `samples` x `samples` a pixel; 1: its centre */
   GPGP_SAMPLING_EXACT = 1,        /**< standard, and then, among those that it did not find, the triangles with one of
                                        64 x 64 samples a pixel that nothing in front of them covers */
-  GPGP_SAMPLING_REFERENCE = 2,        /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
+  GPGP_SAMPLING_REFERENCE = 2,    /**< a grid of `samples` x `samples` and the centre, in slices: for metrics */
   GPGP_SAMPLING_CONSERVATIVE = 3, /**< the thesis's (6.1.3): a pixel's centre, and then the triangles that touch a pixel
                                       and come near what was found there, by `heuristics` */
   GPGP_SAMPLING_NEARBY = 4 /**< a pixel's centre, and then what may be seen from up to `reach` away: several times as
@@ -189,22 +192,23 @@ typedef struct GpgpVisibilityInfo {
                                       cell. A triangle that any of them sees is visible */
   uint32_t moreCameraCount;
   uint32_t width, height; /**< viewport of each camera, pixels */
-  uint32_t samples;     /**< standard, reference: per pixel in each direction, a power of two up to 256; 0: 1 (reference: 64) */
-  uint32_t slice;       /**< reference: 0 to n * n, where n = max(samples / maxSamples, 1); the last one is the centre */
-  VkBool32 accumulate;  /**< bits, pixel counts and sizes are added to, not overwritten: unites slices, views, a view
-                             cell */
-  float resolution;     /**< conservative: factor of width and height, 0.25 to 1, rounded to whole pixels; 0: 1 */
-  uint32_t heuristics;  /**< conservative: GPGP_HEURISTIC_... */
-  float epsilonStatic;  /**< conservative: equation 6.2's, in units of clip space's w: for perspective projections
-                             distance along the view; for parallel ones, whose w is 1, of its z */
-  float epsilonDynamic; /**< conservative: times 1 - |cosine| of the two triangles' normals */
-  uint32_t refinements; /**< conservative: at most 4 further passes, each of which shows, in every pixel that visible
-                             triangles do not cover at 8 x 8 samples, the nearest one in each quarter that covers such
-                             a sample */
-  float reach;          /**< nearby: how far from a camera, in units of clip space's w; 0 or more. exact: also shows
-                             what a move that far would uncover within a pixel, for views of a cell whose view points
-                             lie twice as far apart; 0: nothing more. Above 0: perspective cameras */
-  GpgpBuffer positions; /**< vertex positions; STORAGE usage; size a multiple of 4 for 16-bit formats */
+  uint32_t
+      samples; /**< standard, reference: per pixel in each direction, a power of two up to 256; 0: 1 (reference: 64) */
+  uint32_t slice;      /**< reference: 0 to n * n, where n = max(samples / maxSamples, 1); the last one is the centre */
+  VkBool32 accumulate; /**< bits, pixel counts and sizes are added to, not overwritten: unites slices, views, a view
+                            cell */
+  float resolution;    /**< conservative: factor of width and height, 0.25 to 1, rounded to whole pixels; 0: 1 */
+  uint32_t heuristics; /**< conservative: GPGP_HEURISTIC_... */
+  float epsilonStatic; /**< conservative: equation 6.2's, in units of clip space's w: for perspective projections
+                            distance along the view; for parallel ones, whose w is 1, of its z */
+  float epsilonDynamic;    /**< conservative: times 1 - |cosine| of the two triangles' normals */
+  uint32_t refinements;    /**< conservative: at most 4 further passes, each of which shows, in every pixel that visible
+                                triangles do not cover at 8 x 8 samples, the nearest one in each quarter that covers such
+                                a sample */
+  float reach;             /**< nearby: how far from a camera, in units of clip space's w; 0 or more. exact: also shows
+                                what a move that far would uncover within a pixel, for views of a cell whose view points
+                                lie twice as far apart; 0: nothing more. Above 0: perspective cameras */
+  GpgpBuffer positions;    /**< vertex positions; STORAGE usage; size a multiple of 4 for 16-bit formats */
   VkFormat positionFormat; /**< R32G32B32_SFLOAT, R16G16B16_SFLOAT or R16G16B16_SNORM, or the same with A; UNDEFINED:
                                 R32G32B32_SFLOAT. Only the first three numbers are read */
   uint32_t positionOffset; /**< bytes from a vertex' begin to its position; a multiple of a number's size */
@@ -277,19 +281,19 @@ typedef struct GpgpVisibilityMetricsInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpRecordingInfo base;
-  uint32_t triangleCount;    /**< of all buffers; at most 2^31 */
-  GpgpBuffer visibleBits;    /**< what is measured: a record's, or several records' united; STORAGE usage, as all */
-  GpgpBuffer referenceBits;      /**< of records of method reference: all slices, of all cameras that visibleBits unites */
-  GpgpBuffer referenceCounts;    /**< optional: their pixelCounts; without it shares by area are 0 */
-  GpgpBuffer recheckBits;    /**< optional: bits of a finer reference (256 samples): a triangle that is visible and in
-                                  these is part of the reference, but one that is in these only is not */
-  GpgpBuffer falsePositives; /**< out, optional: bits, like all in words of 32: visible, not in the reference */
-  GpgpBuffer falseNegatives; /**< out, optional: bits: in the reference, not visible */
+  uint32_t triangleCount;     /**< of all buffers; at most 2^31 */
+  GpgpBuffer visibleBits;     /**< what is measured: a record's, or several records' united; STORAGE usage, as all */
+  GpgpBuffer referenceBits;   /**< of records of method reference: all slices, of all cameras that visibleBits unites */
+  GpgpBuffer referenceCounts; /**< optional: their pixelCounts; without it shares by area are 0 */
+  GpgpBuffer recheckBits;     /**< optional: bits of a finer reference (256 samples): a triangle that is visible and in
+                                   these is part of the reference, but one that is in these only is not */
+  GpgpBuffer falsePositives;  /**< out, optional: bits, like all in words of 32: visible, not in the reference */
+  GpgpBuffer falseNegatives;  /**< out, optional: bits: in the reference, not visible */
 } GpgpVisibilityMetricsInfo;
 #define GPGP_VISIBILITY_METRICS_INFO_INIT GPGP_INIT(GpgpVisibilityMetricsInfo, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO)
 
-/** Compares visible bits with a reference, triangle by triangle: coverage and overestimation (6.3). Their numbers are in
- * this record's report. Bits and masks: a bit a triangle, in words of 32. NOT_READY: recorder not prewarmed.
+/** Compares visible bits with a reference, triangle by triangle: coverage and overestimation (6.3). Their numbers are
+ * in this record's report. Bits and masks: a bit a triangle, in words of 32. NOT_READY: recorder not prewarmed.
  * INVALID_ARGUMENT: a buffer that is missing or too small, with its name and the bytes that it needs.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
@@ -324,7 +328,7 @@ typedef struct GpgpVisibilityReport {
   uint32_t draws;       /**< of them sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: visible ones of all draws */
   uint32_t drawTriangles;       /**< of them written */
-  uint32_t reference;               /**< of metrics, as all that follows: triangles in the reference */
+  uint32_t reference;           /**< of metrics, as all that follows: triangles in the reference */
   uint32_t falsePositives;      /**< visible, not in the reference */
   uint32_t falseNegatives;      /**< in the reference, not visible */
   float coverage;               /**< found ones, of the reference: 0 to 1; 0 without reference */

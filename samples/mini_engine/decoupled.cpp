@@ -16,7 +16,7 @@
 namespace mini {
 namespace {
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-constexpr VkDeviceSize kRecordBytes = 32;    // Record of shaded.glsl
+constexpr VkDeviceSize kRecordBytes = 32;        // Record of shaded.glsl
 constexpr uint32_t kReferencePerRecord = 2;      // samples in each direction
 constexpr uint32_t kReferenceSlicesPerFrame = 4; // so that no frame hangs
 constexpr GpgpAccess kComputeRead = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT,
@@ -65,8 +65,8 @@ Decoupled::Decoupled(Device& device, Gpgp& gpgp, const Forward& forward, Model m
   recorderInfo.maxDraws = static_cast<uint32_t>(model_.draws.size());
   recorderInfo.maxTriangles = model_.triangleCount;
   recorderInfo.maxCandidates = std::max(model_.triangleCount, 65536u);
-  recorderInfo.methods =
-      GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_REFERENCE_BIT;
+  recorderInfo.methods = GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_CONSERVATIVE_BIT |
+                         GPGP_SAMPLING_REFERENCE_BIT;
   recorderInfo.maxSamples = kReferencePerRecord;
   recorder_ = gpgp.take(gpgp::VisibilityRecorder::create(gpgp.context, recorderInfo), "gpgpCreateVisibilityRecorder");
   gpgp.check(recorder_.prewarm(), "gpgpPrewarm");
@@ -87,7 +87,8 @@ Decoupled::~Decoupled() { vkDestroyQueryPool(device_.device, queries_, nullptr);
 
 /// Before and after visibility, after shading, before and after the display.
 void Decoupled::writeTimestamp(VkCommandBuffer commands, uint32_t query) {
-  if (queries_) vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, slot_ * kTimestamps + query);
+  if (queries_)
+    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, slot_ * kTimestamps + query);
 }
 
 /// Of a frame that is finished.
@@ -95,8 +96,8 @@ void Decoupled::readTimestamps(uint32_t slot) {
   if (!timed_[slot] || !queries_) return;
   timed_[slot] = false;
   uint64_t timestamps[kTimestamps] = {};
-  check(vkGetQueryPoolResults(device_.device, queries_, slot * kTimestamps, kTimestamps, sizeof timestamps, timestamps, 8,
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  check(vkGetQueryPoolResults(device_.device, queries_, slot * kTimestamps, kTimestamps, sizeof timestamps, timestamps,
+                              8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   const auto between = [&](int from, int to) {
     return static_cast<double>(timestamps[to] - timestamps[from]) * 1e-6 *
@@ -189,7 +190,9 @@ std::pair<uint32_t, uint32_t> Decoupled::referenceSlices() const {
 }
 
 /// Of what was shaded last.
-bool Decoupled::isReferenceKnown() const { return overlaid_ == shading_ && referenceSlice_ == referenceSlices().second; }
+bool Decoupled::isReferenceKnown() const {
+  return overlaid_ == shading_ && referenceSlice_ == referenceSlices().second;
+}
 
 /// What standard sampling finds from where it was shaded, and a few slices a frame of what is truly visible from there.
 void Decoupled::sampleReference(VkCommandBuffer commands, const GpgpFrame& frame) {
@@ -200,7 +203,8 @@ void Decoupled::sampleReference(VkCommandBuffer commands, const GpgpFrame& frame
   }
   if (isReferenceKnown()) return;
   for (uint32_t i = 0; i < kReferenceSlicesPerFrame && !isReferenceKnown(); ++i, ++referenceSlice_)
-    sample(commands, frame, GPGP_SAMPLING_REFERENCE, shadingCamera_, shadingExtent_, referenceBits_, tagOther, referenceSlice_);
+    sample(commands, frame, GPGP_SAMPLING_REFERENCE, shadingCamera_, shadingExtent_, referenceBits_, tagOther,
+           referenceSlice_);
   if (isReferenceKnown()) compare(commands, frame, referenceBits_, tagReference);
 }
 

@@ -18,7 +18,7 @@ struct DecoupledOptions {
   float resolution = 1, epsilon = 0.05f; ///< of the conservative method: factor, static and dynamic alike
   uint32_t rate = 4;                     ///< displayed frames for one of shading
   uint32_t freezeAfter = UINT32_MAX;     ///< frames after which shading stops
-  uint32_t reference = 16;                   ///< overlay: N x N samples a pixel
+  uint32_t reference = 16;               ///< overlay: N x N samples a pixel
   float farther = 1;                     ///< how many times farther away than the display's camera the shading's is
   /// An overlay's shading waits for the reference of the one before it.
   enum Show { shaded, overlay, density } show = shaded;

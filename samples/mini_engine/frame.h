@@ -12,7 +12,7 @@ public:
   FramePicture& operator=(const FramePicture&) = delete;
   /// To be sampled in compute shaders.
   GpgpCanvasImage image() const {
-    return {image_.view, recorder_,          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+    return {image_.view, recorder_,         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
             VK_FALSE,    GPGP_IMAGE_LINEAR, GPGP_IMAGE_FILTER_LINEAR};
   }
 

@@ -56,7 +56,7 @@ struct Options {
   bool window = false, validate = false, watch = false, path = false, table = false;
   mini::DecoupledOptions decoupled;
   bool method = false, reference = false; // given
-  std::string ofDecoupled;            // the last option that belongs to --decoupled
+  std::string ofDecoupled;                // the last option that belongs to --decoupled
 };
 
 /// Its place among the names; -1: it is none of them.
@@ -158,8 +158,9 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       continue;
     else if (name == "--freeze" && parseNumber(value, options.decoupled.freezeAfter))
       continue;
-    else if (name == "--reference" && parseNumber(value, options.decoupled.reference) && options.decoupled.reference >= 2 &&
-             options.decoupled.reference <= 256 && !(options.decoupled.reference & (options.decoupled.reference - 1)))
+    else if (name == "--reference" && parseNumber(value, options.decoupled.reference) &&
+             options.decoupled.reference >= 2 && options.decoupled.reference <= 256 &&
+             !(options.decoupled.reference & (options.decoupled.reference - 1)))
       continue;
     else if (name == "--farther" && std::sscanf(value, "%f%c", &options.decoupled.farther, &rest) == 1 &&
              options.decoupled.farther >= 0.1f && options.decoupled.farther <= 8)

@@ -3,8 +3,8 @@
 #pragma once
 #include "api/check_struct.h"
 #include "core/context.h"
-#include "core/resident.h"
 #include "core/recorder.h"
+#include "core/resident.h"
 
 #include <cmath>
 
@@ -24,9 +24,13 @@ struct Call {
 };
 
 inline GpgpResult finish(const Call& call, const Error& error) {
-  // A negative code is an error; a positive one (NOT_READY, INCOMPLETE) is a status that engines poll: no message.
+  // A negative code is an error; a positive one (NOT_READY, INCOMPLETE) is a status that engines poll.
   if (error.code < 0 && call.context)
     call.context->message(GPGP_SEVERITY_ERROR, error.code, call.function, call.label, error.text);
+  // NOT_READY has several causes, each of which is said once.
+  if (error.code == GPGP_NOT_READY && error.text[0] && call.context &&
+      call.context->isNew({call.function, call.label, error.text}))
+    call.context->message(GPGP_SEVERITY_INFO, error.code, call.function, call.label, error.text);
   return error.code;
 }
 
@@ -89,6 +93,13 @@ inline Result<void> checkRecord(const core::Recorder& recorder, const GpgpFrame*
   if (auto ok = recorder.context.checkFrame(frame); !ok) return ok;
   if (!recorder.ready()) return makeError(GPGP_NOT_READY, "call gpgpPrewarm first");
   return {};
+}
+
+/// Engines poll for reports: that there is none has no message.
+inline Error noReport() {
+  Error none;
+  none.code = GPGP_NOT_READY;
+  return none;
 }
 
 template <class T> bool allFinite(const T& values) {

@@ -33,7 +33,8 @@ GpgpResult GPGP_CALL gpgpCreateContext(const GpgpContextCreateInfo* info, GpgpCo
     if (info->maxFramesInFlight > 8)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxFramesInFlight is %u; at most 8", info->maxFramesInFlight);
     if (info->maxRecordingsPerFrame > 4096)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRecordingsPerFrame is %u; at most 4096", info->maxRecordingsPerFrame);
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRecordingsPerFrame is %u; at most 4096",
+                       info->maxRecordingsPerFrame);
     if (info->hostAllocator && (!info->hostAllocator->allocate || !info->hostAllocator->free))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "hostAllocator needs both allocate and free");
     if (info->gpuAllocator && (!info->gpuAllocator->allocate || !info->gpuAllocator->free))

@@ -194,6 +194,8 @@ GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpRecorder handle, VkCommandBuffer
     if (info->axiomCounter.buffer && !info->axiomCount)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axiomCounter.buffer is set, and axiomCount, the most, is 0");
     if (auto ok = checkOutput(**spawner, *info, (*grammar)->graph.buckets); !ok) return ok;
+    const core::RecorderUse use(**spawner);
+    if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**spawner, frame); !ok) return ok;
     if (!(*grammar)->resident()) return makeError(GPGP_NOT_READY, "the grammar is not resident");
     return (*spawner)->prepare(commandBuffer, *info, **grammar);
@@ -205,7 +207,9 @@ GpgpResult GPGP_CALL gpgpGetSpawnReport(GpgpRecorder handle, GpgpSpawnReport* re
     const auto spawner = resolve<spawn::Spawner>(call, handle, Kind::spawner, "spawner");
     if (!spawner) return spawner.error();
     if (auto ok = checkStruct(report, GPGP_STRUCTURE_SPAWN_REPORT, "report"); !ok) return ok;
-    if (!(*spawner)->takeReport(*report)) return makeError(GPGP_NOT_READY, "no report is ready");
+    const core::RecorderUse use(**spawner);
+    if (!use) return core::RecorderUse::error();
+    if (!(*spawner)->takeReport(*report)) return noReport();
     return {};
   });
 }

@@ -177,7 +177,8 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext handle, const GpgpCanvasHistoryCreateInfo* info, GpgpHistory* view) {
+GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext handle, const GpgpCanvasHistoryCreateInfo* info,
+                                             GpgpHistory* view) {
   return guarded("gpgpCreateCanvasHistory", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
@@ -223,6 +224,8 @@ GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder handle, VkCommandBuffe
       if (!asset) return asset.error();
       assets[i] = *asset;
     }
+    const core::RecorderUse use(**canvas);
+    if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
     for (const ItemAsset& asset : assets)
       if (asset.drawing && !asset.drawing->resident()) return makeError(GPGP_NOT_READY, "a drawing is not resident");
@@ -241,6 +244,8 @@ GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder handle, VkCommandBuffer c
     if (!view) return view.error();
     if (auto ok = checkStruct(info->target, GPGP_STRUCTURE_TARGET_INFO, "target"); !ok) return ok;
     if (!allFinite(info->clip)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "clip holds a number that is not finite");
+    const core::RecorderUse use(**canvas);
+    if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
     return (*canvas)->draw(commandBuffer, *info, **view);
   });
@@ -251,7 +256,9 @@ GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpRecorder handle, GpgpCanvasReport* 
     const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
     if (!canvas) return canvas.error();
     if (auto ok = checkStruct(report, GPGP_STRUCTURE_CANVAS_REPORT, "report"); !ok) return ok;
-    if (!(*canvas)->takeCanvasReport(*report)) return makeError(GPGP_NOT_READY, "no report is there");
+    const core::RecorderUse use(**canvas);
+    if (!use) return core::RecorderUse::error();
+    if (!(*canvas)->takeCanvasReport(*report)) return noReport();
     return {};
   });
 }

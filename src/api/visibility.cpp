@@ -57,7 +57,8 @@ GpgpResult GPGP_CALL gpgpOrderTriangles(const float* positions, uint32_t positio
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext handle, const GpgpVisibilityRecorderCreateInfo* info, GpgpRecorder* recorder) {
+GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext handle, const GpgpVisibilityRecorderCreateInfo* info,
+                                                  GpgpRecorder* recorder) {
   return guarded("gpgpCreateVisibilityRecorder", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
@@ -85,7 +86,8 @@ GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext handle, const Gpgp
   });
 }
 
-GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext handle, const GpgpCameraHistoryCreateInfo* info, GpgpHistory* view) {
+GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext handle, const GpgpCameraHistoryCreateInfo* info,
+                                             GpgpHistory* view) {
   return guarded("gpgpCreateCameraHistory", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
@@ -144,6 +146,8 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpRecorder handle, VkCommandB
       if (!allFinite(info->moreCameras[i].viewProjection))
         return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                          "moreCameras[%u].viewProjection holds a number that is not finite", i);
+    const core::RecorderUse use(**recorder);
+    if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**recorder, frame); !ok) return ok;
     if (!(*geometry)->resident()) return makeError(GPGP_NOT_READY, "geometrySet is not resident");
     if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
@@ -157,6 +161,8 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibilityMetrics(GpgpRecorder handle, VkC
     const auto recorder = resolve<VisibilityRecorder>(call, handle, Kind::visibilityRecorder, "recorder");
     if (!recorder) return recorder.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_VISIBILITY_METRICS_INFO, "info"); !ok) return ok;
+    const core::RecorderUse use(**recorder);
+    if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**recorder, frame); !ok) return ok;
     return (*recorder)->measure(commandBuffer, *info);
   });
@@ -167,7 +173,9 @@ GpgpResult GPGP_CALL gpgpGetVisibilityReport(GpgpRecorder handle, GpgpVisibility
     const auto recorder = resolve<VisibilityRecorder>(call, handle, Kind::visibilityRecorder, "recorder");
     if (!recorder) return recorder.error();
     if (auto ok = checkStruct(report, GPGP_STRUCTURE_VISIBILITY_REPORT, "report"); !ok) return ok;
-    if (!(*recorder)->takeSampleReport(*report)) return makeError(GPGP_NOT_READY, "no report is there");
+    const core::RecorderUse use(**recorder);
+    if (!use) return core::RecorderUse::error();
+    if (!(*recorder)->takeSampleReport(*report)) return noReport();
     return {};
   });
 }

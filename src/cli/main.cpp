@@ -1,6 +1,6 @@
 // The `gpgp` command: what the library does, from the command line. One file per subcommand.
-#include "cli/command.h"
-#include "cli/messages.h"
+#include "cli/shared/command.h"
+#include "cli/shared/messages.h"
 
 #include <gpgp/core.h>
 

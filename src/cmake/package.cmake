@@ -1,6 +1,6 @@
 # What is exported, installed and found again. Runs after all targets of src/ exist.
 #
-#   shared libraries   export gpgp* and nothing else; soname is the major version
+#   shared libraries   export gpgp* and nothing else; soname is the major version, and the minor one while that is 0
 #   install            headers, libraries, gpgpConfig.cmake, gpgp.pc, the gpgp command; relocatable
 #
 # GPGP_INSTALL is off where gpgp is a part of another project: what that installs is its own affair.
@@ -68,7 +68,7 @@ set(cmake_directory ${CMAKE_INSTALL_LIBDIR}/cmake/gpgp)
 install(EXPORT gpgpTargets NAMESPACE gpgp:: DESTINATION ${cmake_directory})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gpgpConfig.cmake.in
   ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake INSTALL_DESTINATION ${cmake_directory} NO_SET_AND_CHECK_MACRO)
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake COMPATIBILITY SameMajorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake ${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake
   ${CMAKE_CURRENT_LIST_DIR}/assets.cmake ${CMAKE_CURRENT_LIST_DIR}/text_dependencies.cmake
   DESTINATION ${cmake_directory})

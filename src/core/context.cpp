@@ -1,7 +1,8 @@
 #include "core/context.h"
 
-#include "core/resident.h"
 #include "core/recorder.h"
+#include "core/requirements.h"
+#include "core/resident.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -76,6 +77,7 @@ Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
   const auto vki = loadInstanceTable(info.instance, info.getInstanceProcAddr);
   if (!vki) return vki.error();
   device.vki = *vki;
+  if (auto ok = checkFeatures(device.vki, info.physicalDevice, info.features); !ok) return ok;
   const auto vk = loadDeviceTable(device.vki, info.device, device.has(GPGP_FEATURE_DEBUG_UTILS));
   if (!vk) return vk.error();
   device.vk = *vk;
@@ -203,8 +205,18 @@ Result<void> Context::advance(const GpgpFrame& frame) {
   return {};
 }
 
+bool Context::isNew(std::initializer_list<const char*> texts) const {
+  uint64_t hash = 0xcbf29ce484222325; // FNV-1a, a zero between texts
+  for (const char* text : texts) {
+    for (; *text; ++text) hash = (hash ^ static_cast<unsigned char>(*text)) * 0x100000001b3;
+    hash *= 0x100000001b3;
+  }
+  return said_[hash % said_.size()].exchange(hash, std::memory_order_relaxed) != hash;
+}
+
 Result<void> Context::checkFrame(const GpgpFrame* frame) const {
   if (!frame) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame is NULL");
+  if (frame_.current == 0) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "no frame has begun; call gpgpAdvance first");
   if (frame->current != frame_.current || frame->safe != frame_.safe)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "frame {%llu, %llu} is not the one of the last gpgpAdvance, {%llu, %llu}",

@@ -7,6 +7,7 @@
 #include "core/gpu_memory.h"
 #include "core/object.h"
 
+#include <array>
 #include <atomic>
 #include <vector>
 
@@ -39,6 +40,9 @@ public:
   GpuMemory& gpu() { return *gpu_; } // context
   void message(GpgpSeverity severity, GpgpResult code, const char* function, const char* objectLabel,
                const char* text) const;
+
+  /// Whether this was not asked for before, for messages that are sent once. Forgets some after many others.
+  bool isNew(std::initializer_list<const char*> texts) const;
 
   // ---- objects (context)
   /// Gives an object a handle. On failure the object is destroyed and bad_alloc thrown.
@@ -84,6 +88,7 @@ private:
   Object* retired_ = nullptr;
   std::pmr::vector<Object*> living_;
   GpgpFrame frame_{1, 0};
+  mutable std::array<std::atomic<uint64_t>, 64> said_ = {}; ///< hashes, see isNew
   std::atomic<bool> lost_{false};
   bool ownsPipelineCache_ = false;
 };

@@ -184,7 +184,7 @@ void Recorder::take(uint32_t slot, uint64_t tag, bool report) {
 }
 
 void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
-                              VkDeviceSize scratchOffset, bool reports) const {
+                                VkDeviceSize scratchOffset, bool reports) const {
   std::array<VkWriteDescriptorSet, kMaxResources> writes;
   std::array<VkDescriptorBufferInfo, kMaxResources> buffers;
   std::array<VkDescriptorImageInfo, kMaxResources> images;
@@ -402,7 +402,14 @@ Result<void> Recorder::recordDraw(const DrawRecord& record) {
   VkPipeline pipeline = VK_NULL_HANDLE;
   for (uint32_t i = 0; i < targetCount_.load(std::memory_order_acquire); ++i)
     if (sameTarget(targets_[i].info, *record.target)) pipeline = targets_[i].pipeline;
-  if (!pipeline) return makeError(GPGP_NOT_READY, "the target was not given to gpgpPrewarm");
+  if (!pipeline) {
+    if (!ready() || prewarming_) return makeError(GPGP_NOT_READY, "gpgpPrewarm has not returned for the target");
+    return makeError(
+        GPGP_ERROR_INVALID_ARGUMENT,
+        "no target that was given to gpgpPrewarm equals this one (colorFormat %d, depthFormat %d, samples %d, "
+        "viewMask 0x%x)",
+        record.target->colorFormat, record.target->depthFormat, record.target->samples, record.target->viewMask);
+  }
   const auto acquired = acquire();
   if (!acquired) return acquired.error();
   const uint32_t slot = *acquired;

@@ -273,6 +273,11 @@ Result<VkPipeline> Recorder::createDrawPipeline(const GpgpTargetInfo& target) co
 }
 
 Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
+  struct Prewarming {
+    std::atomic<bool>& flag;
+    explicit Prewarming(std::atomic<bool>& f) : flag(f) { flag = true; }
+    ~Prewarming() { flag = false; }
+  } const prewarming(prewarming_);
   const uint32_t wanted = info ? info->targetCount : 0;
   if (wanted && !info->targets)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets is NULL, targetCount is %u", wanted);
@@ -350,6 +355,7 @@ Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
 
 bool Recorder::takeReport(RawReport& report) {
   if (queueCount_ == 0) return false;
+  losesReports_ = false;
   report = queue_[queueHead_];
   queueHead_ = (queueHead_ + 1) % queue_.size();
   --queueCount_;
@@ -370,8 +376,11 @@ void Recorder::advance() {
       std::memcpy(&marker, data + passes_.reportBytes, 4);
       const bool ran = marker == oldest->marker;
       if (queueCount_ == queue_.size()) {
-        context.message(GPGP_SEVERITY_WARNING, GPGP_INCOMPLETE, "gpgpAdvance", label.text,
-                        "the oldest report was not taken in time and is lost");
+        if (!losesReports_)
+          context.message(
+              GPGP_SEVERITY_WARNING, GPGP_INCOMPLETE, "gpgpAdvance", label.text,
+              "reports are not taken in time, and the oldest are lost; this is said once until one is taken");
+        losesReports_ = true;
         queueHead_ = (queueHead_ + 1) % queue_.size();
         --queueCount_;
       }

@@ -81,6 +81,9 @@ public:
   Result<void> record(const Record& record);
   Result<void> recordDraw(const DrawRecord& record);
 
+  /// Whether a thread is using it (RecorderUse).
+  std::atomic<bool> busy{false};
+
   /// The oldest report not yet taken, if any. The words are valid until the next advance.
   bool takeReport(RawReport& report);
 
@@ -150,10 +153,32 @@ private:
   std::pmr::vector<RawReport> queue_;    // ring of harvested reports
   size_t queueHead_ = 0, queueCount_ = 0;
   uint32_t nextMarker_ = 1;
+  bool losesReports_ = false; ///< said, until a report is taken
+  std::atomic<bool> prewarming_{false};
   void unlink();
   uint32_t timestampBits_ = 0; // of the queue family
   Recorder *previousRecorder_ = nullptr, *nextRecorder_ = nullptr;
   bool linked_ = false;
+};
+
+/// One thread's use of a recorder; false where another thread is using it. Costs an exchange and a store.
+class RecorderUse {
+public:
+  explicit RecorderUse(Recorder& recorder)
+      : recorder_(recorder.busy.exchange(true, std::memory_order_acquire) ? nullptr : &recorder) {}
+  ~RecorderUse() {
+    if (recorder_) recorder_->busy.store(false, std::memory_order_release);
+  }
+  RecorderUse(const RecorderUse&) = delete;
+  RecorderUse& operator=(const RecorderUse&) = delete;
+  explicit operator bool() const { return recorder_ != nullptr; }
+  static Error error() {
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "two threads use the recorder at once; each thread that records needs a recorder of its own");
+  }
+
+private:
+  Recorder* recorder_;
 };
 
 } // namespace gpgp::core

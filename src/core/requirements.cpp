@@ -1,6 +1,8 @@
 #include "core/requirements.h"
 
 #include <cstring>
+#include <iterator>
+#include <utility>
 
 namespace gpgp::core {
 namespace {
@@ -31,10 +33,25 @@ bool hasExtension(const InstanceTable& vki, VkPhysicalDevice device, const char*
   return false;
 }
 
-constexpr const char* kAllExtensions[] = {
-    VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
-    VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
-};
+constexpr const char* kAllExtensions[] = {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME};
+
+/// What a device offers of the features that gpgp can use. `device` has Vulkan 1.2.
+GpgpFeatures offeredFeatures(const InstanceTable& vki, VkPhysicalDevice device) {
+  VkPhysicalDeviceFeatures2 have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  VkPhysicalDeviceVulkan11Features have11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
+  VkPhysicalDeviceVulkan12Features have12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceDynamicRenderingFeatures haveDynamic{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES};
+  have.pNext = &have11;
+  have11.pNext = &have12;
+  // Core since 1.3, but an engine's instance may be older than its device: so always as an extension.
+  if (hasExtension(vki, device, VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME)) have12.pNext = &haveDynamic;
+  vki.GetPhysicalDeviceFeatures2(device, &have);
+  GpgpFeatures offered = 0;
+  if (haveDynamic.dynamicRendering) offered |= GPGP_FEATURE_DYNAMIC_RENDERING;
+  if (have12.shaderBufferInt64Atomics && have.features.shaderInt64) offered |= GPGP_FEATURE_BUFFER_INT64_ATOMICS;
+  if (have11.multiview) offered |= GPGP_FEATURE_MULTIVIEW;
+  return offered;
+}
 
 } // namespace
 
@@ -62,58 +79,39 @@ Result<void> fillRequirements(const GpgpRequirementsInfo& info, GpgpRequirements
   out.features = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
   out.features11 = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
   out.features12 = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  out.synchronization2 = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
   out.dynamicRendering = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES};
   if (device.apiVersion < VK_API_VERSION_1_2) {
     out.features.pNext = nullptr;
     return {};
   }
 
-  // Both are core since 1.3, but an engine's instance may be older than its device: so always as extensions.
-  const bool hasSync2 = hasExtension(*vki, info.physicalDevice, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
-  const bool hasDynamic = hasExtension(*vki, info.physicalDevice, VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME);
-  VkPhysicalDeviceFeatures2 have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-  VkPhysicalDeviceVulkan11Features have11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
-  VkPhysicalDeviceVulkan12Features have12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceSynchronization2Features haveSync2{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
-  VkPhysicalDeviceDynamicRenderingFeatures haveDynamic{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES};
-  have.pNext = &have11;
-  have11.pNext = &have12;
-  void** last = &have12.pNext;
-  if (hasSync2) *last = &haveSync2, last = &haveSync2.pNext;
-  if (hasDynamic) *last = &haveDynamic, last = &haveDynamic.pNext;
-  vki->GetPhysicalDeviceFeatures2(info.physicalDevice, &have);
-
   // What to enable: exactly what gpgp would use and the device offers.
   out.features.pNext = &out.features11;
   out.features11.pNext = &out.features12;
-  last = &out.features12.pNext;
-  const auto offer = [&](bool there, GpgpFeatures feature, std::initializer_list<VkBool32*> enable) {
-    if (!there) return;
-    out.optionalFeatures |= feature;
-    for (VkBool32* field : enable) *field = VK_TRUE;
-  };
-  offer(have12.bufferDeviceAddress, GPGP_FEATURE_BUFFER_DEVICE_ADDRESS, {&out.features12.bufferDeviceAddress});
-  offer(have.features.geometryShader, GPGP_FEATURE_GEOMETRY_SHADER, {&out.features.features.geometryShader});
-  offer(have12.shaderBufferInt64Atomics && have.features.shaderInt64, GPGP_FEATURE_BUFFER_INT64_ATOMICS,
-        {&out.features12.shaderBufferInt64Atomics, &out.features.features.shaderInt64});
-  offer(have11.multiview, GPGP_FEATURE_MULTIVIEW, {&out.features11.multiview});
-  offer(have.features.fragmentStoresAndAtomics, GPGP_FEATURE_FRAGMENT_STORES,
-        {&out.features.features.fragmentStoresAndAtomics});
-  if (haveSync2.synchronization2) {
-    offer(true, GPGP_FEATURE_SYNCHRONIZATION_2, {&out.synchronization2.synchronization2});
-    *last = &out.synchronization2, last = &out.synchronization2.pNext;
+  out.features12.pNext = nullptr;
+  out.optionalFeatures = offeredFeatures(*vki, info.physicalDevice);
+  if (out.optionalFeatures & GPGP_FEATURE_BUFFER_INT64_ATOMICS)
+    out.features12.shaderBufferInt64Atomics = out.features.features.shaderInt64 = VK_TRUE;
+  if (out.optionalFeatures & GPGP_FEATURE_MULTIVIEW) out.features11.multiview = VK_TRUE;
+  if (out.optionalFeatures & GPGP_FEATURE_DYNAMIC_RENDERING) {
+    out.dynamicRendering.dynamicRendering = VK_TRUE;
+    out.features12.pNext = &out.dynamicRendering;
+    out.extensions = kAllExtensions;
+    out.extensionCount = static_cast<uint32_t>(std::size(kAllExtensions));
   }
-  if (haveDynamic.dynamicRendering) {
-    offer(true, GPGP_FEATURE_DYNAMIC_RENDERING, {&out.dynamicRendering.dynamicRendering});
-    *last = &out.dynamicRendering, last = &out.dynamicRendering.pNext;
-  }
-  *last = nullptr;
-  if (hasSync2 || hasDynamic) { // neighbours in kAllExtensions
+  return {};
+}
 
-    out.extensions = hasSync2 ? kAllExtensions : kAllExtensions + 1;
-    out.extensionCount = static_cast<uint32_t>(hasSync2) + static_cast<uint32_t>(hasDynamic);
-  }
+Result<void> checkFeatures(const InstanceTable& vki, VkPhysicalDevice device, GpgpFeatures declared) {
+  static constexpr std::pair<GpgpFeatures, const char*> kNames[] = {
+      {GPGP_FEATURE_DYNAMIC_RENDERING, "GPGP_FEATURE_DYNAMIC_RENDERING"},
+      {GPGP_FEATURE_BUFFER_INT64_ATOMICS, "GPGP_FEATURE_BUFFER_INT64_ATOMICS"},
+      {GPGP_FEATURE_MULTIVIEW, "GPGP_FEATURE_MULTIVIEW"},
+  };
+  const GpgpFeatures offered = offeredFeatures(vki, device);
+  for (const auto& [feature, name] : kNames)
+    if (declared & ~offered & feature)
+      return makeError(GPGP_ERROR_MISSING_FEATURE, "features has %s, which the physical device does not offer", name);
   return {};
 }
 

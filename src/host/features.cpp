@@ -21,14 +21,10 @@ void chooseFeatures(const InstanceTable& vki, VkPhysicalDevice device, GpgpFeatu
     *tail = &feature;
     tail = &feature.pNext;
   };
-  const bool hasSync2 = available.count(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME) > 0;
   const bool hasDynamic = available.count(VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME) > 0;
-  const bool hasBarycentric = available.count(VK_KHR_FRAGMENT_SHADER_BARYCENTRIC_EXTENSION_NAME) > 0;
   link(offered.features11);
   link(offered.features12);
-  if (hasSync2) link(offered.synchronization2);
   if (hasDynamic) link(offered.dynamicRendering);
-  if (hasBarycentric) link(offered.barycentric);
   vki.getPhysicalDeviceFeatures2(device, &offered.features);
 
   tail = &chain.features.pNext;
@@ -43,33 +39,16 @@ void chooseFeatures(const InstanceTable& vki, VkPhysicalDevice device, GpgpFeatu
   VkPhysicalDeviceFeatures& enable = chain.features.features;
   enable.multiDrawIndirect = core.multiDrawIndirect;
   enable.drawIndirectFirstInstance = core.drawIndirectFirstInstance;
-  if (take(GPGP_FEATURE_GEOMETRY_SHADER, core.geometryShader)) enable.geometryShader = VK_TRUE;
-  if (take(GPGP_FEATURE_FRAGMENT_STORES, core.fragmentStoresAndAtomics)) enable.fragmentStoresAndAtomics = VK_TRUE;
-  if (take(GPGP_FEATURE_BUFFER_DEVICE_ADDRESS, offered.features12.bufferDeviceAddress))
-    chain.features12.bufferDeviceAddress = VK_TRUE;
   if (take(GPGP_FEATURE_BUFFER_INT64_ATOMICS, core.shaderInt64 && offered.features12.shaderBufferInt64Atomics)) {
     enable.shaderInt64 = VK_TRUE;
     chain.features12.shaderBufferInt64Atomics = VK_TRUE;
   }
   if (take(GPGP_FEATURE_MULTIVIEW, offered.features11.multiview)) chain.features11.multiview = VK_TRUE;
-  if (take(GPGP_FEATURE_SYNCHRONIZATION_2, offered.synchronization2.synchronization2)) {
-    link(chain.synchronization2);
-    chain.synchronization2.synchronization2 = VK_TRUE;
-    chain.extensions.push_back(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
-  }
   if (take(GPGP_FEATURE_DYNAMIC_RENDERING, offered.dynamicRendering.dynamicRendering)) {
     link(chain.dynamicRendering);
     chain.dynamicRendering.dynamicRendering = VK_TRUE;
     chain.extensions.push_back(VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME);
   }
-  if (take(GPGP_FEATURE_FRAGMENT_BARYCENTRIC, offered.barycentric.fragmentShaderBarycentric)) {
-    link(chain.barycentric);
-    chain.barycentric.fragmentShaderBarycentric = VK_TRUE;
-    chain.extensions.push_back(VK_KHR_FRAGMENT_SHADER_BARYCENTRIC_EXTENSION_NAME);
-  }
-  if (take(GPGP_FEATURE_CONSERVATIVE_RASTERIZATION,
-           available.count(VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME) > 0))
-    chain.extensions.push_back(VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME);
 }
 
 } // namespace gpgp::host

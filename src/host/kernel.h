@@ -1,4 +1,5 @@
-// One compute shader over a few storage buffers: for tests that run a shader's functions beside their CPU CPU references.
+// One compute shader over a few storage buffers: for tests that run a shader's functions beside their CPU CPU
+// references.
 #pragma once
 #include "host/memory.h"
 

@@ -32,7 +32,7 @@ core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& conte
 }
 
 core::Result<core::Unique<CameraHistory>> CameraHistory::create(core::Context& context,
-                                                          const GpgpCameraHistoryCreateInfo& info) {
+                                                                const GpgpCameraHistoryCreateInfo& info) {
   auto view = core::makeUnique<CameraHistory>(context.host(), context, info.label);
   view->maxTriangles_ = info.maxTriangles ? info.maxTriangles : 1u << 22;
   std::pmr::vector<std::byte> none(&context.host());

@@ -1,4 +1,5 @@
-// Geometry sets and camera historys: the mesh table of an engine's buffers, and the bits that a camera's last record saw.
+// Geometry sets and camera historys: the mesh table of an engine's buffers, and the bits that a camera's last record
+// saw.
 #pragma once
 #include "core/resident.h"
 
@@ -20,7 +21,8 @@ private:
 /// One bit per triangle, zero until the camera's first record.
 class CameraHistory final : public core::Resident {
 public:
-  static core::Result<core::Unique<CameraHistory>> create(core::Context& context, const GpgpCameraHistoryCreateInfo& info);
+  static core::Result<core::Unique<CameraHistory>> create(core::Context& context,
+                                                          const GpgpCameraHistoryCreateInfo& info);
   CameraHistory(core::Context& owner, const char* name) : Resident(owner, core::Kind::cameraHistory, name) {}
   uint32_t maxTriangles() const { return maxTriangles_; }
   uint32_t words() const { return (maxTriangles_ + 31) / 32; }

@@ -5,9 +5,9 @@
 // processors while those that are ready are measured, and their times can be kept for another run. Asserts nothing
 // about time, but fails where a derivation differs from the evaluator's.
 #include "arguments.h"
-#include "cli/axioms.h"
-#include "cli/processors.h"
-#include "cli/tuner.h"
+#include "cli/shared/processors.h"
+#include "cli/spawn/axioms.h"
+#include "cli/tune/tuner.h"
 #include "host/files.h"
 #include "spawn/evaluator/evaluator.h"
 #include "spawn/graph/heuristics.h"

@@ -1,7 +1,7 @@
 #include "spawned_scenes.h"
 
-#include "cli/axioms.h"
-#include "cli/deriver.h"
+#include "cli/spawn/axioms.h"
+#include "cli/tune/deriver.h"
 #include "mini_engine/level.h"
 
 #include <cmath>

@@ -4,8 +4,8 @@
 // of N records (20), by two timestamps around each; passes are timed in records of their own, as timestamps between
 // them take time. Nothing about time is asserted; it fails where a record fails or drops paths.
 #include "arguments.h"
-#include "cli/patch_tiles.h"
-#include "cli/vector_reference.h"
+#include "cli/vector/patch_tiles.h"
+#include "cli/vector/reference.h"
 #include "joined_patches.h"
 #include "vector/raster/segments.h"
 #include "vector_runner.h"

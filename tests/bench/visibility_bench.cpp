@@ -1,5 +1,5 @@
-// What each sampling method finds and costs, on the measured scenes: coverage and overestimation against the reference made
-// in the same run, GPU time by timestamps, and the ratio to standard sampling (the baseline).
+// What each sampling method finds and costs, on the measured scenes: coverage and overestimation against the reference
+// made in the same run, GPU time by timestamps, and the ratio to standard sampling (the baseline).
 //
 // As a test it runs on small ones. Asserts nothing about time, but fails where exact
 // sampling shows over 1.5 % that the reference does not hold, or a budget is exceeded.
@@ -8,8 +8,8 @@
 #include "spawned_scenes.h"
 #include "visibility_figures.h"
 
-#include "cli/model.h"
-#include "cli/processors.h"
+#include "cli/model/model.h"
+#include "cli/shared/processors.h"
 
 #include <cmath>
 #include <cstring>
@@ -120,7 +120,7 @@ bool benchScene(Runner& runner, const Scene& scene, const std::string& name, con
     const RaySceneOf asRays(scene);
     const auto cast = [&](uint32_t samples) {
       return rayReference(asRays, scene, samples,
-                      [](size_t count, const auto& work) { cli::onAllProcessors(count, work); });
+                          [](size_t count, const auto& work) { cli::onAllProcessors(count, work); });
     };
     const visibility::RayReference rays = cast(options.reference);
     reference = runner.copy(rays.bits());
@@ -133,8 +133,9 @@ bool benchScene(Runner& runner, const Scene& scene, const std::string& name, con
   VisibilityRecorder standard = runner.recorder(GPGP_SAMPLING_STANDARD_BIT, 1);
   std::printf("%s: %u triangles", name.c_str(), runner.triangles());
   if (options.reference)
-    std::printf(", %u visible at %u x %u + 1 %s", runner.metrics(standard, reference, reference, nullptr, nullptr).reference,
-                options.reference, options.reference, options.rays ? "rays" : "samples");
+    std::printf(", %u visible at %u x %u + 1 %s",
+                runner.metrics(standard, reference, reference, nullptr, nullptr).reference, options.reference,
+                options.reference, options.rays ? "rays" : "samples");
   std::printf("\n  %-16s %9s %9s %9s %9s %9s %7s %10s %10s\n", "method", "visible", "cov %", "cov area", "over %", "ms",
               "ratio", "candidates", "pairs");
   double baseline = 0;
@@ -142,7 +143,8 @@ bool benchScene(Runner& runner, const Scene& scene, const std::string& name, con
   const auto bench = [&](const std::string& method, VisibilityRecorder& recorder, const Sampling& sampling) {
     const Runner::Run run = runner.measure(recorder, sampling, options.figure.repeat);
     GpgpVisibilityReport m{};
-    if (options.reference) m = runner.metrics(recorder, runner.bits(), reference, &counts, options.recheck ? &recheck : nullptr);
+    if (options.reference)
+      m = runner.metrics(recorder, runner.bits(), reference, &counts, options.recheck ? &recheck : nullptr);
     if (baseline == 0) baseline = run.milliseconds;
     const auto percent = [](float share) { return 100 * static_cast<double>(share); };
     std::printf("  %-16s %9u %9.3f %9.4f %9.3f %9.4f %7.2f %10u %10u%s\n", method.c_str(), run.report.visible,
@@ -152,8 +154,9 @@ bool benchScene(Runner& runner, const Scene& scene, const std::string& name, con
     if (options.passes)
       for (const auto& [pass, time] : run.passes)
         if (time > 0.002) std::printf("      %-16s %9.4f\n", pass.c_str(), time);
-    good = good && run.report.base.status == GPGP_SUCCESS &&
-           (options.reference < 64 || sampling.heuristics || m.overestimation <= 0.015f); // coarser references miss more
+    good =
+        good && run.report.base.status == GPGP_SUCCESS &&
+        (options.reference < 64 || sampling.heuristics || m.overestimation <= 0.015f); // coarser references miss more
   };
   bench("standard", standard, {});
   VisibilityRecorder exact = runner.recorder(GPGP_SAMPLING_EXACT_BIT, 1);

@@ -1,5 +1,5 @@
-// Measures what the thesis plots. All shares are percent of the reference of 64 x 64 + 1 samples made in the same run, and
-// false positives were sampled again at the largest grid where that is finer.
+// Measures what the thesis plots. All shares are percent of the reference of 64 x 64 + 1 samples made in the same run,
+// and false positives were sampled again at the largest grid where that is finer.
 #include "visibility_figures.h"
 
 #include <chrono>
@@ -181,8 +181,8 @@ struct Figures {
       const Runner::Run run = runner.measureUnion(exact, {.method = GPGP_SAMPLING_EXACT}, cameras, 1, options.repeat);
       row("exact", std::to_string(cameras.size()), run.milliseconds, run, cameras);
     }
-    // Many small views: those of gpgpGetViewCellCameras; and in rows on the reference's own grid, in every other row moved
-    // by half a step.
+    // Many small views: those of gpgpGetViewCellCameras; and in rows on the reference's own grid, in every other row
+    // moved by half a step.
     const auto rows = [](uint32_t count) {
       std::vector<float> points;
       for (uint32_t y = 0; y < count; ++y)

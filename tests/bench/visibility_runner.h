@@ -90,7 +90,7 @@ public:
 
   /// listed: triangles of lists that it samples; 0: it samples the scene.
   VisibilityRecorder recorder(uint32_t methods, uint32_t maxSamples, uint32_t maxCameras = 1, uint32_t divisor = 1,
-                  uint32_t listed = 0) {
+                              uint32_t listed = 0) {
     GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
     info.base.label = "bench";
     info.base.queueFamily = device_.graphics().family;
@@ -121,7 +121,8 @@ public:
 
   /// Repeats one record into bits(), each timed as a whole; then as often again, with times of its passes, which wait
   /// for each other where they are timed.
-  Run measure(VisibilityRecorder& recorder, const Sampling& sampling, uint32_t repeat, std::span<const GpgpCamera> cameras = {}) {
+  Run measure(VisibilityRecorder& recorder, const Sampling& sampling, uint32_t repeat,
+              std::span<const GpgpCamera> cameras = {}) {
     uint32_t passes = 0;
     expect(gpgpGetPasses(recorder.get(), &passes, nullptr), "passes");
     std::vector<const char*> names(passes);
@@ -174,8 +175,8 @@ public:
 
   /// Records that unite cameras into bits(), each with `perRecord` of them: their milliseconds and pairs together. A
   /// later record asks a little less, as what is visible already needs no answer.
-  Run measureUnion(VisibilityRecorder& recorder, Sampling sampling, std::span<const GpgpCamera> cameras, uint32_t perRecord,
-                   uint32_t repeat) {
+  Run measureUnion(VisibilityRecorder& recorder, Sampling sampling, std::span<const GpgpCamera> cameras,
+                   uint32_t perRecord, uint32_t repeat) {
     Run all;
     std::vector<double> totals;
     for (uint32_t i = 0; i < repeat; ++i) {
@@ -207,8 +208,9 @@ public:
   }
 
   /// One record, not timed.
-  GpgpVisibilityReport record(VisibilityRecorder& recorder, const Sampling& sampling, std::span<const GpgpCamera> cameras,
-                          const host::Buffer& bits, const host::Buffer* counts = nullptr) {
+  GpgpVisibilityReport record(VisibilityRecorder& recorder, const Sampling& sampling,
+                              std::span<const GpgpCamera> cameras, const host::Buffer& bits,
+                              const host::Buffer* counts = nullptr) {
     GpgpVisibilityReport report{};
     submit([&](VkCommandBuffer cmd) {
       const GpgpVisibilityInfo info = infoOf(sampling, cameras, bits, counts);
@@ -219,8 +221,8 @@ public:
     return report;
   }
 
-  /// The reference of all the cameras with samples x samples a pixel and the centre, each told when it is there; counts may
-  /// be null.
+  /// The reference of all the cameras with samples x samples a pixel and the centre, each told when it is there; counts
+  /// may be null.
   void reference(
       uint32_t samples, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
       const host::Buffer* counts = nullptr, const std::function<void(size_t)>& told = [](size_t) {}) {
@@ -253,7 +255,7 @@ public:
 
   /// counts and recheck may be null.
   GpgpVisibilityReport metrics(VisibilityRecorder& recorder, const host::Buffer& bits, const host::Buffer& reference,
-                           const host::Buffer* counts, const host::Buffer* recheck) {
+                               const host::Buffer* counts, const host::Buffer* recheck) {
     GpgpVisibilityReport report{};
     submit([&](VkCommandBuffer cmd) {
       GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
@@ -275,7 +277,7 @@ private:
 
   static uint32_t reduced(uint32_t pixels, uint32_t divisor) { return (pixels + divisor - 1) / divisor; }
   GpgpVisibilityInfo infoOf(const Sampling& sampling, std::span<const GpgpCamera> cameras, const host::Buffer& bits,
-                        const host::Buffer* counts) const {
+                            const host::Buffer* counts) const {
     GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
     info.geometrySet = geometry_.get();
     info.method = sampling.method;

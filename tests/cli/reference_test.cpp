@@ -1,5 +1,5 @@
 // What `gpgp spawn` compares the device's instances with.
-#include "cli/reference.h"
+#include "cli/spawn/reference.h"
 
 #include <gpgp/gpgp.hpp>
 #include <gtest/gtest.h>

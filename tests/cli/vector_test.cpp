@@ -97,7 +97,8 @@ TEST(CliVector, AntialiasingOfAllKindsAgainstTheReference) {
 )");
   const TemporaryFile picture("aa.png");
   for (const char* aa : {"1", "4", "8", "16", "area"}) {
-    const json drawn = gpgpJson({"vector", file.path(), picture.path(), "--background", "#fff", "--aa", aa, "--reference"});
+    const json drawn =
+        gpgpJson({"vector", file.path(), picture.path(), "--background", "#fff", "--aa", aa, "--reference"});
     EXPECT_EQ(drawn["aa"], aa);
     EXPECT_EQ(drawn["samples"], std::string_view(aa) == "area" ? 16 : std::atoi(aa));
     EXPECT_GE(drawn["psnr_db"], std::string_view(aa) == "1" ? 20 : 45) << aa;

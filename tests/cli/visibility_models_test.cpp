@@ -1,5 +1,5 @@
 // What `gpgp visibility` reads of glTF and OBJ files, by what is seen of it, and what it refuses.
-#include "cli/ear_clipping.h"
+#include "cli/model/ear_clipping.h"
 #include "files.h"
 #include "run.h"
 

@@ -1,6 +1,6 @@
 // `gpgp visibility` against the reference by rays; view points behind walls; what long work says of itself.
-#include "cli/forecast.h"
-#include "cli/progress.h"
+#include "cli/shared/progress.h"
+#include "cli/visibility/forecast.h"
 #include "files.h"
 #include "run.h"
 
@@ -44,8 +44,9 @@ struct ClosedWall {
 
 TEST(CliVisibilityReference, RaysSeeNoCrackInAClosedWall) {
   const ClosedWall wall;
-  const Args args{"visibility", wall.model.path(), "--camera", wall.camera.path(), "--size", "320x180", "--reference",
-                  "64",         "--reference-device",  "cpu",      "--recheck",        "0"};
+  const Args args{
+      "visibility", wall.model.path(),    "--camera", wall.camera.path(), "--size", "320x180", "--reference",
+      "64",         "--reference-device", "cpu",      "--recheck",        "0"};
   const json seen = gpgpJson(args);
   EXPECT_EQ(seen["triangles"], 7208);
   EXPECT_EQ(seen["reference"], 8);
@@ -58,8 +59,8 @@ TEST(CliVisibilityReference, RaysAndTheDeviceAgreeOnWhatIsEasy) {
                                         "f 1 2 3 4\nf 5 6 7\nf 1 2 3\n");
   for (const char* more : {"--yaw", "--cell", "--orbit"}) {
     const auto graded = [&](const char* device) {
-      return gpgpJson({"visibility", model.path(), "--size", "48x36", "--reference", "16", "--reference-device", device, more,
-                       std::string(more) == "--cell" ? "0.5:4" : "3"});
+      return gpgpJson({"visibility", model.path(), "--size", "48x36", "--reference", "16", "--reference-device", device,
+                       more, std::string(more) == "--cell" ? "0.5:4" : "3"});
     };
     const json cpu = graded("cpu"), gpu = graded("gpu");
     EXPECT_EQ(gpu["referenceDevice"], "gpu");

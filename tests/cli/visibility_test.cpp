@@ -1,5 +1,5 @@
 // `gpgp visibility` on models whose visible triangles are known.
-#include "cli/median.h"
+#include "cli/shared/median.h"
 #include "files.h"
 #include "host/files.h"
 #include "host/picture.h"
@@ -197,7 +197,7 @@ TEST(CliVisibility, SharesOfNothingAreNone) {
   const TemporaryFile model("corner.obj", "v -0.9 -0.9 0.5\nv -0.8 -0.9 0.5\nv -0.9 -0.8 0.5\nf 1 2 3\n"),
       camera("corner.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   const std::vector<std::string> args{"visibility", model.path(), "--camera",    camera.path(), "--size", "1x1",
-                                      "--method",   "exact",      "--two-sided", "--reference",     "1",      "--recheck"};
+                                      "--method",   "exact",      "--two-sided", "--reference", "1",      "--recheck"};
   const auto with = [&](const std::string& recheck) {
     std::vector<std::string> all = args;
     all.push_back(recheck);

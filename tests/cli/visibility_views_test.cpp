@@ -333,8 +333,8 @@ TEST(CliVisibilityViews, OverlaysMarkSpecks) {
   for (const auto& [x, y, column, row] :
        {std::tuple(0.55, 0.52, 26u, 22u), std::tuple(0.42, 0.52, 24u, 22u), std::tuple(0.02, 0.02, 24u, 23u)}) {
     const TemporaryFile model("speck.obj", speck(x, y));
-    const json figures = gpgpJson({"visibility", model.path(), "--size", "16x16", "--camera", camera.path(), "--reference",
-                                   "64", "--overlay", png.path()});
+    const json figures = gpgpJson({"visibility", model.path(), "--size", "16x16", "--camera", camera.path(),
+                                   "--reference", "64", "--overlay", png.path()});
     ASSERT_EQ(figures["reference"], 3);
     const host::Picture picture = host::readPng(png.path());
     EXPECT_EQ(count(picture, isBlue), 1u);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstring>
 #include <map>
 #include <random>
 #include <thread>
@@ -53,6 +54,37 @@ TEST(Context, SeveralDevicesAndContextsSideBySideOnThreads) {
   for (std::thread& thread : threads) thread.join();
   for (auto& device : devices)
     for (const std::string& message : device->validationMessages()) ADD_FAILURE() << message;
+}
+
+PFN_vkGetInstanceProcAddr loader = nullptr;
+/// The loader's, but for vkGetPhysicalDeviceFeatures2, which offers nothing.
+PFN_vkVoidFunction VKAPI_CALL withoutFeatures(VkInstance instance, const char* name) {
+  if (std::strcmp(name, "vkGetPhysicalDeviceFeatures2") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(
+        +[](VkPhysicalDevice, VkPhysicalDeviceFeatures2* features) { features->features = {}; });
+  return loader(instance, name);
+}
+
+TEST(Context, DeclaredFeaturesAreCheckedAgainstTheDevice) {
+  host::HeadlessDevice device;
+  loader = device.getInstanceProcAddr();
+  for (const auto& [feature, name] :
+       {std::pair(GPGP_FEATURE_DYNAMIC_RENDERING, "GPGP_FEATURE_DYNAMIC_RENDERING"),
+        std::pair(GPGP_FEATURE_MULTIVIEW, "GPGP_FEATURE_MULTIVIEW"),
+        std::pair(GPGP_FEATURE_BUFFER_INT64_ATOMICS, "GPGP_FEATURE_BUFFER_INT64_ATOMICS")}) {
+    GpgpContextCreateInfo info = device.contextCreateInfo();
+    info.getInstanceProcAddr = withoutFeatures;
+    std::string text;
+    info.features = feature;
+    info.messageUserData = &text;
+    info.messageFn = [](void* data, const GpgpMessage* message) { *static_cast<std::string*>(data) = message->text; };
+    GpgpContext context = nullptr;
+    EXPECT_EQ(gpgpCreateContext(&info, &context), GPGP_ERROR_MISSING_FEATURE);
+    EXPECT_NE(text.find(name), std::string::npos) << text;
+    info.features = 0;
+    EXPECT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+    gpgpDestroyContext(context);
+  }
 }
 
 TEST(Context, PipelineCacheTravels) {

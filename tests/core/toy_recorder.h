@@ -1,8 +1,8 @@
 // A recorder with one shader and three passes, for tests of the machinery that all services share.
 // Also the shortest example of how a service uses core/: describe resources and passes, init, fill a Record.
 #pragma once
-#include "core/resident.h"
 #include "core/recorder.h"
+#include "core/resident.h"
 #include "shaders/toy.spv.h"
 
 namespace gpgp::test {

@@ -1,8 +1,8 @@
 // Bytes as the verbs and coordinates of a path, on a grid or off it: its patches are disjoint, and together what
 // winding numbers say, at points that are not within float distance of an edge.
-#include "vector/shared/curve.h"
 #include "vector/oracle.h"
 #include "vector/patch/drawing.h"
+#include "vector/shared/curve.h"
 
 #include <cstdlib>
 #include <random>

@@ -194,9 +194,10 @@ TEST(DecoupledShading, PathsShadeFromTheirFirstFrameOn) {
 
 // What would have no effect.
 TEST(DecoupledShading, ItsOptionsBelongToIt) {
-  for (const char* options : {"--show density", "--method exact", "--rate 2", "--freeze 1", "--reference 4", "--farther 2",
-                              "--decoupled --reference 4", "--decoupled --input x", "--decoupled --watch",
-                              "--path --method conservative", "--path --show overlay", "--path --reference 4"})
+  for (const char* options :
+       {"--show density", "--method exact", "--rate 2", "--freeze 1", "--reference 4", "--farther 2",
+        "--decoupled --reference 4", "--decoupled --input x", "--decoupled --watch", "--path --method conservative",
+        "--path --show overlay", "--path --reference 4"})
     EXPECT_NE(
         std::system((std::string("\"") + GPGP_MINI_ENGINE + "\" " + options + " 2> /dev/null > /dev/null").c_str()), 0)
         << options;

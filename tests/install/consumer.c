@@ -5,6 +5,17 @@
 #include <stdio.h>
 #include <string.h>
 
+#ifdef CONSUMER_OF_TEXT_ALONE
+/* A tool that only sets text links libgpgp_text and nothing else. */
+int main(void) {
+  GpgpShaperCreateInfo text = GPGP_SHAPER_CREATE_INFO_INIT;
+  GpgpShaper shaper = NULL;
+  const GpgpResult result = gpgpCreateShaper(&text, &shaper);
+  printf("%s\n", gpgpResultString(result));
+  gpgpDestroyShaper(shaper);
+  return result == GPGP_SUCCESS ? 0 : 4;
+}
+#else
 int main(void) {
   GpgpContextCreateInfo info = GPGP_CONTEXT_CREATE_INFO_INIT;
   GpgpContext context = NULL;
@@ -25,3 +36,4 @@ int main(void) {
   printf("gpgp %u.%u\n", (unsigned)(gpgpGetVersion() >> 22), (unsigned)(gpgpGetVersion() >> 12 & 1023));
   return 0;
 }
+#endif

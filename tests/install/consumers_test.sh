@@ -30,6 +30,7 @@ install)
     [[ -e $library ]] || continue
     name=$(basename "$library")
     major=$(sed -nE 's/^#define GPGP_VERSION_MAJOR ([0-9]+)$/\1/p' "$prefix/include/gpgp/core.h")
+    [[ $major != 0 ]] || major=0.$(sed -nE 's/^#define GPGP_VERSION_MINOR ([0-9]+)$/\1/p' "$prefix/include/gpgp/core.h")
     dynamic=$(readelf -d "$library")
     grep -q "SONAME.*\[$name\.$major\]" <<<"$dynamic" || fail "$name: the soname is not $name.$major"
     if grep -E 'RPATH|RUNPATH' <<<"$dynamic"; then fail "$name has a run-time search path"; fi
@@ -55,18 +56,27 @@ find_package)
     ran=$((ran + 1))
   done
   [[ $ran -ge 2 ]] || fail "no consumer was built"
-  # Another major version is refused.
-  mkdir -p "$scratch/next_major"
-  printf 'cmake_minimum_required(VERSION 3.25)\nproject(next NONE)\nfind_package(gpgp 99 REQUIRED)\n' \
-    >"$scratch/next_major/CMakeLists.txt"
-  if "$cmake" -S "$scratch/next_major" -B "$scratch/next_major/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
-    >"$scratch/next_major/log" 2>&1; then
-    fail "find_package(gpgp 99) was accepted"
+  # The shared libraries are found without what the static ones link.
+  if [[ -e $scratch/find_package/consumer_gpgp ]]; then
+    "$cmake" -S "$tests/find_package" -B "$scratch/find_package_alone" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+      -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON \
+      -DCMAKE_DISABLE_FIND_PACKAGE_ZLIB=ON
+    "$cmake" --build "$scratch/find_package_alone" --target consumer_gpgp
   fi
-  if ! tr -s '\n ' ' ' <"$scratch/next_major/log" | grep 'compatible with requested version "99"' >/dev/null; then
-    cat "$scratch/next_major/log"
-    fail "find_package(gpgp 99) failed for another reason than its version"
-  fi
+  # Another version that may have another ABI is refused.
+  for other in 99 0.2; do
+    mkdir -p "$scratch/other_$other"
+    printf 'cmake_minimum_required(VERSION 3.25)\nproject(other NONE)\nfind_package(gpgp %s REQUIRED)\n' "$other" \
+      >"$scratch/other_$other/CMakeLists.txt"
+    if "$cmake" -S "$scratch/other_$other" -B "$scratch/other_$other/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+      >"$scratch/other_$other/log" 2>&1; then
+      fail "find_package(gpgp $other) was accepted"
+    fi
+    if ! tr -s '\n ' ' ' <"$scratch/other_$other/log" | grep "compatible with requested version \"$other\"" >/dev/null; then
+      cat "$scratch/other_$other/log"
+      fail "find_package(gpgp $other) failed for another reason than its version"
+    fi
+  done
   ;;
 pkg_config)
   directory=$(dirname "$(find "$prefix" -name gpgp.pc)")

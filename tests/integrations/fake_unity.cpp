@@ -297,7 +297,6 @@ void FakeUnity::makeDevice() {
   deviceInfo.pEnabledFeatures = &features;
   const auto createDevice = reinterpret_cast<PFN_vkCreateDevice>(get(instance_, "vkCreateDevice"));
   check(createDevice(physical_, &deviceInfo, nullptr, &device_), "vkCreateDevice");
-  synchronization2_ = vkGetDeviceProcAddr(device_, "vkCmdPipelineBarrier2KHR") != nullptr;
   vkGetDeviceQueue(device_, family_, 0, &queue_);
   for (Slot& slot : slots_) {
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};

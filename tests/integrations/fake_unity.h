@@ -74,7 +74,6 @@ public:
   uint32_t family() const { return family_; }
   uint64_t currentFrame() const { return current_; }
   const UnityVulkanPluginEventConfig* config(int eventId) const;
-  bool synchronization2() const { return synchronization2_; }
   uint32_t hooksTaken() const { return hooksTaken_; }
   const std::vector<std::string>& violations() const { return violations_; }
   static std::vector<std::string>& validation();
@@ -101,7 +100,7 @@ private:
   UnityVulkanInitCallback hook_ = nullptr;
   void* hookData_ = nullptr;
   uint32_t hooksTaken_ = 0;
-  bool deviceMade_ = false, initialized_ = false, synchronization2_ = false, held_ = false, lost_ = false;
+  bool deviceMade_ = false, initialized_ = false, held_ = false, lost_ = false;
   std::vector<IUnityGraphicsDeviceEventCallback> deviceEvents_;
   std::map<int, UnityVulkanPluginEventConfig> configs_;
   std::vector<std::string> violations_;

@@ -208,7 +208,6 @@ TEST_F(UnityTest, CanvasesInARenderTexture) {
   start();
   EXPECT_EQ(unity->hooksTaken(), 1u);
   EXPECT_EQ(script->getState(), GPGP_UNITY_READY);
-  EXPECT_TRUE(unity->synchronization2()) << "the hook enables it";
   const UnityVulkanPluginEventConfig* config = unity->config(script->getEventId());
   ASSERT_TRUE(config);
   EXPECT_EQ(config->renderPassPrecondition, kUnityVulkanRenderPass_EnsureOutside);

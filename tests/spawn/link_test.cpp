@@ -88,7 +88,7 @@ uint64_t expectEqualsAlone(const std::vector<GrammarFile>& files, uint32_t seed)
     for (GpgpAxiom& axiom : axioms) {
       const uint32_t start = axiom.start == GPGP_AXIOM_DEFAULT_START ? ownRules : axiom.start;
       axiom.start = start < ownRules ? rules.back() + start
-                                    : static_cast<uint32_t>(graph.rules.size()) + lines + start - ownRules;
+                                     : static_cast<uint32_t>(graph.rules.size()) + lines + start - ownRules;
       EXPECT_EQ(spawn::startAt(graph, axiom.start).axiom->shape, spawn::startAt(ownGraph, start).axiom->shape);
     }
     mixed.insert(mixed.end(), axioms.begin(), axioms.end());

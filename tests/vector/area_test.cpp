@@ -101,8 +101,8 @@ TEST_F(Areas, OfRoundShapesOfListsAreRight) {
   }
 }
 
-/// The flattened segments of any convex curve leave it its area, whatever their number, but for one alone: within 1.25 n^-2 of what
-/// n flattened segments between points of the curve would cut off.
+/// The flattened segments of any convex curve leave it its area, whatever their number, but for one alone: within 1.25
+/// n^-2 of what n flattened segments between points of the curve would cut off.
 TEST_F(Areas, BesideConvexCurvesAreTheCurves) {
   const shader::ItemRecord item = placedAsIs();
   int tried = 0;

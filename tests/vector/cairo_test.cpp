@@ -1,6 +1,6 @@
 // Pictures beside cairo's: gradients of all circles, fills and groups of real drawings.
 #include "cairo_fixture.h"
-#include "cli/vector_reference.h"
+#include "cli/vector/reference.h"
 #include "fetched_svg.h"
 
 namespace {
@@ -76,8 +76,8 @@ TEST_F(CairoTest, GradientsBetweenAnyTwoCircles) {
         const Rgba reference = colorAt(x, y);
         bool sure = true;
         for (const double d : {-0.01, 0.01})
-          sure =
-              sure && differenceOf(reference, colorAt(x + d, y)) < 0.02f && differenceOf(reference, colorAt(x, y + d)) < 0.02f;
+          sure = sure && differenceOf(reference, colorAt(x + d, y)) < 0.02f &&
+                 differenceOf(reference, colorAt(x, y + d)) < 0.02f;
         doubtful += !sure;
         wrong += sure && differenceOf(reference, pixels[k]) > 0.02f;
       }

@@ -5,10 +5,10 @@
 #include "host/memory.h"
 #include "host/picture.h"
 #include "oracle.h"
+#include "vector/cpu_reference/cpu_reference.h"
 #include "vector/patch/drawing.h"
 #include "vector/raster/place.h"
 #include "vector/raster/segments.h"
-#include "vector/cpu_reference/cpu_reference.h"
 
 #include <gpgp/vector.h>
 #include <gtest/gtest.h>

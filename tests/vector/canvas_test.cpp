@@ -1,7 +1,7 @@
 // The canvas on the GPU: coverage against the CPU reference bit for bit, seams, budgets, bad arguments, and
 // real drawings against a reference of 256 samples a pixel made from winding numbers.
 #include "canvas_fixture.h"
-#include "cli/vector_reference.h"
+#include "cli/vector/reference.h"
 #include "fetched_svg.h"
 #include "ui_fixture.h"
 
@@ -17,7 +17,8 @@ namespace {
 using namespace gpgp;
 using namespace gpgp::test;
 
-/// Curves that are level somewhere and run down everywhere else, cut near there: their flattened segments turn back a little.
+/// Curves that are level somewhere and run down everywhere else, cut near there: their flattened segments turn back a
+/// little.
 TEST(FlatSegments, MeetEachRowOfTheirSegmentOnce) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0, 1);
@@ -47,7 +48,8 @@ TEST(FlatSegments, MeetEachRowOfTheirSegmentOnce) {
       shader::FlatSegment flatSegment;
       if (!shader::flatSegmentOf(grid, item, s, k, n, shader::flatSegmentStep(n), flatSegment)) continue;
       back += flatSegment.side < 0 && flatSegment.first < flatSegment.last;
-      for (int row = flatSegment.first; row < flatSegment.last; ++row) met[static_cast<size_t>(row)] += flatSegment.side > 0 ? 1 : -1;
+      for (int row = flatSegment.first; row < flatSegment.last; ++row)
+        met[static_cast<size_t>(row)] += flatSegment.side > 0 ? 1 : -1;
     }
     for (int row = 0; row < grid.rows; ++row)
       ASSERT_EQ(met[static_cast<size_t>(row)],
@@ -1027,7 +1029,8 @@ TEST_P(RealDrawing, LooksLikeTheReferenceOf256Samples) {
   const auto pixels = raster({item}, size, size, 16, &report);
   EXPECT_EQ(report.pathsDropped, 0u);
   const float nothing[4] = {};
-  const std::vector<float> expected = cli::vectorReference(views.paths, views.groups, item.transform, nothing, size, size);
+  const std::vector<float> expected =
+      cli::vectorReference(views.paths, views.groups, item.transform, nothing, size, size);
   const auto psnr = [&expected](const std::vector<Rgba>& picture) {
     return cli::psnrOverWhite(std::span(&picture[0].r, picture.size() * 4), expected);
   };

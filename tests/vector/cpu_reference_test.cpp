@@ -1,13 +1,14 @@
-// The canvas beside its CPU reference, for random records of all that it draws: what the passes leave in scratch (items,
-// boxes of tiles, tile words, masks and areas in entries) bit for bit, and the picture within what the CPU reference derives.
+// The canvas beside its CPU reference, for random records of all that it draws: what the passes leave in scratch
+// (items, boxes of tiles, tile words, masks and areas in entries) bit for bit, and the picture within what the CPU
+// reference derives.
 //
 // GPGP_TWIN_SEEDS: how many records, GPGP_TWIN_FIRST_SEED: from which one on.
 #include "api/items.h"
 #include "random_record.h"
-#include "vector/shared/entry.h"
-#include "vector/raster/canvas.h"
-#include "vector/raster/canvas_passes.h"
 #include "vector/cpu_reference/cpu_reference.h"
+#include "vector/passes/names.h"
+#include "vector/raster/canvas.h"
+#include "vector/shared/entry.h"
 
 #include <cstdlib>
 

@@ -1,10 +1,10 @@
 // Paths that cross themselves often: what their patches are, that their cost grows with their crossings, and that those
 // with too many are refused before these are looked for.
 #include "oracle.h"
-#include "vector/shared/curve.h"
 #include "vector/patch/drawing.h"
 #include "vector/patch/inversions.h"
 #include "vector/patch/status.h"
+#include "vector/shared/curve.h"
 
 #include <gtest/gtest.h>
 

@@ -971,8 +971,8 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       std::printf("%s, %u px%s: %zu pixels with ink; of coverage %.3f; mean difference from FreeType %.2f, with no "
                   "rounding %.2f, from the curves %.2f; FreeType's from the curves %.2f, with none %.2f; letters "
                   "without curves from 16 exact rows a pixel %.2f, such rows from the letters %.2f\n",
-                  GetParam(), size, area ? ", area" : "", inked, sum / n, fromFreeType / n, fromFine / n, fromReference / n,
-                  freeType / n, reference / n, fromRows / m, rows / m);
+                  GetParam(), size, area ? ", area" : "", inked, sum / n, fromFreeType / n, fromFine / n,
+                  fromReference / n, freeType / n, reference / n, fromRows / m, rows / m);
       EXPECT_GT(inked, ids.size() * size);
       EXPECT_GT(inkedStraight, inked / 8);
       EXPECT_LE(std::abs(sum) / n, 2.0) << size << ": as much ink as FreeType";

@@ -12,10 +12,10 @@
 // Ends with 0 where at least 99 %, or all but one, agree, 1 where fewer do, 77 where rsvg-convert or the drawings are
 // not there.
 #include "../cli/process.h"
-#include "cli/session.h"
-#include "cli/textures.h"
-#include "cli/vector_images.h"
-#include "cli/vector_reference.h"
+#include "cli/shared/session.h"
+#include "cli/shared/textures.h"
+#include "cli/vector/images.h"
+#include "cli/vector/reference.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "tile_difference.h"
@@ -236,8 +236,8 @@ void writeReport(const Options& options, const std::vector<Compared>& worst,
     const auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), quiet, {}, {}, detail);
     const vector::svg::ImportedViews views(*svg);
     const float white[4] = {1, 1, 1, 1};
-    const auto reference = cli::vectorReference(views.paths, views.groups, c.transform, white, shown[0].width, shown[0].height,
-                                        cli::Blend::Srgb);
+    const auto reference = cli::vectorReference(views.paths, views.groups, c.transform, white, shown[0].width,
+                                                shown[0].height, cli::Blend::Srgb);
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, "%5.2f %% of pixels, mean %5.2f; ", c.large * 100, c.mean);
     if (!c.images) // the reference knows none

@@ -49,8 +49,8 @@ public:
     return inside(x - distance, y) == in && inside(x + distance, y) == in && inside(x, y - distance) == in &&
            inside(x, y + distance) == in;
   }
-  /// To the nearest point of the outline, found by a thousand flattened segments a piece. Where `certain` is asked in a sliver
-  /// thinner than its distance, the neighbours can all lie beyond the other edge.
+  /// To the nearest point of the outline, found by a thousand flattened segments a piece. Where `certain` is asked in a
+  /// sliver thinner than its distance, the neighbours can all lie beyond the other edge.
   double distance(double x, double y) const;
   struct Crossing {
     double x;

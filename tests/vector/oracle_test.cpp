@@ -6,9 +6,9 @@
 // for all points in it.
 #include "host/files.h"
 #include "oracle.h"
-#include "vector/shared/curve.h"
 #include "vector/import/svg/import.h"
 #include "vector/patch/drawing.h"
+#include "vector/shared/curve.h"
 
 #include <gtest/gtest.h>
 

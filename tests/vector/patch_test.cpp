@@ -1,8 +1,8 @@
 // Paths to patches: the union of a path's patches is what the fill rule calls inside, and patches do not overlap.
 #include "oracle.h"
-#include "vector/shared/curve.h"
 #include "vector/patch/drawing.h"
 #include "vector/raster/segments.h"
+#include "vector/shared/curve.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>

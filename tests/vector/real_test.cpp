@@ -1,8 +1,8 @@
 // Real drawings through the importer and the conversion: each path's patches against winding numbers.
 #include "fetched_svg.h"
 #include "oracle.h"
-#include "vector/shared/curve.h"
 #include "vector/patch/drawing.h"
+#include "vector/shared/curve.h"
 
 #include <gtest/gtest.h>
 

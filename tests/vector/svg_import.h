@@ -1,6 +1,6 @@
 // SVG text imported by a test: what came of it, what was said, and what it looks like by winding numbers.
 #pragma once
-#include "cli/vector_reference.h"
+#include "cli/vector/reference.h"
 #include "vector/import/svg/import.h"
 
 #include <algorithm>

@@ -139,7 +139,8 @@ TEST_F(CanvasTest, ScissorsCutSampleBySample) {
           shader::ItemRecord record{}, identity{};
           ASSERT_TRUE(vector::placeItem(vector::toMap(map.data(), map.data() + 6), 100, 90, record));
           ASSERT_TRUE(vector::placeItem(vector::Map{}, 100, 90, identity));
-          const CpuReference covers(*cpu, record, 100, 90, samples), shows(*clipCpuReference, identity, 100, 90, samples);
+          const CpuReference covers(*cpu, record, 100, 90, samples),
+              shows(*clipCpuReference, identity, 100, 90, samples);
           record.scissor = {box[0], box[1], box[2], box[3]};
           const CpuReference cut(*cpu, record, 100, 90, samples);
           for (const bool area : {false, true}) {

@@ -172,7 +172,8 @@ TEST_F(ArgumentsTest, CreationIsChecked) {
   recorderInfo.maxTriangles = 64;
   recorderInfo.base.queueFamily = 99;
   expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &recorder), "queueFamily");
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, nullptr), "recorder is NULL");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, nullptr),
+         "recorder is NULL");
   expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, nullptr, &recorder), "info is NULL");
   EXPECT_EQ(recorder, nullptr);
 

@@ -1,4 +1,5 @@
-// Edge cases of input, one by one and with every method: the GPU against the CPU reference, and against what must be seen.
+// Edge cases of input, one by one and with every method: the GPU against the CPU reference, and against what must be
+// seen.
 #include "gpu.h"
 
 #include <cmath>
@@ -44,8 +45,8 @@ struct EdgeTest : VisibilityGpuTest {
       if (method == GPGP_SAMPLING_REFERENCE) continue; // the CPU reference's grid is the centre
       CpuInput input = scene.input();
       const CpuResult cpu = method == GPGP_SAMPLING_STANDARD ? sampleOnCpu(input)
-                              : method == GPGP_SAMPLING_EXACT  ? sampleExactOnCpu(input)
-                                                               : sampleConservativelyOnCpu(input);
+                            : method == GPGP_SAMPLING_EXACT  ? sampleExactOnCpu(input)
+                                                             : sampleConservativelyOnCpu(input);
       EXPECT_EQ(last.bits, cpu.bits) << name;
       EXPECT_EQ(last.report.skippedTriangles, cpu.counters.skippedTriangles) << name;
     }
@@ -260,7 +261,7 @@ TEST_F(VisibilityGpuTest, SheetsOfInstancesWithAndWithoutRoom) {
   const auto run = [&](GpgpSamplingMethod method, uint32_t candidates, uint32_t pairs) {
     const GpgpRecorder recorder =
         createRecorder(256, 256, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT,
-                      0, candidates, pairs);
+                       0, candidates, pairs);
     const GpuResult gpu = sample(scene, recorder, set, {.method = method, .byDraw = false});
     sheets.check(gpu);
     return gpu.report.unresolved;
@@ -280,8 +281,8 @@ TEST_F(VisibilityGpuTest, AHundredMillionTrianglesOfInstances) {
   Scene scene = sheets.scene;
   ASSERT_GT(scene.params.triangleCount, 100000000u);
   const GpgpAsset set = createGeometrySet(scene);
-  const GpgpRecorder recorder =
-      createRecorder(1024, 1024, scene.params.triangleCount, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
+  const GpgpRecorder recorder = createRecorder(1024, 1024, scene.params.triangleCount, true,
+                                               GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT}) {
     const GpuResult gpu = sample(scene, recorder, set, {.method = method, .byDraw = false});
     sheets.check(gpu, gpu.report.unresolved / 10000); // what has no room hides nothing: 23 of 24 533 399 once

@@ -229,7 +229,7 @@ TEST_F(EngineTest, TheMostCamerasOfARecordEqualTheCpuReference) {
                     lookAt({0.01f * static_cast<float>(i), 0.3f, 3}, {0.3f, 0.1f, 0}));
   useCommands(scene);
   recorder = createRecorder(20, 17, 0, true, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT, 0, 0, 0,
-                          shader::kMaxCameras);
+                            shader::kMaxCameras);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT})
     expectEqual(run(scene, {.method = method}), cpuOf(method, scene), "method " + std::to_string(method));
 }

@@ -298,8 +298,9 @@ TEST_F(VisibilityGpuTest, ExactWithoutRoomShowsTooMuchAndSaysSo) {
   const CpuResult cpu = sampleExactOnCpu(scene.input());
   const GpgpAsset set = createGeometrySet(scene);
   for (const bool candidates : {true, false}) {
-    const GpgpRecorder recorder = createRecorder(scene.params.width, scene.params.height, 0, true, GPGP_SAMPLING_EXACT_BIT,
-                                             0, candidates ? 500 : 0, candidates ? 0 : 3000);
+    const GpgpRecorder recorder =
+        createRecorder(scene.params.width, scene.params.height, 0, true, GPGP_SAMPLING_EXACT_BIT, 0,
+                       candidates ? 500 : 0, candidates ? 0 : 3000);
     const GpuResult gpu = sample(scene, recorder, set, {.method = GPGP_SAMPLING_EXACT});
     EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
     EXPECT_GT(gpu.report.unresolved, 0u);

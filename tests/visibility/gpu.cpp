@@ -47,9 +47,10 @@ SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
   if (scene.drawCount != UINT32_MAX) drawCount = copy(std::array{scene.drawCount}, "draw count");
 }
 
-GpgpRecorder VisibilityGpuTest::createRecorder(uint32_t width, uint32_t height, uint32_t maxTriangles, bool engineScratch,
-                                            uint32_t methods, uint32_t maxSamples, uint32_t maxCandidates,
-                                            uint32_t maxPairs, uint32_t maxCameras, uint32_t maxDraws) {
+GpgpRecorder VisibilityGpuTest::createRecorder(uint32_t width, uint32_t height, uint32_t maxTriangles,
+                                               bool engineScratch, uint32_t methods, uint32_t maxSamples,
+                                               uint32_t maxCandidates, uint32_t maxPairs, uint32_t maxCameras,
+                                               uint32_t maxDraws) {
   GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   info.base.label = "recorder";
   info.base.queueFamily = queue().family;
@@ -96,7 +97,8 @@ void VisibilityGpuTest::upload() {
   }
 }
 
-GpgpVisibilityInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuffers& buffers, GpgpAsset geometrySet) {
+GpgpVisibilityInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const SceneBuffers& buffers,
+                                                 GpgpAsset geometrySet) {
   GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
   info.geometrySet = geometrySet;
   std::copy_n(scene.params.viewProjection, 16, info.camera.viewProjection);
@@ -126,8 +128,8 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, const GpuOptions& options, uin
   scene.input();                                                               // fills in what depends on the scene
   const auto roundUp = [](uint32_t size) { return (size + 255) / 256 * 256; }; // few recorders for many scenes
   const GpgpRecorder recorder =
-      createRecorder(roundUp(scene.params.width), roundUp(scene.params.height), maxTriangles, true, 1u << options.method,
-                    std::min(options.samples, 4u), 0, 0, scene.params.cameraCount);
+      createRecorder(roundUp(scene.params.width), roundUp(scene.params.height), maxTriangles, true,
+                     1u << options.method, std::min(options.samples, 4u), 0, 0, scene.params.cameraCount);
   const GpgpAsset set = createGeometrySet(scene);
   const GpuResult result = sample(scene, recorder, set, options);
   gpgpDestroyAsset(set);

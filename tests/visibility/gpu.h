@@ -1,4 +1,5 @@
-// Runs a scene through the C API as an engine would, and brings back everything that can be compared with the CPU reference.
+// Runs a scene through the C API as an engine would, and brings back everything that can be compared with the CPU
+// reference.
 #pragma once
 #include "../device_test.h"
 #include "host/frames.h"
@@ -46,8 +47,8 @@ struct VisibilityGpuTest : DeviceTest {
   const host::Queue& queue() const { return device.computeOnly() ? *device.computeOnly() : device.graphics(); }
 
   GpgpRecorder createRecorder(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false,
-                           uint32_t methods = 0, uint32_t maxSamples = 0, uint32_t maxCandidates = 0,
-                           uint32_t maxPairs = 0, uint32_t maxCameras = 0, uint32_t maxDraws = 0);
+                              uint32_t methods = 0, uint32_t maxSamples = 0, uint32_t maxCandidates = 0,
+                              uint32_t maxPairs = 0, uint32_t maxCameras = 0, uint32_t maxDraws = 0);
   GpgpAsset createGeometrySet(const Scene& scene);
   GpgpHistory createView(uint32_t maxTriangles);
   /// Copies all that is pending.

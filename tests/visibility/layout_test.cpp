@@ -2,8 +2,8 @@
 // them.
 #include "visibility/shared/layout.h"
 
-#include "visibility/shared/cluster.h"
 #include "visibility/sampling/budgets.h"
+#include "visibility/shared/cluster.h"
 
 #include "shaders/visibility_chunks.spv.h"
 #include "shaders/visibility_finish.spv.h"

@@ -115,7 +115,7 @@ struct NearbyTest : VisibilityGpuTest {
     if (!recorder)
       recorder =
           createRecorder(256, 256, 0, true,
-                        GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_NEARBY_BIT, 0, 0, 0, 12);
+                         GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_NEARBY_BIT, 0, 0, 0, 12);
     scene.input(); // fills in what depends on the scene
     const GpgpAsset set = createGeometrySet(scene);
     GpuResult result = sample(scene, recorder, set, options);

@@ -292,7 +292,8 @@ Compared compare(const std::vector<uint32_t>& bits, const std::vector<uint32_t>&
   return c;
 }
 
-// By a reference of its own the CPU reference's exact method, and its reference, are as good as by the reference that snaps as it does.
+// By a reference of its own the CPU reference's exact method, and its reference, are as good as by the reference that
+// snaps as it does.
 TEST(RayReference, GradesTheMethods) {
   std::vector<std::pair<std::string, Scene>> scenes;
   const auto add = [&](const char* name, Scene&& scene) -> Scene& {

@@ -41,7 +41,7 @@ inline void inOrder(size_t count, const std::function<void(size_t)>& work) {
 
 /// What the scene's camera sees by rays.
 inline visibility::RayReference rayReference(const RaySceneOf& rays, const Scene& scene, uint32_t samples,
-                                     const visibility::ForEach& forEach = inOrder) {
+                                             const visibility::ForEach& forEach = inOrder) {
   visibility::RayReference reference(rays, forEach);
   reference.add(cameraOf(scene), scene.params.width, scene.params.height, samples);
   return reference;

@@ -34,7 +34,7 @@ Scene posed(Scene scene) {
 
 struct SkinnedTest : VisibilityGpuTest {
   GpgpVisibilityInfo info(const Scene& scene, const SceneBuffers& buffers, GpgpAsset set, GpgpSamplingMethod method,
-                      const host::Buffer& bits) {
+                          const host::Buffer& bits) {
     GpgpVisibilityInfo result = sampleInfo(scene, buffers, set);
     result.method = method;
     result.visibleBits = bits.range(
@@ -44,7 +44,8 @@ struct SkinnedTest : VisibilityGpuTest {
 };
 
 TEST_F(SkinnedTest, PositionsThatTheGpuWritesBetweenTwoRecordsMove) {
-  const GpgpRecorder recorder = createRecorder(96, 96, 4096, false, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
+  const GpgpRecorder recorder =
+      createRecorder(96, 96, 4096, false, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT);
   for (const GpgpSamplingMethod method : {GPGP_SAMPLING_STANDARD, GPGP_SAMPLING_EXACT}) {
     Scene before = restPose(), after = posed(before);
     const auto cpu = [method](Scene& scene) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <vector>
 
 namespace gpgp::unity {
 
@@ -37,59 +36,12 @@ VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, 
   return result;
 }
 
-/// A struct of a chain, by its type.
-template <class Struct> const Struct* find(const void* chain, VkStructureType type) {
-  for (const auto* at = static_cast<const VkBaseInStructure*>(chain); at; at = at->pNext)
-    if (at->sType == type) return reinterpret_cast<const Struct*>(at);
-  return nullptr;
-}
-
-bool names(const VkDeviceCreateInfo& info, const char* extension) {
-  const auto is = [extension](const char* name) { return std::strcmp(name, extension) == 0; };
-  return std::any_of(info.ppEnabledExtensionNames, info.ppEnabledExtensionNames + info.enabledExtensionCount, is);
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physicalDevice, const VkDeviceCreateInfo* info,
                                             const VkAllocationCallbacks* allocator, VkDevice* device) {
   HookedDevice& hooked = hookedDevice();
   const auto create = load<PFN_vkCreateDevice>(hooked.instance, "vkCreateDevice");
-  hooked.features = 0;
-  const auto* theirs = find<VkPhysicalDeviceSynchronization2Features>(
-      info->pNext, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES);
-  const auto* core =
-      find<VkPhysicalDeviceVulkan13Features>(info->pNext, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
-  const bool enabled = (theirs && theirs->synchronization2) || (core && core->synchronization2);
-
-  GpgpRequirementsInfo query = GPGP_REQUIREMENTS_INFO_INIT;
-  query.instance = hooked.instance;
-  query.physicalDevice = physicalDevice;
-  query.getInstanceProcAddr = hooked.loader;
-  GpgpRequirements requirements = GPGP_REQUIREMENTS_INIT;
-  const bool fits =
-      hooked.apiVersion >= VK_API_VERSION_1_2 && gpgpGetRequirements(&query, &requirements) == GPGP_SUCCESS;
-  // Unity's own structs are Unity's: where it names the feature, that is how it is.
-  if (fits && !theirs && !core && (requirements.optionalFeatures & GPGP_FEATURE_SYNCHRONIZATION_2)) {
-    VkPhysicalDeviceSynchronization2Features feature{};
-    feature.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES;
-    feature.pNext = const_cast<void*>(info->pNext);
-    feature.synchronization2 = VK_TRUE;
-    std::vector<const char*> extensions(info->ppEnabledExtensionNames,
-                                        info->ppEnabledExtensionNames + info->enabledExtensionCount);
-    if (!names(*info, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME))
-      extensions.push_back(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
-    VkDeviceCreateInfo more = *info;
-    more.pNext = &feature;
-    more.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
-    more.ppEnabledExtensionNames = extensions.data();
-    if (create(physicalDevice, &more, allocator, device) == VK_SUCCESS) {
-      hooked.features = GPGP_FEATURE_SYNCHRONIZATION_2;
-      hooked.device = *device;
-      return VK_SUCCESS;
-    } // else as Unity wanted it
-  }
   const VkResult result = create(physicalDevice, info, allocator, device);
   if (result != VK_SUCCESS) return result;
-  if (fits && enabled) hooked.features = GPGP_FEATURE_SYNCHRONIZATION_2;
   hooked.device = *device;
   return result;
 }

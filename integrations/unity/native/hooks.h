@@ -10,12 +10,10 @@ struct HookedDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE; ///< the last one made
   uint32_t apiVersion = 0;          ///< of the instance
-  GpgpFeatures features = 0;        ///< enabled on the device
 };
 HookedDevice& hookedDevice();
 
-/// What Unity gets in place of the loader's. Raises the instance to Vulkan 1.2, and enables on the device what gpgp's
-/// canvases would use (synchronization2) where Unity has not said anything about it. All else passes through.
+/// What Unity gets in place of the loader's. Raises the instance to Vulkan 1.2. All else passes through.
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL hookedGetInstanceProcAddr(VkInstance instance, const char* name);
 
 } // namespace gpgp::unity

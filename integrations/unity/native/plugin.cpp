@@ -104,7 +104,6 @@ void Plugin::start() {
   info.device = device_.device;
   info.getInstanceProcAddr = device_.getInstanceProcAddr;
   info.apiVersion = VK_API_VERSION_1_2;
-  info.features = hooked.features;
   info.maxFramesInFlight = kFramesInFlight;
   info.pipelineCache = device_.pipelineCache; // which Unity keeps on disk
   info.messageFn = onMessage;

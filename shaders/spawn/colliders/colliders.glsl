@@ -2,9 +2,9 @@
 // with the axiom's number, its tag, what Shape::axiom was before, and nothing.
 #ifndef GPGP_SHADERS_SPAWN_COLLIDERS_GLSL
 #define GPGP_SHADERS_SPAWN_COLLIDERS_GLSL
-layout(set = 0, binding = 14, std430) buffer Colliders { uvec4 colliders[]; };
+layout(set = 0, binding = kBindColliders, std430) buffer Colliders { uvec4 colliders[]; };
 // First collider of each cell, then the next one of each collider; numbers from 1, 0: none.
-layout(set = 0, binding = 15, std430) buffer ColliderCells { uint colliderCells[]; };
+layout(set = 0, binding = kBindColliderCells, std430) buffer ColliderCells { uint colliderCells[]; };
 
 #include "spawn/colliders/collide.h"
 

@@ -1,6 +1,6 @@
 // A generated kernel's table: what its operators do as rows of numbers, so that a GPU runs the same instructions for
-// all shapes, in whichever rule they are. src/spawn/codegen/table.cpp writes it, shaders/spawn/kernel/table.glsl reads it; it
-// lies behind the graph's words, and offsets are in units of four words from its start.
+// all shapes, in whichever rule they are. src/spawn/codegen/table.cpp writes it, shaders/spawn/kernel/table.glsl reads
+// it; it lies behind the graph's words, and offsets are in units of four words from its start.
 //
 // First a word for each node: the offset of its family, 0 where it has none.
 #ifndef GPGP_SHADERS_SPAWN_TABLE_FORMAT_H

@@ -7,9 +7,11 @@
 // everybody's.
 #include "spawn/shared/bindings.glsl"
 
-layout(set = 0, binding = 2, std430) readonly buffer Written { uvec4 written[]; };     // the same as instances
-layout(set = 0, binding = 18, std430) writeonly buffer Bounds { float bounds[]; };     // GpgpSpawnBounds
-layout(set = 0, binding = 19, std430) buffer BoundKeys { uint boundKeys[]; };          // kBoundWords a bucket
+// the same as instances
+layout(set = 0, binding = kBindInstances, std430) readonly buffer Written { uvec4 written[]; };
+layout(set = 0, binding = kBindBounds, std430) writeonly buffer Bounds { float bounds[]; };     // GpgpSpawnBounds
+// kBoundWords a bucket
+layout(set = 0, binding = kBindBoundKeys, std430) buffer BoundKeys { uint boundKeys[]; };
 layout(local_size_x = 64) in;                        // kSpawnGroupSize
 layout(constant_id = 0) const bool decodes = false; // what has been gathered to the engine's buffer
 #include "spawn/shared/shape.h"

@@ -14,7 +14,8 @@
 // How a vertex looks is in specialization constants: its words are known when the pipeline is made, and lie in
 // registers. Vertices of whole 16 bytes are stored by who made them; others are staged, and copied out word after word.
 #include "spawn/shared/bindings.glsl"
-layout(set = 0, binding = 11, std430) writeonly buffer VertexWords { uint vertexWords[]; }; // the same as vertices
+// the same as vertices
+layout(set = 0, binding = kBindVertices, std430) writeonly buffer VertexWords { uint vertexWords[]; };
 
 #include "core/turns.h"
 #include "spawn/outputs/mesh.h"

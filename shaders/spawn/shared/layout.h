@@ -5,6 +5,29 @@
 
 GPGP_SHADER_BEGIN
 
+// Bindings of descriptor set 0, which are the numbers of the spawner's resources.
+GPGP_CONST int kBindGraph = 0;
+GPGP_CONST int kBindAxioms = 1;
+GPGP_CONST int kBindInstances = 2;
+GPGP_CONST int kBindDraws = 3;
+GPGP_CONST int kBindCount = 4;
+GPGP_CONST int kBindQueues = 5;
+GPGP_CONST int kBindStacks = 6;
+GPGP_CONST int kBindRecords = 7;
+GPGP_CONST int kBindCounters = 8;
+GPGP_CONST int kBindBuckets = 9;
+GPGP_CONST int kBindConstants = 10;
+GPGP_CONST int kBindVertices = 11;
+GPGP_CONST int kBindIndices = 12;
+GPGP_CONST int kBindNeeded = 13;
+GPGP_CONST int kBindColliders = 14;
+GPGP_CONST int kBindColliderCells = 15;
+GPGP_CONST int kBindOrder = 16;
+GPGP_CONST int kBindAxiomCounter = 17;
+GPGP_CONST int kBindBounds = 18;
+GPGP_CONST int kBindBoundKeys = 19;
+GPGP_CONST int kBindReport = 20;
+
 /// Counters of one record, cleared at its start, and its report.
 struct SpawnState {
   uint terminals; // derived, those that did not fit included

@@ -1,9 +1,11 @@
 #version 460
-// What each path's boundary does to the pixels of the tiles it passes through, where there are no lists of its flatSegments.
+// What each path's boundary does to the pixels of the tiles it passes through, where there are no lists of its
+// flatSegments.
 //
-// Where a flattened segment meets a sample row, all samples of the row right of it change sides: one bit at the first such sample's
-// pixel stands for them. Beside the bits, a pixel's area is kept as its difference from what its samples say. Where the
-// flattened segment passes from tile to tile between two rows, the right one's rows from there down change sides at its left edge.
+// Where a flattened segment meets a sample row, all samples of the row right of it change sides: one bit at the first
+// such sample's pixel stands for them. Beside the bits, a pixel's area is kept as its difference from what its samples
+// say. Where the flattened segment passes from tile to tile between two rows, the right one's rows from there down
+// change sides at its left edge.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/shared/canvas.glsl"
 #include "vector/shared/segments.glsl"

@@ -1,6 +1,6 @@
 // What fill does with a flattened segment in a row of pixels, whoever gives it the flatSegment.
 #include "vector/shared/run.glsl"
-layout(set = 0, binding = 15, std430) buffer Entries { uint entries[]; };
+layout(set = 0, binding = kBindEntries, std430) buffer Entries { uint entries[]; };
 #if SOFTWARE
 const uint kRowWords = 8; // a pixel each: samples that change sides, and the area in the upper half
 #else

@@ -9,7 +9,7 @@
 #include "vector/shared/lists.glsl"
 const uint kLanes = kTileSize * kTileSize;
 layout(local_size_x = kLanes) in;
-layout(set = 0, binding = 14, std430) readonly buffer BinPairs { uvec2 binPairs[]; };
+layout(set = 0, binding = kBindBins, std430) readonly buffer BinPairs { uvec2 binPairs[]; };
 shared uint found[kTileListPaths];    // paths
 shared uint coverage[kTileListPaths]; // foremost first, as are the colours: 1 all, 2: entry * 4 + 2 + inside
 shared vec4 colors[kTileListPaths];

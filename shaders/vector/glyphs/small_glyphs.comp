@@ -1,11 +1,11 @@
 #version 460
 // Small glyphs: what a path's boundary does to the tiles and pixels that it passes through, all of it in shared memory.
 //
-// A workgroup takes an item that has one path: its invocations take a segment each, then a flattened segment, then a row of pixels
-// of one. Samples and areas change as fill has them (fill_row.glsl), but in rows of all of the path's pixels; what lies
-// left of a tile is summed up in the end, when it shows which tiles have edges. Their entries lie behind those of all
-// other paths, and are written whole. ALONE: a record has nothing else, so they are placed here, and their tiles'
-// lists name them, which need no other path to be known.
+// A workgroup takes an item that has one path: its invocations take a segment each, then a flattened segment, then a
+// row of pixels of one. Samples and areas change as fill has them (fill_row.glsl), but in rows of all of the path's
+// pixels; what lies left of a tile is summed up in the end, when it shows which tiles have edges. Their entries lie
+// behind those of all other paths, and are written whole. ALONE: a record has nothing else, so they are placed here,
+// and their tiles' lists name them, which need no other path to be known.
 #extension GL_GOOGLE_include_directive : require
 #if SUBGROUPS
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -21,9 +21,10 @@
 #endif
 const uint kLanes = 32;
 layout(local_size_x = kLanes) in;
-layout(set = 0, binding = 15, std430) writeonly buffer Entries { uint entries[]; };
+layout(set = 0, binding = kBindEntries, std430) writeonly buffer Entries { uint entries[]; };
 shared uint pixels[kSmallGlyphPairs * 2];                      // the samples of pairs, row by row, then their areas
-shared vec4 flatSegments[kLanes];                               // x, y to x, y: down where the region begins right of it
+// x, y to x, y: down where the region begins right of it
+shared vec4 flatSegments[kLanes];
 shared uint firstFlatSegment[kLanes + 1], firstRow[kLanes + 1]; // of each segment; of each flattened segment
 shared uint edges[kSmallGlyphTiles], inside[kSmallGlyphTiles];      // of each row of tiles, as TileWord has them
 shared uint firstEntry;

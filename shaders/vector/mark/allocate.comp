@@ -1,5 +1,6 @@
 #version 460
-// Gives each tile with edges an entry, and clears it, unless mark has. Those of small glyphs have theirs (small_glyphs.comp).
+// Gives each tile with edges an entry, and clears it, unless mark has. Those of small glyphs have theirs
+// (small_glyphs.comp).
 //
 // Entries are taken in any order. Where they do not suffice, the workgroup that finishes last deals them out again in
 // painting order, and from the first path that does not fit on all are left out. SOFTWARE: that is all it does, by one
@@ -11,7 +12,7 @@ layout(local_size_x = 64) in;
 #include "vector/shared/lanes.glsl"
 #include "vector/shared/scan.glsl"
 #if !SOFTWARE
-layout(set = 0, binding = 15, std430) coherent buffer Entries { uvec4 entries[]; };
+layout(set = 0, binding = kBindEntries, std430) coherent buffer Entries { uvec4 entries[]; };
 #include "vector/shared/flat_segments.glsl"
 shared uint start;
 shared bool last;

@@ -1,17 +1,18 @@
 #version 460
 // Which tiles a path's boundary passes through, and for the others whether they lie inside.
 //
-// A flattened segment marks the tiles it meets, those into which it brings a change of sides across their left edge included, and
-// turns over "inside" for all tiles right of where it meets the first sample row of a row of tiles. As outlines are
-// closed and all comparisons are made on rows and columns that neighbours agree on, that is exact.
+// A flattened segment marks the tiles it meets, those into which it brings a change of sides across their left edge
+// included, and turns over "inside" for all tiles right of where it meets the first sample row of a row of tiles. As
+// outlines are closed and all comparisons are made on rows and columns that neighbours agree on, that is exact.
 //
-// Flattened segments that are to be filled are listed, and so are their rows of pixels. Marking waits more than it writes, so the
-// first workgroups clear entries beside it; allocate clears what more there are. Software devices: mark_pieces.comp.
+// Flattened segments that are to be filled are listed, and so are their rows of pixels. Marking waits more than it
+// writes, so the first workgroups clear entries beside it; allocate clears what more there are. Software devices:
+// mark_pieces.comp.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/shared/canvas.glsl"
 #define SEGMENT_GROUP (groupIndex() - kClearGroups)
 #include "vector/shared/segments.glsl"
-layout(set = 0, binding = 15, std430) writeonly buffer Entries { uvec4 entries[]; };
+layout(set = 0, binding = kBindEntries, std430) writeonly buffer Entries { uvec4 entries[]; };
 #include "vector/shared/flat_segments.glsl"
 #include "vector/shared/rows.glsl"
 shared uint taken, firstRow; // rows of the flattened segments at hand: how many, where they lie in the list
@@ -66,7 +67,8 @@ void main() {
     barrier();
     const uint first = firstRow + own;
     if (rowCount == 0 || first + rowCount > header.rowLimit) continue;
-    flatSegmentList[first] = FlatSegmentRecord(c.top, c.bottom, c.slope, path | (c.side > 0 ? kRightSide : 0) | (cut ? kCut : 0));
+    flatSegmentList[first] = FlatSegmentRecord(
+        c.top, c.bottom, c.slope, path | (c.side > 0 ? kRightSide : 0) | (cut ? kCut : 0));
     for (uint k = 0; k < rowCount; ++k) rows[first + k] = k;
   }
 }

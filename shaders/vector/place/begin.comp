@@ -1,25 +1,26 @@
 #version 460
 // A record's constants to the device, as the passes would else wait for host memory at every read, with its items
 // placed; and what they begin with: no path in any bin, nothing counted, no tile marked. Software devices clear the
-// latter two faster by transfers. ALONE: where there are small glyphs alone, smallGlyph places them, and tiles have lists.
+// latter two faster by transfers. ALONE: where there are small glyphs alone, smallGlyph places them, and tiles have
+// lists.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/place/placement.h"
 #include "vector/shared/constants.glsl"
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 17, std430) writeonly buffer To {
+layout(set = 0, binding = kBindItems, std430) writeonly buffer To {
   CanvasHeader copied;
   SlotRecord copiedSlots[kSlots];
   uint firstItems[kFirstItems];
   ItemRecord items[]; // ALONE: sources
 };
-layout(set = 0, binding = 14, std430) writeonly buffer Bins { uint bins[]; };
+layout(set = 0, binding = kBindBins, std430) writeonly buffer Bins { uint bins[]; };
 #if ALONE
-layout(set = 0, binding = 16, std430) writeonly buffer Counters { CanvasCounters counters; };
+layout(set = 0, binding = kBindCounters, std430) writeonly buffer Counters { CanvasCounters counters; };
 #else
-layout(set = 0, binding = 28, std430) writeonly buffer Shapes { vec4 shapes[]; };
+layout(set = 0, binding = kBindShapes, std430) writeonly buffer Shapes { vec4 shapes[]; };
 #if !SOFTWARE
-layout(set = 0, binding = 13, std430) writeonly buffer Words { uvec4 words[]; };
-layout(set = 0, binding = 16, std430) buffer Counters { uvec4 counters[8]; }; // CanvasCounters
+layout(set = 0, binding = kBindWords, std430) writeonly buffer Words { uvec4 words[]; };
+layout(set = 0, binding = kBindCounters, std430) buffer Counters { uvec4 counters[8]; }; // CanvasCounters
 #endif
 #endif
 

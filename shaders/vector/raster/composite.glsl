@@ -12,12 +12,12 @@
 #if PAINTS
 #include "vector/raster/paint.glsl"
 #endif
-layout(set = 0, binding = 15, std430) readonly buffer Entries { uvec4 entries[]; };
-layout(set = 0, binding = 8, std430) writeonly buffer View { uvec2 view[]; };
+layout(set = 0, binding = kBindEntries, std430) readonly buffer Entries { uvec4 entries[]; };
+layout(set = 0, binding = kBindHistory, std430) writeonly buffer View { uvec2 view[]; };
 #if TARGET == 1
-layout(set = 0, binding = 9, rgba8) uniform writeonly image2D image;
+layout(set = 0, binding = kBindImage8, rgba8) uniform writeonly image2D image;
 #elif TARGET == 2
-layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D image;
+layout(set = 0, binding = kBindImage16, rgba16f) uniform writeonly image2D image;
 #endif
 
 uint all;        // samples

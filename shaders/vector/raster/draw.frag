@@ -1,7 +1,8 @@
 #version 460
 // The canvas pixel under the fragment, premultiplied.
 #extension GL_GOOGLE_include_directive : require
-layout(set = 0, binding = 8, std430) readonly buffer View { uvec2 view[]; };
+#include "vector/shared/layout.h"
+layout(set = 0, binding = kBindHistory, std430) readonly buffer View { uvec2 view[]; };
 #include "vector/raster/draw.glsl"
 layout(location = 0) in vec2 at;
 layout(location = 0) out vec4 color;

@@ -27,7 +27,7 @@ shared uvec2 paints[kRoom]; // item, paint
 #endif
 #endif
 #if ASIDE || KEPT
-layout(set = 0, binding = 29, std430) buffer Aside { vec4 aside[]; };
+layout(set = 0, binding = kBindAside, std430) buffer Aside { vec4 aside[]; };
 #endif
 shared uint touching[2][kRoom / 32]; // of the paths at hand, in turn
 shared uint open[2];

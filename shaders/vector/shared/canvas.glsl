@@ -1,4 +1,4 @@
-// The canvas's bindings, in the order of its resources (src/vector/raster/canvas_passes.cpp), and what passes share.
+// The canvas's bindings, in the order of its resources (src/vector/passes/builder.cpp), and what passes share.
 #ifndef SCISSORS // only records of several drawings have any
 #if ONE_DRAWING
 #define SCISSORS 0
@@ -18,14 +18,14 @@
 DRAWING(0)
 #else
 DRAWING(0) DRAWING(1) DRAWING(2) DRAWING(3) DRAWING(4) DRAWING(5) DRAWING(6) DRAWING(7)
-layout(set = 0, binding = 28, std430) readonly buffer Shapes { vec4 shapes[]; };
+layout(set = 0, binding = kBindShapes, std430) readonly buffer Shapes { vec4 shapes[]; };
 #endif
 #if SOFTWARE // read where all invocations are, at the beginning of main, as elsewhere each reads for itself
 #define HEADER headerOfRecord
 #else
 #define HEADER header
 #endif
-layout(set = 0, binding = 17, std430) readonly buffer Constants {
+layout(set = 0, binding = kBindItems, std430) readonly buffer Constants {
   CanvasHeader HEADER;
   SlotRecord slots[kSlots];
   uint firstItems[kFirstItems]; // that segment 0, step, 2 step ... belong to; only of many items
@@ -34,15 +34,15 @@ layout(set = 0, binding = 17, std430) readonly buffer Constants {
 #if SOFTWARE
 CanvasHeader header = headerOfRecord;
 #endif
-layout(set = 0, binding = 12, std430) SHARING buffer Paths { PlacedPath paths[]; };
-layout(set = 0, binding = 13, std430) SHARING buffer Words { TileWord words[]; };
-layout(set = 0, binding = 14, std430) buffer Bins { uint bins[]; };
-layout(set = 0, binding = 16, std430) SHARING buffer Counters { CanvasCounters counters; };
+layout(set = 0, binding = kBindPaths, std430) SHARING buffer Paths { PlacedPath paths[]; };
+layout(set = 0, binding = kBindWords, std430) SHARING buffer Words { TileWord words[]; };
+layout(set = 0, binding = kBindBins, std430) buffer Bins { uint bins[]; };
+layout(set = 0, binding = kBindCounters, std430) SHARING buffer Counters { CanvasCounters counters; };
 #if SOFTWARE // to which four words cost little more than one
-layout(set = 0, binding = 12, std430) SHARING buffer PathVectors { uvec4 pathVectors[]; };
-layout(set = 0, binding = 13, std430) SHARING buffer WordVectors { uvec4 wordVectors[]; };
-layout(set = 0, binding = 14, std430) buffer BinPairs { uvec2 binPairs[]; };
-layout(set = 0, binding = 14, std430) buffer BinVectors { uvec4 binVectors[]; };
+layout(set = 0, binding = kBindPaths, std430) SHARING buffer PathVectors { uvec4 pathVectors[]; };
+layout(set = 0, binding = kBindWords, std430) SHARING buffer WordVectors { uvec4 wordVectors[]; };
+layout(set = 0, binding = kBindBins, std430) buffer BinPairs { uvec2 binPairs[]; };
+layout(set = 0, binding = kBindBins, std430) buffer BinVectors { uvec4 binVectors[]; };
 #endif
 
 #if ONE_DRAWING // a record of one drawing need not choose at each access

@@ -1,5 +1,5 @@
 // What the host writes for a record: placements, 3 vec4 each, then sources, 10 each, then the tables of shapes.
-layout(set = 0, binding = 11, std430) readonly buffer From {
+layout(set = 0, binding = kBindConstants, std430) readonly buffer From {
   CanvasHeader hostHeader;
   SlotRecord hostSlots[kSlots];
   vec4 from[];

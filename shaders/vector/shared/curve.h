@@ -5,8 +5,9 @@
 // point's height and asking its box again. A parabola's implicit form decides the rest: with A, B the control and end
 // point relative to the start and w the point, f(w) = cross(w, B - 2A)^2 + 4 cross(A, B) cross(w, A) is zero on it,
 // positive outside, negative inside (Salmon; Loop and Blinn 2005 use the same form with interpolated coordinates).
-// Outside the segment's hull that sign means nothing, so the flattened segment guards it: a line meets a parabola at most twice,
-// hence on the bulge's side of the flattened segment f decides, and on the other side the flattened segment does.
+// Outside the segment's hull that sign means nothing, so the flattened segment guards it: a line meets a parabola at
+// most twice, hence on the bulge's side of the flattened segment f decides, and on the other side the flattened segment
+// does.
 //
 // Guarantee: only + - * on precise floats, so CPU and GPU agree on every bit; wrong only within tolerance plus a few
 // units of the last place of the curve's box.

@@ -2,16 +2,16 @@
 //
 // A segment is a part of a curve on the boundary of a path's filled region: the region lies on one side of it, nothing
 // on the other. Segments of a path form closed outlines, so a sample is inside where an odd number of them lies left of
-// it in its row. A segment's curve is cut into equal steps of its parameter, as many as keep the flattened segments within
-// kFlatness of it; between the curve's ends they begin a little outside of it, by up to 4/3 kFlatness, so that they
-// leave as much area on one side of it as on the other. Flattened segments that reach beyond the segment's ends are clipped to
-// those. Everything that borders shares its vertices bit for bit: consecutive flattened segments, segments that meet, and paths
-// that have a curve in common.
+// it in its row. A segment's curve is cut into equal steps of its parameter, as many as keep the flattened segments
+// within kFlatness of it; between the curve's ends they begin a little outside of it, by up to 4/3 kFlatness, so that
+// they leave as much area on one side of it as on the other. Flattened segments that reach beyond the segment's ends
+// are clipped to those. Everything that borders shares its vertices bit for bit: consecutive flattened segments,
+// segments that meet, and paths that have a curve in common.
 //
-// A projective item's lines stay lines, so its flattened segments need no other form; its curves take as many flattened segments as the largest
-// magnification along them asks for. What lies behind the eye is cut off along a line of the drawing that is seen past
-// the canvas, and the outlines are closed along it where it passes left of the canvas: all that then counts are the
-// rows that each cut turns over (placeItem in src/vector/raster/place.h chooses the line).
+// A projective item's lines stay lines, so its flattened segments need no other form; its curves take as many flattened
+// segments as the largest magnification along them asks for. What lies behind the eye is cut off along a line of the
+// drawing that is seen past the canvas, and the outlines are closed along it where it passes left of the canvas: all
+// that then counts are the rows that each cut turns over (placeItem in src/vector/raster/place.h chooses the line).
 //
 // A scissor moves what lies outside of it to its edge: outlines stay closed, and inside it nothing changes. Crossings
 // go to its nearer side, and ends of flattened segments above or below it to its left corners.
@@ -37,8 +37,10 @@
 
 GPGP_SHADER_BEGIN
 
-GPGP_CONST float kFlatness = 0.03125f;  // pixels: how far a flattened segment may lie from its curve, before vertices are moved
-GPGP_CONST float kFlatAlone = 256.0f;   // the square of how much closer a curve's only flattened segment lies, which can't be moved
+GPGP_CONST float kFlatness =
+    0.03125f; // pixels: how far a flattened segment may lie from its curve, before vertices are moved
+GPGP_CONST float kFlatAlone =
+    256.0f; // the square of how much closer a curve's only flattened segment lies, which can't be moved
 GPGP_CONST uint kMaxFlatSegments = 1024u;     // of one curve
 GPGP_CONST float kLongestFlatSegment = 16.0f; // pixels, so that work is even; longer only beyond kMaxFlatSegments
 
@@ -64,7 +66,8 @@ GPGP_FN vec2 toPixel(ItemRecord item, float x, float y) {
   GPGP_PRECISE float py = item.transform.y * x + (item.transform.w * y + item.offsets.w);
 #if PROJECTIVE
   if (projects(item)) {
-    const float w = max(depthOf(item, x, y), item.perspective.w); // the latter by rounding, or by flattened segments' outset
+    const float w =
+        max(depthOf(item, x, y), item.perspective.w); // the latter by rounding, or by flattened segments' outset
     return vec2(divide(px, w), divide(py, w));
   }
 #endif
@@ -79,8 +82,8 @@ GPGP_FN float bendOf(vec2 a, vec2 b, vec2 c) {
   return s;
 }
 
-// How many flattened segments a curve takes: a power of two, or one and a half times that, which needs neither roots nor division.
-// `length` in longest flattened segments, `bend` the fourth power of what flatness asks for.
+// How many flattened segments a curve takes: a power of two, or one and a half times that, which needs neither roots
+// nor division. `length` in longest flattened segments, `bend` the fourth power of what flatness asks for.
 GPGP_FN uint flatSegmentsFor(float length, float bend) {
   uint n = bend * kFlatAlone > 1.0f ? 2u : 1u;
   while (n < kMaxFlatSegments) {
@@ -115,8 +118,9 @@ GPGP_FN vec2 reachOf(Grid g, ItemRecord item, float x, float y) {
   return vec2(u, v);
 }
 
-// Flattened segments within kFlatness of the curve and, up to kMaxFlatSegments, no longer than kLongestFlatSegment, by the part nearest to the
-// eye; twice as many where the segment passes behind the eye, as each flattened segment may then be cut (flatSegmentOf).
+// Flattened segments within kFlatness of the curve and, up to kMaxFlatSegments, no longer than kLongestFlatSegment, by
+// the part nearest to the eye; twice as many where the segment passes behind the eye, as each flattened segment may
+// then be cut (flatSegmentOf).
 GPGP_FN uint projectedFlatSegments(Grid g, ItemRecord item, SegmentRecord s) {
   const float near = item.perspective.w;
   const float w = max(min(min(depthOf(item, s.first.x, s.first.y), depthOf(item, s.first.z, s.first.w)),
@@ -193,8 +197,8 @@ GPGP_FN bool mayMatter(Grid g, ItemRecord item, SegmentRecord s) {
   return left && bottom >= -1.0f && top * float(g.samples) <= float(g.rows) + 1.0f;
 }
 
-// How far the vertex of two flattened segments lies outside of its curve, by the curve's second difference a - c, where a, b, c
-// lead from control point to control point: so far that the two cover the curve's area, 1/8 for a parabola.
+// How far the vertex of two flattened segments lies outside of its curve, by the curve's second difference a - c, where
+// a, b, c lead from control point to control point: so far that the two cover the curve's area, 1/8 for a parabola.
 GPGP_FN float middleOutset(float ax, float ay, float bx, float by, float cx, float cy) {
   GPGP_PRECISE float ab = ax * by - ay * bx;
   GPGP_PRECISE float bc = bx * cy - by * cx;
@@ -210,9 +214,10 @@ GPGP_FN float middleOutset(float ax, float ay, float bx, float by, float cx, flo
   return outset;
 }
 
-// Where flattened segment i of n begins in the drawing, and the one before it ends; `step` is flatSegmentStep(n). A flattened segment across a curve
-// with second derivative p lies p step^2 / 12 inside of it on average, so flattened segments begin as far outside. The curve's ends
-// stay, so the vertices beside them take over the half that these leave, or all of it where there is but one.
+// Where flattened segment i of n begins in the drawing, and the one before it ends; `step` is flatSegmentStep(n). A
+// flattened segment across a curve with second derivative p lies p step^2 / 12 inside of it on average, so flattened
+// segments begin as far outside. The curve's ends stay, so the vertices beside them take over the half that these
+// leave, or all of it where there is but one.
 GPGP_FN vec2 curvePoint(SegmentRecord s, uint i, uint n, float step) {
   if (i == 0u) return vec2(s.first.x, s.first.y);
   if (i >= n) return vec2(s.second.z, s.second.w);
@@ -294,8 +299,10 @@ GPGP_FN bool cutFlatSegment(Grid g, vec4 scissor, GPGP_INOUT(FlatSegment) flatSe
   flatSegment.left = scissor.x;
   flatSegment.right = max(scissor.z, scissor.x);
   if (flatSegment.last < begin || flatSegment.first > end) return false;
-  flatSegment.topEnd = flatSegment.first < begin ? flatSegment.left : clamp(flatSegment.top.x, flatSegment.left, flatSegment.right);
-  flatSegment.lastEnd = flatSegment.last > end ? flatSegment.left : clamp(flatSegment.bottom.x, flatSegment.left, flatSegment.right);
+  flatSegment.topEnd =
+      flatSegment.first < begin ? flatSegment.left : clamp(flatSegment.top.x, flatSegment.left, flatSegment.right);
+  flatSegment.lastEnd =
+      flatSegment.last > end ? flatSegment.left : clamp(flatSegment.bottom.x, flatSegment.left, flatSegment.right);
   flatSegment.first = max(flatSegment.first, begin);
   flatSegment.last = min(flatSegment.last, end);
   return true;
@@ -316,7 +323,8 @@ GPGP_FN float slopeOf(float width, float height) {
 }
 
 // Flattened segment i of n of a segment, clipped to it and to the scissor. False where nothing of it is left.
-GPGP_FN bool flatSegmentOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, float step, GPGP_OUT(FlatSegment) flatSegment) {
+GPGP_FN bool flatSegmentOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uint n, float step,
+                           GPGP_OUT(FlatSegment) flatSegment) {
   flatSegment.first = 0;
   flatSegment.last = 0;
   flatSegment.side = 0.0f;
@@ -330,8 +338,8 @@ GPGP_FN bool flatSegmentOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uin
   flatSegment.lastEnd = 0.0f;
 #endif
 #if PROJECTIVE
-  // Of a segment that passes behind the eye, the second half of the flattened segments are the outline along the cut: where flattened segment
-  // i - n / 2 is cut, down to there from above the canvas.
+  // Of a segment that passes behind the eye, the second half of the flattened segments are the outline along the cut:
+  // where flattened segment i - n / 2 is cut, down to there from above the canvas.
   uint flatSegments = n, at = i;
   float spacing = step;
   bool closing = false, cut = false;
@@ -355,8 +363,8 @@ GPGP_FN bool flatSegmentOf(Grid g, ItemRecord item, SegmentRecord s, uint i, uin
   vec2 a = curvePoint(s, i, n, step);
   vec2 b = curvePoint(s, i + 1u, n, step);
 #endif
-  // What lies beyond the segment's ends becomes these, also where flattened segments turn back a little, as they may where the
-  // curve is all but level: so they stay connected.
+  // What lies beyond the segment's ends becomes these, also where flattened segments turn back a little, as they may
+  // where the curve is all but level: so they stay connected.
   if (s.ends.y > s.first.y) { // begins below its curve's begin
     const bool above = a.y <= s.ends.y;
     if (above && b.y <= s.ends.y) return false;

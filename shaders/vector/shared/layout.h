@@ -7,6 +7,23 @@
 
 GPGP_SHADER_BEGIN
 
+// Bindings of descriptor set 0, which are the numbers of the canvas's resources: 0 to 7 drawings, then these.
+GPGP_CONST int kBindHistory = 8;
+GPGP_CONST int kBindImage8 = 9; // targets
+GPGP_CONST int kBindImage16 = 10;
+GPGP_CONST int kBindConstants = 11; // from the host
+GPGP_CONST int kBindPaths = 12;
+GPGP_CONST int kBindWords = 13;
+GPGP_CONST int kBindBins = 14;
+GPGP_CONST int kBindEntries = 15;
+GPGP_CONST int kBindCounters = 16;
+GPGP_CONST int kBindItems = 17;
+GPGP_CONST int kBindImages = 18; // the first; textures, in descriptor set 1
+GPGP_CONST int kBindFlatSegments = 26;
+GPGP_CONST int kBindRows = 27;
+GPGP_CONST int kBindShapes = 28;
+GPGP_CONST int kBindAside = 29;
+
 // A curve of a drawing: a cubic that never turns in x or y, from its top point down (lines and quadratics elevated).
 // Control points are relative to the start, which keeps their low bits.
 struct CurveRecord {
@@ -117,16 +134,16 @@ struct ItemRecord {
   uint whole;           // 1: all of its paths are drawn or none
   uint clip;            // 1 + index of its ItemClipRecord; 0: none
   uint layer;           // 1 + index of the LayerRecord of the record's own that holds it; 0: none
-  uint smallGlyph;         // 1: a small glyph of one path, whose segments are not among the record's (small_glyphs.comp)
+  uint smallGlyph;      // 1: a small glyph of one path, whose segments are not among the record's (small_glyphs.comp)
   uint pad0;
 };
 
 // What the host writes for each item: where the one that it names is placed, in the units of that one.
 struct PlacementRecord {
   float x, y, size;
-  uint source;                                   // of the record's sources: ItemRecords without a place of their own;
-                                                 // in its bits from kSlotBit on, the slot; kSmallGlyphBit: it is smallGlyph
-  vec4 color;                                    // straight; alpha multiplies
+  uint source; // of the record's sources: ItemRecords without a place of their own;
+               // in its bits from kSlotBit on, the slot; kSmallGlyphBit: it is smallGlyph
+  vec4 color;  // straight; alpha multiplies
   uint firstSegment, firstPath, segments, paths; // as an item's
 };
 
@@ -170,7 +187,7 @@ struct TileWord {
   uint edges;      // the path's boundary passes through the tile
   uint inside;     // the tile's first sample row is inside at its left edge
   uint firstEntry; // of the tiles with edges, in order
-  uint smallGlyph;    // 1: a small glyph's
+  uint smallGlyph; // 1: a small glyph's
 };
 
 struct CanvasHeader {
@@ -198,9 +215,9 @@ struct CanvasCounters {
   uint words, entries;        // needed
   uint cutPath, pathsDropped; // paths from cutPath on are left out
   uint wordsGiven, entriesGiven;
-  uint placed, allocated;    // workgroups that are done; the latter on software devices pieces (pieces.glsl)
-  uint paths;               // needed
-  uint rows;                // needed: of the lists between mark and fill; on software devices flattened segments (pieces.glsl)
+  uint placed, allocated; // workgroups that are done; the latter on software devices pieces (pieces.glsl)
+  uint paths;             // needed
+  uint rows; // needed: of the lists between mark and fill; on software devices flattened segments (pieces.glsl)
   uint fillX, fillY, fillZ; // workgroups of the pass that does without those lists
   uint glyphs, glyphsGiven; // needed; room for as many
   uint shapes, shapesGiven, items, itemsGiven;
@@ -208,7 +225,7 @@ struct CanvasCounters {
                                // on software devices tiles that are painted by rows
   uint rowsX, rowsY, rowsZ;    // workgroups of the pass that fills from lists
   uint cleared;                // entries that mark clears: as many as the record before had
-  uint smallGlyph;                // entries of small glyphs, behind the others
+  uint smallGlyph;             // entries of small glyphs, behind the others
   uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
   uint rowsTaken;              // of tiles, by fill on software devices
   uint ended;                  // 1: the device has ended loops before their time (core/turns.h)
@@ -219,7 +236,8 @@ struct CanvasCounters {
 struct FlatSegmentRecord {
   vec2 top, bottom;
   float slope;
-  uint path; // and in the highest bits whether the region begins right of the flattened segment, and whether there is a scissor
+  uint path; // and in the highest bits whether the region begins right of the flattened segment, and whether there is a
+             // scissor
 };
 
 GPGP_CONST uint kPaintLinear = 0u;
@@ -262,13 +280,13 @@ GPGP_CONST uint kPaintedArguments = 0u;
 GPGP_CONST uint kCrowdedArguments = 4u;
 GPGP_CONST uint kRichArguments = 8u;
 GPGP_CONST uint kRichCrowdedArguments = 12u;
-GPGP_CONST uint kFirstItems = 1024u; // segments at whose items it is known to search
-GPGP_CONST uint kManyItems = 256u;   // where that is worth it
-GPGP_CONST uint kTilesAside = 4096u; // painted by the general shader beside the other tiles
-GPGP_CONST uint kClearGroups = 256u; // workgroups of mark that clear entries
-GPGP_CONST uint kMostSegments = 64u; // of a workgroup, a power of two
-GPGP_CONST uint kSmallGlyphTiles = 16u;   // of a small path, at most
-GPGP_CONST uint kSmallGlyphPairs = 128u;  // of its pixels
+GPGP_CONST uint kFirstItems = 1024u;     // segments at whose items it is known to search
+GPGP_CONST uint kManyItems = 256u;       // where that is worth it
+GPGP_CONST uint kTilesAside = 4096u;     // painted by the general shader beside the other tiles
+GPGP_CONST uint kClearGroups = 256u;     // workgroups of mark that clear entries
+GPGP_CONST uint kMostSegments = 64u;     // of a workgroup, a power of two
+GPGP_CONST uint kSmallGlyphTiles = 16u;  // of a small path, at most
+GPGP_CONST uint kSmallGlyphPairs = 128u; // of its pixels
 GPGP_CONST uint kFirstBin = 16u;
 // Of records of small glyphs alone, in place of bins: for each tile how many paths it has, nothing, and for as many as
 // there is room for what they do to it and which they are. Others follow all tiles: tile, what, which.

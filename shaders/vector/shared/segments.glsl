@@ -1,6 +1,6 @@
-// What the passes over segments share: a workgroup takes header.groupSegments of them and deals their flattened segments out
-// evenly. SOFTWARE: without barriers; an invocation takes a segment, or a share of its flatSegments. SEGMENTS_ONLY: the pass
-// itself does.
+// What the passes over segments share: a workgroup takes header.groupSegments of them and deals their flattened
+// segments out evenly. SOFTWARE: without barriers; an invocation takes a segment, or a share of its flatSegments.
+// SEGMENTS_ONLY: the pass itself does.
 #ifndef LANES
 #define LANES 64
 #endif
@@ -112,6 +112,7 @@ uint segmentOf(uint i) {
 
 bool fetchFlatSegment(Grid g, uint s, uint i, out FlatSegment flatSegment) {
   const uint first = firstFlatSegment[s];
-  return flatSegmentOf(g, items[segmentItem[s]], segment[s], i - first, firstFlatSegment[s + 1] - first, segmentStep[s], flatSegment);
+  return flatSegmentOf(g, items[segmentItem[s]], segment[s], i - first, firstFlatSegment[s + 1] - first, segmentStep[s],
+                       flatSegment);
 }
 #endif

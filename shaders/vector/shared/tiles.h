@@ -64,8 +64,9 @@ GPGP_FN uvec4 tileBox(ItemRecord item, vec4 box, vec4 frame, vec2 tiles) {
   return tilesIn(vec2(left, top), vec2(right, bottom), tiles);
 }
 
-// What a flattened segment does to a row of tiles: it meets those from low to high, and where it meets the row's first sample row,
-// it turns over "inside" from a tile on. Those into which it brings a change of sides across their left edge are met.
+// What a flattened segment does to a row of tiles: it meets those from low to high, and where it meets the row's first
+// sample row, it turns over "inside" from a tile on. Those into which it brings a change of sides across their left
+// edge are met.
 struct TileSpan {
   int low, high; // none: kNoTile, -1
   int turned;    // kNoTile: none

@@ -4,7 +4,7 @@
 #include "vector/shared/canvas.glsl"
 layout(local_size_x = 64) in;
 #if !WORDS
-layout(set = 0, binding = 15, std430) writeonly buffer Entries { uvec4 entries[]; };
+layout(set = 0, binding = kBindEntries, std430) writeonly buffer Entries { uvec4 entries[]; };
 #endif
 
 void main() {

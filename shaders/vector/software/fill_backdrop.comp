@@ -7,8 +7,8 @@
 #include "vector/shared/canvas.glsl"
 #include "vector/software/pieces.glsl"
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 15, std430) buffer Entries { uint entries[]; };
-layout(set = 0, binding = 15, std430) buffer EntryVectors { uvec4 entryVectors[]; };
+layout(set = 0, binding = kBindEntries, std430) buffer Entries { uint entries[]; };
+layout(set = 0, binding = kBindEntries, std430) buffer EntryVectors { uvec4 entryVectors[]; };
 
 void main() {
   const uint y = gl_LocalInvocationIndex % 8, all = (1u << header.samples) - 1, cutPath = counters.cutPath;

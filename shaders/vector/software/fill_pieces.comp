@@ -2,10 +2,10 @@
 // For software devices, as fill.comp: what each path's boundary does to the pixels of the tiles it passes through,
 // without atomics.
 //
-// An invocation has whole rows of tiles of paths, one after another. In each turn it takes what a flattened segment does in one
-// pixel of a row, whichever row of tiles and flattened segment that is of, so that invocations that run together rarely wait for
-// each other. What is needed in every turn is read and written by all of them, as those that have nothing to do would
-// cost more if they were left out; what is rare waits until several need it.
+// An invocation has whole rows of tiles of paths, one after another. In each turn it takes what a flattened segment
+// does in one pixel of a row, whichever row of tiles and flattened segment that is of, so that invocations that run
+// together rarely wait for each other. What is needed in every turn is read and written by all of them, as those that
+// have nothing to do would cost more if they were left out; what is rare waits until several need it.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/shared/canvas.glsl"
 #include "vector/shared/loops_ended.glsl"
@@ -13,7 +13,7 @@
 #include "vector/shared/run.glsl"
 #include "vector/software/pieces.glsl"
 layout(local_size_x = 8) in;
-layout(set = 0, binding = 15, std430) buffer Entries { uint entries[]; };
+layout(set = 0, binding = kBindEntries, std430) buffer Entries { uint entries[]; };
 const uint kIdle = 2; // invocations that wait for work before it is looked for
 // Turns after which an invocation takes no more rows, or gives up. The device counts them in two loops (core/turns.h).
 const uint kManyTurns = 20000, kMostTurns = 30000;

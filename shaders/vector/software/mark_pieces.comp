@@ -2,9 +2,9 @@
 // For software devices, as mark.comp: which tiles a path's boundary passes through, and for the others whether they lie
 // inside.
 //
-// Invocations of a subgroup take a segment each, and then an equal share of all their flatSegments. What follows each other
-// in one word of tiles is marked and listed at once. Atomics are dear, also for the other invocations, so they wait
-// until as many as possible have something for them.
+// Invocations of a subgroup take a segment each, and then an equal share of all their flatSegments. What follows each
+// other in one word of tiles is marked and listed at once. Atomics are dear, also for the other invocations, so they
+// wait until as many as possible have something for them.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/shared/canvas.glsl"
 #include "vector/shared/loops_ended.glsl"

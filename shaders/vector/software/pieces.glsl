@@ -1,8 +1,9 @@
-// Between mark, allocate and fill on software devices: the flattened segments of a path that meet each word of its tiles.
+// Between mark, allocate and fill on software devices: the flattened segments of a path that meet each word of its
+// tiles.
 //
-// Each word has a list of pieces, in any order: flattened segments of one segment, one after another. TileWord::smallGlyph is 1 + the
-// number of the first piece. Until allocate gives entries, the firstEntry of a row's first word tells whose row it is.
-// What fill then takes is a list of rows.
+// Each word has a list of pieces, in any order: flattened segments of one segment, one after another.
+// TileWord::smallGlyph is 1 + the number of the first piece. Until allocate gives entries, the firstEntry of a row's
+// first word tells whose row it is. What fill then takes is a list of rows.
 struct Piece {
   uint begin, end; // flattened segments
   uint next;       // 1 + the number of the next one; 0: none
@@ -11,9 +12,9 @@ struct Piece {
 const vec4 kNoScissor = vec4(-kUnbounded, -kUnbounded, kUnbounded, kUnbounded);
 const uint kOwned = 0x80000000u; // beside a path's number
 // From x, y to x, y: down where the region begins right of the flatSegment.
-layout(set = 0, binding = 26, std430) buffer FlatSegments { vec4 flatSegmentList[]; };
+layout(set = 0, binding = kBindFlatSegments, std430) buffer FlatSegments { vec4 flatSegmentList[]; };
 // Rows: the first word, the path, the row of tiles. Behind as many as there may be words: pieces.
-layout(set = 0, binding = 27, std430) buffer PathRows { uvec4 pathRows[]; };
+layout(set = 0, binding = kBindRows, std430) buffer PathRows { uvec4 pathRows[]; };
 uint firstPiece() { return header.wordLimit; }
 
 void putPiece(uint i, Piece p) { pathRows[firstPiece() + i] = uvec4(p.begin, p.end, p.next, p.edges); }

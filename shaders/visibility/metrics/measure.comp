@@ -1,5 +1,5 @@
-// Compares visible bits with a reference: masks of false positives and false negatives, and their numbers. One invocation a
-// word of 32 triangles. Areas are sums of 64 bits: two words, the high one counts the low one's carries.
+// Compares visible bits with a reference: masks of false positives and false negatives, and their numbers. One
+// invocation a word of 32 triangles. Areas are sums of 64 bits: two words, the high one counts the low one's carries.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/metrics/metrics.h"
@@ -9,7 +9,9 @@ layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params par
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) readonly buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindReference) readonly buffer ReferenceBuffer { uint referenceBits[]; };
-layout(std430, set = 0, binding = kBindReferenceCounts) readonly buffer ReferenceCountBuffer { uint referenceCounts[]; };
+layout(std430, set = 0, binding = kBindReferenceCounts) readonly buffer ReferenceCountBuffer {
+  uint referenceCounts[];
+};
 layout(std430, set = 0, binding = kBindRecheck) readonly buffer RecheckBuffer { uint recheckBits[]; };
 layout(std430, set = 0, binding = kBindFalsePositives) writeonly buffer PositiveBuffer { uint positives[]; };
 layout(std430, set = 0, binding = kBindFalseNegatives) writeonly buffer NegativeBuffer { uint negatives[]; };

@@ -1,5 +1,5 @@
-// What counts as true and as false when visible triangles are compared with a reference, a word of 32 triangles at a time
-// (6.3: coverage and overestimation).
+// What counts as true and as false when visible triangles are compared with a reference, a word of 32 triangles at a
+// time (6.3: coverage and overestimation).
 #ifndef GPGP_SHADERS_VISIBILITY_METRICS_H
 #define GPGP_SHADERS_VISIBILITY_METRICS_H
 #include "visibility/shared/layout.h"

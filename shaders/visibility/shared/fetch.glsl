@@ -1,7 +1,8 @@
 // From a work item's number to a triangle in clip space: reads the engine's buffers.
 //
 // Guarantees: nothing is read outside the ranges that the engine gave. Work items count the triangles of all cameras'
-// draws in order; the draw table (made by plan.comp and expand_commands.comp) holds each draw's first item and first chunk.
+// draws in order; the draw table (made by plan.comp and expand_commands.comp) holds each draw's first item and first
+// chunk.
 #include "visibility/shared/position.h"
 #include "visibility/shared/triangle.h"
 

@@ -1,7 +1,7 @@
 // Exact integers for the rasteriser, and which floats it computes with.
 //
-// Guarantees: every function gives the same bits on every device and in the CPU reference. 64-bit integers are two 32-bit
-// words, because shaderInt64 is not part of the baseline.
+// Guarantees: every function gives the same bits on every device and in the CPU reference. 64-bit integers are two
+// 32-bit words, because shaderInt64 is not part of the baseline.
 #ifndef GPGP_SHADERS_VISIBILITY_EXACT_H
 #define GPGP_SHADERS_VISIBILITY_EXACT_H
 #include "core/shared.h"

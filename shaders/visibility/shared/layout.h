@@ -22,7 +22,7 @@ GPGP_CONST uint kSliceBlocks = 64u;        ///< blocks of 8 x 8 pixels that one 
 GPGP_CONST uint kSliceTiles = 64u;         ///< the same of exact sampling's tiles: one an invocation
 GPGP_CONST uint kChunk = 64u;              ///< triangles of one draw that a workgroup takes at a time
 GPGP_CONST uint kExact = 1u;               ///< GPGP_SAMPLING_EXACT
-GPGP_CONST uint kReference = 2u;               ///< GPGP_SAMPLING_REFERENCE
+GPGP_CONST uint kReference = 2u;           ///< GPGP_SAMPLING_REFERENCE
 GPGP_CONST uint kConservative = 3u;        ///< GPGP_SAMPLING_CONSERVATIVE
 GPGP_CONST uint kNearby = 4u;              ///< GPGP_SAMPLING_NEARBY
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
@@ -61,15 +61,15 @@ GPGP_CONST int kBindDrawTriangles = 20;
 GPGP_CONST int kBindExtents = 21;
 GPGP_CONST int kBindPairs = 22;          // a tile and a candidate each, then which of its pixels; by tile: candidates
 GPGP_CONST int kBindOpen = kBindSamples; // exact, once ids are gathered: pixels with lists
-GPGP_CONST int kBindCandidates = kBindRecords; // exact, once ids are drawn
-GPGP_CONST int kBindEntries = kBindQueue;      // exact, once all pairs are there: candidates in lists
-GPGP_CONST int kBindKeys = kBindPairs;         // exact, once lists have their places: depths of long ones' entries
-GPGP_CONST int kBindSurfaces = kBindRecords;   // conservative, once ids are drawn
-GPGP_CONST int kBindGaps = kBindPairs;         // conservative: words per pixel
-GPGP_CONST int kBindTiles = kBindRecords;      // nearby, once ids are drawn
-GPGP_CONST int kBindNumbers = kBindMeshes;     // with commands, which need no meshes: triangles' numbers
-GPGP_CONST int kBindClusters = kBindCommands;  // without commands
-GPGP_CONST int kBindReference = kBindPositions;    // of records that measure, which have no geometry
+GPGP_CONST int kBindCandidates = kBindRecords;  // exact, once ids are drawn
+GPGP_CONST int kBindEntries = kBindQueue;       // exact, once all pairs are there: candidates in lists
+GPGP_CONST int kBindKeys = kBindPairs;          // exact, once lists have their places: depths of long ones' entries
+GPGP_CONST int kBindSurfaces = kBindRecords;    // conservative, once ids are drawn
+GPGP_CONST int kBindGaps = kBindPairs;          // conservative: words per pixel
+GPGP_CONST int kBindTiles = kBindRecords;       // nearby, once ids are drawn
+GPGP_CONST int kBindNumbers = kBindMeshes;      // with commands, which need no meshes: triangles' numbers
+GPGP_CONST int kBindClusters = kBindCommands;   // without commands
+GPGP_CONST int kBindReference = kBindPositions; // of records that measure, which have no geometry
 GPGP_CONST int kBindReferenceCounts = kBindIndices;
 GPGP_CONST int kBindRecheck = kBindDraws;
 GPGP_CONST int kBindFalsePositives = kBindList;
@@ -238,7 +238,7 @@ struct Counters {
   uint drawTriangles; // visible ones of all draws: in the lists by draw, whatever their budget
   uint drawListed;
   uint reference; // triangles; this and what follows: of records that measure
-  uint found; // of the reference, visible
+  uint found;     // of the reference, visible
   uint falsePositives;
   uint referenceArea[2]; // samples: low word, high word
   uint foundArea[2];

@@ -1,7 +1,7 @@
 // Numbers the work: each draw's first item (triangle) and first chunk are the sums over the draws before it. A chunk
 // holds triangles of one draw only, so that a workgroup reads one transform. One workgroup goes through the draws of
-// all cameras (or the indirect commands, whose instances expand_commands.comp writes): each invocation sums a run, the sums are
-// scanned, and the runs are written.
+// all cameras (or the indirect commands, whose instances expand_commands.comp writes): each invocation sums a run, the
+// sums are scanned, and the runs are written.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "visibility/shared/layout.h"

@@ -3,8 +3,8 @@
 #include "spawn/codegen/room.h"
 #include "spawn/codegen/table.h"
 #include "spawn/graph/matching.h"
-#include "spawn/shared/operators.h"
 #include "spawn/kernel/table_format.h"
+#include "spawn/shared/operators.h"
 
 #include <algorithm>
 #include <array>
@@ -544,8 +544,8 @@ private:
       }
     return nodes;
   }
-  /// A shape comes from an operator that multiplies (arrives), or has waited for this one. What is named here is inlined
-  /// to its end, and software devices run all of it, so that only those chains are that a shape can come to.
+  /// A shape comes from an operator that multiplies (arrives), or has waited for this one. What is named here is
+  /// inlined to its end, and software devices run all of it, so that only those chains are that a shape can come to.
   void writeRunChain() {
     add("uint runChain(inout Shape s, bool arrives, uint maxDepth) {\n"
         "  uint end = s.node == 0u ? kEndDiscarded : kEndUnfinished;\n"

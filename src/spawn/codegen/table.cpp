@@ -1,7 +1,7 @@
 #include "spawn/codegen/table.h"
 
-#include "spawn/shared/operators.h"
 #include "spawn/kernel/table_format.h"
+#include "spawn/shared/operators.h"
 
 #include <algorithm>
 #include <array>

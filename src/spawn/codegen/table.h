@@ -1,5 +1,5 @@
-// A generated kernel's table (shaders/spawn/kernel/table_format.h): operators that differ in parameters only share their code,
-// and families unite operators that multiply with those behind them on static edges.
+// A generated kernel's table (shaders/spawn/kernel/table_format.h): operators that differ in parameters only share
+// their code, and families unite operators that multiply with those behind them on static edges.
 #pragma once
 #include "spawn/graph/graph.h"
 

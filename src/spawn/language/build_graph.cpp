@@ -1,6 +1,5 @@
 #include "spawn/language/build_graph.h"
 
-#include "spawn/shared/expression.h"
 #include "spawn/graph/export_labels.h"
 #include "spawn/language/append_graph.h"
 #include "spawn/language/check_context.h"
@@ -9,6 +8,7 @@
 #include "spawn/language/resolve_rules.h"
 #include "spawn/language/spellings.h"
 #include "spawn/language/suggest.h"
+#include "spawn/shared/expression.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #include "spawn/language/expressions.h"
 
-#include "spawn/shared/expression.h"
 #include "spawn/language/spellings.h"
 #include "spawn/language/suggest.h"
+#include "spawn/shared/expression.h"
 
 #include <algorithm>
 #include <cmath>

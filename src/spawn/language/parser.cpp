@@ -3,9 +3,9 @@
 // A syntax error ends what it stands in: an argument up to its ',' or ')', a successor up to its '|' or '}', or the
 // statement up to its ';' or to where another one begins. What was read before stays in the tree, where it is checked
 // as the rest is, and what was not is marked, so that nobody reports that it is missing.
-#include "spawn/shared/graph_format.h"
 #include "spawn/language/lexer.h"
 #include "spawn/language/syntax.h"
+#include "spawn/shared/graph_format.h"
 
 namespace gpgp::spawn {
 namespace {

@@ -1,8 +1,8 @@
 // The printed form back to a graph. One pass over the tokens; what it names by number is checked once all is read.
-#include "spawn/shared/expression.h"
 #include "spawn/graph/export_labels.h"
 #include "spawn/language/lexer.h"
 #include "spawn/language/print.h"
+#include "spawn/shared/expression.h"
 
 #include <algorithm>
 #include <bit>

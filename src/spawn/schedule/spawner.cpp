@@ -19,34 +19,10 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <cstring>
 
 namespace gpgp::spawn {
 namespace {
-
-// Resource numbers are the bindings of shaders/spawn/shared/bindings.glsl.
-enum : core::ResourceIndex {
-  kGraph,
-  kAxioms,
-  kInstances,
-  kDraws,
-  kCount,
-  kQueues,
-  kStacks,
-  kRecords,
-  kCounters,
-  kBuckets,
-  kConstants,
-  kVertices,
-  kIndices,
-  kNeeded,
-  kColliders,
-  kColliderCells,
-  kOrder,
-  kAxiomCounter,
-  kBounds,
-  kBoundKeys,
-  kReport
-};
 
 // Workgroup counts of a record.
 constexpr uint32_t kOneGroup = 0, kAxiomGroups = 1, kLinkGroups = 2, kPartGroups = 3, kExpandGroups = 4,
@@ -113,8 +89,8 @@ KernelInfo interpreterFor(const core::Device& device, bool colliders) {
                                                    : KernelTarget::any;
   return info;
 }
-/// Whether a kernel's workgroups are one subgroup each and know of it (shaders/spawn/derive/derive.glsl). Those write the
-/// report.
+/// Whether a kernel's workgroups are one subgroup each and know of it (shaders/spawn/derive/derive.glsl). Those write
+/// the report.
 bool isOneSubgroup(const core::Device& device, KernelTarget target, const Fit& fit) {
   return target != KernelTarget::any && fit.groupSize == device.subgroupSize;
 }
@@ -225,33 +201,35 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   }
 
   using enum core::UseKind;
-  list.fill("clear counters", kCounters, 0);
-  list.fill("clear buckets", kBuckets, 0).condition = kBucketed;
-  list.fill("clear bounds", kBoundKeys, 0).condition = kBounded;
-  if (maxColliders) list.fill("clear cells", kColliderCells, 0).condition = kColliding;
-  const auto uses = {core::Use{kGraph, read}, {kAxioms, read},       {kInstances, write},     {kDraws, readWrite},
-                     {kQueues, readWrite},    {kStacks, readWrite},  {kRecords, write},       {kCounters, readWrite},
-                     {kBuckets, readWrite},   {kConstants, read},    {kColliders, readWrite}, {kColliderCells, read},
-                     {kCount, write},         {kAxiomCounter, read}, {kReport, write}};
+  list.fill("clear counters", shader::kBindCounters, 0);
+  list.fill("clear buckets", shader::kBindBuckets, 0).condition = kBucketed;
+  list.fill("clear bounds", shader::kBindBoundKeys, 0).condition = kBounded;
+  if (maxColliders) list.fill("clear cells", shader::kBindColliderCells, 0).condition = kColliding;
+  const auto uses = {
+      core::Use{shader::kBindGraph, read}, {shader::kBindAxioms, read},         {shader::kBindInstances, write},
+      {shader::kBindDraws, readWrite},     {shader::kBindQueues, readWrite},    {shader::kBindStacks, readWrite},
+      {shader::kBindRecords, write},       {shader::kBindCounters, readWrite},  {shader::kBindBuckets, readWrite},
+      {shader::kBindConstants, read},      {shader::kBindColliders, readWrite}, {shader::kBindColliderCells, read},
+      {shader::kBindCount, write},         {shader::kBindAxiomCounter, read},   {shader::kBindReport, write}};
   for (uint32_t phase = 0; phase < phases; ++phase) {
     const uint32_t first = phase * spawner->phaseStride();
     if (phase == 0)
       list.dispatch("derive", derive, uses, kAxiomGroups, {0, 0, 0});
     else
       list.dispatch("link", link,
-                    {{kAxioms, read},
-                     {kCounters, readWrite},
-                     {kConstants, read},
-                     {kColliders, read},
-                     {kColliderCells, readWrite}},
+                    {{shader::kBindAxioms, read},
+                     {shader::kBindCounters, readWrite},
+                     {shader::kBindConstants, read},
+                     {shader::kBindColliders, read},
+                     {shader::kBindColliderCells, readWrite}},
                     kLinkGroups, {first, first - spawner->phaseStride()})
           .condition = kPhases + phase - 1;
     for (uint32_t round = phase ? 0 : 1; round < spawner->rounds_; ++round) {
       // Where there is work for a second round, it is for all; those behind it are mostly empty.
       const std::initializer_list<uint32_t> pushed = {first + round, phase, first};
-      core::Pass& pass = first + round == 1
-                             ? list.dispatch("derive", derive, uses, kRoundGroups, pushed)
-                             : list.dispatchIndirect("derive", derive, uses, kCounters, roundAt(first + round), pushed);
+      core::Pass& pass = first + round == 1 ? list.dispatch("derive", derive, uses, kRoundGroups, pushed)
+                                            : list.dispatchIndirect("derive", derive, uses, shader::kBindCounters,
+                                                                    roundAt(first + round), pushed);
       pass.level = round;
       if (phase) pass.condition = kPhases + phase - 1;
     }
@@ -259,17 +237,18 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   const VkDeviceSize perRecord = roundAt(rounds - 1); // dispatch arguments
   const auto order = [&](const char* name, uint32_t number) {
     const uint32_t shader = list.add(core::ShaderDesc{name, spawn_order, {number}, 1});
-    const auto orderUses = {core::Use{kGraph, read}, {kRecords, read},   {kCounters, readWrite},
-                            {kBuckets, readWrite},   {kConstants, read}, {kOrder, readWrite}};
+    const auto orderUses = {core::Use{shader::kBindGraph, read}, {shader::kBindRecords, read},
+                            {shader::kBindCounters, readWrite},  {shader::kBindBuckets, readWrite},
+                            {shader::kBindConstants, read},      {shader::kBindOrder, readWrite}};
     const bool perPart = number == shader::kOrderSum || number == shader::kOrderStarts ||
                          number == shader::kOrderQuadSum || number == shader::kOrderQuadStarts;
     core::Pass& pass = number == shader::kOrderBuckets ? list.dispatch(name, shader, orderUses, kOneGroup)
                        : perPart                       ? list.dispatch(name, shader, orderUses, kPartGroups)
-                                 : list.dispatchIndirect(name, shader, orderUses, kCounters, perRecord);
+                                 : list.dispatchIndirect(name, shader, orderUses, shader::kBindCounters, perRecord);
     pass.condition = kOrdered;
   };
   const auto orderRecords = [&] {
-    list.fill("clear bins", kOrder, 0, 0, sizeof(uint32_t) * maxTerminals).condition = kOrdered;
+    list.fill("clear bins", shader::kBindOrder, 0, 0, sizeof(uint32_t) * maxTerminals).condition = kOrdered;
     order("count bins", shader::kOrderCount);
     order("sum bins", shader::kOrderSum);
     order("place bins", shader::kOrderStarts);
@@ -288,44 +267,44 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
     const uint32_t expand =
         list.add(core::ShaderDesc{"expand", spirv, specialization(context.device, layout), core::kMaxSpecialization});
     list.dispatch("expand", expand,
-                  {{kGraph, read},
-                   {kAxioms, read},
-                   {kDraws, read},
-                   {kRecords, read},
-                   {kCounters, readWrite},
-                   {kBuckets, readWrite},
-                   {kConstants, read},
-                   {kVertices, write},
-                   {kIndices, write},
-                   {kOrder, read}},
+                  {{shader::kBindGraph, read},
+                   {shader::kBindAxioms, read},
+                   {shader::kBindDraws, read},
+                   {shader::kBindRecords, read},
+                   {shader::kBindCounters, readWrite},
+                   {shader::kBindBuckets, readWrite},
+                   {shader::kBindConstants, read},
+                   {shader::kBindVertices, write},
+                   {shader::kBindIndices, write},
+                   {shader::kBindOrder, read}},
                   kExpandGroups)
         .condition = kExpanded;
   }
   list.dispatch("place", place,
-                {{kGraph, read},
-                 {kDraws, readWrite},
-                 {kCount, write},
-                 {kCounters, readWrite},
-                 {kBuckets, readWrite},
-                 {kConstants, read},
-                 {kNeeded, write},
-                 {kOrder, read}},
+                {{shader::kBindGraph, read},
+                 {shader::kBindDraws, readWrite},
+                 {shader::kBindCount, write},
+                 {shader::kBindCounters, readWrite},
+                 {shader::kBindBuckets, readWrite},
+                 {shader::kBindConstants, read},
+                 {shader::kBindNeeded, write},
+                 {shader::kBindOrder, read}},
                 kOneGroup)
       .condition = kPlaced;
   if (!vertices) {
     if (ordered) orderRecords();
     const uint32_t emit = list.add(core::ShaderDesc{"emit", spawn_emit, {ordered}, 1});
     list.dispatchIndirect("emit", emit,
-                          {{kGraph, read},
-                           {kAxioms, read},
-                           {kRecords, read},
-                           {kInstances, write},
-                           {kDraws, read},
-                           {kCounters, read},
-                           {kBuckets, readWrite},
-                           {kConstants, read},
-                           {kOrder, read}},
-                          kCounters, perRecord)
+                          {{shader::kBindGraph, read},
+                           {shader::kBindAxioms, read},
+                           {shader::kBindRecords, read},
+                           {shader::kBindInstances, write},
+                           {shader::kBindDraws, read},
+                           {shader::kBindCounters, read},
+                           {shader::kBindBuckets, readWrite},
+                           {shader::kBindConstants, read},
+                           {shader::kBindOrder, read}},
+                          shader::kBindCounters, perRecord)
         .condition = kSorted;
   }
   const auto bounds = [&](const char* name, uint32_t decodes, std::initializer_list<core::Use> used, uint32_t groups) {
@@ -333,27 +312,28 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
     list.dispatch(name, shader, used, groups).condition = kBounded;
   };
   bounds("bounds", 0,
-         {{kGraph, read},
-          {kAxioms, read},
-          {kInstances, read},
-          {kDraws, read},
-          {kRecords, read},
-          {kCounters, read},
-          {kBuckets, read},
-          {kConstants, read},
-          {kBoundKeys, readWrite}},
+         {{shader::kBindGraph, read},
+          {shader::kBindAxioms, read},
+          {shader::kBindInstances, read},
+          {shader::kBindDraws, read},
+          {shader::kBindRecords, read},
+          {shader::kBindCounters, read},
+          {shader::kBindBuckets, read},
+          {shader::kBindConstants, read},
+          {shader::kBindBoundKeys, readWrite}},
          kBoundGroups);
-  bounds("write bounds", 1, {{kGraph, read}, {kBoundKeys, read}, {kBounds, write}}, kOneGroup);
-  list.report = kCounters;
+  bounds("write bounds", 1, {{shader::kBindGraph, read}, {shader::kBindBoundKeys, read}, {shader::kBindBounds, write}},
+         kOneGroup);
+  list.report = shader::kBindCounters;
   list.reportBytes = sizeof(shader::SpawnState);
   if (auto ok = spawner->init(std::move(list)); !ok) return ok.error();
   return spawner;
 }
 
 /// All rounds but the last one only spread the work, of which a workgroup makes kGrowth times as many shapes, or in the
-/// round that is enough, or the last but one, as many as kGrowing batches hold (shaders/spawn/derive/derive_steps.glsl). In
-/// uneven derivations they even it out as well, and nobody knows how much there is behind a counter, or in later
-/// phases.
+/// round that is enough, or the last but one, as many as kGrowing batches hold
+/// (shaders/spawn/derive/derive_steps.glsl). In uneven derivations they even it out as well, and nobody knows how much
+/// there is behind a counter, or in later phases.
 uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const {
   const bool known = !info.axiomCounter.buffer && grammar.graph.phases <= 1;
   if (roundsGiven_ || context.device.software || !known) return rounds_;
@@ -453,19 +433,20 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   core::Record record;
   record.commandBuffer = commandBuffer;
   record.info = &info.base;
-  record.bindings[kGraph].ownBuffer = grammar.buffer();
-  record.bindings[kGraph].ownSize = grammar.size();
-  record.bindings[kAxioms].engineBuffer = &info.axioms;
-  if (info.hostAxioms) record.bindings[kAxioms].hostData = std::as_bytes(std::span(info.hostAxioms, info.axiomCount));
-  record.bindings[kAxiomCounter].engineBuffer = &info.axiomCounter;
-  record.bindings[kBounds].engineBuffer = &info.bounds;
-  record.bindings[kInstances].engineBuffer = &info.instances;
-  record.bindings[kDraws].engineBuffer = &info.draws;
-  record.bindings[kCount].engineBuffer = &info.count;
-  record.bindings[kNeeded].engineBuffer = &info.needed;
+  record.bindings[shader::kBindGraph].ownBuffer = grammar.buffer();
+  record.bindings[shader::kBindGraph].ownSize = grammar.size();
+  record.bindings[shader::kBindAxioms].engineBuffer = &info.axioms;
+  if (info.hostAxioms)
+    record.bindings[shader::kBindAxioms].hostData = std::as_bytes(std::span(info.hostAxioms, info.axiomCount));
+  record.bindings[shader::kBindAxiomCounter].engineBuffer = &info.axiomCounter;
+  record.bindings[shader::kBindBounds].engineBuffer = &info.bounds;
+  record.bindings[shader::kBindInstances].engineBuffer = &info.instances;
+  record.bindings[shader::kBindDraws].engineBuffer = &info.draws;
+  record.bindings[shader::kBindCount].engineBuffer = &info.count;
+  record.bindings[shader::kBindNeeded].engineBuffer = &info.needed;
   if (info.vertices) {
-    record.bindings[kVertices].engineBuffer = &info.vertices->vertices;
-    record.bindings[kIndices].engineBuffer = &info.vertices->indices;
+    record.bindings[shader::kBindVertices].engineBuffer = &info.vertices->vertices;
+    record.bindings[shader::kBindIndices].engineBuffer = &info.vertices->indices;
   }
   record.groups[kOneGroup] = {1, 1, 1};
   record.groups[kPartGroups] = {shader::kOrderParts, 1, 1};
@@ -538,23 +519,25 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   core::RawReport raw;
   if (!Recorder::takeReport(raw)) return false;
   report.base = raw.header;
-  report.terminals = raw.words[0];
-  report.instancesWritten = raw.words[1];
-  report.peakShapes = raw.words[2];
-  report.droppedShapes = raw.words[3];
-  report.unfinishedShapes = raw.words[4];
-  report.rounds = raw.words[5];
-  report.keyHash[0] = raw.words[6];
-  report.keyHash[1] = raw.words[7];
-  report.depth = raw.words[8];
-  report.vertices = 4 * raw.words[9];
-  report.verticesWritten = 4 * raw.words[10];
-  report.colliders = raw.words[12];
+  shader::SpawnState state{};
+  std::memcpy(&state, raw.words.data(), sizeof state);
+  report.terminals = state.terminals;
+  report.instancesWritten = state.instancesWritten;
+  report.peakShapes = state.peakShapes;
+  report.droppedShapes = state.droppedShapes;
+  report.unfinishedShapes = state.unfinishedShapes;
+  report.rounds = state.rounds;
+  report.keyHash[0] = state.keyHashX;
+  report.keyHash[1] = state.keyHashY;
+  report.depth = state.depth;
+  report.vertices = 4 * state.quads;
+  report.verticesWritten = 4 * state.quadsWritten;
+  report.colliders = state.colliders;
   report.collidersKept = std::min(report.colliders, maxColliders_);
   if (report.base.status == GPGP_SUCCESS &&
-      (raw.words[11] || report.droppedShapes || report.unfinishedShapes || report.colliders > report.collidersKept))
+      (state.exceeded || report.droppedShapes || report.unfinishedShapes || report.colliders > report.collidersKept))
     report.base.status = GPGP_BUDGET_EXCEEDED;
-  if (report.base.status != GPGP_NOT_EXECUTED && raw.words[15]) report.base.status = GPGP_ERROR_UNSUPPORTED;
+  if (report.base.status != GPGP_NOT_EXECUTED && state.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;
 }
 

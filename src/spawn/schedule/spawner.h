@@ -2,10 +2,10 @@
 //
 // Passes of a record: clear, then the rounds, place, emit. A round shares a queue of shapes among workgroups; each
 // derives what comes of its shapes with a stack of its own and leaves to the next round what it should not or cannot do
-// alone (shaders/spawn/derive/derive.comp). Terminals leave as instances, and the last workgroup says how many, without place.
-// Where these are sorted by bucket, or ordered, terminals become records first, and emit puts them in their places. A
-// spawner for vertices makes records as well, and expand vertices and indices of them, before place; where they are
-// ordered, before expand.
+// alone (shaders/spawn/derive/derive.comp). Terminals leave as instances, and the last workgroup says how many, without
+// place. Where these are sorted by bucket, or ordered, terminals become records first, and emit puts them in their
+// places. A spawner for vertices makes records as well, and expand vertices and indices of them, before place; where
+// they are ordered, before expand.
 //
 // Grammars with Collider and IfCollides are derived in phases: all rounds of one, link, which makes the colliders so
 // far searchable, all rounds of the next. A spawner made for colliders records those passes for such grammars only.

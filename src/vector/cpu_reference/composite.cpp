@@ -4,8 +4,8 @@
 // all that lies behind, which is no brighter than the brightest colour of the record; and rounding of weights.
 #include "vector/raster/composite.h"
 
-#include "vector/shared/color.h"
 #include "vector/cpu_reference/cpu_reference.h"
+#include "vector/shared/color.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // The CPU reference of the canvas: the same functions as the shaders (shaders/vector/*.h), run in plain loops.
 //
-// What it paints knows neither bins nor lists nor entries: every flattened segment turns over all samples right of it on the
-// canvas, and every pixel asks all paths. Guarantees: boxes of tiles, tile words, masks, areas and lists equal the
-// GPU's bit for bit; colours within bounds that it works out itself, as roots, powers and filters are only as exact as
-// the device's. For tests and tools; never part of the library.
+// What it paints knows neither bins nor lists nor entries: every flattened segment turns over all samples right of it
+// on the canvas, and every pixel asks all paths. Guarantees: boxes of tiles, tile words, masks, areas and lists equal
+// the GPU's bit for bit; colours within bounds that it works out itself, as roots, powers and filters are only as exact
+// as the device's. For tests and tools; never part of the library.
 #pragma once
 #include "vector/shared/tiles.h"
 
@@ -46,8 +46,8 @@ struct CpuCoverage {
   bool operator==(const CpuCoverage&) const = default;
 };
 
-/// Turns over what a segment's flattened segments have right of them, and after all of them (`closed`) sums that up: what remains
-/// are masks. `path`: rows of pixels.
+/// Turns over what a segment's flattened segments have right of them, and after all of them (`closed`) sums that up:
+/// what remains are masks. `path`: rows of pixels.
 void coverSegment(const shader::Grid& grid, const shader::ItemRecord& item, const shader::SegmentRecord& segment,
                   std::span<CpuCoverage> path);
 void closeCoverage(const shader::Grid& grid, std::span<CpuCoverage> path);
@@ -57,7 +57,7 @@ struct CpuPlaces {
   std::vector<shader::ItemRecord> items;
   std::vector<shader::PlacedPath> paths; ///< firstWord: as if room were taken in painting order
   std::vector<shader::TileWord> words;   ///< firstEntry: the same
-  std::vector<CpuCoverage> coverage;    ///< of each path, rows of pixels
+  std::vector<CpuCoverage> coverage;     ///< of each path, rows of pixels
   uint32_t entries = 0, smallGlyphEntries = 0;
 
   const CpuCoverage& at(const shader::CanvasHeader& header, size_t path, uint32_t x, uint32_t y) const {
@@ -88,7 +88,7 @@ struct CpuColor {
 };
 /// What paints at a point of the canvas, premultiplied: a path's colour, times its gradient's or image's.
 CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::PlacedPath& path, uint32_t x,
-                  uint32_t y);
+                 uint32_t y);
 /// The whole picture, as the target receives it: before it is rounded to the format.
 std::vector<CpuColor> paintOnCpu(const CpuInput& input, const CpuPlaces& places);
 

@@ -5,8 +5,8 @@
 // space is known to `reach`, which sums up what its operands' magnitudes allow, and the colours at the corners of that
 // box bound the colour: also where a ramp begins anew or ends.
 #include "vector/raster/paint.h"
-#include "vector/shared/color.h"
 #include "vector/cpu_reference/cpu_reference.h"
+#include "vector/shared/color.h"
 
 #include <algorithm>
 
@@ -201,7 +201,7 @@ void drawingPoint(const CpuInput& input, const shader::PlacementRecord& placemen
 } // namespace
 
 CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::PlacedPath& path, uint32_t x,
-                  uint32_t y) {
+                 uint32_t y) {
   const bool encoded = input.header.flags & shader::kBlendSrgb;
   // What is in no gradient was encoded by the device.
   CpuColor color{path.color, vec4(vec3(path.color) * (encoded ? kPower : 0), 0)};

@@ -1,8 +1,8 @@
 // Twin of begin, place, mark, smallGlyph and fill: items, boxes of tiles, tile words, masks and areas.
-#include "vector/shared/color.h"
-#include "vector/place/placement.h"
-#include "vector/shared/shape.h"
 #include "vector/cpu_reference/cpu_reference.h"
+#include "vector/place/placement.h"
+#include "vector/shared/color.h"
+#include "vector/shared/shape.h"
 
 namespace gpgp::vector {
 using shader::FlatSegment;
@@ -95,7 +95,7 @@ void markFlatSegment(const Grid& grid, const PlacedPath& p, const FlatSegment& f
 
 /// As smallGlyph finds a small glyph's tile words: from what changes in them.
 void smallGlyphWords(const CpuInput& input, const PlacedPath& p, std::span<const CpuCoverage> coverage,
-                std::span<TileWord> words) {
+                     std::span<TileWord> words) {
   const uint32_t width = input.header.width, height = input.header.height;
   const bool areas = input.header.flags & shader::kExactArea;
   for (uint32_t y = p.top * kTileSize; y < std::min(p.bottom * kTileSize, height); ++y)
@@ -112,8 +112,7 @@ void smallGlyphWords(const CpuInput& input, const PlacedPath& p, std::span<const
 
 } // namespace
 
-void coverSegment(const Grid& grid, const ItemRecord& item, const SegmentRecord& segment,
-                  std::span<CpuCoverage> path) {
+void coverSegment(const Grid& grid, const ItemRecord& item, const SegmentRecord& segment, std::span<CpuCoverage> path) {
   const int n = static_cast<int>(grid.samples);
   const uint32_t flatSegments = shader::flatSegmentCount(grid, item, segment);
   const float step = shader::flatSegmentStep(flatSegments);
@@ -172,8 +171,8 @@ CpuPlaces placeOnCpu(const CpuInput& input) {
     const auto coverageOf = [&](uint32_t path) { return std::span(places.coverage).subspan(path * pixels, pixels); };
     // A small glyph's segments are not among the record's.
     const uint32_t segments = item.smallGlyph ? (item.paths - item.segments) / 4
-                              : last       ? header.segmentCount - item.firstSegment
-                                           : places.items[k + 1].firstSegment - item.firstSegment;
+                              : last          ? header.segmentCount - item.firstSegment
+                                              : places.items[k + 1].firstSegment - item.firstSegment;
     for (uint32_t i = 0; i < segments; ++i) {
       const SegmentRecord segment = segmentOf(input, item, i);
       const uint32_t path = item.firstPath + segment.path;
@@ -182,7 +181,8 @@ CpuPlaces placeOnCpu(const CpuInput& input) {
       const uint32_t flatSegments = shader::flatSegmentCount(grid, item, segment);
       for (uint32_t c = 0; c < flatSegments; ++c) {
         FlatSegment flatSegment;
-        if (shader::flatSegmentOf(grid, item, segment, c, flatSegments, shader::flatSegmentStep(flatSegments), flatSegment))
+        if (shader::flatSegmentOf(grid, item, segment, c, flatSegments, shader::flatSegmentStep(flatSegments),
+                                  flatSegment))
           markFlatSegment(grid, places.paths[path], flatSegment, wordsOf(path));
       }
     }

@@ -228,7 +228,8 @@ Two leftOfFlatSegment(const Point* flatSegment, const Point* of, int i, int k) {
   return d.x * (Two{of[i].y, of[k].y} - flatSegment[0].y) - d.y * (Two{of[i].x, of[k].x} - flatSegment[0].x);
 }
 Spread leftOfFlatSegment(const Monotone& flatSegment, const Monotone& of) {
-  const Two ends = leftOfFlatSegment(flatSegment.curve.p, of.curve.p, 0, 3), inner = leftOfFlatSegment(flatSegment.curve.p, of.curve.p, 1, 2);
+  const Two ends = leftOfFlatSegment(flatSegment.curve.p, of.curve.p, 0, 3),
+            inner = leftOfFlatSegment(flatSegment.curve.p, of.curve.p, 1, 2);
   const Two low = ends < inner ? ends : inner, high = ends < inner ? inner : ends;
   return {std::min(low[0], low[1]), std::max(high[0], high[1])};
 }

@@ -57,7 +57,8 @@ void appendSvgArc(Shape& shape, Point from, double rx, double ry, double degrees
   const double ux = x / grow, uy = y / grow, l = length / grow;
   double h = std::sqrt(std::max(0.0, 1 - l * l)) / l;
   if (large == positive) h = -h;
-  const double kx = h * uy, ky = -h * ux; // center, in the unit circle's space, from the middle of the flattened segment
+  const double kx = h * uy,
+               ky = -h * ux; // center, in the unit circle's space, from the middle of the flattened segment
   const Point axisU{c * rx, s * rx}, axisV{-s * ry, c * ry};
   const Point center = 0.5 * (from + to) + kx * axisU + ky * axisV;
   const double a0 = std::atan2(uy - ky, ux - kx), a1 = std::atan2(-uy - ky, -ux - kx);

@@ -2,8 +2,8 @@
 //
 // Two monotone pieces are compared over the rows they share inside one band. Boxes that do not overlap decide at once
 // (pieces never turn, so end points bound them); else lines are solved directly, and curves between their inflections,
-// where tangents and flattened segments bound them. The work per pair is bounded, so coincident curves cannot stall it: what is
-// undecided then differs by less than float distance anyway.
+// where tangents and flattened segments bound them. The work per pair is bounded, so coincident curves cannot stall it:
+// what is undecided then differs by less than float distance anyway.
 #include "vector/patch/drawing.h"
 #include "vector/patch/inversions.h"
 #include "vector/patch/strips.h"
@@ -36,9 +36,9 @@ bool crowded(const std::pmr::vector<BandEntry>& entries) {
 }
 
 /// Looks for changes of sides between two pieces over rows in which neither has an inflection, so that each is convex
-/// or concave as a function of y: between its tangents and its flatSegment. Where these bounds keep the pieces apart there is
-/// no change; where the slopes do, there is at most one, which bracketed Newton steps find. Everything else is halved,
-/// a bounded number of times; what is left then has the change that its ends show.
+/// or concave as a function of y: between its tangents and its flatSegment. Where these bounds keep the pieces apart
+/// there is no change; where the slopes do, there is at most one, which bracketed Newton steps find. Everything else is
+/// halved, a bounded number of times; what is left then has the change that its ends show.
 class PairSearch {
 public:
   PairSearch(const Monotone& a, const Monotone& b) : a_(a), b_(b) {}

@@ -1,8 +1,8 @@
 // Which pieces of one path come near each other where many run side by side, as in hatching, waves or rings: there
 // boxes overlap that pieces never leave for each other's side.
 //
-// Rows are halved until few pieces are near each other; in each strip a piece lies in a tube, its flattened segment with room for
-// how far it bulges. Two tubes that lie in one order at both ends of the strip do not meet in it.
+// Rows are halved until few pieces are near each other; in each strip a piece lies in a tube, its flattened segment
+// with room for how far it bulges. Two tubes that lie in one order at both ends of the strip do not meet in it.
 #pragma once
 #include "vector/geometry/curve.h"
 
@@ -13,10 +13,11 @@
 
 namespace gpgp::vector {
 
-/// How far a piece bulges to one side of its flattened segment between two of its places without an inflection in between: no more
-/// than where the tangents there meet.
+/// How far a piece bulges to one side of its flattened segment between two of its places without an inflection in
+/// between: no more than where the tangents there meet.
 inline double bulge(const Monotone::Place& p, const Monotone::Place& q, double height, double side) {
-  const double flatSegment = (q.x - p.x) / height, u = side * (p.slope - flatSegment), v = side * (flatSegment - q.slope);
+  const double flatSegment = (q.x - p.x) / height, u = side * (p.slope - flatSegment),
+               v = side * (flatSegment - q.slope);
   if (!(u > 0 && v > 0)) return 0.0; // to the other side, or straight
   if (!(u < 1e30)) return v < 1e30 ? v * height : 1e30;
   if (!(v < 1e30)) return u * height;

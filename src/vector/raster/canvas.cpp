@@ -1,10 +1,12 @@
 // The canvas: the checks of a record, and what a record fills in.
-#include "vector/raster/canvas_passes.h"
+#include "vector/raster/canvas.h"
 
 #include "shaders/vector_draw_frag.spv.h"
 #include "shaders/vector_draw_frag_multiview.spv.h"
 #include "shaders/vector_draw_vert.spv.h"
 #include "shaders/vector_draw_vert_multiview.spv.h"
+#include "vector/passes/builder.h"
+#include "vector/passes/names.h"
 
 #include <algorithm>
 #include <array>
@@ -31,18 +33,23 @@ uint32_t heldBy(const GpgpCanvasImage& image, bool blendSrgb) {
   return (image.premultiplied ? shader::kImagePremultiplied : 0) | (encoded ? shader::kImageEncoded : 0) |
          (image.filter == GPGP_IMAGE_FILTER_LINEAR && !mixes ? shader::kImageByTexel : 0);
 }
+
+CanvasSizes sizesOf(const GpgpCanvasCreateInfo& info, bool software) {
+  const uint32_t entries = info.maxTileEntries ? info.maxTileEntries : 131072;
+  return {.maxWidth = info.maxWidth ? info.maxWidth : 2048,
+          .maxHeight = info.maxHeight ? info.maxHeight : 2048,
+          .maxEntries = entries,
+          .maxWords = info.maxTileWords ? info.maxTileWords : std::max(entries, 65536u),
+          .targets = info.targets ? info.targets : ~GpgpCanvasTargets(0),
+          .items = {info.maxDrawings ? info.maxDrawings : 64, info.maxGlyphs ? info.maxGlyphs : 1024,
+                    info.maxShapes ? info.maxShapes : 1024, info.maxPaths ? info.maxPaths : 262144},
+          .software = software};
+}
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
-    : Recorder(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR),
-      maxWidth_(info.maxWidth ? info.maxWidth : 2048), maxHeight_(info.maxHeight ? info.maxHeight : 2048),
-      maxEntries_(info.maxTileEntries ? info.maxTileEntries : 131072),
-      maxWords_(info.maxTileWords ? info.maxTileWords : std::max(maxEntries_, 65536u)),
-      targets_(info.targets ? info.targets : ~GpgpCanvasTargets(0)), budgets_{info.maxDrawings ? info.maxDrawings : 64,
-                                                                              info.maxGlyphs ? info.maxGlyphs : 1024,
-                                                                              info.maxShapes ? info.maxShapes : 1024,
-                                                                              info.maxPaths ? info.maxPaths : 262144},
-      software_(owner.device.software), assets_(budgets_.items, &owner.host()), tables_(budgets_, &owner.host()) {}
+    : Recorder(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR), sizes_(sizesOf(info, owner.device.software)),
+      assets_(sizes_.items.items, &owner.host()), tables_(sizes_.items, &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
@@ -50,14 +57,15 @@ Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCa
                          {"draw.frag", vector_draw_frag},
                          {"draw.vert, multiview", vector_draw_vert_multiview},
                          {"draw.frag, multiview", vector_draw_frag_multiview}};
-  if (auto ok = canvas->init(canvas->describe(), &draw); !ok) return ok.error();
+  if (auto ok = canvas->init(describePasses(canvas->sizes_, context.device, &context.host()), &draw); !ok)
+    return ok.error();
   return canvas;
 }
 
 Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* view) const {
-  if (info.width == 0 || info.height == 0 || info.width > maxWidth_ || info.height > maxHeight_)
+  if (info.width == 0 || info.height == 0 || info.width > sizes_.maxWidth || info.height > sizes_.maxHeight)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the canvas is %u x %u; the recorder was made for 1 x 1 to %u x %u",
-                     info.width, info.height, maxWidth_, maxHeight_);
+                     info.width, info.height, sizes_.maxWidth, sizes_.maxHeight);
   if (info.samples != 0 && info.samples != 1 && info.samples != 4 && info.samples != 8 && info.samples != 16)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "samples is %u; expected 1, 4, 8 or 16", info.samples);
   for (const float v : info.background)
@@ -77,12 +85,12 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
                        info.target.height, info.width, info.height);
   }
   const uint32_t target = targetOf(info);
-  if ((view && !writes(kNoImage)) || !writes(target))
+  if ((view && !sizes_.writes(kNoImage)) || !sizes_.writes(target))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "the canvas was made without targets for records that write %s (GpgpCanvasCreateInfo::targets)",
-                     view && !writes(kNoImage) ? "a view"
-                     : target == kHasImage8    ? "R8G8B8A8_UNORM"
-                                               : "R16G16B16A16_SFLOAT");
+                     view && !sizes_.writes(kNoImage) ? "a view"
+                     : target == kHasImage8           ? "R8G8B8A8_UNORM"
+                                                      : "R16G16B16A16_SFLOAT");
   if (info.imageCount > shader::kMaxImages)
     return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a record paints with at most %u (GPGP_MAX_IMAGES)",
                      info.imageCount, shader::kMaxImages);
@@ -129,7 +137,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   auto* const placements = reinterpret_cast<shader::PlacementRecord*>(
       place ? place + sizeof(CanvasHeader) + sizeof(Gather::slots) : nullptr);
   if (!placements) return record(r); // which says why
-  Gather gather(context, budgets_, tables_, placements, info, smallGlyphRoom());
+  Gather gather(context, sizes_.items, tables_, placements, info, sizes_.smallGlyphRoom());
   for (uint32_t i = 0; i < info.itemCount; ++i)
     if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
@@ -151,17 +159,18 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   for (uint32_t shift = shader::kMaxBinShift; shift >= shader::kMinBinShift; --shift) {
     const uint32_t across = divide(info.width, shader::kTileSize << shift),
                    count = across * divide(info.height, shader::kTileSize << shift);
-    if (shift != shader::kMaxBinShift && uint64_t(count) * (header.pathWords + shader::kBinHead) > binWords()) break;
+    if (shift != shader::kMaxBinShift && uint64_t(count) * (header.pathWords + shader::kBinHead) > sizes_.binWords())
+      break;
     header.binShift = shift;
     header.binsX = across;
     header.binCount = count;
-    if (software_ || header.pathCount <= count * kPathsOfBin) break;
+    if (sizes_.software || header.pathCount <= count * kPathsOfBin) break;
   }
   header.binWords = header.pathWords + shader::kBinHead;
-  header.binListLimit = binLists();
-  header.wordLimit = maxWords_;
-  header.entryLimit = maxEntries_ - gather.smallGlyphEntries();
-  header.rowLimit = maxRows();
+  header.binListLimit = sizes_.binLists();
+  header.wordLimit = sizes_.maxWords;
+  header.entryLimit = sizes_.maxEntries - gather.smallGlyphEntries();
+  header.rowLimit = sizes_.maxRows();
   header.samples = info.samples ? info.samples : 16;
   header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
                  (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
@@ -169,9 +178,9 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const bool rich = gather.groups || ((gradients || images) && projective);
   if (rich) header.flags |= shader::kSplitRich;
   // Few segments are dealt out to many workgroups, which then each wait for less; many are better taken together.
-  const uint32_t perGroup = software_ ? 64 : header.segmentCount < 16384 ? 4 : shader::kMostSegments;
+  const uint32_t perGroup = sizes_.software ? 64 : header.segmentCount < 16384 ? 4 : shader::kMostSegments;
   header.groupSegments = perGroup;
-  header.listWords = listWords();
+  header.listWords = sizes_.listWords();
   for (uint32_t i = 0; i < info.imageCount && images; ++i)
     header.images |= heldBy(info.images[i], info.blendSrgb) << i * shader::kImageBits;
   header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
@@ -187,18 +196,19 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                  bytes(tables_.layers, gather.layers)};
 
   if (view) {
-    r.bindings[kView].ownBuffer = view->buffer();
-    r.bindings[kView].ownSize = view->size();
+    r.bindings[shader::kBindHistory].ownBuffer = view->buffer();
+    r.bindings[shader::kBindHistory].ownSize = view->size();
   }
   const uint32_t image = targetOf(info);
-  if (image != kNoImage) r.bindings[image == kHasImage8 ? kImage8 : kImage16].image = &info.target;
+  if (image != kNoImage)
+    r.bindings[image == kHasImage8 ? shader::kBindImage8 : shader::kBindImage16].image = &info.target;
   // Small glyphs are smallGlyph; records of nothing else, in one colour each, need little more than that.
   const uint32_t tiles = header.tilesX * header.tilesY;
   const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.smallGlyphEntries()) * 3;
   const bool alone = gather.smallGlyphs() > 0 && gather.smallGlyphs() == gather.placements() && !gradients && !rich &&
-                     shader::kFirstBin + tileLists <= binsEnd();
+                     shader::kFirstBin + tileLists <= sizes_.binsEnd();
   const uint32_t form = projective ? 2 : several ? 1 : 0;
-  const bool sixteen = header.samples == 16 && !software_;
+  const bool sixteen = header.samples == 16 && !sizes_.software;
   if (alone) {
     r.conditions[kAlone] = r.conditions[several ? kAloneDrawings : sixteen ? kAloneSixteen : kAloneOne] = true;
   } else {
@@ -206,46 +216,47 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     r.conditions[sixteen && form == 0 ? kMarkSixteen : kMarkOne + form] = true;
     if (gather.smallGlyphs() > 0) r.conditions[several ? kSmallGlyphDrawings : kSmallGlyphOne] = true;
   }
-  const bool one = !several && !software_; // software devices have one general shader
+  const bool one = !several && !sizes_.software; // software devices have one general shader
   const uint32_t kinds[] = {alone    ? kGlyphs
                             : images ? kImages
                             // The plain shader fetches from one drawing only, and on hardware leaves no squares to the
                             // general one.
-                            : !gradients && !(rich && (several || !software_)) ? kPlain
-                            : several                                          ? kPaints
-                                                                               : kPaintsOne,
+                            : !gradients && !(rich && (several || !sizes_.software)) ? kPlain
+                            : several                                                ? kPaints
+                                                                                     : kPaintsOne,
                             kAny,
                             images ? kRichImages
                             : one  ? kRichOne
                                    : kRich};
   for (const uint32_t painted : std::span(kinds).first(rich ? 3 : 2)) {
     r.conditions[painted + image] = true;
-    if (software_ && view) r.conditions[painted + kNoImage] = true; // there no pass writes both
+    if (sizes_.software && view) r.conditions[painted + kNoImage] = true; // there no pass writes both
   }
   if (rich) r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
-  if (rich || software_) r.conditions[!rich ? kSiftPlain : one ? kSplitOne : kSplit] = true;
+  if (rich || sizes_.software) r.conditions[!rich ? kSiftPlain : one ? kSplitOne : kSplit] = true;
   // Shaders name all images, so those that are not there are bound to the first one.
   for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
     const GpgpCanvasImage& from = info.images[i < info.imageCount ? i : 0];
-    r.bindings[kFirstImage + i].texture = {from.sampler, from.view, from.layout};
+    r.bindings[shader::kBindImages + i].texture = {from.sampler, from.view, from.layout};
   }
   r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
   const uint64_t bins = uint64_t(header.binCount) * header.binWords;
   r.groups[kBegin] = {alone ? divide(std::max(tiles, gather.sources), 64)
-                      : software_
+                      : sizes_.software
                           ? divide(std::max<uint64_t>({header.itemCount, header.shapeTables / 16, bins / 16, 1}), 64)
-                          : divide(maxWords_, 64 * 8),
+                          : divide(sizes_.maxWords, 64 * 8),
                       1, 1};
   const uint32_t segmentGroups = divide(header.segmentCount, perGroup);
-  r.groups[kSegments] = software_ ? spread(segmentGroups) : rows(shader::kClearGroups + segmentGroups);
-  // On software devices an invocation takes part of a segment's flattened segments, few enough turns for lavapipe's loops.
-  if (software_) r.groups[kSegments][2] = divide(info.height, 1024);
+  r.groups[kSegments] = sizes_.software ? spread(segmentGroups) : rows(shader::kClearGroups + segmentGroups);
+  // On software devices an invocation takes part of a segment's flattened segments, few enough turns for lavapipe's
+  // loops.
+  if (sizes_.software) r.groups[kSegments][2] = divide(info.height, 1024);
   r.groups[kOnce] = {1, 1, 1};
   r.groups[kClear] = {64, 1, 1};
   r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(info.height, 64)), 4096u), 1, 1};
   r.groups[kSmallGlyphs] = rows(std::max(header.itemCount, 1u));
-  const uint32_t wordGroups = std::min(std::max(256u, header.segmentCount / 256), divide(maxWords_, 64));
-  r.groups[kWords] = software_ ? spread(wordGroups) : std::array<uint32_t, 3>{wordGroups, 1, 1};
+  const uint32_t wordGroups = std::min(std::max(256u, header.segmentCount / 256), divide(sizes_.maxWords, 64));
+  r.groups[kWords] = sizes_.software ? spread(wordGroups) : std::array<uint32_t, 3>{wordGroups, 1, 1};
   r.groups[kTiles] = {divide(header.tilesX, 8), divide(header.tilesY, 8), 8};
   r.groups[kPacks] = rows(header.binCount);
   r.groups[kSift] = spread(divide(uint64_t(header.binCount) << header.binShift, 64));
@@ -285,8 +296,8 @@ Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInf
   constants.begins[1] = info.secondX;
   core::DrawRecord r;
   r.commandBuffer = commandBuffer;
-  r.bindings[kView].ownBuffer = view.buffer();
-  r.bindings[kView].ownSize = view.size();
+  r.bindings[shader::kBindHistory].ownBuffer = view.buffer();
+  r.bindings[shader::kBindHistory].ownSize = view.size();
   r.target = info.target;
   r.pushConstants = std::as_bytes(std::span(&constants, 1));
   r.vertexCount = 4;
@@ -301,13 +312,13 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.base = raw.header;
   const bool executed = raw.header.status == GPGP_SUCCESS;
   report.paths = counters.paths;
-  report.pathsGiven = executed ? budgets_.paths : 0;
+  report.pathsGiven = executed ? sizes_.items.paths : 0;
   report.tileWords = counters.words;
   report.tileWordsGiven = counters.wordsGiven;
   // Where the others do not fit, small glyphs count as what was put aside for them.
-  const uint32_t aside = executed ? maxEntries_ - counters.entriesGiven : 0;
+  const uint32_t aside = executed ? sizes_.maxEntries - counters.entriesGiven : 0;
   report.tileEntries = counters.entries + (counters.entries > counters.entriesGiven ? aside : counters.smallGlyph);
-  report.tileEntriesGiven = executed ? maxEntries_ : 0;
+  report.tileEntriesGiven = executed ? sizes_.maxEntries : 0;
   report.pathsDropped = counters.pathsDropped;
   report.glyphs = counters.glyphs;
   report.glyphsGiven = counters.glyphsGiven;

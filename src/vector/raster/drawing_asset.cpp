@@ -53,7 +53,7 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
 }
 
 core::Result<core::Unique<CanvasHistory>> CanvasHistory::create(core::Context& context,
-                                                          const GpgpCanvasHistoryCreateInfo& info) {
+                                                                const GpgpCanvasHistoryCreateInfo& info) {
   auto view = core::makeUnique<CanvasHistory>(context.host(), context, info.label);
   view->width = info.width;
   view->height = info.height;

@@ -74,7 +74,8 @@ private:
 /// One rasterised canvas: packed half4, premultiplied linear.
 class CanvasHistory final : public core::Resident {
 public:
-  static core::Result<core::Unique<CanvasHistory>> create(core::Context& context, const GpgpCanvasHistoryCreateInfo& info);
+  static core::Result<core::Unique<CanvasHistory>> create(core::Context& context,
+                                                          const GpgpCanvasHistoryCreateInfo& info);
   CanvasHistory(core::Context& owner, const char* name) : Resident(owner, core::Kind::canvasHistory, name) {}
   uint32_t width = 0, height = 0;                 ///< room
   uint32_t preparedWidth = 0, preparedHeight = 0; ///< what the last record leaves; 0: nothing yet

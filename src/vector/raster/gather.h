@@ -52,7 +52,8 @@ public:
   /// entries small glyphs may take for themselves (small_glyphs.comp).
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
          const GpgpCanvasInfo& info, uint32_t smallGlyphRoom)
-      : context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info), smallGlyphRoom_(smallGlyphRoom) {}
+      : context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
+        smallGlyphRoom_(smallGlyphRoom) {}
 
   /// NOT_READY where a glyph or a list's drawing is not resident.
   core::Result<void> add(uint32_t index, const ItemAsset& asset);

@@ -1,6 +1,6 @@
 // Glyphs of a text as placements, and which of them are for small_glyphs.comp.
-#include "vector/shared/edge.h"
 #include "vector/raster/gather.h"
+#include "vector/shared/edge.h"
 
 #include <algorithm>
 #include <bit>
@@ -81,8 +81,8 @@ public:
 
   /// How many tiles each may have edges in; 0 where it is none of them.
   void countTiles(Block& block) const {
-    // With room for the margins that shaders take (placeOf in small_glyphs.comp, place.comp). Those grow with the place, but
-    // what is small and reaches the canvas is near it.
+    // With room for the margins that shaders take (placeOf in small_glyphs.comp, place.comp). Those grow with the
+    // place, but what is small and reaches the canvas is near it.
     const float margin = 1.1f + 2e-5f * (std::max(width_, height_) + 4 * kFar);
     for (size_t k = block.sums.glyphs; k % 4 != 0; ++k) block.x[k] = block.y[k] = block.reachX[k] = block.reachY[k] = 0;
     for (size_t k = 0; k < block.sums.glyphs; k += 4) {

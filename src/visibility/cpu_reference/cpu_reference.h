@@ -76,7 +76,8 @@ CpuResult sampleNearbyOnCpu(const CpuInput& input);
 /// Method conservative, with params.heuristics and epsilons, and at most `refinements` further passes.
 CpuResult sampleConservativelyOnCpu(const CpuInput& input, uint32_t refinements = 0);
 
-/// The union of all slices of method reference with samples x samples a pixel and the centre; sizes: samples per triangle.
+/// The union of all slices of method reference with samples x samples a pixel and the centre; sizes: samples per
+/// triangle.
 CpuResult referenceOnCpu(CpuInput input, uint32_t samples, std::vector<uint32_t>& sizes);
 
 /// From ids to bits and samples per triangle.

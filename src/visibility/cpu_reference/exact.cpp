@@ -1,8 +1,8 @@
 // Exact and reference sampling in plain loops.
+#include "visibility/cpu_reference/cpu_reference.h"
 #include "visibility/exact/facet.h"
 #include "visibility/nearby/nearby.h"
 #include "visibility/shared/turns.h"
-#include "visibility/cpu_reference/cpu_reference.h"
 
 #include <algorithm>
 #include <array>

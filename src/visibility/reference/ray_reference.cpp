@@ -333,7 +333,7 @@ RayReference::RayReference(const RayScene& scene, ForEach forEach)
     : triangles_(scene), forEach_(std::move(forEach)), counts_(scene.triangleCount) {}
 
 void RayReference::add(const GpgpCamera& camera, uint32_t width, uint32_t height, uint32_t samples,
-                   const std::function<void(size_t, size_t)>& told) {
+                       const std::function<void(size_t, size_t)>& told) {
   std::vector<std::pair<Lattice, std::vector<std::vector<uint32_t>>>> lattices;
   size_t parts = 0;
   for (const uint32_t each : {samples, 1u}) { // the parts' middles, and the centres

@@ -3,14 +3,14 @@
 
 #include "shaders/visibility_bin_allocate.spv.h"
 #include "shaders/visibility_bin_large.spv.h"
-#include "shaders/visibility_pixel_lists.spv.h"
-#include "shaders/visibility_select.spv.h"
-#include "shaders/visibility_select_large.spv.h"
 #include "shaders/visibility_bin_place.spv.h"
+#include "shaders/visibility_pixel_lists.spv.h"
 #include "shaders/visibility_resolve.spv.h"
 #include "shaders/visibility_resolve_long.spv.h"
 #include "shaders/visibility_resolve_long_subgroups.spv.h"
 #include "shaders/visibility_resolve_subgroups.spv.h"
+#include "shaders/visibility_select.spv.h"
+#include "shaders/visibility_select_large.spv.h"
 
 #include <cstddef>
 

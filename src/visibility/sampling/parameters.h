@@ -1,8 +1,8 @@
 // What the shaders read of one record, worked out from what the engine gave. The record has been checked.
 #pragma once
 #include "visibility/geometry_set.h"
-#include "visibility/shared/layout.h"
 #include "visibility/sampling/budgets.h"
+#include "visibility/shared/layout.h"
 
 namespace gpgp::visibility {
 

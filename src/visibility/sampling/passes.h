@@ -5,8 +5,8 @@
 #pragma once
 #include "core/device.h"
 #include "core/passes.h"
-#include "visibility/shared/layout.h"
 #include "visibility/sampling/budgets.h"
+#include "visibility/shared/layout.h"
 
 #include <algorithm>
 

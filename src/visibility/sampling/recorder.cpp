@@ -1,10 +1,10 @@
 // A record: what is bound, how many workgroups run, and which passes.
 #include "visibility/sampling/recorder.h"
 
-#include "visibility/shared/cluster.h"
 #include "visibility/nearby/nearby.h"
 #include "visibility/sampling/checks.h"
 #include "visibility/sampling/parameters.h"
+#include "visibility/shared/cluster.h"
 
 #include <algorithm>
 
@@ -72,17 +72,19 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
 } // namespace
 
 VisibilityRecorder::VisibilityRecorder(core::Context& owner, const GpgpVisibilityRecorderCreateInfo& info)
-    : Recorder(owner, core::Kind::visibilityRecorder, info.base, GPGP_SERVICE_VISIBILITY), budgets_(info, owner.device.limits) {}
+    : Recorder(owner, core::Kind::visibilityRecorder, info.base, GPGP_SERVICE_VISIBILITY),
+      budgets_(info, owner.device.limits) {}
 
-Result<core::Unique<VisibilityRecorder>> VisibilityRecorder::create(core::Context& context, const GpgpVisibilityRecorderCreateInfo& info) {
+Result<core::Unique<VisibilityRecorder>> VisibilityRecorder::create(core::Context& context,
+                                                                    const GpgpVisibilityRecorderCreateInfo& info) {
   auto recorder = core::makeUnique<VisibilityRecorder>(context.host(), context, info);
   if (auto ok = recorder->init(describePasses(recorder->budgets_, context.device, &context.host())); !ok)
     return ok.error();
   return recorder;
 }
 
-Result<void> VisibilityRecorder::prepare(VkCommandBuffer commandBuffer, const GpgpVisibilityInfo& info, const GeometrySet& geometry,
-                              const CameraHistory* view) {
+Result<void> VisibilityRecorder::prepare(VkCommandBuffer commandBuffer, const GpgpVisibilityInfo& info,
+                                         const GeometrySet& geometry, const CameraHistory* view) {
   if (auto ok = checkSampleInfo(info, budgets_, view); !ok) return ok;
   if (info.clusters.buffer)
     if (auto ok = checkSize("clusters", info.clusters, uint64_t(geometry.clusterCount()) * shader::kClusterBytes,

@@ -11,7 +11,8 @@ namespace gpgp::visibility {
 class VisibilityRecorder final : public core::Recorder {
 public:
   /// Budgets of zero mean the defaults of gpgp/visibility.h.
-  static core::Result<core::Unique<VisibilityRecorder>> create(core::Context& context, const GpgpVisibilityRecorderCreateInfo& info);
+  static core::Result<core::Unique<VisibilityRecorder>> create(core::Context& context,
+                                                               const GpgpVisibilityRecorderCreateInfo& info);
   VisibilityRecorder(core::Context& owner, const GpgpVisibilityRecorderCreateInfo& info);
 
   /// Checks what depends on the budgets and the buffers' sizes, then records. view may be null.

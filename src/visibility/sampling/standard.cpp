@@ -4,21 +4,21 @@
 
 #include "shaders/visibility_chunks.spv.h"
 #include "shaders/visibility_clear.spv.h"
+#include "shaders/visibility_clip.spv.h"
 #include "shaders/visibility_clusters.spv.h"
 #include "shaders/visibility_expand_commands.spv.h"
 #include "shaders/visibility_gather.spv.h"
 #include "shaders/visibility_ids.spv.h"
 #include "shaders/visibility_large.spv.h"
 #include "shaders/visibility_large_int64.spv.h"
-#include "shaders/visibility_overflow.spv.h"
-#include "shaders/visibility_overflow_int64.spv.h"
 #include "shaders/visibility_medium.spv.h"
 #include "shaders/visibility_medium_int64.spv.h"
+#include "shaders/visibility_overflow.spv.h"
+#include "shaders/visibility_overflow_int64.spv.h"
 #include "shaders/visibility_plan.spv.h"
 #include "shaders/visibility_small.spv.h"
 #include "shaders/visibility_small_int64.spv.h"
 #include "shaders/visibility_surfaces.spv.h"
-#include "shaders/visibility_clip.spv.h"
 
 #include <cstddef>
 
@@ -112,9 +112,10 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
                 addShader(list, "large", choose(visibility_large_int64, visibility_large), {phase, limits, margins}),
                 offsetof(Counters, largeArgs))
         .beside = true;
-    addMaking(names[phase][3],
-              addShader(list, "overflow", choose(visibility_overflow_int64, visibility_overflow), {phase, limits, margins}), read,
-              offsetof(Counters, leftArgs))
+    addMaking(
+        names[phase][3],
+        addShader(list, "overflow", choose(visibility_overflow_int64, visibility_overflow), {phase, limits, margins}),
+        read, offsetof(Counters, leftArgs))
         .beside = true;
   }
   if (budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT)

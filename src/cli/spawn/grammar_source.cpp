@@ -1,0 +1,166 @@
+#include "cli/spawn/grammar_source.h"
+
+#include "cli/shared/messages.h"
+#include "spawn/language/build_graph.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+namespace gpgp::cli {
+namespace {
+
+struct Assignment {
+  std::string grammar; ///< empty: the only one
+  std::string name;
+  float value = 0;
+  std::string text; ///< all of it
+};
+
+Assignment parseAssignment(const std::string& text, bool linked) {
+  const size_t equals = text.find('=');
+  char* end = nullptr;
+  Assignment result;
+  result.text = text;
+  result.value = equals == std::string::npos ? 0.0f : std::strtof(text.c_str() + equals + 1, &end);
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size() || *end != 0 ||
+      !std::isfinite(result.value))
+    throw Usage("--set takes NAME=VALUE with a number, for example --set floors=12; got \"" + text + "\"");
+  result.name = text.substr(0, equals);
+  if (!linked) return result;
+  const size_t point = result.name.find('.');
+  if (point == std::string::npos)
+    throw Usage("of linked grammars, --set takes GRAMMAR.NAME=VALUE, for example --set tower.floors=12; got \"" + text +
+                "\"");
+  result.grammar = result.name.substr(0, point);
+  result.name.erase(0, point + 1);
+  return result;
+}
+
+std::string nameOf(const GrammarFile& file) { return file.alias.empty() ? spawn::linkedName(file.path) : file.alias; }
+
+struct Errors {
+  std::span<const Assignment> assignments;
+  std::string first;
+  uint32_t count = 0;
+
+  static void GPGP_CALL print(void* userData, const GpgpCompileMessage* message) {
+    auto* all = static_cast<Errors*>(userData);
+    std::ostringstream line;
+    line << message->file << ':';
+    if (message->line) line << message->line << ':' << message->column << ':';
+    line << ' '
+         << (message->severity == GPGP_SEVERITY_ERROR     ? "error: "
+             : message->severity == GPGP_SEVERITY_WARNING ? "warning: "
+                                                          : "note: ")
+         << message->text;
+    for (const Assignment& a : all->assignments) // the place of what the command line says
+      if (!message->line && std::string_view(message->text).find("var '" + a.name + "'") != std::string_view::npos)
+        line << " (--set " << a.text << ')';
+    std::fprintf(stderr, "%s\n", printable(line.str()).c_str());
+    if (message->severity != GPGP_SEVERITY_ERROR) return;
+    if (all->count == 0) all->first = line.str();
+    all->count += message->omitted ? message->omitted : 1;
+  }
+};
+
+Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vector<std::string>& set, bool kernel) {
+  std::vector<Assignment> assignments;
+  assignments.reserve(set.size());
+  for (const std::string& text : set) assignments.push_back(parseAssignment(text, linked));
+  std::vector<std::vector<GpgpVariable>> variables(grammars.size());
+  for (const Assignment& a : assignments) {
+    bool found = false;
+    for (size_t i = 0; i < grammars.size(); ++i) {
+      if (linked && nameOf(grammars[i].file) != a.grammar) continue;
+      variables[i].push_back({a.name.c_str(), a.value});
+      found = true;
+    }
+    if (found) continue;
+    std::string names;
+    for (const GrammarText& grammar : grammars) names += (names.empty() ? "" : ", ") + nameOf(grammar.file);
+    throw Usage("--set " + a.grammar + "." + a.name + ": there is no grammar \"" + a.grammar + "\"; there are " +
+                names);
+  }
+  Errors errors{assignments, {}, 0};
+  std::vector<GpgpGrammarSource> sources;
+  for (size_t i = 0; i < grammars.size(); ++i) {
+    GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+    source.name = grammars[i].file.path.c_str();
+    if (!grammars[i].file.alias.empty()) source.alias = grammars[i].file.alias.c_str();
+    if (grammars[i].text.starts_with("gppg"))
+      source.baked = grammars[i].text.data();
+    else
+      source.text = grammars[i].text.data();
+    source.size = grammars[i].text.size();
+    source.variables = variables[i].data();
+    source.variableCount = static_cast<uint32_t>(variables[i].size());
+    source.messageUserData = &errors;
+    source.messageFn = Errors::print;
+    if (kernel) source.flags = GPGP_COMPILE_KERNEL;
+    sources.push_back(source);
+  }
+  Result<Blob> blob = linked ? gpgp::linkGrammars(sources.data(), static_cast<uint32_t>(sources.size()))
+                             : gpgp::compileGrammar(sources[0]);
+  if (blob) return std::move(*blob);
+  if (errors.count == 0) throw Failure(grammars[0].file.path + ": " + blob.name());
+  throw Failure(errors.first + (errors.count > 1 ? " (and " + std::to_string(errors.count - 1) + " more)" : ""));
+}
+
+} // namespace
+
+GrammarFile::GrammarFile(const std::string& argument) : path(argument) {
+  const size_t equals = argument.find('=');
+  if (equals == std::string::npos || std::filesystem::exists(argument)) return;
+  alias = argument.substr(0, equals);
+  path = argument.substr(equals + 1);
+  if (alias.empty() || spawn::linkedName(alias) != alias)
+    throw Usage(argument + ": \"" + alias + "\" is no name for " + path +
+                "; expected letters, digits and _, not digits alone");
+}
+
+void addGrammars(CLI::App& command, std::vector<std::string>& arguments) {
+  const auto exists = [](const std::string& argument) -> std::string {
+    try {
+      return CLI::ExistingFile(GrammarFile(argument).path);
+    } catch (const Usage& error) {
+      return error.what();
+    }
+  };
+  command
+      .add_option("GRAMMAR", arguments,
+                  "PGA-shape grammar text (.pga), or a baked grammar; several are linked to one grammar, by their file "
+                  "names or as NAME=FILE says")
+      ->required()
+      ->check(CLI::Validator(exists, "[NAME=]FILE"));
+}
+
+void addVariables(CLI::App& command, std::vector<std::string>& set) {
+  command.add_option("--set", set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+}
+
+void report(const spawn::Diagnostics& diagnostics, const std::string& file) {
+  std::string first;
+  for (const spawn::Diagnostic& d : diagnostics.sorted()) {
+    const std::string line = spawn::format(d, file);
+    std::fprintf(stderr, "%s\n", printable(line).c_str());
+    if (first.empty() && d.severity == GPGP_SEVERITY_ERROR) first = line;
+  }
+  if (!diagnostics.hasErrors()) return;
+  const size_t more = diagnostics.errorCount() - 1;
+  throw Failure(first + (more ? " (and " + std::to_string(more) + " more)" : std::string()));
+}
+
+Blob compileGrammar(const GrammarText& grammar, const std::vector<std::string>& set, bool kernel) {
+  return compile({&grammar, 1}, false, set, kernel);
+}
+
+Blob linkGrammars(std::span<const GrammarText> grammars, const std::vector<std::string>& set, bool kernel) {
+  return compile(grammars, true, set, kernel);
+}
+
+} // namespace gpgp::cli

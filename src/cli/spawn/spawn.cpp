@@ -1,0 +1,591 @@
+// `gpgp spawn`: compiles a grammar, derives axioms and says what came out, beside the CPU evaluator.
+#include "cli/shared/painter.h"
+#include "cli/spawn/axioms.h"
+#include "cli/spawn/grammar_source.h"
+#include "cli/spawn/reference.h"
+#include "cli/spawn/spawned_gltf.h"
+#include "cli/spawn/unit_shapes.h"
+#include "cli/tune/tuner.h"
+#include "host/files.h"
+
+#include <gpgp/spawn.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <sstream>
+
+namespace gpgp::cli {
+namespace {
+
+struct SpawnOptions {
+  std::vector<std::string> grammars;
+  uint32_t axioms = 0, seed = 1, repeat = 1; // axioms 0: one of each grammar
+  std::array<float, 3> size{1, 1, 1};
+  float spacing = 0;
+  std::string axiomFile;
+  std::vector<std::string> set;
+  std::string image, out;
+  Size imageSize{1280, 720};
+  float yaw = 35, pitch = 25, zoom = 1;
+  uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
+  std::string schedule = "default", output = "instances", matching = "off";
+  bool sorted = false, nodes = false;
+  spawn::Heuristics heuristics;
+};
+
+/// The kernel that --schedule names: none for the interpreter.
+struct Chosen {
+  std::pmr::vector<uint32_t> words;
+  std::string name;           ///< of its schedule
+  std::filesystem::path file; ///< that it was taken from
+  size_t groups = 0;
+};
+
+/// --matching on is wrong for what has no code for groups of its own.
+void matchesNothing(const SpawnOptions& options, const char* what) {
+  if (options.matching == "on") throw Usage(std::string("--matching on changes nothing of ") + what);
+}
+
+Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
+                    Session& session) {
+  const std::string& name = options.schedule;
+  const uint32_t count = static_cast<uint32_t>(axioms.size());
+  const auto taken = [&](const spawn::Kernel& kernel, const std::filesystem::path& file) {
+    spawn::KernelInfo info = kernel.info;
+    info.vendor = info.device = 0; // it is the only one here
+    return Chosen{kernelWords(grammar, info, kernel.code), info.schedule, file, info.groups};
+  };
+  if (name == "interpreter") {
+    matchesNothing(options, "the interpreter");
+    return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
+  }
+  if (name == "tuned") {
+    const std::filesystem::path file = tunedFile(options.grammars, grammar);
+    const auto stored = storedKernels(file, grammar, true);
+    if (const auto kernel = kernelFor(stored, session.device(), count);
+        kernel && isTunedFor(kernel->info, session.device(), count))
+      return taken(*kernel, file);
+    checkWritable(file);
+    std::fprintf(stderr, "gpgp spawn: no stored schedule for this grammar, device and number of axioms; tuning\n");
+    TuneSettings settings;
+    settings.matching = options.matching == "on";
+    settings.heuristics = options.heuristics;
+    settings.maxDepth = options.maxDepth;
+    const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
+    keepKernel(file, grammar, tuned.info, tuned.code, stored);
+    std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
+    return taken({tuned.info, {tuned.code.begin(), tuned.code.end()}}, file);
+  }
+  const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
+  if (spawn::namedSchedule(grammar.graph, name) || !isBaked(name)) {
+    const auto schedule = scheduleFor(grammar.graph, name, options.heuristics);
+    if (!schedule)
+      throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
+                  name + "\"");
+    if (schedule->roots.empty()) matchesNothing(options, "the default schedule, which is no partition");
+    const auto code = compileOrSay(grammar.graph, *schedule, std::span(&target, 1), options.matching == "on",
+                                   joined(options.grammars));
+    if (code[0].empty()) return {{}, "interpreter", {}, schedule->groups};
+    return {kernelWords(grammar, kernelInfo(*schedule, target), code[0]), schedule->name, {}, schedule->groups};
+  }
+  const auto kernel = kernelFor(kernelsIn(name, grammar), session.device(), count);
+  if (!kernel) throw Failure(name + " holds no kernel that is for this device");
+  matchesNothing(options, "kernels that are baked");
+  return taken(*kernel, name);
+}
+
+/// What was derived, as triangles with the terminal that each belongs to.
+struct Triangles {
+  bool keep = false;            ///< all of them, not only their number
+  std::vector<uint64_t> counts; ///< by terminal
+  uint64_t total = 0;
+  std::vector<std::array<glm::vec3, 3>> corners;
+  std::vector<uint32_t> terminals;
+  Bounds bounds;
+
+  void count(uint32_t terminal, uint64_t number) {
+    counts.at(terminal) += number;
+    total += number;
+  }
+  void add(const std::array<glm::vec3, 3>& triangle, uint32_t terminal) {
+    count(terminal, 1);
+    if (!keep) return;
+    corners.push_back(triangle);
+    terminals.push_back(terminal);
+    for (const glm::vec3& corner : triangle) bounds.add(corner);
+  }
+};
+
+void addTriangles(Triangles& all, const std::vector<GpgpInstance>& instances) {
+  std::vector<UnitShape> shapes;
+  for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
+  for (const GpgpInstance& instance : instances) {
+    const UnitShape& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
+    if (!all.keep) {
+      all.count(instance.terminal, shape.triangles.size());
+      continue;
+    }
+    const bool mirrored = isMirrored(instance);
+    const auto at = [&](uint32_t vertex) { return placed(instance, shape.vertices[vertex].position); };
+    for (const auto& [a, b, c] : shape.triangles)
+      all.add({at(a), at(mirrored ? c : b), at(mirrored ? b : c)}, instance.terminal);
+  }
+}
+
+void addTriangles(Triangles& all, const std::vector<SpawnedVertex>& vertices, const std::vector<uint32_t>& indices) {
+  const auto at = [&](size_t i) {
+    const float* p = vertices.at(indices[i]).position;
+    return glm::vec3(p[0], p[1], p[2]);
+  };
+  for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const std::array corners = {at(i), at(i + 1), at(i + 2)};
+    // Quads of polygons with an odd number of corners end in a triangle without area, which nobody sees.
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+      all.add(corners, vertices[indices[i]].terminal);
+  }
+}
+
+/// Terminals are coloured by the index that the grammar gives them, on a square of ground.
+void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph& graph) {
+  Bounds bounds = all.bounds;
+  if (all.corners.empty()) bounds.add(glm::vec3(0));
+  glm::mat4 camera = viewAll(bounds, options.yaw, options.pitch, options.imageSize.width, options.imageSize.height);
+  for (int c = 0; c < 4; ++c) {
+    camera[c].x *= options.zoom;
+    camera[c].y *= options.zoom;
+  }
+  Painter painter(options.imageSize.width, options.imageSize.height);
+  painter.sun(bounds);
+  for (const auto& corners : all.corners) painter.shadow(corners);
+  for (size_t i = 0; i < all.corners.size(); ++i)
+    painter.triangle(camera, {all.corners[i], paletteColour(graph.terminals[all.terminals[i]].index)});
+  const glm::vec3 extent = bounds.high - bounds.low;
+  const float margin = 0.15f * std::max({extent.x, extent.y, extent.z});
+  const glm::vec3 a(bounds.low.x - margin, bounds.low.y, bounds.low.z - margin), ground(0.80f, 0.82f, 0.76f);
+  const glm::vec3 b(a.x, a.y, bounds.high.z + margin), c(bounds.high.x + margin, a.y, b.z), d(c.x, a.y, a.z);
+  painter.triangle(camera, {{a, b, c}, ground});
+  painter.triangle(camera, {{a, c, d}, ground});
+  host::writePng(options.image, painter.picture());
+}
+
+std::string counted(uint64_t number, const std::string& one, const std::string& many = {}) {
+  return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+/// A line for what exceeded a budget: what would have been enough, as far as the device has room for that.
+std::string exceeded(const std::string& what, const std::string& option, uint64_t wanted, uint64_t most) {
+  return "budget exceeded: " + what + " did not fit; " +
+         (wanted <= most ? option + " " + std::to_string(wanted) + " would have held all"
+                         : "this device takes " + std::to_string(most) + " at most: use fewer axioms") +
+         "\n";
+}
+
+/// Of the dropped shapes, those that no budget can save.
+struct Hopeless {
+  uint32_t tooManyCopies = 0, uncut = 0;
+};
+/// All budgets that were exceeded, a line each. depth: says how deep rules nest, where that has an end.
+std::string exceededBudgets(const GpgpSpawnReport& report, const Hopeless& hopeless,
+                            const std::function<std::optional<uint32_t>()>& depth, const Deriver& deriver,
+                            bool vertices) {
+  std::string text;
+  const auto dropped = [&](uint32_t shapes, const std::string& why) {
+    if (shapes)
+      text += "budget exceeded: " + counted(shapes, "shape") + (shapes == 1 ? " was" : " were") + " dropped, as " +
+              why + "\n";
+  };
+  dropped(hopeless.tooManyCopies, "a Repeat makes at most " + std::to_string(shader::kMaxRepeat) + " copies of one");
+  dropped(hopeless.uncut, "SubDiv cuts polygons and prisms by constant weights alone, and each part into one piece");
+  const uint32_t waiting =
+      report.droppedShapes - std::min(report.droppedShapes, hopeless.tooManyCopies + hopeless.uncut);
+  if (waiting && report.peakShapes > deriver.maxShapes())
+    text +=
+        exceeded(counted(waiting, "shape") + " of a round", "--max-shapes", report.peakShapes, deriver.mostShapes());
+  else if (waiting)
+    text += "budget exceeded: " + counted(waiting, "shape") + " still waited after the last of " +
+            counted(report.rounds, "round") + ", which are as many as a record takes\n";
+  if (report.collidersKept < report.colliders)
+    text += exceeded(counted(report.colliders - report.collidersKept, "collider"), "--max-colliders", report.colliders,
+                     deriver.mostColliders());
+  if (report.unfinishedShapes) {
+    const auto enough = depth();
+    text += "budget exceeded: " + counted(report.unfinishedShapes, "shape") +
+            (report.unfinishedShapes == 1 ? " was" : " were") + " not finished; " +
+            (enough ? "--max-depth " + std::to_string(*enough) + " would have been enough"
+                    : std::string("the rules nest in themselves without end, or too deep for any --max-depth")) +
+            "\n";
+  }
+  if (!vertices && report.instancesWritten < report.terminals)
+    text += exceeded(counted(report.terminals - report.instancesWritten, "instance"), "--max-instances",
+                     report.terminals, deriver.mostElements());
+  if (report.verticesWritten < report.vertices)
+    text += exceeded(counted(report.vertices - report.verticesWritten, "vertex", "vertices"), "--max-instances",
+                     report.vertices, deriver.mostElements());
+  return text;
+}
+
+/// As if it had been one record.
+void add(GpgpSpawnReport& sum, const GpgpSpawnReport& record) {
+  if (sum.base.status >= GPGP_SUCCESS) // an error stays one
+    sum.base.status =
+        record.base.status < GPGP_SUCCESS ? record.base.status : std::max(sum.base.status, record.base.status);
+  for (const auto member :
+       {&GpgpSpawnReport::terminals, &GpgpSpawnReport::instancesWritten, &GpgpSpawnReport::droppedShapes,
+        &GpgpSpawnReport::unfinishedShapes, &GpgpSpawnReport::vertices, &GpgpSpawnReport::verticesWritten,
+        &GpgpSpawnReport::colliders, &GpgpSpawnReport::collidersKept})
+    sum.*member += record.*member;
+  for (const auto member : {&GpgpSpawnReport::peakShapes, &GpgpSpawnReport::rounds, &GpgpSpawnReport::depth})
+    sum.*member = std::max(sum.*member, record.*member);
+  for (size_t word = 0; word < std::size(sum.keyHash); ++word) sum.keyHash[word] += record.keyHash[word];
+}
+
+/// Axioms in parts of equal size, a record each.
+struct Slices {
+  const std::vector<GpgpAxiom>& axioms;
+  size_t records = 1, size = 0;
+
+  Slices(const std::vector<GpgpAxiom>& all, size_t most) : axioms(all) {
+    records = (all.size() + most - 1) / most;
+    size = (all.size() + records - 1) / records;
+  }
+  std::vector<GpgpAxiom> of(size_t record) const {
+    const size_t first = std::min(record * size, axioms.size()), end = std::min(first + size, axioms.size());
+    return {axioms.begin() + std::ptrdiff_t(first), axioms.begin() + std::ptrdiff_t(end)};
+  }
+};
+
+Slices slicesFor(const SpawnOptions& options, const std::vector<GpgpAxiom>& axioms, const spawn::Graph& graph,
+                 Session& session) {
+  uint64_t most = Deriver::mostAxioms(session);
+  if (options.slice) most = std::min<uint64_t>(most, options.slice);
+  if (axioms.size() > most && graph.phases)
+    throw Usage(counted(axioms.size(), "axiom") + " take several records of at most " + std::to_string(most) +
+                ", but colliders know only those of their record; use fewer axioms");
+  return {axioms, most};
+}
+
+/// Whether terminals can be shapes with corners of their own, which instances do not say.
+bool hasDynamicTerminals(const spawn::Graph& graph) {
+  return std::any_of(graph.nodes.begin(), graph.nodes.end(), [](const spawn::Node& node) {
+    return node.op == shader::kOpTerminal && (node.shapes & shader::kDynamicShapes);
+  });
+}
+
+Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
+  const bool vertices = options.output == "vertices";
+  if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
+  const BakedGraph grammar = bakeGraph(options.grammars, options.set);
+  const spawn::Graph& graph = grammar.graph;
+  const AxiomDefaults defaults{options.size, options.seed, grammar.starts()};
+  const uint32_t grammarCount = static_cast<uint32_t>(defaults.starts.size());
+  const std::vector<GpgpAxiom> start =
+      options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
+                                : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
+  Session session(common);
+  const Slices slices = slicesFor(options, start, graph, session);
+  const auto layout = spawn::layoutOf(Deriver::layout());
+  const Reference reference =
+      evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr, joined(options.grammars));
+  const Chosen chosen = chooseKernel(options, grammar, slices.of(0), session);
+
+  DeriverOptions deriverOptions;
+  deriverOptions.vertices = vertices;
+  deriverOptions.sorted = options.sorted;
+  deriverOptions.maxShapes = options.maxShapes;
+  deriverOptions.maxDepth = options.maxDepth;
+  deriverOptions.maxColliders = options.maxColliders;
+  deriverOptions.maxInstances = options.maxInstances;
+  deriverOptions.expected =
+      (vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals) /
+      slices.records;
+  Deriver deriver(session, grammar, slices.of(0), deriverOptions);
+  if (options.maxInstances > deriver.mostElements())
+    throw Usage("--max-instances is too large for this device: at most " + std::to_string(deriver.mostElements()));
+  const Grammar prepared = deriver.prepare(chosen.words);
+  GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+  GpuTimes times;
+  uint64_t bytesWritten = 0, verticesWritten = 0;
+  std::vector<GpgpInstance> instances;
+  // Of shapes whose corners instances do not say, what is drawn and counted is derived once more, as vertices.
+  std::optional<Deriver> asVertices;
+  if (!vertices && hasDynamicTerminals(graph)) {
+    deriverOptions.vertices = true;
+    deriverOptions.sorted = false;
+    deriverOptions.maxInstances = 0;
+    deriverOptions.expected = 0;
+    asVertices.emplace(session, grammar, slices.of(0), deriverOptions);
+  }
+  Triangles triangles{!options.image.empty(), std::vector<uint64_t>(graph.terminals.size())};
+  std::vector<SpawnedVertex> allVertices; // for --out
+  std::vector<uint32_t> allIndices;
+  const auto take = [&](Deriver& from) {
+    const std::vector<SpawnedVertex> written = from.vertices();
+    const std::vector<uint32_t> indices = from.indices();
+    addTriangles(triangles, written, indices);
+    if (options.out.empty()) return written.size();
+    const uint32_t first = static_cast<uint32_t>(allVertices.size());
+    allVertices.insert(allVertices.end(), written.begin(), written.end());
+    for (const uint32_t index : indices) allIndices.push_back(first + index);
+    return written.size();
+  };
+  std::string budgets; // that the first record exceeded that exceeded any
+  for (size_t record = 0; record < slices.records; ++record) {
+    if (record) deriver.setAxioms(slices.of(record));
+    deriver.fit(prepared);
+    const auto measured = deriver.measure(prepared, options.repeat);
+    add(report, measured.report);
+    times.add(measured.times);
+    bytesWritten += deriver.bytesWritten();
+    if (budgets.empty()) {
+      Hopeless hopeless; // which the report does not tell from those that still waited
+      if (measured.report.droppedShapes && reference.result.droppedShapes) {
+        const spawn::Derivation own =
+            checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars));
+        hopeless = {own.droppedShapes - own.uncutShapes, own.uncutShapes};
+      }
+      const auto depth = [&] { return depthOf(grammar.words, slices.of(record)); };
+      budgets = exceededBudgets(measured.report, hopeless, depth, deriver, vertices);
+      if (!budgets.empty() && slices.records > 1)
+        budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
+    }
+    if (vertices) {
+      verticesWritten += take(deriver);
+    } else {
+      const std::vector<GpgpInstance> written = deriver.instances();
+      if (asVertices) {
+        if (written.size() < measured.report.terminals)
+          throw Usage("of " + std::to_string(measured.report.terminals) + " instances " +
+                      std::to_string(written.size()) +
+                      " were written, and some have corners of their own, that instances do not say: what they would "
+                      "draw is not known; raise --max-instances, or --output vertices says it");
+        if (record) asVertices->setAxioms(slices.of(record));
+        asVertices->fit(prepared);
+        take(*asVertices);
+      } else {
+        addTriangles(triangles, written);
+      }
+      instances.insert(instances.end(), written.begin(), written.end());
+    }
+  }
+  session.checkValidation();
+
+  std::vector<std::string> bucketNames(std::max(graph.buckets, 1u));
+  for (const spawn::Terminal& terminal : graph.terminals) {
+    std::string& name = bucketNames[terminal.bucket];
+    name += (name.empty() ? "" : ", ") + std::string(graph.nameAt(terminal.name));
+  }
+  std::vector<uint64_t> bucketInstances(bucketNames.size()), bucketTriangles(bucketNames.size());
+  std::map<uint32_t, uint64_t> ruleInstances;
+  for (const GpgpInstance& instance : instances) {
+    ++bucketInstances.at(instance.bucket);
+    ++ruleInstances[instance.rule];
+  }
+  for (size_t terminal = 0; terminal < triangles.counts.size(); ++terminal)
+    bucketTriangles[graph.terminals[terminal].bucket] += triangles.counts[terminal];
+  if (report.base.status < GPGP_SUCCESS)
+    throw Failure(joined(options.grammars) + ": " + statusName(report.base.status) +
+                  ": the device ended loops of a shader before their time, and what it derived is wrong");
+  if (!options.image.empty()) paint(options, triangles, graph);
+  if (!options.out.empty()) writeGlb(options.out, graph, {instances, allVertices, allIndices}, options.nodes);
+  const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
+  const bool whole = !report.droppedShapes && report.collidersKept == report.colliders &&
+                     report.unfinishedShapes == reference.result.unfinishedShapes;
+  if (whole && reference.result.complete)
+    if (const std::string what = difference(reference.result, report, instances); !what.empty())
+      throw Failure(joined(options.grammars) + ": the device derived something else than the CPU evaluator: " + what +
+                    "; please report this");
+
+  Outcome outcome;
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%08x%08x", report.keyHash[1], report.keyHash[0]);
+  Json bucketList = Json::array(), ruleList = Json::array(), passes = Json::object();
+  for (const auto& [rule, count] : ruleInstances)
+    ruleList.push_back({{"rule", rule == GPGP_NO_RULE ? Json() : Json(graph.nameAt(graph.rules.at(rule).name))},
+                        {"instances", count}});
+  for (const auto& [name, time] : times.passes) // rounds of derivation have the same name
+    passes[name] = passes.value(name, 0.0) + time;
+  std::ostringstream text;
+  text << report.terminals << " terminals (" << triangles.total << " triangles) from " << start.size()
+       << (start.size() == 1 ? " axiom" : " axioms") << " in "
+       << (slices.records > 1 ? std::to_string(slices.records) + " records of up to " : std::string()) << report.rounds
+       << " rounds on " << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups
+       << " execution groups\n";
+  for (uint32_t bucket = 0; bucket < bucketNames.size(); ++bucket) {
+    bucketList.push_back({{"bucket", bucket},
+                          {"name", bucketNames[bucket]},
+                          {"instances", bucketInstances[bucket]},
+                          {"triangles", bucketTriangles[bucket]}});
+    text << "  " << (vertices ? bucketTriangles : bucketInstances)[bucket] << (vertices ? " triangles  " : "  ")
+         << bucketNames[bucket] << '\n';
+  }
+  text << "peak of " << report.peakShapes << " shapes; GPU " << milliseconds(times.median()) << " (median of "
+       << times.totals.size() << "), " << bytesWritten << " bytes written; CPU evaluator, one thread "
+       << milliseconds(reference.milliseconds);
+  if (!reference.result.complete) {
+    text << ", which gave up";
+  } else if (reference.milliseconds > 0) {
+    char rate[32];
+    std::snprintf(rate, sizeof rate, "%.1f",
+                  static_cast<double>(reference.result.terminals) / reference.milliseconds / 1e3);
+    text << " (" << rate << " million terminals a second)";
+  }
+  text << '\n';
+  if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
+  if (!options.image.empty()) text << "picture: " << options.image << '\n';
+  if (!options.out.empty()) text << "triangles: " << options.out << '\n';
+  outcome.text = text.str();
+  if (!budgets.empty()) budgets.pop_back(); // the end of its line
+  outcome.failure = budgets.empty() && exceeded ? "not all of it was derived" : budgets;
+  outcome.json = {{"grammar", jsonOf(options.grammars)},
+                  {"device", session.device().name()},
+                  {"status", statusName(report.base.status)},
+                  {"output", options.output},
+                  {"schedule", chosen.name},
+                  {"schedule_file", chosen.file.empty() ? Json() : Json(chosen.file.string())},
+                  {"execution_groups", chosen.groups},
+                  {"axioms", start.size()},
+                  {"records", slices.records},
+                  {"seed", options.seed},
+                  {"terminals", report.terminals},
+                  {"instances", instances.size()},
+                  {"vertices", verticesWritten},
+                  {"triangles", triangles.total},
+                  {"buckets", bucketList},
+                  {"rules", ruleList},
+                  {"rounds", report.rounds},
+                  {"peak_shapes", report.peakShapes},
+                  {"max_shapes", deriver.maxShapes()},
+                  {"max_rounds", deriver.maxRounds()},
+                  {"dropped_shapes", report.droppedShapes},
+                  {"unfinished_shapes", report.unfinishedShapes},
+                  {"colliders", report.colliders},
+                  {"budget_exceeded", exceeded},
+                  {"key_hash", hash},
+                  {"bytes_written", bytesWritten},
+                  {"gpu_ms_median", times.median()},
+                  {"passes", passes},
+                  {"cpu_reference_terminals", reference.result.terminals},
+                  {"cpu_reference_ms", reference.result.complete ? Json(reference.milliseconds) : Json()},
+                  {"image", options.image.empty() ? Json() : Json(options.image)},
+                  {"out", options.out.empty() ? Json() : Json(options.out)}};
+  return outcome;
+}
+
+} // namespace
+
+Work addSpawn(CLI::App& app) {
+  auto options = std::make_shared<SpawnOptions>();
+  CLI::App* command = app.add_subcommand("spawn", "Derive a grammar on the GPU and say what came out");
+  addGrammars(*command, options->grammars);
+  CLI::Option* axioms =
+      command
+          ->add_option("--axioms", options->axioms,
+                       "Start shapes, on a square grid; those of linked grammars in turn (default: one of each)")
+          ->check(CLI::Range(1u, 10000000u));
+  command
+      ->add_option(
+          "--axiom-file", options->axiomFile,
+          "Start shapes from a file, CSV or JSON: position, rotation about Y or quaternion, or a whole transform; "
+          "size, seed, rule, shape, attribute")
+      ->check(CLI::ExistingFile)
+      ->excludes(axioms);
+  command
+      ->add_option_function<std::string>(
+          "--axiom-size", [o = options.get()](const std::string& t) { o->size = parseTriple(t); },
+          "Extents of each start shape in metres (default 1,1,1)")
+      ->type_name("X,Y,Z");
+  command
+      ->add_option("--spacing", options->spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
+      ->excludes("--axiom-file")
+      ->check(within(1e-6, 1e9));
+  command->add_option("--seed", options->seed, "Random seed; axiom i has seed S + i")->capture_default_str();
+  addVariables(*command, options->set);
+  command->add_option("--repeat", options->repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
+      ->check(CLI::Range(1u, 100000u))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--schedule", options->schedule,
+          "How the derivation runs. sgl: as few execution groups as possible (with colliders: as a bounded search "
+          "finds); rw: one an operator; rules: one a "
+          "rule; heuristic: the thesis's H1 to H3; default: few groups, but for a SubDiv behind another "
+          "(execution_groups: of the partition with dynamic edges there); interpreter: "
+          "no kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
+          "many axioms, tuning first where it is not stored yet (in $XDG_CACHE_HOME/gpgp or ~/.cache/gpgp); "
+          "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
+      ->type_name("NAME|FILE")
+      ->capture_default_str();
+  addGroupSize(*command, options->heuristics);
+  command
+      ->add_option(
+          "--matching", options->matching,
+          "Execution groups that differ in parameters only share one piece of code; not for baked kernels, nor "
+          "for the default, which is no partition")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  command
+      ->add_option("--output", options->output,
+                   "What the GPU writes. instances: 96 bytes for each terminal. vertices: 32 bytes each, position "
+                   "float x 3, normal snorm8 x 4, uv float x 2, terminal and axiom id uint32; and 32-bit indices")
+      ->check(CLI::IsMember({"instances", "vertices"}))
+      ->capture_default_str();
+  command->add_flag("--sorted", options->sorted, "Instances lie by bucket, with a draw command each");
+  CLI::Option* image = command->add_option("--image", options->image, "Write a picture of the result")
+                           ->check(pngFile())
+                           ->type_name("FILE.png");
+  command->add_option("--yaw", options->yaw, "That picture's view: degrees around the scene")
+      ->needs(image)
+      ->check(within(-36000.0, 36000.0))
+      ->capture_default_str();
+  command->add_option("--pitch", options->pitch, "Degrees above the horizon")
+      ->needs(image)
+      ->check(within(-89.0, 89.0))
+      ->capture_default_str();
+  command->add_option("--zoom", options->zoom, "Times closer to the middle than all of the scene")
+      ->needs(image)
+      ->check(within(0.01, 1000.0))
+      ->capture_default_str();
+  CLI::Option* out =
+      command
+          ->add_option("--out", options->out,
+                       "Write what was derived: a node and mesh for each terminal, with normals, uv and its colour")
+          ->check(glbFile())
+          ->type_name("FILE.glb");
+  command
+      ->add_flag("--out-nodes", options->nodes,
+                 "There, a node for each instance that one can place, below its terminal's; they share meshes")
+      ->needs(out);
+  addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)")->needs(image);
+  command
+      ->add_option("--max-instances", options->maxInstances,
+                   "Budget: instances or vertices written (0: as many as there are, as far as the device binds them)")
+      ->check(CLI::Range(0u, 1u << 30))
+      ->capture_default_str();
+  command->add_option("--max-shapes", options->maxShapes,
+                      "Budget: shapes that wait for a round (0: the library's default, doubled until all fit)");
+  command->add_option("--max-colliders", options->maxColliders,
+                      "Budget: shapes that Collider registers (0: as many as there are)");
+  command->add_option("--slice", options->slice,
+                      "Axioms of one record at most (0: as many as the device binds); budgets are those of a record");
+  command->add_option("--max-depth", options->maxDepth,
+                      "Budget: how deep rules nest in themselves (0: the library's default)");
+  command->footer(R"(
+Examples:
+  gpgp spawn sponge.pga                                 one axiom of 1 x 1 x 1
+  gpgp spawn tower.pga --axioms 256 --axiom-size 24,34,24 --spacing 40
+  gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
+  gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line;
+                                                        also y, qx to qw, m00 to m23, shape, attribute
+  gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
+  gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
+  gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
+  gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50
+
+An axiom stands on its position. The CPU evaluator derives the same on one thread: cpu_reference_ms, and a check of what
+the device did. Errors in the grammar and in axiom files are printed with their place. What exceeds a budget is counted
+and reported with the size that would have fitted; it is never silently lost.)");
+  return [options](const CommonOptions& common) { return spawn(*options, common); };
+}
+
+} // namespace gpgp::cli

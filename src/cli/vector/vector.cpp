@@ -1,0 +1,333 @@
+// `gpgp vector`: converts an SVG to a drawing, rasterises it on the GPU and writes a picture.
+#include "cli/shared/css_color.h"
+#include "cli/shared/session.h"
+#include "cli/shared/textures.h"
+#include "cli/vector/images.h"
+#include "cli/vector/patch_tiles.h"
+#include "cli/vector/reference.h"
+#include "cli/vector/svg_files.h"
+#include "cli/vector/svg_messages.h"
+#include "host/files.h"
+#include "host/picture.h"
+#include "vector/import/svg/import.h"
+#include "vector/raster/segments.h"
+
+#include <gpgp/vector.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <sstream>
+
+namespace gpgp::cli {
+namespace {
+
+struct VectorOptions {
+  std::string file, out, background, stages, antialiasing = "16";
+  Size size;
+  bool allWarnings = false;
+  bool reference = false;
+  uint32_t repeat = 1, maxTileEntries = 0;
+};
+
+constexpr size_t kShownMessages = 10;
+constexpr float kLargest = 4096; ///< pixels of a side, where --size does not say
+
+struct Stages {
+  std::string folder, failure;
+};
+
+void GPGP_CALL onStage(void* userData, const char* stage, const char* svg, size_t size) {
+  auto* stages = static_cast<Stages*>(userData);
+  try {
+    host::writeFile(stages->folder + "/" + stage + ".svg", {svg, size});
+  } catch (const std::exception& failed) { // the compiler, which calls this, throws nothing on
+    stages->failure = failed.what();
+  }
+}
+
+/// Fits a page into the picture as its preserveAspectRatio says.
+void fit(std::span<const char> bytes, const float (&page)[4], const Size& size, float (&transform)[6]) {
+  const auto fitted = gpgp::vector::svg::fitPage(std::as_bytes(bytes), page, size.width, size.height);
+  if (!fitted) throw Failure(fitted.error().text);
+  const double values[6] = {fitted->a, fitted->b, fitted->c, fitted->d, fitted->e, fitted->f};
+  for (size_t i = 0; i < 6; ++i) transform[i] = static_cast<float>(values[i]);
+}
+
+/// At what scale the picture shows the source; 0: at its own, or it cannot be read.
+float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource source) {
+  if (size.width == 0) return 0;
+  const auto said = gpgp::vector::svg::pageSize(std::as_bytes(bytes), source.fileSystem);
+  if (!said) return 0;
+  float page[4] = {0, 0, static_cast<float>(said->width), static_cast<float>(said->height)};
+  if (!(page[2] > 0 && page[3] > 0)) { // the ink is the page
+    source.messageFn = nullptr;
+    source.stageFn = nullptr;
+    const Result<Blob> blob = compileSvg(source);
+    if (!blob) return 0;
+    const auto drawing = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
+                                                 std::pmr::get_default_resource());
+    if (!drawing || !(drawing->viewport[2] > 0 && drawing->viewport[3] > 0)) return 0;
+    std::copy_n(drawing->viewport, 4, page);
+  }
+  float transform[6];
+  fit(bytes, page, size, transform);
+  return std::min(std::max(transform[0], transform[3]), 1e6f);
+}
+
+/// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
+double compareWithReference(std::span<const char> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
+                            const std::array<float, 4>& background, const Size& size, float scale,
+                            const GpgpFileSystem* files) {
+  gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
+  gpgp::vector::svg::ImportDetail detail;
+  if (scale > 0) detail.scale = static_cast<double>(scale);
+  detail.strokes /= 16; // so that what strokes are off by is seen
+  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet, {}, {}, detail, files);
+  if (!svg) throw Failure(svg.error().text);
+  const gpgp::vector::svg::ImportedViews views(*svg);
+  std::vector<float> pixels(painted.size());
+  for (size_t i = 0; i < painted.size(); ++i) pixels[i] = static_cast<float>(painted[i]) / 255.0f;
+  return psnrOverWhite(
+      pixels,
+      vectorReference(views.paths, views.groups, transform, background.data(), size.width, size.height, Blend::Srgb),
+      Blend::Srgb);
+}
+
+/// A canvas for what a report says is needed, or as near to that as the device has room for; none where it has not.
+/// `info`: of the canvas that reported; becomes that of the new one.
+std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info, const GpgpCanvasReport& report) {
+  const auto wanted = [](uint32_t needed, uint32_t given, double share) {
+    // Somewhat more than is needed: what had no tile words has not been asked for its entries.
+    const double more = needed > given ? 1.125 * static_cast<double>(needed) - static_cast<double>(given) : 0;
+    return static_cast<uint32_t>(std::min(static_cast<double>(given) + more * share, static_cast<double>(1u << 28)));
+  };
+  for (const double share : {1.0, 0.5, 0.25, 0.125}) {
+    GpgpCanvasCreateInfo next = info;
+    next.maxPaths = std::max(info.maxPaths, report.paths);
+    next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, share);
+    next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, share);
+    if (next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven) break;
+    Result<Canvas> made = Canvas::create(session.context(), next);
+    if (!made) continue;
+    info = next;
+    return std::move(*made);
+  }
+  return std::nullopt;
+}
+
+/// What is missing, and what would have held it. `said`: the budget was.
+std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
+  const bool words = report.tileWords > report.tileWordsGiven;
+  const std::string text =
+      std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
+  if (said) // as many words come with them
+    return text + "; --max-tile-entries " + std::to_string(std::max(report.tileEntries, words ? report.tileWords : 0)) +
+           " would hold them, or somewhat more";
+  return text + ": they need " + std::to_string(words ? report.tileWords : report.tileEntries) +
+         (words ? " tile words" : " tile entries") + ", and the device has room for " +
+         std::to_string(words ? report.tileWordsGiven : report.tileEntriesGiven) + "; a smaller --size needs fewer";
+}
+
+Outcome vector(const VectorOptions& options, const CommonOptions& common) {
+  const std::array<float, 4> background = parseBackground(options.background);
+  const std::string bytes = readInput(options.file), name = inputName(options.file);
+  if (bytes.starts_with("GPVD")) throw Failure(name + ": a baked drawing; SVG is wanted, from which it was made");
+  SvgMessages messages(options.allWarnings ? SIZE_MAX : kShownMessages);
+  GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+  source.name = name.c_str();
+  source.data = bytes.data();
+  source.size = bytes.size();
+  messages.attach(source);
+  const SvgFiles files(options.file);
+  source.fileSystem = files.fileSystem();
+  GpgpSvgReport converted{};
+  source.report = &converted;
+  VectorImages images;
+  images.attach(source);
+  Stages stages{options.stages, {}};
+  if (!options.stages.empty()) {
+    source.stageFn = onStage;
+    source.stageUserData = &stages;
+  }
+  source.scale = scaleInto(options.size, bytes, source);
+  const Result<Blob> blob = compileSvg(source);
+  if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
+  messages.finish();
+  if (options.reference && !images.pictures().empty())
+    throw Failure(name + ": the reference knows no images; draw it without --reference");
+  if (!stages.failure.empty()) throw Failure(stages.failure);
+
+  Session session(common);
+  host::HeadlessDevice& device = session.device();
+  GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
+  drawingInfo.label = name.c_str();
+  drawingInfo.data = blob->data();
+  drawingInfo.size = blob->size();
+  const Drawing drawing = session.take(Drawing::create(session.context(), drawingInfo), "gpgpCreateDrawing");
+  const GpgpDrawingInfo facts = session.take(drawing.info(), "gpgpGetDrawingInfo");
+  if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(name + ": the drawing has no extent");
+  Size size = options.size;
+  float shrink = 1;
+  if (size.width == 0) {
+    shrink = std::min(1.0f, kLargest / std::max(facts.viewport[2], facts.viewport[3]));
+    size.width = static_cast<uint32_t>(std::max(std::ceil(facts.viewport[2] * shrink), 1.0f));
+    size.height = static_cast<uint32_t>(std::max(std::ceil(facts.viewport[3] * shrink), 1.0f));
+  }
+
+  GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
+  canvasInfo.base = session.recorderInfo("canvas");
+  canvasInfo.maxWidth = size.width;
+  canvasInfo.maxHeight = size.height;
+  canvasInfo.maxPaths = std::max(facts.paths, 1024u);
+  canvasInfo.maxTileEntries = options.maxTileEntries;
+  canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
+  Canvas canvas = session.take(Canvas::create(session.context(), canvasInfo), "gpgpCreateCanvas");
+  session.check(canvas.prewarm(), "gpgpPrewarm");
+  session.upload();
+
+  const host::Image target(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = size.width, .height = size.height},
+                           "picture");
+  GpgpCanvasItem item{};
+  item.drawing = drawing;
+  item.opacity = 1.0f;
+  fit(bytes, facts.viewport, size, item.transform);
+  const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
+                                             std::pmr::get_default_resource());
+  if (!table) throw Failure(table.error().text);
+  // What is uploaded are outlines; the library makes them with the asset, where the time also holds the upload's.
+  const auto beforeOutlines = std::chrono::steady_clock::now();
+  gpgp::vector::makeOutlines(*table, std::pmr::get_default_resource());
+  const double convertMilliseconds =
+      converted.convertMilliseconds +
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - beforeOutlines).count();
+  const Textures textures(device, shrunkToShown(images.pictures(), *table, item.transform));
+  const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+  const bool area = options.antialiasing == "area";
+  const uint32_t samples = area ? 16 : static_cast<uint32_t>(std::stoul(options.antialiasing));
+  const auto rasterise = [&](uint32_t repeat) {
+    return session.measure(canvas, "rasterising", repeat,
+                           [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
+                             GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+                             info.base = base;
+                             info.width = size.width;
+                             info.height = size.height;
+                             info.items = &item;
+                             info.itemCount = 1;
+                             info.images = textures.views().data();
+                             info.imageCount = static_cast<uint32_t>(textures.views().size());
+                             info.samples = samples;
+                             info.exactArea = area ? VK_TRUE : VK_FALSE;
+                             std::copy(std::begin(background), std::end(background), info.background);
+                             info.target = target.target({}, after);
+                             info.encodeSrgb = info.blendSrgb = VK_TRUE;
+                             return canvas.recordPrepare(commands, frame, info);
+                           });
+  };
+  // Not counted: memory is used the first time, and the report says what the drawing needs.
+  for (GpgpCanvasReport needs = rasterise(1).report; needs.pathsDropped && options.maxTileEntries == 0;
+       needs = rasterise(1).report) {
+    std::optional<Canvas> larger = largerCanvas(session, canvasInfo, needs);
+    if (!larger) break;
+    canvas = std::move(*larger);
+    session.check(canvas.prewarm(), "gpgpPrewarm");
+  }
+  const auto [times, report] = rasterise(options.repeat);
+  std::vector<uint8_t> pixels;
+  if (!options.out.empty() || options.reference) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
+  double psnr = 0;
+  if (options.reference)
+    psnr = compareWithReference(bytes, pixels, item.transform, background, size, source.scale, files.fileSystem());
+  if (!options.out.empty()) {
+    host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
+  }
+  session.checkValidation();
+
+  Json passes = Json::object();
+  for (const auto& [pass, time] : times.passes) passes[pass] = time;
+  const PatchTiles tiles = countPatchTiles(*table, item.transform, size.width, size.height);
+  Outcome outcome;
+  std::ostringstream text;
+  text << name << ": " << facts.paths << " paths, " << facts.curves << " curves, " << facts.patches
+       << " patches; parsed in " << milliseconds(converted.parseMilliseconds) << ", converted in "
+       << milliseconds(convertMilliseconds) << '\n'
+       << size.width << " x " << size.height << " pixels"
+       << (shrink < 1 ? " (shrunk to them; --size makes more), " : ", ") << samples
+       << (area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries << " tile entries; GPU "
+       << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on " << device.name() << '\n';
+  if (messages.count()) text << messages.count() << " parts of the drawing are approximated, left out or not valid\n";
+  if (options.reference) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
+  if (!options.out.empty()) text << "picture: " << options.out << '\n';
+  outcome.text = text.str();
+  if (report.pathsDropped) outcome.failure = name + ": " + omitted(report, facts.paths, options.maxTileEntries != 0);
+  outcome.json = {{"file", options.file},
+                  {"device", device.name()},
+                  {"status", statusName(report.base.status)},
+                  {"width", size.width},
+                  {"height", size.height},
+                  {"aa", options.antialiasing},
+                  {"samples", samples},
+                  {"paths", facts.paths},
+                  {"curves", facts.curves},
+                  {"patches", facts.patches},
+                  {"tile_entries_given", report.tileEntriesGiven},
+                  {"tile_words", report.tileWords},
+                  {"tile_words_given", report.tileWordsGiven},
+                  {"paths_dropped", report.pathsDropped},
+                  {"warnings", messages.count()},
+                  {"messages", messages.json()},
+                  {"curves_per_patch", tiles.curvesPerPatch},
+                  {"tile_entries", report.tileEntries},
+                  {"patches_per_tile", tiles.patchesPerTile},
+                  {"curves_per_patch_tiled", tiles.curvesPerPatchTiled},
+                  {"parse_ms", converted.parseMilliseconds},
+                  {"convert_ms", convertMilliseconds},
+                  {"gpu_ms_median", times.median()},
+                  {"passes", passes},
+                  {"unsupported", messages.unsupported()},
+                  {"image", options.out.empty() ? Json() : Json(options.out)}};
+  if (options.reference) outcome.json["psnr_db"] = psnr;
+  return outcome;
+}
+
+} // namespace
+
+Work addVector(CLI::App& app) {
+  auto options = std::make_shared<VectorOptions>();
+  CLI::App* command = app.add_subcommand("vector", "Rasterise an SVG on the GPU");
+  command->add_option("FILE", options->file, "SVG or gzip-compressed SVG (.svgz); - is standard input")
+      ->required()
+      ->check(existingInput());
+  addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own, at most 4096)");
+  command
+      ->add_option("--aa", options->antialiasing,
+                   "Samples per pixel, or area: 16, and a pixel's first edge counts by its exact area")
+      ->check(CLI::IsMember({"1", "4", "8", "16", "area"}))
+      ->capture_default_str();
+  command->add_option("--background", options->background, "CSS colour behind the drawing (default: transparent)")
+      ->type_name("COLOUR");
+  command->add_option("-o,--out,OUT", options->out, "Write the picture")->check(pngFile())->type_name("FILE.png");
+  command->add_flag("--reference", options->reference,
+                    "Compare with 256 samples a pixel, composited by winding numbers on the CPU (slow)");
+  command->add_option("--stages", options->stages, "Write each stage of the conversion as SVG")->type_name("FOLDER");
+  command
+      ->add_option("--repeat", options->repeat,
+                   "Rasterise N times and report the median time; a first time before them is not counted")
+      ->check(CLI::Range(1u, 100000u))
+      ->capture_default_str();
+  command->add_flag("--all-warnings", options->allWarnings, "Name every part that is approximated or left out");
+  command->add_option("--max-tile-entries", options->maxTileEntries,
+                      "Budget: tiles that paths' edges pass through (0: as many as are needed)");
+  command->footer(R"(
+Examples:
+  gpgp vector tiger.svg --out tiger.png
+  gpgp vector tiger.svgz --size 2048x2048 --background white --out tiger.png
+  cat icon.svg | gpgp vector - icon.png
+  gpgp vector map.svg --aa 4 --repeat 100 --json | jq .gpu_ms_median
+
+What is approximated or left out is named on standard error with its place, the first ten unless --all-warnings is given,
+counted, and listed by --json: all as messages, what is not supported as unsupported.)");
+  return [options](const CommonOptions& common) { return vector(*options, common); };
+}
+
+} // namespace gpgp::cli

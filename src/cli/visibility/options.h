@@ -1,0 +1,28 @@
+// The arguments of `gpgp visibility`.
+#pragma once
+#include "cli/shared/command.h"
+
+#include <gpgp/visibility.h>
+
+namespace gpgp::cli {
+
+struct VisibilityOptions {
+  std::string model, image, overlay, exportIds, camera, method = "standard", cell, referenceDevice = "gpu";
+  Size size{1280, 720}, grid{1, 1};
+  float yaw = 35, pitch = 20, distance = 2;
+  uint32_t repeat = 1, orbit = 0, samples = 1, reference = 0, recheck = 256, refinements = 0;
+  bool needlessSamples = false; ///< --samples for a method that decides at points of its own
+  uint32_t heuristics = GPGP_HEURISTICS_DEFAULT;
+  float epsilonStatic = 0.05f, epsilonDynamic = 0.05f, resolution = 1;
+  bool twoSided = false;
+  bool throughWalls = false; ///< view points of a cell behind geometry count as well
+
+  /// How each view is sampled; "cell" is exact over several.
+  GpgpSamplingMethod sampling() const;
+  uint32_t cameras() const { return orbit ? orbit : 1; }
+};
+
+/// Adds all of them; the options must stay where they are.
+void addVisibilityOptions(CLI::App& command, VisibilityOptions& options);
+
+} // namespace gpgp::cli

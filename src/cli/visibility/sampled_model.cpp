@@ -1,0 +1,145 @@
+#include "cli/visibility/sampled_model.h"
+
+#include "cli/shared/progress.h"
+
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+
+namespace gpgp::cli {
+
+SampledModel::SampledModel(Session& session, const VisibilityOptions& options, const Model& model)
+    : session_(session), options_(options), model_(model), words_((model.triangleCount + 31) / 32) {
+  GpgpGeometrySetCreateInfo info = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
+  info.label = options.model.c_str();
+  info.meshes = model.meshes.data();
+  info.meshCount = static_cast<uint32_t>(model.meshes.size());
+  geometry_ = session.take(GeometrySet::create(session.context(), info), "gpgpCreateGeometrySet");
+  session.upload();
+  host::HeadlessDevice& device = session.device();
+  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  positions_ = host::makeBuffer(device, model.positions, kStorage, "positions");
+  indices_ = host::makeBuffer(device, model.indices, kStorage, "indices");
+  draws_ = host::makeBuffer(device, model.draws, kStorage, "draws");
+  bits_ = host::Buffer(device, VkDeviceSize{words_} * 4, kStorage, host::Memory::device, "visible bits");
+  sizes_ = host::Buffer(device, VkDeviceSize{model.triangleCount} * 4, kStorage, host::Memory::device, "pixel counts");
+  list_ = host::Buffer(device, VkDeviceSize{model.triangleCount} * 4, kStorage, host::Memory::device, "visible list");
+  count_ = host::Buffer(device, 16, kStorage, host::Memory::device, "visible count");
+}
+
+VisibilityRecorder SampledModel::recorder(GpgpSamplingMethod method, uint32_t maxSamples) {
+  GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
+  info.base = session_.recorderInfo("recorder");
+  info.maxWidth = options_.size.width;
+  info.maxHeight = options_.size.height;
+  info.maxDraws = static_cast<uint32_t>(model_.draws.size());
+  info.maxTriangles = model_.triangleCount;
+  info.methods = 1u << method;
+  info.maxSamples = maxSamples;
+  info.maxCandidates = maxCandidates();
+  info.maxPairs = maxPairs();
+  const Progress progress("making pipelines");
+  VisibilityRecorder made =
+      session_.take(VisibilityRecorder::create(session_.context(), info), "gpgpCreateVisibilityRecorder");
+  session_.check(made.prewarm(), "gpgpPrewarm");
+  return made;
+}
+
+uint32_t SampledModel::maxCandidates() const {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  return static_cast<uint32_t>(std::min<uint64_t>({std::max(model_.triangleCount, 65536u), 1u << 24, range / 80}));
+}
+
+uint32_t SampledModel::maxPairs() const {
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  const uint64_t pixels = uint64_t{options_.size.width} * options_.size.height;
+  return static_cast<uint32_t>(std::min<uint64_t>(pixels * 24 + (1u << 20), range / 20));
+}
+
+Measured<GpgpVisibilityReport> SampledModel::sample(VisibilityRecorder& recorder, const Step& step) {
+  const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED};
+  return session_.measure(recorder, step.label, step.repeat,
+                          [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
+                            GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
+                            info.base = base;
+                            info.geometrySet = geometry_;
+                            info.method = step.method;
+                            std::copy_n(glm::value_ptr(step.view.camera), 16, info.camera.viewProjection);
+                            info.camera.reversedDepth = step.view.reversed;
+                            info.width = options_.size.width;
+                            info.height = options_.size.height;
+                            info.samples = step.samples;
+                            info.slice = step.slice;
+                            info.accumulate = step.accumulate;
+                            if (step.method == GPGP_SAMPLING_CONSERVATIVE) {
+                              info.resolution = options_.resolution;
+                              info.heuristics = options_.heuristics;
+                              info.epsilonStatic = options_.epsilonStatic;
+                              info.epsilonDynamic = options_.epsilonDynamic;
+                              info.refinements = options_.refinements;
+                            }
+                            info.positions = positions_.range();
+                            info.positionStride = 12;
+                            info.indices = indices_.range();
+                            info.indexType = VK_INDEX_TYPE_UINT32;
+                            info.draws = draws_.range();
+                            info.drawCount = static_cast<uint32_t>(model_.draws.size());
+                            info.triangleCount = model_.triangleCount;
+                            info.visibleBits = bits_.range({}, after);
+                            if (step.sizes) info.pixelCounts = sizes_.range({}, after);
+                            info.visibleList = list_.range({}, after);
+                            info.visibleCount = count_.range({}, after);
+                            return recorder.recordPrepare(commands, frame, info);
+                          });
+}
+
+GpgpVisibilityReport SampledModel::compare(VisibilityRecorder& recorder, const std::vector<uint32_t>& found,
+                                           const std::vector<uint32_t>& reference, const std::vector<uint32_t>& areas,
+                                           const std::vector<uint32_t>& recheck) {
+  host::HeadlessDevice& device = session_.device();
+  const auto copy = [&](const std::vector<uint32_t>& words, const char* name) {
+    return words.empty() ? host::Buffer() : host::makeBuffer(device, words, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, name);
+  };
+  const host::Buffer foundBits = copy(found, "found"), referenceBits = copy(reference, "reference");
+  const host::Buffer referenceCounts = copy(areas, "reference's counts"), recheckBits = copy(recheck, "recheck");
+  return session_
+      .measure(recorder, "metrics", 1,
+               [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
+                 GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;
+                 info.base = base;
+                 info.triangleCount = model_.triangleCount;
+                 info.visibleBits = foundBits.range();
+                 info.referenceBits = referenceBits.range();
+                 info.referenceCounts = referenceCounts.range();
+                 if (!recheck.empty()) info.recheckBits = recheckBits.range();
+                 return recorder.recordPrepareMetrics(commands, frame, info);
+               })
+      .report;
+}
+
+std::vector<uint32_t> SampledModel::reference(const std::vector<View>& views, uint32_t samples,
+                                              const std::function<void(uint64_t, uint64_t)>& told) {
+  uint32_t perRecord = std::min(samples, 8u); // as many as the device binds
+  const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
+  while (perRecord > 1 && uint64_t{options_.size.width} * options_.size.height * perRecord * perRecord * 8 > range)
+    perRecord /= 2;
+  VisibilityRecorder reference = recorder(GPGP_SAMPLING_REFERENCE, perRecord);
+  const uint32_t slices = samples / perRecord * (samples / perRecord) + 1;
+  uint64_t done = 0;
+  for (const View& view : views)
+    for (uint32_t slice = 0; slice < slices; ++slice) {
+      Step step;
+      step.method = GPGP_SAMPLING_REFERENCE;
+      step.view = view;
+      step.samples = samples;
+      step.slice = slice;
+      step.accumulate = done > 0;
+      step.sizes = true;
+      step.label = "slice";
+      sample(recorder, step);
+      told(++done, slices * views.size());
+    }
+  return bits();
+}
+
+} // namespace gpgp::cli

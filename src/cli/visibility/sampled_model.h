@@ -1,0 +1,50 @@
+// A model on the device, and what samples it.
+#pragma once
+#include "cli/model/model.h"
+#include "cli/shared/session.h"
+#include "cli/visibility/options.h"
+#include "cli/visibility/views.h"
+
+namespace gpgp::cli {
+
+class SampledModel {
+public:
+  /// The options and the model must outlive it.
+  SampledModel(Session& session, const VisibilityOptions& options, const Model& model);
+
+  VisibilityRecorder recorder(GpgpSamplingMethod method, uint32_t maxSamples);
+  /// Of the exact method's recorders.
+  uint32_t maxCandidates() const;
+  uint32_t maxPairs() const;
+
+  struct Step {
+    GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;
+    View view;
+    uint32_t samples = 0, slice = 0, repeat = 1;
+    bool accumulate = false, sizes = false;
+    const char* label = "sampling";
+  };
+  Measured<GpgpVisibilityReport> sample(VisibilityRecorder& recorder, const Step& step);
+  std::vector<uint32_t> bits() { return host::download<uint32_t>(session_.device(), bits_, words_); }
+  std::vector<uint32_t> sizes() { return host::download<uint32_t>(session_.device(), sizes_, model_.triangleCount); }
+
+  /// How far what was found agrees with a reference; recheck may be empty.
+  GpgpVisibilityReport compare(VisibilityRecorder& recorder, const std::vector<uint32_t>& found,
+                               const std::vector<uint32_t>& reference, const std::vector<uint32_t>& areas,
+                               const std::vector<uint32_t>& recheck);
+
+  /// The reference with samples x samples a pixel and the centre, for the union of views; sizes() has its areas
+  /// afterwards. `told` hears how many of how many slices are done.
+  std::vector<uint32_t> reference(const std::vector<View>& views, uint32_t samples,
+                                  const std::function<void(uint64_t, uint64_t)>& told);
+
+private:
+  Session& session_;
+  const VisibilityOptions& options_;
+  const Model& model_;
+  uint32_t words_;
+  GeometrySet geometry_;
+  host::Buffer positions_, indices_, draws_, bits_, sizes_, list_, count_;
+};
+
+} // namespace gpgp::cli

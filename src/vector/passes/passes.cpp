@@ -1,0 +1,21 @@
+// The passes of the canvas, a stage a file.
+#include "vector/passes/builder.h"
+
+namespace gpgp::vector {
+
+core::PassList describePasses(const CanvasSizes& sizes, const core::Device& device, std::pmr::memory_resource* memory) {
+  PassBuilder builder(sizes, device, memory);
+  addBegin(builder);
+  addPlace(builder);
+  addMark(builder);
+  if (sizes.software) {
+    addSoftwareFill(builder);
+    addSoftwareRaster(builder);
+  } else {
+    addFill(builder);
+    addRaster(builder);
+  }
+  return std::move(builder.list);
+}
+
+} // namespace gpgp::vector

@@ -1,0 +1,27 @@
+// How much a canvas has room for, and what its lists take of that.
+#pragma once
+#include "vector/raster/gather.h"
+
+namespace gpgp::vector {
+
+struct CanvasSizes {
+  uint32_t maxWidth, maxHeight; ///< pixels
+  uint32_t maxEntries;          ///< tiles with edges, summed over paths
+  uint32_t maxWords;            ///< tile words: 32 tiles of a row of a path each
+  GpgpCanvasTargets targets;    ///< bits in the order of kNoImage, kHasImage8, kHasImage16
+  ItemBudgets items;
+  bool software; ///< the device has shaders without barriers
+
+  uint64_t tiles() const;
+  uint32_t listWords() const; ///< of a tile's list on software devices
+  uint64_t binWords() const;
+  uint32_t binLists() const; ///< paths in the lists of all bins
+  uint64_t binsEnd() const;  ///< words that bins and all lists take
+  /// Tile entries that small glyphs may take.
+  uint32_t smallGlyphRoom() const { return software ? 0 : maxEntries / 2; }
+  /// Of the lists between mark and fill: rows of flattened segments, or pieces of them on software devices.
+  uint32_t maxRows() const { return maxEntries * (software ? 4 : 8); }
+  bool writes(uint32_t target) const { return targets >> target & 1; }
+};
+
+} // namespace gpgp::vector
