@@ -1,38 +1,49 @@
-/* gpgp core: what all three services share.
+/* gpgp core: what the three services spawn, vector and visibility share.
  *
- * An engine hands gpgp its device once (gpgpCreateContext), then, each frame, a command buffer in recording state.
- * gpgp records work into it and returns. It never submits, waits, presents, owns a queue or creates a thread.
+ * An engine gives gpgp its device once (gpgpCreateContext). In each frame it gives gpgp a command buffer in the
+ * recording state. gpgp records work into that command buffer and returns. It never submits, waits or presents. It
+ * owns no queue and creates no thread.
  *
- *   asset    immutable input, shareable between recorders: a grammar, a drawing, a geometry set
- *   recorder   pipelines and scratch for one kind of work, sized by budgets: a spawner, a canvas, a recorder
- *   view     the history of one camera, canvas or tile
- *   report   what a record did, as counted by the GPU; ready when its frame is safe
+ * Objects:
+ *   asset      immutable input that recorders share: a grammar, a drawing, a glyph set, a list, a geometry set
+ *   recorder   pipelines and scratch memory for one kind of work: a spawner, a canvas, a visibility recorder.
+ *              Its budgets are fixed when it is created
+ *   history    what one camera or canvas keeps from one recording to the next
+ *
+ * A recording is one gpgpRecord... call and the commands that it recorded. A report holds what the GPU counted while
+ * a recording executed. The report can be read once the frame of the recording is safe (GpgpFrame).
  *
  * A frame:
- *   gpgpAdvance(context, &frame)                      once: frees, harvests reports, recycles rings
- *   gpgpRecordUpload(context, cmd, &frame, bytes)     copies pending asset data
- *   gpgpRecordPrepare...(recorder, cmd, &frame, info)   outside render passes: the compute work
- *   gpgpRecordDraw...(recorder, cmd, &frame, info)      inside the engine's pass, where something is drawn
+ *   gpgpAdvance(context, &frame)                        once: frees memory, collects reports, recycles rings
+ *   gpgpRecordUpload(context, cmd, &frame, bytes, ...)  copies pending asset data to the device
+ *   gpgpRecordPrepare...(recorder, cmd, &frame, &info)  outside render passes: the compute work
+ *   gpgpRecordDraw...(recorder, cmd, &frame, &info)     inside the engine's render pass, for recorders that draw
  *
- * Conventions, stated once for all services:
+ * Conventions of all services:
  *   object and world space   right-handed, +Y up, 1 unit = 1 metre; counter-clockwise triangles face the viewer
- *   drawing space            +X right, +Y down, 1 unit = 1 CSS pixel, as SVG
- *   pixel space              +X right, +Y down, pixel (x, y) covers [x, x+1) x [y, y+1)
- *   clip space               Vulkan's: +Y down, depth 0 (near) to 1 (far) unless a struct says reversed
- *   matrices                 column-major, column vectors: clip = viewProjection * world * position
+ *   drawing space            +X right, +Y down, 1 unit = 1 CSS pixel, as in SVG
+ *   pixel space              +X right, +Y down; pixel (x, y) covers [x, x+1) x [y, y+1)
+ *   clip space               Vulkan's: +Y down, depth 0 (near) to 1 (far) unless a struct says that it is reversed
+ *   matrices                 column-major, for column vectors: clip = viewProjection * world * position
  *   colour                   linear, premultiplied alpha, unless a field names another encoding
  *
- * Documentation tags:
- *   @threads any      safe from any thread at any time
- *   @threads context  one thread at a time per context; beside records of its recorders, too, but for gpgpAdvance,
- * which changes what records and reports read, and for destroying what a record uses
- *   @threads handle   one thread at a time per handle named first; different handles run side by side
- *   @lifetime call    pointers are read during the call only; frame: until the frame is safe; handle: until destroyed
- *   @pass outside     command buffer must be outside a render pass; inside: inside; any: either
- *   @state            command-buffer state that differs after the call
+ * Documentation tags of functions:
+ *   @threads any      May be called from any thread at any time.
+ *   @threads context  One thread at a time per context. Other threads may record with recorders of the context
+ *                     meanwhile. Two calls are excepted: gpgpAdvance, because recordings and report queries read what
+ *                     it changes, and destroying an object that a recording uses.
+ *   @threads handle   One thread at a time per handle, the one that the function names first. Calls for different
+ *                     handles may run at the same time.
+ *   @lifetime call    Pointers are read during the call only.
+ *   @lifetime frame   What is named must exist until the frame of the call is safe.
+ *   @lifetime handle  What is named must exist until the handle is destroyed.
+ *   @pass             Where the command buffer must be: outside a render pass, inside one, or any (either).
+ *   @state            The command-buffer state that differs after the call.
  *
- * Errors: negative GpgpResult. A function that returns an error has changed nothing, recorded nothing and sent one
- * message to the callback. The header needs no Vulkan header before it; it includes vulkan_core.h for handle types.
+ * Errors are negative values of GpgpResult. A function that returns an error has changed nothing and recorded nothing.
+ * It has sent one message to the context's callback, unless it was given no valid handle that leads to a context.
+ *
+ * This header includes vulkan_core.h for the handle types. No other Vulkan header has to come first.
  */
 #ifndef GPGP_CORE_H
 #define GPGP_CORE_H
@@ -69,37 +80,46 @@ extern "C" {
 /** The version of this header. */
 #define GPGP_VERSION GPGP_MAKE_VERSION(GPGP_VERSION_MAJOR, GPGP_VERSION_MINOR, GPGP_VERSION_PATCH)
 
-/** The version of the library that is loaded, as GPGP_MAKE_VERSION makes it. Compatible: the same major version, and
- *  while that is 0 the same minor version too.
+/** Returns the version of the loaded library, encoded by GPGP_MAKE_VERSION. The library is compatible with this header
+ *  if the major versions are equal. While the major version is 0, the minor versions must be equal as well.
  *  @threads any */
 GPGP_API uint32_t GPGP_CALL gpgpGetVersion(void);
 
 /* ---------------------------------------------------------------- results and messages */
 
-typedef int32_t GpgpResult; /* one of the values below; 32 bits in every compiler */
+typedef int32_t GpgpResult; /**< One of the values below. */
 enum {
   GPGP_SUCCESS = 0,
-  /* statuses: nothing is wrong */
-  GPGP_NOT_READY = 1,       /**< an asset is not resident, a pipeline not prewarmed, or a report not yet safe */
-  GPGP_BUDGET_EXCEEDED = 2, /**< in reports: something did not fit; the report names the size that would have */
-  GPGP_NOT_EXECUTED = 3,    /**< in reports: the command buffer was dropped, the GPU never ran it */
-  GPGP_INCOMPLETE = 4,      /**< an array or byte range was too small; what fits was written, the count says all */
-  /* errors: nothing was changed */
+
+  /* Statuses are positive. Nothing is wrong, and no message is sent. */
+
+  /** An asset or history is not resident, a pipeline has not been prewarmed, or no report is ready. */
+  GPGP_NOT_READY = 1,
+  /** In reports: a budget was too small. The report says how much was needed. What was written is valid. */
+  GPGP_BUDGET_EXCEEDED = 2,
+  /** In reports: the GPU never executed the command buffer. */
+  GPGP_NOT_EXECUTED = 3,
+  /** An array or byte range was too small. What fits was written, and the returned count or size is what is needed. */
+  GPGP_INCOMPLETE = 4,
+
+  /* Errors are negative. Nothing was changed, and a message says why. */
+
   GPGP_ERROR_INVALID_ARGUMENT = -1,
-  GPGP_ERROR_INVALID_STRUCT = -2,  /**< sType is unknown, or a pNext chain holds a struct that does not belong */
-  GPGP_ERROR_INVALID_HANDLE = -3,  /**< destroyed, of another kind, or of another context */
-  GPGP_ERROR_MISSING_FEATURE = -4, /**< the device or the declared features lack something; the message names it */
+  GPGP_ERROR_INVALID_STRUCT = -2,  /**< sType is not the expected one, or pNext holds an unexpected struct. */
+  GPGP_ERROR_INVALID_HANDLE = -3,  /**< NULL, destroyed, of another kind, or of another context. */
+  GPGP_ERROR_MISSING_FEATURE = -4, /**< The device lacks something, or it was not declared. The message names it. */
   GPGP_ERROR_OUT_OF_HOST_MEMORY = -5,
   GPGP_ERROR_OUT_OF_DEVICE_MEMORY = -6,
   GPGP_ERROR_DEVICE_LOST = -7,
-  GPGP_ERROR_TOO_MANY_RECORDINGS = -8, /**< maxRecordingsPerFrame or maxFramesInFlight is used up */
-  GPGP_ERROR_INVALID_DATA = -9,        /**< bytes that are not what they claim: magic, version, checksum or content */
-  GPGP_ERROR_UNSUPPORTED = -10,        /**< valid input that this build or device cannot handle */
-  GPGP_ERROR_IO = -11,
-  GPGP_ERROR_VULKAN = -12 /**< Vulkan failed otherwise; the message holds its code */
+  GPGP_ERROR_TOO_MANY_RECORDINGS = -8, /**< maxRecordingsPerFrame or maxFramesInFlight is used up. */
+  GPGP_ERROR_INVALID_DATA = -9,        /**< Bytes or text with a wrong magic, version, checksum or content. */
+  GPGP_ERROR_UNSUPPORTED = -10,        /**< The input is valid, but this build or device cannot handle it. */
+  GPGP_ERROR_IO = -11,                 /**< A file could not be read. */
+  GPGP_ERROR_VULKAN = -12              /**< Vulkan returned another error. The message holds its code. */
 };
 
-/** The name of a result as spelled in this header, "GPGP_UNKNOWN" otherwise. Static string. @threads any */
+/** Returns the name of a result as it is spelled in this header, or "GPGP_UNKNOWN". The string is static.
+ *  @threads any */
 GPGP_API const char* GPGP_CALL gpgpResultString(GpgpResult result);
 
 typedef int32_t GpgpSeverity;
@@ -108,11 +128,12 @@ enum { GPGP_SEVERITY_INFO = 0, GPGP_SEVERITY_WARNING = 1, GPGP_SEVERITY_ERROR = 
 typedef struct GpgpMessage {
   GpgpSeverity severity;
   GpgpResult code;
-  const char* function; /**< the API function, e.g. "gpgpCreateSpawner" */
-  const char* label;    /**< of the object concerned, "" where there is none */
-  const char* text;     /**< one sentence, names the argument and what was expected */
+  const char* function; /**< The API function, for example "gpgpCreateSpawner". */
+  const char* label;    /**< The label of the object concerned, or "". */
+  const char* text;     /**< One sentence that names the argument and what was expected. */
 } GpgpMessage;
-/** Called on the thread that called gpgp. Must not call gpgp. @lifetime call */
+
+/** Receives messages on the thread that called gpgp. The callback must not call gpgp. @lifetime call */
 typedef void(GPGP_CALL* GpgpMessageFn)(void* userData, const GpgpMessage* message);
 
 /* ---------------------------------------------------------------- structs with a type */
@@ -177,16 +198,16 @@ extern "C" {
   { .sType = (type) }
 #endif
 
-/* Every descriptor struct begins with sType and pNext. pNext is NULL or points to a struct that the base struct's
- * comment names; anything else is GPGP_ERROR_INVALID_STRUCT. Zero all other fields (the _INIT macros do): zero is
- * always "none" or "default". */
+/* Every descriptor struct begins with sType and pNext, and has an _INIT macro that sets sType and zeroes the rest. Zero
+ * always means "none" or "default". pNext must be NULL unless the comment of a struct names what it may point to.
+ * Anything else is GPGP_ERROR_INVALID_STRUCT. */
 
 /* ---------------------------------------------------------------- handles */
 
 typedef struct GpgpContext_T* GpgpContext;
-typedef struct GpgpAsset_T* GpgpAsset;       /**< grammar, drawing, glyph set or geometry set */
-typedef struct GpgpRecorder_T* GpgpRecorder; /**< spawner, canvas or recorder */
-typedef struct GpgpHistory_T* GpgpHistory;   /**< history of one camera, canvas or tile */
+typedef struct GpgpAsset_T* GpgpAsset;       /**< A grammar, drawing, glyph set or geometry set. */
+typedef struct GpgpRecorder_T* GpgpRecorder; /**< A spawner, canvas or visibility recorder. */
+typedef struct GpgpHistory_T* GpgpHistory;   /**< The history of one camera or canvas. */
 
 typedef int32_t GpgpService;
 enum { GPGP_SERVICE_CORE = 0, GPGP_SERVICE_SPAWN = 1, GPGP_SERVICE_VECTOR = 2, GPGP_SERVICE_VISIBILITY = 3 };
@@ -195,11 +216,12 @@ enum { GPGP_SERVICE_CORE = 0, GPGP_SERVICE_SPAWN = 1, GPGP_SERVICE_VECTOR = 2, G
 /* ---------------------------------------------------------------- device requirements and features */
 
 typedef uint64_t GpgpFeatures;
-/* What the engine enabled on its device. Vulkan cannot tell afterwards, so the engine declares it. */
+/* The features that the engine enabled on its device. Vulkan has no query for them, so the engine declares them in
+ * GpgpContextCreateInfo::features. */
 #define GPGP_FEATURE_DYNAMIC_RENDERING ((GpgpFeatures)1 << 0)
-#define GPGP_FEATURE_BUFFER_INT64_ATOMICS ((GpgpFeatures)1 << 1) /**< shaderBufferInt64Atomics and shaderInt64 */
+#define GPGP_FEATURE_BUFFER_INT64_ATOMICS ((GpgpFeatures)1 << 1) /**< shaderBufferInt64Atomics, shaderInt64 */
 #define GPGP_FEATURE_MULTIVIEW ((GpgpFeatures)1 << 2)
-#define GPGP_FEATURE_DEBUG_UTILS ((GpgpFeatures)1 << 3) /**< VK_EXT_debug_utils on the instance: names and labels */
+#define GPGP_FEATURE_DEBUG_UTILS ((GpgpFeatures)1 << 3) /**< VK_EXT_debug_utils on the instance: names, labels */
 #define GPGP_FEATURE_ALL (((GpgpFeatures)1 << 4) - 1)
 
 typedef struct GpgpRequirementsInfo {
@@ -214,71 +236,79 @@ typedef struct GpgpRequirementsInfo {
 typedef struct GpgpRequirements {
   GpgpStructureType sType;
   void* pNext;
-  uint32_t apiVersion;           /**< at least this Vulkan version, for instance and device */
-  GpgpFeatures requiredFeatures; /**< always 0: the baseline is plain Vulkan 1.2 */
-  GpgpFeatures optionalFeatures; /**< those that the device offers and gpgp would use */
-  VkQueueFlags queueFlags;       /**< a family for recorders needs these; drawing needs GRAPHICS as well */
-  const char* const* extensions; /**< device extensions behind optionalFeatures; static strings */
+  uint32_t apiVersion;           /**< The lowest Vulkan version, of the instance and of the device: 1.2. */
+  GpgpFeatures requiredFeatures; /**< Always 0, since the baseline is Vulkan 1.2 without optional features. */
+  GpgpFeatures optionalFeatures; /**< Features that the device offers and gpgp would use. */
+  VkQueueFlags queueFlags;       /**< Every recorder's queue family needs these. Drawing needs GRAPHICS as well. */
+  const char* const* extensions; /**< Device extensions that optionalFeatures need. The strings are static. */
   uint32_t extensionCount;
-  VkPhysicalDeviceFeatures2 features; /**< chain to VkDeviceCreateInfo::pNext, or merge: enables optionalFeatures;
-                                           its chain points into this struct, so do not copy the struct */
+  /** Enables optionalFeatures. Chain it to VkDeviceCreateInfo::pNext, or merge it into the engine's own structs. Its
+   *  pNext chain points into this GpgpRequirements, so do not copy the struct. */
+  VkPhysicalDeviceFeatures2 features;
   VkPhysicalDeviceVulkan11Features features11;
   VkPhysicalDeviceVulkan12Features features12;
   VkPhysicalDeviceDynamicRenderingFeatures dynamicRendering;
-  uint32_t missingCount;   /**< 0: the device can run gpgp */
-  const char* missing[16]; /**< each missing item by name and needed value; static strings */
+  uint32_t missingCount;   /**< 0 if the device can run gpgp. */
+  const char* missing[16]; /**< Each missing item by name and needed value. The strings are static. */
 } GpgpRequirements;
 #define GPGP_REQUIREMENTS_INIT GPGP_INIT(GpgpRequirements, GPGP_STRUCTURE_REQUIREMENTS)
 
-/** What gpgp needs of a device and what it could use, before the device is made.
- *  Works before any context exists. Returns GPGP_ERROR_MISSING_FEATURE when missingCount > 0 (the struct is filled all
- *  the same). @threads any @lifetime call (returned strings: forever) */
+/** Tells what gpgp needs of a physical device and which optional features it would use. Call it before creating the
+ *  device; no context is needed. If the device lacks something, the function returns GPGP_ERROR_MISSING_FEATURE and
+ *  fills the struct all the same. Returned strings are static. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpGetRequirements(const GpgpRequirementsInfo* info, GpgpRequirements* requirements);
 
 /* ---------------------------------------------------------------- callbacks of the engine */
 
-/** Host memory. allocate returns NULL on failure; alignment is a power of two. All of gpgp's own host memory comes
- *  from here; blobs of libgpgp_compiler do not. May be called from any thread that calls gpgp. */
+/** Allocates host memory. allocate returns NULL on failure. The alignment is a power of two. All host memory of libgpgp
+ *  comes from these callbacks; blobs of libgpgp_compiler do not. They are called on threads that call gpgp and on
+ *  threads of the job system, several at a time. */
 typedef struct GpgpHostAllocator {
   void* userData;
   void*(GPGP_CALL* allocate)(void* userData, size_t size, size_t alignment);
   void(GPGP_CALL* free)(void* userData, void* memory, size_t size, size_t alignment);
 } GpgpHostAllocator;
 
-/** One piece of device memory. */
+/** A range of device memory. */
 typedef struct GpgpGpuAllocation {
   VkDeviceMemory memory;
-  VkDeviceSize offset;
-  void* mapped;   /**< at offset; required for host-visible requests, ignored otherwise; stays mapped */
-  void* userData; /**< the engine's own handle, given back to free */
+  VkDeviceSize offset; /**< In bytes, aligned as the request says. */
+  /** Host address of the byte at offset. A request that requires HOST_VISIBLE memory needs it, and the memory must stay
+   *  mapped until it is freed. Other requests ignore it. */
+  void* mapped;
+  void* userData; /**< The engine's own value, passed back to free. */
 } GpgpGpuAllocation;
 
 typedef struct GpgpGpuAllocationRequest {
   VkMemoryRequirements requirements;
-  VkMemoryPropertyFlags required;
-  VkMemoryPropertyFlags preferred;
-  GpgpService service;
-  const char* label;
+  VkMemoryPropertyFlags required;  /**< Properties that the memory type must have. */
+  VkMemoryPropertyFlags preferred; /**< Properties that it should have as well. */
+  GpgpService service;             /**< The service that the memory is for. */
+  const char* label;               /**< What the memory is for. */
 } GpgpGpuAllocationRequest;
 
-/** Device memory. allocate returns VK_SUCCESS or an error; gpgp never calls it while recording. Without these
- *  callbacks gpgp sub-allocates blocks of its own. */
+/** Allocates device memory. allocate returns VK_SUCCESS or an error. gpgp never calls it while recording. Without these
+ *  callbacks gpgp sub-allocates blocks of its own: 4 MiB for the first of a memory type, then 32 MiB, or as much as a
+ *  larger request needs. */
 typedef struct GpgpGpuAllocator {
   void* userData;
   VkResult(GPGP_CALL* allocate)(void* userData, const GpgpGpuAllocationRequest* request, GpgpGpuAllocation* allocation);
   void(GPGP_CALL* free)(void* userData, const GpgpGpuAllocation* allocation);
 } GpgpGpuAllocator;
 
-/** The engine's job system, used by gpgpPrewarm; without it work runs on the calling thread. */
+/** One of the jobs that GpgpJobSystem::parallelFor runs. */
 typedef void(GPGP_CALL* GpgpJobFn)(void* argument, uint32_t index);
+
+/** The engine's job system. gpgpPrewarm and the conversion of paths and glyphs use it. Without it they do all work on
+ *  the calling thread. */
 typedef struct GpgpJobSystem {
   void* userData;
-  /** Runs job(argument, i) for i in [0, count) and returns when all are done. */
+  /** Runs job(argument, i) for every i in [0, count), on any threads, and returns when all jobs have ended. */
   void(GPGP_CALL* parallelFor)(void* userData, uint32_t count, GpgpJobFn job, void* argument);
 } GpgpJobSystem;
 
-/** The engine's files. read returns GPGP_SUCCESS and sets size; it copies at most capacity bytes when data is not NULL.
- */
+/** Reads the engine's files. read sets size to the size of the file and returns GPGP_SUCCESS. If data is not NULL, it
+ *  copies at most capacity bytes of the file there. gpgp calls it twice for a file: for the size, then for the data. */
 typedef struct GpgpFileSystem {
   void* userData;
   GpgpResult(GPGP_CALL* read)(void* userData, const char* path, void* data, size_t capacity, size_t* size);
@@ -289,214 +319,233 @@ typedef struct GpgpFileSystem {
 typedef struct GpgpContextCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
-  const char* label; /**< for messages and debug names; copied */
+  const char* label; /**< For messages and debug names. The string is copied. */
   VkInstance instance;
   VkPhysicalDevice physicalDevice;
   VkDevice device;
   PFN_vkGetInstanceProcAddr getInstanceProcAddr;
-  uint32_t apiVersion;            /**< the version that instance and device were created with; 0: 1.2 */
-  GpgpFeatures features;          /**< what was enabled on the device */
-  uint32_t maxFramesInFlight;     /**< 1 to 8; 0: 3 */
-  uint32_t maxRecordingsPerFrame; /**< gpgpRecord... calls per frame and recorder; 0: 16 */
-  VkDeviceSize uploadRingBytes;   /**< staging memory for gpgpRecordUpload, all frames together; 0: 8 MiB */
-  VkPipelineCache pipelineCache;  /**< the engine's, used for all pipelines; or VK_NULL_HANDLE: gpgp's own */
-  const void* pipelineCacheData;  /**< initial bytes for gpgp's own cache, from gpgpGetPipelineCacheData */
-  size_t pipelineCacheSize;
-  const GpgpHostAllocator* hostAllocator; /**< NULL: malloc. The struct is copied */
-  const GpgpGpuAllocator* gpuAllocator;   /**< NULL: own blocks. The struct is copied */
-  const GpgpJobSystem* jobSystem;         /**< NULL: none */
-  const GpgpFileSystem* fileSystem;       /**< NULL: baked files are read through the C library */
-  GpgpMessageFn messageFn;
+  uint32_t apiVersion;            /**< The version that instance and device were created with. 0: Vulkan 1.2. */
+  GpgpFeatures features;          /**< The features that the engine enabled on the device. */
+  uint32_t maxFramesInFlight;     /**< 1 to 8. 0: 3. */
+  uint32_t maxRecordingsPerFrame; /**< Recordings per frame, for each recorder. At most 4096. 0: 16. */
+  VkDeviceSize uploadRingBytes;   /**< Staging memory for gpgpRecordUpload, for all frames together. 0: 8 MiB. */
+  VkPipelineCache pipelineCache;  /**< The engine's cache for all pipelines, or VK_NULL_HANDLE for one of gpgp's own. */
+  const void* pipelineCacheData;  /**< Optional. Initial data of gpgp's own cache, from gpgpGetPipelineCacheData. */
+  size_t pipelineCacheSize;       /**< Bytes of pipelineCacheData. */
+  const GpgpHostAllocator* hostAllocator; /**< NULL: the C++ heap. The struct is copied. */
+  const GpgpGpuAllocator* gpuAllocator;   /**< NULL: blocks of gpgp's own. The struct is copied. */
+  const GpgpJobSystem* jobSystem;         /**< NULL: all work runs on the calling thread. The struct is copied. */
+  const GpgpFileSystem* fileSystem;       /**< NULL: the C library reads files. The struct is copied. */
+  GpgpMessageFn messageFn;                /**< NULL: messages are dropped. */
   void* messageUserData;
 } GpgpContextCreateInfo;
 #define GPGP_CONTEXT_CREATE_INFO_INIT GPGP_INIT(GpgpContextCreateInfo, GPGP_STRUCTURE_CONTEXT_CREATE_INFO)
 
-/** Creates a context on the engine's device. Several contexts, on one or more devices, run side by side.
- *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, MISSING_FEATURE, OUT_OF_..._MEMORY. @threads any @lifetime call;
- *  instance, device, pipelineCache and callbacks: handle */
+/** Creates a context on the engine's device. Several contexts may exist at the same time, on one or more devices.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, MISSING_FEATURE, OUT_OF_..._MEMORY, VULKAN.
+ *  @threads any @lifetime call; instance, device, pipelineCache and what callbacks use: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateContext(const GpgpContextCreateInfo* info, GpgpContext* context);
 
-/** Destroys the context and everything made from it, at once: the device must be idle as far as gpgp's records are
- *  concerned, or lost. NULL is ignored. @threads context */
+/** Destroys the context and everything that was created from it, at once. No recording of gpgp may be pending or
+ *  executing on the device, unless the device is lost. NULL is ignored. @threads context */
 GPGP_API void GPGP_CALL gpgpDestroyContext(GpgpContext context);
 
-/** Where the engine is. Frame numbers only grow. Everything recorded with a number <= safe has finished on all queues
- *  (or was dropped and never will be submitted). current - safe <= maxFramesInFlight. */
+/** The engine's place in time. Frame numbers never decrease. A frame is safe when everything recorded in it has
+ *  finished on all queues, or was dropped and will never be submitted. current - safe is at most maxFramesInFlight. */
 typedef struct GpgpFrame {
-  uint64_t current; /**< > safe */
-  uint64_t safe;
+  uint64_t current; /**< The frame that is being recorded. Greater than safe. */
+  uint64_t safe;    /**< The newest safe frame. All older frames are safe too. */
 } GpgpFrame;
 
-/** Once a frame, before the frame's records: frees what was destroyed, harvests reports, recycles rings. The only
- *  function that does. @threads context @lifetime call */
+/** Begins a frame: frees destroyed objects, collects reports and recycles rings, for all frames that are now safe.
+ *  While the context and its device live, no other function frees memory or recycles rings. Call it once a frame,
+ *  before the recordings of the frame. These pass the same GpgpFrame.
+ *  Errors: INVALID_HANDLE, INVALID_ARGUMENT, DEVICE_LOST.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAdvance(GpgpContext context, const GpgpFrame* frame);
 
-/** Tells gpgp that the device is lost: what creates, records or advances then returns
- *  GPGP_ERROR_DEVICE_LOST, no report comes any more, destroying stays legal and frees at
- *  once. @threads context */
+/** Tells gpgp that the device is lost. From then on, functions that create, record or advance return
+ *  GPGP_ERROR_DEVICE_LOST. No further report becomes ready. Destroying objects stays legal and frees them at once.
+ *  @threads context */
 GPGP_API void GPGP_CALL gpgpNotifyDeviceLost(GpgpContext context);
 
-/** Copies up to byteBudget bytes of pending asset data into device memory, oldest asset first (at least 16 are taken;
- * 0: all that the ring holds). pendingBytes, if not NULL, receives what is left. Records transfer commands and one
- * barrier that makes the data visible to all later gpgp records on the same queue; between queues the engine
- * synchronises.
+/** Records copies of pending asset data into device memory, oldest asset first, and clears of new histories. It records
+ *  transfer commands and one barrier, or nothing if nothing is pending. The barrier makes the data visible to all later
+ *  recordings on the same queue. Between queues the engine synchronises.
+ *    byteBudget     copies at most this many bytes, but at least 16; 0: as many as the staging ring has room for.
+ *                      Clears do not count
+ *    pendingBytes   receives the number of bytes that are still pending; may be NULL
+ *  Errors: INVALID_HANDLE, INVALID_ARGUMENT, TOO_MANY_RECORDINGS, DEVICE_LOST.
  *  @threads context @lifetime call @pass outside @state none */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordUpload(GpgpContext context, VkCommandBuffer commandBuffer,
                                                const GpgpFrame* frame, VkDeviceSize byteBudget,
                                                VkDeviceSize* pendingBytes);
 
-/** The pipeline cache in use (gpgp's own or the engine's) as bytes, for the next start. size in: capacity, out: needed.
- * data NULL asks for the size.
- *  @threads any */
+/** Returns the contents of the pipeline cache in use, gpgp's own or the engine's, for the next start of the program.
+ *  size is the capacity of data on input and the size of the contents on output. If data is NULL, only the size is
+ *  returned. If data is too small, the function returns GPGP_INCOMPLETE and the needed size. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetPipelineCacheData(GpgpContext context, size_t* size, void* data);
 
 /* ---------------------------------------------------------------- resources of the engine */
 
-/** How the engine uses a resource around a record: stages and accesses in 64-bit (synchronization2) flags. Flags of
- *  stages that the device cannot name in 32 bits are mapped to the nearest wider one. */
+/** How the engine uses a resource before or after a recording, in the 64-bit flags of synchronization2. Barriers take
+ *  32-bit flags, so a flag without a 32-bit equivalent becomes the smallest 32-bit flag that includes it. */
 typedef struct GpgpAccess {
   VkPipelineStageFlags2 stages;
   VkAccessFlags2 access;
-  VkImageLayout layout; /**< images only */
+  VkImageLayout layout; /**< For images only. */
 } GpgpAccess;
 
 typedef uint64_t GpgpAccessMode;
-/** The engine's render graph places the barriers at the edges itself; before and after are ignored, the resources are
- * in the state that gpgpGetRecordingAccess tells, and stay in it. gpgp still places those between its own passes. */
+/** The engine places the barriers before and after the recording itself, as a render graph does. `before` and `after`
+ *  of all resources are ignored. The resources must be in the state that gpgpGetRecordingAccess returns, and they stay
+ *  in it. gpgp still places the barriers between its own passes. */
 #define GPGP_ACCESS_EXTERNAL_BARRIERS ((GpgpAccessMode)1 << 0)
 
 typedef struct GpgpBuffer {
   VkBuffer buffer;
-  VkDeviceSize offset; /**< a multiple of the device's minStorageBufferOffsetAlignment */
-  VkDeviceSize size;   /**< bytes that gpgp may use from offset; at most maxStorageBufferRange */
-  GpgpAccess before;   /**< the engine's last use; stages 0: nothing to wait for */
-  GpgpAccess after;    /**< the engine's next use; stages 0: the engine places that barrier */
+  VkDeviceSize offset; /**< In bytes, a multiple of the device's minStorageBufferOffsetAlignment. */
+  VkDeviceSize size;   /**< Bytes from offset on that gpgp may use, at most maxStorageBufferRange. */
+  GpgpAccess before;   /**< The engine's last use. stages 0: there is nothing to wait for. */
+  GpgpAccess after;    /**< The engine's next use. stages 0: the engine places that barrier. */
 } GpgpBuffer;
 
 typedef struct GpgpImage {
   VkImage image;
-  VkImageView view; /**< 2D, one mip level, one layer */
+  VkImageView view; /**< A 2D view of one mip level and one array layer. */
   VkFormat format;
-  uint32_t mipLevel, arrayLayer; /**< that the view shows: barriers touch no other part of the image */
-  uint32_t width, height;        /**< of that level */
-  GpgpAccess before;             /**< layout UNDEFINED: contents may be lost */
-  GpgpAccess after;
+  uint32_t mipLevel, arrayLayer; /**< The level and layer of the view. Barriers cover no other part of the image. */
+  uint32_t width, height;        /**< The size of that level in pixels. */
+  GpgpAccess before;             /**< The engine's last use. Layout UNDEFINED: the contents may be discarded. */
+  GpgpAccess after;              /**< The engine's next use. stages 0: the engine places that barrier. */
 } GpgpImage;
 
 /* ---------------------------------------------------------------- recorders */
 
-/** Common part of every recorder's create info; each service's struct embeds it as `base`. */
+/** The part that the create infos of all recorders have in common, embedded as `base`. */
 typedef struct GpgpRecorderCreateInfo {
-  const char* label;       /**< copied */
-  uint32_t queueFamily;    /**< all records of this recorder go to queues of this family */
-  VkQueueFlags queueFlags; /**< of that family; 0: gpgp asks the physical device */
-  VkBool32 engineScratch;  /**< VK_TRUE: no scratch is allocated, each record brings its own */
+  const char* label;       /**< For messages and debug names. The string is copied. */
+  uint32_t queueFamily;    /**< The family of the queues that all recordings of this recorder are submitted to. */
+  VkQueueFlags queueFlags; /**< The flags of that family. 0: gpgp queries the physical device. */
+  /** VK_TRUE: gpgp allocates no scratch memory, and each recording supplies it in GpgpRecordingInfo::scratch. */
+  VkBool32 engineScratch;
 } GpgpRecorderCreateInfo;
 
+/** Something that a recorder draws into. */
 typedef struct GpgpTargetInfo {
   GpgpStructureType sType;
   const void* pNext;
-  VkRenderPass renderPass; /**< VK_NULL_HANDLE: dynamic rendering (needs GPGP_FEATURE_DYNAMIC_RENDERING) */
-  uint32_t subpass;
-  uint32_t viewMask;
-  VkFormat colorFormat;          /**< dynamic rendering: attachment 0 */
-  VkFormat depthFormat;          /**< dynamic rendering: VK_FORMAT_UNDEFINED for none */
-  VkSampleCountFlagBits samples; /**< 0: 1 */
-  VkBool32 depthTest;            /**< tests against the bound depth attachment, never writes it */
-  VkCompareOp depthCompare;
+  VkRenderPass renderPass;       /**< VK_NULL_HANDLE: dynamic rendering, which needs GPGP_FEATURE_DYNAMIC_RENDERING. */
+  uint32_t subpass;              /**< Of renderPass. */
+  uint32_t viewMask;             /**< Views 0 and 1 at most. Other than 0, it needs GPGP_FEATURE_MULTIVIEW. */
+  VkFormat colorFormat;          /**< Dynamic rendering: the format of colour attachment 0. */
+  VkFormat depthFormat;          /**< Dynamic rendering: the format of the depth attachment, or VK_FORMAT_UNDEFINED. */
+  VkSampleCountFlagBits samples; /**< 0: 1 sample. */
+  VkBool32 depthTest;            /**< Tests against the bound depth attachment. gpgp never writes depth. */
+  VkCompareOp depthCompare;      /**< Used with depthTest. */
 } GpgpTargetInfo;
 #define GPGP_TARGET_INFO_INIT GPGP_INIT(GpgpTargetInfo, GPGP_STRUCTURE_TARGET_INFO)
 
 typedef struct GpgpPrewarmInfo {
   GpgpStructureType sType;
   const void* pNext;
-  const GpgpTargetInfo* targets; /**< for recorders that draw: each combination they will draw into */
-  uint32_t targetCount;
+  const GpgpTargetInfo* targets; /**< For recorders that draw: every target that they will draw into. */
+  uint32_t targetCount;          /**< A recorder draws into at most 16 kinds of targets, those of all calls together. */
 } GpgpPrewarmInfo;
 #define GPGP_PREWARM_INFO_INIT GPGP_INIT(GpgpPrewarmInfo, GPGP_STRUCTURE_PREWARM_INFO)
 
-/** Compiles the recorder's pipelines on the calling thread (through the job system where one was given). Until it has
- *  returned, records return GPGP_NOT_READY and record nothing. info may be NULL for recorders that do not draw.
- *  May run beside records of other recorders. @threads handle @lifetime call; render passes: handle */
+/** Compiles the recorder's pipelines, on the calling thread or through the job system. Until it has returned, recording
+ *  returns GPGP_NOT_READY and records nothing. info may be NULL for recorders that do not draw. Other recorders may
+ *  record at the same time.
+ *  Errors: INVALID_HANDLE, INVALID_ARGUMENT, INVALID_STRUCT, MISSING_FEATURE, UNSUPPORTED, OUT_OF_..._MEMORY,
+ *  DEVICE_LOST, VULKAN.
+ *  @threads handle @lifetime call; render passes: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPrewarm(GpgpRecorder recorder, const GpgpPrewarmInfo* info);
 
-/** Bytes of scratch that one record of this recorder needs, and the usage flags an engine's buffer for it must have.
- *  @threads any */
+/** Returns how much scratch memory one recording of this recorder needs, in bytes, the alignment of its offset, and the
+ *  usage flags that the engine's buffer must have. alignment and usage may be NULL. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpRecorder recorder, VkDeviceSize* size, VkDeviceSize* alignment,
                                                  VkBufferUsageFlags* usage);
 
-/** The passes that one record of this recorder runs, in order. count in: capacity of names, out: passes. names NULL
- *  asks for the count. @threads any @lifetime call; names: handle */
+/** Lists the passes of a recording of this recorder, in order, those that a recording may omit included. count is the
+ *  capacity of names on input and the number of passes on output. If names is NULL, only the count is returned. If
+ *  names is too small, the function fills it and returns GPGP_INCOMPLETE. @threads any @lifetime call; names: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetPasses(GpgpRecorder recorder, uint32_t* count, const char** names);
 
-/** GPU timestamps of a record: query firstQuery at its start and one more after each pass, passes + 1 in all. The
- *  engine has reset the queries. */
+/** GPU timestamps of a recording. gpgp writes query firstQuery at the start and one query after each pass, omitted
+ *  passes included: one more than gpgpGetPasses counts. The engine resets the queries before and reads them after. */
 typedef struct GpgpTimestamps {
-  VkQueryPool queryPool; /**< VK_NULL_HANDLE: no timestamps */
+  VkQueryPool queryPool; /**< VK_NULL_HANDLE: no timestamps. */
   uint32_t firstQuery;
-  uint32_t queryCount; /**< at least passes + 1 */
+  uint32_t queryCount; /**< At least the number of passes + 1. */
 } GpgpTimestamps;
 
-/** What gpgp does with buffers and images in a record: the state that GPGP_ACCESS_EXTERNAL_BARRIERS expects of the
- * engine's render graph before a record, and leaves behind. Either pointer may be NULL. @threads any */
+/** Returns the access that buffers and images must have before a recording with GPGP_ACCESS_EXTERNAL_BARRIERS, and that
+ *  they have after it. Either pointer may be NULL. @threads any */
 GPGP_API void GPGP_CALL gpgpGetRecordingAccess(GpgpAccess* buffer, GpgpAccess* image);
 
-/** Common part of every record info; each service's struct embeds it as `base`. */
+/** The part that the infos of all recordings have in common, embedded as `base`. */
 typedef struct GpgpRecordingInfo {
-  uint64_t tag;       /**< the engine's own number, found again in the report */
-  GpgpBuffer scratch; /**< for recorders with engineScratch: contents undefined before and after */
+  uint64_t tag;       /**< The engine's own number. The report returns it. */
+  GpgpBuffer scratch; /**< For recorders with engineScratch. Its contents are undefined before and after. */
   GpgpTimestamps timestamps;
   GpgpAccessMode accessMode;
 } GpgpRecordingInfo;
 
 /* ---------------------------------------------------------------- reports */
 
-/** Common part of every report; each service's report struct embeds it as `base`. A recorder keeps the last
- *  maxFramesInFlight x maxRecordingsPerFrame reports; older ones that nobody took are dropped with a warning. */
+/** The part that all reports have in common, embedded as `base`. A recorder keeps the newest maxFramesInFlight x
+ *  maxRecordingsPerFrame reports. Older ones that the engine did not take are dropped with a warning. */
 typedef struct GpgpReportHeader {
-  GpgpResult status; /**< SUCCESS, BUDGET_EXCEEDED, NOT_EXECUTED; ERROR_UNSUPPORTED: the device ended loops early */
-  uint64_t tag;
-  uint64_t frame;
+  /** SUCCESS, BUDGET_EXCEEDED or NOT_EXECUTED. ERROR_UNSUPPORTED means that a software device ended loops of a shader
+   *  early, so that the results are wrong. */
+  GpgpResult status;
+  uint64_t tag;   /**< GpgpRecordingInfo::tag. */
+  uint64_t frame; /**< GpgpFrame::current of the recording. */
 } GpgpReportHeader;
 
 /* ---------------------------------------------------------------- objects */
 
-/** VK_TRUE in resident when all data of the asset has been recorded for upload. @threads any */
+/** Tells whether an asset is resident: whether gpgpRecordUpload has recorded the copies of all its data. Recordings
+ *  that use the asset must be submitted after that command buffer. If it is dropped, the asset is no longer resident.
+ *  @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetResidency(GpgpAsset asset, VkBool32* resident);
 
-/** Destroying is always legal: memory that a frame in flight may read is freed by the gpgpAdvance that says it is
- *  safe. An asset, recorder or view handle is invalid from here on. NULL is ignored. @threads context */
+/** Destroys an asset, a recorder or a history. This is legal at any time: memory that a frame in flight may use is
+ *  freed by the gpgpAdvance that makes the frame safe. The handle is invalid when the function returns. NULL is
+ *  ignored.
+ *  @threads context */
 GPGP_API void GPGP_CALL gpgpDestroyAsset(GpgpAsset asset);
 GPGP_API void GPGP_CALL gpgpDestroyRecorder(GpgpRecorder recorder);
 GPGP_API void GPGP_CALL gpgpDestroyHistory(GpgpHistory history);
 
 typedef struct GpgpServiceMemory {
-  VkDeviceSize deviceBytes;      /**< device-local: assets and scratch */
-  VkDeviceSize hostVisibleBytes; /**< rings and report buffers */
-  VkDeviceSize pendingBytes;     /**< destroyed, waiting for frames to be safe */
-  uint64_t hostBytes;            /**< from the host allocator; all of it is counted under GPGP_SERVICE_CORE */
+  VkDeviceSize deviceBytes;      /**< Device-local memory: assets, histories and scratch. */
+  VkDeviceSize hostVisibleBytes; /**< Memory that the host maps: rings, constants and reports. */
+  VkDeviceSize pendingBytes;     /**< Memory of destroyed objects that waits for frames to be safe. */
+  uint64_t hostBytes;            /**< Host memory. All of it is counted under GPGP_SERVICE_CORE. */
 } GpgpServiceMemory;
 
 typedef struct GpgpMemoryReport {
   GpgpStructureType sType;
   void* pNext;
-  GpgpServiceMemory services[GPGP_SERVICE_COUNT]; /**< indexed by GpgpService */
-  VkDeviceSize blockBytes; /**< allocated from Vulkan by gpgp's own allocator; 0 with engine callbacks */
+  GpgpServiceMemory services[GPGP_SERVICE_COUNT]; /**< Indexed by GpgpService. */
+  VkDeviceSize blockBytes; /**< Memory that gpgp's own allocator took from Vulkan. 0 with GpgpGpuAllocator. */
 } GpgpMemoryReport;
 #define GPGP_MEMORY_REPORT_INIT GPGP_INIT(GpgpMemoryReport, GPGP_STRUCTURE_MEMORY_REPORT)
 
-/** What gpgp holds now. @threads context */
+/** Returns how much memory gpgp holds now. @threads context */
 GPGP_API GpgpResult GPGP_CALL gpgpGetMemoryReport(GpgpContext context, GpgpMemoryReport* report);
 
 /* ---------------------------------------------------------------- bytes from the compilers */
 
-/** Bytes made by libgpgp_compiler. Free with gpgpFreeBlob. */
+/** Bytes that a function of libgpgp_compiler returned. Free them with gpgpFreeBlob. */
 typedef struct GpgpBlob {
   void* data;
   size_t size;
 } GpgpBlob;
 
-/** Frees the bytes and zeroes the struct. In libgpgp_compiler. @threads any */
+/** Frees the bytes and zeroes the struct. NULL is ignored. In libgpgp_compiler. @threads any */
 GPGP_API void GPGP_CALL gpgpFreeBlob(GpgpBlob* blob);
 
 #ifdef __cplusplus

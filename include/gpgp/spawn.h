@@ -1,9 +1,17 @@
-/* gpgp spawn: grammars derived on the GPU, straight into the engine's buffers.
+/* gpgp spawn: derives grammars on the GPU and writes the results into the engine's buffers.
  *
- *   grammar (asset)   an operator graph with its parameter table; from a baked blob or compiled from text
- *   spawner (recorder)  derives axioms with any grammar; sized by budgets
+ *   grammar (asset)      an operator graph with its parameters, made from a baked grammar
+ *   spawner (recorder)   derives axioms by any grammar; its budgets are fixed when it is created
  *
- *   gpgpCompileGrammar (libgpgp_compiler) -> blob -> gpgpCreateGrammar -> gpgpRecordUpload -> gpgpRecordPrepareSpawn
+ * Steps:
+ *   gpgpCompileGrammar (libgpgp_compiler)   grammar text to a baked grammar, at build time or at run time
+ *   gpgpCreateGrammar, gpgpRecordUpload     the baked grammar to an asset on the device
+ *   gpgpCreateSpawner, gpgpPrewarm          the recorder
+ *   gpgpRecordPrepareSpawn                  derives and writes, as often as wanted
+ *
+ * Words: an axiom is a start shape in the world. A derivation applies the rules of the grammar to it until only
+ * terminal shapes are left. Each terminal line of a grammar is a bucket, which the engine draws with one indirect
+ * command.
  */
 #ifndef GPGP_SPAWN_H
 #define GPGP_SPAWN_H
@@ -12,40 +20,47 @@
 extern "C" {
 #endif
 
-/** Where a derivation starts. 96 bytes, the same in C and in GPU buffers (std430). */
+/** A start shape in the world. 96 bytes, with the same layout in C and in GPU buffers (std430). */
 typedef struct GpgpAxiom {
-  float transform[12];  /**< rows of a 3x4 matrix, object to world. The derivation itself runs in object space */
-  float size[3];        /**< extents of the start shape, metres, its centre at the object's origin */
-  uint32_t seed;        /**< of all random values below this axiom */
-  uint32_t id;          /**< the engine's own number, found again in each instance */
-  uint32_t start;       /**< its start, which says its shape, by its place in gpgpGetGrammarStarts;
-                             GPGP_AXIOM_DEFAULT_START: the grammar's first axiom line */
-  float attribute;      /**< custom attribute, inherited; NaN: taken from the seed as in [0, 1) */
-  uint32_t reserved[5]; /**< 0 */
+  float transform[12]; /**< Rows of a 3x4 matrix from object to world space. Derivation itself runs in object space. */
+  float size[3];       /**< Extents of the start shape in metres. Its centre is the origin of object space. */
+  uint32_t seed;       /**< Seeds all random values of this axiom's derivation. */
+  uint32_t id;         /**< The engine's own number. Every instance of the axiom returns it. */
+  /** The rule or axiom line to start at, as an index into gpgpGetGrammarStarts. It decides the type of the start shape.
+   *  GPGP_AXIOM_DEFAULT_START: the first axiom line of the grammar. */
+  uint32_t start;
+  float attribute;      /**< Custom attribute, which shapes inherit. NaN: a value in [0, 1) that the seed determines. */
+  uint32_t reserved[5]; /**< 0. */
 } GpgpAxiom;
 #define GPGP_AXIOM_DEFAULT_START 0xffffffffu
 
-/** What a terminal becomes. 96 bytes, std430. The mesh's unit shape spans [-0.5, 0.5] on each axis; the transform
- *  includes the shape's size. Polygons face +Z and have size[2] 0; their transform keeps 1 metre for that axis.
- *  An instance has no corners: what mesh stands for a dynamic shape follows from its terminal, or it is written as
- *  vertices (GpgpSpawnerCreateInfo::vertices), which have them; compiling tells of such terminals.
- *  What made it: bucket says the terminal line, terminal the name that a rule uses, rule the rule that uses it: whose
- *  body ends in that terminal. Rules that the derivation passed before leave no trace but in key. */
+/** A terminal shape. 96 bytes (std430). The transform maps the unit shape, which spans [-0.5, 0.5] on each axis, to the
+ *  world, and includes the size of the shape. Polygons face +Z and have size[2] 0. Their transform keeps 1 metre along
+ *  that axis, so that it can be inverted.
+ *
+ *  An instance does not hold corners. For shapes of the GPGP_SHAPE_DYNAMIC_... types, the engine chooses the mesh by
+ *  terminal, or uses a spawner that writes vertices (GpgpSpawnerCreateInfo::vertices). The compiler sends a note for
+ *  every terminal that such shapes can reach.
+ *
+ *  bucket is the terminal line, terminal the name that a rule uses, and rule the rule whose body contains the terminal.
+ *  Ancestor rules are recorded only in key. */
 typedef struct GpgpInstance {
-  float transform[12]; /**< rows of a 3x4 matrix, unit shape to world */
-  uint32_t bucket;     /**< GpgpGrammarTerminal::bucket of its terminal: which draw */
-  uint32_t shape;      /**< GpgpShape */
-  uint32_t axiomId;    /**< GpgpAxiom::id */
-  uint32_t terminal;   /**< index as in gpgpGetGrammarTerminals; several terminals may share a bucket */
-  uint32_t seed;       /**< of the shape */
-  float attribute;     /**< custom attribute of the shape */
-  uint32_t key[2];     /**< path key: the same on every device and schedule */
-  float size[3];       /**< of the shape, metres */
-  uint32_t rule;       /**< in whose body the terminal stands, by its place in gpgpGetGrammarStarts, which has its name;
-                            GPGP_NO_RULE: in none, as an axiom line names it */
+  float transform[12]; /**< Rows of a 3x4 matrix from the unit shape to world space. */
+  uint32_t bucket;     /**< GpgpGrammarTerminal::bucket of the terminal. It selects the draw. */
+  uint32_t shape;      /**< A GpgpShape. */
+  uint32_t axiomId;    /**< GpgpAxiom::id. */
+  uint32_t terminal;   /**< Index into gpgpGetGrammarTerminals. Several terminals may share a bucket. */
+  uint32_t seed;       /**< Seed of the shape. */
+  float attribute;     /**< Custom attribute of the shape. */
+  uint32_t key[2];     /**< Path key: a hash of the way from the axiom to this shape. Equal on all devices. */
+  float size[3];       /**< Extents of the shape in metres. */
+  /** The rule whose body contains the terminal, as an index into gpgpGetGrammarStarts. GPGP_NO_RULE: an axiom line
+   *  names the terminal directly. */
+  uint32_t rule;
 } GpgpInstance;
 #define GPGP_NO_RULE 0xffffffffu
 
+/** Types of shapes. PRISM3 to PRISM8 and BOX are right prisms on regular polygons and on a square. */
 typedef uint32_t GpgpShape;
 enum {
   GPGP_SHAPE_TRIANGLE = 0,
@@ -69,202 +84,232 @@ enum {
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
 
+/** A message of the compiler. */
 typedef struct GpgpCompileMessage {
-  const char* file;
-  uint32_t line, column; /**< from 1; 0 where text is not about a place in the source, and for a builder: its text
-                            begins with the place, by name */
+  const char* file; /**< GpgpGrammarSource::name. */
+  /** Line and column, counted from 1. Both are 0 if the message concerns no place in a text. A message about a builder
+   *  begins with the name of the place instead. */
+  uint32_t line, column;
   GpgpSeverity severity;
   const char* text;
-  uint32_t omitted; /**< 0; in a last message: how many more of this severity there were, as text says */
+  uint32_t omitted; /**< 0, except in the last message of a severity: how many more there were. text says so too. */
 } GpgpCompileMessage;
+
+/** Receives the messages of a compilation. @lifetime call */
 typedef void(GPGP_CALL* GpgpCompileMessageFn)(void* userData, const GpgpCompileMessage* message);
 
-/** Overrides one `var` of a grammar. */
+/** A new value for a `var` of a grammar. */
 typedef struct GpgpVariable {
   const char* name;
   float value;
 } GpgpVariable;
 
 typedef uint64_t GpgpCompileFlags;
-/** Generate a kernel for the grammar, in the default schedule. It derives what the interpreter does, many times faster.
- */
+/** Generates a kernel for the grammar, in the default schedule. The kernel derives the same as the interpreter, in less
+ *  time. gpgpPrewarmGrammar compiles it for the device. */
 #define GPGP_COMPILE_KERNEL ((GpgpCompileFlags)1)
 
-typedef struct GpgpGrammarBuilder_T* GpgpGrammarBuilder; /**< a grammar made in code, see spawn_builder.h */
+typedef struct GpgpGrammarBuilder_T* GpgpGrammarBuilder; /**< A grammar made in code, see spawn_builder.h. */
 
+/** The source of a grammar: exactly one of text, builder and baked. */
 typedef struct GpgpGrammarSource {
   GpgpStructureType sType;
   const void* pNext;
-  const char* name;  /**< file name for messages */
-  const char* alias; /**< optional: what gpgpLinkGrammars calls it, instead of by its file; letters, digits and _ */
-  const char* text;  /**< UTF-8, need not end in 0 */
-  size_t size;       /**< bytes of text or baked */
-  const GpgpVariable* variables;
+  const char* name;  /**< File name for messages. gpgpLinkGrammars derives the name of the grammar from it. */
+  const char* alias; /**< Optional. The name of the grammar for gpgpLinkGrammars: letters, digits and _. */
+  const char* text;  /**< UTF-8, at most 256 MiB. It need not end in 0. */
+  size_t size;       /**< Bytes of text or of baked. 0 with builder. */
+  const GpgpVariable* variables; /**< New values for variables of text or builder. Unknown names are errors. */
   uint32_t variableCount;
-  GpgpCompileMessageFn messageFn; /**< every error, warning and note of the file, in order of their places; of each at
-                                       most 1000, and then how many were left out */
+  /** Receives all errors, warnings and notes, sorted by place: at most 1000 of each, and then how many were omitted. */
+  GpgpCompileMessageFn messageFn;
   void* messageUserData;
   GpgpCompileFlags flags;
-  GpgpGrammarBuilder builder; /**< instead of text, which then is NULL; read during the call */
-  const void* baked; /**< instead of text: a baked grammar, as it stands in a file; all of it is checked. It has no
-                          variables any more, and kernels in it are left out. @lifetime call */
+  GpgpGrammarBuilder builder; /**< Read during the call. */
+  /** A baked grammar, as in a file. All of it is checked. Its variables are fixed, and kernels in it are dropped.
+   *  @lifetime call */
+  const void* baked;
 } GpgpGrammarSource;
 #define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
 
-/** Compiles text, what a builder holds, or a baked grammar, to a baked grammar. Text is PGA-shape (.pga), or an
- * operator graph as gpgp graph prints it, which has no variables any more. In libgpgp_compiler. A pure function of its
- * input. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY.
- *  @threads any @lifetime call */
+/** Compiles a text, a builder or a baked grammar to a baked grammar. The text is PGA-shape (.pga), or an operator graph
+ *  as `gpgp graph` prints it, which has no variables. The result depends on the input only. In libgpgp_compiler.
+ *  Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (a limit of graphs is
+ *  exceeded), OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
-/** Compiles several grammars to one, so that one record derives axioms of all of them. It has their rules, terminals,
- *  buckets and axiom lines in the order of the sources; the first axiom line of the first source is the default start.
- *  Each source is called by its alias, or else by its file: GpgpGrammarSource::name without folders and without what
- *  follows the first point, characters other than letters, digits and _ made _. Its rules and terminals have that name
- *  before theirs, as in house.Wall, and its first axiom line is the start house; see gpgpGetGrammarStarts. Tags of
- *  Collider and IfCollides are common. Each source has its own variables and gets its own messages; a kernel is
- *  generated where any asks for one. In libgpgp_compiler. A pure function of its input. Errors: INVALID_DATA (messages
- *  say where; also where two sources have the same name, or one has none), INVALID_ARGUMENT (no sources),
- *  INVALID_STRUCT, UNSUPPORTED, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+/** Compiles several grammars to one, so that one recording derives axioms of all of them. The rules, terminals, buckets
+ *  and axiom lines follow in the order of the sources. The first axiom line of the first source is the default start.
+ *
+ *  Each source has a name: its alias, or else GpgpGrammarSource::name without folders and without everything from the
+ *  first point on. Other characters than letters, digits and _ become _, and _ is put before a name of digits alone.
+ *  The name precedes those of rules and terminals, as in house.Wall. The first axiom line of the source becomes the
+ *  start named house (gpgpGetGrammarStarts). Only the tags of Collider and IfCollides are shared between sources.
+ *
+ *  Each source has variables and messages of its own. A kernel is generated if any source asks for one. The result
+ *  depends on the input only. In libgpgp_compiler.
+ *  Errors: INVALID_DATA (messages say where; also if two sources have the same name, or one has none), INVALID_ARGUMENT
+ *  (also if there are no sources), INVALID_STRUCT, UNSUPPORTED, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpLinkGrammars(const GpgpGrammarSource* sources, uint32_t sourceCount, GpgpBlob* blob);
 
 /* ---------------------------------------------------------------- grammar */
 
+/** Exactly one of data and filePath is set. */
 typedef struct GpgpGrammarCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
-  const char* label;
-  const void* data; /**< a baked grammar; or NULL: read from filePath through the file callbacks */
-  size_t size;
-  const char* filePath;
+  const char* label;    /**< For messages and debug names. The string is copied. */
+  const void* data;     /**< A baked grammar. It is copied. */
+  size_t size;          /**< Bytes of data. */
+  const char* filePath; /**< A file with a baked grammar, read through GpgpFileSystem or the C library. */
 } GpgpGrammarCreateInfo;
 #define GPGP_GRAMMAR_CREATE_INFO_INIT GPGP_INIT(GpgpGrammarCreateInfo, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO)
 
-/** Checks a baked grammar (magic, version, checksums, every index, the kernels behind it, nothing else there) and
- * queues it for upload. Errors: INVALID_DATA, IO, OUT_OF_..._MEMORY. @threads context @lifetime call */
+/** Checks a baked grammar and queues it for upload. The check covers magic, version, checksums, every index, the
+ *  kernels that follow the graph, and that nothing else follows.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT, INVALID_STRUCT, INVALID_HANDLE, IO, OUT_OF_..._MEMORY, DEVICE_LOST.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext context, const GpgpGrammarCreateInfo* info,
                                                 GpgpAsset* grammar);
 
 typedef struct GpgpGrammarTerminal {
   const char* name; /**< @lifetime handle */
-  uint32_t kind;    /**< 0: triangles are generated, 1: an instanced mesh of the engine's */
-  uint32_t index;   /**< mesh or material, as the grammar says */
-  uint32_t bucket;  /**< GpgpInstance::bucket of its instances: the number of its line among terminal lines */
+  uint32_t kind;    /**< 0: generated triangles. 1: an instanced mesh of the engine. */
+  uint32_t index;   /**< Number of the mesh or material, as the grammar says. */
+  uint32_t bucket;  /**< The number of its terminal line in the grammar: GpgpInstance::bucket of its instances. */
 } GpgpGrammarTerminal;
 
-/** The grammar's terminals. count in: capacity, out: all. terminals NULL asks for the count. @threads any */
+/** Lists the terminals of a grammar. count is the capacity of terminals on input and the number of all terminals on
+ *  output. If terminals is NULL, only the count is returned. If it is too small, the function fills it and returns
+ *  GPGP_INCOMPLETE. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset grammar, uint32_t* count,
                                                       GpgpGrammarTerminal* terminals);
 
-/** Where a derivation can start: a rule or an axiom line. Its place in the list is what GpgpAxiom::start takes. */
+/** A rule or an axiom line, at which a derivation can start. GpgpAxiom::start is an index into the list of these. */
 typedef struct GpgpGrammarStart {
-  const char* name;   /**< of the rule; of an axiom line, the name of what it starts, but of the first one of a linked
-                           grammar that grammar's name alone. @lifetime handle */
-  GpgpShape shape;    /**< of axioms that start here: an axiom line's; a rule's is that of the first axiom line of its
-                           grammar that names it, else of the first one of all */
-  uint32_t axiomLine; /**< 1: an axiom line, 0: a rule */
+  /** The name of the rule. An axiom line has the name of the rule or terminal that it starts. The first axiom line of a
+   *  linked grammar has the name of that grammar instead. @lifetime handle */
+  const char* name;
+  /** The type of shapes that start here. A rule has the shape of the first axiom line of its grammar that names it. If
+   *  none does, it has the shape of the first axiom line of its grammar. */
+  GpgpShape shape;
+  uint32_t axiomLine; /**< 1: an axiom line, 0: a rule. */
 } GpgpGrammarStart;
 
-/** The grammar's starts: its rules, in order, then its axiom lines. count in: capacity, out: all. starts NULL asks for
- *  the count. @threads any */
+/** Lists the starts of a grammar: its rules in order, then its axiom lines in order. count is the capacity of starts on
+ *  input and the number of all starts on output. If starts is NULL, only the count is returned. If it is too small, the
+ *  function fills it and returns GPGP_INCOMPLETE. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarStarts(GpgpAsset grammar, uint32_t* count, GpgpGrammarStart* starts);
 
-/** The place of the first start by that name, for GpgpAxiom::start: a rule, or a linked grammar as a whole.
- *  Errors: INVALID_ARGUMENT (there is none), INVALID_HANDLE. @threads any @lifetime call */
+/** Returns the index of the first start with a name, for GpgpAxiom::start. The name is that of a rule or of a linked
+ *  grammar. Errors: INVALID_ARGUMENT (there is none), INVALID_HANDLE. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpFindGrammarStart(GpgpAsset grammar, const char* name, uint32_t* start);
 
 /* ---------------------------------------------------------------- spawner */
 
+/** What a vertex attribute holds. */
 typedef uint32_t GpgpVertexSemantic;
 enum {
-  GPGP_VERTEX_POSITION = 0, /**< world space; w is 1 where the format has it */
-  GPGP_VERTEX_NORMAL = 1,   /**< of the face, unit length, world space; UNORM holds n / 2 + 1 / 2 */
-  GPGP_VERTEX_UV = 2,       /**< on the face, [0, 1] to the right and upwards */
-  GPGP_VERTEX_BUCKET = 3,   /**< GpgpGrammarTerminal::bucket of the terminal */
-  GPGP_VERTEX_AXIOM_ID = 4, /**< GpgpAxiom::id */
-  GPGP_VERTEX_TERMINAL = 5, /**< index as in gpgpGetGrammarTerminals */
-  GPGP_VERTEX_SEED = 6,     /**< of the shape */
-  GPGP_VERTEX_RULE = 7      /**< GpgpInstance::rule */
+  GPGP_VERTEX_POSITION = 0, /**< In world space. A fourth component is 1. */
+  GPGP_VERTEX_NORMAL = 1,   /**< Normal of the face, unit length, in world space. UNORM formats hold n / 2 + 1 / 2. */
+  GPGP_VERTEX_UV = 2,       /**< Place on the face in [0, 1], to the right and upwards. */
+  GPGP_VERTEX_BUCKET = 3,   /**< GpgpGrammarTerminal::bucket. */
+  GPGP_VERTEX_AXIOM_ID = 4, /**< GpgpAxiom::id. */
+  GPGP_VERTEX_TERMINAL = 5, /**< Index into gpgpGetGrammarTerminals. */
+  GPGP_VERTEX_SEED = 6,     /**< Seed of the shape. */
+  GPGP_VERTEX_RULE = 7      /**< GpgpInstance::rule. */
 };
 
 typedef struct GpgpVertexAttribute {
   GpgpVertexSemantic semantic;
-  VkFormat format; /**< R32G32B32_SFLOAT, R32G32_SFLOAT, R16G16B16A16_SFLOAT, R8G8B8A8_SNORM or R8G8B8A8_UNORM for
-                        positions, normals and uvs; R32_UINT for the others */
-  uint32_t offset; /**< bytes in the vertex, a multiple of 4 */
+  /** POSITION, NORMAL and UV: R32G32B32_SFLOAT, R32G32_SFLOAT, R16G16B16A16_SFLOAT, R8G8B8A8_SNORM or R8G8B8A8_UNORM.
+   *  All others: R32_UINT. */
+  VkFormat format;
+  uint32_t offset; /**< Bytes from the start of the vertex, a multiple of 4. */
 } GpgpVertexAttribute;
 
 #define GPGP_MAX_VERTEX_ATTRIBUTES 8
 
-/** How terminals look as triangles. Every one becomes quads of four vertices and the six indices v + {0, 1, 2, 0, 2,
- *  3}, flat-shaded, counter-clockwise from outside also where an axiom mirrors: a box is six quads, a convex polygon of
- *  n corners (n - 1) / 2, a concave one at most n - 2, a prism two polygons and n quads, a sphere 96. */
+/** The layout of vertices. Every terminal becomes a number of quads, each with four vertices of its own and the indices
+ *  v + {0, 1, 2, 0, 2, 3}. Faces are flat-shaded, and counter-clockwise seen from outside even if the axiom's transform
+ *  mirrors. A box has 6 quads. A convex polygon with n corners has (n - 1) / 2, rounded down. A concave one has n - 2
+ *  at most. A prism has those of two polygons and n more. A sphere has 96. */
 typedef struct GpgpVertexLayout {
-  uint32_t stride;         /**< bytes of a vertex, a multiple of 4, at most 64; multiples of 16 are written fastest */
-  uint32_t attributeCount; /**< bytes that no attribute covers become 0 */
+  uint32_t stride;         /**< Bytes of a vertex: a multiple of 4, at most 64. Multiples of 16 are written fastest. */
+  uint32_t attributeCount; /**< 1 to GPGP_MAX_VERTEX_ATTRIBUTES. Bytes without an attribute become 0. */
   GpgpVertexAttribute attributes[GPGP_MAX_VERTEX_ATTRIBUTES];
 } GpgpVertexLayout;
 
 typedef uint64_t GpgpSpawnerFlags;
-/** Instances, or terminals as vertices and indices, lie in order of their bucket, then of their path key, and those
- * that do not fit a buffer or region are its last ones, from the first on that has no room: which survive, and where
- * each lies, does not depend on execution, as long as maxTerminals holds all and no shape is dropped. Axioms should
- * differ in seed or id: equal keys come in the order of the axioms, thousands of them in no stated order. */
+/** Orders the output by bucket, then by path key. If a buffer or region is too small, its output is cut off at the
+ *  first terminal that does not fit. Place and survival of a terminal then do not depend on the order of execution, as
+ *  long as maxTerminals holds all terminals and no shape is dropped. Axioms should differ in seed or id. Terminals with
+ *  equal keys follow in the order of their axioms, but the order of thousands of equal keys is unspecified. */
 #define GPGP_SPAWNER_ORDERED ((GpgpSpawnerFlags)1)
 
+/** Budgets of a spawner. What does not fit a budget is counted in the report. */
 typedef struct GpgpSpawnerCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpRecorderCreateInfo base;
   GpgpSpawnerFlags flags;
-  const GpgpVertexLayout* vertices; /**< optional: terminals become vertices and indices, not instances; records give
-                                         GpgpSpawnInfo::vertices. @lifetime call */
-  uint32_t maxShapes;     /**< shapes that wait for a round of derivation; 0: 131072. What does not fit is counted */
-  uint32_t maxTerminals;  /**< terminal shapes of one record, where they become vertices, or instances that are sorted
-                               or ordered; 96 bytes each; 0: 524288. What does not fit is counted */
-  uint32_t maxDepth;      /**< how deep rules may nest in themselves; 0: 64. Deeper shapes are counted, not derived */
-  uint32_t maxRounds;     /**< rounds of derivation that are recorded, a pass each. Few are needed: workgroups derive by
-                             themselves, and rounds only share work out again. 0: at most 4, or 32 on software devices,
-                             and fewer where the number of axioms, or a tuned kernel, says that fewer are enough. What
-                             is left is counted */
-  uint32_t maxColliders;  /**< shapes that Collider registers in one record; what does not fit is counted. 0: none, and
-                               grammars with Collider or IfCollides are refused. At most 2^24, 8192 on software
-                               devices */
-  uint32_t maxHostAxioms; /**< axioms of one record that GpgpSpawnInfo::hostAxioms gives; 0: none. 96 bytes each, for
-                               every record that can be in flight, of memory that the host writes; at most 2^24 */
+  /** Optional. The spawner writes vertices and indices in this layout instead of instances, and its recordings give
+   *  GpgpSpawnInfo::vertices. @lifetime call */
+  const GpgpVertexLayout* vertices;
+  uint32_t maxShapes; /**< Shapes that wait for a round of derivation. At most 2^24. 0: 131072. 576 bytes each. */
+  /** Terminal shapes of one recording that are written as vertices, sorted by bucket or ordered. Other instances do not
+   *  need this budget. At most 2^24. 0: 524288. 96 bytes each, with GPGP_SPAWNER_ORDERED 112. */
+  uint32_t maxTerminals;
+  /** How deep rules may nest in themselves. Deeper shapes are counted and not derived. At most 65535. 0: 64. */
+  uint32_t maxDepth;
+  /** Rounds of derivation that are recorded, one pass each. Workgroups derive on their own and rounds only share the
+   *  work out again, so few are needed. What is left after the last round is counted as dropped. At most 256. 0: at
+   *  most 4, or 32 on software devices, and fewer if the number of axioms or a tuned kernel shows that fewer
+   *  suffice. */
+  uint32_t maxRounds;
+  /** Shapes that Collider registers in one recording. 0: none, and grammars with Collider or IfCollides are refused. At
+   *  most 2^24, on software devices 8192. 76 to 84 bytes each, and then 96 more for each of maxShapes. */
+  uint32_t maxColliders;
+  /** Axioms of one recording that come from GpgpSpawnInfo::hostAxioms. 0: none. At most 2^24. 96 bytes of host-visible
+   *  memory each, for every recording that can be in flight. */
+  uint32_t maxHostAxioms;
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
-/** Makes a recorder that derives any grammar, with scratch for the budgets. Prewarm it before the first record.
- *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
- *  @threads context @lifetime call */
+/** Creates a spawner, with scratch memory for its budgets. It derives any grammar. Prewarm it before the first
+ *  recording.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, INVALID_HANDLE, UNSUPPORTED (budgets beyond the device),
+ *  OUT_OF_..._MEMORY, DEVICE_LOST. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpSpawnerCreateInfo* info,
                                                 GpgpRecorder* spawner);
 
-/** Compiles the kernels that a grammar was baked with and that are for this device, on the calling thread. Until it has
- *  returned, and for grammars without such kernels, records run the interpreter, which derives the same. The pipelines
- *  belong to the grammar and serve all spawners of the context. May run beside records and gpgpAdvance, so that
- *  frames go on; only the two handles must live until it returns.
- *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY. @threads handle: one call for a grammar at a time */
+/** Compiles those kernels of a baked grammar that are for this device, on the calling thread. The pipelines belong to
+ *  the grammar and serve all spawners of the context. Until the function has returned, recordings run the interpreter,
+ *  which derives the same. Grammars without such kernels always run it. Recordings and gpgpAdvance may run at the same
+ *  time. Both handles must live until the function returns.
+ *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY, DEVICE_LOST. @threads handle, and one call at a time for a
+ *  grammar */
 GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpRecorder spawner, GpgpAsset grammar);
 
-/** Where terminals go as triangles. A terminal that fits only in part is left out whole. */
+/** Where a spawner writes vertices. Terminals from the first one on that does not fit as a whole are omitted. */
 typedef struct GpgpVertexOutput {
-  GpgpBuffer vertices;   /**< out; its size is the budget; STORAGE usage. NULL: the record only counts, see
-                              GpgpSpawnInfo::draws */
-  GpgpBuffer indices;    /**< out; its size is the budget; STORAGE usage. NULL: none are written; they are the same
-                              pattern in every record */
-  VkIndexType indexType; /**< UINT16 or UINT32. 16 bits reach 65532 vertices of a draw */
+  /** Output. Its size is the budget. STORAGE usage. NULL: the recording only counts (GpgpSpawnInfo::draws), and indices
+   *  must be NULL too. */
+  GpgpBuffer vertices;
+  /** Output. Its size is the budget. STORAGE usage. NULL: no indices are written. They are the same pattern in every
+   *  recording. */
+  GpgpBuffer indices;
+  VkIndexType indexType; /**< UINT16 or UINT32. 16 bits reach 65532 vertices of a draw. */
 } GpgpVertexOutput;
 
-/** A box in the world. 24 bytes. */
+/** An axis-aligned box in world space. 24 bytes. */
 typedef struct GpgpSpawnBounds {
-  float min[3], max[3]; /**< metres; infinite and turned over, min > max, where there is nothing */
+  float min[3], max[3]; /**< In metres. An empty box has min +infinity and max -infinity. */
 } GpgpSpawnBounds;
 
 typedef uint64_t GpgpSpawnFlags;
-/** Buckets have regions of the engine's: draws say where each begins, and it reaches to where the next one begins, or
- *  to the buffer's end. Regions lie in the order of the buckets. */
+/** Every bucket has a region of the output. GpgpSpawnInfo::draws says where each region begins. A region ends where
+ *  that of the next bucket begins, the last one at the end of the buffer. Regions lie in the order of the buckets. */
 #define GPGP_SPAWN_REGIONS ((GpgpSpawnFlags)1)
 
 typedef struct GpgpSpawnInfo {
@@ -272,36 +317,50 @@ typedef struct GpgpSpawnInfo {
   const void* pNext;
   GpgpRecordingInfo base;
   GpgpAsset grammar;
-  GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]; STORAGE usage. Part of a longer list is its offset and count */
-  const GpgpAxiom* hostAxioms; /**< instead of axioms: GpgpAxiom[axiomCount] of the CPU, copied while recording; at most
-                                    GpgpSpawnerCreateInfo::maxHostAxioms. @lifetime call */
-  GpgpBuffer axiomCounter;     /**< optional: uint32_t, how many axioms there are, for those that the GPU has written (4
-                                  bytes); STORAGE usage. axiomCount is the most that are derived then */
+  GpgpBuffer axioms; /**< GpgpAxiom[axiomCount]. STORAGE usage. Offset and count can select a part of a longer list. */
+  /** GpgpAxiom[axiomCount] in host memory instead of axioms. They are copied while recording. At most
+   *  GpgpSpawnerCreateInfo::maxHostAxioms. @lifetime call */
+  const GpgpAxiom* hostAxioms;
+  /** Optional. A uint32_t with the number of axioms, for axioms that the GPU writes. STORAGE usage. axiomCount is then
+   *  the largest number that is derived, and must not be 0. */
+  GpgpBuffer axiomCounter;
   uint32_t axiomCount;
   GpgpSpawnFlags flags;
-  GpgpBuffer instances; /**< out: GpgpInstance[]; its size is the budget; STORAGE usage. NULL with draws: the record
-                           only counts */
-  const GpgpVertexOutput* vertices; /**< for spawners made for vertices, instead of instances */
-  /** Out, optional: VkDrawIndexedIndirectCommand[buckets], one per bucket; STORAGE usage. Fields that are not named
-   * here are left as the engine set them. Instances: they are sorted by bucket; instanceCount and firstInstance are
-   * written. Without draws they lie in no stated order, unless by GPGP_SPAWNER_ORDERED. Vertices: they lie in no stated
-   * order, unless by GPGP_SPAWNER_ORDERED; indexCount of the first command is written, which draws all buckets.
-   * GPGP_SPAWN_REGIONS: firstInstance is read and instanceCount written; or firstIndex is read, a multiple of 6, and
-   * indexCount and vertexOffset (firstIndex / 6 * 4) are written. Only counting: instanceCount and firstInstance, or
-   * indexCount, firstIndex and vertexOffset are written, regions that fit exactly for a later record with
-   * GPGP_SPAWN_REGIONS. */
+  /** Output, GpgpInstance[]. Its size is the budget. STORAGE usage. NULL: the recording only counts, and needs
+   *  draws. */
+  GpgpBuffer instances;
+  const GpgpVertexOutput* vertices; /**< Output of spawners that were created for vertices, instead of instances. */
+  /** Output, optional. VkDrawIndexedIndirectCommand[buckets], one for each bucket. STORAGE usage. Fields that are not
+   *  named here keep the engine's values.
+   *
+   *  Instances: they are sorted by bucket, and instanceCount and firstInstance are written. Without draws, instances
+   *  are in no particular order, unless the spawner has GPGP_SPAWNER_ORDERED.
+   *
+   *  Vertices: indexCount of the first command is written. It draws all buckets, so one command is enough. Vertices are
+   *  in no particular order, unless the spawner has GPGP_SPAWNER_ORDERED.
+   *
+   *  Instances with GPGP_SPAWN_REGIONS: firstInstance is read and instanceCount is written.
+   *
+   *  Vertices with GPGP_SPAWN_REGIONS: firstIndex is read and must be a multiple of 6. indexCount and vertexOffset
+   *  (firstIndex / 6 * 4) are written.
+   *
+   *  Only counting: instanceCount and firstInstance are written, or indexCount, firstIndex and vertexOffset. They
+   *  describe regions of exactly the needed size, for a later recording with GPGP_SPAWN_REGIONS. */
   GpgpBuffer draws;
-  GpgpBuffer needed; /**< out, optional: uint32_t[buckets], instances or indices that each bucket needs; only with
-                          GPGP_SPAWN_REGIONS or where the record only counts; STORAGE usage */
-  GpgpBuffer count;  /**< out, optional: uint32_t, instances or indices written (4 bytes); STORAGE usage */
-  GpgpBuffer bounds; /**< out, optional: GpgpSpawnBounds[buckets], around the terminals of each bucket that were
-                        written, with BUDGET_EXCEEDED maybe around others, too; not where the record only counts;
-                        STORAGE usage */
+  /** Output, optional. uint32_t[buckets], the instances or indices that each bucket needs. STORAGE usage. Only with
+   *  GPGP_SPAWN_REGIONS, or if the recording only counts. */
+  GpgpBuffer needed;
+  GpgpBuffer count; /**< Output, optional. A uint32_t, the instances or indices that were written. STORAGE usage. */
+  /** Output, optional. GpgpSpawnBounds[buckets], the box around the terminals that were written for each bucket. With
+   *  BUDGET_EXCEEDED it may also contain terminals that were omitted. STORAGE usage. Not if the recording only
+   *  counts. */
+  GpgpBuffer bounds;
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 
-/** Derives the axioms and writes one instance for each terminal shape, or its vertices and indices, or counts.
- *  NOT_READY: grammar not resident or spawner not prewarmed.
+/** Records a derivation of the axioms. It writes an instance for each terminal shape, or its vertices and indices, or
+ *  only counts. Returns NOT_READY if the grammar is not resident or the spawner is not prewarmed.
+ *  Errors: INVALID_HANDLE, INVALID_STRUCT, INVALID_ARGUMENT, TOO_MANY_RECORDINGS, UNSUPPORTED, DEVICE_LOST.
  *  @threads handle @lifetime call; buffers: frame @pass outside
  *  @state compute pipeline, compute descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareSpawn(GpgpRecorder spawner, VkCommandBuffer commandBuffer,
@@ -311,26 +370,30 @@ typedef struct GpgpSpawnReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t terminals;        /**< terminal shapes derived */
-  uint32_t instancesWritten; /**< <= terminals; less only with BUDGET_EXCEEDED, and where others are asked for */
-  uint32_t peakShapes;       /**< the most shapes that waited for a round, those that did not fit included: a
-                                  maxShapes that would have been enough for them */
-  uint32_t droppedShapes;    /**< shapes that did not fit maxShapes or were left after maxRounds, and axioms whose
-                                  rule does not exist or that axiomCounter counts beyond axiomCount, shapes of which
-                                  a Repeat would make more than 2^20, and polygons that a SubDiv cannot cut; what lay
-                                  below them is not known */
-  uint32_t unfinishedShapes; /**< shapes deeper than maxDepth */
-  uint32_t rounds;           /**< rounds that had work */
-  uint32_t keyHash[2];       /**< order-free hash of (path key, terminal, rule, shape) over all terminals */
-  uint32_t depth;            /**< how deep rules nested in themselves */
-  uint32_t vertices;         /**< that the terminals have; 6 indices for each 4 of them */
-  uint32_t verticesWritten;  /**< <= vertices; less only with BUDGET_EXCEEDED, and where the record only counts */
-  uint32_t colliders;        /**< shapes that Collider had to register: a maxColliders that would have been enough */
-  uint32_t collidersKept;    /**< <= colliders; less only with BUDGET_EXCEEDED: IfCollides did not see the others */
+  uint32_t terminals; /**< Terminal shapes that were derived. */
+  /** At most terminals. Less only with BUDGET_EXCEEDED. 0 if the recording writes vertices or only counts. */
+  uint32_t instancesWritten;
+  /** The largest number of shapes that waited for a round, including those that did not fit. With this maxShapes they
+   *  would have fitted. */
+  uint32_t peakShapes;
+  /** Shapes that were dropped: they did not fit maxShapes, or were left after maxRounds, or a Repeat would have made
+   *  more than 2^20 copies of them, or they are polygons that a SubDiv cannot cut. Axioms are counted too if their
+   *  start does not exist or if axiomCounter exceeds axiomCount. What would have been derived from them is not
+   *  known. */
+  uint32_t droppedShapes;
+  uint32_t unfinishedShapes; /**< Shapes that nested deeper than maxDepth. */
+  uint32_t rounds;           /**< Rounds that had work. */
+  uint32_t keyHash[2];       /**< Hash of path key, terminal, rule and shape of all terminals, independent of order. */
+  uint32_t depth;            /**< How deep rules nested in themselves. */
+  uint32_t vertices; /**< Vertices of all terminals, in a spawner for vertices. 6 indices belong to every 4 vertices. */
+  uint32_t verticesWritten; /**< At most vertices. Less only with BUDGET_EXCEEDED or if the recording only counts. */
+  uint32_t colliders;       /**< Shapes that Collider had to register. With this maxColliders all would have fitted. */
+  /** At most colliders. Less only with BUDGET_EXCEEDED: IfCollides did not see the other colliders. */
+  uint32_t collidersKept;
 } GpgpSpawnReport;
 #define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
 
-/** The oldest report not yet taken. NOT_READY: none. @threads handle */
+/** Takes the oldest report that is ready. Returns NOT_READY if there is none. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetSpawnReport(GpgpRecorder spawner, GpgpSpawnReport* report);
 
 #ifdef __cplusplus
