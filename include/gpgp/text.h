@@ -126,8 +126,8 @@ typedef struct GpgpGlyphOutlineInfo {
   const void* pNext;
   uint32_t glyph;
   VkBool32 plain; /**< VK_TRUE: the plain outline, also of a colour glyph */
-  /** The text's colour: linear RGB, straight alpha, 0 to 1; all 0: opaque black. For a glyph set make it opaque, as each
-   *  instance brings its own alpha. */
+  /** The text's colour: linear RGB, straight alpha, 0 to 1; all 0: opaque black. For a glyph set make it opaque, as
+   *  each instance brings its own alpha. */
   float color[4];
   uint32_t palette;               /**< palette of a colour font; if the font does not have it, its first palette */
   const GpgpPaletteColor* colors; /**< replace colours of the palette */
