@@ -68,7 +68,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpPushTransform(GpgpList list, const float* tran
 GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, const float* radii);
 
 /** Pushes an opacity, which multiplies the alpha of each thing added until the matching gpgpPopState. It applies to
- *  each thing by itself, and to each path of a drawing by itself, so lower things show through where they overlap.
+ *  each thing separately, and to each path of a drawing separately, so lower things show through where they overlap.
  *  Errors: INVALID_ARGUMENT (not 0 to 1; nested too deep). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList list, float opacity);
 

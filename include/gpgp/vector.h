@@ -125,8 +125,8 @@ typedef struct GpgpPath {
   /** Linear RGB, 0 to 10000; straight alpha, 0 to 1. With a gradient or an image, only alpha is used. */
   float color[4];
   const GpgpGradient* gradient; /**< NULL: the path is painted in its colour. */
-  const GpgpStroke* stroke;     /**< NULL: the path is filled. Otherwise only its stroke is painted; no fillRule. */
-  const GpgpImagePaint* image;  /**< NULL: no image. Not together with a gradient. */
+  const GpgpStroke* stroke;    /**< NULL: the path is filled. Otherwise only its stroke is painted, without fillRule. */
+  const GpgpImagePaint* image; /**< NULL: no image. Not together with a gradient. */
   /** Largest scale at which the drawing is shown, pixels per drawing unit; 0: 1. Arcs are accurate to 1e-4 of a pixel
    *  up to this scale. */
   float scale;
@@ -158,8 +158,7 @@ typedef struct GpgpSvgReport {
   double convertMilliseconds; /**< from paths to CPatches, strokes included */
 } GpgpSvgReport;
 
-/** Receives a stage of the conversion as SVG text, for people to look at. The text is not null-terminated. @lifetime
- *  call */
+/** Receives a stage of the conversion as SVG text, to be looked at. The text is not null-terminated. @lifetime call */
 typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const char* svg, size_t size);
 
 /** Receives an image that an <image> element embeds as a data: URI. The bytes are the decoded base64: a PNG, JPEG or
@@ -447,15 +446,16 @@ typedef struct GpgpCanvasItem {
   GpgpAsset drawing; /**< NULL for a text or a list */
   /** Drawing, text or list space to canvas pixels: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5. */
   float transform[6];
-  float opacity; /**< 0 to 1; multiplies the alpha of each path by itself */
+  float opacity; /**< 0 to 1; multiplies the alpha of each path, so overlapping paths show through one another */
   /** Third row of a projective map: w = p0 x + p1 y + p2, and the pixel is (x', y') / w. All 0: affine, w = 1. Points
    *  with w <= 0 lie behind the eye and are not drawn. gpgpPlacePanel (ui.h) computes this map for a panel in a 3D
    *  world.
    *
    *  By hand: let the panel have corner o and sides u, v, each as long as one unit of the drawing. Multiply o (as a
-   *  point), u and v (as directions) by the view-projection matrix to get o', u', v'. Then clip space is x_c = u'.x x
-   *  + v'.x y + o'.x, and likewise for y_c and w_c. For a canvas of W x H pixels the transform is t = (W (u'.x + u'.w)
-   *  / 2, H (u'.y + u'.w) / 2, the same of v', the same of o'), and p = (u'.w, v'.w, o'.w). */
+   *  point), u and v (as directions) by the view-projection matrix to get o', u', v'. For a canvas of W x H pixels:
+   *  - clip space: x_c = u'.x x + v'.x y + o'.x, and likewise y_c and w_c
+   *  - transform: W (u'.x + u'.w) / 2, H (u'.y + u'.w) / 2, then the same of v', then the same of o'
+   *  - perspective: u'.w, v'.w, o'.w */
   float perspective[3];
   uint32_t firstImage; /**< index in GpgpCanvasInfo::images of the first image of the drawing or list */
   /** Glyph set for text items; NULL otherwise. `transform` then maps text space to pixels. */
@@ -527,7 +527,7 @@ typedef struct GpgpCanvasInfo {
 
 /** Rasterises the items into the history, the target, or both.
  *
- *  Both receive the same pixels up to rounding: the history holds halves, and image stores and attachments round
+ *  Both receive the same pixels up to rounding: the history holds half floats, and image stores and attachments round
  *  differently. gpgpRecordDrawCanvas over transparent black is compared with a target of the attachment's format. In
  *  R16G16B16A16_SFLOAT they differ by at most one unit in the last place of a half, in R8G8B8A8_UNORM by at most
  *  1/255. An sRGB attachment encodes premultiplied colour, so it is within 1/255 of a target with encodeSrgb only
