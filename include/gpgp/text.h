@@ -1,19 +1,20 @@
-/* gpgp text: fonts, shaping and layout on the CPU. In a library of its own, libgpgp_text (FreeType, HarfBuzz, FriBidi,
- * ICU), which knows no device and no context: use it with libgpgp, in a tool, or alone.
+/* gpgp text: fonts, shaping and layout on the CPU. It has a library of its own, libgpgp_text (FreeType, HarfBuzz,
+ * FriBidi, ICU). The library needs neither a device nor a context: use it with libgpgp, in a tool, or alone.
  *
- *   font     a face of a font file at chosen variation axes: metrics, and glyphs as GpgpPath
- *   shaper   turns runs of characters into glyphs and keeps them within a budget; one thread's
- *   layout   a text with styles, broken into lines: glyphs with places, decorations, carets, selections, hit tests
+ *   font     A face of a font file at chosen values of its variation axes: metrics, and glyphs as GpgpPath.
+ *   shaper   Turns runs of characters into glyphs and caches the results within a budget. Used by one thread at a time.
+ *   layout   A text with styles, broken into lines: placed glyphs, decorations, carets, selections, hit tests.
  *
  *   gpgpCreateFont -> gpgpCreateShaper -> gpgpCreateLayout -> gpgpSetLayoutText, again for each new text
- *   -> gpgpGetLayoutInfo -> for each glyph that is new: gpgpGetGlyphOutline -> draw at its places
+ *   -> gpgpGetLayoutInfo -> gpgpGetGlyphOutline for each glyph that the renderer does not have yet -> draw the glyphs
  *
- * Spaces: a layout is in pixels, x right, y down, origin at its upper left corner. A glyph is in em (1 is the font's
- * size), x right, y down, origin on the baseline: a point of a glyph lies at (x, y) + size * point of the layout.
- * Places in a text are byte offsets into the UTF-8 that was given. Text is horizontal.
+ * Layout space: pixels, +X right, +Y down, origin at the layout's top left corner.
+ * Glyph space: em (1 is the font's size), +X right, +Y down, origin on the baseline. A point p of a glyph lies at
+ * (x, y) + size * p in layout space.
+ * Positions in a text are byte offsets into the UTF-8 that was given. Text is horizontal.
  *
- * Memory: the C++ heap; the libraries behind use theirs. A destroyed handle must not be used: there is no context that
- * could tell.
+ * Memory comes from the C++ heap; the libraries underneath use their own. There is no context that could recognise a
+ * destroyed handle, so using one is undefined.
  */
 #ifndef GPGP_TEXT_H
 #define GPGP_TEXT_H
@@ -26,7 +27,7 @@ typedef struct GpgpFont_T* GpgpFont;
 typedef struct GpgpShaper_T* GpgpShaper;
 typedef struct GpgpLayout_T* GpgpLayout;
 
-/** Four letters that name an axis or a feature: GPGP_TAG('w', 'g', 'h', 't'). */
+/** Four letters that name a variation axis or an OpenType feature, for example GPGP_TAG('w', 'g', 'h', 't'). */
 typedef uint32_t GpgpTag;
 #define GPGP_TAG(a, b, c, d)                                                                                           \
   (((uint32_t)(uint8_t)(a) << 24) | ((uint32_t)(uint8_t)(b) << 16) | ((uint32_t)(uint8_t)(c) << 8) |                   \
@@ -34,6 +35,7 @@ typedef uint32_t GpgpTag;
 
 /* ---------------------------------------------------------------- fonts */
 
+/** The value of one variation axis. */
 typedef struct GpgpFontAxisValue {
   GpgpTag tag;
   float value;
@@ -43,54 +45,58 @@ typedef struct GpgpFontCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label; /**< for messages; NULL: the file path */
-  /* exactly one of data and filePath: */
-  const void* data; /**< TTF, OTF (CFF, CFF2), TTC */
+  /* Give exactly one of data and filePath. */
+  const void* data; /**< a TTF, OTF (CFF, CFF2) or TTC file in memory */
   size_t size;
-  VkBool32 keepData; /**< data stays where it is until the font is destroyed; else it is copied */
+  VkBool32 keepData; /**< VK_TRUE: data stays in place until the font is destroyed. VK_FALSE: data is copied. */
   const char* filePath;
-  const GpgpFileSystem* fileSystem; /**< reads filePath; NULL: the C library */
-  uint32_t face;                    /**< of a collection */
-  const GpgpFontAxisValue* axes;    /**< those that are not named keep their default */
+  const GpgpFileSystem* fileSystem; /**< reads filePath; NULL: the C library does */
+  uint32_t face;                    /**< index of the face in a collection */
+  const GpgpFontAxisValue* axes;    /**< Axes that are not listed keep their default. */
   uint32_t axisCount;
-  GpgpMessageFn messageFn; /**< errors of this font's calls, and as warnings what a glyph has that is not supported */
+  /** Receives the errors of this font's calls, and warnings about unsupported parts of glyphs. */
+  GpgpMessageFn messageFn;
   void* messageUserData;
 } GpgpFontCreateInfo;
 #define GPGP_FONT_CREATE_INFO_INIT GPGP_INIT(GpgpFontCreateInfo, GPGP_STRUCTURE_FONT_CREATE_INFO)
 
 /** Opens a face of a font.
- *  Errors: INVALID_DATA (not a font), UNSUPPORTED (a font without OpenType tables), INVALID_ARGUMENT (a face that is
- *  not there, an axis that it has not, a value beyond the axis), IO, INVALID_STRUCT, OUT_OF_HOST_MEMORY.
+ *  Errors: INVALID_DATA (not a font), UNSUPPORTED (a font without OpenType tables), INVALID_ARGUMENT (no such face or
+ *  axis, or a value outside the axis's range), IO, INVALID_STRUCT, OUT_OF_HOST_MEMORY.
  *  @threads any @lifetime call; data with keepData: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateFont(const GpgpFontCreateInfo* info, GpgpFont* font);
 
-/** Closes a font. Layouts keep their glyphs and answer as before, but the font that these name is gone. NULL is
- *  ignored. No other thread may be using the font. @threads handle */
+/** Closes a font. Layouts keep their glyphs and still answer all queries, but the font handles in them become invalid.
+ *  No other thread may be using the font. NULL is ignored. @threads handle */
 GPGP_API void GPGP_CALL gpgpDestroyFont(GpgpFont font);
 
+/** A variation axis of a font. */
 typedef struct GpgpFontAxis {
   GpgpTag tag;
-  const char* name; /**< English where the font has that */
+  const char* name; /**< in English if the font has an English name */
   float minimum, normal, maximum;
-  float value; /**< of this font */
+  float value; /**< this font's value */
 } GpgpFontAxis;
 
+/** Bits: the kinds of colour glyphs in a font. */
 typedef uint32_t GpgpFontColors;
 enum {
   GPGP_FONT_COLOR_LAYERS = 1,  /**< COLR version 0: filled paths */
   GPGP_FONT_COLOR_PAINTS = 2,  /**< COLR version 1: filled paths and gradients */
-  GPGP_FONT_COLOR_BITMAPS = 4, /**< CBDT, sbix: images */
-  GPGP_FONT_COLOR_SVG = 8      /**< SVG: not read */
+  GPGP_FONT_COLOR_BITMAPS = 4, /**< CBDT or sbix: images */
+  GPGP_FONT_COLOR_SVG = 8      /**< SVG glyphs; these are not read */
 };
 
-/** What a font says of itself. Lengths are in em, y down: ascent is above, descent below the baseline, both positive
- *  as a rule; positions are those of a line's middle. Pointers live as long as the font. */
+/** Names and metrics of a font. Lengths are in em. ascent reaches up from the baseline and descent down from it; both
+ *  are usually positive. underlinePosition and strikePosition are y of the line's middle, +Y down from the baseline.
+ *  Pointers stay valid until the font is destroyed. */
 typedef struct GpgpFontInfo {
   GpgpStructureType sType;
   void* pNext;
   const char *family, *style;
   uint32_t unitsPerEm, glyphCount, face, faceCount;
   float ascent, descent, lineGap;
-  float capHeight, xHeight; /**< 0: the font does not say */
+  float capHeight, xHeight; /**< 0: the font does not state it */
   float underlinePosition, underlineThickness;
   float strikePosition, strikeThickness;
   GpgpFontColors colors;
@@ -100,18 +106,18 @@ typedef struct GpgpFontInfo {
 } GpgpFontInfo;
 #define GPGP_FONT_INFO_INIT GPGP_INIT(GpgpFontInfo, GPGP_STRUCTURE_FONT_INFO)
 
-/** Names and metrics of a font, at its axes. @threads any */
+/** Returns a font's names, and its metrics at the values of its axes. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetFontInfo(GpgpFont font, GpgpFontInfo* info);
 
-/** The glyph that a font has for a character (a code point), before any shaping; 0 where it has none.
+/** Returns the glyph that a font maps a character (a code point) to, before any shaping; 0 if it has none.
  *  @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetNominalGlyph(GpgpFont font, uint32_t character, uint32_t* glyph);
 
 /* ---------------------------------------------------------------- glyphs */
 
-/** A colour in place of a palette's. */
+/** Replaces one colour of a palette. */
 typedef struct GpgpPaletteColor {
-  uint32_t entry;
+  uint32_t entry; /**< index in the palette */
   float color[4]; /**< linear RGB, straight alpha */
 } GpgpPaletteColor;
 
@@ -119,61 +125,74 @@ typedef struct GpgpGlyphOutlineInfo {
   GpgpStructureType sType;
   const void* pNext;
   uint32_t glyph;
-  VkBool32 plain;                 /**< the outline without colours, also of a colour glyph */
-  float color[4];                 /**< linear RGB, straight alpha, 0 to 1, of what is painted in the text's colour; all
-                                       0: opaque black. For a glyph set opaque: an instance's alpha comes to it */
-  uint32_t palette;               /**< of a colour font; one that it has not: its first */
-  const GpgpPaletteColor* colors; /**< in place of the palette's */
+  VkBool32 plain; /**< VK_TRUE: the plain outline, also of a colour glyph */
+  /** The text's colour: linear RGB, straight alpha, 0 to 1; all 0: opaque black. For a glyph set make it opaque, as
+   *  each instance brings its own alpha. */
+  float color[4];
+  uint32_t palette;               /**< palette of a colour font; if the font does not have it, its first palette */
+  const GpgpPaletteColor* colors; /**< replace colours of the palette */
   uint32_t colorCount;
-  const GpgpStroke* stroke; /**< outline text: lengths in em, scale in pixels an em. Set on each path as it is, and
-                                 the glyph is then plain; a glyph without paths has none; NULL: filled */
+  /** Outlined text: every path is stroked with this. Lengths are in em, `scale` is in pixels per em. The glyph's plain
+   *  outline is used. A glyph without paths has no stroke. NULL: the glyph is filled. */
+  const GpgpStroke* stroke;
 } GpgpGlyphOutlineInfo;
 #define GPGP_GLYPH_OUTLINE_INFO_INIT GPGP_INIT(GpgpGlyphOutlineInfo, GPGP_STRUCTURE_GLYPH_OUTLINE_INFO)
 
-/** A glyph that is a picture. */
+/** A glyph that is an image. */
 typedef struct GpgpGlyphImage {
-  const uint8_t* pixels; /**< RGBA, sRGB, straight alpha, rows from the top without gaps */
+  const uint8_t* pixels; /**< RGBA, 8 bits each, sRGB, straight alpha; rows from the top, without gaps */
   uint32_t width, height;
-  float box[4]; /**< where it belongs: left, top, right, bottom in em */
+  float box[4]; /**< where the image lies: left, top, right, bottom in em */
 } GpgpGlyphImage;
 
-/** A glyph as paths in em, y down, origin on the baseline; unhinted, quadratics as quadratics and cubics as cubics,
- *  filled by non-zero winding, to be painted in order. Nothing for a glyph without ink. */
+/** A glyph as paths in em, +Y down, origin on the baseline. Outlines are not hinted. Quadratic curves stay quadratic,
+ *  and cubics cubic. Paths are filled by non-zero winding and painted in order. A blank glyph has neither paths nor
+ *  image. */
 typedef struct GpgpGlyphOutline {
   uint32_t glyph;
   const GpgpPath* paths;
   uint32_t pathCount;
-  const VkBool32* foreground; /**< for each path: it is painted in the text's colour, not one of the font's */
-  float box[4]; /**< of the paths' points, control points too: left, top, right, bottom; 0 without paths. A stroke
-                     reaches half its width beyond, and its miters further */
-  const GpgpGlyphImage* image; /**< instead of paths, for bitmap glyphs; NULL otherwise */
-  VkBool32 incomplete; /**< it has something that is not supported (sweep gradients, composite modes other than source
-                            over, SVG); a warning names the glyph */
-  VkBool32 broken; /**< the font is broken there, and this is glyph 0's outline, or nothing where that is broken, too;
-                        a warning (INVALID_DATA) names the glyph */
+  /** One for each path. VK_TRUE: painted in the text's colour. VK_FALSE: painted in a colour of the font's. */
+  const VkBool32* foreground;
+  /** Box of the paths' points, control points included: left, top, right, bottom; all 0 without paths. A stroke
+   *  reaches half its width beyond the box, and its miters further. */
+  float box[4];
+  const GpgpGlyphImage* image; /**< bitmap glyphs: the image, instead of paths; otherwise NULL */
+  /** VK_TRUE: part of the glyph is not supported (sweep gradients, composite modes other than source-over, SVG). A
+   *  warning names the glyph. */
+  VkBool32 incomplete;
+  /** VK_TRUE: the glyph is broken in the font. This is then the outline of glyph 0, or empty if that is broken too. A
+   *  warning (INVALID_DATA) names the glyph. */
+  VkBool32 broken;
 } GpgpGlyphOutline;
 /** Receives a glyph, on the thread that asked for it. @lifetime call */
 typedef void(GPGP_CALL* GpgpGlyphFn)(void* userData, const GpgpGlyphOutline* outline);
 
-/** Hands a glyph's outline, colour layers or image to `glyphFn`, once. A glyph that is broken is no error: see
+/** Calls glyphFn once with a glyph's outline, colour layers or image. A broken glyph is not an error; see
  *  GpgpGlyphOutline::broken.
- *  Errors: INVALID_ARGUMENT (a glyph beyond glyphCount; a colour that is not 0 to 1; a stroke's number that is not
- *  finite, negative, or too large), INVALID_HANDLE.
- *  @threads any @lifetime call */
+ *  Errors: INVALID_ARGUMENT (glyph >= glyphCount; a colour outside 0 to 1; a number of the stroke that is not finite,
+ *  negative, or too large), INVALID_HANDLE. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphOutline(GpgpFont font, const GpgpGlyphOutlineInfo* info, GpgpGlyphFn glyphFn,
                                                   void* userData);
 
-/** Characters (code points) from the first to the last, both included. */
+/** Characters (code points) from first to last, both included. */
 typedef struct GpgpCharacterRange {
   uint32_t first, last; /**< at most 0x10ffff */
 } GpgpCharacterRange;
 
-/** Every glyph that a text of these characters may need, whatever its order, direction, language and features, in the
- *  order of their numbers: what to bake, or to add beforehand. That is glyph 0; the characters' own glyphs; what is
- *  composed of them, and their parts; mirrored brackets; what GSUB makes of these (ligatures, forms of Arabic and Indic
- *  letters, small capitals, alternates); and what a layout adds: space, hyphens, ellipsis, dotted circle. A font that
- *  substitutes by AAT's tables gives all its glyphs.
- *  count: in: room in glyphs, out: needed; INCOMPLETE where that is more. glyphs NULL: only counts.
+/** Lists every glyph that a text of these characters can need, in any order, direction or language and with any
+ *  features. Use it to choose what to bake, or what to add to a glyph set beforehand. Glyphs are sorted by number.
+ *  They are:
+ *
+ *  - glyph 0, and the glyphs that the font maps the characters to;
+ *  - composed characters and their parts, and mirrored brackets;
+ *  - what GSUB makes of all these: ligatures, Arabic and Indic forms, small capitals, alternates;
+ *  - what a layout adds: space, hyphens, ellipsis, dotted circle.
+ *
+ *  A font that substitutes glyphs with AAT tables returns all its glyphs.
+ *
+ *  count in: capacity of glyphs, out: number needed.
+ *  INCOMPLETE: the capacity is too small. glyphs NULL asks for the count.
  *  Errors: INVALID_ARGUMENT (a range that ends before it begins, or beyond 0x10ffff), INVALID_HANDLE.
  *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphClosure(GpgpFont font, const GpgpCharacterRange* ranges, uint32_t rangeCount,
@@ -185,66 +204,77 @@ typedef struct GpgpShaperCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  size_t cacheBytes;       /**< for shaped runs, the least recently used leave first; 0: 1 MiB */
-  GpgpMessageFn messageFn; /**< errors of the shaper's and its layouts' calls */
+  size_t cacheBytes;       /**< budget for shaped runs; the least recently used are evicted; 0: 1 MiB */
+  GpgpMessageFn messageFn; /**< receives errors of the shaper's and its layouts' calls */
   void* messageUserData;
 } GpgpShaperCreateInfo;
 #define GPGP_SHAPER_CREATE_INFO_INIT GPGP_INIT(GpgpShaperCreateInfo, GPGP_STRUCTURE_SHAPER_CREATE_INFO)
 
-/** Makes a shaper. It and its layouts belong to one thread at a time; fonts may be shared with other threads' shapers.
- *  Errors: INVALID_STRUCT, OUT_OF_HOST_MEMORY, UNSUPPORTED (ICU finds no data). @threads any @lifetime call */
+/** Makes a shaper. The shaper and its layouts may be used by one thread at a time. Fonts may be shared between shapers
+ *  of different threads.
+ *  Errors: INVALID_STRUCT, OUT_OF_HOST_MEMORY, UNSUPPORTED (ICU does not find its data).
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateShaper(const GpgpShaperCreateInfo* info, GpgpShaper* shaper);
 
-/** Destroys a shaper; its layouts keep what they have but take no new text and know no words. NULL is ignored. @threads
- * handle */
+/** Destroys a shaper. Its layouts keep what they hold, but cannot take new text, and carets can no longer move by
+ *  words. NULL is ignored. @threads handle */
 GPGP_API void GPGP_CALL gpgpDestroyShaper(GpgpShaper shaper);
 
-/** Since the shaper was made; runs and bytes: now. */
+/** The shaper's cache of runs: totals since the shaper was made, and its present size. */
 typedef struct GpgpShaperReport {
   GpgpStructureType sType;
   void* pNext;
-  uint64_t hits, misses, evictions;
-  size_t runs, bytes, cacheBytes;
+  uint64_t hits, misses, evictions; /**< totals */
+  size_t runs, bytes, cacheBytes;   /**< now; cacheBytes is the budget */
 } GpgpShaperReport;
 #define GPGP_SHAPER_REPORT_INIT GPGP_INIT(GpgpShaperReport, GPGP_STRUCTURE_SHAPER_REPORT)
 
-/** How the cache of runs does. @threads handle */
+/** Returns how well the shaper's cache does. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetShaperReport(GpgpShaper shaper, GpgpShaperReport* report);
 
 /* ---------------------------------------------------------------- layout */
 
 typedef struct GpgpFontFeature {
-  GpgpTag tag;    /**< of OpenType, e.g. GPGP_TAG('s', 'm', 'c', 'p') */
-  uint32_t value; /**< 0: off, 1: on, more: which alternate */
+  GpgpTag tag;    /**< an OpenType feature, for example GPGP_TAG('s', 'm', 'c', 'p') */
+  uint32_t value; /**< 0: off; 1: on; more: which alternate */
 } GpgpFontFeature;
 
 typedef struct GpgpTextStyle {
-  /** A grapheme takes the first font that has all its characters. Emoji take the first of those in colour, and what
-   *  U+FE0E wants as text the first of the others. Digits, (C) and other characters that are text unless U+FE0F follows
-   *  take a font in colour without letters only where no other has them. White space goes with what is before it, but
-   *  for emoji in colour. A grapheme that no font has whole begins in the font that has most of its beginning; marks
-   *  that are left take the first that has them. What none has is shaped with what is before it, and is reported as
-   *  missing. */
+  /** Fonts in order of preference. Each grapheme takes the first font that has all its characters, with these
+   *  exceptions:
+   *
+   *  - An emoji takes the first such font in colour. A character followed by U+FE0E takes the first without colour.
+   *  - Digits, (C) and other characters that are text unless U+FE0F follows avoid colour fonts that have no letters.
+   *    They take such a font only if no other font has them.
+   *  - White space stays in the font of the preceding text, except after a colour emoji.
+   *  - If no font has the whole grapheme, it begins in the font that has the most of its first characters. Each
+   *    remaining mark takes the first font that has it.
+   *  - A character that no font has is shaped with the preceding text and reported as missing. */
   const GpgpFont* fonts;
   uint32_t fontCount;
-  float size;           /**< pixels an em; more than 0, at most 100000 */
-  float color[4];       /**< linear RGB, straight alpha, 0 to 1, of glyphs and decorations; all 0: opaque black */
-  float letterSpacing;  /**< pixels after each grapheme, -100000 to 100000, negative ones bring letters together; other
-                             than 0, optional ligatures are off. Not in scripts that join their letters */
-  const char* language; /**< BCP 47, e.g. "ja" or "tr"; chooses forms of glyphs and, of a paragraph's first character,
-                             where lines break; NULL: none */
-  const GpgpFontFeature* features; /**< beyond those that are on by default */
+  float size;     /**< pixels per em; above 0, at most 100000 */
+  float color[4]; /**< of glyphs and decorations; linear RGB, straight alpha, 0 to 1; all 0: opaque black */
+  /** Pixels added after each grapheme, -100000 to 100000; negative values bring letters together. Any value other than
+   *  0 disables optional ligatures. Ignored in scripts whose letters join. */
+  float letterSpacing;
+  /** BCP 47 tag such as "ja" or "tr"; NULL: none. It chooses forms of glyphs. The language of a paragraph's first
+   *  character also decides where its lines may break. */
+  const char* language;
+  const GpgpFontFeature* features; /**< in addition to the features that are on by default */
   uint32_t featureCount;
   VkBool32 underline, strike;
-  /** Of outlined text: a line along the glyphs' edges, painted below all glyphs of the text, so that half its width
-   *  shows around them. It takes no room and is not used by the layout, which checks it: the engine finds it by a
-   *  glyph's span and draws each glyph once more, with GpgpGlyphOutlineInfo::stroke as wide as outlineWidth / size. */
-  float outlineWidth;    /**< pixels, 0 to 100000; 0: none */
+  /** Outlined text: width in pixels, 0 to 100000, of a line along the glyphs' edges; 0: none. The line lies below all
+   *  glyphs of the text, so half its width shows around them.
+   *
+   *  The layout only checks outlineWidth and outlineColor; it reserves no space for the line. The engine finds them
+   *  through a glyph's span, and draws each glyph once more. GpgpGlyphOutlineInfo::stroke is then outlineWidth / size
+   *  em wide. */
+  float outlineWidth;
   float outlineColor[4]; /**< linear RGB, straight alpha, 0 to 1; all 0: opaque black */
 } GpgpTextStyle;
 
-/** A part of the text with a style of its own. Where spans overlap the later counts. A grapheme is shaped in the style
- *  of its first character. */
+/** A part of the text with its own style. Where spans overlap, the later one counts. A grapheme takes the style of its
+ *  first character. */
 typedef struct GpgpTextSpan {
   uint32_t begin, end; /**< bytes */
   GpgpTextStyle style;
@@ -252,173 +282,188 @@ typedef struct GpgpTextSpan {
 
 typedef int32_t GpgpTextDirection;
 enum {
-  GPGP_TEXT_AUTO = 0, /**< of each paragraph's first strong character; left to right where there is none */
+  GPGP_TEXT_AUTO = 0, /**< from each paragraph's first strong character; left to right if it has none */
   GPGP_TEXT_LEFT_TO_RIGHT = 1,
   GPGP_TEXT_RIGHT_TO_LEFT = 2
 };
 
 typedef int32_t GpgpTextAlign;
 enum {
-  GPGP_TEXT_ALIGN_START = 0, /**< left in a paragraph from left to right */
-  GPGP_TEXT_ALIGN_END = 1,
+  GPGP_TEXT_ALIGN_START = 0, /**< left in a left-to-right paragraph, right in a right-to-left one */
+  GPGP_TEXT_ALIGN_END = 1,   /**< the opposite of START */
   GPGP_TEXT_ALIGN_LEFT = 2,
   GPGP_TEXT_ALIGN_CENTER = 3,
   GPGP_TEXT_ALIGN_RIGHT = 4,
-  GPGP_TEXT_ALIGN_JUSTIFY = 5 /**< spaces, and gaps between ideographs, grow; a paragraph's last line is at its start */
+  /** Spaces and gaps between ideographs grow until the line is full. A paragraph's last line is aligned as START. */
+  GPGP_TEXT_ALIGN_JUSTIFY = 5
 };
 
 typedef struct GpgpTextInfo {
   GpgpStructureType sType;
   const void* pNext;
-  const char* text;    /**< UTF-8. Bytes that are not are replaced by U+FFFD and reported */
+  const char* text;    /**< UTF-8. Invalid bytes are replaced by U+FFFD and reported. */
   size_t size;         /**< bytes, below 2^31 */
-  GpgpTextStyle style; /**< where there is no span */
+  GpgpTextStyle style; /**< the style outside of spans */
   const GpgpTextSpan* spans;
   uint32_t spanCount;
   GpgpTextDirection direction;
   GpgpTextAlign align;
-  /* lengths: 0 to 1e9 */
-  float width;  /**< lines break to fit this (UAX #14; within a word that is longer); 0: only where the text says */
-  float height; /**< lines that do not fit this are cut off, but for the first; 0: any */
-  uint32_t maxLines;    /**< 0: any */
-  float lineSpacing;    /**< times the fonts' own distance of lines; 0: 1 */
-  float lineHeight;     /**< pixels between lines instead; 0: the fonts' */
-  float tabWidth;       /**< pixels between tab stops; 0: eight spaces */
-  const char* ellipsis; /**< terminated; ends a text that was cut off, whose last line is filled up to it, with a part
-                             of a word, too; in the style of what is before it, ordered as a part of its paragraph by
-                             itself, line breaks and tabs as spaces, whole also where it is wider than the width; NULL:
-                             U+2026, or three full stops where no font has that */
+  /* The lengths below are 0 to 1e9. */
+  /** Width in pixels into which lines are broken (UAX #14); a word that is longer is broken too. 0: lines end only at
+   *  line breaks in the text. */
+  float width;
+  float height;      /**< height in pixels; lines that do not fit are cut off, except the first; 0: no limit */
+  uint32_t maxLines; /**< 0: no limit */
+  float lineSpacing; /**< factor on the fonts' own line distance; 0: 1 */
+  float lineHeight;  /**< distance of lines in pixels, instead of the fonts'; 0: the fonts' */
+  float tabWidth;    /**< distance of tab stops in pixels; 0: eight spaces */
+  /** Null-terminated text at the end of a text that was cut off; NULL: U+2026, or three full stops if no font has
+   *  that.
+   *
+   *  The last line is filled up to the ellipsis, within a word if necessary. The ellipsis takes the style of what
+   *  precedes it, and is ordered as a separate part of its paragraph. Line breaks and tabs in it become spaces. It is
+   *  shown whole, even if it is wider than the width. */
+  const char* ellipsis;
 } GpgpTextInfo;
 #define GPGP_TEXT_INFO_INIT GPGP_INIT(GpgpTextInfo, GPGP_STRUCTURE_TEXT_INFO)
 
-/** Makes an empty layout, to be used for one text after another: it keeps its memory. It is of the shaper's thread.
+/** Makes an empty layout. Use it for one text after another: it keeps its memory. It belongs to the shaper's thread.
  *  Errors: INVALID_HANDLE, OUT_OF_HOST_MEMORY. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateLayout(GpgpShaper shaper, GpgpLayout* layout);
 
 /** Destroys a layout. NULL is ignored. @threads handle */
 GPGP_API void GPGP_CALL gpgpDestroyLayout(GpgpLayout layout);
 
-/** Lays out a text in place of the one before, which stays where there is an error, but where memory runs out: then
- *  the layout is empty.
- *  Errors: INVALID_ARGUMENT (a style without font, a number or colour out of its range, a span beyond the text; names
- *  the span and what of it),
- *  INVALID_HANDLE (a font, the shaper), INVALID_STRUCT, OUT_OF_HOST_MEMORY.
+/** Lays out a text, which replaces the previous one. After an error the layout still holds the previous text. Only
+ *  after OUT_OF_HOST_MEMORY it is empty.
+ *  Errors: INVALID_ARGUMENT (a style without a font, a number or colour out of range, a span beyond the text; the
+ *  message names the span and the field), INVALID_HANDLE (a font, the shaper), INVALID_STRUCT, OUT_OF_HOST_MEMORY.
  *  @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpSetLayoutText(GpgpLayout layout, const GpgpTextInfo* info);
 
-/** A glyph at its place. Lines follow each other; within a line glyphs go from left to right. */
+/** A placed glyph. Glyphs are sorted by line, and within a line from left to right. */
 typedef struct GpgpTextGlyph {
   GpgpFont font;
-  uint32_t glyph; /**< 0: the font's sign for a missing character */
-  float x, y;     /**< of its origin, pixels */
-  float size;     /**< pixels an em */
+  uint32_t glyph; /**< 0: the font's glyph for a missing character */
+  float x, y;     /**< origin of the glyph, pixels */
+  float size;     /**< pixels per em */
   float color[4];
-  uint32_t cluster; /**< byte offset of the first character that it stands for, together with others maybe */
+  /** Byte offset of the first character that the glyph stands for. Several glyphs may share a character, and a glyph
+   *  may stand for several characters. */
+  uint32_t cluster;
   uint32_t line;
-  uint32_t span; /**< 0: the style of the text, else 1 + the index of the span */
+  uint32_t span; /**< 0: the style of the text; otherwise 1 + the index of the span */
 } GpgpTextGlyph;
 
 typedef struct GpgpTextLine {
-  uint32_t begin, end; /**< bytes, with the line break; of a line that was cut off: up to the ellipsis */
-  float left, width;   /**< without white space at its end, which hangs out */
-  float top, height;
-  float baseline;        /**< y */
-  float ascent, descent; /**< the largest of its fonts, pixels */
+  uint32_t begin, end;   /**< bytes, with the line break; a line that was cut off ends at its ellipsis */
+  float left, width;     /**< without white space at the line's end, which hangs out */
+  float top, height;     /**< pixels */
+  float baseline;        /**< y, pixels */
+  float ascent, descent; /**< the largest of the line's fonts, pixels */
   uint32_t firstGlyph, glyphCount;
   VkBool32 rightToLeft; /**< the paragraph's direction */
-  VkBool32 hardBreak;   /**< ends where the text says, or the text ends */
+  VkBool32 hardBreak;   /**< VK_TRUE: the line ends at a line break or at the end of the text */
 } GpgpTextLine;
 
+/** Pixels. x and y are the top left corner. */
 typedef struct GpgpTextRect {
   float x, y, width, height;
 } GpgpTextRect;
 
-/** An underline, to be painted below the glyphs of the text, or a strike, over them. */
+/** An underline, to be painted below the text's glyphs, or a strike, to be painted over them. */
 typedef struct GpgpTextDecoration {
   GpgpTextRect rect;
   float color[4];
-  uint32_t line, span;
-  VkBool32 strike; /**< through the text; else under it */
+  uint32_t line, span; /**< as in GpgpTextGlyph */
+  VkBool32 strike;     /**< VK_TRUE: a strike; VK_FALSE: an underline */
 } GpgpTextDecoration;
 
 typedef struct GpgpMissingCharacter {
-  uint32_t offset;
+  uint32_t offset;    /**< bytes */
   uint32_t character; /**< code point */
 } GpgpMissingCharacter;
 
-/** A laid out text. Pointers live until the layout's next text. */
+/** A text after layout. Pointers stay valid until the layout takes its next text. */
 typedef struct GpgpLayoutInfo {
   GpgpStructureType sType;
   void* pNext;
-  float width;  /**< of the widest line */
-  float height; /**< of all lines */
+  float width;  /**< of the widest line, pixels */
+  float height; /**< of all lines, pixels */
   const GpgpTextGlyph* glyphs;
   uint32_t glyphCount;
-  const GpgpTextLine* lines; /**< at least one for any text; an empty one's has its style's height */
+  const GpgpTextLine* lines; /**< at least one for any text; the line of an empty text has its style's height */
   uint32_t lineCount;
   const GpgpTextDecoration* decorations;
   uint32_t decorationCount;
-  const GpgpMissingCharacter* missing; /**< characters that no font of their style has; of an ellipsis: where it is */
+  /** Characters that no font of their style has. A missing character of the ellipsis has the ellipsis's offset. */
+  const GpgpMissingCharacter* missing;
   uint32_t missingCount;
-  const uint32_t* invalid; /**< byte offsets where the text is not UTF-8 */
+  const uint32_t* invalid; /**< byte offsets at which the text is not UTF-8 */
   uint32_t invalidCount;
-  VkBool32 truncated; /**< something was cut off, by maxLines or height */
+  VkBool32 truncated; /**< VK_TRUE: maxLines or height cut something off */
 } GpgpLayoutInfo;
 #define GPGP_LAYOUT_INFO_INIT GPGP_INIT(GpgpLayoutInfo, GPGP_STRUCTURE_LAYOUT_INFO)
 
-/** All that a renderer needs of a layout. @threads handle */
+/** Returns everything that a renderer needs of a layout. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetLayoutInfo(GpgpLayout layout, GpgpLayoutInfo* info);
 
 /* ---------------------------------------------------------------- layout: carets, selections, hit tests */
 
-/** Rectangles that cover the characters between two byte offsets, as high as their lines, from left to right within a
- *  line, neighbours joined; line breaks have no width. count: in: room in rects, out: needed; INCOMPLETE where that is
- *  more. rects NULL: only counts. @threads handle */
+/** Returns rectangles that cover the characters between two byte offsets. Rectangles are as high as their lines.
+ *  Within a line they are sorted from left to right, and adjacent ones are joined. Line breaks have no width. count
+ *  in: capacity of rects, out: number needed.
+ *  INCOMPLETE: the capacity is too small. rects NULL asks for the count. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetSelection(GpgpLayout layout, uint32_t begin, uint32_t end, uint32_t* count,
                                                GpgpTextRect* rects);
 
-/** Where a caret before the character at an offset stands. At a change of direction two places belong to one offset:
- *  where that character begins, and where the one before it ends. So they do where a line wraps, see gpgpGetCaret. */
+/** Position of a caret at an offset. Where the direction changes, two places belong to one offset: where the character
+ *  at the offset begins (x), and where the preceding character ends (splitX). Where a line wraps, there are two places
+ *  as well; gpgpGetCaret takes which one is meant. */
 typedef struct GpgpCaret {
-  float x, top, height;
+  float x, top, height; /**< pixels */
   uint32_t line;
-  VkBool32 rightToLeft; /**< of the character at the offset: it lies left of the caret */
-  VkBool32 split;       /**< the character before it ends elsewhere: at splitX */
+  VkBool32 rightToLeft; /**< VK_TRUE: the character at the offset runs right to left, so it lies left of the caret */
+  VkBool32 split;       /**< VK_TRUE: the preceding character ends elsewhere, at splitX */
   float splitX;
-  VkBool32 splitRightToLeft; /**< of the character before */
+  VkBool32 splitRightToLeft; /**< direction of the preceding character */
 } GpgpCaret;
 
-/** The caret at a byte offset; within a grapheme: at its start; beyond the text: at its end. trailing: it belongs to
- * the character before the offset. Where a line wraps it then stands at that line's end, not at the next one's begin;
- *  elsewhere it is the same caret. @threads handle */
+/** Returns the caret at a byte offset. An offset within a grapheme means its start, one beyond the text means its end.
+ *
+ *  trailing VK_TRUE: the caret belongs to the character before the offset. Where a line wraps, it then stands at the
+ *  end of that line, not at the start of the next. Elsewhere trailing makes no difference. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetCaret(GpgpLayout layout, uint32_t offset, VkBool32 trailing, GpgpCaret* caret);
 
 typedef struct GpgpTextHit {
-  uint32_t offset;    /**< of the grapheme that was hit; the nearest in the nearest line */
-  uint32_t insertion; /**< where a caret goes: that offset, or the end of the grapheme */
-  VkBool32 trailing;  /**< the half where it ends was hit; with `insertion` a caret of this line */
-  VkBool32 inside;    /**< the point lies on the grapheme and in its line */
+  uint32_t offset;    /**< of the grapheme at the point, or of the nearest one in the nearest line */
+  uint32_t insertion; /**< where a caret goes: the start of the grapheme or its end */
+  /** VK_TRUE: the point lies in the half where the grapheme ends. Pass it with `insertion` to gpgpGetCaret to get a
+   *  caret in this line. */
+  VkBool32 trailing;
+  VkBool32 inside; /**< VK_TRUE: the point lies on the grapheme and in its line */
   uint32_t line;
 } GpgpTextHit;
 
-/** The grapheme at a point in pixels of the layout. @threads handle */
+/** Finds the grapheme at a point, given in pixels of the layout. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpHitTestLayout(GpgpLayout layout, float x, float y, GpgpTextHit* hit);
 
 typedef int32_t GpgpCaretMove;
 enum {
-  GPGP_CARET_NEXT = 0,          /**< one grapheme on, in the order of the text */
-  GPGP_CARET_PREVIOUS = 1,      /**< one grapheme back */
-  GPGP_CARET_NEXT_WORD = 2,     /**< to the start of the next word (UAX #29), or the end of the text */
-  GPGP_CARET_PREVIOUS_WORD = 3, /**< to the start of this word, or the one before */
-  GPGP_CARET_WORD_BEGIN = 4,    /**< of what a double click selects: word, spaces or sign at the offset */
-  GPGP_CARET_WORD_END = 5,
+  GPGP_CARET_NEXT = 0,          /**< to the next grapheme in the order of the text */
+  GPGP_CARET_PREVIOUS = 1,      /**< to the previous grapheme in the order of the text */
+  GPGP_CARET_NEXT_WORD = 2,     /**< to the start of the next word (UAX #29), or to the end of the text */
+  GPGP_CARET_PREVIOUS_WORD = 3, /**< to the start of this word, or of the previous one if the caret is there already */
+  GPGP_CARET_WORD_BEGIN = 4,    /**< to the start of what a double click selects: a word, white space, or a sign */
+  GPGP_CARET_WORD_END = 5,      /**< to the end of what a double click selects */
   GPGP_CARET_LINE_BEGIN = 6,
-  GPGP_CARET_LINE_END = 7 /**< before the line break, or the white space where the line wraps; where it wraps without
-                             any: its end, trailing */
+  /** To the end of the line: before its line break, or before the white space at which it wraps. If it wraps without
+   *  white space, to its end with trailing set. */
+  GPGP_CARET_LINE_END = 7
 };
 
-/** The offset that a caret at an offset moves to. trailing: in: of the caret that moves, as in gpgpGetCaret, out: of
- *  the moved one; NULL: 0, and not asked for. @threads handle */
+/** Returns the offset to which a caret moves. trailing in: as in gpgpGetCaret, for the caret at offset; out: for the
+ *  caret at moved. NULL: VK_FALSE in, not returned. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpMoveCaret(GpgpLayout layout, uint32_t offset, GpgpCaretMove move, uint32_t* moved,
                                             VkBool32* trailing);
 

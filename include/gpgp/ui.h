@@ -1,14 +1,14 @@
-/* gpgp ui: what a user interface draws beside drawings and text, and what lies under a pointer.
+/* gpgp ui: lists of shapes, images, text and drawings for user interfaces; panels in the world; hit tests.
  *
- *   list   shapes, images, nine-slices, text and drawings in painting order, with stacks of transforms, clips and
- *          opacity: filled anew every frame, or kept
+ *   list   Shapes, images, nine-slices, text and drawings in painting order, with stacks of transforms, clips and
+ *          opacity. A list is filled anew every frame, or kept.
  *
  *   gpgpCreateList -> each frame: gpgpResetList, gpgpPush..., gpgpAdd..., gpgpPopState
  *   -> GpgpCanvasItem::list -> gpgpRecordPrepareCanvas
  *   GpgpCanvasItem[] -> gpgpHitTest
  *
- * A list lies in host memory alone and may be shown by any number of items, under different transforms and on different
- * canvases: the two eyes of a panel in the world are two items with the same list.
+ * A list lies in host memory only. Any number of items can show it, under different transforms and on different
+ * canvases. For stereo, a panel in the world is two items with the same list.
  */
 #ifndef GPGP_UI_H
 #define GPGP_UI_H
@@ -23,134 +23,156 @@ typedef struct GpgpListCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  uint32_t shapes, glyphs, commands; /**< room for as many from the beginning. A list grows where it must, and keeps its
-                                          room when it is reset */
+  /** Initial capacity. A list grows when it must, and keeps its capacity when it is reset. */
+  uint32_t shapes, glyphs, commands;
 } GpgpListCreateInfo;
 #define GPGP_LIST_CREATE_INFO_INIT GPGP_INIT(GpgpListCreateInfo, GPGP_STRUCTURE_LIST_CREATE_INFO)
 
-/** Makes an empty list. Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_HOST_MEMORY.
- *  @threads context @lifetime call */
+/** Makes an empty list.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_HOST_MEMORY. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateList(GpgpContext context, const GpgpListCreateInfo* info, GpgpList* list);
 
-/** NULL is ignored. Records that show it are not affected. @threads context */
+/** Destroys a list. Recordings that already show it are not affected. NULL is ignored. @threads context */
 GPGP_API void GPGP_CALL gpgpDestroyList(GpgpList list);
 
-/** Empties the list and its stack. Not beside records and hit tests that show it. @threads handle */
+/** Empties the list and its state stack. Must not run at the same time as a recording or hit test that shows the list.
+ *  @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpResetList(GpgpList list);
 
-/** Pushes in each other, of all kinds; of these, GPGP_MAX_CLIP_DEPTH clips and GPGP_MAX_OPACITY_DEPTH groups, with
- *  those of a drawing that is added. After each other there may be any number; what a record takes of them is in
- *  GpgpCanvasCreateInfo's budgets. */
+/** Maximum nesting depth of the state stack: transforms, clips, opacities and groups together. At most
+ *  GPGP_MAX_CLIP_DEPTH of them may be clips, and at most GPGP_MAX_OPACITY_DEPTH groups, counting the groups of
+ *  drawings that are added inside. The number of states one after another is limited only by GpgpCanvasCreateInfo's
+ *  budgets. */
 enum { GPGP_MAX_LIST_DEPTH = 64 };
 
-/** What is added from here on lies in a space of its own, which this map takes to the space so far: x' = t0 x + t2 y +
- *  t4, y' = t1 x + t3 y + t5, and, where perspective (3 numbers) is not NULL, both divided by w = p0 x + p1 y + p2 as
- *  in GpgpCanvasItem. Moves and even scales cost nothing: they are applied to what is added, which must lie within
- *  +-1e7 then, too. Each other change of transform counts for maxDrawings.
- *  Errors: INVALID_ARGUMENT (a number is not finite; too deep). @threads handle @lifetime call */
+/** Pushes a transform: everything added until the matching gpgpPopState lies in a new space, which the transform maps
+ *  to the current space. x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5. If perspective (3 numbers) is not NULL, both
+ *  are divided by w = p0 x + p1 y + p2, as in GpgpCanvasItem.
+ *
+ *  Translations and uniform scales are free: they are applied to whatever is added, which must then lie within +-1e7
+ *  too. Any other change of transform counts against maxDrawings.
+ *  Errors: INVALID_ARGUMENT (a number is not finite; nested too deep). @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushTransform(GpgpList list, const float* transform, const float* perspective);
 
-/** What is added from here on shows only inside of the box (left, top, right, bottom, in the current space, within
- *  +-1e7 before and after the moves and even scales pushed around it), and of those around it. Round corners, if radii
- *  is not NULL: as GpgpListShape's. Where box and canvas are parallel (the transforms move, scale, mirror or turn by
- *  quarters) and corners are not round, a scissor that costs next to nothing; else (turned, skewed, in perspective) the
- *  clip goes with its box, counts as a shape (maxShapes, maxPaths) and costs the pixels on its edge more. Either way
- *  edges are smooth, sample by sample, as those of any path.
- *  Errors: INVALID_ARGUMENT (not a number, beyond 1e7, right below left; too deep). @threads handle @lifetime call */
+/** Pushes a clip: everything added until the matching gpgpPopState shows only inside the box, and inside the clips
+ *  around it. box is left, top, right, bottom in the current space, within +-1e7. It must also lie within +-1e7 after
+ *  the translations and uniform scales that were pushed around it. radii rounds the corners as GpgpListShape::radii
+ *  do; NULL: no rounding.
+ *
+ *  A clip is a scissor if its corners are not rounded and the box is parallel to the canvas: the transforms only move,
+ *  scale, mirror or rotate by quarter turns. A scissor costs next to nothing. Any other clip is a path: it counts as a
+ *  shape (maxShapes, maxPaths), and pixels on its edge cost more. Both kinds have smooth edges, sample by sample, like
+ *  the edges of a path.
+ *  Errors: INVALID_ARGUMENT (not a number, beyond 1e7, right below left; nested too deep).
+ *  @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushClip(GpgpList list, const float* box, const float* radii);
 
-/** Multiplies the alpha of each thing that is added from here on, one by one, of drawings each path: what overlaps
- *  shows through.
- *  Errors: INVALID_ARGUMENT (not 0 to 1; too deep). @threads handle */
+/** Pushes an opacity, which multiplies the alpha of each thing added until the matching gpgpPopState. It applies to
+ *  each thing separately, and to each path of a drawing separately, so lower things show through where they overlap.
+ *  Errors: INVALID_ARGUMENT (not 0 to 1; nested too deep). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList list, float opacity);
 
-/** What is added from here on is one thing: it fades as a whole, by this opacity times those pushed around it (and the
- *  item's), and where parts of it overlap the lower ones do not shine through. Counts for maxDrawings; costs the pixels
- *  that it covers more where it is neither opaque nor hidden. Errors: INVALID_ARGUMENT (not 0 to 1; too deep).
- *  @threads handle */
+/** Pushes a group: everything added until the matching gpgpPopState fades as a whole. Where its parts overlap, the
+ *  lower ones do not show through. The group's opacity is multiplied by the opacities pushed around it, and by the
+ *  item's.
+ *
+ *  A group counts against maxDrawings. If it is neither opaque nor fully transparent, the pixels it covers cost more.
+ *  Errors: INVALID_ARGUMENT (not 0 to 1; nested too deep). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushGroup(GpgpList list, float opacity);
 
-/** Ends what the last gpgpPush... began that has not ended. A list that is shown has as many of these as of those.
- *  Errors: INVALID_ARGUMENT (none is left). @threads handle */
+/** Ends the state that the last unmatched gpgpPush... began. Every push must be popped before the list is shown.
+ *  Errors: INVALID_ARGUMENT (nothing is pushed). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPopState(GpgpList list);
 
-/** The id of what hit tests pass over, such as decoration on top of a button. Drawings need not be hitTestable then. */
+/** ID of entries that hit tests ignore, such as decoration on top of a button. Drawings with this ID need not be
+ *  hitTestable. */
 #define GPGP_ID_NOT_HIT UINT64_MAX
 
 typedef int32_t GpgpListShapeKind;
 enum {
   GPGP_LIST_RECTANGLE = 0,
-  GPGP_LIST_ELLIPSE = 1, /**< that fills the box */
+  GPGP_LIST_ELLIPSE = 1, /**< fills the box */
   GPGP_LIST_LINE = 2
 };
 
+/** How an image fills the space between its borders, along one axis. */
 typedef int32_t GpgpListTile;
 enum {
   GPGP_TILE_STRETCH = 0, /**< once, stretched */
-  GPGP_TILE_REPEAT = 1,  /**< from left or top on, the last one cut off */
-  GPGP_TILE_ROUND = 2    /**< a whole number of times, at least once, stretched or shrunk so that they fit */
+  GPGP_TILE_REPEAT = 1,  /**< repeated from left or top; the last repetition is cut off */
+  GPGP_TILE_ROUND = 2    /**< repeated a whole number of times, at least once, and scaled to fit */
 };
 
-/** What of an image a shape shows, and where its edges go: all borders 0: evenly over the box, else nine-slice. */
+/** Which part of an image a shape shows, and how. With borders the image is a nine-slice. Without borders the source
+ *  is stretched over the box, or repeated as a pattern (tiles). */
 typedef struct GpgpListImage {
-  uint32_t image;         /**< in GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES */
-  float source[4];        /**< left, top, right, bottom in texture coordinates (0 to 1 over the image), within +-1e6 */
-  float sourceBorders[4]; /**< left, top, right, bottom: how far from the source's sides its borders end, texture
-                               coordinates, 0 to its extent */
-  float borders[4];       /**< the same for the box; where two do not find room, both shrink. Corners keep this size,
-                               sides stretch or repeat along, the middle both ways */
-  GpgpListTile tiles[2];  /**< what lies between the borders, across and down */
-  float tileSize[2]; /**< how far one repetition reaches, units of the box; 0: as the borders are scaled, which then
-                          may not be 0. Not used where it is stretched */
+  /** Index into GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES. */
+  uint32_t image;
+  float source[4]; /**< left, top, right, bottom in texture coordinates (0 to 1 across the image), within +-1e6 */
+  /** Widths of the source's left, top, right and bottom borders, in texture coordinates. Opposite borders must fit
+   *  into the source together. */
+  float sourceBorders[4];
+  /** Widths of the box's left, top, right and bottom borders. If two opposite borders do not fit, both shrink. Corners
+   *  keep this size, sides stretch or repeat along their edge, and the middle does so along both axes. */
+  float borders[4];
+  GpgpListTile tiles[2]; /**< how the space between the borders is filled, across and down */
+  /** Length of one repetition, across and down, in units of the box. 0: scaled as the borders are, which then must not
+   *  be 0. Ignored where the image is stretched. */
+  float tileSize[2];
 } GpgpListImage;
 
-/** A rectangle, ellipse or line. Coordinates, radii and width within +-1e7 in the current space, and after the moves
- *  and even scales pushed. */
+/** A rectangle, ellipse or line. Coordinates, radii and width lie within +-1e7, in the current space and after the
+ *  translations and uniform scales that are pushed. */
 typedef struct GpgpListShape {
   GpgpListShapeKind kind;
-  float box[4];   /**< left, top, right, bottom; a line: x, y of its begin and of its end */
-  float radii[4]; /**< rectangle: of the corners top left, top right, bottom right, bottom left; where two do not find
-                       room on a side, all shrink */
-  float width;    /**< a line's; else 0: filled, above: only a border of this width inside the edge */
-  GpgpCap cap;    /**< a line's ends */
-  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1; multiplies image and gradient */
+  float box[4]; /**< left, top, right, bottom; for a line: x, y of its start, then x, y of its end */
+  /** Rectangles only: radii of the top left, top right, bottom right and bottom left corner. If two radii do not fit
+   *  on a side, all four shrink by the same factor. */
+  float radii[4];
+  /** Lines: the line's width, above 0. Rectangles and ellipses: 0 fills the shape; otherwise only a border of this
+   *  width inside the edge is painted. A border that leaves no inside fills the shape. */
+  float width;
+  GpgpCap cap;                  /**< lines only: both ends */
+  float color[4];               /**< linear RGB, 0 to 10000; straight alpha, 0 to 1; multiplies image and gradient */
   const GpgpGradient* gradient; /**< NULL: none */
-  const GpgpListImage* image;   /**< NULL: none; not for lines, without a gradient */
-  uint64_t id;                  /**< the engine's, for gpgpHitTest; or GPGP_ID_NOT_HIT */
+  const GpgpListImage* image;   /**< NULL: none; not for lines, and not together with a gradient */
+  uint64_t id;                  /**< chosen by the engine, returned by gpgpHitTest; or GPGP_ID_NOT_HIT */
 } GpgpListShape;
 
-/** Paints shapes on top of what is in the list. A filled shape with a border is two. Errors, after which none is added:
- *  INVALID_ARGUMENT (shape in the message), UNSUPPORTED (2^32 of them), OUT_OF_HOST_MEMORY.
- *  @threads handle @lifetime call */
+/** Paints shapes on top of what is in the list. A filled shape with a border is two shapes.
+ *  Errors: INVALID_ARGUMENT (the message names the shape), UNSUPPORTED (2^32 shapes), OUT_OF_HOST_MEMORY. After an
+ *  error no shape has been added. @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddShapes(GpgpList list, const GpgpListShape* shapes, uint32_t count);
 
-/** Paints glyphs on top of what is in the list, in the current space.
- *  Errors: INVALID_ARGUMENT, INVALID_HANDLE, OUT_OF_HOST_MEMORY. @threads handle @lifetime call; glyph set: it need not
- *  outlive the list, but records that show it */
+/** Paints glyphs on top of what is in the list, in the current space. The list does not keep the glyph set alive: it
+ *  must exist whenever a recording or hit test shows the list.
+ *  Errors: INVALID_ARGUMENT, INVALID_HANDLE, OUT_OF_HOST_MEMORY. @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddText(GpgpList list, GpgpAsset glyphSet, const GpgpGlyphInstance* glyphs,
                                           uint32_t count, uint64_t id);
 
-/** Paints a drawing on top of what is in the list. firstImage counts from the item's.
- *  Errors: INVALID_ARGUMENT, INVALID_HANDLE, OUT_OF_HOST_MEMORY. @threads handle @lifetime call; drawing: as
- *  gpgpAddText's glyph set */
+/** Paints a drawing on top of what is in the list. firstImage is added to the item's. The list does not keep the
+ *  drawing alive: it must exist whenever a recording or hit test shows the list.
+ *  Errors: INVALID_ARGUMENT, INVALID_HANDLE, OUT_OF_HOST_MEMORY. @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddDrawing(GpgpList list, GpgpAsset drawing, uint32_t firstImage, uint64_t id);
 
 /* ---------------------------------------------------------------- panels in the world */
 
 /** A plane in the world that a drawing, text or list lies on. */
 typedef struct GpgpPanel {
-  float corner[3]; /**< where its 0, 0 lies, world space */
-  float across[3]; /**< from there to its 1, 0: how long and which way a unit along x is */
-  float down[3];   /**< likewise along y */
+  float corner[3]; /**< where the panel's (0, 0) lies, world space */
+  float across[3]; /**< from (0, 0) to (1, 0), world space: direction and length of one unit along x */
+  float down[3];   /**< from (0, 0) to (0, 1), world space: direction and length of one unit along y */
 } GpgpPanel;
 
-/** How a camera sees a panel. Writes transform, perspective and scissor of the item, so that it shows in the viewport
- *  (x, y, width, height: the part of the canvas that is this camera's), and, where clip is not NULL, a matrix for
- *  GpgpCanvasDrawInfo::clip, or secondClip: the viewport goes over the whole target, each pixel at the panel's depth,
- *  so that a depth test puts the panel behind and before the scene as it should be. viewProjection: world to clip
- *  space, column-major; any depth range.
- *  Errors: INVALID_ARGUMENT (NULL, no size, a number that is not finite, given or written). @threads any
- *  @lifetime call */
+/** Computes how a camera sees a panel. Writes transform, perspective and scissor of the item, so that the item shows
+ *  inside the viewport. viewport is x, y, width, height in canvas pixels: the part of the canvas that belongs to this
+ *  camera. viewProjection maps world space to clip space and is column-major; any depth range will do.
+ *
+ *  If clip is not NULL, it receives a matrix for GpgpCanvasDrawInfo::clip or secondClip. The matrix maps the viewport
+ *  to the whole target and gives each pixel the panel's depth there. A depth test then hides the parts of the panel
+ *  that lie behind the scene.
+ *  Errors: INVALID_ARGUMENT (NULL, an empty viewport, or a number, given or computed, that is not finite).
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPlacePanel(const GpgpPanel* panel, const float* viewProjection,
                                              const uint32_t* viewport, GpgpCanvasItem* item, float* clip);
 
@@ -159,9 +181,9 @@ GPGP_API GpgpResult GPGP_CALL gpgpPlacePanel(const GpgpPanel* panel, const float
 typedef struct GpgpHitTestInfo {
   GpgpStructureType sType;
   const void* pNext;
-  const GpgpCanvasItem* items; /**< as a record takes them, the first at the bottom */
+  const GpgpCanvasItem* items; /**< the items of a recording, the first at the bottom */
   uint32_t itemCount;
-  float x, y; /**< canvas pixels; the middle of the first one is 0.5, 0.5 */
+  float x, y; /**< the point in canvas pixels; the centre of the first pixel is (0.5, 0.5) */
 } GpgpHitTestInfo;
 #define GPGP_HIT_TEST_INFO_INIT GPGP_INIT(GpgpHitTestInfo, GPGP_STRUCTURE_HIT_TEST_INFO)
 
@@ -169,20 +191,20 @@ typedef struct GpgpHitTestInfo {
 
 /** What lies under a point. */
 typedef struct GpgpHit {
-  uint32_t item;  /**< GPGP_HIT_NONE: nothing */
-  uint32_t entry; /**< of a list: which of the shapes, texts and drawings added, counted together; else 0 */
-  uint32_t glyph; /**< of a text: which instance; else 0 */
-  uint32_t path;  /**< of a drawing or glyph; else 0 */
-  uint64_t id;    /**< of a list's entry */
-  float x, y;     /**< the point in the space of the drawing, of the text, or in which the list's entry was added */
+  uint32_t item;  /**< index of the item; GPGP_HIT_NONE: nothing was hit, and all other fields are 0 */
+  uint32_t entry; /**< lists: index among the shapes, texts and drawings added to the list; otherwise 0 */
+  uint32_t glyph; /**< texts: index of the glyph instance; otherwise 0 */
+  uint32_t path;  /**< drawings and glyphs: index of the path; otherwise 0 */
+  uint64_t id;    /**< lists: the entry's ID; otherwise 0 */
+  float x, y;     /**< the point in drawing or text space, or in the space where the list's entry was added */
 } GpgpHit;
 
-/** The topmost path or shape whose inside holds the point, under the transforms of items and lists, within their clips.
- *  Colours, gradients, opacity and what an image shows do not count: what is painted with alpha 0 is hit as well.
- *  Drawings and glyphs are asked by the curves that are drawn, without chords and samples.
+/** Finds the topmost path or shape whose inside contains the point. The transforms, clips and scissors of items and
+ *  lists apply. Colour, gradient, opacity and image contents do not count: something painted with alpha 0 is hit as
+ *  well. Drawings and glyphs are tested against their exact curves, not against flattened segments or samples.
  *  Errors: INVALID_ARGUMENT (a drawing that is neither hitTestable nor editable, a glyph that was evicted, a list with
- *  pushes that are not popped), INVALID_HANDLE. Not beside gpgpAddGlyphs of a set, or changes of a list, that is shown.
- *  @threads any @lifetime call */
+ *  pushes that are not popped), INVALID_HANDLE. Must not run at the same time as gpgpAddGlyphs on a set that is shown,
+ *  or as changes to a list that is shown. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpHitTest(GpgpContext context, const GpgpHitTestInfo* info, GpgpHit* hit);
 
 #ifdef __cplusplus

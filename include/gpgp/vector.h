@@ -1,21 +1,22 @@
-/* gpgp vector: paths, SVG and fonts, rasterised on the GPU by chords of their outlines.
+/* gpgp vector: paths, SVG and text, rasterised on the GPU from the flattened segments of their outlines.
  *
- *   drawing (asset)    paths converted to CPatches (disjoint regions between curves) and uploaded as the outlines of
- *                      these; resolution-independent: chords are made for each record, within 1/32 of a pixel
- *   glyph set (asset)  many small drawings under the engine's keys, to which more are added; what text is drawn with
- *   canvas (recorder)    rasterises drawings and text; sized by budgets
- *   canvas history        keeps one rasterised canvas, to be drawn inside the engine's render pass
- *   list               shapes, images, text and drawings that the engine adds every frame (ui.h)
+ *   drawing (asset)     Paths, converted to CPatches (disjoint regions between curves) and uploaded as the outlines of
+ *                       these regions. Independent of resolution: each recording flattens curves to within 1/32 pixel.
+ *   glyph set (asset)   Many small drawings under keys that the engine chooses. Glyphs can be added at any time.
+ *   canvas (recorder)   Rasterises drawings, text and lists. Its budgets set its size.
+ *   canvas history      Keeps one rasterised canvas, to be drawn inside the engine's render pass.
+ *   list                Shapes, images, text and drawings that the engine adds every frame (ui.h).
  *
- *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing          baked, or
- *   GpgpPath[] -> gpgpCreateDrawing                                made live, or
- *   drawing + GpgpPathEdit[] -> gpgpCreateDrawing                  edited
- *   gpgpCreateGlyphSet, GpgpGlyph[] -> gpgpAddGlyphs               text, live, or
- *   gpgpCompileGlyphs (libgpgp_compiler) -> blob -> gpgpCreateGlyphSet     text, baked
- *   -> gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's pass]
+ * From input to pixels:
+ *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing            a baked drawing
+ *   GpgpPath[] -> gpgpCreateDrawing                                           a live drawing
+ *   drawing + GpgpPathEdit[] -> gpgpCreateDrawing                             an edited drawing
+ *   gpgpCreateGlyphSet, GpgpGlyph[] -> gpgpAddGlyphs                          live text
+ *   gpgpCompileGlyphs (libgpgp_compiler) -> blob -> gpgpCreateGlyphSet        baked text
+ *   then gpgpRecordUpload -> gpgpRecordPrepareCanvas [-> gpgpRecordDrawCanvas inside the engine's render pass]
  *
- * Colours above 1 are brighter than white: targets and attachments of float formats show them, others show white. Where
- * colours mix as sRGB encodes them, its curve goes on.
+ * Colour components above 1 are brighter than white. Targets and attachments of float formats keep them, other formats
+ * clamp them to white. Where colours are mixed as sRGB encodes them, the sRGB curve is extended beyond 1.
  */
 #ifndef GPGP_VECTOR_H
 #define GPGP_VECTOR_H
@@ -26,75 +27,92 @@ extern "C" {
 
 /* ---------------------------------------------------------------- paths */
 
+/** One step of a path. Each verb takes points from GpgpPath::points. */
 typedef uint8_t GpgpPathVerb;
 enum {
-  GPGP_PATH_MOVE = 0,  /**< 1 point; starts a contour, an open one is closed by a line */
-  GPGP_PATH_LINE = 1,  /**< 1 point */
+  GPGP_PATH_MOVE = 0,  /**< 1 point: begins a contour. When filled, an open contour is closed by a line. */
+  GPGP_PATH_LINE = 1,  /**< 1 point: end */
   GPGP_PATH_QUAD = 2,  /**< 2 points: control, end */
   GPGP_PATH_CUBIC = 3, /**< 3 points: control, control, end */
   GPGP_PATH_CLOSE = 4, /**< 0 points */
-  GPGP_PATH_ARC = 5    /**< 3 points: radii (x, y); turn of the x axis in degrees, GPGP_ARC_... flags; end. SVG's
-                          elliptical arc: radii that are too small grow, a radius of 0 makes it a line */
+  /** SVG's elliptical arc. 3 points: (radius x, radius y), (rotation of the x axis in degrees, GPGP_ARC_... flags),
+   *  end. Radii that are too small to reach the end grow until they do. A radius of 0 makes the arc a line. */
+  GPGP_PATH_ARC = 5
 };
 enum {
-  GPGP_ARC_LARGE = 1, /**< the longer of the two ways round */
-  GPGP_ARC_SWEEP = 2  /**< the way on which angles grow (clockwise where y points down) */
+  GPGP_ARC_LARGE = 1, /**< Takes the longer of the two ways round. */
+  GPGP_ARC_SWEEP = 2  /**< Takes the way along which angles grow: clockwise, as y points down. */
 };
 
+/** Which winding numbers are inside a filled path. */
 typedef int32_t GpgpFillRule;
 enum { GPGP_FILL_NON_ZERO = 0, GPGP_FILL_EVEN_ODD = 1 };
 
 typedef int32_t GpgpGradientKind;
 enum {
   GPGP_GRADIENT_LINEAR = 0, /**< along the line from `start` to `end` */
-  GPGP_GRADIENT_RADIAL = 1 /**< from the circle (start, startRadius) to the circle (end, endRadius), and on beyond both,
-                              growing or shrinking evenly: where several of these circles pass, the one furthest on
-                              paints; where none does, or the two are equal or both points, nothing is painted */
+  /** Between the circles (start, startRadius) and (end, endRadius), as in HTML's canvas. The circle moves and changes
+   *  its radius evenly from one to the other, and on beyond both. Where several of these circles pass through a point,
+   *  the one furthest along paints it. Nothing is painted where no circle passes, where both circles are equal, or
+   *  where both are points. */
+  GPGP_GRADIENT_RADIAL = 1
 };
 
-typedef int32_t GpgpSpread; /**< what is painted beyond the first and last stop */
-enum { GPGP_SPREAD_PAD = 0, GPGP_SPREAD_REPEAT = 1, GPGP_SPREAD_REFLECT = 2 };
+/** What a gradient paints before its first stop and after its last one. */
+typedef int32_t GpgpSpread;
+enum {
+  GPGP_SPREAD_PAD = 0,    /**< the colour of the nearest stop */
+  GPGP_SPREAD_REPEAT = 1, /**< the gradient again, from its start */
+  GPGP_SPREAD_REFLECT = 2 /**< the gradient again, alternately backwards and forwards */
+};
 
 typedef struct GpgpGradientStop {
-  float offset;   /**< 0 to 1; one below its predecessor's counts as equal to it */
-  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1 */
+  float offset;   /**< 0 to 1. An offset below the previous stop's counts as equal to it. */
+  float color[4]; /**< linear RGB, 0 to 10000; straight alpha, 0 to 1 */
 } GpgpGradientStop;
 
 typedef struct GpgpGradient {
   GpgpGradientKind kind;
   GpgpSpread spread;
-  float transform[6]; /**< gradient space to drawing: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
-  float start[2], end[2];
-  float startRadius, endRadius; /**< radial only; not negative */
+  float transform[6];           /**< gradient space to drawing space: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
+  float start[2], end[2];       /**< gradient space */
+  float startRadius, endRadius; /**< gradient space; radial gradients only; not negative */
   const GpgpGradientStop* stops;
-  uint32_t stopCount;       /**< 1 to 65536 */
-  VkBool32 interpolateSrgb; /**< mix stops as sRGB encodes them, as SVG does; else linearly */
+  uint32_t stopCount; /**< 1 to 65536 */
+  /** VK_TRUE: stops are mixed as sRGB encodes them, as SVG does. VK_FALSE: stops are mixed in linear light. */
+  VkBool32 interpolateSrgb;
 } GpgpGradient;
 
-/** A texture of the engine's as paint. GpgpCanvasImage says what it holds, and its sampler what lies beyond 0 to 1. */
+/** Paints a path with one of the engine's images. GpgpCanvasImage says what the image holds. Its sampler's address
+ *  modes decide what lies beyond texture coordinates 0 to 1. */
 typedef struct GpgpImagePaint {
-  uint32_t image;     /**< in GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES */
-  float transform[6]; /**< texture coordinates (0 to 1 over the image) to drawing: x' = t0 u + t2 v + t4,
-                           y' = t1 u + t3 v + t5 */
+  /** Index into GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES. */
+  uint32_t image;
+  /** Texture coordinates (0 to 1 across the image) to drawing space: x' = t0 u + t2 v + t4, y' = t1 u + t3 v + t5. */
+  float transform[6];
 } GpgpImagePaint;
 
+/** How an open stroke or a dash ends. */
 typedef int32_t GpgpCap;
 enum { GPGP_CAP_BUTT = 0, GPGP_CAP_ROUND = 1, GPGP_CAP_SQUARE = 2 };
 
+/** How a stroke goes round a corner. */
 typedef int32_t GpgpJoin;
 enum { GPGP_JOIN_MITER = 0, GPGP_JOIN_ROUND = 1, GPGP_JOIN_BEVEL = 2 };
 
-/** A line along a path, as SVG has it. Its outline is off by less than a twentieth of a pixel at `scale`. */
+/** A line along a path, with SVG's rules. Its outline is accurate to a twentieth of a pixel up to `scale`. */
 typedef struct GpgpStroke {
-  float width; /**< drawing units, not negative; 0: a hairline, a pixel wide at `scale` */
+  float width; /**< drawing units, not negative; 0: a hairline, one pixel wide at `scale` */
   GpgpCap cap;
   GpgpJoin join;
-  float miterLimit;    /**< miters longer than this many widths become bevels; at least 1, or 0: 4 */
-  const float* dashes; /**< lengths on, off, on, ...; an odd number of them counts twice; NULL: none. A path of more
-                            than 65536 dashes is UNSUPPORTED; SVG's are drawn without, and a message says so */
+  /** Longest miter, in stroke widths; at least 1, or 0 for the default of 4. Longer miters become bevels. */
+  float miterLimit;
+  /** Lengths of dashes and gaps in turn, in drawing units. An odd number of lengths is used twice over. NULL: a solid
+   *  line. A path of more than 65536 dashes is UNSUPPORTED. In an SVG such a path is drawn solid, with a message. */
+  const float* dashes;
   uint32_t dashCount;
-  float dashOffset; /**< where in the pattern the path begins */
-  float scale;      /**< the largest at which the drawing is shown, pixels per drawing unit; 0: 1 */
+  float dashOffset; /**< where in the dash pattern the path begins, drawing units */
+  float scale;      /**< largest scale at which the drawing is shown, pixels per drawing unit; 0: 1 */
 } GpgpStroke;
 
 /** A filled or stroked path in drawing space. */
@@ -104,86 +122,99 @@ typedef struct GpgpPath {
   const float* points; /**< x, y pairs, as many as the verbs need; finite, within +-1e7 */
   uint32_t pointCount;
   GpgpFillRule fillRule;
-  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1; with a gradient, only alpha counts */
-  const GpgpGradient* gradient; /**< NULL: the colour */
-  const GpgpStroke* stroke;     /**< NULL: filled; otherwise the stroke is painted instead, and fillRule is not used */
-  const GpgpImagePaint* image;  /**< NULL: none; else instead of the colour, whose alpha counts; without a gradient */
-  float scale; /**< the largest at which the drawing is shown, pixels per drawing unit; 0: 1. There arcs are off by less
-                    than 1e-4 of a pixel */
-  uint32_t group; /**< 0: none; else 1 + its index in GpgpDrawingCreateInfo::groups */
+  /** Linear RGB, 0 to 10000; straight alpha, 0 to 1. With a gradient or an image, only alpha is used. */
+  float color[4];
+  const GpgpGradient* gradient; /**< NULL: the path is painted in its colour. */
+  const GpgpStroke* stroke;    /**< NULL: the path is filled. Otherwise only its stroke is painted, without fillRule. */
+  const GpgpImagePaint* image; /**< NULL: no image. Not together with a gradient. */
+  /** Largest scale at which the drawing is shown, pixels per drawing unit; 0: 1. Arcs are accurate to 1e-4 of a pixel
+   *  up to this scale. */
+  float scale;
+  uint32_t group; /**< 0: none; otherwise 1 + the index of its group in GpgpDrawingCreateInfo::groups */
 } GpgpPath;
 
 enum {
-  GPGP_MAX_OPACITY_DEPTH = 4, /**< groups less than opaque in each other */
-  GPGP_MAX_CLIP_DEPTH = 16    /**< groups with a clip in each other */
+  GPGP_MAX_OPACITY_DEPTH = 4, /**< Maximum nesting depth of groups that are less than opaque. */
+  GPGP_MAX_CLIP_DEPTH = 16    /**< Maximum nesting depth of groups with a clip. */
 };
 
-/** Paths that are clipped or faded as one. The paths of a group less than opaque, those of groups inside included,
- *  follow each other without others between them. */
+/** Paths that are clipped or faded together. The paths of a group that is less than opaque must follow one another in
+ *  the drawing. Paths of groups inside it count as its own; no other path may lie between them. */
 typedef struct GpgpPathGroup {
-  uint32_t parent; /**< 0: none; else 1 + the index of an earlier group, which holds this one */
-  float opacity;   /**< 0 to 1, of the group as a whole: where its paths overlap, the lower ones do not shine through */
-  const GpgpPath* clip; /**< what is shown of the group: the union of these, which paint nothing; NULL: all */
-  uint32_t clipCount;   /**< 0 with a clip: nothing is shown */
+  uint32_t parent; /**< 0: none; otherwise 1 + the index of an earlier group, which contains this one */
+  /** 0 to 1. Applies to the group as a whole: where its paths overlap, the lower ones do not show through. */
+  float opacity;
+  /** The group shows only inside the union of these paths, which themselves paint nothing. NULL: no clip. */
+  const GpgpPath* clip;
+  uint32_t clipCount; /**< 0 while `clip` is not NULL: the group is hidden. */
 } GpgpPathGroup;
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
 
-/** What an import held and took. */
+/** What gpgpCompileSvg found in an SVG, and how long it took. */
 typedef struct GpgpSvgReport {
   uint32_t paths, curves, patches;
-  double parseMilliseconds;   /**< bytes to paths */
-  double convertMilliseconds; /**< strokes to fills, and paths to CPatches */
+  double parseMilliseconds;   /**< from bytes to paths */
+  double convertMilliseconds; /**< from paths to CPatches, strokes included */
 } GpgpSvgReport;
 
-/** Receives a stage of the conversion as a picture for people: SVG text, not terminated. @lifetime call */
+/** Receives a stage of the conversion as SVG text, to be looked at. The text is not null-terminated. @lifetime call */
 typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const char* svg, size_t size);
 
-/** Receives an image that an <image> element holds in a data: URI, as it was before base64 (PNG, JPEG, ...). It gives
- *  the size in pixels and returns VK_TRUE: the drawing then paints with its image number `index`
- *  (GpgpImagePaint::image), and the engine hands a texture of it to records. VK_FALSE: it cannot decode that, and the
- *  element is reported as unsupported. An image that elements share comes once. @lifetime call */
+/** Receives an image that an <image> element embeds as a data: URI. The bytes are the decoded base64: a PNG, JPEG or
+ *  other file. An image that several elements share is passed once.
+ *
+ *  To accept the image, the callback writes its size in pixels and returns VK_TRUE. The drawing then paints with image
+ *  number `index` (GpgpImagePaint::image), and the engine passes a texture of it to recordings. If the callback
+ *  returns VK_FALSE, the element is reported as unsupported. @lifetime call */
 typedef VkBool32(GPGP_CALL* GpgpSvgImageFn)(void* userData, uint32_t index, const void* data, size_t size,
                                             uint32_t* width, uint32_t* height);
 
 typedef struct GpgpSvgSource {
   GpgpStructureType sType;
   const void* pNext;
-  const char* name; /**< file name for messages */
-  const void* data; /**< SVG or gzip-compressed SVG (.svgz) */
+  const char* name; /**< file name, for messages */
+  const void* data; /**< an SVG file, plain or gzip-compressed (.svgz) */
   size_t size;
-  GpgpMessageFn messageFn; /**< errors, and as warnings what is unsupported (code UNSUPPORTED) or not valid
-                                (INVALID_DATA), with the element. The label is the place, "name:line:column",
-                                or of a style sheet's file, or only the name */
+  /** Receives errors. Receives as warnings what is unsupported (code UNSUPPORTED) and what is invalid (INVALID_DATA),
+   *  with the element's name. The message's label is the place, "file:line:column". The file may be a style sheet.
+   *  Where no line is known, the label is the name alone. */
+  GpgpMessageFn messageFn;
   void* messageUserData;
-  const GpgpJobSystem* jobSystem; /**< optional: converts paths side by side */
-  GpgpSvgReport* report;          /**< optional, written where the import succeeds */
-  GpgpStageFn stageFn;            /**< optional: "paths", "pieces", "crossings", "patches", in that order */
+  const GpgpJobSystem* jobSystem; /**< optional: converts paths in parallel */
+  GpgpSvgReport* report;          /**< optional: written when the import succeeds */
+  GpgpStageFn stageFn;            /**< optional: called for "paths", "pieces", "crossings", "patches", in this order */
   void* stageUserData;
-  GpgpSvgImageFn imageFn; /**< optional: takes embedded images, at most GPGP_MAX_IMAGES; NULL: they are unsupported */
+  /** Optional: accepts embedded images, at most GPGP_MAX_IMAGES. NULL: embedded images are reported as unsupported. */
+  GpgpSvgImageFn imageFn;
   void* imageUserData;
-  float scale; /**< the largest at which the drawing is shown, pixels per pixel of its page; 0: 1. There strokes are off
-                    by less than a twentieth of a pixel and arcs by less than 1e-4, and strokes that do not scale have
-                    their width */
-  const GpgpFileSystem* fileSystem; /**< optional: reads style sheets that are files of their own. Paths are relative to
-                                         the SVG's folder and lead to files in it or below, never to a host; at most 64
-                                         files, of 16 MiB together. NULL: such style sheets are named as unsupported */
+  /** Largest scale at which the drawing is shown, pixels per pixel of its page; 0: 1. Up to this scale, strokes are
+   *  accurate to a twentieth of a pixel and arcs to 1e-4. Non-scaling strokes have their stated width at this scale. */
+  float scale;
+  /** Optional: reads external style sheets. Paths are relative to the SVG's folder. They may lead only to files in
+   *  that folder or below it, never to a host. At most 64 files of 16 MiB together are read. NULL: external style
+   *  sheets are reported as unsupported. */
+  const GpgpFileSystem* fileSystem;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 
-/** Converts an SVG to a baked drawing (.gpgpv). In libgpgp_compiler; free the blob with gpgpFreeBlob.
- *  Errors: INVALID_DATA (not SVG), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+/** Converts an SVG to a baked drawing (.gpgpv). In libgpgp_compiler. Free the blob with gpgpFreeBlob.
+ *  Errors: INVALID_DATA (not an SVG), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBlob* blob);
 
 /** A small drawing under a key. */
 typedef struct GpgpGlyph {
-  uint64_t key;               /**< the engine's: font, glyph, stroke, ... `gpgp bake FONT` gives each glyph's number,
-                                 and 2^32 more to its outline */
-  const GpgpPath* paths;      /**< in em units, +Y down, 0, 0 on the baseline where the glyph begins; painted in order;
-                                 filled or stroked, in colours and gradients: without images and groups */
-  uint32_t pathCount;         /**< 0: a blank */
-  const VkBool32* foreground; /**< of each path: takes the text's RGB instead of its own, and of alpha both; NULL: all
-                                 do */
+  /** Chosen by the engine; stands for font, glyph, stroke and so on. `gpgp bake FONT` uses the glyph's number in the
+   *  font as its key, and that number + 2^32 for its stroked outline. */
+  uint64_t key;
+  /** In em, +Y down; (0, 0) lies on the baseline where the glyph begins. Painted in order. Filled or stroked, in
+   *  colours and gradients. Images and groups are not allowed. */
+  const GpgpPath* paths;
+  uint32_t pathCount; /**< 0: a blank */
+  /** One for each path. VK_TRUE: the path takes its RGB from the text's colour, and its alpha is multiplied by the
+   *  text's alpha. VK_FALSE: the path keeps its own RGB; its alpha is multiplied all the same. NULL: VK_TRUE for all
+   *  paths. */
+  const VkBool32* foreground;
 } GpgpGlyph;
 
 typedef struct GpgpGlyphSource {
@@ -191,69 +222,75 @@ typedef struct GpgpGlyphSource {
   const void* pNext;
   const char* name; /**< for messages */
   const GpgpGlyph* glyphs;
-  uint32_t glyphCount; /**< no key twice */
+  uint32_t glyphCount; /**< Keys must differ. */
   GpgpMessageFn messageFn;
   void* messageUserData;
-  const GpgpJobSystem* jobSystem; /**< optional: converts paths side by side */
+  const GpgpJobSystem* jobSystem; /**< optional: converts paths in parallel */
 } GpgpGlyphSource;
 #define GPGP_GLYPH_SOURCE_INIT GPGP_INIT(GpgpGlyphSource, GPGP_STRUCTURE_GLYPH_SOURCE)
 
-/** Converts glyphs to their baked form (.gpgpf), from which glyph sets are made. In libgpgp_compiler; free the blob
- *  with gpgpFreeBlob. Errors: INVALID_ARGUMENT (glyph and path in the message), INVALID_STRUCT, UNSUPPORTED,
- *  OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+/** Converts glyphs to their baked form (.gpgpf), from which gpgpCreateGlyphSet makes a glyph set. In libgpgp_compiler.
+ *  Free the blob with gpgpFreeBlob.
+ *  Errors: INVALID_ARGUMENT (the message names glyph and path), INVALID_STRUCT, UNSUPPORTED, OUT_OF_HOST_MEMORY.
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGlyphs(const GpgpGlyphSource* source, GpgpBlob* blob);
 
 /* ---------------------------------------------------------------- drawing */
 
-/** A path in place of another. */
+/** Replaces one path of a drawing. */
 typedef struct GpgpPathEdit {
-  uint32_t index; /**< of the path in its drawing, counted as the paths were when it was made */
-  GpgpPath path;  /**< belongs to the group that the other belonged to, whatever it says */
+  uint32_t index; /**< index of the replaced path in the array from which the original drawing was made */
+  GpgpPath path;  /**< Stays in the replaced path's group; GpgpPath::group is ignored. */
 } GpgpPathEdit;
 
 typedef struct GpgpDrawingCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  /* exactly one of data, filePath, paths and base: */
-  const void* data; /**< a baked drawing, anywhere (in a mapped file, say); read during the call only */
+  /* Give exactly one of data, filePath, paths and base. */
+  const void* data; /**< A baked drawing in any memory, for example a mapped file. Read during the call only. */
   size_t size;
-  const char* filePath;  /**< of a baked drawing, read through the file callbacks */
+  const char* filePath;  /**< a baked drawing's file, read through the context's file callbacks */
   const GpgpPath* paths; /**< painted in order, the first at the bottom */
   uint32_t pathCount;
-  const GpgpPathGroup* groups; /**< that paths belong to; only with paths */
+  const GpgpPathGroup* groups; /**< the groups that `paths` refer to; only with paths */
   uint32_t groupCount;
-  /** An editable drawing of the same context, which stays as it is and may be destroyed: the new one is like it but for
-   *  its edits, and only these are converted. The result equals that of making the drawing from all paths. */
+  /** An editable drawing of the same context. The new drawing equals it except for the edits, and only the edited
+   *  paths are converted. The result equals a drawing made from all paths. The base does not change and may be
+   *  destroyed. */
   GpgpAsset base;
-  const GpgpPathEdit* edits; /**< only with base; of two with the same index the later counts */
+  const GpgpPathEdit* edits; /**< only with base; of two edits with the same index the later one counts */
   uint32_t editCount;
-  VkBool32 editable;    /**< can be a base: keeps its tables in host memory, about twice its size on the device */
-  VkBool32 hitTestable; /**< gpgpHitTest finds its paths: keeps its outlines in host memory, about its size on the
-                             device; editable ones have them */
+  /** VK_TRUE: the drawing can be a base. Keeps its tables in host memory, about twice its size on the device. */
+  VkBool32 editable;
+  /** VK_TRUE: gpgpHitTest can find the drawing's paths. Keeps its outlines in host memory, about its size on the
+   *  device. Editable drawings can be hit-tested too, at no further cost. */
+  VkBool32 hitTestable;
 } GpgpDrawingCreateInfo;
 #define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 
-/** Checks a baked drawing, or converts paths to CPatches, and queues the result for upload. For paths that change from
- *  frame to frame, make each frame's drawing from the last one's, draw the last one until the new one is resident, and
- *  destroy it then.
- *  Errors: INVALID_DATA, INVALID_ARGUMENT (path index in the message), INVALID_HANDLE, IO, UNSUPPORTED (more patches
- *  than a drawing holds, 2^29; more than 2^21 points or 65536 dashes in a stroke; a path that crosses itself millions
- * of times), OUT_OF_..._MEMORY.
- *  @threads context @lifetime call */
+/** Makes a drawing from baked data, from paths or from another drawing, and queues it for upload. Baked data is
+ *  checked; paths are converted to CPatches.
+ *
+ *  For paths that change from frame to frame, make each frame's drawing from the previous one. Draw the previous one
+ *  until the new one is resident, then destroy it.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT (the message gives the path's index), INVALID_HANDLE, IO, OUT_OF_..._MEMORY,
+ *  UNSUPPORTED (more than 2^29 patches in the drawing; more than 2^21 points or 65536 dashes in a stroke; a path that
+ *  crosses itself millions of times). @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
                                                 GpgpAsset* drawing);
 
 typedef struct GpgpDrawingInfo {
   GpgpStructureType sType;
   void* pNext;
-  float bounds[4];   /**< of the ink: left, top, right, bottom, drawing space */
-  float viewport[4]; /**< of the page: x, y, width, height; equals the bounds where the source has none */
+  float bounds[4]; /**< box of everything that is painted: left, top, right, bottom, in drawing space */
+  /** The page: x, y, width, height, in drawing space. Equals the bounds if the source has no page. */
+  float viewport[4];
   uint32_t paths, curves, patches;
 } GpgpDrawingInfo;
 #define GPGP_DRAWING_INFO_INIT GPGP_INIT(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO)
 
-/** Sizes and counts of a drawing, before and after it is resident. @threads any */
+/** Returns a drawing's bounds and counts. The drawing need not be resident. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset drawing, GpgpDrawingInfo* info);
 
 /* ---------------------------------------------------------------- glyph set */
@@ -262,39 +299,45 @@ typedef struct GpgpGlyphSetCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  const void* data; /**< optional: baked glyphs that are there from the beginning, anywhere; read during the call
-                         only; or */
+  /** Optional: baked glyphs to begin with, in any memory. Read during the call only. Not together with filePath. */
+  const void* data;
   size_t size;
-  const char* filePath;  /**< of baked glyphs, read through the file callbacks */
-  uint32_t maxGlyphs;    /**< at a time, at most 262144; 0: as many as are baked, or 4096 */
-  VkDeviceSize maxBytes; /**< of their outlines, on the device and once more on the host: 64 a segment, of which a curve
-                              is two or three, and 48 a path; for a gradient 64, and 32 a stop, and for a glyph that has
-                              any 48; 0: as many as baked ones take, or 8 MiB */
+  const char* filePath; /**< optional: the file of baked glyphs, read through the context's file callbacks */
+  uint32_t maxGlyphs;   /**< glyphs held at one time, at most 262144; 0: the number of baked glyphs, or 4096 */
+  /** Bytes for outlines, allocated on the device and once more on the host; 0: what the baked glyphs take, or 8 MiB. A
+   *  segment takes 64 bytes (a curve has two or three) and a path 48. A gradient takes 64 bytes, each of its stops 32.
+   *  A glyph with any gradient takes 48 more. */
+  VkDeviceSize maxBytes;
 } GpgpGlyphSetCreateInfo;
 #define GPGP_GLYPH_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO)
 
-/** Makes a set of glyphs, empty or with baked ones, in one device buffer of the budget's size. Glyphs are there once,
- *  not once a size: canvases draw them at any size, turned and in perspective.
- *  Errors: INVALID_DATA, INVALID_ARGUMENT (a budget that the baked glyphs exceed: the message says what they need),
- *  INVALID_STRUCT, UNSUPPORTED (a budget beyond what the device binds), IO, OUT_OF_..._MEMORY.
+/** Makes a glyph set, empty or with baked glyphs, in one device buffer of the budget's size. A glyph is stored once,
+ *  not once for each size: canvases draw it at any size, rotated and in perspective.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT (the baked glyphs exceed a budget; the message says what they need),
+ *  INVALID_STRUCT, UNSUPPORTED (a budget beyond what the device can bind), IO, OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext context, const GpgpGlyphSetCreateInfo* info,
                                                  GpgpAsset* glyphSet);
 
-enum { GPGP_GLYPH_NONE = 0 }; /**< the index of no glyph: drawn as nothing */
+enum { GPGP_GLYPH_NONE = 0 }; /**< The index of no glyph. Instances with this index draw nothing. */
 
-/** Converts glyphs whose keys are new and queues them for upload; only they are uploaded. Glyphs that have been used
- *  longest ago make room for them: used is what a record drew, and what was added or found. What an unfinished frame
- *  uses stays. BUDGET_EXCEEDED: some did not find room, their indices are GPGP_GLYPH_NONE; gpgpGetGlyphSetInfo says
- *  what all would have needed. Errors, after which nothing is added: INVALID_ARGUMENT (glyph and path in the message),
- *  UNSUPPORTED, OUT_OF_HOST_MEMORY. Not beside records that draw the set.
+/** Converts the glyphs whose keys are not in the set yet, and queues only these for upload. indices receives the index
+ *  of every glyph that was passed.
+ *
+ *  If there is no room, the least recently used glyphs are evicted. A glyph is used when a recording draws it, and
+ *  when it is added or found. Glyphs that an unfinished frame uses are never evicted.
+ *  BUDGET_EXCEEDED: some glyphs did not fit, and their indices are GPGP_GLYPH_NONE. gpgpGetGlyphSetInfo returns what
+ *  all of them would have needed.
+ *  Errors: INVALID_ARGUMENT (the message names glyph and path), UNSUPPORTED, OUT_OF_HOST_MEMORY. After an error
+ *  nothing has been added. Must not run at the same time as a recording that draws the set.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddGlyphs(GpgpAsset glyphSet, const GpgpGlyph* glyphs, uint32_t count,
                                             uint32_t* indices);
 
-/** The indices of glyphs by their keys, GPGP_GLYPH_NONE where there is none. What is found stays at least until the
- *  frame is safe; as long as GpgpGlyphSetInfo::evicted does not change, all indices stay as they are.
- *  INCOMPLETE: not all are there. @threads context @lifetime call */
+/** Looks up glyphs by key. indices receives GPGP_GLYPH_NONE for a key that is not in the set. A glyph that was found
+ *  stays at least until the current frame is safe. All indices stay valid while GpgpGlyphSetInfo::evicted does not
+ *  change.
+ *  INCOMPLETE: some keys are not in the set. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpFindGlyphs(GpgpAsset glyphSet, const uint64_t* keys, uint32_t count,
                                              uint32_t* indices);
 
@@ -303,58 +346,68 @@ typedef struct GpgpGlyphSetInfo {
   void* pNext;
   uint32_t glyphs, maxGlyphs;
   VkDeviceSize bytes, maxBytes;
-  uint64_t evicted; /**< glyphs so far, and with them their indices */
-  /** For all that the last gpgpAddGlyphs was given beside what unfinished frames use. Bytes lie in a row for each
-   *  glyph, so that somewhat more may be needed. */
+  uint64_t evicted; /**< Glyphs evicted so far. When it changes, some indices have become invalid. */
+  /** Budgets that the last gpgpAddGlyphs needed: all glyphs passed to it, plus those that unfinished frames use. The
+   *  bytes of a glyph must be contiguous, so somewhat more than bytesNeeded may be required. */
   uint32_t glyphsNeeded;
   VkDeviceSize bytesNeeded;
 } GpgpGlyphSetInfo;
 #define GPGP_GLYPH_SET_INFO_INIT GPGP_INIT(GpgpGlyphSetInfo, GPGP_STRUCTURE_GLYPH_SET_INFO)
 
-/** What is in the set and what its budgets are. @threads context */
+/** Returns what a glyph set holds and what its budgets are. @threads context */
 GPGP_API GpgpResult GPGP_CALL gpgpGetGlyphSetInfo(GpgpAsset glyphSet, GpgpGlyphSetInfo* info);
 
 /* ---------------------------------------------------------------- canvas */
 
-/** Bits: what a canvas's records write. */
+/** Bits: what the recordings of a canvas write. */
 typedef uint64_t GpgpCanvasTargets;
-/** A view, alone or with a target. */
+/** A canvas history, alone or beside a target. */
 #define GPGP_CANVAS_TARGET_HISTORY ((GpgpCanvasTargets)1)
 /** A target in R8G8B8A8_UNORM. */
 #define GPGP_CANVAS_TARGET_RGBA8 ((GpgpCanvasTargets)2)
 /** A target in R16G16B16A16_SFLOAT. */
 #define GPGP_CANVAS_TARGET_RGBA16F ((GpgpCanvasTargets)4)
 
+/** Budgets of a canvas. Its scratch memory follows from them. When a budget is exceeded, the first thing in painting
+ *  order that does not fit and everything painted after it are left out. The report says what everything would have
+ *  needed. */
 typedef struct GpgpCanvasCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpRecorderCreateInfo base;
-  uint32_t maxWidth, maxHeight; /**< of a canvas in pixels; 0: 2048 x 2048 */
-  /** Paths in one record; 48 bytes each, 8 more on hardware, and a bit for each square of 128 pixels; 0: 262144, at
-   *  most 4194304. A drawing counts GpgpDrawingInfo::paths for each item that shows it, a glyph its own each
-   *  time it is placed, a shape of a list, and a clip that is not a scissor, 1. How many curves and patches they
-   *  have is not limited: these are in the drawing's own buffer. */
+  uint32_t maxWidth, maxHeight; /**< largest canvas in pixels, at most 16384 x 16384; 0: 2048 */
+  /** Paths in one recording, at most 4194304; 0: 262144. An item that shows a drawing counts GpgpDrawingInfo::paths. A
+   *  placed glyph counts its own paths each time. A shape of a list counts 1, and so does a clip that is not a
+   *  scissor. The numbers of curves and patches are not limited, as these lie in the drawing's own buffer. A path
+   *  takes 48 bytes, 8 more on hardware devices, and one bit for each square of 128 pixels of the canvas. */
   uint32_t maxPaths;
-  uint32_t maxTileEntries; /**< tiles of 8 pixels that a path's boundary passes through, summed over paths; 256 bytes
-                                each, with their lists 480; 0: 131072 */
-  uint32_t maxTileWords; /**< for each path that meets the canvas, the rows of tiles of its box times how many times 32
-                              tiles its box is wide, begun ones whole; 16 bytes each; 0: maxTileEntries, or 65536 where
-                              that is less */
-  uint32_t maxDrawings;  /**< items in one record, and what lists have of drawings, clips, and changes of transform
-                              and clip (ui.h); 0: 64, at most 65536. They may show at most 8 different drawings and
-                              glyph sets */
-  uint32_t maxGlyphs;    /**< of all texts in one record, blanks not counted; 176 bytes each, 48 of them once more for
-                              every record in flight; 0: 1024, at most 1048576 */
-  uint32_t maxShapes;    /**< of all lists in one record, their clips that are not scissors included (ui.h); as many
-                              of them with an image or gradient, and twice as many stops; 592 bytes each, 240 of them
-                              once more for every record in flight; 0: 1024, at most 1048576 */
-  GpgpCanvasTargets targets; /**< what records will write; 0: any. Pipelines are made for these alone: with one, half
-                                as many, in half the time */
+  /** Tiles of 8 x 8 pixels that a path's edges pass through, summed over all paths, at most 2^28; 0: 131072. An entry
+   *  takes 256 bytes, or 480 with its lists. */
+  uint32_t maxTileEntries;
+  /** Words of tile flags, at most 2^28; 0: maxTileEntries, or 65536 if that is more. A word covers 32 tiles of one row
+   *  of tiles. A path that meets the canvas takes, for each row of its box, the box's width in tiles divided by 32,
+   *  rounded up. A word takes 16 bytes. */
+  uint32_t maxTileWords;
+  /** Items in one recording, at most 65536; 0: 64. Lists (ui.h) count each of their drawings and clips, and each
+   *  change of transform, clip or group. The number of groups has the same limit. All items together may show at most
+   *  8 different drawings and glyph sets. */
+  uint32_t maxDrawings;
+  /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. A glyph takes 176 bytes; 48
+   *  of them are allocated once more for each recording in flight. */
+  uint32_t maxGlyphs;
+  /** Shapes of all lists (ui.h) in one recording, clips that are not scissors included, at most 1048576; 0: 1024.
+   *  Their gradients may have twice as many stops in all; a nine-slice or tiled image counts as 2 stops. A shape takes
+   *  592 bytes; 240 of them are allocated once more for each recording in flight. */
+  uint32_t maxShapes;
+  /** What recordings will write; 0: anything. Pipelines are made only for these: for a single target half as many, in
+   *  half the time. */
+  GpgpCanvasTargets targets;
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
-/** Makes a recorder that rasterises drawings, with scratch for the budgets. Prewarm it before the first record.
- *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device), OUT_OF_..._MEMORY.
+/** Makes a canvas: the recorder that rasterises drawings, text and lists, with scratch memory for its budgets. Prewarm
+ *  it (gpgpPrewarm) before the first recording.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (budgets beyond the device's limits), OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext context, const GpgpCanvasCreateInfo* info,
                                                GpgpRecorder* canvas);
@@ -363,122 +416,143 @@ typedef struct GpgpCanvasHistoryCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  uint32_t width, height; /**< pixels; 8 bytes each are allocated */
+  uint32_t width, height; /**< pixels, 1 to 16384 each; a pixel takes 8 bytes of device memory */
 } GpgpCanvasHistoryCreateInfo;
 #define GPGP_CANVAS_HISTORY_CREATE_INFO_INIT                                                                           \
   GPGP_INIT(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO)
 
-/** Makes a place where a canvas keeps its result between gpgpRecordPrepareCanvas and gpgpRecordDrawCanvas. It is ready
- *  once a gpgpRecordUpload has cleared it.
- *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_..._MEMORY. @threads context @lifetime call */
+/** Makes a canvas history: device memory that keeps a rasterised canvas between gpgpRecordPrepareCanvas and
+ *  gpgpRecordDrawCanvas. It can be used once a gpgpRecordUpload has cleared it.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (larger than the device can bind), OUT_OF_..._MEMORY.
+ *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext context, const GpgpCanvasHistoryCreateInfo* info,
                                                       GpgpHistory* history);
 
-/** A glyph in a text. */
+/** A glyph placed in a text. */
 typedef struct GpgpGlyphInstance {
-  uint32_t glyph; /**< its index in the glyph set */
-  float x, y;     /**< where its 0, 0 lies, units of the text, within +-1e7 */
-  float size;     /**< units of the text per em, 0 to 1e7 */
-  float color[4]; /**< linear RGB, 0 to 10000, straight alpha, 0 to 1, of the paths that take the text's colour,
-                       gradients aside; alpha multiplies every path's */
+  uint32_t glyph; /**< index in the glyph set */
+  float x, y;     /**< where the glyph's (0, 0) lies, in text space, within +-1e7 */
+  float size;     /**< length of an em in text space, 0 to 1e7 */
+  /** Linear RGB, 0 to 10000, for the paths that take the text's colour and have no gradient. Straight alpha, 0 to 1,
+   *  multiplies the alpha of every path. */
+  float color[4];
 } GpgpGlyphInstance;
 
 /** Shapes, images, text and drawings in painting order (ui.h). */
 typedef struct GpgpList_T* GpgpList;
 
+/** One thing that a canvas shows: a drawing, a text or a list. */
 typedef struct GpgpCanvasItem {
-  GpgpAsset drawing;  /**< NULL: a text, of the glyphs below, or a list */
-  float transform[6]; /**< drawing to pixel: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
-  float opacity;      /**< 0 to 1, multiplies each path's alpha */
-  /** The third row of a projective map: w = p0 x + p1 y + p2, and the pixel is (x', y') / w. All 0: affine, w = 1.
-   *  What lies at w <= 0 is behind the eye and not drawn. For a panel in a 3D world with corner o and sides u, v (units
-   *  of the drawing), let o', u', v' be o (as a point), u and v (as directions) times the view-projection matrix, so
-   *  that clip space has x_c = u'.x x + v'.x y + o'.x, likewise y_c and w_c; then t = (W (u'.x + u'.w) / 2,
-   *  H (u'.y + u'.w) / 2, the same of v', the same of o') and p = (u'.w, v'.w, o'.w) for a canvas of W x H pixels. */
+  GpgpAsset drawing; /**< NULL for a text or a list */
+  /** Drawing, text or list space to canvas pixels: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5. */
+  float transform[6];
+  float opacity; /**< 0 to 1; multiplies the alpha of each path, so overlapping paths show through one another */
+  /** Third row of a projective map: w = p0 x + p1 y + p2, and the pixel is (x', y') / w. All 0: affine, w = 1. Points
+   *  with w <= 0 lie behind the eye and are not drawn. gpgpPlacePanel (ui.h) computes this map for a panel in a 3D
+   *  world.
+   *
+   *  By hand: let the panel have corner o and sides u, v, each as long as one unit of the drawing. Multiply o (as a
+   *  point), u and v (as directions) by the view-projection matrix to get o', u', v'. For a canvas of W x H pixels:
+   *  - clip space: x_c = u'.x x + v'.x y + o'.x, and likewise y_c and w_c
+   *  - transform: W (u'.x + u'.w) / 2, H (u'.y + u'.w) / 2, then the same of v', then the same of o'
+   *  - perspective: u'.w, v'.w, o'.w */
   float perspective[3];
-  uint32_t firstImage; /**< where in GpgpCanvasInfo::images those of the drawing begin */
-  GpgpAsset glyphSet;  /**< of a text; what is `drawing` above is the text then, whose units the instances have */
+  uint32_t firstImage; /**< index in GpgpCanvasInfo::images of the first image of the drawing or list */
+  /** Glyph set for text items; NULL otherwise. `transform` then maps text space to pixels. */
+  GpgpAsset glyphSet;
   const GpgpGlyphInstance* glyphs; /**< in painting order, the first at the bottom */
   uint32_t glyphCount;
-  float scissor[4]; /**< left, top, right, bottom in canvas pixels, whatever the transform: nothing shows outside;
-                         all 0: none */
-  GpgpList list;    /**< instead of drawing and glyphSet: all that is in it, with its own transforms before this one */
+  /** Left, top, right, bottom in canvas pixels, whatever the transform. The item shows only inside. All 0: none. */
+  float scissor[4];
+  /** List items show everything in the list. The list's own transforms apply before the item's. NULL otherwise. */
+  GpgpList list;
 } GpgpCanvasItem;
 
 #ifdef __cplusplus
 } /* extern "C" */
+/** See GPGP_CANVAS_ITEM_INIT. */
 inline GpgpCanvasItem gpgpInitCanvasItem() {
   GpgpCanvasItem item = GpgpCanvasItem();
   item.transform[0] = item.transform[3] = item.opacity = 1.0f;
   return item;
 }
 extern "C" {
-/** An opaque item without a transform; a zeroed one is transparent and has no extent. */
+/** An opaque item whose transform is the identity. A zeroed item draws nothing: it is transparent and has no extent. */
 #define GPGP_CANVAS_ITEM_INIT gpgpInitCanvasItem()
 #else
-/** An opaque item without a transform; a zeroed one is transparent and has no extent. */
+/** An opaque item whose transform is the identity. A zeroed item draws nothing: it is transparent and has no extent. */
 #define GPGP_CANVAS_ITEM_INIT                                                                                          \
   { .transform = {1, 0, 0, 1, 0, 0}, .opacity = 1 }
 #endif
 
-enum { GPGP_MAX_IMAGES = 8 }; /**< that a record's items paint with */
+enum { GPGP_MAX_IMAGES = 8 }; /**< Images that the items of one recording can paint with. */
 
-typedef int32_t GpgpImageEncoding; /**< what an image's colours are where shaders sample it */
+/** How an image encodes colours, as a shader receives them from the sampler. */
+typedef int32_t GpgpImageEncoding;
 enum {
-  GPGP_IMAGE_LINEAR = 0, /**< linear light: sRGB formats, which decode themselves, and float formats as a rule */
-  GPGP_IMAGE_SRGB = 1    /**< as sRGB encodes light: the texels of a picture file in a UNORM format */
+  GPGP_IMAGE_LINEAR = 0, /**< linear light: sRGB formats, which the sampler decodes, and most float formats */
+  GPGP_IMAGE_SRGB = 1    /**< sRGB encoding: the texels of a picture file in a UNORM format */
 };
 
-typedef int32_t GpgpImageFilter; /**< how an image is filtered between its texels */
+/** How an image is filtered between its texels. */
+typedef int32_t GpgpImageFilter;
 enum { GPGP_IMAGE_FILTER_LINEAR = 0, GPGP_IMAGE_FILTER_NEAREST = 1 };
 
-/** An image that items paint with. The engine has made its contents visible to sampling in compute shaders.
+/** An image of the engine's that items paint with. The engine makes its contents visible to sampling in compute
+ *  shaders.
  *
- *  Colours between texels are mixed premultiplied, and as the canvas mixes colours: in linear light, or with blendSrgb
- *  as sRGB encodes them. An image whose texels are just that (premultiplied, its encoding the canvas's) is sampled
- *  once a pixel, and the sampler decides everything. Of any other image the texels are converted one by one: four are
- *  sampled a pixel, eight between two levels. The sampler then decides what lies beyond the edges; anisotropy and a
- *  bias of levels do not count, and all levels of the view are used. */
+ *  Between texels, colours are mixed premultiplied and in the canvas's encoding: linear light, or sRGB with blendSrgb.
+ *  If the texels are premultiplied and in the canvas's encoding already, the shader samples once a pixel and the
+ *  sampler decides everything. Otherwise the shader converts texels one by one: 4 samples a pixel, or 8 between two
+ *  mip levels. The sampler then decides only what lies beyond the edges. Its anisotropy and mip bias are ignored, and
+ *  all mip levels of the image view are used. */
 typedef struct GpgpCanvasImage {
-  VkImageView view; /**< 2D, a float or normalised format that the sampler may filter */
+  VkImageView view; /**< 2D, in a float or normalised format that the sampler may filter */
   VkSampler sampler;
-  VkImageLayout layout;       /**< it is in: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
-  VkBool32 premultiplied;     /**< its colours have been multiplied by its alpha, as they are encoded (an sRGB format's
-                                   as they are decoded); also true of opaque images */
-  GpgpImageEncoding encoding; /**< of its colours, where they are sampled */
-  GpgpImageFilter filter;     /**< NEAREST: the sampler filters so as well, and each pixel takes what it gives */
+  VkImageLayout layout; /**< current layout: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
+  /** VK_TRUE: colours are multiplied by alpha, in the encoding that the shader receives. Also true of opaque images. */
+  VkBool32 premultiplied;
+  GpgpImageEncoding encoding;
+  /** NEAREST: each pixel takes what the sampler returns. The sampler's own filters must then be NEAREST as well. */
+  GpgpImageFilter filter;
 } GpgpCanvasImage;
 
 typedef struct GpgpCanvasInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpRecordingInfo base;
-  uint32_t width, height;      /**< pixels */
+  uint32_t width, height;      /**< size of the canvas in pixels, at most maxWidth x maxHeight */
   const GpgpCanvasItem* items; /**< in painting order, the first at the bottom */
-  uint32_t itemCount;
-  uint32_t samples;    /**< 1, 4, 8 or 16 per pixel; 0: 16 */
-  float background[4]; /**< linear, premultiplied */
-  GpgpHistory history; /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height */
-  GpgpImage target;    /**< optional (view NULL: none): STORAGE usage, R8G8B8A8_UNORM or R16G16B16A16_SFLOAT.
-                            Receives premultiplied linear colour */
-  VkBool32 encodeSrgb; /**< the target receives what sRGB encodes of the straight colour, times alpha, as PNG files and
-                            2D compositors mix it */
-  VkBool32 exactArea; /**< the first edge that a pixel meets, from the front, counts by its area instead of its samples:
-                           fewer steps where only one edge passes, still nothing shows through where two meet */
-  VkBool32 blendSrgb; /**< colours mix as sRGB encodes them, as SVG renderers do; background is then encoded too */
-  const GpgpCanvasImage* images; /**< that items paint with */
+  uint32_t itemCount;          /**< at most maxDrawings */
+  uint32_t samples;            /**< samples per pixel: 1, 4, 8 or 16; 0: 16 */
+  float background[4];         /**< premultiplied; linear, or sRGB-encoded with blendSrgb */
+  GpgpHistory history; /**< optional: keeps the result for gpgpRecordDrawCanvas; at least width x height pixels */
+  /** Optional (view NULL: none): receives the result as premultiplied linear colour. At least width x height pixels,
+   *  STORAGE usage, in R8G8B8A8_UNORM or R16G16B16A16_SFLOAT. */
+  GpgpImage target;
+  /** VK_TRUE: the target receives straight colour encoded as sRGB and then multiplied by alpha. PNG files and 2D
+   *  compositors expect this encoding. */
+  VkBool32 encodeSrgb;
+  /** VK_TRUE: in each pixel, the front-most path with an edge is weighted by its exact area instead of its samples.
+   *  This gives finer steps where only one edge passes. Where two edges meet, still nothing shows through. */
+  VkBool32 exactArea;
+  VkBool32 blendSrgb;            /**< VK_TRUE: colours are mixed as sRGB encodes them, as SVG renderers do. */
+  const GpgpCanvasImage* images; /**< the images that items paint with */
   uint32_t imageCount;           /**< at most GPGP_MAX_IMAGES */
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
-/** Rasterises the items into the view, the target, or both with the same pixels: what gpgpRecordDrawCanvas leaves of
- *  the view over 0 (transparent black) is within one unit of a half's last place of a target of the same format
- *  where that is R16G16B16A16_SFLOAT, and within 1/255 where it is R8G8B8A8_UNORM (the view holds halves, and image
- *  stores and attachments round in their own ways). An sRGB attachment encodes premultiplied colour: it is within
- *  1/255 of a target with encodeSrgb only where the canvas is opaque.
- *  NOT_READY: a drawing or a glyph that is drawn is not resident, or the canvas not prewarmed.
- *  @threads handle @lifetime call; image: frame @pass outside
- *  @state compute pipeline, compute descriptor set 0 (and 1 where items paint with images), push constants */
+/** Rasterises the items into the history, the target, or both.
+ *
+ *  Both receive the same pixels up to rounding: the history holds half floats, and image stores and attachments round
+ *  differently. gpgpRecordDrawCanvas over transparent black is compared with a target of the attachment's format. In
+ *  R16G16B16A16_SFLOAT they differ by at most one unit in the last place of a half, in R8G8B8A8_UNORM by at most
+ *  1/255. An sRGB attachment encodes premultiplied colour, so it is within 1/255 of a target with encodeSrgb only
+ *  where the canvas is opaque.
+ *  NOT_READY: a drawing or glyph that is shown is not resident, the history is not resident, or the canvas is not
+ *  prewarmed.
+ *  @threads handle @lifetime call; image: frame @pass outside @state compute pipeline, compute descriptor set 0 (and 1
+ *  where items paint with images), push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,
                                                       const GpgpFrame* frame, const GpgpCanvasInfo* info);
 
@@ -486,37 +560,40 @@ typedef struct GpgpCanvasDrawInfo {
   GpgpStructureType sType;
   const void* pNext;
   GpgpHistory history;
-  const GpgpTargetInfo* target; /**< equal to one of those given to gpgpPrewarm */
+  const GpgpTargetInfo* target; /**< equal to one of those that were passed to gpgpPrewarm */
   float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
-  uint32_t width, height;       /**< of the part of the canvas that is drawn, pixels */
-  uint32_t x;                   /**< column of the canvas at which the part begins; to clip it is 0 */
-  uint32_t secondX;             /**< of a multiview target: the same for view 1 */
-  const float* secondClip;      /**< of a multiview target: 16 numbers for view 1, as clip; NULL: the same */
+  uint32_t width, height;       /**< size of the part of the canvas that is drawn, pixels */
+  uint32_t x;                   /**< column of the canvas at which the part begins; `clip` sees this column as x = 0 */
+  uint32_t secondX;             /**< multiview targets only: `x` for view 1 */
+  const float* secondClip; /**< multiview targets only: 16 numbers, `clip` for view 1; NULL: `clip` for both views */
 } GpgpCanvasDrawInfo;
 #define GPGP_CANVAS_DRAW_INFO_INIT GPGP_INIT(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO)
 
-/** Draws what the last gpgpRecordPrepareCanvas into this view left, as a rectangle blended premultiplied
- *  (ONE, ONE_MINUS_SRC_ALPHA), without filtering at one canvas pixel per pixel. The engine has set viewport and
- *  scissor. Any number of times per prepare. Views 0 and 1 of a multiview target (GpgpTargetInfo::viewMask,
- *  GPGP_FEATURE_MULTIVIEW) may show different parts, so that one record holds both eyes. NOT_READY: nothing was
- *  prepared, or the target was not prewarmed.
- *  @threads handle @lifetime call @pass inside
- *  @state graphics pipeline, graphics descriptor set 0, push constants */
+/** Draws a canvas history as a rectangle, with premultiplied blending (ONE, ONE_MINUS_SRC_ALPHA). It shows the result
+ *  of the last gpgpRecordPrepareCanvas into this history, and can be drawn any number of times. At one canvas pixel
+ *  per pixel nothing is filtered. The engine sets viewport and scissor.
+ *
+ *  Views 0 and 1 of a multiview target (GpgpTargetInfo::viewMask, GPGP_FEATURE_MULTIVIEW) can show different parts of
+ *  the canvas, so one recording serves both eyes.
+ *  NOT_READY: nothing was prepared into the history, or the target was not prewarmed.
+ *  @threads handle @lifetime call @pass inside @state graphics pipeline, graphics descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,
                                                    const GpgpFrame* frame, const GpgpCanvasDrawInfo* info);
 
+/** What a recording of a canvas needed, beside the budgets that it was given. */
 typedef struct GpgpCanvasReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t paths;            /**< needed */
-  uint32_t pathsGiven;       /**< maxPaths */
-  uint32_t tileWords;        /**< needed by the paths that maxPaths and the other budgets left */
-  uint32_t tileWordsGiven;   /**< maxTileWords */
-  uint32_t tileEntries;      /**< needed by the paths that have tile words: where these did not suffice, a record with
-                                  as many as are needed may turn out to need more entries */
+  uint32_t paths;      /**< needed */
+  uint32_t pathsGiven; /**< maxPaths */
+  /** Needed by the paths that fit into maxPaths, maxGlyphs, maxShapes and maxDrawings. */
+  uint32_t tileWords;
+  uint32_t tileWordsGiven; /**< maxTileWords */
+  /** Needed by the paths that have tile words. If tile words were short, more may be needed later. */
+  uint32_t tileEntries;
   uint32_t tileEntriesGiven; /**< maxTileEntries */
-  uint32_t pathsDropped;     /**< whole paths, and of texts whole glyphs, left out where the budget did not suffice */
+  uint32_t pathsDropped;     /**< paths left out because a budget was short; text is left out by whole glyphs */
   uint32_t glyphs;           /**< needed */
   uint32_t glyphsGiven;      /**< maxGlyphs */
   uint32_t shapes;           /**< needed */
@@ -526,7 +603,8 @@ typedef struct GpgpCanvasReport {
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 
-/** The oldest report not yet taken. NOT_READY: none. @threads handle */
+/** Returns the oldest report that has not been taken yet.
+ *  NOT_READY: there is none. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpRecorder canvas, GpgpCanvasReport* report);
 
 #ifdef __cplusplus
