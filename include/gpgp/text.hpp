@@ -1,5 +1,5 @@
-/* gpgp text.hpp: C++17 wrapper of text.h, whose functions are in libgpgp_text. Core.hpp states the rules of the
- * wrapper.
+/* gpgp text.hpp: C++17 wrapper of text.h. The rules of the wrapper are in core.hpp.
+ * The functions are in libgpgp_text; only programs that call them link that library.
  */
 #ifndef GPGP_TEXT_HPP
 #define GPGP_TEXT_HPP

@@ -15,7 +15,8 @@ while read -r macro type enumerator; do
   grep -qF "GPGP_STRUCTURE_OF($type, $enumerator);" "$include"/gpgp/*.hpp ||
     { echo "FAILED: no C++ header knows $type" >&2; failed=yes; }
   grep -qF "GPGP_USE($type, $macro);" "$tests/structs.c" || { echo "FAILED: structs.c lacks $macro" >&2; failed=yes; }
-done < <(sed -nE 's/^#define (GPGP_[A-Z_]+_INIT) GPGP_INIT\((\w+), (\w+)\)$/\1 \2 \3/p' "$include"/gpgp/*.h)
+done < <(sed -E ':join; /\\$/ { N; s/ *\\\n */ /; b join }' "$include"/gpgp/*.h |
+  sed -nE 's/^#define (GPGP_[A-Z_]+_INIT) GPGP_INIT\((\w+), (\w+)\)$/\1 \2 \3/p')
 [[ $failed == no ]]
 
 awk -f "$tests/declarations.awk" "$include"/gpgp/*.h | awk -F'\t' -v contract="$docs/guide/integration_contract.md" \
