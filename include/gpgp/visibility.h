@@ -134,8 +134,9 @@ typedef struct GpgpVisibilityDraw {
   uint32_t origin;
 } GpgpVisibilityDraw;
 #define GPGP_DRAW_TWO_SIDED 1u /**< Back faces can be visible, too. */
-/** Front faces are those whose corners run clockwise on the screen. Without this flag they run counter-clockwise. An
- *  engine whose mirrored draws turn their faces inside out sets the flag for these draws. */
+/** Front faces are those whose corners run clockwise on the screen; without this flag, counter-clockwise. With it, a
+ *  mesh that is modelled counter-clockwise shows its back faces only. An engine whose mirrored draws turn their faces
+ *  inside out sets the flag for these draws. */
 #define GPGP_DRAW_CLOCKWISE 2u
 
 typedef int32_t GpgpSamplingMethod;
@@ -304,7 +305,7 @@ typedef struct GpgpVisibilityInfo {
   GpgpBuffer triangleNumbers;
   GpgpBuffer drawCountBuffer; /**< optional: uint32_t, the number of commands, or without commands of draws; STORAGE */
   uint32_t triangleCount;     /**< one more than the largest triangle number of all draws; at most 2^31 */
-  GpgpBuffer visibleBits;     /**< out: one bit per triangle, ceil(triangleCount / 32) words; overwritten */
+  GpgpBuffer visibleBits;     /**< out: one bit per triangle, ceil(triangleCount / 32) words; see accumulate */
   /** Out, optional: uint32_t per triangle, the number of samples that show it. Exact: pixel centres. Reference: at most
    *  2^32 - 1. With a resolution below 1: samples of the smaller picture. */
   GpgpBuffer pixelCounts;
