@@ -1,5 +1,5 @@
-// Compiled, never run, as C++17 and C++20: every member of gpgp.hpp, and that its handles are move-only and no larger
-// than the C handles.
+// Compiled, never run, as C++17 and C++20: every member of the headers that gpgp.hpp includes, and that its handles are
+// move-only and no larger than the C handles.
 #include <gpgp/gpgp.hpp>
 
 #include <type_traits>
@@ -115,16 +115,16 @@ GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffe
   if (!blob) return blob.code();
   auto drawing = gpgp::Drawing::create(context, gpgp::init<GpgpDrawingCreateInfo>());
   auto canvas = gpgp::Canvas::create(context, gpgp::init<GpgpCanvasCreateInfo>());
-  auto view = gpgp::CanvasHistory::create(context, gpgp::init<GpgpCanvasHistoryCreateInfo>());
-  if (!drawing || !canvas || !view || !drawing->info()) return drawing.code();
+  auto history = gpgp::CanvasHistory::create(context, gpgp::init<GpgpCanvasHistoryCreateInfo>());
+  if (!drawing || !canvas || !history || !drawing->info()) return drawing.code();
   const auto glyphs = gpgp::GlyphSet::create(context, gpgp::init<GpgpGlyphSetCreateInfo>());
   if (!glyphs) return glyphs.code();
   if (const GpgpResult code = useUi(context, *glyphs, *drawing)) return code;
   auto prepare = gpgp::init<GpgpCanvasInfo>();
-  prepare.view = *view;
+  prepare.history = *history;
   if (const GpgpResult code = canvas->recordPrepare(cmd, frame, prepare)) return code;
   auto draw = gpgp::init<GpgpCanvasDrawInfo>();
-  draw.history = *view;
+  draw.history = *history;
   if (const GpgpResult code = canvas->recordDraw(cmd, frame, draw)) return code;
   return canvas->report().code();
 }
@@ -154,14 +154,14 @@ GpgpResult useText() {
 GpgpResult useVisibility(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
   auto set = gpgp::GeometrySet::create(context, gpgp::init<GpgpGeometrySetCreateInfo>());
   auto recorder = gpgp::VisibilityRecorder::create(context, gpgp::init<GpgpVisibilityRecorderCreateInfo>());
-  auto view = gpgp::CameraHistory::create(context, gpgp::init<GpgpCameraHistoryCreateInfo>());
-  if (!set || !recorder || !view) return set.code();
+  auto history = gpgp::CameraHistory::create(context, gpgp::init<GpgpCameraHistoryCreateInfo>());
+  if (!set || !recorder || !history) return set.code();
   auto info = gpgp::init<GpgpVisibilityInfo>();
   info.geometrySet = *set;
-  info.history = *view;
+  info.history = *history;
   if (const GpgpResult code = recorder->recordPrepare(cmd, frame, info)) return code;
   const auto report = recorder->report();
-  gpgpDestroyHistory(view->release());
+  gpgpDestroyHistory(history->release());
   return report.name() ? report.code() : GPGP_SUCCESS;
 }
 } // namespace
