@@ -38,3 +38,8 @@ fi
 for picture in "$pictures"/*.png; do
   if [[ -f $picture ]]; then note "picture: $PWD/$picture"; fi
 done
+
+say "Next"
+note "build/release/mini_engine --help                       what else it shows"
+note "build/release/gpgp spawn samples/grammars/city.pga --axioms 16 --spacing 40 --image city.png"
+note "docs/guide/integrate_in_ten_minutes.md                 gpgp in your engine"

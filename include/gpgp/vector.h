@@ -575,7 +575,8 @@ typedef struct GpgpCanvasDrawInfo {
  *
  *  Views 0 and 1 of a multiview target (GpgpTargetInfo::viewMask, GPGP_FEATURE_MULTIVIEW) can show different parts of
  *  the canvas, so one recording serves both eyes.
- *  NOT_READY: nothing was prepared into the history, or the target was not prewarmed.
+ *  NOT_READY: nothing was prepared into the history, or gpgpPrewarm has not returned yet. INVALID_ARGUMENT: the target
+ *  equals none that was given to gpgpPrewarm.
  *  @threads handle @lifetime call @pass inside @state graphics pipeline, graphics descriptor set 0, push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,
                                                    const GpgpFrame* frame, const GpgpCanvasDrawInfo* info);

@@ -142,7 +142,7 @@ GpgpResult GPGP_CALL gpgpGetPipelineCacheData(GpgpContext handle, size_t* size, 
 // ---------------------------------------------------------------- objects of all kinds
 
 namespace {
-/// Any recorder, asset or view: the kind is in the handle's type, so only these ranges are accepted.
+/// Any recorder, asset or history: the kind is in the handle's type, so only these ranges are accepted.
 template <class T, class Handle>
 Result<T*> resolveAny(Call& call, Handle handle, Kind first, Kind last, const char* name) {
   core::Object* object = objectOf(handle, &call.context);
@@ -230,8 +230,8 @@ void GPGP_CALL gpgpDestroyAsset(GpgpAsset asset) {
 void GPGP_CALL gpgpDestroyRecorder(GpgpRecorder recorder) {
   destroy("gpgpDestroyRecorder", recorder, Kind::spawner, Kind::visibilityRecorder, "recorder");
 }
-void GPGP_CALL gpgpDestroyHistory(GpgpHistory view) {
-  destroy("gpgpDestroyHistory", view, Kind::canvasHistory, Kind::cameraHistory, "view");
+void GPGP_CALL gpgpDestroyHistory(GpgpHistory history) {
+  destroy("gpgpDestroyHistory", history, Kind::canvasHistory, Kind::cameraHistory, "history");
 }
 
 GpgpResult GPGP_CALL gpgpGetMemoryReport(GpgpContext handle, GpgpMemoryReport* report) {

@@ -178,12 +178,12 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
 }
 
 GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext handle, const GpgpCanvasHistoryCreateInfo* info,
-                                             GpgpHistory* view) {
+                                             GpgpHistory* history) {
   return guarded("gpgpCreateCanvasHistory", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO, "info"); !ok) return ok;
-    if (!view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "view is NULL");
+    if (!history) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "history is NULL");
     if (info->width == 0 || info->height == 0 || info->width > 16384 || info->height > 16384)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected 1 x 1 to 16384 x 16384",
                        info->width, info->height);
@@ -195,7 +195,7 @@ GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext handle, const GpgpCanva
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = CanvasHistory::create(**context, *info);
     if (!made) return made.error();
-    *view = adopt<GpgpHistory>(**context, std::move(*made));
+    *history = adopt<GpgpHistory>(**context, std::move(*made));
     return {};
   });
 }
@@ -212,11 +212,11 @@ GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder handle, VkCommandBuffe
     if (info->itemCount > (*canvas)->maxDrawings())
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "itemCount is %u; the canvas was made for %u (maxDrawings)",
                        info->itemCount, (*canvas)->maxDrawings());
-    CanvasHistory* view = nullptr;
+    CanvasHistory* history = nullptr;
     if (info->history) {
-      const auto resolved = resolve<CanvasHistory>(call, info->history, Kind::canvasHistory, "view", &context);
+      const auto resolved = resolve<CanvasHistory>(call, info->history, Kind::canvasHistory, "history", &context);
       if (!resolved) return resolved.error();
-      view = *resolved;
+      history = *resolved;
     }
     const std::span<ItemAsset> assets = (*canvas)->assets(info->itemCount);
     for (uint32_t i = 0; i < info->itemCount; ++i) {
@@ -229,8 +229,8 @@ GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder handle, VkCommandBuffe
     if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
     for (const ItemAsset& asset : assets)
       if (asset.drawing && !asset.drawing->resident()) return makeError(GPGP_NOT_READY, "a drawing is not resident");
-    if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
-    return (*canvas)->prepare(commandBuffer, *info, assets, view);
+    if (history && !history->resident()) return makeError(GPGP_NOT_READY, "history is not resident");
+    return (*canvas)->prepare(commandBuffer, *info, assets, history);
   });
 }
 
@@ -240,14 +240,15 @@ GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder handle, VkCommandBuffer c
     const auto canvas = resolve<Canvas>(call, handle, Kind::canvas, "canvas");
     if (!canvas) return canvas.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_DRAW_INFO, "info"); !ok) return ok;
-    const auto view = resolve<CanvasHistory>(call, info->history, Kind::canvasHistory, "view", &(*canvas)->context);
-    if (!view) return view.error();
+    const auto history =
+        resolve<CanvasHistory>(call, info->history, Kind::canvasHistory, "history", &(*canvas)->context);
+    if (!history) return history.error();
     if (auto ok = checkStruct(info->target, GPGP_STRUCTURE_TARGET_INFO, "target"); !ok) return ok;
     if (!allFinite(info->clip)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "clip holds a number that is not finite");
     const core::RecorderUse use(**canvas);
     if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
-    return (*canvas)->draw(commandBuffer, *info, **view);
+    return (*canvas)->draw(commandBuffer, *info, **history);
   });
 }
 

@@ -87,12 +87,12 @@ GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext handle, const Gpgp
 }
 
 GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext handle, const GpgpCameraHistoryCreateInfo* info,
-                                             GpgpHistory* view) {
+                                             GpgpHistory* history) {
   return guarded("gpgpCreateCameraHistory", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO, "info"); !ok) return ok;
-    if (!view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "view is NULL");
+    if (!history) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "history is NULL");
     if (info->maxTriangles > 1u << 31)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 2147483648", info->maxTriangles);
     const uint64_t bytes = (uint64_t(info->maxTriangles) + 31) / 32 * 4;
@@ -102,7 +102,7 @@ GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext handle, const GpgpCamer
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = CameraHistory::create(**context, *info);
     if (!made) return made.error();
-    *view = adopt<GpgpHistory>(**context, std::move(*made));
+    *history = adopt<GpgpHistory>(**context, std::move(*made));
     return {};
   });
 }
@@ -131,11 +131,11 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpRecorder handle, VkCommandB
     const core::Context& context = (*recorder)->context;
     const auto geometry = resolve<GeometrySet>(call, info->geometrySet, Kind::geometrySet, "geometrySet", &context);
     if (!geometry) return geometry.error();
-    CameraHistory* view = nullptr;
+    CameraHistory* history = nullptr;
     if (info->history) {
-      const auto resolved = resolve<CameraHistory>(call, info->history, Kind::cameraHistory, "view", &context);
+      const auto resolved = resolve<CameraHistory>(call, info->history, Kind::cameraHistory, "history", &context);
       if (!resolved) return resolved.error();
-      view = *resolved;
+      history = *resolved;
     }
     if (!allFinite(info->camera.viewProjection))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
@@ -150,8 +150,8 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpRecorder handle, VkCommandB
     if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**recorder, frame); !ok) return ok;
     if (!(*geometry)->resident()) return makeError(GPGP_NOT_READY, "geometrySet is not resident");
-    if (view && !view->resident()) return makeError(GPGP_NOT_READY, "view is not resident");
-    return (*recorder)->prepare(commandBuffer, *info, **geometry, view);
+    if (history && !history->resident()) return makeError(GPGP_NOT_READY, "history is not resident");
+    return (*recorder)->prepare(commandBuffer, *info, **geometry, history);
   });
 }
 

@@ -172,7 +172,7 @@ Result<uint32_t> Recorder::acquire() const {
   }
   if (inFrame >= context.maxRecordingsPerFrame || free == UINT32_MAX)
     return makeError(GPGP_ERROR_TOO_MANY_RECORDINGS,
-                     "the context was made for %u records per frame and recorder, and %u "
+                     "the context was made for %u recordings per frame and recorder, and %u "
                      "frames in flight",
                      context.maxRecordingsPerFrame, context.maxFramesInFlight);
   return free;

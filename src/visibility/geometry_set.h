@@ -1,4 +1,4 @@
-// Geometry sets and camera historys: the mesh table of an engine's buffers, and the bits that a camera's last record
+// Geometry sets and camera histories: the mesh table of an engine's buffers, and the bits that a camera's last record
 // saw.
 #pragma once
 #include "core/resident.h"

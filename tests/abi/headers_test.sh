@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Each C header alone, and all their structs, compile as C99, C11, C17, C++11, C++17 and C++20; gpgp.hpp as C++17 and
-# C++20; warnings are errors; with every compiler named.
+# Each C header alone, and all their structs, compile as C99, C11, C17, C++11, C++17 and C++20; the C++ headers, each
+# alone, as C++17 and C++20; warnings are errors; with every compiler named.
 #
 #   headers_test.sh INCLUDE_DIRS SOURCE_DIR CC:CXX...     INCLUDE_DIRS: separated by colons
 set -uo pipefail
@@ -30,7 +30,7 @@ for pair in "$@"; do
   for compiler in "$cc" "$cxx"; do
     command -v "$compiler" >/dev/null || { echo "no compiler $compiler" >&2; exit 1; }
   done
-  for header in core spawn spawn_builder text vector visibility gpgp; do
+  for header in core spawn spawn_builder text ui vector visibility gpgp; do
     echo "#include <gpgp/$header.h>" >"$scratch/$header.c"
     # Once more after all others, so that no header minds another before it.
     printf '#include <gpgp/gpgp.h>\n#include <gpgp/%s.h>\n' "$header" >>"$scratch/$header.c"
@@ -40,6 +40,10 @@ for pair in "$@"; do
   for standard in c99 c11 c17; do compile "$standard" c "$cc" "$sources/structs.c" structs; done
   for standard in c++11 c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/structs.c" structs; done
   for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/wrapper.cpp" gpgp/gpgp.hpp; done
+  for header in core spawn text ui vector visibility; do # each alone
+    echo "#include <gpgp/$header.hpp>" >"$scratch/$header.cpp"
+    for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$scratch/$header.cpp" "gpgp/$header.hpp"; done
+  done
 done
 echo "$checked compilations, $failed failed"
 [[ $checked -gt 0 && $failed -eq 0 ]]

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# The code of docs/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17 file;
-# and so does the C of docs/ui.md.
-# The links of README.md, of all pages beside that one and of the integrations' pages lead to files; docs/README.md lists
-# each page, and docs/integrations.md each integration's, which has the sections that they all have.
+# The code of docs/guide/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17
+# file; and so does the C of the guides of spawn, vector and user interfaces.
+# The links of README.md, of all pages below docs/ and of the integrations' pages lead to files; docs/README.md lists
+# each page, and docs/guide/integrations.md each integration's, which has the sections that they all have.
+# Guides have at most 12 KB, internals 16, results 10: what does not fit is not for that reader.
 #
-#   pages_test.sh INCLUDE_DIRS PAGE CC CXX     INCLUDE_DIRS: separated by colons
+#   pages_test.sh INCLUDE_DIRS DOCS CC CXX     INCLUDE_DIRS: separated by colons
 set -euo pipefail
 IFS=: read -ra includes <<<"$1"
-page=$2 cc=$3 cxx=$4
+docs=$2 cc=$3 cxx=$4
+page=$docs/guide/integrate_in_ten_minutes.md
 flags=(-fsyntax-only -Wall -Wextra -Wpedantic -Werror -Wno-unused-function)
 for include in "${includes[@]}"; do flags+=(-I "$include"); done
 # code LANGUAGE: the blocks of the page in that language; other lines are left empty, so that errors name the page's lines.
@@ -18,22 +20,30 @@ code() {
 code c | "$cc" -std=c99 "${flags[@]}" -x c -
 code cpp | "$cxx" -std=c++17 "${flags[@]}" -x c++ -
 failed=no
-docs=$(dirname "$page")
-[[ $(page=$docs/ui.md code c | grep -c .) -gt 15 ]] || { echo "no code in $docs/ui.md" >&2; exit 1; }
-page=$docs/ui.md code c | "$cc" -std=c99 "${flags[@]}" -x c -
-for from in "$docs/../README.md" "$docs"/*.md "$docs"/../integrations/*/README.md; do
+for guide in spawn vector ui; do
+  [[ $(page=$docs/guide/$guide.md code c | grep -c .) -gt 15 ]] || { echo "no code in guide/$guide.md" >&2; exit 1; }
+  echo "guide/$guide.md"
+  page=$docs/guide/$guide.md code c | "$cc" -std=c99 "${flags[@]}" -x c -
+done
+for limit in guide:12 internals:16 results:10; do
+  for from in "$docs/${limit%:*}"/*.md; do
+    [[ $(wc -c <"$from") -le $((${limit#*:} * 1024)) ]] ||
+      { echo "FAILED: $from has more than ${limit#*:} KB" >&2; failed=yes; }
+  done
+done
+for from in "$docs/../README.md" "$docs"/*.md "$docs"/*/*.md "$docs"/../integrations/*/README.md; do
   while read -r link; do
     target=$(dirname "$from")/${link%%#*}
     [[ -e $target ]] || { echo "FAILED: $from links to $link, which is not there" >&2; failed=yes; }
   done < <(grep -oE '\]\([^)]+\)' "$from" | sed -E 's/^\]\(|\)$//g' | grep -vE '^(https?:|mailto:|#)')
-  name=$(basename "$from")
-  grep -q "($name)" "$docs/README.md" || [[ $name == README.md ]] ||
+  name=${from#"$docs/"}
+  grep -qF "($name)" "$docs/README.md" || [[ $name == README.md || $name == /* || $name == ../* ]] ||
     { echo "FAILED: docs/README.md does not list $name" >&2; failed=yes; }
 done
 for from in "$docs"/../integrations/*/README.md; do
   name=$(basename "$(dirname "$from")")
-  grep -q "(../integrations/$name/README.md)" "$docs/integrations.md" ||
-    { echo "FAILED: docs/integrations.md does not list $name" >&2; failed=yes; }
+  grep -qF "(../../integrations/$name/README.md)" "$docs/guide/integrations.md" ||
+    { echo "FAILED: docs/guide/integrations.md does not list $name" >&2; failed=yes; }
   for section in "Ten minutes" "Where in the frame to record" "Which barriers" "What is trashed" "Known limits"; do
     grep -q "^## $section$" "$from" || { echo "FAILED: $from has no section $section" >&2; failed=yes; }
   done

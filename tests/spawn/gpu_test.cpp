@@ -1258,7 +1258,7 @@ TEST_F(SpawnTest, GrammarsTakeTurnsInOneFrame) {
 }
 
 TEST_F(SpawnTest, ThePassesAreTheDocumentedOnes) {
-  std::ifstream file(GPGP_TEST_DATA "/../../docs/spawn.md");
+  std::ifstream file(GPGP_TEST_DATA "/../../docs/internals/spawn.md");
   std::ostringstream text;
   text << file.rdbuf();
   static const GpgpVertexLayout layout{12, 1, {{GPGP_VERTEX_POSITION, VK_FORMAT_R32G32B32_SFLOAT, 0}}};
@@ -1270,7 +1270,7 @@ TEST_F(SpawnTest, ThePassesAreTheDocumentedOnes) {
     ASSERT_EQ(gpgpGetPasses(spawner, &count, names.data()), GPGP_SUCCESS);
     for (const char* name : names)
       EXPECT_NE(text.str().find(std::string("`") + name + "`"), std::string::npos)
-          << name << " is not in docs/spawn.md";
+          << name << " is not in docs/internals/spawn.md";
   }
 }
 

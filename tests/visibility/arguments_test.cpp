@@ -116,7 +116,7 @@ TEST_F(ArgumentsTest, HandlesOfOtherKindsAndDestroyedOnesAreRefused) {
   expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "geometrySet is a recorder");
   info = good();
   info.history = reinterpret_cast<GpgpHistory>(set);
-  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "view");
+  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "history");
   gpgpDestroyAsset(set);
   expectRecord(GPGP_ERROR_INVALID_HANDLE, good(), "geometrySet is destroyed");
 }
@@ -142,7 +142,7 @@ TEST_F(ArgumentsTest, AViewTooSmallIsRefused) {
   info.history = createView(9);
   upload();
   f = advance();
-  expectRecord(GPGP_ERROR_INVALID_ARGUMENT, info, "the view was made for 9");
+  expectRecord(GPGP_ERROR_INVALID_ARGUMENT, info, "the history was made for 9");
 }
 
 TEST_F(ArgumentsTest, CreationIsChecked) {
@@ -181,7 +181,7 @@ TEST_F(ArgumentsTest, CreationIsChecked) {
   GpgpHistory view = nullptr;
   viewInfo.maxTriangles = 0x80000001u;
   expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, &view), "maxTriangles");
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, nullptr), "view is NULL");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, nullptr), "history is NULL");
   viewInfo.sType = 1;
   expect(GPGP_ERROR_INVALID_STRUCT, gpgpCreateCameraHistory(context, &viewInfo, &view), "sType");
   EXPECT_EQ(view, nullptr);
@@ -193,7 +193,7 @@ TEST_F(ArgumentsTest, PassesAreThoseOfTheDocumentation) {
   std::vector<const char*> names(passes);
   ASSERT_EQ(gpgpGetPasses(recorder, &passes, names.data()), GPGP_SUCCESS);
   ASSERT_EQ(passes, contextFeatures & GPGP_FEATURE_BUFFER_INT64_ATOMICS ? 19u : 23u); // ids with depths, or after them
-  std::ifstream file(GPGP_TEST_DATA "/../../docs/visibility.md");
+  std::ifstream file(GPGP_TEST_DATA "/../../docs/internals/visibility.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   size_t at = 0;
   for (const char* name : names) { // the page's pass table lists them in order

@@ -17,7 +17,7 @@ struct Schedule {
   Roots roots;             ///< of the partition; empty for "default", which is none
 };
 
-/// sgl, rw, rules, heuristic, or default (as few as are worth it, docs/spawn.md); nothing for other names.
+/// sgl, rw, rules, heuristic, or default (as few as are worth it, docs/internals/spawn.md); nothing for other names.
 std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name, const Heuristics& heuristics = {});
 constexpr const char* kScheduleNames[] = {"default", "sgl", "rw", "rules", "heuristic"};
 

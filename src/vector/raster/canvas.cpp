@@ -62,7 +62,7 @@ Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCa
   return canvas;
 }
 
-Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* view) const {
+Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* history) const {
   if (info.width == 0 || info.height == 0 || info.width > sizes_.maxWidth || info.height > sizes_.maxHeight)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the canvas is %u x %u; the recorder was made for 1 x 1 to %u x %u",
                      info.width, info.height, sizes_.maxWidth, sizes_.maxHeight);
@@ -71,11 +71,11 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
   for (const float v : info.background)
     if (!std::isfinite(v))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "background holds a number that is not finite");
-  if (!view && !info.target.view)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "neither view nor target is given: nothing would be written");
-  if (view && (view->width < info.width || view->height < info.height))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the view is %u x %u, the canvas %u x %u", view->width, view->height,
-                     info.width, info.height);
+  if (!history && !info.target.view)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "neither history nor target is given: nothing would be written");
+  if (history && (history->width < info.width || history->height < info.height))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the history is %u x %u, the canvas %u x %u", history->width,
+                     history->height, info.width, info.height);
   if (info.target.view) {
     if (info.target.format != VK_FORMAT_R8G8B8A8_UNORM && info.target.format != VK_FORMAT_R16G16B16A16_SFLOAT)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT,
@@ -85,12 +85,12 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
                        info.target.height, info.width, info.height);
   }
   const uint32_t target = targetOf(info);
-  if ((view && !sizes_.writes(kNoImage)) || !sizes_.writes(target))
+  if ((history && !sizes_.writes(kNoImage)) || !sizes_.writes(target))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "the canvas was made without targets for records that write %s (GpgpCanvasCreateInfo::targets)",
-                     view && !sizes_.writes(kNoImage) ? "a view"
-                     : target == kHasImage8           ? "R8G8B8A8_UNORM"
-                                                      : "R16G16B16A16_SFLOAT");
+                     history && !sizes_.writes(kNoImage) ? "a history"
+                     : target == kHasImage8              ? "R8G8B8A8_UNORM"
+                                                         : "R16G16B16A16_SFLOAT");
   if (info.imageCount > shader::kMaxImages)
     return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a record paints with at most %u (GPGP_MAX_IMAGES)",
                      info.imageCount, shader::kMaxImages);
@@ -127,8 +127,8 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
 }
 
 Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo& info,
-                             std::span<const ItemAsset> assets, CanvasHistory* view) {
-  if (auto ok = checkInfo(info, view); !ok) return ok;
+                             std::span<const ItemAsset> assets, CanvasHistory* history) {
+  if (auto ok = checkInfo(info, history); !ok) return ok;
   core::Record r;
   r.commandBuffer = commandBuffer;
   r.info = &info.base;
@@ -172,7 +172,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.entryLimit = sizes_.maxEntries - gather.smallGlyphEntries();
   header.rowLimit = sizes_.maxRows();
   header.samples = info.samples ? info.samples : 16;
-  header.flags = (view ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
+  header.flags = (history ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
                  (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
   // Only what is in a group or has a projective gradient or image takes the general shader, beside the others'.
   const bool rich = gather.groups || ((gradients || images) && projective);
@@ -195,9 +195,9 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                  bytes(tables_.clips, gather.clips),
                  bytes(tables_.layers, gather.layers)};
 
-  if (view) {
-    r.bindings[shader::kBindHistory].ownBuffer = view->buffer();
-    r.bindings[shader::kBindHistory].ownSize = view->size();
+  if (history) {
+    r.bindings[shader::kBindHistory].ownBuffer = history->buffer();
+    r.bindings[shader::kBindHistory].ownSize = history->size();
   }
   const uint32_t image = targetOf(info);
   if (image != kNoImage)
@@ -230,7 +230,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                                    : kRich};
   for (const uint32_t painted : std::span(kinds).first(rich ? 3 : 2)) {
     r.conditions[painted + image] = true;
-    if (sizes_.software && view) r.conditions[painted + kNoImage] = true; // there no pass writes both
+    if (sizes_.software && history) r.conditions[painted + kNoImage] = true; // there no pass writes both
   }
   if (rich) r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
   if (rich || sizes_.software) r.conditions[!rich ? kSiftPlain : one ? kSplitOne : kSplit] = true;
@@ -265,21 +265,21 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kSplits] = {divide(header.tilesX, kSplitSide), divide(header.tilesY, kSplitSide), 1};
   if (auto ok = check(r); !ok) return ok;
   if (auto ok = record(r); !ok) return ok;
-  if (view) {
-    view->preparedWidth = info.width;
-    view->preparedHeight = info.height;
+  if (history) {
+    history->preparedWidth = info.width;
+    history->preparedHeight = info.height;
   }
   return {};
 }
 
-Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& view) {
-  if (view.preparedWidth == 0) return makeError(GPGP_NOT_READY, "nothing was prepared into the view");
+Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& history) {
+  if (history.preparedWidth == 0) return makeError(GPGP_NOT_READY, "nothing was prepared into the history");
   const uint32_t last = std::max(info.x, info.target->viewMask ? info.secondX : 0);
-  if (info.width == 0 || info.height == 0 || last > view.preparedWidth || info.width > view.preparedWidth - last ||
-      info.height > view.preparedHeight)
+  if (info.width == 0 || info.height == 0 || last > history.preparedWidth ||
+      info.width > history.preparedWidth - last || info.height > history.preparedHeight)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "%u x %u pixels from column %u on are to be drawn; the view holds %u x %u", info.width,
-                     info.height, last, view.preparedWidth, view.preparedHeight);
+                     "%u x %u pixels from column %u on are to be drawn; the history holds %u x %u", info.width,
+                     info.height, last, history.preparedWidth, history.preparedHeight);
   struct {
     float columns[2][12];
     uint32_t size[4], begins[2];
@@ -291,13 +291,13 @@ Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInf
   }
   constants.size[0] = info.width;
   constants.size[1] = info.height;
-  constants.size[2] = view.preparedWidth;
+  constants.size[2] = history.preparedWidth;
   constants.begins[0] = info.x;
   constants.begins[1] = info.secondX;
   core::DrawRecord r;
   r.commandBuffer = commandBuffer;
-  r.bindings[shader::kBindHistory].ownBuffer = view.buffer();
-  r.bindings[shader::kBindHistory].ownSize = view.size();
+  r.bindings[shader::kBindHistory].ownBuffer = history.buffer();
+  r.bindings[shader::kBindHistory].ownSize = history.size();
   r.target = info.target;
   r.pushConstants = std::as_bytes(std::span(&constants, 1));
   r.vertexCount = 4;

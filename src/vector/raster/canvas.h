@@ -18,18 +18,18 @@ public:
   static core::Result<core::Unique<Canvas>> create(core::Context& context, const GpgpCanvasCreateInfo& info);
   Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info);
 
-  /// Assets of `info.items` in order, resolved; the view may be null. Arguments are checked here. NOT_READY where a
+  /// Assets of `info.items` in order, resolved; the history may be null. Arguments are checked here. NOT_READY where a
   /// glyph is not resident.
   core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo& info,
-                             std::span<const ItemAsset> assets, CanvasHistory* view);
-  core::Result<void> draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& view);
+                             std::span<const ItemAsset> assets, CanvasHistory* history);
+  core::Result<void> draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& history);
   bool takeCanvasReport(GpgpCanvasReport& report);
   uint32_t maxDrawings() const { return sizes_.items.items; }
   /// Room for the assets of a record, so that recording does not allocate.
   std::span<ItemAsset> assets(uint32_t count) { return std::span(assets_).first(count); }
 
 private:
-  core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* view) const;
+  core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* history) const;
 
   const CanvasSizes sizes_;
   // Room for one record's.

@@ -1,4 +1,4 @@
-// Drawings and canvas historys as the engine holds them: one device buffer each, resident after upload.
+// Drawings and canvas histories as the engine holds them: one device buffer each, resident after upload.
 #pragma once
 #include "core/resident.h"
 #include "vector/raster/segments.h"

@@ -32,7 +32,7 @@ Result<void> checkOrigins(const GpgpVisibilityInfo& info) {
 }
 
 /// The viewport, the method and its settings, cameras, counts.
-Result<void> checkSampling(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* view) {
+Result<void> checkSampling(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* history) {
   if (info.width == 0 || info.height == 0 || info.width > budgets.maxWidth || info.height > budgets.maxHeight)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the viewport is %u x %u; the recorder was made for 1 x 1 to %u x %u",
                      info.width, info.height, budgets.maxWidth, budgets.maxHeight);
@@ -89,9 +89,9 @@ Result<void> checkSampling(const GpgpVisibilityInfo& info, const Budgets& budget
   }
   if (info.triangleCount > 1u << 31)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; at most 2147483648", info.triangleCount);
-  if (view && info.triangleCount > view->maxTriangles())
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; the view was made for %u", info.triangleCount,
-                     view->maxTriangles());
+  if (history && info.triangleCount > history->maxTriangles())
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangleCount is %u; the history was made for %u",
+                     info.triangleCount, history->maxTriangles());
   return {};
 }
 
@@ -189,8 +189,8 @@ Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t need
   return {};
 }
 
-Result<void> checkSampleInfo(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* view) {
-  if (auto ok = checkSampling(info, budgets, view); !ok) return ok;
+Result<void> checkSampleInfo(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* history) {
+  if (auto ok = checkSampling(info, budgets, history); !ok) return ok;
   if (auto ok = checkInput(info); !ok) return ok;
   if (auto ok = checkOrigins(info); !ok) return ok;
   return checkOutput(info);

@@ -8,7 +8,8 @@ namespace gpgp::visibility {
 
 core::Result<void> checkSize(const char* name, const GpgpBuffer& buffer, uint64_t needed, const char* why);
 
-/// view may be null.
-core::Result<void> checkSampleInfo(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* view);
+/// history may be null.
+core::Result<void> checkSampleInfo(const GpgpVisibilityInfo& info, const Budgets& budgets,
+                                   const CameraHistory* history);
 
 } // namespace gpgp::visibility

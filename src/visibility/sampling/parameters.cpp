@@ -81,7 +81,7 @@ uint32_t samplesOf(const GpgpVisibilityInfo& info) {
 }
 
 Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, const GeometrySet& geometry,
-                    const CameraHistory* view) {
+                    const CameraHistory* history) {
   Params params{};
   const uint32_t cameras = info.moreCameraCount + 1;
   for (uint32_t i = 0; i < cameras; ++i) {
@@ -150,7 +150,7 @@ Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, cons
   params.hasDrawTriangles = info.drawTriangles.buffer ? 1 : 0;
   params.hasExtents = info.triangleSizes.buffer ? 1 : 0;
   params.slotCapacity = static_cast<uint32_t>(budgets.slots());
-  params.viewWords = view ? view->words() : 0;
+  params.viewWords = history ? history->words() : 0;
   params.mediumRecords = budgets.mediumRecords();
   params.largeRecords = budgets.largeRecords();
   setGrid(info, budgets, params);

@@ -17,8 +17,8 @@ PositionFormat positionFormatOf(VkFormat format);
 /// A pixel's samples, per side.
 uint32_t samplesOf(const GpgpVisibilityInfo& info);
 
-/// view may be null.
+/// history may be null.
 shader::Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, const GeometrySet& geometry,
-                            const CameraHistory* view);
+                            const CameraHistory* history);
 
 } // namespace gpgp::visibility

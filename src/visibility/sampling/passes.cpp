@@ -38,7 +38,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("visibleBits");
   engine("visibleList");
   engine("visibleCount");
-  engine("view");
+  engine("history");
   own("records", recordBytes);
   engine("pixelCounts");
   own("limits", exact ? (budgets.slots() + kMaxBig) * 8 + budgets.slots() / 64 * shader::kTileWords * 4 : 4);

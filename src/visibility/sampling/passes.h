@@ -1,7 +1,7 @@
 // The passes of a recorder: which there are, in which order, and which of a record's numbers they ask for.
 //
-// One list serves all records of a recorder; a record leaves out what its conditions say. docs/visibility.md has the
-// flow. Each part of the list has a file.
+// One list serves all records of a recorder; a record leaves out what its conditions say. docs/internals/visibility.md
+// has the flow. Each part of the list has a file.
 #pragma once
 #include "core/device.h"
 #include "core/passes.h"

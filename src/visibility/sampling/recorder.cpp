@@ -13,7 +13,7 @@ using core::Result;
 
 namespace {
 void setBindings(core::Record& record, const GpgpVisibilityInfo& info, const shader::Params& params,
-                 const GeometrySet& geometry, const CameraHistory* view) {
+                 const GeometrySet& geometry, const CameraHistory* history) {
   const auto bind = [&](int binding, const GpgpBuffer& buffer) {
     record.bindings[static_cast<size_t>(binding)].engineBuffer = &buffer;
   };
@@ -44,7 +44,7 @@ void setBindings(core::Record& record, const GpgpVisibilityInfo& info, const sha
   if (params.hasSizes) bind(shader::kBindSizes, info.pixelCounts);
   if (params.hasList) bind(shader::kBindList, info.visibleList);
   if (params.writeCount) bind(shader::kBindCount, info.visibleCount);
-  if (view) bindOwn(shader::kBindView, *view);
+  if (history) bindOwn(shader::kBindView, *history);
 }
 
 void setGroups(core::Record& record, const shader::Params& params, const Budgets& budgets) {
@@ -84,18 +84,18 @@ Result<core::Unique<VisibilityRecorder>> VisibilityRecorder::create(core::Contex
 }
 
 Result<void> VisibilityRecorder::prepare(VkCommandBuffer commandBuffer, const GpgpVisibilityInfo& info,
-                                         const GeometrySet& geometry, const CameraHistory* view) {
-  if (auto ok = checkSampleInfo(info, budgets_, view); !ok) return ok;
+                                         const GeometrySet& geometry, const CameraHistory* history) {
+  if (auto ok = checkSampleInfo(info, budgets_, history); !ok) return ok;
   if (info.clusters.buffer)
     if (auto ok = checkSize("clusters", info.clusters, uint64_t(geometry.clusterCount()) * shader::kClusterBytes,
                             "the geometry set");
         !ok)
       return ok;
-  const shader::Params params = parametersOf(info, budgets_, geometry, view);
+  const shader::Params params = parametersOf(info, budgets_, geometry, history);
   core::Record record;
   record.commandBuffer = commandBuffer;
   record.info = &info.base;
-  setBindings(record, info, params, geometry, view);
+  setBindings(record, info, params, geometry, history);
   setGroups(record, params, budgets_);
   record.levels = params.method == shader::kConservative ? info.refinements + 1 : 1;
   record.conditions[kIfSampling] = true;

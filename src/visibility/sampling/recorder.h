@@ -1,6 +1,7 @@
 // The recorder: one record clears, numbers the triangles, draws depth, draws ids, gathers bits and lists.
 //
-// Chapter 6, method "standard" (6.1.1), in compute: works on queues without graphics. docs/visibility.md has the flow.
+// Chapter 6, method "standard" (6.1.1), in compute: works on queues without graphics. docs/internals/visibility.md has
+// the flow.
 #pragma once
 #include "core/recorder.h"
 #include "visibility/geometry_set.h"
@@ -15,9 +16,9 @@ public:
                                                                const GpgpVisibilityRecorderCreateInfo& info);
   VisibilityRecorder(core::Context& owner, const GpgpVisibilityRecorderCreateInfo& info);
 
-  /// Checks what depends on the budgets and the buffers' sizes, then records. view may be null.
+  /// Checks what depends on the budgets and the buffers' sizes, then records. history may be null.
   core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpVisibilityInfo& info, const GeometrySet& geometry,
-                             const CameraHistory* view);
+                             const CameraHistory* history);
   /// Compares two sets of triangles.
   core::Result<void> measure(VkCommandBuffer commandBuffer, const GpgpVisibilityMetricsInfo& info);
   /// False: none is there.
