@@ -171,7 +171,7 @@ void Decoupled::shade(VkCommandBuffer commands) {
   struct {
     glm::vec4 eye;
     uint32_t drawCount, shading;
-  } const push{glm::vec4(shadingCamera_.eye, 1), static_cast<uint32_t>(model_.draws.size()), shading_};
+  } const push{glm::vec4(shadingCamera_.eye, 1), static_cast<uint32_t>(model_.draws.size()), shadings_};
   barrier(commands, VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
           VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shadePipeline_.handle);
@@ -191,14 +191,14 @@ std::pair<uint32_t, uint32_t> Decoupled::referenceSlices() const {
 
 /// Of what was shaded last.
 bool Decoupled::isReferenceKnown() const {
-  return overlaid_ == shading_ && referenceSlice_ == referenceSlices().second;
+  return overlaid_ == shadings_ && referenceSlice_ == referenceSlices().second;
 }
 
 /// What standard sampling finds from where it was shaded, and a few slices a frame of what is truly visible from there.
 void Decoupled::sampleReference(VkCommandBuffer commands, const GpgpFrame& frame) {
-  if (overlaid_ != shading_) {
+  if (overlaid_ != shadings_) {
     sample(commands, frame, GPGP_SAMPLING_STANDARD, shadingCamera_, shadingExtent_, standard_, tagOther);
-    overlaid_ = shading_;
+    overlaid_ = shadings_;
     referenceSlice_ = 0;
   }
   if (isReferenceKnown()) return;
@@ -215,13 +215,13 @@ void Decoupled::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const 
   readTimestamps(slot_); // the engine has waited for the frame that used it last
   if (queries_) vkCmdResetQueryPool(commands, queries_, slot_ * kTimestamps, kTimestamps);
   const bool waits = showsOverlay() && !isReferenceKnown();
-  const bool shades = shading_ == 0 || (!frozen_ && !waits && step_ % options_.rate == 0);
+  const bool shades = shadings_ == 0 || (!frozen_ && !waits && step_ % options_.rate == 0);
   shades_[slot_] = shades;
   writeTimestamp(commands, 0);
   if (shades) {
     shadingCamera_ = shading;
     shadingExtent_ = extent;
-    ++shading_;
+    ++shadings_;
     sample(commands, frame, options_.method, shading, extent, found_, tagShading);
     writeTimestamp(commands, 1);
     shade(commands);
@@ -242,7 +242,7 @@ void Decoupled::draw(VkCommandBuffer commands, const Camera& display) {
   struct {
     glm::mat4 viewProjection;
     uint32_t draw, firstIndex, vertexOffset, shading, show;
-  } push{display.viewProjection, 0, 0, 0, shading_, static_cast<uint32_t>(options_.show)};
+  } push{display.viewProjection, 0, 0, 0, shadings_, static_cast<uint32_t>(options_.show)};
   if (showsOverlay() && !isReferenceKnown()) push.show = kOverlayWithoutReference;
   writeTimestamp(commands, 3);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, displayPipeline_.handle);

@@ -52,7 +52,7 @@ public:
   };
   const Times& times();
   const GpgpVisibilityReport& shadingReport() const { return shading_; }
-  uint32_t shadings() const { return shading_; }
+  uint32_t shadings() const { return shadings_; }
   /// Against the last reference of which all slices are there; false positives are not sampled again.
   const std::optional<GpgpVisibilityReport>& referenceReport() const { return reference_; }
   /// An overlay's slices that are there, and how many there will be; 0 of 0: none is shown.
@@ -85,7 +85,7 @@ private:
   Pipeline displayPipeline_;
   Camera shadingCamera_;
   VkExtent2D shadingExtent_{};
-  uint32_t step_ = 0, shading_ = 0;
+  uint32_t step_ = 0, shadings_ = 0;
   uint32_t overlaid_ = 0, referenceSlice_ = 0; ///< the shading that the overlay is of, and its next slice
   bool frozen_ = false, well_ = true;
   static constexpr uint32_t kSlots = 2, kTimestamps = 5; ///< frames in flight; timestamps of a frame

@@ -66,7 +66,7 @@ void measureList(host::HeadlessDevice& device, int records) {
       canvasRecord.width = canvasRecord.height = 64;
       canvasRecord.items = &item;
       canvasRecord.itemCount = 1;
-      canvasRecord.view = view;
+      canvasRecord.history = view;
       const auto before = Clock::now();
       expect(gpgpRecordPrepareCanvas(canvas, cmd, &frame, &canvasRecord), "gpgpRecordPrepareCanvas");
       recording.push_back(microseconds(Clock::now() - before));

@@ -242,12 +242,12 @@ public:
         submit([&](VkCommandBuffer cmd) {
           for (; slice < end; ++slice) {
             step.slice = slice;
-            expect(recorder.recordPrepare(cmd, frames_.frame(), infoOf(step, {&camera, 1}, bits, counts)), "record");
+            expect(reference.recordPrepare(cmd, frames_.frame(), infoOf(step, {&camera, 1}, bits, counts)), "record");
             step.accumulate = true;
           }
         });
         GpgpVisibilityReport report{};
-        collect(recorder, report);
+        collect(reference, report);
       }
       told(static_cast<size_t>(&camera - cameras.data()) + 1);
     }

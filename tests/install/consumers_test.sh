@@ -60,7 +60,7 @@ find_package)
   if [[ -e $scratch/find_package/consumer_gpgp ]]; then
     "$cmake" -S "$tests/find_package" -B "$scratch/find_package_alone" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
       -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON \
-      -DCMAKE_DISABLE_FIND_PACKAGE_ZLIB=ON
+      -DCMAKE_DISABLE_FIND_PACKAGE_ZLIB=ON -DCONSUMER_OF_SHARED_LIBRARIES=ON
     "$cmake" --build "$scratch/find_package_alone" --target consumer_gpgp
   fi
   # Another version that may have another ABI is refused.

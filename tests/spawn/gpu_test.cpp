@@ -149,7 +149,7 @@ struct SpawnTest : DeviceTest {
     const auto all = host::download<GpgpInstance>(device, instances, capacity);
     result.instances.assign(all.begin(), all.begin() + std::min(result.count, capacity));
     for (size_t i = result.count; i < all.size(); ++i) // nothing beyond the count is touched
-      if (all[i].bucket != kPoison || all[i].start != kPoison) {
+      if (all[i].bucket != kPoison || all[i].rule != kPoison) {
         ADD_FAILURE() << "instance " << i << " of " << result.count << " was written";
         break;
       }

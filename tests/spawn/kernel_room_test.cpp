@@ -109,10 +109,10 @@ TEST(KernelRoom, CompiledCodeIsBoundedForOperatorsThatKeepOneShape) {
     return spawn::compileKernel(source, spawn::KernelTarget::subgroups)->size();
   };
   const size_t most = sizeOf(sourceOf(ownGrammar("building.pga")));
-  const std::pair<const char*, const char*> operators[] = {{"SubDiv(X) { 0.01: Discard() | -1: ", " }"},
-                                                           {"SubDiv(Y) { Rand(0.01, 0.02): Discard() | -1: ", " }"},
-                                                           {"CompSplit() { Discard() | ", " | Discard() }"},
-                                                           {"Replicate() { Discard() | Translate(0, 1, 0) ", " }"}};
+  const std::pair<const char*, const char*> operators[] = {
+      {"SubDiv(X) { 0.01: Discard() | -1: ", " }"},     {"SubDiv(Y) { Rand(0.01, 0.02): Discard() | -1: ", " }"},
+      {"CompSplit() { Discard() | ", " | Discard() }"}, {"IfSizeLess(X, 1) { A | ", " }"},
+      {"RandomRule(ShapeSeed()) { 0.1: A | 1: ", " }"}, {"Replicate() { Discard() | Translate(0, 1, 0) ", " }"}};
   for (const auto& [before, behind] : operators) {
     uint32_t rules = 0; // as many as are compiled
     while (rules < 30 && spawn::isWorthCompiling(sourceOf(filters(rules + 1, before, behind)))) ++rules;

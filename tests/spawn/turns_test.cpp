@@ -145,6 +145,41 @@ TEST_F(TurnsTest, OperatorsBetweenChoicesAndExpressionsInThem) {
   check("divisions and draws of 32", bake(text), axiomsOf(4000));
 }
 
+/// A sum of so many terms that no compiler folds.
+std::string sumOf(uint32_t terms) {
+  std::string sum = "ShapeSize(Y)";
+  for (uint32_t i = 1; i < terms; ++i) sum += " + ShapeSize(Y) * 0.25";
+  return "Exp(" + sum + ")";
+}
+std::string weights(uint32_t count, const std::string& first, const std::string& each, const std::string& to) {
+  std::string all = first + ": " + to;
+  for (uint32_t i = 1; i < count; ++i) all += " | " + each + ": " + to;
+  return all;
+}
+
+// An operator is as long as its own expressions, not as the longest ones of others.
+TEST_F(TurnsTest, LongExpressionsBesideManySuccessorsAreTaken) {
+  make();
+  const std::string head = "axiom Box S;\nterminal A (1, 0);\nterminal B (1, 1);\n";
+  check("choices",
+        bake(head + "S = Translate(0, " + sumOf(30) + ", 0) RandomRule(Rand(0, 1)) { " + weights(16, "1", "1", "A") +
+             " | " + weights(16, "2", "2", "B") + " };\n"),
+        axiomsOf(10000));
+  check("divisions",
+        bake(head + "S = SubDiv(X) { " + weights(20, "Exp(ShapeSize(X) / 20)", "-1", "R") + " };\nR = Translate(0, " +
+             sumOf(20) + ", 0) RandomRule(Rand(0, 1)) { " + weights(8, "1", "1", "A") + " | " +
+             weights(8, "2", "2", "B") + " };\n"),
+        axiomsOf(2000));
+  // What one operator alone takes too much for is refused, with the numbers that decide it.
+  const std::string wide = head + "S = RandomRule(Rand(0, 1)) { " + weights(32, sumOf(60), sumOf(60), "A") + " };\n";
+  const spawn::Turns turns = spawn::turnsOf(graphOf(bake(wide)));
+  shader::SpawnConstants constants{};
+  const spawn::TurnsLimit limit = spawn::limitTurns(constants, turns, {.groupSize = 8, .stackShapes = 1024}, 8, false);
+  EXPECT_FALSE(limit);
+  EXPECT_GT(limit.needed, limit.most);
+  EXPECT_GT(limit.needed, 2u * 32 * 30);
+}
+
 TEST_F(TurnsTest, ManyChildrenOfFewAxioms) {
   make({.maxRounds = 64});
   check("copies",

@@ -962,7 +962,7 @@ TEST_F(CanvasTest, BadArgumentsAreRefusedWithWords) {
     info.width = 0, expect(GPGP_ERROR_INVALID_ARGUMENT, "0 x 32");
     info.width = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "65 x 32");
     info.samples = 3, expect(GPGP_ERROR_INVALID_ARGUMENT, "samples");
-    info.history = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "neither view nor target");
+    info.history = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "neither history nor target");
     info.items = nullptr, expect(GPGP_ERROR_INVALID_ARGUMENT, "items is NULL");
     info.itemCount = 65, expect(GPGP_ERROR_INVALID_ARGUMENT, "itemCount");
     item.opacity = 2, expect(GPGP_ERROR_INVALID_ARGUMENT, "opacity");

@@ -2,7 +2,7 @@
 // (items, boxes of tiles, tile words, masks and areas in entries) bit for bit, and the picture within what the CPU
 // reference derives.
 //
-// GPGP_TWIN_SEEDS: how many records, GPGP_TWIN_FIRST_SEED: from which one on.
+// GPGP_TEST_SEEDS: how many records, GPGP_TEST_FIRST_SEED: from which one on.
 #include "api/items.h"
 #include "random_record.h"
 #include "vector/cpu_reference/cpu_reference.h"
@@ -655,7 +655,7 @@ struct PageCpuReferenceTest : CpuTest {
 };
 
 TEST_F(CpuTest, RandomRecordsAreWhatTheCpuReferenceSays) {
-  const uint32_t first = numberFrom("GPGP_TWIN_FIRST_SEED", 0), count = numberFrom("GPGP_TWIN_SEEDS", 64);
+  const uint32_t first = numberFrom("GPGP_TEST_FIRST_SEED", 0), count = numberFrom("GPGP_TEST_SEEDS", 64);
   for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
     RandomRecord record;
     makeRecord(seed, record);
@@ -666,7 +666,7 @@ TEST_F(CpuTest, RandomRecordsAreWhatTheCpuReferenceSays) {
 }
 
 TEST_F(PageCpuReferenceTest, PagesAreWhatTheCpuReferenceSays) {
-  const uint32_t first = numberFrom("GPGP_TWIN_FIRST_SEED", 0), count = numberFrom("GPGP_TWIN_SEEDS", 64);
+  const uint32_t first = numberFrom("GPGP_TEST_FIRST_SEED", 0), count = numberFrom("GPGP_TEST_SEEDS", 64);
   for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
     RandomRecord record;
     makePage(seed, record);

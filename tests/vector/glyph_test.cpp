@@ -936,9 +936,9 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       instances.push_back(
           {indices[i], static_cast<float>(x) / 64, static_cast<float>(y) / 64, static_cast<float>(size), {0, 0, 0, 1}});
     }
-    std::vector<double> reference(coarse.size(), 0), ofRows(coarse.size(), 0), ofCurves(coarse.size(), 0);
+    std::vector<double> finest(coarse.size(), 0), ofRows(coarse.size(), 0), ofCurves(coarse.size(), 0);
     for (size_t i = 0; i < fine.size(); ++i)
-      reference[i / (size_t(width) * kFine) / kFine * width + i % (size_t(width) * kFine) / kFine] +=
+      finest[i / (size_t(width) * kFine) / kFine * width + i % (size_t(width) * kFine) / kFine] +=
           static_cast<double>(fine[i]) / (kFine * kFine);
     for (size_t i = 0; i < ids.size(); ++i) {
       cover(oracles[i], instances[i], 16, width, height, ofRows);
@@ -951,13 +951,13 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
       double sum = 0, fromFreeType = 0, fromFine = 0, fromReference = 0, freeType = 0, reference = 0, fromRows = 0,
              rows = 0;
       size_t inked = 0, inkedStraight = 0;
-      for (size_t i = 0; i < reference.size(); ++i) {
+      for (size_t i = 0; i < finest.size(); ++i) {
         const double seen = static_cast<double>(pixels[i].a) * 255, wanted = static_cast<double>(coarse[i]);
         if (seen == 0 && wanted == 0) continue;
         ++inked;
         sum += seen - wanted;
         fromFreeType += std::abs(seen - wanted);
-        fromFine += std::abs(seen - reference[i]);
+        fromFine += std::abs(seen - finest[i]);
         fromReference += std::abs(seen - ofCurves[i]);
         if (const size_t glyph = i / width / cell * 16 + i % width / cell; glyph < ids.size() && straight[glyph]) {
           ++inkedStraight;
@@ -965,7 +965,7 @@ TEST_P(SmallText, CoversWhatFreeTypeCovers) {
           rows += std::abs(ofRows[i] - ofCurves[i]);
         }
         freeType += std::abs(wanted - ofCurves[i]);
-        reference += std::abs(reference[i] - ofCurves[i]);
+        reference += std::abs(finest[i] - ofCurves[i]);
       }
       const double n = static_cast<double>(inked), m = static_cast<double>(inkedStraight);
       std::printf("%s, %u px%s: %zu pixels with ink; of coverage %.3f; mean difference from FreeType %.2f, with no "

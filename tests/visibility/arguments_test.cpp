@@ -113,7 +113,7 @@ TEST_F(ArgumentsTest, RecordsAreChecked) {
 TEST_F(ArgumentsTest, HandlesOfOtherKindsAndDestroyedOnesAreRefused) {
   GpgpVisibilityInfo info = good();
   info.geometrySet = reinterpret_cast<GpgpAsset>(recorder);
-  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "geometrySet is a recorder");
+  expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "geometrySet is a visibility recorder");
   info = good();
   info.history = reinterpret_cast<GpgpHistory>(set);
   expectRecord(GPGP_ERROR_INVALID_HANDLE, info, "history");
@@ -124,15 +124,16 @@ TEST_F(ArgumentsTest, HandlesOfOtherKindsAndDestroyedOnesAreRefused) {
 TEST_F(ArgumentsTest, NotReadyUntilResidentAndPrewarmed) {
   GpgpVisibilityInfo info = good();
   info.history = createView(0);
+  expectRecord(GPGP_NOT_READY, info, "history is not resident"); // each reason is said once
   expectRecord(GPGP_NOT_READY, info, "");
   info = good();
   info.geometrySet = createGeometrySet(scene);
-  expectRecord(GPGP_NOT_READY, info, "");
+  expectRecord(GPGP_NOT_READY, info, "geometrySet is not resident");
   GpgpVisibilityRecorderCreateInfo create = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   create.base.queueFamily = queue().family;
   create.maxWidth = create.maxHeight = 64;
   ASSERT_EQ(gpgpCreateVisibilityRecorder(context, &create, &recorder), GPGP_SUCCESS);
-  expectRecord(GPGP_NOT_READY, good(), "");
+  expectRecord(GPGP_NOT_READY, good(), "gpgpPrewarm");
   ASSERT_EQ(gpgpPrewarm(recorder, nullptr), GPGP_SUCCESS);
   expectRecord(GPGP_SUCCESS, good(), "");
 }
@@ -163,19 +164,19 @@ TEST_F(ArgumentsTest, CreationIsChecked) {
 
   GpgpVisibilityRecorderCreateInfo recorderInfo = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   recorderInfo.base.queueFamily = queue().family;
-  GpgpRecorder recorder = nullptr;
+  GpgpRecorder made = nullptr;
   recorderInfo.maxWidth = 8193;
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &recorder), "maxWidth");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &made), "maxWidth");
   recorderInfo.maxWidth = 64;
   recorderInfo.maxTriangles = (1u << 30) + 1;
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &recorder), "maxTriangles");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &made), "maxTriangles");
   recorderInfo.maxTriangles = 64;
   recorderInfo.base.queueFamily = 99;
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &recorder), "queueFamily");
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, &made), "queueFamily");
   expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, &recorderInfo, nullptr),
          "recorder is NULL");
-  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, nullptr, &recorder), "info is NULL");
-  EXPECT_EQ(recorder, nullptr);
+  expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateVisibilityRecorder(context, nullptr, &made), "info is NULL");
+  EXPECT_EQ(made, nullptr);
 
   GpgpCameraHistoryCreateInfo viewInfo = GPGP_CAMERA_HISTORY_CREATE_INFO_INIT;
   GpgpHistory view = nullptr;

@@ -225,7 +225,7 @@ TEST_F(MetricsTest, TheReferenceOf64HoldsNearlyAllOfThatOf128) {
   Scene scene = foliage(3000);
   setWalkingCamera(scene, {1, 1.7f, 7}, {0, 1.5f, 0}, 64, 36, true);
   scene.input();
-  const GpgpRecorder recorder = createRecorder(64, 36, 0, false, GPGP_SAMPLING_REFERENCE_BIT, 8);
+  const GpgpRecorder fineRecorder = createRecorder(64, 36, 0, false, GPGP_SAMPLING_REFERENCE_BIT, 8);
   const GpgpAsset set = createGeometrySet(scene);
   const SceneBuffers buffers(device, scene);
   upload();
@@ -243,7 +243,7 @@ TEST_F(MetricsTest, TheReferenceOf64HoldsNearlyAllOfThatOf128) {
         info.accumulate = slice > 0;
         info.visibleBits = (samples == 64 ? coarse : fine).range();
         if (samples == 128) info.pixelCounts = counts.range();
-        ASSERT_EQ(gpgpRecordPrepareVisibility(recorder, cmd, &f, &info), GPGP_SUCCESS);
+        ASSERT_EQ(gpgpRecordPrepareVisibility(fineRecorder, cmd, &f, &info), GPGP_SUCCESS);
       });
     }
   GpgpVisibilityMetricsInfo info = GPGP_VISIBILITY_METRICS_INFO_INIT;

@@ -1,8 +1,8 @@
 #version 460
 // A record's constants to the device, as the passes would else wait for host memory at every read, with its items
 // placed; and what they begin with: no path in any bin, nothing counted, no tile marked. Software devices clear the
-// latter two faster by transfers. ALONE: where there are small glyphs alone, smallGlyph places them, and tiles have
-// lists.
+// latter two faster by transfers. ALONE: where there are small glyphs alone, the small glyphs pass places them, and
+// tiles have lists.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/place/placement.h"
 #include "vector/shared/constants.glsl"

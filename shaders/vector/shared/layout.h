@@ -142,7 +142,7 @@ struct ItemRecord {
 struct PlacementRecord {
   float x, y, size;
   uint source; // of the record's sources: ItemRecords without a place of their own;
-               // in its bits from kSlotBit on, the slot; kSmallGlyphBit: it is smallGlyph
+               // in its bits from kSlotBit on, the slot; kSmallGlyphBit: it is a small glyph
   vec4 color;  // straight; alpha multiplies
   uint firstSegment, firstPath, segments, paths; // as an item's
 };

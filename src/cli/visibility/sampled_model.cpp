@@ -136,7 +136,7 @@ std::vector<uint32_t> SampledModel::reference(const std::vector<View>& views, ui
       step.accumulate = done > 0;
       step.sizes = true;
       step.label = "slice";
-      sample(recorder, step);
+      sample(reference, step);
       told(++done, slices * views.size());
     }
   return bits();

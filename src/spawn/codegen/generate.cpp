@@ -67,8 +67,9 @@ public:
     out_.clear();
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) writeChain(n, written);
     writeRunChain();
-    return {before + tables() + out_, std::move(table_.words), static_cast<uint32_t>(graph_.nodes.size()),
-            room_.byWords};
+    const auto counted =
+        std::count_if(graph_.nodes.begin(), graph_.nodes.end(), [](const Node& n) { return n.op != kOpTerminal; });
+    return {before + tables() + out_, std::move(table_.words), static_cast<uint32_t>(counted), room_.byWords};
   }
 
 private:

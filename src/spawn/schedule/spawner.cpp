@@ -73,8 +73,8 @@ Fit fitOf(const core::Device& device, const KernelInfo& info, bool uneven) {
 /// For batches: stacks below this many have no room for them. Workgroups that are worth it, and axioms for each of
 /// more.
 constexpr uint32_t kLeastBatches = 16, kBatchGroups = 64, kStepGroups = 16, kBatchAxioms = 512;
-constexpr const char* kTooManyTurns = "one shape of this grammar takes some %u turns of loops, its longest expressions "
-                                      "once for each of its successors; this device gives a shader %u";
+constexpr const char* kTooManyTurns = "one operator of this grammar may take %u turns of loops, in its expressions "
+                                      "and over its successors; this device has room for %u";
 /// Turns of loops for a chain from which on few shapes are all that a workgroup has turns for in a round.
 constexpr uint32_t kLongTurns = 4096;
 /// Where devices do not count turns: a step counts as so many, a query as what it looks at; after the steps, and after
@@ -401,8 +401,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.recordsAtOnce = expansion.records;
   constants.one = 1;
   if (context.device.software) {
-    if (!limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr))
-      return core::makeError(GPGP_ERROR_UNSUPPORTED, kTooManyTurns, grammar.turns.passed, shader::kDeviceTurns);
+    const TurnsLimit limit = limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr);
+    if (!limit) return core::makeError(GPGP_ERROR_UNSUPPORTED, kTooManyTurns, limit.needed, limit.most);
   } else {
     constants.steps = kMostSteps * kStepTurns;
     constants.batchTurns = kStepTurns;

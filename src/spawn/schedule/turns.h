@@ -18,10 +18,15 @@ struct Turns {
 };
 Turns turnsOf(const Graph& graph);
 
+/// What one operator, or a workgroup after its last look at the count, may take; false where that is too much.
+struct TurnsLimit {
+  uint32_t needed = 0, most = 0;
+  explicit operator bool() const { return needed <= most; }
+};
 /// Says in a record's constants how long workgroups of a software device go on. subgroup: invocations of one, for a
-/// kernel that derives by batches; 0: it derives by steps. False where there is no room for one shape of this graph.
-bool limitTurns(shader::SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup,
-                bool isKernel);
+/// kernel that derives by batches; 0: it derives by steps.
+TurnsLimit limitTurns(shader::SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup,
+                      bool isKernel);
 /// Records that a workgroup makes vertices of at once, and how often.
 struct Expansion {
   uint32_t records, times;

@@ -1,4 +1,4 @@
-// Twin of raster: every pixel front to back, sample by sample, with groups, clips and exact areas.
+// The CPU reference of raster: every pixel front to back, sample by sample, with groups, clips and exact areas.
 //
 // How far the GPU may be off follows the light: what a path's colour is in doubt, times its weight; where its alpha is,
 // all that lies behind, which is no brighter than the brightest colour of the record; and rounding of weights.

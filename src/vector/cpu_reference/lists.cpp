@@ -1,4 +1,4 @@
-// Twin of place's bins, sift and split: which paths a tile's list has, and which shader takes the tile.
+// The CPU reference of place's bins, sift and split: which paths a tile's list has, and which shader takes the tile.
 #include "vector/cpu_reference/cpu_reference.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Twin of what paints: gradients and images at a point, with bounds of what a device may make of it.
+// The CPU reference of what paints: gradients and images at a point, with bounds of what a device may make of it.
 //
 // Vulkan leaves + - * to single rounding (contracted or not), division to 2.5 units of the last place, square roots to
 // about as much, and filters place samples between texels to 1/256 (subTexelPrecisionBits). So a point in the paint's

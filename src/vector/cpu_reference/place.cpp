@@ -1,4 +1,4 @@
-// Twin of begin, place, mark, smallGlyph and fill: items, boxes of tiles, tile words, masks and areas.
+// The CPU reference of begin, place, mark, small glyphs and fill: items, boxes of tiles, tile words, masks and areas.
 #include "vector/cpu_reference/cpu_reference.h"
 #include "vector/place/placement.h"
 #include "vector/shared/color.h"
@@ -93,7 +93,7 @@ void markFlatSegment(const Grid& grid, const PlacedPath& p, const FlatSegment& f
   }
 }
 
-/// As smallGlyph finds a small glyph's tile words: from what changes in them.
+/// As the small glyphs pass finds a small glyph's tile words: from what changes in them.
 void smallGlyphWords(const CpuInput& input, const PlacedPath& p, std::span<const CpuCoverage> coverage,
                      std::span<TileWord> words) {
   const uint32_t width = input.header.width, height = input.header.height;
