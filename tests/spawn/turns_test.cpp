@@ -157,20 +157,8 @@ std::string weights(uint32_t count, const std::string& first, const std::string&
   return all;
 }
 
-// An operator is as long as its own expressions, not as the longest ones of others.
-TEST_F(TurnsTest, LongExpressionsBesideManySuccessorsAreTaken) {
-  make();
+TEST(Turns, WhatIsTooMuchIsRefusedWithTheNumbersThatDecide) {
   const std::string head = "axiom Box S;\nterminal A (1, 0);\nterminal B (1, 1);\n";
-  check("choices",
-        bake(head + "S = Translate(0, " + sumOf(30) + ", 0) RandomRule(Rand(0, 1)) { " + weights(16, "1", "1", "A") +
-             " | " + weights(16, "2", "2", "B") + " };\n"),
-        axiomsOf(10000));
-  check("divisions",
-        bake(head + "S = SubDiv(X) { " + weights(20, "Exp(ShapeSize(X) / 20)", "-1", "R") + " };\nR = Translate(0, " +
-             sumOf(20) + ", 0) RandomRule(Rand(0, 1)) { " + weights(8, "1", "1", "A") + " | " +
-             weights(8, "2", "2", "B") + " };\n"),
-        axiomsOf(2000));
-  // What one operator alone takes too much for is refused, with the numbers that decide it.
   const std::string wide = head + "S = RandomRule(Rand(0, 1)) { " + weights(32, sumOf(60), sumOf(60), "A") + " };\n";
   const spawn::Turns turns = spawn::turnsOf(graphOf(bake(wide)));
   shader::SpawnConstants constants{};

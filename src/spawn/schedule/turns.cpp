@@ -34,38 +34,6 @@ uint32_t lengthOf(const Graph& graph, const Parameter& parameter) {
   return std::min(codes, kDeviceTurns); // more is as bad
 }
 
-/// What evaluating parameters takes, at most over operators that invocations may be at beside each other: by a
-/// parameter's index, as a loop over parameters is as long as each of its turns is for the longest of them.
-class Values {
-public:
-  explicit Values(const Graph& graph) : graph_(graph), lengths_(graph.nodes.get_allocator().resource()) {}
-  void add(const Node& node) {
-    if (node.parameterCount > lengths_.size()) lengths_.resize(node.parameterCount, 0);
-    for (uint32_t i = 0; i < node.parameterCount; ++i)
-      lengths_[i] = std::max(lengths_[i], lengthOf(graph_, graph_.parameters[node.firstParameter + i]));
-  }
-  /// Of evaluate() for one.
-  uint32_t one(uint32_t index) const { return loop(index < lengths_.size() ? lengths_[index] : 0); }
-  /// Of a loop over `count` of them: the turn that finds its end runs the longest once more.
-  uint32_t over(uint32_t first, uint32_t count) const {
-    uint32_t turns = 1, longest = one(UINT32_MAX);
-    for (uint32_t i = first; i < first + count; ++i) {
-      turns += 1 + one(i);
-      longest = std::max(longest, one(i));
-    }
-    return turns + longest;
-  }
-  uint32_t longest() const {
-    uint32_t longest = one(UINT32_MAX);
-    for (uint32_t i = 0; i < lengths_.size(); ++i) longest = std::max(longest, one(i));
-    return longest;
-  }
-
-private:
-  const Graph& graph_;
-  std::pmr::vector<uint32_t> lengths_;
-};
-
 /// Of what terminals become as vertices, at most.
 uint32_t quadsOf(const Graph& graph) {
   uint32_t shapes = 0, quads = 6;
@@ -91,31 +59,23 @@ constexpr uint32_t kStepTurns = 512, kQueryTurns = 80;
 } // namespace
 
 Turns turnsOf(const Graph& graph) {
-  uint32_t choices = 1, parts = 1, edges = 1, cut = 0;
-  Values ofTransforms(graph), ofChoices(graph), ofDivisions(graph), ofFans(graph);
+  uint32_t codes = 0, choices = 1, parts = 1, edges = 1, cut = 0;
+  for (const Parameter& parameter : graph.parameters) codes = std::max(codes, lengthOf(graph, parameter));
   for (const Node& node : graph.nodes) {
-    if (node.op <= kOpSetGeometry) ofTransforms.add(node);
-    if (node.op > kOpSetGeometry && node.op <= kOpRandomRule) ofChoices.add(node);
     if (node.op == kOpRandomRule) choices = std::max(choices, node.edgeCount);
-    if (node.op == kOpSubDiv && node.division == UINT32_MAX) {
-      parts = std::max(parts, node.edgeCount);
-      ofDivisions.add(node);
-    }
-    if (node.op >= kOpCompSplit) {
-      edges = std::max(edges, node.edgeCount);
-      ofFans.add(node);
-    }
+    if (node.op == kOpSubDiv && node.division == UINT32_MAX) parts = std::max(parts, node.edgeCount);
+    if (node.op >= kOpCompSplit) edges = std::max(edges, node.edgeCount);
     cut = std::max(cut, cutsOf(graph, node));
   }
-  const uint32_t value = ofFans.longest();
-  const uint32_t division = ofDivisions.over(0, parts);            // divisionOf()
+  const uint32_t value = loop(codes);                              // evaluate()
+  const uint32_t division = loop(parts, value);                    // divisionOf()
   const uint32_t byWords = 2 * loop(edges) + division + loop(cut); // toChild()
   Turns turns;
   turns.fan = division + 2 * value + loop(edges) + loop(cut); // familyFan(), fanOf(): a Repeat, or others
   turns.child = byWords;
-  turns.family = loop(kFamilySteps);                            // toDescendant()
-  const uint32_t transform = ofTransforms.over(0, 3) + loop(3); // and rotationOf()
-  const uint32_t choose = ofChoices.one(0) + 2 * ofChoices.over(1, choices);
+  turns.family = loop(kFamilySteps);                   // toDescendant()
+  const uint32_t transform = loop(3, value) + loop(3); // and rotationOf()
+  const uint32_t choose = value + 2 * loop(choices, value);
   turns.passed = 1 + transform + choose + turns.fan + byWords;
   turns.chain = longestChain(graph);
   turns.phases = graph.phases > 0;
