@@ -1,5 +1,5 @@
-# The shaders of the vector service: one table from which the build rules, the includes and the arrays in
-# "shaders/vector_shaders.h" are made.
+# The shaders of the vector service: one table from which the build rules are made, what "shaders/vector_shaders.h"
+# declares, and the one source that holds the SPIR-V.
 #
 #   gpgp_vector_shader(NAME FILE [SUBGROUPS] [DRAWINGS] [TARGETS] DEFINES A=1 ...)
 #
@@ -9,7 +9,8 @@
 #   DRAWINGS    [0] one drawing, [1] several drawings, [2] projective items              ONE_DRAWING=1|0, PROJECTIVE=1
 #   TARGETS     [0] the history alone, [1] R8G8B8A8_UNORM, [2] R16G16B16A16_SFLOAT       TARGET=0|1|2
 set(vector_includes)
-set(vector_arrays)
+set(vector_declarations)
+set(vector_definitions)
 function(gpgp_vector_shader name file)
   cmake_parse_arguments(arg "SUBGROUPS;DRAWINGS;TARGETS" "" "DEFINES" ${ARGN})
   set(names vector_${name}) # name|define|define...
@@ -46,28 +47,31 @@ function(gpgp_vector_shader name file)
     list(APPEND values ${own})
   endforeach()
   set(vector_includes "${includes}" PARENT_SCOPE)
-  if(type)
-    set(spirv "std::span<const uint32_t>")
-    list(REVERSE type)
-    foreach(size IN LISTS type)
-      set(spirv "std::array<${spirv}, ${size}>")
+  set(spirv "std::span<const uint32_t>")
+  list(TRANSFORM values PREPEND spirv::)
+  list(LENGTH type depth)
+  if(depth EQUAL 2) # braces around each inner array
+    list(GET type 1 inner)
+    set(rows)
+    list(LENGTH values count)
+    math(EXPR last "${count} - 1")
+    foreach(begin RANGE 0 ${last} ${inner})
+      list(SUBLIST values ${begin} ${inner} row)
+      list(JOIN row ", " row)
+      list(APPEND rows "{{${row}}}")
     endforeach()
-    list(LENGTH type depth)
-    if(depth EQUAL 2) # braces around each inner array
-      list(GET type 0 inner)
-      set(rows)
-      list(LENGTH values count)
-      math(EXPR last "${count} - 1")
-      foreach(begin RANGE 0 ${last} ${inner})
-        list(SUBLIST values ${begin} ${inner} row)
-        list(JOIN row ", " row)
-        list(APPEND rows "{{${row}}}")
-      endforeach()
-      set(values ${rows})
-    endif()
-    list(JOIN values ", " values)
-    set(vector_arrays "${vector_arrays}static const ${spirv} vector_${name} = {{${values}}};\n" PARENT_SCOPE)
+    set(values ${rows})
   endif()
+  list(JOIN values ", " values)
+  if(type)
+    set(values "{{${values}}}")
+  endif()
+  list(REVERSE type)
+  foreach(size IN LISTS type)
+    set(spirv "std::array<${spirv}, ${size}>")
+  endforeach()
+  set(vector_declarations "${vector_declarations}extern const ${spirv} vector_${name};\n" PARENT_SCOPE)
+  set(vector_definitions "${vector_definitions}constinit const ${spirv} vector_${name} = ${values};\n" PARENT_SCOPE)
 endfunction()
 
 # ---------------------------------------------------------------- table
@@ -138,12 +142,25 @@ foreach(stage vert frag)
   gpgp_add_shader(gpgp_vector_objects vector_draw_${stage}_multiview vector/raster/draw.${stage} DEFINES MULTIVIEW=1)
 endforeach()
 
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/shaders/vector_shaders.h CONTENT [[
+set(generated ${PROJECT_BINARY_DIR}/generated/shaders)
+file(CONFIGURE OUTPUT ${generated}/vector_shaders.h CONTENT [[
 // By src/vector/shaders.cmake.
 #pragma once
-@vector_includes@
 #include <array>
 #include <cstdint>
 #include <span>
 
-@vector_arrays@]] @ONLY)
+namespace gpgp::vector {
+@vector_declarations@} // namespace gpgp::vector
+]] @ONLY)
+file(CONFIGURE OUTPUT ${generated}/vector_shaders.cpp CONTENT [[
+// By src/vector/shaders.cmake.
+#include "shaders/vector_shaders.h"
+
+namespace gpgp::vector {
+namespace spirv {
+@vector_includes@} // namespace spirv
+
+@vector_definitions@} // namespace gpgp::vector
+]] @ONLY)
+target_sources(gpgp_vector_objects PRIVATE ${generated}/vector_shaders.cpp)
