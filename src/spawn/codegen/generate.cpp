@@ -325,13 +325,13 @@ private:
 
   // ---------------------------------------------------------------- chains
 
-  /// A shape leaves along an edge: goes on, waits or ends. followed: depth has been counted.
-  std::string take(const Node& node, uint32_t index, bool followed = false) {
+  /// A shape leaves along an edge: goes on, waits or ends.
+  std::string take(const Node& node, uint32_t index) {
     const Edge& edge = edgeOf(node, index);
     if (edge.target == kNoNode) return "end = kEndDiscarded;";
     std::string text =
         "s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(edgeOf(peer, index).target); }) + "; ";
-    if (edge.recursive && !followed) text += "s.depth += 1u; ";
+    if (edge.recursive) text += "s.depth += 1u; ";
     const Node& target = graph_.nodes[edge.target];
     const char* end = target.op == kOpTerminal                                      ? "kEndTerminal"
                       : waits_[edge.target] || edge.recursive || multiplies(target) ? "kEndWaits"
@@ -490,7 +490,6 @@ private:
     if (kept == kNoNode) return add("  return kEndDiscarded;\n");
     std::string there = "true";
     const std::string place = number(kept);
-    bool followed = false;
     if (node.op == kOpReplicate) {
       add("  toCopy(s, " + place + ");\n");
     } else if (node.op == kOpCompSplit) {
@@ -514,16 +513,10 @@ private:
     } else { // by the words; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n");
-      followed = node.op == kOpRepeat;
-      if (followed)
-        add("  const Fan fan = fanOf(s);\n  if (fan.count == 0u) return kEndDiscarded;\n  toChild(s, fan, 0u);\n"
-            "  if (s.node == 0u) return kEndDiscarded;\n");
-      else
-        add("  const Division d = divisionOf(s, " + place + ");\n");
-      if (!followed)
-        there = "d.fan.count != 0u && toPart(s, " + number(node.argument) + ", d.fan.extent, d.part, " + place + ")";
+      add("  const Division d = divisionOf(s, " + place + ");\n");
+      there = "d.fan.count != 0u && toPart(s, " + number(node.argument) + ", d.fan.extent, d.part, " + place + ")";
     }
-    add("  if (" + there + ") { " + take(node, kept, followed) + " }\n");
+    add("  if (" + there + ") { " + take(node, kept) + " }\n");
   }
 
   /// By node: whether a shape can come there that no chain has brought.
