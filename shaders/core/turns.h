@@ -22,12 +22,13 @@ GPGP_CONST uint kDeviceTurns = 65535u; ///< of a software device's shader
 
 #ifndef __cplusplus
 /// Whether the device has ended a loop of this shader before its time, for an invocation of the subgroup. one: 1, as no
-/// compiler may know.
+/// compiler may know. A loop that is ended makes its first turn all the same, so this one has two; and what is compared
+/// is not the loop's own condition, which compilers take as settled behind the loop.
 bool loopsWereEnded(uint one) {
-  uint turns = 0u;
-  for (; turns < one; ++turns) {
-  }
-  return turns < one;
+  const uint two = one + one;
+  uint made = 0u;
+  for (uint turns = 0u; turns < two; ++turns) made += one;
+  return made < two;
 }
 #endif
 

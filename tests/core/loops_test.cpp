@@ -3,6 +3,9 @@
 #include "core/turns.h"
 #include "host/kernel.h"
 #include "shaders/loops.spv.h"
+#ifdef GPGP_TEST_OPTIMIZED
+#include "spawn/codegen/compile_kernel.h"
+#endif
 
 #include <gtest/gtest.h>
 
@@ -20,12 +23,12 @@ struct Made {
   uint32_t first, outer, inner, last, ended, unused;
 };
 
-std::vector<Made> run(host::HeadlessDevice& device, const Loops& loops) {
+std::vector<Made> run(host::HeadlessDevice& device, std::span<const uint32_t> shader, const Loops& loops) {
   const auto input = host::makeBuffer(
       device, std::vector<uint32_t>{1, loops.first, loops.outer, loops.inner, loops.innerLanes, loops.last},
       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   const host::Buffer output(device, kInvocations * sizeof(Made), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  host::ComputeKernel kernel(device, ::loops, 2);
+  host::ComputeKernel kernel(device, shader, 2);
   kernel.run({&input, &output}, nullptr, kInvocations / 64);
   return host::download<Made>(device, output, kInvocations);
 }
@@ -33,10 +36,10 @@ std::vector<Made> run(host::HeadlessDevice& device, const Loops& loops) {
 /// How many turns the device counts: one more for each time that a loop is run.
 uint64_t countOf(const Loops& loops) {
   const uint64_t inner = uint64_t(loops.outer) * ((loops.innerLanes ? loops.inner : 0) + 1) + 1;
-  return uint64_t(loops.first) + 1 + loops.outer + 1 + inner + loops.last + 1 + 2;
+  return uint64_t(loops.first) + 1 + loops.outer + 1 + inner + loops.last + 1 + 3;
 }
 
-TEST(Loops, AreWholeBelowTheBoundAndElseKnownToHaveEnded) {
+void expectWholeOrKnown(std::span<const uint32_t> shader) {
   host::HeadlessDevice device(host::DeviceOptions{.validation = true});
   const Loops cases[] = {
       {10, 10, 10, 64, 10},   {65000, 0, 0, 0, 100},  {65534, 0, 0, 0, 10},    {65535, 0, 0, 0, 10},
@@ -48,7 +51,7 @@ TEST(Loops, AreWholeBelowTheBoundAndElseKnownToHaveEnded) {
   for (const Loops& loops : cases) {
     SCOPED_TRACE(testing::Message() << loops.first << ' ' << loops.outer << ' ' << loops.inner << " for "
                                     << loops.innerLanes << ' ' << loops.last);
-    const std::vector<Made> made = run(device, loops);
+    const std::vector<Made> made = run(device, shader, loops);
     uint32_t cut = 0;
     for (uint32_t i = 0; i < kInvocations; ++i) {
       const uint32_t inner = i % 64 < loops.innerLanes ? loops.outer * loops.inner : 0;
@@ -67,5 +70,15 @@ TEST(Loops, AreWholeBelowTheBoundAndElseKnownToHaveEnded) {
   }
   for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
 }
+
+TEST(Loops, AreWholeBelowTheBoundAndElseKnownToHaveEnded) { expectWholeOrKnown(loops); }
+
+#ifdef GPGP_TEST_OPTIMIZED
+TEST(Loops, AreSoInShadersThatTheKernelCompilerOptimised) {
+  const std::vector<uint32_t> optimized = spawn::optimize(loops);
+  ASSERT_FALSE(optimized.empty());
+  expectWholeOrKnown(optimized);
+}
+#endif
 
 } // namespace

@@ -125,6 +125,7 @@ TEST_F(TurnsTest, ChainsOfChoicesHaveNoTerminalThatTheGrammarHasNot) {
 
 TEST_F(TurnsTest, ChainsOfChoicesInEverySchedule) {
   make();
+  checkSchedules("k7", bake(fileCase("k7")), axiomsOf(10000));
   checkSchedules("k30", bake(fileCase("k30")), axiomsOf(10000));
 }
 
@@ -166,6 +167,18 @@ TEST(Turns, WhatIsTooMuchIsRefusedWithTheNumbersThatDecide) {
   EXPECT_FALSE(limit);
   EXPECT_GT(limit.needed, limit.most);
   EXPECT_GT(limit.needed, 2u * 32 * 30);
+}
+
+TEST_F(TurnsTest, LongExpressionsBesideChoicesOfManyAreNotMultiplied) {
+  make({.maxRounds = 64});
+  // One operator with a sum of 60 terms, another with 32 weights; half of the invocations are in each.
+  std::string head = "axiom Box S;\n", terminals;
+  for (uint32_t i = 0; i < 32; ++i) head += "terminal D" + std::to_string(i) + " (1, " + std::to_string(i) + ");\n";
+  for (uint32_t i = 0; i < 32; ++i) terminals += (i ? " | 1: D" : "1: D") + std::to_string(i);
+  std::string text = head + "S = Scale(Rand(0, 10), 1, 1) IfSizeLess(X, 5) { P | Q };\n";
+  text += "P = Translate(" + sumOf(60) + ", " + sumOf(40) + ", 0) Q;\nQ = RandomRule(Rand(0, 1)) { " + terminals;
+  text += " };\n";
+  check("a long sum beside 32 weights", bake(text), axiomsOf(10000));
 }
 
 TEST_F(TurnsTest, ManyChildrenOfFewAxioms) {

@@ -20,12 +20,7 @@ layout(constant_id = 3) const bool oneSubgroup = false;
 #else
 const bool oneSubgroup = false;
 #endif
-// Whether the device counts turns of loops (core/turns.h); pipelines of others have nothing of it.
-#ifdef GPGP_SOFTWARE
-const bool turnsCount = true;
-#else
-layout(constant_id = 4) const bool turnsCount = false;
-#endif
+#include "spawn/derive/turns_count.glsl"
 layout(local_size_x_id = 0) in;
 #ifdef GPGP_COLLIDERS
 layout(push_constant) uniform Push {

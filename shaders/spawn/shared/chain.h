@@ -11,10 +11,11 @@
 #else
 #define GPGP_OPERATOR_PASSED
 #endif
-#if !defined(__cplusplus) && (defined(GPGP_SOFTWARE) || defined(GPGP_COLLIDERS))
-#define GPGP_CHAIN_LENGTH record.chainLength
-#else
+#ifdef __cplusplus
 #define GPGP_CHAIN_LENGTH kMaxChain
+#else
+#include "spawn/derive/turns_count.glsl"
+#define GPGP_CHAIN_LENGTH (turnsCount ? record.chainLength : kMaxChain)
 #endif
 
 GPGP_SHADER_BEGIN

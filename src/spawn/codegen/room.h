@@ -2,15 +2,13 @@
 // linear time: with code for all of them, a chain of n rules would take n^2 operators, and choices that meet again 2^n.
 #pragma once
 #include "spawn/graph/graph.h"
+#include "spawn/graph/kernel.h"
 
 #include <vector>
 
 namespace gpgp::spawn {
 
-/// The code that a kernel has room for, in operators. Each counts wherever it is inlined, with a share for its
-/// expressions and edges, and more where it keeps one of several shapes. The sample grammars need 2 to 138.
-constexpr uint32_t kRoom = 256;
-/// Where that does not suffice: the same for chains beside the loop that runs the others.
+/// Where kRoom does not suffice: the room for chains beside the loop that runs the others.
 constexpr uint32_t kRoomBesideWords = 96;
 
 /// What code and expressions of an operator by itself are worth.

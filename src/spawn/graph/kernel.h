@@ -31,6 +31,10 @@ enum class KernelTarget : uint32_t {
   software   ///< on the CPU, and with them (shaders/spawn/derive/derive_batches.glsl); workgroups are subgroups
 };
 
+/// The code that a kernel has room for, in operators. Each counts wherever it is inlined, with a share for its
+/// expressions and edges, and more where it keeps one of several shapes. The sample grammars need 2 to 138.
+constexpr uint32_t kRoom = 256;
+
 /// What one kernel is for.
 struct KernelInfo {
   Fit fit;

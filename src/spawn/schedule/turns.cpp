@@ -56,27 +56,62 @@ constexpr uint32_t kFamilySteps = 16;
 /// Moving shapes between the stack and elsewhere, and what else a step by itself does: ranks, sums, and the search for
 /// a parent, over 64 invocations in subgroups of at least four.
 constexpr uint32_t kStepTurns = 512, kQueryTurns = 80;
+/// Of kRoom, what a SubDiv that keeps one of its parts takes at least: with parts by expressions, or one that cuts.
+constexpr uint32_t kDivisionRoom = 16, kCutRoom = 5;
+
+/// Turns that a loop with an expression in each of its turns takes, where invocations run it for operators of their own:
+/// in each turn the longest expression of any of them counts.
+class LoopOfExpressions {
+public:
+  void add(uint32_t turn, uint32_t codes) {
+    if (turn >= longest_.size()) longest_.resize(turn + 1);
+    longest_[turn] = std::max(longest_[turn], codes);
+  }
+  uint32_t turns() const {
+    uint32_t all = loop(0, loop(0)); // the turn that finds the end
+    for (const uint32_t codes : longest_) all = std::min(all + 1 + loop(codes), kDeviceTurns);
+    return all;
+  }
+
+private:
+  std::vector<uint32_t> longest_; // by turn
+};
 } // namespace
 
 Turns turnsOf(const Graph& graph) {
-  uint32_t codes = 0, choices = 1, parts = 1, edges = 1, cut = 0;
-  for (const Parameter& parameter : graph.parameters) codes = std::max(codes, lengthOf(graph, parameter));
+  // A loop of the shaders takes as many turns as the worst operator that runs it; invocations with other operators run
+  // other loops meanwhile, so that those add up.
+  LoopOfExpressions transform, weights, parts; // loops of transform(), chooseEdge() and divisionOf()
+  uint32_t chosenBy = 0, repeatedBy = 0, edges = 1, cut = 0;
+  bool rotates = false, keepsPart = false, keepsPiece = false; // of operators that kernels have code with loops for
   for (const Node& node : graph.nodes) {
-    if (node.op == kOpRandomRule) choices = std::max(choices, node.edgeCount);
-    if (node.op == kOpSubDiv && node.division == UINT32_MAX) parts = std::max(parts, node.edgeCount);
-    if (node.op >= kOpCompSplit) edges = std::max(edges, node.edgeCount);
-    cut = std::max(cut, cutsOf(graph, node));
+    const auto codes = [&](uint32_t i) {
+      return i < node.parameterCount ? lengthOf(graph, graph.parameters[node.firstParameter + i]) : 0;
+    };
+    if (node.op <= kOpSetGeometry) {
+      for (uint32_t i = 0; i < std::min(node.parameterCount, 3u); ++i) transform.add(i, codes(i));
+      rotates |= node.op == kOpRotate;
+    } else if (node.op <= kOpRandomRule) {
+      chosenBy = std::max(chosenBy, codes(0));
+      for (uint32_t e = 0; node.op == kOpRandomRule && e < node.edgeCount; ++e) weights.add(e, codes(e + 1));
+    } else if (node.op >= kOpCompSplit) {
+      edges = std::max(edges, node.edgeCount);
+      cut = std::max(cut, cutsOf(graph, node));
+      if (node.op == kOpRepeat) repeatedBy = std::max(repeatedBy, codes(0));
+      keepsPart |= node.filter && node.op == kOpSubDiv && node.division == UINT32_MAX;
+      keepsPiece |= node.filter && cutsOf(graph, node);
+      if (node.op == kOpSubDiv && node.division == UINT32_MAX)
+        for (uint32_t e = 0; e < node.edgeCount; ++e) parts.add(e, codes(e));
+    }
   }
-  const uint32_t value = loop(codes);                              // evaluate()
-  const uint32_t division = loop(parts, value);                    // divisionOf()
-  const uint32_t byWords = 2 * loop(edges) + division + loop(cut); // toChild()
+  const uint32_t division = parts.turns();
   Turns turns;
-  turns.fan = division + 2 * value + loop(edges) + loop(cut); // familyFan(), fanOf(): a Repeat, or others
-  turns.child = byWords;
-  turns.family = loop(kFamilySteps);                   // toDescendant()
-  const uint32_t transform = loop(3, value) + loop(3); // and rotationOf()
-  const uint32_t choose = value + 2 * loop(choices, value);
-  turns.passed = 1 + transform + choose + turns.fan + byWords;
+  turns.fan = division + 2 * loop(repeatedBy) + loop(edges) + loop(cut); // fanOf() and familyFan()
+  turns.child = 2 * loop(edges) + division + loop(cut);              // toChild()
+  turns.family = loop(kFamilySteps);                                 // toDescendant()
+  turns.passed = 1 + transform.turns() + loop(3) + loop(chosenBy) + 2 * weights.turns() + turns.fan + turns.child;
+  turns.code = (rotates ? kRoom * loop(3) : 0) + (keepsPart ? kRoom / kDivisionRoom * division : 0) +
+               (keepsPiece ? kRoom / kCutRoom * loop(cut) : 0);
   turns.chain = longestChain(graph);
   turns.phases = graph.phases > 0;
   turns.quads = quadsOf(graph);
@@ -104,8 +139,9 @@ TurnsLimit limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& 
   } else {
     // Each step counts as the worst one. Queries are counted as they are made, and one has room for as much as all
     // else.
-    constants.childTurns = chain + kQueryTurns;
-    constants.batchTurns = kStepTurns + turns.fan + turns.child + turns.family + chain;
+    const uint32_t code = isKernel ? turns.code : 0;
+    constants.childTurns = chain + code + kQueryTurns;
+    constants.batchTurns = kStepTurns + turns.fan + turns.child + turns.family + chain + code;
     constants.childrenAtOnce = 1;
     constants.leftTurns = 24;
     const uint32_t steps = turns.phases ? 1 : std::max(fit.stackShapes / fit.groupSize, 2u) - 1; // of a batch

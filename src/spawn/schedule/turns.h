@@ -12,6 +12,7 @@ struct Turns {
   uint32_t fan = 0;    ///< how many children there are
   uint32_t child = 0;  ///< one of them
   uint32_t family = 0; ///< and more of them, by a kernel's table
+  uint32_t code = 0;   ///< code for chains in a kernel that derives by steps
   uint32_t chain = 0;  ///< operators that one shape passes at most before it waits or ends, and at most kMaxChain
   bool phases = false; ///< there are Collider or IfCollides
   uint32_t quads = 0;  ///< of a terminal's vertices
