@@ -107,8 +107,7 @@ core::Result<std::vector<uint32_t>> compile(const KernelSource& source, KernelTa
   std::vector<uint32_t> words;
   glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), words);
   const std::vector<uint32_t> optimized = optimize(words);
-  if (optimized.empty())
-    return core::makeError(GPGP_ERROR_UNSUPPORTED, "the generated kernel could not be optimised");
+  if (optimized.empty()) return core::makeError(GPGP_ERROR_UNSUPPORTED, "the generated kernel could not be optimised");
   std::vector<uint32_t> code{static_cast<uint32_t>(source.table.size())};
   code.insert(code.end(), source.table.begin(), source.table.end());
   code.insert(code.end(), optimized.begin(), optimized.end());

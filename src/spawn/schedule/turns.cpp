@@ -59,8 +59,8 @@ constexpr uint32_t kStepTurns = 512, kQueryTurns = 80;
 /// Of kRoom, what a SubDiv that keeps one of its parts takes at least: with parts by expressions, or one that cuts.
 constexpr uint32_t kDivisionRoom = 16, kCutRoom = 5;
 
-/// Turns that a loop with an expression in each of its turns takes, where invocations run it for operators of their own:
-/// in each turn the longest expression of any of them counts.
+/// Turns that a loop with an expression in each of its turns takes, where invocations run it for operators of their
+/// own: in each turn the longest expression of any of them counts.
 class LoopOfExpressions {
 public:
   void add(uint32_t turn, uint32_t codes) {
@@ -107,8 +107,8 @@ Turns turnsOf(const Graph& graph) {
   const uint32_t division = parts.turns();
   Turns turns;
   turns.fan = division + 2 * loop(repeatedBy) + loop(edges) + loop(cut); // fanOf() and familyFan()
-  turns.child = 2 * loop(edges) + division + loop(cut);              // toChild()
-  turns.family = loop(kFamilySteps);                                 // toDescendant()
+  turns.child = 2 * loop(edges) + division + loop(cut);                  // toChild()
+  turns.family = loop(kFamilySteps);                                     // toDescendant()
   turns.passed = 1 + transform.turns() + loop(3) + loop(chosenBy) + 2 * weights.turns() + turns.fan + turns.child;
   turns.code = (rotates ? kRoom * loop(3) : 0) + (keepsPart ? kRoom / kDivisionRoom * division : 0) +
                (keepsPiece ? kRoom / kCutRoom * loop(cut) : 0);
