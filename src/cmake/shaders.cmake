@@ -9,6 +9,7 @@ find_program(GPGP_SPIRV_VAL spirv-val REQUIRED)
 
 function(gpgp_add_shader target name source)
   cmake_parse_arguments(arg "" "" "DEFINES" ${ARGN})
+  set_property(GLOBAL APPEND_STRING PROPERTY gpgp_shader_files "${name} ${source}\n") # for tests/docs
   cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/shaders)
   set(dir ${PROJECT_BINARY_DIR}/generated/shaders)
   file(MAKE_DIRECTORY ${dir})

@@ -1,0 +1,24 @@
+// The pass lists of recorders with everything that a recorder can have, without a device. Each service has a source of
+// its own, as the layouts of two do not go into one.
+#pragma once
+#include "core/device.h"
+#include "core/passes.h"
+
+namespace gpgp::test {
+
+core::PassList canvasPasses(bool software);
+core::PassList visibilityPasses();
+
+/// With all features, and limits as devices have them.
+inline core::Device deviceOf(bool software) {
+  core::Device device;
+  device.software = software;
+  device.subgroupArithmetic = true;
+  device.subgroupSize = software ? 8 : 32;
+  device.features = GPGP_FEATURE_BUFFER_INT64_ATOMICS;
+  device.limits.maxStorageBufferRange = 1u << 27;
+  device.limits.maxComputeSharedMemorySize = 32768;
+  return device;
+}
+
+} // namespace gpgp::test

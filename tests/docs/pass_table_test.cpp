@@ -1,0 +1,134 @@
+// docs/internals/passes.md lists what each pass reads and writes. It is made from the pass lists that recorders are
+// made from, and this test fails where it is out of date:
+//
+//   pass_table_test          compares
+//   pass_table_test --write  writes it
+#include "pass_lists.h"
+
+#include "host/files.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace {
+using namespace gpgp;
+
+/// From SPIR-V to its source below shaders/.
+class ShaderFiles {
+public:
+  ShaderFiles() {
+    std::ifstream list(GPGP_SHADER_FILES);
+    for (std::string name, file; list >> name >> file;) {
+      const std::vector<uint8_t> bytes = host::readFile(std::string(GPGP_SHADER_FOLDER "/") + name + ".spv");
+      files_[{bytes.begin(), bytes.end()}] = file;
+    }
+  }
+  std::string of(const core::ShaderDesc& shader) const {
+    const auto* bytes = reinterpret_cast<const uint8_t*>(shader.spirv.data());
+    const auto found = files_.find({bytes, bytes + shader.spirv.size_bytes()});
+    if (found == files_.end()) throw std::runtime_error(std::string("no source for the shader of ") + shader.name);
+    return found->second;
+  }
+
+private:
+  std::map<std::vector<uint8_t>, std::string> files_;
+};
+
+struct Row {
+  std::string name, file;
+  std::set<std::string> reads, writes;
+};
+
+/// A pass without its form: "mark, several drawings" and "raster rgba8" are forms of mark and raster.
+std::string withoutForm(std::string name) {
+  name = name.substr(0, name.find(", "));
+  for (const char* form : {" rgba8", " rgba16f"})
+    if (name.ends_with(form)) name.resize(name.size() - std::strlen(form));
+  return name;
+}
+/// One of several of a kind: "drawing 3" is one of the drawings, "images[3]" of the images.
+std::string withoutNumber(const std::string& name) {
+  if (name.starts_with("drawing ")) return "drawings";
+  return name.substr(0, name.find('['));
+}
+
+std::string joined(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "–" : text;
+}
+
+std::string tableOf(const core::PassList& list, const ShaderFiles& files) {
+  std::vector<Row> rows;
+  for (const core::Pass& pass : list.passes) {
+    const std::string name = withoutForm(pass.name);
+    const bool fills = pass.kind == core::PassKind::fill;
+    const std::string file = fills ? "(fill)" : files.of(list.shaders[pass.shader]);
+    auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == name && r.file == file; });
+    if (row == rows.end()) row = rows.insert(rows.end(), Row{name, file, {}, {}});
+    const auto nameOf = [&](core::ResourceIndex resource) { return withoutNumber(list.resources[resource].name); };
+    if (fills) row->writes.insert(nameOf(pass.target));
+    if (pass.kind == core::PassKind::dispatchIndirect) row->reads.insert(nameOf(pass.target));
+    for (uint32_t u = 0; u < pass.useCount; ++u) {
+      const core::Use& use = pass.uses[u];
+      if (use.kind != core::UseKind::write) row->reads.insert(nameOf(use.resource));
+      if (use.kind == core::UseKind::write || use.kind == core::UseKind::readWrite)
+        row->writes.insert(nameOf(use.resource));
+    }
+  }
+  for (size_t r = 0; r < rows.size(); ++r) // passes that differ in nothing that the table has share a row
+    for (size_t other = r + 1; other < rows.size();)
+      if (rows[other].file == rows[r].file && rows[other].reads == rows[r].reads &&
+          rows[other].writes == rows[r].writes) {
+        rows[r].name += ", " + rows[other].name;
+        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(other));
+      } else {
+        ++other;
+      }
+  std::string text = "| pass | file | reads | writes |\n|---|---|---|---|\n";
+  for (const Row& row : rows)
+    text += "| " + row.name + " | `" + row.file + "` | " + joined(row.reads) + " | " + joined(row.writes) + " |\n";
+  return text;
+}
+
+std::string page() {
+  const ShaderFiles files;
+  return "# Passes\n\n"
+         "Each recorder describes its work once as a list of passes. From the list come barriers, scratch, debug "
+         "labels\n"
+         "and timestamps. These tables are made from the lists by `pass_table_test --write`, and the test fails where\n"
+         "they are out of date. Files lie below `shaders/`. Forms of a pass, of which a recording runs one, share a "
+         "row,\n"
+         "and so do passes of one file that use the same resources. What a pass does is in [spawn](spawn.md),\n"
+         "[vector](vector.md) and [visibility](visibility.md).\n\n"
+         "## Vector\n\n" +
+         tableOf(test::canvasPasses(false), files) + "\n### On software devices\n\n" +
+         tableOf(test::canvasPasses(true), files) +
+         "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are the passes `ids` as well.\n\n" +
+         tableOf(test::visibilityPasses(), files);
+}
+} // namespace
+
+int main(int count, char** arguments) try {
+  const char* path = GPGP_DOCS "/internals/passes.md";
+  const std::string text = page();
+  if (count > 1 && !std::strcmp(arguments[1], "--write")) {
+    std::ofstream(path) << text;
+    return 0;
+  }
+  std::ifstream file(path);
+  std::stringstream found;
+  found << file.rdbuf();
+  if (found.str() == text) return 0;
+  std::fprintf(stderr, "%s is out of date: run pass_table_test --write\n", path);
+  return 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
