@@ -631,6 +631,14 @@ TEST(SvgImport, Selectors) {
                                                 {"[ lang = 'en-GB' ]", true},
                                                 {"[lang][width].s#x", true},
                                                 {".p[class] > [class~=r] > rect", true},
+                                                {":root rect", true},
+                                                {"svg:Root > g/**/ rect", true},
+                                                {"rect:root", false},
+                                                {"g:root rect", false},
+                                                {"g > :root rect", false},
+                                                {":root(1) rect", false},
+                                                {"::root rect", false},
+                                                {":rooted rect", false},
                                                 {"g:hover", false}};
   for (const auto& [selector, fits] : cases) {
     const Import i = page("<style>" + std::string(selector) + " { fill: red }</style>" + drawing);
@@ -644,6 +652,8 @@ TEST(SvgImport, Selectors) {
                                                               {"#x{fill:red} .p .q .s.t[lang]{fill:blue}", true},
                                                               {"#a rect{fill:blue} #x{fill:red}", false},
                                                               {"[lang]{fill:blue} .s{fill:red}", true},
+                                                              {":root rect{fill:red} svg g rect{fill:blue}", true},
+                                                              {".s{fill:blue} :root rect{fill:red}", true},
                                                               {".p rect{fill:red} .q rect{fill:blue}", false},
                                                               {"g g rect{fill:red} g > rect{fill:blue}", true}}) {
     const Import i = page("<style>" + rules + "</style>" + drawing);

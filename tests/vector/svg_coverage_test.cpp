@@ -394,6 +394,14 @@ TEST(SvgCoverage, TheOutermostElementHasABox) {
     EXPECT_EQ(rooted(style).placed, Texts()) << style;
     EXPECT_LE(worst(picture(rooted(style)), picture(blue)), kSame) << style;
   }
+  for (const char* rule :
+       {":root{background:#00f}", "svg:root{background-color:blue}", "*:ROOT { color:blue; background:currentColor }",
+        "svg{background:red} :root{background:#00f}", ":root{background:#00f} svg{background:red}",
+        "*{background:#00f}", ":root:root{background:#00f} :root{background:red}"}) {
+    const Import styled = page(std::string("<style>") + rule + "</style>" + box);
+    EXPECT_EQ(styled.placed, Texts()) << rule;
+    EXPECT_LE(worst(picture(styled), picture(blue)), kSame) << rule;
+  }
   for (const char* style : {"background:none", "background:transparent", "background-color:initial", "border:0",
                             "background:#00f;background:none", "visibility:visible;padding:0", "background:repeat"}) {
     EXPECT_EQ(rooted(style).placed, Texts()) << style;

@@ -13,19 +13,27 @@ struct TileDifference {
   std::string where() const { return "the tile at " + std::to_string(x) + " " + std::to_string(y); }
 };
 
-/// The tile whose pixels differ most on average; differs(x, y): how far a pixel does.
-template <class Differs> TileDifference worstTile(uint32_t width, uint32_t height, const Differs& differs) {
-  constexpr uint32_t kSide = 8;
-  TileDifference worst;
-  for (uint32_t top = 0; top < height; top += kSide)
-    for (uint32_t left = 0; left < width; left += kSide) {
-      const uint32_t right = std::min(left + kSide, width), bottom = std::min(top + kSide, height);
+constexpr uint32_t kTileSide = 8;
+
+/// Calls call(tile) for each tile; differs(x, y): how far a pixel does.
+template <class Differs, class Call>
+void forTiles(uint32_t width, uint32_t height, const Differs& differs, const Call& call) {
+  for (uint32_t top = 0; top < height; top += kTileSide)
+    for (uint32_t left = 0; left < width; left += kTileSide) {
+      const uint32_t right = std::min(left + kTileSide, width), bottom = std::min(top + kTileSide, height);
       double sum = 0;
       for (uint32_t y = top; y < bottom; ++y)
         for (uint32_t x = left; x < right; ++x) sum += static_cast<double>(differs(x, y));
-      const double mean = sum / (double(right - left) * double(bottom - top));
-      if (mean > worst.mean) worst = {left, top, mean};
+      call(TileDifference{left, top, sum / (double(right - left) * double(bottom - top))});
     }
+}
+
+/// The tile whose pixels differ most on average.
+template <class Differs> TileDifference worstTile(uint32_t width, uint32_t height, const Differs& differs) {
+  TileDifference worst;
+  forTiles(width, height, differs, [&worst](const TileDifference& tile) {
+    if (tile.mean > worst.mean) worst = tile;
+  });
   return worst;
 }
 

@@ -238,8 +238,11 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
   const double grid = std::ldexp(1.0, exponent - 24);
 
   size_t crossings = 0, work = 0;
-  /// False where that has become too much. The same way round in every band: a meeting exactly on a band's border
-  /// counts for one of the two.
+  const auto isLittle = [&] {
+    return crossings <= kMaxCrossings && work <= kMaxWork + kWorkOfPiece * pieces.size() + kWorkOfCrossing * crossings;
+  };
+  /// False where that has become too much, as below. The same way round in every band: a meeting exactly on a band's
+  /// border counts for one of the two.
   const auto search = [&](PairSearch& pair, uint32_t l, uint32_t r, const PairSearch::Row& from,
                           const PairSearch::Row& to, bool bends) {
     pair.run(from, to, bends, [&](double y) {
@@ -249,12 +252,12 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
         if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back({piece, cut});
     });
     work += kWorkOfRow * pair.rows();
-    return crossings <= kMaxCrossings && work <= kMaxWork + kWorkOfPiece * pieces.size() + kWorkOfCrossing * crossings;
+    return isLittle();
   };
   const auto compare = [&](uint32_t l, uint32_t r, double from, double to) {
     if (l > r) std::swap(l, r);
     ++work;
-    if (sideByHull(pieces[l], pieces[r]) != 0) return true;
+    if (sideByHull(pieces[l], pieces[r]) != 0) return isLittle();
     PairSearch pair(pieces[l], pieces[r]);
     const PairSearch::Row above = pair.row(from);
     return search(pair, l, r, above, pair.row(to), true);
@@ -269,8 +272,10 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
                           below = pair.row(to, l.to == to ? &l.last : nullptr, r.to == to ? &r.last : nullptr);
     // Pieces that change sides overlap; only where they do not, or just meet, there is something to save.
     if ((above.left() == below.left() || above.gap() == 0 || below.gap() == 0) &&
-        (PairSearch::apart(above, below) || sideByHull(pieces[l.piece], pieces[r.piece]) != 0))
-      return true;
+        (PairSearch::apart(above, below) || sideByHull(pieces[l.piece], pieces[r.piece]) != 0)) {
+      work += kWorkOfRow * pair.rows();
+      return isLittle();
+    }
     return search(pair, l.piece, r.piece, above, below, l.bends || r.bends);
   };
   const auto tooMuch = [&] {

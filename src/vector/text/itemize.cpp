@@ -125,9 +125,13 @@ bool wantsColor(std::span<const char32_t> grapheme) {
   return has(0xfe0f) && is(UCHAR_EMOJI) && (grapheme[0] >= 0x80 || has(0x20e3));
 }
 
-/// Of those that may be an emoji: to be shown as text, by its own default or by U+FE0E (UTS #51).
+/// White space, also where no line may break.
+bool isSpace(char32_t c) { return isWhite(c) || c == 0xa0 || c == 0x202f; }
+
+/// Spaces, and of what may be an emoji: to be shown as text, by its own default or by U+FE0E (UTS #51).
 bool wantsText(std::span<const char32_t> grapheme) {
-  return !wantsColor(grapheme) && u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), UCHAR_EMOJI) != 0;
+  return isSpace(grapheme[0]) ||
+         (!wantsColor(grapheme) && u_hasBinaryProperty(static_cast<UChar32>(grapheme[0]), UCHAR_EMOJI) != 0);
 }
 
 /// An emoji, as text too; digits, # and * are not.
@@ -150,6 +154,9 @@ bool sameShaping(const Style& a, const Style& b) {
 } // namespace
 
 namespace {
+
+// A letter with thousands of marks is shaped in parts: HarfBuzz takes time by the square of their number.
+constexpr uint32_t kMostTogether = 256;
 
 bool hasForm(const Font& font, std::span<const char32_t> characters) {
   return hasAll(font, characters) ||
@@ -205,14 +212,27 @@ size_t Itemizer::lengthIn(const Font& font, std::span<const char32_t> grapheme, 
   return length;
 }
 
+Font* Itemizer::fontBehind(uint32_t at, uint32_t end, uint32_t& behind) const {
+  const auto ends = [&](uint32_t i) {
+    return i == end || isNewline(text.characters[i]) || text.characters[i] == '\t' || styleOf[i] != styleOf[at];
+  };
+  behind = std::max(behind, at);
+  while (!ends(behind) && (isSpace(text.characters[behind]) || isIgnorable(text.characters[behind]))) ++behind;
+  if (ends(behind)) return nullptr;
+  uint32_t next = behind + 1;
+  while (next < end && !(flags[next] & kGrapheme) && next - behind < kMostTogether) ++next;
+  const auto grapheme = std::span(text.characters).subspan(behind, next - behind);
+  Font* font = fontOf(grapheme, styles[styleOf[at]]);
+  return isColored(*font) && isEmoji(grapheme) ? nullptr : font;
+}
+
 void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) const {
   resolveScripts(std::span(text.characters).subspan(begin, end - begin), scripts);
   const size_t first = runs.size();
   UScriptCode lastScript = USCRIPT_COMMON;
-  bool emoji = false; // the last run's font was taken for an emoji: its space is as wide as one
+  bool lent = false; // the last run's font is no text's: taken for an emoji, or for a space that the text's font lacks
+  uint32_t behind = begin; // the spaces
   for (uint32_t at = begin, next = 0; at < end; at = next) {
-    // A letter with thousands of marks is shaped in parts: HarfBuzz takes time by the square of their number.
-    constexpr uint32_t kMostTogether = 256;
     next = at + 1;
     while (next < end && !(flags[next] & kGrapheme) && next - at < kMostTogether) ++next;
     const bool whole = at == begin || (flags[at] & kGrapheme);
@@ -223,14 +243,16 @@ void Itemizer::paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) c
     Run* last = runs.size() > first ? &runs.back() : nullptr;
     if (run.kind == Run::Kind::text) {
       const auto grapheme = std::span(text.characters).subspan(at, next - at);
-      const bool stays = last && last->kind == Run::Kind::text && (isIgnorable(c) || (isWhite(c) && !emoji)) &&
+      const bool stays = last && last->kind == Run::Kind::text && (isIgnorable(c) || (isSpace(c) && !lent)) &&
                          styleOf[at - 1] == style && hasAll(*last->font, grapheme);
-      run.font = stays ? last->font : fontOf(grapheme, styles[style]);
+      // Spaces before a text, or between an emoji and a text, are that text's.
+      Font* const ofText = !stays && isSpace(c) ? fontBehind(at, end, behind) : nullptr;
+      run.font = stays ? last->font : ofText && hasAll(*ofText, grapheme) ? ofText : fontOf(grapheme, styles[style]);
       if (!stays) {
         next = run.end = at + static_cast<uint32_t>(lengthIn(*run.font, grapheme, styles[style]));
         run.parted = !whole && last && last->font != run.font;
       }
-      if (!stays) emoji = isColored(*run.font) && isEmoji(grapheme);
+      if (!stays) lent = (isColored(*run.font) && isEmoji(grapheme)) || (ofText && run.font != ofText);
       const UScriptCode script = scripts[at - begin];
       if (whole && last && last->kind == Run::Kind::text && last->level == run.level && last->font == run.font &&
           lastScript == script && sameShaping(styles[last->style], styles[style])) {

@@ -36,13 +36,16 @@ struct Itemizer {
   /// Appends the runs of a paragraph.
   void paragraph(uint32_t begin, uint32_t end, std::vector<Run>& runs) const;
   /// The font of a grapheme in a style: the first that has all its characters, for emoji the first such in colour,
-  /// where U+FE0E wants text the first such without, and where text is the character's default a font of emoji last;
-  /// else the one that has most of its first characters; else the first.
+  /// where U+FE0E wants text the first such without, and for spaces and where text is the character's default a
+  /// font of emoji last; else the one that has most of its first characters; else the first.
   static Font* fontOf(std::span<const char32_t> grapheme, const Style& style);
 
 private:
   /// How much of a grapheme is shaped in a font: what it has, and what no font of the style has behind that.
   static size_t lengthIn(const Font& font, std::span<const char32_t> grapheme, const Style& style);
+  /// The font of the first text of the same style behind the spaces that begin at a character; none where an
+  /// emoji is there, or nothing before the line's end or a tab. `behind` is where that is; it only grows.
+  Font* fontBehind(uint32_t at, uint32_t end, uint32_t& behind) const;
 };
 
 /// A character that leaves no mark where it is missing.

@@ -475,16 +475,77 @@ TEST(TextShape, SpacesBehindEmojiAreThoseOfText) {
         EXPECT_TRUE(paper.info.glyphs[i].cluster != offset || paper.info.glyphs[i].font == dejavu.get());
     }
   }
-  // The font of emoji comes first or alone: its space is taken as before. Letters of a later font keep its spaces.
+  // Where the font of emoji comes first, other fonts' spaces count; where it is alone, its own. Letters of a later font
+  // keep its spaces.
   for (const std::vector<GpgpFont>& chain : {std::vector<GpgpFont>{emoji.get(), dejavu.get()}, {emoji.get()}}) {
     ASSERT_EQ(paper.set(textInfo("👍 👍", chain, 100)), GPGP_SUCCESS);
     ASSERT_EQ(paper.info.glyphCount, 3u);
-    EXPECT_EQ(paper.info.glyphs[1].font, emoji.get());
+    EXPECT_EQ(paper.info.glyphs[1].font, chain.back());
   }
   const FontHandle latin = openFont("NotoSans-Regular.ttf");
   const std::string words = "صباح الخير";
   ASSERT_EQ(paper.set(textInfo(words, {latin.get(), arabic.get(), emoji.get()}, 100)), GPGP_SUCCESS);
   for (uint32_t i = 0; i < paper.info.glyphCount; ++i) EXPECT_EQ(paper.info.glyphs[i].font, arabic.get());
+}
+
+/// A space belongs to the text beside it, wherever the fonts with other spaces stand in the chain.
+TEST(TextShape, SpacesBeforeATextAreItsOwn) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle dejavu = openFont("DejaVuSans.ttf"), arabic = openFont("NotoNaskhArabic-Regular.ttf"),
+                   colored = openFont("AmiriQuranColored.ttf"), emoji = openFont("NotoColorEmoji.ttf");
+  Paper paper;
+  std::vector<GpgpFont> chain = {arabic.get(), colored.get(), dejavu.get(), emoji.get()};
+  std::sort(chain.begin(), chain.end());
+  do {
+    for (const char* each : {" x", "   x ", "\u00a0 x", " \u200bx", " 5 ©", "x\n x", "x\t x", "👍 x", " 👍 x", " x👍 x",
+                             " 👍  👍", " ", "  \t", " \n", "👍 "}) {
+      SCOPED_TRACE(each);
+      const std::string text = each;
+      ASSERT_EQ(paper.set(textInfo(text, chain, 20)), GPGP_SUCCESS);
+      // The font of the text before a glyph, or behind it, in its line and up to a tab; none where an emoji is there.
+      const auto beside = [&](uint32_t at, uint32_t step) -> GpgpFont {
+        for (uint32_t i = at + step; i < paper.info.glyphCount; i += step) {
+          const uint32_t cluster = paper.info.glyphs[i].cluster,
+                         from = std::min(cluster, paper.info.glyphs[at].cluster),
+                         to = std::max(cluster, paper.info.glyphs[at].cluster);
+          if (text.substr(from, to - from + 1).find_first_of("\t\n") != text.npos) return nullptr;
+          const unsigned char c = static_cast<unsigned char>(text[cluster]);
+          if (c == ' ' || c == 0xc2 || c == 0xe2) continue; // white, or nothing at all
+          return paper.info.glyphs[i].font == emoji.get() ? nullptr : paper.info.glyphs[i].font;
+        }
+        return nullptr;
+      };
+      for (uint32_t i = 0; i < paper.info.glyphCount; ++i) {
+        if (text[paper.info.glyphs[i].cluster] != ' ') continue;
+        const GpgpFont before = beside(i, UINT32_MAX), behind = beside(i, 1);
+        EXPECT_NE(paper.info.glyphs[i].font, emoji.get()) << i;
+        if (before || behind) {
+          EXPECT_EQ(paper.info.glyphs[i].font, before ? before : behind) << i;
+        }
+      }
+    }
+  } while (std::next_permutation(chain.begin(), chain.end()));
+}
+
+/// The letters of a required ligature cannot be parted: it has its first letter's colour, and no other letter loses
+/// its.
+TEST(TextShape, RequiredLigaturesHaveTheirFirstLettersColour) {
+  GPGP_NEEDS_FONTS();
+  const FontHandle font = openFont("DejaVuSans.ttf");
+  const std::vector<GpgpFont> fonts = {font.get()};
+  const std::string text = "سلام"; // its second and third letters are one glyph
+  Paper paper;
+  for (uint32_t letter = 0; letter < 4; ++letter) {
+    GpgpTextInfo info = textInfo(text, fonts, 20);
+    GpgpTextSpan span{letter * 2, letter * 2 + 2, info.style};
+    span.style.color[0] = 1;
+    info.spans = &span;
+    info.spanCount = 1;
+    ASSERT_EQ(paper.set(info), GPGP_SUCCESS);
+    ASSERT_EQ(paper.info.glyphCount, 3u);
+    for (uint32_t i = 0; i < paper.info.glyphCount; ++i)
+      EXPECT_EQ(paper.info.glyphs[i].color[0], paper.info.glyphs[i].cluster == letter * 2 ? 1 : 0) << letter;
+  }
 }
 
 TEST(TextShape, BytesThatAreNoTextAreReplacedAndReported) {

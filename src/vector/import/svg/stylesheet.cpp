@@ -279,7 +279,10 @@ bool StyleSheet::Compound::parse(Scanner& s) {
     } else if (s.take("[")) {
       if (!attributes.emplace_back().parse(s)) return false;
     } else {
-      return s.offset() > begin;
+      Scanner ahead = s; // of other pseudo-classes the caller sees the colon
+      if (!ahead.take(":") || !isWord(ahead.name(), "root") || ahead.peek() == '(') return s.offset() > begin;
+      s = ahead;
+      ++roots;
     }
   }
 }
@@ -301,7 +304,7 @@ StyleSheet::Selector StyleSheet::readSelector(std::string_view text, Rule& rule)
     if (rule.compounds.size() == kMaxCompounds) return Selector::Unsupported;
     ids += !compound.id.empty();
     types += !compound.type.empty();
-    parts += compound.classes.size() + compound.attributes.size();
+    parts += compound.classes.size() + compound.attributes.size() + compound.roots;
     if (parts > kMaxParts) return Selector::Unsupported;
     rule.compounds.push_back(std::move(compound));
     combinator = skipSpace(s) ? ' ' : 0;
@@ -363,6 +366,7 @@ struct StyleSheet::Matching {
   }
   bool fits(const Compound& compound, pugi::xml_node node) {
     if (++work >= most || (!compound.type.empty() && document.name(node) != compound.type)) return false;
+    if (compound.roots && node != document.root()) return false;
     if (!compound.id.empty() && attribute(node, "id").value() != compound.id) return false;
     if (!compound.classes.empty()) {
       const auto names = wordsOf(attribute(node, "class").value());

@@ -1,5 +1,5 @@
-// Style sheets: @import, @media, and rules' selectors (Selectors 3 without pseudo-classes, pseudo-elements, namespaces
-// and escapes) with their declarations.
+// Style sheets: @import, @media, and rules' selectors with their declarations. Of Selectors 3, pseudo-classes other
+// than :root, pseudo-elements, namespaces and escapes are not supported.
 #pragma once
 #include "vector/import/svg/document.h"
 #include "vector/import/svg/reporter.h"
@@ -49,6 +49,7 @@ private:
     std::string type, id;
     std::vector<std::string> classes;
     std::vector<AttributeTest> attributes;
+    size_t roots = 0; ///< how often it says :root, each of which counts as a class does
     bool parse(Scanner& s);
   };
   struct Rule {
