@@ -39,29 +39,30 @@ int run(int argc, char** argv) {
                                         std::to_string(GPGP_VERSION_MINOR) + "." + std::to_string(GPGP_VERSION_PATCH));
   std::vector<Subcommand> subcommands;
   subcommands.reserve(8); // options are bound by address
-  const auto add = [&](Work (*adder)(CLI::App&)) {
+  const auto add = [&](Work (*adder)(CLI::App&), bool records = false) {
     Subcommand& subcommand = subcommands.emplace_back();
     subcommand.work = adder(app);
     subcommand.app = app.get_subcommands([](CLI::App*) { return true; }).back();
     addCommonOptions(*subcommand.app, subcommand.options);
+    if (records) addDumpOptions(*subcommand.app, subcommand.options);
   };
   add(addInfo);
 #ifdef GPGP_CLI_SPAWN
-  add(addSpawn);
+  add(addSpawn, true);
   add(addGraph);
   add(addTune);
 #endif
 #ifdef GPGP_CLI_VECTOR
-  add(addVector);
+  add(addVector, true);
 #endif
 #ifdef GPGP_CLI_TEXT
-  add(addText);
+  add(addText, true);
 #endif
 #if defined GPGP_CLI_SPAWN || defined GPGP_CLI_VECTOR
   add(addBake);
 #endif
 #ifdef GPGP_CLI_VISIBILITY
-  add(addVisibility);
+  add(addVisibility, true);
 #endif
 
   try {

@@ -342,10 +342,12 @@ Result<void> Recorder::record(const Record& record) {
   VkPipeline bound = VK_NULL_HANDLE;
   bool barrier = false; // owed by a pass that was left out, or needed by this one
   uint32_t since = 0;   // kinds of the passes since the last barrier
-  for (const Pass& pass : passes_.passes) {
+  for (uint32_t p = 0; p < passes_.passes.size(); ++p) {
+    const Pass& pass = passes_.passes[p];
     barrier = barrier || pass.barrierBefore;
     const bool wanted =
         pass.level < record.levels && (pass.condition == UINT32_MAX || record.conditions[pass.condition]);
+    ran_[p] = wanted;
     if (wanted && barrier) {
       barrier = false;
       if (since) passBarrier(vk, cmd, since, pass.kindsAhead);
@@ -379,6 +381,14 @@ Result<void> Recorder::record(const Record& record) {
         }
       }
       endLabel(cmd);
+      if (inspection_.target && inspection_.pass == p) {
+        const VkMemoryBarrier made{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, VK_ACCESS_TRANSFER_READ_BIT};
+        vk.CmdPipelineBarrier(cmd, kWorkStages, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &made, 0, nullptr, 0, nullptr);
+        const VkBufferCopy all{scratchOffset, 0, passes_.scratchBytes};
+        vk.CmdCopyBuffer(cmd, scratch, inspection_.target, 1, &all);
+        const VkMemoryBarrier read{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_READ_BIT, kWorkWrites};
+        vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, kWorkStages, 0, 1, &read, 0, nullptr, 0, nullptr);
+      }
     }
     if (timestamps.queryPool)
       vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);

@@ -18,7 +18,7 @@ VkShaderStageFlags shaderStages(bool draws) {
 Recorder::Recorder(Context& ctx, Kind recorderKind, const GpgpRecorderCreateInfo& info, GpgpService service)
     : Object(ctx, recorderKind, info.label), service_(service), queueFamily_(info.queueFamily),
       queueFlags_(info.queueFlags), engineScratch_(info.engineScratch != VK_FALSE), passes_(&ctx.host()),
-      sets_(&ctx.host()), textureSets_(&ctx.host()), pipelines_(&ctx.host()), slots_(&ctx.host()),
+      sets_(&ctx.host()), textureSets_(&ctx.host()), pipelines_(&ctx.host()), slots_(&ctx.host()), ran_(&ctx.host()),
       harvested_(&ctx.host()), queue_(&ctx.host()) {}
 
 void Recorder::unlink() {
@@ -161,6 +161,7 @@ Result<void> Recorder::init(PassList passes, const DrawShaders* draw) {
   queue_.resize(slotCount);
   harvested_.resize(size_t(slotCount) * (passes_.reportBytes / 4));
   pipelines_.resize(passes_.shaders.size(), VK_NULL_HANDLE);
+  ran_.resize(passes_.passes.size());
 
   nextRecorder_ = context.recorders;
   if (nextRecorder_) nextRecorder_->previousRecorder_ = this;

@@ -81,6 +81,16 @@ public:
   Result<void> record(const Record& record);
   Result<void> recordDraw(const DrawRecord& record);
 
+  // For tools.
+  /// Whether the last recording ran a pass.
+  bool ran(uint32_t pass) const { return ran_[pass]; }
+  /// Recordings copy the whole scratch to a buffer behind a pass that they run; no buffer: none does.
+  struct Inspection {
+    uint32_t pass = 0;
+    VkBuffer target = VK_NULL_HANDLE; ///< of scratchBytes
+  };
+  void inspect(const Inspection& inspection) { inspection_ = inspection; }
+
   /// Whether a thread is using it (RecorderUse).
   std::atomic<bool> busy{false};
 
@@ -149,11 +159,13 @@ private:
   static constexpr VkDeviceSize kUnusedBytes = 256;
   VkDeviceSize unusedOffset_ = 0; ///< behind the constants: what records leave out and passes could write
   std::pmr::vector<InFlight> slots_;
+  std::pmr::vector<uint8_t> ran_;        // by pass
   std::pmr::vector<uint32_t> harvested_; // words of harvested reports, as many as queue_ has places
   std::pmr::vector<RawReport> queue_;    // ring of harvested reports
   size_t queueHead_ = 0, queueCount_ = 0;
   uint32_t nextMarker_ = 1;
   bool losesReports_ = false; ///< said, until a report is taken
+  Inspection inspection_;
   std::atomic<bool> prewarming_{false};
   void unlink();
   uint32_t timestampBits_ = 0; // of the queue family

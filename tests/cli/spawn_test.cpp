@@ -4,6 +4,7 @@
 #include "host/files.h"
 #include "host/picture.h"
 #include "run.h"
+#include "spawn/shared/layout.h"
 
 #include <algorithm>
 #include <array>
@@ -631,6 +632,26 @@ TEST(CliSpawn, WrongUsage) {
                     {"spawn", grammar.path(), "--set", "floors=many"}});
   EXPECT_NE(gpgp({"spawn", grammar.path(), "--spacing", "0"}).err.find("0 is not within 1e-06 to 1e+09"),
             std::string::npos);
+}
+
+TEST(CliSpawn, DumpsWhatAPassHasLeftInScratch) {
+  const TemporaryFile grammar("dump.pga", "axiom Box S;\nterminal A (1, 0);\nS = SubDiv(X) { -1: A | -1: A };\n");
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "gpgp_cli_dump";
+  std::filesystem::remove_all(folder);
+  const json spawned = gpgpJson({"spawn", grammar.path(), "--axioms", "10", "--schedule", "interpreter", "--dump-pass",
+                                 "derive", "--dump-folder", folder.string(), "--validate"});
+  const std::vector<uint8_t> counters = host::readFile(folder / "derive.counters.bin");
+  shader::SpawnState state{};
+  ASSERT_GE(counters.size(), sizeof state);
+  std::memcpy(&state, counters.data(), sizeof state);
+  EXPECT_EQ(state.terminals, 20u);
+  EXPECT_EQ(spawned["terminals"], 20);
+  std::filesystem::remove_all(folder);
+  const ProcessResult none = gpgp({"spawn", grammar.path(), "--dump-pass", "raster"});
+  EXPECT_EQ(none.exitCode, 1);
+  EXPECT_NE(none.err.find("there is no pass \"raster\"; there are clear counters; "), std::string::npos) << none.err;
+  const ProcessResult idle = gpgp({"spawn", grammar.path(), "--dump-pass", "emit"});
+  EXPECT_NE(idle.err.find("does not run the pass \"emit\""), std::string::npos) << idle.err;
 }
 
 } // namespace

@@ -48,6 +48,8 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "passes",
                                                 "image"}));
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
+  EXPECT_TRUE(drawn["passes"].contains("begin"));
+  EXPECT_FALSE(drawn["passes"].contains("mark, projective")) << "what did not run is listed";
   EXPECT_EQ(drawn["width"], 40);
   EXPECT_EQ(drawn["height"], 20);
   EXPECT_EQ(drawn["paths"], 1);

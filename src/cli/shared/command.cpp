@@ -20,6 +20,15 @@ void addCommonOptions(CLI::App& command, CommonOptions& options) {
                    "Run under the Khronos validation layer; any message of it makes the command fail");
 }
 
+void addDumpOptions(CLI::App& command, CommonOptions& options) {
+  auto* pass =
+      command.add_option("--dump-pass", options.dumpPass,
+                         "For debugging: write the scratch buffers that a pass uses, as they are behind it, to "
+                         "PASS.BUFFER.bin; of several passes with a name PASS#2 is the second. "
+                         "src/*/shared/layout.h and the CPU reference say how to read them");
+  command.add_option("--dump-folder", options.dumpFolder, "Where to (default: the current folder)")->needs(pass);
+}
+
 Size parseSize(const std::string& text) {
   char* end = nullptr;
   const unsigned long width = std::strtoul(text.c_str(), &end, 10);

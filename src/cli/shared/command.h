@@ -28,6 +28,7 @@ struct CommonOptions {
   std::string device;
   bool json = false;
   bool validate = false;
+  std::string dumpPass, dumpFolder; ///< of the commands that record passes
 };
 
 /// A finished piece of work: the object for --json, and the same for people.
@@ -40,6 +41,9 @@ using Work = std::function<Outcome(const CommonOptions&)>;
 
 /// Adds --device, --json and --validate, and remembers what to do when this subcommand was chosen.
 void addCommonOptions(CLI::App& command, CommonOptions& options);
+
+/// Adds --dump-pass and --dump-folder.
+void addDumpOptions(CLI::App& command, CommonOptions& options);
 
 struct Size {
   uint32_t width = 0, height = 0;

@@ -65,7 +65,8 @@ void Session::onMessage(void* userData, const GpgpMessage* message) {
 
 Session::Session(const CommonOptions& options)
     : device_(host::DeviceOptions{.device = options.device, .validation = options.validate}), frames_(device_, 2),
-      busy_(device_), validate_(options.validate) {
+      busy_(device_), validate_(options.validate), dumpPass_(options.dumpPass), dumpFolder_(options.dumpFolder),
+      json_(options.json) {
   GpgpContextCreateInfo info = device_.contextCreateInfo();
   info.label = "gpgp command";
   info.messageFn = onMessage;
@@ -122,6 +123,10 @@ GpuTimes Session::run(GpgpRecorder recorder, const char* label, uint32_t repeat,
   const double period = static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-6;
 
   GpuTimes times;
+  core::Recorder& inside = PassDump::recorderOf(recorder);
+  std::optional<PassDump> dump;
+  if (!dumpPass_.empty()) dump.emplace(device_, inside, dumpPass_);
+  std::vector<bool> ran(passCount);
   std::vector<std::vector<double>> perPass(passCount);
   if (repeat > 1) busy_.warmUp();
   std::optional<Progress> progress; // of single records those know that make many of them
@@ -143,6 +148,7 @@ GpuTimes Session::run(GpgpRecorder recorder, const char* label, uint32_t repeat,
     writeTimestamp(commands, whole);
     const GpgpResult result = check(record(commands, frames_.frame(), base), label);
     if (result != GPGP_SUCCESS) throw Failure(std::string(label) + ": " + gpgpResultString(result));
+    for (uint32_t p = 0; p < passCount; ++p) ran[p] = ran[p] || inside.ran(p);
     writeTimestamp(commands, whole + 1);
     frames_.submit();
     frames_.waitAll();
@@ -167,7 +173,12 @@ GpuTimes Session::run(GpgpRecorder recorder, const char* label, uint32_t repeat,
   frames_.submit();
   frames_.waitAll();
   collectReports();
-  for (uint32_t p = 0; p < passCount; ++p) times.passes.emplace_back(names[p], medianOf(perPass[p]));
+  for (uint32_t p = 0; p < passCount; ++p)
+    if (ran[p]) times.passes.emplace_back(names[p], medianOf(perPass[p]));
+  if (dump) {
+    const std::string written = dump->write(dumpFolder_);
+    if (!json_) std::fprintf(stderr, "%s", written.c_str());
+  }
   return times;
 }
 

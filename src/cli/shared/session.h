@@ -1,6 +1,7 @@
 // A headless device with a gpgp context on it, and the frame that each subcommand runs: upload, record, submit, wait.
 #pragma once
 #include "cli/shared/command.h"
+#include "cli/shared/pass_dump.h"
 #include "host/busy_work.h"
 #include "host/frames.h"
 #include "host/memory.h"
@@ -15,7 +16,7 @@ namespace gpgp::cli {
 /// them takes time as well, and keeps them from running beside each other.
 struct GpuTimes {
   std::vector<double> totals;                         ///< of whole records, one per repeat
-  std::vector<std::pair<std::string, double>> passes; ///< median of each pass, in order
+  std::vector<std::pair<std::string, double>> passes; ///< median of each pass that ran, in order
   /// Of another record that is run behind each of these.
   void add(const GpuTimes& other);
   double median() const;
@@ -82,6 +83,8 @@ private:
   host::FrameRing frames_;
   host::BusyWork busy_;
   bool validate_;
+  std::string dumpPass_, dumpFolder_;
+  bool json_;
 };
 
 /// Milliseconds with three digits, for people.

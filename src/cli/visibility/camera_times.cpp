@@ -2,17 +2,36 @@
 
 #include "cli/shared/median.h"
 
+#include <map>
+
 namespace gpgp::cli {
+namespace {
+using Passes = std::vector<std::pair<std::string, double>>;
+
+/// Calls use(place in `passes`, milliseconds) for each of a list of which some may not have run: a pass is found again
+/// by its name and how many of that name come before it, and added where it is new.
+template <class Use> void match(Passes& passes, const Passes& others, const Use& use) {
+  std::map<std::string, size_t> seen;
+  size_t next = 0; // behind the last one found
+  for (const auto& [name, time] : others) {
+    size_t number = seen[name]++, at = 0;
+    for (; at < passes.size(); ++at)
+      if (passes[at].first == name && number-- == 0) break;
+    if (at == passes.size()) {
+      at = next;
+      passes.insert(passes.begin() + static_cast<std::ptrdiff_t>(at), {name, 0.0});
+    }
+    next = at + 1;
+    use(at, time);
+  }
+}
+} // namespace
 
 void CameraTimes::add(const GpuTimes& view) {
   repeats = view.totals.size();
   median += view.median();
   least += view.least();
-  passes.resize(view.passes.size());
-  for (size_t p = 0; p < passes.size(); ++p) {
-    passes[p].first = view.passes[p].first;
-    passes[p].second += view.passes[p].second;
-  }
+  match(passes, view.passes, [&](size_t p, double time) { passes[p].second += time; });
 }
 
 Json CameraTimes::json() const {
@@ -37,8 +56,15 @@ CameraTimes medianOf(const std::vector<CameraTimes>& cameras) {
   CameraTimes result = cameras.front();
   result.median = over([](const CameraTimes& camera) { return camera.median; });
   result.least = over([](const CameraTimes& camera) { return camera.least; });
-  for (size_t p = 0; p < result.passes.size(); ++p)
-    result.passes[p].second = over([p](const CameraTimes& camera) { return camera.passes[p].second; });
+  result.passes.clear();
+  for (const CameraTimes& camera : cameras) match(result.passes, camera.passes, [](size_t, double) {});
+  std::vector<std::vector<double>> times(result.passes.size()); // 0 where a camera did not run it
+  for (const CameraTimes& camera : cameras) {
+    std::vector<double> own(times.size());
+    match(result.passes, camera.passes, [&](size_t p, double time) { own[p] = time; });
+    for (size_t p = 0; p < own.size(); ++p) times[p].push_back(own[p]);
+  }
+  for (size_t p = 0; p < times.size(); ++p) result.passes[p].second = medianOf(std::move(times[p]));
   return result;
 }
 
