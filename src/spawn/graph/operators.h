@@ -42,7 +42,7 @@ private:
 };
 
 /// By number.
-constexpr Operator kOperators[] = {
+inline constexpr Operator kOperators[] = {
 #define GPGP_OPERATOR(name, number, relation, arguments, successors, multiplicity, shapes, kind, call)                 \
   {#name, number, Relation::relation, arguments, successors, shader::kMultiplicity##multiplicity, shapes, kind, #call},
     GPGP_OPERATOR_TABLE(GPGP_OPERATOR, GPGP_OPERATOR)
@@ -54,6 +54,7 @@ constexpr bool areInOrder() {
   return std::size(kOperators) == shader::kOpCount;
 }
 static_assert(areInOrder(), "rows are in the order of their numbers, and relations are together");
+static_assert(shader::kOpCount <= 29, "GPGP_OPERATORS has other bits from 29 on (shaders/spawn/shared/operators.h)");
 
 constexpr bool chooses(uint32_t op) { return kOperators[op].relation == Relation::Choosing; }
 constexpr bool isContext(uint32_t op) { return kOperators[op].relation == Relation::Context; }
@@ -69,7 +70,7 @@ struct Binary {
   const char* text; ///< code, of a, b and drawn
 };
 /// By number, from kCodeAdd on.
-constexpr Binary kBinaries[] = {
+inline constexpr Binary kBinaries[] = {
 #define GPGP_BINARY(name, number, spelling, precedence, kind, code) {number, spelling, precedence, kind, #code},
     GPGP_BINARY_TABLE(GPGP_BINARY, GPGP_BINARY)
 #undef GPGP_BINARY
@@ -87,7 +88,7 @@ struct Attribute {
 
   constexpr uint32_t count() const { return axes == 0 ? 1 : axes == 1 ? 3 : 9; }
 };
-constexpr Attribute kAttributes[] = {
+inline constexpr Attribute kAttributes[] = {
 #define GPGP_ATTRIBUTE(name, number, spelling, axes, value, member) {spelling, number, axes, value, #member},
     GPGP_ATTRIBUTE_TABLE(GPGP_ATTRIBUTE)
 #undef GPGP_ATTRIBUTE

@@ -12,7 +12,7 @@ struct Spelling {
   const char* name;
   GpgpOperatorKind kind;
 };
-constexpr std::array kOtherSpellings{
+inline constexpr std::array kOtherSpellings{
     Spelling{"Discard", GPGP_OPERATOR_DISCARD},
     Spelling{"Generate", GPGP_OPERATOR_GENERATE},
     Spelling{"SetAsDynamicConvexPolygon", GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON},
@@ -22,7 +22,7 @@ constexpr std::array kOtherSpellings{
 constexpr size_t kWritten = std::count_if(std::begin(kOperators), std::end(kOperators),
                                           [](const Operator& op) { return op.kind != kNotWritten; });
 /// Of all operators.
-constexpr auto kSpellings = [] {
+inline constexpr auto kSpellings = [] {
   std::array<Spelling, kWritten + kOtherSpellings.size()> all{};
   size_t count = 0;
   for (const Operator& op : kOperators)
