@@ -358,22 +358,22 @@ TEST(GrammarBuilder, SurvivesRandomCalls) {
       if (below(3) == 0) values.push_back(gpgpAddExpression(builder, below(15), value(), value()));
       if (below(8) == 0) values.push_back(gpgpAddVariable(builder, names[below(wild)], value()));
       const GpgpOperatorKind kind = below(run % 4 ? 14 : 22);
-      constexpr uint32_t kValues[] = {3, 3, 3, 1, 3, 0, 1, 3, 1, 2, 1, 0, 0, 0, 1, 1, 3, 3, 3, 3, 0, 0};
-      constexpr uint32_t kSuccessors[] = {1, 1, 1, 1, 1, 3, 2, 1, 2, 2, 3, 2, 0, 0, 1, 2, 1, 1, 1, 1, 0, 0};
-      const bool labels = kind == GPGP_OPERATOR_SUB_DIV || kind == GPGP_OPERATOR_RANDOM_RULE;
+      const auto* const op = std::find_if(std::begin(spawn::kOperators), std::end(spawn::kOperators),
+                                          [&](const spawn::Operator& o) { return o.kind == kind; });
+      const bool inTable = op != std::end(spawn::kOperators), corners = !inTable && kind >= 16 && kind < 20;
+      const std::string letters(inTable ? op->inParentheses() : corners ? "vvv" : "");
+      const uint32_t successors = !inTable ? corners : op->successors == spawn::kMany ? 2 : op->successors;
       std::vector<GpgpGrammarValue> arguments;
-      const bool axis = kind == GPGP_OPERATOR_SUB_DIV || kind == GPGP_OPERATOR_REPEAT ||
-                        kind == GPGP_OPERATOR_IF_SIZE_LESS || kind == GPGP_OPERATOR_SWAP_SIZE;
-      for (uint32_t a = 0; a < kValues[kind]; ++a) {
+      for (const char letter : letters) {
         arguments.push_back(value());
         if (below(20) == 0) continue;
-        if (axis && (a == 0 || kind == GPGP_OPERATOR_SWAP_SIZE)) arguments.back() = {GPGP_VALUE_X + below(3), 0};
-        if (kind == GPGP_OPERATOR_REPEAT && a == 2) arguments.back() = {GPGP_VALUE_ADJUST_TO_FILL + below(3), 0};
+        if (letter == 'a') arguments.back() = {GPGP_VALUE_X + below(3), 0};
+        if (letter == 'm') arguments.back() = {GPGP_VALUE_ADJUST_TO_FILL + below(3), 0};
       }
       std::vector<GpgpGrammarSuccessor> to;
-      for (uint32_t s = 0; s < kSuccessors[kind]; ++s) {
+      for (uint32_t s = 0; s < successors; ++s) {
         GpgpGrammarSuccessor next{};
-        if (labels) next.value = GPGP_GRAMMAR_NUMBER(1 + below(3));
+        if (inTable && op->hasSuccessorValues()) next.value = GPGP_GRAMMAR_NUMBER(1 + below(3));
         if (operators && below(3) == 0)
           next.op = run % 4 ? operators : below(operators + 2);
         else

@@ -1,5 +1,6 @@
 // A syntax tree handed to a grammar builder call by call, so that what text gives can be compared with what code gives.
 #pragma once
+#include "spawn/language/spellings.h"
 #include "spawn/language/syntax.h"
 
 #include <gpgp/spawn_builder.h>
@@ -60,60 +61,26 @@ private:
       return gpgpAddTag(builder_, e.name.c_str());
     }
     if (e.kind == ExpressionKind::binary) {
-      using namespace shader;
-      static const std::map<uint32_t, GpgpExpressionKind> kKinds{{kCodeAdd, GPGP_EXPRESSION_ADD},
-                                                                 {kCodeSubtract, GPGP_EXPRESSION_SUBTRACT},
-                                                                 {kCodeMultiply, GPGP_EXPRESSION_MULTIPLY},
-                                                                 {kCodeDivide, GPGP_EXPRESSION_DIVIDE},
-                                                                 {kCodeEqual, GPGP_EXPRESSION_EQUAL},
-                                                                 {kCodeNotEqual, GPGP_EXPRESSION_NOT_EQUAL},
-                                                                 {kCodeLess, GPGP_EXPRESSION_LESS},
-                                                                 {kCodeGreater, GPGP_EXPRESSION_GREATER},
-                                                                 {kCodeLessEqual, GPGP_EXPRESSION_LESS_EQUAL},
-                                                                 {kCodeGreaterEqual, GPGP_EXPRESSION_GREATER_EQUAL},
-                                                                 {kCodeAnd, GPGP_EXPRESSION_AND},
-                                                                 {kCodeOr, GPGP_EXPRESSION_OR}};
       const GpgpGrammarValue left = value(e.arguments.at(0));
-      return gpgpAddExpression(builder_, kKinds.at(e.op), left, value(e.arguments.at(1)));
+      return gpgpAddExpression(builder_, spawn::binaryOf(e.op).kind, left, value(e.arguments.at(1)));
     }
     if (e.name == "Exp") return value(e.arguments.at(0));
     if (e.name == "Rand")
       return gpgpAddExpression(builder_, GPGP_EXPRESSION_RANDOM, value(e.arguments.at(0)), value(e.arguments.at(1)));
-    if (e.name == "ShapeSeed") return {GPGP_VALUE_SHAPE_SEED, 0};
-    if (e.name == "ShapeCustomAttribute") return {GPGP_VALUE_SHAPE_CUSTOM_ATTRIBUTE, 0};
-    if (e.name == "ShapePos") return {GPGP_VALUE_SHAPE_POS_X + axis(e.arguments.at(0)), 0};
-    if (e.name == "ShapeSize") return {GPGP_VALUE_SHAPE_SIZE_X + axis(e.arguments.at(0)), 0};
-    if (e.name == "ShapeNormal") return {GPGP_VALUE_SHAPE_NORMAL_X + axis(e.arguments.at(0)), 0};
-    if (e.name == "ShapeRotation")
-      return {GPGP_VALUE_SHAPE_ROTATION_XX + 3 * axis(e.arguments.at(0)) + axis(e.arguments.at(1)), 0};
+    for (const spawn::Attribute& attribute : spawn::kAttributes) {
+      if (e.name != attribute.name) continue;
+      uint32_t place = 0;
+      for (const auto& argument : e.arguments) place = 3 * place + axis(argument);
+      return {attribute.value + place, 0};
+    }
     throw std::runtime_error("no value " + e.name);
   }
 
   GpgpGrammarOperator call(const spawn::Call& c) {
-    static const char* kNames[] = {"Translate",
-                                   "Rotate",
-                                   "Scale",
-                                   "Extrude",
-                                   "SwapSize",
-                                   "CompSplit",
-                                   "SubDiv",
-                                   "Repeat",
-                                   "If",
-                                   "IfSizeLess",
-                                   "RandomRule",
-                                   "Replicate",
-                                   "Discard",
-                                   "Generate",
-                                   "Collider",
-                                   "IfCollides",
-                                   "SetAsDynamicConvexPolygon",
-                                   "SetAsDynamicConcavePolygon",
-                                   "SetAsDynamicConvexRightPrism",
-                                   "SetAsDynamicConcaveRightPrism"};
     std::vector<GpgpGrammarValue> values;
     for (const auto& argument : c.arguments) values.push_back(value(argument));
-    for (GpgpOperatorKind kind = 0; kind < std::size(kNames); ++kind)
-      if (c.name == kNames[kind]) return add(kind, values, c.branches);
+    for (const spawn::Spelling& spelling : spawn::kSpellings)
+      if (c.name == spelling.name) return add(spelling.kind, values, c.branches);
     throw std::runtime_error("no operator " + c.name);
   }
 

@@ -49,14 +49,22 @@ GPGP_FN void transform(GPGP_GRAPH GPGP_INOUT(Shape) s, uint op) {
   for (uint i = 0u; i < count; ++i) {
     value = withComponent(value, i, parameter(GPGP_G s, i));
   }
-  switch (op) {
-  case kOpTranslate: translate(s, value); break;
-  case kOpRotate: rotate(s, rotationOf(value)); break;
-  case kOpScale: resize(s, value); break;
-  case kOpExtrude: extrude(s, value.x); break;
-  case kOpSwapSize: swapSizes(s, graphWords[s.node + kNodeArgument]); break;
-  default: setGeometry(s, graphWords[s.node + kNodeArgument], graphWords[s.node + kNodeArgument2]);
-  }
+#define GPGP_VALUES value
+#define GPGP_VALUE value.x
+#define GPGP_ARGUMENT graphWords[s.node + kNodeArgument]
+#define GPGP_ARGUMENT2 graphWords[s.node + kNodeArgument2]
+  // clang-format off
+#define GPGP_CASE(name, number, relation, arguments, successors, multiplicity, shapes, kind, call) \
+  case kOp##name: call; break;
+#define GPGP_DEFAULT(name, number, relation, arguments, successors, multiplicity, shapes, kind, call) default: call;
+  // clang-format on
+  switch (op) { GPGP_PASSING_OPERATORS(GPGP_CASE, GPGP_DEFAULT) }
+#undef GPGP_CASE
+#undef GPGP_DEFAULT
+#undef GPGP_VALUES
+#undef GPGP_VALUE
+#undef GPGP_ARGUMENT
+#undef GPGP_ARGUMENT2
 }
 
 /// Takes a shape from operator to operator while each passes on one shape. Returns a kEnd value.
@@ -68,16 +76,16 @@ GPGP_FN uint runWords(GPGP_GRAPH GPGP_INOUT(Shape) s, uint maxDepth) {
     const uint operatorWord = graphWords[s.node + kNodeOperator];
     const uint op = operatorWord & kOperatorMask;
     if (op == kOpTerminal) return kEndTerminal;
-    if (op <= kOpSetGeometry) {
+    if (op <= kLastPassing) {
       const uint target = edgeTarget(GPGP_G s.node, 0u);
       transform(GPGP_G s, op);
       if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
       follow(s, target);
-    } else if (op <= kOpRandomRule) {
+    } else if (op <= kLastChoosing) {
       follow(s, edgeTarget(GPGP_G s.node, chooseEdge(GPGP_G s, op)));
       if ((operatorWord & kNodeDraws) != 0u) s.key = drawnKey(s.key);
 #if defined(__cplusplus) || defined(GPGP_COLLIDERS) // without, no grammar that has them is run
-    } else if (op < kOpCompSplit) {
+    } else if (op < kFirstMultiplying) {
       return kEndContext;
 #endif
     } else {

@@ -33,21 +33,13 @@ GPGP_FN float reference(bool value) { return value ? 1.0f : 0.0f; }
 
 /// a op b for the codes of two operands. drawn: kCodeRandom's number.
 GPGP_FN float combine(uint code, float a, float b, float drawn) {
-  switch (code) {
-  case kCodeAdd: return add(a, b);
-  case kCodeSubtract: return subtract(a, b);
-  case kCodeMultiply: return multiply(a, b);
-  case kCodeDivide: return divide(a, b);
-  case kCodeEqual: return reference(nearlyEqual(a, b));
-  case kCodeNotEqual: return reference(!nearlyEqual(a, b));
-  case kCodeLess: return reference(a < b);
-  case kCodeGreater: return reference(a > b);
-  case kCodeLessEqual: return reference(a <= b);
-  case kCodeGreaterEqual: return reference(a >= b);
-  case kCodeAnd: return reference(a != 0.0f && b != 0.0f);
-  case kCodeOr: return reference(a != 0.0f || b != 0.0f);
-  default: return add(a, multiply(subtract(b, a), drawn)); // kCodeRandom
-  }
+  // clang-format off
+#define GPGP_CASE(name, number, spelling, precedence, kind, code) case kCode##name: return code;
+#define GPGP_DEFAULT(name, number, spelling, precedence, kind, code) default: return code;
+  // clang-format on
+  switch (code) { GPGP_BINARY_TABLE(GPGP_CASE, GPGP_DEFAULT) }
+#undef GPGP_CASE
+#undef GPGP_DEFAULT
 }
 
 /// A parameter's value for a shape; at is its word offset, index its place among the operator's parameters.

@@ -101,7 +101,7 @@ GPGP_FN Fan fanOf(GPGP_GRAPH Shape s) {
   fan.successors = 0u;
   fan.count = 1u;
   fan.extent = 0.0f;
-  if (op < kOpCompSplit) return fan;
+  if (op < kFirstMultiplying) return fan;
   if (isOperator(op, kOpSubDiv)) {
     if ((GPGP_OPERATORS & kHasCuts) != 0u && isUncut(GPGP_G s, s.node, graphWords[s.node + kNodeArgument])) {
       fan.count = 0u;

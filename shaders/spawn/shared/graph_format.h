@@ -7,6 +7,7 @@
 #ifndef GPGP_SHADERS_SPAWN_GRAPH_FORMAT_H
 #define GPGP_SHADERS_SPAWN_GRAPH_FORMAT_H
 #include "core/shared.h"
+#include "spawn/shared/operator_table.h"
 
 // How shared functions read the graph: a pointer in C++, the bound buffer graphWords[] in GLSL.
 #ifdef __cplusplus
@@ -118,25 +119,17 @@ GPGP_CONST uint kRuleSize = 3u;
 // axiom: name (byte offset in names), node offset or 0, GpgpShape and its polygon << 8. The first is the default.
 GPGP_CONST uint kAxiomSize = 3u;
 
-// operators
-GPGP_CONST uint kOpTerminal =
-    0u; // argument: terminal, argument2: bucket; each rule has nodes of its own for its terminals
-GPGP_CONST uint kOpTranslate = 1u;
-GPGP_CONST uint kOpRotate = 2u;
-GPGP_CONST uint kOpScale = 3u;
-GPGP_CONST uint kOpExtrude = 4u;
-GPGP_CONST uint kOpSwapSize = 5u;    // argument: the three axes, two bits each
-GPGP_CONST uint kOpSetGeometry = 6u; // argument: GpgpShape, argument2: polygon
-GPGP_CONST uint kOpIf = 7u;
-GPGP_CONST uint kOpIfSizeLess = 8u;  // argument: axis
-GPGP_CONST uint kOpRandomRule = 9u;  // parameters: chance, then one probability an edge
-GPGP_CONST uint kOpCollider = 10u;   // argument: tag, argument2: the phase that it waits for
-GPGP_CONST uint kOpIfCollides = 11u; // argument: tag, argument2: the phase that it runs in
-GPGP_CONST uint kOpCompSplit = 12u;  // edges: top, bottom, sides; what follows may multiply shapes, too
-GPGP_CONST uint kOpSubDiv = 13u;     // argument: axis, argument2: division or 0; one parameter an edge
-GPGP_CONST uint kOpRepeat = 14u;     // argument: axis, argument2: mode
-GPGP_CONST uint kOpReplicate = 15u;
-GPGP_CONST uint kOpCount = 16u;
+// operators, and the last one of each relation
+#define GPGP_OPERATOR(name, number, relation, arguments, successors, multiplicity, shapes, kind, call)                 \
+  GPGP_CONST uint kOp##name = number;
+#define GPGP_LAST(name, number, relation, arguments, successors, multiplicity, shapes, kind, call)                     \
+  GPGP_CONST uint kOp##name = number;                                                                                  \
+  GPGP_CONST uint kLast##relation = number;
+GPGP_OPERATOR_TABLE(GPGP_OPERATOR, GPGP_LAST)
+#undef GPGP_OPERATOR
+#undef GPGP_LAST
+GPGP_CONST uint kFirstMultiplying = kLastContext + 1u;
+GPGP_CONST uint kOpCount = kLastMultiplying + 1u;
 
 /// A tag is a number below this, or a name: this and its byte offset in names.
 GPGP_CONST uint kTagName = 0x80000000u;
@@ -148,25 +141,12 @@ GPGP_CONST uint kRepeatAnchorToEnd = 2u;
 // expression code: a stack machine without jumps
 GPGP_CONST uint kCodeEnd = 0u;
 GPGP_CONST uint kCodeNumber = 1u; // float bits follow
-GPGP_CONST uint kCodeAdd = 2u;
-GPGP_CONST uint kCodeSubtract = 3u;
-GPGP_CONST uint kCodeMultiply = 4u;
-GPGP_CONST uint kCodeDivide = 5u;
-GPGP_CONST uint kCodeEqual = 6u;
-GPGP_CONST uint kCodeNotEqual = 7u;
-GPGP_CONST uint kCodeLess = 8u;
-GPGP_CONST uint kCodeGreater = 9u;
-GPGP_CONST uint kCodeLessEqual = 10u;
-GPGP_CONST uint kCodeGreaterEqual = 11u;
-GPGP_CONST uint kCodeAnd = 12u;
-GPGP_CONST uint kCodeOr = 13u;
-GPGP_CONST uint kCodeRandom = 14u;    // minimum, maximum: draws
-GPGP_CONST uint kCodePosition = 32u;  // + axis
-GPGP_CONST uint kCodeShapeSize = 35u; // + axis
-GPGP_CONST uint kCodeNormal = 38u;    // + axis
-GPGP_CONST uint kCodeRotation = 41u;  // + 3 * axis + component
-GPGP_CONST uint kCodeSeed = 50u;
-GPGP_CONST uint kCodeCustom = 51u;
+#define GPGP_BINARY(name, number, spelling, precedence, kind, code) GPGP_CONST uint kCode##name = number;
+GPGP_BINARY_TABLE(GPGP_BINARY, GPGP_BINARY)
+#undef GPGP_BINARY
+#define GPGP_ATTRIBUTE(name, number, spelling, axes, value, member) GPGP_CONST uint kCode##name = number;
+GPGP_ATTRIBUTE_TABLE(GPGP_ATTRIBUTE)
+#undef GPGP_ATTRIBUTE
 GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
 GPGP_CONST uint kCodeCount = 52u;
 

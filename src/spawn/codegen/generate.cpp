@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <map>
 
@@ -51,7 +52,7 @@ public:
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
       if (table_.family[indexOf(node)]) continue;
-      const bool byWords = node.op >= kOpCompSplit &&
+      const bool byWords = couldMultiply(node.op) &&
                            (room_.words || node.division == UINT32_MAX || isByWords(node) || stops_[indexOf(node)]);
       if (!multiplies(node) && !byWords) continue;
       operators |= 1u << node.op;
@@ -145,37 +146,33 @@ private:
   // ---------------------------------------------------------------- parameters
 
   static std::string attribute(uint32_t code) {
-    static constexpr const char* kAxes[] = {"x", "y", "z"};
-    const auto axis = [&](const char* vector, uint32_t i) { return std::string("s.") + vector + "." + kAxes[i]; };
-    if (code >= kCodeRotation && code < kCodeRotation + 9) {
-      static constexpr const char* kFrame[] = {"axisX", "axisY", "axisZ"};
-      return axis(kFrame[(code - kCodeRotation) / 3], (code - kCodeRotation) % 3);
+    if (code == kCodeSeed) return "unitFloat(s.seed)";
+    const Attribute& attribute = attributeAt(code);
+    const uint32_t place = code - attribute.code;
+    std::string member = attribute.member;
+    if (attribute.axes == 2) member.back() = "XYZ"[place / 3]; // of axisX
+    return "s." + member + (attribute.axes ? std::string(".") + "xyz"[place % 3] : std::string());
+  }
+  /// A table's code with other words in it: textOf(word) for each, in their order.
+  template <class Text> static std::string replaced(std::string_view code, const Text& textOf) {
+    const auto isWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    std::string text;
+    for (size_t at = 0; at < code.size();) {
+      size_t end = at;
+      while (end < code.size() && isWord(code[end])) ++end;
+      text += end > at ? textOf(code.substr(at, end - at)) : std::string(1, code[at]);
+      at = std::max(end, at + 1);
     }
-    if (code >= kCodePosition && code < kCodePosition + 3) return axis("position", code - kCodePosition);
-    if (code >= kCodeShapeSize && code < kCodeShapeSize + 3) return axis("size", code - kCodeShapeSize);
-    if (code >= kCodeNormal && code < kCodeNormal + 3) return axis("axisZ", code - kCodeNormal);
-    return code == kCodeSeed ? "unitFloat(s.seed)" : "s.custom";
+    return text;
   }
   /// draw: the number of what kCodeRandom draws.
   static std::string operation(uint32_t code, const std::string& a, const std::string& b, uint32_t draw) {
-    const auto call = [&](const char* function) { return std::string(function) + "(" + a + ", " + b + ")"; };
-    const auto compare = [&](const char* op) { return "reference(" + a + " " + op + " " + b + ")"; };
-    switch (code) {
-    case kCodeAdd: return call("add");
-    case kCodeSubtract: return call("subtract");
-    case kCodeMultiply: return call("multiply");
-    case kCodeDivide: return call("divide");
-    case kCodeEqual: return "reference(" + call("nearlyEqual") + ")";
-    case kCodeNotEqual: return "reference(!" + call("nearlyEqual") + ")";
-    case kCodeLess: return compare("<");
-    case kCodeGreater: return compare(">");
-    case kCodeLessEqual: return compare("<=");
-    case kCodeGreaterEqual: return compare(">=");
-    case kCodeAnd: return "reference(" + a + " != 0.0f && " + b + " != 0.0f)";
-    case kCodeOr: return "reference(" + a + " != 0.0f || " + b + " != 0.0f)";
-    default:
-      return "add(" + a + ", multiply(subtract(" + b + ", " + a + "), drawnNumber(s.key, " + number(draw) + ")))";
-    }
+    return replaced(binaryOf(code).text, [&](std::string_view word) {
+      return word == "a"       ? a
+             : word == "b"     ? b
+             : word == "drawn" ? "drawnNumber(s.key, " + number(draw) + ")"
+                               : std::string(word);
+    });
   }
   const Parameter& parameterOf(const Node& node, uint32_t index) const {
     return graph_.parameters[node.firstParameter + index];
@@ -242,7 +239,7 @@ private:
     const auto matched = std::exchange(peers_, {});
     for (uint32_t n = 0; n < graph_.nodes.size(); ++n) peers_.push_back({n}); // a case for each node
     for (const Node& node : graph_.nodes)
-      for (uint32_t i = 0; node.op >= kOpCompSplit && i < node.parameterCount; ++i)
+      for (uint32_t i = 0; couldMultiply(node.op) && i < node.parameterCount; ++i)
         if (parameterOf(node, i).kind != kParameterConstant)
           add("  case " + number(static_cast<uint32_t>(first + (node.firstParameter + i) * kParameterSize)) +
               ": return " + parameter(node, i) + ";\n");
@@ -372,11 +369,6 @@ private:
   }
 
   void writeOperator(const Node& node) {
-    const auto pass = [&](const std::string& expression) {
-      add("  " + expression + ";\n");
-      addDrawn(node);
-      add("  " + take(node, 0) + "\n");
-    };
     switch (node.op) {
     case kOpTranslate: {
       const std::string terms = frameTerms(node);
@@ -390,15 +382,25 @@ private:
       writeRotation(rotationOf(vec3(constant(node, 0), constant(node, 1), constant(node, 2))));
       add("  " + take(node, 0) + "\n");
       return;
-    case kOpScale: return pass("resize(s, " + vector(node) + ")");
-    case kOpExtrude: return pass("extrude(s, " + parameter(node, 0) + ")");
-    case kOpSwapSize: return pass("swapSizes(s, " + number(node.argument) + ")");
-    case kOpSetGeometry: return pass("setGeometry(s, " + number(node.argument) + ", " + number(node.argument2) + ")");
     case kOpIf:
     case kOpIfSizeLess: return writeIf(node);
     case kOpRandomRule: return writeRandomRule(node);
-    default: return writeFilter(node);
+    default:
+      if (couldMultiply(node.op)) return writeFilter(node);
+      add("  " + callOf(node) + ";\n");
+      addDrawn(node);
+      add("  " + take(node, 0) + "\n");
     }
+  }
+  /// What the table says of an operator that passes on one shape.
+  std::string callOf(const Node& node) {
+    return replaced(kOperators[node.op].call, [&](std::string_view word) {
+      return word == "GPGP_VALUES"      ? vector(node)
+             : word == "GPGP_VALUE"     ? parameter(node, 0)
+             : word == "GPGP_ARGUMENT"  ? number(node.argument)
+             : word == "GPGP_ARGUMENT2" ? number(node.argument2)
+                                        : std::string(word);
+    });
   }
   /// + axisX * x + axisY * y + axisZ * z, without what is always zero.
   std::string frameTerms(const Node& node) {
@@ -531,7 +533,7 @@ private:
       for (uint32_t e = 0; e < node.edgeCount; ++e) {
         const Edge& edge = edgeOf(node, e);
         // What waits for an operator that could multiply is made its child by the graph's words.
-        const bool waits = node.op >= kOpCompSplit && (stops_[indexOf(node)] || isByWords(node));
+        const bool waits = couldMultiply(node.op) && (stops_[indexOf(node)] || isByWords(node));
         const bool brought = isChain(node) && !edge.recursive && !waits;
         if (edge.target == kNoNode || table_.family[indexOf(node)]) continue;
         if (!brought || waits_[edge.target]) nodes[edge.target] = true;

@@ -51,7 +51,7 @@ void markInner(const Graph& graph, uint32_t subDiv, std::vector<bool>& inner) {
       const Node& target = graph.nodes[edge.target];
       if (target.op == shader::kOpSubDiv && multiplies(target))
         inner[edge.target] = true;
-      else if (target.op <= shader::kOpScale || multipliesByKnown(target))
+      else if (isOfFrames(target.op) || multipliesByKnown(target))
         open.push_back(edge.target);
     });
   }

@@ -113,7 +113,7 @@ private:
   }
   std::optional<Terms> termsOf(uint32_t index) const {
     const Node& node = graph_.nodes[index];
-    if (node.op < kOpTranslate || node.op > kOpScale) return std::nullopt;
+    if (!isOfFrames(node.op)) return std::nullopt;
     Terms terms;
     for (uint32_t i = 0; i < 3; ++i) {
       const auto term = termOf(graph_.parameters[node.firstParameter + i]);
@@ -222,9 +222,8 @@ private:
   bool isInner(const Edge& edge) const {
     if (edge.target == kNoNode || edge.recursive || waits_[edge.target]) return false;
     const Node& node = graph_.nodes[edge.target];
-    return (throughChoices_ && chooses(node)) || multipliesByKnown(node);
+    return (throughChoices_ && chooses(node.op)) || multipliesByKnown(node);
   }
-  static bool chooses(const Node& node) { return node.op >= kOpIf && node.op <= kOpRandomRule; }
 
   /// What a family's part behind a node takes: children, those that only some choices make included, and entries.
   struct Extent {
@@ -240,7 +239,7 @@ private:
     if (known.entries) return known;
     Extent extent;
     const Node& node = graph_.nodes[index];
-    if (chooses(node)) {
+    if (chooses(node.op)) {
       uint32_t sum = 0;
       for (uint32_t e = 0; e < node.edgeCount; ++e) {
         const Extent branch = extentOf(edgeOf(index, e));
@@ -298,7 +297,7 @@ private:
     if (isInner(*edge) && depth < kMostSteps) {
       const Extent extent = extentOf(edge->target);
       const bool fits = extent.children <= most && extent.entries <= kMostEntries;
-      if (fits && chooses(graph_.nodes[edge->target])) {
+      if (fits && chooses(graph_.nodes[edge->target].op)) {
         if (extent.children > 1) return choose(edge->target, std::move(path), most, depth);
       } else if (fits) {
         return multiply(edge->target, path, most / 2, depth);

@@ -22,6 +22,9 @@ struct KernelTable {
   bool repeats = false;       ///< some families are of Repeat
 };
 
+/// Whether frames are made of an operator (kernel/table_format.h).
+inline bool isOfFrames(uint32_t op) { return op >= shader::kOpTranslate && op <= shader::kOpScale; }
+
 /// Programs that a kernel has code for. More are slower than a loop over the steps of all.
 constexpr size_t kMostPrograms = 8;
 

@@ -163,13 +163,18 @@ private:
       case kDiscard: return kEndDiscarded;
       case kOpTerminal: return kEndTerminal;
       case kTranslateAlong: s.position = axisPoint(s, step.argument, value(step, s, step.argument)); break;
-      case kOpTranslate: translate(s, values(step, s)); break;
       case kRotateBy: rotate(s, step.rotation); break;
-      case kOpRotate: rotate(s, rotationOfAngles(angle(step, s, 0), angle(step, s, 1), angle(step, s, 2))); break;
-      case kOpScale: resize(s, values(step, s)); break;
-      case kOpExtrude: extrude(s, value(step, s, 0)); break;
-      case kOpSwapSize: swapSizes(s, step.argument); break;
-      case kOpSetGeometry: setGeometry(s, step.argument, step.argument2); break;
+      case kRotateAngles: rotate(s, rotationOfAngles(angle(step, s, 0), angle(step, s, 1), angle(step, s, 2))); break;
+#define GPGP_VALUES values(step, s)
+#define GPGP_VALUE value(step, s, 0)
+#define GPGP_ARGUMENT step.argument
+#define GPGP_ARGUMENT2 step.argument2
+        // clang-format off
+#define GPGP_CASE(name, number, relation, arguments, successors, multiplicity, shapes, kind, call) \
+  case kOp##name: call; break;
+        // clang-format on
+        GPGP_PASSING_OPERATORS(GPGP_CASE, GPGP_CASE)
+#undef GPGP_CASE
       case kOpCollider:
       case kOpIfCollides:
         if (step.argument2 > context_.phase()) {

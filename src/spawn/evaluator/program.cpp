@@ -1,5 +1,7 @@
 #include "spawn/evaluator/program.h"
 
+#include "spawn/graph/operators.h"
+
 #include <cstddef>
 
 namespace gpgp::spawn {
@@ -10,12 +12,12 @@ bool isConstant(const uint32_t* words, uint32_t parameter) { return words[parame
 
 /// Where a Shape has an attribute, as attributeOf() says.
 uint32_t sourceOf(uint32_t code) {
-  const auto within = [&](uint32_t first, uint32_t count) { return code >= first && code < first + count; };
-  if (within(kCodePosition, 3)) return uint32_t(offsetof(Shape, position)) + 4 * (code - kCodePosition);
-  if (within(kCodeShapeSize, 3)) return uint32_t(offsetof(Shape, size)) + 4 * (code - kCodeShapeSize);
-  if (within(kCodeNormal, 3)) return uint32_t(offsetof(Shape, axisZ)) + 4 * (code - kCodeNormal);
-  if (within(kCodeRotation, 9)) return uint32_t(offsetof(Shape, axisX)) + 4 * (code - kCodeRotation);
-  return code == kCodeSeed ? uint32_t(kSeed) : uint32_t(offsetof(Shape, custom));
+  if (code == kCodeSeed) return kSeed;
+#define GPGP_OFFSET(name, number, spelling, axes, value, member)                                                       \
+  if (attributeAt(code).code == kCode##name) return uint32_t(offsetof(Shape, member)) + 4 * (code - kCode##name);
+  GPGP_ATTRIBUTE_TABLE(GPGP_OFFSET)
+#undef GPGP_OFFSET
+  return 0;
 }
 static_assert(offsetof(Shape, axisY) == offsetof(Shape, axisX) + 12 &&
               offsetof(Shape, axisZ) == offsetof(Shape, axisX) + 24);
@@ -63,11 +65,10 @@ uint32_t addTerms(std::vector<Term>& terms, const uint32_t* words, uint32_t at, 
 
 /// Rotations by constants and translations along one axis.
 void simplify(Step& step) {
-  if (step.op == kOpRotate)
+  if (step.op == kOpRotate) {
     for (uint32_t i = 0; i < 3; ++i) step.angles[i] = sineCosineDegrees(component(step.values, i));
-  if (step.op == kOpRotate && !step.variable) {
-    step.op = kRotateBy;
-    step.rotation = rotationOf(step.values);
+    step.op = step.variable ? kRotateAngles : kRotateBy;
+    if (!step.variable) step.rotation = rotationOf(step.values);
   }
   if (step.op != kOpTranslate) return;
   uint32_t used = step.variable;

@@ -7,7 +7,15 @@
 namespace gpgp::spawn {
 
 /// Beside the kOp values: what discards every shape, and cases whose constants save work.
-enum : uint32_t { kDiscard = shader::kOpCount, kUnfinished, kTranslateAlong, kRotateBy, kChoose, kDivide };
+enum : uint32_t {
+  kDiscard = shader::kOpCount,
+  kUnfinished,
+  kTranslateAlong,
+  kRotateBy,
+  kRotateAngles,
+  kChoose,
+  kDivide
+};
 
 struct Step;
 
@@ -51,7 +59,7 @@ struct Step {
   uint32_t terms[3]{};         ///< of those: in Program::terms, or kNoTerms
   shader::vec3 values{0};      ///< of the others
   shader::Rotation rotation{}; ///< kRotateBy
-  shader::vec2 angles[3]{};    ///< Rotate that is not: (sine, cosine) of what is constant
+  shader::vec2 angles[3]{};    ///< kRotateAngles: (sine, cosine) of what is constant
   float total = 0;             ///< kChoose: of all chances; kDivide: of fixed lengths
 };
 

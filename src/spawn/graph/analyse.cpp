@@ -25,19 +25,6 @@ uint32_t outgoing(const Node& node, uint32_t edge, uint32_t shapes) {
   return result;
 }
 
-uint32_t multiplicityOf(uint32_t op) {
-  switch (op) {
-  case kOpIf:
-  case kOpIfSizeLess:
-  case kOpRandomRule:
-  case kOpIfCollides:
-  case kOpSubDiv: return kMultiplicityOptional; // SubDiv skips parts without an extent
-  case kOpCompSplit: return kMultiplicityFixed;
-  case kOpRepeat: return kMultiplicityAny;
-  default: return kMultiplicityOne;
-  }
-}
-
 void removePieces(Graph& graph) {
   if (!graph.pieces) return;
   const Polygon first = graph.polygons[graph.polygons.size() - graph.pieces];
@@ -201,13 +188,13 @@ void analyse(Graph& graph) {
     uint32_t kept = 0;
     for (uint32_t e = 0; e < node.edgeCount; ++e) {
       Edge& edge = graph.edges[node.firstEdge + e];
-      edge.multiplicity = multiplicityOf(node.op);
-      const bool many = node.op == kOpRepeat || (node.op == kOpCompSplit && e == 2);
+      edge.multiplicity = kOperators[node.op].multiplicity;
+      const bool many = edge.multiplicity == kMultiplicityAny || (node.op == kOpCompSplit && e == 2);
       if (edge.target != kNoNode) kept += many ? 2 : 1;
     }
-    node.filter = node.op >= kOpCompSplit && kept <= 1;
+    node.filter = couldMultiply(node.op) && kept <= 1;
     node.draws = false;
-    for (uint32_t i = 0; node.op < kOpCompSplit && i < node.parameterCount; ++i)
+    for (uint32_t i = 0; !couldMultiply(node.op) && i < node.parameterCount; ++i)
       node.draws = node.draws || drawsOf(graph, graph.parameters[node.firstParameter + i]) > 0;
   }
   ShapeFlow fromAxioms(graph, &Node::axiomShapes), all(graph, &Node::shapes);

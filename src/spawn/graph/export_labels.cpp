@@ -9,14 +9,12 @@ namespace {
 using namespace shader;
 
 std::string attributeText(uint32_t code) {
-  if (code == kCodeSeed) return "ShapeSeed()";
-  if (code == kCodeCustom) return "ShapeCustomAttribute()";
-  if (code >= kCodeRotation)
-    return std::string("ShapeRotation(") + axisText((code - kCodeRotation) / 3) + "," +
-           axisText((code - kCodeRotation) % 3) + ")";
-  const char* name = code >= kCodeNormal ? "ShapeNormal(" : code >= kCodeShapeSize ? "ShapeSize(" : "ShapePos(";
-  const uint32_t first = code >= kCodeNormal ? kCodeNormal : code >= kCodeShapeSize ? kCodeShapeSize : kCodePosition;
-  return std::string(name) + axisText(code - first) + ")";
+  const Attribute& attribute = attributeAt(code);
+  const uint32_t place = code - attribute.code;
+  std::string axes;
+  if (attribute.axes == 2) axes = std::string(axisText(place / 3)) + ",";
+  if (attribute.axes) axes += axisText(place % 3);
+  return std::string(attribute.name).append("(").append(axes).append(")");
 }
 
 /// Along an edge of CompSplit, of the types that arrive from axioms, or else from any start.
@@ -47,8 +45,10 @@ std::string programText(const Graph& graph, uint32_t at) {
       const std::string right = stack.back();
       stack.pop_back();
       std::string& left = stack.back();
-      std::string joined(code == kCodeRandom ? "Rand(" : "(");
-      joined.append(left).append(code == kCodeRandom ? "," : binaryText(code)).append(right).append(")");
+      const Binary& binary = binaryOf(code);
+      const std::string between = binary.precedence ? std::string(" ").append(binary.spelling).append(" ") : ",";
+      std::string joined(binary.precedence ? "" : binary.spelling);
+      joined.append("(").append(left).append(between).append(right).append(")");
       left = std::move(joined);
     }
   }
@@ -87,12 +87,6 @@ const char* repeatModeText(uint32_t mode) {
                                         : "ANCHOR_TO_END";
 }
 
-const char* binaryText(uint32_t code) {
-  static constexpr std::array kOperators{
-      "", "", " + ", " - ", " * ", " / ", " == ", " != ", " < ", " > ", " <= ", " >= ", " && ", " || "};
-  return kOperators.at(code);
-}
-
 std::string parameterText(const Graph& graph, const Parameter& p) {
   if (p.kind == kParameterConstant) return numberText(std::bit_cast<float>(p.value));
   return p.kind == kParameterAttribute ? attributeText(p.value) : programText(graph, p.value);
@@ -102,17 +96,15 @@ std::string nodeText(const Graph& graph, const Node& node) {
   if (node.op == kOpTerminal) return graph.nameAt(graph.terminals[node.argument].name);
   std::string arguments;
   const auto add = [&](const std::string& text) { arguments += std::string(arguments.empty() ? "" : ",") + text; };
-  if (node.op == kOpSubDiv || node.op == kOpRepeat || node.op == kOpIfSizeLess) add(axisText(node.argument));
-  if (node.op == kOpSwapSize)
-    for (uint32_t i = 0; i < 3; ++i) add(axisText(node.argument >> (2 * i) & 3));
-  if (node.op == kOpSetGeometry) {
-    add(shapeName(node.argument));
-    add(std::to_string(node.argument2));
-  }
-  if (isContext(node.op)) add(tagText(graph, node.argument));
-  const uint32_t own = node.op == kOpSubDiv ? 0 : node.op == kOpRandomRule ? 1 : node.parameterCount;
-  for (uint32_t i = 0; i < own; ++i) add(parameterText(graph, graph.parameters[node.firstParameter + i]));
-  if (node.op == kOpRepeat) add(repeatModeText(node.argument2));
+  uint32_t axes = 0, values = 0;
+  for (const char letter : kOperators[node.op].inParentheses()) switch (letter) {
+    case 'a': add(axisText(node.argument >> (2 * axes++) & 3)); break;
+    case 'm': add(repeatModeText(node.argument2)); break;
+    case 't': add(tagText(graph, node.argument)); break;
+    case 's': add(shapeName(node.argument)); break;
+    case 'p': add(std::to_string(node.argument2)); break;
+    default: add(parameterText(graph, graph.parameters[node.firstParameter + values++]));
+    }
   return std::string(operatorName(node.op)).append("(").append(arguments).append(")");
 }
 
@@ -121,8 +113,8 @@ std::string tagText(const Graph& graph, uint32_t tag) {
 }
 
 std::string edgeValueText(const Graph& graph, const Node& node, uint32_t slot) {
-  if (node.op == kOpSubDiv) return parameterText(graph, graph.parameters[node.firstParameter + slot]);
-  if (node.op == kOpRandomRule) return parameterText(graph, graph.parameters[node.firstParameter + 1 + slot]);
+  const Operator& op = kOperators[node.op];
+  if (op.hasSuccessorValues()) return parameterText(graph, graph.parameters[node.firstParameter + op.values() + slot]);
   return "";
 }
 

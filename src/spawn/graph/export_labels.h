@@ -28,7 +28,5 @@ std::string axiomText(const Graph& graph, const Axiom& axiom);
 
 const char* axisText(uint32_t axis);
 const char* repeatModeText(uint32_t mode);
-/// The word between two values, with spaces; kCodeAdd to kCodeOr.
-const char* binaryText(uint32_t code);
 
 } // namespace gpgp::spawn

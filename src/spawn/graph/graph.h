@@ -4,7 +4,7 @@
 // kNoNode as a target discards the shape.
 #pragma once
 #include "core/result.h"
-#include "spawn/shared/graph_format.h"
+#include "spawn/graph/operators.h"
 
 #include <memory_resource>
 #include <string>
@@ -138,11 +138,8 @@ inline bool isCutting(const Node& node) {
   return false;
 }
 
-/// Collider or IfCollides.
-inline bool isContext(uint32_t op) { return op == shader::kOpCollider || op == shader::kOpIfCollides; }
-
 /// Whether an operator makes several shapes of one, not only could.
-inline bool multiplies(const Node& node) { return node.op >= shader::kOpCompSplit && !node.filter; }
+inline bool multiplies(const Node& node) { return couldMultiply(node.op) && !node.filter; }
 
 /// Whether axioms grow into very different numbers of shapes: chance chooses among successors, and lengths say how many
 /// children there are.

@@ -7,23 +7,6 @@ using core::makeError;
 using core::Result;
 using namespace shader;
 
-struct Rules { // what an operator needs
-  const char* name;
-  uint32_t parameters; // kPerEdge: one each
-  uint32_t edges;      // kPerEdge: 1 to kMaxSuccessors
-};
-constexpr uint32_t kPerEdge = UINT32_MAX;
-constexpr uint32_t kPerEdgeAndOne = UINT32_MAX - 1;
-constexpr Rules kOperators[kOpCount] = {
-    {"Terminal", 0, 0},    {"Translate", 3, 1},
-    {"Rotate", 3, 1},      {"Scale", 3, 1},
-    {"Extrude", 1, 1},     {"SwapSize", 0, 1},
-    {"SetGeometry", 0, 1}, {"If", 1, 2},
-    {"IfSizeLess", 1, 2},  {"RandomRule", kPerEdgeAndOne, kPerEdge},
-    {"Collider", 0, 1},    {"IfCollides", 0, 2},
-    {"CompSplit", 0, 3},   {"SubDiv", kPerEdge, kPerEdge},
-    {"Repeat", 1, 1},      {"Replicate", 0, kPerEdge},
-};
 constexpr const char* kShapes[kShapeCount] = {"Triangle",
                                               "Quad",
                                               "Pentagon",
@@ -66,7 +49,7 @@ Result<void> checkCode(const Graph& graph, std::pmr::vector<uint8_t>& starts) {
         ++depth;
       } else if (code >= kCodeAttributes && code < kCodeCount) {
         ++depth;
-      } else if (code >= kCodeAdd && code <= kCodeRandom) {
+      } else if (code >= kCodeAdd && code <= kCodeRandom) { // kBinaries
         if (depth < 2) return makeError(GPGP_ERROR_INVALID_DATA, "program %zu takes from an empty stack", start);
         --depth;
       } else {
@@ -114,40 +97,26 @@ Result<void> checkNode(const Graph& graph, uint32_t index) {
     return bad("parameters out of range");
   if (node.edgeCount > graph.edges.size() || node.firstEdge > graph.edges.size() - node.edgeCount)
     return bad("edges out of range");
-  const Rules& rules = kOperators[node.op];
-  if (rules.edges == kPerEdge) {
-    if (node.edgeCount < 1 || node.edgeCount > kMaxSuccessors) return bad("wrong number of successors");
-  } else if (node.edgeCount != rules.edges) {
+  const Operator& op = kOperators[node.op];
+  const bool isMany = op.successors == kMany;
+  if (node.edgeCount < (isMany ? 1 : op.successors) || node.edgeCount > (isMany ? kMaxSuccessors : op.successors))
     return bad("wrong number of successors");
-  }
-  const uint32_t parameters = rules.parameters == kPerEdge         ? node.edgeCount
-                              : rules.parameters == kPerEdgeAndOne ? node.edgeCount + 1
-                                                                   : rules.parameters;
-  if (node.parameterCount != parameters) return bad("wrong number of parameters");
-  switch (node.op) {
-  case kOpTerminal:
+  if (node.parameterCount != op.values() + (op.hasSuccessorValues() ? node.edgeCount : 0))
+    return bad("wrong number of parameters");
+  if (node.op == kOpTerminal) {
     if (node.argument >= graph.terminals.size()) return bad("unknown terminal");
     if (node.argument2 != graph.terminals[node.argument].bucket) return bad("wrong bucket");
     if (node.rule != kNoRule && node.rule >= graph.rules.size()) return bad("unknown rule");
-    break;
-  case kOpIfSizeLess:
-  case kOpSubDiv:
-    if (node.argument > 2) return bad("unknown axis");
-    break;
-  case kOpRepeat:
-    if (node.argument > 2) return bad("unknown axis");
-    if (node.argument2 > kRepeatAnchorToEnd) return bad("unknown mode");
-    break;
-  case kOpSwapSize:
-    if (node.argument > 63 || (node.argument & 3) == 3 || (node.argument >> 2 & 3) == 3 || node.argument >> 4 == 3)
-      return bad("unknown axis");
-    break;
-  case kOpCollider:
-  case kOpIfCollides:
-    if ((node.argument & kTagName) && !nameEnds(graph, node.argument & ~kTagName)) return bad("a tag has a bad name");
-    break;
-  case kOpSetGeometry: return checkGeometry(graph, "SetGeometry", node.argument, node.argument2);
-  default: break;
+  }
+  if (op.axes() && node.argument >> 2 * op.axes()) return bad("unknown axis");
+  uint32_t axes = node.argument;
+  for (const char letter : op.inParentheses()) {
+    if (letter == 'a' && (axes & 3) == 3) return bad("unknown axis");
+    if (letter == 'a') axes >>= 2;
+    if (letter == 'm' && node.argument2 > kRepeatAnchorToEnd) return bad("unknown mode");
+    if (letter == 't' && (node.argument & kTagName) && !nameEnds(graph, node.argument & ~kTagName))
+      return bad("a tag has a bad name");
+    if (letter == 's') return checkGeometry(graph, op.name, node.argument, node.argument2);
   }
   return {};
 }

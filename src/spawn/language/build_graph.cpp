@@ -216,7 +216,7 @@ private:
     Suggestion suggestion(name);
     if (ofShapes)
       for (const auto& [candidate, what] : names_) suggestion.offer(candidate);
-    forOperatorNames([&](const char* candidate) { suggestion.offer(candidate); });
+    for (const Spelling& spelling : kSpellings) suggestion.offer(spelling.name);
     return suggestion.text();
   }
 
@@ -238,8 +238,7 @@ private:
   // ---------------------------------------------------------------- operators
 
   Target buildCall(const Call& call) {
-    for (const Spelling& spelling : kSpellings)
-      if (call.name == spelling.name) return {buildOperator(call, spelling), std::nullopt};
+    if (const Operator* op = operatorWritten(call.name)) return {buildOperator(call, *op), std::nullopt};
     if (call.name == "Discard" || call.name == "Generate") {
       if (!call.arguments.empty() || !call.branches.empty())
         diagnostics_.error(call.place, call.name + "() takes neither arguments nor successors");
@@ -281,8 +280,8 @@ private:
       if (branch.label) expressions_.parameter(*branch.label);
   }
 
-  uint32_t buildOperator(const Call& call, const Spelling& spelling) {
-    const std::string arguments = spelling.arguments;
+  uint32_t buildOperator(const Call& call, const Operator& op) {
+    const std::string_view arguments = op.inParentheses();
     std::vector<Parameter> parameters;
     uint32_t argument = 0, argument2 = 0, axes = 0;
     const size_t errors = diagnostics_.errorCount();
@@ -308,34 +307,33 @@ private:
         }
       }
     }
-    checkBranches(call, spelling);
-    if (spelling.labels)
+    checkBranches(call, op);
+    if (op.hasSuccessorValues())
       for (const Branch& branch : call.branches)
         parameters.push_back(branch.label ? expressions_.parameter(*branch.label) : Parameter{});
-    if (spelling.op == kOpRandomRule && !call.broken)
+    if (op.op == kOpRandomRule && !call.broken)
       checkChances(call.place, call.branches, std::span(parameters).last(call.branches.size()), errors);
     std::vector<Branch> branches = call.branches;
-    if (spelling.op == kOpCompSplit && call.form == SuccessorForm::chain && branches.size() == 1)
+    if (op.op == kOpCompSplit && call.form == SuccessorForm::chain && branches.size() == 1)
       branches.assign(3, branches[0]); // all faces alike
-    const uint32_t node = addNode(call.place, spelling.op, parameters, branches);
+    const uint32_t node = addNode(call.place, op.op, parameters, branches);
     graph_.nodes[node].argument = argument;
     graph_.nodes[node].argument2 = argument2;
     return node;
   }
 
-  void checkBranches(const Call& call, const Spelling& spelling) {
+  void checkBranches(const Call& call, const Operator& op) {
     const size_t found = call.branches.size();
-    const bool comp = spelling.op == kOpCompSplit;
+    const bool comp = op.op == kOpCompSplit;
     if (call.broken) {
       // was reported; how many there are is not known
     } else if (found == 0) {
       diagnostics_.error(call.place, call.name + " needs a successor; shapes end in a terminal or Discard()");
     } else if (call.form == SuccessorForm::chain &&
-               (spelling.labels || (spelling.branches > 1 && !comp && spelling.branches != kMany))) {
+               (op.hasSuccessorValues() || (op.successors > 1 && !comp && op.successors != kMany))) {
       diagnostics_.error(call.branches[0].successor.place, "expected '{' after " + call.name + "(...)");
-    } else if (spelling.branches != kMany && found != spelling.branches &&
-               !(comp && call.form == SuccessorForm::chain)) {
-      diagnostics_.error(call.place, call.name + " takes " + count(spelling.branches, "successor") +
+    } else if (op.successors != kMany && found != op.successors && !(comp && call.form == SuccessorForm::chain)) {
+      diagnostics_.error(call.place, call.name + " takes " + count(op.successors, "successor") +
                                          (comp ? " (top | bottom | sides)" : "") + ", found " + std::to_string(found));
     } else if (found > kMaxSuccessors) {
       diagnostics_.error(call.place, call.name + " takes at most " + std::to_string(kMaxSuccessors) +
@@ -346,9 +344,9 @@ private:
         diagnostics_.error(branch.successor.place, "'else' has no meaning in " + call.name);
       else if (branch.successor.name.empty() && !branch.successor.call)
         continue; // was reported
-      else if (spelling.labels && !branch.label && call.form == SuccessorForm::braces)
+      else if (op.hasSuccessorValues() && !branch.label && call.form == SuccessorForm::braces)
         diagnostics_.error(branch.successor.place, "expected a value before the successor of " + call.name);
-      else if (!spelling.labels && branch.label)
+      else if (!op.hasSuccessorValues() && branch.label)
         diagnostics_.error(branch.label->place, call.name + " takes successors without a value before them");
     }
   }
@@ -391,7 +389,7 @@ private:
     uint32_t shape = prism ? kShapeDynamicRightPrism : kShapeDynamicPolygon;
     if (convex) shape = prism ? kShapeDynamicConvexRightPrism : kShapeDynamicConvexPolygon;
     if (!isOperatorName(call.name)) reportUnknown(call);
-    checkBranches(call, {call.name.c_str(), kOpSetGeometry, "", 1, false});
+    checkBranches(call, kOperators[kOpSetGeometry]);
     const uint32_t polygon = buildPolygon(call.place, call.arguments, convex);
     const uint32_t node = addNode(call.place, kOpSetGeometry, {}, call.branches);
     graph_.nodes[node].argument = shape;

@@ -2,8 +2,9 @@
 // parser would make of the same grammar as text, so that all checks and the graph are those of text.
 #include "spawn/language/builder.h"
 
-#include "spawn/graph/graph.h"
+#include "spawn/graph/export_labels.h"
 #include "spawn/language/lexer.h"
+#include "spawn/language/spellings.h"
 
 #include <algorithm>
 #include <array>
@@ -18,35 +19,12 @@ namespace {
 constexpr uint32_t kMaxExpressionValues = 1024;
 constexpr GpgpGrammarValueId kFirstOwn = 0x10000; // ids of variables and expressions
 
-constexpr std::array kOperatorNames{"Translate",
-                                    "Rotate",
-                                    "Scale",
-                                    "Extrude",
-                                    "SwapSize",
-                                    "CompSplit",
-                                    "SubDiv",
-                                    "Repeat",
-                                    "If",
-                                    "IfSizeLess",
-                                    "RandomRule",
-                                    "Replicate",
-                                    "Discard",
-                                    "Generate",
-                                    "Collider",
-                                    "IfCollides",
-                                    "SetAsDynamicConvexPolygon",
-                                    "SetAsDynamicConcavePolygon",
-                                    "SetAsDynamicConvexRightPrism",
-                                    "SetAsDynamicConcaveRightPrism"};
-constexpr std::array<uint32_t, 12> kExpressionCodes{
-    gpgp::shader::kCodeAdd,          gpgp::shader::kCodeSubtract, gpgp::shader::kCodeMultiply,
-    gpgp::shader::kCodeDivide,       gpgp::shader::kCodeEqual,    gpgp::shader::kCodeNotEqual,
-    gpgp::shader::kCodeLess,         gpgp::shader::kCodeGreater,  gpgp::shader::kCodeLessEqual,
-    gpgp::shader::kCodeGreaterEqual, gpgp::shader::kCodeAnd,      gpgp::shader::kCodeOr};
-constexpr const char* kAxes[] = {"X", "Y", "Z"};
-constexpr const char* kModes[] = {"ADJUST_TO_FILL", "ANCHOR_TO_START", "ANCHOR_TO_END"};
-
 std::string quoted(const std::string& name) { return "'" + name + "'"; }
+
+const Spelling* spellingOf(GpgpOperatorKind kind) {
+  const auto at = std::find_if(kSpellings.begin(), kSpellings.end(), [&](const Spelling& s) { return s.kind == kind; });
+  return at == kSpellings.end() ? nullptr : &*at;
+}
 
 /// Whether text would say the number, as 5 or 2e5.
 bool isNumber(std::string_view name) {
@@ -213,7 +191,8 @@ public:
 
 private:
   static std::string nameOf(const GpgpGrammarBuilder_T::Operator& op) {
-    return op.kind < kOperatorNames.size() ? kOperatorNames[op.kind] : "an operator";
+    const Spelling* spelling = spellingOf(op.kind);
+    return spelling ? spelling->name : "an operator";
   }
 
   /// Places sort as the statements were added; before them is the grammar as a whole.
@@ -240,13 +219,7 @@ private:
     result.name = name;
     return result;
   }
-  /// ShapeSize(X) and the like; the last `axes` of the id's digits in base 3 are axes.
-  static Expression attribute(const char* name, uint32_t axes, uint32_t digits, Place place) {
-    Expression result = named(ExpressionKind::call, name, place);
-    if (axes == 2) result.arguments.push_back(named(ExpressionKind::name, kAxes[digits / 3], place));
-    if (axes >= 1) result.arguments.push_back(named(ExpressionKind::name, kAxes[digits % 3], place));
-    return result;
-  }
+  static Expression axis(uint32_t axis, Place place) { return named(ExpressionKind::name, axisText(axis), place); }
 
   Expression value(GpgpGrammarValue v, const std::string& where) { return value(v, place(where)); }
   /// All parts of an expression have the place of the whole.
@@ -257,19 +230,17 @@ private:
       diagnostics_.error(at, "this number is not finite");
       return number(0, at);
     }
-    if (id >= GPGP_VALUE_X && id <= GPGP_VALUE_Z) return named(ExpressionKind::name, kAxes[id - GPGP_VALUE_X], at);
+    if (id >= GPGP_VALUE_X && id <= GPGP_VALUE_Z) return axis(id - GPGP_VALUE_X, at);
     if (id >= GPGP_VALUE_ADJUST_TO_FILL && id <= GPGP_VALUE_ANCHOR_TO_END)
-      return named(ExpressionKind::name, kModes[id - GPGP_VALUE_ADJUST_TO_FILL], at);
-    if (id == GPGP_VALUE_SHAPE_SEED) return attribute("ShapeSeed", 0, 0, at);
-    if (id == GPGP_VALUE_SHAPE_CUSTOM_ATTRIBUTE) return attribute("ShapeCustomAttribute", 0, 0, at);
-    if (id >= GPGP_VALUE_SHAPE_POS_X && id <= GPGP_VALUE_SHAPE_POS_Z)
-      return attribute("ShapePos", 1, id - GPGP_VALUE_SHAPE_POS_X, at);
-    if (id >= GPGP_VALUE_SHAPE_SIZE_X && id <= GPGP_VALUE_SHAPE_SIZE_Z)
-      return attribute("ShapeSize", 1, id - GPGP_VALUE_SHAPE_SIZE_X, at);
-    if (id >= GPGP_VALUE_SHAPE_NORMAL_X && id <= GPGP_VALUE_SHAPE_NORMAL_Z)
-      return attribute("ShapeNormal", 1, id - GPGP_VALUE_SHAPE_NORMAL_X, at);
-    if (id >= GPGP_VALUE_SHAPE_ROTATION_XX && id < GPGP_VALUE_SHAPE_ROTATION_XX + 9)
-      return attribute("ShapeRotation", 2, id - GPGP_VALUE_SHAPE_ROTATION_XX, at);
+      return named(ExpressionKind::name, repeatModeText(id - GPGP_VALUE_ADJUST_TO_FILL), at);
+    for (const Attribute& attribute : kAttributes) {
+      const uint32_t number = id - attribute.value;
+      if (id < attribute.value || number >= attribute.count()) continue;
+      Expression result = named(ExpressionKind::call, attribute.name, at);
+      if (attribute.axes == 2) result.arguments.push_back(axis(number / 3, at));
+      if (attribute.axes) result.arguments.push_back(axis(number % 3, at));
+      return result;
+    }
     const size_t index = size_t(id) - kFirstOwn;
     if (id < kFirstOwn || index >= builder_.values.size()) {
       diagnostics_.error(at, id == GPGP_VALUE_NONE ? std::string("expected a value, found none")
@@ -280,14 +251,14 @@ private:
     if (!own.name.empty()) return named(ExpressionKind::name, own.name.c_str(), at);
     Expression result;
     result.place = at;
-    result.kind = ExpressionKind::binary;
-    if (own.kind == GPGP_EXPRESSION_RANDOM) {
-      result.kind = ExpressionKind::call;
-      result.name = "Rand";
-    } else if (own.kind == GPGP_EXPRESSION_CORNER) {
-      result.kind = ExpressionKind::pair;
-    } else {
-      result.op = kExpressionCodes[own.kind];
+    result.kind = ExpressionKind::pair;
+    for (const Binary& binary : kBinaries) {
+      if (binary.kind != own.kind) continue;
+      result.kind = binary.precedence ? ExpressionKind::binary : ExpressionKind::call;
+      if (binary.precedence)
+        result.op = binary.code;
+      else
+        result.name = binary.spelling;
     }
     result.arguments.push_back(value(own.left, at));
     result.arguments.push_back(value(own.right, at));
@@ -329,7 +300,7 @@ private:
   void call(const GpgpGrammarBuilder_T::Operator& op, Call& made) {
     const std::string where = diagnostics_.where(made.place);
     made.name = nameOf(op);
-    const bool corners = op.kind >= GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON;
+    const bool corners = operatorWritten(made.name) == nullptr; // others have no values
     for (size_t i = 0; i < op.values.size(); ++i)
       made.arguments.push_back(
           value(op.values[i], where + (corners ? ", corner " : ", value ") + std::to_string(i + 1)));
@@ -407,10 +378,10 @@ void GPGP_CALL gpgpDestroyGrammarBuilder(GpgpGrammarBuilder builder) { delete bu
 GpgpGrammarValue GPGP_CALL gpgpAddVariable(GpgpGrammarBuilder builder, const char* name, GpgpGrammarValue value) {
   return guarded(builder, GpgpGrammarValue{}, [&]() -> GpgpGrammarValue {
     if (!builder->checkName(name, "gpgpAddVariable")) return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
-    const auto isName = [&](const char* other) { return std::string_view(name) == other; };
-    if (!builder->check(std::none_of(std::begin(kAxes), std::end(kAxes), isName) &&
-                            std::none_of(std::begin(kModes), std::end(kModes), isName),
-                        "gpgpAddVariable", quoted(name) + " has a meaning of its own; expected another name"))
+    bool isFree = true;
+    for (uint32_t i = 0; i < 3; ++i)
+      isFree = isFree && axisText(i) != std::string(name) && repeatModeText(i) != std::string(name);
+    if (!builder->check(isFree, "gpgpAddVariable", quoted(name) + " has a meaning of its own; expected another name"))
       return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
     builder->variables.push_back({builder->statements++, name, value});
     builder->values.emplace_back().name = name;
@@ -457,7 +428,7 @@ GpgpGrammarOperator GPGP_CALL gpgpAddOperator(GpgpGrammarBuilder builder, GpgpOp
   return guarded(builder, GpgpGrammarOperator{}, [&]() -> GpgpGrammarOperator {
     GpgpGrammarBuilder_T::Operator made;
     made.kind = kind;
-    if (kind >= kOperatorNames.size())
+    if (!spellingOf(kind))
       made.problem = "there is no kind of operator " + std::to_string(kind);
     else if (!values && valueCount)
       made.problem = "values is NULL, valueCount is " + std::to_string(valueCount);

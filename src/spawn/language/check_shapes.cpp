@@ -50,12 +50,7 @@ void tellOfPolygons(const Graph& graph, const Node& node, Place place, Diagnosti
 }
 
 void warnOfNoEffect(const Node& node, Place place, Diagnostics& diagnostics) {
-  uint32_t fitting = node.shapes;
-  for (uint32_t s = 0; s < kShapeCount; ++s) {
-    if (node.op == kOpExtrude && !isPolygon(s)) fitting &= ~(1u << s);
-    if (node.op == kOpCompSplit && isPolygon(s)) fitting &= ~(1u << s);
-  }
-  if (fitting == 0)
+  if ((node.shapes & kOperators[node.op].shapes) == 0)
     diagnostics.warning(place, std::string(operatorName(node.op)) + " has no effect here: only " + list(node.shapes) +
                                    " arrives");
 }

@@ -108,21 +108,19 @@ ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
     return false;
   };
   if (e.name == "Exp") return wants(1) ? compile(e.arguments[0]) : number(0);
-  if (e.name == "Rand") {
+  if (e.name == binaryOf(kCodeRandom).spelling) {
     if (!wants(2)) return number(0);
     Code low = compile(e.arguments[0]);
     return join(e.place, kCodeRandom, std::move(low), compile(e.arguments[1]));
   }
-  if (e.name == "ShapePos") return attribute(e, kCodePosition, 1);
-  if (e.name == "ShapeSize") return attribute(e, kCodeShapeSize, 1);
-  if (e.name == "ShapeNormal") return attribute(e, kCodeNormal, 1);
-  if (e.name == "ShapeRotation") return attribute(e, kCodeRotation, 2);
-  if (e.name == "ShapeSeed") return attribute(e, kCodeSeed, 0);
-  if (e.name == "ShapeCustomAttribute") return attribute(e, kCodeCustom, 0);
-  diagnostics_.error(e.place, "'" + e.name +
-                                  "' is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, "
-                                  "ShapeNormal, ShapeSeed or ShapeCustomAttribute" +
-                                  suggestionFor(e.name, true));
+  for (const Attribute& a : kAttributes)
+    if (e.name == a.name) return attribute(e, a.code, a.axes);
+  std::string expected;
+  forFunctionNames([&](const char* name) {
+    const bool isLast = name == std::end(kAttributes)[-1].name;
+    expected.append(expected.empty() ? "" : isLast ? " or " : ", ").append(name);
+  });
+  diagnostics_.error(e.place, "'" + e.name + "' is no function; expected " + expected + suggestionFor(e.name, true));
   for (const Expression& argument : e.arguments)
     if (argument.kind != ExpressionKind::name) compile(argument); // a name may be an axis
   return number(0);
@@ -134,7 +132,7 @@ std::string ExpressionCompiler::suggestionFor(const std::string& name, bool isCa
   Suggestion suggestion(name);
   if (!isCall)
     for (const auto& [candidate, value] : variables_) suggestion.offer(candidate);
-  for (const char* candidate : kFunctions) suggestion.offer(candidate);
+  forFunctionNames([&](const char* candidate) { suggestion.offer(candidate); });
   return suggestion.text();
 }
 

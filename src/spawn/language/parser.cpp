@@ -3,9 +3,9 @@
 // A syntax error ends what it stands in: an argument up to its ',' or ')', a successor up to its '|' or '}', or the
 // statement up to its ';' or to where another one begins. What was read before stays in the tree, where it is checked
 // as the rest is, and what was not is marked, so that nobody reports that it is missing.
+#include "spawn/graph/operators.h"
 #include "spawn/language/lexer.h"
 #include "spawn/language/syntax.h"
-#include "spawn/shared/graph_format.h"
 
 namespace gpgp::spawn {
 namespace {
@@ -284,43 +284,24 @@ private:
 
   // ---------------------------------------------------------------- expressions
 
-  struct Level {
-    TokenKind kind;
-    int precedence;
-    uint32_t op;
-  };
-  static const Level* levelOf(TokenKind kind) {
-    static constexpr Level kLevels[] = {
-        {TokenKind::either, 1, shader::kCodeOr},
-        {TokenKind::both, 2, shader::kCodeAnd},
-        {TokenKind::equal, 3, shader::kCodeEqual},
-        {TokenKind::notEqual, 3, shader::kCodeNotEqual},
-        {TokenKind::less, 4, shader::kCodeLess},
-        {TokenKind::greater, 4, shader::kCodeGreater},
-        {TokenKind::lessEqual, 4, shader::kCodeLessEqual},
-        {TokenKind::greaterEqual, 4, shader::kCodeGreaterEqual},
-        {TokenKind::plus, 5, shader::kCodeAdd},
-        {TokenKind::minus, 5, shader::kCodeSubtract},
-        {TokenKind::times, 6, shader::kCodeMultiply},
-        {TokenKind::divided, 6, shader::kCodeDivide},
-    };
-    for (const Level& level : kLevels)
-      if (level.kind == kind) return &level;
+  static const Binary* binaryAt(const Token& token) {
+    for (const Binary& binary : kBinaries)
+      if (binary.precedence && token.text == binary.spelling) return &binary;
     return nullptr;
   }
 
-  Expression expression(int precedence = 1) {
+  Expression expression(uint32_t precedence = 1) {
     Expression left = primary();
     for (int length = 0;;) {
-      const Level* level = levelOf(peek().kind);
-      if (!level || level->precedence < precedence) return left;
+      const Binary* op = binaryAt(peek());
+      if (!op || op->precedence < precedence) return left;
       if (++length > kMaxExpression) fail("a shorter expression");
       Expression binary;
       binary.kind = ExpressionKind::binary;
       binary.place = next().place;
-      binary.op = level->op;
+      binary.op = op->code;
       binary.arguments.push_back(std::move(left));
-      binary.arguments.push_back(expression(level->precedence + 1));
+      binary.arguments.push_back(expression(op->precedence + 1));
       left = std::move(binary);
     }
   }

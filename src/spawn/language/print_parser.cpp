@@ -305,24 +305,18 @@ private:
       if (!first) expect(TokenKind::comma, "','");
       first = false;
     };
-    if (node.op == kOpSubDiv || node.op == kOpRepeat || node.op == kOpIfSizeLess) next(), node.argument = axis();
-    if (node.op == kOpSwapSize)
-      for (uint32_t i = 0; i < 3; ++i) next(), node.argument |= axis() << (2 * i);
-    if (node.op == kOpSetGeometry) {
-      node.argument = oneOf(kShapeCount, shapeName, "a shape");
-      expect(TokenKind::comma, "','");
-      node.argument2 = whole("a polygon's number");
-      first = false;
+    uint32_t axes = 0;
+    for (const char letter : kOperators[node.op].inParentheses()) {
+      next();
+      switch (letter) {
+      case 'a': node.argument |= axis() << (2 * axes++); break;
+      case 'm': node.argument2 = oneOf(3, repeatModeText, "ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END"); break;
+      case 't': node.argument = tag(); break;
+      case 's': node.argument = oneOf(kShapeCount, shapeName, "a shape"); break;
+      case 'p': node.argument2 = whole("a polygon's number"); break;
+      default: parameter();
+      }
     }
-    if (isContext(node.op)) next(), node.argument = tag();
-    uint32_t values = 0;
-    if (node.op == kOpTranslate || node.op == kOpRotate || node.op == kOpScale) values = 3;
-    if (node.op == kOpExtrude || node.op == kOpIf || node.op == kOpIfSizeLess || node.op == kOpRepeat ||
-        node.op == kOpRandomRule)
-      values = 1;
-    for (uint32_t i = 0; i < values; ++i) next(), parameter();
-    if (node.op == kOpRepeat)
-      next(), node.argument2 = oneOf(3, repeatModeText, "ADJUST_TO_FILL, ANCHOR_TO_START or ANCHOR_TO_END");
     expect(TokenKind::close, "')'");
   }
 
@@ -336,7 +330,7 @@ private:
   void edges(const Node& node) {
     expect(TokenKind::openBrace, "'{'");
     do {
-      if (node.op == kOpSubDiv || node.op == kOpRandomRule) {
+      if (kOperators[node.op].hasSuccessorValues()) {
         parameter();
         expect(TokenKind::colon, "':'");
       }
@@ -390,29 +384,20 @@ private:
       expect(TokenKind::close, "')'");
       return {std::move(inner.words), kParameterProgram};
     }
-    if (word.text == "Rand") {
+    if (word.text == binaryOf(kCodeRandom).spelling) {
       Value left = value(depth + 1);
       expect(TokenKind::comma, "','");
       return close(std::move(left), kCodeRandom, value(depth + 1));
     }
-    uint32_t code = 0;
-    if (word.text == "ShapeSeed") {
-      code = kCodeSeed;
-    } else if (word.text == "ShapeCustomAttribute") {
-      code = kCodeCustom;
-    } else if (word.text == "ShapePos") {
-      code = kCodePosition + axis();
-    } else if (word.text == "ShapeSize") {
-      code = kCodeShapeSize + axis();
-    } else if (word.text == "ShapeNormal") {
-      code = kCodeNormal + axis();
-    } else if (word.text == "ShapeRotation") {
-      code = kCodeRotation + 3 * axis();
+    const auto attribute = std::find_if(std::begin(kAttributes), std::end(kAttributes),
+                                        [&](const Attribute& a) { return word.text == a.name; });
+    if (attribute == std::end(kAttributes)) fail(word, std::string("expected a value, found ") + describe(word));
+    uint32_t code = attribute->code;
+    if (attribute->axes == 2) {
+      code += 3 * axis();
       expect(TokenKind::comma, "','");
-      code += axis();
-    } else {
-      fail(word, std::string("expected a value, found ") + describe(word));
     }
+    if (attribute->axes) code += axis();
     expect(TokenKind::close, "')'");
     return {{code}, kParameterAttribute};
   }
@@ -426,8 +411,8 @@ private:
 
   uint32_t binary() {
     const Token& token = now();
-    for (uint32_t code = kCodeAdd; code <= kCodeOr; ++code)
-      if (std::string(" ") + std::string(token.text) + " " == binaryText(code)) return ++at_, code;
+    for (const Binary& binary : kBinaries)
+      if (binary.precedence && token.text == binary.spelling) return ++at_, binary.code;
     fail(token, std::string("expected an operator as in (1 + 2), found ") + describe(token));
   }
 

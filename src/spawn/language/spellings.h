@@ -1,6 +1,6 @@
-// How the operators of PGA-shape are written.
+// How the operators of PGA-shape are written: by the names of the table, and in some ways that graphs do not know.
 #pragma once
-#include "spawn/shared/graph_format.h"
+#include "spawn/graph/operators.h"
 
 #include <algorithm>
 #include <array>
@@ -8,47 +8,43 @@
 
 namespace gpgp::spawn {
 
-/// Parameters: axes and modes come first, then values.
 struct Spelling {
   const char* name;
-  uint32_t op;
-  const char* arguments; ///< one letter each: a axis, m mode, t tag, v value
-  uint32_t branches;     ///< 1: one successor, 2 or 3: exactly, kMany: any number
-  bool labels;           ///< value: successor
+  GpgpOperatorKind kind;
 };
-constexpr uint32_t kMany = UINT32_MAX;
-constexpr Spelling kSpellings[] = {
-    {"Translate", shader::kOpTranslate, "vvv", 1, false},
-    {"Rotate", shader::kOpRotate, "vvv", 1, false},
-    {"Scale", shader::kOpScale, "vvv", 1, false},
-    {"Extrude", shader::kOpExtrude, "v", 1, false},
-    {"SwapSize", shader::kOpSwapSize, "aaa", 1, false},
-    {"Collider", shader::kOpCollider, "t", 1, false},
-    {"IfCollides", shader::kOpIfCollides, "t", 2, false},
-    {"CompSplit", shader::kOpCompSplit, "", 3, false},
-    {"SubDiv", shader::kOpSubDiv, "a", kMany, true},
-    {"Repeat", shader::kOpRepeat, "avm", 1, false},
-    {"If", shader::kOpIf, "v", 2, false},
-    {"IfSizeLess", shader::kOpIfSizeLess, "av", 2, false},
-    {"RandomRule", shader::kOpRandomRule, "v", kMany, true},
-    {"Replicate", shader::kOpReplicate, "", kMany, false},
-};
-constexpr std::array<const char*, 6> kOtherOperators{"Discard",
-                                                     "Generate",
-                                                     "SetAsDynamicConvexPolygon",
-                                                     "SetAsDynamicConcavePolygon",
-                                                     "SetAsDynamicConvexRightPrism",
-                                                     "SetAsDynamicConcaveRightPrism"};
-constexpr std::array<const char*, 8> kFunctions{"Exp",           "Rand",        "ShapePos",  "ShapeSize",
-                                                "ShapeRotation", "ShapeNormal", "ShapeSeed", "ShapeCustomAttribute"};
-/// Calls for each operator's name.
-template <class Call> void forOperatorNames(const Call& call) {
-  for (const Spelling& spelling : kSpellings) call(spelling.name);
-  for (const char* name : kOtherOperators) call(name);
+inline constexpr std::array kOtherSpellings{
+    Spelling{"Discard", GPGP_OPERATOR_DISCARD},
+    Spelling{"Generate", GPGP_OPERATOR_GENERATE},
+    Spelling{"SetAsDynamicConvexPolygon", GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON},
+    Spelling{"SetAsDynamicConcavePolygon", GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_POLYGON},
+    Spelling{"SetAsDynamicConvexRightPrism", GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_RIGHT_PRISM},
+    Spelling{"SetAsDynamicConcaveRightPrism", GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_RIGHT_PRISM}};
+constexpr size_t kWritten = std::count_if(std::begin(kOperators), std::end(kOperators),
+                                          [](const Operator& op) { return op.kind != kNotWritten; });
+/// Of all operators.
+inline constexpr auto kSpellings = [] {
+  std::array<Spelling, kWritten + kOtherSpellings.size()> all{};
+  size_t count = 0;
+  for (const Operator& op : kOperators)
+    if (op.kind != kNotWritten) all[count++] = {op.name, op.kind};
+  for (const Spelling& spelling : kOtherSpellings) all[count++] = spelling;
+  return all;
+}();
+
+/// The operator of the table that is written so, or NULL.
+inline const Operator* operatorWritten(const std::string& name) {
+  for (const Operator& op : kOperators)
+    if (op.kind != kNotWritten && name == op.name) return &op;
+  return nullptr;
 }
 inline bool isOperatorName(const std::string& name) {
-  return std::any_of(std::begin(kSpellings), std::end(kSpellings), [&](const Spelling& s) { return name == s.name; }) ||
-         std::any_of(kOtherOperators.begin(), kOtherOperators.end(), [&](const char* s) { return name == s; });
+  return std::any_of(kSpellings.begin(), kSpellings.end(), [&](const Spelling& s) { return name == s.name; });
+}
+/// Calls for the name of each function that a value can be.
+template <class Call> void forFunctionNames(const Call& call) {
+  call("Exp");
+  call(binaryOf(shader::kCodeRandom).spelling);
+  for (const Attribute& attribute : kAttributes) call(attribute.name);
 }
 
 } // namespace gpgp::spawn

@@ -88,13 +88,13 @@ Turns turnsOf(const Graph& graph) {
     const auto codes = [&](uint32_t i) {
       return i < node.parameterCount ? lengthOf(graph, graph.parameters[node.firstParameter + i]) : 0;
     };
-    if (node.op <= kOpSetGeometry) {
+    if (kOperators[node.op].relation == Relation::Passing) {
       for (uint32_t i = 0; i < std::min(node.parameterCount, 3u); ++i) transform.add(i, codes(i));
       rotates |= node.op == kOpRotate;
-    } else if (node.op <= kOpRandomRule) {
+    } else if (chooses(node.op)) {
       chosenBy = std::max(chosenBy, codes(0));
       for (uint32_t e = 0; node.op == kOpRandomRule && e < node.edgeCount; ++e) weights.add(e, codes(e + 1));
-    } else if (node.op >= kOpCompSplit) {
+    } else if (couldMultiply(node.op)) {
       edges = std::max(edges, node.edgeCount);
       cut = std::max(cut, cutsOf(graph, node));
       if (node.op == kOpRepeat) repeatedBy = std::max(repeatedBy, codes(0));
