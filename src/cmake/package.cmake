@@ -72,6 +72,12 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/gpgpConfigVersion
 install(FILES ${PROJECT_BINARY_DIR}/package/gpgpConfig.cmake ${PROJECT_BINARY_DIR}/package/gpgpConfigVersion.cmake
   ${CMAKE_CURRENT_LIST_DIR}/assets.cmake ${CMAKE_CURRENT_LIST_DIR}/text_dependencies.cmake
   DESTINATION ${cmake_directory})
+if(TARGET gpgp_text OR TARGET gpgp_text_static)
+  set(common ${PROJECT_SOURCE_DIR}/integrations/common)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/glyph_cache.cmake DESTINATION ${cmake_directory})
+  install(FILES ${common}/glyph_cache.cpp ${common}/glyph_pictures.cpp ${common}/gpgp_glyph_cache.hpp
+    ${common}/gpgp_glyph_pictures.hpp DESTINATION ${cmake_directory}/glyph_cache)
+endif()
 
 # pkg-config: paths are relative to the .pc file, so that a prefix can be moved.
 file(RELATIVE_PATH GPGP_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
