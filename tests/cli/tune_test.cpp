@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <optional>
 
 namespace gpgp::test {
@@ -61,6 +62,27 @@ TEST(CliTune, FindsAScheduleAndBakesIt) {
       {"spawn", grammar.path(), "--axioms", "3", "--axiom-size", "8,4,1", "--schedule", baked.path(), "--validate"});
   EXPECT_EQ(derived["terminals"], first["terminals"]);
   EXPECT_EQ(derived["schedule_file"], baked.path());
+}
+
+TEST(CliTune, TheFastestIsKeptWhereSchedulesAreFarApart) {
+  std::string rule; // a shape that waits at each of these operators takes many times as long as one that passes all
+  for (int i = 0; i < 16; ++i) rule += "Translate(0, 0.5, 0) Rotate(0, 10, 0) ";
+  const TemporaryFile grammar("apart.pga", "axiom Box S;\nterminal A (1, 0);\nS = " + rule + "A;\n"),
+      baked("apart.gpgpg");
+  const json tuned = gpgpJson({"tune", grammar.path(), "--axioms", "20000", "--samples", "8", "--repeat", "5",
+                               "--schedules-only", "--seconds", "0", "-o", baked.path()});
+  double least = std::numeric_limits<double>::infinity(), most = 0, kept = 0;
+  for (const json& schedule : tuned["schedules"]) {
+    if (schedule["needs_larger_budgets"]) continue;
+    const double time = schedule["gpu_ms_median"];
+    least = std::min(least, time), most = std::max(most, time);
+    if (schedule["schedule"] == tuned["best"]["schedule"] &&
+        schedule["execution_groups"] == tuned["best"]["execution_groups"])
+      kept = time;
+  }
+  ASSERT_GT(most, 2 * least) << "these schedules tell nothing";
+  ASSERT_GT(kept, 0);
+  EXPECT_LT(kept * kept, least * most) << tuned.dump(2); // nearer to the fastest
 }
 
 TEST(CliTune, KeepsToItsTime) {
