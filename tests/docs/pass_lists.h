@@ -8,6 +8,9 @@ namespace gpgp::test {
 
 core::PassList canvasPasses(bool software);
 core::PassList visibilityPasses();
+core::PassList spawnPasses(bool vertices);
+/// The shader of the pass `derive` with colliders or without. subgroups: the device has subgroup arithmetic.
+core::ShaderDesc interpreterOf(bool software, bool subgroups, bool colliders);
 
 /// With all features, and limits as devices have them.
 inline core::Device deviceOf(bool software) {

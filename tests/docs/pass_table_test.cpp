@@ -15,6 +15,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 namespace {
 using namespace gpgp;
@@ -26,18 +27,24 @@ public:
     std::ifstream list(GPGP_SHADER_FILES);
     for (std::string name, file; list >> name >> file;) {
       const std::vector<uint8_t> bytes = host::readFile(std::string(GPGP_SHADER_FOLDER "/") + name + ".spv");
-      files_[{bytes.begin(), bytes.end()}] = file;
+      files_[{bytes.begin(), bytes.end()}] = {name, file};
     }
   }
-  std::string of(const core::ShaderDesc& shader) const {
+  std::string of(const core::ShaderDesc& shader) const { return at(shader).file; }
+  std::string nameOf(const core::ShaderDesc& shader) const { return at(shader).name; }
+
+private:
+  struct Shader {
+    std::string name, file; // name: file and defines
+  };
+  const Shader& at(const core::ShaderDesc& shader) const {
     const auto* bytes = reinterpret_cast<const uint8_t*>(shader.spirv.data());
     const auto found = files_.find({bytes, bytes + shader.spirv.size_bytes()});
     if (found == files_.end()) throw std::runtime_error(std::string("no source for the shader of ") + shader.name);
     return found->second;
   }
 
-private:
-  std::map<std::vector<uint8_t>, std::string> files_;
+  std::map<std::vector<uint8_t>, Shader> files_;
 };
 
 struct Row {
@@ -97,6 +104,18 @@ std::string tableOf(const core::PassList& list, const ShaderFiles& files) {
   return text;
 }
 
+/// Which form of the interpreter each kind of device has.
+std::string interpreters(const ShaderFiles& files) {
+  std::string text = "| device | without colliders | with colliders |\n|---|---|---|\n";
+  for (const auto& [name, software, subgroups] : {std::tuple("hardware", false, true),
+                                                  {"hardware without subgroup arithmetic", false, false},
+                                                  {"software", true, true},
+                                                  {"software without subgroup arithmetic", true, false}})
+    text += std::string("| ") + name + " | `" + files.nameOf(test::interpreterOf(software, subgroups, false)) +
+            "` | `" + files.nameOf(test::interpreterOf(software, subgroups, true)) + "` |\n";
+  return text;
+}
+
 std::string page() {
   const ShaderFiles files;
   return "# Passes\n\n"
@@ -107,9 +126,12 @@ std::string page() {
          "row,\n"
          "and so do passes of one file that use the same resources. What a pass does is in [spawn](spawn.md),\n"
          "[vector](vector.md) and [visibility](visibility.md).\n\n"
-         "## Vector\n\n" +
-         tableOf(test::canvasPasses(false), files) + "\n### On software devices\n\n" +
-         tableOf(test::canvasPasses(true), files) +
+         "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
+         tableOf(test::spawnPasses(false), files) + "\nOf ordered vertices:\n\n" +
+         tableOf(test::spawnPasses(true), files) +
+         "\nForms of the interpreter, which pass `derive` runs for grammars without a kernel:\n\n" +
+         interpreters(files) + "\n## Vector\n\n" + tableOf(test::canvasPasses(false), files) +
+         "\n### On software devices\n\n" + tableOf(test::canvasPasses(true), files) +
          "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are the passes `ids` as well.\n\n" +
          tableOf(test::visibilityPasses(), files);
 }

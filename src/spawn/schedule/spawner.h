@@ -11,8 +11,8 @@
 // far searchable, all rounds of the next. A spawner made for colliders records those passes for such grammars only.
 #pragma once
 #include "core/recorder.h"
+#include "spawn/passes/builder.h"
 #include "spawn/schedule/grammar.h"
-#include "spawn/schedule/vertices.h"
 
 #include <gpgp/spawn.h>
 
@@ -31,19 +31,16 @@ public:
   using Recorder::prewarm;
   bool takeReport(GpgpSpawnReport& report);
   /// It writes vertices, not instances.
-  bool vertices() const { return stride_ != 0; }
+  bool vertices() const { return sizes_.vertices(); }
 
 private:
-  /// Counters from the first round of a phase to the next phase's: its rounds, and what the last one left.
-  uint32_t phaseStride() const { return rounds_ + 1; }
-
   /// That a record takes where neither the engine nor a tuned kernel says so.
   uint32_t roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const;
 
-  uint32_t maxShapes_ = 0, maxTerminals_ = 0, maxDepth_ = 0, rounds_ = 0, maxColliders_ = 0, maxHostAxioms_ = 0;
-  uint32_t derive_ = 0, deriveColliding_ = 0;  // shaders
-  uint32_t stride_ = 0;                        // of a vertex; 0: it writes instances
-  bool ordered_ = false, roundsGiven_ = false; // by the engine
+  SpawnerSizes sizes_;
+  uint32_t maxDepth_ = 0;
+  uint32_t derive_ = 0, deriveColliding_ = 0; // shaders
+  bool roundsGiven_ = false;                  // by the engine
 };
 
 } // namespace gpgp::spawn
