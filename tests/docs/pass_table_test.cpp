@@ -89,15 +89,15 @@ std::string tableOf(const core::PassList& list, const ShaderFiles& files) {
         row->writes.insert(nameOf(use.resource));
     }
   }
-  for (size_t r = 0; r < rows.size(); ++r) // passes that differ in nothing that the table has share a row
-    for (size_t other = r + 1; other < rows.size();)
-      if (rows[other].file == rows[r].file && rows[other].reads == rows[r].reads &&
-          rows[other].writes == rows[r].writes) {
-        rows[r].name += ", " + rows[other].name;
-        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(other));
-      } else {
-        ++other;
-      }
+  for (size_t r = 0; r + 1 < rows.size();) { // neighbours that differ in nothing that the table has share a row
+    const Row& next = rows[r + 1];
+    if (next.file == rows[r].file && next.reads == rows[r].reads && next.writes == rows[r].writes) {
+      rows[r].name += ", " + next.name;
+      rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r + 1));
+    } else {
+      ++r;
+    }
+  }
   std::string text = "| pass | file | reads | writes |\n|---|---|---|---|\n";
   for (const Row& row : rows)
     text += "| " + row.name + " | `" + row.file + "` | " + joined(row.reads) + " | " + joined(row.writes) + " |\n";
