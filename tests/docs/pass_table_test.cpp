@@ -27,7 +27,7 @@ public:
     std::ifstream list(GPGP_SHADER_FILES);
     for (std::string name, file; list >> name >> file;) {
       const std::vector<uint8_t> bytes = host::readFile(std::string(GPGP_SHADER_FOLDER "/") + name + ".spv");
-      files_[{bytes.begin(), bytes.end()}] = {name, file};
+      files_.try_emplace({bytes.begin(), bytes.end()}, Shader{name, file}); // the library's come before tests'
     }
   }
   std::string of(const core::ShaderDesc& shader) const { return at(shader).file; }
