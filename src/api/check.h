@@ -57,8 +57,8 @@ inline Result<Context*> resolve(Call& call, GpgpContext handle) {
   return context;
 }
 
-/// The object behind an asset, recorder or view handle, null for NULL and destroyed handles. Where `context` is still
-/// null it receives the handle's, also of a destroyed one: it gets the message.
+/// The object behind an asset, recorder or history handle, null for NULL and destroyed handles. Where `context` is
+/// still null it receives the handle's, also of a destroyed one: it gets the message.
 template <class Handle> core::Object* objectOf(Handle handle, const Context** context) {
   const uintptr_t bits = reinterpret_cast<uintptr_t>(handle);
   core::Slot* slot = reinterpret_cast<core::Slot*>(bits & ~uintptr_t(alignof(core::Slot) - 1));

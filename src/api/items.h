@@ -1,4 +1,4 @@
-// What the items of a record or a hit test show.
+// What the items of a recording or a hit test show.
 #pragma once
 #include "api/check.h"
 #include "vector/raster/gather.h"

@@ -61,7 +61,7 @@ public:
   }
   void setLost();
   Result<void> advance(const GpgpFrame& frame);
-  /// Checks a frame that a record names: same as the last advance's.
+  /// Checks a frame that a recording names: same as the last advance's.
   Result<void> checkFrame(const GpgpFrame* frame) const;
 
   // ---- lists of living objects that advance visits (context); intrusive, see Resident and Recorder

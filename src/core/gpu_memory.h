@@ -45,8 +45,8 @@ private:
   std::pmr::vector<Block> blocks_;
 };
 
-/// constants: small and written by the host for each record; on the device where the host sees that, as shaders would
-/// else wait for the bus.
+/// constants: small and written by the host for each recording; on the device where the host sees that, as shaders
+/// would else wait for the bus.
 enum class MemoryPlace { device, upload, constants, readBack };
 
 /// A buffer with its memory. Movable, frees itself.

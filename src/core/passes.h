@@ -1,7 +1,7 @@
 // Passes are data: a service describes its work as a list of resources and passes, once, when a recorder is created.
 //
 // From the list come the scratch layout, the barriers, the descriptor set layout (binding number = resource number),
-// the recorded commands, debug labels, timestamps, and the pass tables of the documentation. Nothing about a record
+// the recorded commands, debug labels, timestamps, and the pass tables of the documentation. Nothing about a recording
 // is decided again while recording.
 #pragma once
 #include "core/result.h"
@@ -17,21 +17,21 @@ using ResourceIndex =
     uint32_t; // its place in PassList::resources, and its binding in descriptor set 0 (textures: below)
 
 enum class ResourceKind : uint8_t {
-  buffer,    ///< given with each record: the engine's, an asset's or a view's
-  image,     ///< given with each record: a storage image of the engine's
-  texture,   ///< given with each record: an image of the engine's with a sampler, read only. Textures lie in a row, in
-             ///< descriptor set 1, which records without them leave unbound
-  scratch,   ///< part of the scratch buffer, contents undefined between records
-  constants, ///< written by the CPU with each record, read by shaders
+  buffer,  ///< given with each recording: the engine's, an asset's or a history's
+  image,   ///< given with each recording: a storage image of the engine's
+  texture, ///< given with each recording: an image of the engine's with a sampler, read only. Textures lie in a row, in
+           ///< descriptor set 1, which recordings without them leave unbound
+  scratch, ///< part of the scratch buffer, contents undefined between recordings
+  constants, ///< written by the CPU with each recording, read by shaders
   uniforms,  ///< the same as a uniform block, for what is small and every invocation reads
-  report,    ///< a record's report where the host reads it, for passes that write it themselves (Record::reports)
+  report,    ///< a recording's report where the host reads it, for passes that write it themselves (Record::reports)
 };
 
 struct Resource {
   const char* name;
   ResourceKind kind;
-  VkDeviceSize bytes = 0; ///< scratch, constants and uniforms; buffer: room for what a record gives from the host
-  bool optional = false;  ///< buffer, image, texture: a record may leave it out; an unused range is bound instead
+  VkDeviceSize bytes = 0; ///< scratch, constants and uniforms; buffer: room for what a recording gives from the host
+  bool optional = false;  ///< buffer, image, texture: a recording may leave it out; an unused range is bound instead
   bool written = false;   ///< by a pass (finish)
 };
 
@@ -68,14 +68,14 @@ struct Pass {
   uint32_t shader = 0;                 ///< index in PassList::shaders
   std::array<Use, kMaxUses> uses = {}; ///< all that its shader could touch, for barriers
   uint32_t useCount = 0;
-  uint32_t groups = 0;                                    ///< dispatch: index in a record's list of workgroup counts
+  uint32_t groups = 0;                                    ///< dispatch: index in a recording's list of workgroup counts
   ResourceIndex target = 0;                               ///< indirect: arguments; fill: destination
   VkDeviceSize offset = 0, size = VK_WHOLE_SIZE;          ///< indirect, fill: bytes in the resource
   uint32_t value = 0;                                     ///< fill
-  std::array<uint32_t, kMaxPassConstants> constants = {}; ///< push constants, the same in every record
+  std::array<uint32_t, kMaxPassConstants> constants = {}; ///< push constants, the same in every recording
   uint32_t constantCount = 0;
-  uint32_t condition = UINT32_MAX; ///< index in a record's list of flags: left out of the record when false
-  uint32_t level = 0;              ///< left out of records that ask for as many levels or fewer
+  uint32_t condition = UINT32_MAX; ///< index in a recording's list of flags: left out of the recording when false
+  uint32_t level = 0;              ///< left out of recordings that ask for as many levels or fewer
   bool beside = false;             ///< needs no barrier after the pass before: what both write, they add to, or
                                    ///< only one of them is recorded
   bool barrierBefore = false;      ///< worked out by finish()
@@ -92,7 +92,7 @@ struct PassList {
   ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end,
                                      ///< unless passes write it to a resource of kind report
   uint32_t reportBytes = 0;
-  uint32_t groupCounts = 0; ///< how many workgroup counts a record gives
+  uint32_t groupCounts = 0; ///< how many workgroup counts a recording gives
 
   // worked out by finish()
   std::pmr::vector<VkDeviceSize> scratchOffsets; ///< by resource

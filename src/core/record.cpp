@@ -194,7 +194,7 @@ void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxRes
     const Binding& binding = bindings[i];
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i,      0, 1,
                                descriptorType(resource.kind),          nullptr, &buffers[i], nullptr};
-    // What a record leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
+    // What a recording leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
     buffers[i] = {constants_.handle(), resource.written ? unusedOffset_ : 0,
                   resource.written ? kUnusedBytes : std::clamp<VkDeviceSize>(passes_.constantsBytes, 16, kUnusedBytes)};
     if (resource.kind == ResourceKind::image) {
@@ -246,8 +246,8 @@ void Recorder::endLabel(VkCommandBuffer commandBuffer) const {
   if (context.device.vk.CmdEndDebugUtilsLabelEXT) context.device.vk.CmdEndDebugUtilsLabelEXT(commandBuffer);
 }
 
-/// One barrier at each end of a record. Entry: the engine's last uses, and this recorder's previous record (scratch,
-/// views). Exit: the engine's next uses, the draw path, and the host that reads the report.
+/// One barrier at each end of a recording. Entry: the engine's last uses, and this recorder's previous recording
+/// (scratch, views). Exit: the engine's next uses, the draw path, and the host that reads the report.
 void Recorder::edgeBarrier(const Record& record, bool entry) const {
   const bool engine = !(record.info->accessMode & GPGP_ACCESS_EXTERNAL_BARRIERS);
   const VkPipelineStageFlags drawStage = draws_ ? VkPipelineStageFlags(VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT) : 0;
@@ -330,7 +330,7 @@ Result<void> Recorder::record(const Record& record) {
 
   beginLabel(cmd, nullptr);
   edgeBarrier(record, true);
-  // Says that the record ran, to who reads it when the frame has ended; beside the first passes it costs nothing.
+  // Says that the recording ran, to who reads it when the frame has ended; beside the first passes it costs nothing.
   vk.CmdFillBuffer(cmd, reports_.handle(), slot * reportStride_ + passes_.reportBytes, 4, slots_[slot].marker);
   const GpgpTimestamps& timestamps = record.info->timestamps;
   uint32_t query = timestamps.firstQuery;

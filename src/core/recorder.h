@@ -1,6 +1,6 @@
 // Recorders: pipelines, rings and scratch for one pass list, and the one function that records it.
 //
-// A service derives from Recorder, describes its passes in the constructor path (init), and for each record fills a
+// A service derives from Recorder, describes its passes in the constructor path (init), and for each recording fills a
 // Record: engine buffers by resource, constants, workgroup counts. Recording allocates nothing.
 #pragma once
 #include "core/context.h"
@@ -15,15 +15,15 @@ constexpr uint32_t kMaxGroupCounts = 16;
 constexpr uint32_t kMaxConditions = 48;
 constexpr uint32_t kMaxTargets = 16;
 
-/// What one record gives for the resources of kinds buffer and image.
+/// What one recording gives for the resources of kinds buffer and image.
 struct Binding {
   const GpgpBuffer* engineBuffer = nullptr; ///< with before/after states
   std::span<const std::byte> hostData;      ///< copied while recording, at most Resource::bytes
-  VkBuffer ownBuffer = VK_NULL_HANDLE;      ///< an asset's or view's
+  VkBuffer ownBuffer = VK_NULL_HANDLE;      ///< an asset's or history's
   VkDeviceSize ownOffset = 0, ownSize = VK_WHOLE_SIZE;
   const GpgpImage* image = nullptr;
   VkDescriptorImageInfo texture = {}; ///< imageView NULL: left out
-  const char* name = nullptr;         ///< what this record calls it in messages; null: the resource's name
+  const char* name = nullptr;         ///< what this recording calls it in messages; null: the resource's name
 };
 
 struct Record {
@@ -101,8 +101,8 @@ public:
   Recorder* nextRecorder() const { return nextRecorder_; }
 
 protected:
-  /// Where the next record's constants will lie, for parts of Record::constants to be written in place: those are not
-  /// copied. Memory that is slow to read. Null where record() has no room.
+  /// Where the next recording's constants will lie, for parts of Record::constants to be written in place: those are
+  /// not copied. Memory that is slow to read. Null where record() has no room.
   std::byte* constants() const;
   Recorder(Context& context, Kind kind, const GpgpRecorderCreateInfo& info, GpgpService service);
   /// Takes the finished description and makes what recording needs. Call once at the end of creation.
@@ -117,7 +117,7 @@ protected:
   VkPipeline pipelineOf(uint32_t shader) const { return pipelines_[shader]; }
 
 private:
-  struct InFlight { // one record in flight
+  struct InFlight { // one recording in flight
     uint64_t frame = 0;
     uint64_t tag = 0;
     uint32_t marker = 0; ///< what the GPU will have written; 0: free
@@ -157,7 +157,7 @@ private:
   Buffer scratch_, constants_, reports_;
   VkDeviceSize reportStride_ = 0;
   static constexpr VkDeviceSize kUnusedBytes = 256;
-  VkDeviceSize unusedOffset_ = 0; ///< behind the constants: what records leave out and passes could write
+  VkDeviceSize unusedOffset_ = 0; ///< behind the constants: what recordings leave out and passes could write
   std::pmr::vector<InFlight> slots_;
   std::pmr::vector<uint8_t> ran_;        // by pass
   std::pmr::vector<uint32_t> harvested_; // words of harvested reports, as many as queue_ has places

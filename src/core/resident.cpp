@@ -154,7 +154,7 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
 }
 
 void UploadRing::advance() {
-  // In order of recording: the ring's tail may pass a record only after all before it.
+  // In order of recording: the ring's tail may pass a recording only after all before it.
   for (;;) {
     Record* oldest = nullptr;
     for (Record& record : records_)

@@ -1,8 +1,8 @@
 // Assets and views: objects with one device buffer whose contents arrive through gpgpRecordUpload.
 //
-// An asset's buffer receives bytes, a view's is cleared to zero. An object is resident from the record that copied
-// its last byte on; if that command buffer turns out never to have run, it is pending again. What is added later goes
-// the same way, range by range, in the order in which ranges were queued.
+// An asset's buffer receives bytes, a history's is cleared to zero. An object is resident from the recording that
+// copied its last byte on; if that command buffer turns out never to have run, it is pending again. What is added later
+// goes the same way, range by range, in the order in which ranges were queued.
 #pragma once
 #include "core/context.h"
 
@@ -24,7 +24,7 @@ protected:
   /// Bytes to copy; the object keeps them until the copy is known to have run.
   Resident(Context& owner, Kind objectKind, const char* name)
       : Object(owner, objectKind, name), bytes_(&owner.host()), ranges_(&owner.host()) {}
-  /// Allocates the buffer. Either bytes (an asset), or an empty vector and a size to clear (a view). Sizes are
+  /// Allocates the buffer. Either bytes (an asset), or an empty vector and a size to clear (a history). Sizes are
   /// rounded up to 16 bytes. Call once, at the end of the derived object's creation.
   Result<void> makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize = 0);
   /// The same for contents that come in ranges: all bytes stay on the host, and nothing is queued.
@@ -47,7 +47,7 @@ private:
   friend class Context;
   struct Range {
     VkDeviceSize offset, size, done;
-    uint64_t first, last; // numbers of the upload records that hold its pieces; 0: none
+    uint64_t first, last; // numbers of the upload recordings that hold its pieces; 0: none
     bool settled;
   };
   Result<void> allocate(GpgpService service, VkDeviceSize size);

@@ -31,7 +31,7 @@ public:
   /// Null for Memory::device.
   void* mapped() const { return mapped_; }
   template <class T> T* as() const { return static_cast<T*>(mapped_); }
-  /// The whole buffer, or a range, for a record; before and after as given.
+  /// The whole buffer, or a range, for a recording; before and after as given.
   GpgpBuffer range(const GpgpAccess& before = {}, const GpgpAccess& after = {}, VkDeviceSize offset = 0,
                    VkDeviceSize size = VK_WHOLE_SIZE) const;
 

@@ -25,7 +25,7 @@ core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& conte
     const uint32_t triangles = info.meshes[i].indexCount / 3;
     clusters += triangles / shader::kChunk + (triangles % shader::kChunk != 0);
   }
-  // No buffer holds so many clusters: a record that names one for them is refused.
+  // No buffer holds so many clusters: a recording that names one for them is refused.
   set->clusterCount_ = static_cast<uint32_t>(std::min<uint64_t>(clusters, UINT32_MAX));
   if (auto ok = set->makeResident(GPGP_SERVICE_VISIBILITY, std::move(bytes), sizeof(GpgpMesh)); !ok) return ok.error();
   return set;

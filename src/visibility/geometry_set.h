@@ -1,5 +1,5 @@
-// Geometry sets and camera histories: the mesh table of an engine's buffers, and the bits that a camera's last record
-// saw.
+// Geometry sets and camera histories: the mesh table of an engine's buffers, and the bits that a camera's last
+// recording saw.
 #pragma once
 #include "core/resident.h"
 
@@ -18,7 +18,7 @@ private:
   uint32_t meshCount_ = 0, clusterCount_ = 0;
 };
 
-/// One bit per triangle, zero until the camera's first record.
+/// One bit per triangle, zero until the camera's first recording.
 class CameraHistory final : public core::Resident {
 public:
   static core::Result<core::Unique<CameraHistory>> create(core::Context& context,

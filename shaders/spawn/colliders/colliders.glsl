@@ -1,4 +1,4 @@
-// The colliders of a record on the device, as collide.h reads them. A collider is four uvec4: each of its box's vectors
+// A recording's colliders on the device, as collide.h reads them. A collider is four uvec4: each of its box's vectors
 // with the axiom's number, its tag, what Shape::axiom was before, and nothing.
 #ifndef GPGP_SHADERS_SPAWN_COLLIDERS_GLSL
 #define GPGP_SHADERS_SPAWN_COLLIDERS_GLSL

@@ -283,7 +283,7 @@ void writeInstance(uint target, uvec4 words[kInstanceWords4]) {
 #endif
 }
 
-/// Terminals to what the record wants of them. place: among count of them. first: the room that was made for all, as
+/// Terminals to what the recording wants of them. place: among count of them. first: the room that was made for all, as
 /// the first invocation knows.
 void emit(bool own, uint place, uint count, uint first, Shape s) {
   if (count == 0) return;

@@ -45,7 +45,7 @@ void leaveRest(uint count, uint answers) {
     reportAll();
 }
 
-/// What the workgroup's invocations have counted to the record's counters. Returns their answers, to the first one.
+/// What the workgroup's invocations have counted to the recording's counters. Returns their answers, to the first one.
 uint addCounts(uvec2 hash, uint depth, uint unfinished) {
 #ifdef GPGP_SUBGROUPS
   hash = uvec2(subgroupAdd(hash.x), subgroupAdd(hash.y));

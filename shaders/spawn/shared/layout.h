@@ -1,4 +1,4 @@
-// What the spawner's passes share with each other and with the CPU: counters, constants of a record, bindings.
+// What the spawner's passes share with each other and with the CPU: counters, constants of a recording, bindings.
 #ifndef GPGP_SHADERS_SPAWN_LAYOUT_H
 #define GPGP_SHADERS_SPAWN_LAYOUT_H
 #include "spawn/shared/graph_format.h"
@@ -28,7 +28,7 @@ GPGP_CONST int kBindBounds = 18;
 GPGP_CONST int kBindBoundKeys = 19;
 GPGP_CONST int kBindReport = 20;
 
-/// Counters of one record, cleared at its start, and its report.
+/// Counters of one recording, cleared at its start, and its report.
 struct SpawnState {
   uint terminals; // derived, those that did not fit included
   uint instancesWritten;
@@ -64,7 +64,7 @@ struct SpawnRound {
   uint given; // shapes that its workgroups were willing to leave to idle ones; by batches: axioms that all rounds took
 };
 
-/// What the CPU says with each record.
+/// What the CPU says with each recording.
 struct SpawnConstants {
   uint axiomCount;        // at most
   uint instanceCapacity;  // GpgpInstance

@@ -54,14 +54,14 @@
   ROW(Subtract, 3u, "-", 5, GPGP_EXPRESSION_SUBTRACT, subtract(a, b))                                                  \
   ROW(Multiply, 4u, "*", 6, GPGP_EXPRESSION_MULTIPLY, multiply(a, b))                                                  \
   ROW(Divide, 5u, "/", 6, GPGP_EXPRESSION_DIVIDE, divide(a, b))                                                        \
-  ROW(Equal, 6u, "==", 3, GPGP_EXPRESSION_EQUAL, reference(nearlyEqual(a, b)))                                         \
-  ROW(NotEqual, 7u, "!=", 3, GPGP_EXPRESSION_NOT_EQUAL, reference(!nearlyEqual(a, b)))                                 \
-  ROW(Less, 8u, "<", 4, GPGP_EXPRESSION_LESS, reference(a < b))                                                        \
-  ROW(Greater, 9u, ">", 4, GPGP_EXPRESSION_GREATER, reference(a > b))                                                  \
-  ROW(LessEqual, 10u, "<=", 4, GPGP_EXPRESSION_LESS_EQUAL, reference(a <= b))                                          \
-  ROW(GreaterEqual, 11u, ">=", 4, GPGP_EXPRESSION_GREATER_EQUAL, reference(a >= b))                                    \
-  ROW(And, 12u, "&&", 2, GPGP_EXPRESSION_AND, reference(a != 0.0f && b != 0.0f))                                       \
-  ROW(Or, 13u, "||", 1, GPGP_EXPRESSION_OR, reference(a != 0.0f || b != 0.0f))                                         \
+  ROW(Equal, 6u, "==", 3, GPGP_EXPRESSION_EQUAL, truthOf(nearlyEqual(a, b)))                                           \
+  ROW(NotEqual, 7u, "!=", 3, GPGP_EXPRESSION_NOT_EQUAL, truthOf(!nearlyEqual(a, b)))                                   \
+  ROW(Less, 8u, "<", 4, GPGP_EXPRESSION_LESS, truthOf(a < b))                                                          \
+  ROW(Greater, 9u, ">", 4, GPGP_EXPRESSION_GREATER, truthOf(a > b))                                                    \
+  ROW(LessEqual, 10u, "<=", 4, GPGP_EXPRESSION_LESS_EQUAL, truthOf(a <= b))                                            \
+  ROW(GreaterEqual, 11u, ">=", 4, GPGP_EXPRESSION_GREATER_EQUAL, truthOf(a >= b))                                      \
+  ROW(And, 12u, "&&", 2, GPGP_EXPRESSION_AND, truthOf(a != 0.0f && b != 0.0f))                                         \
+  ROW(Or, 13u, "||", 1, GPGP_EXPRESSION_OR, truthOf(a != 0.0f || b != 0.0f))                                           \
   LAST(Random, 14u, "Rand", 0, GPGP_EXPRESSION_RANDOM, add(a, multiply(subtract(b, a), drawn)))
 
 // Codes that leave an attribute of the shape. ROW(name, number, spelling, axes, value, member)

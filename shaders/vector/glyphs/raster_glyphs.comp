@@ -1,5 +1,5 @@
 #version 460
-// The fine level of records of small glyphs alone: tiles have lists (small_glyphs.comp), in any order.
+// The fine level of recordings of small glyphs alone: tiles have lists (small_glyphs.comp), in any order.
 //
 // A workgroup owns a tile, an invocation a pixel. What a list holds is put into painting order, the foremost path
 // first. A tile that found no room for all in its list takes them one after another from what all of those left over.

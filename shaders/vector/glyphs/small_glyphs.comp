@@ -4,7 +4,7 @@
 // A workgroup takes an item that has one path: its invocations take a segment each, then a flattened segment, then a
 // row of pixels of one. Samples and areas change as fill has them (fill_row.glsl), but in rows of all of the path's
 // pixels; what lies left of a tile is summed up in the end, when it shows which tiles have edges. Their entries lie
-// behind those of all other paths, and are written whole. ALONE: a record has nothing else, so they are placed here,
+// behind those of all other paths, and are written whole. ALONE: a recording has nothing else, so they are placed here,
 // and their tiles' lists name them, which need no other path to be known.
 #extension GL_GOOGLE_include_directive : require
 #if SUBGROUPS

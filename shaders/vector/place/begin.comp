@@ -1,5 +1,5 @@
 #version 460
-// A record's constants to the device, as the passes would else wait for host memory at every read, with its items
+// A recording's constants to the device, as the passes would else wait for host memory at every read, with its items
 // placed; and what they begin with: no path in any bin, nothing counted, no tile marked. Software devices clear the
 // latter two faster by transfers. ALONE: where there are small glyphs alone, the small glyphs pass places them, and
 // tiles have lists.
@@ -41,7 +41,7 @@ void main() {
 #if !SOFTWARE
   for (uint i = lane; i < words.length(); i += lanes) words[i] = uvec4(0);
   if (lane == 0) {
-    const uint before = counters[0].y; // entries of the record before, or anything at all
+    const uint before = counters[0].y; // entries of the recording before, or anything at all
     for (uint k = 0; k < 8; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
   }
 #endif

@@ -31,7 +31,7 @@ layout(set = 0, binding = kBindAside, std430) buffer Aside { vec4 aside[]; };
 #endif
 shared uint touching[2][kRoom / 32]; // of the paths at hand, in turn
 shared uint open[2];
-#define SPLIT (PAINTS && !RICH && !CROWDED) // records that need the general shader as well take the one for gradients
+#define SPLIT (PAINTS && !RICH && !CROWDED) // those with the general shader as well take the one for gradients
 
 void main() {
   const uint lane = gl_LocalInvocationIndex;

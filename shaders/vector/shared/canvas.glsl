@@ -1,5 +1,5 @@
 // The canvas's bindings, in the order of its resources (src/vector/passes/builder.cpp), and what passes share.
-#ifndef SCISSORS // only records of several drawings have any
+#ifndef SCISSORS // only recordings of several drawings have any
 #if ONE_DRAWING
 #define SCISSORS 0
 #else
@@ -45,7 +45,7 @@ layout(set = 0, binding = kBindBins, std430) buffer BinPairs { uvec2 binPairs[];
 layout(set = 0, binding = kBindBins, std430) buffer BinVectors { uvec4 binVectors[]; };
 #endif
 
-#if ONE_DRAWING // a record of one drawing need not choose at each access
+#if ONE_DRAWING // a recording of one drawing need not choose at each access
 vec4 fetch(uint slot, uint i) { return drawing0[i]; }
 #else
 vec4 fetch(uint slot, uint i) {
@@ -78,7 +78,7 @@ ShapeRecord shapeOf(ItemRecord item) {
 }
 #endif
 
-// Segment i of the record, which is one of the item's.
+// Segment i of the recording, which is one of the item's.
 SegmentRecord fetchSegment(ItemRecord item, uint i) {
 #if !ONE_DRAWING
   if (item.slot == kShapeSlot) return shapeSegment(shapeOf(item), i - item.firstSegment);
@@ -96,7 +96,7 @@ SegmentRecord fetchSegment(ItemRecord item, uint i) {
   return s;
 }
 
-// The item that path i of the record belongs to: the last one that begins at or before it.
+// The item that path i of the recording belongs to: the last one that begins at or before it.
 uint itemOfPath(uint i) {
   // In a text most have one path, so what lies as far along is tried first.
   const uint guess = uint(float(i) * (float(header.itemCount) / float(header.pathCount)));
@@ -133,7 +133,7 @@ uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupI
 uint spreadIndex() { return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y; }
 #endif
 uint wordsInRow(PlacedPath p) { return (p.right - p.left + 31) / 32; }
-#ifndef SAMPLES // of the records that a shader is for
+#ifndef SAMPLES // of the recordings that a shader is for
 #define SAMPLES header.samples
 #endif
 Grid canvasGrid() { return Grid(SAMPLES, int(header.height * SAMPLES), int(header.width)); }

@@ -1,4 +1,4 @@
-// What the host writes for a record: placements, 3 vec4 each, then sources, 10 each, then the tables of shapes.
+// What the host writes for a recording: placements, 3 vec4 each, then sources, 10 each, then the tables of shapes.
 layout(set = 0, binding = kBindConstants, std430) readonly buffer From {
   CanvasHeader hostHeader;
   SlotRecord hostSlots[kSlots];

@@ -127,21 +127,21 @@ struct ItemRecord {
   vec4 scissor;         // pixels: what lies outside is not drawn; left, top, right, bottom
   float side;           // -1 where the transform mirrors, else 1
   uint slot;            // the buffer's binding
-  uint firstSegment;    // of the item's segments in the record; they end where the next item's begin
-  uint firstPath;       // of the item's paths in the record
+  uint firstSegment;    // of the item's segments in the recording; they end where the next item's begin
+  uint firstPath;       // of the item's paths in the recording
   uint segments, paths; // where they begin in the slot's buffer, in vec4: SegmentRecord, BoxedPath
-  uint firstImage;      // of the record
+  uint firstImage;      // of the recording
   uint whole;           // 1: all of its paths are drawn or none
   uint clip;            // 1 + index of its ItemClipRecord; 0: none
-  uint layer;           // 1 + index of the LayerRecord of the record's own that holds it; 0: none
-  uint smallGlyph;      // 1: a small glyph of one path, whose segments are not among the record's (small_glyphs.comp)
+  uint layer;           // 1 + index of the LayerRecord of the recording's own that holds it; 0: none
+  uint smallGlyph; // 1: a small glyph of one path, whose segments are not among the recording's (small_glyphs.comp)
   uint pad0;
 };
 
 // What the host writes for each item: where the one that it names is placed, in the units of that one.
 struct PlacementRecord {
   float x, y, size;
-  uint source; // of the record's sources: ItemRecords without a place of their own;
+  uint source; // of the recording's sources: ItemRecords without a place of their own;
                // in its bits from kSlotBit on, the slot; kSmallGlyphBit: it is a small glyph
   vec4 color;  // straight; alpha multiplies
   uint firstSegment, firstPath, segments, paths; // as an item's
@@ -160,14 +160,14 @@ struct ShapeRecord {
   uint kind;    // kShapeRound
 };
 
-// A clip of items: a path of the record that paints nothing.
+// A clip of items: a path of the recording that paints nothing.
 struct ItemClipRecord {
   uint path;
   uint parent; // 1 + index of another that applies as well; 0: none
   uint pad0, pad1;
 };
 
-// A drawing that a record uses: where its tables begin in its buffer, in vec4.
+// A drawing that a recording uses: where its tables begin in its buffer, in vec4.
 struct SlotRecord {
   uint paints, stops, clips, layers;
 };
@@ -210,7 +210,7 @@ struct CanvasHeader {
   vec4 background;
 };
 
-// Counters of a record and its report.
+// Counters of a recording and its report.
 struct CanvasCounters {
   uint words, entries;        // needed
   uint cutPath, pathsDropped; // paths from cutPath on are left out
@@ -224,7 +224,7 @@ struct CanvasCounters {
   uint listed;                 // paths in bins' lists; of small glyphs alone those that tiles' lists had no room for;
                                // on software devices tiles that are painted by rows
   uint rowsX, rowsY, rowsZ;    // workgroups of the pass that fills from lists
-  uint cleared;                // entries that mark clears: as many as the record before had
+  uint cleared;                // entries that mark clears: as many as the recording before had
   uint smallGlyph;             // entries of small glyphs, behind the others
   uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
   uint rowsTaken;              // of tiles, by fill on software devices
@@ -257,7 +257,7 @@ GPGP_CONST uint kSpreadReflect = 2u;
 GPGP_CONST uint kInterpolateSrgb = 1u;
 GPGP_CONST uint kForeground = 1u; // takes the colour of the item
 GPGP_CONST uint kMaxSlots = 8u;
-GPGP_CONST uint kShapeSlot = 8u; // the buffer of the record's own shapes
+GPGP_CONST uint kShapeSlot = 8u; // the buffer of the recording's own shapes
 GPGP_CONST uint kSlots = 9u;
 GPGP_CONST uint kSlotBit = 24u, kSmallGlyphBit = 31u;
 GPGP_CONST uint kShapeRound = 1u;
@@ -288,8 +288,8 @@ GPGP_CONST uint kMostSegments = 64u;     // of a workgroup, a power of two
 GPGP_CONST uint kSmallGlyphTiles = 16u;  // of a small path, at most
 GPGP_CONST uint kSmallGlyphPairs = 128u; // of its pixels
 GPGP_CONST uint kFirstBin = 16u;
-// Of records of small glyphs alone, in place of bins: for each tile how many paths it has, nothing, and for as many as
-// there is room for what they do to it and which they are. Others follow all tiles: tile, what, which.
+// Of recordings of small glyphs alone, in place of bins: for each tile how many paths it has, nothing, and for as many
+// as there is room for what they do to it and which they are. Others follow all tiles: tile, what, which.
 GPGP_CONST uint kTileListWords = 32u;
 GPGP_CONST uint kTileListPaths = 15u;
 GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:

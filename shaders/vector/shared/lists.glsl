@@ -83,7 +83,7 @@ uvec2 groupOf(PlacedPath p) { // the path's clip and its layer, of its drawing
   const uint group = p.group & ~kItemGrouped;
   return group == 0 ? uvec2(0) : floatBitsToUint(fetch(items[p.item].slot, group - 1)).yz;
 }
-// What a path's group and paint ask for in a tile: kHidden: a clip leaves nothing, kEven: nothing that the record's
+// What a path's group and paint ask for in a tile: kHidden: a clip leaves nothing, kEven: nothing that the recording's
 // other shaders do not know, kRich: the general shader.
 uint groupIn(PlacedPath p, uvec2 tile, inout uint steps) {
   if (p.paint != 0 && items[p.item].perspective.w > 0) return kRich;

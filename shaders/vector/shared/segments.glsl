@@ -61,7 +61,7 @@ void takeSegment() {
 #else
 shared SegmentRecord segment[kMostSegments];
 shared uint segmentItem[kMostSegments];
-shared uint segmentPath[kMostSegments]; // in the record
+shared uint segmentPath[kMostSegments]; // in the recording
 shared float segmentStep[kMostSegments];
 shared uint firstFlatSegment[kMostSegments + 1];
 

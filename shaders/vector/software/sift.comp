@@ -4,7 +4,7 @@
 // An invocation owns a row of tiles of a bin. A tile's list ends at the first path that is opaque and covers all of it.
 // Tiles without edges, gradients, images and groups get their colour here; the others are listed for the passes that
 // paint pixels, those of opaque colours alone for one of their own, and those whose list is full are crowded: they are
-// painted from the bins. A clip counts only in tiles where it has an edge. SPLIT: records that need the general shader.
+// painted from the bins. A clip counts only in tiles where it has an edge. SPLIT: those with the general shader.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/shared/canvas.glsl"
 layout(local_size_x = 64) in;
@@ -72,7 +72,7 @@ void main() {
       }
       edges &= box;
       inside &= box;
-      // Pixel by pixel; in records that are not split, the one shader knows groups, too.
+      // Pixel by pixel; in recordings that are not split, the one shader knows groups, too.
 #if SPLIT
       const bool painting = p.paint != 0;
       uint special = 0; // for the general shader

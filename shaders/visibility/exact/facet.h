@@ -8,8 +8,8 @@
 
 GPGP_SHADER_BEGIN
 
-/// The part of a candidate's plane that lies in its box in a pixel. Depths grow with distance, also where the record's
-/// are reversed.
+/// The part of a candidate's plane that lies in its box in a pixel. Depths grow with distance, also where the
+/// recording's are reversed.
 struct Facet {
   vec3 plane;    ///< depth at the pixel's first sample, and how it changes from column to column and row to row
   float nearest; ///< of the triangle within the box, at least

@@ -87,7 +87,7 @@ uint placeAmong(bool isThere, uint first, uint n) {
   return place;
 }
 
-/// Whether the record asks, too, what a move would uncover; by how many samples it moves an entry of a pixel's list
+/// Whether the recording asks, too, what a move would uncover; by how many samples it moves an entry of a pixel's list
 /// against what is nearest there.
 vec4 depthScaleIn(ivec2 pixel) {
   return params.depthScales[params.cameraCount == 1u ? 0u : uint(pixel.y) / params.height];

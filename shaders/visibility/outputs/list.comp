@@ -1,4 +1,4 @@
-// From bits to a compact list, and the change since the view's previous record. One invocation a word of 32 triangles;
+// From bits to a compact list, and the change since the last recording. One invocation a word of 32 triangles;
 // a workgroup takes its places in the list with one atomic.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// The matrices of a record's cameras, and draws as they are relative to them. Needs `params`.
+// The matrices of a recording's cameras, and draws as they are relative to them. Needs `params`.
 #include "visibility/shared/triangle.h"
 
 mat4 viewProjection(uint camera) {

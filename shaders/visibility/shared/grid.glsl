@@ -1,7 +1,7 @@
 // Which samples are drawn. Needs the camera block `params`.
 #ifndef GPGP_SHADERS_VISIBILITY_GRID_GLSL
 #define GPGP_SHADERS_VISIBILITY_GRID_GLSL
-layout(constant_id = 2) const bool kHasMargins = true; // some records look below the pixel
+layout(constant_id = 2) const bool kHasMargins = true; // some recordings look below the pixel
 
 Grid gridOf(uint camera) {
   Grid g;

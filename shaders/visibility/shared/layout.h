@@ -11,7 +11,7 @@ GPGP_CONST uint kNoTriangle = 0xffffffffu; ///< in a sample: nothing
 GPGP_CONST uint kFarthest = 0xffffffffu;   ///< in a sample: nothing
 GPGP_CONST uint kTwoSided = 1u;            ///< GPGP_DRAW_TWO_SIDED
 GPGP_CONST uint kClockwise = 2u;           ///< GPGP_DRAW_CLOCKWISE
-GPGP_CONST uint kMaxCameras = 128u;        ///< of one record
+GPGP_CONST uint kMaxCameras = 128u;        ///< of one recording
 GPGP_CONST uint kMaxOrigins = 32u;         ///< that draws' transforms are relative to
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
@@ -69,7 +69,7 @@ GPGP_CONST int kBindGaps = kBindPairs;          // conservative: words per pixel
 GPGP_CONST int kBindTiles = kBindRecords;       // nearby, once ids are drawn
 GPGP_CONST int kBindNumbers = kBindMeshes;      // with commands, which need no meshes: triangles' numbers
 GPGP_CONST int kBindClusters = kBindCommands;   // without commands
-GPGP_CONST int kBindReference = kBindPositions; // of records that measure, which have no geometry
+GPGP_CONST int kBindReference = kBindPositions; // of recordings that measure, which have no geometry
 GPGP_CONST int kBindReferenceCounts = kBindIndices;
 GPGP_CONST int kBindRecheck = kBindDraws;
 GPGP_CONST int kBindFalsePositives = kBindList;
@@ -94,7 +94,7 @@ struct Draw {
   uint mesh;
   uint firstTriangle;
   uint flags;
-  uint origin; ///< in the record's origins
+  uint origin; ///< in the recording's origins
 };
 
 /// One draw of a camera. Lies in the draw table, whose regions hold, for each of `maxEntries`: first item and first
@@ -114,7 +114,7 @@ GPGP_CONST uint kTableCommands = 7u;
 GPGP_CONST uint kTableCounts = 10u;
 GPGP_CONST uint kTablePlaces = 11u;
 
-/// Of one record.
+/// Of one recording.
 struct Params {
 #ifdef __cplusplus
   float viewProjection[kMaxCameras * 16]; // of each camera, column-major
@@ -172,7 +172,7 @@ struct Params {
   uint heuristics;    // GPGP_HEURISTIC_...
   float epsilonStatic;
   float epsilonDynamic;
-  uint metricBuffers; // kHas... of a record that measures
+  uint metricBuffers; // kHas... of a recording that measures
   uint numberCount;   // triangles' numbers that are there; with hasNumbers
   uint hasNumbers;    // 1: triangles have the numbers of their place among the indices
   uint clusterCount;  // of all meshes; 0: chunks are not tested
@@ -229,7 +229,7 @@ struct Counters {
   uint skippedTriangles; // index out of range, coordinate not finite or too large, number not below triangleCount
   uint skippedDraws;     // mesh out of range
   uint listed;
-  uint hasList;    // 1: the record has a list
+  uint hasList;    // 1: the recording has a list
   uint candidates; // exact sampling: asked for
   uint pairs;      // asked for
   uint unresolved; // triangles and pairs that found no room, whose triangles count as visible
@@ -237,7 +237,7 @@ struct Counters {
   uint drawsGiven;
   uint drawTriangles; // visible ones of all draws: in the lists by draw, whatever their budget
   uint drawListed;
-  uint reference; // triangles; this and what follows: of records that measure
+  uint reference; // triangles; this and what follows: of recordings that measure
   uint found;     // of the reference, visible
   uint falsePositives;
   uint referenceArea[2]; // samples: low word, high word

@@ -1,6 +1,6 @@
 // From object space to the pixel grid: transform, reject, clip, project.
 //
-// Where a record has origins, "world" is what is relative to the camera's.
+// Where a recording has origins, "world" is what is relative to the camera's.
 //
 // Guarantees: a triangle in front of the near plane is never lost, however far it reaches: what leaves the guard band
 // or crosses the near or far plane is clipped (Sutherland-Hodgman), always from the inner to the outer vertex, so that

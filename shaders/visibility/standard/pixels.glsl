@@ -7,7 +7,7 @@
 #include "visibility/shared/grid.glsl"
 #include "visibility/exact/lists.glsl"
 layout(constant_id = 0) const uint kPhase = 0u; // 0: depth, 1: ids
-layout(constant_id = 1) const bool kLimits = true; // some records are exact
+layout(constant_id = 1) const bool kLimits = true; // some recordings are exact
 
 layout(std430, set = 0, binding = kBindSamples) buffer SampleBuffer { uint samples[]; };
 #ifdef GPGP_INT64_ATOMICS

@@ -1,4 +1,4 @@
-// A context on a headless device; every subcommand's work is one record, repeated and measured.
+// A context on a headless device; every subcommand's work is one recording, repeated and measured.
 #include "cli/shared/session.h"
 
 #include "cli/shared/median.h"
@@ -115,7 +115,7 @@ GpuTimes Session::run(GpgpRecorder recorder, const char* label, uint32_t repeat,
   std::vector<const char*> names(passCount);
   check(gpgpGetPasses(recorder, &passCount, names.data()), "gpgpGetPasses");
   const bool timed = device_.properties().limits.timestampComputeAndGraphics == VK_TRUE;
-  const uint32_t whole = passCount + 1, queryCount = passCount + 3; // two around the record behind those of passes
+  const uint32_t whole = passCount + 1, queryCount = passCount + 3; // two around the recording behind those of passes
   const QueryPool queries(device_, queryCount);
   const auto writeTimestamp = [&](VkCommandBuffer commands, uint32_t query) {
     if (timed) device_.vk().vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries.pool, query);
@@ -129,9 +129,9 @@ GpuTimes Session::run(GpgpRecorder recorder, const char* label, uint32_t repeat,
   std::vector<bool> ran(passCount);
   std::vector<std::vector<double>> perPass(passCount);
   if (repeat > 1) busy_.warmUp();
-  std::optional<Progress> progress; // of single records those know that make many of them
+  std::optional<Progress> progress; // of single recordings those know that make many of them
   if (repeat > 1) progress.emplace(label, repeat);
-  const uint32_t each = repeat > 1 && timed ? 2 : 1; // records: one by pass, one as a whole; a single one is both
+  const uint32_t each = repeat > 1 && timed ? 2 : 1; // recordings: one by pass, one as a whole; a single one is both
   for (uint32_t i = 0; i < each * repeat; ++i) {
     const bool byPass = i % 2 == 0 || each == 1, asWhole = i % 2 == 1 || each == 1;
     VkCommandBuffer commands = frames_.begin();

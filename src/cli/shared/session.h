@@ -12,12 +12,12 @@
 
 namespace gpgp::cli {
 
-/// GPU times of a repeated record, milliseconds. Passes are timed in records of their own: a timestamp after each of
-/// them takes time as well, and keeps them from running beside each other.
+/// GPU times of a repeated recording, milliseconds. Passes are timed in recordings of their own: a timestamp after each
+/// of them takes time as well, and keeps them from running beside each other.
 struct GpuTimes {
-  std::vector<double> totals;                         ///< of whole records, one per repeat
+  std::vector<double> totals;                         ///< of whole recordings, one per repeat
   std::vector<std::pair<std::string, double>> passes; ///< median of each pass that ran, in order
-  /// Of another record that is run behind each of these.
+  /// Of another recording that is run behind each of these.
   void add(const GpuTimes& other);
   double median() const;
   double least() const;
@@ -54,7 +54,7 @@ public:
   /// Runs record `repeat` times, a frame each, and waits for it; measures every one by two timestamps around all that
   /// it records, and before each of them, if there are several, another one by a timestamp after each pass. record is
   /// given the info's common part, and returns what the record function returned. The report is the last run's. A GPU
-  /// is kept busy for a while before, and between records: idle ones lower their clocks within milliseconds.
+  /// is kept busy for a while before, and between recordings: idle ones lower their clocks within milliseconds.
   using Record = std::function<GpgpResult(VkCommandBuffer, const GpgpFrame&, const GpgpRecordingInfo&)>;
   template <class RecorderType>
   auto measure(RecorderType& recorder, const char* label, uint32_t repeat, const Record& record) {

@@ -225,7 +225,7 @@ std::string exceededBudgets(const GpgpSpawnReport& report, const Hopeless& hopel
   return text;
 }
 
-/// As if it had been one record.
+/// As if it had been one recording.
 void add(GpgpSpawnReport& sum, const GpgpSpawnReport& record) {
   if (sum.base.status >= GPGP_SUCCESS) // an error stays one
     sum.base.status =
@@ -240,7 +240,7 @@ void add(GpgpSpawnReport& sum, const GpgpSpawnReport& record) {
   for (size_t word = 0; word < std::size(sum.keyHash); ++word) sum.keyHash[word] += record.keyHash[word];
 }
 
-/// Axioms in parts of equal size, a record each.
+/// Axioms in parts of equal size, a recording each.
 struct Slices {
   const std::vector<GpgpAxiom>& axioms;
   size_t records = 1, size = 0;
@@ -329,7 +329,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     for (const uint32_t index : indices) allIndices.push_back(first + index);
     return written.size();
   };
-  std::string budgets; // that the first record exceeded that exceeded any
+  std::string budgets; // that the first recording exceeded that exceeded any
   for (size_t record = 0; record < slices.records; ++record) {
     if (record) deriver.setAxioms(slices.of(record));
     deriver.fit(prepared);

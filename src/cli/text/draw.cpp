@@ -7,7 +7,7 @@
 namespace gpgp::cli {
 namespace {
 
-// What a record holds, on devices that bind no more than 128 MiB too.
+// What a recording holds, on devices that bind no more than 128 MiB too.
 constexpr uint64_t kPaths = 1u << 18, kPixels = 1u << 24, kEntries = 1u << 18;
 
 /// Bitmap glyphs in a texture.

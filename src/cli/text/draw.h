@@ -1,4 +1,4 @@
-// A page of text as a picture: drawn on the GPU, in bands where it is too much for one record.
+// A page of text as a picture: drawn on the GPU, in bands where it is too much for one recording.
 #pragma once
 #include "cli/text/glyphs.h"
 
@@ -15,11 +15,11 @@ struct PageFrame {
 struct DrawnPage {
   host::Picture picture;
   uint32_t records = 0;    ///< bands, from top to bottom
-  double milliseconds = 0; ///< median of the repeats, summed over records
+  double milliseconds = 0; ///< median of the repeats, summed over recordings
   GpgpResult status = GPGP_SUCCESS;
 };
 
-/// Each record runs once more than `repeat`; the first time does not count.
+/// Each recording runs once more than `repeat`; the first time does not count.
 DrawnPage drawPage(Session& session, const GpgpLayoutInfo& layout, const PageGlyphs& glyphs, const PageFrame& frame,
                    uint32_t repeat);
 

@@ -7,8 +7,8 @@ namespace gpgp::cli {
 
 struct CameraTimes {
   size_t repeats = 0;                                 ///< of each view
-  double median = 0, least = 0;                       ///< milliseconds of whole records
-  std::vector<std::pair<std::string, double>> passes; ///< in the order of their records
+  double median = 0, least = 0;                       ///< milliseconds of whole recordings
+  std::vector<std::pair<std::string, double>> passes; ///< in the order of their recordings
 
   /// A view of the camera's cell, of the same passes.
   void add(const GpuTimes& view);

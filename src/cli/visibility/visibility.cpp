@@ -102,8 +102,8 @@ struct Figures {
   Share coverage, overestimation, coverageArea, overestimationArea;
   double facing = 0, listed = 0, coveredPixels = 0; ///< of a cell's last view
   CameraTimes times;
-  GpgpResult status = GPGP_SUCCESS; ///< of all records the worst
-  /// Of all records the largest; the unresolved ones of all.
+  GpgpResult status = GPGP_SUCCESS; ///< of all recordings the worst
+  /// Of all recordings the largest; the unresolved ones of all.
   uint32_t neededCandidates = 0, neededPairs = 0, skippedTriangles = 0, skippedDraws = 0;
   uint64_t unresolved = 0;
   uint32_t maxCandidates = 0, maxPairs = 0; ///< given
@@ -122,7 +122,7 @@ struct Figures {
       overestimationArea.add(metrics.overestimationArea);
     }
   }
-  /// A record of a view.
+  /// A recording of a view.
   void add(const GpgpVisibilityReport& report) {
     status = worse(status, report.base.status);
     neededCandidates = std::max(neededCandidates, report.neededCandidates);
@@ -131,7 +131,7 @@ struct Figures {
     skippedDraws = std::max(skippedDraws, report.skippedDraws);
     unresolved += report.unresolved;
   }
-  /// What a camera's last record of `cameras` found.
+  /// What a camera's last recording of `cameras` found.
   void add(const GpgpVisibilityReport& last, std::vector<uint32_t> bits, uint32_t cameras) {
     facing += last.triangles / static_cast<double>(cameras);
     listed += last.listed / static_cast<double>(cameras);

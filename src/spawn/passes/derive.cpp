@@ -29,7 +29,7 @@ void addDerive(PassBuilder& b) {
                                                        : Spirv(spawn_derive));
   uint32_t link = 0;
   if (b.sizes.maxColliders) {
-    b.deriveColliding = // takes the other's place in records that need it
+    b.deriveColliding = // takes the other's place in recordings that need it
         interpreter(true, b.subgroups ? Spirv(spawn_derive_colliders_subgroups) : Spirv(spawn_derive_colliders));
     link = b.list.add(core::ShaderDesc{"link", spawn_link});
   }

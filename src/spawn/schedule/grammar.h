@@ -39,7 +39,7 @@ public:
   uint32_t readyCount() const { return readyCount_.load(std::memory_order_acquire); }
 
   const Graph graph;
-  const bool uneven = isUneven(graph); ///< asked for by each record
+  const bool uneven = isUneven(graph); ///< asked for by each recording
   const Turns turns = turnsOf(graph);  ///< and by those of software devices
   const std::pmr::vector<Kernel> kernels;
   /// Where a kernel's table begins in the uploaded words, in units of 16 bytes.

@@ -1,6 +1,6 @@
 // The spawner: derives any grammar with the interpreter kernel, in rounds of workgroups that derive by themselves.
 //
-// Passes of a record: clear, then the rounds, place, emit. A round shares a queue of shapes among workgroups; each
+// Passes of a recording: clear, then the rounds, place, emit. A round shares a queue of shapes among workgroups; each
 // derives what comes of its shapes with a stack of its own and leaves to the next round what it should not or cannot do
 // alone (shaders/spawn/derive/derive.comp). Terminals leave as instances, and the last workgroup says how many, without
 // place. Where these are sorted by bucket, or ordered, terminals become records first, and emit puts them in their
@@ -34,7 +34,7 @@ public:
   bool vertices() const { return sizes_.vertices(); }
 
 private:
-  /// That a record takes where neither the engine nor a tuned kernel says so.
+  /// That a recording takes where neither the engine nor a tuned kernel says so.
   uint32_t roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const;
 
   SpawnerSizes sizes_;

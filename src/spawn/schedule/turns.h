@@ -24,7 +24,7 @@ struct TurnsLimit {
   uint32_t needed = 0, most = 0;
   explicit operator bool() const { return needed <= most; }
 };
-/// Says in a record's constants how long workgroups of a software device go on. subgroup: invocations of one, for a
+/// Says in a recording's constants how long workgroups of a software device go on. subgroup: invocations of one, for a
 /// kernel that derives by batches; 0: it derives by steps.
 TurnsLimit limitTurns(shader::SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup,
                       bool isKernel);

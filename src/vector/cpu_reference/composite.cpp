@@ -1,7 +1,7 @@
 // The CPU reference of raster: every pixel front to back, sample by sample, with groups, clips and exact areas.
 //
 // How far the GPU may be off follows the light: what a path's colour is in doubt, times its weight; where its alpha is,
-// all that lies behind, which is no brighter than the brightest colour of the record; and rounding of weights.
+// all that lies behind, which is no brighter than the brightest colour of the recording; and rounding of weights.
 #include "vector/raster/composite.h"
 
 #include "vector/cpu_reference/cpu_reference.h"
@@ -22,9 +22,9 @@ namespace {
 constexpr float kRounding = 1e-5f; // of weights and sums of some dozens of paths
 constexpr float kPower = 2e-5f;    // as in paint.cpp
 
-/// A group less than opaque that is open: of the record's, or of one drawing that is shown.
+/// A group less than opaque that is open: of the recording's, or of one drawing that is shown.
 struct Group {
-  uint32_t slot, layer, item; ///< item: UINT32_MAX of the record's
+  uint32_t slot, layer, item; ///< item: UINT32_MAX of the recording's
   float opacity;
   bool operator==(const Group& other) const { return slot == other.slot && layer == other.layer && item == other.item; }
 };

@@ -27,7 +27,7 @@ struct CpuImage {
 struct CpuInput {
   shader::CanvasHeader header{};
   std::array<shader::SlotRecord, shader::kSlots> slots{};
-  std::array<std::span<const shader::vec4>, shader::kSlots> tables; ///< drawings and glyph sets; the record's shapes
+  std::array<std::span<const shader::vec4>, shader::kSlots> tables; ///< drawings and glyph sets; the recording's shapes
   std::span<const shader::PlacementRecord> placements;
   std::span<const shader::ItemRecord> sources;
   std::span<const CpuImage> images;

@@ -169,7 +169,7 @@ CpuPlaces placeOnCpu(const CpuInput& input) {
     }
     const auto wordsOf = [&](uint32_t path) { return std::span(places.words).subspan(places.paths[path].firstWord); };
     const auto coverageOf = [&](uint32_t path) { return std::span(places.coverage).subspan(path * pixels, pixels); };
-    // A small glyph's segments are not among the record's.
+    // A small glyph's segments are not among the recording's.
     const uint32_t segments = item.smallGlyph ? (item.paths - item.segments) / 4
                               : last          ? header.segmentCount - item.firstSegment
                                               : places.items[k + 1].firstSegment - item.firstSegment;

@@ -4,7 +4,7 @@
 
 namespace gpgp::vector {
 
-// Workgroup counts and conditions of a record.
+// Workgroup counts and conditions of a recording.
 enum Groups : uint32_t {
   kBegin,
   kPaths,

@@ -13,7 +13,8 @@ uint32_t CanvasSizes::listWords() const { // 31 paths a tile, fewer where that w
   return static_cast<uint32_t>(std::clamp<uint64_t>((uint64_t(16) << 20) / tiles(), 12, 64) & ~uint64_t(3));
 }
 
-uint64_t CanvasSizes::binWords() const { // enough for any record with the largest bins, or for most with the smallest
+uint64_t
+CanvasSizes::binWords() const { // enough for any recording with the largest bins, or for most with the smallest
   constexpr uint32_t kLargest = shader::kTileSize << shader::kMaxBinShift;
   const uint64_t least =
       uint64_t(divide(maxWidth, kLargest)) * divide(maxHeight, kLargest) * (divide(items.paths, 32) + shader::kBinHead);

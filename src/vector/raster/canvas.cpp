@@ -1,4 +1,4 @@
-// The canvas: the checks of a record, and what a record fills in.
+// The canvas: the checks of a recording, and what a recording fills in.
 #include "vector/raster/canvas.h"
 
 #include "shaders/vector_draw_frag.spv.h"
@@ -202,7 +202,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const uint32_t image = targetOf(info);
   if (image != kNoImage)
     r.bindings[image == kHasImage8 ? shader::kBindImage8 : shader::kBindImage16].image = &info.target;
-  // Small glyphs have passes of their own; records of nothing else, in one colour each, need little more than that.
+  // Small glyphs have passes of their own; recordings of nothing else, in one colour each, need little more than that.
   const uint32_t tiles = header.tilesX * header.tilesY;
   const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.smallGlyphEntries()) * 3;
   const bool alone = gather.smallGlyphs() > 0 && gather.smallGlyphs() == gather.placements() && !gradients && !rich &&

@@ -1,4 +1,4 @@
-// The canvas: drawings and texts to pixels in one record.
+// The canvas: drawings and texts to pixels in one recording.
 //
 // begin (every item gets its place, each glyph of a text and shape of a list as one) ->
 // place (paths' boxes) -> mark (which tiles each path's boundary meets, which lie inside) and bin (which paths may
@@ -25,14 +25,14 @@ public:
   core::Result<void> draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& history);
   bool takeCanvasReport(GpgpCanvasReport& report);
   uint32_t maxDrawings() const { return sizes_.items.items; }
-  /// Room for the assets of a record, so that recording does not allocate.
+  /// Room for the assets of a recording, so that recording does not allocate.
   std::span<ItemAsset> assets(uint32_t count) { return std::span(assets_).first(count); }
 
 private:
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* history) const;
 
   const CanvasSizes sizes_;
-  // Room for one record's.
+  // Room for one recording's.
   std::pmr::vector<ItemAsset> assets_;
   ItemTables tables_;
 };

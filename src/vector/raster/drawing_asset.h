@@ -46,7 +46,7 @@ public:
   bool groups() const { return tables_.layers > tables_.clips || layerDepth_; } ///< that clip or fade
   uint32_t layerDepth() const { return layerDepth_; }                           ///< groups that fade in each other
   bool gradients() const { return tables_.stops > tables_.paints; }
-  uint32_t images() const { return images_; } ///< how many of the record's images it needs
+  uint32_t images() const { return images_; } ///< how many of the recording's images it needs
   const Kept* kept() const { return kept_ ? &*kept_ : nullptr; }
   /// Where it is hit-testable.
   std::optional<Shown> shown() const {
@@ -78,7 +78,7 @@ public:
                                                           const GpgpCanvasHistoryCreateInfo& info);
   CanvasHistory(core::Context& owner, const char* name) : Resident(owner, core::Kind::canvasHistory, name) {}
   uint32_t width = 0, height = 0;                 ///< room
-  uint32_t preparedWidth = 0, preparedHeight = 0; ///< what the last record leaves; 0: nothing yet
+  uint32_t preparedWidth = 0, preparedHeight = 0; ///< what the last recording leaves; 0: nothing yet
 };
 
 } // namespace gpgp::vector

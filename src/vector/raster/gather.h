@@ -1,4 +1,4 @@
-// A record's items as the GPU takes them: sources (maps), placements (what is drawn by which of them), tables of
+// A recording's items as the GPU takes them: sources (maps), placements (what is drawn by which of them), tables of
 // shapes.
 //
 // Items come in painting order. Where a budget ends, everything from there on is left out, and counted, so that the
@@ -22,7 +22,7 @@ struct ItemBudgets {
   uint32_t items, glyphs, shapes, paths;
 };
 
-/// Room for what one record has, made once.
+/// Room for what one recording has, made once.
 struct ItemTables {
   ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory);
   /// What is around a thing.

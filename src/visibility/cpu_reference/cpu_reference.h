@@ -21,7 +21,7 @@ struct CpuInput {
   std::span<const uint32_t> commands;     ///< params.commandWords each
   std::span<const uint32_t> numbers;      ///< with params.hasNumbers: triangles' numbers
   uint32_t drawCount = UINT32_MAX;        ///< what the buffer of the draw or command count holds
-  std::span<const uint32_t> previousBits; ///< the view's, empty at its first record
+  std::span<const uint32_t> previousBits; ///< the history's, empty at its first recording
 };
 
 struct CpuResult {
@@ -61,7 +61,7 @@ std::vector<shader::DrawEntry> entriesOf(const CpuInput& input, CpuEntries& abou
 void forEachTriangle(const CpuInput& input,
                      const std::function<void(const shader::DrawEntry&, uint32_t, uint32_t)>& visit);
 
-/// Which samples a record draws.
+/// Which samples a recording draws.
 shader::Grid gridOf(const shader::Params& params, uint32_t camera = 0);
 
 /// Methods standard and reference: the samples of params' grid.

@@ -1,4 +1,4 @@
-// The checks of a record that depend on what the recorder was made for, and on the sizes of the engine's buffers.
+// The checks of a recording that depend on what the recorder was made for, and on the sizes of the engine's buffers.
 #pragma once
 #include "core/result.h"
 #include "visibility/geometry_set.h"

@@ -49,7 +49,7 @@ void setOrigins(const GpgpVisibilityInfo& info, Params& params) {
   }
 }
 
-/// Where the record's samples lie in a pixel.
+/// Where the recording's samples lie in a pixel.
 void setGrid(const GpgpVisibilityInfo& info, const Budgets& budgets, Params& params) {
   const uint32_t samples = samplesOf(info), perRecord = std::min(samples, budgets.maxSamples),
                  perSide = samples / perRecord;

@@ -1,4 +1,4 @@
-// What the shaders read of one record, worked out from what the engine gave. The record has been checked.
+// What the shaders read of one recording, worked out from what the engine gave. The recording has been checked.
 #pragma once
 #include "visibility/geometry_set.h"
 #include "visibility/sampling/budgets.h"

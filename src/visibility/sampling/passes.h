@@ -1,7 +1,7 @@
-// The passes of a recorder: which there are, in which order, and which of a record's numbers they ask for.
+// The passes of a recorder: which there are, in which order, and which of a recording's numbers they ask for.
 //
-// One list serves all records of a recorder; a record leaves out what its conditions say. docs/internals/visibility.md
-// has the flow. Each part of the list has a file.
+// One list serves all recordings of a recorder; a recording leaves out what its conditions say.
+// docs/internals/visibility.md has the flow. Each part of the list has a file.
 #pragma once
 #include "core/device.h"
 #include "core/passes.h"
@@ -12,11 +12,11 @@
 
 namespace gpgp::visibility {
 
-// Workgroup counts of a record.
+// Workgroup counts of a recording.
 constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3, kTileGroups = 4,
                    kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7, kScreenTileGroups = 8, kAllotGroups = 9,
                    kClusterGroups = 10;
-// Conditions of a record.
+// Conditions of a recording.
 constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
                    kIfMeasuring = 6, kIfNearby = 7, kIfClusters = 8;
 
@@ -38,7 +38,7 @@ void addExact(core::PassList& list, const core::Device& device);
 void addConservative(core::PassList& list, const Budgets& budgets);
 void addNearby(core::PassList& list);
 void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes
-void addMetrics(core::PassList& list); ///< records that measure have these passes only
+void addMetrics(core::PassList& list); ///< recordings that measure have these passes only
 
 /// constants: specialisation, from 0 on.
 uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv,

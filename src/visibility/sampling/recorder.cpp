@@ -1,4 +1,4 @@
-// A record: what is bound, how many workgroups run, and which passes.
+// A recording: what is bound, how many workgroups run, and which passes.
 #include "visibility/sampling/recorder.h"
 
 #include "visibility/nearby/nearby.h"

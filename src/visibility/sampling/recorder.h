@@ -1,4 +1,4 @@
-// The recorder: one record clears, numbers the triangles, draws depth, draws ids, gathers bits and lists.
+// The recorder: one recording clears, numbers the triangles, draws depth, draws ids, gathers bits and lists.
 //
 // Chapter 6, method "standard" (6.1.1), in compute: works on queues without graphics. docs/internals/visibility.md has
 // the flow.
