@@ -41,5 +41,5 @@ done
 
 say "Next"
 note "build/release/mini_engine --help                       what else it shows"
-note "build/release/gpgp spawn samples/grammars/city.pga --axioms 16 --spacing 40 --image city.png"
+note "build/release/gpgp spawn samples/grammars/city.pga --axioms 16 --axiom-size 20,60,20 --spacing 24 --image $pictures/spawned_city.png"
 note "docs/guide/integrate_in_ten_minutes.md                 gpgp in your engine"

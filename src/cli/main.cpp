@@ -16,7 +16,7 @@ using namespace gpgp::cli;
 constexpr const char* kExamples = R"(
 Examples:
   gpgp info                                   what this machine offers and gpgp would use
-  gpgp spawn city.pga --axioms 64 --spacing 40 --image city.png
+  gpgp spawn city.pga --axioms 64 --axiom-size 20,60,20 --spacing 24 --image city.png
   gpgp graph city.pga --schedule rules --format svg -o city.svg
   gpgp vector tiger.svg --size 800x800 --out tiger.png
   gpgp text DejaVuSans.ttf "Hello, world" hello.png --size 48
@@ -70,7 +70,20 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& request) { // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    app.exit(error, std::cerr, std::cerr);
+    std::string all, help = "gpgp";
+    bool known = false;
+    for (const Subcommand& subcommand : subcommands) {
+      const std::string name = subcommand.app->get_name();
+      all += (all.empty() ? "" : ", ") + name;
+      known = known || subcommand.app->parsed();
+      if (subcommand.app->parsed()) help = "gpgp " + name;
+    }
+    const std::string first = argc > 1 ? argv[1] : "";
+    if (!known && !first.empty() && first[0] != '-')
+      std::fprintf(stderr, "there is no command \"%s\"; there are %s\n", printable(first).c_str(), all.c_str());
+    else
+      std::fprintf(stderr, "%s\n", printable(error.what()).c_str());
+    std::fprintf(stderr, "Run `%s --help` for more information.\n", help.c_str());
     return 2;
   }
   for (const Subcommand& subcommand : subcommands) {

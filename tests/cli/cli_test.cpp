@@ -47,6 +47,17 @@ TEST(Cli, WrongUsageIsTwoAndSilentOnStandardOutput) {
   }
 }
 
+TEST(Cli, WrongNamesAreAnsweredWithTheRightOnes) {
+  const ProcessResult misspelt = gpgp({"spwan", "x.pga"});
+  EXPECT_EQ(misspelt.exitCode, 2);
+  EXPECT_NE(misspelt.err.find("there is no command \"spwan\"; there are info, "), std::string::npos) << misspelt.err;
+  EXPECT_NE(misspelt.err.find("Run `gpgp --help`"), std::string::npos) << misspelt.err;
+  const ProcessResult option = gpgp({"info", "--ouput"});
+  EXPECT_EQ(option.exitCode, 2);
+  EXPECT_NE(option.err.find("--ouput"), std::string::npos) << option.err;
+  EXPECT_NE(option.err.find("Run `gpgp info --help`"), std::string::npos) << option.err;
+}
+
 TEST(Cli, HelpTeaches) {
   const ProcessResult all = gpgp({"--help"});
   EXPECT_EQ(all.exitCode, 0);

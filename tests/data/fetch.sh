@@ -104,11 +104,16 @@ download() {
   fi
 }
 
+# Of a package, as ", 20 MB"; nothing where the lists do not say.
+sizeOf() {
+  apt-cache show --no-all-versions "$1" 2>/dev/null | awk '/^Size:/ { printf ", %.1f MB", $2 / 1e6; exit }' || true
+}
+
 fetch() {
   local set=$1 package=$2 folder=$3 patterns=$4
   rm -rf "${work:?}/deb" "$work/tree"
   mkdir -p "$work/deb" "$work/tree" "$target/$set"
-  say "$set: downloading $package"
+  say "$set: downloading $package$(sizeOf "$package")"
   download "$package" "$work/deb"
   local debs=("$work"/deb/*.deb)
   [[ -f ${debs[0]} ]] || die "apt-get left no file for $package"

@@ -61,7 +61,9 @@ double numberAt(const unsigned char* bytes, int type, bool normalized) {
 } // namespace
 
 const tinygltf::Accessor& accessorOf(const tinygltf::Model& gltf, int index) {
-  if (index < 0 || static_cast<size_t>(index) >= gltf.accessors.size()) fail("a primitive names no accessor");
+  if (index < 0 || static_cast<size_t>(index) >= gltf.accessors.size())
+    fail("a primitive names accessor " + std::to_string(index) + "; there are " +
+         std::to_string(gltf.accessors.size()));
   return gltf.accessors[static_cast<size_t>(index)];
 }
 

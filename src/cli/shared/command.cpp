@@ -25,7 +25,7 @@ void addDumpOptions(CLI::App& command, CommonOptions& options) {
       command.add_option("--dump-pass", options.dumpPass,
                          "For debugging: write the scratch buffers that a pass uses, as they are behind it, to "
                          "PASS.BUFFER.bin; of several passes with a name PASS#2 is the second. "
-                         "src/*/shared/layout.h and the CPU reference say how to read them");
+                         "shaders/*/shared/layout.h and the CPU reference say how to read them");
   command.add_option("--dump-folder", options.dumpFolder, "Where to (default: the current folder)")->needs(pass);
 }
 

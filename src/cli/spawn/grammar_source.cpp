@@ -41,6 +41,9 @@ Assignment parseAssignment(const std::string& text, bool linked) {
 
 std::string nameOf(const GrammarFile& file) { return file.alias.empty() ? spawn::linkedName(file.path) : file.alias; }
 
+/// Further errors are counted.
+constexpr uint32_t kMostPrinted = 20;
+
 struct Errors {
   std::span<const Assignment> assignments;
   std::string first;
@@ -48,11 +51,16 @@ struct Errors {
 
   static void GPGP_CALL print(void* userData, const GpgpCompileMessage* message) {
     auto* all = static_cast<Errors*>(userData);
+    const bool isError = message->severity == GPGP_SEVERITY_ERROR;
+    if (isError && all->count >= kMostPrinted) {
+      all->count += message->omitted ? message->omitted : 1;
+      return;
+    }
     std::ostringstream line;
     line << message->file << ':';
     if (message->line) line << message->line << ':' << message->column << ':';
     line << ' '
-         << (message->severity == GPGP_SEVERITY_ERROR     ? "error: "
+         << (isError                                      ? "error: "
              : message->severity == GPGP_SEVERITY_WARNING ? "warning: "
                                                           : "note: ")
          << message->text;
@@ -60,7 +68,7 @@ struct Errors {
       if (!message->line && std::string_view(message->text).find("var '" + a.name + "'") != std::string_view::npos)
         line << " (--set " << a.text << ')';
     std::fprintf(stderr, "%s\n", printable(line.str()).c_str());
-    if (message->severity != GPGP_SEVERITY_ERROR) return;
+    if (!isError) return;
     if (all->count == 0) all->first = line.str();
     all->count += message->omitted ? message->omitted : 1;
   }
@@ -145,7 +153,9 @@ void addVariables(CLI::App& command, std::vector<std::string>& set) {
 
 void report(const spawn::Diagnostics& diagnostics, const std::string& file) {
   std::string first;
+  uint32_t errors = 0;
   for (const spawn::Diagnostic& d : diagnostics.sorted()) {
+    if (d.severity == GPGP_SEVERITY_ERROR && errors++ >= kMostPrinted) continue;
     const std::string line = spawn::format(d, file);
     std::fprintf(stderr, "%s\n", printable(line).c_str());
     if (first.empty() && d.severity == GPGP_SEVERITY_ERROR) first = line;

@@ -255,6 +255,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
        << (shrink < 1 ? " (shrunk to them; --size makes more), " : ", ") << samples
        << (area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries << " tile entries; GPU "
        << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on " << device.name() << '\n';
+  if (facts.paths == 0) text << "nothing is drawn: the drawing has no shape with an area or a stroke\n";
   if (messages.count()) text << messages.count() << " parts of the drawing are approximated, left out or not valid\n";
   if (options.reference) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
