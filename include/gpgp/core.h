@@ -4,17 +4,17 @@
  * recording state. gpgp records work into that command buffer and returns. It never submits, waits or presents. It
  * owns no queue and creates no thread.
  *
- * Objects:
- *   asset      immutable input that recorders share: a grammar, a drawing, a glyph set, a list, a geometry set
- *   recorder   pipelines and scratch memory for one kind of work: a spawner, a canvas, a visibility recorder.
- *              Its budgets are fixed when it is created
+ * Objects (the end of this header explains more words):
+ *   asset      input that recorders share: a grammar, drawing, glyph set or geometry set. Only glyph sets change later
+ *   recorder   pipelines, scratch memory and fixed budgets for one kind of work: a spawner, canvas, visibility recorder
+ *   list       shapes, images, text and drawings that the engine fills in every frame or keeps, in host memory (ui.h)
  *   history    what one camera or canvas keeps from one recording to the next
  *
  * A recording is one gpgpRecord... call and the commands that it recorded. A report holds what the GPU counted while
  * a recording executed. The report can be read once the frame of the recording is safe (GpgpFrame).
  *
  * A frame:
- *   gpgpAdvance(context, &frame)                        once: frees memory, collects reports, recycles rings
+ *   gpgpAdvance(context, &frame)                        once: frees and reuses memory, collects reports
  *   gpgpRecordUpload(context, cmd, &frame, bytes, ...)  copies pending asset data to the device
  *   gpgpRecordPrepare...(recorder, cmd, &frame, &info)  outside render passes: the compute work
  *   gpgpRecordDraw...(recorder, cmd, &frame, &info)     inside the engine's render pass, for recorders that draw
@@ -41,7 +41,7 @@
  *   @state            The command-buffer state that differs after the call.
  *
  * Errors are negative values of GpgpResult. A function that returns an error has changed nothing and recorded nothing.
- * It has sent one message to the context's callback, unless it was given no valid handle that leads to a context.
+ * It has sent one message, to the callback of its first handle's context or of its info. Without either there is none.
  *
  * This header includes vulkan_core.h for the handle types. No other Vulkan header has to come first.
  */
@@ -357,9 +357,9 @@ typedef struct GpgpFrame {
   uint64_t safe;    /**< The newest safe frame. All older frames are safe too. */
 } GpgpFrame;
 
-/** Begins a frame: frees destroyed objects, collects reports and recycles rings, for all frames that are now safe.
- *  While the context and its device live, no other function frees memory or recycles rings. Call it once a frame,
- *  before the recordings of the frame. These pass the same GpgpFrame.
+/** Begins a frame. For all frames that are now safe, it frees destroyed objects, collects reports, and makes staging
+ *  memory and descriptor sets ready for reuse. While the context and its device live, no other function does so. Call
+ *  it once a frame, before the recordings of the frame. All recordings of the frame are given this same GpgpFrame.
  *  Errors: INVALID_HANDLE, INVALID_ARGUMENT, DEVICE_LOST.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAdvance(GpgpContext context, const GpgpFrame* frame);
@@ -372,7 +372,7 @@ GPGP_API void GPGP_CALL gpgpNotifyDeviceLost(GpgpContext context);
 /** Records copies of pending asset data into device memory, oldest asset first, and clears of new histories. It records
  *  transfer commands and one barrier, or nothing if nothing is pending. The barrier makes the data visible to all later
  *  recordings on the same queue. Between queues the engine synchronises.
- *    byteBudget     copies at most this many bytes, but at least 16; 0: as many as the staging ring has room for.
+ *    byteBudget     copies at most this many bytes, but at least 16; 0: as many as staging memory has room for.
  *                      Clears do not count
  *    pendingBytes   receives the number of bytes that are still pending; may be NULL
  *  Errors: INVALID_HANDLE, INVALID_ARGUMENT, TOO_MANY_RECORDINGS, DEVICE_LOST.
@@ -450,7 +450,7 @@ typedef struct GpgpPrewarmInfo {
   GpgpStructureType sType;
   const void* pNext;
   const GpgpTargetInfo* targets; /**< For recorders that draw: every target that they will draw into. */
-  uint32_t targetCount;          /**< A recorder draws into at most 16 kinds of targets, those of all calls together. */
+  uint32_t targetCount;          /**< At most 16 different targets for a recorder, counted over all calls. */
 } GpgpPrewarmInfo;
 #define GPGP_PREWARM_INFO_INIT GPGP_INIT(GpgpPrewarmInfo, GPGP_STRUCTURE_PREWARM_INFO)
 
@@ -507,8 +507,8 @@ typedef struct GpgpReportHeader {
 /* ---------------------------------------------------------------- objects */
 
 /** Tells whether an asset is resident: whether gpgpRecordUpload has recorded the copies of all its data. Recordings
- *  that use the asset must be submitted after that command buffer. If it is dropped, the asset is no longer resident.
- *  @threads any */
+ *  that use the asset must be submitted after that command buffer. If that command buffer is never submitted, the asset
+ *  is no longer resident once its frame is safe. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpGetResidency(GpgpAsset asset, VkBool32* resident);
 
 /** Destroys an asset, a recorder or a history. This is legal at any time: memory that a frame in flight may use is
@@ -521,7 +521,7 @@ GPGP_API void GPGP_CALL gpgpDestroyHistory(GpgpHistory history);
 
 typedef struct GpgpServiceMemory {
   VkDeviceSize deviceBytes;      /**< Device-local memory: assets, histories and scratch. */
-  VkDeviceSize hostVisibleBytes; /**< Memory that the host maps: rings, constants and reports. */
+  VkDeviceSize hostVisibleBytes; /**< Memory that the host maps: staging, constants and reports. */
   VkDeviceSize pendingBytes;     /**< Memory of destroyed objects that waits for frames to be safe. */
   uint64_t hostBytes;            /**< Host memory. All of it is counted under GPGP_SERVICE_CORE. */
 } GpgpServiceMemory;
@@ -551,4 +551,22 @@ GPGP_API void GPGP_CALL gpgpFreeBlob(GpgpBlob* blob);
 #ifdef __cplusplus
 }
 #endif
+
+/* ---------------------------------------------------------------- words
+ *
+ *   software device    A device of type VK_PHYSICAL_DEVICE_TYPE_CPU, such as lavapipe.
+ *   pass               One dispatch or fill of a recording (gpgpGetPasses). The tag @pass is about render passes.
+ *   in flight          Recorded, and the frame is not safe yet. A recorder can have maxFramesInFlight x
+ *                      maxRecordingsPerFrame recordings in flight.
+ *   target             Of gpgpRecordDraw...: a render pass and the formats of its attachments (GpgpTargetInfo). Of
+ *                      gpgpRecordPrepareCanvas: the storage image that the canvas writes (GpgpCanvasInfo::target).
+ *   canvas history     The prepared picture of a canvas, to be drawn in a render pass.
+ *   camera history     The bits of the triangles that were visible in the camera's last recording. Neither kind of
+ *                      history has to do with temporal anti-aliasing.
+ *   samples            Of attachments and canvases: samples per pixel. Of visibility: samples per pixel and direction.
+ *   clip               A region outside of which nothing shows (GpgpPathGroup::clip, gpgpPushClip). Clip space is
+ *                      Vulkan's: homogeneous, before the division by w. GpgpCanvasDrawInfo::clip is a matrix to it.
+ *   drawing            An asset made of paths.
+ *   item               One thing that a canvas shows in a recording: a drawing, a text or a list (GpgpCanvasItem).
+ */
 #endif

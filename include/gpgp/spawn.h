@@ -35,12 +35,12 @@ typedef struct GpgpAxiom {
 #define GPGP_AXIOM_DEFAULT_START 0xffffffffu
 
 /** A terminal shape. 96 bytes (std430). The transform maps the unit shape, which spans [-0.5, 0.5] on each axis, to the
- *  world, and includes the size of the shape. Polygons face +Z and have size[2] 0. Their transform keeps 1 metre along
- *  that axis, so that it can be inverted.
+ *  world, and includes the size of the shape. Polygons face +Z and have size[2] 0. Their transform scales Z by 1, not
+ *  by size[2], so that it stays invertible.
  *
  *  An instance does not hold corners. For shapes of the GPGP_SHAPE_DYNAMIC_... types, the engine chooses the mesh by
  *  terminal, or uses a spawner that writes vertices (GpgpSpawnerCreateInfo::vertices). The compiler sends a note for
- *  every terminal that such shapes can reach.
+ *  every terminal of kind 1 (GpgpGrammarTerminal) that such shapes can reach.
  *
  *  bucket is the terminal line, terminal the name that a rule uses, and rule the rule whose body contains the terminal.
  *  Ancestor rules are recorded only in key. */
@@ -165,8 +165,8 @@ typedef struct GpgpGrammarCreateInfo {
 } GpgpGrammarCreateInfo;
 #define GPGP_GRAMMAR_CREATE_INFO_INIT GPGP_INIT(GpgpGrammarCreateInfo, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO)
 
-/** Checks a baked grammar and queues it for upload. The check covers magic, version, checksums, every index, the
- *  kernels that follow the graph, and that nothing else follows.
+/** Checks a baked grammar and queues it for upload. Checked are magic, version, checksums, every index and the
+ *  kernels, and that the data ends there.
  *  Errors: INVALID_DATA, INVALID_ARGUMENT, INVALID_STRUCT, INVALID_HANDLE, IO, OUT_OF_..._MEMORY, DEVICE_LOST.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext context, const GpgpGrammarCreateInfo* info,
@@ -257,8 +257,8 @@ typedef struct GpgpSpawnerCreateInfo {
    *  GpgpSpawnInfo::vertices. @lifetime call */
   const GpgpVertexLayout* vertices;
   uint32_t maxShapes; /**< Shapes that wait for a round of derivation. At most 2^24. 0: 131072. 576 bytes each. */
-  /** Terminal shapes of one recording that are written as vertices, sorted by bucket or ordered. Other instances do not
-   *  need this budget. At most 2^24. 0: 524288. 96 bytes each, with GPGP_SPAWNER_ORDERED 112. */
+  /** Terminal shapes of one recording that are written as vertices, sorted by bucket or ordered. A spawner whose
+   *  recordings only count, or write other instances, needs 1. At most 2^24. 0: 524288. 96 bytes each, ordered 112. */
   uint32_t maxTerminals;
   /** How deep rules may nest in themselves. Deeper shapes are counted and not derived. At most 65535. 0: 64. */
   uint32_t maxDepth;
@@ -268,7 +268,7 @@ typedef struct GpgpSpawnerCreateInfo {
    *  suffice. */
   uint32_t maxRounds;
   /** Shapes that Collider registers in one recording. 0: none, and grammars with Collider or IfCollides are refused. At
-   *  most 2^24, on software devices 8192. 76 to 84 bytes each, and then 96 more for each of maxShapes. */
+   *  most 2^24, on software devices 8192. 76 to 84 bytes each. If not 0, each of maxShapes takes 96 bytes more. */
   uint32_t maxColliders;
   /** Axioms of one recording that come from GpgpSpawnInfo::hostAxioms. 0: none. At most 2^24. 96 bytes of host-visible
    *  memory each, for every recording that can be in flight. */
@@ -291,7 +291,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpS
  *  grammar */
 GPGP_API GpgpResult GPGP_CALL gpgpPrewarmGrammar(GpgpRecorder spawner, GpgpAsset grammar);
 
-/** Where a spawner writes vertices. Terminals from the first one on that does not fit as a whole are omitted. */
+/** Where a spawner writes vertices. Output (of a region) stops at the first terminal that does not fit whole. */
 typedef struct GpgpVertexOutput {
   /** Output. Its size is the budget. STORAGE usage. NULL: the recording only counts (GpgpSpawnInfo::draws), and indices
    *  must be NULL too. */

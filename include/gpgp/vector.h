@@ -381,23 +381,23 @@ typedef struct GpgpCanvasCreateInfo {
    *  scissor. The numbers of curves and patches are not limited, as these lie in the drawing's own buffer. A path
    *  takes 48 bytes, 8 more on hardware devices, and one bit for each square of 128 pixels of the canvas. */
   uint32_t maxPaths;
-  /** Tiles of 8 x 8 pixels that a path's edges pass through, summed over all paths, at most 2^28; 0: 131072. An entry
-   *  takes 256 bytes, or 480 with its lists. */
+  /** Tiles of 8 x 8 pixels that a path's edges pass through, summed over all paths, at most 2^28; 0: 131072. Each pair
+   *  of a path and such a tile is an entry. It takes 480 bytes, 224 of them for lists; on software devices 384. */
   uint32_t maxTileEntries;
   /** Words of tile flags, at most 2^28; 0: maxTileEntries, or 65536 if that is more. A word covers 32 tiles of one row
    *  of tiles. A path that meets the canvas takes, for each row of its box, the box's width in tiles divided by 32,
-   *  rounded up. A word takes 16 bytes. */
+   *  rounded up. A word takes 16 bytes, on software devices 32. */
   uint32_t maxTileWords;
-  /** Items in one recording, at most 65536; 0: 64. Lists (ui.h) count each of their drawings and clips, and each
-   *  change of transform, clip or group. The number of groups has the same limit. All items together may show at most
-   *  8 different drawings and glyph sets. */
+  /** Items of all kinds in one recording, not drawings alone; at most 65536; 0: 64. Lists (ui.h) count each of their
+   *  drawings and clips, and each change of transform, clip or group. The number of groups has the same limit. All
+   *  items together may show at most 8 different drawings and glyph sets. */
   uint32_t maxDrawings;
-  /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. A glyph takes 176 bytes; 48
-   *  of them are allocated once more for each recording in flight. */
+  /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. 160 bytes each, and 48 more
+   *  for every recording that can be in flight. */
   uint32_t maxGlyphs;
   /** Shapes of all lists (ui.h) in one recording, clips that are not scissors included, at most 1048576; 0: 1024.
-   *  Their gradients may have twice as many stops in all; a nine-slice or tiled image counts as 2 stops. A shape takes
-   *  592 bytes; 240 of them are allocated once more for each recording in flight. */
+   *  Their gradients may have twice as many stops in all; a nine-slice or tiled image counts as 2 stops. 352 bytes
+   *  each, and 240 more for every recording that can be in flight. */
   uint32_t maxShapes;
   /** What recordings will write; 0: anything. Pipelines are made only for these: for a single target half as many, in
    *  half the time. */
@@ -421,8 +421,8 @@ typedef struct GpgpCanvasHistoryCreateInfo {
 #define GPGP_CANVAS_HISTORY_CREATE_INFO_INIT                                                                           \
   GPGP_INIT(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO)
 
-/** Makes a canvas history: device memory that keeps a rasterised canvas between gpgpRecordPrepareCanvas and
- *  gpgpRecordDrawCanvas. It can be used once a gpgpRecordUpload has cleared it.
+/** Makes a canvas history: the prepared picture of a canvas, kept in device memory between gpgpRecordPrepareCanvas
+ *  and gpgpRecordDrawCanvas. It can be used once a gpgpRecordUpload has cleared it.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (larger than the device can bind), OUT_OF_..._MEMORY.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext context, const GpgpCanvasHistoryCreateInfo* info,
@@ -510,7 +510,7 @@ typedef struct GpgpCanvasImage {
   VkImageView view; /**< 2D, in a float or normalised format that the sampler may filter */
   VkSampler sampler;
   VkImageLayout layout; /**< current layout: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
-  /** VK_TRUE: colours are multiplied by alpha, in the encoding that the shader receives. Also true of opaque images. */
+  /** VK_TRUE: colours are multiplied by alpha, in the encoding that the shader receives. Set it for opaque images. */
   VkBool32 premultiplied;
   GpgpImageEncoding encoding;
   /** NEAREST: each pixel takes what the sampler returns. The sampler's own filters must then be NEAREST as well. */
@@ -545,7 +545,7 @@ typedef struct GpgpCanvasInfo {
 /** Rasterises the items into the history, the target, or both.
  *
  *  Both receive the same pixels up to rounding: the history holds half floats, and image stores and attachments round
- *  differently. gpgpRecordDrawCanvas over transparent black is compared with a target of the attachment's format. In
+ *  differently. Compared here: a target, and an attachment of the same format that was cleared to 0 and drawn over. In
  *  R16G16B16A16_SFLOAT they differ by at most one unit in the last place of a half, in R8G8B8A8_UNORM by at most
  *  1/255. An sRGB attachment encodes premultiplied colour, so it is within 1/255 of a target with encodeSrgb only
  *  where the canvas is opaque.
@@ -561,7 +561,7 @@ typedef struct GpgpCanvasDrawInfo {
   const void* pNext;
   GpgpHistory history;
   const GpgpTargetInfo* target; /**< equal to one of those that were passed to gpgpPrewarm */
-  float clip[16];               /**< column-major; canvas pixels (x, y, 0, 1) to clip space */
+  float clip[16];               /**< matrix from canvas pixels (x, y, 0, 1) to clip space, column-major */
   uint32_t width, height;       /**< size of the part of the canvas that is drawn, pixels */
   uint32_t x;                   /**< column of the canvas at which the part begins; `clip` sees this column as x = 0 */
   uint32_t secondX;             /**< multiview targets only: `x` for view 1 */
@@ -591,7 +591,7 @@ typedef struct GpgpCanvasReport {
   /** Needed by the paths that fit into maxPaths, maxGlyphs, maxShapes and maxDrawings. */
   uint32_t tileWords;
   uint32_t tileWordsGiven; /**< maxTileWords */
-  /** Needed by the paths that have tile words. If tile words were short, more may be needed later. */
+  /** Counts only paths that got tile words. If tileWords > tileWordsGiven, raise that first and read this again. */
   uint32_t tileEntries;
   uint32_t tileEntriesGiven; /**< maxTileEntries */
   uint32_t pathsDropped;     /**< paths left out because a budget was short; text is left out by whole glyphs */

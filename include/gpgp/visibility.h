@@ -11,8 +11,8 @@
  *   -> frames later: gpgpGetVisibilityReport
  *
  * Triangles are numbered by the engine: GpgpVisibilityDraw::firstTriangle is the number of a draw's first triangle.
- * Bits, lists, counts and sizes are indexed by these triangle numbers. Numbers in parentheses, such as (6.1.3), are
- * sections and equations of the thesis that the method follows.
+ * Bits, lists, counts and sizes are indexed by these numbers. Numbers in parentheses, such as (6.1.3), are sections and
+ * equations of the thesis: M. Dokter, Applications of Massively Parallel Geometry Processing, TU Graz, 2019.
  */
 #ifndef GPGP_VISIBILITY_H
 #define GPGP_VISIBILITY_H
@@ -72,13 +72,13 @@ typedef struct GpgpVisibilityRecorderCreateInfo {
   uint32_t maxCameras; /**< cameras of one recording, at most 128; 0: 1 */
   uint32_t maxDraws;   /**< draws of one recording, all cameras together; 0: 65536. Scratch: 56 bytes each */
   /** Triangles of one recording, all draws and cameras together; at most 2^30; 0: 4194304. Triangles beyond the budget
-   *  are not sampled, and the report says BUDGET_EXCEEDED. Scratch: 4 bytes a triangle, and 8 bytes for each 64
-   *  triangles. With the exact method the 4 bytes a triangle become 8 bytes a triangle or 4 bytes a pair (maxPairs),
-   *  whichever is more. */
+   *  are not sampled, and the report says BUDGET_EXCEEDED. Scratch: 4 * T + T / 8 bytes. With the exact method:
+   *  max(8 * T, 4 * P) + T / 8 bytes. T is maxTriangles and P is maxPairs; where these are 0, T and P are their
+   *  defaults. */
   uint32_t maxTriangles;
   uint32_t methods; /**< GPGP_SAMPLING_..._BIT of all methods that recordings will use; 0: standard */
   /** Samples per pixel in each direction that one recording takes, a power of two up to 64; 0: 1. Scratch: the 8 bytes
-   *  a pixel are needed for each of its maxSamples x maxSamples samples. */
+   *  a pixel and camera (maxWidth) become 8 * maxSamples * maxSamples bytes. */
   uint32_t maxSamples;
   /** Exact method: room for candidates, the triangles that may be visible and those that may hide them. 0: a quarter of
    *  maxTriangles, at least 65536. Scratch: 64 bytes each */
@@ -196,15 +196,15 @@ typedef struct GpgpViewCellInfo {
   uint32_t columns, rows;
   uint32_t skip;   /**< takes one view point for every `skip` pixels of the grid in each direction; 0: 1 */
   uint32_t height; /**< of the viewport, in pixels; above 0 with a grid */
-  /** Distance along the view, in units of clip space's w, at which a grid pixel is as large as a pixel of the viewport:
-   *  moving the view point by one grid pixel moves what lies there by one pixel on the screen. Above 0 with a grid. */
+  /** The viewing distance, in units of clip space's w, at which a step of one grid pixel shifts the picture by one
+   *  pixel of the viewport. Above 0 with a grid. Parallel cameras ignore the value: all distances shift alike. */
   float distance;
   /** Further view points, three finite floats each: world units from the middle to the camera's right, up, and back
    *  towards the viewer. */
   const float* points;
   uint32_t pointCount;
-  /** Further view points in a square across the view, denser towards its border, from where most is seen; at most 1024;
-   *  0: none. */
+  /** Number of further view points in a square at right angles to the view; at most 1024; 0: none. They lie denser
+   *  near its border, from where most is seen. */
   uint32_t walkCount;
   float walkDistance; /**< from the middle to the sides of that square, in world units; above 0 with walkCount */
 } GpgpViewCellInfo;
@@ -243,11 +243,11 @@ typedef struct GpgpVisibilityInfo {
   const GpgpCamera* moreCameras;
   uint32_t moreCameraCount; /**< less than maxCameras */
   uint32_t width, height;   /**< viewport of each camera, pixels */
-  /** Standard, reference: samples per pixel in each direction, a power of two up to 256; standard: at most maxSamples.
+  /** Standard, reference: samples per pixel and direction, a power of two up to 256; standard: at most maxSamples.
    *  0: 1 for standard, 64 for reference. */
   uint32_t samples;
-  /** Reference: which part of the samples this recording takes, from 0 to n * n, with n = max(samples / maxSamples, 1).
-   *  The last slice is the pixel centres. All slices together are the reference. */
+  /** Reference: index of the slice that this recording takes, 0 to n * n, with n = max(samples / maxSamples, 1). Slices
+   *  0 to n * n - 1 are parts of the grid, slice n * n is the pixel centres. All slices together are the reference. */
   uint32_t slice;
   /** VK_TRUE: adds to visibleBits, pixelCounts and triangleSizes instead of overwriting them. This unites slices,
    *  cameras and the recordings of a view cell. */
@@ -259,9 +259,9 @@ typedef struct GpgpVisibilityInfo {
    *  is distance along the view. For a parallel projection, where w is 1, the unit is that of clip space's z. */
   float epsilonStatic;
   float epsilonDynamic; /**< conservative: added to epsilon times 1 - |cosine| of the two triangles' normals */
-  /** Conservative: number of passes that close gaps, at most 4. Each pass looks at every pixel with samples, of 8 x 8,
-   *  that no visible triangle covers. In each quarter of the pixel it makes the nearest triangle that covers such a
-   *  sample visible. */
+  /** Conservative: how many times gaps are closed, at most 4. Each time takes 8 x 8 samples in every pixel. Samples
+   *  that no visible triangle covers are gaps. In each quarter of a pixel, the nearest triangle that covers a gap
+   *  becomes visible. */
   uint32_t refinements;
   /** Nearby: how far from the camera the viewer may be, in units of clip space's w; 0 or more.
    *  Exact: also shows what a move of that length would uncover within a pixel. Meant for views of a cell whose view
@@ -278,7 +278,7 @@ typedef struct GpgpVisibilityInfo {
   VkIndexType indexType;   /**< UINT16 or UINT32 */
   /** Optional, not together with commands; STORAGE usage. 48 bytes for each cluster: 64 consecutive triangles of a
    *  mesh; the last cluster of a mesh may have fewer. The recording computes the bounds and normal cones of all
-   *  clusters and stores them here, provided that it has draws (without draws it has no positions). It then skips
+   *  clusters and stores them here, if drawCount is above 0 (without draws it has no positions). It then skips
    *  clusters that are outside the view or face away. The result is the same. Worth it for meshes of more than a few
    *  clusters; see gpgpOrderTriangles. */
   GpgpBuffer clusters;
@@ -367,8 +367,8 @@ typedef struct GpgpVisibilityMetricsInfo {
    *  visibleBits. */
   GpgpBuffer referenceBits;
   GpgpBuffer referenceCounts; /**< optional: pixelCounts of these recordings. Without them, shares by area are 0. */
-  /** Optional: bits of a finer reference (256 samples). A triangle that is visible and in these bits counts as part of
-   *  the reference. A triangle that is only in these bits does not. */
+  /** Optional: bits of a finer reference (256 samples). A triangle that is visible and in these bits is no false
+   *  positive: it counts as part of the reference. A triangle that is only in these bits is ignored. */
   GpgpBuffer recheckBits;
   GpgpBuffer falsePositives; /**< out, optional: bits of triangles that are visible but not in the reference */
   GpgpBuffer falseNegatives; /**< out, optional: bits of triangles that are in the reference but not visible */
@@ -394,7 +394,7 @@ typedef struct GpgpVisibilityReport {
   GpgpStructureType sType;
   void* pNext;
   GpgpReportHeader base;
-  uint32_t triangles;        /**< beyond the near plane, within the viewport, and facing the camera */
+  uint32_t triangles;        /**< sampled: in the view volume (near to far plane), facing the camera or two-sided */
   uint32_t visible;          /**< bits that are set */
   uint32_t listed;           /**< written to visibleList */
   uint32_t coveredPixels;    /**< samples that show a triangle; exact: pixel centres */
@@ -425,7 +425,7 @@ typedef struct GpgpVisibilityReport {
   float coverage;               /**< share of the reference's triangles that are visible, 0 to 1; 0 if it is empty */
   float overestimation;         /**< falsePositives divided by the reference's triangles; may exceed 1 */
   float coverageArea;           /**< share of the reference's samples with a triangle that show a visible one */
-  float overestimationArea;     /**< falsePositives, one sample each, divided by the same number of samples */
+  float overestimationArea;     /**< falsePositives (one sample each) / the reference's samples with a triangle */
 } GpgpVisibilityReport;
 #define GPGP_VISIBILITY_REPORT_INIT GPGP_INIT(GpgpVisibilityReport, GPGP_STRUCTURE_VISIBILITY_REPORT)
 
