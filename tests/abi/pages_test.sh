@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # The code of docs/guide/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17
 # file; and so does the C of the guides of spawn, vector and user interfaces.
-# The links of README.md, of all pages below docs/ and of the integrations' pages lead to files; docs/README.md lists
-# each page, and docs/guide/integrations.md each integration's, which has the sections that they all have.
+# The links of README.md, of all pages below docs/ and of the integrations' pages lead to files, and to headings of
+# these where a link names one; docs/README.md lists each page, and docs/guide/integrations.md each integration's, which
+# has the sections that they all have.
 # Guides have at most 12 KB, internals 16, results 10: what does not fit is not for that reader.
 #
 #   pages_test.sh INCLUDE_DIRS DOCS CC CXX     INCLUDE_DIRS: separated by colons
@@ -31,11 +32,19 @@ for limit in guide:12 internals:16 results:10; do
       { echo "FAILED: $from has more than ${limit#*:} KB" >&2; failed=yes; }
   done
 done
+# anchors PAGE: of its headings, as GitHub makes them: lower case, spaces to hyphens, punctuation dropped.
+anchors() {
+  awk '/^```/ { code = !code } !code && /^#+ / { sub(/^#+ +/, ""); print tolower($0) }' "$1" |
+    sed -E 's/\]\([^)]*\)//g; s/[^[:alnum:] _-]//g; s/ /-/g'
+}
 for from in "$docs/../README.md" "$docs"/*.md "$docs"/*/*.md "$docs"/../integrations/*/README.md; do
   while read -r link; do
     target=$(dirname "$from")/${link%%#*}
-    [[ -e $target ]] || { echo "FAILED: $from links to $link, which is not there" >&2; failed=yes; }
-  done < <(grep -oE '\]\([^)]+\)' "$from" | sed -E 's/^\]\(|\)$//g' | grep -vE '^(https?:|mailto:|#)')
+    [[ $link != '#'* ]] || target=$from
+    [[ -e $target ]] || { echo "FAILED: $from links to $link, which is not there" >&2; failed=yes; continue; }
+    [[ $target != *.md || $link != *'#'* ]] || anchors "$target" | grep -xF -e "${link#*#}" >/dev/null ||
+      { echo "FAILED: $from links to $link, a heading that is not there" >&2; failed=yes; }
+  done < <(grep -oE '\]\([^)]+\)' "$from" | sed -E 's/^\]\(|\)$//g' | grep -vE '^(https?:|mailto:)')
   name=${from#"$docs/"}
   grep -qF "($name)" "$docs/README.md" || [[ $name == README.md || $name == /* || $name == ../* ]] ||
     { echo "FAILED: docs/README.md does not list $name" >&2; failed=yes; }
