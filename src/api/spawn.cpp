@@ -143,7 +143,7 @@ Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& inf
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.size is below one GpgpInstance (%zu bytes)",
                      sizeof(GpgpInstance));
   if (counts && !info.draws.buffer)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL, and draws.buffer, where a record could count",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL, and draws.buffer, where a recording could count",
                      spawner.vertices() ? "vertices->vertices" : "instances");
   if (regions && counts)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWN_REGIONS is set, but nothing is written to them");
@@ -161,7 +161,7 @@ Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& inf
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "needed.size is %llu bytes, the grammar's %u buckets need %llu",
                      static_cast<unsigned long long>(info.needed.size), buckets, 4ull * buckets);
   if (info.bounds.buffer && counts)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "bounds.buffer is set, but the record only counts");
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "bounds.buffer is set, but the recording only counts");
   if (info.bounds.buffer && info.bounds.size < sizeof(GpgpSpawnBounds) * buckets)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "bounds.size is %llu bytes, the grammar's %u buckets need %zu",
                      static_cast<unsigned long long>(info.bounds.size), buckets, sizeof(GpgpSpawnBounds) * buckets);

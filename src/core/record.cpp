@@ -121,7 +121,8 @@ Result<void> Recorder::check(const Record& record) const {
   for (uint32_t i = 0; i < passes_.groupCounts; ++i)
     for (uint32_t axis = 0; axis < 3; ++axis)
       if (record.groups[i][axis] > limits.maxComputeWorkGroupCount[axis])
-        return makeError(GPGP_ERROR_UNSUPPORTED, "the record needs %u workgroups in a row; this device dispatches %u",
+        return makeError(GPGP_ERROR_UNSUPPORTED,
+                         "the recording needs %u workgroups in a row; this device dispatches %u",
                          record.groups[i][axis], limits.maxComputeWorkGroupCount[axis]);
   for (size_t i = 0; i < passes_.resources.size(); ++i) {
     const Resource& resource = passes_.resources[i];

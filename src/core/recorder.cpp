@@ -342,7 +342,7 @@ Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
                     [&](const Target& t) { return sameTarget(t.info, info->targets[i]); }))
       continue;
     if (have == kMaxTargets)
-      return makeError(GPGP_ERROR_UNSUPPORTED, "a recorder draws into at most %u kinds of target", kMaxTargets);
+      return makeError(GPGP_ERROR_UNSUPPORTED, "a recorder draws into at most %u different targets", kMaxTargets);
     const auto pipeline = createDrawPipeline(info->targets[i]);
     if (!pipeline) return pipeline.error();
     targets_[have] = {info->targets[i], *pipeline};

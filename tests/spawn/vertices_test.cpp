@@ -1110,7 +1110,7 @@ TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
   EXPECT_EQ(refused(0, [](auto& i, auto& v) { i.vertices = &v; }),
             "vertices is set; the spawner was made for instances");
   EXPECT_EQ(refused(0, [](auto& i, auto&) { i.instances = {}; }),
-            "instances.buffer is NULL, and draws.buffer, where a record could count");
+            "instances.buffer is NULL, and draws.buffer, where a recording could count");
   EXPECT_EQ(refused(0, [](auto& i, auto&) { i.flags = GPGP_SPAWN_REGIONS; }),
             "GPGP_SPAWN_REGIONS is set, draws.buffer is NULL");
   EXPECT_EQ(refused(0, [&](auto& i, auto&) { i.needed = buffer.range(); }),
@@ -1138,7 +1138,7 @@ TEST_F(VerticesTest, BadOutputsAreRefusedWithAReason) {
                       i.bounds = i.draws = buffer.range();
                       i.instances = {};
                     }),
-            "bounds.buffer is set, but the record only counts");
+            "bounds.buffer is set, but the recording only counts");
   gpgpDestroyAsset(grammar);
 }
 

@@ -204,7 +204,7 @@ std::string exceededBudgets(const GpgpSpawnReport& report, const Hopeless& hopel
         exceeded(counted(waiting, "shape") + " of a round", "--max-shapes", report.peakShapes, deriver.mostShapes());
   else if (waiting)
     text += "budget exceeded: " + counted(waiting, "shape") + " still waited after the last of " +
-            counted(report.rounds, "round") + ", which are as many as a record takes\n";
+            counted(report.rounds, "round") + ", which are as many as a recording takes\n";
   if (report.collidersKept < report.colliders)
     text += exceeded(counted(report.colliders - report.collidersKept, "collider"), "--max-colliders", report.colliders,
                      deriver.mostColliders());

@@ -87,12 +87,12 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
   const uint32_t target = targetOf(info);
   if ((history && !sizes_.writes(kNoImage)) || !sizes_.writes(target))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "the canvas was made without targets for records that write %s (GpgpCanvasCreateInfo::targets)",
+                     "the canvas was made without targets for recordings that write %s (GpgpCanvasCreateInfo::targets)",
                      history && !sizes_.writes(kNoImage) ? "a history"
                      : target == kHasImage8              ? "R8G8B8A8_UNORM"
                                                          : "R16G16B16A16_SFLOAT");
   if (info.imageCount > shader::kMaxImages)
-    return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a record paints with at most %u (GPGP_MAX_IMAGES)",
+    return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a recording paints with at most %u (GPGP_MAX_IMAGES)",
                      info.imageCount, shader::kMaxImages);
   if (info.imageCount && !info.images)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images is NULL, but imageCount is %u", info.imageCount);

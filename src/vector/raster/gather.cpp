@@ -31,7 +31,7 @@ Result<uint32_t> Gather::bind(const core::Resident& asset) { // to a slot, if on
   uint32_t slot = 0;
   while (slot < slotCount && bound[slot] != &asset) ++slot;
   if (slot == shader::kMaxSlots)
-    return wrong(GPGP_ERROR_UNSUPPORTED, ": a record draws at most %u different drawings and glyph sets",
+    return wrong(GPGP_ERROR_UNSUPPORTED, ": a recording draws at most %u different drawings and glyph sets",
                  shader::kMaxSlots);
   if (slot == slotCount) bound[slotCount++] = &asset;
   return slot;
