@@ -35,8 +35,8 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
   if (href.substr(0, 5) != "data:")
     return reporter_.warn(place,
                           "<image> of another file, '" + std::string(href.substr(0, 60)) + "', is not supported");
-  const bool many = pictureCount_ >= GPGP_MAX_IMAGES && !pictures_.count(href);
   const Picture* picture = pictureOf(node);
+  const bool many = pictures_.find(href)->second.index >= GPGP_MAX_IMAGES;
   if (!picture)
     return reporter_.warn(place, many ? "<image> is one more than the " + std::to_string(GPGP_MAX_IMAGES) +
                                             " that a drawing can have; not supported"
