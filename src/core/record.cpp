@@ -248,7 +248,7 @@ void Recorder::endLabel(VkCommandBuffer commandBuffer) const {
 }
 
 /// One barrier at each end of a recording. Entry: the engine's last uses, and this recorder's previous recording
-/// (scratch, views). Exit: the engine's next uses, the draw path, and the host that reads the report.
+/// (scratch, histories). Exit: the engine's next uses, the draw path, and the host that reads the report.
 void Recorder::edgeBarrier(const Record& record, bool entry) const {
   const bool engine = !(record.info->accessMode & GPGP_ACCESS_EXTERNAL_BARRIERS);
   const VkPipelineStageFlags drawStage = draws_ ? VkPipelineStageFlags(VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT) : 0;

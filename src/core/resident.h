@@ -1,4 +1,4 @@
-// Assets and views: objects with one device buffer whose contents arrive through gpgpRecordUpload.
+// Assets and histories: objects with one device buffer whose contents arrive through gpgpRecordUpload.
 //
 // An asset's buffer receives bytes, a history's is cleared to zero. An object is resident from the recording that
 // copied its last byte on; if that command buffer turns out never to have run, it is pending again. What is added later
