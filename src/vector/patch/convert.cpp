@@ -73,6 +73,8 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
         const Slab &a = slabs[i], &b = slabs[k];
         return a.left != b.left ? a.left < b.left : a.right < b.right;
       });
+  if (const size_t all = drawing.patches.size() + slabs.size(); all > drawing.patches.capacity())
+    drawing.patches.reserve(std::max(all, 2 * drawing.patches.capacity()));
   constexpr uint32_t kNone = UINT32_MAX;
   std::pmr::vector<uint32_t> places(pieces.size(), kNone, memory);
   const auto place = [&](uint32_t piece) {

@@ -222,14 +222,21 @@ private:
   /// at once, the one that made room when its turn comes again.
   void repair() {
     size_t swaps = 64 + 8 * starts_.size();
-    // Two that cross here lie beside each other. They are put right first: what is beside both is then asked once.
+    // Two that cross here lie beside each other. They are put right first.
     for (size_t i = 0, count = went_ > 1 ? starts_.size() : 0; i < count; ++i) {
       const uint32_t at = states_[starts_[i]].slot;
       if (at == kNone) continue;
       const uint32_t right = status_.after(at);
       if (right != status_.end() && states_[pieceAt_[right]].dirty == batch_ &&
-          wrong<&Sweep::leftBetween>(pieceAt_[at], pieceAt_[right]))
+          wrong<&Sweep::leftBetween>(pieceAt_[at], pieceAt_[right])) {
         swap(at, right);
+        // What lies beside both, and has no cut here, was beside one of them and so on the same side of the other.
+        const uint32_t before = status_.before(at), after = status_.after(right);
+        if (before != status_.end() && states_[pieceAt_[before]].dirty != batch_)
+          states_[pieceAt_[before]].known = states_[pieceAt_[at]].edge;
+        if (after != status_.end() && states_[pieceAt_[after]].dirty != batch_)
+          states_[pieceAt_[right]].known = states_[pieceAt_[after]].edge;
+      }
     }
     for (size_t i = 0; i < starts_.size() && swaps; ++i) {
       uint32_t at = states_[starts_[i]].slot;
