@@ -65,7 +65,16 @@ hasTimeFor() {
   return 1
 }
 
-step "Debian packages (samples/packages.txt, tests/packages.txt)" installMissing samples/packages.txt tests/packages.txt
+# Prints the summary and ends.
+finish() {
+  say "summary, after $(((SECONDS - started) / 60)) min $(((SECONDS - started) % 60)) s"
+  printf '   %s\n' "${summary[@]}"
+  [[ $failed == no ]] || exit 1
+  exit 0
+}
+
+step "Debian packages (samples/packages.txt, tests/packages.txt)" \
+  installMissing samples/packages.txt tests/packages.txt || finish
 step "real test data (tests/data/fetch.sh)" tests/data/fetch.sh || true
 releaseBegins=$SECONDS
 buildAndTest release
@@ -77,6 +86,4 @@ if [[ $quick == no ]]; then
   if hasTimeFor 100 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
 fi
 
-say "summary, after $(((SECONDS - started) / 60)) min $(((SECONDS - started) % 60)) s"
-printf '   %s\n' "${summary[@]}"
-[[ $failed == no ]] || exit 1
+finish

@@ -133,7 +133,8 @@ typedef struct GpgpMessage {
   const char* text;     /**< One sentence that names the argument and what was expected. */
 } GpgpMessage;
 
-/** Receives messages on the thread that called gpgp. The callback must not call gpgp. @lifetime call */
+/** Receives messages on the thread that called gpgp, from several threads at a time where several call it. The callback
+ *  must not call gpgp. @lifetime call */
 typedef void(GPGP_CALL* GpgpMessageFn)(void* userData, const GpgpMessage* message);
 
 /* ---------------------------------------------------------------- structs with a type */
@@ -287,9 +288,9 @@ typedef struct GpgpGpuAllocationRequest {
   const char* label;               /**< What the memory is for. */
 } GpgpGpuAllocationRequest;
 
-/** Allocates device memory. allocate returns VK_SUCCESS or an error. gpgp never calls it while recording. Without these
- *  callbacks gpgp sub-allocates blocks of its own: 4 MiB for the first of a memory type, then 32 MiB, or as much as a
- *  larger request needs. */
+/** Allocates device memory. allocate returns VK_SUCCESS or an error. gpgp never calls it while recording. Calls for one
+ *  context never overlap, but come from every thread that creates assets. Without these callbacks gpgp sub-allocates
+ *  blocks of its own: 4 MiB for the first of a memory type, then 32 MiB, or as much as a larger request needs. */
 typedef struct GpgpGpuAllocator {
   void* userData;
   VkResult(GPGP_CALL* allocate)(void* userData, const GpgpGpuAllocationRequest* request, GpgpGpuAllocation* allocation);
@@ -299,16 +300,17 @@ typedef struct GpgpGpuAllocator {
 /** One of the jobs that GpgpJobSystem::parallelFor runs. */
 typedef void(GPGP_CALL* GpgpJobFn)(void* argument, uint32_t index);
 
-/** The engine's job system. gpgpPrewarm and the conversion of paths and glyphs use it. Without it they do all work on
- *  the calling thread. */
+/** The engine's job system. gpgpPrewarm and the conversion of paths and glyphs use it, on every thread that calls them.
+ *  Without it they do all work on the calling thread. */
 typedef struct GpgpJobSystem {
   void* userData;
   /** Runs job(argument, i) for every i in [0, count), on any threads, and returns when all jobs have ended. */
   void(GPGP_CALL* parallelFor)(void* userData, uint32_t count, GpgpJobFn job, void* argument);
 } GpgpJobSystem;
 
-/** Reads the engine's files. read sets size to the size of the file and returns GPGP_SUCCESS. If data is not NULL, it
- *  copies at most capacity bytes of the file there. gpgp calls it twice for a file: for the size, then for the data. */
+/** Reads the engine's files, on every thread that creates assets. read sets size to the size of the file and returns
+ * GPGP_SUCCESS. If data is not NULL, it copies at most capacity bytes of the file there. gpgp calls it twice for a
+ * file: for the size, then for the data. */
 typedef struct GpgpFileSystem {
   void* userData;
   GpgpResult(GPGP_CALL* read)(void* userData, const char* path, void* data, size_t capacity, size_t* size);

@@ -168,7 +168,7 @@ typedef struct GpgpGrammarCreateInfo {
 /** Checks a baked grammar and queues it for upload. Checked are magic, version, checksums, every index and the
  *  kernels, and that the data ends there.
  *  Errors: INVALID_DATA, INVALID_ARGUMENT, INVALID_STRUCT, INVALID_HANDLE, IO, OUT_OF_..._MEMORY, DEVICE_LOST.
- *  @threads context @lifetime call */
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext context, const GpgpGrammarCreateInfo* info,
                                                 GpgpAsset* grammar);
 

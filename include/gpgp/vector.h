@@ -276,7 +276,7 @@ typedef struct GpgpDrawingCreateInfo {
  *  until the new one is resident, then destroy it.
  *  Errors: INVALID_DATA, INVALID_ARGUMENT (the message gives the path's index), INVALID_HANDLE, IO, OUT_OF_..._MEMORY,
  *  UNSUPPORTED (more than 2^29 patches in the drawing; more than 2^21 points or 65536 dashes in a stroke; a path that
- *  crosses itself millions of times). @threads context @lifetime call */
+ *  crosses itself millions of times). @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
                                                 GpgpAsset* drawing);
 
@@ -315,7 +315,7 @@ typedef struct GpgpGlyphSetCreateInfo {
  *  not once for each size: canvases draw it at any size, rotated and in perspective.
  *  Errors: INVALID_DATA, INVALID_ARGUMENT (the baked glyphs exceed a budget; the message says what they need),
  *  INVALID_STRUCT, UNSUPPORTED (a budget beyond what the device can bind), IO, OUT_OF_..._MEMORY.
- *  @threads context @lifetime call */
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext context, const GpgpGlyphSetCreateInfo* info,
                                                  GpgpAsset* glyphSet);
 
@@ -533,8 +533,8 @@ typedef struct GpgpCanvasInfo {
   /** VK_TRUE: the target receives straight colour encoded as sRGB and then multiplied by alpha. PNG files and 2D
    *  compositors expect this encoding. */
   VkBool32 encodeSrgb;
-  /** VK_TRUE: in each pixel, the front-most path with an edge is weighted by its exact area instead of its samples.
-   *  This gives finer steps where only one edge passes. Where two edges meet, still nothing shows through. */
+  /** VK_TRUE: in each pixel, the exact area of the front-most path with an edge replaces its samples: finer steps where
+   *  only one edge passes. Neighbours show nothing between them; equal shapes up to a tenth of the lower one's colour. */
   VkBool32 exactArea;
   VkBool32 blendSrgb;            /**< VK_TRUE: colours are mixed as sRGB encodes them, as SVG renderers do. */
   const GpgpCanvasImage* images; /**< the images that items paint with */

@@ -43,7 +43,7 @@ typedef struct GpgpGeometrySetCreateInfo {
  *  gpgpRecordUpload has uploaded it.
  *  Errors: INVALID_ARGUMENT (the message names the index of the mesh), UNSUPPORTED (the table, 16 bytes a mesh, exceeds
  *  maxStorageBufferRange), INVALID_STRUCT, OUT_OF_..._MEMORY.
- *  @threads context @lifetime call */
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext context, const GpgpGeometrySetCreateInfo* info,
                                                     GpgpAsset* geometrySet);
 

@@ -43,7 +43,8 @@ GPGP_FN float settleFinite(float x) {
 #ifdef __cplusplus // nearly always
   if (2u * (floatBitsToUint(x) - kSmallestBits) <= 2u * (kLargestBits - kSmallestBits)) return x;
 #endif
-  return abs(x) < kSmallest ? 0.0f : clamp(x, -kLargest, kLargest);
+  const float clamped = clamp(x, -kLargest, kLargest); // in a variable: GLSL then chooses without a branch
+  return abs(x) < kSmallest ? 0.0f : clamped;
 }
 
 GPGP_FN vec3 settle3(vec3 v) { return vec3(settle(v.x), settle(v.y), settle(v.z)); }

@@ -239,9 +239,8 @@ GpgpResult GPGP_CALL gpgpGetMemoryReport(GpgpContext handle, GpgpMemoryReport* r
     const auto context = resolve(call, handle);
     if (!context) return context.error();
     if (auto ok = checkStruct(report, GPGP_STRUCTURE_MEMORY_REPORT, "report"); !ok) return ok;
-    std::copy_n((*context)->gpu().services, GPGP_SERVICE_COUNT, report->services);
+    (*context)->gpu().report(*report);
     report->services[GPGP_SERVICE_CORE].hostBytes = (*context)->host().bytes();
-    report->blockBytes = (*context)->gpu().blockBytes();
     return {};
   });
 }

@@ -131,6 +131,7 @@ void Context::message(GpgpSeverity severity, GpgpResult code, const char* functi
 }
 
 Slot* Context::adopt(Unique<Object> object) {
+  const std::lock_guard lock(objects);
   if (living_.size() == living_.capacity()) living_.reserve(std::max<size_t>(64, 2 * living_.size()));
   if (!freeSlots_) {
     slotBlocks_.reserve(slotBlocks_.size() + 1);
@@ -150,19 +151,23 @@ Slot* Context::adopt(Unique<Object> object) {
   slot->object = object.release();
   slot->object->livingIndex = living_.size();
   living_.push_back(slot->object);
+  slot->object->attach();
   return slot;
 }
 
 void Context::retire(Object& object) {
-  Slot& slot = *object.handle;
-  slot.object = nullptr;
-  if (++slot.generation < alignof(Slot)) {
-    slot.nextFree = freeSlots_;
-    freeSlots_ = &slot;
+  {
+    const std::lock_guard lock(objects);
+    Slot& slot = *object.handle;
+    slot.object = nullptr;
+    if (++slot.generation < alignof(Slot)) {
+      slot.nextFree = freeSlots_;
+      freeSlots_ = &slot;
+    }
+    living_[object.livingIndex] = living_.back();
+    living_[object.livingIndex]->livingIndex = object.livingIndex;
+    living_.pop_back();
   }
-  living_[object.livingIndex] = living_.back();
-  living_[object.livingIndex]->livingIndex = object.livingIndex;
-  living_.pop_back();
   object.retire();
   object.destroyedInFrame = frame_.current;
   object.next = retired_;

@@ -1,7 +1,8 @@
 // A context: the engine's device, memory, frames, and everything made from it.
 //
-// Threads: members marked "context" are used by one thread at a time (the API's @threads context); the rest is
-// immutable after creation.
+// Threads: members marked "context" are used by one thread at a time (the API's @threads context), those marked
+// "objects" while the mutex of that name is held. The rest is immutable after creation, or safe for all threads: assets
+// are created on any.
 #pragma once
 #include "core/device.h"
 #include "core/gpu_memory.h"
@@ -9,6 +10,7 @@
 
 #include <array>
 #include <atomic>
+#include <mutex>
 #include <vector>
 
 namespace gpgp::core {
@@ -37,17 +39,18 @@ public:
   VkPipelineCache pipelineCache = VK_NULL_HANDLE;
 
   HostMemory& host() { return host_; }
-  GpuMemory& gpu() { return *gpu_; } // context
+  GpuMemory& gpu() { return *gpu_; }
   void message(GpgpSeverity severity, GpgpResult code, const char* function, const char* objectLabel,
                const char* text) const;
 
   /// Whether this was not asked for before, for messages that are sent once. Forgets some after many others.
   bool isNew(std::initializer_list<const char*> texts) const;
 
-  // ---- objects (context)
-  /// Gives an object a handle. On failure the object is destroyed and bad_alloc thrown.
+  // ---- objects
+  std::mutex objects; ///< held briefly, but by gpgpRecordUpload while it copies
+  /// Gives an object a handle. On failure the object is destroyed and bad_alloc thrown. Any thread.
   Slot* adopt(Unique<Object> object);
-  /// Invalidates the handle at once and frees the object when the frames that may use it are safe.
+  /// Invalidates the handle at once and frees the object when the frames that may use it are safe. (context)
   void retire(Object& object);
 
   // ---- frames (context; current and safe are read by recording threads)
@@ -64,9 +67,9 @@ public:
   /// Checks a frame that a recording names: same as the last advance's.
   Result<void> checkFrame(const GpgpFrame* frame) const;
 
-  // ---- lists of living objects that advance visits (context); intrusive, see Resident and Recorder
-  Resident *residents = nullptr, *lastResident = nullptr; ///< those whose upload is pending or in flight, oldest first
-  Recorder* recorders = nullptr;
+  // ---- lists of living objects that advance visits; intrusive, see Resident and Recorder
+  Resident *residents = nullptr, *lastResident = nullptr; ///< upload pending or in flight, oldest first (objects)
+  Recorder* recorders = nullptr;                          // context
   UploadRing& uploads() { return *uploads_; }
 
   /// Reads a file through the engine's callbacks or the C library.
@@ -83,10 +86,10 @@ private:
   HostMemory host_;
   Unique<GpuMemory> gpu_;
   Unique<UploadRing> uploads_;
-  std::pmr::vector<void*> slotBlocks_;
+  std::pmr::vector<void*> slotBlocks_; // objects, as the next two
   Slot* freeSlots_ = nullptr;
-  Object* retired_ = nullptr;
   std::pmr::vector<Object*> living_;
+  Object* retired_ = nullptr; // context
   GpgpFrame frame_{1, 0};
   mutable std::array<std::atomic<uint64_t>, 64> said_ = {}; ///< hashes, see isNew
   std::atomic<bool> lost_{false};

@@ -24,10 +24,16 @@ GpuMemory::~GpuMemory() {
   for (const Block& block : blocks_) device_.vk.FreeMemory(device_.device, block.memory, nullptr);
 }
 
-VkDeviceSize GpuMemory::blockBytes() const {
-  VkDeviceSize sum = 0;
-  for (const Block& block : blocks_) sum += block.size;
-  return sum;
+void GpuMemory::count(GpgpService service, VkDeviceSize GpgpServiceMemory::*counter, VkDeviceSize bytes) {
+  const std::lock_guard lock(mutex_);
+  services_[service].*counter += bytes;
+}
+
+void GpuMemory::report(GpgpMemoryReport& report) const {
+  const std::lock_guard lock(mutex_);
+  std::copy_n(services_, GPGP_SERVICE_COUNT, report.services);
+  report.blockBytes = 0;
+  for (const Block& block : blocks_) report.blockBytes += block.size;
 }
 
 Result<uint32_t> GpuMemory::chooseType(const GpgpGpuAllocationRequest& request) const {
@@ -40,6 +46,7 @@ Result<uint32_t> GpuMemory::chooseType(const GpgpGpuAllocationRequest& request) 
 }
 
 Result<GpgpGpuAllocation> GpuMemory::allocate(const GpgpGpuAllocationRequest& request) {
+  const std::lock_guard lock(mutex_);
   const VkDeviceSize size = request.requirements.size;
   if (callbacks_.allocate) {
     GpgpGpuAllocation allocation{};
@@ -92,6 +99,7 @@ Result<GpgpGpuAllocation> GpuMemory::allocate(const GpgpGpuAllocationRequest& re
 }
 
 void GpuMemory::free(const GpgpGpuAllocation& allocation) {
+  const std::lock_guard lock(mutex_);
   if (callbacks_.allocate) return callbacks_.free(callbacks_.userData, &allocation);
   for (auto block = blocks_.begin(); block != blocks_.end(); ++block) {
     if (block->memory != allocation.memory) continue;
@@ -154,14 +162,13 @@ Result<Buffer> Buffer::create(const Device& device, GpuMemory& memory, GpgpServi
   device.setName(VK_OBJECT_TYPE_BUFFER, handle, label, "");
   buffer.device_ = &device, buffer.memory_ = &memory, buffer.buffer_ = handle, buffer.allocation_ = *allocation;
   buffer.size_ = size, buffer.service_ = service, buffer.hostVisible_ = place != MemoryPlace::device;
-  GpgpServiceMemory& counted = memory.services[service];
-  (buffer.hostVisible_ ? counted.hostVisibleBytes : counted.deviceBytes) += size;
+  memory.count(service, buffer.counter(), size);
   return buffer;
 }
 
 void Buffer::markPending() {
   if (!buffer_ || pending_) return;
-  memory_->services[service_].pendingBytes += size_;
+  memory_->count(service_, &GpgpServiceMemory::pendingBytes, size_);
   pending_ = true;
 }
 
@@ -169,9 +176,8 @@ void Buffer::reset() {
   if (!buffer_) return;
   device_->vk.DestroyBuffer(device_->device, buffer_, nullptr);
   memory_->free(allocation_);
-  GpgpServiceMemory& counted = memory_->services[service_];
-  (hostVisible_ ? counted.hostVisibleBytes : counted.deviceBytes) -= size_;
-  if (pending_) counted.pendingBytes -= size_;
+  memory_->count(service_, counter(), -size_);
+  if (pending_) memory_->count(service_, &GpgpServiceMemory::pendingBytes, -size_);
   buffer_ = VK_NULL_HANDLE;
 }
 

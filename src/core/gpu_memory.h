@@ -1,11 +1,12 @@
 // Device memory of a context: the engine's callbacks, or blocks of our own with first-fit sub-allocation.
 //
-// Only buffers are allocated, so bufferImageGranularity does not matter. Used by one thread at a time per context and
-// never while recording. Buffer is the only owner of an allocation.
+// Only buffers are allocated, so bufferImageGranularity does not matter. Any thread may use it, but never while it
+// records; calls wait for each other, the engine's callbacks included. Buffer is the only owner of an allocation.
 #pragma once
 #include "core/host_memory.h"
 #include "core/vulkan_table.h"
 
+#include <mutex>
 #include <vector>
 
 namespace gpgp::core {
@@ -22,8 +23,10 @@ public:
   Result<GpgpGpuAllocation> allocate(const GpgpGpuAllocationRequest& request);
   void free(const GpgpGpuAllocation& allocation);
 
-  VkDeviceSize blockBytes() const;
-  GpgpServiceMemory services[GPGP_SERVICE_COUNT] = {};
+  /// Adds to a counter of a service. A negated size takes away.
+  void count(GpgpService service, VkDeviceSize GpgpServiceMemory::*counter, VkDeviceSize bytes);
+  /// Fills the counters of all services and the bytes of the blocks.
+  void report(GpgpMemoryReport& report) const;
 
 private:
   struct Range {
@@ -40,9 +43,11 @@ private:
 
   const Device& device_;
   HostMemory& host_;
+  mutable std::mutex mutex_; // guards what is below
   GpgpGpuAllocator callbacks_{};
   VkPhysicalDeviceMemoryProperties properties_{};
   std::pmr::vector<Block> blocks_;
+  GpgpServiceMemory services_[GPGP_SERVICE_COUNT] = {};
 };
 
 /// constants: small and written by the host for each recording; on the device where the host sees that, as shaders
@@ -67,6 +72,10 @@ public:
   void markPending();
 
 private:
+  VkDeviceSize GpgpServiceMemory::*counter() const {
+    return hostVisible_ ? &GpgpServiceMemory::hostVisibleBytes : &GpgpServiceMemory::deviceBytes;
+  }
+
   const Device* device_ = nullptr;
   GpuMemory* memory_ = nullptr;
   VkBuffer buffer_ = VK_NULL_HANDLE;

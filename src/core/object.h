@@ -46,6 +46,8 @@ public:
   virtual ~Object() = default;
   Object(const Object&) = delete;
   Object& operator=(const Object&) = delete;
+  /// Called when the object has its handle, with the context's objects locked.
+  virtual void attach() {}
   /// Called when the handle is destroyed and frames may still use the object: no new work may find it.
   virtual void retire() {}
   /// What messages call the object.

@@ -8,7 +8,14 @@ namespace {
 constexpr VkDeviceSize kAlignment = 16; // of pieces and sizes: covers every copy and fill rule
 } // namespace
 
-Resident::~Resident() { unlink(); }
+Resident::~Resident() {
+  const std::lock_guard lock(context.objects);
+  unlink();
+}
+
+void Resident::attach() {
+  if (!ranges_.empty()) link();
+}
 
 void Resident::link() { // oldest first: append
   if (linked_) return;
@@ -27,6 +34,7 @@ void Resident::unlink() {
 }
 
 void Resident::retire() {
+  const std::lock_guard lock(context.objects);
   unlink();
   buffer_.markPending();
 }
@@ -57,8 +65,9 @@ Result<void> Resident::makeGrowing(GpgpService service, VkDeviceSize size) {
 }
 
 uint64_t Resident::queue(VkDeviceSize offset, VkDeviceSize size) {
+  const std::lock_guard lock(context.objects);
   ranges_.push_back({offset, size, 0, 0, 0, false});
-  link();
+  if (handle) link(); // else attach() does
   return queued_.fetch_add(1, std::memory_order_acq_rel) + 1;
 }
 
@@ -95,6 +104,7 @@ uint32_t* UploadRing::marker(size_t record) const {
 }
 
 Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceSize byteBudget) {
+  const std::lock_guard lock(context_.objects);
   VkDeviceSize pending = 0;
   for (const Resident* r = context_.residents; r; r = r->next_) pending += r->pending();
   if (pending == 0) return VkDeviceSize(0);
@@ -162,6 +172,7 @@ void UploadRing::advance() {
     if (!oldest || oldest->frame > context_.safe()) return;
     const size_t index = static_cast<size_t>(oldest - records_.data());
     const bool ran = *static_cast<volatile uint32_t*>(marker(index)) == static_cast<uint32_t>(oldest->number);
+    const std::lock_guard lock(context_.objects);
     for (Resident *r = context_.residents, *next = nullptr; r; r = next) {
       next = r->next_;
       bool lost = false;

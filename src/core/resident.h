@@ -14,6 +14,7 @@ namespace gpgp::core {
 class Resident : public Object {
 public:
   ~Resident() override;
+  void attach() override;
   void retire() override;
 
   bool resident() const { return hasArrived(queued_.load(std::memory_order_acquire)); }
@@ -61,7 +62,8 @@ private:
   std::pmr::vector<Range> ranges_; // queued and not known to have run, oldest first
   uint64_t firstNumber_ = 1;       // the oldest one's
   std::atomic<uint64_t> queued_{0}, arrived_{0};
-  // Linked in the context's list while there are such ranges, until the handle is destroyed.
+  // Linked in the context's list while there are such ranges and the object has a handle. Both ask for the context's
+  // objects to be locked.
   void link();
   void unlink();
   Resident *previous_ = nullptr, *next_ = nullptr;

@@ -19,13 +19,34 @@
 #endif
 
 namespace gpgp::host {
+namespace {
+
+/// Whether a JPEG file has four components and no Adobe segment that says which: stb_image takes them for YCbCr.
+bool isUnmarkedCmyk(std::span<const uint8_t> bytes) {
+  if (bytes.size() < 4 || bytes[0] != 0xff || bytes[1] != 0xd8) return false;
+  for (size_t at = 2; at + 10 <= bytes.size() && bytes[at] == 0xff;) {
+    const uint8_t marker = bytes[at + 1];
+    if (marker == 0xff) { // padding
+      ++at;
+      continue;
+    }
+    if (marker == 0xee && at + 9 <= bytes.size() && std::memcmp(&bytes[at + 4], "Adobe", 5) == 0) return false;
+    if (marker == 0xda) return false;
+    const bool isFrame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (isFrame) return bytes[at + 9] == 4;
+    at += 2 + (size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
+  }
+  return false;
+}
+
+} // namespace
 
 Picture decodePicture(std::span<const uint8_t> bytes) {
   constexpr int kLargest = 16384;
   int width = 0, height = 0, channels = 0;
   const int size = static_cast<int>(bytes.size());
   if (bytes.size() > size_t(1) << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) ||
-      width > kLargest || height > kLargest)
+      width > kLargest || height > kLargest || isUnmarkedCmyk(bytes))
     return {};
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), stbi_image_free);

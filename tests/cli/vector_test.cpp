@@ -1,9 +1,12 @@
 // `gpgp vector` on a drawing whose pixels are known.
+#include "cli/shared/textures.h"
 #include "files.h"
 #include "host/picture.h"
 #include "run.h"
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <random>
 #include <sstream>
 
@@ -278,6 +281,57 @@ TEST(CliVector, EmbeddedImagesArePainted) {
   const ProcessResult result = gpgp({"vector", broken.path(), "--json"});
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(json::parse(result.out, nullptr, false)["unsupported"][0]["element"], "image");
+}
+
+TEST(CliVector, ShrunkImagesKeepTheirPlaces) {
+  // Black to 7/8 of the width, then white: each texel is white by the part of it that lies there.
+  const auto stepped = [](uint32_t width, uint32_t height, bool wide) {
+    host::Picture picture{width, height, std::vector<uint8_t>(size_t{width} * height * 4, 255)};
+    for (uint32_t y = 0; y < height; ++y)
+      for (uint32_t x = 0; x < width; ++x)
+        if (wide ? 8 * x < 7 * width : 8 * y < 7 * height)
+          std::fill_n(picture.rgba.begin() + (size_t{y} * width + x) * 4, 3, uint8_t{0});
+    return picture;
+  };
+  for (const uint32_t length : {3u, 5u, 33u, 65u, 129u, 130u, 1025u})
+    for (const bool wide : {true, false}) {
+      SCOPED_TRACE(std::to_string(length) + (wide ? " wide" : " tall"));
+      const uint32_t pixels = std::max(length / 8, 2u);
+      const cli::ShareOfPixel shown{wide ? 1.0 / pixels : 0.01, wide ? 0.01 : 1.0 / pixels};
+      const auto [kept, levels] = cli::shrunk(stepped(wide ? length : 2, wide ? 2 : length, wide), shown, shown);
+      const uint32_t across = wide ? kept.width : kept.height;
+      EXPECT_EQ(levels, 1u);
+      EXPECT_LT(across, 1.5 * pixels);
+      EXPECT_EQ(wide ? kept.height : kept.width, 2u);
+      const double edge = std::ceil(7 * length / 8.0) / length * across; // in texels of what is kept
+      for (uint32_t i = 0; i < across; ++i)
+        EXPECT_NEAR(kept.rgba[size_t{i} * (wide ? 1 : 2) * 4], 255 * std::clamp(i + 1 - edge, 0.0, 1.0), 1) << i;
+    }
+}
+
+TEST(CliVector, ImagesShownAtTwoSizesHaveLevels) {
+  host::Picture picture{128, 128, std::vector<uint8_t>(size_t{128} * 128 * 4, 255)};
+  const auto [kept, levels] = cli::shrunk(picture, {1.0 / 128, 1.0 / 128}, {1.0 / 16, 1.0 / 16});
+  EXPECT_EQ(kept.width, 128u);
+  EXPECT_EQ(levels, 4u); // 128, 64, 32 and 16
+  // Noise of black and white is grey where it is small, however large another copy of it is.
+  std::mt19937 random(7);
+  for (int i = 0; i < 128 * 128; ++i) {
+    const uint8_t value = random() & 1 ? 255 : 0;
+    std::fill_n(picture.rgba.begin() + i * 4, 3, value);
+  }
+  const TemporaryFile png("noise.png"), out("sizes.png");
+  host::writePng(png.path(), picture);
+  std::ifstream file(png.path(), std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const TemporaryFile svg("sizes.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='160' height='128'>"
+                                       "<image id='a' width='128' height='128' href='data:image/png;base64," +
+                                           base64(bytes) +
+                                           "'/><use href='#a' transform='translate(136 8) scale(0.125)'/></svg>");
+  gpgpJson({"vector", svg.path(), out.path()});
+  const host::Picture seen = host::readPng(out.path());
+  for (uint32_t y = 9; y < 23; ++y)
+    for (uint32_t x = 137; x < 151; ++x) EXPECT_NEAR(pixelOf(seen, x, y)[0], 128, 50) << x << ' ' << y;
 }
 
 TEST(CliVector, StagesArePicturesThatItReadsItself) {

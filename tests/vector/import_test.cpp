@@ -1088,6 +1088,10 @@ TEST(SvgImport, EmbeddedImagesGoToWhoeverDecodes) {
   refused("<image href='data:image/png;base64,?'/>",
           "line 2: <image> holds nothing that can be decoded; not supported");
   seen.decodes = false;
+  refused("<image href='data:image/gif;base64,R0lGODlhAQABAA=='/>",
+          "line 2: <image> holds a GIF file that cannot be decoded; not supported");
+  refused("<image href='data:;base64,iVBORw0KGgo='/>",
+          "line 2: <image> holds a PNG file that cannot be decoded; not supported");
   refused("<image" + data + "/>", "line 2: <image> holds nothing that can be decoded; not supported");
   seen.decodes = true;
   std::string many;

@@ -473,7 +473,7 @@ TEST(Patches, StrokesAreFilled) {
   view.stroke = &bad;
   const auto refused = vector::makeDrawing(std::span(&view, 1), heap());
   ASSERT_FALSE(refused);
-  EXPECT_EQ(std::string(refused.error().text), "paths[0]: stroke.width is -1");
+  EXPECT_EQ(std::string(refused.error().text), "paths[0]: stroke.width is -1; it must be 0 to 1e7");
 }
 
 TEST(Patches, AContourGoesOnAtItsStartAfterAClose) {

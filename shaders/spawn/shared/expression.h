@@ -6,7 +6,12 @@
 
 GPGP_SHADER_BEGIN
 
-GPGP_FN float component(vec3 v, uint axis) { return axis == 0u ? v.x : (axis == 1u ? v.y : v.z); }
+// In variables, one choice at a time: GLSL then chooses without a branch.
+GPGP_FN float component(vec3 v, uint axis) {
+  const float x = v.x, y = v.y, z = v.z;
+  const float other = axis == 1u ? y : z;
+  return axis == 0u ? x : other;
+}
 
 GPGP_FN vec3 withComponent(vec3 v, uint axis, float value) {
   return vec3(axis == 0u ? value : v.x, axis == 1u ? value : v.y, axis == 2u ? value : v.z);

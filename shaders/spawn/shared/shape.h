@@ -112,7 +112,7 @@ GPGP_FN vec3 framePoint(Shape s, vec3 local) {
 }
 /// A point on one of the local axes.
 GPGP_FN vec3 axisPoint(Shape s, uint axis, float distance) {
-  const vec3 direction = axis == 0u ? s.axisX : (axis == 1u ? s.axisY : s.axisZ);
+  const vec3 x = s.axisX, y = s.axisY, z = s.axisZ, other = axis == 1u ? y : z, direction = axis == 0u ? x : other;
   GPGP_PRECISE lanes3 p = lanes3(s.position) + lanes3(direction) * distance;
   return settleFinite3(p);
 }

@@ -48,6 +48,21 @@ layout(set = 0, binding = kBindBins, std430) buffer BinVectors { uvec4 binVector
 #if ONE_DRAWING // a recording of one drawing need not choose at each access
 vec4 fetch(uint slot, uint i) { return drawing0[i]; }
 #else
+#if SOFTWARE // one after another: a compiler that walks all paths through a loop takes nine times as long a switch
+vec4 fetch(uint slot, uint i) {
+  vec4 v = vec4(0);
+  if (slot == 0) v = drawing0[i];
+  if (slot == 1) v = drawing1[i];
+  if (slot == 2) v = drawing2[i];
+  if (slot == 3) v = drawing3[i];
+  if (slot == 4) v = drawing4[i];
+  if (slot == 5) v = drawing5[i];
+  if (slot == 6) v = drawing6[i];
+  if (slot == 7) v = drawing7[i];
+  if (slot > 7) v = shapes[i];
+  return v;
+}
+#else
 vec4 fetch(uint slot, uint i) {
   switch (slot) {
   case 0: return drawing0[i];
@@ -61,6 +76,7 @@ vec4 fetch(uint slot, uint i) {
   default: return shapes[i];
   }
 }
+#endif
 #endif
 
 #if !ONE_DRAWING

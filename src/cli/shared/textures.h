@@ -9,14 +9,25 @@
 
 namespace gpgp::cli {
 
-/// Halved along each side until fewer than 1.5 texels lie along a pixel, as the larger of mip levels: what a texture
-/// without them needs.
-host::Picture shrunk(host::Picture picture, double texelsAcross, double texelsDown);
+/// A picture and how many levels its texture has.
+struct TexturePicture {
+  host::Picture picture;
+  uint32_t levels = 1;
+};
+
+/// The part of a picture's width and height that lies along a pixel, where it is shown.
+struct ShareOfPixel {
+  double across = 0, down = 0;
+};
+
+/// Halved along each side until fewer than 1.5 texels lie along a pixel where the picture is shown largest. It has
+/// levels where it is shown smaller as well.
+TexturePicture shrunk(host::Picture picture, const ShareOfPixel& largest, const ShareOfPixel& smallest);
 
 /// A texture for each picture, as it is encoded, filtered linearly and clamped.
 class Textures {
 public:
-  Textures(host::HeadlessDevice& device, const std::vector<host::Picture>& pictures);
+  Textures(host::HeadlessDevice& device, const std::vector<TexturePicture>& pictures);
   ~Textures();
   Textures(const Textures&) = delete;
   Textures& operator=(const Textures&) = delete;

@@ -1,6 +1,5 @@
 #include "cli/vector/images.h"
 
-#include "cli/shared/textures.h"
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -29,22 +28,23 @@ VkBool32 GPGP_CALL VectorImages::decode(void* userData, uint32_t index, const vo
   }
 }
 
-std::vector<host::Picture> shrunkToShown(std::vector<host::Picture> pictures, const vector::Drawing& drawing,
-                                         const float (&transform)[6]) {
+std::vector<TexturePicture> shrunkToShown(std::vector<host::Picture> pictures, const vector::Drawing& drawing,
+                                          const float (&transform)[6]) {
   const double scale = std::sqrt(std::abs(static_cast<double>(transform[0]) * static_cast<double>(transform[3])));
+  std::vector<TexturePicture> shown;
   for (uint32_t i = 0; i < pictures.size(); ++i) {
-    double across = 0, down = 0; // of the texture, along a pixel, where it is shown largest
+    ShareOfPixel largest, smallest; // where the picture is shown largest, and smallest
     for (const vector::PaintRecord& paint : drawing.paints) {
       if (paint.kind != shader::kPaintImage || paint.firstStop != i) continue;
       const auto length = [scale](float a, float b) { return static_cast<double>(std::hypot(a, b)) / scale; };
       const double u = length(paint.matrix.x, paint.matrix.z), v = length(paint.matrix.y, paint.matrix.w);
-      across = across > 0 ? std::min(across, u) : u;
-      down = down > 0 ? std::min(down, v) : v;
+      largest.across = largest.across > 0 ? std::min(largest.across, u) : u;
+      largest.down = largest.down > 0 ? std::min(largest.down, v) : v;
+      smallest = {std::max(smallest.across, u), std::max(smallest.down, v)};
     }
-    const double width = pictures[i].width, height = pictures[i].height;
-    pictures[i] = shrunk(std::move(pictures[i]), across * width, down * height);
+    shown.push_back(shrunk(std::move(pictures[i]), largest, smallest));
   }
-  return pictures;
+  return shown;
 }
 
 } // namespace gpgp::cli

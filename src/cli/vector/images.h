@@ -1,6 +1,6 @@
 // The images inside an SVG: decoded while it is compiled, shrunk when it is known how large they are shown.
 #pragma once
-#include "host/picture.h"
+#include "cli/shared/textures.h"
 
 #include <gpgp/vector.h>
 
@@ -28,7 +28,7 @@ private:
 };
 
 /// Halved until they have about as many texels as the picture has pixels there. The transform: drawing to pixel.
-std::vector<host::Picture> shrunkToShown(std::vector<host::Picture> pictures, const vector::Drawing& drawing,
-                                         const float (&transform)[6]);
+std::vector<TexturePicture> shrunkToShown(std::vector<host::Picture> pictures, const vector::Drawing& drawing,
+                                          const float (&transform)[6]);
 
 } // namespace gpgp::cli

@@ -102,17 +102,19 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
     const double more = needed > given ? 1.125 * static_cast<double>(needed) - static_cast<double>(given) : 0;
     return static_cast<uint32_t>(std::min(static_cast<double>(given) + more * share, static_cast<double>(1u << 28)));
   };
-  for (const double share : {1.0, 0.5, 0.25, 0.125}) {
-    GpgpCanvasCreateInfo next = info;
-    next.maxPaths = std::max(info.maxPaths, report.paths);
-    next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, share);
-    next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, share);
-    if (next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven) break;
-    Result<Canvas> made = Canvas::create(session.context(), next);
-    if (!made) continue;
-    info = next;
-    return std::move(*made);
-  }
+  // Eighths of what is missing, of both: as many as there is room for, and rather of words, which come first.
+  for (int eighths = 16; eighths > 0; --eighths)
+    for (int ofWords = std::min(eighths, 8); ofWords >= 0 && eighths - ofWords <= 8; --ofWords) {
+      GpgpCanvasCreateInfo next = info;
+      next.maxPaths = std::max(info.maxPaths, report.paths);
+      next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, (eighths - ofWords) / 8.0);
+      next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, ofWords / 8.0);
+      if (next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven) continue;
+      Result<Canvas> made = Canvas::create(session.context(), next);
+      if (!made) continue;
+      info = next;
+      return std::move(*made);
+    }
   return std::nullopt;
 }
 

@@ -17,11 +17,11 @@ core::Result<void> checkPath(const GpgpPath& path) {
   if (path.verbCount && !path.verbs) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs is NULL");
   if (path.pointCount && !path.points) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points is NULL");
   if (path.fillRule != GPGP_FILL_NON_ZERO && path.fillRule != GPGP_FILL_EVEN_ODD)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "fillRule is %d", path.fillRule);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "fillRule is %d; it must be a GpgpFillRule", path.fillRule);
   uint64_t needed = 0;
   for (uint32_t i = 0; i < path.verbCount; ++i) {
     if (path.verbs[i] > GPGP_PATH_ARC)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u] is %u", i, path.verbs[i]);
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u] is %u; it must be a GpgpPathVerb", i, path.verbs[i]);
     needed += kPointsOfVerb[path.verbs[i]];
   }
   if (path.verbCount && path.verbs[0] != GPGP_PATH_MOVE)
@@ -34,7 +34,8 @@ core::Result<void> checkPath(const GpgpPath& path) {
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points[%llu].%c is %g; it must be finite and within +-1e7",
                        static_cast<unsigned long long>(i / 2), i % 2 ? 'y' : 'x', static_cast<double>(path.points[i]));
   if (!(path.scale >= 0 && std::isfinite(path.scale)))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "scale is %g", static_cast<double>(path.scale));
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "scale is %g; it must be finite and not negative",
+                     static_cast<double>(path.scale));
   for (int i = 0; i < 4; ++i) {
     const float most = i < 3 ? kMaxColor : 1;
     if (!(path.color[i] >= 0 && path.color[i] <= most))
@@ -67,7 +68,8 @@ core::Result<void> shapeOf(const GpgpPath& path, Shape& shape) {
     if (verb == GPGP_PATH_ARC) {
       const Point radii = take(), form = take(), end = take();
       if (!(form.y == 0 || form.y == 1 || form.y == 2 || form.y == 3))
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u]: the flags of an arc are %g", i, form.y);
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u]: the flags of an arc are %g; they must be 0 to 3", i,
+                         form.y);
       const uint32_t flags = static_cast<uint32_t>(form.y);
       const size_t first = shape.points.size();
       appendSvgArc(shape, at, std::abs(radii.x), std::abs(radii.y), form.x, (flags & GPGP_ARC_LARGE) != 0,

@@ -7,6 +7,27 @@
 #include <cmath>
 
 namespace gpgp::vector::svg {
+namespace {
+
+/// What a file says that it is, for the message where it is not decoded.
+const char* formatOf(const std::vector<uint8_t>& bytes) {
+  struct Format {
+    std::string_view begin;
+    const char* name;
+  };
+  using namespace std::literals;
+  static constexpr Format kFormats[] = {{"\x89PNG"sv, "a PNG file"}, {"\xff\xd8\xff"sv, "a JPEG file"},
+                                        {"GIF8"sv, "a GIF file"},    {"RIFF"sv, "a WebP file"},
+                                        {"BM"sv, "a BMP file"},      {"II*\0"sv, "a TIFF file"},
+                                        {"MM\0*"sv, "a TIFF file"},  {"<svg"sv, "an SVG file"},
+                                        {"<?xml"sv, "an SVG file"}};
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  for (const Format& format : kFormats)
+    if (text.starts_with(format.begin)) return format.name;
+  return nullptr;
+}
+
+} // namespace
 
 const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
   const std::string_view href = trim(hrefOf(node).value());
@@ -24,6 +45,7 @@ const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
       ++pictureCount_;
       return &picture;
     }
+    picture.format = formatOf(bytes);
   }
   return nullptr;
 }
@@ -36,11 +58,14 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
     return reporter_.warn(place,
                           "<image> of another file, '" + std::string(href.substr(0, 60)) + "', is not supported");
   const Picture* picture = pictureOf(node);
-  const bool many = pictures_.find(href)->second.index >= GPGP_MAX_IMAGES;
-  if (!picture)
-    return reporter_.warn(place, many ? "<image> is one more than the " + std::to_string(GPGP_MAX_IMAGES) +
-                                            " that a drawing can have; not supported"
-                                      : std::string("<image> holds nothing that can be decoded; not supported"));
+  if (!picture) {
+    const Picture& refused = pictures_.find(href)->second;
+    const std::string why = refused.index >= GPGP_MAX_IMAGES
+                                ? "is one more than the " + std::to_string(GPGP_MAX_IMAGES) + " that a drawing can have"
+                            : refused.format ? std::string("holds ") + refused.format + " that cannot be decoded"
+                                             : "holds nothing that can be decoded";
+    return reporter_.warn(place, "<image> " + why + "; not supported");
+  }
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   bool hasWidth = false, hasHeight = false;

@@ -131,6 +131,7 @@ private:
   // image.cpp
   struct Picture { // that was decoded; width 0: it could not be
     uint32_t index = 0, width = 0, height = 0;
+    const char* format = nullptr; ///< of one that is not decoded
   };
   const Picture* pictureOf(pugi::xml_node node);
   void drawImage(pugi::xml_node node, const State& state);
