@@ -147,7 +147,7 @@ uint32_t componentTags(MeshPool& pool, const Form& form, Component kind, uint32_
 
 /// The component as a form of its own. Scopes: a face has z along the normal, x along its first edge, in the order in
 /// which y points up within the face; extents are tight. An edge has x along itself, z along its mean normal. A vertex
-/// has its mean normal as z. Groups keep the scope's axes, and are tight.
+/// has its mean normal as z. Edges and vertices have mesh 0. Groups keep the scope's axes, and are tight.
 Status toComponent(MeshPool& pool, const Form& form, Component kind, uint32_t index, Form& component);
 /// Components in one form (the operator `=` of CGA): axes of the form, tight. Texture coordinates and tags stay.
 Status toComponents(MeshPool& pool, const Form& form, Component kind, std::span<const uint32_t> indices,
@@ -239,8 +239,8 @@ Status alignScopeToGeometry(MeshPool& pool, Form& form, bool zUp, Pick face, int
 /// (of z: x, of y: x, of x: y).
 Status alignScopeToGeometryBox(MeshPool& pool, Form& form, uint32_t fixedAxis);
 /// Tight around the geometry, with the axes it has.
-void fitScope(const MeshPool& pool, Form& form);
-/// Sets extents of the scope; the geometry is scaled with it.
+Status fitScope(MeshPool& pool, Form& form);
+/// Sets extents of the scope; the geometry is scaled with it. What is flat stays flat.
 void resizeScope(Form& form, vec3 size);
 /// Moves the form so that its scope's middle is that of another scope, along its own axes (AxisBits).
 void center(Form& form, const Scope& to, uint32_t axes);
