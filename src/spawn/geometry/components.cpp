@@ -212,7 +212,7 @@ Status takeFaces(MeshPool& pool, const Form& form, std::span<const uint32_t> fac
   Form made{scope, vec3(1.0f), 0};
   std::vector<uint32_t> number(meshVertices(pool, form.mesh), kNone);
   Builder b = builderFor(pool, form.mesh, 1);
-  const bool sameAxes = scope.axisX == form.scope.axisX && scope.axisY == form.scope.axisY;
+  const bool sameAxes = !flat && scope.axisX == form.scope.axisX && scope.axisY == form.scope.axisY;
   for (const uint32_t f : faces) {
     const Face face = faceOf(pool, form.mesh, f);
     beginFace(pool, b, face.tags);
