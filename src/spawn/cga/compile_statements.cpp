@@ -13,9 +13,10 @@ void Compiler::checkCount(const std::string& file, Place place, std::string_view
   if (count >= least && count <= most) return;
   const std::string takes =
       least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most);
-  messages_.error(file, place,
-                  "'" + std::string(name) + "' takes " + takes + (most == 1 ? " value" : " values") + ", not " +
-                      std::to_string(count));
+  messages_.error(
+      file, place,
+      std::string("'").append(name).append("' takes ").append(takes).append(most == 1 ? " value" : " values") +
+          ", not " + std::to_string(count));
 }
 
 void Compiler::body(const Body& body, const Context& context, bool isLast, uint32_t end) {

@@ -454,7 +454,7 @@ bool Deriver::primitive(Primitive kind, uint32_t sides, uint32_t rings, const ve
 
 bool Deriver::primitiveQuad_(const Arguments& a) {
   const vec3 e = shape_.form.scope.size;
-  return primitive(Primitive::Quad, 4, 1,
+  return primitive(Primitive::Quad, 4, 2,
                    {a.count > 0 ? length(a[0], e.x) : 0, 0, a.count > 1 ? length(a[1], e.z) : 0});
 }
 
@@ -473,18 +473,18 @@ uint32_t sidesOf(float value, uint32_t otherwise) {
 
 bool Deriver::primitiveDisk_(const Arguments& a) {
   const float width = a.count > 1 ? 2 * length(a[1], shape_.form.scope.size.x) : 0;
-  return primitive(Primitive::Disk, sidesOf(a.count ? number(a[0]) : 0, 32), 1, {width, 0, width});
+  return primitive(Primitive::Disk, sidesOf(a.count ? number(a[0]) : 0, 32), 2, {width, 0, width});
 }
 
 bool Deriver::primitiveCylinder_(const Arguments& a) {
   const float width = a.count > 1 ? 2 * length(a[1], shape_.form.scope.size.x) : 0;
-  return primitive(Primitive::Cylinder, sidesOf(a.count ? number(a[0]) : 0, 32), 1,
+  return primitive(Primitive::Cylinder, sidesOf(a.count ? number(a[0]) : 0, 32), 2,
                    {width, a.count > 2 ? length(a[2], shape_.form.scope.size.y) : 0, width});
 }
 
 bool Deriver::primitiveCone_(const Arguments& a) {
   const float width = a.count > 1 ? 2 * length(a[1], shape_.form.scope.size.x) : 0;
-  return primitive(Primitive::Cone, sidesOf(a.count ? number(a[0]) : 0, 32), 1,
+  return primitive(Primitive::Cone, sidesOf(a.count ? number(a[0]) : 0, 32), 2,
                    {width, a.count > 2 ? length(a[2], shape_.form.scope.size.y) : 0, width});
 }
 
@@ -498,16 +498,16 @@ bool Deriver::i_(const Arguments& a) {
   const std::string path = text(a[0]);
   if (path.starts_with("builtin:")) {
     const std::string name = path.substr(8);
-    if (name.starts_with("cube")) return primitive(Primitive::Cube, 4, 1, vec3(0));
-    if (name.starts_with("quad")) return primitive(Primitive::Quad, 4, 1, vec3(0));
-    if (name.starts_with("disk")) return primitive(Primitive::Disk, 32, 1, vec3(0));
+    if (name.starts_with("cube")) return primitive(Primitive::Cube, 4, 2, vec3(0));
+    if (name.starts_with("quad")) return primitive(Primitive::Quad, 4, 2, vec3(0));
+    if (name.starts_with("disk")) return primitive(Primitive::Disk, 32, 2, vec3(0));
     if (name.starts_with("sphere")) return primitive(Primitive::Sphere, 16, 16, vec3(0));
-    if (name.starts_with("cone")) return primitive(Primitive::Cone, 32, 1, vec3(0));
-    if (name.starts_with("cyl")) return primitive(Primitive::Cylinder, 32, 1, vec3(0));
+    if (name.starts_with("cone")) return primitive(Primitive::Cone, 32, 2, vec3(0));
+    if (name.starts_with("cyl")) return primitive(Primitive::Cylinder, 32, 2, vec3(0));
   }
   const auto box = [&](const std::string& why) {
     warn("asset " + path, "the asset \"" + path + "\" is drawn as a box: " + why);
-    return primitive(Primitive::Cube, 4, 1, vec3(0));
+    return primitive(Primitive::Cube, 4, 2, vec3(0));
   };
   const auto [found, isNew] = assets_.try_emplace(path);
   if (isNew) {

@@ -179,7 +179,7 @@ bool Deriver::selects(std::string_view selector, Component kind, uint32_t index,
                        std::string(selector.substr(7)) + "'");
   const Selection what = selectorOf(selector);
   if (!what.known) {
-    warn("selector " + std::string(selector), "'" + std::string(selector) + "' selects no components");
+    warn("selector " + std::string(selector), std::string("'").append(selector) + "' selects no components");
     return false;
   }
   const Axes system = axes(selector.starts_with("street.") ? "object" : selector);

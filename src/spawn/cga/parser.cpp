@@ -61,7 +61,7 @@ private:
     throw Unexpected();
   }
   void expect(std::string_view symbol, const char* where) {
-    if (!accept(symbol)) unexpected("'" + std::string(symbol) + "' " + where);
+    if (!accept(symbol)) unexpected(std::string("'").append(symbol) + "' " + where);
   }
   std::string name(const char* what) {
     if (!isName()) unexpected(what);
@@ -157,7 +157,13 @@ private:
     if (!isName()) unexpected("a definition: attr, const, import, a function or a rule");
     d.annotations = std::move(annotations);
     d.style = style_;
-    named(d);
+    try {
+      named(d);
+    } catch (const Unexpected&) {
+      // It is there, whatever it is: others may name it.
+      if (d.kind == Definition::Kind::rule && d.hasBody) file.definitions.push_back(std::move(d));
+      throw;
+    }
     if (d.isStart && d.kind != Definition::Kind::rule) d.isStart = false;
     file.definitions.push_back(std::move(d));
   }
@@ -171,6 +177,7 @@ private:
     if (accept("-->")) {
       if (d.kind != Definition::Kind::rule) errors_.error(d.place, "attr and const are no rules; write = for -->");
       d.kind = Definition::Kind::rule;
+      d.hasBody = true;
       for (const Annotation& a : d.annotations)
         if (a.name == "StartRule" || a.name == "Startrule" || a.name == "startrule") d.isStart = true;
       d.body = body();

@@ -103,6 +103,7 @@ struct Definition {
   Place place;
   std::vector<std::string> parameters;
   bool isStart = false; ///< by @StartRule or the keyword
+  bool hasBody = false; ///< of rules: it began, whether or not it could be read
   std::vector<Annotation> annotations;
   std::vector<Local> locals;
   ExpressionPtr value; ///< of all but rules
