@@ -25,6 +25,7 @@ GPGP_CONST uint kGeometryTooLarge = 3u;    // a face above kMaxFaceCorners, or t
 GPGP_CONST uint kGeometryNotSimple = 4u;   // a polygon that touches or crosses itself
 GPGP_CONST uint kGeometryNotPlanar = 5u;   // a face that lies in no plane
 GPGP_CONST uint kGeometryBadArgument = 6u; // an index, a selector or a number outside what the function states
+GPGP_CONST uint kGeometryUnsettled = 7u;   // edges that move at different speeds met so that no outline was left
 
 GPGP_CONST uint kMaxFaceCorners = 1024u; // of all loops of a face
 GPGP_CONST uint kMaxUvSets = 10u;        // as CGA's

@@ -37,7 +37,7 @@ struct Skeleton {
   uint sides;
   uint maxSides;
   uint activeAt; // vertices of the wavefront
-  uint active;
+  uint running;
   uint originals; // edges that were given; those behind are perpendicular ones where speeds differ
   float centreX;  // of the given coordinates
   float centreY;
@@ -218,9 +218,9 @@ GPGP_FN uint addWave(GPGP_POOL GPGP_INOUT(Skeleton) s, uint left, uint right, ui
   setWorkWord(GPGP_P at + kVertexState, state);
   setWorkWord(GPGP_P at + kVertexTarget, kNone);
   setWorkWord(GPGP_P at + kVertexTargetEnd, kNone);
-  setWorkWord(GPGP_P at + kVertexSlot, s.active);
-  setWorkWord(GPGP_P s.activeAt + s.active, v);
-  s.active += 1u;
+  setWorkWord(GPGP_P at + kVertexSlot, s.running);
+  setWorkWord(GPGP_P s.activeAt + s.running, v);
+  s.running += 1u;
   return v;
 }
 /// The vertex ends at a node: its way is a side of two faces.
@@ -232,8 +232,8 @@ GPGP_FN void endWave(GPGP_POOL GPGP_INOUT(Skeleton) s, uint v, uint node) {
   addSide(GPGP_P s, right, node, birth, left);
   setWaveWord(GPGP_P s, v, kVertexState, 0u);
   const uint slot = waveWord(GPGP_P s, v, kVertexSlot);
-  s.active -= 1u;
-  const uint last = workWord(GPGP_P s.activeAt + s.active);
+  s.running -= 1u;
+  const uint last = workWord(GPGP_P s.activeAt + s.running);
   setWorkWord(GPGP_P s.activeAt + slot, last);
   setWaveWord(GPGP_P s, last, kVertexSlot, slot);
 }
@@ -318,7 +318,7 @@ GPGP_FN bool isReflexWave(GPGP_POOL Skeleton s, uint v) {
 GPGP_FN void timeSplits(GPGP_POOL Skeleton s, uint v) {
   setWorkWide(GPGP_P s.vertexAt + kVertexWords * v + kVertexSplit, wide(kSkeletonNever));
   setWaveWord(GPGP_P s, v, kVertexTarget, kNone);
-  for (uint i = 0u; i < s.active; ++i) {
+  for (uint i = 0u; i < s.running; ++i) {
     timeSplit(GPGP_P s, v, workWord(GPGP_P s.activeAt + i));
   }
 }
@@ -326,10 +326,37 @@ GPGP_FN void timeSplits(GPGP_POOL Skeleton s, uint v) {
 GPGP_FN void timeWave(GPGP_POOL Skeleton s, uint v) {
   if (!waveAlive(GPGP_P s, v)) return;
   timeVanishing(GPGP_P s, v);
-  for (uint i = 0u; i < s.active; ++i) {
+  for (uint i = 0u; i < s.running; ++i) {
     const uint other = workWord(GPGP_P s.activeAt + i);
     if (isReflexWave(GPGP_P s, other)) timeSplit(GPGP_P s, other, v);
   }
+}
+
+/// Whether edges that follow each other in one line part, because their speeds differ. Nearly collinear ones would meet
+/// far away.
+GPGP_FN bool needsStep(GPGP_POOL Skeleton s, uint left, uint right) {
+  if (edgeSpeed(GPGP_P s, left) == edgeSpeed(GPGP_P s, right)) return false;
+  const Wide2 a = edgeNormal(GPGP_P s, left);
+  const Wide2 b = edgeNormal(GPGP_P s, right);
+  return wideDot(a, b).hi > 0.0f && abs(wideCross(a, b).hi) < 1.0e-3f;
+}
+/// An edge at right angles that stays, from the front of `left` to that of `right`.
+GPGP_FN uint addStep(GPGP_POOL GPGP_INOUT(Skeleton) s, uint left, uint right, uint node) {
+  if (s.edges >= s.maxEdges) {
+    s.status = kGeometryNotSimple;
+    return 0u;
+  }
+  const uint step = s.edges;
+  s.edges += 1u;
+  const bool back = edgeSpeed(GPGP_P s, left) > edgeSpeed(GPGP_P s, right); // from the edge that is ahead
+  const Wide2 along = edgeDirection(GPGP_P s, back ? left : right);
+  const uint at = s.edgeAt + kEdgeWords * step;
+  setWorkWide2(GPGP_P at, back ? along : wide2(wideNegate(along.x), wideNegate(along.y)));
+  setWorkFloat(GPGP_P at + kEdgeSpeed, 0.0f);
+  setWorkWord(GPGP_P at + kEdgeStart, node);
+  setWorkWord(GPGP_P at + kEdgeEnd, node);
+  setWorkWord(GPGP_P at + kEdgeSides, kNone);
+  return step;
 }
 
 /// Ends loops that have no area, and vertices between edges that lie on each other, from v on; then times what is new.
@@ -393,6 +420,22 @@ GPGP_FN void settleWave(GPGP_POOL GPGP_INOUT(Skeleton) s, uint v) {
     v = made;
   }
   if (s.status != kGeometryOk) return;
+  const uint left = waveWord(GPGP_P s, v, kVertexLeft);
+  const uint right = waveWord(GPGP_P s, v, kVertexRight);
+  if (needsStep(GPGP_P s, left, right)) {
+    const uint node = nodeOfWave(GPGP_P s, v);
+    const uint step = addStep(GPGP_P s, left, right, node);
+    const uint first = addWave(GPGP_P s, left, step, node);
+    const uint second = addWave(GPGP_P s, step, right, node);
+    linkWave(GPGP_P s, wavePrevious(GPGP_P s, v), first);
+    linkWave(GPGP_P s, second, waveNext(GPGP_P s, v));
+    linkWave(GPGP_P s, first, second);
+    endWave(GPGP_P s, v, node);
+    if (s.status != kGeometryOk) return;
+    timeWave(GPGP_P s, second);
+    if (isReflexWave(GPGP_P s, second)) timeSplits(GPGP_P s, second);
+    v = first;
+  }
   timeWave(GPGP_P s, v);
   timeWave(GPGP_P s, wavePrevious(GPGP_P s, v));
   if (isReflexWave(GPGP_P s, v)) timeSplits(GPGP_P s, v);
@@ -474,8 +517,8 @@ GPGP_FN void splitEdge(GPGP_POOL GPGP_INOUT(Skeleton) s, uint v, uint a) {
 GPGP_FN void propagate(GPGP_POOL GPGP_INOUT(Skeleton) s, float until) {
   Wide end = wide(kSkeletonNever);
   if (until >= 0.0f) end = productOf(until, s.scale);
-  const uint most = 8u * s.maxEdges + 16u;
-  for (uint turn = 0u; s.status == kGeometryOk && s.active > 0u; ++turn) {
+  const uint most = 16u * s.originals + 16u;
+  for (uint turn = 0u; s.status == kGeometryOk && s.running > 0u; ++turn) {
     if (turn == most) {
       s.status = kGeometryNotSimple;
       return;
@@ -484,7 +527,7 @@ GPGP_FN void propagate(GPGP_POOL GPGP_INOUT(Skeleton) s, float until) {
     uint splitting = kNone;
     Wide vanishTime = wide(kSkeletonNever);
     Wide splitTime = wide(kSkeletonNever);
-    for (uint i = 0u; i < s.active; ++i) {
+    for (uint i = 0u; i < s.running; ++i) {
       const uint v = workWord(GPGP_P s.activeAt + i);
       const Wide vanish = waveTime(GPGP_P s, v, kVertexVanish);
       if (wideLess(vanish, vanishTime)) {
@@ -514,14 +557,14 @@ GPGP_FN void propagate(GPGP_POOL GPGP_INOUT(Skeleton) s, float until) {
       splitEdge(GPGP_P s, splitting, waveWord(GPGP_P s, splitting, kVertexTarget));
     }
   }
-  if (s.status != kGeometryOk || s.active == 0u) return;
+  if (s.status != kGeometryOk || s.running == 0u) return;
   if (until < 0.0f) {
     s.status = kGeometryNotSimple;
     return;
   }
   s.now = end;
   // The wavefront's edges end faces; its vertices stay, at the nodes that their words now name.
-  for (uint i = 0u; i < s.active; ++i) {
+  for (uint i = 0u; i < s.running; ++i) {
     const uint v = workWord(GPGP_P s.activeAt + i);
     const uint node = nodeOfWave(GPGP_P s, v);
     const uint birth = waveWord(GPGP_P s, v, kVertexNode);
@@ -529,7 +572,7 @@ GPGP_FN void propagate(GPGP_POOL GPGP_INOUT(Skeleton) s, float until) {
     addSide(GPGP_P s, waveWord(GPGP_P s, v, kVertexRight), node, birth, waveWord(GPGP_P s, v, kVertexLeft));
     setWaveWord(GPGP_P s, v, kVertexNode, node);
   }
-  for (uint i = 0u; i < s.active; ++i) {
+  for (uint i = 0u; i < s.running; ++i) {
     const uint v = workWord(GPGP_P s.activeAt + i);
     addSide(GPGP_P s, waveWord(GPGP_P s, v, kVertexRight), waveWord(GPGP_P s, waveNext(GPGP_P s, v), kVertexNode),
             waveWord(GPGP_P s, v, kVertexNode), kNone);
@@ -553,14 +596,14 @@ GPGP_FN Skeleton newSkeleton(GPGP_POOL uint points, uint pointCount, uint loops,
   s.mark = workMark(GPGP_P0);
   s.originals = pointCount;
   s.edges = pointCount;
-  s.maxEdges = 2u * pointCount;
-  s.maxVertices = 7u * pointCount + 16u;
+  s.maxEdges = 4u * pointCount + 8u;
+  s.maxVertices = 9u * pointCount + 16u;
   s.maxNodes = 6u * pointCount + 16u;
-  s.maxSides = 18u * pointCount + 32u;
+  s.maxSides = 22u * pointCount + 32u;
   s.vertices = 0u;
   s.nodes = 0u;
   s.sides = 0u;
-  s.active = 0u;
+  s.running = 0u;
   s.now = wide(0.0f);
   s.status = kGeometryOk;
   s.edgeAt = takeWork(GPGP_P kEdgeWords * s.maxEdges + kVertexWords * s.maxVertices + kNodeWords * s.maxNodes +
@@ -620,7 +663,7 @@ GPGP_FN Skeleton newSkeleton(GPGP_POOL uint points, uint pointCount, uint loops,
   return s;
 }
 
-/// The first wavefront. A pair of vertices with an edge at right angles that stays is where collinear edges differ.
+/// The first wavefront.
 GPGP_FN void beginWaves(GPGP_POOL GPGP_INOUT(Skeleton) s, uint loops, uint loopCount) {
   uint first = 0u;
   for (uint l = 0u; l < loopCount && s.status == kGeometryOk; ++l) {
@@ -630,26 +673,9 @@ GPGP_FN void beginWaves(GPGP_POOL GPGP_INOUT(Skeleton) s, uint loops, uint loopC
     for (uint i = 0u; i < count; ++i) {
       const uint right = first + i;
       const uint left = first + (i == 0u ? count - 1u : i - 1u);
-      const Wide2 a = edgeNormal(GPGP_P s, left);
-      const Wide2 b = edgeNormal(GPGP_P s, right);
-      const float speedA = edgeSpeed(GPGP_P s, left);
-      const float speedB = edgeSpeed(GPGP_P s, right);
-      const float sine = wideCross(a, b).hi;
-      const float cosine = wideDot(a, b).hi;
       uint made = 0u;
-      // Nearly collinear ones of different speed would meet far away.
-      if (cosine > 0.0f && abs(sine) < 1.0e-3f && speedA != speedB) {
-        const uint step = s.edges;
-        s.edges += 1u;
-        const bool inwards = speedA > speedB; // the step runs back from the edge that is ahead
-        const Wide2 along = edgeDirection(GPGP_P s, inwards ? left : right);
-        const uint at = s.edgeAt + kEdgeWords * step;
-        // From the front of the left edge to that of the right one.
-        setWorkWide2(GPGP_P at, inwards ? along : wide2(wideNegate(along.x), wideNegate(along.y)));
-        setWorkFloat(GPGP_P at + kEdgeSpeed, 0.0f);
-        setWorkWord(GPGP_P at + kEdgeStart, right);
-        setWorkWord(GPGP_P at + kEdgeEnd, right);
-        setWorkWord(GPGP_P at + kEdgeSides, kNone);
+      if (needsStep(GPGP_P s, left, right)) {
+        const uint step = addStep(GPGP_P s, left, right, right);
         made = addWave(GPGP_P s, left, step, right);
         if (last != kNone) linkWave(GPGP_P s, last, made);
         if (head == kNone) head = made;
@@ -666,7 +692,7 @@ GPGP_FN void beginWaves(GPGP_POOL GPGP_INOUT(Skeleton) s, uint loops, uint loopC
     if (last != kNone) linkWave(GPGP_P s, last, head);
     first += count;
   }
-  for (uint i = 0u; i < s.active && s.status == kGeometryOk; ++i) {
+  for (uint i = 0u; i < s.running && s.status == kGeometryOk; ++i) {
     const uint v = workWord(GPGP_P s.activeAt + i);
     timeVanishing(GPGP_P s, v);
     if (isReflexWave(GPGP_P s, v)) timeSplits(GPGP_P s, v);

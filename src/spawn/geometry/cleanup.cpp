@@ -34,7 +34,12 @@ std::vector<Outlines> outlinesOf(MeshPool& pool, uint32_t mesh) {
 /// The form with these faces; vertices are places of `positions`.
 Status rebuild(MeshPool& pool, Form& form, const std::vector<Outlines>& faces, const std::vector<uint32_t>& welded,
                const std::vector<vec3>& positions) {
-  Builder b = builderFor(pool, form.mesh, 1);
+  uint loops = 0;
+  for (const Outlines& face : faces) {
+    loops += uint(face.loops.size());
+  }
+  Builder b = newBuilder(pool, meshVertices(pool, form.mesh), meshCorners(pool, form.mesh), loops, uint(faces.size()),
+                         meshUvSets(pool, form.mesh));
   std::vector<uint32_t> number(positions.size(), kNone);
   for (const Outlines& face : faces) {
     if (face.loops.empty() || face.loops[0].size() < 3) continue;
@@ -115,15 +120,22 @@ void chain(std::vector<DirectedEdge>& edges, const std::vector<vec3>& positions,
     }
     return isInside;
   };
+  std::vector<size_t> faceOfLoop(loops.size(), faces.size());
   for (size_t i = 0; i < loops.size(); ++i) {
     if (!(areaOf(points[i]) > 0)) continue;
-    Outlines face{{loops[i]}, tags};
-    for (size_t j = 0; j < loops.size(); ++j) {
-      if (areaOf(points[j]) >= 0) continue;
-      const vec2 middle = (points[j][0] + points[j][1]) * 0.5f;
-      if (contains(points[i], middle)) face.loops.push_back(loops[j]);
+    faceOfLoop[i] = faces.size();
+    faces.push_back({{loops[i]}, tags});
+  }
+  // A hole belongs to the smallest outline around it.
+  for (size_t j = 0; j < loops.size(); ++j) {
+    if (areaOf(points[j]) >= 0) continue;
+    const vec2 middle = (points[j][0] + points[j][1]) * 0.5f;
+    size_t chosen = loops.size();
+    for (size_t i = 0; i < loops.size(); ++i) {
+      if (!(areaOf(points[i]) > 0) || !contains(points[i], middle)) continue;
+      if (chosen == loops.size() || areaOf(points[i]) < areaOf(points[chosen])) chosen = i;
     }
-    faces.push_back(std::move(face));
+    if (chosen != loops.size()) faces[faceOfLoop[chosen]].loops.push_back(loops[j]);
   }
 }
 

@@ -187,7 +187,8 @@ Status trim(MeshPool& pool, Form& form, vec3 normal, float offset, bool close);
 
 /// Moves edges of faces inwards. distances: one for each component FaceEdges, 0 and less: stays. pieces: for each of
 /// these the strip between the old edge and the new one, mesh 0 where there is none. remainder: what is left, mesh 0
-/// where nothing is. All keep the form's axes, and are tight. Each face by itself.
+/// where nothing is. All keep the form's axes, and are tight. Each face by itself. kGeometryUnsettled: edges of very
+/// different distances overtook each other.
 Status setback(MeshPool& pool, const Form& form, std::span<const float> distances, std::vector<Form>& pieces,
                Form& remainder);
 /// shapeL (front, left), shapeU (and right), shapeO (and back): strips as one form, of few faces, and the rest.

@@ -25,7 +25,8 @@ std::string_view describeStatus(Status status) {
                                                 "a face has more than 1024 corners, or the shape is too large",
                                                 "the polygon touches or crosses itself",
                                                 "the face does not lie in a plane",
-                                                "an argument is outside of what the operation takes"};
+                                                "an argument is outside of what the operation takes",
+                                                "edges that move by different distances could not be followed"};
   return kTexts[std::min<size_t>(status, std::size(kTexts) - 1)];
 }
 

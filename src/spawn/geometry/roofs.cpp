@@ -353,7 +353,7 @@ private:
       high = std::max(high, d);
     }
     const double slope = options_.byHeight ? options_.value / (high - low) : std::tan(radians(options_.value));
-    const double flat = 1e-6 * (high - low);
+    const double flat = 1e-5 * (high - low); // no wall lower than what counts as one place
     const auto at = [&](glm::dvec2 p) {
       const double d = glm::dot(n, p - origin) - low;
       return glm::dvec3(p.x, p.y, d <= flat ? 0.0 : d * slope);

@@ -8,6 +8,57 @@ namespace gpgp::spawn {
 
 using namespace shader;
 
+namespace {
+
+double areaOfLoop(const std::vector<vec2>& loop) {
+  double sum = 0;
+  for (size_t i = 1; i + 1 < loop.size(); ++i) {
+    const glm::dvec2 a(loop[i] - loop[0]), b(loop[i + 1] - loop[0]);
+    sum += a.x * b.y - a.y * b.x;
+  }
+  return sum;
+}
+bool contains(const std::vector<vec2>& loop, vec2 p) {
+  bool isInside = false;
+  for (size_t i = 0; i < loop.size(); ++i) {
+    const vec2 a = loop[i], b = loop[(i + 1) % loop.size()];
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    const float side = sideOf(a, b, p);
+    if (b.y > a.y ? side > 0 : side < 0) isInside = !isInside;
+  }
+  return isInside;
+}
+
+/// Two edges of fronts that cross, or a front of a hole that no outline holds.
+bool frontsCross(const std::vector<std::vector<vec2>>& fronts) {
+  std::vector<std::pair<vec2, vec2>> edges;
+  for (const auto& front : fronts) {
+    for (size_t i = 0; i < front.size(); ++i) {
+      edges.emplace_back(front[i], front[(i + 1) % front.size()]);
+    }
+    if (areaOfLoop(front) >= 0) continue;
+    if (std::none_of(fronts.begin(), fronts.end(),
+                     [&](const auto& other) { return areaOfLoop(other) > 0 && contains(other, front[0]); }))
+      return true;
+  }
+  for (size_t i = 0; i < edges.size(); ++i) {
+    const auto [a, b] = edges[i];
+    for (size_t j = 0; j < i; ++j) {
+      const auto [c, d] = edges[j];
+      if (glm::max(a.x, b.x) <= glm::min(c.x, d.x) || glm::max(c.x, d.x) <= glm::min(a.x, b.x)) continue;
+      const float slack =
+          1e-5f * (std::fabs(b.x - a.x) + std::fabs(b.y - a.y)) * (std::fabs(d.x - c.x) + std::fabs(d.y - c.y));
+      const float s0 = sideOf(a, b, c), s1 = sideOf(a, b, d), s2 = sideOf(c, d, a), s3 = sideOf(c, d, b);
+      if (((s0 > slack && s1 < -slack) || (s0 < -slack && s1 > slack)) &&
+          ((s2 > slack && s3 < -slack) || (s2 < -slack && s3 > slack)))
+        return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
+
 Status makeWaves(MeshPool& pool, const Form& form, uint32_t face, std::span<const float> speeds, float until,
                  bool outwards, Waves& waves) {
   const uint mark = workMark(pool);
@@ -89,7 +140,7 @@ Status makeWaves(MeshPool& pool, const Form& form, uint32_t face, std::span<cons
     if (f.nodes.size() >= 3) waves.faces.push_back(std::move(f));
   }
   std::vector<bool> seen(s.vertices);
-  for (uint i = 0; i < s.active; ++i) {
+  for (uint i = 0; i < s.running; ++i) {
     uint v = workWord(pool, s.activeAt + i);
     std::vector<vec2> loop;
     std::vector<uint32_t> edges;
@@ -113,31 +164,30 @@ Status makeWaves(MeshPool& pool, const Form& form, uint32_t face, std::span<cons
     waves.fronts.push_back(std::move(loop));
     waves.frontEdges.push_back(std::move(edges));
   }
+  // Faces and fronts tile the polygon, or edges overtook each other.
+  if (!speeds.empty() && !outwards) {
+    double whole = 0, parts = 0;
+    for (const auto& [from, to] : waves.edges) {
+      const glm::dvec2 a(from - waves.edges[0].first), b(to - waves.edges[0].first);
+      whole += a.x * b.y - a.y * b.x;
+    }
+    for (const auto& front : waves.fronts) {
+      parts += areaOfLoop(front);
+    }
+    std::vector<vec2> polygon;
+    for (const WaveFace& f : waves.faces) {
+      polygon.clear();
+      for (const uint32_t n : f.nodes) {
+        polygon.emplace_back(waves.nodes[n].x, waves.nodes[n].y);
+      }
+      const double swept = areaOfLoop(polygon);
+      parts += swept;
+      if (swept < -1e-6 * whole) return leave(kGeometryUnsettled);
+    }
+    if (std::fabs(whole - parts) > 3e-5 * whole || frontsCross(waves.fronts)) return leave(kGeometryUnsettled);
+  }
   return leave(kGeometryOk);
 }
-
-namespace {
-
-double areaOfLoop(const std::vector<vec2>& loop) {
-  double sum = 0;
-  for (size_t i = 1; i + 1 < loop.size(); ++i) {
-    const glm::dvec2 a(loop[i] - loop[0]), b(loop[i + 1] - loop[0]);
-    sum += a.x * b.y - a.y * b.x;
-  }
-  return sum;
-}
-bool contains(const std::vector<vec2>& loop, vec2 p) {
-  bool isInside = false;
-  for (size_t i = 0; i < loop.size(); ++i) {
-    const vec2 a = loop[i], b = loop[(i + 1) % loop.size()];
-    if ((a.y > p.y) == (b.y > p.y)) continue;
-    const float side = sideOf(a, b, p);
-    if (b.y > a.y ? side > 0 : side < 0) isInside = !isInside;
-  }
-  return isInside;
-}
-
-} // namespace
 
 void addLoops(MeshPool& pool, Builder& b, const PlaneBasis& basis, const std::vector<std::vector<vec2>>& loops,
               float height, bool reversed, uint32_t tags, uint32_t edgeTags) {
