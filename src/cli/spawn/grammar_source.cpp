@@ -139,7 +139,8 @@ void addGrammars(CLI::App& command, std::vector<std::string>& arguments) {
   };
   command
       .add_option("GRAMMAR", arguments,
-                  "PGA-shape grammar text (.pga), or a baked grammar; several are linked to one grammar, by their file "
+                  "PGA-shape grammar text (.pga), a baked grammar, or a .cga file; several are linked to one grammar, "
+                  "by their file "
                   "names or as NAME=FILE says")
       ->required()
       ->check(CLI::Validator(exists, "[NAME=]FILE"));

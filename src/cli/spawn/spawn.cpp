@@ -1,8 +1,10 @@
 // `gpgp spawn`: compiles a grammar, derives axioms and says what came out, beside the CPU evaluator.
 #include "cli/shared/painter.h"
 #include "cli/spawn/axioms.h"
+#include "cli/spawn/cga.h"
 #include "cli/spawn/grammar_source.h"
 #include "cli/spawn/reference.h"
+#include "cli/spawn/scene_picture.h"
 #include "cli/spawn/spawned_gltf.h"
 #include "cli/spawn/unit_shapes.h"
 #include "cli/tune/tuner.h"
@@ -25,6 +27,9 @@ struct SpawnOptions {
   float spacing = 0;
   std::string axiomFile;
   std::vector<std::string> set;
+  std::string start, style;
+  std::vector<std::string> attributes;
+  bool hasSize = false, geographic = false;
   std::string image, out;
   Size imageSize{1280, 720};
   float yaw = 35, pitch = 25, zoom = 1;
@@ -102,7 +107,6 @@ struct Triangles {
   uint64_t total = 0;
   std::vector<std::array<glm::vec3, 3>> corners;
   std::vector<uint32_t> terminals;
-  Bounds bounds;
 
   void count(uint32_t terminal, uint64_t number) {
     counts.at(terminal) += number;
@@ -113,7 +117,6 @@ struct Triangles {
     if (!keep) return;
     corners.push_back(triangle);
     terminals.push_back(terminal);
-    for (const glm::vec3& corner : triangle) bounds.add(corner);
   }
 };
 
@@ -148,25 +151,8 @@ void addTriangles(Triangles& all, const std::vector<SpawnedVertex>& vertices, co
 
 /// Terminals are coloured by the index that the grammar gives them, on a square of ground.
 void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph& graph) {
-  Bounds bounds = all.bounds;
-  if (all.corners.empty()) bounds.add(glm::vec3(0));
-  glm::mat4 camera = viewAll(bounds, options.yaw, options.pitch, options.imageSize.width, options.imageSize.height);
-  for (int c = 0; c < 4; ++c) {
-    camera[c].x *= options.zoom;
-    camera[c].y *= options.zoom;
-  }
-  Painter painter(options.imageSize.width, options.imageSize.height);
-  painter.sun(bounds);
-  for (const auto& corners : all.corners) painter.shadow(corners);
-  for (size_t i = 0; i < all.corners.size(); ++i)
-    painter.triangle(camera, {all.corners[i], paletteColour(graph.terminals[all.terminals[i]].index)});
-  const glm::vec3 extent = bounds.high - bounds.low;
-  const float margin = 0.15f * std::max({extent.x, extent.y, extent.z});
-  const glm::vec3 a(bounds.low.x - margin, bounds.low.y, bounds.low.z - margin), ground(0.80f, 0.82f, 0.76f);
-  const glm::vec3 b(a.x, a.y, bounds.high.z + margin), c(bounds.high.x + margin, a.y, b.z), d(c.x, a.y, a.z);
-  painter.triangle(camera, {{a, b, c}, ground});
-  painter.triangle(camera, {{a, c, d}, ground});
-  host::writePng(options.image, painter.picture());
+  paintScene(options.image, {options.imageSize, options.yaw, options.pitch, options.zoom, 0}, all.corners,
+             [&](size_t i) { return paletteColour(graph.terminals[all.terminals[i]].index); });
 }
 
 std::string counted(uint64_t number, const std::string& one, const std::string& many = {}) {
@@ -272,7 +258,39 @@ bool hasDynamicTerminals(const spawn::Graph& graph) {
   });
 }
 
+/// A .cga file alone; what is for other grammars is refused.
+Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
+  if (options.grammars.size() > 1) throw Usage("a .cga file is derived alone; it imports others itself");
+  if (!options.set.empty()) throw Usage("attributes of .cga files are set by --attr NAME=VALUE, not by --set");
+  if (options.output != "instances" || options.sorted || options.nodes || options.schedule != "default" ||
+      options.repeat > 1 || options.maxInstances || options.maxColliders || options.slice)
+    throw Usage(
+        "--output, --sorted, --out-nodes, --schedule, --repeat, --slice, --max-instances and --max-colliders are "
+        "for grammars that derive on the GPU");
+  (void)common;
+  CgaOptions cga;
+  cga.file = options.grammars[0];
+  cga.start = options.start;
+  cga.style = options.style;
+  cga.attributes = options.attributes;
+  cga.axioms = options.axioms;
+  cga.seed = options.seed;
+  if (options.hasSize) cga.size = options.size;
+  cga.spacing = options.spacing;
+  cga.axiomFile = options.axiomFile;
+  cga.geographic = options.geographic;
+  cga.image = options.image;
+  cga.out = options.out;
+  cga.view = {options.imageSize, options.yaw, options.pitch, options.zoom, 0.003f};
+  cga.maxDepth = options.maxDepth;
+  cga.maxShapes = options.maxShapes;
+  return spawnCga(cga);
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
+  if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
+  if (!options.start.empty() || !options.style.empty() || !options.attributes.empty() || options.geographic)
+    throw Usage("--start, --style, --attr and --geographic are for .cga files");
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
   const BakedGraph grammar = bakeGraph(options.grammars, options.set);
@@ -492,8 +510,12 @@ Work addSpawn(CLI::App& app) {
       ->excludes(axioms);
   command
       ->add_option_function<std::string>(
-          "--axiom-size", [o = options.get()](const std::string& t) { o->size = parseTriple(t); },
-          "Extents of each start shape in metres (default 1,1,1)")
+          "--axiom-size",
+          [o = options.get()](const std::string& t) {
+            o->size = parseTriple(t);
+            o->hasSize = true;
+          },
+          "Extents of each start shape in metres (default 1,1,1; of .cga files rectangles X by Z, default 20,1,20)")
       ->type_name("X,Y,Z");
   command
       ->add_option("--spacing", options->spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
@@ -501,6 +523,16 @@ Work addSpawn(CLI::App& app) {
       ->check(within(1e-6, 1e9));
   command->add_option("--seed", options->seed, "Random seed; axiom i has seed S + i")->capture_default_str();
   addVariables(*command, options->set);
+  command
+      ->add_option("--start", options->start,
+                   "The rule that a .cga file starts at (default: @StartRule's, else the first)")
+      ->type_name("RULE");
+  command->add_option("--attr", options->attributes, "Set an attr of a .cga file; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--style", options->style, "A style of the .cga file")->type_name("NAME");
+  command->add_flag("--geographic", options->geographic,
+                    "Coordinates of a GeoJSON --axiom-file are longitude, latitude");
   command->add_option("--repeat", options->repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
@@ -581,6 +613,8 @@ Examples:
   gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
   gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50
+  gpgp spawn house.cga --axiom-size 12,1,18 --attr floors=3 --image house.png --out house.glb
+  gpgp spawn house.cga --axiom-file lots.geojson        polygons, with holes; their properties set attributes
 
 An axiom stands on its position. The CPU evaluator derives the same on one thread: cpu_reference_ms, and a check of what
 the device did. Errors in the grammar and in axiom files are printed with their place. What exceeds a budget is counted

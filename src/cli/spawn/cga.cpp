@@ -1,0 +1,266 @@
+#include "cli/spawn/cga.h"
+
+#include "cli/shared/messages.h"
+#include "host/files.h"
+#include "spawn/cga/compile.h"
+#include "spawn/language/suggest.h"
+
+#ifdef GPGP_WITH_VISIBILITY
+#include "cli/model/model.h"
+#endif
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <sstream>
+
+namespace gpgp::cli {
+
+namespace {
+
+using namespace spawn::cga;
+
+/// Prints them, and gives the first error, if there is one.
+std::string print(const Messages& messages) {
+  constexpr size_t kMostPrinted = 20;
+  std::string first;
+  size_t errors = 0, warnings = 0, omitted = 0;
+  for (const Messages::Message& m : messages.sorted()) {
+    const std::string line = spawn::format(m.diagnostic, m.file);
+    const bool isError = m.diagnostic.severity == GPGP_SEVERITY_ERROR;
+    if (isError && first.empty()) first = line;
+    size_t& count = isError ? errors : warnings;
+    if (++count > kMostPrinted) {
+      omitted += !isError;
+      continue;
+    }
+    std::fprintf(stderr, "%s\n", printable(line).c_str());
+  }
+  if (omitted) std::fprintf(stderr, "gpgp spawn: %zu more warnings are left out\n", omitted);
+  if (errors > 1) first += " (and " + std::to_string(errors - 1) + " more)";
+  return first;
+}
+
+std::vector<AttributeValue> attributeValues(const std::vector<std::string>& texts) {
+  std::vector<AttributeValue> result;
+  for (const std::string& text : texts) {
+    const size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw Usage("--attr takes NAME=VALUE, for example --attr height=12; got \"" + text + "\"");
+    result.push_back({text.substr(0, equals), text.substr(equals + 1)});
+  }
+  return result;
+}
+
+void checkAttributes(const std::vector<AttributeValue>& values, const Program& program) {
+  for (const AttributeValue& value : values) {
+    const auto isIt = [&](const AttributeInfo& a) { return a.name == value.name && !a.isMaterial; };
+    const auto found = std::find_if(program.attributes.begin(), program.attributes.end(), isIt);
+    if (found != program.attributes.end() && !found->isConstant) continue;
+    if (found != program.attributes.end()) throw Usage("--attr " + value.name + ": it is a const, which cannot be set");
+    spawn::Suggestion suggestion(value.name);
+    for (const AttributeInfo& a : program.attributes)
+      if (!a.isConstant && !a.isMaterial) suggestion.offer(a.name);
+    throw Usage("--attr " + value.name + ": there is no such attribute" + suggestion.text());
+  }
+}
+
+bool loadAsset(const std::string& path, Asset& asset, std::string& why) {
+#ifdef GPGP_WITH_VISIBILITY
+  try {
+    for (const glm::vec3& corner : worldCorners(loadModel(path))) {
+      asset.indices.push_back(static_cast<uint32_t>(asset.positions.size()));
+      asset.positions.push_back(corner);
+    }
+    return true;
+  } catch (const std::exception& error) {
+    why = error.what();
+    return false;
+  }
+#else
+  (void)path;
+  (void)asset;
+  why = "this build reads no models";
+  return false;
+#endif
+}
+
+Json annotationsOf(const AttributeInfo& attribute) {
+  Json list = Json::array();
+  for (const AttributeAnnotation& a : attribute.annotations) {
+    Json values = Json::array();
+    for (const AnnotationValue& v : a.values) {
+      const Json value = v.number ? Json(*v.number) : Json(printable(v.text));
+      values.push_back(v.name.empty() ? value : Json{{"name", printable(v.name)}, {"value", value}});
+    }
+    list.push_back({{"name", printable(a.name)}, {"values", values}});
+  }
+  return list;
+}
+
+Json attributesOf(const Program& program) {
+  Json list = Json::array();
+  for (const AttributeInfo& a : program.attributes)
+    if (!a.isConstant && !a.isMaterial)
+      list.push_back({{"name", printable(a.name)},
+                      {"file", printable(a.file)},
+                      {"line", a.place.line},
+                      {"annotations", annotationsOf(a)}});
+  return list;
+}
+
+/// Both of one program's strings and others.
+void join(Derivation& all, Derivation&& part) {
+  if (all.names.empty()) {
+    all = std::move(part);
+    return;
+  }
+  const uint32_t names = static_cast<uint32_t>(all.names.size()), vertices = static_cast<uint32_t>(all.vertices.size());
+  const uint32_t indices = static_cast<uint32_t>(all.indices.size());
+  all.names.insert(all.names.end(), part.names.begin(), part.names.end());
+  for (Leaf leaf : part.leaves) {
+    leaf.name += names;
+    if (leaf.texture) leaf.texture += names;
+    leaf.firstIndex += indices;
+    all.leaves.push_back(leaf);
+  }
+  all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const uint32_t i : part.indices) all.indices.push_back(i + vertices);
+  for (const auto& [name, report] : part.reports) {
+    Report& to = all.reports[name];
+    to.least = to.count ? std::min(to.least, report.least) : report.least;
+    to.most = to.count ? std::max(to.most, report.most) : report.most;
+    to.count += report.count;
+    to.sum += report.sum;
+  }
+  all.prints.insert(all.prints.end(), part.prints.begin(), part.prints.end());
+  all.printed += part.printed;
+  all.shapes += part.shapes;
+  all.triangles += part.triangles;
+  all.depth = std::max(all.depth, part.depth);
+}
+
+void paint(const CgaOptions& options, const Derivation& derivation) {
+  std::vector<std::array<glm::vec3, 3>> triangles;
+  std::vector<glm::vec3> colours;
+  for (const Leaf& leaf : derivation.leaves) {
+    if (leaf.color.w <= 0.01f) continue;
+    for (uint32_t i = 0; i < leaf.indexCount; i += 3) {
+      const auto at = [&](uint32_t k) {
+        return derivation.vertices[derivation.indices[leaf.firstIndex + i + k]].position;
+      };
+      triangles.push_back({at(0), at(1), at(2)});
+      colours.push_back(glm::vec3(leaf.color));
+    }
+  }
+  paintScene(options.image, options.view, triangles, [&](size_t i) { return colours[i]; });
+}
+
+} // namespace
+
+bool isCga(const std::string& file) {
+  if (file.size() < 4) return false;
+  std::string end = file.substr(file.size() - 4);
+  for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return end == ".cga";
+}
+
+Outcome spawnCga(const CgaOptions& options) {
+  const std::string text = host::readText(options.file);
+  DeriveOptions derive;
+  derive.attributes = attributeValues(options.attributes);
+  derive.loadAsset = loadAsset;
+  derive.keepTriangles = !options.image.empty() || !options.out.empty();
+  if (options.maxDepth) derive.maxDepth = options.maxDepth;
+  if (options.maxShapes) derive.maxShapes = options.maxShapes;
+
+  CompileOptions compile{options.file, options.start, options.style, filesOnDisk()};
+  Messages compiled;
+  std::optional<Program> program = spawn::cga::compile(text, compile, compiled);
+  const std::string wrong = print(compiled);
+  if (!program) throw Failure(wrong);
+  checkAttributes(derive.attributes, *program);
+  std::vector<std::string> names;
+  for (const RuleInfo& rule : program->rules)
+    if (rule.parameters == 0) names.push_back(rule.name);
+  const CgaAxioms start = cgaAxioms(options, names);
+
+  // Axioms of one rule after the other; each rule has a program, for which attributes it needs.
+  std::map<std::string, std::vector<Axiom>> byRule;
+  for (size_t i = 0; i < start.axioms.size(); ++i) byRule[start.rules[i]].push_back(start.axioms[i]);
+  Derivation all;
+  Messages messages;
+  double milliseconds = 0;
+  for (const auto& [rule, axioms] : byRule) {
+    std::optional<Program> other;
+    if (!rule.empty()) {
+      Messages same; // as above
+      compile.start = rule;
+      other = spawn::cga::compile(text, compile, same);
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    Derivation part = spawn::cga::derive(other ? *other : *program, axioms, derive, messages);
+    milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    join(all, std::move(part));
+  }
+  const std::string failed = print(messages);
+  if (!options.image.empty()) paint(options, all);
+  if (!options.out.empty()) writeGlb(options.out, all);
+
+  std::map<std::string, std::pair<uint64_t, uint64_t>> rules; // shapes, and triangles where they are kept
+  for (const Leaf& leaf : all.leaves) {
+    auto& [shapes, triangles] = rules[all.names[leaf.name]];
+    ++shapes;
+    triangles += leaf.indexCount / 3;
+  }
+  Outcome outcome;
+  outcome.failure = failed;
+  std::ostringstream said;
+  said << all.leaves.size() << " terminals (" << all.triangles << " triangles) from " << start.axioms.size()
+       << (start.axioms.size() == 1 ? " axiom" : " axioms") << ", " << all.shapes << " shapes in " << all.depth + 1
+       << " generations on the CPU, " << milliseconds << " ms\n";
+  Json ruleList = Json::array(), reports = Json::object(), statistics = Json::object(), prints = Json::array();
+  for (const auto& [name, counts] : rules) {
+    said << "  " << counts.first << "  " << printable(name) << '\n';
+    Json rule{{"rule", printable(name)}, {"instances", counts.first}};
+    if (derive.keepTriangles) rule["triangles"] = counts.second;
+    ruleList.push_back(rule);
+  }
+  for (const auto& [name, report] : all.reports) {
+    said << "  report " << printable(name) << ": " << report.sum << " (" << report.count << " times)\n";
+    reports[printable(name)] = report.sum;
+    statistics[printable(name)] = {
+        {"count", report.count}, {"sum", report.sum}, {"min", report.least}, {"max", report.most}};
+  }
+  for (const std::string& print : all.prints) {
+    said << "  print " << printable(print) << '\n';
+    prints.push_back(printable(print));
+  }
+  if (all.printed > all.prints.size()) said << "  and " << all.printed - all.prints.size() << " more\n";
+  if (!options.image.empty()) said << "picture: " << options.image << '\n';
+  if (!options.out.empty()) said << "triangles: " << options.out << '\n';
+  outcome.text = said.str();
+  outcome.json = {{"grammar", options.file},
+                  {"device", Json()},
+                  {"status", failed.empty() ? "GPGP_SUCCESS" : "GPGP_BUDGET_EXCEEDED"},
+                  {"axioms", start.axioms.size()},
+                  {"seed", options.seed},
+                  {"start", program->rules[program->start].name},
+                  {"terminals", all.leaves.size()},
+                  {"vertices", all.vertices.size()},
+                  {"triangles", all.triangles},
+                  {"shapes", all.shapes},
+                  {"depth", all.depth},
+                  {"rules", ruleList},
+                  {"reports", reports},
+                  {"report_statistics", statistics},
+                  {"prints", prints},
+                  {"attributes", attributesOf(*program)},
+                  {"cpu_ms", milliseconds},
+                  {"image", options.image.empty() ? Json() : Json(options.image)},
+                  {"out", options.out.empty() ? Json() : Json(options.out)}};
+  return outcome;
+}
+
+} // namespace gpgp::cli

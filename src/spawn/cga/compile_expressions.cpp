@@ -1,0 +1,289 @@
+// Expressions to code that leaves one value on the machine's stack.
+#include "spawn/cga/compiler.h"
+#include "spawn/language/suggest.h"
+
+#include <algorithm>
+
+namespace gpgp::spawn::cga {
+
+using namespace shader;
+
+namespace {
+struct BinaryCode {
+  std::string_view text;
+  uint32_t code;
+};
+constexpr BinaryCode kBinary[] = {{"+", kCgaAddCode},       {"-", kCgaSubtractCode},     {"*", kCgaMultiplyCode},
+                                  {"/", kCgaDivideCode},    {"%", kCgaModuloCode},       {"==", kCgaEqualCode},
+                                  {"!=", kCgaNotEqualCode}, {"<", kCgaLessCode},         {"<=", kCgaLessEqualCode},
+                                  {">", kCgaGreaterCode},   {">=", kCgaGreaterEqualCode}};
+const char* nameOf(Type type) {
+  return type == Type::string    ? "a string"
+         : type == Type::boolean ? "true or false"
+         : type == Type::array   ? "an array"
+                                 : "a number";
+}
+} // namespace
+
+/// The module that a path with prefixes leads to, and the name behind them. isMissing: by way of an import that could
+/// not be read.
+Module* Compiler::resolve(const std::string& path, const Context& context, std::string& last, bool& isMissing) {
+  Module* module = context.scope;
+  last = path;
+  isMissing = false;
+  for (size_t dot = last.find('.'); dot != std::string::npos; dot = last.find('.')) {
+    const auto found = module->imports.find(last.substr(0, dot));
+    if (found == module->imports.end()) break;
+    module = found->second;
+    last.erase(0, dot + 1);
+    if (!module->file) {
+      isMissing = true;
+      break;
+    }
+  }
+  return module;
+}
+
+/// A constant that is a plain value is used where it is named.
+bool Compiler::literal(const Entity& entity, Type& type) {
+  if (entity.kind != Definition::Kind::constant || !entity.definition->value || entity.scope != entity.owner)
+    return false;
+  const Expression& e = *entity.definition->value;
+  if (e.kind == Expression::Kind::number) {
+    emit(kCgaPushFloatCode, {floatBitsToUint(static_cast<float>(e.number))});
+    type = Type::number;
+  } else if (e.kind == Expression::Kind::string) {
+    emit(kCgaPushStringCode, {string(e.text)});
+    type = Type::string;
+  } else if (e.kind == Expression::Kind::boolean) {
+    emit(kCgaPushBoolCode, {e.number != 0 ? 1u : 0u});
+    type = Type::boolean;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+Type Compiler::expression(const Expression& e, const Context& context, bool selectorFirst) {
+  switch (e.kind) {
+  case Expression::Kind::number:
+    emit(kCgaPushFloatCode, {floatBitsToUint(static_cast<float>(e.number))});
+    return Type::number;
+  case Expression::Kind::string: emit(kCgaPushStringCode, {string(e.text)}); return Type::string;
+  case Expression::Kind::boolean: emit(kCgaPushBoolCode, {e.number != 0 ? 1u : 0u}); return Type::boolean;
+  case Expression::Kind::name: return name(e, context, selectorFirst);
+  case Expression::Kind::unary:
+  case Expression::Kind::relative:
+  case Expression::Kind::floating: {
+    if (e.kind == Expression::Kind::unary && e.text == "-" && e.arguments[0]->kind == Expression::Kind::number) {
+      emit(kCgaPushFloatCode, {floatBitsToUint(settle(-static_cast<float>(e.arguments[0]->number)))});
+      return Type::number;
+    }
+    const Type type = expression(*e.arguments[0], context);
+    const bool isNot = e.text == "!";
+    if (type == Type::string || type == Type::array || (!isNot && type == Type::boolean))
+      messages_.error(context.file(), e.place, "'" + e.text + "' stands before " + nameOf(type));
+    emit(e.kind == Expression::Kind::relative   ? kCgaRelativeCode
+         : e.kind == Expression::Kind::floating ? kCgaFloatingCode
+         : isNot                                ? kCgaNotCode
+                                                : kCgaNegateCode);
+    return isNot ? Type::boolean : Type::number;
+  }
+  case Expression::Kind::binary: return binary(e, context);
+  case Expression::Kind::index:
+    source(context, e.place);
+    for (const ExpressionPtr& a : e.arguments) expression(*a, context);
+    emit(kCgaIndexCode, {static_cast<uint32_t>(e.arguments.size() - 1)});
+    return Type::unknown;
+  case Expression::Kind::range:
+    for (const ExpressionPtr& a : e.arguments) {
+      if (a)
+        expression(*a, context);
+      else
+        emit(kCgaPushNothingCode);
+    }
+    emit(kCgaRangeCode);
+    return Type::unknown;
+  case Expression::Kind::array:
+    for (const ExpressionPtr& a : e.arguments) expression(*a, context);
+    if (e.arguments.size() > 2000) messages_.error(context.file(), e.place, "an array of more than 2000 values");
+    source(context, e.place);
+    emit(kCgaArrayCode, {static_cast<uint32_t>(e.arguments.size())});
+    return Type::array;
+  case Expression::Kind::cases:
+  case Expression::Kind::stochastic: return choices(e, context);
+  }
+  return Type::unknown;
+}
+
+Type Compiler::binary(const Expression& e, const Context& context) {
+  const Type left = expression(*e.arguments[0], context);
+  if (e.text == "&&" || e.text == "||") {
+    const uint32_t end = newLabel();
+    emit(e.text == "&&" ? kCgaAndCode : kCgaOrCode);
+    emitLabel(end);
+    const Type right = expression(*e.arguments[1], context);
+    place(end);
+    for (const Type type : {left, right})
+      if (type == Type::string || type == Type::array)
+        messages_.error(context.file(), e.place, "'" + e.text + "' joins conditions; one is " + nameOf(type));
+    return Type::boolean;
+  }
+  const Type right = expression(*e.arguments[1], context);
+  const bool each = e.text[0] == '.';
+  const std::string_view text = each ? std::string_view(e.text).substr(1) : std::string_view(e.text);
+  const uint32_t code =
+      std::find_if(std::begin(kBinary), std::end(kBinary), [&](const BinaryCode& b) { return b.text == text; })->code;
+  source(context, e.place);
+  if (each) {
+    emit(kCgaEachCode, {code});
+    return Type::array;
+  }
+  emit(code);
+  if (code >= kCgaEqualCode) return Type::boolean;
+  if (code == kCgaAddCode && (left == Type::string || right == Type::string)) return Type::string;
+  if (code == kCgaAddCode && (left == Type::unknown || right == Type::unknown)) return Type::unknown;
+  for (const Type type : {left, right})
+    if (type == Type::string)
+      messages_.error(context.file(), e.place, "'" + e.text + "' computes with numbers; one side is a string");
+  return left == Type::array || right == Type::array ? Type::array : Type::number;
+}
+
+Type Compiler::choices(const Expression& e, const Context& context) {
+  const bool isCase = e.kind == Expression::Kind::cases;
+  const uint32_t end = newLabel();
+  Type type = Type::unknown;
+  bool hasElse = false;
+  double sum = 0;
+  if (!isCase) emit(kCgaDrawCode);
+  for (size_t i = 0; i < e.choices.size(); ++i) {
+    const Choice& c = e.choices[i];
+    const uint32_t next = newLabel();
+    if (c.condition) {
+      const Type condition = expression(*c.condition, context);
+      if (condition == Type::string || condition == Type::array)
+        messages_.error(context.file(), c.condition->place,
+                        std::string(isCase ? "a condition" : "a percentage") + " is " + nameOf(condition));
+      if (!isCase && c.condition->kind == Expression::Kind::number) sum += c.condition->number;
+      emit(isCase ? kCgaJumpUnlessCode : kCgaChooseCode);
+      emitLabel(next);
+    } else {
+      hasElse = true;
+      if (!isCase) emit(kCgaPopCode);
+    }
+    const Type value = expression(*c.value, context);
+    type = i == 0 || type == value ? value : Type::unknown;
+    if (c.condition) {
+      emit(kCgaJumpCode);
+      emitLabel(end);
+      place(next);
+    }
+  }
+  if (!hasElse) {
+    messages_.error(context.file(), e.place, isCase ? "these cases have no else" : "these percentages have no else");
+    if (!isCase) emit(kCgaPopCode);
+    nothing();
+  }
+  if (sum > 100.0001) messages_.error(context.file(), e.place, "these percentages sum up to more than 100");
+  place(end);
+  return type;
+}
+
+void Compiler::arguments(std::string_view name, const std::vector<ExpressionPtr>& arguments, const Context& context) {
+  const uint32_t words = wordArguments(name, arguments.size());
+  for (size_t i = 0; i < arguments.size(); ++i) expression(*arguments[i], context, i < 32 && ((words >> i) & 1u));
+}
+
+Type Compiler::name(const Expression& e, const Context& context, bool selectorFirst) {
+  if (!e.isCall) {
+    for (size_t i = context.locals.size(); i-- > 0;)
+      if (context.locals[i] == e.text && !(selectorFirst && isSelector(e.text))) {
+        emit(kCgaLocalCode, {static_cast<uint32_t>(i)});
+        return Type::unknown;
+      }
+    if (selectorFirst && isSelector(e.text)) {
+      emit(kCgaPushWordCode, {string(e.text)});
+      return Type::unknown;
+    }
+  }
+  std::string last;
+  bool isMissing = false;
+  Module* module = resolve(e.text, context, last, isMissing);
+  if (isMissing) {
+    const std::string prefix = e.text.substr(0, e.text.size() - last.size() - 1);
+    messages_.once("missing " + prefix, context.file(), e.place,
+                   "'" + e.text + "' comes from an import that was not found, and is 0");
+    nothing();
+    return Type::unknown;
+  }
+  if (Entity* entity = module->find(last, false, e.arguments.size())) {
+    refer(context, *entity);
+    if (entity->kind == Definition::Kind::function) {
+      for (const ExpressionPtr& a : e.arguments) expression(*a, context);
+      source(context, e.place);
+      emit(kCgaCallCode);
+      emitLabel(entity->label);
+      emit(static_cast<uint32_t>(e.arguments.size()));
+      return Type::unknown;
+    }
+    Type type = Type::unknown;
+    if (!literal(*entity, type)) emit(kCgaAttributeCode, {entity->slot});
+    return type;
+  }
+  if (const auto function = findFunction(e.text)) {
+    checkCount(context.file(), e.place, e.text, e.arguments.size(), function->least, function->most);
+    arguments(e.text, e.arguments, context);
+    source(context, e.place);
+    emit(function->isMath ? kCgaMathCode : kCgaFunctionCode,
+         {function->number, static_cast<uint32_t>(e.arguments.size())});
+    return function->isMath && function->number != kCgaPMath && function->number != kCgaIsinfMath &&
+                   function->number != kCgaIsnanMath
+               ? Type::number
+               : Type::unknown;
+  }
+  if (!e.isCall && isSelector(e.text)) {
+    emit(kCgaPushWordCode, {string(e.text)});
+    return Type::unknown;
+  }
+  if (!e.isCall && e.text.starts_with("material.")) {
+    const auto [found, isNew] = materials_.try_emplace(e.text, static_cast<uint32_t>(slots_.size()));
+    if (isNew) slots_.push_back(nullptr);
+    emit(kCgaAttributeCode, {found->second});
+    return Type::unknown;
+  }
+  if (isUnsupportedFunction(e.text)) {
+    messages_.once("function " + e.text, context.file(), e.place, "'" + e.text + "' is not supported, and is 0");
+    nothing();
+    return Type::unknown;
+  }
+  unknownName(e, context);
+  nothing();
+  return Type::unknown;
+}
+
+void Compiler::unknownName(const Expression& e, const Context& context) {
+  std::string last;
+  bool isMissing = false;
+  Module* module = resolve(e.text, context, last, isMissing);
+  const auto [begin, end] = module->entities.equal_range(last);
+  for (auto it = begin; it != end; ++it)
+    if (it->second.kind != Definition::Kind::rule) {
+      const size_t takes = it->second.definition->parameters.size();
+      messages_.error(context.file(), e.place,
+                      "'" + e.text + "' takes " + std::to_string(takes) + (takes == 1 ? " value" : " values") +
+                          ", not " + std::to_string(e.arguments.size()));
+      return;
+    }
+  Suggestion suggestion(e.text);
+  for (const std::string& local : context.locals) suggestion.offer(local);
+  for (const auto& [other, entity] : context.scope->entities)
+    if (entity.kind != Definition::Kind::rule) suggestion.offer(other);
+  for (const std::string_view other : functionNames()) suggestion.offer(other);
+  if (!e.isCall)
+    for (const std::string_view other : selectorNames()) suggestion.offer(other);
+  messages_.error(context.file(), e.place,
+                  std::string(e.isCall ? "there is no function '" : "there is no attribute, constant or function '") +
+                      e.text + "'" + suggestion.text());
+}
+
+} // namespace gpgp::spawn::cga

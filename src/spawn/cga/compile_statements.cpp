@@ -1,0 +1,305 @@
+// Bodies of rules to code that changes the current shape and makes new ones.
+#include "spawn/cga/compiler.h"
+#include "spawn/language/suggest.h"
+
+#include <algorithm>
+
+namespace gpgp::spawn::cga {
+
+using namespace shader;
+
+void Compiler::checkCount(const std::string& file, Place place, std::string_view name, size_t count, size_t least,
+                          size_t most) {
+  if (count >= least && count <= most) return;
+  const std::string takes =
+      least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most);
+  messages_.error(
+      file, place,
+      std::string("'").append(name).append("' takes ").append(takes).append(most == 1 ? " value" : " values") +
+          ", not " + std::to_string(count));
+}
+
+void Compiler::body(const Body& body, const Context& context, bool isLast, uint32_t end) {
+  int32_t brackets = 0;
+  for (size_t i = 0; i < body.size(); ++i) {
+    const Statement& s = body[i];
+    const bool last = isLast && i + 1 == body.size() && brackets == 0;
+    switch (s.kind) {
+    case Statement::Kind::push:
+      ++brackets;
+      source(context, s.place);
+      emit(kCgaPushShapeCode);
+      break;
+    case Statement::Kind::pop:
+      if (--brackets < 0) {
+        messages_.error(context.file(), s.place, "this ] has no [ before it");
+        brackets = 0;
+      }
+      source(context, s.place);
+      emit(kCgaPopShapeCode);
+      break;
+    case Statement::Kind::cases:
+    case Statement::Kind::stochastic: branches(s, context, last, end); break;
+    default: statement(s, context, last); break;
+    }
+  }
+  if (brackets > 0) messages_.warning(context.file(), body.front().place, "a [ in this rule has no ] behind it");
+}
+
+void Compiler::branches(const Statement& s, const Context& context, bool isLast, uint32_t end) {
+  const bool isCase = s.kind == Statement::Kind::cases;
+  const uint32_t behind = isLast ? end : newLabel();
+  bool hasElse = false;
+  double sum = 0;
+  if (!isCase) emit(kCgaDrawCode);
+  for (const Branch& branch : s.branches) {
+    const uint32_t next = newLabel();
+    if (branch.condition) {
+      const Type condition = expression(*branch.condition, context);
+      if (condition == Type::string || condition == Type::array)
+        messages_.error(context.file(), branch.condition->place, "a condition or percentage is a string or an array");
+      if (!isCase && branch.condition->kind == Expression::Kind::number) sum += branch.condition->number;
+      emit(isCase ? kCgaJumpUnlessCode : kCgaChooseCode);
+      emitLabel(next);
+    } else {
+      hasElse = true;
+      if (!isCase) emit(kCgaPopCode);
+    }
+    body(branch.body, context, isLast, end);
+    if (branch.condition) {
+      emit(kCgaJumpCode);
+      emitLabel(behind);
+      place(next);
+    }
+  }
+  if (!hasElse) {
+    if (!isCase) emit(kCgaPopCode);
+    messages_.once(isCase ? "case without else" : "percentages without else", context.file(), s.place,
+                   isCase ? "these cases have no else; where none holds, nothing is done"
+                          : "these percentages have no else; for the rest, nothing is done");
+  }
+  if (sum > 100.0001) messages_.error(context.file(), s.place, "these percentages sum up to more than 100");
+  if (!isLast) place(behind);
+}
+
+void Compiler::statement(const Statement& s, const Context& context, bool isLast) {
+  if (s.kind == Statement::Kind::leaf) {
+    source(context, s.place);
+    emit(kCgaLeafCode, {string(s.name)});
+    return;
+  }
+  if (invoke(s, context, isLast)) return;
+  if (s.name == "NIL" && !s.hasBlock) {
+    emit(kCgaNilCode);
+    return;
+  }
+  if (s.name == "set") return set(s, context);
+  const auto operation = findOperation(s.name);
+  if (!operation) return unknownStatement(s, context);
+  const OperationInfo& info = operationInfo(*operation);
+  checkCount(context.file(), s.place, s.name, s.arguments.size(), info.least, info.most);
+  if (s.hasBlock != (info.block != Block::none)) {
+    messages_.error(context.file(), s.place,
+                    "'" + s.name + (s.hasBlock ? "' takes no block, { ... }" : "' needs a block, { ... }"));
+    return;
+  }
+  if (s.hasBlock) return block(s, *operation, context);
+  arguments(s.name, s.arguments, context);
+  source(context, s.place);
+  emit(kCgaOperationCode, {static_cast<uint32_t>(*operation), static_cast<uint32_t>(s.arguments.size())});
+}
+
+bool Compiler::invoke(const Statement& s, const Context& context, bool isLast) {
+  if (s.hasBlock) return false;
+  std::string last;
+  bool isMissing = false;
+  Module* module = resolve(s.name, context, last, isMissing);
+  if (isMissing) {
+    messages_.once("missing rule " + s.name.substr(0, s.name.find('.')), context.file(), s.place,
+                   "'" + s.name + "' comes from an import that was not found; shapes end there");
+    emit(kCgaLeafCode, {string(s.name)});
+    return true;
+  }
+  Entity* entity = module->find(last, true, s.arguments.size());
+  if (!entity && last == "start" && s.arguments.empty()) entity = module->start;
+  if (!entity) return false;
+  refer(context, *entity);
+  for (const ExpressionPtr& a : s.arguments) expression(*a, context);
+  source(context, s.place);
+  emit(isLast ? kCgaInvokeLastCode : kCgaInvokeCode);
+  emitLabel(entity->label);
+  emit(static_cast<uint32_t>(s.arguments.size()));
+  return true;
+}
+
+void Compiler::unknownStatement(const Statement& s, const Context& context) {
+  if (isUnsupportedOperation(s.name)) {
+    messages_.once("operation " + s.name, context.file(), s.place,
+                   "the operation '" + s.name + "' is not supported, and does nothing");
+    return;
+  }
+  std::string last;
+  bool isMissing = false;
+  Module* module = resolve(s.name, context, last, isMissing);
+  const auto [begin, end] = module->entities.equal_range(last);
+  for (auto it = begin; it != end; ++it)
+    if (it->second.kind == Definition::Kind::rule) {
+      const size_t takes = it->second.definition->parameters.size();
+      messages_.error(context.file(), s.place,
+                      "the rule '" + s.name + "' takes " + std::to_string(takes) + (takes == 1 ? " value" : " values") +
+                          ", not " + std::to_string(s.arguments.size()));
+      return;
+    }
+  Suggestion suggestion(s.name);
+  for (const auto& [name, entity] : context.scope->entities)
+    if (entity.kind == Definition::Kind::rule) suggestion.offer(name);
+  for (const std::string_view name : operationNames()) suggestion.offer(name);
+  if (s.hasBlock) {
+    messages_.error(context.file(), s.place, "there is no operation '" + s.name + "'" + suggestion.text());
+    return;
+  }
+  // CGA takes it for the name of a shape that ends here.
+  messages_.once("rule " + s.name, context.file(), s.place,
+                 "there is no rule or operation '" + s.name + "'; shapes end there" + suggestion.text());
+  emit(kCgaLeafCode, {string(s.name)});
+}
+
+void Compiler::set(const Statement& s, const Context& context) {
+  checkCount(context.file(), s.place, "set", s.arguments.size(), 2, 2);
+  if (s.arguments.size() != 2) return;
+  const Expression& target = *s.arguments[0];
+  if (target.kind != Expression::Kind::name || target.isCall) {
+    messages_.error(context.file(), target.place, "set takes the name of an attribute first");
+    return;
+  }
+  std::string last;
+  bool isMissing = false;
+  Module* module = resolve(target.text, context, last, isMissing);
+  if (isMissing) {
+    messages_.once("missing " + target.text.substr(0, target.text.find('.')), context.file(), target.place,
+                   "'" + target.text + "' comes from an import that was not found");
+    return;
+  }
+  if (Entity* entity = module->find(last, false, 0)) {
+    if (entity->kind != Definition::Kind::attribute) {
+      messages_.error(context.file(), target.place, "'" + target.text + "' is no attr, and cannot be set");
+      return;
+    }
+    refer(context, *entity);
+    expression(*s.arguments[1], context);
+    source(context, s.place);
+    emit(kCgaSetAttributeCode, {entity->slot});
+    return;
+  }
+  expression(*s.arguments[1], context);
+  source(context, s.place);
+  if (const auto operation = findSettable(target.text)) {
+    emit(kCgaOperationCode, {static_cast<uint32_t>(*operation), 1});
+  } else if (target.text.starts_with("material.")) {
+    const auto [found, isNew] = materials_.try_emplace(target.text, static_cast<uint32_t>(slots_.size()));
+    if (isNew) slots_.push_back(nullptr);
+    emit(kCgaSetAttributeCode, {found->second});
+  } else if (target.text.starts_with("trim.") || target.text.starts_with("pivot.")) {
+    messages_.once("set " + target.text, context.file(), target.place,
+                   "'" + target.text + "' is not supported, and cannot be set");
+    emit(kCgaPopCode);
+  } else {
+    Suggestion suggestion(target.text);
+    for (const auto& [name, entity] : context.scope->entities)
+      if (entity.kind == Definition::Kind::attribute) suggestion.offer(name);
+    messages_.error(context.file(), target.place, "there is no attribute '" + target.text + "'" + suggestion.text());
+    emit(kCgaPopCode);
+  }
+}
+
+void Compiler::selectors(const std::vector<Part>& parts, const Context& context, bool selectorFirst, uint32_t& count,
+                         std::vector<uint32_t>& numbers) {
+  for (const Part& part : parts) {
+    if (part.isGroup) {
+      selectors(part.group, context, selectorFirst, count, numbers);
+      continue;
+    }
+    numbers.push_back(part.selector ? count : kCgaNoSelector);
+    if (!part.selector) continue;
+    const bool isShort = part.selector->text.size() == 1; // rather a name of the file
+    const Type type = expression(*part.selector, context, selectorFirst && !isShort);
+    if (type == Type::string || type == Type::array)
+      messages_.error(context.file(), part.selector->place,
+                      selectorFirst ? "a selector is a word or a number" : "a size is a number");
+    if (!selectorFirst && type == Type::boolean)
+      messages_.error(context.file(), part.selector->place, "a size is a number");
+    ++count;
+  }
+}
+
+void Compiler::block(const Statement& s, Operation operation, const Context& context) {
+  const bool isSplit = operation == Operation::split_;
+  arguments(s.name, s.arguments, context);
+  PendingPart pending{&s, {}, context, newLabel()};
+  uint32_t count = static_cast<uint32_t>(s.arguments.size());
+  selectors(s.parts, context, !isSplit, count, pending.selectors);
+  if (count > 1000) messages_.error(context.file(), s.place, "a block of more than 1000 parts");
+  if (!isSplit) {
+    if (s.repeats) messages_.error(context.file(), s.place, "only the parts of a split repeat");
+    for (const Part& part : s.parts)
+      if (part.isGroup) messages_.error(context.file(), part.place, "only the parts of a split are nested");
+  } else if (s.parts.empty()) {
+    messages_.error(context.file(), s.place, "this split has no parts");
+  }
+  source(context, s.place);
+  emit(kCgaBlockCode, {static_cast<uint32_t>(operation), count});
+  emitLabel(pending.label);
+  pending_.push_back(std::move(pending));
+}
+
+/// Tables first, then bodies.
+void Compiler::parts(const PendingPart& pending) {
+  std::vector<std::pair<const Body*, uint32_t>> bodies;
+  size_t selector = 0;
+  if (pending.statement->repeats) { // { ... }*: a table of one group
+    place(pending.label);
+    emit(1);
+    const uint32_t inner = newLabel();
+    emit(static_cast<uint32_t>(program_.words.size() + 1));
+    emit(kCgaPartRepeated);
+    emit(kCgaNoSelector);
+    emitLabel(inner);
+    table(pending.statement->parts, pending, selector, inner, bodies);
+  } else {
+    table(pending.statement->parts, pending, selector, pending.label, bodies);
+  }
+  for (const auto& [code, label] : bodies) {
+    const size_t visible = pending.context.locals.size();
+    chunk(label, pending.context.name, visible, visible);
+    const uint32_t end = newLabel();
+    body(*code, pending.context, true, end);
+    place(end);
+    emit(kCgaEndCode);
+  }
+}
+
+void Compiler::table(const std::vector<Part>& parts, const PendingPart& pending, size_t& selector, uint32_t label,
+                     std::vector<std::pair<const Body*, uint32_t>>& bodies) {
+  place(label);
+  emit(static_cast<uint32_t>(parts.size()));
+  const size_t offsets = program_.words.size();
+  for (size_t i = 0; i < parts.size(); ++i) emit(0);
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const Part& part = parts[i];
+    program_.words[offsets + i] = static_cast<uint32_t>(program_.words.size());
+    const uint32_t target = newLabel();
+    if (part.isGroup) {
+      emit(part.repeats ? kCgaPartRepeated : kCgaPartGroup);
+      emit(kCgaNoSelector);
+      emitLabel(target);
+      table(part.group, pending, selector, target, bodies);
+    } else {
+      emit(part.isOneShape ? kCgaPartTogether : kCgaPartEach);
+      emit(pending.selectors[selector++]);
+      emitLabel(target);
+      bodies.push_back({&part.body, target});
+    }
+  }
+}
+
+} // namespace gpgp::spawn::cga

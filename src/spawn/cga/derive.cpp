@@ -1,0 +1,87 @@
+// Axioms to threads in blocks of fixed size, and their results together in order.
+#include "spawn/cga/derive.h"
+
+#include "spawn/cga/deriver.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+namespace gpgp::spawn::cga {
+
+namespace {
+
+struct AxiomBlock {
+  Derivation derivation;
+  Messages messages;
+};
+
+void append(Derivation& all, Derivation&& part, size_t programStrings) {
+  if (all.names.empty()) {
+    all = std::move(part);
+    return;
+  }
+  std::vector<uint32_t> names; // of the part's own strings, in all
+  for (size_t i = programStrings; i < part.names.size(); ++i) {
+    const auto at =
+        std::find(all.names.begin() + static_cast<ptrdiff_t>(programStrings), all.names.end(), part.names[i]);
+    names.push_back(static_cast<uint32_t>(at - all.names.begin()));
+    if (at == all.names.end()) all.names.push_back(part.names[i]);
+  }
+  const uint32_t firstVertex = static_cast<uint32_t>(all.vertices.size());
+  const uint32_t firstIndex = static_cast<uint32_t>(all.indices.size());
+  for (Leaf leaf : part.leaves) {
+    if (leaf.name >= programStrings) leaf.name = names[leaf.name - programStrings];
+    if (leaf.texture >= programStrings) leaf.texture = names[leaf.texture - programStrings];
+    leaf.firstIndex += firstIndex;
+    all.leaves.push_back(leaf);
+  }
+  all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const uint32_t i : part.indices) all.indices.push_back(firstVertex + i);
+  for (const auto& [name, report] : part.reports) {
+    Report& to = all.reports[name];
+    to.least = to.count ? std::min(to.least, report.least) : report.least;
+    to.most = to.count ? std::max(to.most, report.most) : report.most;
+    to.count += report.count;
+    to.sum += report.sum;
+  }
+  for (std::string& print : part.prints)
+    if (all.prints.size() < Derivation::kMostPrints) all.prints.push_back(std::move(print));
+  all.printed += part.printed;
+  all.shapes += part.shapes;
+  all.triangles += part.triangles;
+  all.depth = std::max(all.depth, part.depth);
+}
+
+} // namespace
+
+Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
+                  Messages& messages) {
+  constexpr size_t kBlock = 32; // axioms; of fixed size, so that sums are added in the same order by any threads
+  std::vector<AxiomBlock> blocks((axioms.size() + kBlock - 1) / kBlock);
+  std::atomic<size_t> next{0};
+  const auto work = [&] {
+    std::unique_ptr<Deriver> deriver; // large
+    for (size_t b = next++; b < blocks.size(); b = next++) {
+      if (!deriver) deriver = std::make_unique<Deriver>(program, options);
+      blocks[b].derivation.names = program.strings;
+      for (size_t i = b * kBlock; i < std::min(axioms.size(), (b + 1) * kBlock); ++i)
+        deriver->run(axioms[i], static_cast<uint32_t>(i), blocks[b].derivation, blocks[b].messages);
+    }
+  };
+  const size_t wanted = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  const size_t count = std::min(wanted, blocks.size());
+  std::vector<std::thread> threads;
+  for (size_t i = 1; i < count; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  Derivation result;
+  for (AxiomBlock& block : blocks) {
+    append(result, std::move(block.derivation), program.strings.size());
+    messages.merge(block.messages);
+  }
+  if (result.names.empty()) result.names = program.strings;
+  return result;
+}
+
+} // namespace gpgp::spawn::cga

@@ -1,0 +1,94 @@
+// Derives a .cga program on the CPU: shapes, breadth first, from polygons or rectangles in the ground plane.
+//
+// Results depend on the program, the axioms and their seeds only: neither on the number of threads nor on the order in
+// which shapes are derived, since random numbers are keyed by the path to a shape (shaders/core/random.h).
+#pragma once
+#include "spawn/cga/modules.h"
+#include "spawn/cga/program.h"
+
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gpgp::spawn::cga {
+
+/// A value that an attribute is set to from outside; what it is taken for follows from its text: a number, true or
+/// false, else a string.
+struct AttributeValue {
+  std::string name; ///< with the prefixes of imports
+  std::string text;
+};
+
+/// A start shape. World space, metres, y up.
+struct Axiom {
+  std::vector<glm::vec3> points;   ///< of a polygon, empty: a rectangle
+  std::vector<uint32_t> loopSizes; ///< points of its outline, then of each hole
+  glm::vec3 origin{0};             ///< of a rectangle: its corner of least x and z, before rotation
+  glm::vec3 axisX{1, 0, 0}, axisY{0, 1, 0}, axisZ{0, 0, 1};
+  glm::vec3 size{1, 0, 1}; ///< of a rectangle; with a height it is a box
+  uint32_t seed = 1;
+  std::string name;
+  std::string where; ///< for messages about it: "lots.json:3:5"
+  std::vector<AttributeValue> attributes;
+};
+
+/// A file's triangles for i(): positions and indices.
+struct Asset {
+  std::vector<glm::vec3> positions;
+  std::vector<uint32_t> indices;
+};
+
+struct DeriveOptions {
+  uint32_t maxDepth = 2000;            ///< rules that follow one another
+  uint64_t maxShapes = 20'000'000;     ///< of one axiom
+  uint32_t maxFunctionDepth = 512;     ///< functions that call one another
+  uint32_t maxInstructions = 1u << 24; ///< of one rule
+  uint32_t threads = 0;                ///< 0: as many as the machine has
+  bool keepTriangles = true;           ///< else they are only counted
+  std::vector<AttributeValue> attributes;
+  /// Reads a file for i(); false: it cannot, and text says why.
+  std::function<bool(const std::string& path, Asset& asset, std::string& text)> loadAsset;
+};
+
+/// A shape in which a derivation ends.
+struct Leaf {
+  uint32_t name = 0; ///< of Derivation::names: the rule that it ended in
+  uint32_t axiom = 0;
+  uint32_t texture = 0; ///< of Derivation::names; 0: none
+  glm::vec4 color{1};   ///< sRGB, and opacity
+  uint32_t firstIndex = 0, indexCount = 0;
+};
+
+struct Vertex {
+  glm::vec3 position, normal;
+  glm::vec2 uv;
+};
+
+struct Report {
+  uint64_t count = 0;
+  double sum = 0, least = 0, most = 0;
+};
+
+struct Derivation {
+  std::vector<Leaf> leaves;       ///< in the order of axioms
+  std::vector<std::string> names; ///< 0 is empty
+  std::vector<Vertex> vertices;
+  std::vector<uint32_t> indices;
+  std::map<std::string, Report> reports;
+  std::vector<std::string> prints; ///< what print() said, in order, up to kMostPrints
+  uint64_t printed = 0;
+  uint64_t shapes = 0;    ///< that rules were run on
+  uint64_t triangles = 0; ///< of all leaves
+  uint32_t depth = 0;     ///< of the deepest shape
+  static constexpr size_t kMostPrints = 1000;
+};
+
+/// Messages get what went wrong on the way, once a kind, with its place; exceeded limits are errors.
+Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
+                  Messages& messages);
+
+} // namespace gpgp::spawn::cga

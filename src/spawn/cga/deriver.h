@@ -1,0 +1,219 @@
+// One thread's derivation: runs rules on shapes of one axiom after the other. The machine of
+// shaders/spawn/cga/machine.h is a part of it; the operations and functions that the machine leaves to it are in
+// operations*.cpp and functions*.cpp.
+#pragma once
+#include "spawn/cga/box_forms.h"
+#include "spawn/cga/derive.h"
+#include "spawn/cga/functions.h"
+#include "spawn/cga/names.h"
+#include "spawn/cga/strings.h"
+
+#include <array>
+#include <memory>
+#include <unordered_map>
+
+namespace gpgp::spawn::cga {
+
+using namespace shader;
+
+/// "#rrggbb" or "#rrggbbaa"; false: it is none.
+bool parseColor(std::string_view text, glm::vec4& color, bool& hasOpacity);
+
+/// An entry of the queue: a shape, and the rule that is to be run on it.
+struct Shape {
+  Form form;
+  vec3 pivot{0};                         ///< where scope.t counts from
+  vec3 pivotX{1, 0, 0}, pivotY{0, 1, 0}; ///< and the axes along which
+  glm::vec4 color{1};
+  uint32_t texture = 0; ///< string
+  uint32_t splitIndex = 0, splitTotal = 0, compIndex = 0, compTotal = 0, compSelector = 0;
+  uvec2 key{0, 0};                  ///< of the path to it, for random numbers
+  uint32_t draws = 0;               ///< numbers that were drawn at that key
+  uint32_t children = 0;            ///< that have keys of their own
+  uint32_t values = 0, changes = 0; ///< attributes: a block of all, and a chain of what was set since
+  uint32_t changeCount = 0;         ///< length of that chain
+  uint32_t projections = 0;         ///< chain of what setupProjection() said
+  uint32_t chunk = 0, first = 0, count = 0, depth = 0; ///< the rule, its values, how many rules came before
+};
+
+class Deriver {
+public:
+  Deriver(const Program& program, const DeriveOptions& options);
+  /// Adds what comes of an axiom.
+  void run(const Axiom& axiom, uint32_t number, Derivation& result, Messages& messages);
+
+private:
+  struct Change {
+    uint32_t slot, next;
+    CgaValue value;
+  };
+  struct Projection {
+    uint32_t set, next;
+    UvProjection map;
+  };
+  struct ArrayValue {
+    std::vector<CgaValue> values; ///< row by row
+    uint32_t columns = 1;
+    uint32_t rows() const { return columns ? static_cast<uint32_t>(values.size()) / columns : 0; }
+  };
+  struct Labelled {
+    uint32_t label;
+    Hull hull;
+    uvec2 key;
+  };
+  /// Values of an operation or a function, on the machine's stack.
+  struct Arguments {
+    const CgaValue* values;
+    uint32_t count;
+    const CgaValue& operator[](uint32_t i) const { return values[i]; }
+  };
+  using OperationFunction = bool (Deriver::*)(const Arguments&);
+  using BlockFunction = bool (Deriver::*)(const Arguments&, uint32_t table, uint32_t base);
+  using ValueFunction = CgaValue (Deriver::*)(const Arguments&);
+
+  // --- what the machine asks for (machine.h) ---
+  uint32_t cgaWord(uint32_t at) const { return words_[at]; }
+  const CgaValue& cgaStack(uint32_t at) const { return stack_[at]; }
+  void cgaSetStack(uint32_t at, const CgaValue& v) { stack_[at] = v; }
+  static constexpr uint32_t cgaStackSize() { return kStackSize; }
+  uint32_t cgaFrame(uint32_t at) const { return frames_[at]; }
+  void cgaSetFrame(uint32_t at, uint32_t v) { frames_[at] = v; }
+  uint32_t cgaMostFrames() const { return options_.maxFunctionDepth; }
+  uint32_t cgaMostTurns() const { return options_.maxInstructions; }
+  CgaValue cgaAttribute(uint32_t slot) const;
+  void cgaSetAttribute(uint32_t slot, const CgaValue& v);
+  float cgaRandom() { return drawnNumber(shape_.key, shape_.draws++); }
+  CgaValue cgaAddOther(const CgaValue& a, const CgaValue& b);
+  CgaValue cgaCompareOther(uint32_t code, const CgaValue& a, const CgaValue& b);
+  CgaValue cgaEach(uint32_t code, const CgaValue& a, const CgaValue& b);
+  CgaValue cgaFunction(uint32_t function, uint32_t first, uint32_t count);
+  CgaValue cgaArray(uint32_t first, uint32_t count);
+  CgaValue cgaIndex(uint32_t first, uint32_t count);
+  CgaValue cgaRange(const CgaValue& a, const CgaValue& b);
+  bool cgaOperation(uint32_t operation, uint32_t first, uint32_t count);
+  bool cgaBlock(uint32_t operation, uint32_t first, uint32_t count, uint32_t table, uint32_t base);
+  bool cgaInvoke(uint32_t chunk, uint32_t first, uint32_t count);
+  bool cgaGoOn(uint32_t chunk);
+  bool cgaLeaf(uint32_t name);
+  void cgaNil() { made_ = true; }
+  bool cgaPushShape();
+  bool cgaPopShape();
+  bool cgaEnd();
+  void cgaAt(uint32_t at) { at_ = at; }
+#include "spawn/cga/machine.h"
+
+  // --- deriver.cpp ---
+  bool start(const Axiom& axiom, uint32_t number);
+  void attributes(const Axiom& axiom);
+  void derive();
+  bool runRule(const Shape& shape);
+  void fail(const std::string& what);
+  /// Once a kind, at the place of the instruction that runs.
+  void warn(const std::string& kind, const std::string& text);
+  void warnAt(uint32_t at, bool isError, const std::string& kind, const std::string& text);
+  bool enters(uint32_t chunk, uint32_t depth);
+  void addLeaf(uint32_t name);
+  void writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf);
+  void writeTriangles(const Form& form, Derivation& result);
+
+  // --- for operations ---
+  float number(const CgaValue& v) const { return cgaNumber(v); }
+  /// A length; behind ' a part of whole.
+  float length(const CgaValue& v, float whole) const;
+  vec3 lengths(const Arguments& a, const vec3& whole) const;
+  std::string_view word(const CgaValue& v) const; ///< of selectors and strings; else empty
+  const std::string& text(const CgaValue& v);     ///< of whatever it is
+  CgaValue stringValue(std::string_view text) { return cgaMake(kCgaString, strings_.number(text)); }
+  /// What an operator of src/spawn/geometry returned. False: the run ends, since the pool has no room.
+  bool check(Status status, const char* what);
+  void setScope(const Scope& scope); ///< the geometry goes along
+  void resetPivot(Shape& shape) const;
+  Axes axes(std::string_view system) const;
+  /// A child of the shape that runs; its form and numbers are the caller's.
+  Shape& child();
+  bool addChild(Shape& shape, uint32_t body, uint32_t base);
+
+  // Operations, by GPGP_CGA_OPERATIONS.
+#define GPGP_CGA_none(name) bool name##_(const Arguments& a);
+#define GPGP_CGA_parts(name) bool name##_(const Arguments& a, uint32_t table, uint32_t base);
+#define GPGP_CGA_body(name) bool name##_(const Arguments& a, uint32_t table, uint32_t base);
+#define GPGP_CGA_DECLARE(name, least, most, block) GPGP_CGA_##block(name)
+  GPGP_CGA_OPERATIONS(GPGP_CGA_DECLARE)
+#undef GPGP_CGA_DECLARE
+#undef GPGP_CGA_none
+#undef GPGP_CGA_parts
+#undef GPGP_CGA_body
+  bool setAttributeOfShape(Operation operation, const CgaValue& v);
+  bool rotateScopeBy(const vec3& degrees, const vec3& fixed);
+  bool roofBy(const Arguments& a, RoofOptions& options, const char* what);
+  bool primitive(Primitive kind, uint32_t sides, uint32_t rings, const vec3& size);
+  bool wings(float front, float right, float back, float left, const Arguments& a, uint32_t table, uint32_t base);
+  bool shapeAndRemainder(const Form& inner, const Form& rest, const Arguments& a, uint32_t table, uint32_t base);
+  bool setbackBy(const std::vector<float>& distances, const Arguments& a, uint32_t table, uint32_t base);
+  bool splitUv(const Arguments& a, uint32_t table, uint32_t base);
+  bool selects(std::string_view selector, Component kind, uint32_t index, uint32_t count, const CgaValue& value);
+  uint32_t uvSet(const CgaValue& v);
+
+  // Functions, by GPGP_CGA_FUNCTIONS.
+#define GPGP_CGA_DECLARE(name, least, most) CgaValue name##_(const Arguments& a);
+  GPGP_CGA_FUNCTIONS(GPGP_CGA_DECLARE)
+#undef GPGP_CGA_DECLARE
+  CgaValue array(ArrayValue value);
+  const ArrayValue& arrayOf(const CgaValue& v);
+  CgaValue filled(uint32_t type, const Arguments& a);
+  std::vector<std::string> list(const CgaValue& v);
+  CgaValue listValue(const std::vector<std::string>& items);
+  std::vector<std::string> searchFiles(const std::string& pattern);
+  std::string findFile(const std::string& path);
+  CgaValue table(const Arguments& a, bool asStrings);
+  CgaValue context(const Arguments& a, bool (*query)(const Hull&, const Hull&));
+  const Hull& ownHull();
+  vec3 euler(const vec3& x, const vec3& y, const vec3& z) const;
+  CgaValue floatValue(float x) const { return cgaFloatValue(x); }
+
+  static constexpr uint32_t kStackSize = 8192;
+  static constexpr uint32_t kMostStates = 64; ///< [ in [
+  static constexpr uint32_t kLongestChain = 24;
+
+  const Program& program_;
+  const DeriveOptions& options_;
+  Messages* messages_ = nullptr;
+  const uint32_t* words_;
+  StringTable strings_;
+  GeometryPool pool_;
+  uint32_t poolWords_;
+  BoxForms boxes_;
+
+  Shape shape_;        // that the rule runs on
+  Scope ruleScope_;    // its scope when the rule began
+  bool made_ = false;  // whether anything came of it
+  uint32_t chunk_ = 0; // that runs
+  uint32_t at_ = 0;
+  std::array<CgaValue, kStackSize> stack_;
+  std::vector<uint32_t> frames_;
+  std::vector<Shape> states_;
+
+  std::vector<Shape> queue_, next_;
+  std::vector<CgaValue> queueValues_, nextValues_;
+  std::vector<Shape> leaves_;
+  std::vector<CgaValue> blocks_; // attributes, a block after the other
+  std::vector<Change> changes_;
+  std::vector<Projection> projections_;
+  std::vector<ArrayValue> arrays_;
+  std::vector<Labelled> labels_;
+  std::unordered_map<uint32_t, Report> reports_; // by string
+  std::vector<uint32_t> prints_;
+  std::string scratch_; // of text()
+  std::unordered_map<std::string, std::unique_ptr<Asset>> assets_;
+  std::unordered_map<std::string, Form> assetForms_; // in the pool
+  Hull hull_;
+  bool hasHull_ = false;
+
+  const Axiom* axiom_ = nullptr;
+  Form start_; // of the axiom
+  uint64_t shapes_ = 0, printCount_ = 0;
+  uint32_t deepest_ = 0;
+  bool noRoom_ = false, stopped_ = false, overLimit_ = false;
+};
+
+} // namespace gpgp::spawn::cga

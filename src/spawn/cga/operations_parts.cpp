@@ -1,0 +1,446 @@
+// Operations that make shapes of parts of the current one: split, comp, setback and their like, scatter.
+#include "spawn/cga/deriver.h"
+#include "spawn/cga/split_layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpgp::spawn::cga {
+
+namespace {
+
+constexpr size_t kMostPieces = 1'000'000;
+
+std::vector<SplitPart> readParts(const uint32_t* words, uint32_t table, const CgaValue* values, float whole) {
+  std::vector<SplitPart> parts(words[table]);
+  for (uint32_t i = 0; i < words[table]; ++i) {
+    const uint32_t record = words[table + 1 + i], kind = words[record + kCgaPartKind];
+    SplitPart& part = parts[i];
+    if (kind == kCgaPartGroup || kind == kCgaPartRepeated) {
+      part.kind = kind == kCgaPartGroup ? SplitPart::Kind::group : SplitPart::Kind::repeated;
+      part.parts = readParts(words, words[record + kCgaPartBody], values, whole);
+      continue;
+    }
+    const CgaValue v = values[words[record + kCgaPartSelector]];
+    const bool isNumber = v.type == kCgaFloat || v.type == kCgaRelative || v.type == kCgaFloating;
+    const float size = isNumber ? uintBitsToFloat(v.bits) : 0.0f;
+    part.kind = v.type == kCgaFloating ? SplitPart::Kind::floating : SplitPart::Kind::absolute;
+    part.size = v.type == kCgaRelative ? multiply(size, whole) : size;
+    part.body = words[record + kCgaPartBody];
+  }
+  return parts;
+}
+
+struct Selection {
+  Selector selector;
+  bool known = true;
+};
+Selection selectorOf(std::string_view word) {
+  const size_t dot = word.find('.');
+  const std::string_view last = dot == std::string_view::npos ? word : word.substr(dot + 1);
+  constexpr std::pair<std::string_view, Selector> kNames[] = {
+      {"front", Selector::Front},   {"south", Selector::Front},       {"back", Selector::Back},
+      {"north", Selector::Back},    {"left", Selector::Left},         {"west", Selector::Left},
+      {"right", Selector::Right},   {"east", Selector::Right},        {"top", Selector::Top},
+      {"up", Selector::Top},        {"bottom", Selector::Bottom},     {"down", Selector::Bottom},
+      {"side", Selector::Side},     {"vertical", Selector::Vertical}, {"horizontal", Selector::Horizontal},
+      {"aslant", Selector::Aslant}, {"nutant", Selector::Nutant},     {"border", Selector::Border},
+      {"inside", Selector::Inside}, {"eave", Selector::Eave},         {"hip", Selector::Hip},
+      {"valley", Selector::Valley}, {"ridge", Selector::Ridge},       {"all", Selector::All}};
+  for (const auto& [name, selector] : kNames)
+    if (name == last) return {selector};
+  return {Selector::All, false};
+}
+
+/// Of a box's face, which lies along the scope's axes: as matches() says.
+bool matchesNormal(vec3 n, Selector selector, const Axes& axes) {
+  const float x = glm::dot(n, axes.x), y = glm::dot(n, axes.y), z = glm::dot(n, axes.z);
+  const float ax = std::fabs(x), ay = std::fabs(y), az = std::fabs(z);
+  const float up = 0.98078528f, flat = 0.19509032f; // sine of 78.75 and 11.25 degrees
+  switch (selector) {
+  case Selector::Front: return z > 0 && az >= ax && az >= ay;
+  case Selector::Back: return z < 0 && az >= ax && az >= ay;
+  case Selector::Left: return x < 0 && ax > az && ax >= ay;
+  case Selector::Right: return x > 0 && ax > az && ax >= ay;
+  case Selector::Top: return y > 0 && ay > ax && ay > az;
+  case Selector::Bottom: return y < 0 && ay > ax && ay > az;
+  case Selector::Side: return ay <= up;
+  case Selector::Vertical: return ay <= flat;
+  case Selector::Horizontal: return ay > up;
+  case Selector::Aslant: return y > flat && y <= up;
+  case Selector::Nutant: return y < -flat && y >= -up;
+  case Selector::Inside:
+  case Selector::All: return true;
+  default: return false;
+  }
+}
+
+} // namespace
+
+// ---------------------------------------------------------------- split
+
+bool Deriver::split_(const Arguments& a, uint32_t table, uint32_t base) {
+  const std::string_view axisName = word(a[0]);
+  if (axisName == "u" || axisName == "v") return splitUv(a, table, base);
+  const uint32_t axis = axisName == "y" ? 1u : axisName == "z" ? 2u : 0u;
+  const bool adjust = word(a[1]) != "noAdjust";
+  const Form whole = shape_.form;
+  const float length = whole.scope.size[static_cast<int>(axis)];
+  std::vector<Piece> pieces;
+  if (!layOut(readParts(words_, table, a.values, length), length, kMostPieces, pieces)) {
+    fail("a split has more than " + std::to_string(kMostPieces) + " parts");
+    return false;
+  }
+  const bool isBox = boxes_.is(whole);
+  for (uint32_t i = 0; i < pieces.size(); ++i) {
+    const Piece& p = pieces[i];
+    Form form;
+    if (isBox) {
+      form = sliceBox(whole, axis, p.from, p.to);
+    } else if (whole.mesh == 0) {
+      form = sliceBox(whole, axis, p.from, p.to);
+      form.mesh = 0;
+    } else {
+      const Status status = slice(pool_, whole, axis, p.from, p.to, adjust, form);
+      if (status == kGeometryEmpty) continue;
+      if (status != kGeometryOk) {
+        if (!check(status, "split")) return false;
+        continue;
+      }
+    }
+    Shape& part = child();
+    part.form = form;
+    part.splitIndex = i;
+    part.splitTotal = static_cast<uint32_t>(pieces.size());
+    addChild(part, p.body, base);
+  }
+  return true;
+}
+
+bool Deriver::splitUv(const Arguments& a, uint32_t table, uint32_t base) {
+  const uint32_t axis = word(a[0]) == "v" ? 1u : 0u;
+  const bool isUnit = word(a[1]) == "unitSpace";
+  const uint32_t set = uvSet(a[2]);
+  if (boxes_.is(shape_.form) &&
+      !check(projectUv(pool_, shape_.form, set,
+                       setupProjection(shape_.form,
+                                       shape_.form.mesh == boxes_.upright ? UvAxes::ScopeXY : UvAxes::ScopeXZ, 0, 0)),
+             "split"))
+    return false;
+  vec2 low, high;
+  uvBounds(pool_, shape_.form, set, low, high);
+  const float begin = low[static_cast<int>(axis)], range = high[static_cast<int>(axis)] - begin;
+  if (!(range > 0)) {
+    warn("split uv", "split along u or v: the shape has no texture coordinates of set " + std::to_string(set));
+    return true;
+  }
+  // In units, the mean length that a texture's unit has on the shape.
+  const float unit =
+      isUnit
+          ? divide(axis == 0 ? number(geometry_du_({a.values + 2, 1})) : number(geometry_dv_({a.values + 2, 1})), range)
+          : 1.0f;
+  const float scale = unit > 0 ? unit : 1.0f;
+  std::vector<Piece> pieces;
+  if (!layOut(readParts(words_, table, a.values, range * scale), range * scale, kMostPieces, pieces)) {
+    fail("a split has more than " + std::to_string(kMostPieces) + " parts");
+    return false;
+  }
+  const Form whole = shape_.form;
+  for (uint32_t i = 0; i < pieces.size(); ++i) {
+    Form form;
+    const Status status =
+        sliceUv(pool_, whole, set, axis, begin + pieces[i].from / scale, begin + pieces[i].to / scale, form);
+    if (status == kGeometryEmpty) continue;
+    if (status != kGeometryOk) {
+      if (!check(status, "split")) return false;
+      continue;
+    }
+    Shape& part = child();
+    part.form = form;
+    part.splitIndex = i;
+    part.splitTotal = static_cast<uint32_t>(pieces.size());
+    resetPivot(part);
+    addChild(part, pieces[i].body, base);
+  }
+  return true;
+}
+
+// ---------------------------------------------------------------- components
+
+bool Deriver::selects(std::string_view selector, Component kind, uint32_t index, uint32_t count,
+                      const CgaValue& value) {
+  if (value.type == kCgaFloat) {
+    const float wanted = number(value);
+    return static_cast<float>(index) == (wanted < 0 ? wanted + static_cast<float>(count) : wanted);
+  }
+  if (value.type == kCgaBool) return value.bits != 0;
+  if (selector.starts_with("street."))
+    warn("street", "there are no streets; '" + std::string(selector) + "' is taken as 'object." +
+                       std::string(selector.substr(7)) + "'");
+  const Selection what = selectorOf(selector);
+  if (!what.known) {
+    warn("selector " + std::string(selector), std::string("'").append(selector) + "' selects no components");
+    return false;
+  }
+  const Axes system = axes(selector.starts_with("street.") ? "object" : selector);
+  if (boxes_.is(shape_.form) && kind == Component::Faces) {
+    if (what.selector == Selector::Border) return shape_.form.mesh != boxes_.box;
+    if (what.selector == Selector::Inside) return shape_.form.mesh == boxes_.box;
+    return matchesNormal(boxes_.normal(shape_.form, index), what.selector, system);
+  }
+  return matches(pool_, shape_.form, kind, index, what.selector, system);
+}
+
+bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
+  const std::string_view kindName = word(a[0]);
+  Component kind = Component::Faces;
+  if (kindName == "e") kind = Component::Edges;
+  if (kindName == "fe") kind = Component::FaceEdges;
+  if (kindName == "v") kind = Component::Vertices;
+  if (kindName == "g") kind = Component::Groups;
+  if (kindName == "h") kind = Component::Holes;
+  if (kindName == "m") {
+    warn("comp(m)", "components by material are not supported; comp(m) takes groups");
+    kind = Component::Groups;
+  }
+  if (shape_.form.mesh == 0) return true;
+  const bool isBox = boxes_.is(shape_.form) && kind == Component::Faces;
+  const uint32_t count = isBox ? boxes_.faces(shape_.form) : componentCount(pool_, shape_.form, kind);
+  const uint32_t parts = words_[table];
+  // The first part that selects a component has it.
+  std::vector<std::vector<uint32_t>> selected(parts);
+  for (uint32_t i = 0; i < count; ++i)
+    for (uint32_t p = 0; p < parts; ++p) {
+      const uint32_t record = words_[table + 1 + p];
+      const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
+      if (!selects(word(value), kind, i, count, value)) continue;
+      selected[p].push_back(i);
+      break;
+    }
+  for (uint32_t p = 0; p < parts; ++p) {
+    if (selected[p].empty()) continue;
+    const uint32_t record = words_[table + 1 + p];
+    const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
+    const bool together = words_[record + kCgaPartKind] == kCgaPartTogether;
+    const uint32_t total = together ? 1u : static_cast<uint32_t>(selected[p].size());
+    for (uint32_t i = 0; i < total; ++i) {
+      Form form;
+      Status status = kGeometryOk;
+      if (together)
+        status = toComponents(pool_, shape_.form, kind, selected[p], form);
+      else if (isBox)
+        form = boxes_.face(shape_.form, selected[p][i]);
+      else
+        status = toComponent(pool_, shape_.form, kind, selected[p][i], form);
+      if (status == kGeometryEmpty) continue;
+      if (status != kGeometryOk) {
+        if (!check(status, "comp")) return false;
+        continue;
+      }
+      Shape& part = child();
+      part.form = form;
+      part.compIndex = i;
+      part.compTotal = total;
+      part.compSelector = value.type == kCgaWord ? value.bits : strings_.number(text(value));
+      if (!together) resetPivot(part);
+      addChild(part, words_[record + kCgaPartBody], base);
+    }
+  }
+  return true;
+}
+
+// ---------------------------------------------------------------- setbacks and wings
+
+/// Pieces of edges by the part whose selector has them, then what remains.
+bool Deriver::setbackBy(const std::vector<float>& distances, const Arguments& a, uint32_t table, uint32_t base) {
+  std::vector<Form> pieces;
+  Form remainder;
+  const Status status = setback(pool_, shape_.form, distances, pieces, remainder);
+  if (status != kGeometryOk && status != kGeometryEmpty) return check(status, "setback");
+  const uint32_t edges = static_cast<uint32_t>(pieces.size());
+  std::vector<bool> taken(edges);
+  for (uint32_t p = 0; p < words_[table]; ++p) {
+    const uint32_t record = words_[table + 1 + p];
+    const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
+    const std::string_view selector = word(value);
+    std::vector<Form> forms;
+    if (selector == "remainder") {
+      if (remainder.mesh) forms.push_back(remainder);
+    } else {
+      for (uint32_t i = 0; i < edges; ++i) {
+        if (taken[i] || pieces[i].mesh == 0 || !selects(selector, Component::FaceEdges, i, edges, value)) continue;
+        taken[i] = true;
+        forms.push_back(pieces[i]);
+      }
+      if (words_[record + kCgaPartKind] == kCgaPartTogether && forms.size() > 1) {
+        Form all;
+        if (!check(combine(pool_, forms, all), "setback")) return false;
+        forms.assign(1, all);
+      }
+    }
+    for (uint32_t i = 0; i < forms.size(); ++i) {
+      Shape& part = child();
+      part.form = forms[i];
+      part.compIndex = i;
+      part.compTotal = static_cast<uint32_t>(forms.size());
+      part.compSelector = value.type == kCgaWord ? value.bits : strings_.number(text(value));
+      resetPivot(part);
+      addChild(part, words_[record + kCgaPartBody], base);
+    }
+  }
+  return true;
+}
+
+bool Deriver::setback_(const Arguments& a, uint32_t table, uint32_t base) {
+  if (shape_.form.mesh == 0) return true;
+  const float distance = number(a[0]);
+  const uint32_t edges = componentCount(pool_, shape_.form, Component::FaceEdges);
+  std::vector<float> distances(edges, 0.0f);
+  // An edge moves where a part other than the remainder selects it.
+  bool any = false;
+  for (uint32_t p = 0; p < words_[table]; ++p) {
+    const CgaValue& value = a.values[words_[words_[table + 1 + p] + kCgaPartSelector]];
+    if (word(value) == "remainder") continue;
+    any = true;
+    for (uint32_t i = 0; i < edges; ++i)
+      if (selects(word(value), Component::FaceEdges, i, edges, value)) distances[i] = distance;
+  }
+  if (!any) distances.assign(edges, distance); // { remainder: ... } alone
+  return setbackBy(distances, a, table, base);
+}
+
+/// The distance by which all selected edges move so that the remainder has an area, by halving.
+bool Deriver::setbackToArea_(const Arguments& a, uint32_t table, uint32_t base) {
+  if (shape_.form.mesh == 0) return true;
+  const float wanted = number(a[0]);
+  const uint32_t edges = componentCount(pool_, shape_.form, Component::FaceEdges);
+  std::vector<bool> moves(edges, false);
+  for (uint32_t p = 0; p < words_[table]; ++p) {
+    const CgaValue& value = a.values[words_[words_[table + 1 + p] + kCgaPartSelector]];
+    for (uint32_t i = 0; i < edges; ++i)
+      if (word(value) != "remainder" && selects(word(value), Component::FaceEdges, i, edges, value)) moves[i] = true;
+  }
+  const vec3 e = shape_.form.scope.size;
+  float low = 0, high = std::max({e.x, e.y, e.z});
+  std::vector<float> distances(edges, 0.0f);
+  for (int i = 0; i < 24; ++i) {
+    const float middle = 0.5f * (low + high);
+    for (uint32_t k = 0; k < edges; ++k) distances[k] = moves[k] ? middle : 0.0f;
+    std::vector<Form> pieces;
+    Form remainder;
+    const Status status = setback(pool_, shape_.form, distances, pieces, remainder);
+    if (status != kGeometryOk && status != kGeometryEmpty) return check(status, "setbackToArea");
+    (remainder.mesh && area(pool_, remainder) > wanted ? low : high) = middle;
+  }
+  for (uint32_t k = 0; k < edges; ++k) distances[k] = moves[k] ? low : 0.0f;
+  return setbackBy(distances, a, table, base);
+}
+
+bool Deriver::shapeAndRemainder(const Form& inner, const Form& rest, const Arguments& a, uint32_t table,
+                                uint32_t base) {
+  for (uint32_t p = 0; p < words_[table]; ++p) {
+    const uint32_t record = words_[table + 1 + p];
+    const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
+    const std::string_view selector = word(value);
+    const bool isRest = selector == "remainder";
+    if (!isRest && selector != "shape" && selector != "all") {
+      warn("part " + std::string(selector), "expected shape or remainder, not '" + std::string(selector) + "'");
+      continue;
+    }
+    const Form& form = isRest ? rest : inner;
+    if (form.mesh == 0) continue;
+    Shape& part = child();
+    part.form = form;
+    part.compSelector = value.type == kCgaWord ? value.bits : 0;
+    part.compTotal = 1;
+    resetPivot(part);
+    addChild(part, words_[record + kCgaPartBody], base);
+  }
+  return true;
+}
+
+bool Deriver::wings(float front, float right, float back, float left, const Arguments& a, uint32_t table,
+                    uint32_t base) {
+  if (shape_.form.mesh == 0) return true;
+  Form inner, rest;
+  inner.mesh = rest.mesh = 0;
+  const Status status = shapeWings(pool_, shape_.form, front, right, back, left, inner, rest);
+  if (status != kGeometryOk && status != kGeometryEmpty) return check(status, "shapeL, shapeU, shapeO");
+  return shapeAndRemainder(inner, rest, a, table, base);
+}
+
+namespace {
+float partOf(const CgaValue& v, float whole) {
+  const float x = uintBitsToFloat(v.bits);
+  return v.type == kCgaRelative ? multiply(x, whole) : v.type == kCgaFloat ? x : 0.0f;
+}
+} // namespace
+
+bool Deriver::shapeL_(const Arguments& a, uint32_t table, uint32_t base) {
+  const vec3 e = shape_.form.scope.size;
+  const float depth = std::max(e.z, shape_.form.mesh == boxes_.upright ? e.y : e.z);
+  return wings(partOf(a[0], depth), 0, 0, partOf(a[1], e.x), a, table, base);
+}
+bool Deriver::shapeU_(const Arguments& a, uint32_t table, uint32_t base) {
+  const vec3 e = shape_.form.scope.size;
+  return wings(partOf(a[0], e.z), partOf(a[1], e.x), 0, partOf(a[2], e.x), a, table, base);
+}
+bool Deriver::shapeO_(const Arguments& a, uint32_t table, uint32_t base) {
+  const vec3 e = shape_.form.scope.size;
+  return wings(partOf(a[0], e.z), partOf(a[1], e.x), partOf(a[2], e.z), partOf(a[3], e.x), a, table, base);
+}
+
+bool Deriver::innerRectangle_(const Arguments& a, uint32_t table, uint32_t base) {
+  if (shape_.form.mesh == 0) return true;
+  Form inner, rest;
+  inner.mesh = rest.mesh = 0;
+  const Status status = innerRectangle(pool_, shape_.form, word(a[0]) == "scope", inner);
+  if (status != kGeometryOk && status != kGeometryEmpty) return check(status, "innerRectangle");
+  for (uint32_t p = 0; p < words_[table]; ++p)
+    if (word(a.values[words_[words_[table + 1 + p] + kCgaPartSelector]]) == "remainder" && !boxes_.is(shape_.form))
+      warn("innerRectangle", "the remainder of innerRectangle is not supported, and left out");
+  return shapeAndRemainder(inner, rest, a, table, base);
+}
+
+// ---------------------------------------------------------------- scatter
+
+bool Deriver::scatter_(const Arguments& a, uint32_t table, uint32_t base) {
+  if (shape_.form.mesh == 0) return true;
+  Scatter how;
+  const std::string_view domain = word(a[0]);
+  how.domain = domain == "volume"  ? ScatterDomain::Volume
+               : domain == "scope" ? ScatterDomain::Scope
+                                   : ScatterDomain::Surface;
+  how.gaussian = word(a[2]) == "gaussian";
+  const uint32_t values = words_[table] && words_[words_[table + 1] + kCgaPartSelector] == kCgaNoSelector ? a.count : 3;
+  if (how.gaussian && values > 4) {
+    const vec3 e = shape_.form.scope.size;
+    const float whole = std::max({e.x, e.y, e.z, 1e-6f});
+    // 'x is a part of the scope, as deviations are.
+    const float deviation = a[4].type == kCgaRelative ? number(a[4]) * 0.16f : number(a[4]) / whole;
+    how.deviation = vec3(std::clamp(deviation, 0.001f, 10.0f));
+  }
+  const float wanted = cgaRound(number(a[1]));
+  if (wanted > 1e6f) {
+    fail("scatter of more than 1000000 shapes");
+    return false;
+  }
+  const uint32_t body = words_[words_[table + 1] + kCgaPartBody];
+  for (uint32_t i = 0; static_cast<float>(i) < wanted; ++i) {
+    Scope point;
+    const Status status = scatterPoint(pool_, shape_.form, how, childKey(shape_.key, 0x20000000u), i, point);
+    if (status == kGeometryEmpty) return true;
+    if (status != kGeometryOk) return check(status, "scatter");
+    Shape& part = child();
+    part.form.scope = point;
+    part.form.scale = vec3(1);
+    part.form.mesh = 0;
+    part.splitIndex = i;
+    part.splitTotal = static_cast<uint32_t>(wanted);
+    resetPivot(part);
+    addChild(part, body, base);
+  }
+  return true;
+}
+
+} // namespace gpgp::spawn::cga

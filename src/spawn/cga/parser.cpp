@@ -1,0 +1,610 @@
+// Recursive descent. A .cga file has no separators between the items of a rule, nor between definitions: a body ends
+// where a name with --> or = behind it begins the next definition.
+#include "spawn/cga/parser.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gpgp::spawn::cga {
+namespace {
+
+struct OperatorLevel {
+  std::string_view text;
+  int level;
+};
+constexpr OperatorLevel kOperators[] = {{"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {".==", 3}, {".!=", 3}, {"<", 4},
+                                        {"<=", 4}, {">", 4},  {">=", 4}, {".<", 4}, {".<=", 4}, {".>", 4},  {".>=", 4},
+                                        {"+", 5},  {"-", 5},  {"*", 6},  {"/", 6},  {"%", 6}};
+
+/// Of the definition that does not parse: what follows it is looked at again.
+struct Unexpected {};
+
+class Parser {
+public:
+  Parser(std::vector<Token> tokens, Diagnostics& errors) : tokens_(std::move(tokens)), errors_(errors) {}
+
+  void file(File& file) {
+    while (!atEnd()) {
+      const size_t before = at_;
+      try {
+        definition(file);
+      } catch (const Unexpected&) {
+        depth_ = 0;
+        if (at_ == before) ++at_;
+        recover();
+      }
+    }
+  }
+
+private:
+  // --- tokens ---
+  const Token& token(size_t ahead = 0) const { return tokens_[std::min(at_ + ahead, tokens_.size() - 1)]; }
+  bool atEnd() const { return token().kind == TokenKind::end; }
+  bool isName(size_t ahead = 0) const { return token(ahead).kind == TokenKind::identifier; }
+  bool accept(std::string_view symbol) {
+    if (!token().is(symbol)) return false;
+    ++at_;
+    return true;
+  }
+  bool acceptWord(std::string_view word) {
+    if (!token().isWord(word)) return false;
+    ++at_;
+    return true;
+  }
+  static std::string describe(const Token& t) {
+    if (t.kind == TokenKind::end) return t.text;
+    if (t.kind == TokenKind::string) return "the string \"" + t.text.substr(0, 40) + '"';
+    return '\'' + t.text.substr(0, 60) + '\'';
+  }
+  [[noreturn]] void unexpected(const std::string& expected) {
+    errors_.error(token().place, "expected " + expected + ", not " + describe(token()));
+    throw Unexpected();
+  }
+  void expect(std::string_view symbol, const char* where) {
+    if (!accept(symbol)) unexpected(std::string("'").append(symbol) + "' " + where);
+  }
+  std::string name(const char* what) {
+    if (!isName()) unexpected(what);
+    return tokens_[at_++].text;
+  }
+  /// Counts how deep the recursion is.
+  class Nested {
+  public:
+    explicit Nested(Parser& parser) : parser_(parser) {
+      if (++parser_.depth_ <= kMostNested) return;
+      parser_.errors_.error(parser_.token().place, "this is nested more than " + std::to_string(kMostNested) + " deep");
+      throw Unexpected(); // file() sets the depth to 0
+    }
+    ~Nested() {
+      if (parser_.depth_) --parser_.depth_;
+    }
+
+  private:
+    Parser& parser_;
+  };
+
+  // --- where definitions begin ---
+  size_t behindParentheses(size_t ahead) const {
+    if (!token(ahead).is("(")) return ahead;
+    size_t depth = 0;
+    for (size_t i = ahead; token(i).kind != TokenKind::end && i < ahead + 4096; ++i) {
+      if (token(i).is("(")) ++depth;
+      if (token(i).is(")") && --depth == 0) return i + 1;
+      if (token(i).is("-->")) break;
+    }
+    return ahead;
+  }
+  /// The place of --> or = behind a name at ahead, its parameters and locals; 0: none.
+  size_t arrowBehind(size_t ahead) const {
+    if (!isName(ahead)) return 0;
+    size_t at = behindParentheses(ahead + 1);
+    if (token(at).isWord("with") && token(at + 1).is("(")) at = behindParentheses(at + 1);
+    return token(at).is("-->") || token(at).is("=") ? at : 0;
+  }
+  static bool isModifier(const Token& t) { return t.isWord("start") || t.isWord("extension") || t.isWord("export"); }
+  bool startsDefinition() const {
+    if (token().is("@")) return true;
+    if (!isName()) return false;
+    if ((token().isWord("attr") || token().isWord("const")) && isName(1)) return true;
+    if (token().isWord("import") && (isName(1) || token(1).kind == TokenKind::string)) return true;
+    if (token().isWord("style") && isName(1) && !arrowBehind(0)) return true;
+    if (token().isWord("version") && token(1).kind == TokenKind::string) return true;
+    if (isModifier(token()) && arrowBehind(1) && token(arrowBehind(1)).is("-->")) return true;
+    const size_t arrow = arrowBehind(0);
+    return arrow && (braces_ == 0 || token(arrow).is("-->"));
+  }
+  void recover() {
+    braces_ = 0;
+    while (!atEnd() && !startsDefinition()) ++at_;
+  }
+
+  // --- definitions ---
+  void definition(File& file) {
+    std::vector<Annotation> annotations;
+    while (token().is("@")) annotations.push_back(annotation());
+    Definition d;
+    d.place = token().place;
+    if (token().isWord("version") && token(1).kind == TokenKind::string) {
+      file.version = token(1).text;
+      at_ += 2;
+      return;
+    }
+    if (token().isWord("import") && (isName(1) || token(1).kind == TokenKind::string)) {
+      ++at_;
+      import(file);
+      return;
+    }
+    if (token().isWord("style") && isName(1) && !arrowBehind(0)) {
+      ++at_;
+      Style style{token().text, {}, token().place};
+      ++at_;
+      if (acceptWord("extends")) style.base = name("the name of the style that this one extends");
+      style_ = style.name;
+      file.styles.push_back(std::move(style));
+      return;
+    }
+    if (token().isWord("attr") && isName(1)) {
+      d.kind = Definition::Kind::attribute;
+      ++at_;
+    } else if (token().isWord("const") && isName(1)) {
+      d.kind = Definition::Kind::constant;
+      ++at_;
+    }
+    while (isModifier(token()) && isName(1) && arrowBehind(1)) {
+      if (token().isWord("start")) d.isStart = true;
+      ++at_;
+    }
+    if (!isName()) unexpected("a definition: attr, const, import, a function or a rule");
+    d.annotations = std::move(annotations);
+    d.style = style_;
+    try {
+      named(d);
+    } catch (const Unexpected&) {
+      // It is there, whatever it is: others may name it.
+      if (d.kind == Definition::Kind::rule && d.hasBody) file.definitions.push_back(std::move(d));
+      throw;
+    }
+    if (d.isStart && d.kind != Definition::Kind::rule) d.isStart = false;
+    file.definitions.push_back(std::move(d));
+  }
+
+  /// From its name on; it is a rule or a function where d does not say.
+  void named(Definition& d) {
+    d.place = token().place;
+    d.name = name("a name");
+    if (token().is("(")) parameters(d);
+    if (acceptWord("with")) locals(d);
+    if (accept("-->")) {
+      if (d.kind != Definition::Kind::rule) errors_.error(d.place, "attr and const are no rules; write = for -->");
+      d.kind = Definition::Kind::rule;
+      d.hasBody = true;
+      for (const Annotation& a : d.annotations)
+        if (a.name == "StartRule" || a.name == "Startrule" || a.name == "startrule") d.isStart = true;
+      d.body = body();
+      return;
+    }
+    if (!accept("=")) unexpected("'-->' or '=' behind the name " + d.name);
+    if (d.kind == Definition::Kind::rule) d.kind = Definition::Kind::function;
+    d.value = choices();
+  }
+
+  void parameters(Definition& d) {
+    expect("(", "before parameters");
+    while (!token().is(")")) {
+      const Place place = token().place;
+      std::string parameter = name("the name of a parameter");
+      if (std::find(d.parameters.begin(), d.parameters.end(), parameter) != d.parameters.end())
+        errors_.error(place, "two parameters are named '" + parameter + "'");
+      d.parameters.push_back(std::move(parameter));
+      if (!accept(",")) break;
+    }
+    expect(")", "behind parameters");
+  }
+
+  void locals(Definition& d) {
+    expect("(", "behind with");
+    while (!token().is(")")) {
+      Local local{{}, token().place, nullptr};
+      local.name = name("the name of a local variable");
+      expect(":=", "behind the name of a local variable");
+      local.value = choices();
+      d.locals.push_back(std::move(local));
+      if (!accept(";")) accept(",");
+    }
+    expect(")", "behind local variables");
+  }
+
+  Annotation annotation() {
+    Annotation result{{}, token().place, {}};
+    expect("@", "before an annotation");
+    result.name = name("the name of an annotation");
+    if (!accept("(")) return result;
+    while (!token().is(")")) {
+      AnnotationArgument argument;
+      if (isName() && token(1).is("=")) {
+        argument.name = token().text;
+        at_ += 2;
+      }
+      argument.value = annotationValue();
+      result.arguments.push_back(std::move(argument));
+      if (!accept(",")) break;
+    }
+    expect(")", "behind an annotation's values");
+    return result;
+  }
+
+  /// A value; what handles and the like hold besides is passed over.
+  ExpressionPtr annotationValue() {
+    const Place place = token().place;
+    const auto ends = [&] { return token().is(",") || token().is(")"); };
+    if (token().kind == TokenKind::number || token().kind == TokenKind::string || isName() || token().is("-")) {
+      ExpressionPtr value = unary();
+      if (ends()) return value;
+    }
+    for (uint32_t depth = 0; !atEnd() && !startsDefinition() && (depth || !ends()); ++at_) {
+      if (token().is("(") || token().is("{") || token().is("[")) ++depth;
+      if (token().is(")") || token().is("}") || token().is("]")) --depth;
+    }
+    return make(Expression::Kind::string, place);
+  }
+
+  void import(File& file) {
+    Import import;
+    import.place = token().place;
+    if (isName()) {
+      import.prefix = tokens_[at_++].text;
+      expect(":", "behind the prefix of an import");
+    }
+    if (token().kind != TokenKind::string) unexpected("the path of a .cga file in quotes");
+    import.path = tokens_[at_++].text;
+    if (isName() && token().isWord("style") && isName(1)) {
+      ++at_;
+      import.style = tokens_[at_++].text;
+    } else if (accept(":")) {
+      import.style = name("the name of a style");
+    }
+    if (accept("(")) {
+      while (!token().is(")")) {
+        Definition d;
+        named(d);
+        import.overrides.push_back(std::move(d));
+        if (!accept(",")) break;
+      }
+      expect(")", "behind what an import passes");
+    }
+    file.imports.push_back(std::move(import));
+  }
+
+  // --- bodies ---
+  template <class F> auto inBraces(const F& inside) {
+    ++braces_;
+    const uint32_t branches = std::exchange(branches_, 0); // conditions in braces end there
+    auto result = inside();
+    branches_ = branches;
+    --braces_;
+    expect("}", "at the end of a block");
+    return result;
+  }
+
+  bool endsBody() const {
+    const Token& t = token();
+    return t.kind == TokenKind::end || t.is("|") || t.is("}") || t.is(")") || t.is(",") || startsDefinition();
+  }
+  /// A number or an expression in parentheses, with % and : behind it.
+  bool startsPercentage() const {
+    if (token().kind == TokenKind::number) return token(1).is("%") && token(2).is(":");
+    if (token().is("(")) {
+      const size_t behind = behindParentheses(0);
+      return token(behind).is("%") && token(behind + 1).is(":");
+    }
+    return isName() &&
+           ((token(1).is("%") && token(2).is(":")) ||
+            (token(1).is("(") && token(behindParentheses(1)).is("%") && token(behindParentheses(1) + 1).is(":")));
+  }
+
+  Body body() {
+    Nested nested(*this);
+    Body result;
+    uint32_t brackets = 0;
+    while (!endsBody()) {
+      const bool isInner = branches_ && brackets == 0; // what ends the body belongs to the conditions around
+      if (token().isWord("case") || startsPercentage()) {
+        if (isInner && !result.empty()) break;
+        result.push_back(conditions());
+        continue;
+      }
+      if (token().isWord("else")) {
+        if (isInner) break;
+        unexpected("an operation or a rule; there is no case before this else");
+      }
+      if (token().is("]") && isInner) break;
+      if (token().is("[")) ++brackets;
+      if (token().is("]") && brackets) --brackets;
+      result.push_back(statement());
+    }
+    return result;
+  }
+
+  Statement conditions() {
+    Nested nested(*this);
+    Statement result;
+    result.place = token().place;
+    const bool isCase = token().isWord("case");
+    result.kind = isCase ? Statement::Kind::cases : Statement::Kind::stochastic;
+    ++branches_;
+    while (isCase ? token().isWord("case") : startsPercentage()) {
+      Branch branch;
+      if (isCase) ++at_;
+      branch.condition = expression();
+      if (!isCase) expect("%", "behind a percentage");
+      expect(":", isCase ? "behind a condition" : "behind a percentage");
+      branch.body = body();
+      result.branches.push_back(std::move(branch));
+    }
+    if (acceptWord("else")) {
+      expect(":", "behind else");
+      result.branches.push_back({nullptr, body()});
+    }
+    --branches_;
+    return result;
+  }
+
+  Statement statement() {
+    Statement s;
+    s.place = token().place;
+    if (accept("[")) {
+      s.kind = Statement::Kind::push;
+      return s;
+    }
+    if (accept("]")) {
+      s.kind = Statement::Kind::pop;
+      return s;
+    }
+    if (!isName()) unexpected("an operation, a rule, [ or ]");
+    s.name = tokens_[at_++].text;
+    if (token().is("(")) {
+      s.isCall = true;
+      s.arguments = arguments();
+    }
+    if (accept(".")) s.kind = Statement::Kind::leaf;
+    if (token().is("{")) block(s);
+    return s;
+  }
+
+  std::vector<ExpressionPtr> arguments() {
+    std::vector<ExpressionPtr> result;
+    expect("(", "before arguments");
+    while (!token().is(")")) {
+      result.push_back(choices());
+      if (!accept(",") && !token().is(")")) {
+        // An older form separates arguments by spaces; what cannot begin one is an error.
+        if (atEnd() || token().is("}") || token().is("|") || token().is("-->") || token().is("=")) break;
+      }
+    }
+    expect(")", "behind arguments");
+    return result;
+  }
+
+  void block(Statement& s) {
+    s.hasBlock = true;
+    if (s.name == "scatter" || s.name == "modify" || s.name == "inline" || s.name == "union" || s.name == "subtract" ||
+        s.name == "intersect") {
+      Part part;
+      part.place = token().place;
+      expect("{", "");
+      part.body = inBraces([&] { return body(); });
+      s.parts.push_back(std::move(part));
+    } else {
+      s.parts = group();
+    }
+    s.repeats = accept("*");
+  }
+
+  std::vector<Part> group() {
+    Nested nested(*this);
+    expect("{", "");
+    return inBraces([&] {
+      std::vector<Part> parts;
+      while (!token().is("}")) {
+        parts.push_back(part());
+        if (!accept("|")) break;
+      }
+      return parts;
+    });
+  }
+
+  Part part() {
+    Part result;
+    result.place = token().place;
+    if (token().is("{")) {
+      result.isGroup = true;
+      result.group = group();
+      result.repeats = accept("*");
+      return result;
+    }
+    result.selector = expression();
+    if (accept("="))
+      result.isOneShape = true;
+    else if (!accept(":"))
+      unexpected("':' behind a size or a selector");
+    result.body = body();
+    return result;
+  }
+
+  // --- expressions ---
+  ExpressionPtr make(Expression::Kind kind, Place place, std::string text = {}) {
+    auto result = std::make_unique<Expression>();
+    result->kind = kind;
+    result->place = place;
+    result->text = std::move(text);
+    return result;
+  }
+  void settleDepth(Expression& e) {
+    for (const ExpressionPtr& a : e.arguments)
+      if (a) e.depth = std::max(e.depth, a->depth + 1);
+    for (const Choice& c : e.choices) {
+      if (c.condition) e.depth = std::max(e.depth, c.condition->depth + 1);
+      if (c.value) e.depth = std::max(e.depth, c.value->depth + 1);
+    }
+    if (e.depth <= kDeepestExpression) return;
+    errors_.error(e.place,
+                  "this expression has more than " + std::to_string(kDeepestExpression) + " operators in a row");
+    throw Unexpected();
+  }
+
+  /// An expression, or cases or percentages of such.
+  ExpressionPtr choices() {
+    Nested nested(*this);
+    const bool isCase = token().isWord("case");
+    if (!isCase && !startsPercentage()) return expression();
+    ExpressionPtr result = make(isCase ? Expression::Kind::cases : Expression::Kind::stochastic, token().place);
+    while (isCase ? token().isWord("case") : startsPercentage()) {
+      if (isCase) ++at_;
+      Choice choice;
+      choice.condition = expression();
+      if (!isCase) expect("%", "behind a percentage");
+      expect(":", isCase ? "behind a condition" : "behind a percentage");
+      choice.value = choices();
+      result->choices.push_back(std::move(choice));
+    }
+    if (acceptWord("else")) {
+      expect(":", "behind else");
+      result->choices.push_back({nullptr, choices()});
+    }
+    settleDepth(*result);
+    return result;
+  }
+
+  ExpressionPtr expression(int level = 1) {
+    Nested nested(*this);
+    ExpressionPtr left = unary();
+    for (;;) {
+      const Token& t = token();
+      const auto found = t.kind == TokenKind::symbol
+                             ? std::find_if(std::begin(kOperators), std::end(kOperators),
+                                            [&](const OperatorLevel& o) { return o.text == t.text; })
+                             : std::end(kOperators);
+      if (found == std::end(kOperators) || found->level < level) return left;
+      if (t.is("%") && token(1).is(":")) return left; // a percentage
+      ExpressionPtr result = make(Expression::Kind::binary, t.place, t.text);
+      ++at_;
+      result->arguments.push_back(std::move(left));
+      result->arguments.push_back(expression(found->level + 1));
+      settleDepth(*result);
+      left = std::move(result);
+    }
+  }
+
+  ExpressionPtr unary() {
+    Nested nested(*this);
+    const Token& t = token();
+    const auto kind = t.is("'")   ? Expression::Kind::relative
+                      : t.is("~") ? Expression::Kind::floating
+                                  : Expression::Kind::unary;
+    if (!t.is("-") && !t.is("!") && !t.is("+") && !t.is("'") && !t.is("~")) return postfix();
+    ExpressionPtr result = make(kind, t.place, t.text);
+    ++at_;
+    // ~a * b is a floating size of a * b; -a * b is (-a) * b.
+    result->arguments.push_back(kind == Expression::Kind::unary ? unary() : expression(5));
+    settleDepth(*result);
+    if (result->text == "+") return std::move(result->arguments[0]);
+    return result;
+  }
+
+  ExpressionPtr postfix() {
+    ExpressionPtr result = primary();
+    while (token().is("[") && token().place.line == tokens_[at_ - 1].place.line && canBeIndexed(*result)) {
+      ExpressionPtr index = make(Expression::Kind::index, token().place);
+      ++at_;
+      index->arguments.push_back(std::move(result));
+      while (!token().is("]")) {
+        index->arguments.push_back(indexRange());
+        if (!accept(",")) break;
+      }
+      expect("]", "behind an index");
+      settleDepth(*index);
+      result = std::move(index);
+    }
+    return result;
+  }
+  static bool canBeIndexed(const Expression& e) {
+    return e.kind == Expression::Kind::name || e.kind == Expression::Kind::array || e.kind == Expression::Kind::index ||
+           e.kind == Expression::Kind::binary;
+  }
+
+  ExpressionPtr indexRange() {
+    const Place place = token().place;
+    ExpressionPtr first = token().is(":") ? nullptr : choices();
+    if (!accept(":")) return first;
+    ExpressionPtr range = make(Expression::Kind::range, place);
+    range->arguments.push_back(std::move(first));
+    range->arguments.push_back(token().is("]") || token().is(",") ? nullptr : choices());
+    settleDepth(*range);
+    return range;
+  }
+
+  ExpressionPtr primary() {
+    const Token& t = token();
+    const Place place = t.place;
+    if (t.kind == TokenKind::number) {
+      ExpressionPtr result = make(Expression::Kind::number, place);
+      result->number = t.number;
+      ++at_;
+      return result;
+    }
+    if (t.kind == TokenKind::string) {
+      ++at_;
+      return make(Expression::Kind::string, place, tokens_[at_ - 1].text);
+    }
+    if (t.isWord("case")) return choices();
+    if (t.isWord("true") || t.isWord("false")) {
+      ExpressionPtr result = make(Expression::Kind::boolean, place);
+      result->number = t.isWord("true") ? 1 : 0;
+      ++at_;
+      return result;
+    }
+    if (t.kind == TokenKind::identifier && !t.isWord("else")) {
+      ExpressionPtr result = make(Expression::Kind::name, place, t.text);
+      ++at_;
+      if (token().is("(") && !startsPercentage()) {
+        result->isCall = true;
+        result->arguments = arguments();
+        settleDepth(*result);
+      }
+      return result;
+    }
+    if (accept("(")) {
+      ExpressionPtr result = choices();
+      expect(")", "behind an expression");
+      return result;
+    }
+    if (accept("[")) {
+      ExpressionPtr result = make(Expression::Kind::array, place);
+      while (!token().is("]")) {
+        result->arguments.push_back(choices());
+        if (!accept(",") && !accept(";")) break;
+      }
+      expect("]", "at the end of an array");
+      settleDepth(*result);
+      return result;
+    }
+    unexpected("a value");
+  }
+
+  std::vector<Token> tokens_;
+  Diagnostics& errors_;
+  std::string style_;
+  size_t at_ = 0;
+  uint32_t depth_ = 0, braces_ = 0, branches_ = 0;
+};
+
+} // namespace
+
+File parse(std::string_view text, std::string path, Diagnostics& errors) {
+  File file;
+  file.path = std::move(path);
+  Parser(tokenize(text, errors), errors).file(file);
+  return file;
+}
+
+} // namespace gpgp::spawn::cga

@@ -1,0 +1,69 @@
+// A compiled .cga program: words for the machine (shaders/spawn/cga/machine.h), and tables for people and engines.
+#pragma once
+#include "spawn/cga/program_format.h"
+#include "spawn/language/diagnostics.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gpgp::spawn::cga {
+
+struct AnnotationValue {
+  std::string name; ///< empty where it has none
+  std::string text;
+  std::optional<double> number; ///< where it is one
+};
+/// @Range(min=0, max=10) of an attribute, so that engines can show sliders.
+struct AttributeAnnotation {
+  std::string name;
+  std::vector<AnnotationValue> values;
+};
+
+/// A slot of the attributes of a shape.
+struct AttributeInfo {
+  std::string name; ///< with the prefixes of imports: "Roof.angle"
+  std::string file;
+  Place place;
+  bool isConstant = false;
+  bool isMaterial = false; ///< material.name, which is no attribute of the file
+  uint32_t chunk = 0;      ///< the function that computes its first value; 0: none
+  std::vector<AttributeAnnotation> annotations;
+};
+
+struct RuleInfo {
+  std::string name; ///< with the prefixes of imports
+  std::string file;
+  Place place;
+  uint32_t parameters = 0, chunk = 0;
+  bool isStart = false, isHidden = false;
+};
+
+/// Where the instruction at a word comes from.
+struct SourceOf {
+  uint32_t at = 0, file = 0;
+  Place place;
+};
+
+struct Program {
+  std::vector<uint32_t> words; ///< word 0 is no chunk
+  std::vector<std::string> strings;
+  std::vector<AttributeInfo> attributes; ///< by slot
+  std::vector<uint32_t> order;           ///< slots, each behind those that its value needs
+  std::vector<RuleInfo> rules;
+  uint32_t start = 0; ///< of rules
+  std::vector<std::string> files;
+  std::vector<SourceOf> sources; ///< in the order of words
+  std::string folder;            ///< of the main file, with a / at its end: where paths of assets begin
+
+  const SourceOf* sourceOf(uint32_t at) const;
+};
+
+/// Empty where the words are a program that the machine can run: instructions whole, jumps to instructions, tables and
+/// strings within. Else what is wrong.
+std::string validate(const Program& program);
+
+/// One instruction a line, for tests and for people.
+std::string disassemble(const Program& program);
+
+} // namespace gpgp::spawn::cga
