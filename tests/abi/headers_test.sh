@@ -30,7 +30,7 @@ for pair in "$@"; do
   for compiler in "$cc" "$cxx"; do
     command -v "$compiler" >/dev/null || { echo "no compiler $compiler" >&2; exit 1; }
   done
-  for header in core spawn spawn_builder text ui vector visibility gpgp; do
+  for header in core spawn spawn_builder lsystem text ui vector visibility gpgp; do
     echo "#include <gpgp/$header.h>" >"$scratch/$header.c"
     # Once more after all others, so that no header minds another before it.
     printf '#include <gpgp/gpgp.h>\n#include <gpgp/%s.h>\n' "$header" >>"$scratch/$header.c"
