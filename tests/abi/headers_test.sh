@@ -40,7 +40,7 @@ for pair in "$@"; do
   for standard in c99 c11 c17; do compile "$standard" c "$cc" "$sources/structs.c" structs; done
   for standard in c++11 c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/structs.c" structs; done
   for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/wrapper.cpp" gpgp/gpgp.hpp; done
-  for header in core spawn text ui vector visibility; do # each alone
+  for header in core spawn lsystem text ui vector visibility; do # each alone
     echo "#include <gpgp/$header.hpp>" >"$scratch/$header.cpp"
     for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$scratch/$header.cpp" "gpgp/$header.hpp"; done
   done

@@ -152,7 +152,8 @@ Outcome spawnLsystem(const LsystemOptions& options, const CommonOptions& common)
                         : static_cast<uint32_t>(std::clamp<uint64_t>(derived.modulesNeeded, 256, limits.modules));
   info.maxParameters = static_cast<uint32_t>(std::clamp<uint64_t>(derived.parametersNeeded, 256, limits.parameters));
   info.maxSteps = std::max(steps, 1u);
-  info.maxRounds = std::min(drawn.depth + derived.string.modules.size() / kLsysWalkLength + 2, size_t{1024});
+  info.maxRounds =
+      static_cast<uint32_t>(std::min(drawn.depth + derived.string.modules.size() / kLsysWalkLength + 2, size_t{1024}));
   LsystemRecorder recorder =
       session.take(LsystemRecorder::create(session.context(), info), "gpgpCreateLsystemRecorder");
   session.check(recorder.prewarm(), "gpgpPrewarm");
