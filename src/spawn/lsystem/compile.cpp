@@ -157,7 +157,8 @@ private:
       Suggestion suggestion(o.name);
       for (const auto& [name, value] : constants_) suggestion.offer(name);
       for (const std::string_view name : kSettings) suggestion.offer(name);
-      diagnostics_.error({}, "there is no var '" + std::string(o.name) + "'" + suggestion.text());
+      diagnostics_.error({},
+                         "there is no constant or setting '" + std::string(o.name) + "' to set" + suggestion.text());
     }
   }
 
