@@ -2,6 +2,7 @@
 #ifndef GPGP_H
 #define GPGP_H
 #include <gpgp/core.h>
+#include <gpgp/lsystem.h>
 #include <gpgp/spawn.h>
 #include <gpgp/spawn_builder.h>
 #include <gpgp/text.h>

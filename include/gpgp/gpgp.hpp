@@ -8,6 +8,7 @@
 
 #include <gpgp/core.hpp>
 #include <gpgp/gpgp.h>
+#include <gpgp/lsystem.hpp>
 #include <gpgp/spawn.hpp>
 #include <gpgp/text.hpp>
 #include <gpgp/ui.hpp>

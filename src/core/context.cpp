@@ -21,11 +21,13 @@ const char* kindName(Kind kind) {
   switch (kind) {
   case Kind::none: return "destroyed object";
   case Kind::grammar: return "grammar";
+  case Kind::lsystem: return "L-system";
   case Kind::drawing: return "drawing";
   case Kind::glyphSet: return "glyph set";
   case Kind::list: return "list";
   case Kind::geometrySet: return "geometry set";
   case Kind::spawner: return "spawner";
+  case Kind::lsystemRecorder: return "L-system recorder";
   case Kind::canvas: return "canvas";
   case Kind::visibilityRecorder: return "visibility recorder";
   case Kind::canvasHistory: return "canvas history";

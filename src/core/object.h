@@ -12,10 +12,12 @@ class Context;
 enum class Kind : uint32_t {
   none,
   grammar,
+  lsystem,
   drawing,
   glyphSet,
   geometrySet,
   spawner,
+  lsystemRecorder,
   canvas,
   visibilityRecorder,
   canvasHistory,

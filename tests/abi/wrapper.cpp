@@ -63,6 +63,27 @@ GpgpResult useSpawn(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer
   return taken ? GPGP_SUCCESS : GPGP_NOT_READY;
 }
 
+GpgpResult useLsystem(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  auto blob = gpgp::compileLsystem(gpgp::init<GpgpLsystemSource>());
+  if (!blob) return blob.code();
+  auto info = gpgp::init<GpgpLsystemCreateInfo>();
+  info.data = blob->data();
+  info.size = blob->size();
+  auto lsystem = gpgp::Lsystem::create(context, info);
+  auto recorder = gpgp::LsystemRecorder::create(context, gpgp::init<GpgpLsystemRecorderCreateInfo>());
+  if (!lsystem || !recorder) return lsystem.code();
+  uint32_t count = 0;
+  if (const GpgpResult code = lsystem->terminals(count, nullptr)) return code;
+  if (const GpgpResult code = lsystem->symbols(count, nullptr)) return code;
+  if (const GpgpResult code = useRecorder(*recorder, *lsystem)) return code;
+  auto recording = gpgp::init<GpgpLsystemInfo>();
+  recording.lsystem = *lsystem;
+  if (const GpgpResult code = recorder->recordPrepare(cmd, frame, recording)) return code;
+  while (const auto report = recorder->report())
+    if (report->base.status) return report->base.status;
+  return GPGP_SUCCESS;
+}
+
 GpgpResult useGrammarBuilder() {
   auto made = gpgp::GrammarBuilder::create();
   if (!made) return made.code();
@@ -174,6 +195,7 @@ GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd)
   const GpgpFrame frame = {1, 0};
   if (const GpgpResult code = useCore(*context, frame, cmd)) return code;
   if (const GpgpResult code = useSpawn(*context, frame, cmd)) return code;
+  if (const GpgpResult code = useLsystem(*context, frame, cmd)) return code;
   if (const GpgpResult code = useGrammarBuilder()) return code;
   if (const GpgpResult code = useVector(*context, frame, cmd)) return code;
   if (const GpgpResult code = useText()) return code;

@@ -3,6 +3,7 @@
 #include "cli/spawn/axioms.h"
 #include "cli/spawn/cga.h"
 #include "cli/spawn/grammar_source.h"
+#include "cli/spawn/lsystem.h"
 #include "cli/spawn/reference.h"
 #include "cli/spawn/scene_picture.h"
 #include "cli/spawn/spawned_gltf.h"
@@ -35,7 +36,8 @@ struct SpawnOptions {
   float yaw = 35, pitch = 25, zoom = 1;
   uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
   std::string schedule = "default", output = "instances", matching = "off";
-  bool sorted = false, nodes = false;
+  bool sorted = false, nodes = false, string = false;
+  uint32_t maxModules = 0;
   spawn::Heuristics heuristics;
 };
 
@@ -287,10 +289,44 @@ Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
   return spawnCga(cga);
 }
 
+/// An L-system, of the options that mean something to one.
+Outcome spawnLsystem(const SpawnOptions& options, const CommonOptions& common) {
+  if (options.grammars.size() > 1) throw Usage("an L-system (.lsys) is derived alone; it cannot be linked");
+  for (const auto& [option, given] : {std::pair{"--schedule", options.schedule != "default"},
+                                      {"--matching", options.matching != "off"},
+                                      {"--output vertices", options.output != "instances"},
+                                      {"--sorted", options.sorted},
+                                      {"--max-shapes", options.maxShapes != 0},
+                                      {"--max-depth", options.maxDepth != 0},
+                                      {"--max-colliders", options.maxColliders != 0},
+                                      {"--slice", options.slice != 0}})
+    if (given) throw Usage(std::string(option) + " means nothing to an L-system (.lsys)");
+  const AxiomDefaults defaults{{options.size[0], 0, options.size[2]}, options.seed, {GPGP_AXIOM_DEFAULT_START}};
+  LsystemOptions own;
+  own.file = options.grammars[0];
+  own.set = options.set;
+  own.axioms = options.axiomFile.empty() ? axiomGrid(std::max(options.axioms, 1u), options.spacing, defaults)
+                                         : readAxioms(options.axiomFile, {}, defaults);
+  own.repeat = options.repeat;
+  own.maxInstances = options.maxInstances;
+  own.maxModules = options.maxModules;
+  own.string = options.string;
+  own.image = options.image;
+  own.out = options.out;
+  own.imageSize = options.imageSize;
+  own.yaw = options.yaw;
+  own.pitch = options.pitch;
+  own.zoom = options.zoom;
+  own.nodes = options.nodes;
+  return spawnLsystem(own, common);
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
   if (!options.start.empty() || !options.style.empty() || !options.attributes.empty() || options.geographic)
     throw Usage("--start, --style, --attr and --geographic are for .cga files");
+  if (std::any_of(options.grammars.begin(), options.grammars.end(), isLsystem)) return spawnLsystem(options, common);
+  if (options.string || options.maxModules) throw Usage("--string and --max-modules are for L-systems (.lsys)");
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
   const BakedGraph grammar = bakeGraph(options.grammars, options.set);
@@ -600,6 +636,12 @@ Work addSpawn(CLI::App& app) {
                       "Budget: shapes that Collider registers (0: as many as there are)");
   command->add_option("--slice", options->slice,
                       "Axioms of one record at most (0: as many as the device binds); budgets are those of a record");
+  command->add_flag("--string", options->string, "Of an L-system: print the last string");
+  command
+      ->add_option("--max-modules", options->maxModules,
+                   "Of an L-system: budget of modules of a string (0: as many as there are, as far as the device binds "
+                   "them)")
+      ->check(CLI::Range(0u, 1u << 23));
   command->add_option("--max-depth", options->maxDepth,
                       "Budget: how deep rules nest in themselves (0: the library's default)");
   command->footer(R"(
@@ -611,6 +653,7 @@ Examples:
                                                         also y, qx to qw, m00 to m23, shape, attribute
   gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
   gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
+  gpgp spawn plant.lsys --set iterations=4 --string    an L-system: its string, and what its turtle draws
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
   gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50
   gpgp spawn house.cga --axiom-size 12,1,18 --attr floors=3 --image house.png --out house.glb
