@@ -27,6 +27,7 @@ const char* kindName(Kind kind) {
   case Kind::geometrySet: return "geometry set";
   case Kind::spawner: return "spawner";
   case Kind::canvas: return "canvas";
+  case Kind::patchRecorder: return "patch recorder";
   case Kind::visibilityRecorder: return "visibility recorder";
   case Kind::canvasHistory: return "canvas history";
   case Kind::cameraHistory: return "camera history";

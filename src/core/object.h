@@ -17,6 +17,7 @@ enum class Kind : uint32_t {
   geometrySet,
   spawner,
   canvas,
+  patchRecorder,
   visibilityRecorder,
   canvasHistory,
   cameraHistory,

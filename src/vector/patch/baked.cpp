@@ -22,7 +22,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 80);
 constexpr char kMagic[4] = {'G', 'P', 'V', 'D'};
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kVersion = 5;
 constexpr size_t kSummedFrom = 16;
 
 bool sane(float v) { return std::abs(v) <= 4 * kMaxCoordinate; } // false for NaN
@@ -32,7 +32,7 @@ core::Result<void> checkContents(const Drawing& d) {
   for (size_t i = 0; i < d.curves.size(); ++i) {
     const CurveRecord& c = d.curves[i];
     if (!sane(c.ends) || !sane(c.controls) || !sane(c.bend) || !(c.ends.w >= 0) || !sane(c.endX) || !sane(c.endY) ||
-        c.pad0)
+        !(c.weight >= 0 && c.weight <= 1))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: curve %zu is not a curve", i);
   }
   uint32_t path = 0;

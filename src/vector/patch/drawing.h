@@ -4,7 +4,7 @@
 // result, print shows it. Everything here is run-time code: memory comes from the resource that is passed in.
 #pragma once
 #include "core/result.h"
-#include "vector/geometry/curve.h"
+#include "vector/geometry/shape.h"
 #include "vector/shared/layout.h"
 
 #include <gpgp/vector.h>
@@ -46,8 +46,10 @@ inline bool inColorRange(const float* c) {
 }
 
 /// Checks one path (verbs known, points enough, finite and within kMaxCoordinate, colour in range) and appends its
-/// monotone pieces, open contours closed by a line. The error names the verb or point.
-core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces);
+/// monotone pieces, open contours closed by a line. The error names the verb or point. `ellipses`: receives those that
+/// arcs are parts of (Cubic::arc), strokes excepted.
+core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces,
+                           std::pmr::vector<Ellipse>* ellipses = nullptr);
 
 /// Where a piece must be cut because another crosses it there.
 struct Cut {
