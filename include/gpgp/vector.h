@@ -150,6 +150,11 @@ typedef struct GpgpPathGroup {
   uint32_t clipCount; /**< 0 while `clip` is not NULL: the group is hidden. */
 } GpgpPathGroup;
 
+/** What a drawing or a glyph set keeps on the device, by who draws it. A combination of flags. */
+typedef uint64_t GpgpDrawingMethods;
+#define GPGP_DRAWING_FLATTENED ((GpgpDrawingMethods)1) /**< outlines, which canvases flatten and rasterise */
+#define GPGP_DRAWING_IN_PASS ((GpgpDrawingMethods)2)   /**< CPatches in cells, for gpgpRecordDrawPatches */
+
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
 
 /** What gpgpCompileSvg found in an SVG, and how long it took. */
@@ -196,6 +201,9 @@ typedef struct GpgpSvgSource {
    *  that folder or below it, never to a host. At most 64 files of 16 MiB together are read. NULL: external style
    *  sheets are reported as unsupported. */
   const GpgpFileSystem* fileSystem;
+  /** Who draws the drawing; 0: GPGP_DRAWING_FLATTENED. The file holds what is asked for, and nothing else. Elements
+   * that patches do not draw are named in warnings (GpgpDrawingCreateInfo::methods). */
+  GpgpDrawingMethods methods;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 
@@ -237,11 +245,6 @@ typedef struct GpgpGlyphSource {
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGlyphs(const GpgpGlyphSource* source, GpgpBlob* blob);
 
 /* ---------------------------------------------------------------- drawing */
-
-/** What a drawing or a glyph set keeps on the device, by who draws it. A combination of flags. */
-typedef uint64_t GpgpDrawingMethods;
-#define GPGP_DRAWING_FLATTENED ((GpgpDrawingMethods)1) /**< outlines, which canvases flatten and rasterise */
-#define GPGP_DRAWING_IN_PASS ((GpgpDrawingMethods)2)   /**< CPatches in cells, for gpgpRecordDrawPatches */
 
 /** Replaces one path of a drawing. */
 typedef struct GpgpPathEdit {
@@ -624,8 +627,6 @@ typedef struct GpgpCanvasReport {
 GPGP_API GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpRecorder canvas, GpgpCanvasReport* report);
 
 /* ---------------------------------------------------------------- patches inside a render pass */
-
-enum { GPGP_STRUCTURE_PATCH_RECORDER_CREATE_INFO = 213, GPGP_STRUCTURE_PATCH_DRAW_INFO = 214 };
 
 /** Budgets of a patch recorder. It has no scratch memory. What a recording passes to the GPU takes 240 bytes an item
  *  and 48 bytes a glyph, for every recording that can be in flight. */

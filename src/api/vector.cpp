@@ -59,7 +59,11 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     };
     auto made = make();
     if (!made) return made.error();
-    const GpgpDrawingMethods methods = info->methods ? info->methods : GPGP_DRAWING_FLATTENED;
+    const GpgpDrawingMethods held = methodsOf(*made), methods = info->methods ? info->methods : held;
+    if ((held & GPGP_DRAWING_FLATTENED) == 0 &&
+        (methods != GPGP_DRAWING_IN_PASS || info->editable || info->hitTestable))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "the drawing was baked without GPGP_DRAWING_FLATTENED; bake it with both methods");
     auto asset = DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE,
                                       info->hitTestable != VK_FALSE, methods, base, edits);
     if (!asset) return asset.error();

@@ -10,7 +10,7 @@
 //
 //   layout(std430, set = 0, binding = 0) readonly buffer Patches { uvec4 patches[]; };
 //   #define GPGP_PATCH_LOAD(slot, index) patches[index]
-//   #include <gpgp/shaders/patches.h>
+//   #include "gpgp/shaders/patches.h"
 //
 // and in a fragment shader, where `at` is the point of the drawing that the fragment shows:
 //

@@ -14,7 +14,10 @@ const ivec2 kEight[8] = {{9, 5}, {7, 11}, {13, 9}, {5, 3}, {3, 13}, {1, 7}, {11,
 const ivec2 kSixteen[16] = {{9, 9}, {7, 5},  {5, 10}, {12, 7}, {3, 6}, {10, 13}, {13, 11}, {11, 3},
                             {6, 14}, {8, 1}, {4, 2},  {2, 12}, {0, 8}, {15, 4},  {14, 15}, {1, 0}};
 vec2 sampleAt(uint i) {
-  const ivec2 at = SAMPLES == 2 ? kTwo[i & 1] : SAMPLES == 4 ? kFour[i & 3] : SAMPLES == 8 ? kEight[i & 7] : kSixteen[i];
+  const ivec2 at = SAMPLES == 2   ? kTwo[i & 1]
+                   : SAMPLES == 4 ? kFour[i & 3]
+                   : SAMPLES == 8 ? kEight[i & 7]
+                                  : kSixteen[i];
   return vec2(at) / 16 - 0.5;
 }
 

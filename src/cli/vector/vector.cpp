@@ -216,6 +216,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     source.stageFn = onStage;
     source.stageUserData = &stages;
   }
+  const bool inPass = options.method == "in-pass";
+  source.methods = inPass ? GPGP_DRAWING_IN_PASS : GPGP_DRAWING_FLATTENED;
   source.scale = scaleInto(options.size, bytes, source);
   if (options.zoom > 1) source.scale = std::min(std::max(source.scale, 1.0f) * static_cast<float>(options.zoom), 1e6f);
   const Result<Blob> blob = compileSvg(source);
@@ -233,8 +235,6 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   drawingInfo.label = name.c_str();
   drawingInfo.data = blob->data();
   drawingInfo.size = blob->size();
-  const bool inPass = options.method == "in-pass";
-  drawingInfo.methods = inPass ? GPGP_DRAWING_IN_PASS : GPGP_DRAWING_FLATTENED;
   const Drawing drawing = session.take(Drawing::create(session.context(), drawingInfo), "gpgpCreateDrawing");
   const GpgpDrawingInfo facts = session.take(drawing.info(), "gpgpGetDrawingInfo");
   if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(name + ": the drawing has no extent");

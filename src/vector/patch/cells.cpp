@@ -19,9 +19,6 @@ using shader::PatchReader;
 using shader::uvec4;
 using shader::vec4;
 
-constexpr uint32_t kMostInCell = 4096; // a shader's loop ends on every device
-constexpr uint32_t kMostCells = 512;   // along an axis
-
 double exact(float v) { return static_cast<double>(v); }
 uint32_t bits(float v) { return std::bit_cast<uint32_t>(v); }
 uvec4 bits(const vec4& v) { return {bits(v.x), bits(v.y), bits(v.z), bits(v.w)}; }
@@ -322,7 +319,8 @@ core::Result<Patches> makePatches(const Drawing& drawing, std::pmr::memory_resou
     if (made.words.size() > kMostWords)
       return makeError(GPGP_ERROR_UNSUPPORTED, "the patches take more than %u bytes", kMostWords);
   }
-  made.words[0] = {made.paths, 1, 0, static_cast<uint32_t>(made.words.size())};
+  made.words[0] = {made.paths, Patches::kVersion, static_cast<uint32_t>(made.leftOut.size()),
+                   static_cast<uint32_t>(made.words.size())};
   return made;
 }
 

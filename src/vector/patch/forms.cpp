@@ -20,7 +20,10 @@ using shader::PatchReader;
 
 double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
 double exact(float v) { return static_cast<double>(v); }
-float rounded(double v) { return static_cast<float>(v); }
+float rounded(double v) {
+  const volatile float f = static_cast<float>(v); // g++ 12 may drop the rounding of a pair that becomes double again
+  return f;
+}
 
 /// A piece of a curve whose ends are floats; controls from the start.
 struct Piece {

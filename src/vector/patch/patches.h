@@ -9,6 +9,8 @@ namespace gpgp::vector {
 
 /// What a patch may have: 4, or up to 8.
 constexpr uint32_t kPatchCurves = 4, kMaxPatchCurves = 8;
+/// Of a grid along an axis, and of a cell's list: a shader's loop ends on every device.
+constexpr uint32_t kMostCells = 512, kMostInCell = 4096;
 
 /// A curve with its implicit form: it runs down and never turns in x, in y or from bending left to bending right.
 struct FormCurve {
@@ -53,6 +55,7 @@ struct Patches {
     const char* reason;
   };
   explicit Patches(std::pmr::memory_resource* memory) : words(memory), leftOut(memory) {}
+  static constexpr uint32_t kVersion = 1;
   std::pmr::vector<shader::uvec4> words;
   uint32_t paths = 0, patches = 0, curves = 0, cells = 0, solidCells = 0, cellPatches = 0;
   std::pmr::vector<LeftOut> leftOut; ///< paths that patches do not draw, and so have none
@@ -63,7 +66,7 @@ struct Patches {
 core::Result<Patches> makePatches(const Drawing& drawing, std::pmr::memory_resource* memory,
                                   uint32_t maxCurves = kPatchCurves, uint32_t first = 0, uint32_t count = UINT32_MAX);
 
-/// Checks everything that a shader would trust, in words from a file.
-core::Result<void> checkPatches(std::span<const shader::uvec4> words);
+/// Checks everything that a shader would trust, in words from a file that has so many paths that paint. INVALID_DATA.
+core::Result<void> checkPatches(std::span<const shader::uvec4> words, uint32_t paths);
 
 } // namespace gpgp::vector

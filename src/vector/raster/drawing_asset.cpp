@@ -48,11 +48,13 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   DrawingTables tables{std::pmr::vector<std::byte>(&context.host()), 0, {}};
   if (flattened) tables = packDrawing(drawing, outlines, &context.host());
   if (methods & GPGP_DRAWING_IN_PASS) {
-    const auto patches = makePatches(drawing, &context.host());
+    auto patches =
+        drawing.words.empty() ? makePatches(drawing, &context.host()) : core::Result<Patches>(Patches(&context.host()));
     if (!patches) return patches.error();
+    if (!drawing.words.empty()) patches->words = std::move(drawing.words);
     asset->patchWords_ = static_cast<uint32_t>(tables.bytes.size() / sizeof(shader::vec4));
-    asset->quads_ = patches->paths;
-    asset->pathsLeftOut_ = static_cast<uint32_t>(patches->leftOut.size());
+    asset->quads_ = patches->words[0].x;
+    asset->pathsLeftOut_ = patches->words[0].z;
     const auto words = std::as_bytes(std::span(patches->words));
     tables.bytes.insert(tables.bytes.end(), words.begin(), words.end());
     for (const Patches::LeftOut& left : patches->leftOut)

@@ -60,7 +60,8 @@ bool viewOf(const float* clip, PatchView& view) {
   if (w > 0)
     for (int i = 0; i < 2; ++i) {
       const double at = plane.inverse[i][2] / w;
-      if (std::abs(at) <= 4e7) origin[i] = static_cast<double>(static_cast<float>(at));
+      const volatile float rounded = static_cast<float>(at); // g++ 12 may drop the rounding of a pair
+      if (std::abs(at) <= 4e7) origin[i] = static_cast<double>(rounded);
     }
   const auto column = [&](int c) {
     double v[4];
