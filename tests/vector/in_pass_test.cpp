@@ -241,8 +241,12 @@ TEST_F(InPassTest, EachSampleIsWrittenOnce) {
   for (size_t i = 0; i < pixels.size(); ++i) {
     const float eighths = pixels[i].a * 8;
     EXPECT_EQ(eighths, std::round(eighths)) << i;
-    if (wanted[i] > 1 - 1e-9) EXPECT_EQ(pixels[i].a, 0.5f) << i;
-    if (wanted[i] == 0) EXPECT_EQ(pixels[i].a, 0.0f) << i;
+    if (wanted[i] > 1 - 1e-9) {
+      EXPECT_EQ(pixels[i].a, 0.5f) << i;
+    }
+    if (wanted[i] == 0) {
+      EXPECT_EQ(pixels[i].a, 0.0f) << i;
+    }
     EXPECT_NEAR(static_cast<double>(pixels[i].a) * 2, wanted[i], 0.6) << i;
   }
   // Two paths that share an edge leave nothing between them.
