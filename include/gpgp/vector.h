@@ -6,6 +6,7 @@
  *   canvas (recorder)   Rasterises drawings, text and lists. Its budgets set its size.
  *   canvas history      Keeps one rasterised canvas, to be drawn inside the engine's render pass.
  *   list                Shapes, images, text and drawings that the engine adds every frame (ui.h).
+ *   patch recorder      Draws drawings and text as geometry inside the engine's render pass, with no pass before.
  *
  * From input to pixels:
  *   gpgpCompileSvg (libgpgp_compiler) -> blob -> gpgpCreateDrawing            a baked drawing
@@ -149,6 +150,11 @@ typedef struct GpgpPathGroup {
   uint32_t clipCount; /**< 0 while `clip` is not NULL: the group is hidden. */
 } GpgpPathGroup;
 
+/** What a drawing or a glyph set keeps on the device, by who draws it. A combination of flags. */
+typedef uint64_t GpgpDrawingMethods;
+#define GPGP_DRAWING_FLATTENED ((GpgpDrawingMethods)1) /**< outlines, which canvases flatten and rasterise */
+#define GPGP_DRAWING_IN_PASS ((GpgpDrawingMethods)2)   /**< CPatches in cells, for gpgpRecordDrawPatches */
+
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
 
 /** What gpgpCompileSvg found in an SVG, and how long it took. */
@@ -195,6 +201,9 @@ typedef struct GpgpSvgSource {
    *  that folder or below it, never to a host. At most 64 files of 16 MiB together are read. NULL: external style
    *  sheets are reported as unsupported. */
   const GpgpFileSystem* fileSystem;
+  /** Who draws the drawing; 0: GPGP_DRAWING_FLATTENED. The file holds what is asked for, and nothing else. Elements
+   * that patches do not draw are named in warnings (GpgpDrawingCreateInfo::methods). */
+  GpgpDrawingMethods methods;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 
@@ -266,6 +275,13 @@ typedef struct GpgpDrawingCreateInfo {
   /** VK_TRUE: gpgpHitTest can find the drawing's paths. Keeps its outlines in host memory, about its size on the
    *  device. Editable drawings can be hit-tested too, at no further cost. */
   VkBool32 hitTestable;
+  /** 0: what the baked data holds; GPGP_DRAWING_FLATTENED for paths and edits. Canvases, lists and hit tests need
+   *  GPGP_DRAWING_FLATTENED. Only what is asked for takes memory.
+   *
+   *  Patches do not draw clips, images, and groups that are less than opaque and hold more than one path. Each path
+   *  that needs one of these is named in a warning (code UNSUPPORTED) and left out of the patches;
+   *  GpgpDrawingInfo::pathsLeftOut counts them. */
+  GpgpDrawingMethods methods;
 } GpgpDrawingCreateInfo;
 #define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 
@@ -287,6 +303,7 @@ typedef struct GpgpDrawingInfo {
   /** The page: x, y, width, height, in drawing space. Equals the bounds if the source has no page. */
   float viewport[4];
   uint32_t paths, curves, patches;
+  uint32_t pathsLeftOut; /**< paths that gpgpRecordDrawPatches does not draw; 0 without GPGP_DRAWING_IN_PASS */
 } GpgpDrawingInfo;
 #define GPGP_DRAWING_INFO_INIT GPGP_INIT(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO)
 
@@ -308,6 +325,7 @@ typedef struct GpgpGlyphSetCreateInfo {
    *  segment takes 64 bytes (a curve has two or three) and a path 48. A gradient takes 64 bytes, each of its stops 32.
    *  A glyph with any gradient takes 48 more. */
   VkDeviceSize maxBytes;
+  GpgpDrawingMethods methods; /**< who draws the glyphs; 0: GPGP_DRAWING_FLATTENED */
 } GpgpGlyphSetCreateInfo;
 #define GPGP_GLYPH_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO)
 
@@ -607,6 +625,68 @@ typedef struct GpgpCanvasReport {
 /** Returns the oldest report that has not been taken yet.
  *  NOT_READY: there is none. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpRecorder canvas, GpgpCanvasReport* report);
+
+/* ---------------------------------------------------------------- patches inside a render pass */
+
+/** Budgets of a patch recorder. It has no scratch memory. What a recording passes to the GPU takes 240 bytes an item
+ *  and 48 bytes a glyph, for every recording that can be in flight. */
+typedef struct GpgpPatchRecorderCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpRecorderCreateInfo base;
+  uint32_t maxItems;  /**< items in one recording, at most 65536; 0: 1024 */
+  uint32_t maxGlyphs; /**< glyphs of all texts in one recording, at most 1048576; 0: 1024 */
+} GpgpPatchRecorderCreateInfo;
+#define GPGP_PATCH_RECORDER_CREATE_INFO_INIT                                                                           \
+  GPGP_INIT(GpgpPatchRecorderCreateInfo, GPGP_STRUCTURE_PATCH_RECORDER_CREATE_INFO)
+
+/** Makes a patch recorder. Prewarm it (gpgpPrewarm) for every target that it draws into. Targets with several samples
+ *  need the device's standardSampleLocations.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED, OUT_OF_..._MEMORY. @threads context @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreatePatchRecorder(GpgpContext context, const GpgpPatchRecorderCreateInfo* info,
+                                                      GpgpRecorder* recorder);
+
+/** One thing that a draw of patches shows: a drawing or a text. */
+typedef struct GpgpPatchItem {
+  GpgpAsset drawing; /**< made with GPGP_DRAWING_IN_PASS; NULL for a text */
+  /** Matrix from drawing or text space (x, y, 0, 1) to clip space, column-major. Any matrix, perspective included:
+   * model, view and projection of a panel in the world, for example. What lies behind the eye is cut off. */
+  float clip[16];
+  const float* secondClip; /**< multiview targets only: 16 numbers, `clip` for view 1; NULL: `clip` for both views */
+  float opacity;      /**< 0 to 1; multiplies the alpha of each path, so overlapping paths show through one another */
+  GpgpAsset glyphSet; /**< made with GPGP_DRAWING_IN_PASS, for a text; NULL for a drawing */
+  const GpgpGlyphInstance* glyphs; /**< in painting order, the first at the bottom */
+  uint32_t glyphCount;
+} GpgpPatchItem;
+
+typedef struct GpgpPatchDrawInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const GpgpTargetInfo* target; /**< equal to one of those that were passed to gpgpPrewarm */
+  const GpgpPatchItem* items;   /**< in painting order, the first at the bottom */
+  uint32_t itemCount;           /**< at most maxItems; all items show at most 8 different drawings and glyph sets */
+  /** The viewport that the engine has set: x, y, width, height, in pixels. A negative height turns y over. */
+  float viewport[4];
+  /** VK_TRUE: colours are written as sRGB encodes them, premultiplied, and so mix in that encoding. For attachments in
+   *  UNORM formats that hold sRGB colours. VK_FALSE: linear colours, for sRGB and float formats. */
+  VkBool32 encodeSrgb;
+} GpgpPatchDrawInfo;
+#define GPGP_PATCH_DRAW_INFO_INIT GPGP_INIT(GpgpPatchDrawInfo, GPGP_STRUCTURE_PATCH_DRAW_INFO)
+
+/** Draws the items inside the engine's render pass, in one instanced draw with premultiplied blending (ONE,
+ *  ONE_MINUS_SRC_ALPHA). Nothing is recorded before the pass, and nothing is kept. Edges are exact at any
+ *  magnification.
+ *
+ *  With one sample, a path's paint is multiplied by the part of the pixel that the path covers. With several, the draw
+ *  writes those samples that lie inside the path, so paths that abut show nothing between them. The depth test, if the
+ *  target has one, compares each item's own plane. The engine sets viewport and scissor.
+ *
+ *  NOT_READY: a drawing or glyph that is shown is not resident, or gpgpPrewarm has not returned yet. INVALID_ARGUMENT:
+ *  the target equals none that was given to gpgpPrewarm; more items or glyphs than the recorder was made for; an asset
+ *  without GPGP_DRAWING_IN_PASS.
+ *  @threads handle @lifetime call @pass inside @state graphics pipeline, graphics descriptor set 0, push constants */
+GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawPatches(GpgpRecorder recorder, VkCommandBuffer commandBuffer,
+                                                    const GpgpFrame* frame, const GpgpPatchDrawInfo* info);
 
 #ifdef __cplusplus
 }

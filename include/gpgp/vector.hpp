@@ -18,6 +18,8 @@ GPGP_STRUCTURE_OF(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO);
 GPGP_STRUCTURE_OF(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT);
 GPGP_STRUCTURE_OF(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpPatchRecorderCreateInfo, GPGP_STRUCTURE_PATCH_RECORDER_CREATE_INFO);
+GPGP_STRUCTURE_OF(GpgpPatchDrawInfo, GPGP_STRUCTURE_PATCH_DRAW_INFO);
 
 /// A vector drawing on the device (gpgpCreateDrawing).
 class Drawing : public Asset {
@@ -85,6 +87,20 @@ public:
   }
   /// gpgpGetCanvasReport: the oldest report that was not taken yet, or GPGP_NOT_READY.
   Result<GpgpCanvasReport> report() noexcept { return detail::report(gpgpGetCanvasReport, get()); }
+};
+
+/// Draws drawings and text as geometry inside the engine's render pass (gpgpCreatePatchRecorder).
+class PatchRecorder : public Recorder {
+public:
+  using Recorder::Recorder;
+  static Result<PatchRecorder> create(GpgpContext context, const GpgpPatchRecorderCreateInfo& info) noexcept {
+    return detail::create<PatchRecorder>(gpgpCreatePatchRecorder, context, info);
+  }
+  /// gpgpRecordDrawPatches: inside a render pass of the engine.
+  [[nodiscard]] GpgpResult recordDraw(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
+                                      const GpgpPatchDrawInfo& info) noexcept {
+    return gpgpRecordDrawPatches(get(), commandBuffer, &frame, &info);
+  }
 };
 
 // ---------------------------------------------------------------- compiler (libgpgp_compiler)

@@ -20,10 +20,14 @@ inline Result<vector::ItemAsset> resolveItem(Call& call, const GpgpCanvasItem& i
   } else if (item.glyphSet) {
     const auto set = resolve<vector::GlyphSet>(call, item.glyphSet, Kind::glyphSet, "items[].glyphSet", &context);
     if (!set) return set.error();
+    if (!((*set)->methods() & GPGP_DRAWING_FLATTENED))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].glyphSet was made without GPGP_DRAWING_FLATTENED", i);
     asset.glyphSet = *set;
   } else {
     const auto drawing = resolve<vector::DrawingAsset>(call, item.drawing, Kind::drawing, "items[].drawing", &context);
     if (!drawing) return drawing.error();
+    if (!((*drawing)->methods() & GPGP_DRAWING_FLATTENED))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].drawing was made without GPGP_DRAWING_FLATTENED", i);
     asset.drawing = *drawing;
   }
   return asset;

@@ -84,6 +84,8 @@ GpgpResult GPGP_CALL gpgpAddText(GpgpList handle, GpgpAsset glyphSet, const Gpgp
   return withList("gpgpAddText", handle, [&](Call& call, List& list) -> Result<void> {
     const auto set = resolve<GlyphSet>(call, glyphSet, Kind::glyphSet, "glyphSet", &list.context);
     if (!set) return set.error();
+    if (!((*set)->methods() & GPGP_DRAWING_FLATTENED))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the glyph set was made without GPGP_DRAWING_FLATTENED");
     if (count && !glyphs) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyphs is NULL, but count is %u", count);
     return list.addText(**set, {glyphs, count}, id);
   });
@@ -93,6 +95,8 @@ GpgpResult GPGP_CALL gpgpAddDrawing(GpgpList handle, GpgpAsset asset, uint32_t f
   return withList("gpgpAddDrawing", handle, [&](Call& call, List& list) -> Result<void> {
     const auto drawing = resolve<DrawingAsset>(call, asset, Kind::drawing, "drawing", &list.context);
     if (!drawing) return drawing.error();
+    if (!((*drawing)->methods() & GPGP_DRAWING_FLATTENED))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the drawing was made without GPGP_DRAWING_FLATTENED");
     list.addDrawing(**drawing, firstImage, id);
     return {};
   });

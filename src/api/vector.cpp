@@ -1,6 +1,7 @@
 // The C functions of vector.h that belong to the run-time library.
 #include "api/items.h"
 #include "vector/raster/canvas.h"
+#include "vector/raster/patch_recorder.h"
 
 #include <algorithm>
 #include <optional>
@@ -9,6 +10,14 @@
 using namespace gpgp;
 using namespace gpgp::api;
 using namespace gpgp::vector;
+
+namespace {
+Result<void> checkMethods(GpgpDrawingMethods methods) {
+  if (methods & ~(GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods has unknown bits");
+  return {};
+}
+} // namespace
 
 GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCreateInfo* info, GpgpAsset* drawing) {
   return guarded("gpgpCreateDrawing", [&](Call& call) -> Result<void> {
@@ -23,6 +32,11 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     if (info->groupCount && (!info->groups || !info->paths))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "groupCount is %u without groups or without paths",
                        info->groupCount);
+    if (auto ok = checkMethods(info->methods); !ok) return ok;
+    if ((info->editable || info->hitTestable || info->base) && info->methods &&
+        !(info->methods & GPGP_DRAWING_FLATTENED))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "methods has no GPGP_DRAWING_FLATTENED, which edits and hit tests need");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     std::pmr::memory_resource* memory = &(*context)->host();
     const DrawingAsset* base = nullptr;
@@ -45,8 +59,13 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     };
     auto made = make();
     if (!made) return made.error();
+    const GpgpDrawingMethods held = methodsOf(*made), methods = info->methods ? info->methods : held;
+    if ((held & GPGP_DRAWING_FLATTENED) == 0 &&
+        (methods != GPGP_DRAWING_IN_PASS || info->editable || info->hitTestable))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "the drawing was baked without GPGP_DRAWING_FLATTENED; bake it with both methods");
     auto asset = DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE,
-                                      info->hitTestable != VK_FALSE, base, edits);
+                                      info->hitTestable != VK_FALSE, methods, base, edits);
     if (!asset) return asset.error();
     *drawing = adopt<GpgpAsset>(**context, std::move(*asset));
     return {};
@@ -63,6 +82,7 @@ GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset handle, GpgpDrawingInfo* info)
     info->paths = (*drawing)->paths();
     info->curves = (*drawing)->curves();
     info->patches = (*drawing)->patches();
+    info->pathsLeftOut = (*drawing)->pathsLeftOut();
     return {};
   });
 }
@@ -74,6 +94,7 @@ GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext handle, const GpgpGlyphSetCr
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO, "info"); !ok) return ok;
     if (!glyphSet) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyphSet is NULL");
     if (info->data && info->filePath) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "both data and filePath are given");
+    if (auto ok = checkMethods(info->methods); !ok) return ok;
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     std::pmr::memory_resource* memory = &(*context)->host();
     std::optional<Glyphs> baked;
@@ -249,6 +270,58 @@ GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder handle, VkCommandBuffer c
     if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**canvas, frame); !ok) return ok;
     return (*canvas)->draw(commandBuffer, *info, **history);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpCreatePatchRecorder(GpgpContext handle, const GpgpPatchRecorderCreateInfo* info,
+                                             GpgpRecorder* recorder) {
+  return guarded("gpgpCreatePatchRecorder", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_PATCH_RECORDER_CREATE_INFO, "info"); !ok) return ok;
+    if (!recorder) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "recorder is NULL");
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
+    if (info->maxItems > 65536)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxItems is %u; at most 65536", info->maxItems);
+    if (info->maxGlyphs > 1u << 20)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxGlyphs is %u; at most 1048576", info->maxGlyphs);
+    auto made = PatchRecorder::create(**context, *info);
+    if (!made) return made.error();
+    *recorder = adopt<GpgpRecorder>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpRecordDrawPatches(GpgpRecorder handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
+                                           const GpgpPatchDrawInfo* info) {
+  return guarded("gpgpRecordDrawPatches", [&](Call& call) -> Result<void> {
+    const auto recorder = resolve<PatchRecorder>(call, handle, Kind::patchRecorder, "recorder");
+    if (!recorder) return recorder.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_PATCH_DRAW_INFO, "info"); !ok) return ok;
+    if (auto ok = checkStruct(info->target, GPGP_STRUCTURE_TARGET_INFO, "target"); !ok) return ok;
+    if (info->itemCount && !info->items)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items is NULL, but itemCount is %u", info->itemCount);
+    const core::RecorderUse use(**recorder);
+    if (!use) return core::RecorderUse::error();
+    if (auto ok = checkRecord(**recorder, frame); !ok) return ok;
+    const core::Context& context = (*recorder)->context;
+    const auto assetOf = [&](uint32_t i) -> Result<ItemAsset> {
+      const GpgpPatchItem& item = info->items[i];
+      ItemAsset asset;
+      if (item.drawing && item.glyphSet)
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u]: both drawing and glyphSet are given", i);
+      if (item.glyphSet) {
+        const auto set = resolve<GlyphSet>(call, item.glyphSet, Kind::glyphSet, "items[].glyphSet", &context);
+        if (!set) return set.error();
+        asset.glyphSet = *set;
+      } else {
+        const auto drawing = resolve<DrawingAsset>(call, item.drawing, Kind::drawing, "items[].drawing", &context);
+        if (!drawing) return drawing.error();
+        asset.drawing = *drawing;
+      }
+      return asset;
+    };
+    return (*recorder)->draw(commandBuffer, *info, assetOf);
   });
 }
 

@@ -14,7 +14,7 @@ function(gpgp_add_shader target name source)
   set(dir ${PROJECT_BINARY_DIR}/generated/shaders)
   file(MAKE_DIRECTORY ${dir})
   list(TRANSFORM arg_DEFINES PREPEND "-D" OUTPUT_VARIABLE defines)
-  set(glslang ${GPGP_GLSLANG} -V --target-env vulkan1.2 --quiet -I${PROJECT_SOURCE_DIR}/shaders ${defines})
+  set(glslang ${GPGP_GLSLANG} -V --target-env vulkan1.2 --quiet -I${PROJECT_SOURCE_DIR}/shaders -I${PROJECT_SOURCE_DIR}/include ${defines})
   add_custom_command(OUTPUT ${dir}/${name}.spv ${dir}/${name}.spv.h # the first is what the depfile names
     COMMAND ${glslang} --depfile ${dir}/${name}.d -o ${dir}/${name}.spv ${source}
     COMMAND ${GPGP_SPIRV_VAL} --target-env vulkan1.2 ${dir}/${name}.spv

@@ -29,6 +29,7 @@ const char* kindName(Kind kind) {
   case Kind::spawner: return "spawner";
   case Kind::lsystemRecorder: return "L-system recorder";
   case Kind::canvas: return "canvas";
+  case Kind::patchRecorder: return "patch recorder";
   case Kind::visibilityRecorder: return "visibility recorder";
   case Kind::canvasHistory: return "canvas history";
   case Kind::cameraHistory: return "camera history";

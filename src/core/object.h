@@ -19,6 +19,7 @@ enum class Kind : uint32_t {
   spawner,
   lsystemRecorder,
   canvas,
+  patchRecorder,
   visibilityRecorder,
   canvasHistory,
   cameraHistory,

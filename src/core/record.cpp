@@ -412,7 +412,7 @@ Result<void> Recorder::recordDraw(const DrawRecord& record) {
   if (!record.commandBuffer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "commandBuffer is NULL");
   VkPipeline pipeline = VK_NULL_HANDLE;
   for (uint32_t i = 0; i < targetCount_.load(std::memory_order_acquire); ++i)
-    if (sameTarget(targets_[i].info, *record.target)) pipeline = targets_[i].pipeline;
+    if (sameTarget(targets_[i].info, *record.target)) pipeline = targets_[i].pipelines[record.form];
   if (!pipeline) {
     if (!ready() || prewarming_) return makeError(GPGP_NOT_READY, "gpgpPrewarm has not returned for the target");
     return makeError(
@@ -436,7 +436,7 @@ Result<void> Recorder::recordDraw(const DrawRecord& record) {
     vk.CmdPushConstants(record.commandBuffer, layout_,
                         VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                         static_cast<uint32_t>(record.pushConstants.size()), record.pushConstants.data());
-  vk.CmdDraw(record.commandBuffer, record.vertexCount, 1, 0, 0);
+  vk.CmdDraw(record.commandBuffer, record.vertexCount, record.instanceCount, 0, 0);
   endLabel(record.commandBuffer);
   return {};
 }

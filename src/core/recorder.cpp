@@ -32,7 +32,8 @@ Recorder::~Recorder() {
   unlink();
   const Device& device = context.device;
   for (VkPipeline pipeline : pipelines_) device.vk.DestroyPipeline(device.device, pipeline, nullptr);
-  for (uint32_t i = 0; i < targetCount_; ++i) device.vk.DestroyPipeline(device.device, targets_[i].pipeline, nullptr);
+  for (uint32_t i = 0; i < targetCount_; ++i)
+    for (VkPipeline pipeline : targets_[i].pipelines) device.vk.DestroyPipeline(device.device, pipeline, nullptr);
   device.vk.DestroyDescriptorPool(device.device, pool_, nullptr);
   device.vk.DestroyPipelineLayout(device.device, layout_, nullptr);
   device.vk.DestroyDescriptorSetLayout(device.device, setLayout_, nullptr);
@@ -48,7 +49,7 @@ void Recorder::retire() {
 
 VkDeviceSize Recorder::scratchAlignment() const { return context.device.limits.minStorageBufferOffsetAlignment; }
 
-Result<void> Recorder::init(PassList passes, const DrawShaders* draw) {
+Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws) {
   const Device& device = context.device;
   uint32_t familyCount = 0;
   device.vki.GetPhysicalDeviceQueueFamilyProperties(device.physicalDevice, &familyCount, nullptr);
@@ -65,8 +66,9 @@ Result<void> Recorder::init(PassList passes, const DrawShaders* draw) {
   passes_ = std::move(passes);
   passes_.finish(std::max<VkDeviceSize>(
       {device.limits.minStorageBufferOffsetAlignment, device.limits.minUniformBufferOffsetAlignment, 16}));
-  draws_ = draw && (queueFlags_ & VK_QUEUE_GRAPHICS_BIT);
-  if (draw) draw_ = *draw;
+  draws_ = !draws.empty() && (queueFlags_ & VK_QUEUE_GRAPHICS_BIT);
+  drawForms_ = static_cast<uint32_t>(draws.size());
+  std::copy(draws.begin(), draws.end(), draw_.begin());
   for (const Resource& resource : passes_.resources)
     if (resource.bytes > device.limits.maxStorageBufferRange)
       return makeError(
@@ -204,20 +206,23 @@ Result<VkPipeline> Recorder::createComputePipeline(const ShaderDesc& shader) con
   return pipeline;
 }
 
-Result<VkPipeline> Recorder::createDrawPipeline(const GpgpTargetInfo& target) const {
+Result<VkPipeline> Recorder::createDrawPipeline(const DrawShaders& draw, const GpgpTargetInfo& target) const {
   const Device& device = context.device;
-  const auto vertex = createModule(target.viewMask ? draw_.multiviewVertex : draw_.vertex);
+  const auto vertex = createModule(target.viewMask ? draw.multiviewVertex : draw.vertex);
   if (!vertex) return vertex.error();
-  const auto fragment = createModule(target.viewMask ? draw_.multiviewFragment : draw_.fragment);
+  const auto fragment = createModule(target.viewMask ? draw.multiviewFragment : draw.fragment);
   if (!fragment) {
     device.vk.DestroyShaderModule(device.device, *vertex, nullptr);
     return fragment.error();
   }
+  const uint32_t samples = target.samples ? target.samples : 1;
+  const VkSpecializationMapEntry entry{0, 0, sizeof samples};
+  const VkSpecializationInfo specialization{1, &entry, sizeof samples, &samples};
   const std::array<VkPipelineShaderStageCreateInfo, 2> stages{{
       {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_VERTEX_BIT, *vertex, "main",
-       nullptr},
+       &specialization},
       {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_FRAGMENT_BIT, *fragment, "main",
-       nullptr},
+       &specialization},
   }};
   VkPipelineVertexInputStateCreateInfo vertexInput{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
@@ -284,9 +289,9 @@ Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets is NULL, targetCount is %u", wanted);
   if (wanted && !draws_)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     draw_.vertex.spirv.empty() ? "a %s does not draw: targetCount must be 0"
-                                                : "this %s is on a queue family without "
-                                                  "graphics: targetCount must be 0",
+                     drawForms_ == 0 ? "a %s does not draw: targetCount must be 0"
+                                     : "this %s is on a queue family without "
+                                       "graphics: targetCount must be 0",
                      kindName(kind));
   for (uint32_t i = 0; i < wanted; ++i) {
     const GpgpTargetInfo& target = info->targets[i];
@@ -343,9 +348,17 @@ Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
       continue;
     if (have == kMaxTargets)
       return makeError(GPGP_ERROR_UNSUPPORTED, "a recorder draws into at most %u different targets", kMaxTargets);
-    const auto pipeline = createDrawPipeline(info->targets[i]);
-    if (!pipeline) return pipeline.error();
-    targets_[have] = {info->targets[i], *pipeline};
+    Target& target = targets_[have];
+    target = {info->targets[i], {}};
+    for (uint32_t form = 0; form < drawForms_; ++form) {
+      const auto pipeline = createDrawPipeline(draw_[form], target.info);
+      if (!pipeline) {
+        for (VkPipeline made : target.pipelines)
+          context.device.vk.DestroyPipeline(context.device.device, made, nullptr);
+        return pipeline.error();
+      }
+      target.pipelines[form] = *pipeline;
+    }
     targetCount_.store(have + 1, std::memory_order_release);
   }
   ready_.store(true, std::memory_order_release);

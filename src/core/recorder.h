@@ -14,6 +14,7 @@ constexpr uint32_t kMaxResources = 32;
 constexpr uint32_t kMaxGroupCounts = 16;
 constexpr uint32_t kMaxConditions = 48;
 constexpr uint32_t kMaxTargets = 16;
+constexpr uint32_t kMaxDrawForms = 2;
 
 /// What one recording gives for the resources of kinds buffer and image.
 struct Binding {
@@ -44,7 +45,8 @@ struct DrawRecord {
   std::array<Binding, kMaxResources> bindings = {};
   const GpgpTargetInfo* target = nullptr;
   std::span<const std::byte> pushConstants; ///< at most 128 bytes
-  uint32_t vertexCount = 0;
+  uint32_t vertexCount = 0, instanceCount = 1;
+  uint32_t form = 0; ///< which of the DrawShaders that init was given
 };
 
 /// A report as it came from the GPU.
@@ -106,11 +108,13 @@ protected:
   std::byte* constants() const;
   Recorder(Context& context, Kind kind, const GpgpRecorderCreateInfo& info, GpgpService service);
   /// Takes the finished description and makes what recording needs. Call once at the end of creation.
+  /// Specialisation constant 0 of each is how many samples the target has.
   struct DrawShaders {
     ShaderDesc vertex, fragment;
     ShaderDesc multiviewVertex, multiviewFragment; ///< for targets with a view mask, of views 0 and 1
   };
-  Result<void> init(PassList passes, const DrawShaders* draw = nullptr);
+  /// draws: the forms that a draw comes in, at most kMaxDrawForms.
+  Result<void> init(PassList passes, std::span<const DrawShaders> draws = {});
   /// A pipeline with this recorder's layout; all recorders of a class have layouts that are compatible.
   Result<VkPipeline> createComputePipeline(const ShaderDesc& shader) const;
   /// Of a shader of the pass list, once prewarmed.
@@ -125,14 +129,14 @@ private:
   };
   struct Target {
     GpgpTargetInfo info;
-    VkPipeline pipeline;
+    std::array<VkPipeline, kMaxDrawForms> pipelines;
   };
 
   Result<uint32_t> acquire() const;
   void take(uint32_t slot, uint64_t tag, bool report);
   void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                         VkDeviceSize scratchOffset, bool reports) const;
-  Result<VkPipeline> createDrawPipeline(const GpgpTargetInfo& target) const;
+  Result<VkPipeline> createDrawPipeline(const DrawShaders& draw, const GpgpTargetInfo& target) const;
   Result<VkShaderModule> createModule(const ShaderDesc& shader) const;
   void beginLabel(VkCommandBuffer commandBuffer, const char* pass) const;
   void endLabel(VkCommandBuffer commandBuffer) const;
@@ -143,7 +147,8 @@ private:
   VkQueueFlags queueFlags_;
   const bool engineScratch_;
   PassList passes_;
-  DrawShaders draw_{};
+  std::array<DrawShaders, kMaxDrawForms> draw_{};
+  uint32_t drawForms_ = 0;
   bool draws_ = false;
   VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE, textureLayout_ = VK_NULL_HANDLE;
   uint32_t firstTexture_ = 0; // textures lie in a row

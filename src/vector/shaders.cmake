@@ -142,6 +142,16 @@ foreach(stage vert frag)
   gpgp_add_shader(gpgp_vector_objects vector_draw_${stage}_multiview vector/raster/draw.${stage} DEFINES MULTIVIEW=1)
 endforeach()
 
+# Inside a render pass: from one drawing or glyph set, or from several.
+foreach(stage vert frag)
+  foreach(multiview 0 1)
+    foreach(one 0 1)
+      gpgp_add_shader(gpgp_vector_objects vector_patches_${stage}_${one}${multiview} vector/in_pass/patches.${stage}
+        DEFINES ONE_DRAWING=${one} MULTIVIEW=${multiview})
+    endforeach()
+  endforeach()
+endforeach()
+
 set(generated ${PROJECT_BINARY_DIR}/generated/shaders)
 file(CONFIGURE OUTPUT ${generated}/vector_shaders.h CONTENT [[
 // By src/vector/shaders.cmake.

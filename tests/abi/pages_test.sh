@@ -21,7 +21,7 @@ code() {
 code c | "$cc" -std=c99 "${flags[@]}" -x c -
 code cpp | "$cxx" -std=c++17 "${flags[@]}" -x c++ -
 failed=no
-for guide in spawn vector ui; do
+for guide in spawn vector patches ui; do
   [[ $(page=$docs/guide/$guide.md code c | grep -c .) -gt 15 ]] || { echo "no code in guide/$guide.md" >&2; exit 1; }
   echo "guide/$guide.md"
   page=$docs/guide/$guide.md code c | "$cc" -std=c99 "${flags[@]}" -x c -

@@ -36,6 +36,10 @@ install)
     if grep -E 'RPATH|RUNPATH' <<<"$dynamic"; then fail "$name has a run-time search path"; fi
     if grep -E 'NEEDED.*(vulkan|glslang|SPIRV)' <<<"$dynamic"; then fail "$name needs a library that it must not"; fi
   done
+  if command -v glslangValidator >/dev/null; then # the shaders that engines include stand alone
+    glslangValidator -V --quiet -I"$prefix/include" -o "$scratch/glsl.spv" "$tests/../vector/material.frag"
+    glslangValidator -D -V -S frag -e main --quiet -I"$prefix/include" -o "$scratch/hlsl.spv" "$tests/../vector/material.hlsl"
+  fi
   if [[ -x $prefix/bin/gpgp ]]; then "$prefix/bin/gpgp" --version; fi
   version=$(sed -nE 's/^#define GPGP_VERSION_(MAJOR|MINOR|PATCH) ([0-9]+)$/\2/p' "$prefix/include/gpgp/core.h" | paste -sd.)
   described=$(sed -nE 's/^Version: //p' $(find "$prefix" -name gpgp.pc))

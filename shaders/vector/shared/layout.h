@@ -4,6 +4,7 @@
 #ifndef GPGP_SHADERS_VECTOR_LAYOUT_H
 #define GPGP_SHADERS_VECTOR_LAYOUT_H
 #include "core/shared.h"
+#include "gpgp/shaders/ramp.h"
 
 GPGP_SHADER_BEGIN
 
@@ -31,7 +32,7 @@ struct CurveRecord {
   vec4 controls;    // first control - start, second control - start
   float bend;       // how far the cubic is from a parabola at most (drawing units); negative: a straight line
   float endX, endY; // the end, bit for bit as other curves begin there
-  uint pad0;
+  float weight;     // of an arc of a circle or ellipse, as a rational quadratic: cos of half its angle; 0: no arc
 };
 
 // A CPatch: what lies between top and bottom (half-open), right of the left curve and left of the right one.
@@ -72,26 +73,6 @@ struct LayerRecord {
   uint parent;   // 1 + index of the earlier layer that holds it; 0: none
   uint depth;    // as a clip's
   uint pad0;
-};
-
-// A gradient. A point of the drawing is taken to gradient space (x = matrix.x dx + matrix.z dy + origin.x, y = matrix.y
-// dx + matrix.w dy + origin.y), where the ramp's place t is, for kPaintLinear, x itself; for kPaintRadial, the largest
-// t at which the point lies on the circle around (t distance, 0) with the radius startRadius + t growth, not negative.
-// Where there is no such t, nothing is painted. For kPaintImage, matrix and origin lead to texture coordinates, and
-// firstStop is the image, from the item's first one on; stopCount is 0. For kPaintSlices they lead to
-// the destination (place p along x, say), and `slices` is the first of two stops: between two places p and q the
-// texture coordinate is that of p plus (p - place) times a slope, before p and after q with slopes of their own; or it
-// begins anew at p after each period.
-struct PaintRecord {
-  vec4 matrix;
-  vec4 origin; // x, y; of a radial one, distance and growth
-  float startRadius;
-  uint kind;                 // kPaint...
-  uint spread;               // kSpread...
-  uint flags;                // kInterpolateSrgb
-  uint firstStop, stopCount; // at least one for gradients
-  uint slices;
-  float tangent; // of the circles at t = 0 and 1 that both touch, its length squared: distance^2 - growth^2
 };
 
 // Where a ramp has which colour; offsets never fall from one stop to the next.
@@ -240,10 +221,6 @@ struct FlatSegmentRecord {
              // scissor
 };
 
-GPGP_CONST uint kPaintLinear = 0u;
-GPGP_CONST uint kPaintRadial = 1u;
-GPGP_CONST uint kPaintImage = 2u;
-GPGP_CONST uint kPaintSlices = 3u; // an image whose middle is stretched more than its borders
 GPGP_CONST uint kMaxImages = 8u;
 GPGP_CONST uint kImageBits = 4u;
 GPGP_CONST uint kImagePremultiplied = 1u; // its colours have been multiplied by its alpha
@@ -251,10 +228,6 @@ GPGP_CONST uint kImageEncoded = 2u;       // what sampling gives is encoded as s
 GPGP_CONST uint kImageByTexel = 4u;       // its texels are converted before they are mixed (paint.glsl)
 GPGP_CONST uint kMaxClipDepth = 16u;
 GPGP_CONST uint kMaxLayerDepth = 4u;
-GPGP_CONST uint kSpreadPad = 0u;
-GPGP_CONST uint kSpreadRepeat = 1u;
-GPGP_CONST uint kSpreadReflect = 2u;
-GPGP_CONST uint kInterpolateSrgb = 1u;
 GPGP_CONST uint kForeground = 1u; // takes the colour of the item
 GPGP_CONST uint kMaxSlots = 8u;
 GPGP_CONST uint kShapeSlot = 8u; // the buffer of the recording's own shapes

@@ -28,6 +28,7 @@ struct BakeOptions {
   std::string out, type;
   bool kernel = true, link = false;
   float scale = 1;
+  std::string method = "flattened";
 #ifdef GPGP_CLI_SPAWN
   spawn::Heuristics heuristics;
 #endif
@@ -84,12 +85,16 @@ struct Baked {
 };
 
 #ifdef GPGP_CLI_VECTOR
-Baked bakeDrawing(const std::string& text, const std::string& file, const std::string& name, float scale) {
+Baked bakeDrawing(const std::string& text, const std::string& file, const std::string& name,
+                  const BakeOptions& options) {
   GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
   source.name = name.c_str();
   source.data = text.data();
   source.size = text.size();
-  source.scale = scale;
+  source.scale = options.scale;
+  source.methods = options.method == "in-pass" ? GPGP_DRAWING_IN_PASS
+                   : options.method == "both"  ? GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS
+                                               : GPGP_DRAWING_FLATTENED;
   SvgMessages messages;
   messages.attach(source);
   const SvgFiles files(file);
@@ -123,7 +128,7 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
   }
 #endif
 #ifdef GPGP_CLI_VECTOR
-  if (type == "drawing") return bakeDrawing(bytes, file, name, options.scale);
+  if (type == "drawing") return bakeDrawing(bytes, file, name, options);
 #endif
 #ifdef GPGP_CLI_TEXT
   if (type == "font") {
@@ -251,6 +256,11 @@ Work addBake(CLI::App& app) {
           "The largest scale at which drawings are shown, in pixels per pixel of their page: strokes are off by "
           "less than a twentieth of a pixel there")
       ->check(within(1e-6, 1e6))
+      ->capture_default_str();
+  command
+      ->add_option("--method", options->method,
+                   "Who draws the drawings: canvases (flattened), draws inside a render pass (in-pass), or both")
+      ->check(CLI::IsMember({"flattened", "in-pass", "both"}))
       ->capture_default_str();
 #endif
 #ifdef GPGP_CLI_TEXT

@@ -69,6 +69,10 @@ public:
     if (!found) throw Failure("the last record gave no report");
     return result;
   }
+  /// The same for a recorder that makes no reports.
+  GpuTimes time(GpgpRecorder recorder, const char* label, uint32_t repeat, const Record& record) {
+    return run(recorder, label, repeat, record, [] {});
+  }
   /// Throws Failure where the validation layer had anything to say.
   void checkValidation();
 

@@ -3,6 +3,7 @@
 #include "cli/shared/session.h"
 #include "cli/shared/textures.h"
 #include "cli/vector/images.h"
+#include "cli/vector/in_pass.h"
 #include "cli/vector/patch_tiles.h"
 #include "cli/vector/reference.h"
 #include "cli/vector/svg_files.h"
@@ -23,8 +24,10 @@ namespace gpgp::cli {
 namespace {
 
 struct VectorOptions {
-  std::string file, out, background, stages, antialiasing = "16";
+  std::string file, out, background, stages, antialiasing, method = "flattened";
   Size size;
+  double zoom = 1, tilt = 0;
+  std::vector<double> center;
   bool allWarnings = false;
   bool reference = false;
   uint32_t repeat = 1, maxTileEntries = 0;
@@ -52,6 +55,30 @@ void fit(std::span<const char> bytes, const float (&page)[4], const Size& size, 
   if (!fitted) throw Failure(fitted.error().text);
   const double values[6] = {fitted->a, fitted->b, fitted->c, fitted->d, fitted->e, fitted->f};
   for (size_t i = 0; i < 6; ++i) transform[i] = static_cast<float>(values[i]);
+}
+
+/// What the picture shows: the fitted page, magnified around a point of it, and tilted about the picture's horizontal
+/// middle line, seen from as far away as the picture is high.
+PlaneMap mapOf(const VectorOptions& options, const float (&fitted)[6], const Size& size) {
+  const auto of = [&](int i) { return static_cast<double>(fitted[i]); };
+  const double middle[2] = {size.width / 2.0, size.height / 2.0};
+  double center[2] = {middle[0], middle[1]}; // in the picture
+  if (!options.center.empty())
+    for (int i = 0; i < 2; ++i) center[i] = of(i) * options.center[0] + of(2 + i) * options.center[1] + of(4 + i);
+  PlaneMap map{};
+  for (size_t i = 0; i < 2; ++i) {
+    map[i][0] = options.zoom * of(static_cast<int>(i));
+    map[i][1] = options.zoom * of(static_cast<int>(2 + i));
+    map[i][2] = options.zoom * (of(static_cast<int>(4 + i)) - center[i]);
+  }
+  const double angle = options.tilt * 3.14159265358979323846 / 180, c = std::cos(angle), s = std::sin(angle);
+  for (size_t k = 0; k < 3; ++k) {
+    const double x = map[0][k], y = map[1][k], w = (k == 2 ? 1 : 0) - s * y / size.height;
+    map[0][k] = x + middle[0] * w;
+    map[1][k] = c * y + middle[1] * w;
+    map[2][k] = w;
+  }
+  return map;
 }
 
 /// At what scale the picture shows the source; 0: at its own, or it cannot be read.
@@ -131,6 +158,45 @@ std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
          std::to_string(words ? report.tileWordsGiven : report.tileEntriesGiven) + "; a smaller --size needs fewer";
 }
 
+/// Draws inside a render pass, and says what came of it. `reference`: decibels of pixels.
+Outcome outcomeInPass(Session& session, const Drawing& drawing, const GpgpDrawingInfo& facts,
+                      const VectorOptions& options, InPassInfo info,
+                      const std::function<double(std::span<const uint8_t>)>& reference) {
+  const bool area = options.antialiasing.empty() || options.antialiasing == "area";
+  info.samples = area ? 1 : static_cast<uint32_t>(std::stoul(options.antialiasing));
+  session.upload();
+  const InPassPicture picture = drawInPass(session, drawing, info);
+  session.checkValidation();
+  if (!options.out.empty())
+    host::writePng(options.out, host::fromPremultiplied(info.width, info.height, picture.bytes));
+  Outcome outcome;
+  std::ostringstream text;
+  text << inputName(options.file) << ": " << facts.paths << " paths, " << info.width << " x " << info.height
+       << " pixels, in the pass, " << (area ? "exact coverage" : std::to_string(info.samples) + " samples each")
+       << "; GPU " << milliseconds(picture.times.median()) << " (median of " << picture.times.totals.size() << ") on "
+       << session.device().name() << '\n';
+  if (facts.pathsLeftOut) text << facts.pathsLeftOut << " paths are left out, as patches do not draw them\n";
+  outcome.json = {{"file", options.file},
+                  {"device", session.device().name()},
+                  {"method", options.method},
+                  {"width", info.width},
+                  {"height", info.height},
+                  {"aa", area ? "area" : options.antialiasing},
+                  {"samples", info.samples},
+                  {"paths", facts.paths},
+                  {"paths_left_out", facts.pathsLeftOut},
+                  {"gpu_ms_median", picture.times.median()},
+                  {"image", options.out.empty() ? Json() : Json(options.out)}};
+  if (options.reference) {
+    const double psnr = reference(picture.bytes);
+    text << psnr << " dB against 256 samples a pixel by winding numbers\n";
+    outcome.json["psnr_db"] = psnr;
+  }
+  if (!options.out.empty()) text << "picture: " << options.out << '\n';
+  outcome.text = text.str();
+  return outcome;
+}
+
 Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const std::array<float, 4> background = parseBackground(options.background);
   const std::string bytes = readInput(options.file), name = inputName(options.file);
@@ -152,10 +218,15 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     source.stageFn = onStage;
     source.stageUserData = &stages;
   }
+  const bool inPass = options.method == "in-pass";
+  source.methods = inPass ? GPGP_DRAWING_IN_PASS : GPGP_DRAWING_FLATTENED;
   source.scale = scaleInto(options.size, bytes, source);
+  if (options.zoom > 1) source.scale = std::min(std::max(source.scale, 1.0f) * static_cast<float>(options.zoom), 1e6f);
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
+  if (options.reference && options.tilt != 0)
+    throw Failure("the reference knows no perspective; draw without --tilt or without --reference");
   if (options.reference && !images.pictures().empty())
     throw Failure(name + ": the reference knows no images; draw it without --reference");
   if (!stages.failure.empty()) throw Failure(stages.failure);
@@ -177,6 +248,24 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     size.height = static_cast<uint32_t>(std::max(std::ceil(facts.viewport[3] * shrink), 1.0f));
   }
 
+  GpgpCanvasItem item{};
+  item.drawing = drawing;
+  item.opacity = 1.0f;
+  fit(bytes, facts.viewport, size, item.transform);
+  const PlaneMap map = mapOf(options, item.transform, size);
+  for (size_t k = 0; k < 3; ++k) {
+    item.transform[2 * k] = static_cast<float>(map[0][k]);
+    item.transform[2 * k + 1] = static_cast<float>(map[1][k]);
+    if (options.tilt != 0) item.perspective[k] = static_cast<float>(map[2][k]);
+  }
+  if (inPass)
+    return outcomeInPass(session, drawing, facts, options,
+                         {map, size.width, size.height, 1, background, options.repeat},
+                         [&](std::span<const uint8_t> pixels) {
+                           return compareWithReference(bytes, pixels, item.transform, background, size, source.scale,
+                                                       files.fileSystem());
+                         });
+
   GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
   canvasInfo.base = session.recorderInfo("canvas");
   canvasInfo.maxWidth = size.width;
@@ -190,10 +279,6 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
 
   const host::Image target(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = size.width, .height = size.height},
                            "picture");
-  GpgpCanvasItem item{};
-  item.drawing = drawing;
-  item.opacity = 1.0f;
-  fit(bytes, facts.viewport, size, item.transform);
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);
@@ -206,7 +291,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const Textures textures(device, shrunkToShown(images.pictures(), *table, item.transform));
   const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
   const bool area = options.antialiasing == "area";
-  const uint32_t samples = area ? 16 : static_cast<uint32_t>(std::stoul(options.antialiasing));
+  const uint32_t samples =
+      area || options.antialiasing.empty() ? 16 : static_cast<uint32_t>(std::stoul(options.antialiasing));
   const auto rasterise = [&](uint32_t repeat) {
     return session.measure(canvas, "rasterising", repeat,
                            [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
@@ -268,7 +354,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"status", statusName(report.base.status)},
                   {"width", size.width},
                   {"height", size.height},
-                  {"aa", options.antialiasing},
+                  {"method", options.method},
+                  {"aa", options.antialiasing.empty() ? "16" : options.antialiasing},
                   {"samples", samples},
                   {"paths", facts.paths},
                   {"curves", facts.curves},
@@ -303,9 +390,26 @@ Work addVector(CLI::App& app) {
       ->check(existingInput());
   addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own, at most 4096)");
   command
-      ->add_option("--aa", options->antialiasing,
-                   "Samples per pixel, or area: 16, and a pixel's first edge counts by its exact area")
-      ->check(CLI::IsMember({"1", "4", "8", "16", "area"}))
+      ->add_option(
+          "--aa", options->antialiasing,
+          "Samples per pixel, or area: 16, and a pixel's first edge counts by its exact area. Default: 16; in-pass: "
+          "area")
+      ->check(CLI::IsMember({"1", "4", "8", "16", "area"}));
+  command
+      ->add_option("--method", options->method,
+                   "flattened: rasterised into a picture; in-pass: drawn as geometry inside a render pass, with exact "
+                   "coverage or as many samples as --aa says")
+      ->check(CLI::IsMember({"flattened", "in-pass"}))
+      ->capture_default_str();
+  command->add_option("--zoom", options->zoom, "Magnify the picture around its middle")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
+  command->add_option("--center", options->center, "The point of the page that the picture's middle shows")
+      ->expected(2)
+      ->delimiter(',')
+      ->type_name("X,Y");
+  command->add_option("--tilt", options->tilt, "Tilt the page by so many degrees, in perspective")
+      ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
   command->add_option("--background", options->background, "CSS colour behind the drawing (default: transparent)")
       ->type_name("COLOUR");

@@ -53,7 +53,7 @@ Cubic Cubic::part(double t0, double t1) const {
     const Point a = mix(p[0], p[1], u), b = mix(p[1], p[2], u), c = mix(p[2], p[3], u);
     return mix(mix(a, b, v), mix(b, c, v), w);
   };
-  return {{blossom(t0, t0, t0), blossom(t0, t0, t1), blossom(t0, t1, t1), blossom(t1, t1, t1)}, line};
+  return {{blossom(t0, t0, t0), blossom(t0, t0, t1), blossom(t0, t1, t1), blossom(t1, t1, t1)}, line, arc};
 }
 
 double Cubic::bend() const {

@@ -4,6 +4,7 @@
 // float, so that neighbours share them bit for bit. Lines and quadratics are elevated to cubics (exact in double).
 #pragma once
 #include <array>
+#include <cstdint>
 #include <memory_resource>
 #include <span>
 #include <vector>
@@ -21,6 +22,7 @@ inline Point operator*(double s, Point a) { return {s * a.x, s * a.y}; }
 struct Cubic {
   Point p[4];
   bool line = false; ///< controls at the thirds
+  uint32_t arc = 0;  ///< 1 + the index of the ellipse of which it is an arc (Shape::ellipses); 0: none
 
   static Cubic fromLine(Point a, Point b);
   static Cubic fromQuadratic(Point a, Point control, Point b);

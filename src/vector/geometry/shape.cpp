@@ -39,18 +39,22 @@ void appendArc(Shape& shape, Point center, Point u, Point v, double angle, doubl
   }
 }
 
-void appendSvgArc(Shape& shape, Point from, double rx, double ry, double degrees, bool large, bool positive, Point to,
-                  double tolerance) {
-  if (from == to) return;
+Ellipse appendSvgArc(Shape& shape, Point from, double rx, double ry, double degrees, bool large, bool positive,
+                     Point to, double tolerance) {
+  if (from == to) return {};
   rx = std::fabs(rx);
   ry = std::fabs(ry);
-  if (!(rx > 0 && ry > 0)) return shape.line(to);
+  const auto line = [&] {
+    shape.line(to);
+    return Ellipse{};
+  };
+  if (!(rx > 0 && ry > 0)) return line();
   const double phi = degrees * (std::numbers::pi / 180), c = std::cos(phi), s = std::sin(phi);
   const Point half = 0.5 * (from - to);
   // In units of the radii, so that huge and tiny ones neither overflow nor vanish.
   const double x = (c * half.x + s * half.y) / rx, y = (c * half.y - s * half.x) / ry;
   const double length = std::hypot(x, y);
-  if (!std::isfinite(length) || length < 1e-12) return shape.line(to);
+  if (!std::isfinite(length) || length < 1e-12) return line();
   const double grow = std::max(length, 1.0);
   rx *= grow;
   ry *= grow;
@@ -66,6 +70,7 @@ void appendSvgArc(Shape& shape, Point from, double rx, double ry, double degrees
   if (positive && sweep < 0) sweep += 2 * std::numbers::pi;
   if (!positive && sweep > 0) sweep -= 2 * std::numbers::pi;
   appendArc(shape, center, axisU, axisV, a0, sweep, to, tolerance);
+  return {center, axisU, axisV};
 }
 
 Shape rectangle(double x, double y, double w, double h, double rx, double ry, double tolerance) {

@@ -22,6 +22,11 @@ struct Affine {
 /// First `inner`, then `outer`.
 Affine operator*(const Affine& outer, const Affine& inner);
 
+/// A point of it is center + cos(t) u + sin(t) v.
+struct Ellipse {
+  Point center, u, v;
+};
+
 /// Contours as verbs and points. Every contour begins with a MOVE, also those that follow a CLOSE.
 struct Shape {
   explicit Shape(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
@@ -55,8 +60,9 @@ private:
 void appendArc(Shape& shape, Point center, Point u, Point v, double angle, double sweep, Point end, double tolerance);
 
 /// Appends SVG's elliptical arc from the current point `from` (SVG 2, appendix B.2: radii too small are scaled up).
-void appendSvgArc(Shape& shape, Point from, double rx, double ry, double degrees, bool large, bool positive, Point to,
-                  double tolerance);
+/// Returns its ellipse; one without axes where the arc is a line or nothing.
+Ellipse appendSvgArc(Shape& shape, Point from, double rx, double ry, double degrees, bool large, bool positive,
+                     Point to, double tolerance);
 
 Shape rectangle(double x, double y, double width, double height, double rx, double ry, double tolerance);
 Shape ellipse(double cx, double cy, double rx, double ry, double tolerance);

@@ -1,9 +1,10 @@
 // Baked drawings (.gpgpv): a header of 20 words, then curves, patches, paths, paints, the stops of gradients,
-// clips and layers.
+// clips and layers; and, if they are asked for, the words that draws inside a render pass read, which have a version of
+// their own. A drawing for these alone has neither curves nor patches.
 //
 // Little-endian, as all targets are. What is loaded is checked as strictly as what a stranger sends: a shader may
 // then index without asking again.
-#include "vector/patch/drawing.h"
+#include "vector/patch/patches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +18,12 @@ struct Header {
   char magic[4];
   uint32_t version;
   uint64_t checksum; // of all bytes after it
-  uint32_t curves, patches, paths, paints, stops, clips, layers, reserved;
+  uint32_t curves, patches, paths, paints, stops, clips, layers, words;
   float bounds[4], viewport[4];
 };
 static_assert(sizeof(Header) == 80);
 constexpr char kMagic[4] = {'G', 'P', 'V', 'D'};
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kVersion = 5;
 constexpr size_t kSummedFrom = 16;
 
 bool sane(float v) { return std::abs(v) <= 4 * kMaxCoordinate; } // false for NaN
@@ -32,7 +33,7 @@ core::Result<void> checkContents(const Drawing& d) {
   for (size_t i = 0; i < d.curves.size(); ++i) {
     const CurveRecord& c = d.curves[i];
     if (!sane(c.ends) || !sane(c.controls) || !sane(c.bend) || !(c.ends.w >= 0) || !sane(c.endX) || !sane(c.endY) ||
-        c.pad0)
+        !(c.weight >= 0 && c.weight <= 1))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: curve %zu is not a curve", i);
   }
   uint32_t path = 0;
@@ -120,6 +121,7 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
   header.stops = static_cast<uint32_t>(drawing.stops.size());
   header.clips = static_cast<uint32_t>(drawing.clips.size());
   header.layers = static_cast<uint32_t>(drawing.layers.size());
+  header.words = static_cast<uint32_t>(drawing.words.size());
   std::memcpy(header.bounds, drawing.bounds, sizeof header.bounds);
   std::memcpy(header.viewport, drawing.viewport, sizeof header.viewport);
   const auto curves = std::as_bytes(std::span(drawing.curves));
@@ -128,11 +130,11 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
   const auto paints = std::as_bytes(std::span(drawing.paints));
   const auto stops = std::as_bytes(std::span(drawing.stops));
   const auto clips = std::as_bytes(std::span(drawing.clips));
-  const auto layers = std::as_bytes(std::span(drawing.layers));
+  const auto layers = std::as_bytes(std::span(drawing.layers)), words = std::as_bytes(std::span(drawing.words));
   std::pmr::vector<std::byte> bytes(sizeof header, std::byte{}, memory);
   bytes.reserve(sizeof header + curves.size() + patches.size() + paths.size() + paints.size() + stops.size() +
-                clips.size() + layers.size());
-  for (const auto part : {curves, patches, paths, paints, stops, clips, layers})
+                clips.size() + layers.size() + words.size());
+  for (const auto part : {curves, patches, paths, paints, stops, clips, layers, words})
     bytes.insert(bytes.end(), part.begin(), part.end());
   std::memcpy(bytes.data(), &header, sizeof header);
   header.checksum = checksum(std::span(bytes).subspan(kSummedFrom));
@@ -153,7 +155,8 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
   const uint64_t size = sizeof header + uint64_t(header.curves) * sizeof(CurveRecord) +
                         uint64_t(header.patches) * sizeof(PatchRecord) + uint64_t(header.paths) * sizeof(PathRecord) +
                         uint64_t(header.paints) * sizeof(PaintRecord) + uint64_t(header.stops) * sizeof(StopRecord) +
-                        uint64_t(header.clips) * sizeof(ClipRecord) + uint64_t(header.layers) * sizeof(LayerRecord);
+                        uint64_t(header.clips) * sizeof(ClipRecord) + uint64_t(header.layers) * sizeof(LayerRecord) +
+                        uint64_t(header.words) * sizeof(shader::uvec4);
   if (size != bytes.size())
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: %zu bytes, the header says %llu", bytes.size(),
                      static_cast<unsigned long long>(size));
@@ -174,9 +177,13 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
   take(drawing.stops, header.stops);
   take(drawing.clips, header.clips);
   take(drawing.layers, header.layers);
+  take(drawing.words, header.words);
   std::memcpy(drawing.bounds, header.bounds, sizeof header.bounds);
   std::memcpy(drawing.viewport, header.viewport, sizeof header.viewport);
   if (auto ok = checkContents(drawing); !ok) return ok.error();
+  if (!drawing.words.empty())
+    if (auto ok = checkPatches(drawing.words, static_cast<uint32_t>(drawing.paths.size()) - clipPaths(drawing)); !ok)
+      return ok.error();
   return drawing;
 }
 

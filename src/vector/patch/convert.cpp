@@ -14,7 +14,31 @@
 namespace gpgp::vector {
 namespace {
 
-CurveRecord curveRecord(const Monotone& piece) {
+/// An arc as the cubic whose controls lie on its tangents, at the part of them that its weight says: from both the
+/// rational quadratic that it is can be had again. Returns the weight.
+double fitArc(const Ellipse& e, Cubic& arc) {
+  const double turn = e.u.x * e.v.y - e.u.y * e.v.x;
+  const auto angleOf = [&](Point p) {
+    const Point q = p - e.center;
+    return std::atan2(e.u.x * q.y - e.u.y * q.x, q.x * e.v.y - q.y * e.v.x); // both times `turn`
+  };
+  constexpr double kPi = 3.14159265358979323846;
+  double a = angleOf(arc.p[0]), b = angleOf(arc.p[3]);
+  if (turn < 0) a += kPi, b += kPi;
+  if (b - a > kPi) b -= 2 * kPi;
+  if (a - b > kPi) b += 2 * kPi;
+  const double weight = std::cos(0.5 * (b - a)), middle = 0.5 * (a + b);
+  if (!(weight > 1e-3 && weight < 1)) return 0;
+  const Point meet = e.center + (1 / weight) * (std::cos(middle) * e.u + std::sin(middle) * e.v);
+  const double part = 4 * weight / (3 * (1 + weight));
+  arc.p[1] = arc.p[0] + part * (meet - arc.p[0]);
+  arc.p[2] = arc.p[3] + part * (meet - arc.p[3]);
+  return weight;
+}
+
+CurveRecord curveRecord(const Monotone& source, std::span<const Ellipse> ellipses) {
+  Monotone piece = source;
+  const double weight = piece.curve.arc ? fitArc(ellipses[piece.curve.arc - 1], piece.curve) : 0;
   const Point* p = piece.curve.p;
   const auto relative = [&](int i, double Point::*axis) { return static_cast<float>(p[i].*axis - p[0].*axis); };
   CurveRecord r{};
@@ -23,6 +47,7 @@ CurveRecord curveRecord(const Monotone& piece) {
   r.bend = piece.curve.line ? -1.0f : static_cast<float>(piece.curve.bend());
   r.endX = static_cast<float>(p[3].x);
   r.endY = static_cast<float>(p[3].y);
+  r.weight = static_cast<float>(weight);
   return r;
 }
 
@@ -54,7 +79,8 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
   std::pmr::memory_resource* memory = &scratch;
   std::pmr::vector<Monotone> pieces(memory);
   pieces.reserve(path.verbCount + path.verbCount / 2);
-  if (auto ok = outline(path, pieces); !ok) return ok;
+  std::pmr::vector<Ellipse> ellipses(memory);
+  if (auto ok = outline(path, pieces, &ellipses); !ok) return ok;
   mergeCoincident(pieces);
   std::pmr::vector<Cut> cuts(memory);
   std::pmr::vector<Slab> slabs(memory);
@@ -80,7 +106,7 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
   const auto place = [&](uint32_t piece) {
     if (places[piece] == kNone) {
       places[piece] = static_cast<uint32_t>(drawing.curves.size());
-      drawing.curves.push_back(curveRecord(pieces[piece]));
+      drawing.curves.push_back(curveRecord(pieces[piece], ellipses));
     }
     return places[piece];
   };

@@ -4,7 +4,7 @@
 // result, print shows it. Everything here is run-time code: memory comes from the resource that is passed in.
 #pragma once
 #include "core/result.h"
-#include "vector/geometry/curve.h"
+#include "vector/geometry/shape.h"
 #include "vector/shared/layout.h"
 
 #include <gpgp/vector.h>
@@ -24,7 +24,8 @@ using shader::StopRecord;
 
 struct Drawing {
   explicit Drawing(std::pmr::memory_resource* memory)
-      : curves(memory), patches(memory), paths(memory), paints(memory), stops(memory), clips(memory), layers(memory) {}
+      : curves(memory), patches(memory), paths(memory), paints(memory), stops(memory), clips(memory), layers(memory),
+        words(memory) {}
   std::pmr::vector<CurveRecord> curves;
   std::pmr::vector<PatchRecord> patches; ///< grouped by path, paths in painting order
   std::pmr::vector<PathRecord> paths;
@@ -34,6 +35,9 @@ struct Drawing {
   std::pmr::vector<LayerRecord> layers;
   float bounds[4] = {};   ///< left, top, right, bottom of the ink; all 0 where there is none
   float viewport[4] = {}; ///< x, y, width, height
+  /// Of baked drawings: what makePatches made of it (patches.h). Where these are there and `patches` is empty, the file
+  /// serves draws inside a render pass alone.
+  std::pmr::vector<shader::uvec4> words;
 };
 
 constexpr float kMaxCoordinate = 1e7f;
@@ -46,8 +50,10 @@ inline bool inColorRange(const float* c) {
 }
 
 /// Checks one path (verbs known, points enough, finite and within kMaxCoordinate, colour in range) and appends its
-/// monotone pieces, open contours closed by a line. The error names the verb or point.
-core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces);
+/// monotone pieces, open contours closed by a line. The error names the verb or point. `ellipses`: receives those that
+/// arcs are parts of (Cubic::arc), strokes excepted.
+core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces,
+                           std::pmr::vector<Ellipse>* ellipses = nullptr);
 
 /// Where a piece must be cut because another crosses it there.
 struct Cut {
@@ -124,6 +130,11 @@ core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPath
 
 /// FNV-1a over 8-byte words: every input bit reaches the result.
 uint64_t checksum(std::span<const std::byte> bytes);
+/// What a drawing from a file serves.
+inline GpgpDrawingMethods methodsOf(const Drawing& drawing) {
+  if (drawing.words.empty()) return GPGP_DRAWING_FLATTENED;
+  return drawing.patches.empty() ? GPGP_DRAWING_IN_PASS : GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS;
+}
 /// Baked form: little-endian, versioned, checksummed.
 std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory);
 /// Checks everything that a shader would trust: sizes, indices, finite numbers, order. Errors: INVALID_DATA.

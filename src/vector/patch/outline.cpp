@@ -49,8 +49,14 @@ bool hasArcs(const GpgpPath& path) {
   return std::find(path.verbs, path.verbs + path.verbCount, GpgpPathVerb(GPGP_PATH_ARC)) != path.verbs + path.verbCount;
 }
 
+/// Which verbs of a shape are parts of arcs.
+struct Arcs {
+  std::pmr::vector<uint32_t> ofVerb; ///< 1 + the index of its ellipse; 0: none. May end before the verbs do
+  std::pmr::vector<Ellipse>* ellipses;
+};
+
 /// The path as a shape, arcs as cubics.
-core::Result<void> shapeOf(const GpgpPath& path, Shape& shape) {
+core::Result<void> shapeOf(const GpgpPath& path, Shape& shape, Arcs* arcs = nullptr) {
   constexpr double kArcTolerance = 1e-4; // pixels
   const double scale = path.scale > 0 ? static_cast<double>(path.scale) : 1;
   const float* next = path.points;
@@ -71,9 +77,15 @@ core::Result<void> shapeOf(const GpgpPath& path, Shape& shape) {
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "verbs[%u]: the flags of an arc are %g; they must be 0 to 3", i,
                          form.y);
       const uint32_t flags = static_cast<uint32_t>(form.y);
-      const size_t first = shape.points.size();
-      appendSvgArc(shape, at, std::abs(radii.x), std::abs(radii.y), form.x, (flags & GPGP_ARC_LARGE) != 0,
-                   (flags & GPGP_ARC_SWEEP) != 0, end, kArcTolerance / scale);
+      const size_t first = shape.points.size(), firstVerb = shape.verbs.size();
+      const Ellipse ellipse =
+          appendSvgArc(shape, at, std::abs(radii.x), std::abs(radii.y), form.x, (flags & GPGP_ARC_LARGE) != 0,
+                       (flags & GPGP_ARC_SWEEP) != 0, end, kArcTolerance / scale);
+      if (arcs && !(ellipse.u == Point{})) {
+        arcs->ellipses->push_back(ellipse);
+        arcs->ofVerb.resize(firstVerb, 0);
+        arcs->ofVerb.resize(shape.verbs.size(), static_cast<uint32_t>(arcs->ellipses->size()));
+      }
       at = end;
       for (size_t k = first; k < shape.points.size(); ++k)
         if (!(std::abs(shape.points[k].x) <= kMaxCoordinate && std::abs(shape.points[k].y) <= kMaxCoordinate))
@@ -141,7 +153,7 @@ Point next(const Point*& points) { return *points++; }
 /// Monotone pieces of contours without arcs.
 template <class Points>
 core::Result<void> outlineOf(std::span<const GpgpPathVerb> verbs, const Points* points,
-                             std::pmr::vector<Monotone>& pieces) {
+                             std::pmr::vector<Monotone>& pieces, std::span<const uint32_t> arcs = {}) {
   const auto take = [&points] { return next(points); };
   Point start, current;
   const auto lineTo = [&](Point to) {
@@ -163,7 +175,7 @@ core::Result<void> outlineOf(std::span<const GpgpPathVerb> verbs, const Points* 
     }
     case GPGP_PATH_CUBIC: {
       const Point a = take(), b = take(), end = take();
-      cutMonotone(Cubic{{current, a, b, end}}, pieces);
+      cutMonotone(Cubic{{current, a, b, end}, false, i < arcs.size() ? arcs[i] : 0}, pieces);
       current = end;
       break;
     }
@@ -175,13 +187,15 @@ core::Result<void> outlineOf(std::span<const GpgpPathVerb> verbs, const Points* 
 }
 } // namespace
 
-core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces) {
+core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces,
+                           std::pmr::vector<Ellipse>* ellipses) {
   if (auto ok = checkPath(path); !ok) return ok;
   if (path.stroke) return strokeOutline(path, pieces);
   if (hasArcs(path)) {
     Shape shape(pieces.get_allocator().resource());
-    if (auto ok = shapeOf(path, shape); !ok) return ok;
-    return outlineOf(shape.verbs, shape.points.data(), pieces);
+    Arcs arcs{std::pmr::vector<uint32_t>(pieces.get_allocator()), ellipses};
+    if (auto ok = shapeOf(path, shape, ellipses ? &arcs : nullptr); !ok) return ok;
+    return outlineOf(shape.verbs, shape.points.data(), pieces, arcs.ofVerb);
   }
   return outlineOf(std::span(path.verbs, path.verbCount), path.points, pieces);
 }

@@ -57,7 +57,7 @@ Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCa
                          {"draw.frag", vector_draw_frag},
                          {"draw.vert, multiview", vector_draw_vert_multiview},
                          {"draw.frag, multiview", vector_draw_frag_multiview}};
-  if (auto ok = canvas->init(describePasses(canvas->sizes_, context.device, &context.host()), &draw); !ok)
+  if (auto ok = canvas->init(describePasses(canvas->sizes_, context.device, &context.host()), std::span(&draw, 1)); !ok)
     return ok.error();
   return canvas;
 }

@@ -1,5 +1,7 @@
 #include "vector/raster/drawing_asset.h"
 
+#include "vector/patch/patches.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -26,12 +28,16 @@ DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std:
 
 core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& context, const char* label,
                                                               Drawing&& drawing, bool editable, bool hitTestable,
-                                                              const DrawingAsset* base,
+                                                              GpgpDrawingMethods methods, const DrawingAsset* base,
                                                               std::span<const GpgpPathEdit> edits) {
   auto asset = core::makeUnique<DrawingAsset>(context.host(), context, label);
   asset->curves_ = static_cast<uint32_t>(drawing.curves.size());
-  Outlines outlines = base ? editOutlines(drawing, base->kept_->outlines, edits, &context.host())
-                           : makeOutlines(drawing, &context.host());
+  const bool flattened = (methods & GPGP_DRAWING_FLATTENED) != 0;
+  Outlines outlines = !flattened ? Outlines(&context.host())
+                      : base     ? editOutlines(drawing, base->kept_->outlines, edits, &context.host())
+                                 : makeOutlines(drawing, &context.host());
+  asset->methods_ = methods;
+  if (!flattened) outlines.ends.resize(drawing.paths.size(), 0);
   asset->patches_ = static_cast<uint32_t>(drawing.patches.size());
   asset->ends_.assign(outlines.ends.begin(), outlines.ends.end());
   for (const PaintRecord& paint : drawing.paints)
@@ -39,7 +45,24 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   for (const LayerRecord& layer : drawing.layers) asset->layerDepth_ = std::max(asset->layerDepth_, layer.depth);
   std::copy_n(drawing.bounds, 4, asset->bounds_);
   std::copy_n(drawing.viewport, 4, asset->viewport_);
-  DrawingTables tables = packDrawing(drawing, outlines, &context.host());
+  DrawingTables tables{std::pmr::vector<std::byte>(&context.host()), 0, {}};
+  if (flattened) tables = packDrawing(drawing, outlines, &context.host());
+  if (methods & GPGP_DRAWING_IN_PASS) {
+    auto patches =
+        drawing.words.empty() ? makePatches(drawing, &context.host()) : core::Result<Patches>(Patches(&context.host()));
+    if (!patches) return patches.error();
+    if (!drawing.words.empty()) patches->words = std::move(drawing.words);
+    asset->patchWords_ = static_cast<uint32_t>(tables.bytes.size() / sizeof(shader::vec4));
+    asset->quads_ = patches->words[0].x;
+    asset->pathsLeftOut_ = patches->words[0].z;
+    const auto words = std::as_bytes(std::span(patches->words));
+    tables.bytes.insert(tables.bytes.end(), words.begin(), words.end());
+    for (const Patches::LeftOut& left : patches->leftOut)
+      context.message(
+          GPGP_SEVERITY_WARNING, GPGP_ERROR_UNSUPPORTED, "gpgpCreateDrawing", label,
+          core::makeError(GPGP_ERROR_UNSUPPORTED, "paths[%u] is left out of the patches: %s", left.path, left.reason)
+              .text);
+  }
   asset->pathTable_ = tables.paths;
   asset->tables_ = tables.slots;
   if (tables.bytes.size() > context.device.limits.maxStorageBufferRange)

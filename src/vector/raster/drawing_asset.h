@@ -28,9 +28,10 @@ public:
     std::span<const PathRecord> paths;
     std::span<const ClipRecord> clips;
   };
-  /// `base` and `edits`: where the drawing comes from replacePaths, what its other outlines are taken from.
+  /// `base` and `edits`: where the drawing comes from replacePaths, what its other outlines are taken from. `patches`:
+  /// those of the file that it comes from; none: they are made where `methods` asks for them.
   static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label, Drawing&& drawing,
-                                                         bool editable, bool hitTestable,
+                                                         bool editable, bool hitTestable, GpgpDrawingMethods methods,
                                                          const DrawingAsset* base = nullptr,
                                                          std::span<const GpgpPathEdit> edits = {});
   DrawingAsset(core::Context& owner, const char* name)
@@ -42,6 +43,10 @@ public:
   uint32_t curves() const { return curves_; }
   uint32_t patches() const { return patches_; }
   uint32_t pathTable() const { return pathTable_; } ///< where BoxedPaths begin, in vec4
+  GpgpDrawingMethods methods() const { return methods_; }
+  uint32_t patchWords() const { return patchWords_; } ///< where its patches begin, in vec4
+  uint32_t quads() const { return quads_; }           ///< that a draw of its patches has
+  uint32_t pathsLeftOut() const { return pathsLeftOut_; }
   const shader::SlotRecord& tables() const { return tables_; }
   bool groups() const { return tables_.layers > tables_.clips || layerDepth_; } ///< that clip or fade
   uint32_t layerDepth() const { return layerDepth_; }                           ///< groups that fade in each other
@@ -67,6 +72,8 @@ private:
   };
   std::optional<Hit> hit_; // where it is hit-testable, but not editable
   uint32_t curves_ = 0, patches_ = 0, images_ = 0, pathTable_ = 0, layerDepth_ = 0;
+  GpgpDrawingMethods methods_ = GPGP_DRAWING_FLATTENED;
+  uint32_t patchWords_ = 0, quads_ = 0, pathsLeftOut_ = 0;
   shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};
 };

@@ -1,5 +1,6 @@
 #include "vector/raster/glyph_set.h"
 
+#include "vector/patch/patches.h"
 #include "vector/raster/segments.h"
 
 #include <algorithm>
@@ -18,27 +19,54 @@ constexpr VkDeviceSize kDefaultBytes = VkDeviceSize(8) << 20;
 constexpr uint32_t kGenerations = 1u << (32 - GlyphSet::kPlaceBits);
 
 /// The outlines of glyphs in a row, and how many segments and vec4 of gradients there are up to the end of
-/// each path.
+/// each path; and the glyphs' patches.
 struct Tables {
   Outlines outlines;
   std::pmr::vector<uint64_t> gradients;
+  std::pmr::vector<shader::uvec4> words;
+  std::pmr::vector<uint64_t> wordEnds; ///< by glyph
 
-  Tables(const Drawing& drawing, std::pmr::memory_resource* memory)
-      : outlines(makeOutlines(drawing, memory)), gradients(drawing.paths.size(), 0, memory) {
+  Tables(const Glyphs& glyphs, GpgpDrawingMethods methods, core::Context& context)
+      : Tables(glyphs.drawing, (methods & GPGP_DRAWING_FLATTENED) != 0, &context.host()) {
+    if (!(methods & GPGP_DRAWING_IN_PASS)) return;
+    uint32_t path = 0;
+    for (const Glyphs::Entry& entry : glyphs.entries) {
+      const auto patches = makePatches(glyphs.drawing, &context.host(), kPatchCurves, path, entry.paths);
+      path += entry.paths;
+      if (patches)
+        words.insert(words.end(), patches->words.begin(), patches->words.end());
+      else
+        context.message(GPGP_SEVERITY_WARNING, patches.error().code, "gpgpAddGlyphs", nullptr, patches.error().text);
+      wordEnds.push_back(words.size());
+    }
+  }
+  uint64_t wordsBefore(size_t glyph) const { return glyph && !wordEnds.empty() ? wordEnds[glyph - 1] : 0; }
+  uint64_t wordsOf(size_t glyph) const { return wordEnds.empty() ? 0 : wordEnds[glyph] - wordsBefore(glyph); }
+  const bool flattened;
+
+private:
+  Tables(const Drawing& drawing, bool flat, std::pmr::memory_resource* memory)
+      : outlines(flat ? makeOutlines(drawing, memory) : Outlines(memory)), gradients(drawing.paths.size(), 0, memory),
+        words(memory), wordEnds(memory), flattened(flat) {
+    if (!flat) return;
     for (size_t i = 0; i < gradients.size(); ++i) {
       if (const uint32_t paint = drawing.paths[i].paint)
         gradients[i] = kPaintSize + uint64_t(drawing.paints[paint - 1].stopCount) * kStopSize;
       if (i) gradients[i] += gradients[i - 1];
     }
   }
-  uint32_t segmentsBefore(size_t path) const { return path ? outlines.ends[path - 1] : 0; }
+
+public:
+  uint32_t segmentsBefore(size_t path) const { return path && flattened ? outlines.ends[path - 1] : 0; }
   uint64_t gradientsOf(size_t path, uint32_t paths) const {
     return paths ? gradients[path + paths - 1] - (path ? gradients[path - 1] : 0) : 0;
   }
-  uint64_t sizeOf(size_t path, uint32_t paths) const { // vec4
+  uint64_t outlinesOf(size_t path, uint32_t paths) const { // vec4
+    if (!flattened) return 0;
     const uint64_t painted = gradientsOf(path, paths), segments = segmentsBefore(path + paths) - segmentsBefore(path);
     return segments * kSegmentSize + uint64_t(paths) * kPathSize + (painted ? painted + kPaintSize - 1 : 0);
   }
+  uint64_t sizeOf(size_t glyph, size_t path, uint32_t paths) const { return outlinesOf(path, paths) + wordsOf(glyph); }
 };
 uint32_t countPaints(const Drawing& drawing, size_t firstPath, size_t end) {
   uint32_t count = 0;
@@ -54,14 +82,15 @@ GlyphSet::GlyphSet(core::Context& owner, const char* name)
 
 core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, const GpgpGlyphSetCreateInfo& info,
                                                       const Glyphs* baked) {
+  const GpgpDrawingMethods methods = info.methods ? info.methods : GPGP_DRAWING_FLATTENED;
   const size_t bakedGlyphs = baked ? baked->entries.size() : 0;
   VkDeviceSize bakedBytes = 0;
   if (baked) {
-    const Tables tables(baked->drawing, &context.host());
+    const Tables tables(*baked, methods, context);
     size_t path = 0;
-    for (const Glyphs::Entry& entry : baked->entries) {
-      bakedBytes += tables.sizeOf(path, entry.paths) * 16;
-      path += entry.paths;
+    for (size_t i = 0; i < bakedGlyphs; ++i) {
+      bakedBytes += tables.sizeOf(i, path, baked->entries[i].paths) * 16;
+      path += baked->entries[i].paths;
     }
   }
   const size_t maxGlyphs = info.maxGlyphs ? info.maxGlyphs : baked ? std::max<size_t>(bakedGlyphs, 1) : kDefaultGlyphs;
@@ -76,6 +105,7 @@ core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, co
         GPGP_ERROR_INVALID_ARGUMENT, "the baked glyphs need maxGlyphs %zu and maxBytes %llu; they are %zu and %llu",
         bakedGlyphs, static_cast<unsigned long long>(bakedBytes), maxGlyphs, static_cast<unsigned long long>(maxBytes));
   auto set = core::makeUnique<GlyphSet>(context.host(), context, info.label);
+  set->methods_ = methods;
   set->glyphs_ = std::pmr::vector<Glyph>(maxGlyphs, &context.host());
   for (size_t i = maxGlyphs; i > 0; --i) {
     set->glyphs_[i - 1].generation = 1;
@@ -96,7 +126,7 @@ bool GlyphSet::evictable(const Glyph& glyph) const {
 
 bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
   std::pmr::memory_resource* memory = &context.host();
-  const Tables tables(glyphs.drawing, memory);
+  const Tables tables(glyphs, methods_, context);
   std::pmr::vector<uint32_t> added(memory);
   added.reserve(glyphs.entries.size());
   reserveRanges(glyphs.entries.size());
@@ -127,7 +157,8 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     const size_t firstPath = path;
     path += entry.paths;
     if (cells_[cellOf(entry.key)] != kNone) continue;
-    const uint64_t wanted = tables.sizeOf(firstPath, entry.paths);
+    const size_t index = static_cast<size_t>(&entry - glyphs.entries.data());
+    const uint64_t wanted = tables.sizeOf(index, firstPath, entry.paths);
     const uint32_t size = static_cast<uint32_t>(std::min<uint64_t>(wanted, kNone)); // no block is as large as that
     uint32_t block = kNone;
     while (places_.empty() || (block = takeBlock(size)) == kNone) {
@@ -150,9 +181,14 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     glyph.size = size;
     const uint32_t firstSegment = tables.segmentsBefore(firstPath);
     glyph.segments = tables.segmentsBefore(path) - firstSegment;
-    glyph.paths = entry.paths;
+    glyph.paths = tables.flattened ? entry.paths : 0;
+    glyph.quads = tables.wordsOf(index) ? entry.paths : 0;
+    glyph.patches = block + static_cast<uint32_t>(tables.outlinesOf(firstPath, entry.paths));
+    if (glyph.quads)
+      std::memcpy(bytes().data() + size_t(glyph.patches) * 16, &tables.words[tables.wordsBefore(index)],
+                  size_t(tables.wordsOf(index)) * 16);
     glyph.living = true;
-    glyph.gradients = tables.gradientsOf(firstPath, entry.paths) > 0;
+    glyph.gradients = tables.flattened && tables.gradientsOf(firstPath, entry.paths) > 0;
     glyph.use(frame);
     glyph.upload = 0;
     glyph.key = entry.key;
@@ -172,7 +208,7 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     } else {
       glyph.reach = shader::vec2(std::numeric_limits<float>::infinity());
     }
-    for (size_t i = firstPath; i < path; ++i, to += sizeof(BoxedPath)) {
+    for (size_t i = firstPath; i < path && tables.flattened; ++i, to += sizeof(BoxedPath)) {
       BoxedPath boxed{tables.outlines.boxes[i], glyphs.drawing.paths[i]};
       if (boxed.path.paint) {
         PaintRecord record = glyphs.drawing.paints[boxed.path.paint - 1];

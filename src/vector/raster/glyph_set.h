@@ -1,9 +1,9 @@
 // A glyph set as the engine holds it: outlines in one device buffer within budgets, found by key and drawn by index.
 //
-// A glyph is a block of the buffer: its segments, its paths with their boxes, then their gradients. An index is a place
-// in a table with the generation of what lies there, so that an index of what was evicted is recognised. Evicted is
-// what was used longest ago, and nothing that a frame not yet safe may read. Recording reads the table and notes the
-// frame, no more.
+// A glyph is a block of the buffer: its segments, its paths with their boxes, then their gradients; then its patches.
+// An index is a place in a table with the generation of what lies there, so that an index of what was evicted is
+// recognised. Evicted is what was used longest ago, and nothing that a frame not yet safe may read. Recording reads the
+// table and notes the frame, no more.
 #pragma once
 #include "core/resident.h"
 #include "vector/patch/glyphs.h"
@@ -15,11 +15,12 @@ namespace gpgp::vector {
 class GlyphSet final : public core::Resident {
 public:
   struct Glyph {
-    uint32_t first = 0, size = 0; ///< its block, in vec4
-    uint32_t segments = 0, paths = 0;
-    shader::vec2 middle = {}; ///< of the path that it is
-    shader::vec2 reach = {};  ///< from there to the sides of its box; infinite where it is not one path
-    uint16_t generation = 0;  ///< of the glyph; of the next one where there is none
+    uint32_t first = 0, size = 0;     ///< its block, in vec4
+    uint32_t segments = 0, paths = 0; ///< none where the set has no outlines
+    uint32_t patches = 0, quads = 0;  ///< where its patches begin, in vec4, and how many quads they are
+    shader::vec2 middle = {};         ///< of the path that it is
+    shader::vec2 reach = {};          ///< from there to the sides of its box; infinite where it is not one path
+    uint16_t generation = 0;          ///< of the glyph; of the next one where there is none
     bool living = false, gradients = false;
     mutable uint64_t lastUsed = 0; ///< frame
     uint64_t upload = 0;           ///< its range's number; 0: nothing to upload
@@ -37,6 +38,7 @@ public:
   uint32_t indexOf(uint64_t key); ///< GPGP_GLYPH_NONE where there is none; counts as a use
   void getInfo(GpgpGlyphSetInfo& info) const;
 
+  GpgpDrawingMethods methods() const { return methods_; }
   std::span<const Glyph> table() const { return glyphs_; }
   /// Of a table. Null where the index is not, or no longer, one of the set's.
   static const Glyph* find(std::span<const Glyph> table, uint32_t index) {
@@ -66,6 +68,7 @@ private:
   bool evictable(const Glyph& glyph) const;
   void queueBlocks(std::span<const uint32_t> places);
 
+  GpgpDrawingMethods methods_ = GPGP_DRAWING_FLATTENED;
   std::pmr::vector<Glyph> glyphs_;     // by place
   std::pmr::vector<uint32_t> places_;  // free ones
   std::pmr::vector<uint32_t> cells_;   // hash table, open addresses: places, kNone where empty; at most half full

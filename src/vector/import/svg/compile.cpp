@@ -1,6 +1,6 @@
 // gpgpCompileSvg: SVG to a baked drawing.
 #include "vector/import/svg/import.h"
-#include "vector/patch/drawing.h"
+#include "vector/patch/patches.h"
 
 #include <chrono>
 #include <cstdlib>
@@ -18,6 +18,8 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   if (!source.data && source.size) return fail(GPGP_ERROR_INVALID_ARGUMENT, "data is NULL, size is not 0");
   if (!(source.scale >= 0 && source.scale <= kMaxScale))
     return fail(GPGP_ERROR_INVALID_ARGUMENT, "scale must be 0 to 1e6");
+  if (source.methods & ~(GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS))
+    return fail(GPGP_ERROR_INVALID_ARGUMENT, "methods has unknown bits");
   if (source.fileSystem && !source.fileSystem->read) return fail(GPGP_ERROR_INVALID_ARGUMENT, "fileSystem needs read");
   using Clock = std::chrono::steady_clock;
   const auto milliseconds = [](Clock::time_point from, Clock::time_point to) {
@@ -45,14 +47,27 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
     const double page[4] = {0, 0, imported->width, imported->height};
     for (size_t i = 0; i < 4; ++i) drawing->viewport[i] = static_cast<float>(page[i]);
   }
-  const auto bytes = vector::bake(*drawing, memory);
+  const GpgpSvgReport counts{static_cast<uint32_t>(drawing->paths.size()),
+                             static_cast<uint32_t>(drawing->curves.size()),
+                             static_cast<uint32_t>(drawing->patches.size()), 0, 0};
+  if (source.methods & GPGP_DRAWING_IN_PASS) {
+    auto patches = vector::makePatches(*drawing, memory);
+    if (!patches) return fail(patches.error().code, patches.error().text);
+    for (const vector::Patches::LeftOut& left : patches->leftOut) {
+      const auto& path = imported->paths[left.path];
+      reporter.warn(path.place, path.element + ": left out of the patches: " + left.reason);
+    }
+    drawing->words = std::move(patches->words);
+  }
+  vector::Drawing kept = *drawing; // for the stages, whole
+  if (source.methods == GPGP_DRAWING_IN_PASS) kept.curves.clear(), kept.patches.clear();
+  const auto bytes = vector::bake(kept, memory);
   GpgpBlob made{std::malloc(bytes.size()), bytes.size()};
   if (!made.data) return fail(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
   std::memcpy(made.data, bytes.data(), made.size);
   blob = made;
   if (source.report)
-    *source.report = {static_cast<uint32_t>(drawing->paths.size()), static_cast<uint32_t>(drawing->curves.size()),
-                      static_cast<uint32_t>(drawing->patches.size()),
+    *source.report = {counts.paths, counts.curves, counts.patches,
                       milliseconds(begin, parsed) - imported->strokeMilliseconds,
                       milliseconds(parsed, converted) + imported->strokeMilliseconds};
   if (source.stageFn) {
