@@ -552,7 +552,8 @@ typedef struct GpgpCanvasInfo {
    *  compositors expect this encoding. */
   VkBool32 encodeSrgb;
   /** VK_TRUE: in each pixel, the exact area of the front-most path with an edge replaces its samples: finer steps where
-   *  only one edge passes. Neighbours show nothing between them; equal shapes up to a tenth of the lower one's colour. */
+   *  only one edge passes. Neighbours show nothing between them; equal shapes up to a tenth of the lower one's colour.
+   */
   VkBool32 exactArea;
   VkBool32 blendSrgb;            /**< VK_TRUE: colours are mixed as sRGB encodes them, as SVG renderers do. */
   const GpgpCanvasImage* images; /**< the images that items paint with */

@@ -303,7 +303,10 @@ TEST(CPatches, BakedFilesHoldWhatIsAskedFor) {
   for (int i = 0; i < 400; ++i) {
     auto words = patches->words;
     shader::uvec4& changed = words[random() % words.size()];
-    (i % 4 == 0 ? changed.x : i % 4 == 1 ? changed.y : i % 4 == 2 ? changed.z : changed.w) = static_cast<uint32_t>(random());
+    (i % 4 == 0   ? changed.x
+     : i % 4 == 1 ? changed.y
+     : i % 4 == 2 ? changed.z
+                  : changed.w) = static_cast<uint32_t>(random());
     if (!vector::checkPatches(words, 1)) {
       ++refused;
       continue;
