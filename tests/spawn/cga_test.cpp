@@ -1,4 +1,7 @@
 // .cga files: language, split layouts, and derivations of boxes and polygons in closed form.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wrestrict" // gcc 12 sees overlaps in sums of strings where there are none
+#endif
 #include "spawn/cga/compile.h"
 #include "spawn/cga/derive.h"
 #include "spawn/cga/parser.h"
