@@ -24,7 +24,7 @@ using namespace shader;
 struct Host {
   const std::vector<uint32_t>& words;
   std::array<CgaValue, 96> stack{};
-  std::array<uint32_t, 32> frames{};
+  std::array<uint32_t, 32> calls{};
   uvec2 key{0, 0};
   uint32_t draws = 0;
 
@@ -32,8 +32,8 @@ struct Host {
   CgaValue cgaStack(uint32_t at) const { return stack[at]; }
   void cgaSetStack(uint32_t at, CgaValue v) { stack[at] = v; }
   static uint32_t cgaStackSize() { return 96; }
-  uint32_t cgaFrame(uint32_t at) const { return frames[at]; }
-  void cgaSetFrame(uint32_t at, uint32_t v) { frames[at] = v; }
+  uint32_t cgaFrame(uint32_t at) const { return calls[at]; }
+  void cgaSetFrame(uint32_t at, uint32_t v) { calls[at] = v; }
   static uint32_t cgaMostFrames() { return 16; }
   static uint32_t cgaMostTurns() { return 4096; }
   static CgaValue cgaAttribute(uint32_t) { return cgaFloatValue(0); }
