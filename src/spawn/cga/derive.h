@@ -44,7 +44,7 @@ struct Asset {
 
 struct DeriveOptions {
   uint32_t maxDepth = 2000;            ///< rules that follow one another
-  uint64_t maxShapes = 20'000'000;     ///< of one axiom
+  uint64_t maxShapes = 4'000'000;      ///< of one axiom
   uint32_t maxFunctionDepth = 512;     ///< functions that call one another
   uint32_t maxInstructions = 1u << 24; ///< of one rule
   uint32_t threads = 0;                ///< 0: as many as the machine has

@@ -50,6 +50,7 @@ void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messa
     changes_.assign(1, {});
     projections_.assign(1, {});
     arrays_.clear();
+    arrayValues_ = 0;
     labels_.clear();
     reports_.clear();
     prints_.clear();
@@ -264,6 +265,10 @@ bool Deriver::addChild(Shape& shape, uint32_t body, uint32_t base) {
   shape.count = words_[body + kCgaChunkParameters];
   for (uint32_t i = 0; i < shape.count; ++i) nextValues_.push_back(stack_[base + i]);
   made_ = true;
+  if (shapes_ + next_.size() > options_.maxShapes) {
+    fail("an axiom has more than " + std::to_string(options_.maxShapes) + " shapes; --max-shapes allows more");
+    return false;
+  }
   return true;
 }
 

@@ -200,6 +200,7 @@ private:
   std::vector<Change> changes_;
   std::vector<Projection> projections_;
   std::vector<ArrayValue> arrays_;
+  size_t arrayValues_ = 0; ///< of all arrays
   std::vector<Labelled> labels_;
   std::unordered_map<uint32_t, Report> reports_; // by string
   std::vector<uint32_t> prints_;

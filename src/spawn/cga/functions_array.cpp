@@ -9,9 +9,16 @@ namespace gpgp::spawn::cga {
 
 namespace {
 constexpr size_t kMostValues = 4'000'000; // of one array
+constexpr size_t kMostInAll = 32'000'000; // of all arrays that an axiom makes
+constexpr size_t kMostBytes = 256u << 20; // of all strings that an axiom makes
 } // namespace
 
 CgaValue Deriver::array(ArrayValue value) {
+  arrayValues_ += value.values.size() + 8;
+  if (arrayValues_ > kMostInAll) {
+    fail("the arrays of an axiom have more than 32000000 values");
+    return floatValue(0);
+  }
   arrays_.push_back(std::move(value));
   return cgaMake(kCgaArray, static_cast<uint32_t>(arrays_.size() - 1));
 }
@@ -111,8 +118,8 @@ CgaValue Deriver::cgaAddOther(const CgaValue& a, const CgaValue& b) {
   if (a.type == kCgaString || b.type == kCgaString) {
     std::string sum = text(a);
     sum += text(b);
-    if (sum.size() > (1u << 20)) {
-      fail("a string is longer than 1 MiB");
+    if (sum.size() > (1u << 20) || strings_.bytes() > kMostBytes) {
+      fail("a string is longer than 1 MiB, or all strings of an axiom than 256 MiB");
       return stringValue({});
     }
     return stringValue(sum);

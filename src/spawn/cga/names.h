@@ -81,8 +81,17 @@ namespace gpgp::spawn::cga {
   X(scope_tz)                                                                                                          \
   X(scope_rx)                                                                                                          \
   X(scope_ry)                                                                                                          \
-  X(scope_rz) X(scope_sx) X(scope_sy) X(scope_sz) X(material_color_r) X(material_color_g) X(material_color_b)          \
-      X(material_opacity) X(material_colormap) X(material_rgb) X(seedian)
+  X(scope_rz)                                                                                                          \
+  X(scope_sx)                                                                                                          \
+  X(scope_sy)                                                                                                          \
+  X(scope_sz)                                                                                                          \
+  X(material_color_r)                                                                                                  \
+  X(material_color_g)                                                                                                  \
+  X(material_color_b)                                                                                                  \
+  X(material_opacity)                                                                                                  \
+  X(material_colormap)                                                                                                 \
+  X(material_rgb)                                                                                                      \
+  X(seedian)
 
 // Functions that ask the shape, the file system, or compute with strings and arrays: name, fewest and most values.
 #define GPGP_CGA_FUNCTIONS(X)                                                                                          \

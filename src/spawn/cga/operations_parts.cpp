@@ -112,7 +112,7 @@ bool Deriver::split_(const Arguments& a, uint32_t table, uint32_t base) {
     part.form = form;
     part.splitIndex = i;
     part.splitTotal = static_cast<uint32_t>(pieces.size());
-    addChild(part, p.body, base);
+    if (!addChild(part, p.body, base)) return false;
   }
   return true;
 }
@@ -160,7 +160,7 @@ bool Deriver::splitUv(const Arguments& a, uint32_t table, uint32_t base) {
     part.splitIndex = i;
     part.splitTotal = static_cast<uint32_t>(pieces.size());
     resetPivot(part);
-    addChild(part, pieces[i].body, base);
+    if (!addChild(part, pieces[i].body, base)) return false;
   }
   return true;
 }
@@ -243,7 +243,7 @@ bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
       part.compTotal = total;
       part.compSelector = value.type == kCgaWord ? value.bits : strings_.number(text(value));
       if (!together) resetPivot(part);
-      addChild(part, words_[record + kCgaPartBody], base);
+      if (!addChild(part, words_[record + kCgaPartBody], base)) return false;
     }
   }
   return true;
@@ -285,7 +285,7 @@ bool Deriver::setbackBy(const std::vector<float>& distances, const Arguments& a,
       part.compTotal = static_cast<uint32_t>(forms.size());
       part.compSelector = value.type == kCgaWord ? value.bits : strings_.number(text(value));
       resetPivot(part);
-      addChild(part, words_[record + kCgaPartBody], base);
+      if (!addChild(part, words_[record + kCgaPartBody], base)) return false;
     }
   }
   return true;
@@ -354,7 +354,7 @@ bool Deriver::shapeAndRemainder(const Form& inner, const Form& rest, const Argum
     part.compSelector = value.type == kCgaWord ? value.bits : 0;
     part.compTotal = 1;
     resetPivot(part);
-    addChild(part, words_[record + kCgaPartBody], base);
+    if (!addChild(part, words_[record + kCgaPartBody], base)) return false;
   }
   return true;
 }
@@ -438,7 +438,7 @@ bool Deriver::scatter_(const Arguments& a, uint32_t table, uint32_t base) {
     part.splitIndex = i;
     part.splitTotal = static_cast<uint32_t>(wanted);
     resetPivot(part);
-    addChild(part, body, base);
+    if (!addChild(part, body, base)) return false;
   }
   return true;
 }

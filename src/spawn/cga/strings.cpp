@@ -14,7 +14,10 @@ uint32_t StringTable::number(std::string_view text) {
   if (const auto found = constantNumbers_.find(text); found != constantNumbers_.end()) return found->second;
   const auto [found, isNew] =
       numbers_.try_emplace(std::string(text), static_cast<uint32_t>(constants_.size() + texts_.size()));
-  if (isNew) texts_.push_back(&found->first); // nodes stay where they are
+  if (isNew) {
+    texts_.push_back(&found->first); // nodes stay where they are
+    bytes_ += text.size() + 64;
+  }
   return found->second;
 }
 
@@ -28,6 +31,7 @@ const std::string& StringTable::text(uint32_t number) const {
 void StringTable::clear() {
   numbers_.clear();
   texts_.clear();
+  bytes_ = 0;
 }
 
 std::string textOf(float number) {

@@ -18,11 +18,14 @@ public:
   const std::string& text(uint32_t number) const;
   /// Forgets all but the program's.
   void clear();
+  /// Of what was made.
+  size_t bytes() const { return bytes_; }
 
 private:
   const std::vector<std::string>& constants_;
   std::unordered_map<std::string_view, uint32_t> constantNumbers_;
   std::unordered_map<std::string, uint32_t> numbers_;
+  size_t bytes_ = 0;
   std::vector<const std::string*> texts_; // of numbers behind the constants
 };
 

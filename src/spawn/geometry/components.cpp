@@ -11,8 +11,6 @@ using namespace shader;
 
 namespace {
 
-const Axes kFrameAxes{};
-
 /// An edge of a face: its ends in the scope's metres.
 struct FaceEdge {
   uint32_t face;

@@ -61,7 +61,7 @@ class Random {
 public:
   explicit Random(uint32_t seed) : engine_(seed) {}
   float between(float low, float high) { return low + (high - low) * float(engine_() >> 8) / 16777216.0f; }
-  uint32_t below(uint32_t count) { return engine_() % count; }
+  uint32_t below(uint32_t count) { return uint32_t(engine_()) % count; }
 
   /// Corners on a circle: convex.
   Polygon convex(uint32_t most = 12) {
