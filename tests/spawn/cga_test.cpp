@@ -393,7 +393,7 @@ TEST(CgaMessages, LimitsEndInErrorsThatNameThem) {
   says("Lot --> Lot", "2000 rules behind the axiom; --max-depth allows more");
   says("Lot --> split(x) { ~0.0005: A. }*", "more than 10000 shapes");
   says("f(x) = f(x + 1)\nLot --> t(f(1), 0, 0)", "functions call each other deeper than 512");
-  says("Lot --> split(x) { ~0.000001: A. }*", "a split has more than 1000000 parts");
+  says("Lot --> split(x) { ~0.000005: A. }*", "a split has more than 1000000 parts");
 }
 
 TEST(CgaMessages, AttributesThatNeedThemselves) {
