@@ -59,7 +59,7 @@ typedef struct GpgpLsystemCreateInfo {
 /** Checks a compiled L-system and queues it for upload. Checked are magic, version, checksum, every index and every
  *  expression.
  *  Errors: INVALID_DATA, INVALID_ARGUMENT, INVALID_STRUCT, INVALID_HANDLE, IO, OUT_OF_..._MEMORY, DEVICE_LOST.
- *  @threads context @lifetime call */
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateLsystem(GpgpContext context, const GpgpLsystemCreateInfo* info,
                                                 GpgpAsset* lsystem);
 

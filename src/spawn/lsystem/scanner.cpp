@@ -106,7 +106,7 @@ std::string Reader::found() {
     while (at_ + length < end_ && isLetter(line_.text[at_ + length])) ++length;
   else // a character of several bytes
     while (at_ + length < end_ && (static_cast<unsigned char>(line_.text[at_ + length]) & 0xc0) == 0x80) ++length;
-  return "'" + line_.text.substr(at_, length) + "'";
+  return std::string("'").append(line_.text, at_, length).append("'");
 }
 
 bool Reader::take(char c) {
@@ -153,7 +153,7 @@ std::optional<Module> Reader::module(bool declares) {
     at_ += longest->size();
   } else if (c == '?') {
     ++at_;
-    module.name = "?" + identifier();
+    module.name.assign(1, '?').append(identifier());
     if (module.name.size() == 1) error("'?' is followed by the name of a sub-system; found " + found());
   } else if (c == '@') {
     for (const std::string_view name : {"@Gs", "@Gc", "@Ge"})
