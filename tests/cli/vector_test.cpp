@@ -29,6 +29,7 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "status",
                                                 "width",
                                                 "height",
+                                                "method",
                                                 "aa",
                                                 "samples",
                                                 "paths",

@@ -14,6 +14,8 @@ public:
     std::pmr::vector<std::byte> bytes(words.size_bytes(), &context.host());
     std::memcpy(bytes.data(), words.data(), bytes.size());
     if (auto ok = asset->makeResident(GPGP_SERVICE_CORE, std::move(bytes)); !ok) return nullptr;
+    const std::lock_guard lock(context.objects);
+    asset->attach(); // tests that give it no handle upload it as well
     return asset;
   }
   explicit ToyAsset(core::Context& owner) : Resident(owner, core::Kind::grammar, "toy asset") {}

@@ -34,9 +34,9 @@ host::Picture resized(const host::Picture& from, bool wide, uint32_t length) {
   return to;
 }
 
-/// How many texels are enough along a side where so many of its texels lie along a pixel.
-uint32_t enough(uint32_t length, double texels) {
-  for (; texels >= 1.5 && length > 1; texels /= 2) length = (length + 1) / 2;
+/// How many texels are enough along a side of which a share lies along a pixel.
+uint32_t enough(uint32_t length, double share) {
+  while (share * length >= 1.5 && length > 1) length = (length + 1) / 2;
   return length;
 }
 
@@ -54,11 +54,10 @@ std::vector<uint8_t> withLevels(const host::Picture& picture, uint32_t levels) {
 } // namespace
 
 TexturePicture shrunk(host::Picture picture, const ShareOfPixel& largest, const ShareOfPixel& smallest) {
-  const double width = picture.width, height = picture.height;
   TexturePicture shown{std::move(picture), 1};
   host::Picture& kept = shown.picture;
-  kept = resized(kept, true, enough(kept.width, largest.across * width));
-  kept = resized(kept, false, enough(kept.height, largest.down * height));
+  kept = resized(kept, true, enough(kept.width, largest.across));
+  kept = resized(kept, false, enough(kept.height, largest.down));
   const double most = std::max(smallest.across * kept.width, smallest.down * kept.height);
   for (double texels = most; texels >= 1.5 && (std::max(kept.width, kept.height) >> shown.levels) > 0; texels /= 2)
     ++shown.levels;
