@@ -59,7 +59,8 @@ sameFields visibility visible coveredPixels
 if ((${#samples[@]})); then
   both mini_engine "${samples[0]}" --frames 2 --size 320x180 --out {}
   for picture in "$out"/mini_engine.1/*.png; do
-    "$compare" "$picture" "$out/mini_engine.2/$(basename "$picture")" || fail "$(basename "$picture") differs"
+    # The engine's own edges and far windows alias, each device in its way: up to 15 of 255 in a tile's mean.
+    "$compare" "$picture" "$out/mini_engine.2/$(basename "$picture")" 16 0 8 || fail "$(basename "$picture") differs"
   done
   for program in "${samples[@]:1}"; do both "$(basename "$program")" "$program"; done
 fi
