@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace gpgp::spawn {
@@ -26,27 +27,53 @@ std::vector<uint32_t> weldVertices(const MeshPool& constPool, const Form& form) 
   std::iota(order.begin(), order.end(), 0u);
   std::iota(first.begin(), first.end(), 0u);
   if (count == 0) return first;
-  const float apart = 2e-6f * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  const auto leadOf = [&first](uint32_t i) {
+    while (first[i] != i) i = first[i] = first[first[i]];
+    return i;
+  };
+  const auto join = [&](uint32_t a, uint32_t b) { // the smaller number of both groups leads
+    const uint32_t x = leadOf(a), y = leadOf(b);
+    first[std::max(x, y)] = std::min(x, y);
+  };
+  // Vertices in one place join first, so that only one of them is compared with what is near.
+  const auto coordinates = [&positions](uint32_t i) {
+    return std::tuple(positions[i].x, positions[i].y, positions[i].z);
+  };
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return positions[a].x != positions[b].x ? positions[a].x < positions[b].x : a < b;
+    return coordinates(a) != coordinates(b) ? coordinates(a) < coordinates(b) : a < b;
   });
-  for (uint32_t i = 0; i < count; ++i) {
-    for (uint32_t j = i; j-- > 0;) {
-      const vec3 d = glm::abs(positions[order[i]] - positions[order[j]]);
-      if (d.x > apart) break;
-      if (d.y > apart || d.z > apart) continue;
-      // The smaller number of both groups leads.
-      const uint32_t a = first[order[i]], b = first[order[j]];
-      if (a == b) continue;
-      const uint32_t lead = std::min(a, b), other = std::max(a, b);
-      if (a == order[i] && lead == b) {
-        first[order[i]] = lead;
-      } else {
-        for (uint32_t& f : first)
-          if (f == other) f = lead;
+  std::vector<uint32_t> places;
+  for (const uint32_t i : order) {
+    if (!places.empty() && positions[places.back()] == positions[i])
+      join(places.back(), i);
+    else
+      places.push_back(i);
+  }
+  // Cells of twice the distance within which vertices join: of a vertex's own cell and the 26 around it, the three
+  // along x lie in a row.
+  const float apart = 2e-6f * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  if (places.size() > 1 && apart > 0) {
+    constexpr uint64_t kRow = uint64_t(1) << 20, kLayer = kRow << 20;
+    const auto cellOf = [&](uint32_t i) {
+      const glm::dvec3 cell = glm::floor(glm::dvec3(positions[i] - low) / (2.0 * static_cast<double>(apart)));
+      return (uint64_t(cell.z) + 1) * kLayer + (uint64_t(cell.y) + 1) * kRow + uint64_t(cell.x) + 1;
+    };
+    std::vector<std::pair<uint64_t, uint32_t>> cells;
+    for (const uint32_t i : places) cells.emplace_back(cellOf(i), i);
+    std::sort(cells.begin(), cells.end());
+    for (const auto& [cell, i] : cells) {
+      for (const uint64_t layer : {cell - kLayer, cell, cell + kLayer}) {
+        for (const uint64_t row : {layer - kRow, layer, layer + kRow}) {
+          for (auto at = std::lower_bound(cells.begin(), cells.end(), std::pair(row - 1, 0u));
+               at != cells.end() && at->first <= row + 1; ++at) {
+            const vec3 d = glm::abs(positions[i] - positions[at->second]);
+            if (std::max({d.x, d.y, d.z}) <= apart) join(i, at->second);
+          }
+        }
       }
     }
   }
+  for (uint32_t i = 0; i < count; ++i) first[i] = leadOf(i);
   return first;
 }
 
