@@ -7,6 +7,8 @@
 #include "core/resident.h"
 
 #include <cmath>
+#include <span>
+#include <vector>
 
 namespace gpgp::api {
 
@@ -106,6 +108,24 @@ template <class T> bool allFinite(const T& values) {
   for (const float value : values)
     if (!std::isfinite(value)) return false;
   return true;
+}
+
+/// Bytes that a create info gives as data or as a file.
+struct GivenBytes {
+  std::pmr::vector<std::byte> file;
+  std::span<const std::byte> bytes; ///< those of `file`, or the caller's
+};
+inline Result<GivenBytes> givenBytes(Context& context, const void* data, size_t size, const char* filePath) {
+  GivenBytes given{std::pmr::vector<std::byte>(&context.host()), {}};
+  if (!filePath) {
+    given.bytes = {static_cast<const std::byte*>(data), data ? size : 0};
+    return given;
+  }
+  auto read = context.readFile(filePath);
+  if (!read) return read.error();
+  given.file = std::move(*read); // keeps its place when the struct is moved
+  given.bytes = given.file;
+  return given;
 }
 
 /// Gives a created object its handle.

@@ -20,15 +20,9 @@ GpgpResult GPGP_CALL gpgpCreateLsystem(GpgpContext handle, const GpgpLsystemCrea
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     if (!info->data == !info->filePath)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of data and filePath must be set");
-    std::span<const std::byte> bytes(static_cast<const std::byte*>(info->data), info->data ? info->size : 0);
-    std::pmr::vector<std::byte> file(&(*context)->host());
-    if (info->filePath) {
-      auto read = (*context)->readFile(info->filePath);
-      if (!read) return read.error();
-      file = std::move(*read);
-      bytes = file;
-    }
-    auto made = Lsystem::create(**context, info->label, bytes);
+    const auto given = givenBytes(**context, info->data, info->size, info->filePath);
+    if (!given) return given.error();
+    auto made = Lsystem::create(**context, info->label, given->bytes);
     if (!made) return made.error();
     *lsystem = adopt<GpgpAsset>(**context, std::move(*made));
     return {};

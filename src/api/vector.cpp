@@ -99,15 +99,9 @@ GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext handle, const GpgpGlyphSetCr
     std::pmr::memory_resource* memory = &(*context)->host();
     std::optional<Glyphs> baked;
     if (info->data || info->filePath) {
-      std::pmr::vector<std::byte> file(memory);
-      std::span bytes(static_cast<const std::byte*>(info->data), info->data ? info->size : 0);
-      if (info->filePath) {
-        auto read = (*context)->readFile(info->filePath);
-        if (!read) return read.error();
-        file = std::move(*read);
-        bytes = file;
-      }
-      auto loaded = loadBakedGlyphs(bytes, memory);
+      const auto given = givenBytes(**context, info->data, info->size, info->filePath);
+      if (!given) return given.error();
+      auto loaded = loadBakedGlyphs(given->bytes, memory);
       if (!loaded) return loaded.error();
       baked.emplace(std::move(*loaded));
     }

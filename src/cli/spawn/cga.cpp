@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstdio>
 #include <map>
+#include <numeric>
 #include <sstream>
 
 namespace gpgp::cli {
@@ -116,29 +117,10 @@ void join(Derivation& all, Derivation&& part) {
     all = std::move(part);
     return;
   }
-  const uint32_t names = static_cast<uint32_t>(all.names.size()), vertices = static_cast<uint32_t>(all.vertices.size());
-  const uint32_t indices = static_cast<uint32_t>(all.indices.size());
+  std::vector<uint32_t> places(part.names.size(), 0); // 0 stays empty
+  if (!places.empty()) std::iota(places.begin() + 1, places.end(), static_cast<uint32_t>(all.names.size()) + 1);
   all.names.insert(all.names.end(), part.names.begin(), part.names.end());
-  for (Leaf leaf : part.leaves) {
-    leaf.name += names;
-    if (leaf.texture) leaf.texture += names;
-    leaf.firstIndex += indices;
-    all.leaves.push_back(leaf);
-  }
-  all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
-  for (const uint32_t i : part.indices) all.indices.push_back(i + vertices);
-  for (const auto& [name, report] : part.reports) {
-    Report& to = all.reports[name];
-    to.least = to.count ? std::min(to.least, report.least) : report.least;
-    to.most = to.count ? std::max(to.most, report.most) : report.most;
-    to.count += report.count;
-    to.sum += report.sum;
-  }
-  all.prints.insert(all.prints.end(), part.prints.begin(), part.prints.end());
-  all.printed += part.printed;
-  all.shapes += part.shapes;
-  all.triangles += part.triangles;
-  all.depth = std::max(all.depth, part.depth);
+  append(all, std::move(part), places);
 }
 
 void paint(const CgaOptions& options, const Derivation& derivation) {

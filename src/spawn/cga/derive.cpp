@@ -16,23 +16,29 @@ struct AxiomBlock {
   Messages messages;
 };
 
-void append(Derivation& all, Derivation&& part, size_t programStrings) {
-  if (all.names.empty()) {
-    all = std::move(part);
-    return;
+/// Where a part's strings stand in all: the program's as they are, others once.
+std::vector<uint32_t> takeNames(Derivation& all, const Derivation& part, size_t programStrings) {
+  std::vector<uint32_t> places;
+  for (size_t i = 0; i < part.names.size(); ++i) {
+    size_t at = i;
+    if (i >= programStrings) {
+      const auto begin = all.names.begin() + static_cast<ptrdiff_t>(programStrings);
+      at = static_cast<size_t>(std::find(begin, all.names.end(), part.names[i]) - all.names.begin());
+      if (at == all.names.size()) all.names.push_back(part.names[i]);
+    }
+    places.push_back(static_cast<uint32_t>(at));
   }
-  std::vector<uint32_t> names; // of the part's own strings, in all
-  for (size_t i = programStrings; i < part.names.size(); ++i) {
-    const auto at =
-        std::find(all.names.begin() + static_cast<ptrdiff_t>(programStrings), all.names.end(), part.names[i]);
-    names.push_back(static_cast<uint32_t>(at - all.names.begin()));
-    if (at == all.names.end()) all.names.push_back(part.names[i]);
-  }
+  return places;
+}
+
+} // namespace
+
+void append(Derivation& all, Derivation&& part, const std::vector<uint32_t>& places) {
   const uint32_t firstVertex = static_cast<uint32_t>(all.vertices.size());
   const uint32_t firstIndex = static_cast<uint32_t>(all.indices.size());
   for (Leaf leaf : part.leaves) {
-    if (leaf.name >= programStrings) leaf.name = names[leaf.name - programStrings];
-    if (leaf.texture >= programStrings) leaf.texture = names[leaf.texture - programStrings];
+    leaf.name = places[leaf.name];
+    leaf.texture = places[leaf.texture];
     leaf.firstIndex += firstIndex;
     all.leaves.push_back(leaf);
   }
@@ -52,8 +58,6 @@ void append(Derivation& all, Derivation&& part, size_t programStrings) {
   all.triangles += part.triangles;
   all.depth = std::max(all.depth, part.depth);
 }
-
-} // namespace
 
 Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
                   Messages& messages) {
@@ -77,7 +81,10 @@ Derivation derive(const Program& program, const std::vector<Axiom>& axioms, cons
   for (std::thread& thread : threads) thread.join();
   Derivation result;
   for (AxiomBlock& block : blocks) {
-    append(result, std::move(block.derivation), program.strings.size());
+    if (result.names.empty())
+      result = std::move(block.derivation);
+    else
+      append(result, std::move(block.derivation), takeNames(result, block.derivation, program.strings.size()));
     messages.merge(block.messages);
   }
   if (result.names.empty()) result.names = program.strings;

@@ -91,4 +91,7 @@ struct Derivation {
 Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
                   Messages& messages);
 
+/// Puts a part behind what there is. places: of the part's names, in all.names.
+void append(Derivation& all, Derivation&& part, const std::vector<uint32_t>& places);
+
 } // namespace gpgp::spawn::cga
