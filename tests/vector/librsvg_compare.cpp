@@ -21,6 +21,7 @@
 // Ends with 0 where no tile is wrong and at least 99 %, or all but one, agree, 1 where not, 77 where rsvg-convert or
 // the drawings are not there.
 #include "../cli/process.h"
+#include "cli/shared/command.h"
 #include "cli/shared/session.h"
 #include "cli/shared/textures.h"
 #include "cli/vector/images.h"

@@ -308,19 +308,82 @@ GPGP_FN void cutFace(GPGP_POOL GPGP_INOUT(Builder) b, Cut cut, Form form, uint f
   releaseWork(GPGP_P mark);
 }
 
+/// Where a bridge begins, along one direction in the plane of the cut.
+GPGP_FN float bridgePlace(GPGP_POOL Builder b, PlaneBasis basis, uint caps, uint bridge) {
+  return inPlane(basis, builderPosition(GPGP_P b, workWord(GPGP_P caps + 2u * bridge))).x;
+}
+/// The bridges in the order of their places, by a heap: pairs of a place and a bridge.
+GPGP_FN void sortBridges(GPGP_POOL Builder b, PlaneBasis basis, uint caps, uint capCount, uint sortedAt) {
+  for (uint i = 0u; i < capCount; ++i) {
+    setWorkFloat(GPGP_P sortedAt + 2u * i, bridgePlace(GPGP_P b, basis, caps, i));
+    setWorkWord(GPGP_P sortedAt + 2u * i + 1u, i);
+  }
+  for (uint step = 0u; step < capCount + capCount / 2u;
+       ++step) { // the first half of a heap is made, then it is emptied
+    const bool making = step < capCount / 2u;
+    const uint end = making ? capCount : capCount + capCount / 2u - 1u - step;
+    uint at = making ? capCount / 2u - 1u - step : 0u;
+    const uint from = making ? at : end;
+    const float place = workFloat(GPGP_P sortedAt + 2u * from);
+    const uint bridge = workWord(GPGP_P sortedAt + 2u * from + 1u);
+    if (!making) {
+      setWorkFloat(GPGP_P sortedAt + 2u * end, workFloat(GPGP_P sortedAt));
+      setWorkWord(GPGP_P sortedAt + 2u * end + 1u, workWord(GPGP_P sortedAt + 1u));
+    }
+    for (uint depth = 0u; depth < 32u && 2u * at + 1u < end; ++depth) {
+      uint child = 2u * at + 1u;
+      const bool second =
+          child + 1u < end && workFloat(GPGP_P sortedAt + 2u * child + 2u) > workFloat(GPGP_P sortedAt + 2u * child);
+      if (second) child += 1u;
+      if (!(workFloat(GPGP_P sortedAt + 2u * child) > place)) break;
+      setWorkFloat(GPGP_P sortedAt + 2u * at, workFloat(GPGP_P sortedAt + 2u * child));
+      setWorkWord(GPGP_P sortedAt + 2u * at + 1u, workWord(GPGP_P sortedAt + 2u * child + 1u));
+      at = child;
+    }
+    if (end > 0u || making) {
+      setWorkFloat(GPGP_P sortedAt + 2u * at, place);
+      setWorkWord(GPGP_P sortedAt + 2u * at + 1u, bridge);
+    }
+  }
+}
+/// The first of the sorted bridges whose place is not below that.
+GPGP_FN uint firstBridgeFrom(GPGP_POOL uint sortedAt, uint capCount, float place) {
+  uint low = 0u;
+  uint high = capCount;
+  for (uint turn = 0u; turn < 32u && low < high; ++turn) {
+    const uint middle = (low + high) / 2u;
+    if (workFloat(GPGP_P sortedAt + 2u * middle) < place) {
+      low = middle + 1u;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
 /// Faces that close the cut: bridges joined end to end. normal: out of the piece, in the scope's axes.
 GPGP_FN void addCaps(GPGP_POOL GPGP_INOUT(Builder) b, uint caps, uint capCount, vec3 normal, float apart) {
   const uint mark = workMark(GPGP_P0);
   // Words of a loop: its first place in the order, its bridges, whether it is a hole. Order: bridges as they follow.
-  const uint orderAt = takeWork(GPGP_P 4u * capCount);
+  // Sorted: bridges by the places where they begin, for what is near an end. A place is off by a few roundings of the
+  // largest coordinate, which `slack` covers.
+  const uint orderAt = takeWork(GPGP_P 6u * capCount);
   if (orderAt == kNoWork) {
     b.status = kGeometryTooLarge;
     return;
   }
   const uint loopAt = orderAt + capCount;
+  const uint sortedAt = loopAt + 3u * capCount;
   uint ordered = 0u;
   uint loops = 0u;
   const PlaneBasis basis = planeBasis(vec3(0.0f), normal, vec3(0.36f, 0.48f, 0.8f));
+  sortBridges(GPGP_P b, basis, caps, capCount, sortedAt);
+  float largest = 0.0f;
+  for (uint i = 0u; i < capCount; ++i) {
+    const vec3 p = builderPosition(GPGP_P b, workWord(GPGP_P caps + 2u * i));
+    largest = max(largest, max(abs(p.x), max(abs(p.y), abs(p.z))));
+  }
+  const float slack = 2.0f * apart + 4e-6f * largest;
   for (uint i = 0u; i < capCount; ++i) {
     const uint at = caps + 2u * i;
     if (workWord(GPGP_P at) == 0xffffffffu) continue;
@@ -345,7 +408,10 @@ GPGP_FN void addCaps(GPGP_POOL GPGP_INOUT(Builder) b, uint caps, uint capCount, 
       float bestTurn = 0.0f;
       const vec3 toBegin = minus3(begin, q);
       const bool home = max(abs(toBegin.x), max(abs(toBegin.y), abs(toBegin.z))) <= apart;
-      for (uint j = 0u; j < capCount; ++j) {
+      const float place = inPlane(basis, q).x;
+      for (uint k = firstBridgeFrom(GPGP_P sortedAt, capCount, place - slack); k < capCount; ++k) {
+        if (workFloat(GPGP_P sortedAt + 2u * k) > place + slack) break;
+        const uint j = workWord(GPGP_P sortedAt + 2u * k + 1u);
         const uint start = workWord(GPGP_P caps + 2u * j);
         if (start == 0xffffffffu) continue;
         const vec3 r = builderPosition(GPGP_P b, start);
@@ -355,7 +421,8 @@ GPGP_FN void addCaps(GPGP_POOL GPGP_INOUT(Builder) b, uint caps, uint capCount, 
         // 2: back to the left, 0: straight on, -2: back to the right
         const float bend = subtract(inner3(unit3(vec3(along.x, along.y, 0.0f)), unit3(vec3(d.x, d.y, 0.0f))), 1.0f);
         const float turned = cross2(along, d) >= 0.0f ? -bend : bend;
-        if (best != 0xffffffffu && !(turned > bestTurn)) continue;
+        const bool better = turned > bestTurn || (turned == bestTurn && j < best);
+        if (best != 0xffffffffu && !better) continue;
         best = j;
         bestTurn = turned;
       }

@@ -1,6 +1,6 @@
 #include "cli/shared/css_color.h"
 
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "vector/import/svg/style.h"
 
 namespace gpgp::cli {

@@ -1,7 +1,7 @@
 #include "cli/shared/pass_dump.h"
 
 #include "api/check.h"
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "host/files.h"
 
 #include <algorithm>

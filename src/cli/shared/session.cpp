@@ -1,6 +1,7 @@
 // A context on a headless device; every subcommand's work is one recording, repeated and measured.
 #include "cli/shared/session.h"
 
+#include "cli/shared/command.h"
 #include "cli/shared/median.h"
 #include "cli/shared/processors.h"
 #include "cli/shared/progress.h"

@@ -1,6 +1,6 @@
 // A headless device with a gpgp context on it, and the frame that each subcommand runs: upload, record, submit, wait.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "cli/shared/pass_dump.h"
 #include "host/busy_work.h"
 #include "host/frames.h"

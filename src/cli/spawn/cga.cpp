@@ -1,5 +1,6 @@
 #include "cli/spawn/cga.h"
 
+#include "cli/shared/command.h"
 #include "cli/shared/messages.h"
 #include "host/files.h"
 #include "spawn/cga/compile.h"

@@ -1,5 +1,6 @@
 // Start shapes of .cga files: rectangles on a grid, rows of the axiom files that all grammars take, and polygons of
 // GeoJSON files.
+#include "cli/shared/command.h"
 #include "cli/spawn/axioms.h"
 #include "cli/spawn/cga.h"
 #include "cli/spawn/grammar_source.h"

@@ -1,4 +1,4 @@
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "cli/spawn/cga.h"
 #include "host/files.h"
 #include "host/picture.h"

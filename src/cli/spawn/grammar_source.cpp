@@ -1,5 +1,6 @@
 #include "cli/spawn/grammar_source.h"
 
+#include "cli/shared/command.h"
 #include "cli/shared/messages.h"
 #include "spawn/language/build_graph.h"
 

@@ -1,6 +1,6 @@
 // Grammars to a baked grammar, for the subcommands: every message goes to standard error, the first error is thrown.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "spawn/language/diagnostics.h"
 
 #include <gpgp/gpgp.hpp>

@@ -1,5 +1,6 @@
 #include "cli/spawn/lsystem.h"
 
+#include "cli/shared/command.h"
 #include "cli/shared/painter.h"
 #include "cli/shared/session.h"
 #include "cli/spawn/grammar_source.h"

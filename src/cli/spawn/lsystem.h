@@ -1,6 +1,6 @@
 // `gpgp spawn` for L-systems (.lsys): derives on the device and compares with the CPU reference.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 
 #include <gpgp/lsystem.h>
 

@@ -1,6 +1,6 @@
 // A picture of triangles that stand on a ground, for --image.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 
 #include <glm/vec3.hpp>
 

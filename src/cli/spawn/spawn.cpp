@@ -1,4 +1,5 @@
 // `gpgp spawn`: compiles a grammar, derives axioms and says what came out, beside the CPU evaluator.
+#include "cli/shared/command.h"
 #include "cli/shared/painter.h"
 #include "cli/spawn/axioms.h"
 #include "cli/spawn/cga.h"

@@ -1,6 +1,6 @@
 #include "cli/spawn/spawned_gltf.h"
 
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "cli/shared/painter.h"
 #include "cli/spawn/unit_shapes.h"
 #include "host/files.h"

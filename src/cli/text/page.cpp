@@ -1,6 +1,6 @@
 #include "cli/text/page.h"
 
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 
 #include <algorithm>
 #include <chrono>

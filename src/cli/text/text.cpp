@@ -1,4 +1,5 @@
 // `gpgp text`: lays out a string in fonts, draws it on the GPU and writes a picture.
+#include "cli/shared/command.h"
 #include "cli/shared/css_color.h"
 #include "cli/shared/session.h"
 #include "cli/text/draw.h"

@@ -1,5 +1,6 @@
 #include "cli/tune/kernels.h"
 
+#include "cli/shared/command.h"
 #include "cli/shared/messages.h"
 #include "cli/shared/processors.h"
 #include "host/files.h"

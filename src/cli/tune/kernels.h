@@ -1,6 +1,6 @@
 // Kernels of a grammar by schedule, and the baked files that keep tuned ones.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "cli/spawn/axioms.h"
 #include "cli/spawn/grammar_source.h"
 #include "host/device.h"

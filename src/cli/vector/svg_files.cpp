@@ -1,6 +1,6 @@
 #include "cli/vector/svg_files.h"
 
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,5 @@
 #include "cli/vector/svg_messages.h"
+#include "cli/shared/command.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // What the compiler says while it reads an SVG: on standard error for people, and as JSON.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 
 #include <gpgp/vector.h>
 

@@ -1,4 +1,5 @@
 // `gpgp vector`: converts an SVG to a drawing, rasterises it on the GPU and writes a picture.
+#include "cli/shared/command.h"
 #include "cli/shared/css_color.h"
 #include "cli/shared/session.h"
 #include "cli/shared/textures.h"

@@ -1,5 +1,6 @@
 #include "cli/visibility/camera_times.h"
 
+#include "cli/shared/command.h"
 #include "cli/shared/median.h"
 
 #include <map>

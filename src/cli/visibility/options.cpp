@@ -1,4 +1,5 @@
 #include "cli/visibility/options.h"
+#include "cli/shared/command.h"
 
 #include <cstdio>
 #include <sstream>

@@ -1,6 +1,6 @@
 // The arguments of `gpgp visibility`.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 
 #include <gpgp/visibility.h>
 

@@ -1,6 +1,6 @@
 // The cameras of `gpgp visibility`: from a file, on an orbit, and those of a view cell round one.
 #pragma once
-#include "cli/shared/command.h"
+#include "cli/shared/common.h"
 #include "cli/shared/painter.h"
 
 #include <gpgp/visibility.h>

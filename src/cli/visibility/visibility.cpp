@@ -1,4 +1,5 @@
 // `gpgp visibility`: samples which triangles of a model one camera sees.
+#include "cli/shared/command.h"
 #include "cli/shared/progress.h"
 #include "cli/visibility/camera_times.h"
 #include "cli/visibility/cell_walls.h"
