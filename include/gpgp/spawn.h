@@ -108,6 +108,8 @@ typedef uint64_t GpgpCompileFlags;
 /** Generates a kernel for the grammar, in the default schedule. The kernel derives the same as the interpreter, in less
  *  time. gpgpPrewarmGrammar compiles it for the device. */
 #define GPGP_COMPILE_KERNEL ((GpgpCompileFlags)1)
+/** GpgpGrammarSource::text is a program in the stack language (.gml) instead of PGA-shape. */
+#define GPGP_COMPILE_STACK_LANGUAGE ((GpgpCompileFlags)2)
 
 typedef struct GpgpGrammarBuilder_T* GpgpGrammarBuilder; /**< A grammar made in code, see spawn_builder.h. */
 
@@ -133,9 +135,9 @@ typedef struct GpgpGrammarSource {
 #define GPGP_GRAMMAR_SOURCE_INIT GPGP_INIT(GpgpGrammarSource, GPGP_STRUCTURE_GRAMMAR_SOURCE)
 
 /** Compiles a text, a builder or a baked grammar to a baked grammar. The text is PGA-shape (.pga), or an operator graph
- *  as `gpgp graph` prints it, which has no variables. The result depends on the input only. In libgpgp_compiler.
- *  Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED (a limit of graphs is
- *  exceeded), OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+ *  as `gpgp graph` prints it, which has no variables, or with GPGP_COMPILE_STACK_LANGUAGE a stack program (.gml). The
+ * result depends on the input only. In libgpgp_compiler. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT,
+ * INVALID_STRUCT, UNSUPPORTED (a limit of graphs is exceeded), OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
 /** Compiles several grammars to one, so that one recording derives axioms of all of them. The rules, terminals, buckets

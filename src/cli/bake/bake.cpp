@@ -63,10 +63,10 @@ std::string typeOf(const BakeOptions& options, const std::string& file, std::str
   }
   std::string ending = std::filesystem::path(file).extension();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (ending == ".pga") return "grammar";
+  if (ending == ".pga" || ending == ".gml") return "grammar";
   if (ending == ".svg" || ending == ".svgz") return "drawing";
   if (ending == ".ttf" || ending == ".otf" || ending == ".ttc" || ending == ".otc") return "font";
-  throw Usage(file + ": neither .pga nor .svg nor a font; --type says what it is");
+  throw Usage(file + ": neither .pga nor .gml nor .svg nor a font; --type says what it is");
 }
 
 /// Of the baked file.
@@ -219,7 +219,7 @@ Work addBake(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bake", "Compile grammars, drawings and fonts to the files that a game loads");
   command
       ->add_option("IN", options->in,
-                   "Grammars (.pga), drawings (.svg, .svgz), fonts (.ttf, .otf, .ttc); - is standard input")
+                   "Grammars (.pga, .gml), drawings (.svg, .svgz), fonts (.ttf, .otf, .ttc); - is standard input")
       ->required();
   command->add_option("-o,--out", options->out, "The file, a folder, or - for standard output")
       ->type_name("FILE|FOLDER|-")

@@ -108,7 +108,8 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
     source.variableCount = static_cast<uint32_t>(variables[i].size());
     source.messageUserData = &errors;
     source.messageFn = Errors::print;
-    if (kernel) source.flags = GPGP_COMPILE_KERNEL;
+    if (kernel) source.flags |= GPGP_COMPILE_KERNEL;
+    if (std::filesystem::path(grammars[i].file.path).extension() == ".gml") source.flags |= GPGP_COMPILE_STACK_LANGUAGE;
     sources.push_back(source);
   }
   Result<Blob> blob = linked ? gpgp::linkGrammars(sources.data(), static_cast<uint32_t>(sources.size()))
@@ -140,7 +141,8 @@ void addGrammars(CLI::App& command, std::vector<std::string>& arguments) {
   };
   command
       .add_option("GRAMMAR", arguments,
-                  "PGA-shape grammar text (.pga), a baked grammar, or a .cga file; several are linked to one grammar, "
+                  "PGA-shape grammar text (.pga), a stack program (.gml), a baked grammar, or a .cga file; several are "
+                  "linked to one grammar, "
                   "by their file "
                   "names or as NAME=FILE says")
       ->required()

@@ -11,6 +11,7 @@
 #include "cli/spawn/unit_shapes.h"
 #include "cli/tune/tuner.h"
 #include "host/files.h"
+#include "spawn/language/suggest.h"
 
 #include <gpgp/spawn.h>
 
@@ -300,7 +301,8 @@ Outcome spawnLsystem(const SpawnOptions& options, const CommonOptions& common) {
                                       {"--max-shapes", options.maxShapes != 0},
                                       {"--max-depth", options.maxDepth != 0},
                                       {"--max-colliders", options.maxColliders != 0},
-                                      {"--slice", options.slice != 0}})
+                                      {"--slice", options.slice != 0},
+                                      {"--start", !options.start.empty()}})
     if (given) throw Usage(std::string(option) + " means nothing to an L-system (.lsys)");
   const AxiomDefaults defaults{{options.size[0], 0, options.size[2]}, options.seed, {GPGP_AXIOM_DEFAULT_START}};
   LsystemOptions own;
@@ -322,17 +324,30 @@ Outcome spawnLsystem(const SpawnOptions& options, const CommonOptions& common) {
   return spawnLsystem(own, common);
 }
 
+/// The rule or axiom that --start names.
+uint32_t startNamed(const BakedGraph& grammar, const std::string& name) {
+  const std::vector<NamedStart> starts = grammar.namedStarts();
+  spawn::Suggestion suggestion(name);
+  for (uint32_t i = 0; i < starts.size(); ++i) {
+    if (starts[i].name == name) return i;
+    suggestion.offer(starts[i].name);
+  }
+  throw Usage("--start " + name + ": there is no such rule" + suggestion.text());
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
-  if (!options.start.empty() || !options.style.empty() || !options.attributes.empty() || options.geographic)
-    throw Usage("--start, --style, --attr and --geographic are for .cga files");
+  if (!options.style.empty() || !options.attributes.empty() || options.geographic)
+    throw Usage("--style, --attr and --geographic are for .cga files");
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isLsystem)) return spawnLsystem(options, common);
   if (options.string || options.maxModules) throw Usage("--string and --max-modules are for L-systems (.lsys)");
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
   const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   const spawn::Graph& graph = grammar.graph;
-  const AxiomDefaults defaults{options.size, options.seed, grammar.starts()};
+  const AxiomDefaults defaults{options.size, options.seed,
+                               options.start.empty() ? grammar.starts()
+                                                     : std::vector{startNamed(grammar, options.start)}};
   const uint32_t grammarCount = static_cast<uint32_t>(defaults.starts.size());
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
@@ -562,7 +577,7 @@ Work addSpawn(CLI::App& app) {
   addVariables(*command, options->set);
   command
       ->add_option("--start", options->start,
-                   "The rule that a .cga file starts at (default: @StartRule's, else the first)")
+                   "The rule to start at (default: the first axiom's; of a .cga file @StartRule's, else the first)")
       ->type_name("RULE");
   command->add_option("--attr", options->attributes, "Set an attr of a .cga file; may be repeated")
       ->type_name("NAME=VALUE")
@@ -654,6 +669,7 @@ Examples:
                                                         also y, qx to qw, m00 to m23, shape, attribute
   gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
   gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
+  gpgp spawn castle.gml --axiom-size 40,12,40 --start roundTower    a program; it starts at its axiom, or at a rule
   gpgp spawn plant.lsys --set iterations=4 --string    an L-system: its string, and what its turtle draws
   gpgp spawn tower.pga --axioms 1024 --repeat 50 --json | jq .gpu_ms_median
   gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50

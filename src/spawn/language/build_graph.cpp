@@ -4,6 +4,7 @@
 #include "spawn/language/append_graph.h"
 #include "spawn/language/check_context.h"
 #include "spawn/language/check_shapes.h"
+#include "spawn/language/corners.h"
 #include "spawn/language/expressions.h"
 #include "spawn/language/resolve_rules.h"
 #include "spawn/language/spellings.h"
@@ -416,29 +417,10 @@ private:
       if (!isCorner(x, y)) diagnostics_.error(corner.place, kExpectedCorner);
     }
     if (diagnostics_.errorCount() > errors || !isWhole) return 0;
-    if (points.size() < 3 || points.size() > kMaxCorners) {
-      diagnostics_.error(place, "expected 3 to " + std::to_string(kMaxCorners) + " corners, found " +
-                                    std::to_string(points.size()));
-      return 0;
-    }
-    double area = 0;
-    bool left = false, right = false;
-    for (size_t i = 0; i < points.size(); ++i) {
-      const auto &a = points[i], &b = points[(i + 1) % points.size()], &c = points[(i + 2) % points.size()];
-      area += double(a[0]) * b[1] - double(b[0]) * a[1];
-      const double turn = (double(b[0]) - a[0]) * (double(c[1]) - b[1]) - (double(b[1]) - a[1]) * (double(c[0]) - b[0]);
-      left |= turn > 0;
-      right |= turn < 0;
-    }
-    if (area == 0)
-      diagnostics_.error(place, "the polygon has no area");
-    else if (convex && left && right)
-      diagnostics_.error(place, "the polygon is not convex");
-    if (area < 0) std::reverse(points.begin(), points.end());
-    const uint32_t polygon = addPolygon(graph_, points[0].data(), static_cast<uint32_t>(points.size()));
-    if (polygon != kNoPolygon) return polygon;
-    if (diagnostics_.errorCount() == errors) diagnostics_.error(place, "the polygon crosses itself");
-    return 0;
+    std::string problem;
+    const uint32_t polygon = addCorners(graph_, std::move(points), convex, problem);
+    if (!problem.empty()) diagnostics_.error(place, problem);
+    return polygon;
   }
 
   uint32_t addNode(Place place, uint32_t op, const std::vector<Parameter>& parameters,
@@ -564,6 +546,8 @@ Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* 
       appendGraph(*part.baked, part.name, graph, tags);
     else
       builders.emplace_back(part, graph, places, tags, number).run();
+    if (part.places)
+      for (const Place place : *part.places) places.push_back({number, place});
     places.resize(graph.nodes.size(), {number, {}});
   }
   const bool failed =
@@ -580,7 +564,7 @@ Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* 
 
 Graph buildGraph(const SyntaxTree& tree, std::span<const GpgpVariable> overrides, Diagnostics& diagnostics,
                  std::pmr::memory_resource* memory) {
-  const GrammarPart part{&tree, nullptr, overrides, &diagnostics, {}, {}};
+  const GrammarPart part{&tree, nullptr, overrides, &diagnostics, {}, {}, nullptr};
   return buildGraph({&part, 1}, memory);
 }
 

@@ -17,6 +17,7 @@ struct GrammarPart {
   Diagnostics* diagnostics = nullptr;
   std::string name; ///< a linked grammar's: its rules and terminals are name.Rule, its first axiom is name; else empty
   std::string file; ///< for messages of other parts
+  const std::vector<Place>* places = nullptr; ///< of the nodes of baked, where it was made of a text just now
 };
 
 /// Where a node was written.

@@ -60,7 +60,7 @@ void checkShapes(const Graph& graph, std::span<const NodePlace> places, std::spa
   for (size_t i = 0; i < graph.nodes.size(); ++i) {
     const Node& node = graph.nodes[i];
     const GrammarPart& part = parts[places[i].part];
-    if (part.baked || node.shapes == 0) continue;
+    if ((part.baked && !part.places) || node.shapes == 0) continue;
     warnOfEnds(graph, node, places[i].place, *part.diagnostics);
     tellOfPolygons(graph, node, places[i].place, *part.diagnostics);
     warnOfNoEffect(node, places[i].place, *part.diagnostics);

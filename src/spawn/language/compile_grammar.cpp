@@ -2,6 +2,7 @@
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
 #include "spawn/codegen/schedules.h"
+#include "spawn/gml/machine.h"
 #include "spawn/graph/blob.h"
 #include "spawn/graph/kernel.h"
 #include "spawn/language/build_graph.h"
@@ -49,7 +50,8 @@ GpgpResult check(const GpgpGrammarSource& source) {
     return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "variables is NULL, variableCount is not 0");
   for (uint32_t i = 0; i < source.variableCount; ++i)
     if (!source.variables[i].name) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "a variable's name is NULL");
-  if (source.flags & ~GPGP_COMPILE_KERNEL) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
+  if (source.flags & ~(GPGP_COMPILE_KERNEL | GPGP_COMPILE_STACK_LANGUAGE))
+    return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
   if (source.size > kMostText) return fail(source, GPGP_ERROR_INVALID_ARGUMENT, "the text is over 256 MiB");
   return GPGP_SUCCESS;
 }
@@ -58,6 +60,7 @@ struct Input {
   spawn::Diagnostics diagnostics;
   spawn::SyntaxTree tree;
   std::optional<spawn::Graph> baked;
+  std::vector<spawn::Place> places{}; ///< of its nodes, where it was made of the text
 };
 
 /// The graph of a baked grammar; kernels behind it serve this graph alone, but must be whole, as all of the file must.
@@ -85,6 +88,16 @@ std::optional<spawn::Graph> read(const GpgpGrammarSource& source, std::string_vi
   if (!printed) return std::nullopt;
   diagnostics.name({}, "the printed graph");
   return std::move(printed->graph);
+}
+
+/// The graph of a program in the stack language.
+std::optional<spawn::Graph> runProgram(const GpgpGrammarSource& source, std::string_view text,
+                                       spawn::Diagnostics& diagnostics, std::vector<spawn::Place>& places) {
+  spawn::gml::PlacedGraph made =
+      spawn::gml::compile(text, {source.variables, source.variableCount}, diagnostics, std::pmr::new_delete_resource());
+  if (diagnostics.hasErrors()) return std::nullopt;
+  places = std::move(made.places);
+  return std::move(made.graph);
 }
 
 /// A graph with a kernel behind it, where one is wanted.
@@ -132,12 +145,14 @@ GpgpResult compile(std::span<const GpgpGrammarSource> sources, bool linked, Gpgp
     bool kernel = false;
     for (size_t i = 0; i < sources.size(); ++i) {
       const GpgpGrammarSource& source = sources[i];
-      auto& [diagnostics, tree, baked] = inputs[i];
+      auto& [diagnostics, tree, baked, places] = inputs[i];
       const std::string file = source.name ? source.name : "", alias = source.alias ? source.alias : "";
       const std::string name = linked ? spawn::linkedName(alias.empty() ? file : alias) : std::string();
       const std::string_view text(source.text ? source.text : "", source.text ? source.size : 0);
       if (source.baked)
         tree.brokenAxiom = !(baked = load(source, diagnostics)); // was reported
+      else if ((source.flags & GPGP_COMPILE_STACK_LANGUAGE) && !source.builder)
+        tree.brokenAxiom = !(baked = runProgram(source, text, diagnostics, places));
       else if (spawn::isPrinted(text))
         tree.brokenAxiom = !(baked = read(source, text, diagnostics));
       else
@@ -151,8 +166,13 @@ GpgpResult compile(std::span<const GpgpGrammarSource> sources, bool linked, Gpgp
       else if (!isNew)
         diagnostics.error({}, "'" + name + "' is also the name of " + other->second +
                                   "; expected another file name, or an alias: linked grammars are told apart by them");
-      parts.push_back(
-          {&tree, baked ? &*baked : nullptr, {source.variables, source.variableCount}, &diagnostics, name, file});
+      parts.push_back({&tree,
+                       baked ? &*baked : nullptr,
+                       {source.variables, source.variableCount},
+                       &diagnostics,
+                       name,
+                       file,
+                       places.empty() ? nullptr : &places});
       kernel = kernel || (source.flags & GPGP_COMPILE_KERNEL);
     }
     const spawn::Graph graph = spawn::buildGraph(parts, std::pmr::new_delete_resource());
